@@ -1,0 +1,16 @@
+# Cross-compiles for a Cortex-M4F with Debian's gcc-arm-none-eabi and newlib.
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_SYSTEM_PROCESSOR cortex-m4)
+set(CMAKE_C_COMPILER arm-none-eabi-gcc)
+set(CMAKE_CXX_COMPILER arm-none-eabi-g++)
+set(CMAKE_ASM_COMPILER arm-none-eabi-gcc)
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+
+set(m4_flags "-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard -ffunction-sections -fdata-sections")
+set(CMAKE_C_FLAGS_INIT "${m4_flags}")
+set(CMAKE_ASM_FLAGS_INIT "${m4_flags}")
+set(CMAKE_CXX_FLAGS_INIT
+    "${m4_flags} -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-use-cxa-atexit -fno-unwind-tables -fno-asynchronous-unwind-tables")
+# Code size is the default on the board; the files on the hot path ask for -O2 themselves.
+set(CMAKE_CXX_FLAGS_RELEASE "-Os -g" CACHE STRING "")
+set(CMAKE_C_FLAGS_RELEASE "-Os -g" CACHE STRING "")
