@@ -1,0 +1,104 @@
+// The arithmetic of Values: saturating, three-valued, exact.
+//
+// The one definition of what numbers do, for the interpreter and for the compiler's constant
+// folding, so that host and robot agree bit for bit. Any operand may be kUnknown; then so is the
+// result. Every other result lies in kValueMin … kValueMax.
+#pragma once
+
+#include <cstdint>
+
+#include "vm/value.hpp"
+#if defined(__ARM_FEATURE_DSP)
+#include <arm_acle.h>
+#endif
+
+namespace robosync::vm {
+
+namespace detail {
+
+// Sum and difference cut off at INT32_MIN and INT32_MAX: one instruction on the M4.
+constexpr std::int32_t cut_off(std::int64_t value) {
+  if (value > INT32_MAX) return INT32_MAX;
+  return value < INT32_MIN ? INT32_MIN : static_cast<std::int32_t>(value);
+}
+#if defined(__ARM_FEATURE_DSP)
+inline std::int32_t cut_off_sum(std::int32_t b, std::int32_t c) {
+  return __qadd(b, c);
+}
+inline std::int32_t cut_off_difference(std::int32_t b, std::int32_t c) {
+  return __qsub(b, c);
+}
+#else
+constexpr std::int32_t cut_off_sum(std::int32_t b, std::int32_t c) {
+  return cut_off(std::int64_t{b} + c);
+}
+constexpr std::int32_t cut_off_difference(std::int32_t b, std::int32_t c) {
+  return cut_off(std::int64_t{b} - c);
+}
+#endif
+
+constexpr Value keep_off_unknown(std::int32_t result) {
+  return result + (result == kUnknown ? 1 : 0);
+}
+
+}  // namespace detail
+
+inline Value add(Value b, Value c) {
+  if (b == kUnknown || c == kUnknown) return kUnknown;
+  return detail::keep_off_unknown(detail::cut_off_sum(b, c));
+}
+
+// Wrapping negation turns kUnknown into itself.
+constexpr Value negate(Value b) {
+  return static_cast<Value>(0U - static_cast<std::uint32_t>(b));
+}
+
+// The range is symmetric, so this is exact wherever add() is.
+inline Value subtract(Value b, Value c) {
+  return add(b, negate(c));
+}
+
+// b * c of two numbers in thousandths, rounded half away from zero.
+Value multiply(Value b, Value c);
+
+// b / c of two numbers in thousandths, rounded half away from zero; anything / 0 is 0.
+Value divide(Value b, Value c);
+
+// b modulo c with the sign of c, so that an angle modulo 360deg is never negative; modulo 0 is 0.
+constexpr Value modulo(Value b, Value c) {
+  if (b == kUnknown || c == kUnknown) return kUnknown;
+  if (c == 0) return 0;
+  const Value remainder = b % c;
+  return remainder != 0 && (remainder ^ c) < 0 ? remainder + c : remainder;
+}
+
+constexpr Value logical_not(Value truth) {
+  return truth == kUnknown ? kUnknown : ~truth;
+}
+
+constexpr Value truth(bool value) {
+  return value ? kTrue : kFalse;
+}
+
+// Relations of two known values. An order is the sign of the cut-off difference, spread over the
+// word: that is kTrue or kFalse already, without a branch.
+inline Value is_less(Value b, Value c) {
+  return detail::cut_off_difference(b, c) >> 31;
+}
+inline Value is_greater(Value b, Value c) {
+  return is_less(c, b);
+}
+inline Value is_not_less(Value b, Value c) {
+  return ~is_less(b, c);
+}
+inline Value is_not_greater(Value b, Value c) {
+  return ~is_less(c, b);
+}
+constexpr Value is_equal(Value b, Value c) {
+  return truth(b == c);
+}
+constexpr Value is_not_equal(Value b, Value c) {
+  return truth(b != c);
+}
+
+}  // namespace robosync::vm

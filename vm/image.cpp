@@ -1,0 +1,110 @@
+// Finds the sections of an image, and the few facts about an image that everybody needs.
+//
+// Assumes nothing about the bytes; a view is in bounds for any bytes that view_image() accepts.
+#include "vm/image.hpp"
+
+#include <bit>
+#include <cstring>
+
+namespace robosync::vm {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "records are read in place");
+
+// Gives `records` the place `next`, and moves `next` past them and their padding to 4 bytes. Places
+// are numbers here, as they may lie outside the image until all sections have been seen.
+template <typename Record>
+void place(std::uintptr_t& next, std::size_t count, std::span<const Record>& records) {
+  static_assert(alignof(Record) <= 4);
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): not yet known to be a pointer into the image
+  records = {reinterpret_cast<const Record*>(next), count};
+  next += count * sizeof(Record);
+  if constexpr (sizeof(Record) % 4 != 0) next = (next + 3) & ~std::uintptr_t{3};
+}
+
+constexpr std::array<std::uint32_t, 16> crc_table() {
+  std::array<std::uint32_t, 16> table{};
+  for (std::uint32_t nibble = 0; nibble < table.size(); ++nibble) {
+    std::uint32_t remainder = nibble;
+    for (int bit = 0; bit < 4; ++bit)
+      remainder = remainder >> 1 ^ ((remainder & 1) != 0 ? 0xEDB88320 : 0);
+    table[nibble] = remainder;
+  }
+  return table;
+}
+
+constexpr std::array<std::uint32_t, 16> kCrcTable = crc_table();
+
+[[gnu::always_inline]] inline std::uint32_t crc_nibble(std::uint32_t crc) {
+  return crc >> 4 ^ kCrcTable[crc & 0xF];
+}
+[[gnu::always_inline]] inline std::uint32_t crc_byte(std::uint32_t crc) {
+  return crc_nibble(crc_nibble(crc));
+}
+
+}  // namespace
+
+bool view_image(std::span<const std::byte> bytes, Image& image) {
+  image.header = nullptr;
+  const auto begin = reinterpret_cast<std::uintptr_t>(bytes.data());
+  if (begin % 4 != 0 || bytes.size() < sizeof(ImageHeader)) return false;
+  const ImageHeader& header = *reinterpret_cast<const ImageHeader*>(bytes.data());
+  image.header = &header;
+  std::uintptr_t next = begin + sizeof(ImageHeader);
+  place(next, header.sensors, image.sensors);
+  place(next, header.channels, image.channels);
+  place(next, header.actuators, image.actuators);
+  place(next, header.groups, image.groups);
+  place(next, header.verbs, image.verbs);
+  place(next, header.words, image.words);
+  place(next, header.variables, image.variables);
+  place(next, header.checks, image.checks);
+  place(next, header.bands, image.bands);
+  place(next, header.behaviors, image.behaviors);
+  place(next, header.modifiers, image.modifiers);
+  place(next, header.timers, image.timers);
+  place(next, header.rules, image.rules);
+  place(next, header.responses, image.responses);
+  place(next, header.inputs, image.inputs);
+  place(next, header.constants, image.constants);
+  place(next, header.code, image.code);
+  place(next, header.labels, image.labels);
+  place(next, header.string_bytes, image.strings);
+  place(next, header.source_lines, image.source_lines);
+  return header.total_length == bytes.size() && next - begin == bytes.size();
+}
+
+std::string_view Image::string(std::uint16_t offset) const {
+  if (offset >= strings.size()) return {};
+  const std::size_t room = strings.size() - offset;
+  const char* const text = strings.data() + offset;
+  const void* const nul = std::memchr(text, 0, room);
+  return {text,
+          nul == nullptr ? room : static_cast<std::size_t>(static_cast<const char*>(nul) - text)};
+}
+
+std::uint32_t Image::target_mask(std::uint8_t target) const {
+  if ((target & kGroupBit) != 0) {
+    const std::size_t group = target & ~unsigned{kGroupBit};
+    return group < groups.size() ? groups[group].members : 0;
+  }
+  return target < actuators.size() && target < kMaxActuators ? std::uint32_t{1} << target : 0;
+}
+
+std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t seed) {
+  std::uint32_t crc = ~seed;
+  const std::byte* next = bytes.data();
+  const std::byte* const end = next + bytes.size();
+  const std::byte* const words_end = end - bytes.size() % sizeof(std::uint32_t);
+  while (next != words_end) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, next, sizeof word);
+    next += sizeof word;
+    crc = crc_byte(crc_byte(crc_byte(crc_byte(crc ^ word))));
+  }
+  while (next != end)
+    crc = crc_byte(crc ^ std::to_integer<std::uint32_t>(*next++));
+  return ~crc;
+}
+
+}  // namespace robosync::vm

@@ -1,0 +1,350 @@
+// The compiled program (.rsb): its layout in memory and on the wire.
+//
+// Little-endian, every record a plain struct read in place. Sections follow the header without gaps
+// in the order of ImageHeader's counts (each padded to 4 bytes), so offsets are derived, never
+// stored, and cannot overlap. An image is data from outside: nothing here may be trusted before
+// verify() said yes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "vm/value.hpp"
+
+namespace robosync::vm {
+
+using Word = std::uint32_t;  // one instruction: op | a << 8 | b << 16 | c << 24
+
+inline constexpr std::uint32_t kMagic = 0x31425352;  // "RSB1"
+inline constexpr std::uint8_t kFormatMajor = 1;      // a board runs images of its own major only
+inline constexpr std::uint8_t kFormatMinor = 0;
+
+inline constexpr std::uint16_t kNoIndex = 0xFFFF;    // "none" in any u16 index
+inline constexpr std::uint8_t kNoWord = 0xFF;        // CMD without a word
+inline constexpr std::uint8_t kGroupBit = 0x80;      // target operand: a group, not an actuator
+inline constexpr std::uint8_t kAllActuators = 0xFF;  // target operand of halt: every actuator
+inline constexpr std::uint8_t kNoModifiers = 0xFF;   // Rule::modifiers: none
+inline constexpr std::int16_t kSafetyPriority =
+    100;                                      // of the behaviour that holds the SAFETY rules
+inline constexpr unsigned kFadeTickMs = 100;  // how often a fading variable moves
+inline constexpr unsigned kMaxWindow = 32;    // samples a median is taken of
+inline constexpr unsigned kMaxEdges = 16;     // n TIMES WITHIN
+inline constexpr unsigned kMaxWritable = 32;  // input cells a behaviour can set: one bit each
+inline constexpr unsigned kMaxBlocks = 16;    // blocks open at once in a response
+
+// Limits of the format. A board may have smaller ones (Limits in verifier.hpp).
+inline constexpr unsigned kMaxBehaviors = 64;
+inline constexpr unsigned kMaxActuators = 32;  // one bit each in an actuator mask
+inline constexpr unsigned kMaxVerbs = 32;      // one bit each in Actuator::verbs
+inline constexpr unsigned kMaxWords = 255;
+inline constexpr unsigned kMaxInputs = 255;         // channels and variables
+inline constexpr unsigned kMaxCells = 255;          // frame cells of a behaviour
+inline constexpr unsigned kMaxResponseOutput = 64;  // words a response may put out in one step
+
+enum class Dimension : std::uint8_t {
+#define DIMENSION(name, unit, doc) name,
+#include "vm/dimensions.def"
+#undef DIMENSION
+};
+
+enum class Param : std::uint8_t {
+#define PARAM(name, spelling, doc) name,
+#include "vm/params.def"
+#undef PARAM
+  count_
+};
+
+enum class DriverId : std::uint8_t {
+#define SENSOR_DRIVER(name, doc) name,
+#define ACTUATOR_DRIVER(name, doc) name,
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+  count_
+};
+
+// What a verb makes its driver do. The image's verb table joins a name to one of these.
+enum class Action : std::uint8_t { move, play, set, stop, count_ };
+
+// What an actuator does when its response ends by interruption, and when safety halts it.
+enum class Release : std::uint8_t { hold, rest, coast, count_ };
+
+enum class RuleKind : std::uint8_t {
+  when,       // edge: the condition becomes true
+  when_else,  // edge: the chosen side changes; the first known value chooses a side
+  while_,     // level: as long as the condition is true
+  every,      // the condition's code gives the time to the next trigger, anew for each
+  start,      // once, in the first step; no condition
+  watch,      // no response: the truth of its condition is kept in the frame, for responses
+  safety,     // level, latched; evaluated by the safety monitor
+  resume,     // follows its safety rule: what lets it go. No response
+  count_
+};
+
+// What a program remembers. All are inputs like channels, numbered behind them.
+enum class VariableKind : std::uint8_t {
+  plain,    // REMEMBER
+  state,    // STATE: its value is the place of a label, in thousandths
+  feeling,  // FEELING
+  signal,   // counts the SIGNALs
+  band,     // of a CHECK: the place of a band's label, in thousandths; set by the check only
+  count_
+};
+
+// What remembers the past for a time word. Its state is words of the program's timer memory.
+enum class TimerKind : std::uint8_t {
+  held,      // FOR                1 word
+  counted,   // n TIMES WITHIN     n + 1 words
+  sequence,  // THEN … WITHIN      2 words
+  latch,     // MARGIN             1 word
+  rose,      // BECOMES            1 word
+  changed,   // CHANGES [BY]       1 word
+  count_
+};
+
+struct ImageHeader {
+  std::uint32_t magic;         // kMagic
+  std::uint32_t crc32;         // CRC-32 (IEEE) of everything after this field
+  std::uint32_t total_length;  // bytes, header included, a multiple of 4
+  std::uint8_t format_major;
+  std::uint8_t format_minor;
+  std::uint16_t opcode_set;                  // opcode_set_id() of the compiler's opcodes.def
+  std::array<std::uint8_t, 8> program_hash;  // first bytes of SHA-256 over source and configuration
+  std::uint32_t seed;                        // of RANDOM and PICK ONE
+  std::uint32_t step_cost;                   // worst-case M4 instructions of VM code in one step
+  // Records in each section, in the order the sections stand in.
+  std::uint8_t sensors, channels, actuators, groups;
+  std::uint8_t verbs, words, variables, checks;
+  std::uint8_t bands, behaviors, modifiers, reserved;
+  std::uint16_t timers, rules, responses;
+  std::uint16_t inputs;  // numbers of channels and variables, u8 each
+  std::uint16_t constants;
+  std::uint16_t code;    // instruction words
+  std::uint16_t labels;  // offsets in the strings, u16 each
+  std::uint16_t string_bytes;
+  std::uint16_t source_lines;  // debug, dropped by --strip
+  std::uint16_t reserved2;
+};
+static_assert(sizeof(ImageHeader) == 64);
+
+struct Sensor {
+  std::uint16_t name;  // offset in the strings
+  DriverId driver;
+  std::uint8_t bus;
+  std::uint16_t address;    // I2C address or pin
+  std::uint16_t period_ms;  // between two samples; 0: only when fed
+  std::uint8_t first_channel;
+  std::uint8_t channel_count;
+  std::uint16_t reserved;
+};
+static_assert(sizeof(Sensor) == 12);
+
+struct Channel {
+  std::uint16_t name;
+  std::uint8_t sensor;
+  std::uint8_t input;  // which of the device's inputs, or its register
+  Dimension dimension;
+  std::uint8_t label_count;  // of a channel whose values are words: value n is label n
+  std::uint16_t stale_ms;    // older than this: unknown; 0: never stale
+  std::uint16_t scale_den;   // value = raw * scale_num / scale_den + offset, thousandths
+  std::uint16_t first_label;
+  std::int32_t scale_num;
+  Value offset;
+  Value min, max;  // readings are clamped to this range
+  Value change;    // published only if it differs by at least this; 0: on any difference
+};
+static_assert(sizeof(Channel) == 32);
+
+struct Actuator {
+  std::uint16_t name;
+  DriverId driver;
+  std::uint8_t bus;
+  std::uint16_t pin;
+  Release on_release;
+  Release safe;
+  std::uint32_t verbs;  // bit v: verb v of the verb table may command it
+  Value min, max;       // range of TO, canonical units
+  Value speed_limit;    // upper limit of AT; kValueMax: none
+};
+static_assert(sizeof(Actuator) == 24);
+
+struct Group {
+  std::uint16_t name;
+  std::uint16_t reserved;
+  std::uint32_t members;  // actuator mask
+};
+static_assert(sizeof(Group) == 8);
+
+struct Verb {
+  std::uint16_t name;
+  Action action;
+  std::uint8_t params;  // bit p: takes parameter p
+};
+static_assert(sizeof(Verb) == 4);
+
+struct WordEntry {  // SLOWLY, "greeting.wav", BACKWARD: a name that sets one parameter
+  std::uint16_t name;
+  Param param;
+  std::uint8_t reserved;
+  Value value;
+};
+static_assert(sizeof(WordEntry) == 8);
+
+// Its number as an input is channels + its place in the section.
+struct Variable {
+  std::uint16_t name;
+  VariableKind kind;
+  Dimension dimension;
+  std::uint16_t first_label;  // of state and band
+  std::uint8_t label_count;   // 0 for the other kinds
+  std::uint8_t reserved;
+  Value initial;   // kUnknown for band
+  Value min, max;  // what is set is clamped to this range
+  Value fades_to;  // only where fade != 0
+  std::uint32_t
+      fade;  // part of the distance to fades_to left after kFadeTickMs, times 2^31; 0: stays
+};
+static_assert(sizeof(Variable) == 28);
+
+// A CHECK: puts the band of an input's value into a variable, before the rules see either.
+struct Check {
+  std::uint8_t variable;  // place in the section of variables; of kind band
+  std::uint8_t input;     // channel, or variable that is not a band
+  std::uint8_t first_band;
+  std::uint8_t band_count;
+  std::uint16_t window;     // samples whose median is classified (SMOOTH); 1: the value itself
+  std::uint16_t sample_ms;  // between two samples of the window
+};
+static_assert(sizeof(Check) == 8);
+
+// The first band that has the value is it; the band of last time has it as long as it is inside the
+// wider range (MARGIN); none where stay_low > stay_high. All ends are included.
+struct Band {
+  Value low, high;
+  Value stay_low, stay_high;
+};
+static_assert(sizeof(Band) == 16);
+
+struct Timer {
+  TimerKind kind;
+  std::uint8_t count;   // counted: rising edges; else 0
+  std::uint16_t state;  // its first word in the timer memory; the timers follow each other there
+  Value duration;       // in thousandths of a second; changed: the least difference, 0: any
+};
+static_assert(sizeof(Timer) == 8);
+
+struct Modifiers {
+  Value cooldown;  // in thousandths of a second; 0: none
+  Value waiting;
+  std::uint8_t restarting;  // 1: a trigger starts the running response again
+  std::array<std::uint8_t, 3> reserved;
+};
+static_assert(sizeof(Modifiers) == 12);
+
+// A behaviour's frame: its inputs in cells 0 … input_count-1 (latched at the start of each step),
+// its locals (numbers that outlast a step), the truths of its watch rules, in their order, then its
+// registers. With kSafetyPriority it is no behaviour: it holds the SAFETY rules.
+struct Behavior {
+  std::int16_t priority;  // 1–99 as written; rules outside a BEHAVIOR get 0, -1, -2 … in file order
+  std::uint16_t name;       // kNoIndex: a rule outside a BEHAVIOR
+  std::uint32_t actuators;  // union over its responses
+  std::uint16_t first_input;
+  std::uint8_t input_count;
+  std::uint8_t rule_count;
+  std::uint16_t first_rule;
+  std::uint8_t locals;
+  std::uint8_t cells;  // frame cells, inputs included
+};
+static_assert(sizeof(Behavior) == 16);
+
+struct Rule {
+  std::uint16_t condition_start;  // word index in the code section; 0 for start
+  std::uint16_t condition_length;
+  std::uint16_t then_response;  // index of a response; kNoIndex of watch and resume
+  std::uint16_t else_response;  // kNoIndex without ELSE
+  std::uint16_t line;           // of the rule in the source, for traces
+  RuleKind kind;
+  std::uint8_t modifiers;  // index, or kNoModifiers
+};
+static_assert(sizeof(Rule) == 12);
+
+struct Response {
+  std::uint16_t start;   // word index in the code section
+  std::uint16_t length;  // words
+  std::uint32_t
+      actuators;  // every actuator it can command; re-computed and compared by the verifier
+};
+static_assert(sizeof(Response) == 8);
+
+struct SourceLine {  // first instruction word that comes from `line`
+  std::uint16_t word;
+  std::uint16_t line;
+};
+static_assert(sizeof(SourceLine) == 4);
+
+// Read-only view of an image's sections. `bytes` must be 4-aligned and outlive the view.
+struct Image {
+  const ImageHeader* header = nullptr;
+  std::span<const Sensor> sensors;
+  std::span<const Channel> channels;
+  std::span<const Actuator> actuators;
+  std::span<const Group> groups;
+  std::span<const Verb> verbs;
+  std::span<const WordEntry> words;
+  std::span<const Variable> variables;
+  std::span<const Check> checks;
+  std::span<const Band> bands;
+  std::span<const Behavior> behaviors;
+  std::span<const Modifiers> modifiers;
+  std::span<const Timer> timers;
+  std::span<const Rule> rules;
+  std::span<const Response> responses;
+  std::span<const std::uint8_t> inputs;
+  std::span<const Value> constants;
+  std::span<const Word> code;
+  std::span<const std::uint16_t> labels;
+  std::span<const char> strings;
+  std::span<const SourceLine> source_lines;
+
+  // The NUL-terminated string at `offset`; empty when kNoIndex or out of range.
+  std::string_view string(std::uint16_t offset) const;
+  // Mask of the actuators a CMD's target operand means.
+  std::uint32_t target_mask(std::uint8_t target) const;
+};
+
+// Sections in the order they stand in the image; also names the place in a verifier's refusal.
+enum class Section : std::uint8_t {
+  header,
+  sensors,
+  channels,
+  actuators,
+  groups,
+  verbs,
+  words,
+  variables,
+  checks,
+  bands,
+  behaviors,
+  modifiers,
+  timers,
+  rules,
+  responses,
+  inputs,
+  constants,
+  code,
+  labels,
+  strings,
+  source_lines
+};
+
+// Lays the sections out over `bytes`. False if they do not fill exactly total_length ==
+// bytes.size().
+[[nodiscard]] bool view_image(std::span<const std::byte> bytes, Image& image);
+
+// CRC-32 (IEEE 802.3) of `bytes`, continuing from `seed` (0 to begin).
+[[nodiscard]] std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t seed = 0);
+
+}  // namespace robosync::vm

@@ -1,0 +1,95 @@
+// The verifier's frame: the header and the checksum, then the records, then the code.
+//
+// Work is linear in the image for everything but code; code is checked once for every rule that
+// uses it, and that is bounded (verify_code.cpp).
+#include "vm/verifier.hpp"
+
+#include <algorithm>
+
+#include "vm/verifier_parts.hpp"
+
+namespace robosync::vm {
+namespace {
+
+constexpr std::uint16_t kOpcodeSet = opcode_set_id();
+
+// kAllActuators is no group.
+constexpr unsigned kMaxGroups = kAllActuators - kGroupBit;
+
+bool are_too_many(const ImageHeader& header, const Limits& limits) {
+  const unsigned inputs = unsigned{header.channels} + header.variables;
+  return header.sensors > limits.sensors || header.actuators > limits.actuators ||
+         header.behaviors > limits.behaviors || header.rules > limits.rules ||
+         inputs > limits.inputs || inputs > kMaxInputs || header.actuators > kMaxActuators ||
+         header.behaviors > kMaxBehaviors || header.verbs > kMaxVerbs || header.groups > kMaxGroups;
+}
+
+// What must hold before any section can be looked at.
+Refusal check_header(std::span<const std::byte> bytes, const Limits& limits, Image& image) {
+  if (bytes.size() < sizeof(ImageHeader)) return Refusal::too_short;
+  const bool sections_fit = view_image(bytes, image);
+  if (image.header == nullptr) return Refusal::bad_length;  // not 4-aligned: the caller's mistake
+  const ImageHeader& header = *image.header;
+  if (header.magic != kMagic) return Refusal::bad_magic;
+  if (header.format_major != kFormatMajor) return Refusal::wrong_version;
+  if (header.total_length > bytes.size()) return Refusal::too_short;
+  if (!sections_fit) return Refusal::bad_length;
+  if (bytes.size() > limits.image_bytes) return Refusal::too_large;
+  constexpr std::size_t kCovered = offsetof(ImageHeader, total_length);
+  if (crc32(bytes.subspan(kCovered)) != header.crc32) return Refusal::bad_crc;
+  if (header.opcode_set != kOpcodeSet) return Refusal::wrong_opcodes;
+  if (header.reserved != 0 || header.reserved2 != 0) return Refusal::bad_value;
+  if (are_too_many(header, limits)) return Refusal::too_many;
+  return header.step_cost > limits.step_cost ? Refusal::too_costly : Refusal::none;
+}
+
+constexpr std::string_view kRefusalTexts[] = {
+    "the image may run",
+#define REFUSAL(name, text) text,
+#include "vm/refusals.def"
+#undef REFUSAL
+};
+
+constexpr std::string_view kSectionNames[] = {
+    "header",    "sensors", "channels",  "actuators", "groups",    "verbs",   "words",
+    "variables", "checks",  "bands",     "behaviors", "modifiers", "timers",  "rules",
+    "responses", "inputs",  "constants", "code",      "labels",    "strings", "source lines"};
+static_assert(std::size(kSectionNames) == static_cast<std::size_t>(Section::source_lines) + 1);
+
+}  // namespace
+
+std::string_view describe(Refusal refusal) {
+  const auto index = static_cast<std::size_t>(refusal);
+  return index < std::size(kRefusalTexts) ? kRefusalTexts[index] : "an unknown reason";
+}
+
+std::string_view describe(Section section) {
+  const auto index = static_cast<std::size_t>(section);
+  return index < std::size(kSectionNames) ? kSectionNames[index] : "an unknown section";
+}
+
+bool Verification::refuse(Refusal refusal, Section section, std::size_t index) {
+  verdict = {refusal, section, static_cast<std::uint16_t>(index)};
+  return false;
+}
+
+Verdict verify(std::span<const std::byte> bytes, const Limits& limits, Image& image) {
+  Verification verification{image, limits};
+  verification.verdict.refusal = check_header(bytes, limits, image);
+  bool good = verification.verdict.ok() && check_records(verification) && check_code(verification);
+  if (good && verification.step_cost != image.header->step_cost)
+    good = verification.refuse(Refusal::cost_differs, Section::header, 0);
+  if (!good) image = {};
+  return verification.verdict;
+}
+
+std::uint32_t step_cost(const Image& image) {
+  Limits limits;
+  limits.step_cost = UINT32_MAX;
+  limits.frame_cells = limits.timer_words = limits.samples = UINT16_MAX;
+  Verification verification{image, limits};
+  if (!check_records(verification) || !check_code(verification)) return 0;
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(verification.step_cost, UINT32_MAX));
+}
+
+}  // namespace robosync::vm

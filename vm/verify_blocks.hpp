@@ -1,0 +1,70 @@
+// Verifier, part: how the blocks of a code object nest, and what a run of it costs and puts out.
+//
+// One pass, without looking back: jumps go only to the ends of blocks and the starts of loops, so
+// what was spent on the dearest way to an instruction is known when the pass comes there. A wait
+// ends a run, and the count starts again. A loop either runs a constant number of times, and its
+// body counts as often; or it waits in every round, and a run sees at most what stands behind its
+// last wait and, around the loop's end, what stands before its first one. A wait that may be jumped
+// over inside a loop counts as if it were none.
+#pragma once
+
+#include <array>
+
+#include "vm/verifier_parts.hpp"
+
+namespace robosync::vm {
+
+class Blocks {
+public:
+  // For the object that ends with the word at `last`.
+  Blocks(const Image& image, std::size_t last) : image_(image), last_(last) {}
+
+  // Before the word at `at`: ends the blocks that end there. `changed`: some did.
+  [[nodiscard]] Refusal arrive(std::size_t at, bool& changed);
+  // The word at `at`, whose operands are good, is run.
+  [[nodiscard]] Refusal spend(std::uint32_t cost, std::uint32_t output);
+  // Then, if it begins or ends a block, or waits.
+  [[nodiscard]] Refusal flow(std::size_t at, Word word);
+
+  // Is it the cell of an open loop?
+  [[nodiscard]] bool is_counter(std::uint8_t cell) const;
+  // Cost of the dearest run.
+  [[nodiscard]] std::uint32_t dearest() const;
+
+private:
+  struct Spent {
+    std::uint32_t cost = 0;
+    std::uint32_t output = 0;
+  };
+  enum class Kind : std::uint8_t { forward, loop };
+  struct Block {
+    std::uint32_t cost;       // forward: spent where a jump to its end starts, at most; loop: spent
+    std::uint32_t lead_cost;  // at its start. The lead: from there to the first wait
+    std::uint16_t start;      // loop: where a jump back goes to
+    std::uint16_t end;        // forward: where it ends; loop: where it must have ended
+    std::uint8_t output, lead_output;
+    Kind kind;
+    bool waits;  // loop: in every round
+  };
+  static_assert(sizeof(Block) == 16, "stands kMaxBlocks times on a small stack");
+
+  Block& top() { return open_[depth_ - 1]; }
+  [[nodiscard]] std::size_t limit() const { return depth_ > 0 ? open_[depth_ - 1].end : last_; }
+  [[nodiscard]] const Word& opener(const Block& loop) const { return image_.code[loop.start - 1U]; }
+
+  Refusal open(Kind kind, std::size_t start, std::size_t end);
+  Refusal jump(std::size_t next, std::size_t target);
+  Refusal close_loop(std::size_t target, Word word);
+  Refusal repeat(const Block& loop);
+  void wait();
+  void take_dearer(Block& block) const;
+
+  const Image& image_;
+  std::size_t last_;
+  Spent spent_;  // since the last wait, on the dearest way
+  std::uint32_t dearest_ = 0;
+  unsigned depth_ = 0;
+  std::array<Block, kMaxBlocks> open_;  // initialized: the first depth_
+};
+
+}  // namespace robosync::vm

@@ -1,0 +1,78 @@
+// Verifier, part: one code object, as a behaviour runs it. Assumes good records.
+#pragma once
+
+#include <array>
+
+#include "vm/verifier_parts.hpp"
+
+namespace robosync::vm {
+
+// What the cells of a behaviour's frame hold before an instruction, on whichever way it is reached.
+class Cells {
+public:
+  explicit Cells(const Behavior& behavior, std::size_t watches)
+      : inputs_(behavior.input_count),
+        locals_end_(inputs_ + behavior.locals),
+        first_register_(static_cast<unsigned>(locals_end_ + watches)),
+        count_(behavior.cells) {}
+
+  // Another object begins: the locals up to the last one that was written are taken.
+  void begin_object() {
+    taken_end_ = written_end_;
+    forget_registers();
+  }
+  void forget_registers() { known_.fill(0); }
+
+  [[nodiscard]] bool is_input(std::uint8_t cell) const { return cell < inputs_; }
+  [[nodiscard]] bool is_local(std::uint8_t cell) const {
+    return cell >= inputs_ && cell < locals_end_;
+  }
+  [[nodiscard]] bool is_register(std::uint8_t cell) const {
+    return cell >= first_register_ && cell < count_;
+  }
+  [[nodiscard]] bool in_frame(std::uint8_t cell) const { return cell < count_; }
+  [[nodiscard]] bool is_set(std::uint8_t cell) const {
+    return cell < first_register_ || has(known_, cell);
+  }
+  [[nodiscard]] bool is_truth(std::uint8_t cell) const {
+    return cell >= locals_end_ && (cell < first_register_ || has(truths_, cell));
+  }
+  // A local that an object before this one may write.
+  [[nodiscard]] bool is_taken(std::uint8_t cell) const { return cell < taken_end_; }
+
+  void set(std::uint8_t cell, bool truth) {
+    const std::uint32_t bit = std::uint32_t{1} << cell % 32;
+    known_[cell / 32] |= bit;
+    truths_[cell / 32] = truth ? truths_[cell / 32] | bit : truths_[cell / 32] & ~bit;
+    if (is_local(cell) && cell >= written_end_) written_end_ = cell + 1U;
+  }
+
+private:
+  using Bits = std::array<std::uint32_t, (kMaxCells + 31) / 32>;
+  static bool has(const Bits& bits, std::uint8_t cell) {
+    return (bits[cell / 32] >> cell % 32 & 1) != 0;
+  }
+
+  unsigned inputs_, locals_end_, first_register_, count_;
+  unsigned written_end_ = 0;  // behind the last local written by the objects so far
+  unsigned taken_end_ = 0;    // the same, when this object began
+  Bits known_{}, truths_{};   // of the registers
+};
+
+struct CodeRange {
+  std::uint16_t start;
+  std::uint16_t length;
+};
+
+enum class ObjectKind : std::uint8_t { condition, period, response, safety };
+
+// What an accepted object does.
+struct ObjectFacts {
+  std::uint32_t cost = 0;       // M4 instructions between two waits, at most
+  std::uint32_t actuators = 0;  // every one it commands or halts
+};
+
+bool check_object(Verification& verification, const Behavior& behavior, Cells& cells,
+                  ObjectKind kind, CodeRange range, ObjectFacts& facts);
+
+}  // namespace robosync::vm

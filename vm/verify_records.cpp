@@ -1,0 +1,361 @@
+// Verifier, part: the records of the image.
+//
+// One walk over the sections in their order, one check for each kind of record. A check may rely on
+// the sections before its own.
+#include "vm/timers.hpp"
+#include "vm/verifier_parts.hpp"
+
+namespace robosync::vm {
+namespace {
+
+// What the checks know, and what they must remember of the records before.
+struct Walk {
+  const Image& image;
+  const Limits& limits;
+  std::uint32_t next_channel = 0;
+  std::uint32_t next_rule = 0;
+  std::uint32_t cells = 0;  // of all frames
+  std::int32_t last_priority = kSafetyPriority + 1;
+  std::uint32_t safety_rules = 0;  // the first ones
+  std::uint32_t samples = 0;       // of all windows
+  std::uint32_t timer_words = 0;
+  std::uint32_t last_word = 0;  // of the source lines
+};
+
+enum class DriverKind : std::uint8_t { sensor, actuator };
+
+constexpr DriverKind kDriverKinds[] = {
+#define SENSOR_DRIVER(name, doc) DriverKind::sensor,
+#define ACTUATOR_DRIVER(name, doc) DriverKind::actuator,
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+};
+static_assert(std::size(kDriverKinds) <= 32, "one bit each in Limits::drivers");
+
+constexpr std::array kDimensions = {
+#define DIMENSION(name, unit, doc) Dimension::name,
+#include "vm/dimensions.def"
+#undef DIMENSION
+};
+
+// The pool ends with a NUL (check_records), so every offset inside it is the start of a string.
+bool is_string(const Walk& walk, std::uint16_t name) {
+  return name < walk.image.strings.size();
+}
+
+bool is_dimension(Dimension dimension) {
+  return static_cast<std::size_t>(dimension) < kDimensions.size();
+}
+
+// Are there `count` records from `first` on, of the `all` that there are?
+bool is_inside(std::size_t first, std::size_t count, std::size_t all) {
+  return first + count <= all;
+}
+
+bool is_range(Value min, Value max) {
+  return min != kUnknown && min <= max;
+}
+
+// Variable::fade: part of the distance that is left, times this; so much is left that it stays.
+constexpr std::uint32_t kNoFade = std::uint32_t{1} << 31;
+
+template <typename Enum>
+constexpr bool is_enumerator(Enum value) {
+  return value < Enum::count_;
+}
+
+// Is there code from `start` on, `length` words?
+bool is_code(const Walk& walk, std::uint32_t start, std::uint32_t length) {
+  return length > 0 && is_inside(start, length, walk.image.code.size());
+}
+
+Refusal check_driver(const Walk& walk, DriverId driver, DriverKind kind) {
+  const auto number = static_cast<std::size_t>(driver);
+  if (number >= std::size(kDriverKinds)) return Refusal::no_driver;
+  if (kDriverKinds[number] != kind) return Refusal::bad_value;
+  return good_or(Refusal::no_driver, (walk.limits.drivers >> number & 1) != 0);
+}
+
+Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t) {
+  if (sensor.first_channel != walk.next_channel) return Refusal::bad_index;
+  walk.next_channel += sensor.channel_count;
+  if (walk.next_channel > walk.image.channels.size()) return Refusal::bad_index;
+  if (sensor.reserved != 0) return Refusal::bad_value;
+  return check_driver(walk, sensor.driver, DriverKind::sensor);
+}
+
+// Each channel names its sensor, and stands in that sensor's range. As the ranges follow each other
+// without gaps, a channel after the last range has no sensor to name.
+Refusal check_channel(Walk& walk, const Channel& channel, std::size_t index) {
+  if (channel.sensor >= walk.image.sensors.size()) return Refusal::bad_index;
+  const Sensor& sensor = walk.image.sensors[channel.sensor];
+  if (index - sensor.first_channel >= sensor.channel_count) return Refusal::bad_index;
+  if (!is_inside(channel.first_label, channel.label_count, walk.image.labels.size()))
+    return Refusal::bad_index;
+  return good_or(Refusal::bad_value, is_dimension(channel.dimension) && channel.scale_den != 0 &&
+                                         channel.offset != kUnknown &&
+                                         is_range(channel.min, channel.max) && channel.change >= 0);
+}
+
+Refusal check_actuator(Walk& walk, const Actuator& actuator, std::size_t) {
+  if ((actuator.verbs & ~low_bits(walk.image.verbs.size())) != 0) return Refusal::bad_index;
+  const bool good = is_enumerator(actuator.on_release) && is_enumerator(actuator.safe) &&
+                    is_range(actuator.min, actuator.max) && actuator.speed_limit >= 0;
+  if (!good) return Refusal::bad_value;
+  return check_driver(walk, actuator.driver, DriverKind::actuator);
+}
+
+Refusal check_group(Walk& walk, const Group& group, std::size_t) {
+  if ((group.members & ~low_bits(walk.image.actuators.size())) != 0) return Refusal::bad_index;
+  return good_or(Refusal::bad_value, group.members != 0 && group.reserved == 0);
+}
+
+Refusal check_verb(Walk&, const Verb& verb, std::size_t) {
+  constexpr std::uint32_t kParams = low_bits(static_cast<std::size_t>(Param::count_));
+  return good_or(Refusal::bad_value, is_enumerator(verb.action) && (verb.params & ~kParams) == 0);
+}
+
+Refusal check_word(Walk&, const WordEntry& word, std::size_t) {
+  return good_or(Refusal::bad_value,
+                 is_enumerator(word.param) && word.reserved == 0 && word.value != kUnknown);
+}
+
+Refusal check_variable(Walk& walk, const Variable& variable, std::size_t) {
+  if (!is_inside(variable.first_label, variable.label_count, walk.image.labels.size()))
+    return Refusal::bad_index;
+  const bool is_band = variable.kind == VariableKind::band;
+  const bool has_labels = is_band || variable.kind == VariableKind::state;
+  const auto in_range = [&](Value value) { return variable.min <= value && value <= variable.max; };
+  const bool fades = variable.kind == VariableKind::feeling && variable.fade < kNoFade &&
+                     in_range(variable.fades_to);
+  return good_or(Refusal::bad_value,
+                 is_enumerator(variable.kind) && is_dimension(variable.dimension) &&
+                     has_labels == (variable.label_count > 0) && variable.reserved == 0 &&
+                     is_range(variable.min, variable.max) &&
+                     (is_band ? variable.initial == kUnknown : in_range(variable.initial)) &&
+                     (variable.fade == 0 || fades));
+}
+
+// A check's bands are the labels of its variable. It reads no band, so that their order is none.
+Refusal check_check(Walk& walk, const Check& check, std::size_t) {
+  const Image& image = walk.image;
+  const std::size_t channels = image.channels.size();
+  if (check.variable >= image.variables.size() ||
+      check.input >= channels + image.variables.size() ||
+      !is_inside(check.first_band, check.band_count, image.bands.size()))
+    return Refusal::bad_index;
+  const Variable& variable = image.variables[check.variable];
+  const bool reads_band =
+      check.input >= channels && image.variables[check.input - channels].kind == VariableKind::band;
+  if (variable.kind != VariableKind::band || variable.label_count != check.band_count || reads_band)
+    return Refusal::bad_value;
+  if (check.window == 0 || check.window > kMaxWindow || (check.window > 1 && check.sample_ms == 0))
+    return Refusal::bad_value;
+  if (check.window > 1) walk.samples += check.window;
+  return good_or(Refusal::too_many, walk.samples <= walk.limits.samples);
+}
+
+Refusal check_band(Walk&, const Band& band, std::size_t) {
+  const bool holds_nothing = band.stay_low > band.stay_high;
+  const bool holds_itself = is_range(band.stay_low, band.low) && band.high <= band.stay_high;
+  return good_or(Refusal::bad_value, band.low <= band.high && (holds_nothing || holds_itself));
+}
+
+// Behaviours stand by strictly falling priority, and their rules follow each other without gaps.
+Refusal check_behavior(Walk& walk, const Behavior& behavior, std::size_t index) {
+  if (behavior.name != kNoIndex && !is_string(walk, behavior.name)) return Refusal::bad_string;
+  if (index > 0 && behavior.priority == walk.last_priority) return Refusal::same_priority;
+  if (behavior.priority >= walk.last_priority) return Refusal::bad_value;
+  walk.last_priority = behavior.priority;
+  if (behavior.priority == kSafetyPriority) walk.safety_rules = behavior.rule_count;
+
+  if (behavior.first_rule != walk.next_rule || behavior.rule_count == 0) return Refusal::bad_index;
+  walk.next_rule += behavior.rule_count;
+  if (walk.next_rule > walk.image.rules.size() ||
+      !is_inside(behavior.first_input, behavior.input_count, walk.image.inputs.size()))
+    return Refusal::bad_index;
+
+  if (behavior.cells < behavior.input_count + behavior.locals + count_watches(walk.image, behavior))
+    return Refusal::bad_value;
+  walk.cells += behavior.cells;
+  return good_or(Refusal::too_many, walk.cells <= walk.limits.frame_cells);
+}
+
+Refusal check_modifiers(Walk&, const Modifiers& modifiers, std::size_t) {
+  const auto& reserved = modifiers.reserved;
+  return good_or(Refusal::bad_value, modifiers.cooldown >= 0 && modifiers.waiting >= 0 &&
+                                         modifiers.restarting <= 1 &&
+                                         (reserved[0] | reserved[1] | reserved[2]) == 0);
+}
+
+// Timers follow each other in the timer memory.
+Refusal check_timer(Walk& walk, const Timer& timer, std::size_t) {
+  const bool counts = timer.kind == TimerKind::counted;
+  const bool good = is_enumerator(timer.kind) && timer.state == walk.timer_words &&
+                    timer.duration >= 0 &&
+                    (counts ? timer.count > 0 && timer.count <= kMaxEdges : timer.count == 0);
+  if (!good) return Refusal::bad_value;
+  walk.timer_words += timer_words(timer.kind, timer.count);
+  return good_or(Refusal::too_many, walk.timer_words <= walk.limits.timer_words);
+}
+
+// What a rule of each kind has; it has none of the rest.
+enum Part : std::uint8_t { kCondition = 1, kThen = 2, kElse = 4, kModified = 8, kSafety = 16 };
+
+constexpr std::uint8_t parts_of(RuleKind kind) {
+  switch (kind) {
+    case RuleKind::when:
+    case RuleKind::while_:
+    case RuleKind::every:
+      return kCondition | kThen | kModified;
+    case RuleKind::when_else:
+      return kCondition | kThen | kElse | kModified;
+    case RuleKind::start:
+      return kThen;
+    case RuleKind::watch:
+      return kCondition;
+    case RuleKind::safety:
+      return kCondition | kThen | kSafety;
+    case RuleKind::resume:
+      return kCondition | kSafety;
+    case RuleKind::count_:
+      break;
+  }
+  return 0;
+}
+
+bool has_response(const Walk& walk, std::uint16_t index, bool wanted) {
+  return wanted ? index < walk.image.responses.size() : index == kNoIndex;
+}
+
+// SAFETY rules are the first ones, those of the behaviour that holds nothing else.
+Refusal check_rule(Walk& walk, const Rule& rule, std::size_t index) {
+  if (index >= walk.next_rule) return Refusal::bad_index;  // no behaviour has it
+  const std::uint8_t parts = parts_of(rule.kind);
+  if (parts == 0 || ((parts & kSafety) != 0) != (index < walk.safety_rules))
+    return Refusal::bad_value;
+  const bool follows = index > 0 && walk.image.rules[index - 1].kind == RuleKind::safety;
+  if (rule.kind == RuleKind::resume && !follows) return Refusal::bad_value;
+  const bool code = (parts & kCondition) != 0
+                        ? is_code(walk, rule.condition_start, rule.condition_length)
+                        : rule.condition_start == 0 && rule.condition_length == 0;
+  const bool modified = (parts & kModified) != 0 && rule.modifiers < walk.image.modifiers.size();
+  return good_or(Refusal::bad_index, code && (modified || rule.modifiers == kNoModifiers) &&
+                                         has_response(walk, rule.then_response, parts & kThen) &&
+                                         has_response(walk, rule.else_response, parts & kElse));
+}
+
+Refusal check_response(Walk& walk, const Response& response, std::size_t) {
+  return good_or(Refusal::bad_index, is_code(walk, response.start, response.length));
+}
+
+Refusal check_input(Walk& walk, const std::uint8_t& input, std::size_t) {
+  return good_or(Refusal::bad_index,
+                 input < walk.image.channels.size() + walk.image.variables.size());
+}
+
+Refusal check_label(Walk& walk, const std::uint16_t& label, std::size_t) {
+  return good_or(Refusal::bad_string, is_string(walk, label));
+}
+
+// The interpreter's comparisons with a constant rely on it being known.
+Refusal check_constant(Walk&, const Value& constant, std::size_t) {
+  return good_or(Refusal::bad_value, constant != kUnknown);
+}
+
+Refusal check_source_line(Walk& walk, const SourceLine& line, std::size_t) {
+  if (line.word >= walk.image.code.size()) return Refusal::bad_index;
+  const bool sorted = line.word >= walk.last_word;
+  walk.last_word = line.word;
+  return good_or(Refusal::bad_value, sorted);
+}
+
+// A section as the walk sees it: how many records the header says, how large they are, their check.
+struct SectionInfo {
+  Refusal (*check)(Walk&, const std::byte* record, std::size_t index);  // none: nothing to check
+  std::uint8_t record_size;
+  std::uint8_t count_place;  // in the header
+  std::uint8_t count_size;
+};
+
+template <typename Record, Refusal (*check)(Walk&, const Record&, std::size_t)>
+Refusal check_at(Walk& walk, const std::byte* record, std::size_t index) {
+  return check(walk, *reinterpret_cast<const Record*>(record), index);
+}
+
+// In the order of Section, from the section after the header on.
+constexpr SectionInfo kSections[] = {
+#define SECTION(count, Record, check) \
+  { check, sizeof(Record), offsetof(ImageHeader, count), sizeof(ImageHeader::count) }
+    SECTION(sensors, Sensor, (check_at<Sensor, check_sensor>)),
+    SECTION(channels, Channel, (check_at<Channel, check_channel>)),
+    SECTION(actuators, Actuator, (check_at<Actuator, check_actuator>)),
+    SECTION(groups, Group, (check_at<Group, check_group>)),
+    SECTION(verbs, Verb, (check_at<Verb, check_verb>)),
+    SECTION(words, WordEntry, (check_at<WordEntry, check_word>)),
+    SECTION(variables, Variable, (check_at<Variable, check_variable>)),
+    SECTION(checks, Check, (check_at<Check, check_check>)),
+    SECTION(bands, Band, (check_at<Band, check_band>)),
+    SECTION(behaviors, Behavior, (check_at<Behavior, check_behavior>)),
+    SECTION(modifiers, Modifiers, (check_at<Modifiers, check_modifiers>)),
+    SECTION(timers, Timer, (check_at<Timer, check_timer>)),
+    SECTION(rules, Rule, (check_at<Rule, check_rule>)),
+    SECTION(responses, Response, (check_at<Response, check_response>)),
+    SECTION(inputs, std::uint8_t, (check_at<std::uint8_t, check_input>)),
+    SECTION(constants, Value, (check_at<Value, check_constant>)),
+    SECTION(code, Word, nullptr),  // verify_code.cpp
+    SECTION(labels, std::uint16_t, (check_at<std::uint16_t, check_label>)),
+    SECTION(string_bytes, char, nullptr),  // check_records
+    SECTION(source_lines, SourceLine, (check_at<SourceLine, check_source_line>)),
+#undef SECTION
+};
+static_assert(std::size(kSections) == static_cast<std::size_t>(Section::source_lines));
+
+// The records of the sections up to this one begin with their name.
+constexpr Section kLastNamed = Section::variables;
+static_assert(offsetof(Sensor, name) == 0 && offsetof(Channel, name) == 0 &&
+              offsetof(Actuator, name) == 0 && offsetof(Group, name) == 0 &&
+              offsetof(Verb, name) == 0 && offsetof(WordEntry, name) == 0 &&
+              offsetof(Variable, name) == 0);
+
+std::size_t record_count(const ImageHeader& header, const SectionInfo& section) {
+  const auto* const place = reinterpret_cast<const std::uint8_t*>(&header) + section.count_place;
+  return section.count_size == 1 ? *place : *place | std::size_t{place[1]} << 8;
+}
+
+}  // namespace
+
+std::size_t count_watches(const Image& image, const Behavior& behavior) {
+  std::size_t watches = 0;
+  const Rule* const rules = image.rules.data() + behavior.first_rule;
+  for (std::size_t r = 0; r < behavior.rule_count; ++r)
+    watches += rules[r].kind == RuleKind::watch ? 1 : 0;
+  return watches;
+}
+
+bool check_records(Verification& verification) {
+  const Image& image = verification.image;
+  if (!image.strings.empty() && image.strings.back() != 0)
+    return verification.refuse(Refusal::bad_string, Section::strings, 0);
+  Walk walk{image, verification.limits};
+  const auto* next = reinterpret_cast<const std::byte*>(image.header + 1);
+  for (std::size_t s = 0; s < std::size(kSections); ++s) {
+    const SectionInfo& section = kSections[s];
+    const auto here = static_cast<Section>(s + 1);
+    const std::size_t count = record_count(*image.header, section);
+    for (std::size_t i = 0; i < count && section.check != nullptr; ++i) {
+      const std::byte* const record = next + i * section.record_size;
+      if (here <= kLastNamed && !is_string(walk, *reinterpret_cast<const std::uint16_t*>(record)))
+        return verification.refuse(Refusal::bad_string, here, i);
+      const Refusal refusal = section.check(walk, record, i);
+      if (refusal != Refusal::none) return verification.refuse(refusal, here, i);
+    }
+    next += count * section.record_size;
+    for (; reinterpret_cast<std::uintptr_t>(next) % 4 != 0; ++next)
+      if (*next != std::byte{0}) return verification.refuse(Refusal::bad_value, here, 0);
+  }
+  return true;
+}
+
+}  // namespace robosync::vm
