@@ -1,0 +1,55 @@
+// Frames on the serial line: COBS-coded {type, sequence, payload, CRC-16}, ended by a zero byte.
+//
+// Any byte lost, flipped, doubled or inserted costs the frame it hits, never the line: the decoder
+// starts anew at the next zero byte.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "link/messages.hpp"
+
+namespace robosync::link {
+
+inline constexpr std::size_t kFrameOverhead = 2 + 2;  // type, sequence; CRC-16
+// A frame is short enough for a single COBS code byte in front; the delimiter follows.
+inline constexpr std::size_t kMaxEncodedFrame = 1 + kMaxPayload + kFrameOverhead + 1;
+static_assert(kMaxPayload + kFrameOverhead < 254, "longer frames need COBS blocks");
+
+struct Frame {
+  MessageType type{};
+  std::uint8_t sequence = 0;
+  std::span<const std::byte> payload;  // valid until the decoder gets its next byte
+};
+
+// Encodes a frame with its delimiter into `out`. Returns the number of bytes; 0, and nothing is
+// written, when the payload is longer than kMaxPayload.
+std::size_t encode_frame(MessageType type, std::uint8_t sequence,
+                         std::span<const std::byte> payload,
+                         std::span<std::byte, kMaxEncodedFrame> out);
+
+class FrameDecoder {
+public:
+  // Takes one byte from the line. True when it completed a good frame, now in frame().
+  [[nodiscard]] bool push(std::byte byte);
+  const Frame& frame() const { return frame_; }
+  // Frames dropped: too long, not COBS, or a wrong CRC. Empty ones are not counted.
+  std::uint32_t bad_frames() const { return bad_frames_; }
+
+private:
+  bool finish();  // at the delimiter: is what stands in the buffer a frame?
+  bool decode();
+
+  std::array<std::byte, kMaxEncodedFrame - 1> buffer_{};  // without the delimiter
+  std::size_t length_ = 0;
+  bool overflow_ = false;
+  std::uint32_t bad_frames_ = 0;
+  Frame frame_;
+};
+
+// CRC-16/CCITT-FALSE (poly 0x1021, init 0xFFFF).
+[[nodiscard]] std::uint16_t crc16(std::span<const std::byte> bytes);
+
+}  // namespace robosync::link

@@ -1,0 +1,131 @@
+// Payloads of the messages (messages.def), as they stand on the wire: little-endian, every member
+// on its natural alignment, no padding but what is named `reserved` (wire.hpp checks).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace robosync::link {
+
+inline constexpr std::uint8_t kProtocolVersion = 1;
+inline constexpr std::size_t kMaxPayload = 240;
+inline constexpr std::size_t kNameLength = 16;  // NUL-padded
+using Name = std::array<char, kNameLength>;
+
+enum class MessageType : std::uint8_t {
+#define MESSAGE(name, number, direction, doc) name = (number),
+#include "link/messages.def"
+#undef MESSAGE
+};
+
+struct HelloReply {
+  std::uint8_t protocol;
+  std::uint8_t image_major;  // format the firmware runs (vm/image.hpp)
+  std::uint16_t opcode_set;
+  Name board;
+  Name firmware;              // version
+  std::uint32_t slot_bytes;   // largest image
+  std::uint32_t step_budget;  // M4 instructions of VM code in one step
+  std::uint32_t drivers;      // bit d: driver d of vm/drivers.def is present
+  std::uint32_t image_crc;    // of the running image
+  std::uint32_t image_bytes;
+  std::array<std::uint8_t, 8> program_hash;
+  std::uint16_t receive_window;  // bytes of data the board can take before it must reply
+  std::uint8_t running;          // 1: a program runs
+  std::uint8_t reserved;
+};
+
+struct Begin {
+  std::uint32_t size;
+  std::uint32_t crc32;  // ImageHeader::crc32, names the transfer
+};
+
+struct Data {  // followed by the bytes
+  std::uint32_t offset;
+};
+inline constexpr std::size_t kMaxData = kMaxPayload - sizeof(Data);
+
+enum class TransferState : std::uint8_t { idle, receiving, complete, too_large, no_transfer };
+
+struct TransferStatus {
+  std::uint32_t next_offset;
+  TransferState state;
+  std::array<std::uint8_t, 3> reserved{};
+};
+
+inline constexpr std::uint8_t kNothingToActivate = 0xFF;
+
+struct ActivateResult {
+  std::uint8_t running;  // 1: it runs; 0: refused, the old program goes on
+  std::uint8_t refusal;  // vm::Refusal, or kNothingToActivate: no complete transfer
+  std::uint8_t section;  // vm::Section
+  std::uint8_t reserved;
+  std::uint16_t index;
+  std::uint16_t reserved2;
+  std::uint64_t uptime_us;  // when it was switched to
+};
+
+struct Feed {
+  std::uint64_t at_us;    // program time; 0: now
+  std::uint32_t channel;  // index in the running image
+  std::int32_t value;     // thousandths
+};
+
+enum class FeedError : std::uint8_t {
+  none,
+  no_program,
+  no_channel,
+  not_virtual,
+  queue_full,
+  in_the_past
+};
+
+struct FeedResult {
+  FeedError error;
+  std::uint8_t free_places;  // in the board's queue of timed readings
+};
+
+struct Status {
+  std::uint64_t uptime_us;
+  std::uint64_t program_us;      // since activation
+  std::uint32_t steps;           // of the running program
+  std::uint32_t safety_checks;   // periods the safety thread has run since boot
+  std::uint32_t safety_late_us;  // worst lateness of a safety period since boot
+  std::uint32_t bad_frames;      // frames dropped by the board for a wrong CRC or length
+  std::uint32_t lost_events;     // trace events that did not fit in the ring
+  std::uint16_t activations;     // programs activated since boot
+  std::uint8_t faults;           // threads stopped by a fault since boot
+  std::uint8_t reset_reason;     // 0 power, 1 watchdog, 2 software
+};
+
+struct ThreadInfo {
+  std::uint8_t index, total;
+  std::uint8_t category;  // kernel::Category
+  std::uint8_t rank;
+  std::int16_t priority;
+  std::uint16_t stack_bytes, stack_used;
+  std::uint8_t state;  // 0 blocked, 1 ready, 2 stopped by a fault
+  std::uint8_t reserved;
+  std::uint32_t activations;  // times it was woken
+  Name name;
+};
+
+struct Fault {
+  Name thread;
+  std::uint32_t cause;    // CFSR
+  std::uint32_t address;  // MMFAR/BFAR, 0 when not valid
+  std::uint32_t pc, lr, sp, xpsr;
+  std::array<std::uint32_t, 13> r;  // r0–r12
+};
+
+struct TraceOn {
+  std::uint8_t on;
+};
+
+struct ReadImage {
+  std::uint32_t offset;
+};
+// ImageData has Data's layout: the offset, then bytes.
+
+}  // namespace robosync::link
