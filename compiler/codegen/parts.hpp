@@ -1,0 +1,42 @@
+// What the code of one behaviour is made with, and what making it leaves to be done.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "compiler/codegen/frame.hpp"
+#include "compiler/codegen/strings.hpp"
+#include "compiler/codegen/tables.hpp"
+#include "compiler/codegen/timers.hpp"
+#include "compiler/diagnostics/diagnostic.hpp"
+
+namespace robosync::compiler {
+
+using LocalCells = std::map<std::size_t, Cell>;  // by ProgramLocal::number
+
+// A time word inside a response: a watch rule has to evaluate it in every step.
+struct Watch {
+  Expression time_word;
+  LocalCells locals;  // that it may read
+  Cell truth;
+  Source source;  // the statement
+};
+
+struct Parts {
+  const Program& program;
+  const Tables& tables;
+  Strings& strings;
+  CodePool& pool;
+  Timers& timers;
+  Diagnostics& diagnostics;
+  Frame frame{};                 // of the behaviour
+  std::vector<Watch> watches{};  // of the behaviour, in the order of their cells
+
+  // E0407: something does not fit on the robot.
+  void too_large(std::string what, Span span) const {
+    diagnostics.report(Code::E0407, std::move(what)).label(span);
+  }
+};
+
+}  // namespace robosync::compiler

@@ -1,0 +1,135 @@
+#include "compiler/codegen/records.hpp"
+
+#include <algorithm>
+
+namespace robosync::compiler {
+namespace {
+
+class RecordMaker {
+public:
+  RecordMaker(const Program& program, const Robot& robot, const Tables& tables, Strings& strings)
+      : program_(program), robot_(robot), tables_(tables), strings_(strings) {}
+
+  Records make() {
+    sensors();
+    for (const auto& [ref, number] : tables_.channels())
+      channel(ref);
+    for (const auto& [place, number] : tables_.actuators())
+      actuator(place);
+    for (const auto& [place, number] : tables_.groups()) {
+      const GroupConfig& config = robot_.groups[place];
+      records_.groups.push_back(
+          {strings_.offset(config.name.text), 0, tables_.mask_of(config.members)});
+    }
+    for (const ProgramVerb& verb : tables_.verbs())
+      records_.verbs.push_back({strings_.offset(verb.name), verb.action, verb.takes});
+    for (const ProgramWord& word : tables_.words())
+      records_.words.push_back({strings_.offset(word.name), word.param, 0, word.value});
+    for (const ProgramVariable& one : program_.variables)
+      variable(one);
+    for (const ProgramCheck& one : program_.checks)
+      check(one);
+    return std::move(records_);
+  }
+
+private:
+  void sensors();
+  void channel(ChannelRef ref);
+  void actuator(std::size_t place);
+  void variable(const ProgramVariable& variable);
+  void check(const ProgramCheck& check);
+
+  const Program& program_;
+  const Robot& robot_;
+  const Tables& tables_;
+  Strings& strings_;
+  Records records_;
+  std::vector<std::size_t> sensor_places_;  // in Robot::sensors, of records_.sensors
+};
+
+void RecordMaker::sensors() {
+  for (const auto& [ref, number] : tables_.channels()) {
+    if (sensor_places_.empty() || sensor_places_.back() != ref.sensor) {
+      const SensorConfig& sensor = robot_.sensors[ref.sensor];
+      records_.sensors.push_back({strings_.offset(sensor.name.text), sensor.driver, sensor.bus,
+                                  sensor.address, sensor.period_ms, number, 0, 0});
+      sensor_places_.push_back(ref.sensor);
+    }
+    ++records_.sensors.back().channel_count;
+  }
+}
+
+void RecordMaker::channel(ChannelRef ref) {
+  const ChannelConfig& config = robot_.sensors[ref.sensor].channels[ref.channel];
+  const auto sensor = std::find(sensor_places_.begin(), sensor_places_.end(), ref.sensor);
+  vm::Channel record{};
+  record.name = strings_.offset(config.name.text);
+  record.sensor = static_cast<std::uint8_t>(sensor - sensor_places_.begin());
+  record.input = config.input;
+  record.dimension = config.unit->dimension;
+  record.label_count = static_cast<std::uint8_t>(config.labels.size());
+  record.stale_ms = config.stale_ms;
+  record.scale_num = config.scale.numerator;
+  record.scale_den = config.scale.denominator;
+  record.first_label = strings_.row(config.labels);
+  record.offset = config.offset;
+  record.min = config.min;
+  record.max = config.max;
+  record.change = config.change;
+  records_.channels.push_back(record);
+}
+
+void RecordMaker::actuator(std::size_t place) {
+  const ActuatorConfig& config = robot_.actuators[place];
+  vm::Actuator record{};
+  record.name = strings_.offset(config.name.text);
+  record.driver = config.driver;
+  record.bus = config.bus;
+  record.pin = config.pin;
+  record.on_release = config.on_release;
+  record.safe = config.safe;
+  record.verbs = tables_.verbs_of(config);
+  record.min = config.min;
+  record.max = config.max;
+  record.speed_limit = config.speed_limit;
+  for (const auto& [limited, speed] : program_.speed_limits)
+    if (limited == place) record.speed_limit = std::min(record.speed_limit, speed);
+  records_.actuators.push_back(record);
+}
+
+void RecordMaker::variable(const ProgramVariable& variable) {
+  vm::Variable record{};
+  record.name = strings_.offset(variable.name);
+  record.kind = variable.kind;
+  record.dimension = variable.dimension;
+  record.first_label = strings_.row(variable.labels);
+  record.label_count = static_cast<std::uint8_t>(variable.labels.size());
+  record.initial = variable.initial;
+  record.min = variable.min;
+  record.max = variable.max;
+  record.fades_to = variable.fade != 0 ? variable.fades_to : 0;
+  record.fade = variable.fade;
+  records_.variables.push_back(record);
+}
+
+void RecordMaker::check(const ProgramCheck& check) {
+  vm::Check record{};
+  record.variable = static_cast<std::uint8_t>(check.variable);
+  record.input = check.input.operation == Operation::input ? tables_.input(check.input.channel)
+                                                           : tables_.variable(check.input.index);
+  record.first_band = static_cast<std::uint8_t>(records_.bands.size());
+  record.band_count = static_cast<std::uint8_t>(check.bands.size());
+  record.window = check.window;
+  record.sample_ms = check.sample_ms;
+  records_.checks.push_back(record);
+  records_.bands.insert(records_.bands.end(), check.bands.begin(), check.bands.end());
+}
+
+}  // namespace
+
+Records make_records(const Program& program, const Robot& robot, const Tables& tables,
+                     Strings& strings) {
+  return RecordMaker(program, robot, tables, strings).make();
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,27 @@
+// The records of devices and of what is remembered: all that the image has beside rules and code.
+#pragma once
+
+#include <vector>
+
+#include "compiler/codegen/strings.hpp"
+#include "compiler/codegen/tables.hpp"
+
+namespace robosync::compiler {
+
+struct Records {
+  std::vector<vm::Sensor> sensors;
+  std::vector<vm::Channel> channels;
+  std::vector<vm::Actuator> actuators;
+  std::vector<vm::Group> groups;
+  std::vector<vm::Verb> verbs;
+  std::vector<vm::WordEntry> words;
+  std::vector<vm::Variable> variables;
+  std::vector<vm::Check> checks;
+  std::vector<vm::Band> bands;
+};
+
+// Names and labels go into `strings`.
+[[nodiscard]] Records make_records(const Program& program, const Robot& robot, const Tables& tables,
+                                   Strings& strings);
+
+}  // namespace robosync::compiler

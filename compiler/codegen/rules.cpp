@@ -1,0 +1,232 @@
+// One behaviour after the other: the code of its rules, then the frame that this code needs, then
+// the records.
+#include "compiler/codegen/rules.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "compiler/codegen/response_emitter.hpp"
+#include "compiler/codegen/walk.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+// A rule whose code has been made; the record is complete but for where the code stands.
+struct RuleDraft {
+  vm::Rule record{};
+  std::optional<CodeDraft> condition;
+  std::optional<ResponseCode> then_response, else_response;
+};
+
+// The variables whose new value has to be clamped on the robot.
+void find_clamped(const ProgramBlock& block, std::set<std::size_t>& clamped) {
+  const PartsOfStatement parts([](const Expression&) {},
+                               [&](const ProgramBlock& inner) { find_clamped(inner, clamped); });
+  for (const ProgramStatement& statement : block) {
+    if (const auto* set = std::get_if<ProgramSet>(&statement.node); set && needs_clamping(*set))
+      clamped.insert(set->variable);
+    std::visit(parts, statement.node);
+  }
+}
+
+Source source_of(const ProgramRule& rule) {
+  return {rule.line, rule.span};
+}
+
+CodeDraft make_condition(Parts& parts, const Expression& expression, vm::RuleKind kind,
+                         const Source& source, const LocalCells& locals) {
+  CodeDraft code;
+  code.mark(source);
+  ExpressionEmitter emitter(parts, code, TimeWords::evaluated);
+  emitter.locals() = locals;
+  const Cell result = emitter.value(expression);
+  const bool number = kind == vm::RuleKind::every;
+  code.emit(number ? vm::Opcode::ret_number : vm::Opcode::ret, result);
+  return code;
+}
+
+RuleDraft draft_without_response(Parts& parts, const Expression& condition, vm::RuleKind kind,
+                                 const Source& source, const LocalCells& locals) {
+  RuleDraft draft;
+  draft.record.line = source.line;
+  draft.record.kind = kind;
+  draft.record.modifiers = vm::kNoModifiers;
+  draft.condition = make_condition(parts, condition, kind, source, locals);
+  return draft;
+}
+
+class RuleWriter {
+public:
+  RuleWriter(const Program& program, const Tables& tables, Strings& strings,
+             Diagnostics& diagnostics)
+      : program_(program), tables_(tables), strings_(strings), diagnostics_(diagnostics) {}
+
+  RuleSections write() {
+    reserve_limits();
+    if (!program_.safety.empty()) add({vm::kSafetyPriority, {}, program_.safety});
+    for (const ProgramBehavior& behavior : program_.behaviors)
+      if (!behavior.rules.empty()) add(behavior);
+    return std::move(sections_);
+  }
+
+private:
+  void reserve_limits();
+  void add(const ProgramBehavior& behavior);
+  std::vector<RuleDraft> make_drafts(Parts& parts, const ProgramBehavior& behavior);
+  RuleDraft draft(Parts& parts, const ProgramRule& rule);
+  std::uint8_t modifiers(const ProgramRule& rule);
+  static std::string title(const ProgramBehavior& behavior);  // of one that has rules
+  bool fits(const Parts& parts, const ProgramBehavior& behavior, std::size_t rules);
+  void add(RuleDraft& draft, const Frame& frame, std::uint32_t& actuators);
+  std::uint16_t add(const ResponseCode& response, const Frame& frame);
+
+  const Program& program_;
+  const Tables& tables_;
+  Strings& strings_;
+  Diagnostics& diagnostics_;
+  RuleSections sections_;
+};
+
+// min_k and max_k reach the first constants only: the limits that they need come first.
+void RuleWriter::reserve_limits() {
+  std::set<std::size_t> clamped;
+  for (const ProgramRule& rule : program_.safety)
+    find_clamped(rule.then_response, clamped);
+  for (const ProgramBehavior& behavior : program_.behaviors)
+    for (const ProgramRule& rule : behavior.rules) {
+      find_clamped(rule.then_response, clamped);
+      find_clamped(rule.else_response, clamped);
+    }
+  for (const std::size_t place : clamped) {
+    const ProgramVariable& variable = program_.variables[place];
+    if (variable.min > vm::kValueMin) (void)sections_.pool.constant(variable.min);
+    if (variable.max < vm::kValueMax) (void)sections_.pool.constant(variable.max);
+  }
+  if (sections_.pool.constants().size() > kMaxConst8)
+    diagnostics_.report(Code::E0407, "the variables have too many different limits").label({});
+}
+
+void RuleWriter::add(const ProgramBehavior& behavior) {
+  Parts parts{program_, tables_, strings_, sections_.pool, sections_.timers, diagnostics_};
+  std::vector<RuleDraft> drafts = make_drafts(parts, behavior);
+  if (!fits(parts, behavior, drafts.size())) return;
+  const std::vector<std::uint32_t> inputs = parts.frame.inputs();
+  vm::Behavior record{};
+  record.priority = behavior.priority;
+  record.name = behavior.name.empty() ? vm::kNoIndex : strings_.offset(behavior.name);
+  record.first_input = place_row(sections_.inputs, {inputs.begin(), inputs.end()});
+  record.input_count = static_cast<std::uint8_t>(inputs.size());
+  record.rule_count = static_cast<std::uint8_t>(drafts.size());
+  record.first_rule = static_cast<std::uint16_t>(sections_.rules.size());
+  record.locals = static_cast<std::uint8_t>(parts.frame.locals());
+  record.cells = static_cast<std::uint8_t>(parts.frame.cells());
+  for (RuleDraft& one : drafts)
+    add(one, parts.frame, record.actuators);
+  sections_.behaviors.push_back(record);
+}
+
+// The watch rules stand behind the others.
+std::vector<RuleDraft> RuleWriter::make_drafts(Parts& parts, const ProgramBehavior& behavior) {
+  std::vector<RuleDraft> drafts;
+  for (const ProgramRule& rule : behavior.rules) {
+    drafts.push_back(draft(parts, rule));
+    if (rule.resume)
+      drafts.push_back(
+          draft_without_response(parts, *rule.resume, vm::RuleKind::resume, source_of(rule), {}));
+  }
+  for (const Watch& watch : parts.watches)
+    drafts.push_back(draft_without_response(parts, watch.time_word, vm::RuleKind::watch,
+                                            watch.source, watch.locals));
+  return drafts;
+}
+
+RuleDraft RuleWriter::draft(Parts& parts, const ProgramRule& rule) {
+  RuleDraft draft;
+  draft.record.line = rule.line;
+  draft.record.kind = rule.kind;
+  draft.record.modifiers = modifiers(rule);
+  if (rule.kind != vm::RuleKind::start)
+    draft.condition = make_condition(parts, rule.condition, rule.kind, source_of(rule), {});
+  draft.then_response = ResponseEmitter(parts).emit(rule.then_response);
+  if (rule.kind == vm::RuleKind::when_else)
+    draft.else_response = ResponseEmitter(parts).emit(rule.else_response);
+  return draft;
+}
+
+std::uint8_t RuleWriter::modifiers(const ProgramRule& rule) {
+  if (rule.cooldown == 0 && rule.waiting == 0 && !rule.restarting) return vm::kNoModifiers;
+  const vm::Modifiers wanted{
+      rule.cooldown, rule.waiting, static_cast<std::uint8_t>(rule.restarting ? 1 : 0), {}};
+  auto& all = sections_.modifiers;
+  const auto same = std::find_if(all.begin(), all.end(), [&](const vm::Modifiers& one) {
+    return one.cooldown == wanted.cooldown && one.waiting == wanted.waiting &&
+           one.restarting == wanted.restarting;
+  });
+  const auto place = static_cast<std::uint8_t>(same - all.begin());
+  if (same == all.end()) all.push_back(wanted);
+  return place;
+}
+
+std::string RuleWriter::title(const ProgramBehavior& behavior) {
+  if (!behavior.name.empty()) return "the behaviour `" + behavior.name + "`";
+  if (behavior.priority == vm::kSafetyPriority) return "all SAFETY rules together";
+  return "the rule in line " + std::to_string(behavior.rules.front().line);
+}
+
+bool RuleWriter::fits(const Parts& parts, const ProgramBehavior& behavior, std::size_t rules) {
+  const auto check = [&](std::size_t count, std::size_t limit, const char* what) {
+    if (count <= limit) return true;
+    diagnostics_
+        .report(Code::E0407, "for " + title(behavior) + " the robot needs " +
+                                 std::to_string(count) + " " + what + ", and it can have " +
+                                 std::to_string(limit))
+        .label(behavior.rules.front().span);
+    return false;
+  };
+  return check(parts.frame.cells(), vm::kMaxCells, "cells for its inputs and values") &&
+         check(parts.frame.writable(), vm::kMaxWritable, "variables to set") &&
+         check(rules, UINT8_MAX, "rules, those for time words in responses included");
+}
+
+void RuleWriter::add(RuleDraft& draft, const Frame& frame, std::uint32_t& actuators) {
+  vm::Rule& record = draft.record;
+  record.then_response = record.else_response = vm::kNoIndex;
+  if (draft.condition) {
+    const CodeObject object = frame.resolve(*draft.condition);
+    record.condition_start = static_cast<std::uint16_t>(sections_.pool.add(object));
+    record.condition_length = static_cast<std::uint16_t>(object.words.size());
+  }
+  if (draft.then_response) {
+    record.then_response = add(*draft.then_response, frame);
+    actuators |= draft.then_response->actuators;
+  }
+  if (draft.else_response) {
+    record.else_response = add(*draft.else_response, frame);
+    actuators |= draft.else_response->actuators;
+  }
+  sections_.rules.push_back(record);
+}
+
+std::uint16_t RuleWriter::add(const ResponseCode& response, const Frame& frame) {
+  const CodeObject object = frame.resolve(response.code);
+  vm::Response record{};
+  record.start = static_cast<std::uint16_t>(sections_.pool.add(object));
+  record.length = static_cast<std::uint16_t>(object.words.size());
+  record.actuators = response.actuators;
+  auto& all = sections_.responses;
+  const auto same = std::find_if(all.begin(), all.end(), [&](const vm::Response& other) {
+    return other.start == record.start && other.length == record.length;
+  });
+  const auto place = static_cast<std::uint16_t>(same - all.begin());
+  if (same == all.end()) all.push_back(record);
+  return place;
+}
+
+}  // namespace
+
+RuleSections make_rules(const Program& program, const Tables& tables, Strings& strings,
+                        Diagnostics& diagnostics) {
+  return RuleWriter(program, tables, strings, diagnostics).write();
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,27 @@
+// The sections of behaviours, rules, responses, modifiers, inputs, timers and code.
+#pragma once
+
+#include "compiler/codegen/code_pool.hpp"
+#include "compiler/codegen/strings.hpp"
+#include "compiler/codegen/tables.hpp"
+#include "compiler/codegen/timers.hpp"
+#include "compiler/diagnostics/diagnostic.hpp"
+
+namespace robosync::compiler {
+
+struct RuleSections {
+  std::vector<vm::Behavior> behaviors;
+  std::vector<vm::Modifiers> modifiers;
+  std::vector<vm::Rule> rules;
+  std::vector<vm::Response> responses;
+  std::vector<std::uint8_t> inputs;
+  Timers timers;
+  CodePool pool;
+};
+
+// Reports E0407 for what does not fit; the sections are not usable then. Names and texts go into
+// `strings`.
+[[nodiscard]] RuleSections make_rules(const Program& program, const Tables& tables,
+                                      Strings& strings, Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler

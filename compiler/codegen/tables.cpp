@@ -1,0 +1,147 @@
+#include "compiler/codegen/tables.hpp"
+
+#include <algorithm>
+
+#include "compiler/codegen/walk.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+template <typename Entry>
+void add_once(std::vector<Entry>& list, const Entry& entry) {
+  if (std::find(list.begin(), list.end(), entry) == list.end()) list.push_back(entry);
+}
+
+template <typename Entry>
+std::uint8_t place_of(const std::vector<Entry>& list, const Entry& entry) {
+  return static_cast<std::uint8_t>(std::find(list.begin(), list.end(), entry) - list.begin());
+}
+
+template <typename Map>
+void number(Map& map) {
+  std::uint8_t next = 0;
+  for (auto& [key, value] : map)
+    value = next++;
+}
+
+}  // namespace
+
+Tables::Tables(const Program& program, Diagnostics& diagnostics) {
+  for (const ProgramCheck& check : program.checks)
+    use(check.input);
+  for (const ProgramRule& rule : program.safety)
+    use(rule);
+  for (const ProgramBehavior& behavior : program.behaviors)
+    for (const ProgramRule& rule : behavior.rules)
+      use(rule);
+  check_counts(program, diagnostics);
+  number(channels_);
+  number(actuators_);
+  number(groups_);
+}
+
+void Tables::use(const ProgramRule& rule) {
+  use(rule.condition);
+  use(rule.then_response);
+  use(rule.else_response);
+  if (rule.resume) use(*rule.resume);
+}
+
+void Tables::use(const Expression& expression) {
+  if (expression.operation == Operation::input) channels_.emplace(expression.channel, 0);
+  for (const Expression& operand : expression.operands)
+    use(operand);
+}
+
+void Tables::use(const ProgramBlock& block) {
+  const PartsOfStatement use_parts([this](const Expression& expression) { use(expression); },
+                                   [this](const ProgramBlock& inner) { use(inner); });
+  for (const ProgramStatement& statement : block) {
+    if (const auto* command = std::get_if<ProgramCommand>(&statement.node)) use(*command);
+    if (const auto* halt = std::get_if<ProgramHalt>(&statement.node)) use(*halt);
+    std::visit(use_parts, statement.node);
+  }
+}
+
+void Tables::use(const ProgramCommand& command) {
+  for (const std::size_t actuator : command.actuators)
+    actuators_.emplace(actuator, 0);
+  if (command.group) groups_.emplace(*command.group, 0);
+  add_once(verbs_, command.verb);
+  if (command.word) add_once(words_, *command.word);
+}
+
+void Tables::use(const ProgramHalt& halt) {
+  for (const std::size_t actuator : halt.actuators)
+    actuators_.emplace(actuator, 0);
+  if (halt.group) groups_.emplace(*halt.group, 0);
+}
+
+void Tables::check_counts(const Program& program, Diagnostics& diagnostics) const {
+  const auto check = [&](std::size_t count, std::size_t limit, std::string_view what) {
+    if (count > limit)
+      diagnostics
+          .report(Code::E0407, "the program uses " + std::to_string(count) + " " +
+                                   std::string(what) + ", and a robot can have " +
+                                   std::to_string(limit))
+          .label({});
+  };
+  // The last group's number would be kAllActuators.
+  constexpr std::size_t kMaxGroups = vm::kAllActuators - vm::kGroupBit;
+  constexpr std::size_t kInputs = std::min<std::size_t>(vm::kMaxInputs, vm::Limits{}.inputs);
+  check(channels_.size() + program.variables.size(), kInputs, "channels and variables");
+  check(actuators_.size(), vm::kMaxActuators, "actuators");
+  check(groups_.size(), kMaxGroups, "groups");
+  check(verbs_.size(), vm::kMaxVerbs, "verbs");
+  check(words_.size(), vm::kMaxWords, "words and texts");
+}
+
+std::uint8_t Tables::target(const ProgramCommand& command) const {
+  if (!command.group) return actuators_.at(command.actuators.front());
+  return static_cast<std::uint8_t>(vm::kGroupBit | groups_.at(*command.group));
+}
+
+std::vector<std::uint8_t> Tables::targets(const ProgramHalt& halt) const {
+  if (halt.all && actuators_.empty()) return {};
+  if (halt.all) return {vm::kAllActuators};
+  if (halt.group) return {static_cast<std::uint8_t>(vm::kGroupBit | groups_.at(*halt.group))};
+  std::vector<std::uint8_t> targets;
+  for (const std::size_t actuator : halt.actuators)
+    targets.push_back(actuators_.at(actuator));
+  return targets;
+}
+
+std::uint32_t Tables::mask_of(const ProgramHalt& halt) const {
+  if (!halt.all) return mask_of(halt.actuators);
+  std::uint32_t mask = 0;
+  for (const auto& [place, number] : actuators_)
+    mask |= std::uint32_t{1} << number;
+  return mask;
+}
+
+std::uint32_t Tables::mask_of(const std::vector<std::size_t>& actuators) const {
+  std::uint32_t mask = 0;
+  for (const std::size_t actuator : actuators)
+    mask |= std::uint32_t{1} << actuators_.at(actuator);
+  return mask;
+}
+
+std::uint8_t Tables::verb(const ProgramCommand& command) const {
+  return place_of(verbs_, command.verb);
+}
+
+std::uint8_t Tables::word(const ProgramCommand& command) const {
+  return command.word ? place_of(words_, *command.word) : vm::kNoWord;
+}
+
+std::uint32_t Tables::verbs_of(const ActuatorConfig& actuator) const {
+  std::uint32_t mask = 0;
+  for (const VerbConfig& verb : actuator.verbs) {
+    const auto place = place_of(verbs_, ProgramVerb{verb.name, verb.action, verb.takes});
+    if (place < verbs_.size()) mask |= std::uint32_t{1} << place;
+  }
+  return mask;
+}
+
+}  // namespace robosync::compiler

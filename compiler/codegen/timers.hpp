@@ -1,0 +1,26 @@
+// The timer section under construction: one timer for each time word of the code, in the order of
+// the code.
+#pragma once
+
+#include <vector>
+
+#include "compiler/sema/program.hpp"
+
+namespace robosync::compiler {
+
+// Is it a time word itself, whatever its operands are?
+[[nodiscard]] bool is_time_word(Operation operation);
+
+class Timers {
+public:
+  // A new timer for the time word; its place.
+  [[nodiscard]] std::size_t add(const Expression& time_word);
+
+  [[nodiscard]] const std::vector<vm::Timer>& records() const { return records_; }
+
+private:
+  std::vector<vm::Timer> records_;
+  std::uint32_t memory_ = 0;  // words that the timers so far need
+};
+
+}  // namespace robosync::compiler

@@ -1,0 +1,40 @@
+// The compiler as one call: RSL and its configuration in, an image and diagnostics out.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/source/source_file.hpp"
+#include "compiler/testing/plan.hpp"
+
+namespace robosync::compiler {
+
+struct Input {
+  std::string name;  // as it shall stand in messages
+  std::string text;
+};
+
+// What `USE "file"` in the file called `user` means: the module with the name of its own, the same
+// for the same file. Nothing when it cannot be read. The compiler itself opens no files.
+using ModuleReader =
+    std::function<std::optional<Input>(const std::string& user, const std::string& file)>;
+
+struct Options {
+  bool source_lines = true;  // keep the debug section
+  ModuleReader read_module{};
+};
+
+struct Result {
+  SourceMap sources;
+  Diagnostics diagnostics;
+  std::vector<std::byte> image;  // empty when there are errors
+  testing::TestPlan tests;       // the program's TEST blocks; likewise
+};
+
+[[nodiscard]] Result compile(Input program, Input configuration, const Options& options = {});
+
+}  // namespace robosync::compiler

@@ -1,0 +1,142 @@
+// One entry of "actuators".
+#include <algorithm>
+
+#include "compiler/config/entries.hpp"
+#include "compiler/config/values.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr vm::Value kDefaultSoundLength = 1 * vm::kScale;  // the player's own, in seconds
+
+void read_position_range(const json::Value& value, ActuatorConfig& actuator,
+                         Diagnostics& diagnostics) {
+  actuator.range_span = value.span;
+  if (actuator.to_unit == nullptr) {
+    diagnostics.report(Code::E0205, "this device has no position that could have a range")
+        .label(value.span);
+    return;
+  }
+  const auto range = read_range(value, *actuator.to_unit, diagnostics);
+  if (!range) return;
+  if (range->low < actuator.min || range->high > actuator.max) {
+    diagnostics
+        .report(Code::E0205, "this range is larger than the device's own, " +
+                                 format_value(actuator.min, *actuator.to_unit) + " to " +
+                                 format_value(actuator.max, *actuator.to_unit))
+        .label(value.span);
+    return;
+  }
+  actuator.min = range->low;
+  actuator.max = range->high;
+}
+
+// {"SLOWLY": "30deg/s"}: changes the device's words and adds new ones.
+void read_speeds(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
+  if (!expect_kind(value, json::Kind::object, diagnostics)) return;
+  report_repeated_keys(value, diagnostics);
+  if (actuator.at_unit == nullptr) {
+    diagnostics.report(Code::E0205, "this device has no speeds").label(value.span);
+    return;
+  }
+  for (const json::Member& member : value.members) {
+    check_name({member.key, member.key_span}, diagnostics);
+    const auto speed = read_quantity(member.value, *actuator.at_unit, diagnostics);
+    if (!speed) continue;
+    if (*speed <= 0)
+      diagnostics.report(Code::E0205, "a speed must be above 0").label(member.value.span);
+    std::erase_if(actuator.words,
+                  [&](const WordConfig& word) { return same_name(word.name, member.key); });
+    actuator.words.push_back({member.key, vm::Param::at, *speed, false, {}});
+  }
+}
+
+// "greeting.wav" or {"file": "greeting.wav", "duration": "2s"}.
+std::optional<WordConfig> read_sound(const json::Value& value, Diagnostics& diagnostics) {
+  WordConfig sound{{}, vm::Param::item, 0, true, {}};
+  const json::Value* file = &value;
+  if (value.kind == json::Kind::object) {
+    Fields fields(value, Object::sound, diagnostics);
+    file = fields.require("file", "a sound");
+    if (const auto* duration = fields.find("duration")) {
+      const auto length = read_milliseconds(*duration, diagnostics);
+      if (length && *length != kDefaultSoundLength) sound.duration = *length;
+    }
+  }
+  if (file == nullptr) return std::nullopt;
+  const auto text = read_text(*file, diagnostics);
+  if (!text) return std::nullopt;
+  sound.name = *text;
+  return sound;
+}
+
+// A player's tracks are numbered from 1 in the order of the list.
+void read_sounds(const json::Value& value, const Device& device, ActuatorConfig& actuator,
+                 Diagnostics& diagnostics) {
+  if (!expect_kind(value, json::Kind::array, diagnostics)) return;
+  if (!device.has_sounds) {
+    diagnostics.report(Code::E0205, "this device plays no sounds").label(value.span);
+    return;
+  }
+  vm::Value track = 0;
+  for (const json::Value& item : value.items) {
+    track += vm::kScale;
+    auto sound = read_sound(item, diagnostics);
+    if (!sound) continue;
+    if (actuator.find_text(sound->name) != nullptr)
+      diagnostics.report(Code::E0101, "the sound `" + sound->name + "` is given twice")
+          .label(item.span);
+    sound->value = track;
+    actuator.words.push_back(std::move(*sound));
+  }
+}
+
+void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
+  const Fields fields(value, Object::limits, diagnostics);
+  const auto* speed = fields.find("SPEED");
+  if (speed == nullptr) return;
+  actuator.limit_span = speed->span;
+  if (actuator.at_unit == nullptr) {
+    diagnostics.report(Code::E0205, "this device has no speed that could be limited")
+        .label(speed->span);
+    return;
+  }
+  const auto limit = read_quantity(*speed, *actuator.at_unit, diagnostics);
+  if (limit && *limit <= 0)
+    diagnostics.report(Code::E0205, "a speed must be above 0").label(speed->span);
+  else if (limit)
+    actuator.speed_limit = *limit;
+}
+
+}  // namespace
+
+std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringReader& wiring,
+                                            Diagnostics& diagnostics) {
+  Fields fields(value, Object::actuator, diagnostics);
+  const auto name = read_name(fields, "an actuator", diagnostics);
+  const WiringType* type = read_type(fields, false, diagnostics);
+  if (!name) return std::nullopt;
+  const Device& device = choose_device(fields, type, *name, false, diagnostics);
+  ActuatorConfig actuator = device.actuator;
+  actuator.name = *name;
+  actuator.range_span = name->span;
+  actuator.limit_span = name->span;
+  if (type != nullptr) {
+    const Wiring place = wiring.read(fields, *type, false);
+    actuator.bus = place.bus;
+    actuator.pin = place.place;
+    if (type->name == "VIRTUAL") actuator.driver = vm::DriverId::virtual_actuator;
+  }
+  if (const auto* range = fields.find("range")) read_position_range(*range, actuator, diagnostics);
+  if (const auto* speeds = fields.find("speeds")) read_speeds(*speeds, actuator, diagnostics);
+  if (const auto* sounds = fields.find("sounds"))
+    read_sounds(*sounds, device, actuator, diagnostics);
+  if (const auto* limits = fields.find("limits")) read_limits(*limits, actuator, diagnostics);
+  if (const auto* release = fields.find("on_release"))
+    actuator.on_release = read_release(*release, diagnostics).value_or(actuator.on_release);
+  if (const auto* safe = fields.find("safe"))
+    actuator.safe = read_release(*safe, diagnostics).value_or(actuator.safe);
+  return actuator;
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,178 @@
+// Device descriptors to templates of sensors and actuators.
+#include "compiler/config/devices.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "compiler/config/channels.hpp"
+#include "compiler/config/fields.hpp"
+#include "compiler/config/json_reader.hpp"
+#include "compiler/config/values.hpp"
+#include "compiler/config/wiring.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+// Enumerators by their names in the .def lists.
+constexpr std::array<std::string_view, static_cast<std::size_t>(vm::DriverId::count_)> kDrivers = {
+#define SENSOR_DRIVER(name, doc) #name,
+#define ACTUATOR_DRIVER(name, doc) #name,
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+};
+constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Param::count_)> kParams = {
+#define PARAM(name, spelling, doc) #name,
+#include "vm/params.def"
+#undef PARAM
+};
+constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Action::count_)> kActions = {
+    "move", "play", "set", "stop"};
+constexpr std::array<std::string_view, 3> kTexts = {"none", "listed", "any"};
+
+template <typename Enum, std::size_t size>
+Enum read_enum(const json::Value& value, const std::array<std::string_view, size>& names,
+               Diagnostics& diagnostics) {
+  return static_cast<Enum>(read_choice(value, names, diagnostics).value_or(0));
+}
+
+VerbConfig read_verb(const json::Member& member, Diagnostics& diagnostics) {
+  Fields fields(member.value, Object::verb, diagnostics);
+  VerbConfig verb{member.key, {}, 0, Texts::none};
+  if (const auto* action = fields.require("action", "a verb"))
+    verb.action = read_enum<vm::Action>(*action, kActions, diagnostics);
+  if (const auto* texts = fields.find("texts"))
+    verb.texts = read_enum<Texts>(*texts, kTexts, diagnostics);
+  if (const auto* takes = fields.find("takes"))
+    for (const json::Value& item : takes->items)
+      verb.takes =
+          static_cast<std::uint8_t>(verb.takes | 1u << static_cast<unsigned>(read_enum<vm::Param>(
+                                                     item, kParams, diagnostics)));
+  return verb;
+}
+
+// {"SLOWLY": {"at": "30deg/s"}}
+void read_word(const json::Member& member, ActuatorConfig& actuator, Diagnostics& diagnostics) {
+  if (!expect_kind(member.value, json::Kind::object, diagnostics)) return;
+  for (const json::Member& setting : member.value.members) {
+    const auto named = std::find(kParams.begin(), kParams.end(), setting.key);
+    if (named == kParams.end()) {
+      diagnostics.report(Code::E0202, "no parameter `" + setting.key + "`").label(setting.key_span);
+      continue;
+    }
+    const auto param = static_cast<vm::Param>(named - kParams.begin());
+    const Unit& unit = param_unit(actuator, param);
+    const auto value = read_quantity(setting.value, unit, diagnostics);
+    actuator.words.push_back({member.key, param, value.value_or(0), false, {}});
+  }
+}
+
+void read_actuator_device(const Fields& fields, Device& device, Diagnostics& diagnostics) {
+  ActuatorConfig& actuator = device.actuator;
+  if (const auto* to = fields.find("to")) {
+    const Fields to_fields(*to, Object::device_to, diagnostics);
+    if (const auto* unit = to_fields.find("unit")) actuator.to_unit = read_unit(*unit, diagnostics);
+    const auto* range = to_fields.find("range");
+    if (range != nullptr && actuator.to_unit != nullptr) {
+      const auto read = read_range(*range, *actuator.to_unit, diagnostics).value_or(Range{});
+      actuator.min = read.low;
+      actuator.max = read.high;
+    }
+  }
+  if (const auto* at = fields.find("at")) {
+    const Fields at_fields(*at, Object::device_at, diagnostics);
+    if (const auto* unit = at_fields.find("unit")) actuator.at_unit = read_unit(*unit, diagnostics);
+  }
+  if (const auto* release = fields.find("on_release"))
+    actuator.on_release = read_release(*release, diagnostics).value_or(actuator.on_release);
+  if (const auto* safe = fields.find("safe"))
+    actuator.safe = read_release(*safe, diagnostics).value_or(actuator.safe);
+  if (const auto* sounds = fields.find("sounds")) device.has_sounds = sounds->truth;
+  if (const auto* verbs = fields.find("verbs"))
+    for (const json::Member& member : verbs->members)
+      actuator.verbs.push_back(read_verb(member, diagnostics));
+  if (const auto* words = fields.find("words"))
+    for (const json::Member& member : words->members)
+      read_word(member, actuator, diagnostics);
+}
+
+void read_sensor_device(const Fields& fields, Device& device, Diagnostics& diagnostics) {
+  if (const auto* inputs = fields.find("inputs"))
+    device.inputs =
+        static_cast<unsigned>(read_whole(*inputs, 1, 256, diagnostics).value_or(device.inputs));
+  const auto* channels = fields.find("channels");
+  if (channels == nullptr) return;
+  for (const json::Member& member : channels->members) {
+    ChannelConfig channel;
+    channel.name = {member.key, {}};
+    channel.unit = &canonical_unit(vm::Dimension::number);
+    read_channel(member.value, device.inputs, channel, diagnostics);
+    device.sensor.channels.push_back(std::move(channel));
+  }
+}
+
+std::vector<Device> read_all() {
+  std::vector<Device> result;
+  Diagnostics diagnostics;  // the tests hold the built-in descriptors to none
+  for (const DeviceText& text : device_texts())
+    result.push_back(read_device(text, diagnostics));
+  return result;
+}
+
+template <typename Predicate>
+const Device* find_if(Predicate predicate) {
+  const auto& all = devices();
+  const auto found = std::find_if(all.begin(), all.end(), predicate);
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Device read_device(const DeviceText& text, Diagnostics& diagnostics) {
+  SourceMap sources;
+  const FileId file = sources.add(std::string(text.name), std::string(text.json));
+  Device device;
+  device.name = text.name;
+  const auto tree = json::read(sources, file, diagnostics);
+  if (!tree) return device;
+  Fields fields(*tree, Object::device, diagnostics);
+  const auto* kind = fields.require("kind", "a device");
+  const auto* type = fields.require("type", "a device");
+  if (kind == nullptr || type == nullptr) return device;
+  constexpr std::array<std::string_view, 2> kKinds = {"actuator", "sensor"};
+  device.is_sensor = read_choice(*kind, kKinds, diagnostics).value_or(0) == 1;
+  device.type = type->text;
+  if (const auto* is_default = fields.find("default")) device.is_default = is_default->truth;
+  auto driver = device.is_sensor ? vm::DriverId::virtual_sensor : vm::DriverId::virtual_actuator;
+  if (const auto* named = fields.find("driver")) {
+    driver = read_enum<vm::DriverId>(*named, kDrivers, diagnostics);
+    device.has_driver = true;
+  }
+  device.sensor.driver = driver;
+  device.actuator.driver = driver;
+  if (device.is_sensor)
+    read_sensor_device(fields, device, diagnostics);
+  else
+    read_actuator_device(fields, device, diagnostics);
+  return device;
+}
+
+const std::vector<Device>& devices() {
+  static const std::vector<Device> all = read_all();
+  return all;
+}
+
+const Device* find_device(std::string_view name, bool is_sensor) {
+  return find_if([&](const Device& device) {
+    return device.is_sensor == is_sensor && same_name(device.name, name);
+  });
+}
+
+const Device* default_device(std::string_view type, bool is_sensor) {
+  return find_if([&](const Device& device) {
+    return device.is_sensor == is_sensor && device.is_default && device.type == type;
+  });
+}
+
+}  // namespace robosync::compiler

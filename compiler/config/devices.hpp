@@ -1,0 +1,39 @@
+// The devices that rsc knows: stdlib/devices/*.json, built into the library.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/config/robot.hpp"
+
+namespace robosync::compiler {
+
+struct Device {
+  std::string name;
+  bool is_sensor = false;
+  std::string type;         // how it is wired: "I2C"
+  bool has_driver = false;  // false: this version has none; it is fed or shown over the link
+  bool is_default = false;  // stands for its type when robot.json names no device
+  unsigned inputs = 1;
+  bool has_sounds = false;
+  SensorConfig sensor;  // what robot.json's entry starts from, by kind
+  ActuatorConfig actuator;
+};
+
+struct DeviceText {  // one descriptor as built in
+  std::string_view name;
+  std::string_view json;
+};
+[[nodiscard]] std::span<const DeviceText> device_texts();
+
+// Reads one descriptor. Mistakes in it are reported; the tests hold the built-in ones to none.
+[[nodiscard]] Device read_device(const DeviceText& text, Diagnostics& diagnostics);
+
+[[nodiscard]] const std::vector<Device>& devices();
+// Any case; nullptr when there is none of this kind.
+[[nodiscard]] const Device* find_device(std::string_view name, bool is_sensor);
+[[nodiscard]] const Device* default_device(std::string_view type, bool is_sensor);
+
+}  // namespace robosync::compiler

@@ -1,0 +1,30 @@
+// Entries of "sensors" and "actuators" in robot.json.
+#pragma once
+
+#include "compiler/config/devices.hpp"
+#include "compiler/config/json_reader.hpp"
+#include "compiler/config/robot.hpp"
+#include "compiler/config/wiring.hpp"
+
+namespace robosync::compiler {
+
+// Always gives a usable entry, so that one mistake does not make its name unknown; nothing when it
+// has no name.
+[[nodiscard]] std::optional<SensorConfig> read_sensor(const json::Value& value,
+                                                      WiringReader& wiring,
+                                                      Diagnostics& diagnostics);
+[[nodiscard]] std::optional<ActuatorConfig> read_actuator(const json::Value& value,
+                                                          WiringReader& wiring,
+                                                          Diagnostics& diagnostics);
+
+// The "name" of an entry, checked.
+[[nodiscard]] std::optional<Spelled> read_name(Fields& fields, std::string_view what,
+                                               Diagnostics& diagnostics);
+
+// The device an entry means: the one it names, or the generic one of its type. Says what it assumed
+// (N0001) and when there is no driver (W0212). Never nullptr: what is unknown is virtual.
+[[nodiscard]] const Device& choose_device(const Fields& fields, const WiringType* type,
+                                          const Spelled& name, bool is_sensor,
+                                          Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler

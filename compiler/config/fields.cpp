@@ -1,0 +1,99 @@
+#include "compiler/config/fields.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "compiler/config/names.hpp"
+#include "compiler/diagnostics/nearest.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+const Key* find_key(Object object, std::string_view name) {
+  const auto& keys = known_keys();
+  const auto found = std::find_if(keys.begin(), keys.end(), [&](const Key& key) {
+    return key.object == object && key.name == name;
+  });
+  return found == keys.end() ? nullptr : &*found;
+}
+
+void report_unknown(const json::Member& member, Object object, Diagnostics& diagnostics) {
+  std::vector<std::string> candidates;
+  for (const Key& key : known_keys())
+    if (key.object == object) candidates.emplace_back(key.name);
+  Diagnostic& d = diagnostics.report(Code::E0202, "robot.json has no key `" + member.key + "` here")
+                      .label(member.key_span);
+  if (const auto near = nearest(member.key, candidates)) {
+    d.helps("did you mean `" + *near + "`?").fix(member.key_span, "\"" + *near + "\"");
+  } else {
+    d.helps("it can be " + list_names(candidates, "or"));
+  }
+}
+
+}  // namespace
+
+const std::vector<Key>& known_keys() {
+  static const std::vector<Key> keys = {
+#define KEY(object, name, use) {Object::object, name, KeyUse::use},
+#include "compiler/config/keys.def"
+#undef KEY
+  };
+  return keys;
+}
+
+Fields::Fields(const json::Value& value, Object object, Diagnostics& diagnostics)
+    : value_(value), diagnostics_(diagnostics) {
+  if (!expect_kind(value, json::Kind::object, diagnostics)) return;
+  report_repeated_keys(value, diagnostics);
+  for (const json::Member& member : value.members)
+    check_key(member, object, diagnostics);
+}
+
+void Fields::check_key(const json::Member& member, Object object, Diagnostics& diagnostics) const {
+  const Key* key = find_key(object, member.key);
+  if (key == nullptr) {
+    report_unknown(member, object, diagnostics);
+  } else if (key->use == KeyUse::later) {
+    diagnostics.report(Code::W0213, "`" + member.key + "` is not used by this version of rsc yet")
+        .label(member.key_span, "nothing reads this");
+  }
+}
+
+const json::Value* Fields::find(std::string_view key) const {
+  const auto found = std::find_if(value_.members.begin(), value_.members.end(),
+                                  [&](const json::Member& member) { return member.key == key; });
+  return found == value_.members.end() ? nullptr : &found->value;
+}
+
+const json::Value* Fields::require(std::string_view key, std::string_view what) {
+  const json::Value* found = find(key);
+  if (found == nullptr && value_.kind == json::Kind::object) {
+    diagnostics_
+        .report(Code::E0206, std::string(what) + " needs the key `" + std::string(key) + "`")
+        .label({value_.span.file, value_.span.begin, value_.span.begin + 1});
+  }
+  return found;
+}
+
+void report_repeated_keys(const json::Value& object, Diagnostics& diagnostics) {
+  for (std::size_t i = 0; i < object.members.size(); ++i) {
+    const json::Member& member = object.members[i];
+    const auto first = std::find_if(object.members.begin(), object.members.end(),
+                                    [&](const json::Member& m) { return m.key == member.key; });
+    if (&*first == &member) continue;
+    diagnostics.report(Code::E0203, "the key `" + member.key + "` is given twice")
+        .label(member.key_span)
+        .label(first->key_span, "first given here", false);
+  }
+}
+
+bool expect_kind(const json::Value& value, json::Kind kind, Diagnostics& diagnostics) {
+  if (value.kind == kind) return true;
+  diagnostics
+      .report(Code::E0204, "this must be " + std::string(json::kind_phrase(kind)) + ", not " +
+                               std::string(json::kind_phrase(value.kind)))
+      .label(value.span);
+  return false;
+}
+
+}  // namespace robosync::compiler

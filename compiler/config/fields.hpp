@@ -1,0 +1,60 @@
+// The members of one JSON object, checked against keys.def: unknown and repeated keys are reported,
+// keys that this version does not use yet are warned about.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "compiler/config/json_reader.hpp"
+#include "compiler/diagnostics/diagnostic.hpp"
+
+namespace robosync::compiler {
+
+// Which object of robot.json or of a device descriptor it is.
+enum class Object : std::uint8_t {
+  robot,
+  sensor,
+  channel,
+  actuator,
+  sound,
+  limits,
+  behavior,
+  algorithm,
+  device,
+  device_to,
+  device_at,
+  verb
+};
+
+enum class KeyUse : std::uint8_t { used, later, editor };
+
+struct Key {
+  Object object;
+  std::string_view name;
+  KeyUse use;
+};
+[[nodiscard]] const std::vector<Key>& known_keys();
+
+class Fields {
+public:
+  // Reports at once what is wrong with the keys. A `value` that is no object is reported too and
+  // has no fields. `value` must outlive this.
+  Fields(const json::Value& value, Object object, Diagnostics& diagnostics);
+
+  [[nodiscard]] const json::Value* find(std::string_view key) const;  // nullptr when not there
+  // As find(), but reports E0206 when it is not there; `what` names the object: "a sensor".
+  [[nodiscard]] const json::Value* require(std::string_view key, std::string_view what);
+
+private:
+  void check_key(const json::Member& member, Object object, Diagnostics& diagnostics) const;
+
+  const json::Value& value_;
+  Diagnostics& diagnostics_;
+};
+
+// Reports a key that stands twice in `object`, whatever its keys are (channels, groups, speeds).
+void report_repeated_keys(const json::Value& object, Diagnostics& diagnostics);
+// True if `value` has the kind; reports E0204 otherwise.
+[[nodiscard]] bool expect_kind(const json::Value& value, json::Kind kind, Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler

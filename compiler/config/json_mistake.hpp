@@ -1,0 +1,23 @@
+// Says in plain words what is wrong where nlohmann's parser stopped.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "compiler/diagnostics/diagnostic.hpp"
+
+namespace robosync::compiler::json {
+
+struct Mistake {
+  std::string_view text;
+  FileId file = 0;
+  std::size_t good_until = 0;     // everything before was read
+  std::size_t stopped_at = 0;     // bytes the parser had read when it gave up
+  std::string_view reason;        // the parser's own words
+  std::optional<Span> open_span;  // the innermost object or list not yet closed
+};
+
+void report_mistake(const Mistake& mistake, Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler::json

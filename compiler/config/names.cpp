@@ -1,0 +1,59 @@
+#include "compiler/config/names.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "compiler/syntax/keywords.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr std::size_t kListed = 12;
+
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+bool can_be_written(std::string_view name) {
+  return !name.empty() && is_letter(name.front()) &&
+         std::all_of(name.begin(), name.end(),
+                     [](char c) { return is_letter(c) || (c >= '0' && c <= '9'); }) &&
+         name.find_first_not_of('_') != std::string_view::npos;
+}
+
+}  // namespace
+
+std::string fold_name(std::string_view name) {
+  std::string folded;
+  for (const char c : name)
+    if (c != '_') folded += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return folded;
+}
+
+bool same_name(std::string_view a, std::string_view b) {
+  return fold_name(a) == fold_name(b);
+}
+
+void check_name(const Spelled& name, Diagnostics& diagnostics) {
+  if (!can_be_written(name.text)) {
+    diagnostics.report(Code::E0103, "RSL cannot write this name")
+        .label(name.span)
+        .helps("a name begins with a letter and goes on with letters, digits and `_`");
+  } else if (is_keyword(name.text)) {
+    diagnostics.report(Code::E0102, "`" + name.text + "` is a word of RSL")
+        .label(name.span)
+        .helps("give it another name, such as `my_" + fold_name(name.text) + "`");
+  }
+}
+
+std::string list_names(const std::vector<std::string>& names, std::string_view last) {
+  std::string list;
+  const std::size_t count = std::min(names.size(), kListed);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0) list += i + 1 == names.size() ? " " + std::string(last) + " " : ", ";
+    list += "`" + names[i] + "`";
+  }
+  return names.size() > count ? list + ", …" : list;
+}
+
+}  // namespace robosync::compiler

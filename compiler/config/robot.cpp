@@ -1,0 +1,28 @@
+#include "compiler/config/robot.hpp"
+
+#include <algorithm>
+
+namespace robosync::compiler {
+namespace {
+
+template <typename List, typename Predicate>
+auto find_in(const List& list, Predicate predicate) {
+  const auto found = std::find_if(list.begin(), list.end(), predicate);
+  return found == list.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+const VerbConfig* ActuatorConfig::find_verb(std::string_view verb) const {
+  return find_in(verbs, [&](const VerbConfig& v) { return same_name(v.name, verb); });
+}
+
+const WordConfig* ActuatorConfig::find_word(std::string_view word) const {
+  return find_in(words, [&](const WordConfig& w) { return !w.text && same_name(w.name, word); });
+}
+
+const WordConfig* ActuatorConfig::find_text(std::string_view text) const {
+  return find_in(words, [&](const WordConfig& w) { return w.text && w.name == text; });
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,113 @@
+// The robot, as robot.json and the device descriptors describe it: what sema resolves names
+// against and codegen writes into the image. Values are thousandths of the canonical unit
+// (vm/value.hpp) throughout.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/config/names.hpp"
+#include "compiler/config/units.hpp"
+#include "compiler/diagnostics/diagnostic.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::compiler {
+
+struct ChannelConfig {
+  Spelled name;
+  const Unit* unit = nullptr;  // never null once read; bare numbers are in it
+  Span unit_span;              // where robot.json says the unit, or else the channel or sensor
+  std::uint8_t input = 0;
+  vm::Value min = vm::kValueMin;
+  vm::Value max = vm::kValueMax;
+  vm::Value change = 0;
+  vm::Value offset = 0;
+  Scale scale;                  // one raw count
+  std::uint16_t period_ms = 0;  // 0: only when fed
+  std::uint16_t stale_ms = 0;   // 0: never stale
+  // Of a channel whose values are words: value n is label n. Its range is then 0 … labels - 1.
+  std::vector<std::string> labels;
+  bool truth = false;  // its two labels mean false and true: it may stand alone as a condition
+};
+
+struct SensorConfig {
+  Spelled name;
+  vm::DriverId driver{};
+  std::uint8_t bus = 0;
+  std::uint16_t address = 0;    // or pin
+  std::uint16_t period_ms = 0;  // of its fastest channel
+  std::vector<ChannelConfig> channels;
+};
+
+enum class Texts : std::uint8_t {
+  none,    // the verb takes no string
+  listed,  // one of the actuator's sounds
+  any      // whatever the program says
+};
+
+struct VerbConfig {
+  std::string name;
+  vm::Action action{};
+  std::uint8_t takes = 0;  // bit p: takes vm::Param p
+  Texts texts = Texts::none;
+};
+
+struct WordConfig {  // SLOWLY, or a sound
+  std::string name;
+  vm::Param param{};
+  vm::Value value = 0;
+  bool text = false;                  // written in quotes
+  std::optional<vm::Value> duration;  // of a sound, when it is not the player's own default
+};
+
+struct ActuatorConfig {
+  Spelled name;
+  vm::DriverId driver{};
+  std::uint8_t bus = 0;
+  std::uint16_t pin = 0;
+  vm::Release on_release = vm::Release::hold;
+  vm::Release safe = vm::Release::hold;
+  const Unit* to_unit = nullptr;  // of TO and BY; null: it has no position
+  const Unit* at_unit = nullptr;  // of AT; null: it has no speed
+  vm::Value min = vm::kValueMin;  // range of TO
+  vm::Value max = vm::kValueMax;
+  Span range_span;
+  vm::Value speed_limit = vm::kValueMax;
+  Span limit_span;
+  std::vector<VerbConfig> verbs;
+  std::vector<WordConfig> words;
+
+  [[nodiscard]] const VerbConfig* find_verb(std::string_view verb) const;
+  [[nodiscard]] const WordConfig* find_word(std::string_view word) const;  // not a text
+  [[nodiscard]] const WordConfig* find_text(std::string_view text) const;  // exact
+};
+
+struct GroupConfig {
+  Spelled name;
+  std::vector<std::size_t> members;  // places in Robot::actuators
+};
+
+struct BehaviorConfig {
+  Spelled name;
+  std::optional<int> priority;
+  Span priority_span;
+  std::optional<std::size_t> action;  // place in Robot::actuators or …
+  std::optional<std::size_t> action_group;
+  Span action_span;
+};
+
+enum class LintLevel : std::uint8_t { allow, warn, deny };
+
+struct Robot {
+  std::vector<SensorConfig> sensors;
+  std::vector<ActuatorConfig> actuators;
+  std::vector<GroupConfig> groups;
+  std::vector<BehaviorConfig> behaviors;
+  std::map<Code, LintLevel> lints;
+  bool complete = true;  // false: entries are missing, for mistakes that have been reported
+};
+
+}  // namespace robosync::compiler

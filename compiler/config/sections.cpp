@@ -1,0 +1,161 @@
+#include "compiler/config/sections.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "compiler/config/entries.hpp"
+#include "compiler/config/fields.hpp"
+#include "compiler/config/values.hpp"
+#include "compiler/diagnostics/nearest.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr std::int64_t kMaxPriority = 99;
+
+template <typename List>
+std::optional<std::size_t> place_of(const List& list, std::string_view name) {
+  const auto found = std::find_if(list.begin(), list.end(), [&](const auto& entry) {
+    return same_name(entry.name.text, name);
+  });
+  if (found == list.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - list.begin());
+}
+
+std::vector<std::string> actuator_names(const Robot& robot, bool groups) {
+  std::vector<std::string> names;
+  for (const ActuatorConfig& actuator : robot.actuators)
+    names.push_back(actuator.name.text);
+  if (groups)
+    for (const GroupConfig& group : robot.groups)
+      names.push_back(group.name.text);
+  return names;
+}
+
+void report_unknown_actuator(const json::Value& value, const std::vector<std::string>& candidates,
+                             Diagnostics& diagnostics) {
+  Diagnostic& d = diagnostics.report(Code::E0501, "there is no actuator `" + value.text + "`")
+                      .label(value.span);
+  if (const auto near = nearest(value.text, candidates))
+    d.helps("did you mean `" + *near + "`?").fix(value.span, "\"" + *near + "\"");
+  else if (!candidates.empty())
+    d.helps("actuators: " + list_names(candidates));
+}
+
+void read_group(const json::Member& member, Robot& robot, Diagnostics& diagnostics) {
+  GroupConfig group{{member.key, member.key_span}, {}};
+  check_name(group.name, diagnostics);
+  if (!expect_kind(member.value, json::Kind::array, diagnostics)) {
+    robot.complete = false;
+    return;
+  }
+  if (member.value.items.empty())
+    diagnostics.report(Code::E0205, "a group has at least one member").label(member.value.span);
+  for (const json::Value& item : member.value.items) {
+    const auto name = read_text(item, diagnostics);
+    if (!name) continue;
+    const auto place = place_of(robot.actuators, *name);
+    if (!place) {
+      report_unknown_actuator(item, actuator_names(robot, false), diagnostics);
+    } else if (std::find(group.members.begin(), group.members.end(), *place) !=
+               group.members.end()) {
+      diagnostics.report(Code::E0101, "`" + *name + "` is in this group twice").label(item.span);
+    } else {
+      group.members.push_back(*place);
+    }
+  }
+  robot.groups.push_back(std::move(group));
+}
+
+struct NamedCode {
+  std::string_view name;
+  Code code;
+};
+constexpr NamedCode kCodes[] = {
+#define DIAGNOSTIC(code, level, title) {#code, Code::code},
+#include "compiler/diagnostics/diagnostics.def"
+#undef DIAGNOSTIC
+};
+
+bool is_lint(const NamedCode& entry) {
+  return entry.name.front() == 'W';
+}
+
+void report_unknown_lint(const json::Member& member, Diagnostics& diagnostics) {
+  std::vector<std::string> names;
+  for (const NamedCode& entry : kCodes)
+    if (is_lint(entry)) names.emplace_back(entry.name);
+  Diagnostic& d =
+      diagnostics.report(Code::E0205, "`" + member.key + "` is not a lint").label(member.key_span);
+  if (const auto near = nearest(member.key, names))
+    d.helps("did you mean `" + *near + "`?");
+  else
+    d.helps("lints begin with W, such as `W0203`");
+}
+
+}  // namespace
+
+void read_groups(const json::Value& value, Robot& robot, Diagnostics& diagnostics) {
+  if (!expect_kind(value, json::Kind::object, diagnostics)) {
+    robot.complete = false;
+    return;
+  }
+  report_repeated_keys(value, diagnostics);
+  for (const json::Member& member : value.members) {
+    const bool repeated =
+        std::any_of(robot.groups.begin(), robot.groups.end(),
+                    [&](const GroupConfig& group) { return group.name.text == member.key; });
+    if (!repeated) read_group(member, robot, diagnostics);
+  }
+}
+
+bool read_behavior(const json::Value& value, Robot& robot, Diagnostics& diagnostics) {
+  Fields fields(value, Object::behavior, diagnostics);
+  const auto name = read_name(fields, "a behaviour", diagnostics);
+  if (!name) return false;
+  BehaviorConfig behavior;
+  behavior.name = *name;
+  if (const auto* priority = fields.find("priority")) {
+    behavior.priority_span = priority->span;
+    if (const auto number = read_whole(*priority, 1, kMaxPriority, diagnostics))
+      behavior.priority = static_cast<int>(*number);
+  }
+  if (const auto* action = fields.find("action"); action && read_text(*action, diagnostics)) {
+    behavior.action_span = action->span;
+    behavior.action = place_of(robot.actuators, action->text);
+    behavior.action_group = place_of(robot.groups, action->text);
+    if (!behavior.action && !behavior.action_group)
+      report_unknown_actuator(*action, actuator_names(robot, true), diagnostics);
+  }
+  robot.behaviors.push_back(std::move(behavior));
+  return true;
+}
+
+void report_algorithm(const json::Value& value, Diagnostics& diagnostics) {
+  Fields fields(value, Object::algorithm, diagnostics);
+  const auto name = read_name(fields, "an algorithm", diagnostics);
+  if (!name) return;
+  diagnostics
+      .report(Code::W0214,
+              "this version of rsc cannot load algorithms yet: `" + name->text + "` does nothing")
+      .label(name->span);
+}
+
+void read_lints(const json::Value& value, Robot& robot, Diagnostics& diagnostics) {
+  if (!expect_kind(value, json::Kind::object, diagnostics)) return;
+  report_repeated_keys(value, diagnostics);
+  constexpr std::array<std::string_view, 3> kLevels = {"allow", "warn", "deny"};
+  for (const json::Member& member : value.members) {
+    const auto level = read_choice(member.value, kLevels, diagnostics);
+    const auto known = std::find_if(
+        std::begin(kCodes), std::end(kCodes),
+        [&](const NamedCode& entry) { return is_lint(entry) && entry.name == member.key; });
+    if (known == std::end(kCodes))
+      report_unknown_lint(member, diagnostics);
+    else if (level)
+      robot.lints[known->code] = static_cast<LintLevel>(*level);
+  }
+}
+
+}  // namespace robosync::compiler

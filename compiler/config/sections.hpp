@@ -1,0 +1,16 @@
+// The sections of robot.json besides sensors and actuators.
+#pragma once
+
+#include "compiler/config/json_reader.hpp"
+#include "compiler/config/robot.hpp"
+
+namespace robosync::compiler {
+
+void read_groups(const json::Value& value, Robot& robot, Diagnostics& diagnostics);
+// False when it has no name.
+[[nodiscard]] bool read_behavior(const json::Value& value, Robot& robot, Diagnostics& diagnostics);
+void read_lints(const json::Value& value, Robot& robot, Diagnostics& diagnostics);
+// Algorithms cannot be loaded by this version: checks the entry and says so.
+void report_algorithm(const json::Value& value, Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler

@@ -1,0 +1,193 @@
+// Units and exact conversion. 128-bit integers hold every intermediate: a mantissa has at most 16
+// digits, a factor 17.
+#include "compiler/config/units.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdlib>
+#include <numeric>
+
+namespace robosync::compiler {
+namespace {
+
+using Wide = __int128;
+
+constexpr unsigned kMaxDecimals = 9;
+constexpr unsigned kMaxDigits = 16;
+constexpr int kMaxExponent = 15;
+
+constexpr std::array kUnits = {
+#define UNIT(spelling, dimension, factor, offset, divisor) \
+  Unit{spelling, vm::Dimension::dimension, factor, offset, divisor},
+#include "compiler/config/units.def"
+#undef UNIT
+};
+
+struct DimensionText {
+  std::string_view canonical_unit;
+  std::string_view phrase;
+};
+constexpr std::array kDimensions = {
+#define DIMENSION(name, unit, phrase) DimensionText{unit, phrase},
+#include "vm/dimensions.def"
+#undef DIMENSION
+};
+
+bool equal_ignoring_case(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
+    return std::tolower(static_cast<unsigned char>(x)) ==
+           std::tolower(static_cast<unsigned char>(y));
+  });
+}
+
+constexpr Wide power_of_ten(unsigned exponent) {
+  Wide power = 1;
+  for (unsigned i = 0; i < exponent; ++i)
+    power *= 10;
+  return power;
+}
+
+Wide divide_half_away(Wide numerator, Wide denominator) {
+  const Wide half = denominator / 2;
+  return (numerator < 0 ? numerator - half : numerator + half) / denominator;
+}
+
+// Reads "digits[.digits]" from the front of `text` into `number`.
+bool read_mantissa(std::string_view& text, Decimal& number) {
+  unsigned digits = 0;
+  bool point = false;
+  bool any = false;
+  while (!text.empty()) {
+    const char c = text.front();
+    if (c == '.' && !point && any) {
+      point = true;
+    } else if (c >= '0' && c <= '9') {
+      any = true;
+      digits += number.mantissa != 0 || c != '0';
+      if (digits > kMaxDigits) return false;
+      number.mantissa = number.mantissa * 10 + (c - '0');
+      number.decimals += point;
+    } else {
+      break;
+    }
+    text.remove_prefix(1);
+  }
+  return any;
+}
+
+// Reads "e[±]digits", or nothing, up to the end of `text`.
+std::optional<int> read_exponent(std::string_view text) {
+  if (text.empty()) return 0;
+  if (text.front() != 'e' && text.front() != 'E') return std::nullopt;
+  text.remove_prefix(1);
+  const bool negative = !text.empty() && text.front() == '-';
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
+  if (text.empty()) return std::nullopt;
+  int exponent = 0;
+  for (const char c : text) {
+    if (c < '0' || c > '9') return std::nullopt;
+    exponent = std::min(exponent * 10 + (c - '0'), 10000);
+  }
+  return negative ? -exponent : exponent;
+}
+
+// mantissa / 10^decimals * 10^exponent with 0 … kMaxDecimals decimals, or nothing.
+std::optional<Decimal> normalise(std::int64_t mantissa, int decimals) {
+  while (decimals > 0 && mantissa % 10 == 0) {
+    mantissa /= 10;
+    if (mantissa == 0) return Decimal{};
+    --decimals;
+  }
+  if (mantissa == 0) return Decimal{};
+  if (decimals < -kMaxExponent || decimals > static_cast<int>(kMaxDecimals)) return std::nullopt;
+  const auto limit = static_cast<std::int64_t>(power_of_ten(kMaxDigits));
+  for (; decimals < 0; ++decimals) {
+    if (mantissa >= limit) return std::nullopt;
+    mantissa *= 10;
+  }
+  return Decimal{mantissa, static_cast<unsigned>(decimals)};
+}
+
+}  // namespace
+
+std::span<const Unit> units() {
+  return kUnits;
+}
+
+const Unit* find_unit(std::string_view spelling) {
+  for (const Unit& unit : kUnits)
+    if (equal_ignoring_case(unit.spelling, spelling)) return &unit;
+  return nullptr;
+}
+
+const Unit& canonical_unit(vm::Dimension dimension) {
+  return *find_unit(kDimensions[static_cast<std::size_t>(dimension)].canonical_unit);
+}
+
+std::string_view dimension_phrase(vm::Dimension dimension) {
+  return kDimensions[static_cast<std::size_t>(dimension)].phrase;
+}
+
+std::optional<Decimal> parse_decimal(std::string_view text) {
+  const bool negative = !text.empty() && text.front() == '-';
+  if (negative) text.remove_prefix(1);
+  // Zeros at the end of a fraction say nothing and must not count as digits.
+  Decimal number;
+  const std::size_t exponent_at = text.find_first_of("eE");
+  std::string_view mantissa = text.substr(0, exponent_at);
+  if (mantissa.find('.') != std::string_view::npos) {
+    while (mantissa.size() > 1 && mantissa.back() == '0')
+      mantissa.remove_suffix(1);
+  }
+  if (!read_mantissa(mantissa, number) || !mantissa.empty()) return std::nullopt;
+  const auto exponent =
+      read_exponent(exponent_at == std::string_view::npos ? "" : text.substr(exponent_at));
+  if (!exponent) return std::nullopt;
+  auto result = normalise(number.mantissa, static_cast<int>(number.decimals) - *exponent);
+  if (result && negative) result->mantissa = -result->mantissa;
+  return result;
+}
+
+std::optional<vm::Value> to_value(Decimal number, const Unit& unit) {
+  const Wide ten = power_of_ten(number.decimals);
+  const Wide value = divide_half_away(Wide{number.mantissa} * unit.factor + Wide{unit.offset} * ten,
+                                      Wide{unit.divisor} * ten);
+  if (value < vm::kValueMin || value > vm::kValueMax) return std::nullopt;
+  return static_cast<vm::Value>(value);
+}
+
+std::string format_value(std::int64_t value, const Unit& unit) {
+  const Wide scaled =
+      divide_half_away((Wide{value} * unit.divisor - unit.offset) * 1000, Wide{unit.factor});
+  const auto thousandths = static_cast<std::int64_t>(scaled);
+  std::string text = thousandths < 0 ? "-" : "";
+  const std::int64_t magnitude = std::abs(thousandths);
+  text += std::to_string(magnitude / 1000);
+  std::string fraction = std::to_string(1000 + magnitude % 1000).substr(1);
+  while (!fraction.empty() && fraction.back() == '0')
+    fraction.pop_back();
+  if (!fraction.empty()) text += "." + fraction;
+  return text + std::string(unit.spelling);
+}
+
+std::optional<Scale> to_scale(Decimal number, const Unit& unit) {
+  Wide numerator = Wide{number.mantissa} * unit.factor;
+  Wide denominator = power_of_ten(number.decimals) * unit.divisor;
+  const auto wide_gcd = [](Wide a, Wide b) {
+    while (b != 0) {
+      const Wide rest = a % b;
+      a = b;
+      b = rest;
+    }
+    return a < 0 ? -a : a;
+  };
+  const Wide divisor = wide_gcd(numerator, denominator);
+  numerator /= divisor;
+  denominator /= divisor;
+  if (numerator == 0 || denominator > UINT16_MAX || numerator > INT32_MAX || -numerator > INT32_MAX)
+    return std::nullopt;
+  return Scale{static_cast<std::int32_t>(numerator), static_cast<std::uint16_t>(denominator)};
+}
+
+}  // namespace robosync::compiler

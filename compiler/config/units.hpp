@@ -1,0 +1,51 @@
+// Units, and exact conversion of written numbers to the robot's values (vm/value.hpp).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "vm/image.hpp"
+
+namespace robosync::compiler {
+
+// value = (x * factor + offset) / divisor, in thousandths of the canonical unit.
+struct Unit {
+  std::string_view spelling;
+  vm::Dimension dimension;
+  std::int64_t factor, offset, divisor;
+};
+
+[[nodiscard]] std::span<const Unit> units();
+// Any case is accepted. nullptr when there is no such unit. "" is the plain number.
+[[nodiscard]] const Unit* find_unit(std::string_view spelling);
+[[nodiscard]] const Unit& canonical_unit(vm::Dimension dimension);
+[[nodiscard]] std::string_view dimension_phrase(vm::Dimension dimension);  // "a distance"
+
+// A decimal number as written: mantissa / 10^decimals.
+struct Decimal {
+  std::int64_t mantissa = 0;
+  unsigned decimals = 0;
+};
+
+// "12", "-0.5", "1e3". Nothing when it is not a number, or has more than 9 decimals or more than
+// 16 digits: more than any value on the robot can hold.
+[[nodiscard]] std::optional<Decimal> parse_decimal(std::string_view text);
+
+// Rounded half away from zero. Nothing when out of range (±2,147,483.647 canonical units).
+[[nodiscard]] std::optional<vm::Value> to_value(Decimal number, const Unit& unit);
+
+// The value in `unit`, with as few decimals as say it to a thousandth: "2.5cm".
+[[nodiscard]] std::string format_value(std::int64_t value, const Unit& unit);
+
+// The smallest fraction numerator / denominator = thousandths of the canonical unit for one count
+// of a sensor. Offsets of units (F) do not apply: it is a difference.
+struct Scale {
+  std::int32_t numerator = vm::kScale;
+  std::uint16_t denominator = 1;
+};
+[[nodiscard]] std::optional<Scale> to_scale(Decimal number, const Unit& unit);
+
+}  // namespace robosync::compiler

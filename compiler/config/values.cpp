@@ -1,0 +1,239 @@
+#include "compiler/config/values.hpp"
+
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <string_view>
+#include <vector>
+
+#include "compiler/config/fields.hpp"
+#include "compiler/config/names.hpp"
+#include "compiler/diagnostics/nearest.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+struct Written {  // "-2.5cm" taken apart
+  std::string_view number, unit;
+};
+
+Written split(std::string_view text) {
+  std::size_t end = !text.empty() && text.front() == '-' ? 1 : 0;
+  while (end < text.size() &&
+         (std::isdigit(static_cast<unsigned char>(text[end])) != 0 || text[end] == '.'))
+    ++end;
+  std::string_view unit = text.substr(end);
+  while (!unit.empty() && unit.front() == ' ')
+    unit.remove_prefix(1);
+  return {text.substr(0, end), unit};
+}
+
+bool is_number_or_text(const json::Value& value, std::string_view what, Diagnostics& diagnostics) {
+  if (value.kind == json::Kind::number || value.kind == json::Kind::string) return true;
+  diagnostics
+      .report(Code::E0204, "this must be " + std::string(what) + ", not " +
+                               std::string(json::kind_phrase(value.kind)))
+      .label(value.span);
+  return false;
+}
+
+// The number and its unit; `unit` when none is written.
+struct Measured {
+  Decimal number;
+  const Unit* unit = nullptr;
+};
+
+const Unit* matching_unit(const json::Value& value, std::string_view written, const Unit& unit,
+                          Diagnostics& diagnostics) {
+  const Unit* found = find_unit(written);
+  if (found == nullptr) {
+    suggest_unit(diagnostics.report(Code::E0303, "there is no unit `" + std::string(written) + "`")
+                     .label(value.span),
+                 std::string(written));
+    return nullptr;
+  }
+  if (found->dimension == unit.dimension) return found;
+  diagnostics
+      .report(Code::E0301, "this is " + std::string(dimension_phrase(found->dimension)) + ", but " +
+                               std::string(dimension_phrase(unit.dimension)) + " is needed here")
+      .label(value.span);
+  return nullptr;
+}
+
+std::optional<Measured> read_measured(const json::Value& value, const Unit& unit,
+                                      Diagnostics& diagnostics) {
+  if (!is_number_or_text(value, "a number or a string like \"5cm\"", diagnostics))
+    return std::nullopt;
+  Measured result{{}, &unit};
+  std::string_view number = value.text;
+  if (value.kind == json::Kind::string) {
+    const Written written = split(value.text);
+    number = written.number;
+    if (number.empty() || number == "-") {
+      diagnostics.report(Code::E0204, "there is no number in this string").label(value.span);
+      return std::nullopt;
+    }
+    if (!written.unit.empty()) result.unit = matching_unit(value, written.unit, unit, diagnostics);
+    if (result.unit == nullptr) return std::nullopt;
+  }
+  const auto decimal = parse_decimal(number);
+  if (!decimal) {
+    diagnostics.report(Code::E0304, "this number has too many digits, or cannot be read")
+        .label(value.span);
+    return std::nullopt;
+  }
+  result.number = *decimal;
+  return result;
+}
+
+std::optional<vm::Value> value_of(const json::Value& value, Decimal number, const Unit& unit,
+                                  Diagnostics& diagnostics) {
+  const auto result = to_value(number, unit);
+  if (!result)
+    diagnostics.report(Code::E0304, "this number is too large for the robot")
+        .label(value.span)
+        .helps("numbers on the robot go from -2147483 to 2147483 " +
+               std::string(canonical_unit(unit.dimension).spelling));
+  return result;
+}
+
+std::optional<std::int64_t> parse_whole(std::string_view text) {
+  int base = 10;
+  if (text.starts_with("0x") || text.starts_with("0X")) {
+    base = 16;
+    text.remove_prefix(2);
+    if (text.starts_with("-")) return std::nullopt;
+  }
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, base);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+// A limit in the base that the value was written in.
+std::string written_like(std::int64_t number, bool hex) {
+  if (!hex || number < 0) return std::to_string(number);
+  std::array<char, 16> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number, 16).ptr;
+  return "0x" + std::string(digits.data(), end);
+}
+
+std::optional<std::uint16_t> milliseconds(std::int64_t ms, const json::Value& value,
+                                          Diagnostics& diagnostics) {
+  if (ms >= 1 && ms <= UINT16_MAX) return static_cast<std::uint16_t>(ms);
+  diagnostics.report(Code::E0205, "this must come to between 1 ms and 65535 ms").label(value.span);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> read_text(const json::Value& value, Diagnostics& diagnostics) {
+  if (!expect_kind(value, json::Kind::string, diagnostics)) return std::nullopt;
+  if (value.text.find('\0') != std::string::npos) {
+    diagnostics.report(Code::E0205, "a text cannot have a zero character in it").label(value.span);
+    return std::nullopt;
+  }
+  return value.text;
+}
+
+std::optional<std::int64_t> read_whole(const json::Value& value, std::int64_t low,
+                                       std::int64_t high, Diagnostics& diagnostics) {
+  if (!is_number_or_text(value, "a whole number", diagnostics)) return std::nullopt;
+  const auto number = parse_whole(value.text);
+  if (!number) {
+    diagnostics.report(Code::E0204, "this must be a whole number, like 5 or \"0x48\"")
+        .label(value.span);
+    return std::nullopt;
+  }
+  if (*number >= low && *number <= high) return number;
+  const bool hex = value.text.starts_with("0x") || value.text.starts_with("0X");
+  diagnostics
+      .report(Code::E0205,
+              "this must be from " + written_like(low, hex) + " to " + written_like(high, hex))
+      .label(value.span);
+  return std::nullopt;
+}
+
+std::optional<vm::Value> read_quantity(const json::Value& value, const Unit& unit,
+                                       Diagnostics& diagnostics) {
+  const auto measured = read_measured(value, unit, diagnostics);
+  if (!measured) return std::nullopt;
+  return value_of(value, measured->number, *measured->unit, diagnostics);
+}
+
+std::optional<vm::Value> read_difference(const json::Value& value, const Unit& unit,
+                                         Diagnostics& diagnostics) {
+  const auto measured = read_measured(value, unit, diagnostics);
+  if (!measured) return std::nullopt;
+  Unit difference = *measured->unit;
+  difference.offset = 0;
+  return value_of(value, measured->number, difference, diagnostics);
+}
+
+std::optional<Range> read_range(const json::Value& value, const Unit& unit,
+                                Diagnostics& diagnostics) {
+  if (!expect_kind(value, json::Kind::array, diagnostics)) return std::nullopt;
+  if (value.items.size() != 2) {
+    diagnostics.report(Code::E0204, "a range is a list of two: the lowest and the highest value")
+        .label(value.span);
+    return std::nullopt;
+  }
+  const auto low = read_quantity(value.items[0], unit, diagnostics);
+  const auto high = read_quantity(value.items[1], unit, diagnostics);
+  if (!low || !high) return std::nullopt;
+  if (*low < *high) return Range{*low, *high};
+  diagnostics.report(Code::E0205, "the lowest value of this range is not below its highest")
+      .label(value.span);
+  return std::nullopt;
+}
+
+std::optional<std::uint16_t> read_rate(const json::Value& value, Diagnostics& diagnostics) {
+  const auto rate = read_quantity(value, canonical_unit(vm::Dimension::frequency), diagnostics);
+  if (!rate) return std::nullopt;
+  if (*rate <= 0) return milliseconds(0, value, diagnostics);
+  return milliseconds((1000 * vm::kScale + *rate / 2) / *rate, value, diagnostics);
+}
+
+std::optional<std::uint16_t> read_milliseconds(const json::Value& value, Diagnostics& diagnostics) {
+  const auto time = read_quantity(value, canonical_unit(vm::Dimension::duration), diagnostics);
+  if (!time) return std::nullopt;
+  return milliseconds(*time, value, diagnostics);
+}
+
+std::optional<Scale> read_scale(const json::Value& value, const Unit& unit,
+                                Diagnostics& diagnostics) {
+  const auto measured = read_measured(value, unit, diagnostics);
+  if (!measured) return std::nullopt;
+  const auto scale = to_scale(measured->number, *measured->unit);
+  if (!scale)
+    diagnostics.report(Code::E0304, "this scale is 0, too large, or too fine to be kept exactly")
+        .label(value.span);
+  return scale;
+}
+
+const Unit* read_unit(const json::Value& value, Diagnostics& diagnostics) {
+  const auto text = read_text(value, diagnostics);
+  if (!text) return nullptr;
+  const Unit* unit = find_unit(*text);
+  if (unit == nullptr)
+    suggest_unit(
+        diagnostics.report(Code::E0303, "there is no unit `" + *text + "`").label(value.span),
+        *text);
+  return unit;
+}
+
+void suggest_unit(Diagnostic& diagnostic, const std::string& written) {
+  std::vector<std::string> spellings;
+  std::string list;
+  for (const Unit& unit : units()) {
+    if (unit.spelling.empty()) continue;
+    spellings.emplace_back(unit.spelling);
+    list += (list.empty() ? "" : " ") + spellings.back();
+  }
+  if (const auto near = nearest(written, spellings))
+    diagnostic.helps("did you mean `" + *near + "`?");
+  else
+    diagnostic.helps("units: " + list);
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,52 @@
+// Typed values of robot.json. Each reader reports what is wrong (with the place) and then gives
+// nothing. Numbers may be JSON numbers or strings, with a unit where one makes sense.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "compiler/config/json_reader.hpp"
+#include "compiler/config/units.hpp"
+#include "compiler/diagnostics/diagnostic.hpp"
+
+namespace robosync::compiler {
+
+[[nodiscard]] std::optional<std::string> read_text(const json::Value& value,
+                                                   Diagnostics& diagnostics);
+
+// 5, "5", "0x48": from `low` to `high`.
+[[nodiscard]] std::optional<std::int64_t> read_whole(const json::Value& value, std::int64_t low,
+                                                     std::int64_t high, Diagnostics& diagnostics);
+
+// 5 and "5" (in `unit`), "5cm" (of the same dimension).
+[[nodiscard]] std::optional<vm::Value> read_quantity(const json::Value& value, const Unit& unit,
+                                                     Diagnostics& diagnostics);
+
+// As read_quantity(), for a difference: 9F is 5C, for units' zeros do not count.
+[[nodiscard]] std::optional<vm::Value> read_difference(const json::Value& value, const Unit& unit,
+                                                       Diagnostics& diagnostics);
+
+struct Range {
+  vm::Value low = vm::kValueMin;
+  vm::Value high = vm::kValueMax;
+};
+// [low, high], low < high.
+[[nodiscard]] std::optional<Range> read_range(const json::Value& value, const Unit& unit,
+                                              Diagnostics& diagnostics);
+
+// "50Hz": milliseconds between two samples, 1 … 65535.
+[[nodiscard]] std::optional<std::uint16_t> read_rate(const json::Value& value,
+                                                     Diagnostics& diagnostics);
+// "200ms": milliseconds, 1 … 65535.
+[[nodiscard]] std::optional<std::uint16_t> read_milliseconds(const json::Value& value,
+                                                             Diagnostics& diagnostics);
+[[nodiscard]] std::optional<Scale> read_scale(const json::Value& value, const Unit& unit,
+                                              Diagnostics& diagnostics);
+// The name of a unit, "cm".
+[[nodiscard]] const Unit* read_unit(const json::Value& value, Diagnostics& diagnostics);
+
+// For E0303: the nearest unit, or the list of all.
+void suggest_unit(Diagnostic& diagnostic, const std::string& written);
+
+}  // namespace robosync::compiler

@@ -1,0 +1,134 @@
+#include "compiler/config/wiring.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "compiler/config/values.hpp"
+#include "compiler/diagnostics/nearest.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr std::array<WiringType, 7> kTypes = {{
+    // name      sensors actuators  bus    address pin
+    {"I2C", true, true, true, true, false},
+    {"SPI", true, true, true, false, true},
+    {"GPIO", true, true, false, false, true},
+    {"PWM", false, true, false, false, true},
+    {"ADC", true, false, false, false, true},
+    {"UART", true, true, true, false, false},
+    {"VIRTUAL", true, true, true, true, true},  // keys of the real thing may stay
+}};
+
+// Other addresses are reserved by the I2C specification.
+constexpr std::int64_t kFirstAddress = 0x08;
+constexpr std::int64_t kLastAddress = 0x77;
+
+constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::count_)> kReleases = {
+    "hold", "rest", "coast"};
+
+}  // namespace
+
+std::span<const WiringType> wiring_types() {
+  return kTypes;
+}
+
+const WiringType* read_type(Fields& fields, bool is_sensor, Diagnostics& diagnostics) {
+  const auto* value = fields.require("type", is_sensor ? "a sensor" : "an actuator");
+  if (value == nullptr) return nullptr;
+  std::vector<std::string_view> names;
+  for (const WiringType& type : kTypes)
+    if (is_sensor ? type.for_sensors : type.for_actuators) names.push_back(type.name);
+  const auto choice = read_choice(*value, names, diagnostics);
+  if (!choice) return nullptr;
+  for (const WiringType& type : kTypes)
+    if (type.name == names[*choice]) return &type;
+  return nullptr;
+}
+
+void WiringReader::report_foreign(const Fields& fields, const WiringType& type) {
+  const auto check = [&](std::string_view key, bool allowed) {
+    const auto* value = fields.find(key);
+    if (value == nullptr || allowed) return;
+    diagnostics_
+        .report(Code::E0205,
+                "a device of type " + std::string(type.name) + " has no `" + std::string(key) + "`")
+        .label(value->span);
+  };
+  check("bus", type.bus);
+  check("address", type.address);
+  check("pin", type.pin);
+}
+
+std::uint16_t WiringReader::read_pin(const json::Value& value) {
+  const auto pin = read_whole(value, 0, UINT16_MAX - 1, diagnostics_);
+  if (!pin) return 0;
+  const auto number = static_cast<std::uint16_t>(*pin);
+  const auto [first, added] = pins_.emplace(number, value.span);
+  if (!added)
+    diagnostics_.report(Code::E0207, "pin " + std::to_string(number) + " is used twice")
+        .label(value.span)
+        .label(first->second, "first used here", false);
+  return number;
+}
+
+Wiring WiringReader::read(Fields& fields, const WiringType& type, bool is_sensor) {
+  Wiring wiring;
+  if (type.name == "VIRTUAL") return wiring;
+  report_foreign(fields, type);
+  const std::string what =
+      std::string(is_sensor ? "a sensor" : "an actuator") + " of type " + std::string(type.name);
+  if (const auto* bus = type.bus ? fields.find("bus") : nullptr)
+    wiring.bus =
+        static_cast<std::uint8_t>(read_whole(*bus, 0, UINT8_MAX, diagnostics_).value_or(0));
+  if (type.address) {
+    if (const auto* address = fields.require("address", what))
+      wiring.place = static_cast<std::uint16_t>(
+          read_whole(*address, kFirstAddress, kLastAddress, diagnostics_).value_or(kFirstAddress));
+  } else if (type.pin) {
+    if (const auto* pin = fields.require("pin", what)) wiring.place = read_pin(*pin);
+  }
+  return wiring;
+}
+
+std::optional<std::size_t> read_choice(const json::Value& value,
+                                       std::span<const std::string_view> names,
+                                       Diagnostics& diagnostics) {
+  const auto text = read_text(value, diagnostics);
+  if (!text) return std::nullopt;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (same_name(names[i], *text)) return i;
+  const std::vector<std::string> candidates(names.begin(), names.end());
+  Diagnostic& d =
+      diagnostics.report(Code::E0205, "`" + *text + "` is not allowed here").label(value.span);
+  if (const auto near = nearest(*text, candidates))
+    d.helps("did you mean `" + *near + "`?").fix(value.span, "\"" + *near + "\"");
+  else
+    d.helps("it can be " + list_names(candidates, "or"));
+  return std::nullopt;
+}
+
+std::optional<vm::Release> read_release(const json::Value& value, Diagnostics& diagnostics) {
+  const auto choice = read_choice(value, kReleases, diagnostics);
+  if (!choice) return std::nullopt;
+  return static_cast<vm::Release>(*choice);
+}
+
+const Unit& param_unit(const ActuatorConfig& actuator, vm::Param param) {
+  const Unit& number = canonical_unit(vm::Dimension::number);
+  switch (param) {
+    case vm::Param::to:
+    case vm::Param::by:
+      return actuator.to_unit != nullptr ? *actuator.to_unit : number;
+    case vm::Param::at:
+      return actuator.at_unit != nullptr ? *actuator.at_unit : number;
+    case vm::Param::over:
+    case vm::Param::for_:
+      return canonical_unit(vm::Dimension::duration);
+    default:
+      return number;
+  }
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,71 @@
+// Diagnostics as data. Collected while compiling, printed once at the end (render.hpp).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "compiler/source/source_file.hpp"
+
+namespace robosync::compiler {
+
+enum class Level : std::uint8_t { error, warning, note };
+
+[[nodiscard]] std::string_view level_name(Level level);  // "error"
+
+// Every code once, with its level and title: diagnostics.def.
+enum class Code : std::uint16_t {
+#define DIAGNOSTIC(code, level, title) code,
+#include "compiler/diagnostics/diagnostics.def"
+#undef DIAGNOSTIC
+};
+
+[[nodiscard]] std::string_view code_name(Code code);  // "E0501"
+[[nodiscard]] std::string_view code_title(Code code);
+[[nodiscard]] Level default_level(Code code);
+
+struct Label {
+  Span span;
+  std::string text;  // may be empty
+  bool primary = true;
+};
+
+struct Fix {  // replace the span by the text and the message goes away
+  Span span;
+  std::string replacement;
+};
+
+struct Diagnostic {
+  Code code{};
+  Level level = Level::error;
+  std::string message;  // one sentence, no full stop: what is wrong, in the user's words
+  std::vector<Label> labels;
+  std::vector<std::string> help;  // how to mend it
+  std::vector<Fix> fixes;
+
+  // Chainable builders.
+  Diagnostic& label(Span span, std::string text = {}, bool primary = true);
+  Diagnostic& helps(std::string text);
+  Diagnostic& fix(Span span, std::string replacement);
+};
+
+class Diagnostics {
+public:
+  // Starts a diagnostic with its default level; build on the reference at once: the next report
+  // makes it invalid.
+  Diagnostic& report(Code code, std::string message);
+  void add(Diagnostic diagnostic) { all_.push_back(std::move(diagnostic)); }
+  std::size_t errors() const;
+  std::size_t warnings() const;
+  const std::vector<Diagnostic>& all() const { return all_; }
+  // Sorted by file and place, exact repetitions dropped. Call once before printing.
+  void finish();
+
+private:
+  std::vector<Diagnostic> all_;
+};
+
+}  // namespace robosync::compiler

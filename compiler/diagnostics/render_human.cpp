@@ -1,0 +1,155 @@
+// Diagnostics for people. See render.hpp.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "compiler/diagnostics/render.hpp"
+#include "compiler/diagnostics/snippet.hpp"
+#include "compiler/source/utf8.hpp"
+
+namespace robosync::compiler {
+
+namespace {
+
+// What the terminal is told; all empty without colour.
+struct Style {
+  std::string_view error, warning, note, quiet, strong, off;
+};
+
+constexpr Style plain{};
+constexpr Style colored{"\x1b[1;31m", "\x1b[1;33m", "\x1b[1;36m", "\x1b[34m", "\x1b[1m", "\x1b[0m"};
+
+class Renderer {
+public:
+  Renderer(const SourceMap& sources, bool color)
+      : sources_(sources), style_(color ? colored : plain) {}
+
+  std::string render(const Diagnostic& diagnostic) {
+    text_.clear();
+    level_ = diagnostic.level;
+    write_title(diagnostic);
+    const std::vector<Label> labels = in_reading_order(diagnostic.labels);
+    measure_gutter(labels);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      write_label(labels[i], i > 0 ? &labels[i - 1] : nullptr);
+    }
+    for (const std::string& help : diagnostic.help)
+      write_help(help);
+    return text_;
+  }
+
+private:
+  std::string_view level_color(Level level) const {
+    switch (level) {
+      case Level::error:
+        return style_.error;
+      case Level::warning:
+        return style_.warning;
+      case Level::note:
+        break;
+    }
+    return style_.note;
+  }
+
+  void write(std::string_view color, std::string_view text) {
+    text_ += color;
+    text_ += text;
+    if (!color.empty()) text_ += style_.off;
+  }
+
+  void write_title(const Diagnostic& diagnostic) {
+    const std::string head = std::string(level_name(diagnostic.level)) + "[" +
+                             std::string(code_name(diagnostic.code)) + "]";
+    write(level_color(diagnostic.level), head);
+    write(style_.strong, ": " + utf8::printable(diagnostic.message));
+    text_ += '\n';
+  }
+
+  // The file of the first primary label comes first; inside a file, from top to bottom.
+  static std::vector<Label> in_reading_order(std::vector<Label> labels) {
+    const auto primary = std::find_if(labels.begin(), labels.end(),
+                                      [](const Label& label) { return label.primary; });
+    const FileId leading = primary == labels.end() ? FileId{0} : primary->span.file;
+    std::stable_sort(labels.begin(), labels.end(), [leading](const Label& a, const Label& b) {
+      const bool a_leads = a.span.file == leading;
+      const bool b_leads = b.span.file == leading;
+      if (a_leads != b_leads) return a_leads;
+      if (a.span.file != b.span.file) return a.span.file < b.span.file;
+      return a.span.begin < b.span.begin;
+    });
+    return labels;
+  }
+
+  Position place(Span span) const { return sources_.file(span.file).position(span.begin); }
+
+  void measure_gutter(const std::vector<Label>& labels) {
+    std::size_t digits = 1;
+    for (const Label& label : labels) {
+      digits = std::max(digits, std::to_string(place(label.span).line).size());
+    }
+    gutter_ = digits + 1;
+  }
+
+  void write_place(const Label& label) {
+    const Position position = place(label.span);
+    write(style_.quiet, std::string(gutter_, ' ') + "--> ");
+    text_ += utf8::printable(sources_.file(label.span.file).name());
+    text_ += ':' + std::to_string(position.line) + ':' + std::to_string(position.column) + '\n';
+  }
+
+  void write_gutter(std::string_view number) {
+    write(style_.quiet, std::string(gutter_ - number.size(), ' ') + std::string(number) + " | ");
+  }
+
+  void write_label(const Label& label, const Label* previous) {
+    const std::uint32_t line = place(label.span).line;
+    const bool same_file = previous != nullptr && previous->span.file == label.span.file;
+    const std::uint32_t line_before = same_file ? place(previous->span).line : 0;
+    if (!same_file) write_place(label);
+    if (same_file && line > line_before + 1) {
+      write(style_.quiet, std::string(gutter_ - 1, ' ') + "...\n");
+    }
+    const SourceFile& file = sources_.file(label.span.file);
+    const std::size_t start = file.line_start(line);
+    const Snippet snippet =
+        make_snippet(file.line(line), label.span.begin - start,
+                     std::max(label.span.end, label.span.begin) - start, label.primary ? '^' : '-');
+    // Shown again when a long line was cut somewhere else for this label.
+    if (!same_file || line != line_before || snippet.source != shown_) {
+      write_gutter(std::to_string(line));
+      text_ += snippet.source + '\n';
+    }
+    shown_ = snippet.source;
+    write_gutter("");
+    const std::string note = label.text.empty() ? "" : " " + utf8::printable(label.text);
+    write(label.primary ? level_color(level_) : style_.quiet, snippet.marker + note);
+    text_ += '\n';
+  }
+
+  void write_help(const std::string& help) {
+    write(style_.quiet, std::string(gutter_ + 1, ' ') + "= ");
+    write(style_.strong, "help:");
+    text_ += ' ' + utf8::printable(help) + '\n';
+  }
+
+  const SourceMap& sources_;
+  Style style_;
+  std::string text_;
+  std::string shown_;  // the line of source above the last marker
+  Level level_ = Level::error;
+  std::size_t gutter_ = 2;
+};
+
+}  // namespace
+
+std::string render_human(const Diagnostics& diagnostics, const SourceMap& sources, bool color) {
+  Renderer renderer(sources, color);
+  std::string text;
+  for (const Diagnostic& diagnostic : diagnostics.all()) {
+    if (!text.empty()) text += '\n';
+    text += renderer.render(diagnostic);
+  }
+  return text;
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,58 @@
+// Diagnostics for programs: the format of 60-cli.md. See render.hpp.
+#include <nlohmann/json.hpp>
+
+#include "compiler/diagnostics/render.hpp"
+
+namespace robosync::compiler {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json place(Span span, const SourceMap& sources) {
+  const SourceFile& file = sources.file(span.file);
+  const Position begin = file.position(span.begin);
+  const Position end = file.position(span.end < span.begin ? span.begin : span.end);
+  return {{"file", file.name()},
+          {"line", begin.line},
+          {"column", begin.column},
+          {"end_line", end.line},
+          {"end_column", end.column}};
+}
+
+Json to_json(const Diagnostic& diagnostic, const SourceMap& sources) {
+  Json labels = Json::array();
+  for (const Label& label : diagnostic.labels) {
+    Json entry = place(label.span, sources);
+    entry["text"] = label.text;
+    entry["primary"] = label.primary;
+    labels.push_back(std::move(entry));
+  }
+  Json fixes = Json::array();
+  for (const Fix& fix : diagnostic.fixes) {
+    Json entry = place(fix.span, sources);
+    entry["replacement"] = fix.replacement;
+    fixes.push_back(std::move(entry));
+  }
+  return {{"code", code_name(diagnostic.code)},
+          {"level", level_name(diagnostic.level)},
+          {"message", diagnostic.message},
+          {"labels", std::move(labels)},
+          {"help", diagnostic.help},
+          {"fixes", std::move(fixes)}};
+}
+
+}  // namespace
+
+std::string render_json(const Diagnostics& diagnostics, const SourceMap& sources) {
+  Json all = Json::array();
+  for (const Diagnostic& diagnostic : diagnostics.all())
+    all.push_back(to_json(diagnostic, sources));
+  const Json result = {{"diagnostics", std::move(all)},
+                       {"errors", diagnostics.errors()},
+                       {"warnings", diagnostics.warnings()}};
+  // Messages quote the source, which need not be UTF-8.
+  return result.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace robosync::compiler

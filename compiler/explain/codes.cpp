@@ -1,0 +1,62 @@
+// The texts of codes.def, put together for a reader.
+#include "compiler/explain/codes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include <fmt/format.h>
+
+namespace robosync::compiler::explain {
+namespace {
+
+constexpr std::array kTexts = {
+#define EXPLAIN(code, meaning, wrong, mended) CodeText{Code::code, meaning, wrong, mended},
+#include "compiler/explain/codes.def"
+#undef EXPLAIN
+};
+
+constexpr std::array kCodes = {
+#define DIAGNOSTIC(code, level, title) Code::code,
+#include "compiler/diagnostics/diagnostics.def"
+#undef DIAGNOSTIC
+};
+
+std::string indented(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    result += fmt::format("    {}\n", text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::span<const CodeText> code_texts() {
+  return kTexts;
+}
+
+std::optional<Code> find_code(std::string_view name) {
+  const auto same = [name](Code code) {
+    return std::ranges::equal(code_name(code), name, [](unsigned char a, unsigned char b) {
+      return std::toupper(a) == std::toupper(b);
+    });
+  };
+  const auto* const found = std::ranges::find_if(kCodes, same);
+  return found == kCodes.end() ? std::nullopt : std::optional(*found);
+}
+
+std::string code_text(Code code) {
+  std::string text = fmt::format("{} ({}): {}\n", code_name(code), level_name(default_level(code)),
+                                 code_title(code));
+  const auto* const found = std::ranges::find(kTexts, code, &CodeText::code);
+  if (found == kTexts.end()) return text;
+  text += fmt::format("\n{}\n", found->meaning);
+  if (!found->wrong.empty()) text += "\nFor example:\n\n" + indented(found->wrong);
+  if (!found->mended.empty()) text += "\nMended:\n\n" + indented(found->mended);
+  return text;
+}
+
+}  // namespace robosync::compiler::explain

@@ -1,0 +1,112 @@
+// May assume any tree of the parser.
+#include "compiler/explain/rules.hpp"
+
+#include <fmt/format.h>
+
+#include "compiler/explain/conditions.hpp"
+
+namespace robosync::compiler::explain {
+namespace {
+
+constexpr std::size_t kIndent = 2;
+
+class Writer {
+public:
+  Writer(const Defines& defines, std::size_t line, std::size_t indent)
+      : defines_(defines), line_(line), indent_(indent) {}
+
+  void write(const ast::WhenRule& rule) {
+    title(as_soon_as(*rule.condition));
+    body(rule.then_block);
+    if (!rule.else_block) return;
+    say(0, "As soon as that is no longer true:");
+    body(*rule.else_block);
+    say(kIndent,
+        "Each side interrupts the other. At start, as soon as it is known which side is "
+        "right, that side is done once.");
+  }
+  void write(const ast::WhileRule& rule) {
+    title(while_true(*rule.condition));
+    body(rule.body);
+    say(kIndent,
+        "It stops at once when that is no longer true. If it gets to its end before, it "
+        "starts again from the top.");
+  }
+  void write(const ast::EveryRule& rule) {
+    title(rule.to ? fmt::format("Every {} to {}, as chance has it", number(*rule.period),
+                                number(*rule.to))
+                  : fmt::format("Every {}", number(*rule.period)));
+    body(rule.body);
+    say(kIndent, "If it is still busy when its time comes, that time is left out.");
+  }
+  void write(const ast::AtStartRule& rule) {
+    title("Once, when the program starts");
+    body(rule.body);
+  }
+
+  void write(const ast::Modifiers& modifiers) {
+    if (modifiers.margin) {
+      say(kIndent, fmt::format("Once true, it stays true until the value is {} back past its "
+                               "limit, so that it does not flicker.",
+                               number(*modifiers.margin)));
+    }
+    if (modifiers.cooldown) {
+      say(kIndent, fmt::format("After it has started, it does not start again for {}.",
+                               number(*modifiers.cooldown)));
+    }
+    if (modifiers.restarting) {
+      say(kIndent,
+          "If it becomes true again while this is still going on, it starts again from "
+          "the top.");
+    }
+    if (modifiers.waiting) {
+      say(kIndent, fmt::format("If something more important is using what it needs, it waits for "
+                               "that, but at most {}.",
+                               number(*modifiers.waiting)));
+    }
+  }
+
+  void write(const ast::Safety& safety) {
+    const std::string condition = while_true(*safety.condition);
+    say(0, fmt::format("{}, and also while it is not known:", condition));
+    body(safety.body);
+    write(safety.modifiers);
+    say(0, safety.resume ? fmt::format("It lets go {}.", lower_first(as_soon_as(*safety.resume)))
+                         : "It does not let go by itself: a person must do that from the host.");
+  }
+
+  std::string text;
+
+private:
+  static std::string lower_first(std::string words) {
+    if (!words.empty() && words.front() == 'A') words.front() = 'a';
+    return words;
+  }
+  void say(std::size_t more, std::string_view words) {
+    text += fmt::format("{:{}}{}\n", "", indent_ + more, words);
+  }
+  void title(std::string_view words) { say(0, fmt::format("{} (line {}):", words, line_)); }
+  void body(const ast::Block& block) { text += statements(block, defines_, indent_ + kIndent); }
+
+  const Defines& defines_;
+  std::size_t line_;
+  std::size_t indent_;
+};
+
+}  // namespace
+
+std::string rule_text(const ast::Rule& rule, std::size_t line, const Defines& defines,
+                      std::size_t indent) {
+  Writer writer(defines, line, indent);
+  std::visit([&](const auto& node) { writer.write(node); }, rule.node);
+  writer.write(rule.modifiers);
+  return std::move(writer.text);
+}
+
+std::string safety_text(const ast::Safety& safety, const Defines& defines, std::size_t indent) {
+  Writer writer(defines, 0, indent);
+  writer.write(safety);
+  return std::move(writer.text);
+}
+
+}  // namespace robosync::compiler::explain

@@ -1,0 +1,19 @@
+// Rules in plain English: when they start, what they do, what their modifiers mean.
+#pragma once
+
+#include <string>
+
+#include "compiler/explain/statements.hpp"
+#include "compiler/syntax/ast.hpp"
+
+namespace robosync::compiler::explain {
+
+// Whole lines, indented by `indent`. `line` is where the rule stands in its file.
+[[nodiscard]] std::string rule_text(const ast::Rule& rule, std::size_t line, const Defines& defines,
+                                    std::size_t indent);
+
+// Without its title.
+[[nodiscard]] std::string safety_text(const ast::Safety& safety, const Defines& defines,
+                                      std::size_t indent);
+
+}  // namespace robosync::compiler::explain

@@ -1,0 +1,191 @@
+// May assume any tree of the parser. Recursion is bounded by its limit on nested blocks.
+#include "compiler/explain/statements.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "compiler/explain/conditions.hpp"
+
+namespace robosync::compiler::explain {
+namespace {
+
+constexpr std::size_t kIndent = 4;
+
+bool is_capital(std::string_view word) {
+  return std::ranges::none_of(word, [](unsigned char c) { return std::islower(c) != 0; });
+}
+
+// SLOWLY reads as slowly; a name that its owner wrote with small letters stays as it is.
+std::string softly(std::string_view word) {
+  return is_capital(word) ? folded(word) : std::string(word);
+}
+
+std::string_view preposition(ast::Preposition preposition) {
+  switch (preposition) {
+    case ast::Preposition::none:
+      return "";
+    case ast::Preposition::to:
+      return "to ";
+    case ast::Preposition::by:
+      return "by ";
+    case ast::Preposition::over:
+      return "over ";
+    case ast::Preposition::at:
+      return "at ";
+    case ast::Preposition::for_:
+      return "for ";
+  }
+  return "";
+}
+
+std::string value_of(const ast::Argument& argument) {
+  if (const auto* word = std::get_if<ast::Word>(&argument.value)) return softly(word->name.text);
+  if (const auto* text = std::get_if<ast::Text>(&argument.value)) {
+    return fmt::format("\"{}\"", text->text);
+  }
+  const auto& amount = std::get<ast::Amount>(argument.value);
+  std::string count = amount.value ? number(*amount.value) : std::string();
+  if (!amount.times) return count;
+  return count == "1" ? "once" : count + " times";
+}
+
+class Writer {
+public:
+  Writer(const Defines& defines, std::size_t indent) : defines_(defines), indent_(indent) {}
+
+  void block(const ast::Block& block) {
+    for (const ast::Stmt& stmt : block)
+      std::visit([this](const auto& node) { write(node); }, stmt.node);
+  }
+  std::string text;
+
+private:
+  void line(std::string_view words) { text += fmt::format("{:{}}- {}\n", "", indent_, words); }
+
+  void nested(const ast::Block& inner) {
+    indent_ += kIndent;
+    block(inner);
+    indent_ -= kIndent;
+  }
+
+  void write(const ast::Command& node) {
+    if (node.arguments.empty() && defines_.contains(folded(node.verb.text))) {
+      line(fmt::format("do {} (see DEFINE {})", node.verb.text, node.verb.text));
+    } else {
+      line(command(node));
+    }
+  }
+
+  void write(const ast::Call& node) {
+    const auto found = defines_.find(folded(node.name.text));
+    std::vector<std::string> given;
+    for (std::size_t i = 0; i < node.arguments.size(); ++i) {
+      const bool named = found != defines_.end() && i < found->second->parameters.size();
+      given.push_back(named ? fmt::format("{} = {}", found->second->parameters[i].text,
+                                          value_of(node.arguments[i]))
+                            : value_of(node.arguments[i]));
+    }
+    line(fmt::format("do {} with {} (see DEFINE {})", node.name.text, fmt::join(given, ", "),
+                     node.name.text));
+  }
+
+  void write(const ast::Set& node) {
+    line(fmt::format("set {} to {}", node.name.text, number(*node.value)));
+  }
+  void write(const ast::Raise& node) {
+    line(fmt::format("{} {} by {}", node.lower ? "lower" : "raise", node.name.text,
+                     number(*node.by)));
+  }
+  void write(const ast::Wait& node) { line("wait " + number(*node.duration)); }
+  void write(const ast::WaitUntil& node) {
+    line(fmt::format("wait until {}{}", is_true(*node.condition),
+                     node.within ? ", but at most " + number(*node.within) : ""));
+  }
+  void write(const ast::Then&) { line("wait until everything started so far is done"); }
+
+  void write(const ast::If& node) {
+    line(fmt::format("if {}:", is_true(*node.condition)));
+    nested(node.then_block);
+    if (node.else_block.empty()) return;
+    line("otherwise:");
+    nested(node.else_block);
+  }
+
+  void write(const ast::Repeat& node) {
+    if (node.times) {
+      line(fmt::format("{} times:", number(*node.times)));
+    } else if (node.condition) {
+      line(fmt::format("again and again while {}:", is_true(*node.condition)));
+    } else {
+      line("again and again, until something interrupts it:");
+    }
+    nested(node.body);
+  }
+
+  void write(const ast::PickOne& node) {
+    const bool weighted = std::ranges::any_of(
+        node.options, [](const ast::Option& option) { return option.weight != nullptr; });
+    line(weighted ? "one of these, picked at random, the more often the larger its number:"
+                  : "one of these, picked at random, each as often as the others:");
+    indent_ += kIndent;
+    for (const ast::Option& option : node.options) {
+      line(option.weight ? fmt::format("option {}:", number(*option.weight)) : "option:");
+      nested(option.body);
+    }
+    indent_ -= kIndent;
+  }
+
+  void write(const ast::Stop& node) {
+    line(node.name ? "stop " + node.name->text : "stop all actuators");
+  }
+  void write(const ast::Signal& node) {
+    line(fmt::format("send the signal {} to the other rules", node.name.text));
+  }
+  void write(const ast::Log& node) {
+    std::vector<std::string> parts;
+    for (const ast::Argument& argument : node.arguments)
+      parts.push_back(value_of(argument));
+    line(fmt::format("write to the log: {}", fmt::join(parts, ", ")));
+  }
+  void write(const ast::Alert& node) { line(fmt::format("alert a person: \"{}\"", node.text)); }
+
+  const Defines& defines_;
+  std::size_t indent_;
+};
+
+}  // namespace
+
+std::string folded(std::string_view name) {
+  std::string text(name);
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+Defines defines_of(const ast::Program& program) {
+  Defines defines;
+  for (const ast::Item& item : program.items) {
+    if (const auto* define = std::get_if<ast::Define>(&item.node)) {
+      defines.emplace(folded(define->name.text), define);
+    }
+  }
+  return defines;
+}
+
+std::string command(const ast::Command& command) {
+  std::string text = softly(command.verb.text);
+  for (const ast::Argument& argument : command.arguments)
+    text += fmt::format(" {}{}", preposition(argument.preposition), value_of(argument));
+  return text;
+}
+
+std::string statements(const ast::Block& block, const Defines& defines, std::size_t indent) {
+  Writer writer(defines, indent);
+  writer.block(block);
+  return std::move(writer.text);
+}
+
+}  // namespace robosync::compiler::explain

@@ -1,0 +1,23 @@
+// What a response does, in plain English: one line a statement, blocks indented.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "compiler/syntax/ast.hpp"
+
+namespace robosync::compiler::explain {
+
+// The DEFINEs of a program by name, in the spelling that `folded` makes the same for all cases.
+using Defines = std::map<std::string, const ast::Define*>;
+[[nodiscard]] Defines defines_of(const ast::Program& program);
+[[nodiscard]] std::string folded(std::string_view name);
+
+// "move right_arm quickly".
+[[nodiscard]] std::string command(const ast::Command& command);
+
+// Lines that begin with `indent` spaces and a dash.
+[[nodiscard]] std::string statements(const ast::Block& block, const Defines& defines,
+                                     std::size_t indent);
+
+}  // namespace robosync::compiler::explain

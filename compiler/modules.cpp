@@ -1,0 +1,87 @@
+#include "compiler/modules.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "compiler/config/names.hpp"
+#include "compiler/diagnostics/nearest.hpp"
+#include "compiler/syntax/parser.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr std::size_t kMaxModules = 64;
+
+class Loader {
+public:
+  Loader(SourceMap& sources, const ModuleReader& read, Diagnostics& diagnostics)
+      : sources_(sources), read_(read), diagnostics_(diagnostics) {}
+
+  std::vector<Module> load(const ast::Program& program) {
+    add_uses(program, 0);
+    for (std::size_t i = 0; i < modules_.size(); ++i)  // grows while it is walked
+      add_uses(*modules_[i].tree, modules_[i].file);
+    return std::move(modules_);
+  }
+
+private:
+  void add_uses(const ast::Program& tree, FileId user) {
+    for (const ast::Item& item : tree.items)
+      if (const auto* use = std::get_if<ast::Use>(&item.node)) add(*use, user);
+  }
+
+  void add(const ast::Use& use, FileId user) {
+    if (use.module.text.empty()) return;
+    auto input = use.is_string ? find_file(use, user) : find_built_in(use);
+    if (!input || !loaded_.insert(input->name).second) return;
+    if (modules_.size() == kMaxModules) {
+      diagnostics_.report(Code::E0407, "a program can use at most 64 modules")
+          .label(use.module.span);
+      return;
+    }
+    Module module;
+    module.file = sources_.add(std::move(input->name), std::move(input->text));
+    module.tree = std::make_unique<const ast::Program>(parse(sources_, module.file, diagnostics_));
+    modules_.push_back(std::move(module));
+  }
+
+  std::optional<Input> find_built_in(const ast::Use& use) {
+    std::vector<std::string> names;
+    for (const ModuleText& module : module_texts()) {
+      if (same_name(module.name, use.module.text))
+        return Input{"<" + std::string(module.name) + ">", std::string(module.text)};
+      names.emplace_back(module.name);
+    }
+    Diagnostic& d = diagnostics_.report(Code::E0501, "there is no module `" + use.module.text + "`")
+                        .label(use.module.span);
+    if (const auto near = nearest(use.module.text, names))
+      d.helps("did you mean `" + *near + "`?").fix(use.module.span, *near);
+    else
+      d.helps("a file of your own stands in quotes: `USE \"" + use.module.text + ".rsl\"`");
+    return std::nullopt;
+  }
+
+  std::optional<Input> find_file(const ast::Use& use, FileId user) {
+    auto input = read_ ? read_(sources_.file(user).name(), use.module.text) : std::nullopt;
+    if (input) return input;
+    diagnostics_.report(Code::E0410, "the module \"" + use.module.text + "\" cannot be read")
+        .label(use.module.span)
+        .helps("its path begins where this file is");
+    return std::nullopt;
+  }
+
+  SourceMap& sources_;
+  const ModuleReader& read_;
+  Diagnostics& diagnostics_;
+  std::vector<Module> modules_;
+  std::set<std::string> loaded_;  // names of files
+};
+
+}  // namespace
+
+std::vector<Module> load_modules(const ast::Program& program, SourceMap& sources,
+                                 const ModuleReader& read, Diagnostics& diagnostics) {
+  return Loader(sources, read, diagnostics).load(program);
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,30 @@
+// USE: the modules of the library (stdlib/*.rsl, built into the compiler) and the program's own.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "compiler/compiler.hpp"
+#include "compiler/syntax/ast.hpp"
+
+namespace robosync::compiler {
+
+struct ModuleText {  // one module as built in
+  std::string_view name;
+  std::string_view text;
+};
+[[nodiscard]] std::span<const ModuleText> module_texts();
+
+struct Module {
+  FileId file = 0;
+  std::unique_ptr<const ast::Program> tree;  // stays where it is when the list grows
+};
+
+// What `program` uses, and what that uses; each module once. `read` may be empty: then there are no
+// files. What cannot be read is reported where it is used.
+[[nodiscard]] std::vector<Module> load_modules(const ast::Program& program, SourceMap& sources,
+                                               const ModuleReader& read, Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler

@@ -1,0 +1,14 @@
+// Semantic analysis: the trees and the robot in, a resolved program out.
+#pragma once
+
+#include "compiler/sema/names.hpp"
+#include "compiler/sema/program.hpp"
+
+namespace robosync::compiler {
+
+// The result is fit for codegen only if `diagnostics` has no errors afterwards. TEST blocks are
+// left out: they are not for the robot.
+[[nodiscard]] Program analyze(const Trees& trees, const Robot& robot, const SourceMap& sources,
+                              Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler

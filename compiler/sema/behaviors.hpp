@@ -1,0 +1,49 @@
+// Collects behaviours: priorities from RSL and robot.json, what each may command, their order.
+#pragma once
+
+#include <map>
+#include <set>
+
+#include "compiler/config/robot.hpp"
+#include "compiler/sema/names.hpp"
+#include "compiler/sema/program.hpp"
+
+namespace robosync::compiler {
+
+class Behaviors {
+public:
+  Behaviors(const Robot& robot, Diagnostics& diagnostics)
+      : robot_(robot), diagnostics_(diagnostics) {}
+
+  void add(const ast::Behavior& behavior, std::vector<ProgramRule> rules);
+  // A rule outside a BEHAVIOR: a behaviour of its own, below all others unless it has a PRIORITY.
+  void add_rule(ProgramRule rule, const std::optional<ast::Name>& priority, Span span);
+  // What can be said only when all are known; then the behaviours, highest priority first.
+  [[nodiscard]] std::vector<ProgramBehavior> finish();
+
+private:
+  struct Numbered {
+    int number = 0;
+    Span span;           // where it is written
+    bool in_rsl = true;  // or in robot.json
+  };
+
+  const BehaviorConfig* config_of(const ast::Behavior& behavior) const;
+  std::optional<Numbered> priority_of(const ast::Behavior& behavior, const BehaviorConfig* config);
+  std::optional<Numbered> written_priority(const ast::Name& digits);
+  void claim(const Numbered& priority);
+  void report_taken();
+  [[nodiscard]] std::optional<int> next_free(int number) const;
+  void check_action(const BehaviorConfig& config, const ProgramBehavior& behavior, Span name);
+  void check_count(Span span);
+
+  const Robot& robot_;
+  Diagnostics& diagnostics_;
+  std::vector<ProgramBehavior> behaviors_;
+  std::set<std::string> names_;  // folded names of those added
+  std::map<int, Span> priorities_;
+  std::vector<std::pair<Numbered, Span>> taken_;  // a second use of a priority, and the first
+  std::int16_t next_unnumbered_ = 0;
+};
+
+}  // namespace robosync::compiler

@@ -1,0 +1,144 @@
+// DEFINEs in the place of their uses. A constant argument stands for its parameter; another one is
+// worked out once, into a local.
+#include <algorithm>
+#include <utility>
+
+#include "compiler/sema/statements.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr std::size_t kMaxNesting = 64;  // of DEFINEs: the translation recurses
+
+std::string counted(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " value" : " values");
+}
+
+std::vector<std::string> texts_of(const std::vector<ast::Name>& names) {
+  std::vector<std::string> result;
+  result.reserve(names.size());
+  for (const ast::Name& name : names)
+    result.push_back(name.text);
+  return result;
+}
+
+}  // namespace
+
+void Statements::check_unused_defines() {
+  all_ = 0;
+  for (const auto& [folded, define] : names_.defines()) {
+    DefineName& name = *names_.find_define(folded);
+    if (name.expanded || name.in_module) continue;
+    const bool used = name.used;
+    Bindings unknown;
+    for (const ast::Name& parameter : name.define->parameters)
+      unknown.push_back({fold_name(parameter.text), {}, std::nullopt, parameter.span});
+    begin_response();
+    ProgramBlock unused;
+    if (may_run(name, name.span)) expand(name, unknown, unused);
+    name.used = used;
+  }
+}
+
+void Statements::add(const ast::Call& node, Span span, ProgramBlock& result) {
+  if (node.name.text.empty()) return;
+  if (DefineName* define = names_.find_define(node.name.text))
+    return run(*define, node.arguments, span, result);
+  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no DEFINE `" + node.name.text + "`")
+                      .label(node.name.span);
+  suggest(d, node.name.span, node.name.text, names_.define_names());
+  if (d.help.empty() && names_.is_verb(node.name.text))
+    d.helps("`" + node.name.text + "` is a verb: what it does stands behind it without WITH");
+}
+
+void Statements::run(DefineName& name, const std::vector<ast::Argument>& arguments, Span span,
+                     ProgramBlock& result) {
+  name.used = true;
+  if (!may_run(name, span)) return;
+  if (const auto bindings = bind(name, arguments, span, result)) expand(name, *bindings, result);
+}
+
+bool Statements::may_run(const DefineName& name, Span use) {
+  if (std::find(open_.begin(), open_.end(), name.define) != open_.end()) {
+    report_cycle(name, use);
+    return false;
+  }
+  if (open_.size() < kMaxNesting) return true;
+  diagnostics_.report(Code::E0407, "DEFINEs use each other more than 64 levels deep").label(use);
+  return false;
+}
+
+std::optional<Bindings> Statements::bind(const DefineName& name,
+                                         const std::vector<ast::Argument>& arguments, Span span,
+                                         ProgramBlock& result) {
+  const auto& parameters = name.define->parameters;
+  if (parameters.size() != arguments.size()) {
+    Diagnostic& d = diagnostics_.report(
+        Code::E0411, "`" + name.define->name.text + "` wants " + counted(parameters.size()) +
+                         ", and is given " + std::to_string(arguments.size()));
+    d.label(span).label(name.span, "defined here", false);
+    if (!parameters.empty())
+      d.helps("write `" + name.define->name.text + " WITH` and a value for " +
+              list_names(texts_of(parameters)));
+    return std::nullopt;
+  }
+  Bindings bindings;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    bindings.push_back(bind(parameters[i], arguments[i], span, result));
+  return bindings;
+}
+
+Binding Statements::bind(const ast::Name& parameter, const ast::Argument& argument, Span span,
+                         ProgramBlock& result) {
+  Binding binding{fold_name(parameter.text), {}, std::nullopt, argument.span};
+  if (const auto* text = std::get_if<ast::Text>(&argument.value)) {
+    binding.text = text->text;
+    return binding;
+  }
+  const auto* amount = std::get_if<ast::Amount>(&argument.value);
+  if (amount == nullptr || amount->value == nullptr) return binding;
+  if (const auto* operand = std::get_if<ast::Operand>(&amount->value->node)) {
+    const Binding* outer =
+        operand->channel ? nullptr : expressions_.find_binding(operand->name.text);
+    if (outer != nullptr) {  // handed on as it is
+      const std::string name = std::exchange(binding.name, {});
+      binding = *outer;
+      binding.name = name;
+      return binding;
+    }
+  }
+  binding.value = expressions_.number(*amount->value);
+  if (!binding.value.is_number() || binding.value.is_constant()) return binding;
+  const std::size_t number = locals_++;
+  put(ProgramLocal{number, std::move(binding.value.code)}, span, result);
+  binding.value.code = {};
+  binding.value.code.operation = Operation::local;
+  binding.value.code.index = number;
+  return binding;
+}
+
+// In a scope of its own: it sees its parameters and what the whole program sees.
+void Statements::expand(DefineName& name, const Bindings& bindings, ProgramBlock& result) {
+  name.expanded = true;
+  const Bindings* outer = expressions_.set_bindings(&bindings);
+  const ast::Behavior* scope = names_.set_scope(nullptr);
+  open_.push_back(name.define);
+  for (const ast::Stmt& stmt : name.define->body)
+    add(stmt, result);
+  open_.pop_back();
+  names_.set_scope(scope);
+  expressions_.set_bindings(outer);
+}
+
+void Statements::report_cycle(const DefineName& name, Span use) {
+  std::string chain;
+  for (auto at = std::find(open_.begin(), open_.end(), name.define); at != open_.end(); ++at)
+    chain += (*at)->name.text + " → ";
+  diagnostics_
+      .report(Code::E0402,
+              "`" + name.define->name.text + "` runs itself: " + chain + name.define->name.text)
+      .label(use)
+      .label(name.span, "defined here", false);
+}
+
+}  // namespace robosync::compiler

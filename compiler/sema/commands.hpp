@@ -1,0 +1,65 @@
+// Checks commands (`MOVE arms SLOWLY`) against what the actuators can do and translates them.
+#pragma once
+
+#include "compiler/sema/expressions.hpp"
+#include "compiler/sema/names.hpp"
+
+namespace robosync::compiler {
+
+class Commands {
+public:
+  Commands(const Robot& robot, Names& names, Expressions& expressions, Diagnostics& diagnostics)
+      : robot_(robot), names_(names), expressions_(expressions), diagnostics_(diagnostics) {}
+
+  // One command for an actuator, or for a group whose members all understand it alike; otherwise
+  // one for each member. Empty after a mistake, which has then been reported.
+  [[nodiscard]] std::vector<ProgramCommand> translate(const ast::Command& command);
+
+  // What STOP names; reports when nothing has the name.
+  [[nodiscard]] std::optional<Target> find_stopped(const ast::Name& name);
+
+private:
+  // An argument with its value worked out; the units of actuators come later.
+  struct Given {
+    const ast::Argument* argument = nullptr;
+    vm::Param param{};  // of numbers
+    Typed number;
+    bool is_number = false;
+    std::optional<std::string> text;  // in quotes, here or where a DEFINE is given it
+  };
+  struct Place {  // one command for one actuator
+    const ActuatorConfig& actuator;
+    const VerbConfig& verb;
+    const ast::Command& command;
+    Diagnostics& diagnostics;
+  };
+
+  // commands.cpp: which actuator, which arguments
+  std::optional<Target> find_target(const ast::Command& command, std::size_t& named_by);
+  std::optional<Target> only_target(const ast::Command& command);
+  void report_no_target(const ast::Command& command, const std::vector<std::string>& able);
+  void report_unknown_verb(const ast::Command& command);
+  std::optional<std::vector<Given>> evaluate(const ast::Command& command, std::size_t named_by);
+  Given evaluate(const ast::Argument& argument);
+  Typed evaluate_number(const ast::Argument& argument);
+  [[nodiscard]] bool is_known_word(std::string_view word) const;  // of any actuator
+  [[nodiscard]] bool names_a_number(const ast::Name& name) const;
+
+  // arguments.cpp: what one actuator makes of them
+  std::optional<ProgramCommand> for_actuator(std::size_t actuator, const ast::Command& command,
+                                             const std::vector<Given>& given,
+                                             Diagnostics& diagnostics) const;
+  bool add(const Place& place, const Given& given, ProgramCommand& result) const;
+  bool add_word(const Place& place, const ast::Word& word, Span span, ProgramCommand& result) const;
+  bool add_text(const Place& place, const std::string& text, Span span,
+                ProgramCommand& result) const;
+  bool add_number(const Place& place, const Given& given, ProgramCommand& result) const;
+  void report_unknown_word(const Place& place, const ast::Word& word) const;
+
+  const Robot& robot_;
+  Names& names_;
+  Expressions& expressions_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace robosync::compiler

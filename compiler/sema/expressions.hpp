@@ -1,0 +1,112 @@
+// Checks expressions and translates them: names resolved, units converted, constants folded.
+#pragma once
+
+#include <map>
+#include <string_view>
+
+#include "compiler/sema/names.hpp"
+#include "compiler/sema/quantities.hpp"
+
+namespace robosync::compiler {
+
+// What a parameter of the DEFINE that is being translated stands for.
+struct Binding {
+  std::string name;  // folded
+  Typed value;       // nothing while a DEFINE is checked that nobody runs
+  std::optional<std::string> text;
+  Span span;  // where it is given
+};
+using Bindings = std::vector<Binding>;
+
+class Expressions {
+public:
+  Expressions(Names& names, Diagnostics& diagnostics) : names_(names), diagnostics_(diagnostics) {}
+
+  // Type::nothing after a mistake, which has then been reported.
+  [[nodiscard]] Typed condition(const ast::Expr& expr);
+  [[nodiscard]] Typed number(const ast::Expr& expr);
+  [[nodiscard]] Typed any(const ast::Expr& expr);
+  [[nodiscard]] Typed number_of(Typed result);  // reports when it is none
+  [[nodiscard]] Typed operand(const ast::Operand& operand, Span span);
+
+  // A condition whose comparisons hold on to what they are: MARGIN, which may be null.
+  [[nodiscard]] Typed condition(const ast::Expr& expr, const ast::Expr* margin);
+
+  // amounts.cpp. A number of the wanted dimension; a bare one is in the wanted unit.
+  [[nodiscard]] Typed amount(const ast::Expr& expr, const Wanted& wanted);
+  // The same, known now (E0305).
+  [[nodiscard]] std::optional<Typed> constant_amount(const ast::Expr& expr, const Wanted& wanted);
+  [[nodiscard]] std::optional<Typed> constant(const ast::Expr& expr, std::string_view what);
+  // `what` names the word that asks: "COOLDOWN". A constant one is above 0.
+  [[nodiscard]] Typed duration(const ast::Expr& expr, std::string_view what);
+  [[nodiscard]] std::optional<vm::Value> constant_duration(const ast::Expr& expr,
+                                                           std::string_view what);
+
+  // Checks every LET, used or not.
+  void check_constants();
+
+  // The parameters that are seen; nullptr: none. Gives what it was before.
+  const Bindings* set_bindings(const Bindings* bindings);
+  [[nodiscard]] const Binding* find_binding(std::string_view name) const;
+
+private:
+  // MARGIN while its condition is translated. A bare one takes the unit of what it meets first.
+  struct Margin {
+    Typed value;
+    bool used = false;
+  };
+
+  Typed of(const ast::Quantity& node, Span span);
+  Typed of(const ast::Operand& node, Span span) { return operand(node, span); }
+  Typed of(const ast::Comparison& node, Span span);
+  Typed of(const ast::Not& node, Span span);
+  Typed of(const ast::Logic& node, Span span);
+  // arithmetic.cpp
+  Typed of(const ast::Negate& node, Span span);
+  Typed of(const ast::Arithmetic& node, Span span);
+  Typed of(const ast::Random& node, Span span);
+  // labels.cpp
+  Typed of(const ast::Is& node, Span span);
+  Typed of(const ast::IsTruth& node, Span span);
+  Typed of(const ast::Becomes& node, Span span);
+  // time_words.cpp
+  Typed of(const ast::IsBetween& node, Span span);
+  Typed of(const ast::Changes& node, Span span);
+  Typed of(const ast::For& node, Span span);
+  Typed of(const ast::ThenWithin& node, Span span);
+  Typed of(const ast::TimesWithin& node, Span span);
+
+  Typed constant(ConstantName& name, const ast::Operand& operand, Span span);
+  const Typed& value_of(ConstantName& name);
+  Typed channel(ChannelRef ref, Span span);
+  Typed variable(VariableName& name, Span span);
+  Typed parameter(const Binding& binding, const ast::Operand& operand, Span span);
+  Typed sum(const ast::Arithmetic& node, Typed left, Typed right, Span span);
+  Typed product(const ast::Arithmetic& node, Typed left, Typed right, Span span);
+  Typed combine(ast::ArithmeticOp op, Typed left, Typed right, const Unit* unit, Span span);
+  Typed fold(const Typed& left, const Typed& right, Typed result);
+  void check_divisor(const Typed& divisor);
+  void report_word_comparison(const ast::Comparison& node, const Typed& word);
+  Typed label_test(Operation operation, const ast::Expr& value, const ast::Name& label, Span span,
+                   bool quoted = false);
+  Expression compare(ast::Relation relation, Typed left, Typed right);
+  bool takes_margin(const Typed& left, const Typed& right);
+
+  Names& names_;
+  Diagnostics& diagnostics_;
+  std::map<const ast::Let*, Typed> constants_;
+  std::vector<const ast::Let*> open_;  // being worked out, to find one that needs itself
+  const Bindings* bindings_ = nullptr;
+  Margin* margin_ = nullptr;
+};
+
+// The place of a label; reports E0501 with the right ones when there is none.
+[[nodiscard]] std::optional<std::size_t> find_label(const std::vector<std::string>& labels,
+                                                    const ast::Name& label, std::string_view owner,
+                                                    Diagnostics& diagnostics, bool quoted = false);
+[[nodiscard]] vm::Value label_value(std::size_t place);
+
+// "`mood` is a word (`calm` or `happy`), not a number".
+Diagnostic& report_word(const Typed& word, std::string_view wanted, Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler

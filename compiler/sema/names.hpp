@@ -1,0 +1,144 @@
+// The names of a program, its modules and its robot, and what each means.
+//
+// LET, REMEMBER, STATE, FEELING, CHECK, DEFINE, BEHAVIOR, SAFETY and signals share one name space,
+// which the sensors' names may not reach into. A REMEMBER in a BEHAVIOR is seen there only.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "compiler/config/robot.hpp"
+#include "compiler/sema/program.hpp"
+#include "compiler/syntax/ast.hpp"
+
+namespace robosync::compiler {
+
+struct ConstantName {
+  const ast::Let* let = nullptr;
+  bool in_module = false;
+  bool used = false;
+};
+
+struct DefineName {
+  const ast::Define* define = nullptr;
+  Span span;
+  bool in_module = false;
+  bool used = false;      // something runs it
+  bool expanded = false;  // it has been translated
+};
+
+struct VariableName {
+  ast::Name name;
+  std::size_t index = 0;  // its place in Program::variables
+  // Nothing: a signal.
+  std::variant<std::monostate, const ast::Remember*, const ast::State*, const ast::Feeling*,
+               const ast::Check*>
+      declared;
+  vm::VariableKind kind = vm::VariableKind::signal;
+  std::vector<std::string> labels;  // of state and band
+  bool in_module = false;
+  // Known only when it has been declared (Variables).
+  bool ready = false;
+  const Unit* unit = nullptr;
+  Span unit_span{};
+  std::int64_t low = vm::kValueMin;  // what it can be
+  std::int64_t high = vm::kValueMax;
+};
+
+// What a name in the place of an actuator means.
+struct Target {
+  std::optional<std::size_t> group;
+  std::vector<std::size_t> actuators;  // empty only if robot.json has a mistake in the group
+  std::string name;                    // as robot.json has it
+};
+
+// The program first, then the modules that it uses.
+using Trees = std::vector<const ast::Program*>;
+
+class Names {
+public:
+  // Collects the names and reports those given twice. The trees and the robot must outlive this.
+  Names(const Trees& trees, const Robot& robot, Diagnostics& diagnostics);
+
+  // The channel of `touch LEVEL`, `touchLevel`, or of a sensor that has only one. What is wrong is
+  // reported.
+  [[nodiscard]] std::optional<ChannelRef> find_channel(const ast::Operand& operand);
+  [[nodiscard]] ConstantName* find_constant(std::string_view name);  // nullptr: none
+  [[nodiscard]] DefineName* find_define(std::string_view name);
+  [[nodiscard]] VariableName* find_variable(std::string_view name);
+  [[nodiscard]] std::optional<Target> find_target(std::string_view name) const;
+  [[nodiscard]] std::optional<std::size_t> find_sensor(std::string_view name) const;
+  [[nodiscard]] bool is_verb(std::string_view name) const;  // of any actuator
+  // What a name is, for a message: "a LET", "a CHECK"; empty when nothing has it.
+  [[nodiscard]] std::string kind_of(std::string_view name);
+
+  // Whose private variables are seen; nullptr: nobody's. Gives what it was before.
+  const ast::Behavior* set_scope(const ast::Behavior* behavior);
+
+  [[nodiscard]] const SensorConfig& sensor(ChannelRef ref) const {
+    return robot_.sensors[ref.sensor];
+  }
+  [[nodiscard]] const ChannelConfig& channel(ChannelRef ref) const {
+    return sensor(ref).channels[ref.channel];
+  }
+  [[nodiscard]] std::string channel_name(ChannelRef ref) const;  // "touch LEVEL"
+
+  [[nodiscard]] std::vector<std::string> target_names() const;
+  [[nodiscard]] std::vector<std::string> verb_names() const;
+  [[nodiscard]] std::vector<std::string> define_names() const;
+  [[nodiscard]] std::vector<std::string> variable_names() const;  // that are seen here
+  [[nodiscard]] const std::map<std::string, DefineName>& defines() const { return defines_; }
+  [[nodiscard]] const std::map<std::string, ConstantName>& constants() const { return constants_; }
+  // In the order of Program::variables.
+  [[nodiscard]] std::vector<VariableName>& variables() { return variables_; }
+
+private:
+  using Places = std::map<std::string, std::size_t>;  // of variables, by folded name
+
+  // declarations.cpp
+  void collect(const ast::Program& tree);
+  void add(const ast::Let& let);
+  void add(const ast::Define& define);
+  void add(const ast::Behavior& behavior);
+  void add(const ast::Remember& variable);
+  void add(const ast::State& state);
+  void add(const ast::Feeling& feeling);
+  void add(const ast::Check& check);
+  void add(const ast::Safety& safety) { claim(safety.name); }
+  template <typename Other>
+  void add(const Other&) {}  // has no name
+  void collect_signals(const ast::Program& tree);
+  void add_signals(const ast::Block& block);
+  void add_signal(const ast::Name& name);
+  void check_parameters(const ast::Define& define);
+  bool claim(const ast::Name& name);
+  bool claim_operand(const ast::Name& name);
+  void report_twice(const ast::Name& name, Span first);
+  void add_variable(VariableName variable, Places& places);
+
+  [[nodiscard]] bool names_a_channel(std::string_view name) const;
+  std::optional<ChannelRef> channel_of_sensor(std::size_t sensor, const ast::Operand& operand);
+  std::optional<ChannelRef> joined_channel(const ast::Operand& operand) const;
+  void report_unknown(const ast::Operand& operand);
+
+  const Robot& robot_;
+  Diagnostics& diagnostics_;
+  bool in_module_ = false;                         // while collecting
+  std::map<std::string, Span> claimed_;            // by folded name
+  std::map<std::string, ConstantName> constants_;  // likewise
+  std::map<std::string, DefineName> defines_;
+  std::vector<VariableName> variables_;
+  Places globals_;
+  std::map<const ast::Behavior*, Places> private_;
+  const ast::Behavior* scope_ = nullptr;
+};
+
+// Adds "did you mean" with its fix when a candidate is near.
+void suggest(Diagnostic& diagnostic, Span span, std::string_view word,
+             const std::vector<std::string>& candidates);
+
+}  // namespace robosync::compiler

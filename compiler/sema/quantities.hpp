@@ -1,0 +1,80 @@
+// Expressions with what is known of them while they are checked, and the rules of units.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "compiler/config/units.hpp"
+#include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/sema/program.hpp"
+
+namespace robosync::compiler {
+
+enum class Type : std::uint8_t {
+  nothing,  // has a mistake, which has been reported: say no more
+  condition,
+  number,
+  word  // one of several labels: a STATE, a CHECK, or a channel of words
+};
+
+struct Typed {
+  Type type = Type::nothing;
+  Expression code;
+  Span span;
+  // Of a number. Without a unit it is a bare constant, which takes the unit of what it meets.
+  const Unit* unit = nullptr;
+  Span unit_span;                    // where the unit is written
+  std::string source;                // whose unit it is: "touch LEVEL", or empty
+  Decimal bare;                      // the exact constant, when there is no unit
+  std::string digits;                // as written, when it is a literal
+  std::int64_t low = vm::kValueMin;  // what it can be
+  std::int64_t high = vm::kValueMax;
+  // Of a word, which owns them longer than this lives. Its code is the place of the label.
+  const std::vector<std::string>* labels = nullptr;
+  bool truth = false;  // its second label means true: it may be a condition
+
+  [[nodiscard]] bool is_number() const { return type == Type::number; }
+  [[nodiscard]] bool is_bare() const { return is_number() && unit == nullptr; }
+  [[nodiscard]] bool is_constant() const { return code.operation == Operation::constant; }
+  [[nodiscard]] vm::Dimension dimension() const {
+    return unit == nullptr ? vm::Dimension::number : unit->dimension;
+  }
+};
+
+[[nodiscard]] Typed make_constant(vm::Value value, const Unit& unit, Span span);
+[[nodiscard]] Typed make_nothing(Span span);
+[[nodiscard]] Typed make_condition(Expression code, Span span);
+[[nodiscard]] Expression make_constant_code(vm::Value value);
+[[nodiscard]] Expression make_unary(Operation operation, Expression operand);
+[[nodiscard]] Expression make_binary(Operation operation, Expression left, Expression right);
+
+// A quantity that something else asks for, by its unit.
+struct Wanted {
+  const Unit* unit = nullptr;
+  std::string source;       // what asks: "touch LEVEL", "TO of left_arm"
+  Span unit_span;           // where it says so
+  bool difference = false;  // added or subtracted, not compared: offsets of units do not apply
+};
+
+// Gives a bare constant the wanted unit, with a note when it is a real one (N0002).
+void take_unit(Typed& number, const Wanted& wanted, Diagnostics& diagnostics);
+
+// Makes a literal a difference: 9F more is 5C more, wherever the scales begin.
+void make_difference(Typed& number);
+
+// Brings both to one dimension. Reports E0301 and returns false when they have different ones;
+// `doing` says what is done with them: "compares {} with {}".
+[[nodiscard]] bool unify(Typed& left, Typed& right, std::string_view doing, bool difference,
+                         Diagnostics& diagnostics);
+
+// "this multiplies a distance by a force", with both places.
+Diagnostic& report_mismatch(const Typed& left, const Typed& right, std::string_view doing,
+                            Diagnostics& diagnostics);
+
+// A literal in F is a point on a scale that does not begin at 0: reports that it cannot be
+// calculated with. True if it is one.
+[[nodiscard]] bool report_offset_unit(const Typed& number, Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler

@@ -1,0 +1,97 @@
+// Translates blocks of statements, DEFINEs expanded in their place.
+//
+// DEFINEs can use each other so that a short program becomes a long one: what a program may become
+// is bounded, in all and for each response.
+#pragma once
+
+#include "compiler/sema/commands.hpp"
+
+namespace robosync::compiler {
+
+class Statements {
+public:
+  Statements(const SourceMap& sources, const Robot& robot, Names& names, Expressions& expressions,
+             Commands& commands, Diagnostics& diagnostics)
+      : sources_(sources),
+        robot_(robot),
+        names_(names),
+        expressions_(expressions),
+        commands_(commands),
+        diagnostics_(diagnostics) {}
+
+  // What is wrong is reported and left out.
+  [[nodiscard]] ProgramBlock response(const ast::Block& block);
+  // The body of a SAFETY rule: it stops, sets and warns (E0404).
+  [[nodiscard]] ProgramBlock safety(const ast::Block& block);
+  // Checks the DEFINEs that nothing has run. Those of modules need not fit the robot.
+  void check_unused_defines();
+
+  // Line of the program that `span` begins in; 0 in a module.
+  [[nodiscard]] std::uint16_t line_of(Span span) const;
+
+private:
+  void begin_response();
+  ProgramBlock block(const ast::Block& block);
+  void add(const ast::Stmt& stmt, ProgramBlock& result);
+  bool within_budget(Span span);
+  bool allowed_in_safety(const ast::Stmt& stmt);
+  template <typename Node>
+  void put(Node node, Span span, ProgramBlock& result) {
+    result.push_back({std::move(node), line_of(span), span});
+  }
+
+  // statements.cpp
+  void add(const ast::Command& node, Span span, ProgramBlock& result);
+  void add(const ast::Wait& node, Span span, ProgramBlock& result);
+  void add(const ast::WaitUntil& node, Span span, ProgramBlock& result);
+  void add(const ast::Then& node, Span span, ProgramBlock& result);
+  void add(const ast::Stop& node, Span span, ProgramBlock& result);
+  void halt(const ast::Stop& node, Span span, ProgramBlock& result);
+  void stop_actuator(const ast::Name& name, Span span, ProgramBlock& result);
+  // flow.cpp
+  void add(const ast::If& node, Span span, ProgramBlock& result);
+  void add(const ast::Repeat& node, Span span, ProgramBlock& result);
+  void add(const ast::PickOne& node, Span span, ProgramBlock& result);
+  bool repeat_times(const ast::Expr& times, ProgramRepeat& result);
+  std::optional<vm::Value> weight(const ast::Expr& expr);
+  // settings.cpp
+  void add(const ast::Set& node, Span span, ProgramBlock& result);
+  void add(const ast::Raise& node, Span span, ProgramBlock& result);
+  void add(const ast::Signal& node, Span span, ProgramBlock& result);
+  VariableName* settable(const ast::Name& name, bool number);
+  void set_label(const ast::Set& node, const VariableName& variable, Span span,
+                 ProgramBlock& result);
+  bool in_range(const VariableName& variable, const Typed& value);
+  // texts.cpp
+  void add(const ast::Log& node, Span span, ProgramBlock& result);
+  void add(const ast::Alert& node, Span span, ProgramBlock& result);
+  bool add_part(const ast::Argument& argument, ProgramLog& log);
+  bool writable(const std::string& text, Span span);
+  // calls.cpp
+  void add(const ast::Call& node, Span span, ProgramBlock& result);
+  void run(DefineName& name, const std::vector<ast::Argument>& arguments, Span span,
+           ProgramBlock& result);
+  std::optional<Bindings> bind(const DefineName& name, const std::vector<ast::Argument>& arguments,
+                               Span span, ProgramBlock& result);
+  Binding bind(const ast::Name& parameter, const ast::Argument& argument, Span span,
+               ProgramBlock& result);
+  void expand(DefineName& name, const Bindings& bindings, ProgramBlock& result);
+  bool may_run(const DefineName& name, Span use);
+  void report_cycle(const DefineName& name, Span use);
+
+  const SourceMap& sources_;
+  const Robot& robot_;
+  Names& names_;
+  Expressions& expressions_;
+  Commands& commands_;
+  Diagnostics& diagnostics_;
+  std::vector<const ast::Define*> open_;  // being expanded, outermost first
+  std::size_t all_ = 0;                   // statements of the program so far
+  // Of the response being translated.
+  std::size_t statements_ = 0;
+  std::size_t locals_ = 0;
+  std::size_t depth_ = 0;  // blocks that are open
+  bool safety_ = false;
+};
+
+}  // namespace robosync::compiler

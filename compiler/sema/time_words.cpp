@@ -1,0 +1,167 @@
+// Conditions that remember the past, and comparisons with a MARGIN.
+#include <array>
+
+#include "compiler/sema/expressions.hpp"
+#include "compiler/sema/lints.hpp"
+#include "vm/arithmetic.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+Operation operation_of(ast::Relation relation) {
+  constexpr std::array kOperations = {Operation::less,       Operation::greater,
+                                      Operation::less_equal, Operation::greater_equal,
+                                      Operation::equal,      Operation::not_equal};
+  return kOperations[static_cast<std::size_t>(relation)];
+}
+
+// `side` moved by a constant, worked out now where it can be.
+Expression moved(const Expression& side, vm::Value by) {
+  if (side.operation == Operation::constant) return make_constant_code(vm::add(side.constant, by));
+  return make_binary(Operation::add, side, make_constant_code(by));
+}
+
+// The comparison that lets go `margin` later than `enter` does.
+Expression stay_condition(const Expression& enter, vm::Value margin) {
+  const bool below = enter.operation == Operation::less || enter.operation == Operation::less_equal;
+  const auto operation = below ? Operation::less_equal : Operation::greater_equal;
+  const vm::Value by = below ? margin : -margin;
+  const Expression& left = enter.operands[0];
+  const Expression& right = enter.operands[1];
+  if (left.operation == Operation::constant) return make_binary(operation, moved(left, -by), right);
+  return make_binary(operation, left, moved(right, by));
+}
+
+bool is_order(ast::Relation relation) {
+  return relation != ast::Relation::equal && relation != ast::Relation::not_equal;
+}
+
+Expression time_word(Operation operation, Expression operand, vm::Value duration) {
+  Expression result = make_unary(operation, std::move(operand));
+  result.constant = duration;
+  return result;
+}
+
+}  // namespace
+
+Typed Expressions::condition(const ast::Expr& expr, const ast::Expr* margin) {
+  if (margin == nullptr) return condition(expr);
+  const auto value = constant(*margin, "MARGIN");
+  if (!value) return condition(expr);
+  Margin open{*value, false};
+  make_difference(open.value);
+  if (open.value.code.constant <= 0) {
+    diagnostics_.report(Code::E0509, "MARGIN must be above 0").label(margin->span);
+    return condition(expr);
+  }
+  margin_ = &open;
+  Typed result = condition(expr);
+  margin_ = nullptr;
+  if (result.type == Type::condition && !open.used)
+    diagnostics_
+        .report(Code::E0409, "this condition has no comparison that the MARGIN could belong to")
+        .label(margin->span)
+        .helps("a MARGIN goes with `<`, `>`, `<=`, `>=` or IS BETWEEN, in the same kind of unit");
+  return result;
+}
+
+// Does the MARGIN that is open belong to a comparison of these?
+bool Expressions::takes_margin(const Typed& left, const Typed& right) {
+  if (margin_ == nullptr || (left.is_constant() && right.is_constant())) return false;
+  const Typed& side = left.is_constant() ? right : left;
+  if (side.unit == nullptr) return false;
+  Typed& margin = margin_->value;
+  if (margin.is_bare()) take_unit(margin, {side.unit, side.source, {}, true}, diagnostics_);
+  if (!margin.is_number() || margin.dimension() != side.unit->dimension) return false;
+  margin_->used = true;
+  return true;
+}
+
+Expression Expressions::compare(ast::Relation relation, Typed left, Typed right) {
+  const bool sticks = is_order(relation) && takes_margin(left, right);
+  Expression enter =
+      make_binary(operation_of(relation), std::move(left.code), std::move(right.code));
+  if (!sticks) return enter;
+  Expression stay = stay_condition(enter, margin_->value.code.constant);
+  return make_binary(Operation::latch, std::move(enter), std::move(stay));
+}
+
+Typed Expressions::of(const ast::IsBetween& node, Span span) {
+  Typed value = number(*node.value);
+  Typed low = number(*node.low);
+  Typed high = number(*node.high);
+  if (!value.is_number() || !low.is_number() || !high.is_number()) return make_nothing(span);
+  Typed same = value;  // the value stands in two comparisons
+  if (!unify(value, low, "this compares {} with {}", false, diagnostics_) ||
+      !unify(same, high, "this compares {} with {}", false, diagnostics_))
+    return make_nothing(span);
+  if (low.low > high.high) {
+    diagnostics_.report(Code::E0509, "BETWEEN goes from the smaller number to the larger one")
+        .label(span);
+    return make_nothing(span);
+  }
+  lint_comparison(ast::Relation::greater_equal, value, low, span, diagnostics_);
+  lint_comparison(ast::Relation::less_equal, same, high, span, diagnostics_);
+  Expression above = compare(ast::Relation::greater_equal, std::move(value), std::move(low));
+  Expression below = compare(ast::Relation::less_equal, std::move(same), std::move(high));
+  return make_condition(make_binary(Operation::logical_and, std::move(above), std::move(below)),
+                        span);
+}
+
+Typed Expressions::of(const ast::Changes& node, Span span) {
+  Typed value = any(*node.value);
+  if (value.type == Type::condition) value = number(*node.value);  // which says what is wrong
+  if (value.type == Type::nothing) return value;
+  vm::Value least = 0;
+  if (node.by != nullptr) {
+    if (value.type == Type::word) {
+      report_word(value, "a number", diagnostics_);
+      return make_nothing(span);
+    }
+    const Unit& unit = value.unit != nullptr ? *value.unit : canonical_unit(vm::Dimension::number);
+    const auto by = constant_amount(*node.by, {&unit, "CHANGES BY", value.unit_span, true});
+    if (!by) return make_nothing(span);
+    least = by->code.constant;
+    if (least <= 0) {
+      diagnostics_.report(Code::E0509, "CHANGES BY must be above 0").label(node.by->span);
+      return make_nothing(span);
+    }
+  }
+  return make_condition(time_word(Operation::changed, std::move(value.code), least), span);
+}
+
+Typed Expressions::of(const ast::For& node, Span span) {
+  Typed inner = condition(*node.condition);
+  const auto duration = constant_duration(*node.duration, "FOR");
+  if (inner.type != Type::condition || !duration) return make_nothing(span);
+  return make_condition(time_word(Operation::held, std::move(inner.code), *duration), span);
+}
+
+Typed Expressions::of(const ast::ThenWithin& node, Span span) {
+  Typed first = condition(*node.first);
+  Typed second = condition(*node.second);
+  const auto within = constant_duration(*node.within, "WITHIN");
+  if (first.type != Type::condition || second.type != Type::condition || !within)
+    return make_nothing(span);
+  Expression code = time_word(Operation::sequence, std::move(first.code), *within);
+  code.operands.push_back(std::move(second.code));
+  return make_condition(std::move(code), span);
+}
+
+Typed Expressions::of(const ast::TimesWithin& node, Span span) {
+  Typed inner = condition(*node.condition);
+  const auto within = constant_duration(*node.within, "WITHIN");
+  if (node.times < 1 || node.times > vm::kMaxEdges) {
+    diagnostics_
+        .report(Code::E0509,
+                "a condition can be counted from 1 to " + std::to_string(vm::kMaxEdges) + " TIMES")
+        .label(span);
+    return make_nothing(span);
+  }
+  if (inner.type != Type::condition || !within) return make_nothing(span);
+  Expression code = time_word(Operation::counted, std::move(inner.code), *within);
+  code.index = node.times;
+  return make_condition(std::move(code), span);
+}
+
+}  // namespace robosync::compiler

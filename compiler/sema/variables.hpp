@@ -1,0 +1,37 @@
+// What a program remembers: the values of REMEMBER, STATE, FEELING and signals, and its CHECKs.
+#pragma once
+
+#include "compiler/sema/expressions.hpp"
+
+namespace robosync::compiler {
+
+class Variables {
+public:
+  Variables(Names& names, Expressions& expressions, Diagnostics& diagnostics)
+      : names_(names), expressions_(expressions), diagnostics_(diagnostics) {}
+
+  // Fills in the variables and checks of `program`, in the order of Names::variables(). From then
+  // on expressions can read them.
+  void declare(Program& program);
+
+private:
+  void declare(const ast::Remember& node, VariableName& name, ProgramVariable& result);
+  void declare(const ast::State& node, VariableName& name, ProgramVariable& result);
+  void declare(const ast::Feeling& node, VariableName& name, ProgramVariable& result);
+  void fade(const ast::Feeling& node, const Wanted& wanted, ProgramVariable& result);
+  std::optional<vm::Value> inside(const ast::Expr& expr, const Wanted& wanted,
+                                  const ProgramVariable& feeling);
+  void check_labels(const std::vector<ast::Name>& labels);
+
+  // checks.cpp
+  void declare(const ast::Check& node, VariableName& name, Program& program);
+  Typed input(const ast::Check& node);
+  std::optional<vm::Band> band(const ast::Band& node, const Wanted& wanted, vm::Value margin);
+  void smooth(const ast::Check& node, const Typed& input, ProgramCheck& result);
+
+  Names& names_;
+  Expressions& expressions_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace robosync::compiler

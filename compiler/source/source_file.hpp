@@ -1,0 +1,54 @@
+// Source text and places in it. A place is a byte offset; lines and columns are worked out only
+// when a message is printed. Any bytes are a text; places past its end count as its end.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace robosync::compiler {
+
+using FileId = std::uint16_t;
+
+// Bytes begin … end-1 of one file.
+struct Span {
+  FileId file = 0;
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+};
+
+struct Position {
+  std::uint32_t line = 1;    // from 1
+  std::uint32_t column = 1;  // from 1, in Unicode code points
+};
+
+class SourceFile {
+public:
+  SourceFile(std::string name, std::string text);
+  const std::string& name() const { return name_; }
+  std::string_view text() const { return text_; }
+  std::string_view text(Span span) const;
+  Position position(std::uint32_t offset) const;
+  std::string_view line(std::uint32_t number) const;  // without its end; empty when there is none
+  std::uint32_t line_start(std::uint32_t number) const;
+
+private:
+  std::string name_;
+  std::string text_;
+  std::vector<std::uint32_t> line_starts_;
+};
+
+// Every file of one compilation. FileId is the place in this list. References to files and views of
+// their text hold until the next `add`.
+class SourceMap {
+public:
+  FileId add(std::string name, std::string text);
+  const SourceFile& file(FileId id) const { return files_[id]; }
+  std::string_view text(Span span) const { return files_[span.file].text(span); }
+
+private:
+  std::vector<SourceFile> files_;
+};
+
+}  // namespace robosync::compiler

@@ -1,0 +1,338 @@
+// The tree of an RSL program, for the whole language (10-language.md section 2). Every node has a
+// span.
+//
+// The parser makes it, sema reads it; nothing is resolved here: names are text, numbers are as
+// written. Bison's variants need values that can be moved and default-constructed, hence `Box`.
+// Expressions are at most 100 levels deep and blocks 32, so recursion over a tree is safe.
+// A name, number or text that was missing has an empty text: it has been reported already.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compiler/source/source_file.hpp"
+
+namespace robosync::compiler::ast {
+
+template <typename T>
+using Box = std::unique_ptr<T>;
+
+struct Name {
+  std::string text;
+  Span span;
+};
+
+// ---- expressions
+// -----------------------------------------------------------------------------------
+
+struct Expr;
+
+struct Quantity {      // 15, 0.5, 80cm, 40%
+  std::string digits;  // as written: "0.5"
+  std::string unit;    // as written; empty without one
+  Span unit_span;
+};
+
+struct Operand {  // touchLevel, touch LEVEL, mood
+  Name name;
+  std::optional<Name> channel;
+};
+
+struct Negate {
+  Box<Expr> value;
+};
+
+enum class ArithmeticOp : std::uint8_t { add, sub, mul, div, mod };
+struct Arithmetic {
+  ArithmeticOp op{};
+  Box<Expr> left, right;
+};
+
+struct Random {
+  Box<Expr> low, high;
+};
+
+enum class Relation : std::uint8_t { less, greater, less_equal, greater_equal, equal, not_equal };
+struct Comparison {
+  Relation relation{};
+  Span relation_span;
+  Box<Expr> left, right;
+};
+
+struct Is {  // grip IS [NOT] very close, WORD IS "stop"
+  Box<Expr> value;
+  bool negated = false;
+  Name label;  // words of a label joined by one space
+  bool is_string = false;
+};
+
+struct IsBetween {
+  Box<Expr> value, low, high;
+};
+
+struct IsTruth {
+  Box<Expr> value;
+  bool truth = true;
+};
+
+struct Becomes {
+  Box<Expr> value;
+  Name label;
+};
+
+struct Changes {
+  Box<Expr> value;
+  Box<Expr> by;  // may be null
+};
+
+struct Not {
+  Box<Expr> value;
+};
+
+enum class LogicOp : std::uint8_t { and_, or_ };
+struct Logic {
+  LogicOp op{};
+  Box<Expr> left, right;
+};
+
+// Time words; only where the grammar has `timed`.
+struct For {
+  Box<Expr> condition, duration;
+};
+struct ThenWithin {
+  Box<Expr> first, second, within;
+};
+struct TimesWithin {
+  Box<Expr> condition;
+  std::uint32_t times = 0;
+  Box<Expr> within;
+};
+
+struct Expr {
+  Span span;
+  std::variant<Quantity, Operand, Negate, Arithmetic, Random, Comparison, Is, IsBetween, IsTruth,
+               Becomes, Changes, Not, Logic, For, ThenWithin, TimesWithin>
+      node;
+  std::uint16_t depth = 1;  // levels of expressions from here down; the parser keeps it small
+};
+
+// ---- statements
+// ------------------------------------------------------------------------------------
+
+struct Stmt;
+using Block = std::vector<Stmt>;
+
+enum class Preposition : std::uint8_t { none, to, by, over, at, for_ };
+
+struct Word {  // SLOWLY
+  Name name;
+};
+struct Text {  // "greeting.wav", without its quotes
+  std::string text;
+};
+struct Amount {  // 15cm, 1 TIMES, what follows a preposition when it is a number, what follows WITH
+  Box<Expr> value;
+  bool times = false;
+};
+struct Argument {  // of a command
+  Span span;
+  Preposition preposition = Preposition::none;
+  std::variant<Word, Text, Amount> value;
+};
+
+// `verb carg carg …`, and `name` alone, which sema tells apart: a DEFINE or a verb.
+struct Command {
+  Name verb;
+  std::vector<Argument> arguments;
+};
+struct Call {  // name WITH …
+  Name name;
+  std::vector<Argument> arguments;
+};
+struct Set {
+  Name name;
+  Box<Expr> value;
+};
+struct Raise {  // RAISE, and LOWER with `lower`
+  Name name;
+  Box<Expr> by;
+  bool lower = false;
+};
+struct Wait {
+  Box<Expr> duration;
+};
+struct WaitUntil {
+  Box<Expr> condition;
+  Box<Expr> within;  // may be null
+};
+struct Then {};
+struct If {
+  Box<Expr> condition;
+  Block then_block, else_block;
+};
+struct Repeat {  // exactly one of times, condition is set; neither: FOREVER
+  Box<Expr> times, condition;
+  Block body;
+};
+struct Option {
+  Span span;
+  Box<Expr> weight;  // may be null
+  Block body;
+};
+struct PickOne {
+  std::vector<Option> options;
+};
+struct Stop {
+  std::optional<Name> name;  // nothing: ALL
+};
+struct Signal {
+  Name name;
+};
+struct Log {
+  std::vector<Argument> arguments;
+};
+struct Alert {
+  std::string text;
+};
+
+struct Stmt {
+  Span span;
+  std::variant<Command, Call, Set, Raise, Wait, WaitUntil, Then, If, Repeat, PickOne, Stop, Signal,
+               Log, Alert>
+      node;
+};
+
+// ---- items
+// -----------------------------------------------------------------------------------------
+
+struct Modifiers {
+  std::optional<Name> priority;  // the digits
+  Box<Expr> cooldown, margin, waiting;
+  bool restarting = false;
+};
+
+struct WhenRule {
+  Box<Expr> condition;
+  Block then_block;
+  std::optional<Block> else_block;
+};
+struct WhileRule {
+  Box<Expr> condition;
+  Block body;
+};
+struct EveryRule {
+  Box<Expr> period, to;  // `to` may be null
+  Block body;
+};
+struct AtStartRule {
+  Block body;
+};
+struct Rule {
+  Span span;       // from the first keyword to END
+  Span head_span;  // the first keyword
+  Modifiers modifiers;
+  std::variant<WhenRule, WhileRule, EveryRule, AtStartRule> node;
+};
+
+struct Use {
+  Name module;
+  bool is_string = false;
+};
+struct Let {
+  Name name;
+  Box<Expr> value;
+};
+struct Remember {
+  Name name;
+  Box<Expr> value;
+};
+struct State {
+  Name name;
+  std::vector<Name> labels;
+};
+struct Feeling {
+  Name name;
+  Box<Expr> from, to, start;
+  Box<Expr> fades_to, fades_over;  // both or neither
+};
+struct Limit {
+  Name actuator, channel;
+  Box<Expr> value;
+};
+
+enum class BandKind : std::uint8_t { below, above, between, otherwise };
+struct Band {
+  Span span;
+  Name label;
+  BandKind kind{};
+  Box<Expr> low, high;  // below: high; above: low; between: both
+};
+struct Check {
+  Name name;
+  Box<Expr> operand;
+  std::vector<Band> bands;
+  Box<Expr> margin, smooth;  // may be null
+};
+
+struct Define {
+  Name name;
+  std::vector<Name> parameters;
+  Block body;
+};
+struct Behavior {
+  Name name;
+  std::optional<Name> priority;  // the digits; nothing when robot.json is to give it
+  std::vector<Remember> variables;
+  std::vector<Rule> rules;
+};
+struct Safety {
+  Name name;
+  Box<Expr> condition;
+  Modifiers modifiers;
+  Block body;
+  Box<Expr> resume;  // may be null
+};
+
+struct TestFeed {
+  Box<Expr> at;
+  Operand target;
+  Box<Expr> value;  // a number, or an IsTruth without value for TRUE/FALSE
+  std::optional<std::string> text;
+};
+struct ExpectCommand {
+  bool no = false;
+  Command command;
+  Box<Expr> within;
+};
+struct ExpectNothing {
+  Box<Expr> duration;
+};
+struct ExpectThat {
+  Box<Expr> condition;
+  Box<Expr> within;  // may be null
+};
+struct TestStep {
+  Span span;
+  std::variant<TestFeed, ExpectCommand, ExpectNothing, ExpectThat, Wait> node;
+};
+struct Test {
+  std::string title;
+  std::vector<TestStep> steps;
+};
+
+struct Item {
+  Span span;
+  std::variant<Use, Let, Remember, State, Feeling, Limit, Check, Define, Behavior, Rule, Safety,
+               Test>
+      node;
+};
+
+struct Program {
+  std::vector<Item> items;
+};
+
+}  // namespace robosync::compiler::ast

@@ -1,0 +1,47 @@
+// Walks over tokens and follows which blocks are open, by their keywords alone, whatever the
+// grammar would say. Used to split a text into items and to find out which block lost its END.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "compiler/source/source_file.hpp"
+#include "compiler/syntax/token.hpp"
+
+namespace robosync::compiler {
+
+class BlockWalk {
+public:
+  explicit BlockWalk(std::span<const Token> tokens) : tokens_(tokens) {}
+
+  // Moves over the token `at`; call once for each, in order.
+  void step(std::size_t at);
+
+  // The openers of the blocks that are open now, outermost first.
+  const std::vector<std::size_t>& open() const { return open_; }
+  // True when the last step was over an END and nothing was open.
+  bool end_was_idle() const { return idle_; }
+  // The opener that the last step closed; only after an END that was not idle.
+  std::size_t closed() const { return closed_; }
+
+  // For a misspelt opener: counts the token of the last step as one.
+  void count_as_opener(std::size_t at) { open_.push_back(at); }
+
+private:
+  bool opens(std::size_t at);
+
+  std::span<const Token> tokens_;
+  std::vector<std::size_t> open_;
+  std::size_t closed_ = 0;
+  bool idle_ = false;
+  bool statement_ = true;  // the next token starts a line or a statement
+  bool safety_ = false;    // the next WHEN belongs to the SAFETY before it
+};
+
+[[nodiscard]] bool starts_line(std::span<const Token> tokens, std::size_t at);
+
+// Bytes between the start of the token's line and the token.
+[[nodiscard]] std::size_t indentation(const Token& token, const SourceFile& source);
+
+}  // namespace robosync::compiler

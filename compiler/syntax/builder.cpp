@@ -1,0 +1,202 @@
+// See builder.hpp.
+#include "compiler/syntax/builder.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+
+namespace robosync::compiler {
+
+namespace {
+
+// Deeper than any person writes, and far from the end of the stack of whoever walks the tree.
+constexpr std::uint16_t deepest_expression = 100;
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+bool all_digits(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), is_digit);
+}
+
+Span between(Span first, Span last) {
+  return {first.file, first.begin, last.end};
+}
+
+}  // namespace
+
+Diagnostic& Builder::report(Code code, std::string message) {
+  if (diagnostics_ != nullptr) return diagnostics_->report(code, std::move(message));
+  unseen_ = {};
+  return unseen_;
+}
+
+void Builder::restart(Diagnostics* diagnostics) {
+  diagnostics_ = diagnostics;
+  items_.clear();
+  moved_out_.clear();
+  expected_.clear();
+  too_deep_ = false;
+}
+
+void Builder::finish(std::vector<ast::Item> items) {
+  items_ = std::move(items);
+  std::move(moved_out_.begin(), moved_out_.end(), std::back_inserter(items_));
+}
+
+// ---- leaves
+
+ast::Name Builder::name(Span span) const {
+  return {std::string(text_of(span)), span};
+}
+
+ast::Name Builder::quoted(Span span) const {
+  std::string_view text = text_of(span);
+  const char quote = text.empty() ? '\0' : text.front();
+  if (quote == '"' || quote == '\'') {
+    text.remove_prefix(1);
+    if (!text.empty() && text.back() == quote) text.remove_suffix(1);
+  }
+  return {std::string(text), span};
+}
+
+ast::Name Builder::longer_label(ast::Name label, Span next) const {
+  label.text += ' ';
+  label.text += text_of(next);
+  label.span = between(label.span, next);
+  return label;
+}
+
+ast::Name Builder::whole_number(Span span) {
+  const std::string_view text = text_of(span);
+  // What does not even begin like a number was put right by repair.cpp, which said so.
+  if (!text.empty() && is_digit(text.front()) && !all_digits(text)) {
+    report(Code::E0004, "a whole number without a unit is needed here").label(span);
+  }
+  return name(span);
+}
+
+ast::Box<ast::Expr> Builder::quantity(Span span) {
+  const std::string_view text = text_of(span);
+  const auto unit =
+      std::find_if(text.begin(), text.end(), [](char c) { return !is_digit(c) && c != '.'; });
+  const auto digits = static_cast<std::uint32_t>(unit - text.begin());
+  const Span unit_span{span.file, span.begin + digits, span.end};
+  return expr(span, ast::Quantity{std::string(text.begin(), unit), std::string(unit, text.end()),
+                                  unit_span});
+}
+
+ast::Box<ast::Expr> Builder::operand(Span span, Span first, std::optional<Span> channel) {
+  ast::Operand operand{name(first), std::nullopt};
+  if (channel) operand.channel = name(*channel);
+  return expr(span, std::move(operand));
+}
+
+ast::Box<ast::Expr> Builder::truth(Span span, bool value) {
+  return expr(span, ast::IsTruth{nullptr, value});
+}
+
+// ---- expressions
+
+ast::Box<ast::Expr> Builder::shallow(ast::Box<ast::Expr> made) {
+  if (made->depth <= deepest_expression) return made;
+  if (!too_deep_) {
+    report(Code::E0012, "this expression is nested too deeply")
+        .label(made->span)
+        .helps("give parts of it a name with LET");
+  }
+  too_deep_ = true;
+  return expr(made->span, ast::Quantity{});
+}
+
+ast::Box<ast::Expr> Builder::times_within(Span span, ast::Box<ast::Expr> condition, Span times,
+                                          ast::Box<ast::Expr> within) {
+  const std::string digits = whole_number(times).text;
+  std::uint32_t count = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
+  if (error == std::errc::result_out_of_range) {
+    report(Code::E0004, "a condition cannot be counted that often").label(times);
+  }
+  return expr(span, ast::TimesWithin{std::move(condition), count, std::move(within)});
+}
+
+// ---- arguments
+
+ast::Argument Builder::word(Span span) const {
+  return {span, ast::Preposition::none, ast::Word{name(span)}};
+}
+
+ast::Argument Builder::text(Span span) const {
+  return {span, ast::Preposition::none, ast::Text{quoted(span).text}};
+}
+
+ast::Argument Builder::amount(Span span, ast::Box<ast::Expr> value, bool times) const {
+  return {span, ast::Preposition::none, ast::Amount{std::move(value), times}};
+}
+
+// ---- parts of items
+
+void Builder::once(ast::Box<ast::Expr>& place, ast::Box<ast::Expr> value, Span keyword) {
+  if (place != nullptr) {
+    report(Code::E0011, "`" + std::string(text_of(keyword)) + "` is given twice")
+        .label(keyword, "again here")
+        .label(place->span, "first given here", false);
+  }
+  place = std::move(value);
+}
+
+void Builder::set_priority(ast::Modifiers& modifiers, Span keyword, Span number) {
+  if (modifiers.priority) {
+    report(Code::E0011, "`PRIORITY` is given twice")
+        .label(keyword, "again here")
+        .label(modifiers.priority->span, "first given here", false);
+  }
+  modifiers.priority = whole_number(number);
+}
+
+void Builder::set_restarting(ast::Modifiers& modifiers, Span keyword) {
+  if (modifiers.restarting) report(Code::E0011, "`RESTARTING` is given twice").label(keyword);
+  modifiers.restarting = true;
+}
+
+void Builder::add_part(ast::Behavior& behavior, ast::Item item) {
+  if (auto* rule = std::get_if<ast::Rule>(&item.node)) {
+    behavior.rules.push_back(std::move(*rule));
+  } else if (auto* variable = std::get_if<ast::Remember>(&item.node)) {
+    behavior.variables.push_back(std::move(*variable));
+  } else {
+    const std::string_view text = text_of(item.span);
+    const std::string keyword(text.substr(0, text.find_first_of(" \t\r\n")));
+    const auto length = static_cast<std::uint32_t>(keyword.size());
+    report(Code::E0010, "`" + keyword + "` cannot stand in a BEHAVIOR")
+        .label({item.span.file, item.span.begin, item.span.begin + length})
+        .helps("a BEHAVIOR holds rules and REMEMBER; move this in front of it");
+    moved_out_.push_back(std::move(item));
+  }
+}
+
+ast::WhenRule Builder::when(ast::Box<ast::Expr> condition, ast::Block then_block, Span else_span,
+                            ast::Block else_block) const {
+  ast::WhenRule rule{std::move(condition), std::move(then_block), std::nullopt};
+  const bool has_else = else_span.begin != else_span.end || !else_block.empty();
+  if (has_else) rule.else_block = std::move(else_block);
+  return rule;
+}
+
+ast::Block Builder::both(ast::Block first, ast::Block second) const {
+  std::move(second.begin(), second.end(), std::back_inserter(first));
+  return first;
+}
+
+ast::TestFeed Builder::feed(Span at, ast::Box<ast::Expr> target, ast::Box<ast::Expr> value) {
+  return {quantity(at), std::move(std::get<ast::Operand>(target->node)), std::move(value),
+          std::nullopt};
+}
+
+ast::TestFeed Builder::feed_text(Span at, ast::Box<ast::Expr> target, Span text) {
+  return {quantity(at), std::move(std::get<ast::Operand>(target->node)), nullptr,
+          quoted(text).text};
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,110 @@
+// Makes the tree for the grammar's actions, and reports what is grammatical but not allowed.
+// Without diagnostics it is silent: repair.cpp tries out changes that way.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/source/source_file.hpp"
+#include "compiler/syntax/ast.hpp"
+#include "compiler/syntax/token.hpp"
+
+namespace robosync::compiler {
+
+class Builder {
+public:
+  explicit Builder(const SourceFile& file) : file_(file) {}
+
+  // Forgets everything; from now on reports to `diagnostics`, which may be null.
+  void restart(Diagnostics* diagnostics);
+
+  // ---- what came out
+  void finish(std::vector<ast::Item> items);
+  void stopped(std::vector<TokenKind> expected) { expected_ = std::move(expected); }
+  std::vector<ast::Item>& items() { return items_; }
+  const std::vector<TokenKind>& expected() const { return expected_; }
+
+  // ---- leaves
+  ast::Name name(Span span) const;
+  ast::Name quoted(Span span) const;  // without its quotes
+  ast::Name longer_label(ast::Name label, Span next) const;
+  ast::Name whole_number(Span span);
+  ast::Box<ast::Expr> quantity(Span span);
+  ast::Box<ast::Expr> operand(Span span, Span name, std::optional<Span> channel);
+  ast::Box<ast::Expr> truth(Span span, bool value);
+
+  // ---- expressions
+  template <typename Node>
+  ast::Box<ast::Expr> expr(Span span, Node node) {
+    auto made = std::make_unique<ast::Expr>();
+    made->span = span;
+    made->depth = levels(node);
+    made->node = std::move(node);
+    return shallow(std::move(made));
+  }
+  ast::Box<ast::Expr> times_within(Span span, ast::Box<ast::Expr> condition, Span times,
+                                   ast::Box<ast::Expr> within);
+
+  // ---- arguments
+  ast::Argument word(Span span) const;
+  ast::Argument text(Span span) const;
+  ast::Argument amount(Span span, ast::Box<ast::Expr> value, bool times = false) const;
+
+  // ---- parts of items
+  void once(ast::Box<ast::Expr>& place, ast::Box<ast::Expr> value, Span keyword);
+  void set_priority(ast::Modifiers& modifiers, Span keyword, Span number);
+  void set_restarting(ast::Modifiers& modifiers, Span keyword);
+  void add_part(ast::Behavior& behavior, ast::Item item);
+  ast::WhenRule when(ast::Box<ast::Expr> condition, ast::Block then_block, Span else_span,
+                     ast::Block else_block) const;
+  ast::Block both(ast::Block first, ast::Block second) const;
+  ast::TestFeed feed(Span at, ast::Box<ast::Expr> target, ast::Box<ast::Expr> value);
+  ast::TestFeed feed_text(Span at, ast::Box<ast::Expr> target, Span text);
+
+private:
+  template <typename... Part>
+  static std::uint16_t levels_of(const Part&... parts) {
+    std::uint16_t deepest = 0;
+    ((deepest = parts && parts->depth > deepest ? parts->depth : deepest), ...);
+    return static_cast<std::uint16_t>(deepest + 1);
+  }
+  static std::uint16_t levels(const ast::Negate& n) { return levels_of(n.value); }
+  static std::uint16_t levels(const ast::Arithmetic& n) { return levels_of(n.left, n.right); }
+  static std::uint16_t levels(const ast::Random& n) { return levels_of(n.low, n.high); }
+  static std::uint16_t levels(const ast::Comparison& n) { return levels_of(n.left, n.right); }
+  static std::uint16_t levels(const ast::Is& n) { return levels_of(n.value); }
+  static std::uint16_t levels(const ast::IsBetween& n) { return levels_of(n.value, n.low, n.high); }
+  static std::uint16_t levels(const ast::IsTruth& n) { return levels_of(n.value); }
+  static std::uint16_t levels(const ast::Becomes& n) { return levels_of(n.value); }
+  static std::uint16_t levels(const ast::Changes& n) { return levels_of(n.value, n.by); }
+  static std::uint16_t levels(const ast::Not& n) { return levels_of(n.value); }
+  static std::uint16_t levels(const ast::Logic& n) { return levels_of(n.left, n.right); }
+  static std::uint16_t levels(const ast::For& n) { return levels_of(n.condition, n.duration); }
+  static std::uint16_t levels(const ast::ThenWithin& n) {
+    return levels_of(n.first, n.second, n.within);
+  }
+  static std::uint16_t levels(const ast::TimesWithin& n) {
+    return levels_of(n.condition, n.within);
+  }
+  template <typename Leaf>
+  static std::uint16_t levels(const Leaf&) {
+    return 1;
+  }
+
+  ast::Box<ast::Expr> shallow(ast::Box<ast::Expr> made);
+  Diagnostic& report(Code code, std::string message);
+  std::string_view text_of(Span span) const { return file_.text(span); }
+
+  const SourceFile& file_;
+  Diagnostics* diagnostics_ = nullptr;
+  bool too_deep_ = false;  // that an expression is has been reported
+  Diagnostic unseen_;      // takes what is said while trying out
+  std::vector<ast::Item> items_;
+  std::vector<ast::Item> moved_out_;  // of a BEHAVIOR, where they may not stand
+  std::vector<TokenKind> expected_;
+};
+
+}  // namespace robosync::compiler

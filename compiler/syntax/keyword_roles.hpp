@@ -1,0 +1,43 @@
+// Keywords as the parser needs them: with their tokens and roles. See keywords.def.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "compiler/syntax/keywords.hpp"
+#include "compiler/syntax/token.hpp"
+
+namespace robosync::compiler {
+
+namespace role {
+enum Role : unsigned {
+  none = 0,
+  item = 1,
+  part = 2,
+  statement = 4,
+  opens = 8,
+  begins = 16,
+  after = 32,
+  before = 64,
+};
+}  // namespace role
+
+struct Keyword {
+  std::string_view spelling;
+  TokenKind kind;
+  unsigned roles;
+};
+
+[[nodiscard]] std::span<const Keyword> keywords();
+
+// The keyword that a word is; nothing for any other word.
+[[nodiscard]] const Keyword* find_keyword(std::string_view word);
+
+// Roles of a token; operators and brackets have some too, other tokens none.
+[[nodiscard]] unsigned roles_of(TokenKind kind);
+
+// The keyword with one of `roles` that a misspelt word is nearest to; null when none is near.
+[[nodiscard]] const Keyword* nearest_keyword(std::string_view word, unsigned roles);
+
+}  // namespace robosync::compiler

@@ -1,0 +1,171 @@
+// See layout.hpp.
+#include "compiler/syntax/layout.hpp"
+
+#include "compiler/syntax/block_walk.hpp"
+#include "compiler/syntax/keyword_roles.hpp"
+
+namespace robosync::compiler {
+
+// ---- ends of lines
+
+std::vector<std::uint32_t> significant(std::vector<Token>& tokens) {
+  if (!tokens.empty() && tokens.back().kind != Kinds::NEWLINE) {
+    const Span last = tokens.back().span;
+    tokens.push_back({Kinds::NEWLINE, {last.file, last.end, last.end}});
+  }
+  std::vector<std::uint32_t> order;
+  order.reserve(tokens.size());
+  bool pending = false;  // a line's end that may count
+  std::uint32_t line_end = 0;
+  for (std::uint32_t i = 0; i < tokens.size(); ++i) {
+    const TokenKind kind = tokens[i].kind;
+    if (kind == Kinds::NEWLINE) {
+      if (!pending) line_end = i;
+      pending = true;
+      continue;
+    }
+    const bool goes_on = order.empty() || (roles_of(tokens[order.back()].kind) & role::before) != 0;
+    if (pending && !goes_on && (roles_of(kind) & role::after) == 0) order.push_back(line_end);
+    pending = false;
+    order.push_back(i);
+  }
+  if (!order.empty()) order.push_back(line_end);
+  return order;
+}
+
+// ---- regions
+
+namespace {
+
+class Splitter {
+public:
+  Splitter(std::span<const Token> tokens, const SourceFile& source)
+      : tokens_(tokens), source_(source), walk_(tokens) {}
+
+  std::vector<Region> split() {
+    for (std::size_t at = 0; at < tokens_.size(); ++at) {
+      const bool first = tokens_[at].kind != Kinds::NEWLINE && starts_line(tokens_, at);
+      const unsigned roles = first ? line_roles(at) : 0U;
+      if (first && starts_item(at, roles)) start_region(at);
+      walk_.step(at);
+      if (tokens_[at].kind == Kinds::NAME && (roles & role::opens) != 0) walk_.count_as_opener(at);
+      if (walk_.end_was_idle() || closes_too_early(at)) damaged_ = true;
+    }
+    start_region(tokens_.size());
+    return std::move(regions_);
+  }
+
+private:
+  // Outside all blocks a word that is no keyword must be a misspelt one.
+  unsigned line_roles(std::size_t at) {
+    const Token& token = tokens_[at];
+    if (token.kind == Kinds::AT) {
+      const bool rule = at + 1 < tokens_.size() && tokens_[at + 1].kind == Kinds::START;
+      return rule ? roles_of(token.kind) : 0U;
+    }
+    if (token.kind != Kinds::NAME || !walk_.open().empty()) return roles_of(token.kind);
+    const Keyword* meant = nearest_keyword(source_.text(token.span), role::item | role::part);
+    return meant != nullptr ? meant->roles : 0U;
+  }
+
+  // The END of an item that stands farther right than its first word closes something inside it.
+  bool closes_too_early(std::size_t at) const {
+    const bool item = tokens_[at].kind == Kinds::END && walk_.open().empty();
+    return item && starts_line(tokens_, at) && indentation(tokens_[at], source_) > indentation_;
+  }
+
+  bool starts_item(std::size_t at, unsigned roles) {
+    const bool outside = walk_.open().empty();
+    if ((roles & role::item) != 0) {
+      const bool indented = indentation(tokens_[at], source_) > indentation_;
+      return outside || !indented;
+    }
+    if (!outside) return false;
+    if ((roles & role::part) != 0) return !damaged_;
+    // Neither: the mistake is on this line, and what follows may belong to it.
+    damaged_ = true;
+    return false;
+  }
+
+  void start_region(std::size_t at) {
+    if (at > begin_) regions_.push_back({begin_, at});
+    begin_ = at;
+    walk_ = BlockWalk(tokens_);
+    damaged_ = false;
+    if (at < tokens_.size()) indentation_ = indentation(tokens_[at], source_);
+  }
+
+  std::span<const Token> tokens_;
+  const SourceFile& source_;
+  BlockWalk walk_;
+  std::vector<Region> regions_;
+  std::size_t begin_ = 0;
+  std::size_t indentation_ = 0;
+  bool damaged_ = false;
+};
+
+}  // namespace
+
+std::vector<Region> split_into_regions(std::span<const Token> tokens, const SourceFile& source) {
+  return Splitter(tokens, source).split();
+}
+
+// ---- depth
+
+namespace {
+
+// Counts what makes the grammar's stack grow: open IF, REPEAT and PICK blocks, open brackets, and
+// signs in a row like NOT NOT NOT.
+class Depth {
+public:
+  explicit Depth(std::span<const Token> tokens) : tokens_(tokens), walk_(tokens) {}
+
+  bool too_deep_at(std::size_t at) {
+    step_blocks(at);
+    step_expression(tokens_[at].kind);
+    return blocks_ > deepest_block || brackets_ > deepest_expression || signs_ > deepest_expression;
+  }
+
+private:
+  static constexpr std::size_t deepest_block = 32;
+  static constexpr std::size_t deepest_expression = 64;
+
+  bool is_statement(std::size_t at) const {
+    return (roles_of(tokens_[at].kind) & role::statement) != 0;
+  }
+
+  void step_blocks(std::size_t at) {
+    const std::size_t open_before = walk_.open().size();
+    walk_.step(at);
+    if (walk_.open().size() > open_before && is_statement(at)) ++blocks_;
+    if (walk_.open().size() < open_before && is_statement(walk_.closed())) --blocks_;
+  }
+
+  void step_expression(TokenKind kind) {
+    const bool line_goes_on = (roles_of(last_) & role::before) != 0;
+    if (kind == Kinds::NEWLINE && line_goes_on) return;
+    last_ = kind;
+    if (kind == Kinds::NEWLINE) brackets_ = 0;
+    if (kind == Kinds::OPEN) ++brackets_;
+    if (kind == Kinds::CLOSE && brackets_ > 0) --brackets_;
+    const bool sign = kind == Kinds::MINUS || kind == Kinds::NOT || kind == Kinds::OPEN;
+    signs_ = sign ? signs_ + 1 : 0;
+  }
+
+  std::span<const Token> tokens_;
+  BlockWalk walk_;
+  TokenKind last_ = Kinds::NEWLINE;
+  std::size_t blocks_ = 0, brackets_ = 0, signs_ = 0;
+};
+
+}  // namespace
+
+std::optional<std::size_t> nested_too_deeply(std::span<const Token> tokens) {
+  Depth depth(tokens);
+  for (std::size_t at = 0; at < tokens.size(); ++at) {
+    if (depth.too_deep_at(at)) return at;
+  }
+  return std::nullopt;
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,33 @@
+// What the lines of a program say before the grammar reads it: which ends of lines count, and where
+// one item ends and the next begins.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compiler/source/source_file.hpp"
+#include "compiler/syntax/token.hpp"
+
+namespace robosync::compiler {
+
+// The tokens that the grammar shall see, as places in `tokens`: an end of a line is left out after
+// a token that cannot end a statement and before one that cannot start one. The last one always
+// counts; when the text does not end with a line's end, it is added to `tokens`.
+[[nodiscard]] std::vector<std::uint32_t> significant(std::vector<Token>& tokens);
+
+struct Region {
+  std::size_t begin = 0, end = 0;  // places in the tokens
+};
+
+// The text as pieces that can be read one by one: an item, or several when something is wrong with
+// them. A mistake in one cannot spoil the next, because words like DEFINE always start an item.
+[[nodiscard]] std::vector<Region> split_into_regions(std::span<const Token> tokens,
+                                                     const SourceFile& source);
+
+// The first token that opens more blocks or brackets than anybody needs.
+[[nodiscard]] std::optional<std::size_t> nested_too_deeply(std::span<const Token> tokens);
+
+}  // namespace robosync::compiler

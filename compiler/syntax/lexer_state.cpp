@@ -1,0 +1,272 @@
+// See lexer_state.hpp.
+#include "compiler/syntax/lexer_state.hpp"
+
+#include <algorithm>
+
+#include "compiler/source/utf8.hpp"
+#include "compiler/syntax/keyword_roles.hpp"
+#include "compiler/syntax/lexer.hpp"
+
+namespace robosync::compiler {
+
+namespace {
+
+constexpr char32_t byte_order_mark = 0xFEFF;
+constexpr char32_t no_break_space = 0xA0;
+constexpr char32_t degree_sign = 0xB0;
+
+struct Range {
+  char32_t first, last;
+};
+
+// Above ASCII: blocks of punctuation, arrows, signs, dingbats and emoji. All others are letters.
+constexpr Range not_letters[] = {
+    {0x80, 0xA9},     {0xAB, 0xB4},     {0xB6, 0xB9},     {0xBB, 0xBF},       {0xD7, 0xD7},
+    {0xF7, 0xF7},     {0x2000, 0x2BFF}, {0x2E00, 0x2E7F}, {0x3000, 0x303F},   {0xE000, 0xF8FF},
+    {0xFE00, 0xFE6F}, {0xFEFF, 0xFF20}, {0xFFF0, 0xFFFF}, {0x1F000, 0x1FAFF}, {0xE0000, 0x10FFFF}};
+
+bool is_letter(char32_t point) {
+  return std::none_of(std::begin(not_letters), std::end(not_letters),
+                      [point](Range range) { return range.first <= point && point <= range.last; });
+}
+
+bool is_high(char c) {
+  return (static_cast<unsigned char>(c) & 0x80U) != 0;
+}
+
+bool is_word_byte(char c) {
+  const bool letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+  return letter || (c >= '0' && c <= '9') || c == '_';
+}
+
+// Bytes of the word that the text starts with.
+std::size_t word_length(std::string_view text) {
+  std::size_t length = 0;
+  while (length < text.size()) {
+    const utf8::CodePoint point = utf8::decode(text, length);
+    if (is_high(text[length]) ? !is_letter(point.value) : !is_word_byte(text[length])) break;
+    length += point.size;
+  }
+  return length;
+}
+
+// Bytes of a number and its unit, up to the first code point above ASCII that is no letter.
+std::size_t number_length(std::string_view text) {
+  std::size_t length = 0;
+  while (length < text.size()) {
+    const utf8::CodePoint point = utf8::decode(text, length);
+    const bool in_unit = is_letter(point.value) || point.value == degree_sign;
+    if (is_high(text[length]) && !in_unit) break;
+    length += point.size;
+  }
+  return length;
+}
+
+// Signs that word processors write in the place of ASCII ones.
+struct LookAlike {
+  char32_t point;
+  TokenKind kind;
+  std::string_view ascii;
+};
+constexpr LookAlike look_alikes[] = {
+    {0x2264, Kinds::LESS_EQUAL, "<="}, {0x2265, Kinds::GREATER_EQUAL, ">="},
+    {0x2260, Kinds::NOT_EQUAL, "<>"},  {0x2212, Kinds::MINUS, "-"},
+    {0x2010, Kinds::MINUS, "-"},       {0x2011, Kinds::MINUS, "-"},
+    {0x2013, Kinds::MINUS, "-"},       {0x2014, Kinds::MINUS, "-"},
+    {0xD7, Kinds::STAR, "*"},          {0xF7, Kinds::SLASH, "/"},
+};
+
+constexpr char32_t curly_quotes[] = {0x2018, 0x2019, 0x201A, 0x201C, 0x201D, 0x201E, 0xAB, 0xBB};
+
+bool is_curly(char32_t point) {
+  return std::find(std::begin(curly_quotes), std::end(curly_quotes), point) !=
+         std::end(curly_quotes);
+}
+
+bool is_per_second(std::string_view unit_end) {
+  return unit_end == "s" || unit_end == "S";
+}
+
+}  // namespace
+
+// A file that is not RSL at all shall not bury its reader.
+Diagnostic& LexerState::report(Code code, std::string message) {
+  constexpr std::size_t most = 50;
+  if (++reports_ <= most) return diagnostics_.report(code, std::move(message));
+  unseen_ = {};
+  return unseen_;
+}
+
+void LexerState::token(TokenKind kind) {
+  tokens_.push_back({kind, here()});
+}
+
+void LexerState::word() {
+  const std::size_t length = word_length(text_.substr(start_));
+  if (length == 0) {
+    other();
+    return;
+  }
+  cursor_ = start_ + length;
+  const Keyword* keyword = find_keyword(lexeme());
+  token(keyword != nullptr ? keyword->kind : Kinds::NAME);
+}
+
+// ---- numbers
+
+// `10cm/x` divides: only `/s` belongs to a unit.
+bool LexerState::unit_ends_early() {
+  const std::size_t slash = lexeme().find('/');
+  if (slash == std::string_view::npos || is_per_second(lexeme().substr(slash + 1))) return false;
+  cursor_ = start_ + slash;
+  return true;
+}
+
+// `3TIMES`: the keyword was meant, not a unit.
+bool LexerState::keyword_is_stuck() {
+  const std::string_view text = lexeme();
+  const auto letter = std::find_if(text.begin(), text.end(),
+                                   [](char c) { return c != '.' && (c < '0' || c > '9'); });
+  const auto digits = static_cast<std::size_t>(letter - text.begin());
+  const Keyword* keyword = find_keyword(text.substr(digits));
+  if (keyword == nullptr) return false;
+  const std::string spelling(text.substr(digits));
+  report(Code::E0004, "a space is missing between the number and `" + spelling + "`")
+      .label(here())
+      .fix(span(start_ + digits, start_ + digits), " ");
+  tokens_.push_back({Kinds::QUANTITY, span(start_, start_ + digits)});
+  tokens_.push_back({keyword->kind, span(start_ + digits, cursor_)});
+  return true;
+}
+
+void LexerState::quantity() {
+  if (!unit_ends_early() && keyword_is_stuck()) return;
+  cursor_ = start_ + number_length(lexeme());
+  token(Kinds::QUANTITY);
+}
+
+void LexerState::bad_number() {
+  if (unit_ends_early()) {
+    token(Kinds::QUANTITY);
+    return;
+  }
+  const std::string text(lexeme());
+  Diagnostic& message =
+      report(Code::E0004, "`" + text + "` cannot be read as a number").label(here());
+  if (text.back() == '.') {
+    message.helps("a number does not end with a point")
+        .fix(here(), text.substr(0, text.size() - 1));
+  } else {
+    message.helps(
+        "a number is digits, a decimal point if needed, and a unit: `0.5`, `80cm`, `40%`");
+  }
+  token(Kinds::QUANTITY);
+}
+
+void LexerState::bad_fraction() {
+  const std::string better = "0" + std::string(lexeme());
+  report(Code::E0004, "a number begins with a digit")
+      .label(here(), "write `" + better + "`")
+      .fix(here(), better);
+  token(Kinds::QUANTITY);
+}
+
+// ---- strings and comments
+
+void LexerState::string() {
+  token(Kinds::STRING);
+}
+
+void LexerState::open_string() {
+  const std::string quote(lexeme().substr(0, 1));
+  report(Code::E0003, "this text is not closed")
+      .label(here(), "it ends with its line, without a " + quote)
+      .helps("write " + quote + " at the end of the text")
+      .fix(span(cursor_, cursor_), quote);
+  token(Kinds::STRING);
+}
+
+// `40 % loud`: was a unit meant? Two blanks or more in front show that it is a comment.
+void LexerState::comment() {
+  if (lexeme().front() != '%' || tokens_.empty()) return;
+  const Token& last = tokens_.back();
+  const bool touches_number = last.kind == Kinds::QUANTITY && last.span.end + 1 >= start_;
+  if (!touches_number) return;
+  const std::string_view number = text_.substr(last.span.begin, last.span.end - last.span.begin);
+  const char end = number.empty() ? '\0' : number.back();
+  if (end < '0' || end > '9') return;
+  report(Code::W0103, "from here on this line is a comment, not a percentage")
+      .label(span(start_, start_ + 1))
+      .helps("for the percentage, write `" + std::string(number) + "%` without a space")
+      .helps("for a comment, write # in the place of %")
+      .fix(span(last.span.end, start_ + 1), "%");
+}
+
+// ---- characters that RSL does not use
+
+void LexerState::instead(TokenKind meant, std::string_view spelling) {
+  const std::string better(spelling.substr(0, spelling.find(' ')));
+  report(Code::E0002, "RSL does not use `" + std::string(lexeme()) + "`")
+      .label(here(), "write `" + better + "`")
+      .fix(here(), std::string(spelling));
+  token(meant);
+}
+
+void LexerState::left_out(std::string_view why) {
+  const std::size_t shown = lexeme().front() == '/' ? 2 : lexeme().size();
+  report(Code::E0002, "RSL does not use `" + std::string(lexeme().substr(0, shown)) + "`")
+      .label(span(start_, start_ + shown), std::string(why));
+}
+
+bool LexerState::look_alike(char32_t point) {
+  const auto found = std::find_if(std::begin(look_alikes), std::end(look_alikes),
+                                  [point](const LookAlike& entry) { return entry.point == point; });
+  if (found == std::end(look_alikes)) return false;
+  instead(found->kind, found->ascii);
+  return true;
+}
+
+// Quotes of a word processor: read as a string up to the next one in the line.
+bool LexerState::curly_string(char32_t quote) {
+  if (!is_curly(quote)) return false;
+  std::size_t end = cursor_;
+  while (end < text_.size() && text_[end] != '\n' && text_[end] != '\r') {
+    const utf8::CodePoint point = utf8::decode(text_, end);
+    end += point.size;
+    if (!is_curly(point.value)) continue;
+    const std::string inside(text_.substr(cursor_, end - point.size - cursor_));
+    cursor_ = end;
+    report(Code::E0002, "RSL uses straight quotes, not curly ones")
+        .label(here())
+        .fix(here(), "\"" + inside + "\"");
+    token(Kinds::STRING);
+    return true;
+  }
+  return false;
+}
+
+// Neighbouring strange bytes make one message.
+void LexerState::strange(std::size_t size) {
+  cursor_ = start_ + size;
+  const bool goes_on = strange_end_ == start_;
+  strange_end_ = cursor_;
+  if (goes_on) return;
+  report(Code::E0002, "RSL does not use this character").label(here());
+}
+
+void LexerState::other() {
+  const utf8::CodePoint point = utf8::decode(text_, start_);
+  cursor_ = start_ + point.size;
+  const bool blank = point.value == no_break_space || point.value == byte_order_mark;
+  if (blank || look_alike(point.value) || curly_string(point.value)) return;
+  strange(point.size);
+}
+
+std::vector<Token> lex(const SourceFile& source, FileId file, Diagnostics& diagnostics) {
+  LexerState state(source.text(), file, diagnostics);
+  while (state.step()) {
+  }
+  return state.take();
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,62 @@
+// The lexer between two tokens, and what it does with each kind of text. The patterns themselves
+// are in grammar/rsl.re.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/source/source_file.hpp"
+#include "compiler/syntax/token.hpp"
+
+namespace robosync::compiler {
+
+class LexerState {
+public:
+  LexerState(std::string_view text, FileId file, Diagnostics& diagnostics)
+      : text_(text), file_(file), diagnostics_(diagnostics) {}
+
+  // Reads one token, blank or comment; false at the end. In grammar/rsl.re.
+  bool step();
+  std::vector<Token> take() { return std::move(tokens_); }
+
+private:
+  // Each handles the bytes from start_ to cursor_, and may move cursor_ back.
+  void token(TokenKind kind);
+  void word();
+  void quantity();
+  void bad_number();
+  void bad_fraction();
+  void string();
+  void open_string();
+  void comment();
+  void instead(TokenKind meant, std::string_view spelling);
+  void left_out(std::string_view why);
+  void other();
+
+  Diagnostic& report(Code code, std::string message);
+  bool unit_ends_early();
+  bool keyword_is_stuck();
+  bool curly_string(char32_t quote);
+  bool look_alike(char32_t point);
+  void strange(std::size_t size);
+
+  std::string_view lexeme() const { return text_.substr(start_, cursor_ - start_); }
+  Span span(std::size_t begin, std::size_t end) const {
+    return {file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+  }
+  Span here() const { return span(start_, cursor_); }
+
+  std::string_view text_;  // followed by a NUL that is not part of it
+  FileId file_;
+  Diagnostics& diagnostics_;
+  Diagnostic unseen_;  // takes what is reported when there was too much already
+  std::size_t reports_ = 0;
+  std::vector<Token> tokens_;
+  std::size_t start_ = 0;
+  std::size_t cursor_ = 0;
+  std::size_t strange_end_ = static_cast<std::size_t>(-1);  // where the last strange bytes ended
+};
+
+}  // namespace robosync::compiler

@@ -1,0 +1,86 @@
+// See parser.hpp. The way of a text: lexer, items (layout.hpp), grammar; and where the grammar
+// stops, repair.hpp.
+#include "compiler/syntax/parser.hpp"
+
+#include <iterator>
+#include <utility>
+
+#include "compiler/syntax/attempt.hpp"
+#include "compiler/syntax/layout.hpp"
+#include "compiler/syntax/lexer.hpp"
+#include "compiler/syntax/repair.hpp"
+
+namespace robosync::compiler {
+
+namespace {
+
+// More source than any robot can hold, and few enough messages for one to read.
+constexpr std::size_t largest_source = 1U << 20U;
+constexpr std::size_t most_mistakes = 30;
+
+class Parser {
+public:
+  Parser(const SourceFile& source, FileId file, Diagnostics& diagnostics)
+      : source_(source), file_(file), diagnostics_(diagnostics), reader_(source) {}
+
+  ast::Program parse() {
+    if (source_.text().size() > largest_source) {
+      diagnostics_.report(Code::E0013, "this file is larger than 1 MiB, the most that rsc reads")
+          .label({file_, 0, 0});
+      return {};
+    }
+    const Tokens tokens = lex(source_, file_, diagnostics_);
+    for (const Region& region : split_into_regions(tokens, source_)) {
+      const auto begin = tokens.begin() + static_cast<std::ptrdiff_t>(region.begin);
+      const auto end = tokens.begin() + static_cast<std::ptrdiff_t>(region.end);
+      if (!parse_region({begin, end})) break;
+    }
+    return std::move(program_);
+  }
+
+private:
+  // False when nothing more should be read.
+  bool parse_region(Tokens tokens) {
+    if (const auto deep = nested_too_deeply(tokens)) {
+      diagnostics_.report(Code::E0012, "this is nested too deeply")
+          .label(tokens[*deep].span)
+          .helps("put the inner part into a DEFINE of its own");
+      return false;
+    }
+    for (;;) {
+      // What the actions say counts only when the piece was read to its end.
+      Diagnostics said;
+      Attempt attempt = reader_.read(tokens, &said);
+      if (attempt.complete) {
+        for (const Diagnostic& diagnostic : said.all())
+          diagnostics_.add(diagnostic);
+        std::move(attempt.items.begin(), attempt.items.end(), std::back_inserter(program_.items));
+        return true;
+      }
+      if (++mistakes_ > most_mistakes || budget_.work == 0) return give_up(tokens);
+      mend(tokens, attempt, reader_, diagnostics_, budget_);
+    }
+  }
+
+  bool give_up(const Tokens& tokens) {
+    diagnostics_.report(Code::E0013, "too many mistakes: the rest of the file was not read")
+        .label(tokens.front().span);
+    return false;
+  }
+
+  const SourceFile& source_;
+  FileId file_;
+  Diagnostics& diagnostics_;
+  Reader reader_;
+  ast::Program program_;
+  Budget budget_;
+  std::size_t mistakes_ = 0;
+};
+
+}  // namespace
+
+ast::Program parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
+  return Parser(sources.file(file), file, diagnostics).parse();
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,13 @@
+// Reads RSL text into its tree. Grammar: grammar/rsl.yy (Bison), tokens: grammar/rsl.re (re2c).
+#pragma once
+
+#include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/source/source_file.hpp"
+#include "compiler/syntax/ast.hpp"
+
+namespace robosync::compiler {
+
+// Always gives a tree; what could not be read is left out of it and reported.
+[[nodiscard]] ast::Program parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler

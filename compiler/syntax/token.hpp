@@ -1,0 +1,22 @@
+// A token: its kind and its place. Its text is read from the source when it is needed.
+#pragma once
+
+#include <vector>
+
+#include "compiler/source/source_file.hpp"
+#include "grammar/rsl.hpp"  // made from grammar/rsl.yy
+
+namespace robosync::compiler {
+
+using Kinds = grammar::Grammar::token;
+using TokenKind = grammar::Grammar::token_kind_type;
+
+struct Token {
+  TokenKind kind = TokenKind{};
+  Span span;
+};
+
+// "`WHEN`", "a name", "`<`": the kind as messages show it.
+[[nodiscard]] std::string describe(TokenKind kind);
+
+}  // namespace robosync::compiler

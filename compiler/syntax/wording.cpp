@@ -1,0 +1,286 @@
+// See wording.hpp.
+#include "compiler/syntax/wording.hpp"
+
+#include <algorithm>
+
+#include "compiler/source/utf8.hpp"
+#include "compiler/syntax/block_blame.hpp"
+#include "compiler/syntax/block_walk.hpp"
+
+namespace robosync::compiler {
+
+namespace {
+
+bool expects(const std::vector<TokenKind>& expected, TokenKind kind) {
+  return std::find(expected.begin(), expected.end(), kind) != expected.end();
+}
+
+class Explainer {
+public:
+  Explainer(const Mistake& mistake, Diagnostics& diagnostics)
+      : tokens_(mistake.tokens),
+        source_(mistake.source),
+        failure_(mistake.failure),
+        edit_(mistake.edit),
+        diagnostics_(diagnostics) {}
+
+  void explain() {
+    switch (edit_.what) {
+      case Edit::What::respell:
+        return misspelt();
+      case Edit::What::insert:
+        return missing();
+      case Edit::What::close_blocks:
+        return not_closed(ends_inserted());
+      case Edit::What::remove:
+        return too_much();
+      case Edit::What::replace:
+        return something_else();
+      case Edit::What::swap:
+        return wrong_order();
+      case Edit::What::skip:
+        return unexpected();
+    }
+  }
+
+private:
+  // ---- pieces of sentences
+
+  // Long texts are shortened: they are in the snippet anyway.
+  std::string quote(std::size_t at) const {
+    constexpr std::size_t longest = 40;
+    std::string_view text = source_.text(tokens_[at].span);
+    if (text.size() <= longest) return "`" + std::string(text) + "`";
+    return "`" + std::string(text.substr(0, longest)) + "...`";
+  }
+
+  std::string found(std::size_t at) const {
+    if (at >= tokens_.size()) return "the end";
+    const TokenKind kind = tokens_[at].kind;
+    if (kind == Kinds::NEWLINE) return "the end of the line";
+    const Span span = tokens_[at].span;
+    return span.begin == span.end ? describe(kind) : quote(at);
+  }
+
+  // The token that the grammar had taken before the one at `at`.
+  std::size_t before(std::size_t at) const {
+    if (at == failure_.stopped_at) return failure_.before;
+    return at == 0 ? 0 : at - 1;
+  }
+
+  bool begins_line(std::size_t at) const {
+    const std::size_t last = before(at);
+    return last >= at || tokens_[last].kind == Kinds::NEWLINE;
+  }
+
+  // " after `x`", or nothing at the start of a line.
+  std::string after(std::size_t at) const {
+    return begins_line(at) ? "" : " after " + found(before(at));
+  }
+
+  Span place(std::size_t at) const {
+    if (at < tokens_.size() && tokens_[at].kind != Kinds::NEWLINE) return tokens_[at].span;
+    Span span = tokens_[std::min(at, tokens_.size() - 1)].span;
+    span.end = span.begin;
+    return span;
+  }
+
+  std::size_t ends_inserted() const {
+    return static_cast<std::size_t>(
+        std::count_if(edit_.inserted.begin(), edit_.inserted.end(),
+                      [](const Token& token) { return token.kind == Kinds::END; }));
+  }
+
+  bool outside_blocks() const {
+    return expects(failure_.expected, Kinds::DEFINE) && expects(failure_.expected, Kinds::WHEN);
+  }
+
+  // ---- one for each way to mend
+
+  void misspelt() {
+    const std::string better(edit_.keyword->spelling);
+    diagnostics_.report(Code::E0007, "RSL does not know the word " + quote(edit_.at) + " here")
+        .label(tokens_[edit_.at].span, "did you mean `" + better + "`?")
+        .fix(tokens_[edit_.at].span, better);
+  }
+
+  // The place of a missing token is behind the one before it, not at the next line's start.
+  Span gap() const {
+    Span span = edit_.inserted.front().span;
+    if (!begins_line(edit_.at)) span.begin = span.end = tokens_[before(edit_.at)].span.end;
+    return span;
+  }
+
+  void missing() {
+    const TokenKind kind = edit_.inserted.front().kind;
+    if (kind == Kinds::END) return not_closed(1);
+    if (kind == Kinds::NEWLINE) return line_goes_on();
+    const bool value = kind == Kinds::NAME || kind == Kinds::QUANTITY || kind == Kinds::STRING;
+    std::string what = value || kind == Kinds::LESS ? summarize(*edit_.expected) : describe(kind);
+    if (kind == Kinds::PLUS) what = "an operator";
+    const std::string where = after(edit_.at);
+    const bool first = where.empty() && edit_.at < tokens_.size();
+    Diagnostic& message = diagnostics_.report(
+        Code::E0008, what + " is missing" + (first ? " before " + found(edit_.at) : where));
+    message.label(gap(), first ? "" : "here");
+    const bool word = kind >= Kinds::USE;
+    if (word && !first) message.fix(gap(), " " + plain(kind));
+    if (word && first) message.fix(gap(), plain(kind) + " ");
+    if (where.empty() && outside_blocks() && word) {
+      message.helps("a line outside a block starts with a word such as WHEN, DEFINE or BEHAVIOR");
+    }
+  }
+
+  static std::string plain(TokenKind kind) {
+    std::string text = describe(kind);
+    text.erase(std::remove(text.begin(), text.end(), '`'), text.end());
+    return text;
+  }
+
+  void line_goes_on() {
+    diagnostics_.report(Code::E0001, found(edit_.at) + " must stand on a line of its own")
+        .label(place(edit_.at), "the line should have ended before this");
+  }
+
+  void not_closed(std::size_t count) {
+    for (const OpenBlock& block : open_blocks(tokens_, failure_.stopped_at, count, source_)) {
+      Diagnostic& message = diagnostics_.report(
+          Code::E0005, "this " + quote(block.opener) + " is not closed with `END`");
+      message.label(tokens_[block.opener].span, "the block begins here");
+      const bool before_a_word =
+          block.missed < tokens_.size() && tokens_[block.missed].kind != Kinds::NEWLINE;
+      if (before_a_word) {
+        message.label(place(block.missed), "`END` is missing before this", false);
+      } else {
+        message.label(last_word_before(block.missed), "`END` is missing after this", false);
+      }
+    }
+  }
+
+  Span last_word_before(std::size_t at) const {
+    std::size_t last = std::min(at, tokens_.size());
+    while (last > 1 && tokens_[last - 1].kind == Kinds::NEWLINE)
+      --last;
+    return last > 0 ? tokens_[last - 1].span : Span{};
+  }
+
+  void too_much() {
+    const Token& token = tokens_[edit_.at];
+    if (token.kind == Kinds::END) return idle_end();
+    if (token.kind == Kinds::NEWLINE) {
+      diagnostics_.report(Code::E0001, "this line ends too early" + after(edit_.at))
+          .label(place(edit_.at), "expected " + summarize(failure_.expected));
+      return;
+    }
+    if (unit_apart()) return;
+    Diagnostic& message = diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here");
+    message.label(token.span, "leave this out").fix(token.span, "");
+    const bool known = edit_.expected != nullptr && !edit_.expected->empty();
+    if (known) message.helps("RSL expects " + summarize(*edit_.expected) + after(edit_.at));
+  }
+
+  // `40 cm`: digits, a space, and a name that may be a unit.
+  bool unit_apart() {
+    if (edit_.at == 0 || tokens_[edit_.at].kind != Kinds::NAME) return false;
+    const Token& number = tokens_[edit_.at - 1];
+    if (number.kind != Kinds::QUANTITY) return false;
+    const std::string digits(source_.text(number.span));
+    if (digits.empty() || digits.back() < '0' || digits.back() > '9') return false;
+    const Span gap{number.span.file, number.span.end, tokens_[edit_.at].span.begin};
+    const std::string unit(source_.text(tokens_[edit_.at].span));
+    diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here")
+        .label(tokens_[edit_.at].span)
+        .helps("if it is a unit, write it without a space: `" + digits + unit + "`")
+        .fix(gap, "");
+    return true;
+  }
+
+  void idle_end() {
+    Diagnostic& message = diagnostics_.report(Code::E0006, "this `END` closes nothing");
+    message.label(tokens_[edit_.at].span);
+    if (const auto early = early_end(tokens_, edit_.at, source_)) {
+      message.label(tokens_[early->by].span, "this one closed the block already", false);
+      message.label(tokens_[early->closed].span, "the block begins here", false);
+    }
+  }
+
+  void something_else() {
+    const TokenKind wanted = edit_.inserted.front().kind;
+    const TokenKind kind = tokens_[edit_.at].kind;
+    if (wanted == Kinds::NAME && kind >= Kinds::USE) {
+      diagnostics_.report(Code::E0010, quote(edit_.at) + " is a word of RSL and cannot be a name")
+          .label(place(edit_.at), "choose another name");
+      return;
+    }
+    if (wanted == Kinds::IF && (roles_of(kind) & role::part) != 0) return rule_inside();
+    if (edit_.at == failure_.stopped_at) return unexpected();
+    Diagnostic& message =
+        diagnostics_.report(Code::E0001, "expected " + describe(wanted) + after(edit_.at) +
+                                             ", found " + found(edit_.at));
+    message.label(place(edit_.at));
+    if (wanted >= Kinds::USE) message.fix(place(edit_.at), plain(wanted));
+  }
+
+  void rule_inside() {
+    diagnostics_.report(Code::E0010, quote(edit_.at) + " cannot stand inside a response")
+        .label(place(edit_.at), "a rule stands outside, or in a BEHAVIOR")
+        .helps("to ask once while the response runs, write `IF`")
+        .helps("to start a rule of its own, close the response with `END` first");
+  }
+
+  void wrong_order() {
+    const Span first = tokens_[edit_.at].span;
+    const Span second = tokens_[edit_.at + 1].span;
+    diagnostics_
+        .report(Code::E0001,
+                quote(edit_.at) + " and " + found(edit_.at + 1) + " stand in the wrong order")
+        .label({first.file, first.begin, second.end});
+  }
+
+  static bool is_comparison(TokenKind kind) {
+    return (kind >= Kinds::LESS && kind <= Kinds::NOT_EQUAL) || kind == Kinds::IS;
+  }
+
+  // `0 < x < 3`
+  bool is_chained() const {
+    std::size_t at = failure_.stopped_at;
+    if (at >= tokens_.size() || !is_comparison(tokens_[at].kind)) return false;
+    if (!expects(failure_.expected, Kinds::AND)) return false;
+    while (at > 0 && tokens_[at - 1].kind != Kinds::NEWLINE) {
+      if (is_comparison(tokens_[--at].kind)) return true;
+    }
+    return false;
+  }
+
+  void unexpected() {
+    const std::size_t at = failure_.stopped_at;
+    if (is_chained()) {
+      diagnostics_.report(Code::E0001, "a comparison has two sides; this is the third")
+          .label(place(at))
+          .helps("compare twice: `0 < x AND x < 3`, or write `x IS BETWEEN 0 AND 3`");
+      return;
+    }
+    const std::string first = at < tokens_.size() ? after(at) : "";
+    Diagnostic& message = diagnostics_.report(
+        Code::E0001, "expected " + summarize(failure_.expected) + first + ", found " + found(at));
+    message.label(place(at));
+    const bool command = at < tokens_.size() && tokens_[at].kind == Kinds::NAME;
+    if (outside_blocks() && command) {
+      message.helps("commands stand in a rule or in a DEFINE: `WHEN ... DO ... END`");
+    }
+  }
+
+  const Tokens& tokens_;
+  const SourceFile& source_;
+  const Attempt& failure_;
+  const Edit& edit_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+void explain(const Mistake& mistake, Diagnostics& diagnostics) {
+  Explainer(mistake, diagnostics).explain();
+}
+
+}  // namespace robosync::compiler

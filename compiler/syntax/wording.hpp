@@ -1,0 +1,28 @@
+// Says in the user's words what was wrong where the grammar stopped.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/source/source_file.hpp"
+#include "compiler/syntax/attempt.hpp"
+#include "compiler/syntax/edit.hpp"
+
+namespace robosync::compiler {
+
+struct Mistake {
+  const Tokens& tokens;
+  const SourceFile& source;
+  const Attempt& failure;
+  const Edit& edit;  // what mends it
+};
+
+// Reports the mistake, with its mend.
+void explain(const Mistake& mistake, Diagnostics& diagnostics);
+
+// "a value", "a comparison such as `<`", "`DO`": what could have stood there, the likely things
+// only.
+[[nodiscard]] std::string summarize(const std::vector<TokenKind>& expected);
+
+}  // namespace robosync::compiler

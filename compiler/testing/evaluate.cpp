@@ -1,0 +1,30 @@
+// Recursion is bounded by the parser's limit on the depth of expressions.
+#include "compiler/testing/evaluate.hpp"
+
+#include "compiler/sema/compute.hpp"
+#include "vm/arithmetic.hpp"
+
+namespace robosync::compiler::testing {
+
+vm::Value evaluate(const Expression& expression, const Moment& moment) {
+  const auto operand = [&](std::size_t place) {
+    return evaluate(expression.operands[place], moment);
+  };
+  switch (expression.operation) {
+    case Operation::constant:
+      return expression.constant;
+    case Operation::input:
+      return moment.channel(expression.channel);
+    case Operation::variable:
+      return moment.variable(expression.index);
+    case Operation::negate:
+      return vm::negate(operand(0));
+    case Operation::logical_not:
+      return vm::logical_not(operand(0));
+    default:
+      return expression.operands.size() == 2 ? compute(expression.operation, operand(0), operand(1))
+                                             : vm::kUnknown;
+  }
+}
+
+}  // namespace robosync::compiler::testing

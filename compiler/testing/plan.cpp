@@ -1,0 +1,262 @@
+// A small layer above sema: names, units and commands are its business. May assume a program that
+// sema has found right.
+#include "compiler/testing/plan.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "compiler/sema/commands.hpp"
+#include "compiler/sema/expressions.hpp"
+#include "compiler/sema/variables.hpp"
+
+namespace robosync::compiler::testing {
+namespace {
+
+constexpr std::string_view kStopped = "stopped";  // in the place of a verb
+
+bool is_stopped(std::string_view verb) {
+  return std::ranges::equal(verb, kStopped, [](unsigned char a, unsigned char b) {
+    return std::tolower(a) == static_cast<int>(b);
+  });
+}
+
+// What an expectation must not ask of one moment.
+bool looks_back(const Expression& expression) {
+  return has_time_word(expression) || expression.operation == Operation::random ||
+         std::ranges::any_of(expression.operands, looks_back);
+}
+
+class Planner {
+public:
+  Planner(const Trees& trees, const Robot& robot)
+      : robot_(robot),
+        names_(trees, robot, diagnostics_),
+        expressions_(names_, diagnostics_),
+        commands_(robot, names_, expressions_, diagnostics_) {
+    Program ignored;
+    Variables(names_, expressions_, diagnostics_).declare(ignored);
+    diagnostics_ = {};  // whatever this said, sema has said before
+  }
+
+  void plan(const ast::Test& test, Span span, TestPlan& plan) {
+    const std::size_t before = diagnostics_.errors();
+    plan_ = &plan;
+    test_ = {test.title, span, {}, {}, 0};
+    now_ = 0;
+    for (const ast::TestStep& step : test.steps)
+      std::visit([&](const auto& node) { add(node, step.span); }, step.node);
+    if (diagnostics_.errors() == before) plan.tests.push_back(std::move(test_));
+  }
+
+  const Diagnostics& diagnostics() const { return diagnostics_; }
+
+private:
+  // ---- times
+  std::optional<Milliseconds> time(const ast::Expr& expr, const char* what) {
+    const auto value = expressions_.constant_amount(
+        expr, {&canonical_unit(vm::Dimension::duration), what, expr.span});
+    if (!value) return std::nullopt;
+    const vm::Value thousandths = value->code.constant;
+    if (thousandths >= 0 && static_cast<Milliseconds>(thousandths) <= kLongestTest) {
+      return static_cast<Milliseconds>(thousandths);
+    }
+    diagnostics_
+        .report(Code::E0509, thousandths < 0 ? "a time in a TEST cannot be negative"
+                                             : "a TEST cannot be longer than an hour")
+        .label(expr.span);
+    return std::nullopt;
+  }
+
+  // How long from now on; nothing after a mistake.
+  std::optional<Milliseconds> until(const ast::Expr& expr, const char* what) {
+    const auto length = time(expr, what);
+    if (!length) return std::nullopt;
+    if (now_ + *length > kLongestTest) {
+      diagnostics_.report(Code::E0509, "a TEST cannot be longer than an hour").label(expr.span);
+      return std::nullopt;
+    }
+    return now_ + *length;
+  }
+
+  void reach(Milliseconds end) { test_.end = std::max(test_.end, end); }
+
+  void expect(Span span, Milliseconds end, decltype(Expectation::what) what) {
+    reach(end);
+    test_.expectations.push_back({span, now_, end, std::move(what)});
+  }
+
+  // ---- AT t sensor = value
+  void add(const ast::TestFeed& node, Span span) {
+    const auto at = time(*node.at, "AT");
+    const auto channel = names_.find_channel(node.target);
+    if (!channel) return;
+    const auto value = reading(node, *channel, span);
+    if (!at || !value) return;
+    if (*at < now_) {
+      diagnostics_.report(Code::E0509, "this time is over already where it stands")
+          .label(node.at->span)
+          .helps("in a TEST, time only goes on: put this line further up");
+      return;
+    }
+    now_ = *at;
+    reach(now_);
+    plan_->channels[*channel] = {names_.sensor(*channel).name.text,
+                                 names_.channel(*channel).name.text};
+    test_.readings.push_back({now_, *channel, *value});
+  }
+
+  std::optional<vm::Value> reading(const ast::TestFeed& node, ChannelRef ref, Span span) {
+    const ChannelConfig& channel = names_.channel(ref);
+    if (node.text) return labelled(ast::Name{*node.text, span}, ref);
+    if (const auto* truth = std::get_if<ast::IsTruth>(&node.value->node)) {
+      if (channel.truth) return label_value(truth->truth ? 1 : 0);
+      diagnostics_.report(Code::E0306, "`" + names_.channel_name(ref) + "` is not true or false")
+          .label(span);
+      return std::nullopt;
+    }
+    if (!channel.labels.empty()) {
+      diagnostics_
+          .report(Code::E0306, "`" + names_.channel_name(ref) + "` gives words, not numbers")
+          .label(node.value->span)
+          .helps("write the word in quotes: \"" + channel.labels.front() + "\"");
+      return std::nullopt;
+    }
+    return in_range(*node.value, ref);
+  }
+
+  std::optional<vm::Value> labelled(const ast::Name& label, ChannelRef ref) {
+    const ChannelConfig& channel = names_.channel(ref);
+    if (channel.labels.empty()) {
+      diagnostics_
+          .report(Code::E0306, "`" + names_.channel_name(ref) + "` gives numbers, not words")
+          .label(label.span);
+      return std::nullopt;
+    }
+    const auto place = find_label(channel.labels, label, names_.channel_name(ref), diagnostics_);
+    return place ? std::optional(label_value(*place)) : std::nullopt;
+  }
+
+  std::optional<vm::Value> in_range(const ast::Expr& expr, ChannelRef ref) {
+    const ChannelConfig& channel = names_.channel(ref);
+    const auto value = expressions_.constant_amount(
+        expr, {channel.unit, names_.channel_name(ref), channel.unit_span});
+    if (!value) return std::nullopt;
+    if (value->code.constant >= channel.min && value->code.constant <= channel.max) {
+      return value->code.constant;
+    }
+    diagnostics_
+        .report(Code::E0509, "`" + names_.channel_name(ref) +
+                                 "` cannot measure this: it goes from " +
+                                 format_value(channel.min, *channel.unit) + " to " +
+                                 format_value(channel.max, *channel.unit))
+        .label(expr.span)
+        .label(channel.unit_span, "its range is said here", false);
+    return std::nullopt;
+  }
+
+  // ---- EXPECT
+  void add(const ast::ExpectCommand& node, Span span) {
+    const auto end = until(*node.within, "WITHIN");
+    if (is_stopped(node.command.verb.text)) {
+      add_stop(node, span, end);
+      return;
+    }
+    // One for a group, or for each of its members.
+    for (ProgramCommand& command : commands_.translate(node.command)) {
+      ExpectedCommand expected{node.no, actuator_names(command.actuators), command.verb.name,
+                               command.word ? command.word->name : std::string(),
+                               std::move(command.arguments)};
+      const bool one_moment = std::ranges::none_of(
+          expected.arguments,
+          [](const ProgramArgument& argument) { return looks_back(argument.value); });
+      if (!one_moment) report_moment(span);
+      if (end && one_moment) expect(span, *end, std::move(expected));
+    }
+  }
+
+  void add_stop(const ast::ExpectCommand& node, Span span, std::optional<Milliseconds> end) {
+    const auto* const word = node.command.arguments.size() == 1
+                                 ? std::get_if<ast::Word>(&node.command.arguments.front().value)
+                                 : nullptr;
+    if (word == nullptr) {
+      diagnostics_.report(Code::E0504, "`EXPECT STOPPED` names one actuator or group").label(span);
+      return;
+    }
+    const auto target = commands_.find_stopped(word->name);
+    if (target && end) expect(span, *end, ExpectedStop{node.no, actuator_names(target->actuators)});
+  }
+
+  void add(const ast::ExpectNothing& node, Span span) {
+    const auto end = until(*node.duration, "FOR");
+    if (!end) return;
+    expect(span, *end, ExpectedSilence{});
+    now_ = *end;
+  }
+
+  void add(const ast::ExpectThat& node, Span span) {
+    const auto end = node.within ? until(*node.within, "WITHIN") : std::optional(now_);
+    Typed condition = expressions_.condition(*node.condition);
+    if (condition.type != Type::condition) return;
+    if (looks_back(condition.code)) {
+      report_moment(node.condition->span);
+    } else if (end) {
+      name_channels(condition.code);
+      expect(span, *end, ExpectedTruth{std::move(condition.code)});
+    }
+  }
+
+  void add(const ast::Wait& node, Span) {
+    const auto end = until(*node.duration, "WAIT");
+    if (!end) return;
+    now_ = *end;
+    reach(now_);
+  }
+
+  void report_moment(Span span) {
+    diagnostics_.report(Code::E0409, "`EXPECT` looks at one moment at a time")
+        .label(span, "this needs the past, or chance")
+        .helps("expect something that can be seen at one moment, WITHIN some time");
+  }
+
+  void name_channels(const Expression& expression) {
+    if (expression.operation == Operation::input) {
+      plan_->channels[expression.channel] = {names_.sensor(expression.channel).name.text,
+                                             names_.channel(expression.channel).name.text};
+    }
+    for (const Expression& operand : expression.operands)
+      name_channels(operand);
+  }
+
+  std::vector<std::string> actuator_names(const std::vector<std::size_t>& actuators) const {
+    std::vector<std::string> names;
+    names.reserve(actuators.size());
+    for (const std::size_t actuator : actuators)
+      names.push_back(robot_.actuators[actuator].name.text);
+    return names;
+  }
+
+  const Robot& robot_;
+  Diagnostics diagnostics_;
+  Names names_;
+  Expressions expressions_;
+  Commands commands_;
+  TestPlan* plan_ = nullptr;
+  PlannedTest test_;
+  Milliseconds now_ = 0;  // where time stands in the TEST
+};
+
+}  // namespace
+
+TestPlan plan_tests(const Trees& trees, const Robot& robot, Diagnostics& diagnostics) {
+  TestPlan plan;
+  if (trees.empty()) return plan;
+  Planner planner(trees, robot);
+  for (const ast::Item& item : trees.front()->items) {
+    if (const auto* test = std::get_if<ast::Test>(&item.node)) planner.plan(*test, item.span, plan);
+  }
+  for (const Diagnostic& diagnostic : planner.diagnostics().all())
+    diagnostics.add(diagnostic);
+  return plan;
+}
+
+}  // namespace robosync::compiler::testing
