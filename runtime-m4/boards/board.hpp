@@ -1,0 +1,37 @@
+// What the portable runtime needs of a board. Implemented by boards/NAME/ and by port/host/.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "vm/image.hpp"
+
+namespace robosync::boards {
+
+class Board {
+public:
+  virtual const char* name() const = 0;
+  virtual std::uint8_t reset_reason() const = 0;  // link::Status::reset_reason
+
+  // One I2C transaction: writes `out`, then (repeated start) reads `in`. False when the device does
+  // not acknowledge or there is no such bus. Takes at most a few milliseconds.
+  virtual bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
+                            std::span<std::byte> in) = 0;
+  // Pulse width on a PWM pin in microseconds, 20 ms frame; 0 switches the output off.
+  virtual void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) = 0;
+  virtual std::uint32_t pwm_read(std::uint16_t pin) const = 0;
+
+  // The link's serial line. Both return at once with the number of bytes moved.
+  virtual std::size_t link_write(std::span<const std::byte> bytes) = 0;
+  virtual std::size_t link_read(std::span<std::byte> bytes) = 0;
+
+  // Starts the watchdog, and keeps it from resetting the board for another period (100 ms).
+  virtual void watchdog_start() = 0;
+  virtual void watchdog_kick() = 0;
+
+protected:
+  ~Board() = default;
+};
+
+}  // namespace robosync::boards

@@ -1,0 +1,105 @@
+#include "runtime-m4/boards/mps2-an386/board.hpp"
+
+#include "runtime-m4/port/cortex-m4/core.hpp"
+#include "runtime-m4/port/cortex-m4/hooks.hpp"
+
+std::array<volatile std::uint32_t, kVirtualPwmPins> robosync_virtual_pwm{};
+
+namespace robosync::boards::mps2 {
+
+namespace {
+
+// First time-out after 50 ms: NMI, outputs off. Second, 100 ms after the last kick: reset.
+constexpr std::uint32_t kWatchdogTicks = kClockHz / 20;
+
+// Survives a reset. Only believed when `magic` is right, which is taken away once it was read.
+struct ResetRecord {
+  std::uint32_t magic;
+  ResetReason reason;
+  bool has_fault;
+  link::Fault fault;
+};
+constexpr std::uint32_t kMagic = 0x52425354;
+[[gnu::section(".noinit")]] ResetRecord reset_record;
+
+WatchdogRegisters& watchdog() {
+  return at<WatchdogRegisters>(kWatchdog);
+}
+
+}  // namespace
+
+Board::Board() {
+  if (reset_record.magic == kMagic) {
+    reset_reason_ = reset_record.reason;
+    has_last_words_ = reset_record.has_fault;
+    last_words_ = reset_record.fault;
+  }
+  reset_record = {};
+}
+
+bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
+                         std::span<std::byte> in) {
+  return bus == 0 && i2c_.transfer(address, out, in);
+}
+
+void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {
+  if (pin < robosync_virtual_pwm.size()) robosync_virtual_pwm[pin] = pulse_us;
+}
+
+std::uint32_t Board::pwm_read(std::uint16_t pin) const {
+  return pin < robosync_virtual_pwm.size() ? robosync_virtual_pwm[pin] : 0;
+}
+
+void Board::watchdog_start() {
+  watchdog().lock = kWatchdogUnlock;
+  watchdog().load = kWatchdogTicks;
+  watchdog().control = kWatchdogOn;
+  watchdog().lock = 0;  // no stray write stops it now
+}
+
+void Board::watchdog_kick() {
+  watchdog().lock = kWatchdogUnlock;
+  watchdog().interrupt_clear = 1;
+  watchdog().lock = 0;
+}
+
+void switch_outputs_off() {
+  for (volatile std::uint32_t& pulse : robosync_virtual_pwm)
+    pulse = 0;
+}
+
+void reset_after(const link::Fault& fault) {
+  switch_outputs_off();
+  reset_record = {kMagic, ResetReason::software, true, fault};
+  port::core::reset();
+}
+
+}  // namespace robosync::boards::mps2
+
+const std::uint32_t robosync::port::hooks::kCoreHz = robosync::boards::mps2::kClockHz;
+
+extern "C" {
+
+void NMI_Handler();
+void Uart0Receive_Handler();
+void Uart0Transmit_Handler();
+
+// The watchdog was not kicked in time. It cannot be masked, so the outputs go off whatever hangs;
+// then the second time-out resets.
+void NMI_Handler() {
+  using namespace robosync::boards::mps2;
+  switch_outputs_off();
+  reset_record = {kMagic, ResetReason::watchdog, false, {}};
+  while (true)
+    asm volatile("" ::: "memory");  // the record is read after the reset: keep the store
+}
+
+void Uart0Receive_Handler() {
+  robosync_board.uart().on_receive();
+}
+
+void Uart0Transmit_Handler() {
+  robosync_board.uart().on_transmit();
+}
+
+}  // extern "C"

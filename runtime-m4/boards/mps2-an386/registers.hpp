@@ -1,0 +1,56 @@
+// The peripherals of the MPS2 board with FPGA image AN386 (Cortex-M4) that the firmware uses.
+// Application note AN386, and the CMSDK manual for UART and watchdog.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace robosync::boards::mps2 {
+
+inline constexpr std::uint32_t kClockHz = 25'000'000;
+
+struct UartRegisters {  // CMSDK APB UART
+  volatile std::uint32_t data;
+  volatile std::uint32_t state;
+  volatile std::uint32_t control;
+  volatile std::uint32_t interrupt;  // read: pending, write 1: clear
+  volatile std::uint32_t baud_divider;
+};
+inline constexpr std::uintptr_t kUart0 = 0x4000'4000;
+inline constexpr unsigned kUart0ReceiveInterrupt = 0;
+inline constexpr unsigned kUart0TransmitInterrupt = 1;
+inline constexpr std::uint32_t kUartStateTransmitFull = 1U << 0;
+inline constexpr std::uint32_t kUartStateReceiveFull = 1U << 1;
+inline constexpr std::uint32_t kUartControlOn = 0b1111;  // transmitter, receiver, their interrupts
+inline constexpr std::uint32_t kUartTransmitted = 1U << 0;
+inline constexpr std::uint32_t kUartReceived = 1U << 1;
+
+struct I2cRegisters {            // SBCon: two open-drain lines that software drives
+  volatile std::uint32_t set;    // read: state of the lines; write 1: let the line go
+  volatile std::uint32_t clear;  // write 1: pull the line down
+};
+inline constexpr std::uintptr_t kI2c0 = 0x4002'A000;  // the bus on which QEMU puts -device
+inline constexpr std::uint32_t kI2cClock = 1U << 0;
+inline constexpr std::uint32_t kI2cData = 1U << 1;
+
+struct WatchdogRegisters {  // CMSDK APB watchdog
+  volatile std::uint32_t load;
+  volatile std::uint32_t value;
+  volatile std::uint32_t control;
+  volatile std::uint32_t interrupt_clear;
+  volatile std::uint32_t raw_interrupt;
+  volatile std::uint32_t interrupt;
+  std::uint32_t reserved[762];
+  volatile std::uint32_t lock;
+};
+static_assert(offsetof(WatchdogRegisters, lock) == 0xC00);
+inline constexpr std::uintptr_t kWatchdog = 0x4000'8000;
+inline constexpr std::uint32_t kWatchdogOn = 0b11;  // first time-out: NMI, second: reset
+inline constexpr std::uint32_t kWatchdogUnlock = 0x1ACC'E551;
+
+template <typename Registers>
+Registers& at(std::uintptr_t address) {
+  return *reinterpret_cast<Registers*>(address);
+}
+
+}  // namespace robosync::boards::mps2

@@ -1,0 +1,103 @@
+// The drivers this firmware has, found by the number in the image: static dispatch over
+// vm/drivers.def, one .cpp file for each. No driver blocks, allocates, or keeps state of its own.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/drivers/motion.hpp"
+#include "runtime-m4/kernel/time.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::drivers {
+
+// --- sensors ---
+
+// One sample of one channel as a raw count. False when the device did not answer.
+using ReadFunction = bool (*)(boards::Board& board, const vm::Sensor& sensor,
+                              const vm::Channel& channel, std::int32_t& raw);
+
+// --- actuators ---
+
+// What an actuator is to do: parameters are known values inside the actuator's range and limits.
+struct Order {
+  vm::Action action = vm::Action::stop;
+  std::uint8_t given = 0;  // bit p: params[p] is there
+  std::array<vm::Value, static_cast<std::size_t>(vm::Param::count_)> params{};
+
+  bool has(vm::Param param) const { return (given >> static_cast<unsigned>(param) & 1) != 0; }
+  vm::Value get(vm::Param param, vm::Value otherwise) const {
+    return has(param) ? params[static_cast<std::size_t>(param)] : otherwise;
+  }
+};
+
+// What a driver keeps of its actuator between calls.
+struct ActuatorState {
+  Motion motion;           // where it is, as far as the driver knows
+  vm::Value home = 0;      // where a gesture began, and ends
+  vm::Value speed = 0;     // of the gesture, per second
+  kernel::Time until = 0;  // when the command is done
+  std::uint16_t legs = 0;  // movements of the gesture still to come
+  bool placed = false;     // `motion` says where it is
+};
+
+struct Device {
+  boards::Board& board;
+  const vm::Actuator& wiring;
+  ActuatorState& state;
+};
+
+inline constexpr kernel::Time kDone = 0;
+
+// start: begins an order; advance: goes on with it. Both return when they want to be called again,
+// or kDone. release: what the actuator does when nobody commands it any more, from any state.
+using StartFunction = kernel::Time (*)(Device device, const Order& order, kernel::Time now);
+using AdvanceFunction = kernel::Time (*)(Device device, kernel::Time now);
+using ReleaseFunction = void (*)(Device device, vm::Release how, kernel::Time now);
+
+#define SENSOR_DRIVER(name, doc)                                                        \
+  namespace name {                                                                      \
+  bool read(boards::Board& board, const vm::Sensor& sensor, const vm::Channel& channel, \
+            std::int32_t& raw);                                                         \
+  }
+#define ACTUATOR_DRIVER(name, doc)                                         \
+  namespace name {                                                         \
+  kernel::Time start(Device device, const Order& order, kernel::Time now); \
+  kernel::Time advance(Device device, kernel::Time now);                   \
+  void release(Device device, vm::Release how, kernel::Time now);          \
+  }
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+
+struct Driver {
+  ReadFunction read = nullptr;    // sensors
+  StartFunction start = nullptr;  // actuators
+  AdvanceFunction advance = nullptr;
+  ReleaseFunction release = nullptr;
+};
+
+inline constexpr Driver kDrivers[] = {
+#define SENSOR_DRIVER(name, doc) {name::read, nullptr, nullptr, nullptr},
+#define ACTUATOR_DRIVER(name, doc) {nullptr, name::start, name::advance, name::release},
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+};
+
+// Bit d: driver d is in this firmware (vm::Limits::drivers).
+inline constexpr std::uint32_t kPresent = ~std::uint32_t{0} >>
+                                          (32 - sizeof kDrivers / sizeof kDrivers[0]);
+
+// `id` comes from a verified image.
+constexpr const Driver& driver(vm::DriverId id) {
+  return kDrivers[static_cast<std::size_t>(id)];
+}
+
+// Thousandths of a second, as OVER and FOR carry them, in microseconds; negative is none.
+constexpr kernel::Duration duration_of(vm::Value thousandths) {
+  return thousandths > 0 ? static_cast<kernel::Duration>(thousandths) * 1000 : 0;
+}
+
+}  // namespace robosync::drivers

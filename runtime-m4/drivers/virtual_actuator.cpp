@@ -1,0 +1,17 @@
+// An actuator that is not there: its commands are seen in the trace. It takes as long as FOR or
+// OVER says, one second when neither does.
+#include "runtime-m4/drivers/timed.hpp"
+
+namespace robosync::drivers::virtual_actuator {
+
+kernel::Time start(Device device, const Order& order, kernel::Time now) {
+  return take_time(device, order, now);
+}
+
+kernel::Time advance(Device device, kernel::Time now) {
+  return go_on(device, now);
+}
+
+void release(Device, vm::Release, kernel::Time) {}
+
+}  // namespace robosync::drivers::virtual_actuator

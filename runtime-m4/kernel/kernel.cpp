@@ -1,0 +1,125 @@
+// Waiting, waking and time: the paths that are in a hurry. bench/ counts their instructions.
+//
+// A thread's bit in the ready set and its events change under a Lock only, so that interrupts see
+// them whole; the one exception is Thread::take(), which is atomic by itself. Every path is
+// bounded: the longest is wake_due() when all threads are due at one tick.
+#include "runtime-m4/kernel/kernel.hpp"
+
+#include <algorithm>
+
+namespace robosync::kernel {
+
+namespace {
+
+constexpr std::uint32_t kLongestSleep = 0xFFFF'FFFF;  // microseconds; wait() sleeps again after it
+
+}  // namespace
+
+Time Kernel::now() const {
+  port::Lock lock(machine_);
+  return ticks_ * kTick;
+}
+
+Events Kernel::wait_for(Events mask) {
+  Thread& self = *running_;
+  {
+    port::Lock lock(machine_);
+    if ((self.events_ & mask) == 0) block(self, mask);
+  }  // here the switch happens, and here the thread goes on when it was woken
+  const Events taken = self.take(mask);
+  // Nothing wakes it but an event, so this is for a machine that switches late.
+  if (taken == 0) [[unlikely]]
+    return wait_until(mask, kForever);
+  return taken;
+}
+
+Events Kernel::wait_until(Events mask, Time deadline) {
+  Thread& self = *running_;
+  Events taken = 0;
+  bool reached = false;
+  do {
+    {
+      port::Lock lock(machine_);
+      if ((self.events_ & mask) == 0) {
+        reached = !arm(self, deadline);
+        if (!reached) block(self, mask);
+      }
+    }
+    taken = self.take(mask);
+    // The timer is taken back here and not by signal(), whose path it would lengthen. Until then
+    // it can do no harm: it would make this thread ready, which it is.
+    disarm(self);
+  } while (taken == 0 && !reached);
+  return taken;
+}
+
+void Kernel::disarm(Thread& thread) {
+  port::Lock lock(machine_);
+  if (thread.armed()) TimerQueue::disarm(thread);
+}
+
+// False when the deadline is reached already.
+bool Kernel::arm(Thread& thread, Time deadline) {
+  const Time time = ticks_ * kTick;
+  if (deadline <= time) return false;
+  const auto sleep = static_cast<std::uint32_t>(std::min<Time>(deadline - time, kLongestSleep));
+  constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);
+  const std::uint32_t ticks = sleep / kTickLength + (sleep % kTickLength != 0 ? 1 : 0);
+  const auto tick = static_cast<std::uint32_t>(ticks_);
+  timers_.arm(thread, tick + ticks, tick);
+  return true;
+}
+
+void Kernel::block(Thread& thread, Events mask) {
+  thread.wanted_ = mask;
+  ++thread.activations_;
+  ReadySet::erase(thread.ready_place_);
+  running_rank_ = kNoneRuns;
+  machine_.request_switch();
+}
+
+void Kernel::make_ready(Thread& thread) {
+  ReadySet::insert(thread.ready_place_);
+  if (thread.rank_ < running_rank_) machine_.request_switch();
+}
+
+void Kernel::make_unready(Thread& thread) {
+  disarm(thread);
+  thread.wanted_ = 0;
+  ReadySet::erase(thread.ready_place_);
+}
+
+void Kernel::signal(Thread& thread, Events events) {
+  port::Lock lock(machine_);
+  const Events all = thread.events_ | events;
+  thread.events_ = all;
+  if ((all & thread.wanted_) == 0) return;
+  make_ready(thread);
+}
+
+void Kernel::stop(Thread& thread) {
+  port::Lock lock(machine_);
+  if (thread.state_ != Thread::State::ready) return;
+  make_unready(thread);
+  thread.state_ = Thread::State::stopped;
+  if (&thread == running_) {
+    running_rank_ = kNoneRuns;
+    machine_.request_switch();
+  }
+  if (stop_watcher_ != nullptr) signal(*stop_watcher_, stop_events_);
+}
+
+void Kernel::wake_due() {
+  port::Lock lock(machine_);
+  const auto tick = static_cast<std::uint32_t>(ticks_);
+  while (timers_.has_work(tick)) {
+    Timer* due = timers_.collect();
+    while (due != nullptr) {
+      auto& thread = static_cast<Thread&>(*due);
+      due = due->next;
+      make_ready(thread);
+    }
+  }
+}
+
+}  // namespace robosync::kernel

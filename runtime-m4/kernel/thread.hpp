@@ -1,0 +1,73 @@
+// A thread: what is needed to create one, and what the kernel keeps of it (its control block).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "runtime-m4/kernel/scheduler.hpp"
+#include "runtime-m4/kernel/time.hpp"
+#include "runtime-m4/kernel/timer_queue.hpp"
+#include "runtime-m4/port/port.hpp"
+
+namespace robosync::kernel {
+
+using Events = std::uint32_t;
+
+struct ThreadSpec {
+  const char* name = "";  // for reports; must outlive the thread
+  Category category = Category::system;
+  std::int16_t priority = 0;  // max over the behaviours that need it (paper: Priority(T))
+  void (*entry)(void*) = nullptr;
+  void* argument = nullptr;
+  std::span<std::byte> stack;  // alignas(port::kStackAlignment), at least port::kMinStack
+};
+
+// Unused stack is filled with this, to see later how deep it was used.
+inline constexpr std::byte kPaint{0xA5};
+
+class Thread : private Timer {
+public:
+  // How it stands; the numbers are link::ThreadInfo::state.
+  enum class State : std::uint8_t { blocked, ready, stopped, absent };
+
+  Thread() = default;
+  Thread(const Thread&) = delete;
+  Thread& operator=(const Thread&) = delete;
+
+  const char* name() const { return name_; }
+  Category category() const { return category_; }
+  std::int16_t priority() const { return priority_; }
+  std::uint8_t rank() const { return rank_; }                 // 0 is the highest
+  std::uint32_t activations() const { return activations_; }  // times it went to wait
+  // What it can use of its stack.
+  std::span<std::byte> stack() const { return {stack_, stack_bytes_}; }
+  std::size_t stack_used() const;  // most bytes in use since it was added
+
+private:
+  friend class Kernel;
+
+  void set_stack(std::span<std::byte> stack);  // and paints it
+  void set_rank(unsigned rank, ReadySet& ready) {
+    rank_ = static_cast<std::uint8_t>(rank);
+    ready_place_ = ready.place(rank);
+  }
+
+  // Takes those of `mask` that are there. [the thread itself]
+  Events take(Events mask) { return port::fetch_and_clear(events_, mask) & mask; }
+
+  ReadySet::Place ready_place_;
+  Events events_ = 0;  // signalled and not yet taken
+  Events wanted_ = 0;  // what it waits for, or waited for last
+  port::Context context_;
+  std::byte* stack_ = nullptr;
+  const char* name_ = "";
+  std::uint32_t activations_ = 0;
+  std::uint16_t stack_bytes_ = 0;
+  std::int16_t priority_ = 0;
+  Category category_ = Category::system;
+  std::uint8_t rank_ = kIdleRank;
+  State state_ = State::absent;  // stopped or absent; else the ready set says whether it is blocked
+};
+
+}  // namespace robosync::kernel

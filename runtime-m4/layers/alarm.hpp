@@ -1,0 +1,27 @@
+// Wakes the safety thread when an input changes that a safety rule reads.
+#pragma once
+
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/messages.hpp"
+
+namespace robosync::layers {
+
+class Alarm {
+public:
+  Alarm(kernel::Kernel& kernel, kernel::Thread& safety_thread, kernel::Events news)
+      : kernel_(kernel), thread_(safety_thread), news_(news) {}
+
+  void watch(InputMask inputs) { inputs_ = inputs; }
+  // The safety thread outranks whoever calls: it has done its work when this returns.
+  void ring(InputMask changed) {
+    if ((changed & inputs_) != 0) kernel_.signal(thread_, news_);
+  }
+
+private:
+  kernel::Kernel& kernel_;
+  kernel::Thread& thread_;
+  kernel::Events news_;
+  InputMask inputs_ = 0;
+};
+
+}  // namespace robosync::layers

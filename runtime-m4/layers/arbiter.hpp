@@ -1,0 +1,54 @@
+// Who gets the actuators. Pure: what is decided depends on the arguments only.
+//
+// Claims of a step are served from the highest priority down, inside a behaviour in file order;
+// that is the order of the rules in the image. Semantics: 10-language.md 3.3, 3.5, 3.6, and what
+// they leave open:
+// * Claims of one step come at the same time, so none is "later": what was won in this step is not
+//   lost in it. Of two rules of one behaviour that trigger together, the earlier in the file wins.
+// * A claim that is tried again takes nothing from its own behaviour: only a trigger does.
+// * Choosing the other side of a WHEN/ELSE ends the running one, even when the new side loses. So
+//   does starting again (RESTARTING).
+// * What safety has halted nobody gets; the claim loses to the behaviour that holds the safety
+// rules.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "runtime-m4/layers/messages.hpp"
+
+namespace robosync::layers {
+
+enum class Side : std::uint8_t { otherwise, then };  // the number is the `side` of trace events
+
+// A rule triggered and wants its response to run.
+struct Claim {
+  std::uint8_t rule;
+  std::uint8_t behavior;
+  Side side;
+  ActuatorMask actuators;   // all its response can ever use; it gets all or none
+  bool restarting = false;  // if it runs already on that side, it starts again
+  bool retries = false;     // it did not trigger now, but wants to run since earlier
+};
+
+// What a rule has at present. A table of these, by rule, is all there is to know of ownership.
+struct Holding {
+  ActuatorMask actuators = 0;  // while `running`
+  ActuatorMask pending = 0;    // of these, the ones with commands not yet done
+  std::uint8_t behavior = 0;
+  Side side = Side::then;
+  bool running : 1 = false;
+  bool won_now : 1 = false;  // in this step
+  bool has_run : 1 = false;  // its response began or went on in the millisecond of the last step
+};
+
+struct Decision {
+  RuleMask interrupted = 0;  // running rules that end because of this claim
+  bool wins = false;
+  std::uint8_t owner = 0;  // if it does not win: the behaviour in its way, of the highest priority
+};
+
+[[nodiscard]] Decision decide(const Claim& claim, std::span<const Holding> holdings,
+                              ActuatorMask halted = 0);
+
+}  // namespace robosync::layers

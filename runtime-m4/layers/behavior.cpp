@@ -1,0 +1,209 @@
+// See behavior.hpp. May rely on the verifier for every index in the image, and for responses that
+// give up within the step's budget and kMaxResponseOutput words.
+#include "runtime-m4/layers/behavior.hpp"
+
+#include <bit>
+#include <utility>
+
+#include "runtime-m4/layers/clock.hpp"
+#include "runtime-m4/layers/report.hpp"
+
+namespace robosync::layers {
+
+using link::EventKind;
+
+bool BehaviorLayer::start(const Program& program, Crew& crew) {
+  program_ = &program;
+  snapshot_ = nullptr;
+  released_ = 0;
+  retired_ = 0;
+  places_.fill({});
+  for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b)
+    if (!start_unit(b, crew)) return false;
+  return true;
+}
+
+bool BehaviorLayer::start_unit(unsigned behavior, Crew& crew) {
+  Unit& unit = units_[behavior];
+  unit.layer = this;
+  unit.behavior = static_cast<std::uint8_t>(behavior);
+  unit.wake = kNever;
+  const vm::Behavior& wiring = program_->image.behaviors[behavior];
+  kernel::ThreadSpec spec;
+  spec.name = name_of(program_->image, wiring.name, "rule");
+  spec.category = kernel::Category::behavior;
+  spec.priority = wiring.priority;
+  spec.entry = [](void* self) {
+    auto& mine = *static_cast<Unit*>(self);
+    mine.layer->run(mine);
+  };
+  spec.argument = &unit;
+  unit.thread = crew.start(spec, behavior, kBehaviorStack);
+  return unit.thread != nullptr;
+}
+
+// --- called from the step thread ---
+
+void BehaviorLayer::evaluate(BehaviorMask behaviors, const Snapshot& snapshot) {
+  snapshot_ = &snapshot;
+  const auto lock = kernel_.lock();  // all of them are ready before the first one runs
+  for (BehaviorMask left = behaviors & ~retired_; left != 0; left &= left - 1)
+    release(static_cast<unsigned>(std::countr_zero(left)), kEvaluate);
+}
+
+void BehaviorLayer::respond(unsigned rule, Side side) {
+  places_[rule] = {};
+  release(rule, program_->image.responses[response_of(rule, side)].start);
+}
+
+void BehaviorLayer::go_on(unsigned rule) {
+  release(rule, places_[rule].next);
+}
+
+void BehaviorLayer::release(unsigned rule, std::uint16_t code) {
+  rule_ = static_cast<std::uint8_t>(rule);
+  code_ = code;
+  result_ = {};
+  const unsigned behavior = program_->behavior_of[rule];
+  const auto lock = kernel_.lock();
+  if (!has(retired_, behavior)) release(behavior, kRespond);
+}
+
+void BehaviorLayer::release(unsigned behavior, kernel::Events event) {
+  released_ |= bit<BehaviorMask>(behavior);
+  kernel_.signal(*units_[behavior].thread, event);
+}
+
+void BehaviorLayer::conclude(unsigned rule) {
+  Place& place = places_[rule];
+  const vm::Progress& progress = result_.progress;
+  const bool waited = place.pause != vm::Pause::ended;
+  const bool moved = progress.pause != vm::Pause::still_polling;
+  const Stamp stamp = layers_.trace.step();
+  if (waited && moved) layers_.trace.emit(EventKind::go_on, stamp, rule);
+  if (layers_.triggers.take_zero_divide(rule))
+    layers_.trace.emit(EventKind::zero_divide, stamp, rule);
+  put_out(std::span(output_).first(result_.words));
+  place = {};
+  if (progress.pause == vm::Pause::ended) return;
+  const bool for_commands = progress.pause == vm::Pause::until_done;
+  place = {.wake = for_commands ? snapshot_->milliseconds() + 1 : progress.wake,
+           .next = static_cast<std::uint16_t>(progress.next - program_->image.code.data()),
+           .pause = progress.pause};
+  if (moved) layers_.trace.emit(EventKind::wait, stamp, rule);
+}
+
+void BehaviorLayer::put_out(std::span<const vm::Word> output) {
+  vm::OutputReader reader(output);
+  vm::Output said{};
+  while (reader.next(said)) {
+    if (said.kind == vm::OutputKind::command) {
+      stage(said);
+    } else {
+      report_text(layers_.trace, said, layers_.trace.step());
+    }
+  }
+}
+
+// A command to a group goes to each member.
+void BehaviorLayer::stage(const vm::Output& said) {
+  Command command;
+  command.verb_ = said.verb;
+  command.word_ = said.word;
+  command.given_ = said.given;
+  command.params_ = said.params;
+  for (ActuatorMask left = program_->image.target_mask(said.target); left != 0; left &= left - 1) {
+    command.actuator_ = static_cast<std::uint8_t>(std::countr_zero(left));
+    layers_.control.stage(command);
+  }
+}
+
+void BehaviorLayer::retire(unsigned behavior) {
+  const vm::Behavior& wiring = program_->image.behaviors[behavior];
+  for (unsigned r = 0; r < wiring.rule_count; ++r)
+    layers_.triggers.retire(wiring.first_rule + r);
+  units_[behavior].wake = kNever;
+  retired_ |= bit<BehaviorMask>(behavior);
+  released_ &= ~bit<BehaviorMask>(behavior);
+}
+
+std::uint16_t BehaviorLayer::response_of(unsigned rule, Side side) const {
+  const vm::Rule& wiring = program_->image.rules[rule];
+  return side == Side::then ? wiring.then_response : wiring.else_response;
+}
+
+// --- the behaviour's thread ---
+
+void BehaviorLayer::run(Unit& unit) {
+  vm::Machine machine = layers_.frames.machine(*program_, unit.behavior);
+  while (true) {
+    const kernel::Events events = kernel_.wait(kEvaluate | kRespond);
+    latch(unit, machine);
+    if ((events & kEvaluate) != 0) evaluate_rules(unit, machine);
+    if ((events & kRespond) != 0) run_response(unit, machine);
+    const auto lock = kernel_.lock();
+    released_ &= ~bit<BehaviorMask>(unit.behavior);
+    kernel_.signal(step_thread_, finished_);
+  }
+}
+
+void BehaviorLayer::latch(const Unit& unit, vm::Machine& machine) {
+  Frames::latch(machine, program_->image, program_->image.behaviors[unit.behavior],
+                [this](std::uint8_t input) { return snapshot_->value(input); });
+  machine.now = snapshot_->milliseconds();
+  machine.wake = kNever;
+}
+
+void BehaviorLayer::evaluate_rules(Unit& unit, vm::Machine& machine) {
+  const vm::Image& image = program_->image;
+  const vm::Behavior& behavior = image.behaviors[unit.behavior];
+  vm::Value* watched = machine.frame + behavior.input_count + behavior.locals;
+  Soonest wake(machine.now);
+  for (unsigned r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count; ++r) {
+    switch (image.rules[r].kind) {
+      case vm::RuleKind::start:
+        layers_.triggers.begin(r);
+        break;
+      case vm::RuleKind::every:
+        evaluate_period(r, machine);
+        wake.at(layers_.triggers.next_period(r));
+        break;
+      case vm::RuleKind::watch:
+        *watched++ = evaluate_rule(r, machine);
+        break;
+      default: {
+        const vm::Value condition = evaluate_rule(r, machine);
+        layers_.triggers.judge(r, condition, machine.event);
+      }
+    }
+  }
+  wake.at(machine.wake);
+  unit.wake =
+      wake.delay() == kNever ? kNever : machine.now + std::max<std::uint32_t>(wake.delay(), 1);
+}
+
+vm::Value BehaviorLayer::evaluate_rule(unsigned rule, vm::Machine& machine) {
+  machine.event = false;
+  const vm::Value value =
+      vm::evaluate(machine, &program_->image.code[program_->image.rules[rule].condition_start]);
+  if (std::exchange(machine.divided_by_zero, false)) layers_.triggers.note_zero_divide(rule);
+  return value;
+}
+
+void BehaviorLayer::evaluate_period(unsigned rule, vm::Machine& machine) {
+  if (!layers_.triggers.begin_period(rule, machine.now)) return;
+  layers_.triggers.draw_period(rule, evaluate_rule(rule, machine), machine.now);
+}
+
+void BehaviorLayer::run_response(const Unit& unit, vm::Machine& machine) {
+  machine.output = output_.data();
+  machine.output_end = output_.data() + output_.size();
+  machine.written = 0;
+  machine.assigned = 0;
+  result_.progress = vm::respond(machine, &program_->image.code[code_]);
+  result_.words = static_cast<std::uint16_t>(machine.output - output_.data());
+  if (std::exchange(machine.divided_by_zero, false)) layers_.triggers.note_zero_divide(rule_);
+  layers_.variables.stage(machine, program_->image.behaviors[unit.behavior], *snapshot_);
+}
+
+}  // namespace robosync::layers

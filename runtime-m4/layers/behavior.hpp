@@ -1,0 +1,112 @@
+// Behaviour layer: one thread per behaviour, ranked by priority.
+//
+// Released by the step thread, a behaviour copies its inputs from the snapshot into its frame and
+// evaluates the conditions of all its rules; what follows from them is up to Triggers and the step
+// thread. It is released again to run a response, from its beginning or from where it waits; what
+// that sets is staged with the variables, what it puts out the step thread takes from here:
+// commands to the control layer, texts to the trace. It sees its frame and nothing else.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/arbiter.hpp"
+#include "runtime-m4/layers/control.hpp"
+#include "runtime-m4/layers/crew.hpp"
+#include "runtime-m4/layers/frames.hpp"
+#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/trace.hpp"
+#include "runtime-m4/layers/triggers.hpp"
+#include "runtime-m4/layers/variables.hpp"
+#include "vm/interpreter.hpp"
+#include "vm/output.hpp"
+
+namespace robosync::layers {
+
+class BehaviorLayer {
+public:
+  struct Neighbours {
+    Trace& trace;
+    Frames& frames;
+    Triggers& triggers;
+    Variables& variables;
+    ControlLayer& control;
+  };
+  // Where a response waits.
+  struct Place {
+    std::uint32_t wake = vm::Machine::kNever;  // program time; of all waits but THEN
+    std::uint16_t next = 0;                    // word of the code section
+    vm::Pause pause = vm::Pause::ended;
+  };
+
+  // `finished` of `step_thread` is signalled when a behaviour has done what it was released for.
+  BehaviorLayer(kernel::Kernel& kernel, const Neighbours& neighbours, kernel::Thread& step_thread,
+                kernel::Events finished)
+      : kernel_(kernel), layers_(neighbours), step_thread_(step_thread), finished_(finished) {}
+
+  // Starts the threads of `program`, which must stay until they are dismissed.
+  [[nodiscard]] bool start(const Program& program, Crew& crew);
+
+  // --- for the step thread; busy() until all released ones have finished ---
+  void evaluate(BehaviorMask behaviors, const Snapshot& snapshot);
+  void respond(unsigned rule, Side side);
+  void go_on(unsigned rule);
+  bool busy() const { return released_.load(std::memory_order_relaxed) != 0; }
+  // The response has been run: tells what it has put out, stages its commands, and notes where it
+  // waits. Not before, so that the behaviours' stacks can be short.
+  void conclude(unsigned rule);
+  const Place& place(unsigned rule) const { return places_[rule]; }
+  void forget_place(unsigned rule) { places_[rule] = {}; }
+  // When the conditions of a behaviour may change although its inputs do not; kNever for never.
+  std::uint32_t wake(unsigned behavior) const { return units_[behavior].wake; }
+  void retire(unsigned behavior);  // its thread was stopped
+
+  std::uint16_t response_of(unsigned rule, Side side) const;
+
+private:
+  static constexpr kernel::Events kEvaluate = 1;
+  static constexpr kernel::Events kRespond = 2;
+
+  struct Unit {
+    BehaviorLayer* layer = nullptr;
+    kernel::Thread* thread = nullptr;
+    std::uint32_t wake = vm::Machine::kNever;
+    std::uint8_t behavior = 0;
+  };
+
+  [[nodiscard]] bool start_unit(unsigned behavior, Crew& crew);
+  void run(Unit& unit);
+  void latch(const Unit& unit, vm::Machine& machine);
+  void evaluate_rules(Unit& unit, vm::Machine& machine);
+  vm::Value evaluate_rule(unsigned rule, vm::Machine& machine);
+  void evaluate_period(unsigned rule, vm::Machine& machine);
+  void run_response(const Unit& unit, vm::Machine& machine);
+  void put_out(std::span<const vm::Word> output);
+  void stage(const vm::Output& said);
+  void release(unsigned rule, std::uint16_t code);
+  void release(unsigned behavior, kernel::Events event);
+
+  kernel::Kernel& kernel_;
+  Neighbours layers_;
+  kernel::Thread& step_thread_;
+  kernel::Events finished_;
+  const Program* program_ = nullptr;
+  const Snapshot* snapshot_ = nullptr;
+  std::atomic<BehaviorMask> released_ = 0;
+  BehaviorMask retired_ = 0;
+  // What the behaviour that is released for it runs: the response of which rule, and from where.
+  std::uint8_t rule_ = 0;
+  std::uint16_t code_ = 0;
+  struct {
+    vm::Progress progress;
+    std::uint16_t words = 0;  // in output_
+  } result_;                  // what came of it
+  std::array<Unit, kMaxBehaviors> units_{};
+  std::array<Place, kMaxRules> places_{};
+  // One response runs at a time, so one output is enough.
+  std::array<vm::Word, vm::kMaxResponseOutput> output_{};
+};
+
+}  // namespace robosync::layers

@@ -1,0 +1,54 @@
+// CHECKs: which band the value of a channel or variable is in.
+//
+// SMOOTH takes the median of the samples in a window. A sample is what the input is at an instant
+// of a fixed raster, which begins with the first known value; between two readings it keeps its
+// value. So the median goes on changing after the last reading, until the window holds nothing
+// else; next() says when. Until the window is full the median is that of the samples there are; of
+// an even number of samples it is the lower middle one. An unknown value empties the window, and
+// its band is unknown.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "runtime-m4/layers/messages.hpp"
+#include "vm/interpreter.hpp"
+
+namespace robosync::layers {
+
+class Checks {
+public:
+  void start(const vm::Image& image);
+
+  // Puts the band of `check` at `now` (milliseconds of program time) into `values`, the values of
+  // all inputs. Returns whether it changed. Several calls at one time are one sample.
+  bool update(unsigned check, std::uint32_t now, std::span<vm::Value> values);
+  // In how many milliseconds a band may change although no input does; kNever for never.
+  std::uint32_t next(std::uint32_t now) const;
+
+private:
+  struct Window {
+    vm::Value held = vm::kUnknown;    // the input since the last step
+    vm::Value median = vm::kUnknown;  // of its samples
+    std::uint32_t newest = 0;         // when the newest one was taken
+    std::uint8_t count = 0;
+    std::uint8_t head = 0;   // place of the newest one
+    std::uint8_t first = 0;  // place of its samples among all
+  };
+  using Samples = std::span<vm::Value>;
+
+  static vm::Value smoothed(Window& window, Samples samples, unsigned period_ms, std::uint32_t now,
+                            vm::Value value);
+  static void push(Window& window, Samples samples, vm::Value value);
+  static vm::Value median(const Window& window, Samples samples);
+  vm::Value band_of(const vm::Check& check, vm::Value value, vm::Value before) const;
+
+  std::span<const vm::Check> wiring_;
+  std::span<const vm::Band> bands_;
+  std::size_t channels_ = 0;
+  std::array<Window, kMaxChecks> windows_{};
+  std::array<vm::Value, kMaxSamples> samples_{};  // of the windows, one behind the other
+};
+
+}  // namespace robosync::layers

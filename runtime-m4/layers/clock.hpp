@@ -1,0 +1,36 @@
+// Milliseconds of program time, as the VM counts them. They wrap after 49 days, so only differences
+// say what is earlier; none that matters is longer than 24 days.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "vm/interpreter.hpp"
+
+namespace robosync::layers {
+
+inline constexpr std::uint32_t kNever = vm::Machine::kNever;
+
+// `now` is `time`, or later.
+constexpr bool reached(std::uint32_t time, std::uint32_t now) {
+  return static_cast<std::int32_t>(now - time) >= 0;
+}
+
+// The first of several times that are to come; one that is over counts as now.
+class Soonest {
+public:
+  explicit Soonest(std::uint32_t now) : now_(now) {}
+
+  void at(std::uint32_t time) {
+    if (time == kNever) return;
+    delay_ = std::min(delay_, reached(time, now_) ? 0 : time - now_);
+  }
+  void in(std::uint32_t delay) { delay_ = std::min(delay_, delay); }
+  std::uint32_t delay() const { return delay_; }  // milliseconds from now; kNever
+
+private:
+  std::uint32_t now_;
+  std::uint32_t delay_ = kNever;
+};
+
+}  // namespace robosync::layers

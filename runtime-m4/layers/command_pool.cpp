@@ -1,0 +1,53 @@
+// See command_pool.hpp. Linked lists of indices; none is longer than kMaxCommands.
+#include "runtime-m4/layers/command_pool.hpp"
+
+#include <utility>
+
+namespace robosync::layers {
+
+CommandPool::CommandPool() {
+  for (unsigned i = 0; i + 1 < kMaxCommands; ++i)
+    places_[i].next = static_cast<std::uint8_t>(i + 1);
+}
+
+bool CommandPool::push(Queue& queue, const Command& command) {
+  if (queue.count == kMaxQueued || free_ == kNone) return false;
+  const std::uint8_t taken = free_;
+  Place& place = places_[taken];
+  free_ = std::exchange(place.next, kNone);
+  place.command = command;
+  if (queue.count == 0) {
+    queue.first = taken;
+  } else {
+    places_[queue.last].next = taken;
+  }
+  queue.last = taken;
+  ++queue.count;
+  return true;
+}
+
+void CommandPool::pop(Queue& queue) {
+  const std::uint8_t freed = queue.first;
+  queue.first = std::exchange(places_[freed].next, free_);
+  free_ = freed;
+  if (--queue.count == 0) queue = {};
+}
+
+void CommandPool::append(Queue& queue, Queue& from) {
+  if (queue.count == 0) {
+    queue = std::exchange(from, {});
+    return;
+  }
+  if (from.count == 0) return;
+  places_[queue.last].next = from.first;
+  queue.last = from.last;
+  queue.count = static_cast<std::uint8_t>(queue.count + from.count);
+  from = {};
+}
+
+void CommandPool::clear(Queue& queue) {
+  while (queue.count > 0)
+    pop(queue);
+}
+
+}  // namespace robosync::layers

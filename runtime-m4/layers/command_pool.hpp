@@ -1,0 +1,43 @@
+// Commands on their way to the actuators: fixed memory for all, and a bounded first-in first-out
+// queue for each actuator in it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "runtime-m4/layers/messages.hpp"
+#include "runtime-m4/limits.hpp"
+
+namespace robosync::layers {
+
+class CommandPool {
+public:
+  struct Queue {
+    std::uint8_t first = kNone;
+    std::uint8_t last = kNone;
+    std::uint8_t count = 0;
+  };
+
+  CommandPool();
+
+  // False when the queue has kMaxQueued commands or no place is left.
+  [[nodiscard]] bool push(Queue& queue, const Command& command);
+  // The first of `queue`, which is not empty; good until pop().
+  const Command& front(const Queue& queue) const { return places_[queue.first].command; }
+  void pop(Queue& queue);
+  void clear(Queue& queue);
+  // Moves all of `from` behind `queue`; together they are not longer than kMaxQueued.
+  void append(Queue& queue, Queue& from);
+
+private:
+  static constexpr std::uint8_t kNone = 0xFF;
+  struct Place {
+    Command command;
+    std::uint8_t next = kNone;
+  };
+
+  std::array<Place, kMaxCommands> places_{};
+  std::uint8_t free_ = 0;
+};
+
+}  // namespace robosync::layers

@@ -1,0 +1,318 @@
+// See control.hpp. A unit's drive, busy and committed belong to its thread while it runs; its queue
+// and the pool are shared and touched under the kernel's lock.
+#include "runtime-m4/layers/control.hpp"
+
+#include <bit>
+#include <utility>
+
+#include "runtime-m4/layers/order.hpp"
+
+namespace robosync::layers {
+
+using link::EventKind;
+
+bool ControlLayer::start(const Program& program, Crew& crew) {
+  program_ = &program;
+  staged_ = 0;
+  dropped_ = 0;
+  idle_ = 0;
+  retired_ = 0;
+  cancelling_ = 0;
+  halted_ = 0;
+  newly_halted_ = 0;
+  for (unsigned a = 0; a < program.image.actuators.size(); ++a)
+    if (!start_unit(a, crew)) return false;
+  return true;
+}
+
+bool ControlLayer::start_unit(unsigned actuator, Crew& crew) {
+  Unit& unit = units_[actuator];
+  unit.layer = this;
+  unit.actuator = static_cast<std::uint8_t>(actuator);
+  kernel::ThreadSpec spec;
+  spec.name = name_of(program_->image, wiring(unit).name, "actuator");
+  spec.category = kernel::Category::control;
+  spec.priority = program_->actuator_priority(actuator);
+  spec.entry = [](void* self) {
+    auto& mine = *static_cast<Unit*>(self);
+    mine.layer->run(mine);
+  };
+  spec.argument = &unit;
+  unit.thread = crew.start(spec, actuator, kControlStack);
+  return unit.thread != nullptr;
+}
+
+void ControlLayer::release_all() {
+  if (program_ == nullptr) return;
+  for (unsigned a = 0; a < program_->image.actuators.size(); ++a) {
+    Unit& unit = units_[a];
+    const vm::Actuator& old = wiring(unit);
+    if (!is_halted(unit)) release(unit, old.on_release);
+    if (unit.busy || unit.queue.count > 0) trace_.emit(EventKind::cancel, trace_.now(), a);
+    pool_.clear(unit.queue);
+    pool_.clear(unit.staged);
+    unit.busy = false;
+    unit.staged_stop = false;
+    unit.stopping = false;
+    unit.keeps = 0;
+    unit.drive = {};
+  }
+  program_ = nullptr;
+}
+
+// --- staging, cancelling, committing: called from the behaviour and the step thread ---
+
+void ControlLayer::stage(const Command& command) {
+  Unit& unit = units_[command.actuator()];
+  const bool stops = program_->image.verbs[command.verb()].action == vm::Action::stop;
+  bool fits = false;
+  {
+    const auto lock = kernel_.lock();
+    if (stops) pool_.clear(unit.staged);
+    unit.staged_stop |= stops;
+    const unsigned waiting = unit.staged_stop ? 0U : unit.queue.count;
+    fits = waiting + unit.staged.count < kMaxQueued && pool_.push(unit.staged, command);
+  }
+  (fits ? staged_ : dropped_) |= bit<ActuatorMask>(command.actuator());
+}
+
+ActuatorMask ControlLayer::take_staged() {
+  return std::exchange(staged_, 0);
+}
+
+ActuatorMask ControlLayer::take_dropped() {
+  return std::exchange(dropped_, 0);
+}
+
+void ControlLayer::cancel(ActuatorMask actuators) {
+  const auto lock = kernel_.lock();
+  cancelling_ = actuators & ~retired_;
+  for (ActuatorMask left = cancelling_; left != 0; left &= left - 1)
+    kernel_.signal(*units_[static_cast<unsigned>(std::countr_zero(left))].thread, kCancel);
+}
+
+void ControlLayer::commit() {
+  const auto lock = kernel_.lock();
+  for (unsigned a = 0; a < program_->image.actuators.size(); ++a) {
+    Unit& unit = units_[a];
+    if (unit.staged.count == 0) continue;
+    if (has(retired_, a)) {
+      pool_.clear(unit.staged);
+      unit.staged_stop = false;
+      idle_ |= bit<ActuatorMask>(a);
+      kernel_.signal(step_thread_, events_.idle);
+      continue;
+    }
+    hand_over(unit);
+    kernel_.signal(*unit.thread, kCommit);
+  }
+}
+
+// Behind what the same response has sent in an earlier step; its new owner gets an actuator with an
+// empty queue. If it was idle, it is no more.
+void ControlLayer::hand_over(Unit& unit) {
+  if (std::exchange(unit.staged_stop, false)) {
+    unit.stopping = true;
+    unit.keeps = 0;
+  }
+  unit.keeps = static_cast<std::uint8_t>(unit.keeps + unit.staged.count);
+  pool_.append(unit.queue, unit.staged);
+  unit.committed = trace_.step();
+  idle_ &= ~bit<ActuatorMask>(unit.actuator);
+}
+
+ActuatorMask ControlLayer::take_idle() {
+  const auto lock = kernel_.lock();
+  return std::exchange(idle_, 0);
+}
+
+ActuatorMask ControlLayer::take_halted() {
+  const auto lock = kernel_.lock();
+  return newly_halted_.exchange(0, std::memory_order_relaxed);
+}
+
+void ControlLayer::retire(unsigned actuator) {
+  Unit& unit = units_[actuator];
+  release(unit, wiring(unit).safe);
+  const auto lock = kernel_.lock();
+  pool_.clear(unit.queue);
+  unit.busy = false;
+  retired_ |= bit<ActuatorMask>(actuator);
+  idle_ |= bit<ActuatorMask>(actuator);
+  cancelling_ &= ~retired_;
+  kernel_.signal(step_thread_, events_.idle | events_.cancelled);
+}
+
+// --- safety ---
+
+ActuatorMask ControlLayer::all() const {
+  return (ActuatorMask{1} << program_->image.actuators.size()) - 1;
+}
+
+// The mask comes first: a driver that is at work now sees it when it is done (keep_at()).
+void ControlLayer::halt(ActuatorMask actuators) {
+  const ActuatorMask fresh = actuators & all() & ~halted();
+  if (fresh == 0) return;
+  {
+    const auto lock = kernel_.lock();
+    halted_ |= fresh;
+    newly_halted_ |= fresh;
+  }
+  for (ActuatorMask left = fresh; left != 0; left &= left - 1) {
+    Unit& unit = units_[static_cast<unsigned>(std::countr_zero(left))];
+    release(unit, wiring(unit).safe);
+    trace_.emit(EventKind::halt, trace_.now(), unit.actuator);
+    kernel_.signal(*unit.thread, kHalt);
+  }
+  kernel_.signal(step_thread_, events_.halted);
+}
+
+void ControlLayer::let_go(ActuatorMask actuators) {
+  const ActuatorMask freed = actuators & halted();
+  if (freed == 0) return;
+  {
+    const auto lock = kernel_.lock();
+    halted_ &= ~freed;
+  }
+  for (ActuatorMask left = freed; left != 0; left &= left - 1)
+    trace_.emit(EventKind::release, trace_.now(), static_cast<unsigned>(std::countr_zero(left)));
+  kernel_.signal(step_thread_, events_.halted);
+}
+
+void ControlLayer::halt_for_good() {
+  if (program_ == nullptr) return;
+  halt(all());
+  for (unsigned a = 0; a < program_->image.actuators.size(); ++a)
+    release(units_[a], wiring(units_[a]).safe);
+}
+
+// --- the actuator's thread ---
+
+void ControlLayer::run(Unit& unit) {
+  kernel::Time wake = kernel::kForever;
+  while (true) {
+    const kernel::Events events = kernel_.wait(kCommit | kCancel | kHalt, wake);
+    if ((events & kCancel) != 0) {
+      finish_cancel(unit);
+      wake = kernel::kForever;
+      continue;
+    }
+    if (is_halted(unit)) {
+      drop(unit, 0);
+      unit.busy = false;
+      wake = kernel::kForever;
+      continue;
+    }
+    if ((events & kCommit) != 0) finish_stop(unit);
+    if (unit.busy && kernel_.now() >= wake) wake = go_on(unit);
+    // A command that finds its actuator free belongs to the step that sent it.
+    const Stamp stamp = (events & kCommit) != 0 ? unit.committed : trace_.now();
+    if (!unit.busy) wake = work_off(unit, stamp);
+  }
+}
+
+// Begins commands until one needs time, or none is left. Returns when to wake.
+kernel::Time ControlLayer::work_off(Unit& unit, Stamp stamp) {
+  for (unsigned i = 0; i < kMaxQueued && unit.queue.count > 0 && !is_halted(unit); ++i) {
+    kernel::Time wake = 0;
+    begin_next(unit, stamp, wake);
+    if (unit.busy) return wake;
+  }
+  const auto lock = kernel_.lock();
+  if (unit.queue.count > 0 || is_halted(unit)) return kernel::kForever;
+  idle_ |= bit<ActuatorMask>(unit.actuator);
+  kernel_.signal(step_thread_, events_.idle);
+  return kernel::kForever;
+}
+
+// It is told before it is started, and both do not stand on the stack at once.
+void ControlLayer::begin_next(Unit& unit, Stamp stamp, kernel::Time& wake) {
+  report_command(pool_.front(unit.queue), stamp);
+  wake = keep_at(unit, start_driver(unit, pool_.front(unit.queue)), stamp);
+  const auto lock = kernel_.lock();
+  pool_.pop(unit.queue);
+}
+
+[[gnu::noinline]] kernel::Time ControlLayer::start_driver(Unit& unit, const Command& command) {
+  const drivers::Order order = resolve(program_->image, command);
+  if (is_halted(unit) || is_void(order)) return drivers::kDone;
+  return drivers::driver(wiring(unit).driver).start(device(unit), order, kernel_.now());
+}
+
+kernel::Time ControlLayer::go_on(Unit& unit) {
+  const drivers::Driver& driver = drivers::driver(wiring(unit).driver);
+  const kernel::Time wake = is_halted(unit) ? 0 : driver.advance(device(unit), kernel_.now());
+  return keep_at(unit, wake, trace_.now());
+}
+
+// After every call of the driver. A halt may have come in its middle: then its last word is undone.
+kernel::Time ControlLayer::keep_at(Unit& unit, kernel::Time wake, Stamp stamp) {
+  if (is_halted(unit)) {
+    release(unit, wiring(unit).safe);
+    unit.busy = false;
+    return kernel::kForever;
+  }
+  unit.busy = wake != drivers::kDone;
+  if (unit.busy) return wake;
+  trace_.emit(EventKind::done, stamp, unit.actuator);
+  return kernel::kForever;
+}
+
+void ControlLayer::finish_cancel(Unit& unit) {
+  release(unit, is_halted(unit) ? wiring(unit).safe : wiring(unit).on_release);
+  unit.busy = false;
+  unit.stopping = false;
+  unit.keeps = 0;
+  trace_.emit(EventKind::cancel, trace_.step(), unit.actuator);
+  const auto lock = kernel_.lock();
+  pool_.clear(unit.queue);
+  idle_ &= ~bit<ActuatorMask>(unit.actuator);
+  cancelling_ &= ~bit<ActuatorMask>(unit.actuator);
+  kernel_.signal(step_thread_, events_.cancelled);
+}
+
+// What stands before the STOP was never begun, or ends here.
+void ControlLayer::finish_stop(Unit& unit) {
+  unsigned keeps = 0;
+  {
+    const auto lock = kernel_.lock();
+    keeps = std::exchange(unit.keeps, std::uint8_t{0});
+    if (!std::exchange(unit.stopping, false)) return;
+  }
+  const bool dropped = drop(unit, keeps);
+  if (unit.busy || dropped) trace_.emit(EventKind::cancel, unit.committed, unit.actuator);
+  unit.busy = false;
+}
+
+// All but the last `keeps` commands of its queue. False when there were not more.
+bool ControlLayer::drop(Unit& unit, unsigned keeps) {
+  const auto lock = kernel_.lock();
+  const bool more = unit.queue.count > keeps;
+  while (unit.queue.count > keeps)
+    pool_.pop(unit.queue);
+  return more;
+}
+
+// values: the word or -1, the mask of parameters the program gave, and these, limits applied.
+[[gnu::noinline]] void ControlLayer::report_command(const Command& command, Stamp stamp) {
+  link::Event event = Trace::event(EventKind::command, stamp, command.actuator(), command.verb());
+  event.values[0] = command.word() == vm::kNoWord ? -1 : command.word();
+  event.values[1] = command.given();
+  event.value_count = 2;
+  const vm::Actuator& actuator = program_->image.actuators[command.actuator()];
+  for (unsigned p = 0; p < kParams; ++p)
+    if ((command.given() >> p & 1) != 0)
+      event.values[event.value_count++] =
+          limited(actuator, static_cast<vm::Param>(p), command.param(p));
+  trace_.emit(event);
+}
+
+drivers::Device ControlLayer::device(Unit& unit) {
+  return {board_, wiring(unit), unit.drive};
+}
+
+void ControlLayer::release(Unit& unit, vm::Release how) {
+  drivers::driver(wiring(unit).driver).release(device(unit), how, kernel_.now());
+}
+
+}  // namespace robosync::layers

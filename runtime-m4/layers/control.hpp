@@ -1,0 +1,127 @@
+// Control layer: one thread per actuator, which has it to itself.
+//
+// The behaviour layer stages the commands of a step; the step thread first cancels what was
+// interrupted and waits until that is done, then commits what was staged, all at once. An actuator
+// does one command at a time and the rest of its queue (kMaxQueued) in order. Words and limits of
+// the robot are applied here, whatever the program says.
+//
+// STOP is a command that does not wait: what stands before it in the queue is dropped, and what the
+// actuator is doing ends.
+//
+// Halting (safety) puts actuators into their `safe` state from the caller's thread and refuses all
+// commands to them from then on, until they are let go or the next program comes.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/drivers/drivers.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/command_pool.hpp"
+#include "runtime-m4/layers/crew.hpp"
+#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/trace.hpp"
+
+namespace robosync::layers {
+
+class ControlLayer {
+public:
+  // Signals to the step thread.
+  struct StepEvents {
+    kernel::Events idle;       // an actuator has done all its commands
+    kernel::Events cancelled;  // an actuator was cancelled
+    kernel::Events halted;     // actuators were halted, or let go
+  };
+
+  ControlLayer(kernel::Kernel& kernel, boards::Board& board, Trace& trace,
+               kernel::Thread& step_thread, StepEvents events)
+      : kernel_(kernel), board_(board), trace_(trace), step_thread_(step_thread), events_(events) {}
+
+  // Starts the threads of `program`, which must stay until they are dismissed.
+  [[nodiscard]] bool start(const Program& program, Crew& crew);
+  // Releases all actuators of a program whose threads are dismissed, and forgets where they are:
+  // what a program does must not depend on the one before it.
+  void release_all();
+
+  // --- for the behaviour layer, within a step ---
+  void stage(const Command& command);  // dropped when there is no place
+
+  // --- for the step thread ---
+  ActuatorMask take_staged();   // actuators that commands were staged for since the last call
+  ActuatorMask take_dropped();  // … and that a command was dropped for
+  void cancel(ActuatorMask actuators);  // begins it; done when cancelling() is false
+  bool cancelling() const { return cancelling_.load(std::memory_order_relaxed) != 0; }
+  void commit();
+  ActuatorMask take_idle();
+  ActuatorMask halted() const { return halted_.load(std::memory_order_relaxed); }
+  // … and those that were halted since the last call, even if they are let go by now.
+  ActuatorMask take_halted();
+  void retire(unsigned actuator);  // its thread was stopped: put it into its safe state
+
+  // [safety thread] Those that are halted, or not, already stay as they are.
+  void halt(ActuatorMask actuators);
+  void let_go(ActuatorMask actuators);
+  // All of them, again and again, until the next program.
+  void halt_for_good();
+
+private:
+  static constexpr kernel::Events kCommit = 1;
+  static constexpr kernel::Events kCancel = 2;
+  static constexpr kernel::Events kHalt = 4;
+  static constexpr unsigned kParams = static_cast<unsigned>(vm::Param::count_);
+
+  struct Unit {
+    ControlLayer* layer = nullptr;
+    kernel::Thread* thread = nullptr;
+    drivers::ActuatorState drive;
+    CommandPool::Queue queue;   // handed over
+    CommandPool::Queue staged;  // to be handed over by commit()
+    Stamp committed;            // the step that `queue` comes from
+    std::uint8_t actuator = 0;
+    bool busy = false;
+    bool staged_stop = false;  // `staged` begins with a STOP
+    bool stopping = false;     // it was handed over
+    std::uint8_t keeps = 0;    // commands at the end of `queue` that were handed over since
+  };
+
+  [[nodiscard]] bool start_unit(unsigned actuator, Crew& crew);
+  void run(Unit& unit);
+  kernel::Time work_off(Unit& unit, Stamp stamp);
+  void begin_next(Unit& unit, Stamp stamp, kernel::Time& wake);
+  kernel::Time start_driver(Unit& unit, const Command& command);
+  kernel::Time go_on(Unit& unit);
+  kernel::Time keep_at(Unit& unit, kernel::Time wake, Stamp stamp);
+  void hand_over(Unit& unit);
+  void finish_cancel(Unit& unit);
+  void finish_stop(Unit& unit);
+  bool drop(Unit& unit, unsigned keeps);
+  void report_command(const Command& command, Stamp stamp);
+
+  drivers::Device device(Unit& unit);
+  const vm::Actuator& wiring(const Unit& unit) const {
+    return program_->image.actuators[unit.actuator];
+  }
+  bool is_halted(const Unit& unit) const { return has(halted(), unit.actuator); }
+  ActuatorMask all() const;
+  void release(Unit& unit, vm::Release how);
+
+  kernel::Kernel& kernel_;
+  boards::Board& board_;
+  Trace& trace_;
+  kernel::Thread& step_thread_;
+  StepEvents events_;
+  const Program* program_ = nullptr;
+  std::array<Unit, kMaxActuators> units_{};
+  CommandPool pool_;
+  std::atomic<ActuatorMask> cancelling_ = 0;
+  ActuatorMask staged_ = 0;
+  ActuatorMask dropped_ = 0;
+  ActuatorMask idle_ = 0;
+  ActuatorMask retired_ = 0;
+  std::atomic<ActuatorMask> halted_ = 0;
+  std::atomic<ActuatorMask> newly_halted_ = 0;
+};
+
+}  // namespace robosync::layers

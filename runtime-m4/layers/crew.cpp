@@ -1,0 +1,61 @@
+// See crew.hpp.
+#include "runtime-m4/layers/crew.hpp"
+
+#include <algorithm>
+
+namespace robosync::layers {
+
+std::span<std::byte> Crew::take_stack(std::size_t bytes) {
+  if (bytes > stacks_.size() - stack_used_) return {};
+  const std::span stack = std::span(stacks_).subspan(stack_used_, bytes);
+  stack_used_ += bytes;
+  return stack;
+}
+
+kernel::Thread* Crew::start(kernel::ThreadSpec spec, unsigned index, std::size_t stack_bytes) {
+  if (count_ == members_.size()) return nullptr;
+  spec.stack = take_stack(stack_bytes);
+  if (spec.stack.empty()) return nullptr;
+  Member& member = members_[count_];
+  if (!kernel_.add(member.thread, spec)) return nullptr;
+  member.index = static_cast<std::uint8_t>(index);
+  member.mourned = false;
+  ++count_;
+  return &member.thread;
+}
+
+bool Crew::start_step_thread(kernel::Thread& thread, kernel::ThreadSpec spec) {
+  spec.stack = take_stack(kStepStack);
+  if (spec.stack.empty() || !kernel_.add(thread, spec)) return false;
+  step_thread_ = &thread;
+  return true;
+}
+
+void Crew::dismiss() {
+  for (Member& member : std::span(members_).first(count_))
+    kernel_.remove(member.thread);
+  if (step_thread_ != nullptr) kernel_.remove(*step_thread_);
+  step_thread_ = nullptr;
+  count_ = 0;
+  stack_used_ = 0;
+}
+
+Crew::Member* Crew::next_stopped() {
+  for (Member& member : std::span(members_).first(count_)) {
+    if (member.mourned || kernel_.state(member.thread) != kernel::Thread::State::stopped) continue;
+    member.mourned = true;
+    return &member;
+  }
+  return nullptr;
+}
+
+unsigned Crew::stopped() const {
+  unsigned count = 0;
+  for (const Member& member : std::span(members_).first(count_))
+    if (kernel_.state(member.thread) == kernel::Thread::State::stopped) ++count;
+  if (step_thread_ != nullptr && kernel_.state(*step_thread_) == kernel::Thread::State::stopped)
+    ++count;
+  return count;
+}
+
+}  // namespace robosync::layers

@@ -1,0 +1,49 @@
+// The threads of the running program: control blocks and stacks from static memory, given out when
+// a program is activated and taken back all at once.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/limits.hpp"
+
+namespace robosync::layers {
+
+class Crew {
+public:
+  struct Member {
+    kernel::Thread thread;
+    std::uint8_t index = 0;  // of its sensor, behaviour or actuator in the image
+    bool mourned = false;    // its stop was reported
+  };
+
+  explicit Crew(kernel::Kernel& kernel) : kernel_(kernel) {}
+
+  // Adds a thread with a stack of `stack_bytes`; spec.stack is set here. Null, and nothing changed,
+  // when there is no place; fits() (program.hpp) rules that out for a program as a whole.
+  [[nodiscard]] kernel::Thread* start(kernel::ThreadSpec spec, unsigned index,
+                                      std::size_t stack_bytes);
+  // Like it, with a control block of the caller's. It is removed by dismiss() as well.
+  [[nodiscard]] bool start_step_thread(kernel::Thread& thread, kernel::ThreadSpec spec);
+  // Takes all threads out of the kernel. Not from one of them.
+  void dismiss();
+
+  // A thread that was stopped and not returned before; null when there is none.
+  Member* next_stopped();
+  // How many of them were ever stopped.
+  unsigned stopped() const;
+
+private:
+  std::span<std::byte> take_stack(std::size_t bytes);
+
+  kernel::Kernel& kernel_;
+  std::array<Member, kMaxProgramThreads - 1> members_;
+  kernel::Thread* step_thread_ = nullptr;
+  std::size_t count_ = 0;
+  std::size_t stack_used_ = 0;
+  alignas(port::kStackAlignment) std::array<std::byte, kStackArena> stacks_{};
+};
+
+}  // namespace robosync::layers

@@ -1,0 +1,64 @@
+// See mailbox.hpp. The kernel is locked for one mailbox at a time.
+#include "runtime-m4/layers/mailbox.hpp"
+
+#include <algorithm>
+
+namespace robosync::layers {
+namespace {
+
+bool differs(vm::Value a, vm::Value b, vm::Value least) {
+  const std::int64_t difference = std::int64_t{a} - b;
+  return (difference < 0 ? -difference : difference) >= std::max(least, vm::Value{1});
+}
+
+}  // namespace
+
+void Mailboxes::reset() {
+  boxes_.fill({});
+  announced_ = 0;
+  forgotten_ = 0;
+}
+
+bool Mailboxes::post(const Reading& reading, const vm::Channel& channel) {
+  const auto lock = kernel_.lock();
+  Mailbox& box = boxes_[reading.channel()];
+  box.sampled_at = reading.time();
+  if (box.sequence != 0 && !differs(reading.value(), box.value, channel.change)) return false;
+  box.value = reading.value();
+  if (++box.sequence == 0) box.sequence = 1;
+  return true;
+}
+
+void Mailboxes::announce(InputMask channels) {
+  const auto lock = kernel_.lock();
+  announced_ |= channels;
+}
+
+void Mailboxes::forget(unsigned channel) {
+  const auto lock = kernel_.lock();
+  forgotten_ |= bit<InputMask>(channel);
+}
+
+InputMask Mailboxes::take_announced() {
+  const auto lock = kernel_.lock();
+  return std::exchange(announced_, 0);
+}
+
+bool Mailboxes::expire(unsigned channel, const vm::Channel& wiring, kernel::Time now) {
+  const auto lock = kernel_.lock();
+  if (now < expires_at(channel, wiring)) return false;
+  boxes_[channel].sequence = 0;
+  boxes_[channel].value = vm::kUnknown;
+  return true;
+}
+
+kernel::Time Mailboxes::expires_at(unsigned channel, const vm::Channel& wiring) const {
+  const auto lock = kernel_.lock();
+  const Mailbox& box = boxes_[channel];
+  if (box.sequence == 0) return kernel::kForever;
+  if (has(forgotten_, channel)) return 0;
+  if (wiring.stale_ms == 0) return kernel::kForever;
+  return box.sampled_at + kernel::milliseconds(wiring.stale_ms) + kernel::kTick;
+}
+
+}  // namespace robosync::layers

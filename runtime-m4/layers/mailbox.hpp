@@ -1,0 +1,56 @@
+// Where the sensor layer leaves its readings: one latest-value mailbox for each channel.
+//
+// Written by sensor threads, read by the step thread. Readings that belong together are posted one
+// by one and announced at once, so that the step thread sees all of them or none.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/messages.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::layers {
+
+class Mailboxes {
+public:
+  explicit Mailboxes(kernel::Kernel& kernel) : kernel_(kernel) {}
+
+  void reset();  // nothing is known
+
+  // Keeps the reading if it says something new: the channel was unknown, or differs by at least
+  // channel.change. Returns whether it did; then announce it. The channel is fresh in any case.
+  [[nodiscard]] bool post(const Reading& reading, const vm::Channel& channel);
+  void announce(InputMask channels);
+  // Nobody measures the channel any more.
+  void forget(unsigned channel);
+
+  // --- for the step thread ---
+  InputMask take_announced();
+  vm::Value value(unsigned channel) const { return boxes_[channel].value; }
+  // For the safety thread, which does not wait for expire(): unknown as soon as it is too old.
+  vm::Value fresh_value(unsigned channel, const vm::Channel& wiring, kernel::Time now) const {
+    return now < expires_at(channel, wiring) ? value(channel) : vm::kUnknown;
+  }
+  // True once when the last sample is older than channel.stale_ms, or the channel was forgotten;
+  // then the channel is unknown.
+  [[nodiscard]] bool expire(unsigned channel, const vm::Channel& wiring, kernel::Time now);
+  // When expire() may be true for the first time; kForever for never.
+  kernel::Time expires_at(unsigned channel, const vm::Channel& wiring) const;
+
+private:
+  struct Mailbox {
+    kernel::Time sampled_at = 0;
+    vm::Value value = vm::kUnknown;
+    std::uint32_t sequence = 0;  // of the value, from 1; 0: unknown
+  };
+
+  kernel::Kernel& kernel_;
+  std::array<Mailbox, kMaxChannels> boxes_{};
+  InputMask announced_ = 0;
+  InputMask forgotten_ = 0;
+};
+
+}  // namespace robosync::layers

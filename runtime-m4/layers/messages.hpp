@@ -1,0 +1,97 @@
+// The messages between the layers, one type for each hop of the paper:
+//
+//   sensor --Reading (M_sp)--> processing --Snapshot (M_pb)--> behaviour --Command (M_bc)-->
+//   control
+//
+// Only the layer a message comes from can make one, and only the next layer has a function that
+// takes it, so that a hop that skips a layer does not compile.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "runtime-m4/kernel/time.hpp"
+#include "runtime-m4/limits.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::layers {
+
+using InputMask = std::uint64_t;     // bit i: input i, a channel or, behind them, a variable
+using VariableMask = std::uint32_t;  // bit v: variable v of the image
+using ActuatorMask = std::uint32_t;  // bit a: actuator a
+using RuleMask = std::uint64_t;      // bit r: rule r
+using BehaviorMask = std::uint32_t;  // bit b: behaviour b, 0 being the one of the highest priority
+
+template <class Mask>
+constexpr Mask bit(unsigned index) {
+  return Mask{1} << index;
+}
+template <class Mask>
+constexpr bool has(Mask mask, unsigned index) {
+  return (mask >> index & 1) != 0;
+}
+
+// A place in the program's history: what events are stamped with.
+struct Stamp {
+  kernel::Time time = 0;   // microseconds since activation
+  std::uint32_t step = 0;  // the step under way, or the last one
+};
+
+// What a channel measured: scaled, and inside the channel's range.
+class Reading {
+public:
+  std::uint8_t channel() const { return channel_; }
+  vm::Value value() const { return value_; }
+  kernel::Time time() const { return time_; }  // kernel time of the sample
+
+private:
+  friend class SensorLayer;
+  Reading(std::uint8_t channel, vm::Value value, kernel::Time time)
+      : time_(time), value_(value), channel_(channel) {}
+
+  kernel::Time time_;
+  vm::Value value_;
+  std::uint8_t channel_;
+};
+
+// All inputs as one step sees them; one that nobody knows is kUnknown.
+class Snapshot {
+public:
+  Stamp stamp() const { return stamp_; }
+  // Of program time, as the VM counts it.
+  std::uint32_t milliseconds() const {
+    return static_cast<std::uint32_t>(stamp_.time / kernel::milliseconds(1));
+  }
+  vm::Value value(std::uint8_t input) const { return values_[input]; }
+
+private:
+  friend class ProcessingLayer;
+  Snapshot() = default;
+
+  Stamp stamp_;
+  std::array<vm::Value, kMaxInputs> values_{};
+};
+
+// What a response wants of one actuator, as the program says it: words and limits come later.
+class Command {
+public:
+  std::uint8_t actuator() const { return actuator_; }
+  std::uint8_t verb() const { return verb_; }    // index in the verb table
+  std::uint8_t word() const { return word_; }    // index in the word table, or kNoWord
+  std::uint8_t given() const { return given_; }  // bit p: param(p) was given
+  vm::Value param(unsigned index) const { return params_[index]; }
+
+private:
+  friend class BehaviorLayer;
+  friend class CommandPool;
+  static constexpr unsigned kParams = static_cast<unsigned>(vm::Param::count_);
+  Command() = default;
+
+  std::uint8_t actuator_ = 0;
+  std::uint8_t verb_ = 0;
+  std::uint8_t word_ = vm::kNoWord;
+  std::uint8_t given_ = 0;
+  std::array<vm::Value, kParams> params_{};
+};
+
+}  // namespace robosync::layers

@@ -1,0 +1,20 @@
+// From what a program says to what an actuator may do.
+#pragma once
+
+#include "runtime-m4/drivers/drivers.hpp"
+#include "runtime-m4/layers/messages.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::layers {
+
+// The parameters of `command`, its word's parameter where the program did not give it itself,
+// inside the actuator's range (TO) and limits (AT). A parameter may be kUnknown: see is_void().
+[[nodiscard]] drivers::Order resolve(const vm::Image& image, const Command& command);
+
+// The value of a parameter inside the actuator's range (TO) and limits (AT); kUnknown stays.
+[[nodiscard]] vm::Value limited(const vm::Actuator& actuator, vm::Param param, vm::Value value);
+
+// An order with an unknown parameter is not carried out: nobody can say what it means.
+[[nodiscard]] bool is_void(const drivers::Order& order);
+
+}  // namespace robosync::layers

@@ -1,0 +1,162 @@
+// Processing layer: the step thread, which turns readings and time into steps.
+//
+// It works in passes. A pass first takes notice of what ended since the last one; then, if there is
+// a reason for a step, there is one, numbered from 1, at the time of the kernel's tick counted from
+// activation. Reasons are: readings were announced or became too old, a thread was stopped, safety
+// halted something that was at work, or something is due (next_due()). Inside a step:
+//
+//   latch → behaviours that read a changed input, or are due, evaluate → claims are decided →
+//   responses run: those that go on and those that won → cancellations, then commands, are
+//   committed
+//
+// What a step causes by itself (SET and SIGNAL, a WHILE that starts again, the end of a wait) is
+// due in the next millisecond at the earliest, so the number of steps at one time is bounded by
+// what comes from outside.
+//
+// Order of the trace events of one pass:
+//   fault                a thread was stopped
+//   finished             rules whose commands are all done, by rule
+//   input, stale         by channel; the step begins with the first of all these
+//   set                  variables but bands, by variable; then bands, by CHECK
+//   interrupt            responses of behaviours whose thread was stopped; responses that safety
+//                        halted; each by rule
+//   zero_divide          in conditions, by rule
+//   fire                 by rule, which is by priority, then by place in the file
+//   interrupt            WHILE whose condition no longer holds, by rule
+//   interrupt, win/lose  claim by claim in the order of the rules: first what it interrupts, by
+//   rule go_on, zero_divide, log, alert, wait, overrun
+//                        response by response, by rule; overrun once for an actuator
+//   cancel, command      all cancels before all commands (but a STOP's cancel, which stands before
+//                        the STOP); each in the order of the actuators' ranks
+//   finished             of responses that command nothing, by rule
+// command and done of a queued command, and done in general, stand where the actuator's thread
+// reaches them: before anything a lower ranked thread does at the same tick. What safety does
+// (trip, halt, log, alert, resume, release) stands before everything else at its tick, or, when a
+// sensor's reading is the reason, before the step that the reading enters.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/alarm.hpp"
+#include "runtime-m4/layers/arbiter.hpp"
+#include "runtime-m4/layers/behavior.hpp"
+#include "runtime-m4/layers/checks.hpp"
+#include "runtime-m4/layers/clock.hpp"
+#include "runtime-m4/layers/control.hpp"
+#include "runtime-m4/layers/crew.hpp"
+#include "runtime-m4/layers/mailbox.hpp"
+#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/sensor.hpp"
+#include "runtime-m4/layers/trace.hpp"
+#include "runtime-m4/layers/triggers.hpp"
+#include "runtime-m4/layers/variables.hpp"
+
+namespace robosync::layers {
+
+// What wakes the step thread.
+inline constexpr kernel::Events kNews = 1;       // readings were announced
+inline constexpr kernel::Events kIdle = 2;       // an actuator has done all its commands
+inline constexpr kernel::Events kFinished = 4;   // a behaviour has done what it was released for
+inline constexpr kernel::Events kCancelled = 8;  // an actuator was cancelled
+inline constexpr kernel::Events kStopped = 16;   // a thread was stopped by a fault
+inline constexpr kernel::Events kHalted = 32;    // safety has halted, let go, or set something
+inline constexpr kernel::Events kBegin = 64;     // all threads of the program are there
+
+class ProcessingLayer {
+public:
+  struct Neighbours {
+    Mailboxes& mailboxes;
+    SensorLayer& sensors;
+    Variables& variables;
+    Triggers& triggers;
+    BehaviorLayer& behaviors;
+    ControlLayer& control;
+    Crew& crew;
+    Alarm& alarm;
+  };
+
+  ProcessingLayer(kernel::Kernel& kernel, Trace& trace, kernel::Thread& thread,
+                  const Neighbours& neighbours)
+      : kernel_(kernel), trace_(trace), thread_(thread), layers_(neighbours) {}
+
+  // Starts the step thread of `program`, which must stay until it is dismissed.
+  [[nodiscard]] bool start(const Program& program);
+  // All threads of the program are there: the first step comes when its clock begins.
+  void go() { kernel_.signal(thread_, kBegin); }
+
+  std::uint32_t steps() const { return trace_.step().step; }
+  const Snapshot& snapshot() const { return snapshot_; }
+  // For whoever watches over it: is it between passes, with nothing to do? How many has it done?
+  bool resting() const;
+  std::uint32_t passes() const { return passes_.load(std::memory_order_relaxed); }
+
+private:
+  // --- processing.cpp: passes, and what makes a step ---
+  void run();
+  void pass();
+  void finish_done();
+  void finish_if_done(unsigned rule);
+  ActuatorMask owned() const;
+  bool latch(bool anyway, InputMask& changed);
+  InputMask latch_channels(Stamp stamp);
+  InputMask latch_variables(Stamp stamp);
+  void report_set(unsigned variable, Stamp stamp);
+  std::uint32_t now_ms() const;
+  std::uint32_t next_due(std::uint32_t now) const;
+  void add_rule(unsigned rule, Soonest& due, std::uint32_t now) const;
+  kernel::Time next_time() const;
+  kernel::Time next_expiry() const;
+  void note_stops();
+  void retire(const Crew::Member& member);
+
+  // --- step.cpp: what happens in one ---
+  void step(BehaviorMask released);
+  BehaviorMask due_behaviors(InputMask changed) const;
+  void interrupt_lost(BehaviorMask lost);
+  void interrupt_halted(ActuatorMask halted);
+  void report_triggers();
+  void interrupt_over();
+  void arbitrate();
+  bool claim_of(unsigned rule, Claim& claim, bool& silent) const;
+  void serve(const Claim& claim, bool silent);
+  void interrupt(unsigned rule, unsigned by);
+  bool goes_on(unsigned rule, BehaviorMask released) const;
+  void run_responses(BehaviorMask released);
+  void commit();
+  void report(const Claim& claim, link::EventKind kind, unsigned object = 0);
+
+  unsigned channels() const { return static_cast<unsigned>(program_->image.channels.size()); }
+  unsigned rules() const { return static_cast<unsigned>(program_->image.rules.size()); }
+  std::span<const Holding> holdings() const { return std::span(holdings_).first(rules()); }
+  // It has run in this millisecond, and must not again.
+  bool has_run(unsigned rule, std::uint32_t now) const {
+    return now == ran_at_ && holdings_[rule].has_run;
+  }
+
+  template <class Pending>
+  void await(kernel::Events event, Pending pending) {
+    while (pending())
+      if ((kernel_.wait(event | kStopped) & kStopped) != 0) note_stops();
+  }
+
+  kernel::Kernel& kernel_;
+  Trace& trace_;
+  kernel::Thread& thread_;
+  Neighbours layers_;
+  const Program* program_ = nullptr;
+  Checks checks_;
+  Snapshot snapshot_;
+  std::array<Holding, kMaxRules> holdings_{};
+  std::uint32_t ran_at_ = 0;         // millisecond of the last step: of Holding::has_run
+  std::uint32_t set_due_ = 0;        // when what is staged may take effect
+  ActuatorMask cancelled_ = 0;       // in this step
+  BehaviorMask lost_behaviors_ = 0;  // stopped; their responses are still to be interrupted
+  BehaviorMask unstarted_ = 0;       // have something to do before the first reading
+  std::atomic<std::uint32_t> passes_ = 0;
+  std::atomic<bool> in_pass_ = false;
+};
+
+}  // namespace robosync::layers

@@ -1,0 +1,145 @@
+// See program.hpp. May rely on the verifier: behaviours stand from the highest priority down, their
+// rules follow each other without gaps, as the channels of the sensors do.
+#include "runtime-m4/layers/program.hpp"
+
+#include "vm/opcode.hpp"
+#include "vm/timers.hpp"
+
+namespace robosync::layers {
+
+bool is_fed(const vm::Sensor& sensor) {
+  return sensor.period_ms == 0 || sensor.driver == vm::DriverId::virtual_sensor;
+}
+
+void Program::load(const vm::Image& loaded) {
+  image = loaded;
+  std::uint16_t cell = 0;
+  for (unsigned b = 0; b < image.behaviors.size(); ++b) {
+    const vm::Behavior& behavior = image.behaviors[b];
+    first_cell[b] = cell;
+    cell = static_cast<std::uint16_t>(cell + behavior.cells);
+    inputs[b] = 0;
+    for (const std::uint8_t input :
+         image.inputs.subspan(behavior.first_input, behavior.input_count))
+      inputs[b] |= bit<InputMask>(input);
+    for (unsigned r = 0; r < behavior.rule_count; ++r)
+      behavior_of[behavior.first_rule + r] = static_cast<std::uint8_t>(b);
+  }
+}
+
+std::int16_t Program::step_priority() const {
+  return image.behaviors.empty() ? std::int16_t{0} : image.behaviors.front().priority;
+}
+
+std::int16_t Program::idle_priority() const {
+  if (image.behaviors.empty()) return 0;
+  return static_cast<std::int16_t>(image.behaviors.back().priority - 1);
+}
+
+// The first behaviour that needs it is the one of the highest priority.
+std::int16_t Program::sensor_priority(unsigned sensor) const {
+  const InputMask channels = channels_of(sensor);
+  for (unsigned b = 0; b < image.behaviors.size(); ++b)
+    if ((inputs[b] & channels) != 0) return image.behaviors[b].priority;
+  return idle_priority();
+}
+
+std::int16_t Program::actuator_priority(unsigned actuator) const {
+  for (const vm::Behavior& behavior : image.behaviors.subspan(first_behavior()))
+    if (has(behavior.actuators, actuator)) return behavior.priority;
+  return idle_priority();
+}
+
+InputMask Program::channels_of(unsigned sensor) const {
+  const vm::Sensor& wiring = image.sensors[sensor];
+  return ((InputMask{1} << wiring.channel_count) - 1) << wiring.first_channel;
+}
+
+bool Program::has_fed_sensors() const {
+  for (const vm::Sensor& sensor : image.sensors)
+    if (is_fed(sensor)) return true;
+  return false;
+}
+
+namespace {
+
+// Words that a response without loops puts out at most.
+std::size_t output_of(const vm::Image& image, std::uint16_t response) {
+  const vm::Response& body = image.responses[response];
+  std::size_t words = 0;
+  for (const vm::Word word : image.code.subspan(body.start, body.length)) {
+    switch (vm::opcode_of(word)) {
+      case vm::Opcode::arg:
+      case vm::Opcode::arg_k:
+        words += 2;
+        break;
+      case vm::Opcode::log:
+      case vm::Opcode::alert:
+      case vm::Opcode::halt:
+        words += 1;
+        break;
+      default:
+        break;
+    }
+  }
+  return words;
+}
+
+vm::Verdict tables_fit(const vm::Image& image) {
+  using vm::Refusal;
+  using vm::Section;
+  const auto refuse = [](Section section, std::size_t most) {
+    return vm::Verdict{Refusal::too_many, section, static_cast<std::uint16_t>(most)};
+  };
+  if (image.channels.size() > kMaxChannels) return refuse(Section::channels, kMaxChannels);
+  if (image.variables.size() > kMaxVariables) return refuse(Section::variables, kMaxVariables);
+  if (image.rules.size() > kMaxRules) return refuse(Section::rules, kMaxRules);
+  if (image.checks.size() > kMaxChecks) return refuse(Section::checks, kMaxChecks);
+  std::size_t samples = 0;
+  for (const vm::Check& check : image.checks)
+    if (check.window > 1) samples += check.window;
+  if (samples > kMaxSamples) return refuse(Section::checks, kMaxSamples);
+  std::size_t fading = 0;
+  for (const vm::Variable& variable : image.variables)
+    if (variable.fade != 0) ++fading;
+  if (fading > kMaxFading) return refuse(Section::variables, kMaxFading);
+  std::size_t timer_words = 0;
+  for (const vm::Timer& timer : image.timers)
+    timer_words += vm::timer_words(timer.kind, timer.count);
+  if (timer_words > kMaxTimerWords) return refuse(Section::timers, kMaxTimerWords);
+  for (const vm::Rule& rule : image.rules)
+    if (rule.kind == vm::RuleKind::safety &&
+        output_of(image, rule.then_response) > kMaxSafetyOutput)
+      return refuse(Section::responses, kMaxSafetyOutput);
+  return {};
+}
+
+}  // namespace
+
+vm::Verdict fits(const vm::Image& image) {
+  using vm::Refusal;
+  using vm::Section;
+  const vm::Verdict tables = tables_fit(image);
+  if (!tables.ok()) return tables;
+  std::size_t sensors = 0;
+  std::size_t fed_sensors = 0;
+  for (const vm::Sensor& sensor : image.sensors)
+    (is_fed(sensor) ? fed_sensors : sensors) += 1;
+  if (fed_sensors > 0) ++sensors;  // one thread for all
+  std::size_t behaviors = image.behaviors.size();
+  if (behaviors > 0 && image.behaviors[0].priority == vm::kSafetyPriority) --behaviors;
+  const std::size_t actuators = image.actuators.size();
+  const std::size_t threads = sensors + behaviors + actuators;
+  const std::size_t stacks =
+      sensors * kSensorStack + behaviors * kBehaviorStack + actuators * kControlStack + kStepStack;
+  if (threads + 1 > kMaxProgramThreads || stacks > kStackArena)
+    return {Refusal::too_many, Section::header, static_cast<std::uint16_t>(threads)};
+  return {};
+}
+
+const char* name_of(const vm::Image& image, std::uint16_t offset, const char* otherwise) {
+  const std::string_view name = image.string(offset);
+  return name.empty() ? otherwise : name.data();
+}
+
+}  // namespace robosync::layers

@@ -1,0 +1,49 @@
+// The running program: its image, and what is worked out from it once, when it is loaded.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "runtime-m4/layers/messages.hpp"
+#include "vm/image.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::layers {
+
+struct Program {
+  vm::Image image;
+  std::array<InputMask, kMaxBehaviors> inputs{};          // that each behaviour reads
+  std::array<std::uint8_t, kMaxRules> behavior_of{};      // by rule
+  std::array<std::uint16_t, kMaxBehaviors> first_cell{};  // in the shared frame memory
+
+  // `image` is verified and fits().
+  void load(const vm::Image& image);
+
+  // The behaviour that only holds the safety rules comes first, if there is one.
+  bool has_safety() const {
+    return !image.behaviors.empty() && image.behaviors[0].priority == vm::kSafetyPriority;
+  }
+  unsigned first_behavior() const { return has_safety() ? 1 : 0; }
+  bool is_variable(unsigned input) const { return input >= image.channels.size(); }
+
+  // Priority(T) = max over the behaviours that need T; below all of them when none does.
+  std::int16_t sensor_priority(unsigned sensor) const;
+  std::int16_t actuator_priority(unsigned actuator) const;
+  std::int16_t step_priority() const;
+
+  InputMask channels_of(unsigned sensor) const;
+  bool has_fed_sensors() const;
+  // Lowest priority a thread of this program can have: of those that no behaviour needs.
+  std::int16_t idle_priority() const;
+};
+
+// Its readings come from outside, at any time: it is not sampled.
+[[nodiscard]] bool is_fed(const vm::Sensor& sensor);
+
+// What the verifier's limits do not say: channels, variables, rules, threads and their stacks.
+[[nodiscard]] vm::Verdict fits(const vm::Image& image);
+
+// The name at `offset` of the strings, for reports; `otherwise` when there is none.
+const char* name_of(const vm::Image& image, std::uint16_t offset, const char* otherwise);
+
+}  // namespace robosync::layers

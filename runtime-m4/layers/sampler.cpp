@@ -1,0 +1,29 @@
+// See sampler.hpp. The verifier has seen that scale_den is not 0.
+#include "runtime-m4/layers/sampler.hpp"
+
+#include <algorithm>
+
+#include "runtime-m4/drivers/drivers.hpp"
+
+namespace robosync::layers {
+
+vm::Value scaled(std::int32_t raw, const vm::Channel& channel) {
+  const std::int64_t product = std::int64_t{raw} * channel.scale_num;  // |product| <= 2^62
+  const std::int64_t half = channel.scale_den / 2;
+  const std::int64_t quotient = (product < 0 ? product - half : product + half) / channel.scale_den;
+  const std::int64_t value =
+      std::clamp<std::int64_t>(quotient, -(std::int64_t{1} << 33), std::int64_t{1} << 33) +
+      channel.offset;
+  return static_cast<vm::Value>(std::clamp<std::int64_t>(value, vm::kValueMin, vm::kValueMax));
+}
+
+bool DriverSampler::sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) {
+  const vm::Channel& wiring = image.channels[channel];
+  const vm::Sensor& sensor = image.sensors[wiring.sensor];
+  std::int32_t raw = 0;
+  if (!drivers::driver(sensor.driver).read(board_, sensor, wiring, raw)) return false;
+  value = scaled(raw, wiring);
+  return true;
+}
+
+}  // namespace robosync::layers

@@ -1,0 +1,167 @@
+// See sensor.hpp.
+#include "runtime-m4/layers/sensor.hpp"
+
+#include <algorithm>
+
+namespace robosync::layers {
+namespace {
+
+constexpr std::uint64_t kLatestFeed = std::uint64_t{1} << 62;  // so that times do not wrap
+
+}  // namespace
+
+bool SensorLayer::start(const Program& program, Sampler& sampler, Crew& crew) {
+  program_ = &program;
+  sampler_ = &sampler;
+  feed_thread_ = nullptr;
+  feeds_.clear();
+  stations_.fill({});
+  for (unsigned s = 0; s < program.image.sensors.size(); ++s)
+    if (!is_fed(program.image.sensors[s]) && !start_sensor(s, crew)) return false;
+  return !program.has_fed_sensors() || start_feeds(crew);
+}
+
+bool SensorLayer::start_sensor(unsigned sensor, Crew& crew) {
+  Station& station = stations_[sensor];
+  station = {this, nullptr, static_cast<std::uint8_t>(sensor)};
+  const auto entry = [](void* self) {
+    const auto& mine = *static_cast<Station*>(self);
+    mine.layer->run_sensor(mine.sensor);
+  };
+  kernel::ThreadSpec spec;
+  spec.name = name_of(program_->image, program_->image.sensors[sensor].name, "sensor");
+  spec.category = kernel::Category::sensor;
+  spec.priority = program_->sensor_priority(sensor);
+  spec.entry = entry;
+  spec.argument = &station;
+  station.thread = crew.start(spec, sensor, kSensorStack);
+  return station.thread != nullptr;
+}
+
+void SensorLayer::go() {
+  const auto lock = kernel_.lock();
+  for (const Station& station : stations_)
+    if (station.thread != nullptr) kernel_.signal(*station.thread, kGo);
+}
+
+bool SensorLayer::start_feeds(Crew& crew) {
+  kernel::ThreadSpec spec;
+  spec.name = "feeds";
+  spec.category = kernel::Category::sensor;
+  spec.priority = program_->idle_priority();
+  for (unsigned s = 0; s < program_->image.sensors.size(); ++s)
+    if (is_fed(program_->image.sensors[s]))
+      spec.priority = std::max(spec.priority, program_->sensor_priority(s));
+  spec.entry = [](void* self) { static_cast<SensorLayer*>(self)->run_feeds(); };
+  spec.argument = this;
+  feed_thread_ = crew.start(spec, kFedSensors, kSensorStack);
+  return feed_thread_ != nullptr;
+}
+
+void SensorLayer::run_sensor(unsigned sensor) {
+  kernel_.wait(kGo);
+  kernel::Time due = trace_.activated_at();
+  while (true) {
+    kernel_.sleep_until(due);
+    sample(sensor);
+    due = next_sample(sensor, due);
+  }
+}
+
+// One period after the last; periods that are over already are skipped, never made up for.
+kernel::Time SensorLayer::next_sample(unsigned sensor, kernel::Time last) {
+  const kernel::Duration period = kernel::milliseconds(program_->image.sensors[sensor].period_ms);
+  const kernel::Time now = kernel_.now();
+  const kernel::Time next = last + period;
+  if (now < next) return next;
+  const auto late = static_cast<std::int32_t>(std::min<kernel::Duration>(now - next, INT32_MAX));
+  trace_.emit(link::EventKind::deadline, trace_.now(), kernel_.current().rank(), 0, late);
+  return next + ((now - next) / period + 1) * period;
+}
+
+void SensorLayer::sample(unsigned sensor) {
+  const vm::Sensor& wiring = program_->image.sensors[sensor];
+  InputMask news = 0;
+  for (unsigned i = 0; i < wiring.channel_count; ++i) {
+    const auto channel = static_cast<std::uint8_t>(wiring.first_channel + i);
+    vm::Value value = 0;
+    if (sampler_->sample(program_->image, channel, value)) news |= publish(channel, value);
+  }
+  announce(news);
+}
+
+void SensorLayer::run_feeds() {
+  while (true) {
+    kernel::Time next = 0;
+    {
+      const auto lock = kernel_.lock();
+      next = feeds_.next_due();
+    }
+    kernel_.wait(kFeed, next);
+    deliver_due();
+  }
+}
+
+// One tick's worth: at most as many as the queue holds.
+void SensorLayer::deliver_due() {
+  const kernel::Time now = kernel_.now();
+  InputMask news = 0;
+  for (unsigned i = 0; i < kMaxFeeds; ++i) {
+    FeedQueue::Entry entry;
+    {
+      const auto lock = kernel_.lock();
+      if (!feeds_.take_due(now, entry)) break;
+    }
+    if (entry.value() != vm::kUnknown) news |= publish(entry.channel(), entry.value());
+  }
+  announce(news);
+}
+
+// The channel's bit if it is news.
+InputMask SensorLayer::publish(std::uint8_t channel, vm::Value value) {
+  const vm::Channel& wiring = program_->image.channels[channel];
+  const Reading reading(channel, std::clamp(value, wiring.min, wiring.max), kernel_.now());
+  return mailboxes_.post(reading, wiring) ? bit<InputMask>(channel) : 0;
+}
+
+void SensorLayer::announce(InputMask channels) {
+  if (channels == 0) return;
+  mailboxes_.announce(channels);
+  alarm_.ring(channels);  // safety first; what it does is part of the step with the reading
+  kernel_.signal(step_thread_, news_);
+}
+
+link::FeedError SensorLayer::check(const link::Feed& feed) const {
+  if (feed.channel >= program_->image.channels.size()) return link::FeedError::no_channel;
+  if (!is_fed(program_->image.sensors[program_->image.channels[feed.channel].sensor]))
+    return link::FeedError::not_virtual;
+  if (feed.at_us != 0 && feed.at_us < trace_.program_time()) return link::FeedError::in_the_past;
+  return link::FeedError::none;
+}
+
+link::FeedResult SensorLayer::feed(const link::Feed& feed) {
+  link::FeedResult result{check(feed), 0};
+  {
+    const auto lock = kernel_.lock();
+    const kernel::Time due =
+        feed.at_us == 0 ? kernel_.now() : trace_.activated_at() + std::min(feed.at_us, kLatestFeed);
+    const FeedQueue::Entry entry(due, static_cast<std::uint8_t>(feed.channel), feed.value);
+    if (result.error == link::FeedError::none && !feeds_.insert(entry))
+      result.error = link::FeedError::queue_full;
+    result.free_places = static_cast<std::uint8_t>(feeds_.free_places());
+  }
+  if (result.error == link::FeedError::none) kernel_.signal(*feed_thread_, kFeed);
+  return result;
+}
+
+void SensorLayer::retire(unsigned member_index) {
+  for (unsigned s = 0; s < program_->image.sensors.size(); ++s) {
+    const vm::Sensor& wiring = program_->image.sensors[s];
+    const bool served = is_fed(wiring) ? member_index == kFedSensors : member_index == s;
+    if (!served) continue;
+    for (unsigned i = 0; i < wiring.channel_count; ++i)
+      mailboxes_.forget(wiring.first_channel + i);
+  }
+}
+
+}  // namespace robosync::layers

@@ -1,0 +1,86 @@
+// When rules trigger: what is remembered of their conditions, periods, cooldowns and waits.
+//
+// A rule remembers the last known truth of its condition. WHEN triggers when that becomes true,
+// WHEN/ELSE when it changes; the first known truth counts as a change; a truth that is an event
+// (BECOMES, CHANGES …) triggers each time. An unknown condition does nothing and is not remembered,
+// so a sensor that drops out and comes back does not trigger by that alone. WHILE is other: unknown
+// ends it, so that it fires again when its condition is known to be true.
+//
+// The behaviours' threads say what they have evaluated, each of its own rules; the step thread asks
+// what follows from it. Times are milliseconds of program time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "runtime-m4/layers/arbiter.hpp"
+#include "runtime-m4/layers/messages.hpp"
+#include "vm/interpreter.hpp"
+
+namespace robosync::layers {
+
+class Triggers {
+public:
+  void start(const vm::Image& image);
+
+  // --- for the behaviour of the rule ---
+  void judge(unsigned rule, vm::Value condition, bool event);
+  // AT START.
+  void begin(unsigned rule);
+  // EVERY: it triggers if its time has come. True when its next period is to be drawn.
+  [[nodiscard]] bool begin_period(unsigned rule, std::uint32_t now);
+  void draw_period(unsigned rule, vm::Value thousandths, std::uint32_t now);
+  std::uint32_t next_period(unsigned rule) const;
+  void note_zero_divide(unsigned rule) { states_[rule].zero_divide = true; }
+
+  // --- for the step thread ---
+  struct Wish {
+    Side side;
+    bool fresh;   // it triggered in this step
+    bool silent;  // it was told before that the rule wants this
+  };
+  // Drops what comes inside a cooldown; ends cooldowns and waits that are over.
+  void settle(std::uint32_t now);
+  bool take_zero_divide(unsigned rule);
+  // It triggered in this step.
+  [[nodiscard]] bool fired(unsigned rule, Side& side) const;
+  // What it wants to run, given whether it runs now. False: nothing.
+  [[nodiscard]] bool wish(unsigned rule, bool running, Wish& wish) const;
+  // A WHILE whose condition does not hold.
+  bool is_over(unsigned rule) const;
+  bool restarting(unsigned rule) const;
+  // What became of its wish, or of its response.
+  void won(unsigned rule, std::uint32_t now);
+  void lost(unsigned rule, Side side, bool to_itself, std::uint32_t now);
+  void interrupted(unsigned rule) { states_[rule].told = true; }
+  void forget(unsigned rule) { states_[rule].trigger = Trigger::none; }
+  void forget_all();
+  // Its behaviour was stopped: it never triggers again.
+  void retire(unsigned rule);
+  // When a WHILE that cools down may start again; kNever for never.
+  std::uint32_t cooled_at(unsigned rule) const;
+
+private:
+  enum class Truth : std::uint8_t { unknown, no, yes };
+  enum class Trigger : std::uint8_t { none, otherwise, then };
+  enum class Phase : std::uint8_t { free, cooling, wants_otherwise, wants_then };
+
+  struct State {
+    std::uint32_t period_end = 0;  // EVERY
+    std::uint32_t until = 0;       // end of a phase other than `free`
+    Truth truth : 2 = Truth::unknown;
+    Trigger trigger : 2 = Trigger::none;
+    Phase phase : 2 = Phase::free;
+    bool told : 1 = false;  // WHILE: that it wants to run and does not
+    bool has_period : 1 = false;
+    bool zero_divide = false;
+  };
+
+  bool is_while(unsigned rule) const { return image_->rules[rule].kind == vm::RuleKind::while_; }
+  const vm::Modifiers& modifiers(unsigned rule) const;
+
+  const vm::Image* image_ = nullptr;
+  std::array<State, kMaxRules> states_{};
+};
+
+}  // namespace robosync::layers

@@ -1,0 +1,82 @@
+// What a program remembers: REMEMBER, STATE, FEELING, SIGNAL. The values that rules see are in the
+// snapshot; here is what becomes of them in the next step.
+//
+// Writes of a step are staged, and take effect together when the next step begins, as if done from
+// the least important behaviour up to the most important one: of two SETs the latter's stays, and
+// RAISE and LOWER add to whatever is there. They are staged the other way round, since that is the
+// order in which responses run; so all that has to be kept of a variable is one sum: the first SET
+// that is staged ends it. The result is clamped to the variable's range once, at the end.
+//
+// A fading variable is its target plus a part of the distance at which it was when it was last set;
+// the part depends on how many whole ticks ago that was, and on nothing else.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/messages.hpp"
+#include "vm/interpreter.hpp"
+
+namespace robosync::layers {
+
+class Variables {
+public:
+  struct Write {
+    std::uint8_t variable;  // its place among the variables
+    bool set;               // value is the new one; otherwise a difference
+    vm::Value value;        // unknown: there is no such write
+  };
+
+  explicit Variables(kernel::Kernel& kernel) : kernel_(kernel) {}
+
+  // Writes the initial values into `values`, one for each variable of `image`.
+  void start(const vm::Image& image, std::span<vm::Value> values);
+
+  // Stages what a response has written into the frame of `behavior`, which was latched from
+  // `before`: in a step from the most important response down  [behaviour threads, one at a time]
+  void stage(const vm::Machine& machine, const vm::Behavior& behavior, const Snapshot& before) {
+    stage_all(machine, behavior, before, &Variables::add);
+  }
+  // … or more important than all those, at any time  [safety thread].
+  void stage_first(const vm::Machine& machine, const vm::Behavior& behavior,
+                   const Snapshot& before) {
+    stage_all(machine, behavior, before, &Variables::add_first);
+  }
+  // One write.
+  void add(const Write& write);
+  void add_first(const Write& write);
+
+  // --- for the step thread; `now` is milliseconds of program time ---
+  bool staged() const { return staged_ != 0; }
+  // Moves `values` on to `now` and lets the staged writes take effect. Returns what changed.
+  VariableMask enter(std::uint32_t now, std::span<vm::Value> values);
+  // In how many milliseconds the next one fades; kNever when all are where they tend to.
+  std::uint32_t next_fade(std::uint32_t now, std::span<const vm::Value> values) const;
+
+private:
+  struct Fade {
+    vm::Value from = 0;       // its value when it was last set
+    std::uint32_t since = 0;  // when that was
+  };
+
+  void stage_all(const vm::Machine& machine, const vm::Behavior& behavior, const Snapshot& before,
+                 void (Variables::*add_one)(const Write&));
+  bool take(unsigned variable, Write& write);
+  static vm::Value result_of(const vm::Variable& wiring, vm::Value before, const Write& write);
+
+  kernel::Kernel& kernel_;
+  const vm::Image* image_ = nullptr;
+  std::uint32_t entered_ = 0;  // when enter() was called last
+  VariableMask staged_ = 0;
+  VariableMask set_ = 0;  // of these, the ones of which the sum ends with a SET
+  std::array<vm::Value, kMaxVariables> sums_{};
+  std::array<Fade, kMaxFading> fades_{};  // of the variables that fade, in their order
+};
+
+// What is left of `distance` after `ticks` times kFadeTickMs, of which each leaves fade / 2^31:
+// rounded towards zero, so that it ends.
+[[nodiscard]] std::int64_t faded(std::int64_t distance, std::uint32_t fade, std::uint32_t ticks);
+
+}  // namespace robosync::layers

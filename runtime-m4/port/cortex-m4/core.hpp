@@ -1,0 +1,77 @@
+// The registers of the Cortex-M4's core that the port and the boards touch, and nothing else.
+// Names as in the ARMv7-M manual.
+#pragma once
+
+#include <cstdint>
+
+namespace robosync::port::core {
+
+inline volatile std::uint32_t& reg(std::uintptr_t address) {
+  return *reinterpret_cast<volatile std::uint32_t*>(address);
+}
+
+inline constexpr std::uintptr_t kSystCsr = 0xE000'E010;   // SysTick control
+inline constexpr std::uintptr_t kSystRvr = 0xE000'E014;   // SysTick reload
+inline constexpr std::uintptr_t kSystCvr = 0xE000'E018;   // SysTick current value
+inline constexpr std::uintptr_t kNvicIser = 0xE000'E100;  // interrupt set-enable
+inline constexpr std::uintptr_t kNvicIspr = 0xE000'E200;  // interrupt set-pending
+inline constexpr std::uintptr_t kNvicIpr = 0xE000'E400;   // interrupt priorities, a byte each
+inline constexpr std::uintptr_t kIcsr = 0xE000'ED04;      // interrupt control and state
+inline constexpr std::uintptr_t kAircr = 0xE000'ED0C;     // reset control
+inline constexpr std::uintptr_t kCcr = 0xE000'ED14;       // traps
+inline constexpr std::uintptr_t kShpr3 = 0xE000'ED20;     // priorities of PendSV and SysTick
+inline constexpr std::uintptr_t kShcsr = 0xE000'ED24;     // enables of the fault handlers
+inline constexpr std::uintptr_t kCfsr = 0xE000'ED28;      // what kind of fault
+inline constexpr std::uintptr_t kMmfar = 0xE000'ED34;     // address of a MemManage fault
+inline constexpr std::uintptr_t kBfar = 0xE000'ED38;      // address of a BusFault
+inline constexpr std::uintptr_t kCpacr = 0xE000'ED88;     // access to the FPU
+
+inline constexpr std::uintptr_t kMpuCtrl = 0xE000'ED94;  // MPU on
+inline constexpr std::uintptr_t kMpuRbar = 0xE000'ED9C;  // MPU region: number and base
+inline constexpr std::uintptr_t kMpuRasr = 0xE000'EDA0;  // … size and access
+
+inline constexpr std::uint32_t kIcsrPendSvSet = 1U << 28;
+inline constexpr std::uint32_t kCcrDivideByZeroTrap = 1U << 4;
+inline constexpr std::uint32_t kShcsrFaultHandlers = 7U << 16;  // MemManage, BusFault, UsageFault
+inline constexpr std::uint32_t kCfsrDataAccess = 1U << 1;       // MemManage: address in MMFAR
+inline constexpr std::uint32_t kCfsrMemoryStacking = 1U << 4;   // MemManage: frame not stacked
+inline constexpr std::uint32_t kCfsrMmarValid = 1U << 7;
+inline constexpr std::uint32_t kCfsrBfarValid = 1U << 15;
+inline constexpr std::uint32_t kMpuOn = 0b101;                // what no region covers is as without
+inline constexpr std::uint32_t kMpuBaseValid = 1U << 4;       // RBAR names its region
+inline constexpr std::uint32_t kMpuNoAccess32 = 0x1000'0009;  // never execute, no access, 32 bytes
+
+// Interrupt priorities, the lower number the more urgent. Everything from kKernelPriority on is
+// held off by the kernel's critical sections and may call the kernel; what is more urgent is never
+// held off and must not call it. All interrupts of the kernel's level have the same priority, so
+// they do not nest.
+inline constexpr std::uint32_t kKernelPriority = 0x40;
+inline constexpr std::uint32_t kSwitchPriority = 0xFF;
+
+// For the reset handler: turns the FPU on, and holds the kernel's interrupts off until
+// Machine::run().
+[[gnu::always_inline]] inline void prepare() {
+  reg(kCpacr) = 0xFU << 20;
+  reg(kShpr3) = (kKernelPriority << 24) | (kSwitchPriority << 16);
+  asm volatile("msr basepri, %0\n\tdsb\n\tisb" ::"r"(kKernelPriority) : "memory");
+}
+
+// Enables interrupt `number` at the kernel's level.
+inline void enable_interrupt(unsigned number) {
+  reinterpret_cast<volatile std::uint8_t*>(kNvicIpr)[number] = kKernelPriority;
+  reg(kNvicIser + number / 32 * 4) = 1U << (number % 32);
+}
+
+// Makes interrupt `number` happen.
+inline void pend_interrupt(unsigned number) {
+  reg(kNvicIspr + number / 32 * 4) = 1U << (number % 32);
+}
+
+[[noreturn]] inline void reset() {
+  reg(kAircr) = 0x05FA'0004;  // key, SYSRESETREQ
+  asm volatile("dsb" ::: "memory");
+  while (true) {
+  }
+}
+
+}  // namespace robosync::port::core

@@ -1,0 +1,25 @@
+// What the Cortex-M4 port asks of the program it is linked into (boards/NAME/main.cpp).
+#pragma once
+
+#include <cstdint>
+
+#include "link/messages.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
+
+// The one kernel of the firmware.
+extern "C" robosync::kernel::Kernel robosync_kernel;
+
+namespace robosync::port::hooks {
+
+// Frequency of the core's clock, which SysTick counts.
+extern const std::uint32_t kCoreHz;
+
+// A thread was stopped by a fault; the others go on. Called from the fault handler or the context
+// switch: may signal threads, must be short.
+void thread_faulted(kernel::Thread& thread, const link::Fault& fault);
+
+// Nothing can go on: a fault in a handler, in the kernel, or in the safety thread. Must put the
+// outputs into their safe state and reset.
+[[noreturn]] void fatal_fault(const link::Fault& fault);
+
+}  // namespace robosync::port::hooks

@@ -1,0 +1,34 @@
+// The host as a board: PWM pins that remember their last pulse, no bus, no line, a watchdog that
+// only counts.
+#pragma once
+
+#include <cstdint>
+#include <map>
+
+#include "runtime-m4/boards/board.hpp"
+
+namespace robosync::host {
+
+class HostBoard final : public boards::Board {
+public:
+  const char* name() const override { return "host"; }
+  std::uint8_t reset_reason() const override { return 0; }
+
+  bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
+                    std::span<std::byte> in) override;
+  void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override { pulses_[pin] = pulse_us; }
+  std::uint32_t pwm_read(std::uint16_t pin) const override;
+
+  std::size_t link_write(std::span<const std::byte> bytes) override { return bytes.size(); }
+  std::size_t link_read(std::span<std::byte>) override { return 0; }
+
+  void watchdog_start() override {}
+  void watchdog_kick() override { ++kicks_; }
+  std::uint64_t kicks() const { return kicks_; }
+
+private:
+  std::map<std::uint16_t, std::uint32_t> pulses_;
+  std::uint64_t kicks_ = 0;
+};
+
+}  // namespace robosync::host

@@ -1,0 +1,98 @@
+#include "runtime-m4/port/host/machine.hpp"
+
+#include <algorithm>
+
+#include "runtime-m4/kernel/kernel.hpp"
+
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/common_interface_defs.h>
+#endif
+
+namespace robosync::port {
+
+namespace {
+
+constexpr std::size_t kFiberStack = std::size_t{128} * 1024;
+
+// Whose switch is under way: makecontext cannot pass it to a new fiber.
+thread_local Machine* switching = nullptr;
+
+// Tells AddressSanitizer that the program moves to the stack of `to`. A null `keep` gives up the
+// stack it leaves.
+void announce_switch([[maybe_unused]] void** keep, [[maybe_unused]] const Context& to) {
+#if defined(__SANITIZE_ADDRESS__)
+  __sanitizer_start_switch_fiber(keep, to.stack_bottom, to.stack_bytes);
+#endif
+}
+
+// … and that it has arrived: `kept` is what announce_switch kept when this stack was left, null on
+// its first run. Notes where the stack lies from which it came.
+void announce_arrival([[maybe_unused]] void* kept, [[maybe_unused]] Context& came_from) {
+#if defined(__SANITIZE_ADDRESS__)
+  __sanitizer_finish_switch_fiber(kept, &came_from.stack_bottom, &came_from.stack_bytes);
+#endif
+}
+
+}  // namespace
+
+void Machine::prepare(Context& context, const kernel::ThreadSpec& spec, std::span<std::byte>) {
+  if (context.stack == nullptr) context.stack = std::make_unique<std::byte[]>(kFiberStack);
+  context.entry = spec.entry;
+  context.argument = spec.argument;
+  context.sanitizer_stack = nullptr;
+  context.stack_bottom = context.stack.get();
+  context.stack_bytes = kFiberStack;
+  getcontext(&context.registers);
+  context.registers.uc_stack.ss_sp = context.stack.get();
+  context.registers.uc_stack.ss_size = kFiberStack;
+  context.registers.uc_link = nullptr;
+  makecontext(&context.registers, &Machine::fiber_main, 0);
+}
+
+void Machine::fiber_main() {
+  switching->enter_fiber();
+}
+
+void Machine::enter_fiber() {
+  announce_arrival(nullptr, *from_);
+  kernel::Thread& self = kernel_.current();
+  const Context& context = kernel::Kernel::context(self);
+  context.entry(context.argument);
+  kernel_.stop(self);  // switches away for good
+}
+
+// Runs the highest ready thread; returns when the thread that called (or idle) is it again.
+void Machine::switch_now() {
+  switch_requested_ = false;
+  kernel::Thread& left = kernel_.current();
+  kernel::Thread& next = kernel_.select_next();
+  if (&next == &left) return;
+  on_fiber_ = &next != &kernel_.idle();
+  const bool for_good = kernel_.state(left) == kernel::Thread::State::stopped;
+  Context& from = kernel::Kernel::context(left);
+  Context& to = kernel::Kernel::context(next);
+  from_ = &from;
+  switching = this;
+  announce_switch(for_good ? nullptr : &from.sanitizer_stack, to);
+  swapcontext(&from.registers, &to.registers);
+  announce_arrival(from.sanitizer_stack, *from_);
+}
+
+void Machine::run_until(kernel::Time until) {
+  stop_requested_ = false;
+  while (true) {
+    switch_now();
+    if (stop_requested_) return;
+    const std::uint32_t ticks = kernel_.ticks_to_next_wake();
+    if (ticks == 0 || kernel_.now() + ticks * kernel::kTick > until) break;
+    kernel_.on_tick(ticks);
+  }
+  if (until == kernel::kForever) return;
+  while (until >= kernel_.now() + kernel::kTick) {
+    const kernel::Time ticks = (until - kernel_.now()) / kernel::kTick;
+    kernel_.on_tick(
+        static_cast<std::uint32_t>(std::min<kernel::Time>(ticks, kernel::TimerQueue::kMaxTicks)));
+  }
+}
+
+}  // namespace robosync::port

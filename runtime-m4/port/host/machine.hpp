@@ -1,0 +1,101 @@
+// The host as a machine for the kernel: threads are fibers (ucontext), time is virtual.
+//
+// A switch happens where the firmware would take PendSV: at the end of the outermost Lock, so a
+// signal to a thread of higher rank runs it at once. Nothing preempts between kernel calls, and
+// time stands still while a thread runs: it jumps from deadline to deadline when all are blocked.
+// So a run depends on its inputs only. Several machines may live in one process; each belongs to
+// the OS thread that runs it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include <ucontext.h>
+
+#include "runtime-m4/kernel/time.hpp"
+
+namespace robosync::kernel {
+class Kernel;
+class Thread;
+struct ThreadSpec;
+}  // namespace robosync::kernel
+
+namespace robosync::port {
+
+inline constexpr bool kTimeFlows = false;
+inline constexpr std::size_t kStackAlignment = 8;
+inline constexpr std::size_t kMinStack = 0;  // a fiber has a host-sized stack of its own
+
+struct Context {
+  ucontext_t registers{};
+  std::unique_ptr<std::byte[]> stack;
+  void (*entry)(void*) = nullptr;
+  void* argument = nullptr;
+  // For AddressSanitizer, which must know on which stack the program is.
+  void* sanitizer_stack = nullptr;
+  const void* stack_bottom = nullptr;
+  std::size_t stack_bytes = 0;
+};
+
+class Machine {
+public:
+  explicit Machine(kernel::Kernel& kernel) : kernel_(kernel) {}
+  Machine(const Machine&) = delete;
+  Machine& operator=(const Machine&) = delete;
+
+  void prepare(Context& context, const kernel::ThreadSpec& spec, std::span<std::byte> stack);
+  void request_switch() { switch_requested_ = true; }
+  void run() { run_until(kernel::kForever); }
+  static std::span<std::byte> usable(std::span<std::byte> stack) { return stack; }
+  static std::span<std::byte> prepare_idle(Context&) { return {}; }  // it is the caller
+
+  // Runs threads until all are blocked and the next deadline lies after `until`; then now() is
+  // `until`, rounded down to a tick. Call it again to go on; `until` in the past only runs
+  // what is ready. With kForever: until no thread has a
+  // deadline. Not from a thread.
+  void run_until(kernel::Time until);
+  // Makes run_until() return as soon as all threads are blocked, without moving the time on.
+  // [a thread, or between two run_until()]
+  void stop() { stop_requested_ = true; }
+
+private:
+  friend class Lock;
+
+  static void fiber_main();
+  void enter_fiber();
+  void switch_now();
+
+  kernel::Kernel& kernel_;
+  Context* from_ = nullptr;  // who switched to the running fiber
+  unsigned lock_depth_ = 0;
+  bool switch_requested_ = false;
+  bool on_fiber_ = false;
+  bool stop_requested_ = false;
+};
+
+inline std::uint32_t fetch_and_clear(std::uint32_t& word, std::uint32_t mask) {
+  const std::uint32_t before = word;
+  word &= ~mask;
+  return before;
+}
+
+class Lock {
+public:
+  explicit Lock(const Machine& machine) : machine_(const_cast<Machine&>(machine)) {
+    ++machine_.lock_depth_;
+  }
+  ~Lock() {
+    if (--machine_.lock_depth_ == 0 && machine_.switch_requested_ && machine_.on_fiber_) {
+      machine_.switch_now();
+    }
+  }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+
+private:
+  Machine& machine_;
+};
+
+}  // namespace robosync::port

@@ -1,0 +1,143 @@
+// See simulator.hpp. Feeds wait in maps, ordered by tick. Those for fed channels go on to the
+// runtime's own queue, as much as it holds at a time; those for sampled ones are looked up by the
+// sampler.
+#include "runtime-m4/port/host/simulator.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/port/host/host_board.hpp"
+#include "runtime-m4/runtime.hpp"
+
+namespace robosync::host {
+namespace {
+
+// Feeds by channel: what each measures from which time on.
+class HeldValues final : public layers::Sampler {
+public:
+  explicit HeldValues(const kernel::Kernel& kernel) : kernel_(kernel) {}
+
+  void hold(std::uint8_t channel, kernel::Time from, vm::Value value) {
+    values_[channel][from] = value;
+  }
+
+  bool sample(const vm::Image&, std::uint8_t channel, vm::Value& value) override {
+    const auto& history = values_[channel];
+    const auto after = history.upper_bound(kernel_.now());
+    if (after == history.begin()) return false;
+    value = std::prev(after)->second;
+    return value != vm::kUnknown;
+  }
+
+private:
+  const kernel::Kernel& kernel_;
+  std::map<std::uint8_t, std::map<kernel::Time, vm::Value>> values_;
+};
+
+class Forwarder final : public EventSink {
+public:
+  explicit Forwarder(Simulator::Sink sink) : sink_(std::move(sink)) {}
+  void emit(const link::Event& event) override {
+    if (sink_) sink_(event);
+  }
+
+private:
+  Simulator::Sink sink_;
+};
+
+constexpr std::uint64_t next_tick(std::uint64_t time_us) {
+  return (time_us / kernel::kTick + (time_us % kernel::kTick != 0 ? 1 : 0)) * kernel::kTick;
+}
+
+}  // namespace
+
+struct Simulator::Impl {
+  explicit Impl(Sink sink) : events(std::move(sink)), runtime(kernel, board, events), held(kernel) {
+    runtime.measure_with(held);
+  }
+
+  void load(std::span<const std::byte> bytes) {
+    image.resize((bytes.size() + 3) / 4);
+    if (!bytes.empty()) std::memcpy(image.data(), bytes.data(), bytes.size());
+    runtime.start();
+    verdict = runtime.activate(std::as_bytes(std::span(image)).first(bytes.size()));
+  }
+
+  bool is_fed(std::uint8_t channel) const;
+  std::uint64_t hand_over(std::uint64_t until_us);
+
+  kernel::Kernel kernel;
+  HostBoard board;
+  Forwarder events;
+  Runtime runtime;
+  HeldValues held;
+  std::vector<std::uint32_t> image;  // aligned as the VM wants it
+  vm::Verdict verdict;
+  // Feeds not yet handed over: tick, then channel.
+  std::map<std::uint64_t, std::map<std::uint8_t, vm::Value>> waiting;
+};
+
+bool Simulator::Impl::is_fed(std::uint8_t channel) const {
+  const vm::Image& program = runtime.image();
+  return layers::is_fed(program.sensors[program.channels[channel].sensor]);
+}
+
+// Hands over whole ticks, as many as the runtime's queue has place for. Returns until when to run
+// before it can take more. One tick always fits: a program has at most kMaxFeeds channels.
+std::uint64_t Simulator::Impl::hand_over(std::uint64_t until_us) {
+  static_assert(layers::kMaxChannels <= layers::kMaxFeeds);
+  std::size_t places = layers::kMaxFeeds;
+  std::uint64_t handed = until_us;
+  while (!waiting.empty() && waiting.begin()->first <= until_us) {
+    const auto& [tick, feeds] = *waiting.begin();
+    if (feeds.size() > places) return handed;
+    places -= feeds.size();
+    handed = tick;
+    for (const auto& [channel, value] : feeds)
+      runtime.feed({.at_us = tick, .channel = channel, .value = value});
+    waiting.erase(waiting.begin());
+  }
+  return until_us;
+}
+
+Simulator::Simulator(std::span<const std::byte> image, Sink sink)
+    : impl_(std::make_unique<Impl>(std::move(sink))) {
+  impl_->load(image);
+}
+
+Simulator::~Simulator() = default;
+
+vm::Verdict Simulator::verdict() const {
+  return impl_->verdict;
+}
+
+void Simulator::feed(std::uint64_t at_us, std::uint8_t channel, vm::Value value) {
+  if (!impl_->runtime.running() || channel >= impl_->runtime.image().channels.size()) return;
+  const std::uint64_t tick = next_tick(std::max(at_us, impl_->kernel.now()));
+  if (impl_->is_fed(channel)) {
+    impl_->waiting[tick][channel] = value;
+  } else {
+    impl_->held.hold(channel, tick, value);
+  }
+}
+
+void Simulator::run_until(std::uint64_t until_us) {
+  std::uint64_t reached = 0;
+  do {
+    reached = impl_->hand_over(until_us);
+    impl_->kernel.machine().run_until(reached);
+  } while (reached < until_us);
+}
+
+link::Status Simulator::status() const {
+  link::Status status{};
+  impl_->runtime.fill_status(status);
+  return status;
+}
+
+}  // namespace robosync::host

@@ -1,0 +1,44 @@
+// The robot on the host: the same kernel, layers and VM as the firmware, in virtual time.
+// This is the engine behind `rsc run`. Deterministic: same image, same feeds, same events.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "link/events.hpp"
+#include "link/messages.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::host {
+
+class Simulator {
+public:
+  using Sink = std::function<void(const link::Event&)>;
+
+  // Verifies and activates `image`; the program's clock stands at 0.
+  Simulator(std::span<const std::byte> image, Sink sink);
+  ~Simulator();
+
+  vm::Verdict verdict() const;  // why the image was refused, or ok
+
+  // From program time `at_us` on, the sensor behind `channel` measures `value` (thousandths); with
+  // kUnknown it fails to measure. On the host every sensor can be fed, whatever its driver: one
+  // that samples finds the value at its next period. Any number of feeds, in any order; of two for
+  // the same channel and tick the last one counts; one for a time that has passed is a feed for
+  // now.
+  void feed(std::uint64_t at_us, std::uint8_t channel, vm::Value value);
+
+  // Runs the robot until program time `until_us`, inclusive.
+  void run_until(std::uint64_t until_us);
+
+  link::Status status() const;
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace robosync::host

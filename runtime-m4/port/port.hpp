@@ -1,0 +1,28 @@
+// What the kernel needs of a machine. Each port defines these names, with inline bodies where the
+// kernel is in a hurry:
+//
+//   struct Context          What a thread leaves behind while it does not run.
+//   kStackAlignment         How stacks should be aligned, so that nothing of them is wasted.
+//   kTimeFlows              Does time pass while threads run? On the host it stands still until all
+//                           wait.
+//   kMinStack               Least bytes of stack a thread must have.
+//   fetch_and_clear(word, mask)   Clears bits and returns what was there; an interrupt that changes
+//                                 the word meanwhile is not lost.
+//   class Lock(Machine&)    Critical section, RAII, nests. Keeps out the kernel's own interrupts
+//                           (never those above its level) and holds a requested switch back until
+//                           the outermost one ends.
+//   class Machine(Kernel&)  The processor a kernel runs on:
+//     usable(stack)                 What a thread can use of a stack: without alignment and guard.
+//     prepare(context, spec, stack) Makes a thread start with entry(argument) on a usable stack;
+//                                   when that returns, the thread is stopped.
+//     prepare_idle(context)         The idle thread's context; returns its usable stack.
+//     request_switch()              Runs Kernel::select_next() and switches, as soon as no Lock is
+//                                   held and no interrupt handler runs.
+//     run()                         Runs threads; the caller becomes the idle thread.
+#pragma once
+
+#if defined(__arm__)
+#include "runtime-m4/port/cortex-m4/machine.hpp"  // IWYU pragma: export
+#else
+#include "runtime-m4/port/host/machine.hpp"  // IWYU pragma: export
+#endif

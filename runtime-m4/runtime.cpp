@@ -1,0 +1,138 @@
+// See runtime.hpp.
+#include "runtime-m4/runtime.hpp"
+
+#include <algorithm>
+
+#include "runtime-m4/drivers/drivers.hpp"
+
+namespace robosync {
+
+using link::EventKind;
+
+Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events)
+    : kernel_(kernel),
+      board_(board),
+      trace_(kernel, events),
+      drivers_(board),
+      crew_(kernel),
+      mailboxes_(kernel),
+      alarm_(kernel, monitor_.thread(), safety::Monitor::kNews),
+      variables_(kernel),
+      sensors_(kernel, trace_, mailboxes_, alarm_, step_thread_, layers::kNews),
+      control_(kernel, board, trace_, step_thread_,
+               {.idle = layers::kIdle, .cancelled = layers::kCancelled, .halted = layers::kHalted}),
+      behaviors_(kernel,
+                 {.trace = trace_,
+                  .frames = frames_,
+                  .triggers = triggers_,
+                  .variables = variables_,
+                  .control = control_},
+                 step_thread_, layers::kFinished),
+      processing_(kernel, trace_, step_thread_,
+                  {.mailboxes = mailboxes_,
+                   .sensors = sensors_,
+                   .variables = variables_,
+                   .triggers = triggers_,
+                   .behaviors = behaviors_,
+                   .control = control_,
+                   .crew = crew_,
+                   .alarm = alarm_}),
+      guard_(kernel,
+             {.trace = trace_,
+              .mailboxes = mailboxes_,
+              .frames = frames_,
+              .variables = variables_,
+              .control = control_,
+              .alarm = alarm_,
+              .snapshot = processing_.snapshot()},
+             step_thread_, layers::kHalted),
+      monitor_(kernel, board, *this) {}
+
+bool Runtime::start() {
+  return monitor_.start();
+}
+
+const vm::Limits& Runtime::limits() {
+  static constexpr vm::Limits kLimits{.image_bytes = layers::kSlotBytes,
+                                      .step_cost = layers::kStepBudget,
+                                      .frame_cells = layers::kMaxFrameCells,
+                                      .behaviors = layers::kMaxBehaviors,
+                                      .sensors = layers::kMaxSensors,
+                                      .actuators = layers::kMaxActuators,
+                                      .drivers = drivers::kPresent};
+  return kLimits;
+}
+
+vm::Verdict Runtime::activate(std::span<const std::byte> bytes) {
+  vm::Image image;
+  vm::Verdict verdict = vm::verify(bytes, limits(), image);
+  if (verdict.ok()) verdict = layers::fits(image);
+  if (!verdict.ok()) return verdict;
+
+  faults_ += crew_.stopped();
+  running_ = false;
+  crew_.dismiss();
+  control_.release_all();
+  halted_ = false;
+  program_.load(image);
+  if (!start_program()) {
+    crew_.dismiss();
+    return {vm::Refusal::too_many, vm::Section::header, 0};
+  }
+  ++activations_;
+  return {};
+}
+
+// The threads wait until all of them are there.
+bool Runtime::start_program() {
+  mailboxes_.reset();
+  frames_.start();
+  const auto seed = static_cast<std::int32_t>(program_.image.header->seed);
+  trace_.emit(EventKind::activated, {}, 0, 0, seed);
+  if (!control_.start(program_, crew_) || !behaviors_.start(program_, crew_) ||
+      !processing_.start(program_) || !sensors_.start(program_, *sampler_, crew_))
+    return false;
+  guard_.start(program_);
+  go();
+  return true;
+}
+
+// The program's clock begins at a tick that none of its threads can have missed.
+void Runtime::go() {
+  const auto lock = kernel_.lock();
+  trace_.restart(kernel_.now() + (port::kTimeFlows ? kernel::kTick : 0));
+  running_ = true;
+  processing_.go();
+  sensors_.go();
+}
+
+link::FeedResult Runtime::feed(const link::Feed& feed) {
+  if (!running_) return {link::FeedError::no_program, 0};
+  return sensors_.feed(feed);
+}
+
+void Runtime::fill_status(link::Status& status) const {
+  status.uptime_us = kernel_.now();
+  status.program_us = running_ ? trace_.program_time() : 0;
+  status.steps = running_ ? processing_.steps() : 0;
+  status.safety_checks = monitor_.checks();
+  status.safety_late_us = monitor_.worst_lateness();
+  status.activations = activations_;
+  status.faults = static_cast<std::uint8_t>(std::min(faults_ + crew_.stopped(), 255U));
+  status.reset_reason = board_.reset_reason();
+}
+
+// The first time it is reported, as a missed deadline of the step thread.
+void Runtime::halt(kernel::Duration stuck_for) {
+  control_.halt_for_good();
+  if (halted_) return;
+  halted_ = true;
+  const auto late = static_cast<std::int32_t>(stuck_for);
+  trace_.emit(EventKind::deadline, trace_.now(), step_thread_.rank(), 0, late);
+}
+
+kernel::Time Runtime::guard() {
+  return running_ ? guard_.look() : kernel::kForever;
+}
+
+}  // namespace robosync

@@ -1,0 +1,97 @@
+// The runtime of one robot: the safety thread, and the program's threads and layers made from an
+// image. The same on the board (boards/NAME/main.cpp) and on the host (port/host/simulator.cpp).
+//
+// All memory is inside the object and sized by limits.hpp: put it into static storage.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "link/messages.hpp"
+#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/event_sink.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/alarm.hpp"
+#include "runtime-m4/layers/behavior.hpp"
+#include "runtime-m4/layers/control.hpp"
+#include "runtime-m4/layers/crew.hpp"
+#include "runtime-m4/layers/frames.hpp"
+#include "runtime-m4/layers/mailbox.hpp"
+#include "runtime-m4/layers/processing.hpp"
+#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/sampler.hpp"
+#include "runtime-m4/layers/sensor.hpp"
+#include "runtime-m4/layers/trace.hpp"
+#include "runtime-m4/layers/triggers.hpp"
+#include "runtime-m4/layers/variables.hpp"
+#include "runtime-m4/safety/guard.hpp"
+#include "runtime-m4/safety/monitor.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync {
+
+class Runtime final : private safety::Patient {
+public:
+  Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events);
+
+  // Creates the safety thread. Once, before Kernel::run(). False when the kernel has no place.
+  bool start();
+
+  // Verifies `image` and, if it may run, puts it in the place of the running program; otherwise the
+  // running program goes on. `image` must stay as it is until the next activation. Called from a
+  // thread of category `system`: it has the lowest rank, so when it runs no step is under way. Or
+  // before Kernel::run().
+  vm::Verdict activate(std::span<const std::byte> image);
+
+  // A reading for a fed channel: now (at_us 0) or at a program time. Sensors are fed whose driver
+  // is virtual_sensor, and those with period 0. The unknown value is a reading that failed.
+  link::FeedResult feed(const link::Feed& feed);
+
+  // Everything but what only the link knows: bad_frames and lost_events.
+  void fill_status(link::Status& status) const;
+  bool running() const { return running_; }
+  const vm::Image& image() const { return program_.image; }  // of the running program
+  static const vm::Limits& limits();
+
+  // Measures with `sampler` in place of the drivers. Before activate().
+  void measure_with(layers::Sampler& sampler) { sampler_ = &sampler; }
+
+private:
+  bool resting() const override { return !running_ || processing_.resting(); }
+  std::uint32_t progress() const override { return processing_.passes(); }
+  void halt(kernel::Duration stuck_for) override;
+  kernel::Time guard() override;
+
+  bool start_program();
+  void go();
+
+  kernel::Kernel& kernel_;
+  boards::Board& board_;
+  layers::Trace trace_;
+  layers::DriverSampler drivers_;
+  layers::Sampler* sampler_ = &drivers_;
+
+  std::atomic<bool> running_ = false;
+  bool halted_ = false;  // this program, by safety
+  std::uint16_t activations_ = 0;
+  unsigned faults_ = 0;  // of programs that are gone
+  layers::Program program_;
+
+  kernel::Thread step_thread_;
+  layers::Crew crew_;
+  layers::Mailboxes mailboxes_;
+  layers::Alarm alarm_;
+  layers::Frames frames_;
+  layers::Variables variables_;
+  layers::Triggers triggers_;
+  layers::SensorLayer sensors_;
+  layers::ControlLayer control_;
+  layers::BehaviorLayer behaviors_;
+  layers::ProcessingLayer processing_;
+  safety::Guard guard_;
+  safety::Monitor monitor_;
+};
+
+}  // namespace robosync

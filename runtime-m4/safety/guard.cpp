@@ -1,0 +1,126 @@
+// See guard.hpp. May rely on the verifier: a resume rule follows its safety rule, bodies are
+// straight-line code, and on fits() for the room for their output.
+#include "runtime-m4/safety/guard.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "runtime-m4/layers/report.hpp"
+#include "vm/opcode.hpp"
+
+namespace robosync::safety {
+
+using layers::ActuatorMask;
+using layers::RuleMask;
+using link::EventKind;
+
+namespace {
+
+ActuatorMask actuators_of(const vm::Image& image, std::uint8_t target) {
+  return target == vm::kAllActuators ? ~ActuatorMask{0} : image.target_mask(target);
+}
+
+}  // namespace
+
+void Guard::start(const layers::Program& program) {
+  program_ = &program;
+  tripped_ = 0;
+  layers_.alarm.watch(program.has_safety() ? program.inputs[kSafety] : 0);
+  if (program.has_safety()) machine_ = layers_.frames.machine(program, kSafety);
+}
+
+kernel::Time Guard::look() {
+  if (!program_->has_safety()) return kernel::kForever;
+  const vm::Image& image = program_->image;
+  const kernel::Time now = kernel_.now();
+  layers::Frames::latch(machine_, image, rules(), [&](std::uint8_t input) {
+    if (program_->is_variable(input)) return layers_.snapshot.value(input);
+    return layers_.mailboxes.fresh_value(input, image.channels[input], now);
+  });
+  machine_.now = static_cast<std::uint32_t>(layers_.trace.program_time() / kernel::kTick);
+  machine_.wake = vm::Machine::kNever;
+  for (unsigned r = rules().first_rule; r < rules().first_rule + 0U + rules().rule_count; ++r)
+    if (image.rules[r].kind == vm::RuleKind::safety) evaluate(r);
+  return next_look();
+}
+
+// The resume condition is evaluated in any case: it may have to remember something.
+void Guard::evaluate(unsigned rule) {
+  const vm::Image& image = program_->image;
+  const vm::Value danger = truth_of(rule);
+  const bool can_resume =
+      rule + 1 < image.rules.size() && image.rules[rule + 1].kind == vm::RuleKind::resume;
+  const vm::Value safe_again = can_resume ? truth_of(rule + 1) : vm::kFalse;
+  const bool measured = layers_.trace.program_time() >= kPeriod;
+  if (!layers::has(tripped_, rule)) {
+    if (danger == vm::kTrue || (danger == vm::kUnknown && measured)) trip(rule);
+  } else if (danger == vm::kFalse && safe_again == vm::kTrue) {
+    resume(rule);
+  }
+}
+
+vm::Value Guard::truth_of(unsigned rule) {
+  const vm::Image& image = program_->image;
+  const vm::Value truth = vm::evaluate(machine_, &image.code[image.rules[rule].condition_start]);
+  if (std::exchange(machine_.divided_by_zero, false))
+    layers_.trace.emit(EventKind::zero_divide, layers_.trace.now(), rule);
+  return truth;
+}
+
+void Guard::trip(unsigned rule) {
+  tripped_ |= layers::bit<RuleMask>(rule);
+  layers_.trace.emit(EventKind::trip, layers_.trace.now(), rule);
+  const vm::Image& image = program_->image;
+  machine_.output = output_.data();
+  machine_.output_end = output_.data() + output_.size();
+  machine_.written = 0;
+  machine_.assigned = 0;
+  (void)vm::respond(machine_, &image.code[image.responses[image.rules[rule].then_response].start]);
+  const std::span<const vm::Word> output = output_;
+  vm::OutputReader reader(output.first(static_cast<std::size_t>(machine_.output - output.data())));
+  vm::Output said{};
+  while (reader.next(said))
+    act(said);
+  if (machine_.written == 0) return;
+  layers_.variables.stage_first(machine_, rules(), layers_.snapshot);
+  kernel_.signal(step_thread_, acted_);
+}
+
+void Guard::act(const vm::Output& said) {
+  if (said.kind == vm::OutputKind::halt) {
+    layers_.control.halt(actuators_of(program_->image, said.target));
+  } else if (said.kind != vm::OutputKind::command) {
+    layers::report_text(layers_.trace, said, layers_.trace.now());
+  }
+}
+
+void Guard::resume(unsigned rule) {
+  tripped_ &= ~layers::bit<RuleMask>(rule);
+  layers_.trace.emit(EventKind::resume, layers_.trace.now(), rule);
+  ActuatorMask still = 0;
+  for (unsigned r = 0; r < program_->image.rules.size(); ++r)
+    if (layers::has(tripped_, r)) still |= halted_by(r);
+  layers_.control.let_go(halted_by(rule) & ~still);
+}
+
+// What its body halts: it is straight-line code, so all of it was run.
+ActuatorMask Guard::halted_by(unsigned rule) const {
+  const vm::Image& image = program_->image;
+  const vm::Response& body = image.responses[image.rules[rule].then_response];
+  ActuatorMask mask = 0;
+  for (const vm::Word word : image.code.subspan(body.start, body.length))
+    if (vm::opcode_of(word) == vm::Opcode::halt) mask |= actuators_of(image, vm::operand_a(word));
+  return mask;
+}
+
+kernel::Time Guard::next_look() const {
+  const kernel::Time now = layers_.trace.program_time();
+  kernel::Duration wait = kPeriod - now % kPeriod;
+  if (machine_.wake != vm::Machine::kNever) {
+    const std::uint32_t delay = std::max<std::uint32_t>(machine_.wake - machine_.now, 1);
+    wait = std::min(wait, kernel::milliseconds(delay));
+  }
+  return kernel_.now() + wait;
+}
+
+}  // namespace robosync::safety

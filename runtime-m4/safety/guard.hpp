@@ -1,0 +1,73 @@
+// Evaluates the SAFETY rules of the running program and does what they say at once, in the safety
+// thread: it does not wait for a step.
+//
+// It reads what the sensors measured last and what the last step knew of the variables: when one of
+// those changes, on a period of its own counted from activation, and when a time word is due. A
+// rule trips when its condition is true or unknown; but not for being unknown in the first period,
+// before every sensor has measured. It stays tripped until its resume condition is true while its
+// condition is false; without a resume condition, until the next program. Actuators that it has
+// halted take no command meanwhile, nor while another tripped rule halts them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/alarm.hpp"
+#include "runtime-m4/layers/control.hpp"
+#include "runtime-m4/layers/frames.hpp"
+#include "runtime-m4/layers/mailbox.hpp"
+#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/trace.hpp"
+#include "runtime-m4/layers/variables.hpp"
+#include "vm/output.hpp"
+
+namespace robosync::safety {
+
+class Guard {
+public:
+  static constexpr kernel::Duration kPeriod = kernel::milliseconds(10);
+
+  struct Neighbours {
+    layers::Trace& trace;
+    layers::Mailboxes& mailboxes;
+    layers::Frames& frames;
+    layers::Variables& variables;
+    layers::ControlLayer& control;
+    layers::Alarm& alarm;
+    const layers::Snapshot& snapshot;
+  };
+
+  Guard(kernel::Kernel& kernel, const Neighbours& neighbours, kernel::Thread& step_thread,
+        kernel::Events acted)
+      : kernel_(kernel), layers_(neighbours), step_thread_(step_thread), acted_(acted) {}
+
+  // Nothing is tripped. `program` must stay until the next start().
+  void start(const layers::Program& program);
+
+  // Evaluates all rules. Returns when to do it again, if nothing changes before.  [safety thread]
+  kernel::Time look();
+
+private:
+  static constexpr unsigned kSafety = 0;  // number of the behaviour that holds the rules
+
+  void evaluate(unsigned rule);
+  vm::Value truth_of(unsigned rule);
+  void trip(unsigned rule);
+  void resume(unsigned rule);
+  void act(const vm::Output& said);
+  layers::ActuatorMask halted_by(unsigned rule) const;
+  kernel::Time next_look() const;
+  const vm::Behavior& rules() const { return program_->image.behaviors[kSafety]; }
+
+  kernel::Kernel& kernel_;
+  Neighbours layers_;
+  kernel::Thread& step_thread_;
+  kernel::Events acted_;  // signalled when something was set
+  const layers::Program* program_ = nullptr;
+  layers::RuleMask tripped_ = 0;
+  vm::Machine machine_;
+  std::array<vm::Word, layers::kMaxSafetyOutput> output_{};
+};
+
+}  // namespace robosync::safety

@@ -1,0 +1,68 @@
+// Safety monitor: a thread above all others that looks after the safety rules, checks every 10 ms
+// that the program is alive, and keeps the watchdog from resetting the board as long as it is.
+//
+// A program is hung when its step thread has work and has not finished a pass for kPatience checks
+// in a row. Then the actuators are halted, again at every check, and the watchdog is left alone: it
+// resets the board. The monitor goes on through uploads and activations.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/limits.hpp"
+
+namespace robosync::safety {
+
+// What the monitor watches over. Called from the safety thread.
+class Patient {
+public:
+  virtual bool resting() const = 0;            // it has nothing to do
+  virtual std::uint32_t progress() const = 0;  // changes with every piece of work it finishes
+  // Puts all actuators into their safe state, and lets no command through from then on. May be
+  // called again.
+  virtual void halt(kernel::Duration stuck_for) = 0;
+  // Evaluates the safety rules. Returns when they want to be looked at again, if not for news.
+  virtual kernel::Time guard() = 0;
+
+protected:
+  ~Patient() = default;
+};
+
+class Monitor {
+public:
+  static constexpr kernel::Duration kPeriod = kernel::milliseconds(10);
+  static constexpr unsigned kPatience = 5;
+
+  Monitor(kernel::Kernel& kernel, boards::Board& board, Patient& patient)
+      : kernel_(kernel), board_(board), patient_(patient) {}
+
+  // Creates the thread. False when the kernel has no place for it.
+  [[nodiscard]] bool start();
+
+  // Signalled (kNews) when an input has changed that a safety rule reads.
+  static constexpr kernel::Events kNews = 1;
+  kernel::Thread& thread() { return thread_; }
+
+  std::uint32_t checks() const { return checks_.load(std::memory_order_relaxed); }
+  std::uint32_t worst_lateness() const { return late_.load(std::memory_order_relaxed); }  // us
+
+private:
+  void run();
+  void check(kernel::Duration late);
+
+  kernel::Kernel& kernel_;
+  boards::Board& board_;
+  Patient& patient_;
+  std::atomic<std::uint32_t> checks_ = 0;
+  std::atomic<std::uint32_t> late_ = 0;
+  std::uint32_t last_progress_ = 0;
+  unsigned without_progress_ = 0;  // checks in a row
+  kernel::Thread thread_;
+  alignas(port::kStackAlignment) std::array<std::byte, layers::kSafetyStack> stack_{};
+};
+
+}  // namespace robosync::safety

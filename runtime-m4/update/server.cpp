@@ -1,0 +1,275 @@
+// May assume nothing of what comes from the line. Promises that a request has one reply, that no
+// request touches the running image, and that each piece of work() is bounded: one frame's worth of
+// bytes, and in activate() one verification.
+#include "runtime-m4/update/server.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+#include "link/wire.hpp"
+#include "vm/opcode.hpp"
+
+namespace robosync::update {
+namespace {
+
+using link::MessageType;
+
+link::Name padded(std::string_view text) {
+  link::Name name{};
+  std::copy_n(text.begin(), std::min(text.size(), name.size() - 1), name.begin());
+  return name;
+}
+
+link::ThreadInfo describe(const kernel::Kernel& kernel, const kernel::Thread& thread,
+                          std::size_t index) {
+  return {static_cast<std::uint8_t>(index),
+          static_cast<std::uint8_t>(kernel.threads().size()),
+          static_cast<std::uint8_t>(thread.category()),
+          thread.rank(),
+          thread.priority(),
+          static_cast<std::uint16_t>(thread.stack().size()),
+          static_cast<std::uint16_t>(thread.stack_used()),
+          static_cast<std::uint8_t>(kernel.state(thread)),
+          0,
+          thread.activations(),
+          padded(thread.name())};
+}
+
+// Offset, then as much of `image` from there as fits.
+std::size_t fill_image_data(std::span<const std::byte> image, std::uint32_t offset,
+                            std::span<std::byte, link::kMaxPayload> payload) {
+  const link::Data head{offset};
+  std::memcpy(payload.data(), &head, sizeof head);
+  if (offset >= image.size()) return sizeof head;
+  const auto part =
+      image.subspan(offset, std::min<std::size_t>(link::kMaxData, image.size() - offset));
+  std::copy(part.begin(), part.end(), payload.begin() + sizeof head);
+  return sizeof head + part.size();
+}
+
+}  // namespace
+
+bool Server::start() {
+  return kernel_.add(thread_, {.name = "link",
+                               .category = kernel::Category::system,
+                               .priority = 0,
+                               .entry = [](void* self) { static_cast<Server*>(self)->run(); },
+                               .argument = this,
+                               .stack = stack_});
+}
+
+void Server::run() {
+  while (true) {
+    while (work()) {
+    }
+    // With output under way it looks again soon: nothing tells when the line takes more.
+    const kernel::Duration pause = writer_.ready() ? kPollPeriod : kernel::kTick;
+    kernel_.wait(kLineReady, kernel_.now() + pause);
+  }
+}
+
+bool Server::work() {
+  return writer_.ready() && (read_line() || send_next_thread() || send_fault() || send_unasked());
+}
+
+// Decodes until a request was handled. What follows it waits until its reply is written.
+bool Server::read_line() {
+  if (input_begin_ == input_end_) {
+    input_begin_ = 0;
+    input_end_ = static_cast<std::uint8_t>(board_.link_read(input_));
+    if (input_end_ == 0) return false;
+  }
+  while (input_begin_ < input_end_) {
+    if (!decoder_.push(input_[input_begin_++])) continue;
+    handle(decoder_.frame());
+    break;
+  }
+  return true;
+}
+
+void Server::handle(const link::Frame& frame) {
+  switch (frame.type) {
+    case MessageType::hello:
+      return hello(frame.sequence);
+    case MessageType::begin:
+      return begin(frame);
+    case MessageType::data:
+      return data(frame);
+    case MessageType::activate:
+      return activate(frame);
+    case MessageType::feed:
+      return feed(frame);
+    case MessageType::get_status:
+      return status(frame.sequence);
+    case MessageType::get_threads:
+      listing_threads_ = true;
+      next_thread_ = 0;
+      threads_sequence_ = frame.sequence;
+      return;
+    case MessageType::trace_on:
+      return trace_on(frame);
+    case MessageType::read_image:
+      return read_image(frame);
+    default:
+      return;  // a message to the host, or of a later protocol
+  }
+}
+
+void Server::hello(std::uint8_t sequence) {
+  ring_.listen(false);  // a new host; it says itself what it wants to hear
+  link::HelloReply answer{};
+  answer.protocol = link::kProtocolVersion;
+  answer.image_major = vm::kFormatMajor;
+  answer.opcode_set = vm::opcode_set_id();
+  answer.board = padded(board_.name());
+  answer.firmware = padded(ROBOSYNC_VERSION);
+  answer.slot_bytes = std::min<std::uint32_t>(layers::kSlotBytes, Runtime::limits().image_bytes);
+  answer.step_budget = Runtime::limits().step_cost;
+  answer.drivers = Runtime::limits().drivers;
+  answer.receive_window = kReceiveWindow;
+  if (runtime_.running()) {
+    const vm::ImageHeader& header = *runtime_.image().header;
+    answer.running = 1;
+    answer.program_hash = header.program_hash;
+    answer.image_crc = header.crc32;
+    answer.image_bytes = header.total_length;
+  }
+  send(MessageType::hello_reply, sequence, link::wire_bytes(answer));
+}
+
+void Server::begin(const link::Frame& frame) {
+  link::Begin request{};
+  if (!link::read_payload(frame.payload, request)) {
+    ++bad_requests_;
+    return;
+  }
+  have_result_ = false;
+  const link::TransferStatus answer = receiver_.begin(request, free_slot());
+  send(MessageType::transfer_status, frame.sequence, link::wire_bytes(answer));
+}
+
+void Server::data(const link::Frame& frame) {
+  link::Data head{};
+  if (!link::read_prefix(frame.payload, head)) {
+    ++bad_requests_;
+    return;
+  }
+  const link::TransferStatus answer =
+      receiver_.data(head.offset, frame.payload.subspan(sizeof head));
+  send(MessageType::transfer_status, frame.sequence, link::wire_bytes(answer));
+}
+
+// The reply may get lost and the host ask again: then the answer is the same, and nothing is done
+// twice.
+void Server::activate(const link::Frame& frame) {
+  if (receiver_.complete()) {
+    last_result_ = activate_received();
+    have_result_ = true;
+    receiver_.reset();
+  }
+  link::ActivateResult answer{};
+  answer.refusal = link::kNothingToActivate;
+  if (have_result_) answer = last_result_;
+  send(MessageType::activate_result, frame.sequence, link::wire_bytes(answer));
+}
+
+link::ActivateResult Server::activate_received() {
+  const std::span<const std::byte> bytes = receiver_.bytes();
+  vm::Verdict verdict{vm::Refusal::bad_crc, vm::Section::header, 0};
+  std::uint32_t stored_crc = 0;
+  constexpr std::size_t kAt = offsetof(vm::ImageHeader, crc32);
+  if (bytes.size() >= kAt + sizeof stored_crc) {
+    std::memcpy(&stored_crc, bytes.data() + kAt, sizeof stored_crc);
+  }
+  // That the stored CRC is the one of the bytes is the verifier's part.
+  if (stored_crc == receiver_.crc32()) verdict = runtime_.activate(bytes);
+  if (verdict.ok()) running_slot_ = static_cast<std::uint8_t>(1 - running_slot_);
+  return {.running = static_cast<std::uint8_t>(verdict.ok()),
+          .refusal = static_cast<std::uint8_t>(verdict.refusal),
+          .section = static_cast<std::uint8_t>(verdict.section),
+          .reserved = 0,
+          .index = verdict.index,
+          .reserved2 = 0,
+          .uptime_us = kernel_.now()};
+}
+
+void Server::feed(const link::Frame& frame) {
+  link::Feed request{};
+  if (!link::read_payload(frame.payload, request)) {
+    ++bad_requests_;
+    return;
+  }
+  const link::FeedResult answer = runtime_.feed(request);
+  send(MessageType::feed_result, frame.sequence, link::wire_bytes(answer));
+}
+
+void Server::status(std::uint8_t sequence) {
+  link::Status answer{};
+  runtime_.fill_status(answer);
+  answer.bad_frames = decoder_.bad_frames() + bad_requests_;
+  answer.lost_events = ring_.lost();
+  send(MessageType::status, sequence, link::wire_bytes(answer));
+}
+
+void Server::read_image(const link::Frame& frame) {
+  link::ReadImage request{};
+  if (!link::read_payload(frame.payload, request)) {
+    ++bad_requests_;
+    return;
+  }
+  std::array<std::byte, link::kMaxPayload> payload{};
+  const std::size_t length = fill_image_data(running_image(), request.offset, payload);
+  send(MessageType::image_data, frame.sequence, std::span(payload).first(length));
+}
+
+void Server::trace_on(const link::Frame& frame) {
+  link::TraceOn request{};
+  if (!link::read_payload(frame.payload, request)) {
+    ++bad_requests_;
+    return;
+  }
+  ring_.listen(request.on != 0);
+  status(frame.sequence);
+}
+
+std::span<const std::byte> Server::running_image() const {
+  if (!runtime_.running()) return {};
+  const vm::ImageHeader& header = *runtime_.image().header;
+  return {reinterpret_cast<const std::byte*>(&header), header.total_length};
+}
+
+bool Server::send_next_thread() {
+  if (!listing_threads_) return false;
+  const auto threads = kernel_.threads();
+  if (next_thread_ >= threads.size()) {
+    listing_threads_ = false;
+    return false;
+  }
+  const link::ThreadInfo info = describe(kernel_, *threads[next_thread_], next_thread_);
+  send(MessageType::thread_info, threads_sequence_, link::wire_bytes(info));
+  ++next_thread_;
+  return true;
+}
+
+void Server::report(const link::Fault& fault) {
+  const auto lock = kernel_.lock();
+  if (fault_count_ < faults_.size()) faults_[fault_count_++] = fault;
+}
+
+bool Server::send_fault() {
+  if (!ring_.listening() || faults_sent_ == fault_count_) return false;
+  send(MessageType::fault, unasked_sequence_++, link::wire_bytes(faults_[faults_sent_++]));
+  return true;
+}
+
+bool Server::send_unasked() {
+  MessageType type{};
+  std::array<std::byte, link::kMaxPayload> payload{};
+  const std::size_t length = ring_.take(type, payload);
+  if (length == 0) return false;
+  send(type, unasked_sequence_++, std::span(payload).first(length));
+  return true;
+}
+
+}  // namespace robosync::update

@@ -1,0 +1,112 @@
+// The board's end of the link: answers the host, receives programs and has them activated, sends
+// trace events, log lines and fault records. One thread of category `system`, the lowest rank, so
+// that whatever it does, the running program and the safety thread come first.
+//
+// A program is received into the slot that is not in use and switched to only when it is whole,
+// verified and accepted by the runtime; until then, and if anything fails, the old one runs on.
+// The server never waits for the line: a reply stays until it is written, and further requests stay
+// in the UART's receive buffer meanwhile; events that find the ring full are dropped and counted.
+// Protocol: docs/link.md.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "link/frame.hpp"
+#include "link/receiver.hpp"
+#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/limits.hpp"
+#include "runtime-m4/runtime.hpp"
+#include "runtime-m4/update/line_writer.hpp"
+#include "runtime-m4/update/trace_ring.hpp"
+
+namespace robosync::update {
+
+// Data the host may have under way. The UART's receive buffer must hold that many bytes: while the
+// board verifies an image it does not read the line.
+inline constexpr std::uint16_t kReceiveWindow = 2 * link::kMaxEncodedFrame;
+
+class Server {
+public:
+  // `ring` is the sink that `runtime` was made with.
+  Server(kernel::Kernel& kernel, boards::Board& board, Runtime& runtime, TraceRing& ring)
+      : kernel_(kernel), board_(board), runtime_(runtime), ring_(ring), writer_(board) {}
+
+  // Creates the link thread. Once, before Kernel::run(). False when the kernel has no place.
+  [[nodiscard]] bool start();
+
+  // The UART's interrupt signals kLineReady of this thread when bytes have come in. On a board
+  // where it does not, the thread looks every 5 ms.
+  static constexpr kernel::Events kLineReady = 1;
+  kernel::Thread& thread() { return thread_; }
+
+  // A thread was stopped. The first faults are kept until a host listens; later ones are only
+  // counted, since the first is the cause.  [any]
+  void report(const link::Fault& fault);
+
+private:
+  static constexpr kernel::Duration kPollPeriod = kernel::milliseconds(5);
+  static constexpr std::size_t kStackBytes = 1536;
+  static constexpr std::size_t kKeptFaults = 2;
+
+  using Slot = std::array<std::byte, layers::kSlotBytes>;
+
+  void run();
+  bool work();  // one thing that is due; false when there is nothing, or the line does not take it
+  bool read_line();
+  bool send_unasked();
+  bool send_next_thread();
+  bool send_fault();
+
+  void handle(const link::Frame& frame);
+  void hello(std::uint8_t sequence);
+  void begin(const link::Frame& frame);
+  void data(const link::Frame& frame);
+  void activate(const link::Frame& frame);
+  void feed(const link::Frame& frame);
+  void status(std::uint8_t sequence);
+  void read_image(const link::Frame& frame);
+  void trace_on(const link::Frame& frame);
+
+  link::ActivateResult activate_received();
+  std::span<std::byte> free_slot() { return slots_[1 - running_slot_]; }
+  std::span<const std::byte> running_image() const;
+  void send(link::MessageType type, std::uint8_t sequence, std::span<const std::byte> payload) {
+    writer_.send(type, sequence, payload);
+  }
+
+  kernel::Kernel& kernel_;
+  boards::Board& board_;
+  Runtime& runtime_;
+  TraceRing& ring_;
+
+  link::FrameDecoder decoder_;
+  LineWriter writer_;
+  std::array<std::byte, 32> input_{};  // read from the line, not yet decoded
+  std::uint8_t input_begin_ = 0;
+  std::uint8_t input_end_ = 0;
+  std::uint32_t bad_requests_ = 0;     // good frames with a payload of the wrong length
+  std::uint8_t unasked_sequence_ = 0;  // of events, logs, faults
+
+  link::Receiver receiver_;
+  std::uint8_t running_slot_ = 0;
+  link::ActivateResult last_result_{};  // repeated when the host asks again
+  bool have_result_ = false;
+
+  bool listing_threads_ = false;
+  std::uint8_t next_thread_ = 0;
+  std::uint8_t threads_sequence_ = 0;
+
+  std::array<link::Fault, kKeptFaults> faults_{};
+  std::uint8_t fault_count_ = 0;
+  std::uint8_t faults_sent_ = 0;
+
+  kernel::Thread thread_;
+  alignas(8) std::array<Slot, 2> slots_{};
+  alignas(port::kStackAlignment) std::array<std::byte, kStackBytes> stack_{};
+};
+
+}  // namespace robosync::update
