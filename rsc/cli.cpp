@@ -1,0 +1,134 @@
+// Builds the parser from the list of verbs, so that help, dispatch and suggestions have one source.
+#include "rsc/cli.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "compiler/diagnostics/nearest.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/verb.hpp"
+
+namespace robosync::tool {
+namespace {
+
+constexpr std::string_view kEpilogue =
+    "Exit: 0 fine, 1 the program, its configuration or a test is wrong, 2 wrong usage, 3 file or "
+    "device "
+    "trouble.\n"
+    "`rsc help VERB` explains a verb.";
+
+std::unique_ptr<CLI::App> make_parser() {
+  auto app = std::make_unique<CLI::App>("RoboSync: programs for social robots.", "rsc");
+  app->set_version_flag("--version", std::string("rsc ") + ROBOSYNC_VERSION);
+  app->footer(std::string(kEpilogue));
+  app->require_subcommand(1);
+  app->get_formatter()->label("SUBCOMMAND", "VERB");
+  app->get_formatter()->label("Subcommands", "Verbs");
+  for (const Verb& verb : kVerbs) {
+    CLI::App* sub = app->add_subcommand(std::string(verb.name), std::string(verb.summary));
+    sub->footer(fmt::format("Example:\n  {}", verb.example));
+    verb.add(*sub);
+  }
+  return app;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  const auto near = compiler::nearest(word, candidates);
+  return near ? fmt::format("; did you mean `{}`?", *near) : std::string();
+}
+
+std::vector<std::string> verb_names() {
+  std::vector<std::string> names;
+  names.reserve(kVerbs.size());
+  for (const Verb& verb : kVerbs)
+    names.emplace_back(verb.name);
+  return names;
+}
+
+[[noreturn]] void unknown_verb(std::string_view word) {
+  throw Failure(Exit::usage, fmt::format("there is no verb `{}`{}\n`rsc help` lists them", word,
+                                         did_you_mean(word, verb_names())));
+}
+
+// CLI11 says what is wrong; a misspelt option deserves a suggestion.
+std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const CLI::App& at = chosen.empty() ? app : *chosen.front();
+  std::string message = error.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    const std::vector<std::string> extras = at.remaining(true);
+    const std::string word = extras.empty() ? std::string() : extras.front();
+    std::vector<std::string> known;
+    for (const CLI::Option* option : at.get_options()) {
+      for (const std::string& name : option->get_lnames())
+        known.push_back("--" + name);
+    }
+    message = word.starts_with("-")
+                  ? fmt::format("there is no option `{}`{}", word,
+                                did_you_mean(word.substr(0, word.find('=')), known))
+                  : fmt::format("`{}` is one argument too many", word);
+  }
+  const std::string help = &at == &app ? "rsc help" : "rsc help " + at.get_name();
+  return fmt::format("{}\n`{}` shows how it is used", message, help);
+}
+
+void parse(CLI::App& app, int count, const char* const* arguments) {
+  const std::string_view first = count > 1 ? arguments[1] : "";
+  if (first.empty()) throw Failure(Exit::usage, "say what to do\n" + app.help());
+  const std::vector<std::string> names = verb_names();
+  if (!first.starts_with("-") && std::ranges::find(names, first) == names.end()) {
+    unknown_verb(first);
+  }
+  try {
+    app.parse(count, const_cast<char**>(arguments));  // CLI11 reads them only
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    std::cout << (chosen.empty() ? app.help() : chosen.front()->help(app.get_name()));
+  } catch (const CLI::CallForVersion& version) {
+    std::cout << version.what() << '\n';
+  } catch (const CLI::ParseError& error) {
+    throw Failure(Exit::usage, explain(app, error));
+  }
+}
+
+}  // namespace
+
+void print_help(const char* verb) {
+  const auto app = make_parser();
+  if (*verb == '\0') {
+    std::cout << app->help();
+    return;
+  }
+  const std::vector<std::string> names = verb_names();
+  if (std::ranges::find(names, verb) == names.end()) unknown_verb(verb);
+  std::cout << app->get_subcommand(verb)->help(app->get_name());
+}
+
+int run_command_line(int argument_count, const char* const* arguments) {
+  const auto say = [](std::string_view message) {
+    std::cout.flush();
+    if (!message.empty()) std::cerr << "rsc: " << message << '\n';
+  };
+  try {
+    const auto app = make_parser();
+    parse(*app, argument_count, arguments);
+    std::cout.flush();
+    if (!std::cout) throw Failure(Exit::outside, "could not write to stdout");
+    return static_cast<int>(Exit::fine);
+  } catch (const Failure& failure) {
+    say(failure.what());
+    return static_cast<int>(failure.exit());
+  } catch (const std::exception& error) {
+    say(error.what());
+    return static_cast<int>(Exit::outside);
+  }
+}
+
+}  // namespace robosync::tool

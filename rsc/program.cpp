@@ -1,0 +1,117 @@
+// May assume nothing of the files. Promises that an image that leaves this file is verified.
+#include "rsc/program.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "compiler/diagnostics/render.hpp"
+#include "rsc/console.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/files.hpp"
+
+namespace robosync::tool {
+namespace {
+
+std::string counted(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+// By name or by content, so that a damaged image is refused as an image and not read as a program.
+bool is_image(const std::string& file, std::span<const std::byte> bytes) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::uint32_t magic = 0;
+  if (bytes.size() >= sizeof magic) std::memcpy(&magic, bytes.data(), sizeof magic);
+  return extension == ".rsb" || magic == vm::kMagic;
+}
+
+// Relative to the file that uses it. Two ways to write one path give one name.
+std::optional<compiler::Input> read_module(const std::string& user, const std::string& file) {
+  const std::filesystem::path path =
+      (std::filesystem::path(user).parent_path() / file).lexically_normal();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  return compiler::Input{path.string(), read_text(path)};
+}
+
+}  // namespace
+
+compiler::Result compile_file(const std::string& file, const std::string& config,
+                              bool source_lines) {
+  std::string text = read_text(file);
+  const std::filesystem::path path = find_configuration(file, config);
+  return compiler::compile({file, std::move(text)}, {path.string(), read_text(path)},
+                           {.source_lines = source_lines, .read_module = read_module});
+}
+
+std::string summary(const compiler::Diagnostics& diagnostics) {
+  const std::size_t notes =
+      diagnostics.all().size() - diagnostics.errors() - diagnostics.warnings();
+  return fmt::format("{}, {}, {}", counted(diagnostics.errors(), "error"),
+                     counted(diagnostics.warnings(), "warning"), counted(notes, "note"));
+}
+
+Program::Program(std::vector<std::byte> bytes, const std::string& name) : bytes_(std::move(bytes)) {
+  const vm::Verdict verdict = vm::verify(bytes_, vm::Limits{}, image_);
+  if (!verdict.ok()) {
+    throw Failure(Exit::program, fmt::format("{}: {}", name, describe_refusal(verdict, 0)));
+  }
+}
+
+Program load_program(const std::string& file, const std::string& config) {
+  std::vector<std::byte> bytes = read_bytes(file);
+  if (is_image(file, bytes)) return {std::move(bytes), file};
+  compiler::Result result = compile_file(file, config);
+  std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+  if (result.diagnostics.errors() > 0) {
+    throw Failure(Exit::program, fmt::format("{}: {}", file, summary(result.diagnostics)));
+  }
+  return {std::move(result.image), file};
+}
+
+// It is the last section, so the image is cut there and the header told.
+std::vector<std::byte> without_source_lines(const Program& program) {
+  vm::ImageHeader header = *program.image().header;
+  const std::size_t length = program.bytes().size() - program.image().source_lines.size_bytes();
+  header.source_lines = 0;
+  header.total_length = static_cast<std::uint32_t>(length);
+  std::vector<std::byte> bytes(program.bytes().begin(),
+                               program.bytes().begin() + static_cast<std::ptrdiff_t>(length));
+  std::memcpy(bytes.data(), &header, sizeof header);
+  constexpr std::size_t kCrcEnd = offsetof(vm::ImageHeader, crc32) + sizeof header.crc32;
+  header.crc32 = vm::crc32(std::span(bytes).subspan(kCrcEnd));
+  std::memcpy(bytes.data(), &header, sizeof header);
+  return bytes;
+}
+
+std::uint16_t source_line(const vm::Image& image, vm::Section section, std::uint16_t index) {
+  if (section == vm::Section::rules && index < image.rules.size()) return image.rules[index].line;
+  if (section != vm::Section::code) return 0;
+  std::uint16_t line = 0;
+  for (const vm::SourceLine& entry : image.source_lines) {
+    if (entry.word <= index) line = entry.line;
+  }
+  return line;
+}
+
+std::string describe_refusal(const vm::Verdict& verdict, std::uint16_t line) {
+  std::string place;
+  if (verdict.section != vm::Section::header) {
+    place = fmt::format(" ({}, {} {}", vm::describe(verdict.section),
+                        verdict.section == vm::Section::code ? "word" : "record", verdict.index);
+    if (line != 0) place += fmt::format(", source line {}", line);
+    place += ')';
+  }
+  return fmt::format("{}{}", vm::describe(verdict.refusal), place);
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,53 @@
+// Programs as verbs take them: source that is compiled, or an image (.rsb) that is verified.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compiler/compiler.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::tool {
+
+// Compiles `file` with its configuration. Throws Failure (outside) when one cannot be read.
+[[nodiscard]] compiler::Result compile_file(const std::string& file, const std::string& config,
+                                            bool source_lines = true);
+
+// "0 errors, 1 warning, 2 notes".
+[[nodiscard]] std::string summary(const compiler::Diagnostics& diagnostics);
+
+// A verified image: the bytes and the view of them. Not copied, because the view points inside.
+class Program {
+public:
+  // Throws Failure (program) with the verifier's reason. `name` stands in the message.
+  Program(std::vector<std::byte> bytes, const std::string& name);
+  Program(Program&&) = default;
+  Program& operator=(Program&&) = default;
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  std::span<const std::byte> bytes() const { return bytes_; }
+  const vm::Image& image() const { return image_; }
+
+private:
+  std::vector<std::byte> bytes_;
+  vm::Image image_;
+};
+
+// Source or image, whichever `file` is. Diagnostics go to stderr. Throws Failure (program) when it
+// is wrong.
+[[nodiscard]] Program load_program(const std::string& file, const std::string& config);
+
+// The same program without its debug section, which the board has no use for.
+[[nodiscard]] std::vector<std::byte> without_source_lines(const Program& program);
+
+// Source line of the place a verifier refused; 0 when it is not known.
+[[nodiscard]] std::uint16_t source_line(const vm::Image& image, vm::Section section,
+                                        std::uint16_t index);
+// "the code at word 12 (line 4): an operand is out of range".
+[[nodiscard]] std::string describe_refusal(const vm::Verdict& verdict, std::uint16_t line);
+
+}  // namespace robosync::tool

@@ -1,0 +1,50 @@
+// One run of a TEST: a new robot in virtual time, fed with the readings of the test, and everything
+// that it did.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compiler/testing/evaluate.hpp"
+#include "compiler/testing/plan.hpp"
+#include "link/events.hpp"
+#include "rsc/program.hpp"
+
+namespace robosync::tool {
+
+struct Recording {
+  const vm::Image* image = nullptr;
+  const compiler::testing::TestPlan* plan = nullptr;
+  const compiler::testing::PlannedTest* test = nullptr;
+  std::vector<link::Event> events;  // in the order they happened
+};
+
+// `program` and `plan` must outlive the result. Throws Failure (program) when the robot refuses the
+// program.
+[[nodiscard]] Recording record(const Program& program, const compiler::testing::TestPlan& plan,
+                               const compiler::testing::PlannedTest& test);
+
+// Goes through a recording and knows the values of each moment.
+class Playback final : public compiler::testing::Moment {
+public:
+  explicit Playback(const Recording& recording);
+
+  // The next event, which has its effect at once; nullptr at the end.
+  const link::Event* next();
+  // All events up to program time `until_us`, inclusive.
+  void advance(std::uint64_t until_us);
+  // When the next step with an event, or reading, comes; UINT64_MAX: never.
+  std::uint64_t next_time() const;
+
+  vm::Value channel(compiler::ChannelRef channel) const override;
+  vm::Value variable(std::size_t index) const override;
+
+private:
+  const Recording& recording_;
+  std::size_t at_ = 0;
+  std::uint64_t now_us_ = 0;
+  std::vector<vm::Value> channels_;   // by number in the image
+  std::vector<vm::Value> variables_;  // likewise
+};
+
+}  // namespace robosync::tool

@@ -1,0 +1,26 @@
+// Trace events as text: names instead of numbers. One formatter for `rsc run` and `rsc monitor`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "link/events.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::tool {
+
+// Where the numbers in events point to. `image` must outlive it. Without an image, or for a number
+// that it does not have, the number itself is shown.
+struct TraceNames {
+  const vm::Image* image = nullptr;
+  std::vector<std::string> threads;  // by the kernel's index; may be empty
+};
+
+// One JSON object without newline (60-cli.md): t_us, step, event, names, values, source line.
+[[nodiscard]] std::string trace_json(const link::Event& event, const TraceNames& names);
+
+// "touch LEVEL = 2", and the same behind its time: "   0.020 s  touch LEVEL = 2".
+[[nodiscard]] std::string trace_words(const link::Event& event, const TraceNames& names);
+[[nodiscard]] std::string trace_line(const link::Event& event, const TraceNames& names);
+
+}  // namespace robosync::tool

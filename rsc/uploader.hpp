@@ -1,0 +1,40 @@
+// Puts an image on the board: transfer with several frames under way, then activation.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "link/messages.hpp"
+#include "rsc/client.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::tool {
+
+struct UploadOptions {
+  std::chrono::milliseconds timeout{10000};                           // for all of it
+  std::function<void(std::size_t sent, std::size_t total)> progress;  // may be empty
+};
+
+struct UploadResult {
+  link::ActivateResult activation{};
+  std::chrono::microseconds time{};  // from the first byte of the transfer to the board's answer
+  std::size_t bytes = 0;             // of the image
+  std::size_t frames_sent = 0;       // data frames, repetitions included
+};
+
+// What keeps `image` from running on this board, one sentence each; empty when nothing does.
+[[nodiscard]] std::vector<std::string> obstacles(const link::HelloReply& board,
+                                                 const vm::Image& image);
+
+// Transfers the image (its header's CRC names it) and activates it. `hello` is the board's answer.
+// The result says whether it runs. Throws Failure: outside when the board does not answer in time,
+// program when the image is too large for it.
+[[nodiscard]] UploadResult upload(Client& client, const link::HelloReply& hello,
+                                  std::span<const std::byte> image, const UploadOptions& options);
+
+}  // namespace robosync::tool

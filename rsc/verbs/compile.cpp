@@ -1,0 +1,84 @@
+// rsc compile FILE [-o X.rsb] [--strip] [--config FILE] [--format human|json]
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "compiler/diagnostics/render.hpp"
+#include "rsc/console.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/files.hpp"
+#include "rsc/program.hpp"
+#include "rsc/sections.hpp"
+#include "rsc/verb.hpp"
+
+namespace robosync::tool {
+namespace {
+
+struct Options {
+  std::string file, output, config;
+  bool strip = false;
+  Format format = Format::human;
+};
+
+std::string output_name(const Options& options) {
+  if (!options.output.empty()) return options.output;
+  auto name = std::filesystem::path(options.file).replace_extension(".rsb").string();
+  if (name == options.file) {
+    throw Failure(Exit::usage, name + ": this is an image already; name the output with -o");
+  }
+  return name;
+}
+
+void print_human(const std::string& output, const Program& program) {
+  std::cout << fmt::format("{}: {} bytes, a step costs up to {} instructions\n", output,
+                           program.bytes().size(), program.image().header->step_cost);
+  for (const SectionSize& size : section_sizes(program.image())) {
+    std::cout << fmt::format("  {:<14}{:>5} x {:>6} bytes\n", vm::describe(size.section),
+                             size.records, size.bytes);
+  }
+}
+
+void print_json(const std::string& output, const Program& program) {
+  nlohmann::ordered_json report;
+  report["file"] = output;
+  report["bytes"] = program.bytes().size();
+  report["step_cost"] = program.image().header->step_cost;
+  report["sections"] = nlohmann::ordered_json::array();
+  for (const SectionSize& size : section_sizes(program.image())) {
+    report["sections"].push_back({{"section", vm::describe(size.section)},
+                                  {"records", size.records},
+                                  {"bytes", size.bytes}});
+  }
+  std::cout << report.dump() << '\n';
+}
+
+void compile(const Options& options) {
+  const std::string output = output_name(options);
+  compiler::Result result = compile_file(options.file, options.config, !options.strip);
+  std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+  if (result.diagnostics.errors() > 0) {
+    throw Failure(Exit::program, fmt::format("{}: {}; nothing was written", options.file,
+                                             summary(result.diagnostics)));
+  }
+  const Program program(std::move(result.image), options.file);
+  write_atomically(output, program.bytes());
+  options.format == Format::json ? print_json(output, program) : print_human(output, program);
+}
+
+}  // namespace
+
+void add_compile(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->file, "program (.rsl)")->required()->option_text(" ");
+  app.add_option("-o,--output", options->output, "the image; else STEM.rsb")->option_text("X.rsb");
+  app.add_flag("--strip", options->strip, "leave the source lines out");
+  add_config_option(app, options->config);
+  add_format_option(app, options->format);
+  app.callback([options] { compile(*options); });
+}
+
+}  // namespace robosync::tool

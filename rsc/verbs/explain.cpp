@@ -1,0 +1,115 @@
+// rsc explain CODE|FILE [--config FILE] [--format human|json]
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "compiler/config/robot_reader.hpp"
+#include "compiler/diagnostics/nearest.hpp"
+#include "compiler/diagnostics/render.hpp"
+#include "compiler/explain/codes.hpp"
+#include "compiler/explain/program_text.hpp"
+#include "compiler/syntax/parser.hpp"
+#include "rsc/console.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/files.hpp"
+#include "rsc/program.hpp"
+#include "rsc/verb.hpp"
+
+namespace robosync::tool {
+namespace {
+
+namespace explain = compiler::explain;
+
+struct Options {
+  std::string what, config;
+  Format format = Format::human;
+};
+
+// E0301, w0203: a letter and four digits. A file would have a dot or a folder in its name.
+bool looks_like_code(const std::string& what) {
+  constexpr std::size_t kLength = 5;
+  return what.size() == kLength && std::string_view("EWNewn").find(what[0]) != std::string::npos &&
+         what.find_first_not_of("0123456789", 1) == std::string::npos;
+}
+
+void explain_code(const Options& options) {
+  const std::optional<compiler::Code> code = explain::find_code(options.what);
+  if (!code) {
+    std::vector<std::string> known;
+    for (const explain::CodeText& text : explain::code_texts())
+      known.emplace_back(compiler::code_name(text.code));
+    const auto near = compiler::nearest(options.what, known);
+    throw Failure(Exit::usage,
+                  fmt::format("there is no diagnostic {}{}", options.what,
+                              near ? fmt::format("; did you mean `{}`?", *near) : std::string()));
+  }
+  if (options.format == Format::human) {
+    std::cout << explain::code_text(*code);
+    return;
+  }
+  nlohmann::ordered_json report{{"code", compiler::code_name(*code)},
+                                {"level", compiler::level_name(compiler::default_level(*code))},
+                                {"title", compiler::code_title(*code)}};
+  for (const explain::CodeText& text : explain::code_texts()) {
+    if (text.code != *code) continue;
+    report["meaning"] = text.meaning;
+    report["wrong"] = text.wrong;
+    report["mended"] = text.mended;
+  }
+  std::cout << report.dump() << '\n';
+}
+
+// The configuration only says which actuators belong together, so a program can do without one;
+// what is wrong with it is for `rsc check`.
+std::optional<compiler::Robot> robot_for(const Options& options, compiler::SourceMap& sources) {
+  std::filesystem::path path;
+  try {
+    path = find_configuration(options.what, options.config);
+  } catch (const Failure&) {
+    return std::nullopt;
+  }
+  const compiler::FileId file = sources.add(path.string(), read_text(path));
+  compiler::Diagnostics ignored;
+  return compiler::read_robot(sources, file, ignored);
+}
+
+void explain_file(const Options& options) {
+  compiler::SourceMap sources;
+  compiler::Diagnostics diagnostics;
+  const compiler::FileId file = sources.add(options.what, read_text(options.what));
+  const std::optional<compiler::Robot> robot = robot_for(options, sources);
+  const compiler::ast::Program program = compiler::parse(sources, file, diagnostics);
+  diagnostics.finish();
+  std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr());
+  if (diagnostics.errors() > 0) {
+    throw Failure(Exit::program, fmt::format("{}: {}", options.what, summary(diagnostics)));
+  }
+  const std::string text = explain::program_text(program, sources, robot ? &*robot : nullptr);
+  if (options.format == Format::json) {
+    std::cout << nlohmann::ordered_json{{"file", options.what}, {"text", text}}.dump() << '\n';
+  } else {
+    std::cout << text;
+  }
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("FILE|CODE", options->what, "program (.rsl), or a diagnostic such as E0301")
+      ->required()
+      ->option_text(" ");
+  add_config_option(app, options->config);
+  add_format_option(app, options->format);
+  app.callback([options] {
+    looks_like_code(options->what) ? explain_code(*options) : explain_file(*options);
+  });
+}
+
+}  // namespace robosync::tool

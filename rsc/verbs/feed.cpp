@@ -1,0 +1,154 @@
+// rsc feed READING… --port P [--at TIME] [--scenario S.json] [--upload FILE]
+//          [--watch TIME] [--format human|json]
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "rsc/channels.hpp"
+#include "rsc/console.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/scenario.hpp"
+#include "rsc/upload_program.hpp"
+#include "rsc/verb.hpp"
+#include "rsc/watch.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kQueueTimeout{30000};
+constexpr milliseconds kQueuePause{20};
+
+struct Options {
+  std::vector<std::string> readings;
+  std::string scenario, upload, config, port;
+  std::optional<milliseconds> at, watch;
+  Format format = Format::human;
+};
+
+// "touch.LEVEL=2"
+Stimulus parse_stimulus(const std::string& text, std::uint64_t at_us, const vm::Image& image) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) {
+    throw Failure(Exit::usage, fmt::format("`{}` is not a reading; write SENSOR.CHANNEL=VALUE, as "
+                                           "in touch.LEVEL=2",
+                                           text));
+  }
+  try {
+    const std::uint8_t channel = find_channel(image, text.substr(0, equals));
+    return {at_us, channel, parse_reading(image, channel, text.substr(equals + 1))};
+  } catch (const std::invalid_argument& error) {
+    throw Failure(Exit::program, fmt::format("{}: {}", text, error.what()));
+  }
+}
+
+std::string describe(link::FeedError error, const vm::Image& image, const Stimulus& stimulus) {
+  const vm::Channel& channel = image.channels[stimulus.channel];
+  const std::string name = fmt::format("{} {}", image.string(image.sensors[channel.sensor].name),
+                                       image.string(channel.name));
+  switch (error) {
+    case link::FeedError::none:
+      break;
+    case link::FeedError::no_program:
+      return "no program runs on the board";
+    case link::FeedError::no_channel:
+      return fmt::format("the board has no channel {}", name);
+    case link::FeedError::not_virtual:
+      return fmt::format("{} is measured by the board; only virtual sensors can be fed", name);
+    case link::FeedError::queue_full:
+      return "too many readings wait for their time on the board";
+    case link::FeedError::in_the_past:
+      return fmt::format("the program is already past {} ms", stimulus.at_us / 1000);
+  }
+  return fmt::format("the board refused the reading of {}", name);
+}
+
+// A full queue empties as time goes on.
+void send(Session& session, const vm::Image& image, const Stimulus& stimulus) {
+  const auto give_up = session.client.now() + kQueueTimeout;
+  while (true) {
+    const link::Feed feed{stimulus.at_us, stimulus.channel, stimulus.value};
+    const link::FeedResult result = session.client.feed(feed);
+    if (result.error == link::FeedError::none) return;
+    if (result.error != link::FeedError::queue_full || session.client.now() >= give_up) {
+      throw Failure(Exit::program, describe(result.error, image, stimulus));
+    }
+    std::this_thread::sleep_for(kQueuePause);
+  }
+}
+
+std::vector<Stimulus> wanted(const Options& options, const vm::Image& image) {
+  std::vector<Stimulus> stimuli;
+  if (!options.scenario.empty()) stimuli = read_scenario(options.scenario, image).stimuli;
+  const auto at_us =
+      static_cast<std::uint64_t>(options.at.value_or(milliseconds(0)).count()) * 1000;
+  for (const std::string& text : options.readings)
+    stimuli.push_back(parse_stimulus(text, at_us, image));
+  return stimuli;
+}
+
+Program running_program(Session& session) {
+  std::vector<std::byte> bytes = session.client.running_image();
+  vm::Image image;
+  if (bytes.empty()) throw Failure(Exit::program, "no program runs on the board; upload one first");
+  if (!vm::verify(bytes, vm::Limits{}, image).ok()) {
+    throw Failure(Exit::outside, "the board runs an image that this rsc does not understand");
+  }
+  return {std::move(bytes), "the running program"};
+}
+
+void feed(const Options& options) {
+  if (options.readings.empty() && options.scenario.empty()) {
+    throw Failure(Exit::usage, "name a reading, as in touch.LEVEL=2, or a --scenario");
+  }
+  std::optional<Program> program;
+  if (!options.upload.empty()) program = load_program(options.upload, options.config);
+  Session session(options.port);
+  std::optional<Watch> watch;
+  if (options.watch) watch.emplace(session, options.format);
+  if (program) {
+    upload_program(session, *program, {});
+  } else {
+    program = running_program(session);
+  }
+  const vm::Image& image = program->image();
+  const std::vector<Stimulus> stimuli = wanted(options, image);
+  for (const Stimulus& stimulus : stimuli)
+    send(session, image, stimulus);
+  if (watch) {
+    watch->show(options.watch);
+  } else if (options.format == Format::human) {
+    std::cout << fmt::format("{} reading{} fed\n", stimuli.size(), stimuli.size() == 1 ? "" : "s");
+  }
+}
+
+}  // namespace
+
+void add_feed(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("READING", options->readings, "SENSOR.CHANNEL=VALUE, as in touch.LEVEL=2")
+      ->option_text("...");
+  add_port_option(app, options->port);
+  add_duration_option(app, "--at", options->at, "program time of the readings; else now");
+  app.add_option("--scenario", options->scenario, "readings with their times")
+      ->option_text("S.json");
+  app.add_option("--upload", options->upload,
+                 "upload this program (.rsl or .rsb) first; --watch shows all it does")
+      ->option_text("FILE");
+  add_config_option(app, options->config);
+  add_duration_option(app, "--watch", options->watch, "then show what happens for so long");
+  add_format_option(app, options->format);
+  app.callback([options] { feed(*options); });
+}
+
+}  // namespace robosync::tool

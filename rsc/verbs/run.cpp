@@ -1,0 +1,76 @@
+// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--config FILE]
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "rsc/console.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/files.hpp"
+#include "rsc/program.hpp"
+#include "rsc/scenario.hpp"
+#include "rsc/trace_format.hpp"
+#include "rsc/verb.hpp"
+#include "runtime-m4/port/host/simulator.hpp"
+
+namespace robosync::tool {
+namespace {
+
+constexpr std::uint64_t kDefaultDurationUs = 10'000'000;
+
+struct Options {
+  std::string file, config, scenario, trace;
+  std::optional<std::chrono::milliseconds> duration;
+  Format format = Format::human;
+};
+
+std::uint64_t duration_us(const Options& options, const Scenario& scenario) {
+  if (options.duration) return static_cast<std::uint64_t>(options.duration->count()) * 1000;
+  return scenario.duration_us.value_or(kDefaultDurationUs);
+}
+
+void run(const Options& options) {
+  const Program program = load_program(options.file, options.config);
+  Scenario scenario;
+  if (!options.scenario.empty()) scenario = read_scenario(options.scenario, program.image());
+
+  const TraceNames names{&program.image(), {}};
+  std::string trace;
+  host::Simulator simulator(program.bytes(), [&](const link::Event& event) {
+    const std::string json = trace_json(event, names) + "\n";
+    if (!options.trace.empty()) trace += json;
+    std::cout << (options.format == Format::json ? json : trace_line(event, names) + "\n");
+  });
+  if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
+    const std::uint16_t line = source_line(program.image(), verdict.section, verdict.index);
+    throw Failure(Exit::program, fmt::format("{}: the board would refuse it: {}", options.file,
+                                             describe_refusal(verdict, line)));
+  }
+  for (const Stimulus& stimulus : scenario.stimuli)
+    simulator.feed(stimulus.at_us, stimulus.channel, stimulus.value);
+  simulator.run_until(duration_us(options, scenario));
+  if (!options.trace.empty()) write_atomically(options.trace, std::as_bytes(std::span(trace)));
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->file, "program (.rsl) or image (.rsb)")
+      ->required()
+      ->option_text(" ");
+  app.add_option("--scenario", options->scenario, "what the sensors measure, when")
+      ->option_text("S.json");
+  add_duration_option(app, "--duration", options->duration, "else the scenario's, else 10s");
+  app.add_option("--trace", options->trace, "write the trace as JSON lines")
+      ->option_text("T.jsonl");
+  add_config_option(app, options->config);
+  add_format_option(app, options->format);
+  app.callback([options] { run(*options); });
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,154 @@
+// rsc test FILE… [--config FILE] [--format human|json]
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "compiler/diagnostics/render.hpp"
+#include "rsc/console.hpp"
+#include "rsc/expectations.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/program.hpp"
+#include "rsc/trace_format.hpp"
+#include "rsc/verb.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t kMicroseconds = 1000;  // in a millisecond
+constexpr std::uint64_t kBefore = 500'000;     // what led to it, in microseconds
+constexpr std::size_t kTimelineEnds = 15;      // lines at each end of a long timeline
+
+struct Options {
+  std::vector<std::string> files;
+  std::string config;
+  Format format = Format::human;
+};
+
+struct Tally {
+  std::size_t passed = 0, failed = 0;
+  Json tests = Json::array();
+};
+
+// Prints one test after the other, as they end.
+class Reporter {
+public:
+  Reporter(const Options& options, const compiler::SourceMap& sources, Tally& tally)
+      : options_(options), sources_(sources), tally_(tally) {}
+
+  void report(const TestResult& result) {
+    result.failed == nullptr ? ++tally_.passed : ++tally_.failed;
+    options_.format == Format::json ? add_json(result) : print(result);
+  }
+
+private:
+  std::size_t line(compiler::Span span) const {
+    return sources_.file(span.file).position(span.begin).line;
+  }
+  const std::string& file(compiler::Span span) const { return sources_.file(span.file).name(); }
+  std::string step(const TestResult& result) const {
+    return std::string(sources_.text(result.failed->span));
+  }
+
+  static std::vector<link::Event> around(const TestResult& result) {
+    const std::uint64_t from = result.failed->from * kMicroseconds;
+    std::vector<link::Event> events;
+    for (const link::Event& event : result.recording.events) {
+      if (event.time_us + kBefore >= from &&
+          event.time_us <= result.failed->until * kMicroseconds) {
+        events.push_back(event);
+      }
+    }
+    return events;
+  }
+
+  void print(const TestResult& result) const {
+    std::cout << (result.failed == nullptr ? "ok      " : "FAILED  ") << result.test->title << '\n';
+    if (result.failed != nullptr) print_failure(result);
+    std::cout << std::flush;
+  }
+
+  void print_failure(const TestResult& result) const {
+    std::cout << fmt::format("  {}:{}: {}\n    {}\n", file(result.failed->span),
+                             line(result.failed->span), step(result), result.reason);
+    const std::vector<link::Event> events = around(result);
+    const TraceNames names{result.recording.image, {}};
+    std::cout << (events.empty() ? "    nothing happened\n" : "    what happened:\n");
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      const bool left_out = i >= kTimelineEnds && i + kTimelineEnds < events.size();
+      if (!left_out) {
+        std::cout << "    " << trace_line(events[i], names) << '\n';
+      } else if (i == kTimelineEnds) {
+        std::cout << fmt::format("      … {} more\n", events.size() - 2 * kTimelineEnds);
+      }
+    }
+  }
+
+  void add_json(const TestResult& result) const {
+    Json test{{"file", file(result.test->span)},
+              {"line", line(result.test->span)},
+              {"test", result.test->title},
+              {"ok", result.failed == nullptr}};
+    if (result.failed != nullptr) {
+      Json timeline = Json::array();
+      const TraceNames names{result.recording.image, {}};
+      for (const link::Event& event : around(result))
+        timeline.push_back(Json::parse(trace_json(event, names)));
+      test["failure"] = {{"line", line(result.failed->span)},
+                         {"step", step(result)},
+                         {"reason", result.reason},
+                         {"from_us", result.failed->from * kMicroseconds},
+                         {"until_us", result.failed->until * kMicroseconds},
+                         {"timeline", std::move(timeline)}};
+    }
+    tally_.tests.push_back(std::move(test));
+  }
+
+  const Options& options_;
+  const compiler::SourceMap& sources_;
+  Tally& tally_;
+};
+
+void test_file(const std::string& file, const Options& options, Tally& tally) {
+  compiler::Result compiled = compile_file(file, options.config);
+  std::cerr << compiler::render_human(compiled.diagnostics, compiled.sources, color_on_stderr());
+  if (compiled.diagnostics.errors() > 0) {
+    throw Failure(Exit::program,
+                  fmt::format("{}: {}; no test was run", file, summary(compiled.diagnostics)));
+  }
+  const Program program(std::move(compiled.image), file);
+  if (compiled.tests.tests.empty()) std::cerr << "rsc: " << file << ": there is no TEST in it\n";
+  Reporter reporter(options, compiled.sources, tally);
+  for (const compiler::testing::PlannedTest& test : compiled.tests.tests)
+    reporter.report(run_test(program, compiled.tests, test));
+}
+
+void test(const Options& options) {
+  Tally tally;
+  for (const std::string& file : options.files)
+    test_file(file, options, tally);
+  if (options.format == Format::json) {
+    const Json report{{"tests", tally.tests}, {"passed", tally.passed}, {"failed", tally.failed}};
+    std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else {
+    std::cout << fmt::format("{} passed, {} failed\n", tally.passed, tally.failed);
+  }
+  if (tally.failed > 0) throw Failure(Exit::program, "");
+}
+
+}  // namespace
+
+void add_test(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->files, "programs (.rsl)")->required()->option_text("...");
+  add_config_option(app, options->config);
+  add_format_option(app, options->format);
+  app.callback([options] { test(*options); });
+}
+
+}  // namespace robosync::tool

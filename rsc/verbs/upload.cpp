@@ -1,0 +1,84 @@
+// rsc upload FILE|X.rsb --port P [--config FILE] [--timeout TIME]
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "rsc/console.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/upload_program.hpp"
+#include "rsc/verb.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kBitsPerByte = 10;  // 8N1
+constexpr double kBaudRate = 115200;
+
+struct Options {
+  std::string file, config, port;
+  std::optional<milliseconds> timeout;
+  Format format = Format::human;
+};
+
+void show_progress(std::size_t sent, std::size_t total) {
+  std::cerr << fmt::format("\r{} of {} bytes", sent, total);
+  if (sent == total) std::cerr << "\r\x1b[K";
+  std::cerr.flush();
+}
+
+void report(const Options& options, const UploadResult& result, const Program& program) {
+  const std::size_t bytes = result.bytes;
+  const double ms = static_cast<double>(result.time.count()) / 1000;
+  const double wire_ms = static_cast<double>(bytes) * kBitsPerByte / kBaudRate * 1000;
+  const std::string hash =
+      fmt::format("{:02x}", fmt::join(program.image().header->program_hash, ""));
+  if (options.format == Format::json) {
+    std::cout << nlohmann::ordered_json{{"bytes", bytes},
+                                        {"time_ms", ms},
+                                        {"wire_time_ms", wire_ms},
+                                        {"frames", result.frames_sent},
+                                        {"program", hash},
+                                        {"uptime_us", result.activation.uptime_us}}
+                     .dump()
+              << '\n';
+    return;
+  }
+  std::cout << fmt::format(
+      "{}: {} bytes in {:.1f} ms (wire time at 115,200 baud: {:.1f} ms); program {} runs since "
+      "{:.3f} s after start-up\n",
+      options.file, bytes, ms, wire_ms, hash,
+      static_cast<double>(result.activation.uptime_us) / 1e6);
+}
+
+void upload(const Options& options) {
+  const Program program = load_program(options.file, options.config);
+  UploadOptions how;
+  how.timeout = options.timeout.value_or(how.timeout);
+  if (stderr_is_terminal()) how.progress = show_progress;
+  Session session(options.port, std::min(how.timeout, milliseconds(2000)));
+  const UploadResult result = upload_program(session, program, how);
+  report(options, result, program);
+}
+
+}  // namespace
+
+void add_upload(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->file, "program (.rsl) or image (.rsb)")
+      ->required()
+      ->option_text(" ");
+  add_port_option(app, options->port);
+  add_config_option(app, options->config);
+  add_duration_option(app, "--timeout", options->timeout, "give up after (10s)");
+  add_format_option(app, options->format);
+  app.callback([options] { upload(*options); });
+}
+
+}  // namespace robosync::tool
