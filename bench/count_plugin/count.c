@@ -1,0 +1,97 @@
+/* QEMU TCG plugin: counts executed instructions, and writes the count down at each marker.
+ *
+ *   -plugin libcount.so,out=FILE,mark=0xADDRESS[,mark=…]
+ *
+ * FILE gets one line "ADDRESS COUNT" each time the instruction at a marker is about to run; COUNT
+ * is the number of instructions that ran before it. The difference of two lines is therefore exact.
+ * Assumes one CPU. An instruction that an exception breaks off and that starts again counts twice.
+ *
+ * Debian does not package qemu-plugin.h, so the few functions used are declared here (API version
+ * 1, QEMU 7.2).
+ */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef uint64_t plugin_id;
+struct qemu_plugin_tb;
+struct qemu_plugin_insn;
+enum callback_flags { NO_REGISTERS };
+enum inline_operation { ADD_U64 };
+void qemu_plugin_register_vcpu_tb_trans_cb(plugin_id id,
+                                           void (*callback)(plugin_id, struct qemu_plugin_tb*));
+size_t qemu_plugin_tb_n_insns(const struct qemu_plugin_tb* block);
+struct qemu_plugin_insn* qemu_plugin_tb_get_insn(const struct qemu_plugin_tb* block, size_t index);
+uint64_t qemu_plugin_insn_vaddr(const struct qemu_plugin_insn* insn);
+void qemu_plugin_register_vcpu_insn_exec_cb(struct qemu_plugin_insn* insn,
+                                            void (*callback)(unsigned cpu, void* data),
+                                            enum callback_flags flags, void* data);
+void qemu_plugin_register_vcpu_insn_exec_inline(struct qemu_plugin_insn* insn,
+                                                enum inline_operation operation, void* counter,
+                                                uint64_t amount);
+void qemu_plugin_register_atexit_cb(plugin_id id, void (*callback)(plugin_id, void*), void* data);
+
+#define EXPORT __attribute__((visibility("default")))
+EXPORT int qemu_plugin_version = 1;
+
+enum { MAX_MARKERS = 256 };
+static uint64_t markers[MAX_MARKERS];
+static size_t marker_count;
+static uint64_t executed;
+static FILE* out;
+
+static void at_marker(unsigned cpu, void* marker) {
+  (void)cpu;
+  fprintf(out, "%" PRIx64 " %" PRIu64 "\n", *(uint64_t*)marker, executed);
+}
+
+static uint64_t* find_marker(uint64_t address) {
+  for (size_t i = 0; i < marker_count; i++) {
+    if (markers[i] == address) return &markers[i];
+  }
+  return NULL;
+}
+
+static void translate(plugin_id id, struct qemu_plugin_tb* block) {
+  (void)id;
+  size_t count = qemu_plugin_tb_n_insns(block);
+  for (size_t i = 0; i < count; i++) {
+    struct qemu_plugin_insn* insn = qemu_plugin_tb_get_insn(block, i);
+    uint64_t* marker = find_marker(qemu_plugin_insn_vaddr(insn));
+    if (marker) qemu_plugin_register_vcpu_insn_exec_cb(insn, at_marker, NO_REGISTERS, marker);
+    qemu_plugin_register_vcpu_insn_exec_inline(insn, ADD_U64, &executed, 1);
+  }
+}
+
+static void finish(plugin_id id, void* data) {
+  (void)id;
+  (void)data;
+  fclose(out);
+}
+
+static int take_argument(const char* argument) {
+  if (strncmp(argument, "out=", 4) == 0) {
+    out = fopen(argument + 4, "w");
+    return out ? 0 : -1;
+  }
+  if (strncmp(argument, "mark=", 5) == 0 && marker_count < MAX_MARKERS) {
+    markers[marker_count++] = strtoull(argument + 5, NULL, 0);
+    return 0;
+  }
+  return -1;
+}
+
+EXPORT int qemu_plugin_install(plugin_id id, const void* info, int argc, char** argv) {
+  (void)info;
+  for (int i = 0; i < argc; i++) {
+    if (take_argument(argv[i]) != 0) {
+      fprintf(stderr, "count: cannot use the argument %s\n", argv[i]);
+      return -1;
+    }
+  }
+  if (!out) return -1;
+  qemu_plugin_register_vcpu_tb_trans_cb(id, translate);
+  qemu_plugin_register_atexit_cb(id, finish, NULL);
+  return 0;
+}

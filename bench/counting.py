@@ -1,0 +1,83 @@
+"""Runs an ELF in QEMU under the counting plugin, and gives what was counted between markers."""
+
+import subprocess
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PLUGIN = ROOT / "build/host/bench/libcount_plugin.so"
+TIMEOUT = 120
+
+
+class BenchError(RuntimeError):
+    """Something needed for a figure is missing, or the bench firmware says it failed."""
+
+
+def symbols(elf):
+    """{name: address} of an ELF, C++ names as the source writes them, the Thumb bit taken off."""
+    listing = subprocess.run(["arm-none-eabi-nm", "-C", str(elf)], check=True, text=True,
+                             stdout=subprocess.PIPE).stdout
+    found = {}
+    for line in listing.splitlines():
+        words = line.split(maxsplit=2)
+        if len(words) == 3 and line[0] != " ":  # undefined ones have no address, a few no name
+            found[words[2]] = int(words[0], 16) & ~1
+    return found
+
+
+class Marks:
+    """What the plugin wrote: [(marker name, instructions executed before it)]."""
+
+    def __init__(self, names, path):
+        by_address = {address: name for name, address in names.items()}
+        lines = (line.split() for line in path.read_text().splitlines())
+        self.all = [(by_address[int(address, 16)], int(count)) for address, count in lines]
+
+    def spans(self, begin, end):
+        """Instructions from each `begin` to the next `end`."""
+        found, start = [], None
+        for name, count in self.all:
+            if name == begin:
+                start = count
+            elif name == end and start is not None:
+                found.append(count - start)
+                start = None
+        if not found:
+            raise BenchError(f"never ran from {begin} to {end}")
+        return found
+
+
+def plugin_arguments(names, out):
+    if not PLUGIN.exists():
+        raise BenchError(f"no {PLUGIN}: build the preset host first")
+    marks = "".join(f",mark={address:#x}" for address in names.values())
+    return ["-plugin", f"{PLUGIN},out={out}{marks}"]
+
+
+def return_instruction(elf, function):
+    """Address of the instruction by which an exception handler returns."""
+    listing = subprocess.run(["arm-none-eabi-objdump", "-d", f"--disassemble={function}", str(elf)],
+                             check=True, text=True, stdout=subprocess.PIPE).stdout
+    found = [line.split(":")[0] for line in listing.splitlines() if line.endswith("bx\tlr")]
+    if len(found) != 1:
+        raise BenchError(f"{function} returns at {len(found)} places")
+    return int(found[0], 16)
+
+
+def run(elf, arguments=(), extra=None):
+    """Boots a bench firmware (it ends QEMU itself); gives its marks, and the `extra` ones."""
+    if not Path(elf).exists():
+        raise BenchError(f"no {elf}: build the preset m4 first")
+    names = {name: at for name, at in symbols(elf).items() if name.startswith("mark_")}
+    names |= extra or {}
+    with tempfile.TemporaryDirectory(prefix="robosync-bench-") as folder:
+        out = Path(folder) / "marks"
+        done = subprocess.run(["qemu-system-arm", "-M", "mps2-an386", "-display", "none",
+                               "-monitor", "none", "-serial", "none", "-kernel", str(elf),
+                               "-icount", "shift=0", "-semihosting",
+                               *plugin_arguments(names, out), *arguments],
+                              check=False, timeout=TIMEOUT, text=True, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        if done.returncode:
+            raise BenchError(f"{Path(elf).name} failed ({done.returncode}): {done.stdout.strip()}")
+        return Marks(names, out)

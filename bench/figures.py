@@ -1,0 +1,233 @@
+"""What is measured: each function gives {name: (value, unit)}. The bars stand in bars.json."""
+
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import rsc
+from board import FAST, FIRMWARE, Board
+from counting import (ROOT, BenchError, Marks, plugin_arguments, return_instruction, run, symbols)
+from tap import Tap
+
+SPIN = 2_000_001  # instructions of spin() in bench/firmware/kernel_bench.cpp
+M4 = ROOT / "build/m4"
+EXAMPLE = ROOT / "examples/touch_companion/robot.rsl"
+IMAGE_ADDRESS = 0x21000000  # where bench/firmware/vm_bench.cpp looks
+
+
+def compile_example(folder, *options):
+    image = Path(folder) / "paper.rsb"
+    rsc.run("compile", EXAMPLE, "-o", image, *options)
+    return image
+
+
+def number_in(pattern, text):
+    found = re.search(pattern, text, re.M)
+    if not found:
+        raise BenchError(f"rsc dump does not say {pattern}")
+    return int(found[1])
+
+
+def image_figures():
+    """Bytes of the paper's program, with wiring and names; without the table of source lines, as
+    `rsc upload` sends it, and with it."""
+    with tempfile.TemporaryDirectory() as folder:
+        with_lines = compile_example(folder).stat().st_size
+        image = compile_example(folder, "--strip")
+        said, size = rsc.run("dump", image), image.stat().st_size
+    parts = {part: number_in(rf"^  {part} +(\d+) x", said) for part in ("rules", "constants", "code")}
+    cells = number_in(r"(\d+) cells", said)
+    machine = symbols(M4 / "bench/bench_vm")["size_machine"]
+    return {
+        "image/paper_bytes": (size, "B"),
+        "image/paper_bytes_with_lines": (with_lines, "B"),
+        "vm/bytes_W1": (4 * (parts["code"] + parts["constants"]) // parts["rules"], "B"),
+        "vm/ram_per_thread": (machine + 4 * cells, "B"),
+    }
+
+
+def opcode_spans(marks):
+    """{opcode: [worst instructions in a condition or response, dispatch included]}."""
+    listed = re.findall(r"^OPCODE\((\w+),.*?,\s*(\d+),\s*\"", (ROOT / "vm/opcodes.def").read_text(),
+                        re.M)
+    counts, index, start = {name: {} for name, _ in listed}, -1, 0
+    for mark, count in marks.all:
+        if mark == "mark_next_opcode":
+            index += 1
+        elif mark in ("mark_condition_begin", "mark_response_begin"):
+            start = count
+        elif mark in ("mark_condition_end", "mark_response_end"):
+            of = counts[listed[index][0]]
+            of[mark] = max(of.get(mark, 0), count - start)
+    if index + 1 != len(listed):
+        raise BenchError("the bench firmware was built from another opcodes.def")
+    base = {mark: counts[end][mark]
+            for mark, end in (("mark_condition_end", "ret"), ("mark_response_end", "end"))}
+    # Their cost has entering and leaving the code in it.
+    ends = {"ret", "ret_number", "cmd_end", "end", "wait", "wait_done", "poll", "until"}
+    return {name: (max(worst - (0 if name in ends else base[mark])
+                       for mark, worst in counts[name].items()), int(declared))
+            for name, declared in listed}
+
+
+def vm_figures():
+    with tempfile.TemporaryDirectory() as folder:
+        image = compile_example(folder)
+        words = image.stat().st_size // 4
+        marks = run(M4 / "bench/bench_vm", ["-device", f"loader,file={image},addr={IMAGE_ADDRESS:#x},"
+                                            "force-raw=on"])
+    opcodes = opcode_spans(marks)
+    over = {name: costs for name, costs in opcodes.items() if costs[0] > costs[1]}
+    for name, (measured, declared) in over.items():
+        print(f"opcode {name} takes {measured} instructions, declared are {declared}", file=sys.stderr)
+    verify = marks.spans("mark_verify_begin", "mark_verify_end")[0]
+    return {
+        "vm/W1": (max(marks.spans("mark_rule_begin", "mark_rule_end")), "insn"),
+        "vm/insn_per_op": (round(statistics.mean(m for m, _ in opcodes.values()), 1), "insn"),
+        "vm/opcodes_over_declared_cost": (len(over), ""),
+        "vm/verify_per_word": (round(verify / words, 1), "insn"),
+    }
+
+
+def tick_cost(marks):
+    """Instructions a tick adds to a spinning thread."""
+    costs, ticks, start = [], 0, 0
+    for name, count in marks.all:
+        if name == "mark_spin_begin":
+            ticks, start = 0, count
+        elif name == "SysTick_Handler":
+            ticks += 1
+        elif name == "mark_spin_end" and ticks:
+            costs.append((count - start - SPIN) / ticks)
+    if not costs:
+        raise BenchError("no tick came while the thread was spinning")
+    return round(max(costs), 1)
+
+
+def kernel_figures():
+    elf = M4 / "bench/bench_kernel"
+    handlers = {name: symbols(elf)[name] for name in ("SysTick_Handler", "PendSV_Handler")}
+    marks = run(elf, extra={**handlers, "return": return_instruction(elf, "PendSV_Handler")})
+    return {
+        "kernel/switch": (max(marks.spans("PendSV_Handler", "return")) + 1, "insn"),
+        "kernel/post_to_run": (max(marks.spans("mark_post", "mark_high_runs")), "insn"),
+        "kernel/block": (max(marks.spans("mark_high_blocks", "mark_low_runs")), "insn"),
+        "kernel/irq_to_thread": (max(marks.spans("mark_pend", "mark_high_runs")), "insn"),
+        "kernel/tick": (tick_cost(marks), "insn"),
+        "kernel/tcb": (symbols(elf)["size_tcb"], "B"),
+    }
+
+
+def sections_by_object(map_file):
+    """[(object file, section, bytes)] of what the linker kept."""
+    text = Path(map_file).read_text().split("Linker script and memory map", 1)[1]
+    text = re.sub(r"^( \.\S+)\n +", r"\1 ", text, flags=re.M)  # long names take a line of their own
+    found = re.findall(r"^ (\.\S+) +(0x[0-9a-f]+) +(0x[0-9a-f]+) (\S+)$", text, re.M)
+    return [(path, section, int(size, 16)) for section, address, size, path in found]
+
+
+def flash_of(map_file, folders):
+    """Bytes in flash of the sources in `folders`. The map names objects by file name only."""
+    names = {path.name for folder in folders for path in (ROOT / folder).iterdir()
+             if path.suffix in (".cpp", ".S")}
+    loaded = (".text", ".rodata", ".data", ".init_array")
+    return sum(size for path, section, size in sections_by_object(map_file)
+               if section.startswith(loaded) and "robosync" in path
+               and re.sub(r".*[/(](.*?)\.obj\)?$", r"\1", path) in names)
+
+
+def size_figures():
+    if not FIRMWARE.exists():
+        raise BenchError(f"no {FIRMWARE}: build the preset m4 first")
+    listing = subprocess.run(["arm-none-eabi-size", str(FIRMWARE)], check=True, text=True,
+                             stdout=subprocess.PIPE).stdout
+    text, data, bss = (int(word) for word in listing.splitlines()[1].split()[:3])
+    link_map = FIRMWARE.with_suffix(".map")
+    return {
+        "vm/flash": (flash_of(link_map, ["vm"]), "B"),
+        "kernel/flash": (flash_of(link_map, ["runtime-m4/kernel", "runtime-m4/port/cortex-m4"]), "B"),
+        "firmware/flash": (text + data, "B"),
+        "firmware/ram": (data + bss, "B"),
+    }
+
+
+def link_figures():
+    """Uploading the paper's program over a line of 115,200 baud, from calling rsc to its end."""
+    with tempfile.TemporaryDirectory() as folder, Board() as board:
+        image = compile_example(folder, "--strip")
+        with Tap(folder, board.serial_path) as tap:
+            begin = time.monotonic()
+            rsc.run("upload", image, "--port", tap.port)
+            seconds = time.monotonic() - begin
+            wire = tap.wire_seconds(image.stat().st_size)
+            both_ways = tap.wire_seconds(tap.to_board + tap.to_host)
+    return {
+        "link/upload_time": (round(1000 * seconds), "ms"),
+        "link/upload_over_wire_time": (round(seconds / wire, 1), "x"),
+        "link/bytes_over_image_bytes": (round(both_ways / wire, 2), "x"),
+    }
+
+
+LARGE_BEHAVIORS, LARGE_RULES = 60, 20
+
+
+def large_program():
+    lines = []
+    for behavior in range(LARGE_BEHAVIORS):
+        lines.append(f"BEHAVIOR b{behavior} PRIORITY {behavior + 1}")
+        for rule in range(LARGE_RULES):
+            lines += [f"  WHEN touch LEVEL > {rule} AND touch LEVEL < {rule + 2}", "  DO",
+                      "    MOVE arms SLOWLY", '    PLAY sound "greeting.wav"', "  END"]
+        lines.append("END")
+    return lines
+
+
+def compiler_figures():
+    lines = large_program()
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "large.rsl"
+        source.write_text("\n".join(lines) + "\n")
+        times = []
+        for _ in range(5):
+            begin = time.monotonic()
+            rsc.run("check", source, "--config", EXAMPLE.with_name("robot.json"))
+            times.append(time.monotonic() - begin)
+    return {"compile/lines_per_second": (round(len(lines) / min(times)), "lines/s")}
+
+
+# From the mailbox that takes the reading to the driver of the first arm that is told to move.
+READING = "robosync::layers::Mailboxes::post("
+COMMAND = "robosync::drivers::servo::start("
+START_UPS = 8
+
+
+def path_figures():
+    """In the real firmware: the paper's rule, from the reading stored to the command at the driver.
+
+    The first reading after each upload triggers the rule while the arms are free.
+    """
+    functions = {end: at for name, at in symbols(FIRMWARE).items() for end in (READING, COMMAND)
+                 if name.startswith(end)}
+    if len(functions) != 2:
+        raise BenchError(f"the firmware has no {READING} or {COMMAND}")
+    with tempfile.TemporaryDirectory() as folder:
+        image, out = compile_example(folder), Path(folder) / "marks"
+        with Board(icount=FAST, extra=plugin_arguments(functions, out)) as board:
+            for _ in range(START_UPS):
+                rsc.run("upload", image, "--port", board.port)
+                wait_for_steps(board.port)
+        spans = Marks(functions, out).spans(READING, COMMAND)
+    if len(spans) < START_UPS:
+        raise BenchError(f"{len(spans)} of {START_UPS} readings led to a command")
+    return {"path/reading_to_command": (round(statistics.median(spans)), "insn")}
+
+
+def wait_for_steps(port):
+    for _ in range(1000):
+        if rsc.info(port)["status"]["steps"]:
+            return
+    raise BenchError("the program on the board does not start")

@@ -1,0 +1,49 @@
+// Vector table and reset of the bench firmware. QEMU loads the ELF as it runs (bare.ld) into memory
+// of zeros, so there is nothing to copy or clear. A fault ends the measurement as failed.
+#include <cstdint>
+
+#include "bench/firmware/mark.hpp"
+
+extern "C" {
+
+using Handler = void (*)();
+extern const std::uint32_t stack_top;  // bare.ld
+extern const Handler init_array_begin[], init_array_end[];
+
+int main();
+void reset();
+void fault() {
+  robosync::bench::leave(false);
+}
+
+// The kernel's port brings its own.
+[[gnu::weak, gnu::alias("fault")]] void HardFault_Handler();
+[[gnu::weak, gnu::alias("fault")]] void MemManage_Handler();
+[[gnu::weak, gnu::alias("fault")]] void BusFault_Handler();
+[[gnu::weak, gnu::alias("fault")]] void UsageFault_Handler();
+[[gnu::weak, gnu::alias("fault")]] void PendSV_Handler();
+[[gnu::weak, gnu::alias("fault")]] void SysTick_Handler();
+[[gnu::weak, gnu::alias("fault")]] void bench_interrupt();  // interrupt 0
+
+struct Vectors {
+  const std::uint32_t* stack;
+  Handler handlers[16];
+};
+
+[[gnu::section(".vectors"), gnu::used]] const Vectors vectors = {
+    &stack_top,
+    {reset, fault, HardFault_Handler, MemManage_Handler, BusFault_Handler, UsageFault_Handler,
+     fault, fault, fault, fault, fault, fault, fault, PendSV_Handler, SysTick_Handler,
+     bench_interrupt}};
+
+void reset() {
+  *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88) |= 0xF00000;  // CPACR: the FPU may be used
+  // As the board's reset does: the kernel's interrupts are held off until it runs.
+  *reinterpret_cast<volatile std::uint32_t*>(0xE000ED20) = 0x40FF0000;  // SHPR3: SysTick, PendSV
+  asm volatile("dsb\n\tisb\n\tmsr basepri, %0" ::"r"(0x40) : "memory");
+  for (const Handler* init = init_array_begin; init != init_array_end; ++init)
+    (*init)();
+  main();
+}
+
+}  // extern "C"
