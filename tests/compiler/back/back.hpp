@@ -1,0 +1,58 @@
+// What the tests of the back end share.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "compiler/compiler.hpp"
+#include "compiler/diagnostics/render.hpp"
+#include "tests/support/golden.hpp"
+#include "vm/disassembler.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::compiler::testing {
+
+using robosync::testing::read_file;
+
+inline std::filesystem::path source_folder() {
+  return ROBOSYNC_SOURCE_DIR;
+}
+
+inline std::filesystem::path back_folder() {
+  return source_folder() / "tests/compiler/back";
+}
+
+inline Result compile_text(std::string program, std::string configuration,
+                           bool source_lines = false) {
+  return compile({"robot.rsl", std::move(program)}, {"robot.json", std::move(configuration)},
+                 {.source_lines = source_lines});
+}
+
+// The robot that the golden cases share.
+inline std::string common_robot() {
+  return read_file(back_folder() / "golden/robot.json");
+}
+
+inline std::string messages(const Result& result) {
+  return render_human(result.diagnostics, result.sources, false);
+}
+
+inline vm::Image view(const Result& result) {
+  vm::Image image;
+  REQUIRE(vm::view_image(result.image, image));
+  return image;
+}
+
+inline std::string disassembly(const Result& result) {
+  const vm::Image image = view(result);
+  std::string text;
+  char line[128];
+  for (const vm::Word word : image.code) {
+    vm::disassemble(image, word, line);
+    text += std::string(line) + "\n";
+  }
+  return text;
+}
+
+}  // namespace robosync::compiler::testing

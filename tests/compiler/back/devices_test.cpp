@@ -1,0 +1,172 @@
+// The device descriptors of stdlib/devices, and that robot.schema.json says what the reader does.
+#include "compiler/config/devices.hpp"
+
+#include <set>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "back.hpp"
+#include "compiler/config/fields.hpp"
+#include "compiler/config/units.hpp"
+#include "compiler/config/wiring.hpp"
+
+using namespace robosync;
+using namespace robosync::compiler;
+using namespace robosync::compiler::testing;
+
+namespace {
+
+const nlohmann::json& schema() {
+  static const auto text =
+      nlohmann::json::parse(read_file(source_folder() / "grammar/robot.schema.json"));
+  return text;
+}
+
+// The schema's description of one kind of object.
+const nlohmann::json& described(Object object) {
+  const auto& definitions = schema().at("definitions");
+  switch (object) {
+    case Object::robot:
+      return schema();
+    case Object::sensor:
+      return definitions.at("sensor");
+    case Object::channel:
+      return definitions.at("channel");
+    case Object::actuator:
+      return definitions.at("actuator");
+    case Object::sound:
+      return definitions.at("sound");
+    case Object::limits:
+      return definitions.at("limits");
+    case Object::behavior:
+      return definitions.at("behavior");
+    default:
+      return definitions.at("algorithm");
+  }
+}
+
+std::set<std::string> keys_of(Object object) {
+  std::set<std::string> keys;
+  for (const Key& key : known_keys())
+    if (key.object == object) keys.emplace(key.name);
+  return keys;
+}
+
+// Every object key in a JSON file with the kind of object it stands in, checked against the schema.
+void check_keys(const nlohmann::json& value, Object object) {
+  for (const auto& [key, member] : value.items()) {
+    INFO(key);
+    CHECK(described(object).at("properties").contains(key));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("every descriptor is read without a word") {
+  CHECK(device_texts().size() >= 10);
+  for (const DeviceText& text : device_texts()) {
+    INFO(text.name);
+    Diagnostics diagnostics;
+    const Device device = read_device(text, diagnostics);
+    for (const Diagnostic& diagnostic : diagnostics.all()) {
+      INFO(diagnostic.message);
+      CHECK(false);
+    }
+    CHECK(text.json ==
+          read_file(source_folder() / "stdlib/devices" / (std::string(text.name) + ".json")));
+    if (device.is_sensor)
+      CHECK(!device.sensor.channels.empty());
+    else
+      CHECK(!device.actuator.verbs.empty());
+  }
+}
+
+TEST_CASE("a descriptor's mistakes are found") {
+  const auto mistakes = [](std::string_view json) {
+    Diagnostics diagnostics;
+    const Device device = read_device({"x", json}, diagnostics);
+    static_cast<void>(device);
+    return diagnostics.errors();
+  };
+  CHECK(mistakes(R"({"kind": "sensor", "type": "I2C", "channels": {"LEVEL": {}}})") == 0);
+  CHECK(mistakes(R"({"kind": "sensor", "type": "I2C", "driver": "max3445"})") == 1);
+  CHECK(mistakes(R"({"kind": "actuator", "type": "PWM", "verbs": {"GO": {"action": "fly"}}})") ==
+        1);
+  CHECK(mistakes(R"({"kind": "actuator", "type": "PWM", "words": {"FAST": {"speed": 3}}})") == 1);
+  CHECK(mistakes(R"({"kind": "actuator", "type": "PWM", "to": {"unit": "degs"}})") == 1);
+  CHECK(mistakes("[") == 1);
+}
+
+TEST_CASE("a word's parameter is one that some verb of its device takes") {
+  for (const Device& device : devices()) {
+    unsigned taken = 0;
+    for (const VerbConfig& verb : device.actuator.verbs)
+      taken |= verb.takes;
+    for (const WordConfig& word : device.actuator.words) {
+      INFO(device.name << " " << word.name);
+      CHECK((taken >> static_cast<unsigned>(word.param) & 1u) != 0);
+    }
+  }
+}
+
+TEST_CASE("there is a generic virtual device of both kinds") {
+  REQUIRE(default_device("VIRTUAL", true) != nullptr);
+  REQUIRE(default_device("VIRTUAL", false) != nullptr);
+  CHECK(default_device("VIRTUAL", true)->sensor.driver == vm::DriverId::virtual_sensor);
+  CHECK(default_device("VIRTUAL", false)->actuator.driver == vm::DriverId::virtual_actuator);
+}
+
+TEST_CASE("the schema has exactly the reader's keys") {
+  for (const Object object : {Object::robot, Object::sensor, Object::channel, Object::actuator,
+                              Object::sound, Object::limits, Object::behavior, Object::algorithm}) {
+    std::set<std::string> keys;
+    for (const auto& [key, value] : described(object).at("properties").items())
+      keys.insert(key);
+    CHECK(keys == keys_of(object));
+    CHECK(described(object).at("additionalProperties") == false);
+  }
+}
+
+TEST_CASE("the schema lists the reader's types, devices and units") {
+  const auto list = [](const nlohmann::json& values) {
+    return values.get<std::set<std::string>>();
+  };
+  std::set<std::string> sensor_types;
+  std::set<std::string> actuator_types;
+  for (const WiringType& type : wiring_types()) {
+    if (type.for_sensors) sensor_types.emplace(type.name);
+    if (type.for_actuators) actuator_types.emplace(type.name);
+  }
+  const auto& definitions = schema().at("definitions");
+  CHECK(list(definitions.at("sensor").at("properties").at("type").at("enum")) == sensor_types);
+  CHECK(list(definitions.at("actuator").at("properties").at("type").at("enum")) == actuator_types);
+  std::set<std::string> sensor_devices;
+  std::set<std::string> actuator_devices;
+  for (const Device& device : devices())
+    (device.is_sensor ? sensor_devices : actuator_devices).insert(device.name);
+  CHECK(list(definitions.at("sensor").at("properties").at("device").at("enum")) == sensor_devices);
+  CHECK(list(definitions.at("actuator").at("properties").at("device").at("enum")) ==
+        actuator_devices);
+  std::set<std::string> unit_names;
+  for (const Unit& unit : units())
+    unit_names.emplace(unit.spelling);
+  CHECK(list(definitions.at("channel").at("properties").at("unit").at("enum")) == unit_names);
+}
+
+TEST_CASE("the examples use only what the schema has") {
+  for (const auto& entry : std::filesystem::directory_iterator(source_folder() / "examples")) {
+    const auto path = entry.path() / "robot.json";
+    if (!std::filesystem::exists(path)) continue;
+    INFO(path);
+    const auto robot = nlohmann::json::parse(read_file(path));
+    check_keys(robot, Object::robot);
+    for (const auto& sensor : robot.value("sensors", nlohmann::json::array())) {
+      check_keys(sensor, Object::sensor);
+      for (const auto& channel : sensor.value("channels", nlohmann::json::object()))
+        check_keys(channel, Object::channel);
+    }
+    for (const auto& actuator : robot.value("actuators", nlohmann::json::array()))
+      check_keys(actuator, Object::actuator);
+  }
+}

@@ -1,0 +1,89 @@
+// Wrong and doubtful programs and configurations, each with everything that is said about it.
+//
+// A case NAME is golden/NAME.rsl, golden/NAME.json or both; what it does not have comes from
+// golden/robot.rsl and golden/robot.json. NAME.txt is what must be said.
+#include <set>
+
+#include <catch2/catch.hpp>
+
+#include "back.hpp"
+
+using namespace robosync::compiler;
+using namespace robosync::compiler::testing;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path kFolder = back_folder() / "golden";
+
+std::set<std::string> case_names() {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(kFolder))
+    if (entry.path().extension() != ".txt") names.insert(entry.path().stem().string());
+  return names;
+}
+
+Input part(const std::string& name, const std::string& extension) {
+  fs::path path = kFolder / (name + extension);
+  if (!fs::exists(path)) path = kFolder / ("robot" + extension);
+  return {path.filename().string(), read_file(path)};
+}
+
+Result run(const std::string& name) {
+  return compile(part(name, ".rsl"), part(name, ".json"), {.source_lines = false});
+}
+
+// The codes of the back end, as diagnostics.def lists them.
+std::set<std::string> back_end_codes() {
+  std::set<std::string> codes;
+#define DIAGNOSTIC(code, level, title) codes.insert(#code);
+#include "compiler/diagnostics/diagnostics.def"
+#undef DIAGNOSTIC
+  std::erase_if(codes, [](const std::string& code) {
+    const bool front_end = code.starts_with("E00") || code.starts_with("W01");
+    const bool never = code == "E0499";  // rsc refuses its own image: no input may do that
+    return front_end || never;
+  });
+  return codes;
+}
+
+}  // namespace
+
+TEST_CASE("messages", "[golden]") {
+  const auto names = case_names();
+  CHECK(names.size() >= 80);
+  for (const std::string& name : names) {
+    INFO(name);
+    const Result result = run(name);
+    CHECK(result.image.empty() == (result.diagnostics.errors() > 0));
+    robosync::testing::expect_golden(kFolder / (name + ".txt"), messages(result));
+  }
+}
+
+TEST_CASE("every code of the back end is in some golden file", "[golden]") {
+  std::set<std::string> fired;
+  for (const std::string& name : case_names()) {
+    const Result result = run(name);
+    for (const Diagnostic& diagnostic : result.diagnostics.all())
+      fired.emplace(code_name(diagnostic.code));
+  }
+  for (const std::string& code : back_end_codes()) {
+    INFO(code);
+    CHECK(fired.contains(code));
+  }
+}
+
+TEST_CASE("every message has a place, and a fix mends what it names", "[golden]") {
+  for (const std::string& name : case_names()) {
+    const Result result = run(name);
+    for (const Diagnostic& diagnostic : result.diagnostics.all()) {
+      INFO(name << ": " << diagnostic.message);
+      CHECK(!diagnostic.labels.empty());
+      CHECK(diagnostic.message.find_last_of('.') != diagnostic.message.size() - 1);
+      for (const Label& label : diagnostic.labels) {
+        CHECK(label.span.begin <= label.span.end);
+        CHECK(label.span.end <= result.sources.file(label.span.file).text().size());
+      }
+    }
+  }
+}

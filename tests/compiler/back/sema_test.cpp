@@ -1,0 +1,233 @@
+// What sema makes of a program: the structure that codegen gets.
+#include <catch2/catch.hpp>
+
+#include "back.hpp"
+#include "compiler/config/robot_reader.hpp"
+#include "compiler/sema/analyze.hpp"
+#include "compiler/syntax/parser.hpp"
+
+using namespace robosync;
+using namespace robosync::compiler;
+using namespace robosync::compiler::testing;
+
+namespace {
+
+Program analyzed(const std::string& text) {
+  SourceMap sources;
+  Diagnostics diagnostics;
+  const FileId program_file = sources.add("robot.rsl", text);
+  const FileId robot_file = sources.add("robot.json", common_robot());
+  const ast::Program tree = parse(sources, program_file, diagnostics);
+  const auto robot = read_robot(sources, robot_file, diagnostics);
+  REQUIRE(robot.has_value());
+  Program program = analyze({&tree}, *robot, sources, diagnostics);
+  INFO(render_human(diagnostics, sources, false));
+  REQUIRE(diagnostics.errors() == 0);
+  return program;
+}
+
+std::string rule(const std::string& condition, const std::string& body = "MOVE left_arm SLOWLY") {
+  return "WHEN " + condition + "\nDO\n" + body + "\nEND\n";
+}
+
+// The condition of the only rule.
+Expression condition_of(const std::string& text, const std::string& before = "") {
+  const Program program = analyzed(before + rule(text));
+  REQUIRE(program.behaviors.size() == 1);
+  return program.behaviors[0].rules[0].condition;
+}
+
+// The response of the only rule.
+ProgramBlock response_of(const std::string& body, const std::string& around = "") {
+  const Program program = analyzed(around + rule("touch LEVEL > 3", body));
+  REQUIRE(program.behaviors.size() == 1);
+  return program.behaviors[0].rules[0].then_response;
+}
+
+}  // namespace
+
+TEST_CASE("MARGIN: enter at the number, leave later, for every comparison of its kind") {
+  const Expression latch = condition_of("room WARMTH > 60C MARGIN 5C");
+  REQUIRE(latch.operation == Operation::latch);
+  CHECK(latch.operands[0].operation == Operation::greater);
+  CHECK(latch.operands[0].operands[1].constant == 60'000);
+  CHECK(latch.operands[1].operation == Operation::greater_equal);
+  CHECK(latch.operands[1].operands[1].constant == 55'000);
+  const Expression mirrored = condition_of("60C < room WARMTH MARGIN 9F");
+  CHECK(mirrored.operands[1].operation == Operation::less_equal);
+  CHECK(mirrored.operands[1].operands[0].constant == 55'000);
+  const Expression both = condition_of("room WARMTH > 60C AND touch LEVEL < 3 MARGIN 5C");
+  CHECK(both.operands[0].operation == Operation::latch);
+  CHECK(both.operands[1].operation == Operation::less);
+}
+
+TEST_CASE("time words become operations with their durations") {
+  CHECK(condition_of("touch LEVEL > 3 FOR 2s").operation == Operation::held);
+  CHECK(condition_of("touch LEVEL > 3 FOR 2s").constant == 2'000);
+  const Expression counted = condition_of("touch LEVEL > 3 3 TIMES WITHIN 2s");
+  CHECK(counted.operation == Operation::counted);
+  CHECK(counted.index == 3);
+  CHECK(condition_of("touch LEVEL > 3 THEN touch LEVEL < 1 WITHIN 1s").operands.size() == 2);
+  CHECK(condition_of("touch LEVEL CHANGES BY 2").constant == 2'000);
+  const Expression becomes = condition_of("mood BECOMES sad", "STATE mood: calm, sad\n");
+  REQUIRE(becomes.operation == Operation::rose);
+  CHECK(becomes.operands[0].operands[1].constant == 1'000);
+}
+
+TEST_CASE("bands meet, and hold on to their values up to the MARGIN") {
+  const Program program = analyzed(
+      "CHECK space OF proximity DISTANCE\n very close BELOW 30cm\n close BELOW 120cm\n"
+      " far OTHERWISE\n MARGIN 5cm\n SMOOTH OVER 200ms\nEND\n" +
+      rule("space IS very close"));
+  REQUIRE(program.checks.size() == 1);
+  const ProgramCheck& check = program.checks[0];
+  CHECK(check.window == 10);
+  REQUIRE(check.bands.size() == 3);
+  CHECK(check.bands[0].high == 299'999);
+  CHECK(check.bands[0].stay_high == 350'000);
+  // It gives way to the band before it at the number written there.
+  CHECK(check.bands[1].low == 300'000);
+  CHECK(check.bands[1].stay_low == 300'000);
+  CHECK(check.bands[1].high == 1'199'999);
+  CHECK(check.bands[1].stay_high == 1'250'000);
+  CHECK(check.bands[2].low == 1'200'000);
+  CHECK(check.bands[2].stay_low == 1'200'000);
+  CHECK(program.variables[0].labels == std::vector<std::string>{"very close", "close", "far"});
+  CHECK(program.variables[0].initial == vm::kUnknown);
+}
+
+TEST_CASE("a band with another in its middle holds on to nothing") {
+  const Program program = analyzed(
+      "CHECK tone OF touch LEVEL\n concert BETWEEN 4 AND 5\n other OTHERWISE\n MARGIN 1\nEND\n" +
+      rule("tone IS concert"));
+  const vm::Band& other = program.checks[0].bands[1];
+  CHECK(other.low == vm::kValueMin);
+  CHECK(other.stay_low > other.stay_high);
+}
+
+TEST_CASE("a FEELING fades so that 5 % are left after its time") {
+  const Program program = analyzed(
+      "FEELING joy FROM 0% TO 100% START 50%\n FADES TO 20% OVER 100ms\n"
+      "FEELING fear FROM 0% TO 100% START 0%\n FADES TO 0% OVER 20s\n" +
+      rule("joy > fear"));
+  CHECK(program.variables[0].fade == 107'374'182);  // 0.05 * 2^31
+  CHECK(program.variables[0].fades_to == 20'000);
+  CHECK(program.variables[1].fade == 2'115'556'924);  // 0.05 ^ (1/200) * 2^31
+}
+
+TEST_CASE("a constant stands for its parameter, another value is worked out once") {
+  const std::string define =
+      "DEFINE nod WITH angle, beat\n MOVE left_arm TO angle OVER beat\n"
+      " MOVE right_arm TO angle OVER beat\nEND\n"
+      "REMEMBER far = 10deg\n";
+  const ProgramBlock constant = response_of("nod WITH 20deg, 300ms", define);
+  REQUIRE(constant.size() == 2);
+  CHECK(std::get<ProgramCommand>(constant[0].node).arguments[0].value.constant == 20'000);
+  const ProgramBlock worked_out = response_of("nod WITH far * 2, 300ms\nnod WITH far, 1s", define);
+  REQUIRE(worked_out.size() == 6);
+  CHECK(std::get<ProgramLocal>(worked_out[0].node).number == 0);
+  const Expression& use = std::get<ProgramCommand>(worked_out[2].node).arguments[0].value;
+  CHECK(use.operation == Operation::local);
+  CHECK(use.index == 0);
+  CHECK(std::get<ProgramLocal>(worked_out[3].node).number == 1);
+}
+
+TEST_CASE("SET, RAISE, LOWER and SIGNAL") {
+  const ProgramBlock block =
+      response_of("SET mood TO very sad\nRAISE n BY 2\nLOWER n BY 3\nSIGNAL bell",
+                  "STATE mood: calm, very sad\nREMEMBER n = 0\n");
+  CHECK(std::get<ProgramSet>(block[0].node).value.constant == 1'000);
+  CHECK_FALSE(std::get<ProgramSet>(block[0].node).relative);
+  CHECK(std::get<ProgramSet>(block[1].node).relative);
+  CHECK(std::get<ProgramSet>(block[2].node).value.constant == -3'000);
+  CHECK(std::get<ProgramSet>(block[3].node).value.constant == 1);
+}
+
+TEST_CASE("PICK ONE: shares as given, or equal ones") {
+  const ProgramBlock block = response_of(
+      "PICK ONE\n OPTION 60%\n THEN\n OPTION 40%\n THEN\nEND\n"
+      "PICK ONE\n OPTION\n THEN\n OPTION\n THEN\nEND");
+  const auto weights = [&](std::size_t i) {
+    std::vector<vm::Value> result;
+    for (const ProgramOption& option : std::get<ProgramPick>(block[i].node).options)
+      result.push_back(option.weight);
+    return result;
+  };
+  CHECK(weights(0) == std::vector<vm::Value>{60'000, 40'000});
+  CHECK(weights(1) == std::vector<vm::Value>{1'000, 1'000});
+}
+
+TEST_CASE("LOG joins its parts into one text") {
+  const ProgramBlock block = response_of("LOG \"at\", proximity DISTANCE, \"now\"");
+  const auto& log = std::get<ProgramLog>(block[0].node);
+  CHECK(log.text == "at {}mm now");
+  CHECK(log.values.size() == 1);
+}
+
+TEST_CASE("LIMIT: a speed, or a SAFETY rule for what a sensor measures") {
+  const Program program = analyzed(
+      "LIMIT arms SPEED TO 60deg/s\nLIMIT left_arm SPEED TO 90deg/s\n" + rule("touch LEVEL > 3"));
+  REQUIRE(program.speed_limits.size() == 2);
+  CHECK(program.speed_limits[0] == std::pair<std::size_t, vm::Value>{0, 60'000});
+  CHECK(program.speed_limits[1] == std::pair<std::size_t, vm::Value>{1, 60'000});
+}
+
+TEST_CASE("rules: kinds, modifiers, priorities") {
+  const Program program = analyzed(
+      "EVERY 3s TO 7s\nDO BLINK lamp\nEND\nAT START\nDO BLINK lamp\nEND\n"
+      "WHILE touch LEVEL > 3 PRIORITY 7 COOLDOWN 2s\nDO BLINK lamp\nEND\n"
+      "WHEN touch LEVEL > 3 RESTARTING WAITING 1s\nDO BLINK lamp\nEND\n");
+  REQUIRE(program.behaviors.size() == 4);
+  CHECK(program.behaviors[0].priority == 7);
+  CHECK(program.behaviors[0].rules[0].kind == vm::RuleKind::while_);
+  CHECK(program.behaviors[0].rules[0].cooldown == 2'000);
+  CHECK(program.behaviors[1].rules[0].kind == vm::RuleKind::every);
+  CHECK(program.behaviors[1].rules[0].condition.operation == Operation::random);
+  CHECK(program.behaviors[2].rules[0].kind == vm::RuleKind::start);
+  CHECK(program.behaviors[3].rules[0].restarting);
+  CHECK(program.behaviors[3].rules[0].waiting == 1'000);
+}
+
+namespace {
+
+Result with_module(const std::string& program, const std::string& module) {
+  const ModuleReader read = [&](const std::string& user,
+                                const std::string& file) -> std::optional<Input> {
+    if (user != "robot.rsl" || file != "own.rsl") return std::nullopt;
+    return Input{"own.rsl", module};
+  };
+  return compile({"robot.rsl", program}, {"robot.json", common_robot()},
+                 {.source_lines = true, .read_module = read});
+}
+
+}  // namespace
+
+TEST_CASE("a module gives its names; what nobody runs of it need not fit the robot") {
+  const std::string module =
+      "LET reach = 30deg\nDEFINE nod WITH angle\n MOVE left_arm TO angle\nEND\n"
+      "DEFINE fly\n FLAP wings\nEND\n";
+  const Result good = with_module(
+      "USE \"own.rsl\"\nUSE \"own.rsl\"\n" + rule("touch LEVEL > 3", "nod WITH reach"), module);
+  INFO(messages(good));
+  CHECK(good.diagnostics.all().empty());
+  CHECK(!good.image.empty());
+  const Result run = with_module("USE \"own.rsl\"\n" + rule("touch LEVEL > 3", "fly"), module);
+  CHECK(run.image.empty());
+  CHECK(messages(run).find("own.rsl:6:2") != std::string::npos);
+  const Result changed =
+      with_module("USE \"own.rsl\"\nUSE \"own.rsl\"\n" + rule("touch LEVEL > 3", "nod WITH reach"),
+                  module + "# more\n");
+  CHECK(view(good).header->program_hash != view(changed).header->program_hash);
+}
+
+TEST_CASE("DEFINEs that grow without end are refused, not expanded") {
+  std::string program = rule("touch LEVEL > 3", "d0 WITH 1deg");
+  for (int i = 0; i < 60; ++i) {
+    const std::string next = "d" + std::to_string(i + 1) + " WITH angle\n";
+    program += "DEFINE d" + std::to_string(i) + " WITH angle\n" + next + next + "END\n";
+  }
+  program += "DEFINE d60 WITH angle\n MOVE left_arm TO angle\nEND\n";
+  const Result result = compile_text(program, common_robot());
+  CHECK(result.image.empty());
+  CHECK(messages(result).find("E0407") != std::string::npos);
+}

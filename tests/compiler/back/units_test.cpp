@@ -1,0 +1,111 @@
+// Exact conversion of written numbers.
+#include "compiler/config/units.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace robosync;
+using namespace robosync::compiler;
+
+namespace {
+
+std::optional<vm::Value> value_of(std::string_view number, std::string_view unit) {
+  const auto decimal = parse_decimal(number);
+  const Unit* found = find_unit(unit);
+  if (!decimal || found == nullptr) return std::nullopt;
+  return to_value(*decimal, *found);
+}
+
+}  // namespace
+
+TEST_CASE("numbers become exact thousandths") {
+  CHECK(value_of("0.1", "") == 100);
+  CHECK(value_of("1", "ms") == 1);
+  CHECK(value_of("1.5", "s") == 1500);
+  CHECK(value_of("2", "min") == 120000);
+  CHECK(value_of("80", "cm") == 800000);
+  CHECK(value_of("0.0005", "m") == 500);
+  CHECK(value_of("40", "%") == 40000);
+  CHECK(value_of("-2.5", "mA") == -3);
+  CHECK(value_of("1e3", "Hz") == 1000000);
+  CHECK(value_of("2.5e-1", "kHz") == 250000);
+}
+
+TEST_CASE("rounding is half away from zero") {
+  CHECK(value_of("0.0005", "") == 1);
+  CHECK(value_of("-0.0005", "") == -1);
+  CHECK(value_of("0.00049", "") == 0);
+  CHECK(value_of("0.000499999", "") == 0);
+  CHECK(value_of("0.5", "ms") == 1);
+  CHECK(value_of("0.4999", "ms") == 0);
+}
+
+TEST_CASE("Fahrenheit has another zero") {
+  CHECK(value_of("32", "F") == 0);
+  CHECK(value_of("212", "F") == 100000);
+  CHECK(value_of("-40", "F") == -40000);
+  CHECK(value_of("68", "F") == 20000);
+  CHECK(value_of("33", "F") == 556);   // 0.5555… C
+  CHECK(value_of("31", "F") == -556);  // away from zero on both sides
+}
+
+TEST_CASE("radians") {
+  CHECK(value_of("1", "rad") == 57296);  // 57.295779… deg
+  CHECK(value_of("3.141592654", "rad") == 180000);
+  CHECK(value_of("-1.570796327", "rad") == -90000);
+  CHECK(value_of("37480.66", "rad") == 2147483631);  // …631.36: nearly all there is
+}
+
+TEST_CASE("the range ends where values end") {
+  CHECK(value_of("2147483.647", "") == vm::kValueMax);
+  CHECK(value_of("-2147483.647", "") == vm::kValueMin);
+  CHECK(!value_of("2147483.648", ""));
+  CHECK(value_of("2147483.6474", "") == vm::kValueMax);
+  CHECK(!value_of("2147483.6475", ""));
+  CHECK(!value_of("3000", "m"));
+  CHECK(!value_of("9999999999999999", "rad"));
+}
+
+TEST_CASE("what is not a number, or needs more digits than a value has") {
+  for (const char* text : {"", "-", ".", ".5", "5x", "1e", "1e+", "1e99", "--1", "1.2.3", "0x10",
+                           "99999999999999999", "0.0000000001", "1e-10"}) {
+    INFO(text);
+    CHECK(!parse_decimal(text));
+  }
+  CHECK(value_of("1.50000000000000000000000", "") == 1500);
+  CHECK(value_of("00000000000000000000007", "") == 7000);
+  CHECK(value_of("0e99", "") == 0);
+}
+
+TEST_CASE("units in any case; every dimension's own unit is one canonical unit") {
+  CHECK(find_unit("CM") == find_unit("cm"));
+  CHECK(find_unit("parsec") == nullptr);
+  for (const Unit& unit : units()) {
+    const Unit& own = canonical_unit(unit.dimension);
+    CHECK(own.factor == vm::kScale);
+    CHECK(own.divisor == 1);
+    CHECK(own.offset == 0);
+    CHECK(find_unit(unit.spelling) == &unit);
+  }
+}
+
+TEST_CASE("values are written in any unit") {
+  CHECK(format_value(800000, *find_unit("cm")) == "80cm");
+  CHECK(format_value(25000, *find_unit("cm")) == "2.5cm");
+  CHECK(format_value(-1500, *find_unit("s")) == "-1.5s");
+  CHECK(format_value(20000, *find_unit("F")) == "68F");
+  CHECK(format_value(1, *find_unit("")) == "0.001");
+  CHECK(format_value(vm::kValueMin, *find_unit("")) == "-2147483.647");
+}
+
+TEST_CASE("scales are exact fractions") {
+  const auto scale = [](std::string_view number, std::string_view unit) {
+    return to_scale(*parse_decimal(number), *find_unit(unit));
+  };
+  CHECK(scale("1", "")->numerator == 1000);
+  CHECK(scale("0.0625", "C")->numerator == 125);
+  CHECK(scale("0.0625", "C")->denominator == 2);
+  CHECK(scale("-1", "mV")->numerator == -1);
+  CHECK(!scale("0", ""));
+  CHECK(!scale("0.00000001", ""));  // 1 / 100000 thousandths
+  CHECK(!scale("9999999", ""));
+}

@@ -1,0 +1,227 @@
+#include "tests/compiler/codegen/generator.hpp"
+
+namespace robosync::compiler::testing {
+namespace {
+
+constexpr std::size_t kPlain = 0, kRanged = 1, kSignal = 2;
+
+template <typename Node>
+ProgramStatement made(Node node) {
+  return {std::move(node), 0, {}};
+}
+
+}  // namespace
+
+std::vector<ProgramVariable> Generator::variables() {
+  ProgramVariable signal = plain("signal");
+  signal.kind = vm::VariableKind::signal;
+  return {plain("plain", 1), ranged("ranged", -5, 5), signal};
+}
+
+E Generator::number_expression(unsigned depth) {
+  const unsigned leaf = below(depth == 0 ? 4 : 10);
+  switch (leaf) {
+    case 0:
+      return number(static_cast<int>(below(9)) - 2.5);
+    case 1:
+      return channel(below(4));
+    case 2:
+      return variable(below(3));
+    case 3:
+      return locals_.empty() ? channel(0)
+                             : local(locals_[below(static_cast<unsigned>(locals_.size()))]);
+    case 4:
+      return of(Operation::negate, {number_expression(depth - 1)});
+    default:
+      break;
+  }
+  constexpr Operation kOperations[] = {Operation::add,    Operation::subtract, Operation::multiply,
+                                       Operation::divide, Operation::modulo,   Operation::random};
+  const Operation operation = kOperations[below(taste_.chance ? 6 : 5)];
+  return of(operation, {number_expression(depth - 1), number_expression(depth - 1)});
+}
+
+E Generator::condition(unsigned depth) {
+  if (taste_.time_words && depth > 0 && often(20)) return timed(depth - 1);
+  switch (depth == 0 ? 3 : below(5)) {
+    case 0:
+      return of(Operation::logical_not, {condition(depth - 1)});
+    case 1:
+      return of(Operation::logical_and, {condition(depth - 1), condition(depth - 1)});
+    case 2:
+      return of(Operation::logical_or, {condition(depth - 1), condition(depth - 1)});
+    default:
+      break;
+  }
+  const auto operation = static_cast<Operation>(static_cast<unsigned>(Operation::less) + below(6));
+  return of(operation, {number_expression(2), number_expression(2)});
+}
+
+E Generator::timed(unsigned depth) {
+  // A local may be read by a rule of its own, too: it keeps its value.
+  const double seconds = below(4) * 0.5;
+  switch (below(6)) {
+    case 0:
+      return held(condition(depth), seconds);
+    case 1:
+      return time_word(Operation::counted, seconds, {condition(depth)}, 1 + below(vm::kMaxEdges));
+    case 2:
+      return time_word(Operation::sequence, seconds, {condition(depth), condition(depth)});
+    case 3:
+      return time_word(Operation::latch, 0, {condition(depth), condition(depth)});
+    case 4:
+      return time_word(Operation::rose, 0, {condition(depth)});
+    default:
+      return time_word(Operation::changed, seconds, {number_expression(2)});
+  }
+}
+
+std::vector<ProgramArgument> Generator::arguments() {
+  std::vector<ProgramArgument> arguments;
+  for (const vm::Param param : {vm::Param::to, vm::Param::at, vm::Param::over})
+    if (often(30)) arguments.push_back({param, number_expression(2)});
+  return arguments;
+}
+
+ProgramStatement Generator::simple() {
+  switch (below(9)) {
+    case 0:
+      return made(ProgramSet{kPlain, number_expression(2), often(50)});
+    case 1:
+      return made(ProgramSet{kRanged, number_expression(2), often(50)});
+    case 2:
+      return made(ProgramSet{kSignal, number(0.001), true});
+    case 3:
+      return made(ProgramWait{number_expression(1)});
+    case 4:
+      return made(ProgramThen{});
+    case 5:
+      return made(ProgramLog{"log {} {}", {number_expression(1), number_expression(1)}});
+    case 6: {
+      const E value = number_expression(2);
+      locals_.push_back(next_local_);
+      return made(ProgramLocal{next_local_++, value});
+    }
+    case 7:
+      return made(ProgramAlert{"alert"});
+    default:
+      return often(30) ? made(move_arms(arguments())) : made(move(below(3), arguments()));
+  }
+}
+
+ProgramRepeat Generator::repeat(unsigned depth) {
+  ProgramRepeat repeat;
+  repeat.kind = static_cast<RepeatKind>(below(3));
+  const bool constant = often(50);
+  if (repeat.kind == RepeatKind::times)
+    repeat.control = constant ? number(below(4) - 0.5) : number_expression(1);
+  if (repeat.kind == RepeatKind::while_) repeat.control = condition(2);
+  const bool counts =
+      repeat.kind == RepeatKind::times && repeat.control.operation == Operation::constant;
+  repeat.body = block(depth - 1);
+  if (!counts) repeat.body.push_back(made(ProgramWait{number(0.01)}));
+  return repeat;
+}
+
+ProgramStatement Generator::compound(unsigned depth) {
+  switch (below(4)) {
+    case 0: {
+      ProgramIf choice{condition(2), block(depth - 1), {}};
+      if (often(60)) choice.else_block = block(depth - 1);
+      return made(std::move(choice));
+    }
+    case 1:
+      return made(repeat(depth));
+    case 2: {
+      ProgramWaitUntil wait{condition(2), {}};
+      if (often(60)) wait.within = number_expression(1);
+      return made(std::move(wait));
+    }
+    default:
+      break;
+  }
+  if (!taste_.chance) return simple();
+  ProgramPick pick;
+  for (unsigned i = 1 + below(4); i > 0; --i)
+    pick.options.push_back({static_cast<vm::Value>(1 + below(2000)), block(depth - 1)});
+  return made(std::move(pick));
+}
+
+ProgramStatement Generator::statement(unsigned depth) {
+  const std::uint16_t number = next_line_++;
+  ProgramStatement statement = depth > 0 && often(40) ? compound(depth) : simple();
+  statement.line = number;
+  statement.span = {0, number, number + 1U};
+  return statement;
+}
+
+ProgramBlock Generator::block(unsigned depth) {
+  const std::size_t scope = locals_.size();
+  ProgramBlock block;
+  for (unsigned i = below(4); i > 0; --i)
+    block.push_back(statement(depth));
+  locals_.resize(scope);
+  return block;
+}
+
+ProgramBlock Generator::response() {
+  locals_.clear();
+  next_local_ = 0;
+  ProgramBlock block;
+  for (unsigned i = 1 + below(5); i > 0; --i)
+    block.push_back(statement(taste_.depth));
+  locals_.clear();
+  return block;
+}
+
+ProgramRule Generator::rule() {
+  ProgramRule rule;
+  rule.kind = static_cast<vm::RuleKind>(below(5));
+  if (rule.kind == vm::RuleKind::every)
+    rule.condition = number_expression(2);
+  else if (rule.kind != vm::RuleKind::start)
+    rule.condition = condition(3);
+  rule.then_response = response();
+  if (rule.kind == vm::RuleKind::when_else) rule.else_response = response();
+  if (rule.kind != vm::RuleKind::start) {
+    rule.cooldown = often(30) ? 1000 : 0;
+    rule.waiting = often(30) ? 2000 : 0;
+    rule.restarting = often(20);
+  }
+  rule.line = next_line_++;
+  return rule;
+}
+
+ProgramRule Generator::safety_rule() {
+  ProgramRule rule;
+  rule.kind = vm::RuleKind::safety;
+  rule.condition = condition(3);
+  rule.then_response.push_back(
+      made(often(30) ? ProgramHalt{true, {}, {}} : ProgramHalt{false, {}, {below(3)}}));
+  if (often(50)) rule.then_response.push_back(made(ProgramHalt{false, 0, {0, 1}}));
+  if (often(50)) rule.then_response.push_back(made(ProgramAlert{"stopped"}));
+  if (often(50))
+    rule.then_response.push_back(made(ProgramSet{kRanged, number_expression(2), false}));
+  if (often(60)) rule.resume = condition(3);
+  rule.line = next_line_++;
+  return rule;
+}
+
+Program Generator::program() {
+  Program program;
+  program.variables = variables();
+  for (unsigned i = below(3); i > 0; --i)
+    program.safety.push_back(safety_rule());
+  const auto behaviors = static_cast<std::int16_t>(1 + below(3));
+  for (std::int16_t b = 0; b < behaviors; ++b) {
+    ProgramBehavior behavior;
+    behavior.priority = static_cast<std::int16_t>(90 - b);
+    if (often(70)) behavior.name = "behaviour" + std::to_string(b);
+    for (unsigned i = 1 + below(3); i > 0; --i)
+      behavior.rules.push_back(rule());
+    program.behaviors.push_back(std::move(behavior));
+  }
+  return program;
+}
+
+}  // namespace robosync::compiler::testing

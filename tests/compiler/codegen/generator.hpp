@@ -1,0 +1,51 @@
+// Random programs of every kind of rule and statement, such as sema lets through: every loop
+// without a constant count waits in each round.
+#pragma once
+
+#include <random>
+
+#include "tests/compiler/codegen/build.hpp"
+
+namespace robosync::compiler::testing {
+
+struct Taste {
+  bool chance = true;      // RANDOM and PICK ONE
+  bool time_words = true;  // in conditions and in responses
+  unsigned depth = 4;      // of blocks in blocks
+};
+
+class Generator {
+public:
+  Generator(std::uint32_t seed, Taste taste) : random_(seed), taste_(taste) {}
+
+  Program program();
+  ProgramBlock response();
+  // Those that the statements use.
+  static std::vector<ProgramVariable> variables();
+
+private:
+  unsigned below(unsigned end) {
+    return std::uniform_int_distribution<unsigned>(0, end - 1)(random_);
+  }
+  bool often(unsigned percent) { return below(100) < percent; }
+  E number_expression(unsigned depth);
+  E condition(unsigned depth);
+  E timed(unsigned depth);
+  ProgramRule rule();
+  ProgramRule safety_rule();
+  ProgramBlock block(unsigned depth);
+  ProgramStatement statement(unsigned depth);
+  ProgramStatement simple();
+  ProgramStatement compound(unsigned depth);
+  ProgramRepeat repeat(unsigned depth);
+  ProgramStatement numbered(std::uint16_t number, ProgramStatement statement);
+  std::vector<ProgramArgument> arguments();
+
+  std::mt19937 random_;
+  Taste taste_;
+  std::vector<std::size_t> locals_;  // in scope
+  std::size_t next_local_ = 0;
+  std::uint16_t next_line_ = 1;
+};
+
+}  // namespace robosync::compiler::testing

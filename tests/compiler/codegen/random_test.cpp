@@ -1,0 +1,80 @@
+// Random programs: what is accepted can be verified, and does what the program says.
+#include <catch2/catch.hpp>
+
+#include "tests/compiler/codegen/generator.hpp"
+#include "tests/compiler/codegen/model.hpp"
+#include "vm/verifier.hpp"
+
+using namespace robosync;
+using namespace robosync::compiler;
+using namespace robosync::compiler::testing;
+
+namespace {
+
+// Numbers near each other, so that comparisons go both ways; sometimes nothing is known.
+vm::Value some_reading(std::mt19937& random) {
+  const auto drawn = std::uniform_int_distribution<int>(-6, 14)(random);
+  return drawn == 14 ? vm::kUnknown : drawn * 500;
+}
+
+World some_world(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  World world;
+  for (vm::Value& channel : world.channels)
+    channel = some_reading(random);
+  for (const ProgramVariable& variable : Generator::variables())
+    world.variables.push_back(variable.initial);
+  return world;
+}
+
+}  // namespace
+
+TEST_CASE("a random program is refused as too large, or can be verified") {
+  constexpr std::uint32_t kPrograms = 4000;
+  unsigned accepted = 0;
+  for (std::uint32_t seed = 0; seed < kPrograms; ++seed) {
+    INFO("seed " << seed);
+    Taste taste;
+    taste.depth = 2 + seed % 6;
+    const Built built = build(Generator(seed, taste).program());
+    for (const Diagnostic& diagnostic : built.diagnostics.all()) {
+      INFO(diagnostic.message);
+      REQUIRE(diagnostic.code == Code::E0407);
+    }
+    REQUIRE(built.bytes.empty() == (built.diagnostics.errors() > 0));
+    if (built.bytes.empty()) continue;
+    vm::Image image;
+    const vm::Verdict verdict = vm::verify(built.bytes, vm::Limits{}, image);
+    INFO(vm::describe(verdict.refusal) << " " << verdict.index << "\n" << listing(built.image));
+    REQUIRE(verdict.ok());
+    ++accepted;
+  }
+  CHECK(accepted > kPrograms / 2);
+  CHECK(accepted < kPrograms);
+}
+
+TEST_CASE("a random response does what its program says, whatever happens while it waits") {
+  constexpr std::uint32_t kResponses = 6000;
+  constexpr unsigned kPauses = 20;
+  constexpr Taste kTaste{.chance = false, .time_words = false, .depth = 4};
+  std::size_t done = 0;
+  for (std::uint32_t seed = 0; seed < kResponses; ++seed) {
+    const ProgramBlock block = Generator(seed, kTaste).response();
+    const Built built = build(program_of({at_start(block)}, Generator::variables()));
+    if (built.bytes.empty()) continue;
+    INFO("seed " << seed << "\n" << listing(built.image));
+    const auto weather = [seed](World& world) {
+      std::mt19937 random(seed ^ world.now);
+      for (vm::Value& channel : world.channels)
+        channel = some_reading(random);
+    };
+    World world = some_world(seed), expected_world = world;
+    const Deeds expected =
+        expected_deeds(block, Generator::variables(), expected_world, kPauses, weather);
+    REQUIRE(Runner(built.image, 0).respond(0, world, kPauses, weather) == expected);
+    REQUIRE(world.variables == expected_world.variables);
+    REQUIRE(world.now == expected_world.now);
+    done += expected.size();
+  }
+  CHECK(done > kResponses);
+}

@@ -1,0 +1,216 @@
+// Programs in plain English: the whole programs of 10-language.md, section 4, and each construct.
+#include "compiler/explain/program_text.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <catch2/catch.hpp>
+
+#include "compiler/config/robot_reader.hpp"
+#include "compiler/diagnostics/render.hpp"
+#include "compiler/explain/conditions.hpp"
+#include "compiler/syntax/parser.hpp"
+#include "tests/support/golden.hpp"
+
+using namespace robosync;
+using namespace robosync::compiler;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path kTests = fs::path(ROBOSYNC_SOURCE_DIR) / "tests/compiler";
+
+struct Read {
+  SourceMap sources;
+  Diagnostics diagnostics;
+  ast::Program program;
+  std::optional<Robot> robot;
+};
+
+Read read(std::string text, const std::string& robot = {}) {
+  Read result;
+  const FileId file = result.sources.add("robot.rsl", std::move(text));
+  const FileId config = result.sources.add("robot.json", robot);
+  result.program = parse(result.sources, file, result.diagnostics);
+  INFO(render_human(result.diagnostics, result.sources, false));
+  REQUIRE(result.diagnostics.errors() == 0);
+  if (!robot.empty()) {
+    result.robot = read_robot(result.sources, config, result.diagnostics);
+    INFO(render_human(result.diagnostics, result.sources, false));
+    REQUIRE(result.diagnostics.errors() == 0);
+  }
+  return result;
+}
+
+std::string told(const std::string& text, const std::string& robot = {}) {
+  const Read it = read(text, robot);
+  return explain::program_text(it.program, it.sources, it.robot ? &*it.robot : nullptr);
+}
+
+// The first line of the rule `WHEN condition DO` or the like.
+std::string first_line(const std::string& head) {
+  const std::string text = told(head + " DO\n  SHOW face\nEND");
+  const std::size_t begin = text.find("It uses face.\n") + std::string("It uses face.\n  ").size();
+  return text.substr(begin, text.find(" (line 1):", begin) - begin);
+}
+
+std::string stmt(const std::string& text) {
+  const std::string all = told("WHEN touch > 3 DO\n" + text + "\nEND");
+  const std::size_t begin = all.find("(line 1):\n") + std::string("(line 1):\n").size();
+  return all.substr(begin);
+}
+
+}  // namespace
+
+TEST_CASE("the programs of the language's design in plain English", "[golden]") {
+  std::vector<fs::path> programs;
+  for (const auto& entry : fs::directory_iterator(kTests / "front/programs")) {
+    if (entry.path().extension() == ".rsl") programs.push_back(entry.path());
+  }
+  REQUIRE(programs.size() >= 7);
+  for (const fs::path& path : programs) {
+    const fs::path golden = kTests / "explain/golden" / path.filename().replace_extension(".txt");
+    testing::expect_golden(golden, told(testing::read_file(path)));
+  }
+}
+
+TEST_CASE("the first words say whether a rule looks at a moment or at a time") {
+  CHECK(first_line("WHEN proximity DISTANCE < 30cm") ==
+        "As soon as proximity DISTANCE becomes less than 30cm");
+  CHECK(first_line("WHILE proximity DISTANCE < 30cm") ==
+        "While proximity DISTANCE is less than 30cm");
+  CHECK(first_line("EVERY 3s TO 7s") == "Every 3s to 7s, as chance has it");
+  CHECK(first_line("EVERY 3s") == "Every 3s");
+  CHECK(first_line("WHEN a > 1 AND b > 2") ==
+        "As soon as it becomes true that a is more than 1 and b is more than 2");
+  CHECK(first_line("WHILE a > 1 OR b > 2") ==
+        "While it is true that a is more than 1 or b is more than 2");
+}
+
+TEST_CASE("every comparison has its words") {
+  CHECK(first_line("WHEN a < 1") == "As soon as a becomes less than 1");
+  CHECK(first_line("WHEN a > 1") == "As soon as a becomes more than 1");
+  CHECK(first_line("WHEN a <= 1") == "As soon as a becomes at most 1");
+  CHECK(first_line("WHEN a >= 1") == "As soon as a becomes at least 1");
+  CHECK(first_line("WHEN a = 1") == "As soon as a becomes exactly 1");
+  CHECK(first_line("WHEN a <> 1") == "As soon as a becomes anything but 1");
+  CHECK(first_line("WHEN a IS very close") == "As soon as a becomes very close");
+  CHECK(first_line("WHILE a IS NOT scared") == "While a is anything but scared");
+  CHECK(first_line("WHEN a IS \"stop\"") == "As soon as a becomes \"stop\"");
+  CHECK(first_line("WHEN a IS BETWEEN 1 AND 2") == "As soon as a becomes between 1 and 2");
+  CHECK(first_line("WHEN a IS TRUE") == "As soon as a becomes true");
+  CHECK(first_line("WHEN waved") == "As soon as waved becomes true");
+  CHECK(first_line("WHILE NOT waved") == "While waved is not true");
+  CHECK(first_line("WHEN NOT a > 1") == "As soon as a stops being more than 1");
+  CHECK(first_line("WHEN mood BECOMES calm") == "As soon as mood becomes calm");
+  CHECK(first_line("WHEN a CHANGES") == "As soon as a changes");
+  CHECK(first_line("WHEN a CHANGES BY 5") == "As soon as a changes by 5 or more");
+  CHECK(first_line("WHEN a - 2 * b > (3 + 4) MOD 5") ==
+        "As soon as a - (2 * b) becomes more than (3 + 4) MOD 5");
+}
+
+TEST_CASE("time words and brackets") {
+  CHECK(first_line("WHEN a > 1 FOR 2s") ==
+        "As soon as a has been more than 1 for 2s without a break");
+  CHECK(first_line("WHEN NOT a > 1 FOR 2s") ==
+        "As soon as a has not been more than 1 for 2s without a break");
+  CHECK(first_line("WHEN a > 1 AND b FOR 2s") ==
+        "As soon as it has been true for 2s without a break that a is more than 1 and b is true");
+  CHECK(first_line("WHEN a > 1 3 TIMES WITHIN 2s") ==
+        "As soon as a becomes more than 1 for the 3rd time within 2s");
+  CHECK(first_line("WHEN a > 1 12 TIMES WITHIN 2s") ==
+        "As soon as a becomes more than 1 for the 12th time within 2s");
+  CHECK(first_line("WHEN a > 70% THEN a < 20% WITHIN 2s") ==
+        "As soon as a becomes more than 70% and then, at most 2s later, a becomes less than 20%");
+  CHECK(first_line("WHEN (a OR b) AND c") ==
+        "As soon as it becomes true that (a is true or b is true) and c is true");
+  CHECK(first_line("WHILE NOT (a OR b)") ==
+        "While it is true that it is not true that (a is true or b is true)");
+}
+
+TEST_CASE("every statement in words") {
+  CHECK(stmt("MOVE right_arm QUICKLY TO -20deg OVER 400ms") ==
+        "    - move right_arm quickly to -20deg over 400ms\n");
+  CHECK(stmt("SPIN base 2 TIMES") == "    - spin base 2 times\n");
+  CHECK(stmt("SPIN base 1 TIMES") == "    - spin base once\n");
+  CHECK(stmt("SAY \"Hello\"") == "    - say \"Hello\"\n");
+  CHECK(stmt("TURN head TO (voice DIRECTION)") == "    - turn head to voice DIRECTION\n");
+  CHECK(stmt("SET n TO RANDOM(1, 6)") == "    - set n to a random number from 1 to 6\n");
+  CHECK(stmt("RAISE joy BY 15%") == "    - raise joy by 15%\n");
+  CHECK(stmt("LOWER joy BY 15%") == "    - lower joy by 15%\n");
+  CHECK(stmt("WAIT 2s") == "    - wait 2s\n");
+  CHECK(stmt("WAIT UNTIL a > 1") == "    - wait until a is more than 1\n");
+  CHECK(stmt("WAIT UNTIL a > 1 WITHIN 3s") ==
+        "    - wait until a is more than 1, but at most 3s\n");
+  CHECK(stmt("THEN") == "    - wait until everything started so far is done\n");
+  CHECK(stmt("STOP ALL") == "    - stop all actuators\n");
+  CHECK(stmt("STOP arms") == "    - stop arms\n");
+  CHECK(stmt("SIGNAL hello") == "    - send the signal hello to the other rules\n");
+  CHECK(stmt("LOG \"level\", a + 1") == "    - write to the log: \"level\", a + 1\n");
+  CHECK(stmt("ALERT \"help\"") == "    - alert a person: \"help\"\n");
+  CHECK(stmt("IF a > 1 DO WAIT 1s ELSE WAIT 2s END") ==
+        "    - if a is more than 1:\n        - wait 1s\n    - otherwise:\n        - wait 2s\n");
+  CHECK(stmt("REPEAT 3 TIMES\nWAIT 1s\nEND") == "    - 3 times:\n        - wait 1s\n");
+  CHECK(stmt("REPEAT WHILE a > 1\nWAIT 1s\nEND") ==
+        "    - again and again while a is more than 1:\n        - wait 1s\n");
+  CHECK(stmt("REPEAT FOREVER\nWAIT 1s\nEND") ==
+        "    - again and again, until something interrupts it:\n        - wait 1s\n");
+  CHECK_THAT(stmt("PICK ONE\nOPTION 60% WAIT 1s\nOPTION 40% WAIT 2s\nEND"),
+             Contains("the larger its number") && Contains("- option 60%:"));
+  CHECK_THAT(stmt("PICK ONE\nOPTION WAIT 1s\nOPTION WAIT 2s\nEND"),
+             Contains("each as often as the others"));
+}
+
+TEST_CASE("modifiers are told in words a teacher understands") {
+  const std::string text =
+      told("WHEN a > 60C COOLDOWN 10s MARGIN 5C RESTARTING WAITING 2s DO\n  SHOW face\nEND");
+  CHECK_THAT(text, Contains("After it has started, it does not start again for 10s."));
+  CHECK_THAT(text, Contains("stays true until the value is 5C back past its limit"));
+  CHECK_THAT(text, Contains("If it becomes true again while this is still going on, it starts "
+                            "again from the top."));
+  CHECK_THAT(text, Contains("it waits for that, but at most 2s."));
+  const std::string plain = told("WHEN a > 60C DO\n  SHOW face\nEND");
+  CHECK_THAT(plain, !Contains("After it has started") && !Contains("starts again from the top"));
+}
+
+TEST_CASE("who interrupts whom: by actuators and priorities, through DEFINEs and groups") {
+  const std::string program = R"(
+BEHAVIOR high PRIORITY 80
+  WHEN a > 1 DO hello
+  END
+END
+BEHAVIOR low PRIORITY 20
+  WHEN a > 2 DO MOVE left_arm
+  END
+END
+BEHAVIOR other PRIORITY 50
+  WHEN a > 3 DO SHOW face
+  END
+END
+WHEN a > 4 DO MOVE right_arm
+END
+DEFINE hello
+  MOVE arms
+END
+)";
+  // Without a robot nobody knows that left_arm is one of the arms.
+  CHECK_THAT(told(program), !Contains("It interrupts") && !Contains("is interrupted by"));
+  const std::string robot = R"({"sensors": [{"name": "a", "type": "VIRTUAL"}],
+    "actuators": [{"name": "left_arm", "type": "PWM", "pin": 1, "device": "servo"},
+                  {"name": "right_arm", "type": "PWM", "pin": 2, "device": "servo"},
+                  {"name": "face", "type": "VIRTUAL", "device": "face"}],
+    "groups": {"arms": ["left_arm", "right_arm"]}})";
+  const std::string text = told(program, robot);
+  CHECK_THAT(text,
+             Contains("BEHAVIOR high (line 2), priority 80:\n  It uses left_arm and right_arm.\n"
+                      "  It interrupts low (priority 20) and the rule at line 14.\n"));
+  CHECK_THAT(text, Contains("BEHAVIOR low (line 6), priority 20:\n  It uses left_arm.\n"
+                            "  It is interrupted by high (priority 80).\n"));
+  CHECK_THAT(text, Contains("BEHAVIOR other (line 10), priority 50:\n  It uses face.\n\n"));
+}
+
+TEST_CASE("a DEFINE that runs itself is told and ends") {
+  CHECK_THAT(told("WHEN a > 1 DO b\nEND\nDEFINE b\n  c\nEND\nDEFINE c\n  b\nEND"),
+             Contains("do b (see DEFINE b)"));
+}

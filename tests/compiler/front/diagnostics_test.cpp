@@ -1,0 +1,155 @@
+// Places, nearest words, and diagnostics for people and for programs.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "compiler/diagnostics/nearest.hpp"
+#include "compiler/diagnostics/snippet.hpp"
+#include "compiler/source/utf8.hpp"
+#include "front.hpp"
+
+using namespace robosync::compiler;
+
+TEST_CASE("lines and columns", "[source]") {
+  const SourceFile file("f", "ab\nçd\r\ne\rf");
+  const auto at = [&file](std::uint32_t offset) {
+    const Position position = file.position(offset);
+    return std::to_string(position.line) + ":" + std::to_string(position.column);
+  };
+  CHECK(at(0) == "1:1");
+  CHECK(at(2) == "1:3");
+  CHECK(at(3) == "2:1");
+  CHECK(at(5) == "2:2");  // ç takes two bytes and one column
+  CHECK(at(8) == "3:1");
+  CHECK(at(10) == "4:1");
+  CHECK(at(11) == "4:2");
+  CHECK(at(4000000000U) == "4:2");
+  CHECK(file.line(2) == "çd");
+  CHECK(file.line(3) == "e");
+  CHECK(file.line(4) == "f");
+  CHECK(file.line(0).empty());
+  CHECK(file.line(5).empty());
+  CHECK(file.text({0, 0, 2}) == "ab");
+  CHECK(file.text({0, 9, 4000000000U}) == "\rf");
+  CHECK(file.text({0, 5, 2}).empty());
+}
+
+TEST_CASE("UTF-8 is checked", "[source]") {
+  const auto value = [](std::string_view text) { return utf8::decode(text, 0).value; };
+  CHECK(value("A") == U'A');
+  CHECK(value("é") == U'é');
+  CHECK(value("触") == U'触');
+  CHECK(value("🤖") == U'🤖');
+  for (const std::string_view bad : {"\x80", "\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80",
+                                     "\xF4\x90\x80\x80", "\xE2\x82", "\xFF"}) {
+    CHECK(utf8::decode(bad, 0).value == utf8::replacement);
+    CHECK(utf8::decode(bad, 0).size == 1);
+  }
+  CHECK(utf8::printable("a\x1b[2Jé\xff") == "a�[2Jé�");
+}
+
+TEST_CASE("mistakes between words", "[nearest]") {
+  CHECK(mistakes("WHEN", "when") == 0);
+  CHECK(mistakes("WHNE", "WHEN") == 1);
+  CHECK(mistakes("COOLDWN", "COOLDOWN") == 1);
+  CHECK(mistakes("", "abc") == 3);
+  CHECK(mistakes("kitten", "sitting") == 3);
+  CHECK(mistakes(std::string(100000, 'a'), "b") == 100000);
+}
+
+TEST_CASE("the nearest word, if any is near", "[nearest]") {
+  const std::vector<std::string> words = {"WHEN", "WHILE", "DO", "END", "touch"};
+  CHECK(nearest("WHNE", words) == "WHEN");
+  CHECK(nearest("toch", words) == "touch");
+  CHECK(nearest("OD", words) == "DO");
+  CHECK(nearest("ENDD", words) == "END");
+  CHECK_FALSE(nearest("banana", words).has_value());
+  CHECK_FALSE(nearest("TO", words).has_value());  // no swap, no missing letter: another word
+  CHECK_FALSE(nearest("", words).has_value());
+  CHECK_FALSE(nearest("x", {}).has_value());
+}
+
+TEST_CASE("snippets", "[render]") {
+  const auto check = [](std::string_view line, std::size_t begin, std::size_t end,
+                        const std::string& source, const std::string& marker) {
+    const Snippet snippet = make_snippet(line, begin, end, '^');
+    CHECK(snippet.source == source);
+    CHECK(snippet.marker == marker);
+  };
+  check("abc", 1, 2, "abc", " ^");
+  check("abc", 3, 3, "abc", "   ^");
+  check("abc", 1, 1, "abc", " ^");
+  check("a\tb", 2, 3, "a   b", "    ^");
+  check("\ta", 1, 2, "    a", "    ^");
+  check("é触x", 2, 5, "é触x", " ^^");
+  check("é触x", 5, 6, "é触x", "   ^");
+  check("a\x1b\xff x", 4, 5, "a�� x", "    ^");
+  check("", 0, 0, "", "^");
+}
+
+TEST_CASE("long lines are cut around the mark", "[render]") {
+  std::string line(500, '.');
+  line[250] = 'X';
+  const Snippet snippet = make_snippet(line, 250, 251, '^');
+  CHECK(snippet.source.size() == 106);
+  CHECK(snippet.source.substr(0, 3) == "...");
+  CHECK(snippet.source.at(snippet.marker.find('^')) == 'X');
+  const Snippet whole = make_snippet(line, 0, 500, '^');
+  CHECK(whole.marker == std::string(100, '^'));
+}
+
+TEST_CASE("labels in two files", "[render]") {
+  SourceMap sources;
+  const FileId rsl = sources.add("robot.rsl", "\n\n\n  WHEN proximity DISTANCE < 20N\n");
+  const FileId json = sources.add("robot.json", "{\n  \"unit\": \"mm\"\n}\n");
+  Diagnostics diagnostics;
+  diagnostics.report(Code::E0301, "this compares a distance with a weight")
+      .label({json, 12, 16}, "the sensor gives millimetres", false)
+      .label({rsl, 31, 34}, "newton (force)")
+      .helps("did you mean `20mm`, `20cm`?")
+      .fix({rsl, 31, 34}, "20mm");
+  CHECK(render_human(diagnostics, sources, false) ==
+        "error[E0301]: this compares a distance with a weight\n"
+        "  --> robot.rsl:4:29\n"
+        " 4 |   WHEN proximity DISTANCE < 20N\n"
+        "   |                             ^^^ newton (force)\n"
+        "  --> robot.json:2:11\n"
+        " 2 |   \"unit\": \"mm\"\n"
+        "   |           ---- the sensor gives millimetres\n"
+        "   = help: did you mean `20mm`, `20cm`?\n");
+  CHECK(render_human(diagnostics, sources, true).find("\x1b[1;31merror") != std::string::npos);
+
+  const auto parsed = nlohmann::json::parse(render_json(diagnostics, sources));
+  CHECK(parsed["errors"] == 1);
+  CHECK(parsed["warnings"] == 0);
+  const auto& entry = parsed["diagnostics"].at(0);
+  CHECK(entry["code"] == "E0301");
+  CHECK(entry["level"] == "error");
+  CHECK(entry["labels"].at(1) == nlohmann::json({{"file", "robot.rsl"},
+                                                 {"line", 4},
+                                                 {"column", 29},
+                                                 {"end_line", 4},
+                                                 {"end_column", 32},
+                                                 {"text", "newton (force)"},
+                                                 {"primary", true}}));
+  CHECK(entry["help"].at(0) == "did you mean `20mm`, `20cm`?");
+  CHECK(entry["fixes"].at(0)["replacement"] == "20mm");
+}
+
+TEST_CASE("JSON of sources that are not UTF-8", "[render]") {
+  const auto parsed = robosync::compiler::testing::parse_text("WHEN \"\xff\" \xfe DO\n");
+  const std::string text = render_json(parsed.diagnostics, parsed.sources);
+  CHECK(nlohmann::json::parse(text)["errors"] == parsed.diagnostics.errors());
+}
+
+TEST_CASE("diagnostics are sorted, and said once", "[diagnostics]") {
+  Diagnostics diagnostics;
+  diagnostics.report(Code::E0002, "b").label({0, 9, 10});
+  diagnostics.report(Code::W0103, "a").label({0, 2, 3});
+  diagnostics.report(Code::E0002, "b").label({0, 9, 10});
+  diagnostics.report(Code::E0002, "c").label({0, 9, 10});
+  diagnostics.finish();
+  REQUIRE(diagnostics.all().size() == 3);
+  CHECK(diagnostics.all()[0].message == "a");
+  CHECK(diagnostics.errors() == 2);
+  CHECK(diagnostics.warnings() == 1);
+}

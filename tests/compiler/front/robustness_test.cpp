@@ -1,0 +1,138 @@
+// Nothing in a source may crash the front end or keep it busy: random bytes, random words, huge and
+// deep programs. The sanitizers of the host-asan preset watch.
+#include <chrono>
+#include <cstdlib>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "compiler/syntax/keywords.hpp"
+#include "front.hpp"
+
+using namespace robosync::compiler;
+using namespace robosync::compiler::testing;
+
+namespace {
+
+// The sanitizers make everything twenty times slower: a tenth of the work then, unless
+// ROBOSYNC_FULL_FUZZ=1 asks for all of it.
+int share_of(int count) {
+#ifdef __SANITIZE_ADDRESS__
+  const char* full = std::getenv("ROBOSYNC_FULL_FUZZ");
+  return full != nullptr && std::string(full) == "1" ? count : count / 10;
+#else
+  return count;
+#endif
+}
+
+// Parses and renders both ways; gives the number of errors.
+std::size_t survive(std::string text) {
+  const Parsed parsed = parse_text(std::move(text));
+  const std::string human = messages(parsed);
+  const std::string json = render_json(parsed.diagnostics, parsed.sources);
+  CHECK(human.empty() == parsed.diagnostics.all().empty());
+  CHECK(json.back() == '\n');
+  return parsed.diagnostics.errors();
+}
+
+std::string random_bytes(std::mt19937& random) {
+  std::string text(random() % 24, '\0');
+  for (char& c : text)
+    c = static_cast<char>(random() % 256);
+  return text;
+}
+
+std::string random_words(std::mt19937& random) {
+  static const std::vector<std::string> others = {"touch", "LEVEL", "3", "40%", "20cm", "\"x\"",
+                                                  "\n",    "\n",    "<", "(",   ")",    "=",
+                                                  ",",     "-",     ":", "%"};
+  std::string text;
+  const std::size_t count = random() % 12;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool keyword = random() % 2 == 0;
+    const auto& words = keyword ? keyword_spellings() : others;
+    text += words[random() % words.size()] + " ";
+  }
+  return text;
+}
+
+std::string repeated(const std::string& part, std::size_t count) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i)
+    text += part;
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("random bytes", "[fuzz]") {
+  std::mt19937 random(1);
+  const int rounds = share_of(60000);
+  for (int i = 0; i < rounds; ++i)
+    survive(random_bytes(random));
+}
+
+TEST_CASE("random words", "[fuzz]") {
+  std::mt19937 random(2);
+  const int rounds = share_of(40000);
+  int wrong = 0;
+  for (int i = 0; i < rounds; ++i) {
+    if (survive(random_words(random)) > 0) ++wrong;
+  }
+  CHECK(wrong > rounds / 4 * 3);
+}
+
+TEST_CASE("huge and deep programs end soon", "[robust]") {
+  const auto bytes = static_cast<std::size_t>(share_of(1000000));
+  const std::string parts[] = {"x ",
+                               "x y\n",
+                               "WHEN\n",
+                               "END\n",
+                               "NOT ",
+                               "(",
+                               "(\n",
+                               "+1",
+                               "@ ",
+                               "\"\n",
+                               "IF a DO\n",
+                               "1",
+                               "\xff",
+                               "a;",
+                               "- ",
+                               "BEHAVIOR x PRIORITY 1\n",
+                               "LET a = 1 +\n",
+                               "“"};
+  for (const std::string& part : parts) {
+    for (const std::string head : {"", "LET x = ", "DEFINE x\n", "WHEN x > "}) {
+      INFO("'" << head << "', then '" << part << "' over and over");
+      const auto start = std::chrono::steady_clock::now();
+      survive(head + repeated(part, bytes / part.size()));
+      const auto took = std::chrono::steady_clock::now() - start;
+      CHECK(took < std::chrono::seconds(60));
+    }
+  }
+}
+
+TEST_CASE("limits have messages of their own", "[robust]") {
+  const auto first_code = [](const std::string& text) {
+    const Parsed parsed = parse_text(text);
+    REQUIRE(!parsed.diagnostics.all().empty());
+    return std::string(code_name(parsed.diagnostics.all().front().code));
+  };
+  CHECK(first_code(std::string(2000000, ' ')) == "E0013");
+  CHECK(first_code("LET x = " + repeated("(", 65) + "1" + repeated(")", 65)) == "E0012");
+  CHECK(first_code("LET x = " + repeated("- ", 65) + "1") == "E0012");
+  CHECK(first_code("LET x = 1" + repeated("+1", 100)) == "E0012");
+  CHECK(parse_text("LET x = " + repeated("(", 64) + "1" + repeated(")", 64))
+            .diagnostics.all()
+            .empty());
+  CHECK(parse_text("LET x = 1" + repeated("+1", 99)).diagnostics.all().empty());
+  const std::string deep = repeated("IF a DO\n", 33) + "b\n" + repeated("END\n", 33);
+  CHECK(first_code("DEFINE d\n" + deep + "END\n") == "E0012");
+}
+
+TEST_CASE("thirty mistakes are enough", "[robust]") {
+  const Parsed parsed = parse_text(repeated("LET x =\n", 1000));
+  CHECK(parsed.diagnostics.errors() == 31);
+  CHECK(parsed.diagnostics.all().back().code == Code::E0013);
+}

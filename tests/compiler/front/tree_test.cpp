@@ -1,0 +1,137 @@
+// Trees of programs: every form of the grammar, and the programs of the language's design.
+#include <catch2/catch.hpp>
+
+#include "front.hpp"
+#include "sexpr.hpp"
+
+using namespace robosync::compiler;
+using namespace robosync::compiler::testing;
+
+namespace {
+
+std::string tree(const std::string& text) {
+  const Parsed parsed = parse_text(text);
+  INFO(text);
+  CHECK(messages(parsed) == "");
+  return to_sexpr(parsed.program);
+}
+
+std::string condition(const std::string& text) {
+  const std::string whole = tree("WHEN " + text + "\nDO x\nEND\n");
+  return whole.substr(6, whole.size() - std::string("(when  (do (x)))\n").size());
+}
+
+std::string statement(const std::string& text) {
+  const std::string whole = tree("DEFINE d\n" + text + "\nEND\n");
+  const std::string head = "(define d () (do ";
+  return whole.substr(head.size(), whole.size() - head.size() - 3);
+}
+
+}  // namespace
+
+TEST_CASE("the programs of the design are read without a message", "[tree]") {
+  const auto programs = files_in("programs", ".rsl");
+  CHECK(programs.size() == 7);
+  for (auto path : programs) {
+    const Parsed parsed = parse_text(robosync::testing::read_file(path));
+    CHECK(messages(parsed) == "");
+    robosync::testing::expect_golden(path.replace_extension(".tree"), to_sexpr(parsed.program));
+  }
+}
+
+TEST_CASE("the paper's program", "[tree]") {
+  const auto path = front_folder() / "programs/paper.rsl";
+  CHECK(tree(robosync::testing::read_file(path)) ==
+        "(when (< touch.LEVEL 3) (do (gentle_response)) (else (aggressive_response)))\n"
+        "(define gentle_response () (do (MOVE arms SLOWLY) (PLAY sound \"greeting.wav\")))\n"
+        "(define aggressive_response () (do (MOVE arms QUICKLY) (PLAY sound \"warning.wav\")))\n");
+}
+
+TEST_CASE("how tightly operators bind", "[tree]") {
+  CHECK(condition("a + 2 * b - 1 > c / 2 MOD 3") == "(> (- (+ a (* 2 b)) 1) (mod (/ c 2) 3))");
+  CHECK(condition("a OR b AND NOT c < 1") == "(or a (and b (not (< c 1))))");
+  CHECK(condition("(a OR b) AND c") == "(and (or a b) c)");
+  CHECK(condition("-a * -3mm <> --b") == "(<> (* (neg a) (neg 3mm)) (neg (neg b)))");
+  CHECK(condition("a IS BETWEEN 1 AND 2 AND b") == "(and (between a 1 2) b)");
+  CHECK(condition("RANDOM(1, 6) >= 5") == "(>= (random 1 6) 5)");
+  CHECK(condition("a == 1 OR b != 2 OR c = 3") == "(or (or (= a 1) (<> b 2)) (= c 3))");
+}
+
+TEST_CASE("labels and texts", "[tree]") {
+  CHECK(condition("space IS very close") == "(is space [very close])");
+  CHECK(condition("space IS NOT very close") == "(is-not space [very close])");
+  CHECK(condition("voice WORD IS \"stop\"") == "(is voice.WORD \"stop\")");
+  CHECK(condition("button IS TRUE OR button IS FALSE") == "(or (true button) (false button))");
+  CHECK(condition("mood BECOMES calm") == "(becomes mood calm)");
+  CHECK(condition("jerk LEVEL CHANGES BY 2 OR x CHANGES") ==
+        "(or (changes jerk.LEVEL 2) (changes x))");
+}
+
+TEST_CASE("time words", "[tree]") {
+  CHECK(condition("a > 1 FOR 2s") == "(for (> a 1) 2s)");
+  CHECK(condition("a > 1 THEN a < 1 WITHIN 2s") == "(then (> a 1) (< a 1) 2s)");
+  CHECK(condition("a > 0 3 TIMES WITHIN 2s") == "(times (> a 0) 3 2s)");
+}
+
+TEST_CASE("statements", "[tree]") {
+  CHECK(statement("MOVE arms TO -20deg OVER 400ms AT calm BY (a + 1) FOR 'x'") ==
+        "(MOVE arms to:(neg 20deg) over:400ms at:calm by:(+ a 1) for:\"x\")");
+  CHECK(statement("SPIN base 1 TIMES") == "(SPIN base (times 1))");
+  CHECK(statement("step WITH 25deg, touch LEVEL, 'x'") == "(call step 25deg touch.LEVEL \"x\")");
+  CHECK(statement("SET a TO a + 1\nRAISE b BY 3%\nLOWER b BY 3%") ==
+        "(set a (+ a 1)) (raise b 3%) (lower b 3%)");
+  CHECK(statement("WAIT 2s\nTHEN\nWAIT UNTIL a\nWAIT UNTIL a WITHIN 2s\nWAIT UNTIL a FOR 1s") ==
+        "(wait 2s) (then) (wait-until a) (wait-until a (within 2s)) (wait-until (for a 1s))");
+  CHECK(statement("IF a DO b ELSE c END") == "(if a (do (b)) (else (c)))");
+  CHECK(statement("REPEAT 3 TIMES\na\nEND\nREPEAT WHILE b\na\nEND\nREPEAT FOREVER\na\nEND") ==
+        "(repeat (times 3) (do (a))) (repeat (while b) (do (a))) (repeat forever (do (a)))");
+  CHECK(statement("PICK ONE\nOPTION 60%\na\nOPTION b\nEND") ==
+        "(pick-one (option 60% (do (a))) (option (do (b))))");
+  CHECK(statement("STOP ALL\nSTOP arms\nSIGNAL go\nLOG 'a', b + 1\nALERT 'careful'") ==
+        "(stop all) (stop arms) (signal go) (log \"a\" (+ b 1)) (alert \"careful\")");
+}
+
+TEST_CASE("rules", "[tree]") {
+  CHECK(tree("WHEN a PRIORITY 3 COOLDOWN 2s MARGIN 1 RESTARTING WAITING 2s DO b DO c END") ==
+        "(when a (priority 3) (cooldown 2s) (margin 1) (waiting 2s) (restarting) (do (b) (c)))\n");
+  CHECK(tree("WHILE a DO b END\nEVERY 3s TO 7s DO b END\nEVERY 1s DO b END\nAT START DO b END") ==
+        "(while a (do (b)))\n(every 3s (to 7s) (do (b)))\n(every 1s (do (b)))\n"
+        "(at-start (do (b)))\n");
+  CHECK(tree("BEHAVIOUR x\nREMEMBER n = 0\nAT START DO b END\nEND") ==
+        "(behavior x - (remember n 0) (at-start (do (b))))\n");
+}
+
+TEST_CASE("lines wrap where they cannot end", "[tree]") {
+  CHECK(condition("a >\n1 AND\nb\nOR c") == "(or (and (> a 1) b) c)");
+  CHECK(tree("\n\n  % comment\nWHEN a # another\n\n\nDO\n\nb\n\n\nEND") == "(when a (do (b)))\n");
+  CHECK(tree("when a do b else c end") == "(when a (do (b)) (else (c)))\n");
+  CHECK(tree("WHEN a\r\nDO b\r\nEND\r\n") == tree("WHEN a\rDO b\rEND\r"));
+}
+
+TEST_CASE("spans reach from the first to the last token", "[tree]") {
+  const std::string text = "  WHEN touch LEVEL < 3 DO MOVE arms TO 10deg END  ";
+  const Parsed parsed = parse_text(text);
+  const auto& rule = std::get<ast::Rule>(parsed.program.items.at(0).node);
+  const auto& when = std::get<ast::WhenRule>(rule.node);
+  const auto text_of = [&parsed](Span span) { return parsed.sources.text(span); };
+  CHECK(text_of(rule.span) == "WHEN touch LEVEL < 3 DO MOVE arms TO 10deg END");
+  CHECK(text_of(rule.head_span) == "WHEN");
+  CHECK(text_of(when.condition->span) == "touch LEVEL < 3");
+  const auto& comparison = std::get<ast::Comparison>(when.condition->node);
+  CHECK(text_of(comparison.relation_span) == "<");
+  const auto& command = std::get<ast::Command>(when.then_block.at(0).node);
+  CHECK(text_of(command.arguments.at(1).span) == "TO 10deg");
+  const auto& amount = std::get<ast::Amount>(command.arguments.at(1).value);
+  CHECK(text_of(std::get<ast::Quantity>(amount.value->node).unit_span) == "deg");
+}
+
+TEST_CASE("a wrong item does not take the others with it", "[tree]") {
+  const Parsed parsed = parse_text(
+      "DEFINE a\nx\nEND\nWHEN b > DO a END\nDEFINE c\ny\nEND\nMOVE arms\nDEFINE d\nz\nEND\n");
+  CHECK(parsed.diagnostics.errors() == 2);
+  const std::string all = to_sexpr(parsed.program);
+  CHECK(all.find("(define a () (do (x)))") != std::string::npos);
+  CHECK(all.find("(when (> b") != std::string::npos);
+  CHECK(all.find("(define c () (do (y)))") != std::string::npos);
+  CHECK(all.find("(define d () (do (z)))") != std::string::npos);
+}

@@ -1,0 +1,102 @@
+// The programs in the documentation are what they say they are: rsc finds nothing wrong with them,
+// the robot takes them and runs, and their TESTs pass.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/rsc/process.hpp"
+#include "tests/support/golden.hpp"
+
+namespace {
+
+using robosync::test::Folder;
+using robosync::test::Outcome;
+using robosync::test::rsc;
+using robosync::testing::read_file;
+
+const std::filesystem::path kRoot = ROBOSYNC_SOURCE_DIR;
+
+// The fenced blocks of `language` in a Markdown file.
+std::vector<std::string> blocks(const std::filesystem::path& path, const std::string& language) {
+  const std::string text = read_file(path);
+  const std::string fence = "```" + language + "\n";
+  std::vector<std::string> found;
+  for (auto at = text.find(fence); at != std::string::npos; at = text.find(fence, at)) {
+    at += fence.size();
+    const auto end = text.find("```", at);
+    found.push_back(text.substr(at, end - at));
+    at = std::min(end, text.size());
+  }
+  return found;
+}
+
+void check_runs(const Outcome& outcome) {
+  INFO(outcome.out);
+  INFO(outcome.err);
+  CHECK(outcome.exit == 0);
+}
+
+// A page is a promise: not even a warning.
+void check_program(const std::string& program, const std::string& robot) {
+  const Folder folder;
+  folder.write("robot.json", robot);
+  const std::string file = folder.write("robot.rsl", program);
+  INFO(program);
+
+  const Outcome report = rsc({"check", file, "--format", "json"});
+  INFO(report.out);
+  REQUIRE(report.exit == 0);
+  CHECK(nlohmann::json::parse(report.out).at("warnings") == 0);
+  check_runs(rsc({"run", file, "--duration", "2s"}));
+  if (program.find("TEST \"") != std::string::npos) check_runs(rsc({"test", file}));
+}
+
+void check_page(const char* page, const std::string& robot, std::size_t at_least) {
+  const auto programs = blocks(kRoot / page, "rsl");
+  CHECK(programs.size() >= at_least);
+  for (const std::string& program : programs)
+    check_program(program, robot);
+}
+
+}  // namespace
+
+TEST_CASE("every program in docs/language.md works on docs/robot.json") {
+  check_page("docs/language.md", read_file(kRoot / "docs/robot.json"), 36);
+}
+
+TEST_CASE("every program in docs/tutorial.md works on the robot.json it begins with") {
+  const auto files = blocks(kRoot / "docs/tutorial.md", "json");
+  REQUIRE(files.size() == 3);  // robot.json, visit.json, touches.json
+  check_page("docs/tutorial.md", files.front(), 7);
+}
+
+TEST_CASE("the scenarios of docs/tutorial.md do what it says") {
+  const auto files = blocks(kRoot / "docs/tutorial.md", "json");
+  REQUIRE(files.size() == 3);
+  const auto programs = blocks(kRoot / "docs/tutorial.md", "rsl");
+  REQUIRE(programs.size() == 7);
+  const Folder folder;
+  folder.write("robot.json", files[0]);
+  const auto run = [&](std::size_t program, std::size_t scenario) {
+    const Outcome outcome = rsc({"run", folder.write("robot.rsl", programs[program]), "--scenario",
+                                 folder.write("scenario.json", files[scenario])});
+    check_runs(outcome);
+    return outcome.out;
+  };
+  CHECK_THAT(run(0, 1), Catch::Contains("SAY Hello!"));
+  CHECK_THAT(run(5, 2), Catch::Contains("6.501 s  joy becomes 80%"));
+}
+
+TEST_CASE("every program in docs/stdlib.md works on stdlib/robot.json") {
+  check_page("docs/stdlib.md", read_file(kRoot / "stdlib/robot.json"), 8);
+}
+
+TEST_CASE("the robot.json in docs/configuration.md works") {
+  const auto configurations = blocks(kRoot / "docs/configuration.md", "json");
+  REQUIRE(configurations.size() == 1);
+  check_program("WHEN touch LEVEL > 4\nDO MOVE arms QUICKLY\nEND\n", configurations.front());
+}

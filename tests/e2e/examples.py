@@ -1,0 +1,67 @@
+"""The examples, and readings drawn for each from its robot.json."""
+
+import json
+import random
+import re
+from pathlib import Path
+
+from stimuli import Reading
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+def folders():
+    return [folder for folder in sorted(EXAMPLES.iterdir()) if (folder / "robot.json").is_file()]
+
+
+def config(folder):
+    """Its robot.json with virtual sensors in place of real ones, so that the board can be fed."""
+    robot = json.loads((folder / "robot.json").read_text())
+    for sensor in robot["sensors"]:
+        for key in set(sensor) - {"name", "channels"}:
+            del sensor[key]
+        sensor["type"] = "VIRTUAL"
+        for channel in sensor.get("channels", {}).values():
+            channel.pop("input", None)
+    return robot
+
+
+def _number(value):
+    """A number of robot.json without its unit, which is the channel's own."""
+    return value if isinstance(value, (int, float)) else float(re.match(r"-?[0-9.]+", value)[0])
+
+
+def _channels(folder):
+    """NAME.CHANNEL to its lowest and highest value, its words and its unit, for all that is read."""
+    program = (folder / "robot.rsl").read_text().lower()
+    found = {}
+    for sensor in config(folder)["sensors"]:
+        for name, channel in sensor.get("channels", {"LEVEL": {}}).items():
+            if sensor["name"].lower() not in program:
+                continue
+            words = ["no", "yes"] if channel.get("truth") else channel.get("labels", [])
+            low, high = map(_number, channel.get("range", [0, 100]))
+            found[f"{sensor['name']}.{name}"] = (low, high, words, channel.get("unit", ""))
+    return found
+
+
+def drawn(folder, seed, count=30):
+    """`count` readings, most of them near the last one of their channel, some anywhere."""
+    random_ = random.Random(seed)
+    channels = _channels(folder)
+    last = {name: low for name, (low, _, _, _) in channels.items()}
+    at, readings = 0, []
+    for _ in range(count):
+        name = random_.choice(list(channels))
+        low, high, words, _ = channels[name]
+        step = (high - low) / 8
+        value = random_.uniform(low, high) if random_.random() < 0.5 else \
+            min(high, max(low, last[name] + random_.uniform(-step, step)))
+        last[name] = round(value, 1)
+        readings.append(Reading(at, name, random_.choice(words) if words else last[name]))
+        at += random_.choice([0, 1, 20, 150, 400, 1200, 2500])
+    return readings
+
+
+def units(folder):
+    return {name: unit for name, (_, _, _, unit) in _channels(folder).items()}

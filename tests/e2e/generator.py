@@ -1,0 +1,186 @@
+"""Programs that are right by construction, drawn with a seed: every construct of the language.
+
+For tests/e2e/programs/robot.json. What a program means is of no matter here, only that the board and
+`rsc run` agree about it.
+"""
+
+import random
+
+from stimuli import CHANNELS, UNITS
+
+RELATIONS = ["<", ">", "<=", ">=", "=", "<>"]
+COMMANDS = ["MOVE arms SLOWLY", "MOVE left_arm TO 90deg OVER 300ms", "MOVE right_arm TO 20deg",
+            "MOVE left_arm BY 15deg OVER 50ms", 'PLAY sound "greeting.wav"',
+            'PLAY sound "warning.wav"', "LIGHT lamp ON", "LIGHT lamp TO 40% OVER 250ms",
+            "BLINK lamp 3 TIMES", "STOP lamp", "MOVE arms QUICKLY",
+            "LIGHT lamp TO (joy) OVER 100ms", "MOVE left_arm TO (count * 3deg) OVER 80ms"]
+DURATIONS = ["1ms", "7ms", "40ms", "150ms", "600ms", "1.5s"]
+
+DECLARATIONS = """\
+LET calm = 40%
+REMEMBER count = 0
+REMEMBER last = 1.5
+STATE mood: calm_down, very happy, wary
+FEELING joy FROM 0% TO 100% START 50% FADES TO 30% OVER 2s
+FEELING fear FROM -10% TO 100% START 0%
+
+CHECK space OF proximity DISTANCE
+  very close BELOW 30cm
+  near BELOW 100cm
+  far OTHERWISE
+  MARGIN 5cm
+END
+
+CHECK noise OF room NOISE
+  silent BELOW 20%
+  normal BETWEEN 20% AND 60%
+  loud OTHERWISE
+  SMOOTH OVER 300ms
+END
+
+DEFINE greet_twice WITH pause, level
+  LIGHT lamp TO level OVER pause
+  WAIT pause
+  PLAY sound "greeting.wav"
+END
+
+"""
+
+SAFETY = """\
+SAFETY heat
+  WHEN room WARMTH > 25C MARGIN 1C
+  DO
+    STOP left_arm
+    ALERT "too warm"
+  RESUME WHEN room WARMTH < 20C FOR 100ms
+END
+
+"""
+
+
+# So that the signal exists in every program.
+KNOCK = """\
+WHEN touch LEVEL > 9 DO
+  SIGNAL knock
+END
+"""
+
+
+class Generator:
+    """`program()` gives the text; the same seed, the same text."""
+
+    def __init__(self, seed):
+        self._random = random.Random(seed)
+
+    def program(self):
+        count = self._random.randint(2, 5)
+        priorities = self._random.sample(range(1, 100), count)
+        safety = SAFETY if self._random.random() < 0.3 else ""
+        behaviors = "\n".join(self._behavior(i, p) for i, p in enumerate(priorities))
+        return DECLARATIONS + safety + behaviors + KNOCK
+
+    def _one(self, *choices):
+        return self._random.choice(choices)
+
+    def _duration(self):
+        return self._random.choice(DURATIONS)
+
+    def _pause(self):
+        """Long enough that what repeats for ever does not fill the line with its trace."""
+        return self._one("40ms", "150ms", "600ms")
+
+    # --- rules
+
+    def _behavior(self, index, priority):
+        rules = "".join(self._rule() for _ in range(self._random.randint(1, 3)))
+        return f"BEHAVIOR b{index} PRIORITY {priority}\n{rules}END\n"
+
+    def _rule(self):
+        head = self._one(self._when, self._when, self._when, self._while, self._every, self._start)()
+        return f"  {head}  END\n"
+
+    def _when(self):
+        other = f"  ELSE\n{self._block(2)}" if self._random.random() < 0.4 else ""
+        modifiers = self._modifiers(["COOLDOWN", "WAITING"])
+        if self._random.random() < 0.2:
+            modifiers += " RESTARTING"
+        return f"WHEN {self._timed()}{modifiers}\n  DO\n{self._block(2)}{other}"
+
+    def _while(self):
+        return f"WHILE {self._condition(1)}\n  DO\n{self._block(2)}    WAIT {self._pause()}\n"
+
+    def _every(self):
+        to = f" TO {self._one('700ms', '2s')}" if self._random.random() < 0.5 else ""
+        return f"EVERY {self._one('90ms', '400ms')}{to}\n  DO\n{self._block(1)}"
+
+    def _start(self):
+        return f"AT START DO\n{self._block(2)}"
+
+    def _modifiers(self, words):
+        return "".join(f" {word} {self._duration()}" for word in words
+                       if self._random.random() < 0.25)
+
+    # --- conditions
+
+    def _timed(self):
+        condition = self._condition(1)
+        return self._one(
+            condition, condition,
+            f"({condition}) FOR {self._duration()}",
+            f"({condition}) {self._random.randint(1, 4)} TIMES WITHIN {self._duration()}",
+            f"({condition}) THEN ({self._condition(1)}) WITHIN {self._duration()}",
+            f"space BECOMES {self._one('very close', 'near', 'far')}",
+            f"mood BECOMES {self._one('calm_down', 'very happy', 'wary')}",
+            "touch LEVEL CHANGES BY 2", "count CHANGES", "knock", "noise IS NOT normal")
+
+    def _condition(self, depth):
+        if depth == 0 or self._random.random() < 0.3:
+            return self._one(self._comparison, self._comparison, self._label, self._variable)()
+        if self._random.random() < 0.2:
+            return f"NOT ({self._condition(depth - 1)})"
+        return f"({self._condition(depth - 1)}) {self._one('AND', 'OR')} ({self._condition(depth - 1)})"
+
+    def _comparison(self):
+        channel = self._random.choice(list(CHANNELS))
+        value = self._random.choice(CHANNELS[channel])
+        left = channel.replace(".", " ")
+        if channel == "touch.LEVEL" and self._random.random() < 0.5:
+            left = f"({left} * {self._one(2, 0.5, 3)} - {self._one(1, 2.5)})"
+        return f"{left} {self._random.choice(RELATIONS)} {value}{UNITS[channel]}"
+
+    def _label(self):
+        return self._one("space IS far", "space IS NOT very close", "mood IS wary",
+                         "noise IS loud", "mood IS NOT calm_down")
+
+    def _variable(self):
+        return self._one("joy > calm", "fear >= 30%", "count MOD 3 = 0", "last IS BETWEEN 1 AND 4",
+                         "count + last > touch LEVEL")
+
+    # --- statements
+
+    def _block(self, depth):
+        lines = [self._statement(depth) for _ in range(self._random.randint(1, 3))]
+        return "".join(f"    {line}\n" for line in lines)
+
+    def _statement(self, depth):
+        simple = [self._random.choice(COMMANDS), self._random.choice(COMMANDS), self._set()]
+        if depth == 0:
+            return self._random.choice(simple)
+        return self._one(*simple, "THEN", f"WAIT {self._duration()}", *self._blocks(depth - 1),
+                         f"WAIT UNTIL {self._condition(1)} WITHIN {self._duration()}",
+                         f"greet_twice WITH {self._duration()}, {self._one('10%', 'joy', 'calm')}")
+
+    def _blocks(self, depth):
+        return [
+            f"IF {self._condition(1)} DO\n{self._block(depth)}    ELSE\n{self._block(depth)}    END",
+            f"REPEAT {self._random.randint(1, 3)} TIMES\n{self._block(depth)}    END",
+            f"REPEAT WHILE {self._condition(0)}\n{self._block(depth)}    WAIT {self._pause()}\n    END",
+            f"PICK ONE\n    OPTION 30%\n{self._block(depth)}    OPTION 70%\n{self._block(depth)}    END",
+        ]
+
+    def _set(self):
+        return self._one("SET count TO count + 1", "SET last TO RANDOM(0, 5)", "SIGNAL knock",
+                         "RAISE joy BY 15%", "LOWER joy BY 40%", "RAISE fear BY 25%",
+                         "SET fear TO 0%", "SET mood TO very happy", "SET mood TO wary",
+                         "SET mood TO calm_down", 'LOG "count", count, "joy", joy',
+                         'ALERT "look here"', "SET last TO touch LEVEL")

@@ -1,0 +1,47 @@
+"""What the trace tests feed: readings at program times, some drawn with fixed seeds."""
+
+import random
+from typing import NamedTuple
+
+# Channels of programs/robot.json, with the values worth drawing: edges of ranges and of the rules.
+CHANNELS = {
+    "touch.LEVEL": [0, 1, 2, 2.999, 3, 3.001, 4, 7, 10],
+    "proximity.DISTANCE": [2, 29.9, 30, 30.1, 45, 99.9, 100, 400],
+    "room.WARMTH": [-20, 19.9, 20, 25, 25.2, 25.6, 80],
+    "room.NOISE": [0, 39.9, 40, 40.1, 50, 51, 100],
+}
+UNITS = {"touch.LEVEL": "", "proximity.DISTANCE": "cm", "room.WARMTH": "C", "room.NOISE": "%"}
+
+
+class Reading(NamedTuple):
+    at_ms: int  # program time, from the first reading on
+    channel: str
+    value: float
+
+
+def touch(*values, every_ms=400):
+    return [Reading(i * every_ms, "touch.LEVEL", value) for i, value in enumerate(values)]
+
+
+PRIORITIES = [
+    Reading(0, "touch.LEVEL", 0), Reading(0, "proximity.DISTANCE", 200), Reading(1, "room.NOISE", 60),
+    Reading(100, "touch.LEVEL", 5),         # wave
+    Reading(900, "proximity.DISTANCE", 20),  # protect interrupts it
+    Reading(1000, "touch.LEVEL", 0), Reading(1001, "touch.LEVEL", 9),  # wave may not start
+    Reading(1500, "proximity.DISTANCE", 90), Reading(2600, "touch.LEVEL", 0),
+    Reading(2700, "touch.LEVEL", 4), Reading(2700, "room.NOISE", 10), Reading(2800, "room.NOISE", 90),
+]
+
+
+def drawn(seed, program, count=40):
+    """`count` readings of what `program` reads; some at one time, some a tick apart, some far apart."""
+    random_ = random.Random(seed)
+    # The image has no channel that the program does not read.
+    channels = [c for c in CHANNELS if c.replace(".", " ") in program]
+    at, readings = 0, []
+    for _ in range(count):
+        channel = random_.choice(channels)
+        readings.append(Reading(at, channel, random_.choice(CHANNELS[channel])))
+        at += random_.choice([0, 0, 1, 2, 17, 50, 300, 900])
+    return readings
+

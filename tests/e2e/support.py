@@ -1,0 +1,99 @@
+"""What the end-to-end tests share: compiling, scenarios, and a robot that runs a program."""
+
+import json
+import os
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import rsc
+from board import FAST, Board
+from stimuli import UNITS
+
+HERE = Path(__file__).resolve().parent
+PROGRAMS = HERE / "programs"
+CONFIG = PROGRAMS / "robot.json"
+
+
+class RobotTest(unittest.TestCase):
+    """One board for each test, and a folder that is deleted after it."""
+
+    units = UNITS  # of the channels that scenarios feed
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="robosync-e2e-")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.board = Board(icount=FAST)
+        self.addCleanup(self.board.stop)
+
+    def compile(self, program, config=CONFIG):
+        image = self.folder / f"{Path(program).stem}.rsb"
+        rsc.run("compile", program, "--config", config, "-o", image)
+        return image
+
+    def upload(self, program, *arguments):
+        return rsc.run("upload", program, "--port", self.board.port, *arguments)
+
+    def status(self):
+        return rsc.info(self.board.port)["status"]
+
+    def write_scenario(self, readings, lead_ms):
+        stimuli = [{"at": f"{lead_ms + r.at_ms}ms", "sensor": r.channel.split(".")[0],
+                    "channel": r.channel.split(".")[1], "value": f"{r.value}{self.units[r.channel]}"} for r in readings]
+        path = self.folder / "scenario.json"
+        path.write_text(json.dumps({"stimuli": stimuli}))
+        return path
+
+
+def host_trace(image, scenario, until_ms):
+    """The lines of `rsc run`."""
+    return rsc.run("run", image, "--scenario", scenario, "--duration", f"{until_ms}ms",
+                   "--format", "json").splitlines()
+
+
+class LineReader:
+    """The stdout of a running rsc, line by line, without waiting for its end.
+
+    It goes through a file, which is never full: an rsc that had to wait for this process would not
+    read from the board, whose virtual time does not wait.
+    """
+
+    def __init__(self, *arguments):
+        self.lines = []
+        self._file = tempfile.TemporaryFile()
+        self._rest = b""
+        self._process = subprocess.Popen([str(rsc.TOOL), *map(str, arguments)],
+                                         stdin=subprocess.DEVNULL, stdout=self._file,
+                                         stderr=subprocess.PIPE)
+        self._read_to = 0
+
+    def _read(self):
+        data = os.pread(self._file.fileno(), os.fstat(self._file.fileno()).st_size, self._read_to)
+        self._read_to += len(data)
+        *whole, self._rest = (self._rest + data).split(b"\n")
+        self.lines += [line.decode() for line in whole]
+
+    def wait_for(self, condition, timeout):
+        """True when condition(lines) holds before the time is over or rsc ends."""
+        deadline = time.monotonic() + timeout
+        while True:
+            ended = self._process.poll() is not None
+            self._read()
+            if condition(self.lines):
+                return True
+            if ended or time.monotonic() > deadline:
+                return False
+            time.sleep(0.01)
+
+    def stop(self):
+        """Ends rsc; gives what it said on stderr."""
+        self._process.terminate()
+        errors = self._process.stderr.read().decode()
+        self._process.wait()
+        self._read()
+        self._process.stderr.close()
+        self._file.close()
+        return errors

@@ -1,0 +1,42 @@
+"""The board and `rsc run` do the same, bit for bit, for programs of this folder and for drawn ones."""
+
+import unittest
+
+import stimuli
+from generator import Generator
+from support import PROGRAMS
+from traces import TraceTest
+
+
+class Traces(TraceTest):
+    def test_the_papers_program(self):
+        lines = self.check(PROGRAMS / "paper.rsl", stimuli.touch(0, 1, 2, 3, 4, 5, 2, 2, 10, 0))
+        text = "\n".join(lines)
+        for wanted in ("greeting.wav", "warning.wav", "SLOWLY", "QUICKLY", '"side":"ELSE"'):
+            self.assertIn(wanted, text)
+
+    def test_priorities_and_interruption(self):
+        lines = self.check(PROGRAMS / "priorities.rsl", stimuli.PRIORITIES)
+        events = {event for line in lines for event in ("interrupt", "lose", "cancel", "finished")
+                  if f'"event":"{event}"' in line}
+        self.assertEqual(events, {"interrupt", "lose", "cancel", "finished"})
+
+    def test_conditions(self):
+        program = PROGRAMS / "conditions.rsl"
+        self.check(program, stimuli.drawn(1, program.read_text()))
+
+    def test_arithmetic(self):
+        program = PROGRAMS / "arithmetic.rsl"
+        self.check(program, stimuli.drawn(2, program.read_text(), count=60))
+
+    def test_drawn_programs(self):
+        for seed in range(12):
+            with self.subTest(seed=seed):
+                program = self.folder / f"drawn{seed}.rsl"
+                text = Generator(seed).program()
+                program.write_text(text)
+                self.check(program, stimuli.drawn(seed, text))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,62 @@
+"""Uploading while the robot runs: nothing stops, nothing restarts, safety never pauses."""
+
+import unittest
+
+import rsc
+from support import PROGRAMS, LineReader, RobotTest
+
+SAFETY_PERIOD_US = 10_000
+
+
+class Upload(RobotTest):
+    def test_uptime_and_safety_go_on(self):
+        self.upload(self.compile(PROGRAMS / "paper.rsl"))
+        before = self.status()
+        images = [self.compile(PROGRAMS / f"{name}.rsl")
+                  for name in ("priorities", "conditions", "arithmetic", "paper")]
+        for image in images * 3:
+            self.upload(image)
+        after = self.status()
+        passed = after["uptime_us"] - before["uptime_us"]
+        self.assertGreater(passed, 0)
+        self.assertEqual(after["activations"] - before["activations"], 12)
+        self.assertEqual(after["reset_reason"], "power")
+        self.assertEqual(after["faults"], 0)
+        # No period is left out; info's own two questions may lie in different periods.
+        checks = after["safety_checks"] - before["safety_checks"]
+        self.assertAlmostEqual(checks, passed / SAFETY_PERIOD_US, delta=2)
+
+    def test_the_new_program_is_the_one_that_runs(self):
+        for name in ("paper", "priorities"):
+            image = self.compile(PROGRAMS / f"{name}.rsl")
+            self.upload(image)
+            info = rsc.info(self.board.port)
+            report = rsc.run("dump", image)
+            self.assertIn(info["board"]["program"]["hash"], report)
+
+    def test_commands_of_the_old_program_do_not_outlive_it(self):
+        self.upload(PROGRAMS / "paper.rsl", "--config", PROGRAMS / "robot.json")
+        rsc.run("feed", "touch.LEVEL=1", "--port", self.board.port)  # sweeps for seconds
+        self.upload(PROGRAMS / "priorities.rsl", "--config", PROGRAMS / "robot.json")
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
+        reader.wait_for(lambda lines: lines, 2)
+        reader.stop()
+        self.assertEqual(reader.lines, [])
+
+    def test_source_is_compiled_and_uploaded(self):
+        said = self.upload(PROGRAMS / "paper.rsl", "--config", PROGRAMS / "robot.json")
+        self.assertRegex(said, r"bytes in [\d.]+ ms")
+
+    def test_every_thread_keeps_within_its_stack(self):
+        self.upload(self.compile(PROGRAMS / "arithmetic.rsl"))
+        rsc.run("feed", "touch.LEVEL=5", "proximity.DISTANCE=20cm", "room.NOISE=100%",
+                "--port", self.board.port)
+        threads = rsc.info(self.board.port)["threads"]
+        self.assertGreater(len(threads), 5)
+        for thread in threads:
+            self.assertLess(thread["stack_used"], thread["stack_bytes"], thread)
+            self.assertNotEqual(thread["state"], "stopped", thread)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,54 @@
+"""What the board does and what `rsc run` does, line by line: same image, same readings, same trace."""
+
+import json
+
+from support import CONFIG, LineReader, RobotTest, host_trace
+
+FIRST_LEAD_MS = 6_000  # program time left to get the readings onto the board
+AFTER_MS = 12_000  # program time in which everything started comes to its end
+PATIENCE = 20  # seconds for the board to get there
+QUIET = 0.5  # seconds in which no line too many may come
+# The board's virtual time does not wait for this machine: a busy one may feed too late, or lose
+# events because it reads too late. The board says so, and it is done again.
+ATTEMPTS = 8
+
+
+class TraceTest(RobotTest):
+    """Runs a program on both with the same readings."""
+
+    def check(self, program, readings, config=CONFIG):
+        image = self.compile(program, config)
+        lead_ms = FIRST_LEAD_MS
+        for _ in range(ATTEMPTS):
+            scenario = self.write_scenario(readings, lead_ms)
+            until_ms = lead_ms + readings[-1].at_ms + AFTER_MS
+            expected = host_trace(image, scenario, until_ms)
+            lost_before = self.status()["lost_events"]
+            lines, errors = self.board_trace(image, scenario, len(expected), until_ms)
+            lost = self.status()["lost_events"] - lost_before
+            if "already past" in errors:
+                lead_ms *= 3
+            elif lost == 0:
+                break
+        self.assertEqual(lost, 0, "this machine is too busy to read the board's trace")
+        self.assertGreater(len(expected), len(set(r.at_ms for r in readings)) // 2)
+        self.maxDiff = 4000
+        self.assertEqual(lines, expected, errors)
+        return lines
+
+    def board_trace(self, image, scenario, count, until_ms):
+        """The board's lines from activation on; `count` are expected, more are waited for a little."""
+        reader = LineReader("feed", "--upload", image, "--scenario", scenario, "--port",
+                            self.board.port, "--watch", f"{2 * PATIENCE}s", "--format", "json")
+        reader.wait_for(lambda lines: len(own(lines)) >= count, PATIENCE)
+        reader.wait_for(lambda lines: len(own(lines)) > count, QUIET)
+        errors = reader.stop()
+        # Some programs go on for ever.
+        lines = [line for line in own(reader.lines) if json.loads(line)["t_us"] <= until_ms * 1000]
+        return lines, errors
+
+
+def own(lines):
+    """Without what the program before did."""
+    starts = [i for i, line in enumerate(lines) if '"event":"activated"' in line]
+    return lines[starts[0]:] if starts else []

@@ -1,0 +1,169 @@
+"""A second implementation of the serial protocol, so that the tests can also speak it wrongly.
+
+COBS and the CRC are written anew; message numbers and payload layouts are read from link/, so that
+they stand in one place. Read link/frame.hpp and link/messages.hpp for what the parts mean.
+"""
+
+import re
+import socket
+import struct
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+LINK = Path(__file__).resolve().parents[2] / "link"
+TYPES = {"std::uint8_t": "B", "std::uint16_t": "H", "std::int16_t": "h", "std::uint32_t": "I",
+         "std::int32_t": "i", "std::uint64_t": "Q", "Name": "16s"}
+
+
+def _read_numbers():
+    text = (LINK / "messages.def").read_text("utf-8")
+    found = re.findall(r"^MESSAGE\((\w+),\s*(\d+),", text, re.M)
+    return {name: int(number) for name, number in found}
+
+
+def _read_enums(text):
+    return {name: [word.strip() for word in body.split(",") if word.strip()]
+            for name, body in re.findall(r"enum class (\w+) : std::uint8_t \{([\w\s,]+)\}", text)}
+
+
+def _field(type_name, enums):
+    if type_name in enums:
+        return "B"
+    if match := re.fullmatch(r"std::array<([\w:]+), (\d+)>", type_name):
+        element = TYPES[match[1]]
+        return f"{match[2]}s" if element == "B" else match[2] + element
+    return TYPES[type_name]
+
+
+def _read_structs(text, enums):
+    structs = {}
+    for name, body in re.findall(r"^struct (\w+) \{(.*?)^\};", text, re.M | re.S):
+        body = re.sub(r"//.*", "", body)
+        fields = [(field.strip(), _field(kind, enums))
+                  for kind, names in re.findall(r"([\w:]+(?:<[^;]*>)?)\s+([\w,\s]+)(?:\{\})?;", body)
+                  for field in names.split(",")]
+        structs[name] = fields
+    return structs
+
+
+_MESSAGES = (LINK / "messages.hpp").read_text("utf-8")
+NUMBERS = _read_numbers()
+NAMES = {number: name for name, number in NUMBERS.items()}
+ENUMS = _read_enums(_MESSAGES)
+STRUCTS = _read_structs(_MESSAGES, ENUMS)
+
+
+def layout(name):
+    return struct.Struct("<" + "".join(code for _, code in STRUCTS[name]))
+
+
+def pack(name, **values):
+    return layout(name).pack(*(values[field] for field, _ in STRUCTS[name]))
+
+
+def unpack(name, payload):
+    values = layout(name).unpack(payload)
+    return SimpleNamespace(**{field: value for (field, _), value in zip(STRUCTS[name], values)})
+
+
+def crc16(data):
+    crc = 0xFFFF
+    for byte in data:
+        crc ^= byte << 8
+        for _ in range(8):
+            crc = (crc << 1 ^ 0x1021 if crc & 0x8000 else crc << 1) & 0xFFFF
+    return crc
+
+
+def cobs(data):
+    """Without the delimiter. Blocks are shorter than 254 bytes here, so no block is full."""
+    return b"".join(bytes([len(part) + 1]) + part for part in data.split(b"\0"))
+
+
+def uncobs(data):
+    out, at = bytearray(), 0
+    while at < len(data):
+        distance = data[at]
+        out += data[at + 1:at + distance] + b"\0"
+        at += distance
+    return bytes(out[:-1]) if at == len(data) else None
+
+
+def frame(name, payload=b"", sequence=0):
+    content = bytes([NUMBERS[name], sequence]) + payload
+    return cobs(content + struct.pack("<H", crc16(content))) + b"\0"
+
+
+class Line:
+    """The host's end of a board's serial line (a Unix socket)."""
+
+    def __init__(self, path, timeout=20):
+        self._timeout = timeout
+        self._socket = socket.socket(socket.AF_UNIX)
+        self._socket.settimeout(timeout)
+        self._socket.connect(str(path))
+        self._received = b""
+        self._sequence = 0
+
+    def send_raw(self, data):
+        self._socket.sendall(data)
+
+    def ask(self, name, payload=b"", reply=None):
+        """Sends a message and gives the payload of the next `reply`, past events and logs."""
+        self._sequence = (self._sequence + 1) % 256
+        self.send_raw(frame(name, payload, self._sequence))
+        return self.expect(reply)
+
+    def expect(self, name):
+        deadline = time.monotonic() + self._timeout
+        while time.monotonic() < deadline:
+            got, payload = self._next_frame()
+            if got == name:
+                return payload
+        raise TimeoutError(f"the board sent no {name}")
+
+    def _next_frame(self):
+        while b"\0" not in self._received:
+            data = self._socket.recv(4096)
+            if not data:
+                raise ConnectionError("the line was closed")
+            self._received += data
+        block, self._received = self._received.split(b"\0", 1)
+        content = uncobs(block)
+        if content is None or len(content) < 4:
+            return None, b""
+        body, (crc,) = content[:-2], struct.unpack("<H", content[-2:])
+        if crc16(body) != crc:
+            raise ValueError("the board sent a damaged frame")
+        return NAMES[body[0]], body[2:]
+
+    def close(self):
+        self._socket.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def status(self):
+        return unpack("Status", self.ask("get_status", reply="status"))
+
+    def hello(self):
+        return unpack("HelloReply", self.ask("hello", reply="hello_reply"))
+
+    def transfer(self, image):
+        """Sends an image as it stands; gives the last transfer_status."""
+        crc = struct.unpack_from("<I", image, 4)[0] if len(image) >= 8 else 0
+        reply = self.ask("begin", pack("Begin", size=len(image), crc32=crc), "transfer_status")
+        status = unpack("TransferStatus", reply)
+        most = 240 - layout("Data").size
+        while ENUMS["TransferState"][status.state] == "receiving":
+            offset = status.next_offset
+            data = pack("Data", offset=offset) + image[offset:offset + most]
+            status = unpack("TransferStatus", self.ask("data", data, "transfer_status"))
+        return status
+
+    def activate(self):
+        return unpack("ActivateResult", self.ask("activate", reply="activate_result"))

@@ -1,0 +1,5 @@
+# The kernel's tests on the board: build/…/kernel-test.elf, run by tests/kernel/run_qemu.sh.
+set(folder ${PROJECT_SOURCE_DIR}/tests/kernel/firmware)
+robosync_elf(robosync_kernel_test kernel-test
+  ${folder}/main.cpp ${folder}/scheduling.cpp ${folder}/registers.cpp ${folder}/interrupts.cpp
+  ${folder}/faults.cpp ${folder}/devices.cpp)

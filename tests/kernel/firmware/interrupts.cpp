@@ -1,0 +1,156 @@
+// Threads woken by interrupts: none is lost, at whatever instruction they come.
+#include "runtime-m4/port/cortex-m4/core.hpp"
+#include "tests/kernel/firmware/rig.hpp"
+
+namespace {
+
+namespace core = robosync::port::core;
+using rig::Events;
+
+constexpr unsigned kTimer0Interrupt = 8;
+struct TimerRegisters {  // CMSDK APB timer
+  volatile std::uint32_t control;
+  volatile std::uint32_t value;
+  volatile std::uint32_t reload;
+  volatile std::uint32_t interrupt;
+};
+TimerRegisters& timer() {
+  return *reinterpret_cast<TimerRegisters*>(0x4000'0000);
+}
+constexpr std::uint32_t kTimerOn = 0b1001;  // enable, interrupt
+
+constexpr Events kPosted = 2;
+constexpr Events kOwn = 4;
+constexpr std::uint32_t kFull = 0xFFFF'FFFF;
+
+rig::Thread* volatile waiter = nullptr;
+volatile unsigned lost = 0;
+volatile unsigned taken = 0;
+volatile std::uint32_t longest_ticks = 0;
+
+// One interrupt after `ticks` of 25 MHz, which signals kPosted to `waiter`. The timer goes on from
+// kFull then, so that it says how long ago the interrupt was.
+void post_after(std::uint32_t ticks) {
+  timer().control = 0;
+  timer().reload = kFull;
+  timer().value = ticks;
+  timer().control = kTimerOn;
+}
+
+// Delays that in the course of a test put the interrupt on every instruction within reach.
+std::uint32_t delay(unsigned round) {
+  return 1 + round * 7 % 397;
+}
+
+void interrupt_wakes() {
+  waiter = &rig::conductor();
+  core::enable_interrupt(kTimer0Interrupt);
+  post_after(1000);
+  CHECK(robosync_kernel.wait(kPosted, robosync_kernel.now() + 10'000) == kPosted);
+}
+
+constexpr unsigned kRounds = 4000;
+
+// Signals and takes an event of its own all the time, while the interrupt signals another one: both
+// change the same words.
+void busy_taker(void* argument) {
+  auto& self = *static_cast<rig::Thread*>(argument);
+  for (unsigned round = 0; round < kRounds; ++round) {
+    post_after(delay(round));
+    unsigned tries = 0;
+    do {
+      robosync_kernel.signal(self, kOwn);
+      robosync_kernel.wait(kOwn);
+    } while (robosync_kernel.wait(kPosted, 0) == 0 && ++tries < 200);
+    if (tries == 200) lost = lost + 1;
+    taken = taken + 1;
+  }
+}
+
+void no_event_is_lost() {
+  lost = 0;
+  taken = 0;
+  waiter = &rig::start(0, 40, busy_taker);
+  rig::sleep_ms(200);
+  CHECK(taken == kRounds);
+  CHECK(lost == 0);
+}
+
+// Waits for the interrupt, with and without a deadline, and notes how late it runs.
+void catcher(void*) {
+  for (unsigned round = 0; round < kRounds; ++round) {
+    post_after(delay(round));
+    if (round % 2 == 0) {
+      robosync_kernel.wait(kPosted);
+    } else {
+      while (robosync_kernel.wait(kPosted, robosync_kernel.now() + 1000) == 0) {
+      }
+    }
+    const std::uint32_t late = kFull - timer().value;
+    if (late > longest_ticks) longest_ticks = late;
+    taken = taken + 1;
+  }
+}
+
+void waits_for_own(void*) {
+  while (true)
+    robosync_kernel.wait(kOwn);
+}
+
+rig::Thread* volatile above = nullptr;
+
+// Wakes the thread above, which goes to wait again at once; then computes for a while.
+void waker(void*) {
+  while (true) {
+    robosync_kernel.signal(*above, kOwn);
+    for (unsigned i = 0; i < 400; ++i)
+      asm volatile("");
+  }
+}
+
+// The thread the interrupt wakes ranks between one that goes to wait and one that is to run then:
+// at whatever instruction of the switch the interrupt comes, the woken one must be next.
+void woken_runs_next() {
+  taken = 0;
+  longest_ticks = 0;
+  above = &rig::start(0, 49, waits_for_own);
+  waiter = &rig::start(1, 45, catcher);
+  rig::start(2, 40, waker);
+  rig::sleep_ms(400);
+  CHECK(taken == kRounds);
+  CHECK(longest_ticks < 400);
+}
+
+// The kernel's time against a second clock.
+void tick_is_true() {
+  constexpr std::uint32_t kSpan = 0xFFFF'FFFF;
+  robosync_kernel.sleep_until(robosync_kernel.now() + 1);
+  timer().control = 0;
+  timer().reload = kSpan;
+  timer().value = kSpan;
+  timer().control = 1;
+  rig::sleep_ms(100);
+  const std::uint32_t ticks = kSpan - timer().value;
+  timer().control = 0;
+  CHECK(ticks > 2'500'000 - 2'500);
+  CHECK(ticks < 2'500'000 + 2'500);
+}
+
+constexpr rig::Scenario kScenarios[] = {
+    {"100 ms of the kernel are 100 ms of another clock", tick_is_true},
+    {"an interrupt wakes a thread", interrupt_wakes},
+    {"interrupts while a thread changes its own events: none is lost", no_event_is_lost},
+    {"interrupts during switches: the woken thread runs next", woken_runs_next},
+};
+
+}  // namespace
+
+extern "C" void Timer0_Handler();
+void Timer0_Handler() {
+  timer().interrupt = 1;
+  robosync_kernel.signal(*waiter, kPosted);
+}
+
+std::span<const rig::Scenario> rig::interrupt_scenarios() {
+  return kScenarios;
+}

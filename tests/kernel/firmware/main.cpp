@@ -1,0 +1,234 @@
+// Runs every scenario on the board, then two resets, and says "N passed, N failed".
+#include "runtime-m4/boards/mps2-an386/board.hpp"
+#include "runtime-m4/port/cortex-m4/core.hpp"
+#include "tests/kernel/firmware/rig.hpp"
+#include "tests/kernel/firmware/semihosting.hpp"
+
+robosync::kernel::Kernel robosync_kernel;
+robosync::boards::mps2::Board robosync_board;
+
+namespace {
+
+namespace core = robosync::port::core;
+using semihosting::print;
+
+// What has happened so far; survives the resets that are part of the test.
+struct Progress {
+  std::uint32_t magic;
+  std::uint32_t boots;
+  std::uint32_t passed;
+  std::uint32_t failed;
+  bool kicked;
+};
+constexpr std::uint32_t kMagic = 0x54455354;
+[[gnu::section(".noinit")]] Progress progress;
+
+bool scenario_failed = false;
+unsigned fault_count = 0;
+robosync::link::Fault fault_record;
+
+struct Worker {
+  rig::Thread thread;
+  std::array<std::byte, 192> room;  // for the stack overflows that are part of the test
+  alignas(8) std::array<std::byte, rig::kWorkerStack> stack;
+};
+std::array<Worker, rig::kWorkers> workers;
+rig::Thread conductor_thread;
+alignas(8) std::array<std::byte, 1024> conductor_stack;
+rig::Thread spinner_thread;
+alignas(8) std::array<std::byte, 320> spinner_stack;
+rig::Thread safety_thread;
+alignas(8) std::array<std::byte, 512> safety_stack;
+
+void print_number(std::uint32_t number) {
+  std::array<char, 11> text{};
+  std::size_t at = text.size() - 1;
+  do {
+    text[--at] = static_cast<char>('0' + number % 10);
+    number /= 10;
+  } while (number != 0);
+  print(&text[at]);
+}
+
+void begin() {
+  scenario_failed = false;
+  fault_count = 0;
+}
+
+void end(const char* name) {
+  print(scenario_failed ? "FAIL " : "ok   ");
+  print(name);
+  print("\n");
+  ++(scenario_failed ? progress.failed : progress.passed);
+}
+
+void run_all(std::span<const rig::Scenario> scenarios) {
+  for (const rig::Scenario& scenario : scenarios) {
+    begin();
+    scenario.run();
+    for (Worker& worker : workers)
+      robosync_kernel.remove(worker.thread);
+    end(scenario.name);
+  }
+}
+
+[[noreturn]] void finish() {
+  print_number(progress.passed);
+  print(" passed, ");
+  print_number(progress.failed);
+  print(" failed\n");
+  const bool good = progress.failed == 0;
+  progress = {};
+  semihosting::exit(good ? 0 : 1);
+}
+
+// First boot: all scenarios, then a fault where nothing can go on.
+void first_boot() {
+  run_all(rig::scheduling_scenarios());
+  run_all(rig::register_scenarios());
+  run_all(rig::interrupt_scenarios());
+  run_all(rig::fault_scenarios());
+  run_all(rig::device_scenarios());
+  robosync_board.pwm_write(3, 1500);
+  robosync::kernel::ThreadSpec spec;
+  spec.name = "safety";
+  spec.category = rig::Category::safety;
+  spec.entry = [](void*) { asm volatile("udf #1"); };
+  spec.stack = safety_stack;
+  CHECK(robosync_kernel.add(safety_thread, spec));
+  rig::fail("main.cpp", __LINE__, "the fault of the safety thread did not reset");
+  finish();
+}
+
+// Second boot: what the first one left; then the watchdog against a thread that locks up.
+void second_boot() {
+  begin();
+  CHECK(robosync_board.reset_reason() == 2);
+  const robosync::link::Fault* words = robosync_board.last_words();
+  CHECK(words != nullptr);
+  if (words != nullptr) {
+    CHECK(words->thread[0] == 's' && words->thread[5] == 'y' && words->thread[6] == '\0');
+    CHECK(words->cause == 1U << 16);  // undefined instruction
+    CHECK(words->pc != 0);
+  }
+  end("a fault in the safety thread resets, and the next start knows of it");
+  begin();
+  robosync_board.watchdog_start();
+  for (unsigned i = 0; i < 10; ++i) {
+    rig::sleep_ms(30);
+    robosync_board.watchdog_kick();
+  }
+  end("a watchdog that is kicked lets the board run");
+  progress.kicked = true;
+  asm volatile("cpsid i");
+  while (true) {
+  }
+}
+
+void third_boot() {
+  begin();
+  robosync_kernel.remove(spinner_thread);
+  rig::sleep_ms(20);
+  end("threads wake from idle");
+  begin();
+  CHECK(progress.kicked);  // else it struck before the board locked up
+  CHECK(robosync_board.reset_reason() == 1);
+  CHECK(robosync_board.last_words() == nullptr);
+  end("the watchdog resets a board that has locked up");
+  finish();
+}
+
+void conduct(void*) {
+  if (progress.magic != kMagic) progress = {kMagic, 0, 0, 0, false};
+  switch (progress.boots++) {
+    case 0:
+      first_boot();
+      break;
+    case 1:
+      second_boot();
+      break;
+    default:
+      third_boot();
+      break;
+  }
+}
+
+}  // namespace
+
+namespace rig {
+
+Thread& start(unsigned index, std::int16_t priority, void (*entry)(void*), Category category,
+              const char* name) {
+  Worker& worker = workers[index];
+  robosync::kernel::ThreadSpec spec;
+  spec.name = name;
+  spec.category = category;
+  spec.priority = priority;
+  spec.entry = entry;
+  spec.argument = &worker.thread;
+  spec.stack = worker.stack;
+  CHECK(robosync_kernel.add(worker.thread, spec));
+  return worker.thread;
+}
+
+Thread& conductor() {
+  return conductor_thread;
+}
+
+void sleep_ms(std::uint32_t ms) {
+  robosync_kernel.sleep_until(robosync_kernel.now() + robosync::kernel::milliseconds(ms));
+}
+
+unsigned faults() {
+  return fault_count;
+}
+
+const robosync::link::Fault& last_fault() {
+  return fault_record;
+}
+
+void fail(const char* file, int line, const char* what) {
+  scenario_failed = true;
+  print("  ");
+  print(file);
+  print(":");
+  print_number(static_cast<std::uint32_t>(line));
+  print(": ");
+  print(what);
+  print("\n");
+}
+
+}  // namespace rig
+
+namespace robosync::port::hooks {
+
+void thread_faulted(kernel::Thread&, const link::Fault& fault) {
+  ++fault_count;
+  fault_record = fault;
+}
+
+void fatal_fault(const link::Fault& fault) {
+  boards::mps2::reset_after(fault);
+}
+
+}  // namespace robosync::port::hooks
+
+int main() {
+  robosync::kernel::ThreadSpec spec;
+  spec.name = "conductor";
+  spec.category = rig::Category::behavior;
+  spec.priority = rig::kConductor;
+  spec.entry = conduct;
+  spec.stack = conductor_stack;
+  bool ready = robosync_kernel.add(conductor_thread, spec);
+  spec.name = "spinner";  // see run_qemu.sh
+  spec.category = rig::Category::system;
+  spec.entry = [](void*) {
+    while (true)
+      asm volatile("");
+  };
+  spec.stack = spinner_stack;
+  ready = ready && robosync_kernel.add(spinner_thread, spec);
+  if (ready) robosync_kernel.run();
+  semihosting::exit(2);
+}

@@ -1,0 +1,53 @@
+// What the scenarios share: checks, threads to play with, and a way to print.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "link/messages.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/port/cortex-m4/hooks.hpp"
+
+namespace rig {
+
+using robosync::kernel::Category;
+using robosync::kernel::Events;
+using robosync::kernel::Thread;
+
+// A scenario runs in the conductor: category behavior, priority kConductor. Threads it adds are
+// removed when it ends.
+inline constexpr std::int16_t kConductor = 50;
+struct Scenario {
+  const char* name;
+  void (*run)();
+};
+std::span<const Scenario> scheduling_scenarios();
+std::span<const Scenario> register_scenarios();
+std::span<const Scenario> interrupt_scenarios();
+std::span<const Scenario> fault_scenarios();
+std::span<const Scenario> device_scenarios();
+
+// Starts worker `index` (0 … kWorkers - 1) and returns its thread.
+inline constexpr unsigned kWorkers = 4;
+inline constexpr std::size_t kWorkerStack = 768;
+Thread& start(unsigned index, std::int16_t priority, void (*entry)(void*),
+              Category category = Category::behavior, const char* name = "worker");
+Thread& conductor();
+
+// Sleeps for some milliseconds.
+void sleep_ms(std::uint32_t ms);
+
+// Faults since the scenario began; the last one and its thread.
+unsigned faults();
+const robosync::link::Fault& last_fault();
+
+// Notes a failed check; CHECK prints where.
+void fail(const char* file, int line, const char* what);
+#define CHECK(condition)                                              \
+  do {                                                                \
+    if (!(condition)) rig::fail(__FILE_NAME__, __LINE__, #condition); \
+  } while (false)
+
+}  // namespace rig

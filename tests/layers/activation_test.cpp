@@ -1,0 +1,208 @@
+// Programs that come, go and are refused; what goes on meanwhile.
+#include <catch2/catch.hpp>
+
+#include "tests/layers/rig.hpp"
+#include "tests/layers/robot.hpp"
+
+using namespace robosync;
+using robosync::test::Rig;
+
+namespace {
+
+std::vector<std::byte> threshold_program(int threshold) {
+  return test::compile("WHEN near X > " + std::to_string(threshold) + "\nDO MOVE a FOR 1s\nEND\n",
+                       test::kPlainRobot);
+}
+
+const char* const kServoRobot = R"({
+  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+  "actuators": [{"name": "arm", "type": "PWM", "pin": 3, "device": "servo",
+                 "range": ["0deg", "100deg"], "on_release": "RELEASE", "safe": "coast"}]
+})";
+
+std::vector<std::byte> servo_program(const std::string& on_release, int target) {
+  std::string json = kServoRobot;
+  json.replace(json.find("RELEASE"), 7, on_release);
+  return test::compile(
+      "WHEN near X > 10\nDO MOVE arm TO " + std::to_string(target) + "deg AT 50deg/s\nEND\n", json);
+}
+
+}  // namespace
+
+TEST_CASE("without a program there is a safety thread and nothing to feed") {
+  Rig rig;
+  rig.run(1000);
+  CHECK_FALSE(rig.runtime.running());
+  CHECK(rig.kernel.threads().size() == 1);
+  CHECK(rig.status().safety_checks == 101);  // at 0, 10 … 1000 ms
+  CHECK(rig.board.watching);
+  CHECK(rig.board.kicks == 101);
+  CHECK(rig.feed(0, 1) == link::FeedError::no_program);
+}
+
+TEST_CASE("a program gets a thread for each part of it, ranked as the paper says") {
+  Rig rig;
+  REQUIRE(rig.activate(test::compile(R"(
+BEHAVIOR high PRIORITY 20
+  WHEN far Y > 50
+  DO MOVE a
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHEN near X > 10
+  DO MOVE b
+  END
+END
+)",
+                                     test::kPlainRobot))
+              .ok());
+  std::string order;
+  for (const kernel::Thread* thread : rig.kernel.threads())
+    order += std::string(thread->name()) + ":" + std::to_string(thread->priority()) + " ";
+  // Priority(T) = max over the behaviours that need T; then control, behaviour, processing, sensor.
+  CHECK(order == "safety:0 a:20 high:20 step:20 feeds:20 b:10 low:10 ");
+}
+
+TEST_CASE("a new program takes the place of the running one, and the safety thread goes on") {
+  Rig rig;
+  REQUIRE(rig.activate(threshold_program(10)).ok());
+  rig.feed(0, 8);
+  rig.feed(0, 20, 100);
+  rig.run(500);
+  const link::Status before = rig.status();
+  CHECK(before.activations == 1);
+  CHECK(before.steps == 2);
+  REQUIRE(rig.activate(threshold_program(5)).ok());
+  CHECK(rig.status().steps == 0);
+  CHECK(rig.status().safety_checks == before.safety_checks);
+  rig.feed(0, 8);
+  rig.run(1000);
+  const link::Status after = rig.status();
+  CHECK(after.activations == 2);
+  CHECK(after.safety_checks == before.safety_checks + 50);
+  CHECK(after.safety_late_us == 0);
+  CHECK(after.uptime_us == 1'000'000);
+  CHECK(after.program_us == 500'000);
+  CHECK(after.reset_reason == 1);
+  CHECK(rig.only("activated input fire cancel") ==
+        "0 #0 activated\n0 #1 input X 8\n100 #2 input X 20\n100 #2 fire r0 DO\n"
+        "500 #2 cancel a\n0 #0 activated\n0 #1 input X 8\n0 #1 fire r0 DO\n");
+}
+
+TEST_CASE("a feed that waits for its time dies with its program") {
+  Rig rig;
+  REQUIRE(rig.activate(threshold_program(10)).ok());
+  rig.feed(0, 20, 600);
+  rig.run(500);
+  REQUIRE(rig.activate(threshold_program(10)).ok());
+  rig.run(2000);
+  CHECK(rig.only("input").empty());
+}
+
+TEST_CASE("a refused image leaves the running program alone") {
+  Rig rig;
+  REQUIRE(rig.activate(threshold_program(10)).ok());
+  std::vector<std::byte> damaged = threshold_program(5);
+  damaged[80] ^= std::byte{1};
+  const vm::Verdict verdict = rig.activate(damaged);
+  CHECK(verdict.refusal == vm::Refusal::bad_crc);
+  rig.feed(0, 8);
+  rig.feed(0, 20, 100);
+  rig.run(500);
+  CHECK(rig.status().activations == 1);
+  CHECK(rig.only("activated fire") == "0 #0 activated\n100 #2 fire r0 DO\n");
+}
+
+TEST_CASE("feeds that cannot be are refused") {
+  Rig rig;
+  REQUIRE(rig.activate(test::compile("WHEN near X > 10 OR touch LEVEL > 1\nDO MOVE a\nEND\n", R"({
+    "sensors": [
+      {"name": "touch", "type": "I2C", "address": "0x70", "device": "max34451"},
+      {"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+    "actuators": [{"name": "a", "type": "VIRTUAL", "device": "virtual_actuator"}]})"))
+              .ok());
+  rig.run(100);
+  CHECK(rig.feed(2, 1) == link::FeedError::no_channel);
+  CHECK(rig.feed(255, 1) == link::FeedError::no_channel);
+  CHECK(rig.feed(0, 1) == link::FeedError::not_virtual);
+  CHECK(rig.feed(1, 1, 99) == link::FeedError::in_the_past);
+  CHECK(rig.feed(1, 1, 100) == link::FeedError::none);
+  rig.run(101);
+  for (unsigned i = 0; i < layers::kMaxFeeds; ++i) {
+    const link::FeedResult result =
+        rig.runtime.feed({.at_us = (std::uint64_t{1} << 50) + i * 1000, .channel = 1, .value = 0});
+    CHECK(result.error == link::FeedError::none);
+    CHECK(result.free_places == layers::kMaxFeeds - 1 - i);
+  }
+  CHECK(rig.feed(1, 1) == link::FeedError::queue_full);
+  rig.run(100'000);
+  CHECK(rig.status().steps == 1);  // the ones for the end of time did not come early
+}
+
+TEST_CASE(
+    "of two feeds for one channel and tick the later to come counts, here and in the simulator") {
+  Rig rig;
+  REQUIRE(rig.activate(threshold_program(10)).ok());
+  rig.feed(0, 8);
+  rig.run(0);
+  for (const int value : {20, 30, 8})
+    rig.feed(0, value, 100);  // back to what is known: no news
+  rig.feed(0, 20, 200);
+  rig.feed(0, 9, 200);
+  rig.feed(0, 5, UINT64_MAX / 1000);  // after the end of time
+  rig.run(1000);
+  CHECK(rig.only("input") == "0 #1 input X 8\n200 #2 input X 9\n");
+}
+
+TEST_CASE("a program that is too large for this firmware is refused with the reason") {
+  Rig rig;
+  std::string actuators;
+  std::string commands;
+  for (int i = 0; i < 12; ++i) {
+    const std::string name = "m" + std::to_string(i);
+    actuators +=
+        std::string(i == 0 ? "" : ", ") + R"({"name": ")" + name + R"(", "type": "VIRTUAL"})";
+    commands += "MOVE " + name + "\n";
+  }
+  const auto image = test::compile("WHEN near X > 1\nDO\n" + commands + "END\n", R"({
+    "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+    "actuators": [)" + actuators + "]}");
+  const vm::Verdict verdict = rig.activate(image);
+  CHECK(verdict.refusal == vm::Refusal::too_many);
+  CHECK_FALSE(rig.runtime.running());
+  CHECK(rig.kernel.threads().size() == 1);
+}
+
+TEST_CASE("actuators of a program that goes are released as the robot says") {
+  const auto pulse_after = [](const std::string& on_release) {
+    Rig rig;
+    REQUIRE(rig.activate(servo_program(on_release, 100)).ok());
+    rig.feed(0, 20);
+    rig.run(1000);  // half way
+    CHECK(rig.board.pwm_read(3) == 1500);
+    REQUIRE(rig.activate(servo_program(on_release, 100)).ok());
+    return rig.board.pwm_read(3);
+  };
+  CHECK(pulse_after("hold") == 1500);
+  CHECK(pulse_after("rest") == 500);
+  CHECK(pulse_after("coast") == 0);
+}
+
+TEST_CASE("what a program does never depends on the one before it") {
+  Rig rig;
+  std::vector<std::string> alone;
+  for (const bool after_another : {false, true}) {
+    if (after_another) {
+      REQUIRE(rig.activate(servo_program("hold", 70)).ok());
+      rig.feed(0, 20);
+      rig.run(5000);
+    }
+    rig.lines.clear();
+    REQUIRE(rig.activate(servo_program("hold", 50)).ok());
+    rig.feed(0, 20);
+    rig.run(rig.kernel.now() / 1000 + 2000);
+    if (!after_another) alone = rig.lines;
+  }
+  CHECK(alone.size() == 7);
+  CHECK(rig.lines == alone);
+}

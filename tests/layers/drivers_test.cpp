@@ -1,0 +1,296 @@
+// Drivers on a board that notes what they do; from raw counts to values; from commands to orders.
+#include "runtime-m4/drivers/drivers.hpp"
+
+#include <catch2/catch.hpp>
+#include <rapidcheck.h>
+
+#include "runtime-m4/layers/sampler.hpp"
+#include "tests/layers/rig.hpp"
+
+using namespace robosync;
+using drivers::ActuatorState;
+using drivers::Device;
+using drivers::Order;
+using vm::Param;
+using vm::Value;
+
+namespace {
+
+constexpr Value kDeg = vm::kScale;
+
+std::vector<std::byte> bytes(std::initializer_list<int> values) {
+  std::vector<std::byte> result;
+  for (const int value : values)
+    result.push_back(static_cast<std::byte>(value));
+  return result;
+}
+
+Order order(vm::Action action, std::initializer_list<std::pair<Param, Value>> params = {}) {
+  Order result{.action = action, .given = 0};
+  for (const auto& [param, value] : params) {
+    result.given = static_cast<std::uint8_t>(result.given | 1U << static_cast<unsigned>(param));
+    result.params[static_cast<std::size_t>(param)] = value;
+  }
+  return result;
+}
+
+// An actuator driven without a kernel: time goes to where the driver wants to be called next.
+struct Drive {
+  explicit Drive(vm::DriverId id, Value min, Value max, Value speed_limit = vm::kValueMax)
+      : driver(drivers::driver(id)) {
+    wiring.pin = 7;
+    wiring.min = min;
+    wiring.max = max;
+    wiring.speed_limit = speed_limit;
+  }
+
+  Device device() { return {board, wiring, state}; }
+  void begin(const Order& what) { wake = driver.start(device(), what, now); }
+  // Until the command is done, or `until`.
+  void run(kernel::Time until = kernel::kForever) {
+    while (wake != drivers::kDone && wake <= until) {
+      REQUIRE(wake > now);  // else it would never come to an end
+      now = wake;
+      wake = driver.advance(device(), now);
+    }
+  }
+  std::uint32_t pulse() const { return board.pwm_read(7); }
+  std::size_t setpoints() const {
+    const auto found = board.pulses.find(7);
+    return found == board.pulses.end() ? 0 : found->second.size();
+  }
+
+  const drivers::Driver& driver;
+  test::NotingBoard board;
+  vm::Actuator wiring{};
+  ActuatorState state;
+  kernel::Time now = 1'000'000;
+  kernel::Time wake = 0;
+};
+
+}  // namespace
+
+TEST_CASE("max34451: the page is the input, the count is READ_VOUT") {
+  test::NotingBoard board;
+  vm::Sensor sensor{};
+  sensor.bus = 1;
+  sensor.address = 0x70;
+  vm::Channel channel{};
+  channel.input = 5;
+  board.answers = {std::byte{0x34}, std::byte{0xF2}};
+  std::int32_t raw = 0;
+  REQUIRE(drivers::driver(vm::DriverId::max34451).read(board, sensor, channel, raw));
+  CHECK(raw == 0xF234);
+  REQUIRE(board.transfers.size() == 2);
+  CHECK(board.transfers[0].bus == 1);
+  CHECK(board.transfers[0].address == 0x70);
+  CHECK(board.transfers[0].out == bytes({0x00, 5}));
+  CHECK(board.transfers[0].in == 0);
+  CHECK(board.transfers[1].out == bytes({0x8B}));
+  CHECK(board.transfers[1].in == 2);
+
+  CHECK_FALSE(drivers::driver(vm::DriverId::max34451).read(board, sensor, channel, raw));
+  board.acknowledges = false;
+  CHECK_FALSE(drivers::driver(vm::DriverId::max34451).read(board, sensor, channel, raw));
+  board.acknowledges = true;
+  channel.input = 16;
+  board.answers = {std::byte{1}, std::byte{1}};
+  CHECK_FALSE(drivers::driver(vm::DriverId::max34451).read(board, sensor, channel, raw));
+}
+
+TEST_CASE("i2c_register: writes the register's number, reads two bytes, low first") {
+  test::NotingBoard board;
+  vm::Sensor sensor{};
+  sensor.address = 0x48;
+  vm::Channel channel{};
+  channel.input = 0xA2;
+  board.answers = {std::byte{0x01}, std::byte{0x80}};
+  std::int32_t raw = 0;
+  REQUIRE(drivers::driver(vm::DriverId::i2c_register).read(board, sensor, channel, raw));
+  CHECK(raw == 0x8001);
+  REQUIRE(board.transfers.size() == 1);
+  CHECK(board.transfers[0].address == 0x48);
+  CHECK(board.transfers[0].out == bytes({0xA2}));
+}
+
+TEST_CASE("a count becomes a value: scaled, rounded half away from zero, saturating") {
+  vm::Channel channel{};
+  const auto value = [&](std::int32_t raw, std::int32_t num, std::uint16_t den, Value offset) {
+    channel.scale_num = num;
+    channel.scale_den = den;
+    channel.offset = offset;
+    return layers::scaled(raw, channel);
+  };
+  CHECK(value(7, 1000, 1, 0) == 7000);
+  CHECK(value(1, 5, 10, 0) == 1);
+  CHECK(value(-1, 5, 10, 0) == -1);
+  CHECK(value(1, 4, 10, 0) == 0);
+  CHECK(value(1, 1, 3, 0) == 0);
+  CHECK(value(2, 1, 3, 0) == 1);
+  CHECK(value(100, 1000, 1, -50'000) == 50'000);
+  CHECK(value(INT32_MAX, INT32_MAX, 1, 0) == vm::kValueMax);
+  CHECK(value(INT32_MIN, INT32_MAX, 1, 0) == vm::kValueMin);
+  CHECK(value(INT32_MIN, INT32_MIN, 1, vm::kValueMin) == vm::kValueMax);
+  CHECK(value(INT32_MIN, 1, 1, 0) == vm::kValueMin);  // never the unknown
+}
+
+TEST_CASE("servo: a move at a speed takes way / speed, a setpoint every 20 ms, 500 to 2500 us") {
+  Drive servo(vm::DriverId::servo, 0, 100 * kDeg);
+  servo.begin(order(vm::Action::move, {{Param::to, 100 * kDeg}, {Param::at, 50 * kDeg}}));
+  CHECK(servo.pulse() == 500);
+  servo.run(2'000'000);
+  CHECK(servo.pulse() == 1500);
+  servo.run();
+  CHECK(servo.now == 3'000'000);
+  CHECK(servo.pulse() == 2500);
+  CHECK(servo.setpoints() == 101);
+
+  servo.begin(order(vm::Action::move, {{Param::to, 50 * kDeg}, {Param::over, 400}}));
+  servo.run();
+  CHECK(servo.now == 3'400'000);
+  CHECK(servo.pulse() == 1500);
+}
+
+TEST_CASE("servo: BY is relative, has a direction, and ends at the range") {
+  Drive servo(vm::DriverId::servo, 0, 100 * kDeg);
+  const auto by = [&](Value amount, Value direction) {
+    servo.begin(order(vm::Action::move, {{Param::by, amount}, {Param::direction, direction}}));
+    servo.run();
+    return servo.pulse();
+  };
+  CHECK(by(30 * kDeg, vm::kScale) == 1100);
+  CHECK(by(10 * kDeg, -vm::kScale) == 900);
+  CHECK(by(vm::kValueMax, vm::kScale) == 2500);
+  CHECK(by(vm::kValueMax, -vm::kScale) == 500);
+}
+
+TEST_CASE("servo: without a target it sweeps to max, to min, and back to where it was") {
+  Drive servo(vm::DriverId::servo, 0, 100 * kDeg);
+  servo.begin(order(vm::Action::move, {{Param::to, 40 * kDeg}, {Param::at, 100 * kDeg}}));
+  servo.run();
+  const kernel::Time begin = servo.now;
+  servo.begin(order(vm::Action::move, {{Param::at, 100 * kDeg}}));
+  servo.run(begin + 600'000);
+  CHECK(servo.pulse() == 2500);
+  servo.run(begin + 1'600'000);
+  CHECK(servo.pulse() == 500);
+  servo.run();
+  CHECK(servo.pulse() == 1300);
+  CHECK(servo.now == begin + 2'000'000);
+
+  SECTION("TIMES repeats it, OVER is the time of one") {
+    const kernel::Time again = servo.now;
+    servo.begin(order(vm::Action::move, {{Param::times, 3 * vm::kScale}, {Param::over, 4000}}));
+    servo.run();
+    CHECK(servo.now == again + 12'000'000);
+  }
+}
+
+TEST_CASE("servo: a speed limit holds for OVER, too") {
+  Drive servo(vm::DriverId::servo, 0, 100 * kDeg, 50 * kDeg);
+  servo.begin(order(vm::Action::move, {{Param::to, 100 * kDeg}, {Param::over, 10}}));
+  servo.run();
+  CHECK(servo.now == 3'000'000);
+}
+
+TEST_CASE("servo: what cannot move is done at once") {
+  Drive servo(vm::DriverId::servo, 0, 100 * kDeg, 0);
+  servo.begin(order(vm::Action::move, {{Param::to, 100 * kDeg}}));
+  CHECK(servo.wake == drivers::kDone);
+  servo.begin(order(vm::Action::move));
+  CHECK(servo.wake == drivers::kDone);
+  servo.begin(order(vm::Action::move, {{Param::to, 10 * kDeg}, {Param::over, 100}}));
+  CHECK(servo.wake == drivers::kDone);
+}
+
+TEST_CASE("servo: hold, rest, coast; a servo never driven has nothing to hold") {
+  Drive servo(vm::DriverId::servo, -50 * kDeg, 50 * kDeg);
+  servo.driver.release(servo.device(), vm::Release::hold, servo.now);
+  CHECK(servo.setpoints() == 0);
+  servo.begin(order(vm::Action::move, {{Param::to, 50 * kDeg}, {Param::at, 50 * kDeg}}));
+  servo.run(1'500'000);
+  servo.driver.release(servo.device(), vm::Release::hold, 1'500'000);
+  CHECK(servo.pulse() == 2000);
+  servo.driver.release(servo.device(), vm::Release::coast, 1'500'000);
+  CHECK(servo.pulse() == 0);
+  servo.driver.release(servo.device(), vm::Release::rest, 1'500'000);
+  CHECK(servo.pulse() == 1500);  // 0 deg
+}
+
+TEST_CASE("any order ends, and no pulse leaves the servo's range") {
+  const bool holds = rc::check("servo", [] {
+    const auto number = [] {
+      return *rc::gen::weightedOneOf<Value>(
+          {{3, rc::gen::inRange<Value>(-200'000, 200'000)},
+           {1, rc::gen::element(vm::kValueMax, vm::kValueMin, 0, 1)}});
+    };
+    const Value one = number();
+    const Value other = number();
+    Drive servo(vm::DriverId::servo, std::min(one, other), std::max(one, other),
+                std::max(number(), 0));
+    for (int i = 0; i < 4; ++i) {
+      Order what{.action = *rc::gen::element(vm::Action::move, vm::Action::stop), .given = 0};
+      what.given = *rc::gen::arbitrary<std::uint8_t>();
+      for (Value& param : what.params)
+        param = number();
+      // What the control layer promises.
+      Value& to = what.params[static_cast<std::size_t>(Param::to)];
+      to = std::clamp(to, servo.wiring.min, servo.wiring.max);
+      Value& at = what.params[static_cast<std::size_t>(Param::at)];
+      at = std::clamp(at, 0, servo.wiring.speed_limit);
+      servo.begin(what);
+      for (int call = 0; call < 50 && servo.wake != drivers::kDone; ++call) {
+        RC_ASSERT(servo.wake > servo.now);
+        servo.now = servo.wake;
+        servo.wake = servo.driver.advance(servo.device(), servo.now);
+      }
+      servo.driver.release(servo.device(), *rc::gen::element(vm::Release::hold, vm::Release::rest),
+                           servo.now);
+    }
+    for (const std::uint32_t pulse : servo.board.pulses[7])
+      RC_ASSERT(pulse >= 500U && pulse <= 2500U);
+  });
+  CHECK(holds);
+}
+
+TEST_CASE("pwm: a level at once, over a time, or for a time") {
+  Drive lamp(vm::DriverId::pwm, 0, 100 * vm::kScale);
+  lamp.begin(order(vm::Action::set, {{Param::to, 25 * vm::kScale}}));
+  CHECK(lamp.wake == drivers::kDone);
+  CHECK(lamp.pulse() == 5000);
+
+  lamp.begin(order(vm::Action::set, {{Param::to, 75 * vm::kScale}, {Param::over, 1000}}));
+  lamp.run(1'500'000);
+  CHECK(lamp.pulse() == 10'000);
+  lamp.run();
+  CHECK(lamp.now == 2'000'000);
+  CHECK(lamp.pulse() == 15'000);
+
+  lamp.begin(order(vm::Action::set, {{Param::at, 50 * vm::kScale}, {Param::for_, 300}}));
+  CHECK(lamp.pulse() == 10'000);
+  lamp.run();
+  CHECK(lamp.now == 2'300'000);
+  CHECK(lamp.pulse() == 0);
+
+  lamp.begin(order(vm::Action::set));
+  CHECK(lamp.pulse() == 20'000);
+  lamp.begin(order(vm::Action::stop));
+  CHECK(lamp.pulse() == 0);
+}
+
+TEST_CASE("virtual_actuator and player: FOR, else OVER, else one second; STOP at once") {
+  for (const vm::DriverId id : {vm::DriverId::virtual_actuator, vm::DriverId::player}) {
+    const auto length = [id](const Order& what) {
+      Drive drive(id, 0, 0);
+      drive.begin(what);
+      drive.run();
+      return drive.now - 1'000'000;
+    };
+    CHECK(length(order(vm::Action::play)) == 1'000'000);
+    CHECK(length(order(vm::Action::play, {{Param::for_, 2500}})) == 2'500'000);
+    CHECK(length(order(vm::Action::move, {{Param::over, 100}})) == 100'000);
+    CHECK(length(order(vm::Action::move, {{Param::over, 100}, {Param::for_, 300}})) == 300'000);
+    CHECK(length(order(vm::Action::move, {{Param::over, -100}})) == 0);
+    CHECK(length(order(vm::Action::stop)) == 0);
+  }
+}

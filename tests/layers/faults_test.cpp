@@ -1,0 +1,130 @@
+// Threads that are stopped by a fault: what they took with them, what goes on, and what the safety
+// monitor does when nothing does.
+#include <catch2/catch.hpp>
+
+#include "tests/layers/rig.hpp"
+#include "tests/layers/robot.hpp"
+
+using namespace robosync;
+using robosync::test::Rig;
+
+namespace {
+
+const char* const kRobot = R"({
+  "sensors": [
+    {"name": "touch", "type": "I2C", "bus": 1, "address": "0x70", "device": "max34451",
+     "channels": {"LEVEL": {"input": 2, "range": [0, 100], "rate": "50Hz"}}},
+    {"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+  "actuators": [
+    {"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "100deg"],
+     "on_release": "hold", "safe": "coast"},
+    {"name": "lamp", "type": "PWM", "pin": 4, "device": "pwm", "on_release": "hold", "safe": "rest"}]
+})";
+
+const char* const kProgram = R"(
+BEHAVIOR high PRIORITY 20
+  WHEN near X > 10
+  DO MOVE arm TO 100deg AT 10deg/s
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHEN near X > 20 OR touch LEVEL > 50
+  DO LIGHT lamp TO 50%
+  END
+END
+)";
+
+void start(Rig& rig) {
+  REQUIRE(rig.activate(test::compile(kProgram, kRobot)).ok());
+  rig.run(0);
+}
+
+}  // namespace
+
+TEST_CASE("a stopped behaviour loses its response, the others react as before") {
+  Rig rig;
+  start(rig);
+  rig.feed(1, 15);
+  rig.run(1000);
+  rig.kernel.stop(rig.thread("high"));
+  rig.run(1100);
+  CHECK(rig.board.pwm_read(3) == 700);  // held at 10 deg
+  rig.feed(1, 30);
+  rig.run(2000);
+  CHECK(rig.board.pwm_read(3) == 700);
+  CHECK(rig.board.pwm_read(4) == 10'000);
+  CHECK(rig.only("fault interrupt cancel fire") ==
+        "0 #1 fire r0 DO\n1000 #1 fault\n1000 #2 interrupt r0 by b0\n1000 #2 cancel arm\n"
+        "1100 #3 fire r1 DO\n");
+  CHECK(rig.status().faults == 1);
+}
+
+TEST_CASE("a stopped actuator goes to its safe state, and its rule finishes") {
+  Rig rig;
+  start(rig);
+  rig.feed(1, 15);
+  rig.run(1000);
+  rig.kernel.stop(rig.thread("arm"));
+  rig.run(1001);
+  CHECK(rig.board.pwm_read(3) == 0);
+  rig.feed(1, 0);
+  rig.run(1100);
+  rig.feed(1, 30);  // the rule fires again; its command goes nowhere, and nothing waits for it
+  rig.run(3000);
+  CHECK(rig.board.pwm_read(3) == 0);
+  CHECK(rig.board.pwm_read(4) == 10'000);
+  CHECK(rig.only("finished") == "1000 #1 finished r0\n1100 #3 finished r0\n1100 #3 finished r1\n");
+}
+
+TEST_CASE("what a stopped sensor measured is unknown, with or without an age limit") {
+  Rig rig;
+  start(rig);
+  rig.feed(1, 5);
+  rig.run(100);
+  rig.kernel.stop(rig.thread("feeds"));
+  rig.run(200);
+  CHECK(rig.only("stale") == "100 #2 stale X\n");
+}
+
+TEST_CASE("a hung program is halted into its safe state and the watchdog is left alone") {
+  Rig rig;
+  start(rig);
+  rig.feed(1, 30);
+  rig.run(1000);
+  CHECK(rig.board.pwm_read(3) == 700);
+  CHECK(rig.board.pwm_read(4) == 10'000);
+  const unsigned kicks = rig.board.kicks;
+  rig.kernel.stop(rig.thread("step"));
+  rig.run(1040);
+  CHECK(rig.board.pwm_read(3) != 0);
+  CHECK(rig.board.kicks == kicks + 4);
+  rig.run(1050);
+  CHECK(rig.board.pwm_read(3) == 0);
+  CHECK(rig.board.pwm_read(4) == 0);
+  rig.run(3000);
+  CHECK(rig.board.kicks == kicks + 4);
+  CHECK(rig.board.pwm_read(3) == 0);  // the arm's thread was on its way and sends nothing more
+  CHECK(rig.only("deadline done") == "0 #1 done lamp\n1050 #1 deadline 50000\n");
+  CHECK(rig.status().safety_checks == 301);
+
+  SECTION("a new program starts over") {
+    REQUIRE(rig.activate(test::compile(kProgram, kRobot)).ok());
+    rig.feed(1, 15);
+    rig.run(4000);
+    CHECK(rig.board.kicks == kicks + 4 + 100);
+    CHECK(rig.board.pwm_read(3) == 700);
+    CHECK(rig.status().faults == 1);
+  }
+}
+
+TEST_CASE("long waiting and much work are not hanging") {
+  Rig rig;
+  start(rig);
+  rig.run(60'000);
+  for (int i = 0; i < 2000; ++i) {
+    rig.feed(1, i % 40);
+    rig.run(60'001 + static_cast<std::uint64_t>(i));
+  }
+  CHECK(rig.only("deadline").empty());
+  CHECK(rig.board.kicks == rig.status().safety_checks);
+}

@@ -1,0 +1,231 @@
+// From triggers to commands: who runs, who is interrupted, in which order actuators work.
+#include <catch2/catch.hpp>
+
+#include "tests/layers/robot.hpp"
+
+using robosync::test::Robot;
+
+TEST_CASE("a WHEN that triggers while it runs is ignored") {
+  Robot robot("WHEN near X > 10\nDO MOVE a FOR 1s\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(100, "X", 5);
+  robot.feed(200, "X", 20);
+  robot.feed(1100, "X", 5);
+  robot.feed(1200, "X", 20);
+  robot.run(1500);
+  CHECK(robot.only("fire win lose command done") ==
+        "0 #1 fire r0 DO\n0 #1 win r0 DO\n0 #1 command a MOVE for_=1\n"
+        "200 #3 fire r0 DO\n200 #3 lose r0 DO to b0\n1000 #3 done a\n"
+        "1200 #5 fire r0 DO\n1200 #5 win r0 DO\n1200 #5 command a MOVE for_=1\n");
+}
+
+TEST_CASE("the chosen side of a WHEN/ELSE replaces the running one, whatever each uses") {
+  Robot robot("WHEN near X > 10\nDO\nMOVE a\nMOVE b\nELSE\nMOVE c\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(100, "X", 5);
+  robot.run(2000);
+  CHECK(robot.only("interrupt win cancel command finished") ==
+        "0 #1 win r0 DO\n0 #1 command a MOVE\n0 #1 command b MOVE\n"
+        "100 #2 interrupt r0 by b0\n100 #2 win r0 ELSE\n100 #2 cancel a\n100 #2 cancel b\n"
+        "100 #2 command c MOVE\n1100 #2 finished r0\n");
+}
+
+TEST_CASE("choosing the other side ends the running one even if the new side cannot start") {
+  Robot robot(R"(
+BEHAVIOR high PRIORITY 20
+  WHEN far Y > 50
+  DO MOVE b FOR 10s
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHEN near X > 10
+  DO MOVE a FOR 10s
+  ELSE
+    MOVE a
+    MOVE b
+  END
+END
+)");
+  robot.feed(0, "Y", 60);
+  robot.feed(0, "X", 20);
+  robot.feed(100, "X", 5);
+  robot.run(500);
+  CHECK(robot.only("interrupt lose cancel") ==
+        "100 #2 interrupt r1 by b1\n100 #2 lose r1 ELSE to b0\n100 #2 cancel a\n");
+}
+
+TEST_CASE("in one step, of two rules of a behaviour the earlier in the file wins") {
+  Robot robot(R"(
+BEHAVIOR single PRIORITY 10
+  WHEN near X > 10
+  DO MOVE a FOR 100ms
+  END
+  WHEN near X > 20
+  DO MOVE a FOR 200ms
+  END
+END
+)");
+  robot.feed(0, "X", 30);
+  robot.feed(500, "X", 0);
+  robot.feed(600, "X", 15);
+  robot.feed(650, "X", 25);  // now it is the later trigger
+  robot.run(2000);
+  CHECK(robot.only("win lose interrupt") ==
+        "0 #1 win r0 DO\n0 #1 lose r1 DO to b0\n"
+        "600 #3 win r0 DO\n650 #4 interrupt r0 by b0\n650 #4 win r1 DO\n");
+}
+
+TEST_CASE("a response that loses one actuator loses all; others run on") {
+  Robot robot(R"(
+BEHAVIOR high PRIORITY 20
+  WHEN far Y > 50
+  DO MOVE b
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHEN near X > 10
+  DO
+    MOVE a FOR 5s
+    MOVE b FOR 5s
+  END
+  WHEN near X > 15
+  DO MOVE d FOR 5s
+  END
+END
+)");
+  robot.feed(0, "X", 20);
+  robot.feed(100, "Y", 60);
+  robot.run(6000);
+  CHECK(robot.only("interrupt cancel done finished") ==
+        "100 #2 interrupt r1 by b0\n100 #2 cancel b\n100 #2 cancel a\n"
+        "1100 #2 done b\n1100 #2 finished r0\n5000 #2 done d\n5000 #2 finished r2\n");
+}
+
+TEST_CASE("an interrupted response is not resumed") {
+  Robot robot(R"(
+BEHAVIOR high PRIORITY 20
+  WHEN far Y > 50
+  DO MOVE a FOR 100ms
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHEN near X > 10
+  DO
+    MOVE a FOR 1s
+    MOVE a SLOWLY
+  END
+END
+)");
+  robot.feed(0, "X", 20);
+  robot.feed(100, "Y", 60);
+  robot.run(5000);
+  CHECK(robot.only("command") == "0 #1 command a MOVE for_=1\n100 #2 command a MOVE for_=0.100\n");
+}
+
+TEST_CASE("a rule outside a BEHAVIOR stands below every numbered one, earlier above later") {
+  Robot robot(R"(
+WHEN near X > 10
+DO MOVE a FOR 1s
+END
+WHEN near X > 20
+DO MOVE a FOR 2s
+END
+BEHAVIOR least PRIORITY 1
+  WHEN near X > 30
+  DO MOVE a FOR 3s
+  END
+END
+)");
+  robot.feed(0, "X", 25);
+  robot.feed(100, "X", 35);
+  robot.run(200);
+  CHECK(robot.only("command") == "0 #1 command a MOVE for_=1\n100 #2 command a MOVE for_=3\n");
+}
+
+TEST_CASE("two commands to one actuator run one after the other") {
+  Robot robot(
+      "WHEN near X > 10\nDO\nMOVE a FOR 10ms\nMOVE bc FOR 5ms\nMOVE a FOR 20ms\n"
+      "MOVE b FOR 50ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.run(200);
+  CHECK(robot.only("command done finished") ==
+        "0 #1 command a MOVE for_=0.010\n0 #1 command b MOVE for_=0.005\n"
+        "0 #1 command c MOVE for_=0.005\n"
+        "5 #1 done b\n5 #1 command b MOVE for_=0.050\n5 #1 done c\n"
+        "10 #1 done a\n10 #1 command a MOVE for_=0.020\n30 #1 done a\n"
+        "55 #1 done b\n55 #1 finished r0\n");
+}
+
+TEST_CASE("eight commands wait for an actuator, more are dropped, which is said once a response") {
+  std::string program = "WHEN near X > 10\nDO\n";
+  for (int i = 1; i <= 10; ++i)
+    program += "MOVE a FOR " + std::to_string(i) + "ms\n";
+  Robot robot(program + "END\n");
+  robot.feed(0, "X", 20);
+  robot.run(200);
+  CHECK(robot.only("overrun") == "0 #1 overrun a\n");
+  CHECK(robot.only("finished") == "36 #1 finished r0\n");
+}
+
+TEST_CASE("commands that are done at once, and the queue behind them") {
+  Robot robot("WHEN near X > 10\nDO\nSTOP a\nMOVE a FOR 0ms\nMOVE a FOR 5ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.run(200);
+  CHECK(robot.only("command done finished") ==
+        "0 #1 command a STOP\n0 #1 done a\n0 #1 command a MOVE for_=0\n0 #1 done a\n"
+        "0 #1 command a MOVE for_=0.005\n5 #1 done a\n5 #1 finished r0\n");
+}
+
+TEST_CASE("a command with an unknown parameter is seen and not carried out") {
+  Robot robot("WHEN near X > 10\nDO\nRUN a TO (far Y)\nMOVE a FOR 5ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.run(200);
+  CHECK(robot.only("command done") ==
+        "0 #1 command a RUN to=unknown\n0 #1 done a\n"
+        "0 #1 command a MOVE for_=0.005\n5 #1 done a\n");
+}
+
+TEST_CASE("a cancelled queue gives its places back and never runs") {
+  std::string wave = "WHEN near X > 10\nDO\n";
+  for (int i = 0; i < 8; ++i)
+    wave += "MOVE a FOR 50ms\n";
+  Robot robot(wave + "ELSE\nMOVE b FOR 5ms\nEND\n");
+  for (int i = 0; i < 12; ++i)
+    robot.feed(static_cast<std::uint64_t>(i) * 20, "X", i % 2 == 0 ? 20 : 5);
+  robot.run(2000);
+  CHECK(robot.only("overrun").empty());
+  // Six times the first of the eight, and none of the others.
+  std::string expected;
+  for (int i = 0; i < 12; i += 2)
+    expected += std::to_string(i * 20) + " #" + std::to_string(i + 1) +
+                " command a MOVE for_=0.050\n" + std::to_string(i * 20 + 20) + " #" +
+                std::to_string(i + 2) + " command b MOVE for_=0.005\n";
+  CHECK(robot.only("command") == expected);
+}
+
+TEST_CASE("an actuator that is done in the very step that takes it is not done for its new owner") {
+  // `top` makes the step thread outrank a's thread, so that a is done in the middle of the step.
+  Robot robot(R"(
+BEHAVIOR top PRIORITY 90
+  WHEN far Y > 50
+  DO MOVE d
+  END
+END
+BEHAVIOR middle PRIORITY 50
+  WHEN near X > 20
+  DO MOVE a FOR 1s
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHEN near X > 10
+  DO MOVE a FOR 100ms
+  END
+END
+)");
+  robot.feed(0, "X", 15);
+  robot.feed(100, "X", 25);
+  robot.run(3000);
+  CHECK(robot.only("interrupt cancel command done finished") ==
+        "0 #1 command a MOVE for_=0.100\n100 #2 done a\n100 #2 interrupt r2 by b1\n"
+        "100 #2 cancel a\n100 #2 command a MOVE for_=1\n1100 #2 done a\n1100 #2 finished r1\n");
+}

@@ -1,0 +1,56 @@
+// See rig.hpp.
+#include "tests/layers/rig.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/layers/robot.hpp"
+
+namespace robosync::test {
+
+Rig::Rig() : runtime(kernel, board, *this) {
+  REQUIRE(runtime.start());
+}
+
+vm::Verdict Rig::activate(const std::vector<std::byte>& bytes) {
+  slots_.push_back(bytes);
+  return runtime.activate(slots_.back());
+}
+
+link::FeedError Rig::feed(std::uint8_t channel, int units, std::uint64_t at_ms) {
+  return runtime.feed({.at_us = at_ms * 1000, .channel = channel, .value = units * vm::kScale})
+      .error;
+}
+
+kernel::Thread& Rig::thread(std::string_view name) {
+  for (kernel::Thread* thread : kernel.threads())
+    if (thread->name() == name) return *thread;
+  FAIL("no thread " << name);
+  return kernel.idle();
+}
+
+link::Status Rig::status() const {
+  link::Status status{};
+  runtime.fill_status(status);
+  return status;
+}
+
+void Rig::emit(const link::Event& event) {
+  lines.push_back(describe(event, runtime.image()));
+}
+
+std::string Rig::only(std::string_view events) const {
+  return select(lines, events);
+}
+
+std::string select(const std::vector<std::string>& lines, std::string_view events) {
+  std::string some;
+  for (const std::string& line : lines) {
+    const std::size_t begin = line.find(' ', line.find('#')) + 1;
+    const std::string event = line.substr(begin, line.find(' ', begin) - begin);
+    if ((" " + std::string(events) + " ").find(" " + event + " ") != std::string::npos)
+      some += line + "\n";
+  }
+  return some;
+}
+
+}  // namespace robosync::test

@@ -1,0 +1,87 @@
+// The runtime itself, on the host's kernel and a board that notes what is done to it: for tests of
+// what a Robot (robot.hpp) does not show.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/event_sink.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/runtime.hpp"
+
+namespace robosync::test {
+
+class NotingBoard final : public boards::Board {
+public:
+  struct Transfer {
+    std::uint8_t bus, address;
+    std::vector<std::byte> out;
+    std::size_t in;
+  };
+
+  const char* name() const override { return "noting"; }
+  std::uint8_t reset_reason() const override { return 1; }
+  bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
+                    std::span<std::byte> in) override {
+    transfers.push_back({bus, address, {out.begin(), out.end()}, in.size()});
+    for (std::byte& byte : in) {
+      if (answers.empty()) return false;
+      byte = answers.front();
+      answers.pop_front();
+    }
+    return acknowledges;
+  }
+  void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override {
+    pulses[pin].push_back(pulse_us);
+  }
+  std::uint32_t pwm_read(std::uint16_t pin) const override {
+    const auto found = pulses.find(pin);
+    return found == pulses.end() ? 0 : found->second.back();
+  }
+  std::size_t link_write(std::span<const std::byte> bytes) override { return bytes.size(); }
+  std::size_t link_read(std::span<std::byte>) override { return 0; }
+  void watchdog_start() override { watching = true; }
+  void watchdog_kick() override { ++kicks; }
+
+  std::vector<Transfer> transfers;
+  std::deque<std::byte> answers;  // bytes the next reads get; none left: no acknowledge
+  bool acknowledges = true;
+  std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;  // all, by pin
+  unsigned kicks = 0;
+  bool watching = false;
+};
+
+class Rig final : private EventSink {
+public:
+  Rig();
+
+  // Keeps the image, as a slot would.
+  vm::Verdict activate(const std::vector<std::byte>& bytes);
+  void run(std::uint64_t until_ms) { kernel.machine().run_until(until_ms * 1000); }
+  // Now, in units of the channel.
+  link::FeedError feed(std::uint8_t channel, int units, std::uint64_t at_ms = 0);
+  kernel::Thread& thread(std::string_view name);
+  link::Status status() const;
+  std::string only(std::string_view events) const;
+
+  kernel::Kernel kernel;
+  NotingBoard board;
+  Runtime runtime;
+  std::vector<std::string> lines;
+
+private:
+  void emit(const link::Event& event) override;
+
+  std::deque<std::vector<std::byte>> slots_;
+};
+
+// The lines of `lines` with one of these events, "fire win command".
+std::string select(const std::vector<std::string>& lines, std::string_view events);
+
+}  // namespace robosync::test

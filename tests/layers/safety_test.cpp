@@ -1,0 +1,189 @@
+// SAFETY rules: what halts, when, for how long, and what a halted actuator means for the rest.
+#include <catch2/catch.hpp>
+
+#include "tests/layers/rig.hpp"
+#include "tests/layers/robot.hpp"
+
+using robosync::test::Rig;
+using robosync::test::Robot;
+
+namespace {
+
+const char* const kGuarded = R"(
+SAFETY pinch
+  WHEN far Y > 15
+  DO
+    STOP a
+    ALERT "too much"
+  RESUME WHEN far Y < 5
+END
+BEHAVIOR wave PRIORITY 20
+  WHEN near X > 10
+  DO
+    MOVE a FOR 1s
+    MOVE b FOR 1s
+  END
+END
+)";
+
+}  // namespace
+
+TEST_CASE("a trip halts at once, its owner is interrupted in the step that the reading enters") {
+  Robot robot(kGuarded);
+  robot.feed(0, "Y", 2);
+  robot.feed(0, "X", 20);
+  robot.feed(500, "Y", 18);
+  robot.run(2000);
+  CHECK(robot.only("trip halt alert interrupt cancel command done finished") ==
+        "0 #1 command a MOVE for_=1\n0 #1 command b MOVE for_=1\n"
+        "500 #1 trip r0\n500 #1 halt a\n500 #1 alert \"too much\"\n"
+        "500 #2 interrupt r2 by b0\n500 #2 cancel a\n500 #2 cancel b\n");
+}
+
+TEST_CASE("claims on a halted actuator lose until the rule lets go, which it does only when safe") {
+  Robot robot(kGuarded);
+  robot.feed(0, "Y", 2);
+  robot.feed(100, "Y", 18);
+  robot.feed(200, "X", 20);
+  robot.feed(300, "Y", 10);  // no danger, but not safe enough to resume
+  robot.feed(400, "X", 0);
+  robot.feed(500, "X", 20);
+  robot.feed(600, "Y", 4);
+  robot.feed(700, "X", 0);
+  robot.feed(800, "X", 20);
+  robot.run(1000);
+  CHECK(robot.only("trip halt resume release win lose") ==
+        "100 #1 trip r0\n100 #1 halt a\n200 #3 lose r2 DO to b0\n500 #6 lose r2 DO to b0\n"
+        "600 #6 resume r0\n600 #6 release a\n800 #9 win r2 DO\n");
+}
+
+TEST_CASE("what is unknown trips, but not before every sensor had its time to measure") {
+  Robot robot(kGuarded);
+  robot.feed(100, "Y", 2);
+  robot.run(1000);
+  CHECK(robot.only("trip halt resume release") ==
+        "10 #0 trip r0\n10 #0 halt a\n100 #0 resume r0\n100 #0 release a\n");
+
+  Robot measured(kGuarded);
+  measured.feed(5, "Y", 2);
+  measured.run(1000);
+  CHECK(measured.only("trip").empty());
+}
+
+TEST_CASE("two rules that halt the same: it is let go when both have") {
+  Robot robot(R"(
+SAFETY first
+  WHEN far Y > 15
+  DO STOP a
+  RESUME WHEN far Y < 5
+END
+SAFETY other
+  WHEN near X > 50
+  DO STOP ALL
+  RESUME WHEN near X < 40
+END
+WHEN far Y > 90
+DO
+  MOVE a
+  MOVE b
+END
+)");
+  robot.feed(0, "X", 0);
+  robot.feed(0, "Y", 0);
+  robot.feed(100, "X", 60);
+  robot.feed(200, "Y", 20);
+  robot.feed(300, "X", 0);
+  robot.feed(400, "Y", 0);
+  robot.run(1000);
+  std::string seen;
+  for (const std::string& line : robot.lines())
+    if (line.find("halt") != std::string::npos || line.find("release") != std::string::npos)
+      seen += line.substr(0, 4) + line.substr(line.find(' ', line.find('#')) + 1) + ", ";
+  CHECK(seen ==
+        "100 halt a, 100 halt b, 100 halt c, 100 halt d, "
+        "300 release b, 300 release c, 300 release d, 400 release a, ");
+}
+
+TEST_CASE("without RESUME WHEN it stays tripped; a new program clears it") {
+  const auto image = robosync::test::compile(
+      "SAFETY pinch\n  WHEN near X > 15\n  DO STOP a\nEND\n"
+      "WHEN near X < 10\nDO MOVE a\nEND\n",
+      robosync::test::kPlainRobot);
+  Rig rig;
+  REQUIRE(rig.activate(image).ok());
+  rig.feed(0, 20);
+  rig.run(100);
+  rig.feed(0, 5);
+  rig.run(5000);
+  CHECK(rig.only("trip resume win") == "0 #0 trip r0\n");
+  REQUIRE(rig.activate(image).ok());
+  rig.feed(0, 5);
+  rig.run(6000);
+  CHECK(rig.only("trip resume win") == "0 #0 trip r0\n0 #1 win r1 DO\n");
+}
+
+TEST_CASE("RESUME WHEN with FOR counts from the last time it was not so") {
+  Robot robot(R"(
+SAFETY hot
+  WHEN far Y > 60 MARGIN 5
+  DO
+    STOP a
+    LOG "hot at ", far Y
+  RESUME WHEN far Y < 45 FOR 300ms
+END
+WHEN near X > 10
+DO MOVE a
+END
+)");
+  robot.feed(0, "Y", 20);
+  robot.feed(100, "Y", 70);
+  robot.feed(200, "Y", 40);
+  robot.feed(400, "Y", 50);
+  robot.feed(600, "Y", 40);
+  robot.run(2000);
+  CHECK(robot.only("trip log resume") ==
+        "100 #1 trip r0\n100 #1 log \"hot at {}%\" 70\n900 #5 resume r0\n");
+}
+
+TEST_CASE("a WHILE that was halted comes back when it may") {
+  Robot robot(R"(
+SAFETY pinch
+  WHEN far Y > 15
+  DO STOP a
+  RESUME WHEN far Y < 5
+END
+WHILE near X > 10
+DO MOVE a FOR 10s
+END
+)");
+  robot.feed(0, "Y", 2);
+  robot.feed(0, "X", 20);
+  robot.feed(500, "Y", 18);
+  robot.feed(900, "Y", 1);
+  robot.run(2000);
+  CHECK(robot.only("win lose interrupt trip resume") ==
+        "0 #1 win r2 DO\n500 #1 trip r0\n500 #2 interrupt r2 by b0\n900 #2 resume r0\n"
+        "900 #3 win r2 DO\n");
+}
+
+TEST_CASE("what a safety rule sets enters a step of its own") {
+  Robot robot(R"(
+STATE mood: calm, scared
+SAFETY pinch
+  WHEN far Y > 15
+  DO SET mood TO scared
+  RESUME WHEN far Y < 5
+END
+WHEN mood IS scared
+DO LOG "scared"
+END
+)");
+  robot.feed(0, "Y", 2);
+  robot.feed(500, "Y", 18);
+  robot.run(1000);
+  std::string seen;
+  for (const std::string& line : robot.lines())
+    if (line.find(" set ") != std::string::npos || line.find(" log ") != std::string::npos)
+      seen += line.substr(0, 4) + line.substr(line.find(' ', line.find('#')) + 1) + ", ";
+  CHECK(seen == "500 set mood 1, 500 log \"scared\", ");
+}

@@ -1,0 +1,167 @@
+// Responses that wait: for time, for their commands, for a condition.
+#include <catch2/catch.hpp>
+
+#include "tests/layers/robot.hpp"
+
+using robosync::test::Robot;
+
+TEST_CASE("WAIT goes on when its time is over, in a step of its own") {
+  Robot robot("WHEN near X > 10\nDO\nLOG \"one\"\nWAIT 200ms\nLOG \"two\"\nEND\n");
+  robot.feed(50, "X", 20);
+  robot.run(1000);
+  CHECK(robot.only("win log wait go_on finished") ==
+        "50 #1 win r0 DO\n50 #1 log \"one\"\n50 #1 wait r0\n"
+        "250 #2 go_on r0\n250 #2 log \"two\"\n250 #2 finished r0\n");
+}
+
+TEST_CASE("WAIT gives up for a millisecond at least, also when it says none") {
+  Robot robot("WHEN near X > 10\nDO\nWAIT near X * 0ms\nWAIT near X * -5s\nLOG \"end\"\nEND\n");
+  robot.feed(50, "X", 20);
+  robot.run(1000);
+  CHECK(robot.only("wait go_on log") ==
+        "50 #1 wait r0\n51 #2 go_on r0\n51 #2 wait r0\n52 #3 go_on r0\n52 #3 log \"end\"\n");
+}
+
+TEST_CASE("THEN waits for all commands so far") {
+  Robot robot(
+      "WHEN near X > 10\nDO\nMOVE a FOR 30ms\nMOVE b FOR 80ms\nTHEN\nMOVE a FOR 10ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.run(1000);
+  CHECK(robot.only("command done wait go_on finished") ==
+        "0 #1 wait r0\n0 #1 command a MOVE for_=0.030\n0 #1 command b MOVE for_=0.080\n"
+        "30 #1 done a\n80 #1 done b\n80 #2 go_on r0\n80 #2 command a MOVE for_=0.010\n"
+        "90 #2 done a\n90 #2 finished r0\n");
+}
+
+TEST_CASE("THEN with nothing to wait for goes on in the next millisecond") {
+  Robot robot("WHEN near X > 10\nDO\nTHEN\nMOVE a FOR 0ms\nTHEN\nLOG \"end\"\nEND\n");
+  robot.feed(10, "X", 20);
+  robot.run(1000);
+  CHECK(robot.only("wait go_on log finished") ==
+        "10 #1 wait r0\n11 #2 go_on r0\n11 #2 wait r0\n12 #3 go_on r0\n12 #3 log \"end\"\n"
+        "12 #3 finished r0\n");
+}
+
+TEST_CASE("a response keeps its actuators while it waits") {
+  Robot robot(R"(
+BEHAVIOR high PRIORITY 20
+  WHEN near X > 10
+  DO
+    WAIT 500ms
+    MOVE a FOR 10ms
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHEN far Y > 50
+  DO MOVE a FOR 10ms
+  END
+END
+)");
+  robot.feed(0, "X", 20);
+  robot.feed(100, "Y", 60);
+  robot.run(1000);
+  CHECK(robot.only("win lose command") ==
+        "0 #1 win r0 DO\n100 #2 lose r1 DO to b0\n500 #3 command a MOVE for_=0.010\n");
+}
+
+TEST_CASE("an interrupted response does not come back from its wait") {
+  Robot robot(R"(
+BEHAVIOR high PRIORITY 20
+  WHEN far Y > 50
+  DO MOVE a FOR 10ms
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHEN near X > 10
+  DO
+    MOVE a FOR 20ms
+    WAIT 500ms
+    MOVE a FOR 30ms
+  END
+END
+)");
+  robot.feed(0, "X", 20);
+  robot.feed(100, "Y", 60);
+  robot.run(2000);
+  CHECK(robot.only("interrupt cancel command go_on") ==
+        "0 #1 command a MOVE for_=0.020\n100 #2 interrupt r1 by b0\n100 #2 cancel a\n"
+        "100 #2 command a MOVE for_=0.010\n");
+}
+
+TEST_CASE("WAIT UNTIL goes on in the step in which its condition is true") {
+  Robot robot("WHEN near X > 10\nDO\nWAIT UNTIL far Y > 50\nLOG \"end\"\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(100, "Y", 40);
+  robot.feed(200, "Y", 60);
+  robot.run(1000);
+  CHECK(robot.only("input wait go_on log finished") ==
+        "0 #1 input X 20\n0 #1 wait r0\n100 #3 input Y 40\n"
+        "200 #4 input Y 60\n200 #4 go_on r0\n200 #4 log \"end\"\n200 #4 finished r0\n");
+}
+
+TEST_CASE("WAIT UNTIL that is true already goes on in the next millisecond") {
+  Robot robot("WHEN near X > 10\nDO\nWAIT UNTIL near X > 5\nLOG \"end\"\nEND\n");
+  robot.feed(7, "X", 20);
+  robot.run(1000);
+  CHECK(robot.only("wait go_on log") == "7 #1 wait r0\n8 #2 go_on r0\n8 #2 log \"end\"\n");
+}
+
+TEST_CASE("WITHIN ends a wait for what does not come") {
+  Robot robot("WHEN near X > 10\nDO\nWAIT UNTIL far Y > 50 WITHIN 300ms\nLOG \"end\"\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(100, "Y", 40);
+  robot.run(1000);
+  CHECK(robot.only("wait go_on log") == "0 #1 wait r0\n300 #4 go_on r0\n300 #4 log \"end\"\n");
+}
+
+TEST_CASE("WAIT UNTIL with a time word: held long enough while it waits") {
+  Robot robot("WHEN near X > 10\nDO\nWAIT UNTIL far Y > 50 FOR 100ms\nLOG \"end\"\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(50, "Y", 60);
+  robot.feed(120, "Y", 10);
+  robot.feed(200, "Y", 60);
+  robot.run(1000);
+  CHECK(robot.only("go_on log") == "300 #6 go_on r0\n300 #6 log \"end\"\n");
+}
+
+TEST_CASE("a loop of waits goes on until its response is interrupted") {
+  Robot robot(R"(
+WHEN near X > 10
+DO
+  REPEAT FOREVER
+    MOVE a FOR 10ms
+    WAIT 50ms
+  END
+ELSE
+  MOVE b FOR 5ms
+END
+)");
+  robot.feed(0, "X", 20);
+  robot.feed(130, "X", 5);
+  robot.run(1000);
+  CHECK(robot.only("command interrupt") ==
+        "0 #1 command a MOVE for_=0.010\n50 #2 command a MOVE for_=0.010\n"
+        "100 #3 command a MOVE for_=0.010\n130 #4 interrupt r0 by b0\n"
+        "130 #4 command b MOVE for_=0.005\n");
+}
+
+TEST_CASE("what a response sends before and after a wait runs one after the other") {
+  Robot robot("WHEN near X > 10\nDO\nMOVE a FOR 100ms\nWAIT 20ms\nMOVE a FOR 30ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.run(1000);
+  CHECK(robot.only("command done finished") ==
+        "0 #1 command a MOVE for_=0.100\n100 #2 done a\n100 #2 command a MOVE for_=0.030\n"
+        "130 #2 done a\n130 #2 finished r0\n");
+}
+
+TEST_CASE("STOP drops what waits for its actuator and ends what it does") {
+  Robot robot(
+      "WHEN near X > 10\nDO\nMOVE a FOR 100ms\nMOVE a FOR 70ms\nMOVE b FOR 90ms\nWAIT 50ms\n"
+      "STOP a\nMOVE a FOR 20ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.run(1000);
+  CHECK(robot.only("command cancel done finished") ==
+        "0 #1 command a MOVE for_=0.100\n0 #1 command b MOVE for_=0.090\n"
+        "50 #2 cancel a\n50 #2 command a STOP\n50 #2 done a\n50 #2 command a MOVE for_=0.020\n"
+        "70 #2 done a\n90 #2 done b\n90 #2 finished r0\n");
+}

@@ -1,0 +1,126 @@
+// WHILE: as long as its condition is true and its actuators are to be had.
+#include <catch2/catch.hpp>
+
+#include "tests/layers/robot.hpp"
+
+using robosync::test::Robot;
+
+TEST_CASE("WHILE starts again when it finishes and still holds, and ends with its condition") {
+  Robot robot("WHILE near X > 10\nDO MOVE a FOR 100ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(250, "X", 5);
+  robot.run(1000);
+  CHECK(robot.only("fire win finished interrupt cancel command") ==
+        "0 #1 fire r0 DO\n0 #1 win r0 DO\n0 #1 command a MOVE for_=0.100\n"
+        "100 #1 finished r0\n100 #2 win r0 DO\n100 #2 command a MOVE for_=0.100\n"
+        "200 #2 finished r0\n200 #3 win r0 DO\n200 #3 command a MOVE for_=0.100\n"
+        "250 #4 interrupt r0 by b0\n250 #4 cancel a\n");
+}
+
+TEST_CASE("a WHILE that takes no time starts once a millisecond") {
+  Robot robot("WHILE near X > 10\nDO MOVE a FOR 0ms\nEND\n");
+  robot.feed(10, "X", 20);
+  robot.feed(13, "X", 5);
+  robot.run(100);
+  // At 13 ms it is due before the reading of the same tick comes.
+  CHECK(robot.only("win") ==
+        "10 #1 win r0 DO\n11 #2 win r0 DO\n12 #3 win r0 DO\n13 #4 win r0 DO\n");
+}
+
+TEST_CASE("an unknown condition ends a WHILE, and known again it fires again") {
+  Robot robot("WHILE near X > 10\nDO MOVE a FOR 10s\nEND\n", R"({
+    "sensors": [{"name": "near", "type": "VIRTUAL",
+                 "channels": {"X": {"range": [0, 100], "stale_after": "200ms"}}}],
+    "actuators": [{"name": "a", "type": "VIRTUAL", "device": "virtual_actuator"}]})");
+  robot.feed(0, "X", 20);
+  robot.feed(500, "X", 20);
+  robot.run(600);
+  CHECK(robot.only("stale fire win interrupt") ==
+        "0 #1 fire r0 DO\n0 #1 win r0 DO\n201 #2 stale X\n201 #2 interrupt r0 by b0\n"
+        "500 #3 fire r0 DO\n500 #3 win r0 DO\n");
+}
+
+TEST_CASE("a WHILE that loses says so once, and starts when its actuator is free") {
+  Robot robot(R"(
+BEHAVIOR high PRIORITY 20
+  WHEN far Y > 50
+  DO MOVE a FOR 300ms
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHILE near X > 10
+  DO MOVE a FOR 1s
+  END
+END
+)");
+  robot.feed(0, "Y", 60);
+  robot.feed(100, "X", 20);
+  robot.feed(150, "X", 25);
+  robot.feed(200, "Y", 70);
+  robot.run(1000);
+  CHECK(robot.only("fire win lose finished") ==
+        "0 #1 fire r0 DO\n0 #1 win r0 DO\n100 #2 fire r1 DO\n100 #2 lose r1 DO to b0\n"
+        "300 #4 finished r0\n300 #5 win r1 DO\n");
+}
+
+TEST_CASE("a WHILE that was interrupted comes back when it can") {
+  Robot robot(R"(
+BEHAVIOR high PRIORITY 20
+  WHEN far Y > 50
+  DO MOVE a FOR 300ms
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHILE near X > 10
+  DO MOVE a FOR 1s
+  END
+END
+)");
+  robot.feed(0, "X", 20);
+  robot.feed(100, "Y", 60);
+  robot.run(1000);
+  CHECK(robot.only("fire win lose interrupt") ==
+        "0 #1 fire r1 DO\n0 #1 win r1 DO\n100 #2 fire r0 DO\n100 #2 interrupt r1 by b0\n"
+        "100 #2 win r0 DO\n400 #3 win r1 DO\n");
+}
+
+TEST_CASE("two WHILEs of one behaviour do not take turns by force") {
+  Robot robot(R"(
+BEHAVIOR both PRIORITY 20
+  WHILE near X > 10
+  DO MOVE a FOR 100ms
+  END
+  WHILE near X > 20
+  DO MOVE a FOR 50ms
+  END
+END
+)");
+  robot.feed(0, "X", 30);
+  robot.feed(250, "X", 0);
+  robot.run(1000);
+  CHECK(robot.only("win lose interrupt") ==
+        "0 #1 win r0 DO\n0 #1 lose r1 DO to b0\n100 #2 win r0 DO\n200 #3 win r0 DO\n"
+        "250 #4 interrupt r0 by b0\n");
+}
+
+TEST_CASE("a higher claim takes what a WHILE has given up in the same step") {
+  Robot robot(R"(
+BEHAVIOR high PRIORITY 20
+  WHILE near X < 10
+  DO MOVE a FOR 1s
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHEN near X > 10
+  DO MOVE a FOR 50ms
+  END
+END
+)");
+  robot.feed(0, "X", 5);
+  robot.feed(100, "X", 20);
+  robot.run(300);
+  CHECK(robot.only("fire interrupt win lose cancel command") ==
+        "0 #1 fire r0 DO\n0 #1 win r0 DO\n0 #1 command a MOVE for_=1\n"
+        "100 #2 fire r1 DO\n100 #2 interrupt r0 by b0\n100 #2 win r1 DO\n100 #2 cancel a\n"
+        "100 #2 command a MOVE for_=0.050\n");
+}

@@ -1,0 +1,256 @@
+// The board's server and the host's client over a line in memory: every message, and what happens
+// when the host does not read, asks twice, or sends what it should not.
+#include "runtime-m4/update/server.hpp"
+
+#include <cstring>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "link/events.hpp"
+#include "rsc/client.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/session.hpp"
+#include "rsc/uploader.hpp"
+#include "tests/link/programs.hpp"
+#include "tests/link/robot.hpp"
+#include "vm/opcode.hpp"
+
+using namespace robosync;
+using link::EventKind;
+using link::MessageType;
+using std::chrono::milliseconds;
+using test::Robot;
+
+namespace {
+
+link::ActivateResult upload(tool::Client& client, std::span<const std::byte> image) {
+  return tool::upload(client, client.hello(), image, {}).activation;
+}
+
+// What the board does in `time`, as kinds of events.
+std::vector<link::Event> events(tool::Client& client, milliseconds time) {
+  std::vector<link::Event> list;
+  const auto until = client.now() + time;
+  while (client.now() < until) {
+    const auto left = std::chrono::ceil<milliseconds>(until - client.now());
+    const auto message = client.next_unasked(left);
+    link::Event event;
+    if (message && message->type == MessageType::event) {
+      REQUIRE(link::decode_event(message->payload, event));
+      list.push_back(event);
+    }
+  }
+  return list;
+}
+
+std::size_t count(const std::vector<link::Event>& list, EventKind kind) {
+  return static_cast<std::size_t>(std::ranges::count(list, kind, &link::Event::kind));
+}
+
+}  // namespace
+
+TEST_CASE("hello introduces the board, without a program and with one") {
+  Robot robot;
+  REQUIRE(robot.started);
+  tool::Client client(robot);
+  link::HelloReply board = client.hello();
+  CHECK(board.protocol == link::kProtocolVersion);
+  CHECK(board.opcode_set == vm::opcode_set_id());
+  CHECK(tool::text_of(board.board) == "test");
+  CHECK(board.slot_bytes == layers::kSlotBytes);
+  CHECK(board.receive_window <= test::LineBoard::kRing);
+  CHECK(board.running == 0);
+  CHECK(client.running_image().empty());
+
+  const tool::Program program = test::program(3);
+  REQUIRE(upload(client, program.bytes()).running == 1);
+  board = client.hello();
+  CHECK(board.running == 1);
+  CHECK(board.image_crc == program.image().header->crc32);
+  CHECK(board.image_bytes == program.bytes().size());
+  CHECK(board.program_hash == program.image().header->program_hash);
+}
+
+TEST_CASE("the running image is read back as it was sent") {
+  Robot robot;
+  tool::Client client(robot);
+  const tool::Program program = test::program(3);
+  REQUIRE(upload(client, program.bytes()).running == 1);
+  CHECK(std::ranges::equal(client.running_image(), program.bytes()));
+}
+
+TEST_CASE("status counts, and the thread list has everyone by rank") {
+  Robot robot;
+  tool::Client client(robot);
+  REQUIRE(upload(client, test::program(3).bytes()).running == 1);
+  robot.run(1000);
+  const link::Status status = client.status();
+  CHECK(status.uptime_us >= 1'000'000);
+  CHECK(status.program_us < status.uptime_us);
+  CHECK(status.activations == 1);
+  CHECK(status.safety_checks > 50);
+  CHECK(status.reset_reason == 2);
+
+  const std::vector<link::ThreadInfo> threads = client.threads();
+  REQUIRE(threads.size() == robot.kernel.threads().size());
+  CHECK(tool::text_of(threads.back().name) == "link");
+  CHECK(threads.back().category == static_cast<std::uint8_t>(kernel::Category::system));
+  CHECK(threads.front().category == static_cast<std::uint8_t>(kernel::Category::safety));
+  for (std::size_t i = 0; i < threads.size(); ++i)
+    CHECK(threads[i].rank == i);
+}
+
+TEST_CASE("a reading that is fed leads to a command, and the trace shows it") {
+  Robot robot;
+  tool::Client client(robot);
+  REQUIRE(upload(client, test::program(3).bytes()).running == 1);
+  client.set_trace(true);
+  CHECK(client.feed({0, 0, 2000}).error == link::FeedError::none);
+  std::vector<link::Event> list = events(client, milliseconds(200));
+  CHECK(count(list, EventKind::input) == 1);
+  CHECK(count(list, EventKind::fire) == 1);
+  CHECK(count(list, EventKind::command) == 1);
+
+  client.set_trace(false);
+  CHECK(client.feed({0, 0, 5000}).error == link::FeedError::none);
+  CHECK(events(client, milliseconds(200)).empty());
+
+  CHECK(client.feed({0, 9, 0}).error == link::FeedError::no_channel);
+}
+
+TEST_CASE("hello stops the trace of an earlier host") {
+  Robot robot;
+  tool::Client client(robot);
+  REQUIRE(upload(client, test::program(3).bytes()).running == 1);
+  client.set_trace(true);
+  client.hello();
+  client.feed({0, 0, 2000});
+  CHECK(events(client, milliseconds(200)).empty());
+}
+
+TEST_CASE("an activation that is asked for twice is done once") {
+  Robot robot;
+  tool::Client client(robot);
+  const link::ActivateResult first = upload(client, test::program(3).bytes());
+  const link::ActivateResult second = client.activate();
+  CHECK(second.running == 1);
+  CHECK(second.uptime_us == first.uptime_us);
+  CHECK(client.status().activations == 1);
+}
+
+TEST_CASE("the same program may be uploaded again, and starts anew") {
+  Robot robot;
+  tool::Client client(robot);
+  const tool::Program program = test::program(3);
+  REQUIRE(upload(client, program.bytes()).running == 1);
+  robot.run(500);
+  REQUIRE(upload(client, program.bytes()).running == 1);
+  const link::Status status = client.status();
+  CHECK(status.activations == 2);
+  CHECK(status.program_us < 200'000);
+}
+
+TEST_CASE("nothing to activate is said so") {
+  Robot robot;
+  tool::Client client(robot);
+  const link::ActivateResult result = client.activate();
+  CHECK(result.running == 0);
+  CHECK(result.refusal == 0xFF);
+}
+
+TEST_CASE("an image larger than a slot is refused when it is announced") {
+  Robot robot;
+  tool::Client client(robot);
+  const test::Bytes image(layers::kSlotBytes + 1);
+  CHECK_THROWS_AS(upload(client, image), tool::Failure);
+  CHECK_FALSE(robot.runtime.running());
+}
+
+TEST_CASE("replies are kept while the host does not read; events are dropped and counted") {
+  Robot robot;
+  tool::Client client(robot);
+  REQUIRE(upload(client, test::program(3).bytes()).running == 1);
+  client.set_trace(true);
+  robot.host_reads = false;
+  constexpr int kFeeds = 100;
+  for (int i = 0; i < kFeeds; ++i) {
+    robot.runtime.feed({0, 0, i % 2 == 0 ? 2000 : 5000});
+    robot.run(3);
+  }
+  CHECK(robot.ring.lost() > 0);
+  std::vector<std::uint8_t> asked;
+  for (int i = 0; i < 20; ++i)
+    asked.push_back(client.send(MessageType::get_status));
+  robot.run(500);  // requests wait in the board's receive ring
+  CHECK(robot.runtime.running());
+  CHECK(robot.overruns == 0);
+
+  robot.host_reads = true;
+  for (const std::uint8_t sequence : asked) {
+    const auto reply = client.next_reply(milliseconds(200));
+    REQUIRE(reply);
+    CHECK(reply->type == MessageType::status);
+    CHECK(reply->sequence == sequence);
+  }
+  // What was kept is the beginning, whole and in order.
+  const std::vector<link::Event> list = events(client, milliseconds(500));
+  CHECK(list.size() > 10);
+  CHECK(std::ranges::is_sorted(list, {}, &link::Event::step));
+  CHECK(client.status().lost_events == robot.ring.lost());
+}
+
+TEST_CASE("whatever comes over the line, the program goes on and the next upload works") {
+  Robot robot;
+  tool::Client client(robot);
+  REQUIRE(upload(client, test::program(3).bytes()).running == 1);
+  std::mt19937 random(3);
+  for (int i = 0; i < 50'000; ++i) {
+    robot.board.from_host.push_back(static_cast<std::byte>(random()));
+    if (i % 100 == 0) robot.run_tick();
+    REQUIRE(robot.runtime.running());
+  }
+  // Good frames with every type and wrong payloads.
+  for (unsigned type = 0; type < 256; ++type) {
+    for (const std::size_t length : {0u, 1u, 7u, 13u, 240u}) {
+      if (type == static_cast<unsigned>(MessageType::activate)) continue;
+      client.send(static_cast<MessageType>(type), test::Bytes(length, std::byte{0xA5}));
+    }
+    robot.run(100);
+    REQUIRE(robot.runtime.running());
+  }
+  CHECK(client.status().bad_frames > 100);
+  REQUIRE(upload(client, test::program(4).bytes()).running == 1);
+}
+
+TEST_CASE("the first faults are kept until a host listens, and sent once") {
+  Robot robot;
+  tool::Client client(robot);
+  client.hello();
+  for (std::uint32_t pc = 1; pc <= 3; ++pc) {
+    link::Fault fault{};
+    fault.pc = pc;
+    robot.server.report(fault);
+  }
+  CHECK_FALSE(client.next_unasked(milliseconds(100)));
+  client.set_trace(true);
+  for (std::uint32_t pc = 1; pc <= 2; ++pc) {
+    const auto message = client.next_unasked(milliseconds(100));
+    link::Fault fault{};
+    REQUIRE(message);
+    REQUIRE(message->type == MessageType::fault);
+    REQUIRE(link::read_payload(message->payload, fault));
+    CHECK(fault.pc == pc);
+  }
+  client.set_trace(true);
+  CHECK_FALSE(client.next_unasked(milliseconds(100)));
+}
+
+TEST_CASE("a board without power is reported with the port's name") {
+  Robot robot;
+  robot.to_board.set([](const test::Bytes&, std::size_t) { return test::Bytes(); });
+  tool::Client client(robot, milliseconds(1000));
+  const auto start = robot.now();
+  CHECK_THROWS_WITH(client.hello(), Catch::Contains("memory: the board does not answer"));
+  CHECK(robot.now() - start < milliseconds(1300));
+}

@@ -1,0 +1,88 @@
+// The ring of messages to the host: whole, in order, bounded, counted.
+#include "runtime-m4/update/trace_ring.hpp"
+
+#include <string>
+
+#include <catch2/catch.hpp>
+
+using namespace robosync;
+
+namespace {
+
+std::string take(update::TraceRing& ring) {
+  link::MessageType type{};
+  std::array<std::byte, link::kMaxPayload> payload{};
+  const std::size_t length = ring.take(type, payload);
+  if (length > 0) CHECK(type == link::MessageType::log);
+  return {reinterpret_cast<const char*>(payload.data()), length};
+}
+
+}  // namespace
+
+TEST_CASE("nothing is kept while nobody listens") {
+  kernel::Kernel kernel;
+  update::TraceRing ring(kernel);
+  ring.log("before");
+  ring.emit({});
+  ring.listen(true);
+  CHECK(take(ring).empty());
+  CHECK(ring.lost() == 0);
+  ring.log("now");
+  CHECK(take(ring) == "now");
+  ring.log("left");
+  ring.listen(false);
+  ring.listen(true);
+  CHECK(take(ring).empty());
+}
+
+TEST_CASE("listening again keeps what waits") {
+  kernel::Kernel kernel;
+  update::TraceRing ring(kernel);
+  ring.listen(true);
+  ring.log("waits");
+  ring.listen(true);
+  CHECK(take(ring) == "waits");
+}
+
+TEST_CASE("messages come out whole and in order, through many turns of the ring") {
+  kernel::Kernel kernel;
+  update::TraceRing ring(kernel);
+  ring.listen(true);
+  unsigned put = 0;
+  unsigned taken = 0;
+  const auto message = [](unsigned number) {
+    return std::to_string(number) +
+           std::string(number * 7 % 200, static_cast<char>('a' + number % 26));
+  };
+  while (put < 3000) {
+    for (unsigned i = 0; i < 1 + put % 4; ++i)
+      ring.log(message(put++));
+    while (taken < put - (put % 3 == 0 ? 1 : 0))
+      REQUIRE(take(ring) == message(taken++));
+  }
+  CHECK(ring.lost() == 0);
+}
+
+TEST_CASE("a full ring drops what is new, counts it, and goes on afterwards") {
+  kernel::Kernel kernel;
+  update::TraceRing ring(kernel);
+  ring.listen(true);
+  const std::string line(100, 'x');
+  for (int i = 0; i < 50; ++i)
+    ring.log(line + std::to_string(i));
+  std::uint32_t kept = 0;
+  for (std::string text = take(ring); !text.empty(); text = take(ring))
+    CHECK(text == line + std::to_string(kept++));
+  CHECK(kept > 5);
+  CHECK(kept + ring.lost() == 50);
+  ring.log("again");
+  CHECK(take(ring) == "again");
+}
+
+TEST_CASE("a line that is too long is cut, not lost") {
+  kernel::Kernel kernel;
+  update::TraceRing ring(kernel);
+  ring.listen(true);
+  ring.log(std::string(1000, 'y'));
+  CHECK(take(ring) == std::string(link::kMaxPayload, 'y'));
+}

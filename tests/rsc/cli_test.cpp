@@ -1,0 +1,107 @@
+// The command line as a whole: help with working examples, did-you-mean, exit codes, streams.
+#include "rsc/cli.hpp"
+
+#include <sstream>
+
+#include <catch2/catch.hpp>
+
+#include "rsc/verb.hpp"
+#include "tests/rsc/process.hpp"
+
+using namespace robosync;
+using Catch::Contains;
+using test::Outcome;
+
+namespace {
+
+std::vector<std::string> words(std::string_view line) {
+  std::istringstream stream{std::string(line)};
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+}  // namespace
+
+TEST_CASE("every verb explains itself, with an example of its own") {
+  const Outcome all = test::rsc({"help"});
+  CHECK(all.exit == 0);
+  CHECK(all.err.empty());
+  for (const tool::Verb& verb : tool::kVerbs) {
+    INFO(verb.name);
+    CHECK_THAT(all.out, Contains(std::string(verb.name)) && Contains(std::string(verb.summary)));
+    const Outcome help = test::rsc({"help", std::string(verb.name)});
+    CHECK(help.exit == 0);
+    CHECK_THAT(help.out, Contains(std::string(verb.example)));
+    CHECK(verb.example.starts_with("rsc " + std::string(verb.name)));
+    const Outcome option = test::rsc({std::string(verb.name), "--help"});
+    CHECK(option.exit == 0);
+    CHECK(option.out == help.out);
+  }
+}
+
+TEST_CASE("every example is understood by the parser") {
+  for (const tool::Verb& verb : tool::kVerbs) {
+    INFO(verb.example);
+    std::vector<std::string> arguments = words(verb.example);
+    arguments.erase(arguments.begin());
+    // Nothing it names exists here, so it may fail, but not by its usage.
+    const Outcome outcome = test::rsc(arguments);
+    CHECK((outcome.exit == 0 || outcome.exit == 3));
+  }
+}
+
+TEST_CASE("a misspelt verb or option gets a suggestion, and exit 2") {
+  Outcome outcome = test::rsc({"chekc", "robot.rsl"});
+  CHECK(outcome.exit == 2);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err, Contains("there is no verb `chekc`; did you mean `check`?"));
+
+  outcome = test::rsc({"compile", "robot.rsl", "--stirp"});
+  CHECK(outcome.exit == 2);
+  CHECK_THAT(outcome.err, Contains("there is no option `--stirp`; did you mean `--strip`?") &&
+                              Contains("rsc help compile"));
+
+  outcome = test::rsc({"help", "uplaod"});
+  CHECK(outcome.exit == 2);
+  CHECK_THAT(outcome.err, Contains("did you mean `upload`?"));
+}
+
+TEST_CASE("wrong usage is exit 2 and says how it goes") {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{},
+                                             {"check"},
+                                             {"upload", "robot.rsl"},
+                                             {"check", "robot.rsl", "--format", "yaml"},
+                                             {"monitor", "--port", "unix:/x", "--duration", "5"},
+                                             {"monitor", "--port", "unix:/x", "--duration", "5cm"},
+                                             {"dump", "a.rsb", "b.rsb"},
+                                             {"--nonsense"},
+                                             {"info", "--port", "tcp:nowhere"}}) {
+    const Outcome outcome = test::rsc(arguments);
+    CAPTURE(arguments, outcome.err);
+    CHECK(outcome.exit == 2);
+    CHECK(outcome.out.empty());
+    CHECK_FALSE(outcome.err.empty());
+  }
+}
+
+TEST_CASE("a file that is missing is exit 3 and named") {
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"check", "missing.rsl"},
+           {"compile", "missing.rsl"},
+           {"dump", "missing.rsb"},
+           {"run", "missing.rsl"},
+           {"upload", "missing.rsb", "--port", "unix:/nowhere"}}) {
+    const Outcome outcome = test::rsc(arguments);
+    CAPTURE(arguments, outcome.err);
+    CHECK(outcome.exit == 3);
+    CHECK(outcome.out.empty());
+    CHECK_THAT(outcome.err, Contains("cannot read missing.rs"));
+  }
+}
+
+TEST_CASE("a folder is not a program") {
+  const test::Folder folder;
+  const Outcome outcome = test::rsc({"check", folder.path(".")});
+  CHECK(outcome.exit == 3);
+  CHECK_THAT(outcome.err, Contains("Is a directory"));
+}

@@ -1,0 +1,249 @@
+// upload, info, feed and monitor: the built rsc talks over a Unix socket, TCP and a pty to a robot
+// that runs in this process (the real kernel, runtime and server).
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <sstream>
+#include <thread>
+
+#include <arpa/inet.h>
+#include <catch2/catch.hpp>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "tests/link/robot.hpp"
+#include "tests/rsc/image.hpp"
+#include "tests/rsc/process.hpp"
+
+using namespace robosync;
+using Catch::Contains;
+using nlohmann::json;
+using test::Folder;
+using test::Outcome;
+
+namespace {
+
+// Carries bytes between a file descriptor and the robot, whose time follows the clock.
+class Bridge {
+public:
+  // `accepting`: `file` is a listening socket; else the line itself.
+  Bridge(int file, bool accepting) : file_(file), accepting_(accepting) {
+    thread_ = std::thread([this] { run(); });
+  }
+  ~Bridge() {
+    stop_ = true;
+    thread_.join();
+    close(file_);
+  }
+  Bridge(const Bridge&) = delete;
+  Bridge& operator=(const Bridge&) = delete;
+
+private:
+  void run() {
+    test::Robot robot;
+    int line = accepting_ ? -1 : file_;
+    const auto start = std::chrono::steady_clock::now();
+    while (!stop_) {
+      if (line < 0) line = accept4(file_, nullptr, nullptr, SOCK_NONBLOCK);
+      if (line >= 0 && !carry(robot, line)) {
+        if (accepting_) close(std::exchange(line, -1));
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      // Bounded, so that a busy machine does not make it run away from its line.
+      for (int i = 0;
+           i < 20 && robot.now().time_since_epoch() < std::chrono::steady_clock::now() - start;
+           ++i) {
+        robot.run_tick();
+      }
+    }
+    if (accepting_ && line >= 0) close(line);
+  }
+
+  static bool carry(test::Robot& robot, int line) {
+    std::array<std::byte, 512> bytes{};
+    const ssize_t count = ::read(line, bytes.data(), bytes.size());
+    if (count > 0) robot.write(std::span(bytes).first(static_cast<std::size_t>(count)));
+    if (count == 0 || (count < 0 && errno != EAGAIN)) return false;
+    const std::size_t ready = robot.read(bytes, std::chrono::milliseconds(0));
+    return ready == 0 || ::write(line, bytes.data(), ready) >= 0;
+  }
+
+  int file_;
+  bool accepting_;
+  std::atomic<bool> stop_ = false;
+  std::thread thread_;
+};
+
+int listen_at(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, path.size());
+  const int file = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0);
+  REQUIRE(bind(file, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
+  REQUIRE(listen(file, 1) == 0);
+  return file;
+}
+
+struct RobotFolder : Folder {
+  RobotFolder() {
+    write("robot.rsl", test::kProgram);
+    write("robot.json", test::kRobot);
+  }
+  std::string program = path("robot.rsl");
+};
+
+struct Device : RobotFolder {
+  std::string port = "unix:" + path("line");
+  Bridge bridge{listen_at(path("line")), true};
+
+  Outcome run(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--port", port});
+    return test::rsc(std::move(arguments));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("upload, info, feed and monitor against a running robot") {
+  const Device device;
+  Outcome outcome = device.run({"info"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("board     test, firmware") && Contains("program   none") &&
+                              Contains("link"));
+
+  outcome = device.run({"feed", "touch.LEVEL=2"});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("no program runs"));
+
+  outcome = device.run({"upload", device.program});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("bytes in") && Contains("runs since"));
+  CHECK(outcome.err.find('\r') == std::string::npos);  // progress is for terminals
+
+  outcome = device.run({"info", "--format", "json"});
+  REQUIRE(outcome.exit == 0);
+  const json info = json::parse(outcome.out);
+  CHECK(info.at("board").at("program").at("bytes") > 100);
+  CHECK(info.at("status").at("activations") == 1);
+  CHECK(info.at("threads").back().at("name") == "link");
+
+  outcome = device.run({"feed", "touch.LEVEL=2", "--watch", "700ms", "--format", "json"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit == 0);
+  std::vector<std::string> kinds;
+  std::istringstream lines(outcome.out);
+  for (std::string line; std::getline(lines, line);)
+    kinds.push_back(json::parse(line).at("event"));
+  CHECK(std::ranges::find(kinds, "input") != kinds.end());
+  CHECK(std::ranges::find(kinds, "command") != kinds.end());
+
+  outcome = device.run({"feed", "touch.LEVL=2"});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("did you mean `LEVEL`?"));
+  CHECK(device.run({"feed", "touch"}).exit == 2);
+
+  outcome = device.run({"monitor", "--duration", "200ms"});
+  CHECK(outcome.exit == 0);
+}
+
+TEST_CASE("a program this board cannot run is refused before it is sent, and the old one goes on") {
+  const Device device;
+  REQUIRE(device.run({"upload", device.program}).exit == 0);
+  std::string many = test::kProgram;
+  for (int i = 0; i < 20; ++i) {
+    many += "BEHAVIOR b" + std::to_string(i) + " PRIORITY " + std::to_string(i + 1) +
+            "\nWHEN touch LEVEL = " + std::to_string(i % 10) + " DO\n  MOVE left_arm SLOWLY TO " +
+            std::to_string(i) + "deg\nEND\nEND\n";
+  }
+  device.write("many.rsl", many);
+  const Outcome outcome = device.run({"upload", device.path("many.rsl")});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("the board refused the program") && Contains("goes on"));
+  const json info = json::parse(device.run({"info", "--format", "json"}).out);
+  CHECK(info.at("status").at("activations") == 1);
+}
+
+TEST_CASE("a damaged image is not uploaded") {
+  const Device device;
+  REQUIRE(test::rsc({"compile", device.program}).exit == 0);
+  std::string image = device.read("robot.rsb");
+  image.back() = static_cast<char>(image.back() ^ 1);
+  const Outcome outcome = device.run({"upload", device.write("damaged.rsb", image)});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("damaged.rsb: the image is damaged"));
+}
+
+TEST_CASE("a port that is not there is exit 3, and says what to try") {
+  const RobotFolder robot;
+  for (const auto& [port, hint] : std::vector<std::pair<std::string, std::string>>{
+           {"/dev/ttyNOTHING", "`rsc ports` lists"},
+           {"unix:" + robot.path("nobody"), "is the robot running?"},
+           {"tcp:127.0.0.1:1", "refused"}}) {
+    const Outcome outcome = test::rsc({"info", "--port", port});
+    CAPTURE(port, outcome.err);
+    CHECK(outcome.exit == 3);
+    CHECK_THAT(outcome.err, Contains(port) && Contains(hint));
+  }
+}
+
+TEST_CASE("a port without firmware behind it is exit 3") {
+  const RobotFolder robot;
+  const int file = listen_at(robot.path("dumb"));
+  const Outcome outcome = test::rsc(
+      {"upload", robot.program, "--port", "unix:" + robot.path("dumb"), "--timeout", "1s"});
+  close(file);
+  CHECK(outcome.exit == 3);
+  CHECK_THAT(outcome.err, Contains("the board does not answer") && Contains(robot.path("dumb")));
+}
+
+TEST_CASE("the line may be TCP") {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const int file = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
+  REQUIRE(bind(file, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
+  socklen_t length = sizeof address;
+  getsockname(file, reinterpret_cast<sockaddr*>(&address), &length);
+  REQUIRE(listen(file, 1) == 0);
+  const Bridge bridge(file, true);
+  const Outcome outcome =
+      test::rsc({"info", "--port", "tcp:localhost:" + std::to_string(ntohs(address.sin_port))});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+}
+
+TEST_CASE("the line may be a pty") {
+  const int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  REQUIRE(master >= 0);
+  REQUIRE(grantpt(master) == 0);
+  REQUIRE(unlockpt(master) == 0);
+  const std::string path = ptsname(master);
+  const int kept_open = open(path.c_str(), O_RDWR | O_NOCTTY);  // or the master reads EIO
+  termios raw{};
+  tcgetattr(kept_open, &raw);
+  cfmakeraw(&raw);
+  tcsetattr(kept_open, TCSANOW, &raw);
+  {
+    const RobotFolder robot;
+    const Bridge bridge(master, false);
+    const Outcome outcome = test::rsc({"upload", robot.program, "--port", path});
+    CAPTURE(outcome.err);
+    CHECK(outcome.exit == 0);
+  }
+  close(kept_open);
+}
+
+TEST_CASE("ports is valid JSON, whatever this computer has") {
+  const Outcome outcome = test::rsc({"ports", "--format", "json"});
+  CHECK(outcome.exit == 0);
+  CHECK(json::parse(outcome.out).is_array());
+}

@@ -1,0 +1,242 @@
+// check, compile, dump and run on real programs.
+#include <sstream>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/rsc/image.hpp"
+#include "tests/rsc/process.hpp"
+
+using namespace robosync;
+using Catch::Contains;
+using nlohmann::json;
+using test::Folder;
+using test::Outcome;
+
+namespace {
+
+struct RobotFolder : Folder {
+  RobotFolder() {
+    write("robot.rsl", test::kProgram);
+    write("robot.json", test::kRobot);
+  }
+  std::string program = path("robot.rsl");
+};
+
+std::string wrong_program() {
+  std::string text = test::kProgram;
+  text.replace(text.find("left_arm"), 8, "left_amr");
+  return text;
+}
+
+std::vector<json> json_lines(const std::string& text) {
+  std::vector<json> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);)
+    lines.push_back(json::parse(line));
+  return lines;
+}
+
+}  // namespace
+
+TEST_CASE("check: a right program, a wrong one, and both as JSON") {
+  const RobotFolder robot;
+  Outcome outcome = test::rsc({"check", robot.program});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("robot.rsl: 0 errors, 0 warnings, "));
+
+  const std::string wrong = robot.write("wrong.rsl", wrong_program());
+  outcome = test::rsc({"check", wrong});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("wrong.rsl:2:") && Contains("left_arm"));
+  CHECK_THAT(outcome.out, Contains("wrong.rsl: 1 error, "));
+  CHECK(outcome.err.find('\x1b') == std::string::npos);
+
+  outcome = test::rsc({"check", robot.program, wrong, "--format", "json"});
+  CHECK(outcome.exit == 1);
+  CHECK(outcome.err.empty());
+  const json report = json::parse(outcome.out);
+  CHECK(report.at("errors") == 1);
+  bool found = false;
+  for (const json& diagnostic : report.at("diagnostics")) {
+    if (diagnostic.at("level") != "error") continue;
+    found = true;
+    CHECK(diagnostic.at("labels").at(0).at("line") == 2);
+    CHECK_THAT(diagnostic.at("labels").at(0).at("file").get<std::string>(), Contains("wrong.rsl"));
+  }
+  CHECK(found);
+}
+
+TEST_CASE("the configuration: --config, else STEM.json, else robot.json") {
+  const Folder folder;
+  const std::string program = folder.write("pet.rsl", test::kProgram);
+  Outcome outcome = test::rsc({"check", program});
+  CHECK(outcome.exit == 3);
+  CHECK_THAT(outcome.err, Contains("pet.json") && Contains("robot.json") && Contains("--config"));
+
+  folder.write("robot.json", test::kRobot);
+  CHECK(test::rsc({"check", program}).exit == 0);
+  folder.write("pet.json", "{");
+  CHECK(test::rsc({"check", program}).exit == 1);
+  CHECK(test::rsc({"check", program, "--config", folder.path("robot.json")}).exit == 0);
+  CHECK(test::rsc({"check", program, "--config", folder.path("none.json")}).exit == 3);
+}
+
+TEST_CASE("compile writes the image and says its size") {
+  const RobotFolder robot;
+  Outcome outcome = test::rsc({"compile", robot.program});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit == 0);
+  const std::string image = robot.read("robot.rsb");
+  CHECK_THAT(outcome.out, Contains(std::to_string(image.size()) + " bytes"));
+  CHECK(robot.files() == 3);  // no temporary file is left
+
+  outcome = test::rsc(
+      {"compile", robot.program, "-o", robot.path("small.rsb"), "--strip", "--format", "json"});
+  REQUIRE(outcome.exit == 0);
+  const json report = json::parse(outcome.out);
+  CHECK(report.at("bytes") == robot.read("small.rsb").size());
+  CHECK(robot.read("small.rsb").size() < image.size());
+  std::size_t sum = 0;
+  for (const json& section : report.at("sections")) {
+    sum += section.at("bytes").get<std::size_t>();
+    CHECK(section.at("section") != "source lines");
+  }
+  CHECK(sum == report.at("bytes"));
+}
+
+TEST_CASE("a program with errors writes nothing and leaves the old image alone") {
+  const RobotFolder robot;
+  robot.write("robot.rsb", "old");
+  robot.write("robot.rsl", wrong_program());
+  const Outcome outcome = test::rsc({"compile", robot.program});
+  CHECK(outcome.exit == 1);
+  CHECK(outcome.out.empty());
+  CHECK(robot.read("robot.rsb") == "old");
+  CHECK(robot.files() == 3);
+}
+
+TEST_CASE("an image that cannot be written is exit 3") {
+  const RobotFolder robot;
+  const Outcome outcome = test::rsc({"compile", robot.program, "-o", "/no/such/place/x.rsb"});
+  CHECK(outcome.exit == 3);
+  CHECK_THAT(outcome.err, Contains("/no/such/place/x.rsb"));
+}
+
+TEST_CASE("dump shows names, rules and instructions with their lines") {
+  const RobotFolder robot;
+  REQUIRE(test::rsc({"compile", robot.program}).exit == 0);
+  const Outcome outcome = test::rsc({"dump", robot.path("robot.rsb")});
+  REQUIRE(outcome.exit == 0);
+  for (const char* const text :
+       {"touch: virtual_sensor", "channel 1 DISTANCE", "0 left_arm: servo", "MOVE: move",
+        "SLOWLY: at 30", "shy: priority 60", "(line 5, when)", "line 2"}) {
+    CHECK_THAT(outcome.out, Contains(text));
+  }
+}
+
+TEST_CASE("dump shows what a program remembers, its checks, timers and safety rules") {
+  const RobotFolder robot;
+  const std::string program = robot.write("memory.rsl", R"(STATE mood: calm, very scared
+FEELING joy FROM 0% TO 100% START 50% FADES TO 20% OVER 60s
+CHECK space OF proximity DISTANCE
+  near BELOW 30cm
+  far  OTHERWISE
+  MARGIN 5cm
+END
+SAFETY guard
+  WHEN touch LEVEL > 9 DO STOP ALL
+  RESUME WHEN touch LEVEL < 1
+END
+WHEN space IS near FOR 2s COOLDOWN 10s DO
+  IF mood IS calm DO
+    REPEAT 3 TIMES
+      RAISE joy BY 5%
+    END
+  ELSE
+    SET mood TO very scared
+  END
+  MOVE left_arm
+END
+)");
+  REQUIRE(test::rsc({"compile", program, "--config", robot.path("robot.json")}).exit == 0);
+  const Outcome outcome = test::rsc({"dump", robot.path("memory.rsb")});
+  REQUIRE(outcome.exit == 0);
+  for (const char* const text :
+       {"mood: state, starts at calm, labels calm | very scared",
+        "joy: feeling, starts at 50%, range 0% … 100%, fades to 20%: of the distance 99.5 % stay",
+        "space: of proximity DISTANCE", "near: up to 29", "stays up to 3", "FOR 2s", "COOLDOWN 10s",
+        "safety rules, ", ", safety)", ", resume)", "modifiers 0"}) {
+    CHECK_THAT(outcome.out, Contains(text));
+  }
+  // Blocks are indented, and jumps say where they go.
+  CHECK_THAT(outcome.out, Contains("  times ") && Contains("  again ") && Contains("  -> "));
+}
+
+TEST_CASE("dump refuses a damaged image with the reason") {
+  const RobotFolder robot;
+  REQUIRE(test::rsc({"compile", robot.program}).exit == 0);
+  std::string image = robot.read("robot.rsb");
+  image[image.size() / 2] = static_cast<char>(image[image.size() / 2] ^ 1);
+  Outcome outcome = test::rsc({"dump", robot.write("damaged.rsb", image)});
+  CHECK(outcome.exit == 1);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err, Contains("damaged.rsb: the image is damaged"));
+
+  outcome = test::rsc({"dump", robot.write("short.rsb", image.substr(0, 20))});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("cut off"));
+  outcome = test::rsc({"dump", robot.write("empty.rsb", "")});
+  CHECK(outcome.exit == 1);
+  outcome = test::rsc({"run", robot.write("text.rsb", "WHEN touch LEVEL < 3 DO\n")});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("text.rsb"));
+}
+
+TEST_CASE("run shows what happened, in words and as a trace") {
+  const RobotFolder robot;
+  const std::string scenario = robot.write("visit.json", R"({"duration": "3s", "stimuli": [
+      {"at": "1s", "sensor": "touch", "channel": "LEVEL", "value": 2}]})");
+  const Outcome outcome = test::rsc(
+      {"run", robot.program, "--scenario", scenario, "--trace", robot.path("visit.jsonl")});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("   1.000 s  touch LEVEL = 2\n") &&
+                              Contains("rule at line 1 starts its DO side") &&
+                              Contains("left_arm MOVE SLOWLY TO 90"));
+  const std::vector<json> trace = json_lines(robot.read("visit.jsonl"));
+  REQUIRE(!trace.empty());
+  CHECK(trace.front().at("event") == "activated");
+  const auto command =
+      std::ranges::find_if(trace, [](const json& event) { return event.at("event") == "command"; });
+  REQUIRE(command != trace.end());
+  CHECK(command->at("t_us") == 1'000'000);
+  CHECK(command->at("actuator") == "left_arm");
+  CHECK(command->at("to") == 90);
+
+  const Outcome as_json =
+      test::rsc({"run", robot.program, "--scenario", scenario, "--format", "json"});
+  CHECK(as_json.out == robot.read("visit.jsonl"));
+}
+
+TEST_CASE("run takes an image, and a duration that ends it") {
+  const RobotFolder robot;
+  REQUIRE(test::rsc({"compile", robot.program}).exit == 0);
+  const std::string scenario = robot.write("visit.json", R"({"stimuli": [
+      {"at": "1s", "sensor": "touch", "value": 2}]})");
+  const std::string image = robot.path("robot.rsb");
+  CHECK_THAT(test::rsc({"run", image, "--scenario", scenario}).out, Contains("touch LEVEL = 2"));
+  CHECK_THAT(test::rsc({"run", image, "--scenario", scenario, "--duration", "900ms"}).out,
+             !Contains("touch LEVEL"));
+}
+
+TEST_CASE("a wrong scenario is exit 1 with file and line, a missing one exit 3") {
+  const RobotFolder robot;
+  const std::string scenario = robot.write("visit.json", "{\n\"stimuly\": []}");
+  Outcome outcome = test::rsc({"run", robot.program, "--scenario", scenario});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("visit.json:2: "));
+  outcome = test::rsc({"run", robot.program, "--scenario", robot.path("none.json")});
+  CHECK(outcome.exit == 3);
+}

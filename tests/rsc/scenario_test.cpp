@@ -1,0 +1,124 @@
+// Scenarios: what they mean, and a message with file and line for each that is wrong.
+#include "rsc/scenario.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "rsc/failure.hpp"
+#include "tests/rsc/image.hpp"
+#include "tests/rsc/process.hpp"
+
+using namespace robosync;
+
+namespace {
+
+tool::Scenario read(const std::string& text) {
+  static const tool::Program program = test::compile();
+  const test::Folder folder;
+  return tool::read_scenario(folder.write("visit.json", text), program.image());
+}
+
+std::string mistake(const std::string& text) {
+  try {
+    read(text);
+  } catch (const tool::Failure& failure) {
+    CHECK(failure.exit() == tool::Exit::program);
+    const std::string message = failure.what();
+    return message.substr(message.find("visit.json"));
+  }
+  return "none";
+}
+
+}  // namespace
+
+TEST_CASE("readings at times, in any order of the file") {
+  const tool::Scenario scenario = read(R"({"duration": "3s", "stimuli": [
+    {"at": "2s", "sensor": "touch", "channel": "LEVEL", "value": 2},
+    {"at": "500ms", "sensor": "PROXIMITY", "channel": "distance", "value": "20cm"},
+    {"at": "1s", "sensor": "touch", "value": 1.5}]})");
+  CHECK(scenario.duration_us == 3'000'000u);
+  REQUIRE(scenario.stimuli.size() == 3);
+  CHECK(scenario.stimuli[0].at_us == 500'000);
+  CHECK(scenario.stimuli[0].channel == 1);
+  CHECK(scenario.stimuli[0].value == 200'000);
+  CHECK(scenario.stimuli[1].value == 1500);
+  CHECK(scenario.stimuli[2].at_us == 2'000'000);
+  CHECK(scenario.stimuli[2].channel == 0);
+}
+
+TEST_CASE("a ramp is a straight line of readings from the first value to the last") {
+  const tool::Scenario scenario = read(R"({"stimuli": [
+    {"from": "1s", "to": "2s", "sensor": "proximity", "channel": "DISTANCE",
+     "ramp": ["120cm", "20cm"]}]})");
+  CHECK_FALSE(scenario.duration_us);
+  REQUIRE(scenario.stimuli.size() > 10);
+  CHECK(scenario.stimuli.front().at_us == 1'000'000);
+  CHECK(scenario.stimuli.front().value == 1'200'000);
+  CHECK(scenario.stimuli.back().at_us == 2'000'000);
+  CHECK(scenario.stimuli.back().value == 200'000);
+  for (const tool::Stimulus& stimulus : scenario.stimuli) {
+    CHECK(stimulus.value ==
+          1'200'000 - static_cast<vm::Value>(stimulus.at_us - 1'000'000));  // 1 mm a millisecond
+  }
+}
+
+TEST_CASE("a ramp over all values does not overflow, and one of too many readings is refused") {
+  const tool::Scenario scenario = read(R"({"stimuli": [
+    {"from": "0s", "to": "10000s", "sensor": "touch", "ramp": [-2147483.647, 2147483.647]}]})");
+  CHECK(scenario.stimuli.front().value == vm::kValueMin);
+  CHECK(scenario.stimuli.back().value == vm::kValueMax);
+  CHECK(std::ranges::is_sorted(scenario.stimuli, {}, &tool::Stimulus::value));
+  CHECK_THAT(mistake(R"({"stimuli": [
+    {"from": "0s", "to": "2000000s", "sensor": "touch", "ramp": [0, 1]}]})"),
+             Catch::StartsWith("visit.json:2: ") && Catch::Contains("million"));
+}
+
+TEST_CASE("a wrong scenario gets one message with its line") {
+  using Catch::Contains;
+  using Catch::StartsWith;
+  CHECK_THAT(mistake("{\"stimuli\": [\n{]}"), StartsWith("visit.json:2: "));
+  CHECK_THAT(mistake("[]"), StartsWith("visit.json:1: a scenario is an object"));
+  CHECK_THAT(
+      mistake("{\n\"durration\": \"3s\"}"),
+      StartsWith("visit.json:2: there is no key `durration` here; did you mean `duration`?"));
+  CHECK_THAT(mistake("{\n\n\"duration\": 3}"), StartsWith("visit.json:3: a time is a string"));
+  CHECK_THAT(mistake("{\"duration\": \"1s\", \"duration\": \"2s\"}"), Contains("duplicate"));
+  CHECK_THAT(mistake("{\"stimuli\": 3}"), Contains("not an array"));
+
+  const auto stimulus = [](const std::string& text) {
+    return mistake("{\"stimuli\": [\n  {\"at\": \"1s\", \"sensor\": \"touch\", \"value\": 1},\n  " +
+                   text + "\n]}");
+  };
+  CHECK_THAT(stimulus("7"), StartsWith("visit.json:3: a stimulus is an object"));
+  CHECK_THAT(stimulus("{\"at\": \"1s\", \"sensor\": \"tuoch\", \"value\": 1}"),
+             StartsWith("visit.json:3: there is no sensor `tuoch`; did you mean `touch`?"));
+  CHECK_THAT(
+      stimulus("{\"at\": \"1s\", \"sensor\": \"touch\",\n\"channel\": \"LEVL\", \"value\": 1}"),
+      StartsWith("visit.json:4: there is no channel of touch `LEVL`; did you mean `LEVEL`?"));
+  CHECK_THAT(stimulus("{\"at\": \"1s\", \"sensor\": \"proximity\", \"value\": 1}"),
+             Contains("several channels") && Contains("DISTANCE, NOISE"));
+  CHECK_THAT(stimulus("{\"sensor\": \"touch\", \"value\": 1}"), Contains("no `at`"));
+  CHECK_THAT(stimulus("{\"at\": \"1s\", \"sensor\": \"touch\"}"), Contains("no `value`"));
+  CHECK_THAT(stimulus("{\"at\": \"1s\", \"sensor\": 5, \"value\": 1}"), Contains("not a string"));
+  CHECK_THAT(stimulus("{\"at\": \"1s\", \"sensor\": \"touch\",\n\n\"value\": true}"),
+             StartsWith("visit.json:5: a reading is a number"));
+  CHECK_THAT(stimulus("{\"at\": \"soon\", \"sensor\": \"touch\", \"value\": 1}"),
+             Contains("`soon` is not a number"));
+  CHECK_THAT(stimulus("{\"at\": \"1s\", \"sensor\": \"proximity\", \"channel\": \"NOISE\", "
+                      "\"value\": 20}"),
+             Contains("write it as 20dB"));
+  CHECK_THAT(
+      stimulus("{\"from\": \"2s\", \"to\": \"1s\", \"sensor\": \"touch\", \"ramp\": [1, 2]}"),
+      Contains("ends before it starts"));
+  CHECK_THAT(stimulus("{\"from\": \"1s\", \"to\": \"2s\", \"sensor\": \"touch\", \"ramp\": [1]}"),
+             Contains("`ramp` is"));
+  CHECK_THAT(stimulus("{\"csv\": \"a.csv\", \"sensor\": \"touch\"}"),
+             Contains("csv recordings are not in this version of rsc yet"));
+  CHECK_THAT(stimulus("{\"at\": \"1s\", \"sensor\": \"touch\", \"valeu\": 1}"),
+             Contains("did you mean `value`?"));
+}
+
+TEST_CASE("braces, commas and quotes in strings do not confuse the lines") {
+  CHECK(mistake("{\"stimuli\": [\n{\"at\": \"1s\", \"sensor\": \"}],\\\"{\", \"value\": 1},\n"
+                "{\"at\": 1}]}")
+            .starts_with("visit.json:2: there is no sensor"));
+}

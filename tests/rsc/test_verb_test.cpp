@@ -1,0 +1,263 @@
+// rsc test: every kind of expectation once as it comes and once as it does not, mistakes in TEST
+// blocks, and both reports.
+#include <algorithm>
+#include <sstream>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/rsc/process.hpp"
+
+using namespace robosync;
+using Catch::Contains;
+using nlohmann::json;
+using test::Folder;
+using test::Outcome;
+
+namespace {
+
+constexpr const char* kRobot = R"({
+  "sensors": [
+    {"name": "touch", "type": "VIRTUAL",
+     "channels": {"LEVEL": {"range": [0, 10]}, "PLACE": {"range": [0, 10]}}},
+    {"name": "proximity", "type": "VIRTUAL",
+     "channels": {"DISTANCE": {"unit": "cm", "range": [2, 400]}}},
+    {"name": "button", "type": "VIRTUAL", "channels": {"POSITION": {"labels": ["released", "pressed"]}}},
+    {"name": "waved", "type": "VIRTUAL", "channels": {"SEEN": {"truth": true}}}
+  ],
+  "actuators": [
+    {"name": "left_arm", "type": "PWM", "pin": 10, "device": "servo", "range": ["0deg", "120deg"]},
+    {"name": "right_arm", "type": "PWM", "pin": 11, "device": "servo", "range": ["0deg", "120deg"]},
+    {"name": "sound", "type": "VIRTUAL", "device": "speaker",
+     "sounds": ["greeting.wav", "warning.wav"]}
+  ],
+  "groups": {"arms": ["left_arm", "right_arm"]}
+})";
+
+constexpr const char* kProgram = R"(STATE mood: calm, scared
+REMEMBER touches = 0
+
+SAFETY stop_button
+  WHEN button IS pressed
+  DO
+    STOP arms
+    ALERT "Stopped by a person"
+  RESUME WHEN button IS released
+END
+
+BEHAVIOR feel PRIORITY 50
+  WHEN touch LEVEL > 3
+  DO
+    SET mood TO scared
+    SET touches TO touches + 1
+    LOG "touched with", touch LEVEL
+    MOVE arms TO 90deg QUICKLY
+    PLAY sound "warning.wav"
+  END
+  WHEN waved
+  DO MOVE left_arm TO 20deg SLOWLY
+  END
+END
+)";
+
+struct RobotFolder : Folder {
+  explicit RobotFolder(const std::string& tests) {
+    write("robot.json", kRobot);
+    write("robot.rsl", kProgram + tests);
+  }
+  std::string program = path("robot.rsl");
+};
+
+// A touch at 1 s; the button is not pressed.
+std::string touched(const std::string& title, const std::string& steps) {
+  return "TEST \"" + title + "\"\n  AT 0s button = \"released\"\n  AT 0s touch LEVEL = 0\n" +
+         "  AT 1s touch LEVEL = 5\n  " + steps + "\nEND\n";
+}
+
+}  // namespace
+
+TEST_CASE("every kind of expectation, met and not met") {
+  struct Case {
+    bool met;
+    const char* steps;
+  };
+  const std::vector<Case> cases = {
+      // a command: verb, all members, word, parameters; only what is written counts
+      {true, "EXPECT MOVE arms TO 90deg QUICKLY WITHIN 20ms"},
+      {true, "EXPECT MOVE arms WITHIN 20ms"},
+      {true, "EXPECT MOVE arms WITHIN 0s"},  // both ends of a window belong to it
+      {true, "AT 3s waved = TRUE\n  WAIT 0s\n  EXPECT NO MOVE right_arm WITHIN 1s"},
+      {true, "EXPECT MOVE left_arm TO 90deg WITHIN 20ms"},
+      {true, "EXPECT PLAY sound \"warning.wav\" WITHIN 20ms"},
+      {false, "EXPECT MOVE arms TO 80deg WITHIN 1s"},
+      {false, "EXPECT MOVE arms SLOWLY WITHIN 1s"},
+      {false, "EXPECT TURN arms WITHIN 1s"},
+      {false, "EXPECT PLAY sound \"greeting.wav\" WITHIN 1s"},
+      {false, "WAIT 100ms\n  EXPECT MOVE arms WITHIN 1s"},  // it is over by then
+      {true, "AT 3s waved = TRUE\n  EXPECT MOVE left_arm TO 20deg WITHIN 20ms"},
+      {false, "AT 3s waved = FALSE\n  EXPECT MOVE left_arm TO 20deg WITHIN 1s"},
+      {false, "AT 3s waved = TRUE\n  EXPECT MOVE arms TO 20deg WITHIN 1s"},  // the left one only
+      // none
+      {true, "EXPECT NO MOVE arms TO 80deg WITHIN 5s"},
+      {false, "EXPECT NO MOVE right_arm WITHIN 5s"},
+      {true, "WAIT 5s\n  EXPECT NOTHING FOR 5s"},
+      {false, "EXPECT NOTHING FOR 1s"},
+      // windows begin where the test stands and do not add up
+      {true, "EXPECT MOVE arms WITHIN 1s\n  EXPECT PLAY sound WITHIN 20ms"},
+      // values: those the program looks at, those it does not, what it remembers
+      {true, "WAIT 10ms\n  EXPECT THAT mood IS scared"},
+      {true, "EXPECT THAT mood IS scared WITHIN 20ms"},
+      {false, "EXPECT THAT mood IS calm AND touch LEVEL < 5 WITHIN 1s"},
+      {true, "WAIT 10ms\n  EXPECT THAT touches = 1 AND touch LEVEL = 5"},
+      {false, "WAIT 10ms\n  EXPECT THAT touches = 2"},
+      {true, "AT 2s touch PLACE = 7\n  EXPECT THAT touch PLACE * 2 > 13"},
+      {false, "EXPECT THAT proximity DISTANCE > 0cm WITHIN 1s"},  // unknown
+      // stops
+      {true, "AT 2s button = \"pressed\"\n  EXPECT STOPPED arms WITHIN 5ms"},
+      {true, "AT 9s button = \"pressed\"\n  EXPECT NO STOPPED sound WITHIN 1s"},
+      {true, "AT 2s button = \"pressed\"\n  WAIT 1s\n  EXPECT STOPPED left_arm WITHIN 1ms"},
+      {false, "EXPECT STOPPED arms WITHIN 500ms"},
+      {false, "AT 2s button = \"pressed\"\n  EXPECT NO STOPPED right_arm WITHIN 1s"},
+  };
+  std::string tests;
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    tests += touched(std::to_string(i), cases[i].steps);
+  const RobotFolder robot(tests);
+  const Outcome outcome = test::rsc({"test", robot.program, "--format", "json"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit == 1);
+  const json report = json::parse(outcome.out);
+  REQUIRE(report.at("tests").size() == cases.size());
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    INFO(cases[i].steps << "\n" << report.at("tests").at(i).dump(2));
+    CHECK(report.at("tests").at(i).at("ok") == cases[i].met);
+  }
+  const auto met = std::ranges::count_if(cases, [](const Case& one) { return one.met; });
+  CHECK(report.at("passed") == met);
+  CHECK(report.at("failed") == static_cast<std::ptrdiff_t>(cases.size()) - met);
+}
+
+TEST_CASE("tests that pass are one line each, and exit 0") {
+  const RobotFolder robot(
+      touched("it moves", "EXPECT MOVE arms WITHIN 20ms") +
+      touched("and again, from the start", "EXPECT THAT touches < 2 WITHIN 1s"));
+  const Outcome outcome = test::rsc({"test", robot.program});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK(outcome.out == "ok      it moves\nok      and again, from the start\n2 passed, 0 failed\n");
+}
+
+TEST_CASE("a failing step is shown with what happened around it, and exit 1") {
+  const RobotFolder robot(touched("it bows low", "EXPECT MOVE arms TO 80deg WITHIN 1s") +
+                          touched("it moves", "EXPECT MOVE arms WITHIN 20ms"));
+  const Outcome outcome = test::rsc({"test", robot.program});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.out, Contains("FAILED  it bows low\n") &&
+                              Contains("robot.rsl:29: EXPECT MOVE arms TO 80deg WITHIN 1s\n") &&
+                              Contains("left_arm was not told to from 1.000 s to 2.000 s\n") &&
+                              Contains("1.000 s  touch LEVEL = 5\n") &&
+                              Contains("1.000 s  left_arm MOVE QUICKLY TO 90") &&
+                              Contains("mood becomes scared\n") && Contains("log: touched with") &&
+                              Contains("ok      it moves\n") && Contains("1 passed, 1 failed\n"));
+}
+
+TEST_CASE("what came outside of its window is said with its time") {
+  const RobotFolder robot(touched("late", "WAIT 100ms\n  EXPECT MOVE arms WITHIN 1s"));
+  CHECK_THAT(test::rsc({"test", robot.program}).out,
+             Contains("left_arm was not told to from 1.100 s to 2.100 s; it was at 1.000 s\n"));
+}
+
+TEST_CASE("a failure as JSON has the step, the window and the events") {
+  const RobotFolder robot(touched("it bows low", "EXPECT MOVE arms TO 80deg WITHIN 1s"));
+  const Outcome outcome = test::rsc({"test", robot.program, "--format", "json"});
+  CHECK(outcome.exit == 1);
+  const json failed = json::parse(outcome.out).at("tests").at(0);
+  CHECK(failed.at("test") == "it bows low");
+  CHECK(failed.at("line") == 25);
+  const json& failure = failed.at("failure");
+  CHECK(failure.at("line") == 29);
+  CHECK(failure.at("step") == "EXPECT MOVE arms TO 80deg WITHIN 1s");
+  CHECK(failure.at("from_us") == 1'000'000);
+  CHECK(failure.at("until_us") == 2'000'000);
+  const auto is_command = [](const json& event) { return event.at("event") == "command"; };
+  CHECK(std::ranges::count_if(failure.at("timeline"), is_command) == 3);
+}
+
+TEST_CASE("mistakes in a TEST are shown with their place, and no test runs") {
+  struct Mistake {
+    const char* steps;
+    const char* message;
+  };
+  for (const auto& [steps, message] : std::vector<Mistake>{
+           {"AT 2s toch LEVEL = 1", "E0501"},
+           {"AT 2s touch LEVEL = 5N", "E0301"},
+           {"AT 2s touch LEVEL = 50", "`touch LEVEL` cannot measure this: it goes from 0 to 10"},
+           {"AT 2s touch LEVEL = \"hard\"", "gives numbers, not words"},
+           {"AT 2s touch LEVEL = TRUE", "is not true or false"},
+           {"AT 2s button = 1", "gives words, not numbers"},
+           {"AT 2s button = \"presed\"", "did you mean `pressed`?"},
+           {"AT 500ms touch LEVEL = 1", "this time is over already"},
+           {"WAIT 2h", "E0303"},
+           {"WAIT 90min", "a TEST cannot be longer than an hour"},
+           {"EXPECT MOVE leg WITHIN 1s", "E0501"},
+           {"EXPECT MOVE arms TO 3N WITHIN 1s", "E0301"},
+           {"EXPECT STOPPED WITHIN 1s", "names one actuator or group"},
+           {"EXPECT THAT touch LEVEL WITHIN 1s", "E0302"},
+           {"EXPECT THAT mood IS angry", "`mood` is never `angry`"},
+           {"EXPECT THAT mood BECOMES scared WITHIN 1s", "looks at one moment at a time"}}) {
+    const RobotFolder robot(touched("wrong", steps));
+    const Outcome outcome = test::rsc({"test", robot.program});
+    CAPTURE(steps, outcome.err, outcome.out);
+    CHECK(outcome.exit == 1);
+    CHECK(outcome.out.empty());
+    CHECK_THAT(outcome.err, Contains(message) && Contains("robot.rsl:29:"));
+    CHECK(test::rsc({"check", robot.program}).exit == 1);
+  }
+}
+
+TEST_CASE("a program without tests says so") {
+  const RobotFolder robot("");
+  const Outcome outcome = test::rsc({"test", robot.program});
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.err, Contains("there is no TEST in it"));
+  CHECK(outcome.out == "0 passed, 0 failed\n");
+}
+
+TEST_CASE("run takes the words of a channel, and shows what safety does in words") {
+  const RobotFolder robot("");
+  const std::string scenario = robot.write("visit.json", R"({"duration": "4s", "stimuli": [
+      {"at": "0s", "sensor": "button", "value": "released"},
+      {"at": "1s", "sensor": "button", "value": "PRESSED"},
+      {"at": "2s", "sensor": "button", "value": "released"},
+      {"at": "3s", "sensor": "waved", "value": true}]})");
+  const Outcome outcome = test::rsc({"run", robot.program, "--scenario", scenario});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+  for (const char* const line :
+       {"1.000 s  button POSITION = pressed\n", "SAFETY: safety rule at line 4 trips\n",
+        "SAFETY: left_arm is halted\n", "ALERT: Stopped by a person\n",
+        "SAFETY: safety rule at line 4 lets go\n", "SAFETY: right_arm may move again\n",
+        "left_arm MOVE SLOWLY TO 20"}) {
+    CHECK_THAT(outcome.out, Contains(line));
+  }
+  const std::string wrong = robot.write("wrong.json", R"({"stimuli": [
+      {"at": "0s", "sensor": "button", "value": "presed"}]})");
+  CHECK_THAT(test::rsc({"run", robot.program, "--scenario", wrong}).err,
+             Contains("wrong.json:2: ") && Contains("did you mean `pressed`?"));
+}
+
+TEST_CASE("explain: a program, a code, a wrong program, a code that does not exist") {
+  const RobotFolder robot("");
+  Outcome outcome = test::rsc({"explain", robot.program});
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("As soon as touch LEVEL becomes more than 3 (line 13):") &&
+                              Contains("It uses left_arm, right_arm and sound."));
+  outcome = test::rsc({"explain", "w0203"});
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("W0203 (note): WHEN/ELSE acts at start"));
+  CHECK(json::parse(test::rsc({"explain", "E0301", "--format", "json"}).out).at("code") == "E0301");
+  CHECK(test::rsc({"explain", robot.write("wrong.rsl", "WHEN touch DO\n")}).exit == 1);
+  outcome = test::rsc({"explain", "E0300"});
+  CHECK(outcome.exit == 2);
+  CHECK_THAT(outcome.err, Contains("there is no diagnostic E0300"));
+}

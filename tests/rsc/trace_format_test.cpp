@@ -1,0 +1,214 @@
+// Trace events as JSON and as words; and with numbers that the image does not have.
+#include "rsc/trace_format.hpp"
+
+#include <random>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/rsc/image.hpp"
+#include "vm/opcode.hpp"
+
+using namespace robosync;
+using link::Event;
+using link::EventKind;
+using nlohmann::json;
+
+namespace {
+
+const tool::Program& program() {
+  static const tool::Program compiled = test::compile();
+  return compiled;
+}
+
+Event event(EventKind kind, std::uint16_t subject = 0, std::uint16_t object = 0,
+            std::vector<std::int32_t> values = {}) {
+  Event result{1'020'000, 7, kind, static_cast<std::uint8_t>(values.size()), subject, object, {}};
+  std::ranges::copy(values, result.values.begin());
+  return result;
+}
+
+json as_json(const Event& event) {
+  return json::parse(tool::trace_json(event, {&program().image(), {"safety", "step"}}));
+}
+std::string as_words(const Event& event) {
+  return tool::trace_line(event, {&program().image(), {"safety", "step"}});
+}
+
+}  // namespace
+
+TEST_CASE("an input has sensor, channel, value and unit") {
+  CHECK(as_json(event(EventKind::input, 0, 0, {2000})) ==
+        json::parse(R"({"t_us":1020000,"step":7,"event":"input","sensor":"touch",
+                        "channel":"LEVEL","value":2})"));
+  CHECK(as_words(event(EventKind::input, 0, 0, {2000})) == "   1.020 s  touch LEVEL = 2");
+  const json distance = as_json(event(EventKind::input, 1, 0, {205'500}));
+  CHECK(distance.at("value") == 205.5);
+  CHECK(distance.at("unit") == "mm");
+  CHECK(as_json(event(EventKind::input, 0, 0, {vm::kUnknown})).at("value").is_null());
+}
+
+TEST_CASE("rules are named by their line and behaviour") {
+  const auto& behaviors = program().image().behaviors;
+  const auto named = static_cast<std::uint16_t>(behaviors[0].name == vm::kNoIndex ? 1 : 0);
+  const auto rule_of = [&](std::size_t at) { return behaviors[at].first_rule; };
+  const auto plain = static_cast<std::uint16_t>(1 - named);
+
+  const json fire = as_json(event(EventKind::fire, rule_of(named), 0, {1}));
+  CHECK(fire.at("line") == 5);
+  CHECK(fire.at("behavior") == "shy");
+  CHECK(fire.at("side") == "DO");
+  CHECK(as_words(event(EventKind::fire, rule_of(plain), 0, {1})) ==
+        "   1.020 s  rule at line 1 triggers its DO side");
+  CHECK_FALSE(as_json(event(EventKind::fire, rule_of(plain), 0, {0})).contains("behavior"));
+  CHECK(as_words(event(EventKind::lose, rule_of(plain), named, {1})) ==
+        "   1.020 s  rule at line 1 does not start its DO side: behaviour shy has an actuator it "
+        "needs");
+  CHECK(as_words(event(EventKind::interrupt, rule_of(plain), plain)) ==
+        "   1.020 s  rule at line 1 gives up what it was doing");
+  CHECK(as_json(event(EventKind::interrupt, rule_of(named), plain)).at("by") ==
+        "the rule at line 1");
+}
+
+TEST_CASE("commands have verb, word and the parameters that were given") {
+  const vm::Image& image = program().image();
+  std::int32_t slowly = -1;
+  for (std::size_t i = 0; i < image.words.size(); ++i) {
+    if (image.string(image.words[i].name) == "SLOWLY") slowly = static_cast<std::int32_t>(i);
+  }
+  REQUIRE(slowly >= 0);
+  // TO (bit 0) and OVER (bit 3).
+  const Event command = event(EventKind::command, 0, 0, {slowly, 0b1001, 90'000, 2500});
+  const json object = as_json(command);
+  CHECK(object.at("actuator") == "left_arm");
+  CHECK(object.at("word") == "SLOWLY");
+  CHECK(object.at("to") == 90);
+  CHECK(object.at("over") == 2.5);
+  CHECK_FALSE(object.contains("at"));
+  const std::string verb = object.at("verb");
+  CHECK(as_words(command) == "   1.020 s  left_arm " + verb + " SLOWLY TO 90 OVER 2.5s");
+}
+
+namespace {
+
+// A program that remembers; its image has labels, texts and safety rules.
+const tool::Program& remembering() {
+  static const tool::Program compiled = test::compile(R"(STATE mood: calm, very scared
+FEELING joy FROM 0% TO 100% START 50%
+SAFETY guard
+  WHEN touch LEVEL > 9
+  DO ALERT "too hard"
+  RESUME WHEN touch LEVEL < 1
+END
+WHEN touch LEVEL > 3 DO
+  SET mood TO very scared
+  RAISE joy BY 5%
+  LOG "touched with", touch LEVEL, "by hand"
+END
+WHEN mood IS calm AND joy > 70% DO
+  MOVE left_arm
+END
+)");
+  return compiled;
+}
+
+std::uint16_t variable(std::string_view name) {
+  const vm::Image& image = remembering().image();
+  for (std::size_t i = 0; i < image.variables.size(); ++i) {
+    if (image.string(image.variables[i].name) == name) return static_cast<std::uint16_t>(i);
+  }
+  FAIL("no variable " << name);
+  return 0;
+}
+
+// The text that an instruction of this kind has.
+std::uint16_t text_of(vm::Opcode opcode) {
+  for (const vm::Word word : remembering().image().code) {
+    if ((word & 0xFF) == static_cast<vm::Word>(opcode)) {
+      return static_cast<std::uint16_t>(word >> 16);
+    }
+  }
+  FAIL("no such instruction");
+  return 0;
+}
+
+std::string remembered(const Event& event) {
+  return tool::trace_words(event, {&remembering().image(), {}});
+}
+json remembered_json(const Event& event) {
+  return json::parse(tool::trace_json(event, {&remembering().image(), {}}));
+}
+
+}  // namespace
+
+TEST_CASE("what is remembered is shown as its label, or with its unit") {
+  const Event scared = event(EventKind::set, variable("mood"), 0, {1000});
+  CHECK(remembered(scared) == "mood becomes very scared");
+  CHECK(remembered_json(scared).at("variable") == "mood");
+  CHECK(remembered_json(scared).at("value") == "very scared");
+  const Event joy = event(EventKind::set, variable("joy"), 0, {55'500});
+  CHECK(remembered(joy) == "joy becomes 55.5%");
+  CHECK(remembered_json(joy).at("value") == 55.5);
+  CHECK(remembered_json(joy).at("unit") == "%");
+  // No label has these numbers.
+  CHECK(remembered(event(EventKind::set, variable("mood"), 0, {2000})) == "mood becomes 2");
+  CHECK(remembered(event(EventKind::set, variable("mood"), 0, {1500})) == "mood becomes 1.5");
+  CHECK(remembered(event(EventKind::set, variable("mood"), 0, {vm::kUnknown})) ==
+        "mood becomes unknown");
+}
+
+TEST_CASE("LOG and ALERT: the text, with the values in its places") {
+  const Event log = event(EventKind::log, text_of(vm::Opcode::log), 0, {2500});
+  CHECK_THAT(remembered(log), Catch::StartsWith("log: touched with") && Catch::Contains("2.5") &&
+                                  Catch::EndsWith("by hand") && !Catch::Contains("{}"));
+  CHECK_THAT(remembered_json(log).at("text").get<std::string>(), Catch::Contains("2.5"));
+  CHECK(remembered_json(log).at("values") == json::array({2.5}));
+  // One that lost its values keeps its places; one with too many shows what has a place.
+  CHECK_THAT(remembered(event(EventKind::log, text_of(vm::Opcode::log))), Catch::Contains("{}"));
+  CHECK(remembered(event(EventKind::log, text_of(vm::Opcode::log), 0, {2500, 3000, 4000})) ==
+        remembered(log));
+  const Event alert = event(EventKind::alert, text_of(vm::Opcode::alert));
+  CHECK(remembered(alert) == "ALERT: too hard");
+  CHECK(remembered_json(alert).at("text") == "too hard");
+}
+
+TEST_CASE("safety and waits in words") {
+  const vm::Image& image = remembering().image();
+  REQUIRE(image.behaviors[0].priority == vm::kSafetyPriority);
+  const std::uint16_t guard = image.behaviors[0].first_rule;
+  CHECK(remembered(event(EventKind::trip, guard)) == "SAFETY: safety rule at line 3 trips");
+  CHECK(remembered(event(EventKind::resume, guard)) == "SAFETY: safety rule at line 3 lets go");
+  const std::uint16_t rule = image.behaviors[1].first_rule;
+  CHECK_THAT(remembered(event(EventKind::wait, rule)), Catch::EndsWith(" waits"));
+  CHECK_THAT(remembered(event(EventKind::go_on, rule)), Catch::EndsWith(" goes on"));
+  CHECK_THAT(remembered(event(EventKind::zero_divide, rule)), Catch::Contains("divided by zero"));
+  CHECK(remembered(event(EventKind::halt, 0)) == "SAFETY: left_arm is halted");
+  CHECK(remembered(event(EventKind::release, 0)) == "SAFETY: left_arm may move again");
+  CHECK_THAT(remembered(event(EventKind::lose, rule, 0, {1})),
+             Catch::EndsWith("safety has an actuator it needs"));
+}
+
+TEST_CASE("threads have their names") {
+  CHECK(as_words(event(EventKind::deadline, 1, 0, {1500})) ==
+        "   1.020 s  step is late by 1500 us");
+  CHECK(as_json(event(EventKind::fault, 9)).at("thread") == "thread 9");
+}
+
+TEST_CASE("any event of any image is shown, whatever its numbers") {
+  std::mt19937 random(11);
+  for (int i = 0; i < 20'000; ++i) {
+    Event wild;
+    wild.kind = static_cast<EventKind>(random() % 256);
+    if (!link::known(wild.kind)) continue;
+    wild.time_us = random();
+    wild.value_count = static_cast<std::uint8_t>(random() % (link::kMaxEventValues + 1));
+    wild.subject = static_cast<std::uint16_t>(random() % 2 == 0 ? random() % 4 : random());
+    wild.object = static_cast<std::uint16_t>(random() % 2 == 0 ? random() % 4 : random());
+    for (std::int32_t& value : wild.values)
+      value = static_cast<std::int32_t>(random());
+    for (const vm::Image* image : {&program().image(), static_cast<const vm::Image*>(nullptr)}) {
+      REQUIRE(json::parse(tool::trace_json(wild, {image, {}})).contains("event"));
+      REQUIRE_FALSE(tool::trace_line(wild, {image, {}}).empty());
+    }
+  }
+}

@@ -1,0 +1,238 @@
+"""Rules about the source tree that no compiler checks. Each rule gives the places that break it.
+
+The layering is not written down here: it is read from the table "Map" of docs/architecture.md.
+test_structure.py runs every rule over the repository, and over small trees that break them.
+"""
+
+import os
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+MAX_FILE_LINES = 400
+MAX_FUNCTION_LINES = 40
+CODE = {".hpp", ".cpp", ".h", ".c", ".S", ".def", ".re", ".yy"}
+CPP = {".hpp", ".cpp"}
+TABLES = {".def", ".yy"}  # one entry after the other; as long as what they list
+SKIPPED = {".git", "build", ".cache", "__pycache__"}
+
+# Compiled as a part of another layer.
+PART_OF = {"grammar": "compiler"}
+# Folders whose code runs on the board, and in them the ones that may know a machine.
+FREESTANDING = ("vm/", "link/", "runtime-m4/")
+MACHINE = ("runtime-m4/boards/", "runtime-m4/port/")
+HOST_ONLY = "runtime-m4/port/host/"
+# Inside runtime-m4/: what each folder may include of it, besides itself.
+RUNTIME = {
+    "kernel": {"port"},
+    "layers": {"kernel", "port", "boards", "drivers"},
+    "drivers": {"kernel", "boards"},
+    "safety": {"kernel", "boards", "layers"},
+    "update": {"kernel", "boards", "port"},
+}
+# Standard headers that allocate or throw, or need an operating system.
+HOSTED_HEADERS = {
+    "string", "vector", "map", "set", "unordered_map", "unordered_set", "list", "deque", "memory",
+    "functional", "iostream", "sstream", "fstream", "iomanip", "stdexcept", "exception", "thread",
+    "mutex", "future", "condition_variable", "regex", "filesystem", "any", "queue", "stack",
+}
+HARDWARE = re.compile(r"\bvolatile\b|\b0x(40|41|E0)0[0-9A-Fa-f]{5}u?\b")
+ASSEMBLER = re.compile(r"\basm\b|\b__asm(__)?\b")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+LEFT_OVER = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
+
+
+class Problem(NamedTuple):
+    path: str
+    line: int
+    text: str
+
+    def __str__(self):
+        return f"{self.path}:{self.line}: {self.text}"
+
+
+class Source(NamedTuple):
+    path: str  # from the top of the repository
+    lines: list
+
+    @property
+    def suffix(self):
+        return Path(self.path).suffix
+
+    @property
+    def top(self):
+        return self.path.split("/")[0]
+
+
+def read_tree(root):
+    """Every text file of the repository at `root`."""
+    sources = []
+    for folder, folders, files in os.walk(root):
+        folders[:] = sorted(set(folders) - SKIPPED)
+        for file in sorted(files):
+            path = Path(folder) / file
+            try:
+                lines = path.read_text("utf-8").splitlines()
+            except UnicodeDecodeError:
+                continue  # not text
+            sources.append(Source(path.relative_to(root).as_posix(), lines))
+    return sources
+
+
+def read_layers(architecture):
+    """{folder: set of folders it may include, or None for all} from the table of the map."""
+    layers = {}
+    for line in architecture:
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        folders = re.findall(r"`([\w-]+)/`", cells[0]) if len(cells) == 3 else []
+        if len(folders) != 1:
+            continue
+        allowed = {folders[0], *re.findall(r"`([\w-]+)/`", cells[2])}
+        layers[folders[0]] = None if "all" in cells[2] else allowed
+    return layers
+
+
+def includes(source):
+    for number, line in enumerate(source.lines, 1):
+        if match := INCLUDE.match(line):
+            yield number, match.group(1) == '"', match.group(2)
+
+
+def check_layering(sources, layers):
+    """Includes stand from the top of the repository and follow the table of the map."""
+    for source in sources:
+        layer = PART_OF.get(source.top, source.top)
+        if source.suffix not in CODE or layer not in layers:
+            continue
+        for number, quoted, target in includes(source):
+            if not quoted or target.startswith("rsl_"):  # generated from grammar/
+                continue
+            target_layer = PART_OF.get(target.split("/")[0], target.split("/")[0])
+            if target_layer not in layers:
+                yield Problem(source.path, number, f'"{target}" does not start at a layer\'s folder')
+            elif layers[layer] is not None and target_layer not in layers[layer]:
+                yield Problem(source.path, number, f"{layer}/ may not include {target_layer}/")
+
+
+def check_runtime_folders(sources):
+    """Inside runtime-m4/ the arrows point to the kernel, and to the machine by its interface only."""
+    for source in sources:
+        parts = source.path.split("/")
+        if parts[0] != "runtime-m4" or source.path.startswith(MACHINE) or source.suffix not in CODE:
+            continue
+        allowed = RUNTIME.get(parts[1]) if len(parts) > 2 else None
+        for number, _, target in includes(source):
+            to = target.split("/")
+            if to[0] != "runtime-m4" or len(to) < 3:
+                continue
+            if to[1] in ("port", "boards") and len(to) > 3:
+                yield Problem(source.path, number, f"{target} belongs to one machine")
+            elif allowed is not None and to[1] not in allowed | {parts[1]}:
+                yield Problem(source.path, number, f"{parts[1]}/ may not include {to[1]}/")
+
+
+def check_freestanding(sources):
+    """What runs on the board uses no header that allocates, throws or needs an operating system."""
+    for source in sources:
+        if not source.path.startswith(FREESTANDING) or source.path.startswith(HOST_ONLY):
+            continue
+        for number, quoted, target in includes(source):
+            if not quoted and target in HOSTED_HEADERS:
+                yield Problem(source.path, number, f"<{target}> is not for code on the board")
+
+
+def check_hardware(sources):
+    """Registers and volatile only in boards/ and port/; in the runtime, assembler too."""
+    for source in sources:
+        if not source.path.startswith(FREESTANDING) or source.path.startswith(MACHINE):
+            continue
+        if source.suffix not in CODE:
+            continue
+        for number, line in enumerate(source.lines, 1):
+            # `asm volatile` is about what the compiler may move, not about a register.
+            code = re.sub(r'//.*|"[^"]*"|(?<=asm )volatile', "", line.replace("'", ""))
+            if HARDWARE.search(code) or source.top == "runtime-m4" and ASSEMBLER.search(code):
+                yield Problem(source.path, number, "hardware is touched only in boards/ and port/")
+
+
+def check_head_comments(sources):
+    """Each file opens with a comment that says what it is for; a .cpp may leave that to its .hpp."""
+    for source in sources:
+        is_script = source.top in ("scripts", ".ci") and "." not in Path(source.path).name
+        if source.suffix not in CODE | {".py", ".sh", ".ld"} and not is_script:
+            continue
+        first = next((line.lstrip() for line in source.lines if line.strip() and line[:2] != "#!"), "")
+        own_header = f'#include "{source.path.removesuffix("cpp")}hpp"'
+        code = ("#include", "#pragma", "#ifndef", "#define")
+        comment = first.startswith(("//", "/*", "#", "%{", '"""')) and not first.startswith(code)
+        if first and not comment and first != own_header:
+            yield Problem(source.path, 1, "no head comment")
+
+
+def check_file_sizes(sources):
+    for source in sources:
+        if source.suffix in TABLES:
+            continue
+        if source.suffix in CODE | {".py", ".sh"} and len(source.lines) > MAX_FILE_LINES:
+            yield Problem(source.path, len(source.lines), f"more than {MAX_FILE_LINES} lines")
+
+
+FUNCTION = re.compile(r"^( {0,2})(?!\s)(?!namespace|class|struct|enum|union|extern|if|for|while|"
+                      r"switch|else|do|\}|#|//).*\)[^;=]*\{$")
+
+
+def check_function_sizes(sources):
+    """Functions of the product, as clang-format lays them out; the interpreter's loop is free."""
+    for source in sources:
+        if source.suffix not in CPP or source.top in ("tests", "bench"):
+            continue
+        if source.path == "vm/interpreter.cpp":
+            continue
+        start = 0
+        for number, line in enumerate(source.lines, 1):
+            if not start and (match := FUNCTION.match(line)):
+                start, end = number, match.group(1) + "}"
+            elif start and line.startswith(end):
+                if number - start + 1 > MAX_FUNCTION_LINES:
+                    yield Problem(source.path, start,
+                                  f"a function of more than {MAX_FUNCTION_LINES} lines")
+                start = 0
+
+
+def check_lists(sources):
+    """Every .def is included: a list that nobody reads is a second place for its facts."""
+    included = {target for source in sources for _, _, target in includes(source)}
+    for source in sources:
+        if source.suffix == ".def" and source.path not in included:
+            yield Problem(source.path, 1, "nobody includes this list")
+
+
+def check_left_overs(sources):
+    for source in sources:
+        if source.suffix not in CODE | {".py", ".sh", ".cmake"} or source.top == "tests":
+            continue
+        for number, line in enumerate(source.lines, 1):
+            if LEFT_OVER.search(line):
+                yield Problem(source.path, number, "unfinished")
+
+
+RULES = {
+    "runtime folders": check_runtime_folders,
+    "freestanding": check_freestanding,
+    "hardware": check_hardware,
+    "head comments": check_head_comments,
+    "file sizes": check_file_sizes,
+    "function sizes": check_function_sizes,
+    "lists": check_lists,
+    "left-overs": check_left_overs,
+}
+
+
+def check(root):
+    """Every problem of the repository at `root`, by rule."""
+    sources = read_tree(root)
+    layers = read_layers((Path(root) / "docs/architecture.md").read_text("utf-8").splitlines())
+    problems = {"layering": list(check_layering(sources, layers))}
+    for name, rule in RULES.items():
+        problems[name] = list(rule(sources))
+    return problems

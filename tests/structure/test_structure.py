@@ -1,0 +1,131 @@
+"""The rules of structure.py over the repository, and over trees with one planted mistake each."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import structure
+
+ROOT = Path(__file__).resolve().parents[2]
+HEAD = "// What it is for.\n"
+MAP = """
+| folder | what it is | may include |
+|---|---|---|
+| `grammar/` | tokens | – |
+| `compiler/` | RSL to image | `vm/` |
+| `vm/` | bytecode | itself |
+| `link/` | serial protocol | itself |
+| `runtime-m4/` | the board | `vm/`, `link/` |
+| `rsc/` | the tool | all of them |
+| `tests/ bench/` | | |
+"""
+
+
+class Repository(unittest.TestCase):
+    """The repository as it is breaks no rule."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.problems = structure.check(ROOT)
+
+    def test_the_map_is_read(self):
+        lines = (ROOT / "docs/architecture.md").read_text("utf-8").splitlines()
+        layers = structure.read_layers(lines)
+        self.assertEqual(layers["compiler"], {"compiler", "vm"})
+        self.assertEqual(layers["runtime-m4"], {"runtime-m4", "vm", "link"})
+        self.assertIsNone(layers["rsc"])
+
+    def assert_clean(self, rule):
+        found = self.problems[rule]
+        self.assertFalse(found, "\n" + "\n".join(map(str, found)))
+
+
+def repository_test(rule):
+    return lambda self: self.assert_clean(rule)
+
+
+for _rule in ["layering", *structure.RULES]:
+    setattr(Repository, "test_" + _rule.replace(" ", "_").replace("-", "_"), repository_test(_rule))
+
+
+class Planted(unittest.TestCase):
+    """Each rule sees the mistake it is there for, and nothing else in that tree."""
+
+    def check(self, files):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in {"docs/architecture.md": MAP, **files}.items():
+                path = Path(folder) / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text, "utf-8")
+            problems = structure.check(folder)
+        return {rule: [p.path for p in found] for rule, found in problems.items() if found}
+
+    def assert_red(self, rule, name, text):
+        self.assertEqual(self.check({name: text}), {rule: [name]})
+
+    def test_a_good_tree_is_clean(self):
+        self.assertEqual(self.check({
+            "vm/a.hpp": HEAD + "#include <array>\n",
+            "vm/list.def": HEAD,
+            "vm/a.cpp": '#include "vm/a.hpp"\n',
+            "vm/b.cpp": HEAD + '#include "vm/a.hpp"\n#include "vm/list.def"\n',
+            "compiler/c.cpp": HEAD + '#include "vm/a.hpp"\n#include <string>\n',
+            "runtime-m4/kernel/k.cpp": HEAD + '#include "runtime-m4/port/port.hpp"\n',
+            "runtime-m4/boards/x/b.cpp": HEAD + "volatile int* p = (int*)0x40004000;\n",
+            "rsc/main.cpp": HEAD + '#include "link/frame.hpp"\n#include "compiler/c.hpp"\n',
+            "scripts/go": "#!/bin/sh\n# Goes.\n",
+        }), {})
+
+    def test_wrong_includes(self):
+        for name, target in [("vm/a.cpp", "link/frame.hpp"), ("link/a.cpp", "vm/image.hpp"),
+                             ("compiler/sema/a.cpp", "runtime-m4/runtime.hpp"),
+                             ("grammar/rsl.yy", "rsc/main.hpp"), ("compiler/a.hpp", "link/frame.hpp"),
+                             ("runtime-m4/layers/a.cpp", "compiler/compiler.hpp"),
+                             ("vm/a.hpp", "image.hpp"), ("vm/a.hpp", "../link/frame.hpp")]:
+            with self.subTest(name=name, target=target):
+                self.assert_red("layering", name, f'{HEAD}#include "{target}"\n')
+
+    def test_wrong_arrows_in_the_runtime(self):
+        for name, target in [("runtime-m4/kernel/k.cpp", "runtime-m4/layers/step.hpp"),
+                             ("runtime-m4/layers/s.cpp", "runtime-m4/safety/guard.hpp"),
+                             ("runtime-m4/layers/l.cpp", "runtime-m4/port/host/simulator.hpp"),
+                             ("runtime-m4/drivers/d.cpp", "runtime-m4/boards/x/i2c.hpp")]:
+            with self.subTest(name=name, target=target):
+                self.assert_red("runtime folders", name, f'{HEAD}#include "{target}"\n')
+
+    def test_hosted_headers_on_the_board(self):
+        for name in ["vm/a.cpp", "link/a.hpp", "runtime-m4/port/cortex-m4/a.cpp"]:
+            with self.subTest(name=name):
+                self.assert_red("freestanding", name, HEAD + "#include <vector>\n")
+
+    def test_hardware_outside_the_machine(self):
+        for line in ["volatile int x;", "int* p = (int*)0x40004000;", 'asm("nop");',
+                     "auto scb = 0xE000'ED00u;"]:
+            with self.subTest(line=line):
+                self.assert_red("hardware", "runtime-m4/layers/a.cpp", f"{HEAD}{line}\n")
+
+    def test_missing_head_comments(self):
+        for name, text in [("vm/a.hpp", "#pragma once\n"), ("rsc/a.cpp", "int a;\n"),
+                           ("scripts/go", "#!/bin/sh\nset -e\n"),
+                           ("vm/b.cpp", '#include "vm/a.hpp"\n'),
+                           ("scripts/python/a.py", "import sys\n")]:
+            with self.subTest(name=name):
+                self.assert_red("head comments", name, text)
+
+    def test_long_files_and_functions(self):
+        self.assert_red("file sizes", "vm/a.cpp", HEAD + "int a;\n" * 400)
+        body = "  x();\n" * 39
+        self.assert_red("function sizes", "rsc/a.cpp", f"{HEAD}void f() {{\n{body}}}\n")
+        self.assert_red("function sizes", "rsc/b.hpp",
+                        f"{HEAD}class A {{\n  void f() const {{\n  {body.replace('x', '  x')}  }}\n}};\n")
+        self.assertEqual(self.check({"rsc/a.cpp": f"{HEAD}void f() {{\n{body[7:]}}}\n"}), {})
+
+    def test_a_list_nobody_reads(self):
+        self.assert_red("lists", "vm/a.def", HEAD)
+
+    def test_unfinished_code(self):
+        self.assert_red("left-overs", "vm/a.cpp", HEAD + "// " + "TO" + "DO: later\n")
+
+
+if __name__ == "__main__":
+    unittest.main()

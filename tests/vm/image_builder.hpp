@@ -1,0 +1,175 @@
+// Builds images for tests, right ones and wrong ones: fill in records, build(), and, for damage
+// that the builder would not make, patch the header or the bytes. companion.hpp has a good one.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vm/image.hpp"
+#include "vm/opcode.hpp"
+#include "vm/timers.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::vm::test {
+
+// std::vector's memory is aligned for any record.
+using Bytes = std::vector<std::byte>;
+
+inline void repair_crc(std::span<std::byte> bytes) {
+  if (bytes.size() < sizeof(ImageHeader)) return;
+  const std::uint32_t crc = crc32(bytes.subspan(offsetof(ImageHeader, total_length)));
+  std::memcpy(bytes.data() + offsetof(ImageHeader, crc32), &crc, sizeof crc);
+}
+
+struct ImageBuilder {
+  std::vector<Sensor> sensors;
+  std::vector<Channel> channels;
+  std::vector<Actuator> actuators;
+  std::vector<Group> groups;
+  std::vector<Verb> verbs;
+  std::vector<WordEntry> words;
+  std::vector<Variable> variables;
+  std::vector<Check> checks;
+  std::vector<Band> bands;
+  std::vector<Behavior> behaviors;
+  std::vector<Modifiers> modifiers;
+  std::vector<Timer> timers;
+  std::vector<Rule> rules;
+  std::vector<Response> responses;
+  std::vector<std::uint8_t> inputs;
+  std::vector<Value> constants;
+  std::vector<Word> code;
+  std::vector<std::uint16_t> labels;
+  std::string strings;
+  std::vector<SourceLine> source_lines;
+  // Applied to the finished header, before the CRC.
+  std::function<void(ImageHeader&)> patch_header = [](ImageHeader&) {};
+
+  std::uint16_t name(std::string_view text) {
+    const auto offset = static_cast<std::uint16_t>(strings.size());
+    strings.append(text).push_back('\0');
+    return offset;
+  }
+  std::uint16_t constant(Value value) {
+    const auto place = std::find(constants.begin(), constants.end(), value);
+    const auto index = static_cast<std::uint16_t>(place - constants.begin());
+    if (place == constants.end()) constants.push_back(value);
+    return index;
+  }
+  // Appends labels; the place of the first.
+  std::uint16_t add_labels(std::initializer_list<std::string_view> texts) {
+    const auto first = static_cast<std::uint16_t>(labels.size());
+    for (const std::string_view text : texts)
+      labels.push_back(name(text));
+    return first;
+  }
+  // Appends a timer, with the memory behind that of the one before; its index.
+  unsigned timer(TimerKind kind, Value duration, std::uint8_t count = 0) {
+    unsigned state = 0;
+    for (const Timer& before : timers)
+      state += timer_words(before.kind, before.count);
+    timers.push_back({kind, count, static_cast<std::uint16_t>(state), duration});
+    return static_cast<unsigned>(timers.size() - 1);
+  }
+  // Appends a code object; its start.
+  std::uint16_t object(std::initializer_list<Word> object_words) {
+    const auto start = static_cast<std::uint16_t>(code.size());
+    code.insert(code.end(), object_words);
+    return start;
+  }
+  std::uint16_t response(std::uint32_t mask, std::initializer_list<Word> object_words) {
+    const std::uint16_t start = object(object_words);
+    responses.push_back({start, static_cast<std::uint16_t>(object_words.size()), mask});
+    return static_cast<std::uint16_t>(responses.size() - 1);
+  }
+  void rule(std::uint16_t then_response, std::uint16_t else_response,
+            std::initializer_list<Word> condition, std::uint16_t line = 1) {
+    rule_of(else_response == kNoIndex ? RuleKind::when : RuleKind::when_else, then_response,
+            condition, line);
+    rules.back().else_response = else_response;
+  }
+  void rule_of(RuleKind kind, std::uint16_t then_response, std::initializer_list<Word> condition,
+               std::uint16_t line = 1) {
+    const std::uint16_t start = condition.size() == 0 ? std::uint16_t{0} : object(condition);
+    rules.push_back({start, static_cast<std::uint16_t>(condition.size()), then_response, kNoIndex,
+                     line, kind, kNoModifiers});
+  }
+
+  [[nodiscard]] Bytes build() const {
+    Bytes bytes(sizeof(ImageHeader));
+    append(bytes, sensors);
+    append(bytes, channels);
+    append(bytes, actuators);
+    append(bytes, groups);
+    append(bytes, verbs);
+    append(bytes, words);
+    append(bytes, variables);
+    append(bytes, checks);
+    append(bytes, bands);
+    append(bytes, behaviors);
+    append(bytes, modifiers);
+    append(bytes, timers);
+    append(bytes, rules);
+    append(bytes, responses);
+    append(bytes, inputs);
+    append(bytes, constants);
+    append(bytes, code);
+    append(bytes, labels);
+    append(bytes, strings);
+    append(bytes, source_lines);
+    ImageHeader header = counts();
+    header.total_length = static_cast<std::uint32_t>(bytes.size());
+    std::memcpy(bytes.data(), &header, sizeof header);
+    Image view;
+    if (view_image(bytes, view)) header.step_cost = step_cost(view);
+    patch_header(header);
+    std::memcpy(bytes.data(), &header, sizeof header);
+    repair_crc(bytes);
+    return bytes;
+  }
+
+private:
+  template <typename Records>
+  static void append(Bytes& bytes, const Records& records) {
+    const auto raw = std::as_bytes(std::span(records));
+    bytes.insert(bytes.end(), raw.begin(), raw.end());
+    while (bytes.size() % 4 != 0)
+      bytes.push_back(std::byte{0});
+  }
+  [[nodiscard]] ImageHeader counts() const {
+    ImageHeader header{};
+    header.magic = kMagic;
+    header.format_major = kFormatMajor;
+    header.format_minor = kFormatMinor;
+    header.opcode_set = opcode_set_id();
+    header.sensors = static_cast<std::uint8_t>(sensors.size());
+    header.channels = static_cast<std::uint8_t>(channels.size());
+    header.actuators = static_cast<std::uint8_t>(actuators.size());
+    header.groups = static_cast<std::uint8_t>(groups.size());
+    header.verbs = static_cast<std::uint8_t>(verbs.size());
+    header.words = static_cast<std::uint8_t>(words.size());
+    header.variables = static_cast<std::uint8_t>(variables.size());
+    header.checks = static_cast<std::uint8_t>(checks.size());
+    header.bands = static_cast<std::uint8_t>(bands.size());
+    header.behaviors = static_cast<std::uint8_t>(behaviors.size());
+    header.modifiers = static_cast<std::uint8_t>(modifiers.size());
+    header.timers = static_cast<std::uint16_t>(timers.size());
+    header.labels = static_cast<std::uint16_t>(labels.size());
+    header.rules = static_cast<std::uint16_t>(rules.size());
+    header.responses = static_cast<std::uint16_t>(responses.size());
+    header.inputs = static_cast<std::uint16_t>(inputs.size());
+    header.constants = static_cast<std::uint16_t>(constants.size());
+    header.code = static_cast<std::uint16_t>(code.size());
+    header.string_bytes = static_cast<std::uint16_t>(strings.size());
+    header.source_lines = static_cast<std::uint16_t>(source_lines.size());
+    return header;
+  }
+};
+
+}  // namespace robosync::vm::test
