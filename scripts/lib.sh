@@ -1,0 +1,59 @@
+# Shared by the scripts in this folder: says what is done, installs what is missing, builds.
+#
+# Sourced by bash scripts. Afterwards the working directory is the top of the repository.
+# Exit codes are those of rsc: 2 wrong usage, 3 something outside is missing.
+
+set -euo pipefail
+export INVOKED_FROM=$PWD
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+export PYTHONPATH=$PWD/scripts/python PYTHONDONTWRITEBYTECODE=1
+
+say() { printf '\n== %s\n' "$*"; }
+die() {
+  printf '%s: %s\n' "${0##*/}" "$1" >&2
+  exit "${2:-3}"
+}
+
+# The head comment of the script that runs, for --help.
+usage() { sed -n '2,/^\. /{/^\. /d;s/^# \{0,1\}//;p}' "scripts/${0##*/}"; }
+
+# The packages of packages.txt that are not installed, one a line.
+missing_packages() {
+  local package
+  sed 's/#.*//; /^[[:space:]]*$/d' scripts/packages.txt | while read -r package; do
+    dpkg-query -W -f='${db:Status-Abbrev}' "$package" 2>/dev/null | grep -q '^ii' || echo "$package"
+  done
+}
+
+# Installs what is missing, as root or through sudo; asks for nothing when there is no terminal.
+install_missing() {
+  command -v dpkg-query >/dev/null && command -v apt-get >/dev/null ||
+    die "needs Debian 12 with apt-get; elsewhere, install what scripts/packages.txt lists"
+  local missing
+  missing=$(missing_packages | tr '\n' ' ')
+  [ -n "$missing" ] || return 0
+
+  local as_root=()
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null ||
+      die "not root and no sudo; as root, run: apt-get install --no-install-recommends $missing"
+    as_root=(sudo)
+    [ -t 0 ] || as_root=(sudo -n)
+  fi
+  say "Installing what is missing: $missing"
+  local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300)
+  "${apt[@]}" update || die "apt-get update failed (no network, or not allowed)"
+  # shellcheck disable=SC2086  # one argument a package
+  "${apt[@]}" install -y --no-install-recommends $missing || die "could not install: $missing"
+}
+
+# build PRESET: configures and builds build/PRESET. Quiet unless it fails.
+build() {
+  local preset=$1 log=build/$1.log
+  say "Building $preset (CMake preset; log: $log)"
+  mkdir -p build
+  if ! { cmake --preset "$preset" && cmake --build --preset "$preset"; } >"$log" 2>&1; then
+    tail -n 60 "$log" >&2
+    die "the build of $preset failed" 1
+  fi
+}

@@ -1,0 +1,156 @@
+"""The robot's board in QEMU: boots the firmware, gives its serial line and its touch sensor.
+
+Used by scripts/robot, scripts/demo and tests/e2e. Assumes build/m4 has been built. Promises that
+QEMU ends with the `with` block or the process, and that what it leaves behind is deleted.
+"""
+
+import json
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+FIRMWARE = ROOT / "build/m4/robosync-mps2-an386.elf"
+TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
+BOOT_SECONDS = 20  # on a busy machine
+# How virtual time passes: it counts instructions, so that a firmware that is held up by a busy host
+# does not miss its deadlines. While the firmware idles,
+REAL_TIME = "shift=5,sleep=on"  # 32 ns each (the MPS2 board's 25 MHz): it follows the host's clock;
+FAST = "shift=4,sleep=off"  # 16 ns each (an STM32F401's 84 MHz): idle time is skipped.
+
+
+class BoardError(RuntimeError):
+    """QEMU is missing, did not start, or ended."""
+
+
+class Qmp:
+    """QEMU's control socket: one command at a time, events skipped."""
+
+    def __init__(self, path):
+        self._socket = socket.socket(socket.AF_UNIX)
+        self._socket.settimeout(BOOT_SECONDS)
+        try:
+            self._socket.connect(str(path))
+        except OSError:
+            self._socket.close()
+            raise
+        self._lines = self._socket.makefile("rw", encoding="utf-8")
+        self._lines.readline()  # the greeting
+        self.command("qmp_capabilities")
+
+    def command(self, name, **arguments):
+        self._lines.write(json.dumps({"execute": name, "arguments": arguments}) + "\n")
+        self._lines.flush()
+        while line := self._lines.readline():
+            reply = json.loads(line)
+            if "error" in reply:
+                raise BoardError(f"QMP {name}: {reply['error']['desc']}")
+            if "return" in reply:
+                return reply["return"]
+        raise BoardError("QEMU ended")
+
+    def close(self):
+        self._lines.close()
+        self._socket.close()
+
+
+class Board:
+    """One running board. `port` is what rsc takes as --port."""
+
+    def __init__(self, elf=FIRMWARE, pty=False, serial_path=None, icount=REAL_TIME, extra=()):
+        if shutil.which("qemu-system-arm") is None:
+            raise BoardError("qemu-system-arm is not installed (Debian package qemu-system-arm)")
+        if not Path(elf).is_file():
+            raise BoardError(f"no firmware at {elf}: build the preset m4 first")
+        self._folder = tempfile.TemporaryDirectory(prefix="robosync-")
+        self.qmp_path = Path(self._folder.name) / "qmp"
+        self.serial_path = Path(serial_path or Path(self._folder.name) / "serial").resolve()
+        self._pty = pty
+        self._log = Path(self._folder.name) / "qemu.log"
+        self._process = self._start(elf, icount, extra)
+        self.qmp = None
+        try:
+            self.qmp = self._connect()
+            self.port = self._find_port()
+        except BaseException:
+            self.stop()
+            raise
+
+    def _start(self, elf, icount, extra):
+        line = "pty" if self._pty else f"socket,path={self.serial_path},server=on,wait=off"
+        command = ["qemu-system-arm", "-M", "mps2-an386", "-display", "none", "-monitor", "none",
+                   "-kernel", str(elf),
+                   "-chardev", f"{line},id=line", "-serial", "chardev:line",
+                   "-device", "max34451,id=touch,address=0x70",
+                   "-qmp", f"unix:{self.qmp_path},server=on,wait=off",
+                   "-icount", icount, *extra]
+        with open(self._log, "wb") as log:
+            return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+                                    start_new_session=True)
+
+    def _connect(self):
+        deadline = time.monotonic() + BOOT_SECONDS
+        while time.monotonic() < deadline:
+            self.check()
+            try:
+                return Qmp(self.qmp_path)
+            except (FileNotFoundError, ConnectionRefusedError):
+                time.sleep(0.02)
+        raise BoardError("QEMU does not answer on its control socket")
+
+    def _find_port(self):
+        if not self._pty:
+            return f"unix:{self.serial_path}"
+        for device in self.qmp.command("query-chardev"):
+            if device["label"] == "line":
+                return device["filename"].removeprefix("pty:")
+        raise BoardError("QEMU made no pty")
+
+    def check(self):
+        """Raises with QEMU's last words when it is not running any more."""
+        if self._process.poll() is not None:
+            raise BoardError(f"QEMU ended ({self._process.returncode}): {self.log()}")
+
+    def log(self):
+        return self._log.read_text(encoding="utf-8", errors="replace").strip()
+
+    def wait(self):
+        return self._process.wait()
+
+    def set_touch(self, raw, channel=0):
+        """What the touch sensor's input measures from now on, as its raw 16-bit number."""
+        self.qmp.command("qom-set", path=TOUCH, property=f"vout[{channel}]", value=raw)
+
+    def stop(self):
+        if self.qmp:
+            self.qmp.close()
+            self.qmp = None
+        if self._process.poll() is None:
+            self._process.terminate()
+            try:
+                self._process.wait(timeout=5)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+        if not self._pty:
+            self.serial_path.unlink(missing_ok=True)
+        self._folder.cleanup()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.stop()
+
+
+def end_on_signals():
+    """Turns SIGTERM and SIGHUP into SystemExit, so that `with Board()` cleans up."""
+    def leave(number, _frame):
+        raise SystemExit(128 + number)
+
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, leave)

@@ -1,0 +1,41 @@
+"""scripts/robot: boots the board, prints where it can be reached, stays until it is ended."""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from board import FAST, REAL_TIME, TOUCH, Board, BoardError, end_on_signals
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="scripts/robot")
+    line = parser.add_mutually_exclusive_group()
+    line.add_argument("--pty", action="store_true")
+    line.add_argument("--socket", metavar="PATH",
+                      type=lambda path: Path(os.environ.get("INVOKED_FROM", ".")) / path)
+    parser.add_argument("--fast", action="store_true")
+    return parser.parse_args()
+
+
+def main():
+    wanted = arguments()
+    end_on_signals()
+    try:
+        with Board(pty=wanted.pty, serial_path=wanted.socket,
+                   icount=FAST if wanted.fast else REAL_TIME) as board:
+            print(f"\nport: {board.port}      (rsc … --port {board.port})")
+            print(f"qmp:  {board.qmp_path}      (qom-set {TOUCH} vout[0]: the touch sensor)")
+            print("Ctrl-C ends it.", flush=True)
+            board.wait()
+            board.check()
+    except KeyboardInterrupt:
+        return 0
+    except BoardError as error:
+        print(f"robot: {error}", file=sys.stderr)
+        return 3
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

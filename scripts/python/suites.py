@@ -1,0 +1,116 @@
+"""The suites of scripts/test that are not programs of their own: ctest, unittest, format, tidy.
+
+Each prints what failed, and ends with the line "N passed, N failed" that scripts/test adds up.
+Exit code 0 when nothing failed and something ran, otherwise 1.
+"""
+
+import argparse
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+OURS = ("compiler", "vm", "link", "runtime-m4", "rsc", "tests", "bench")
+CORES = os.cpu_count() or 1
+
+
+def close(passed, failed):
+    print(f"{passed} passed, {failed} failed")
+    return 0 if passed and not failed else 1
+
+
+def count_cases(output, ok):
+    """Test cases in the output of one program: Catch2's or unittest's, otherwise the program."""
+    if match := re.search(r"All tests passed \(.* in (\d+) test cases?\)", output):
+        return int(match[1]), 0
+    if match := re.search(r"^test cases:\s+(\d+) \|(?:\s+\d+ passed \|)?\s+(\d+) failed", output, re.M):
+        return int(match[1]) - int(match[2]), int(match[2])
+    if match := re.search(r"^Ran (\d+) tests? in", output, re.M):
+        bad = sum(int(n) for n in re.findall(r"(?:failures|errors)=(\d+)", output))
+        return int(match[1]) - bad, bad
+    return (1, 0) if ok else (0, 1)
+
+
+def run_ctest(preset):
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / "report.xml"
+        subprocess.run(["ctest", "--preset", preset, f"-j{CORES}", "--output-junit", str(report),
+                        "--test-output-size-passed", "1000000", "--quiet"],
+                       cwd=ROOT, check=False)
+        cases = ElementTree.parse(report).getroot().findall("testcase") if report.exists() else []
+    passed = failed = 0
+    for case in cases:
+        ok = case.get("status") == "run"
+        output = case.findtext("system-out") or ""
+        good, bad = count_cases(output, ok)
+        bad = max(bad, 0 if ok else 1)  # a program that crashed says nothing about its cases
+        print(f"  {'ok  ' if not bad else 'FAIL'} {case.get('name')} ({good} of {good + bad})")
+        if bad:
+            print(output)
+        passed, failed = passed + good, failed + bad
+    return close(passed, failed)
+
+
+def run_unittest(folder):
+    tests = unittest.defaultTestLoader.discover(str(ROOT / folder))
+    result = unittest.TextTestRunner(stream=sys.stdout, verbosity=2).run(tests)
+    failed = len(result.failures) + len(result.errors) + len(result.unexpectedSuccesses)
+    return close(result.testsRun - failed - len(result.skipped), failed)
+
+
+def own_sources(suffixes):
+    return sorted(path for folder in OURS for path in (ROOT / folder).rglob("*")
+                  if path.suffix in suffixes)
+
+
+def each(items, command):
+    """Runs command(item) for all items on all cores; prints what fails."""
+    def run(item):
+        done = subprocess.run(command(item), cwd=ROOT, check=False, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        return item, done.returncode, done.stdout
+
+    failed = 0
+    with ThreadPoolExecutor(CORES) as pool:
+        for item, code, output in pool.map(run, items):
+            if code:
+                failed += 1
+                print(f"  FAIL {Path(item).relative_to(ROOT)}\n{output}")
+    return close(len(items) - failed, failed)
+
+
+def run_format():
+    return each(own_sources({".hpp", ".cpp", ".h", ".c"}),
+                lambda path: ["clang-format", "--dry-run", "-Werror", str(path)])
+
+
+def run_tidy(preset):
+    """Every source of the product that the preset compiles. Its headers are seen through them."""
+    database = ROOT / "build" / preset
+    commands = json.loads((database / "compile_commands.json").read_text())
+    product = tuple(str(ROOT / folder) + "/" for folder in OURS if folder not in ("tests", "bench"))
+    files = sorted({c["file"] for c in commands if c["file"].startswith(product)})
+    return each(files, lambda path: ["clang-tidy", "--quiet", "-p", str(database), path])
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("suite", choices=["ctest", "unittest", "format", "tidy"])
+    parser.add_argument("argument", nargs="?")
+    wanted = parser.parse_args()
+    if wanted.suite == "ctest":
+        return run_ctest(wanted.argument)
+    if wanted.suite == "unittest":
+        return run_unittest(wanted.argument)
+    return run_format() if wanted.suite == "format" else run_tidy(wanted.argument)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

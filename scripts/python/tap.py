@@ -1,0 +1,69 @@
+"""A serial line of a given speed between rsc and the board in QEMU, which itself paces nothing.
+
+Listens on a Unix socket, passes each byte on after the time it takes on the wire (10 bits a byte), and
+counts the bytes of both directions.
+"""
+
+import socket
+import threading
+import time
+from pathlib import Path
+
+BITS_PER_BYTE = 10  # start, 8 data, stop
+CHUNK = 16  # a UART's FIFO; finer than that no time is measured
+
+
+class Tap:
+    def __init__(self, folder, board_socket, baud=115200):
+        self.to_board = self.to_host = 0
+        self._seconds_per_byte = BITS_PER_BYTE / baud
+        self._board_socket = str(board_socket)
+        path = Path(folder) / "tap"
+        self.port = f"unix:{path}"
+        self._listener = socket.socket(socket.AF_UNIX)
+        self._listener.bind(str(path))
+        self._listener.listen(1)
+        threading.Thread(target=self._serve, daemon=True).start()
+
+    def _serve(self):
+        while True:
+            try:
+                host, _ = self._listener.accept()
+            except OSError:
+                return  # closed
+            board = socket.socket(socket.AF_UNIX)
+            board.connect(self._board_socket)
+            back = threading.Thread(target=self._pass_on, args=(board, host, "to_host"), daemon=True)
+            back.start()
+            self._pass_on(host, board, "to_board")
+            back.join()
+            host.close()
+            board.close()
+
+    def _pass_on(self, source, sink, counter):
+        line_free = 0.0
+        try:
+            while data := source.recv(CHUNK):
+                line_free = max(line_free, time.monotonic()) + len(data) * self._seconds_per_byte
+                time.sleep(max(0.0, line_free - time.monotonic()))
+                sink.sendall(data)
+                setattr(self, counter, getattr(self, counter) + len(data))
+        except OSError:
+            pass  # the other end is gone
+        for end in (source, sink):
+            try:
+                end.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass
+
+    def wire_seconds(self, length):
+        return length * self._seconds_per_byte
+
+    def close(self):
+        self._listener.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
