@@ -2,29 +2,25 @@
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)  # SHA-256
 
-# The device descriptors travel inside the library, so that rsc works from any folder.
-set(device_folder ${PROJECT_SOURCE_DIR}/stdlib/devices)
+# What the library is made of travels inside the compiler, so that rsc works from any folder.
+#   embed(FOLDER SUFFIX HEADER TYPE FUNCTION OUT): see embed_texts.cmake
+function(embed folder suffix header type function out)
+  set(script ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/embed_texts.cmake)
+  file(GLOB files CONFIGURE_DEPENDS ${folder}/*.${suffix})
+  add_custom_command(
+    OUTPUT ${out}
+    COMMAND ${CMAKE_COMMAND} -DOUT=${out} -DFOLDER=${folder} -DSUFFIX=${suffix} -DHEADER=${header}
+            -DTYPE=${type} -DFUNCTION=${function} -P ${script}
+    DEPENDS ${files} ${script}
+    COMMENT "Embedding ${folder}/*.${suffix}"
+    VERBATIM)
+endfunction()
 set(device_texts ${CMAKE_CURRENT_BINARY_DIR}/device_texts.cpp)
-set(embed_script ${CMAKE_CURRENT_LIST_DIR}/config/embed_devices.cmake)
-file(GLOB device_files CONFIGURE_DEPENDS ${device_folder}/*.json)
-add_custom_command(
-  OUTPUT ${device_texts}
-  COMMAND ${CMAKE_COMMAND} -DOUT=${device_texts} -DFOLDER=${device_folder} -P ${embed_script}
-  DEPENDS ${device_files} ${embed_script}
-  COMMENT "Embedding the device descriptors"
-  VERBATIM)
-
-# So do the modules of the library.
-set(module_folder ${PROJECT_SOURCE_DIR}/stdlib)
+embed(${PROJECT_SOURCE_DIR}/stdlib/devices json compiler/config/devices.hpp DeviceText device_texts
+      ${device_texts})
 set(module_texts ${CMAKE_CURRENT_BINARY_DIR}/module_texts.cpp)
-set(embed_modules ${CMAKE_CURRENT_LIST_DIR}/embed_modules.cmake)
-file(GLOB module_files CONFIGURE_DEPENDS ${module_folder}/*.rsl)
-add_custom_command(
-  OUTPUT ${module_texts}
-  COMMAND ${CMAKE_COMMAND} -DOUT=${module_texts} -DFOLDER=${module_folder} -P ${embed_modules}
-  DEPENDS ${module_files} ${embed_modules}
-  COMMENT "Embedding the modules of the library"
-  VERBATIM)
+embed(${PROJECT_SOURCE_DIR}/stdlib rsl compiler/modules.hpp ModuleText module_texts
+      ${module_texts})
 
 target_sources(robosync_compiler PRIVATE
   compiler.cpp

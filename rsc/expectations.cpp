@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "rsc/event_reader.hpp"
+#include "rsc/time_units.hpp"
 #include "rsc/trace_format.hpp"
 
 namespace robosync::tool {
@@ -19,16 +20,9 @@ using compiler::testing::ExpectedStop;
 using compiler::testing::ExpectedTruth;
 using link::EventKind;
 
-constexpr std::uint64_t kMicroseconds = 1000;  // in a millisecond
-
 bool same(std::string_view a, std::string_view b) {
   return std::ranges::equal(
       a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
-
-std::string seconds(std::uint64_t time_us) {
-  return fmt::format("{}.{:03} s", time_us / (kMicroseconds * kMicroseconds),
-                     time_us / kMicroseconds % kMicroseconds);
 }
 
 class Judge {
@@ -46,7 +40,7 @@ public:
       };
       const link::Event* const found = find(matches);
       if (expected.no && found != nullptr) {
-        return fmt::format("{} was told at {}: {}", actuator, seconds(found->time_us),
+        return fmt::format("{} was told at {}: {}", actuator, seconds_text(found->time_us),
                            trace_words(*found, names_));
       }
       if (!expected.no && found == nullptr) {
@@ -65,8 +59,8 @@ public:
       const bool stopped = found != nullptr || is_halted(actuator);
       if (expected.no && stopped) {
         return found != nullptr
-                   ? fmt::format("{} was stopped at {}", actuator, seconds(found->time_us))
-                   : fmt::format("{} was halted before {}", actuator, seconds(from_us_));
+                   ? fmt::format("{} was stopped at {}", actuator, seconds_text(found->time_us))
+                   : fmt::format("{} was halted before {}", actuator, seconds_text(from_us_));
       }
       if (!expected.no && !stopped) {
         return fmt::format("{} was not stopped {}", actuator, window());
@@ -79,7 +73,7 @@ public:
     const link::Event* const found = find(
         [](const link::Event& event, const Playback&) { return event.kind == EventKind::command; });
     if (found == nullptr) return std::nullopt;
-    return fmt::format("there was a command at {}: {}", seconds(found->time_us),
+    return fmt::format("there was a command at {}: {}", seconds_text(found->time_us),
                        trace_words(*found, names_));
   }
 
@@ -97,8 +91,8 @@ public:
 
 private:
   std::string window() const {
-    if (from_us_ == until_us_) return fmt::format("at {}", seconds(from_us_));
-    return fmt::format("from {} to {}", seconds(from_us_), seconds(until_us_));
+    if (from_us_ == until_us_) return fmt::format("at {}", seconds_text(from_us_));
+    return fmt::format("from {} to {}", seconds_text(from_us_), seconds_text(until_us_));
   }
 
   // The first event in the window that `matches`, with the values of its moment.
@@ -122,7 +116,7 @@ private:
   std::string elsewhere(Matches matches) const {
     const link::Event* const found = find(matches, 0, UINT64_MAX);
     return found == nullptr ? std::string()
-                            : fmt::format("; it was at {}", seconds(found->time_us));
+                            : fmt::format("; it was at {}", seconds_text(found->time_us));
   }
 
   bool is_command(const link::Event& event, const Playback& playback, const std::string& actuator,

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "rsc/failure.hpp"
+#include "rsc/time_units.hpp"
 #include "runtime-m4/port/host/simulator.hpp"
 
 namespace robosync::tool {
@@ -15,8 +16,6 @@ namespace {
 
 using compiler::testing::ChannelName;
 using compiler::testing::PlannedReading;
-
-constexpr std::uint64_t kMicroseconds = 1000;  // in a millisecond
 
 // Nothing for a channel that the program does not read: it has no place in the image.
 std::optional<std::uint8_t> channel_of(const vm::Image& image, const ChannelName& name) {

@@ -6,15 +6,13 @@
 
 #include "rsc/event_reader.hpp"
 #include "rsc/quantity.hpp"
+#include "rsc/time_units.hpp"
 #include "rsc/trace_format.hpp"
 
 namespace robosync::tool {
 namespace {
 
 using link::EventKind;
-
-constexpr std::uint64_t kMicrosecondsPerSecond = 1'000'000;
-constexpr std::uint64_t kMicrosecondsPerMillisecond = 1000;
 
 constexpr std::array<std::string_view, EventReader::kParamCount> kParams = {
 #define PARAM(name, spelling, doc) spelling,
@@ -130,9 +128,7 @@ std::string trace_words(const link::Event& event, const TraceNames& names) {
 }
 
 std::string trace_line(const link::Event& event, const TraceNames& names) {
-  return fmt::format("{:4}.{:03} s  {}", event.time_us / kMicrosecondsPerSecond,
-                     event.time_us / kMicrosecondsPerMillisecond % kMicrosecondsPerMillisecond,
-                     trace_words(event, names));
+  return fmt::format("{}  {}", seconds_text(event.time_us, 4), trace_words(event, names));
 }
 
 }  // namespace robosync::tool

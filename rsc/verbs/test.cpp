@@ -12,6 +12,7 @@
 #include "rsc/expectations.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/program.hpp"
+#include "rsc/time_units.hpp"
 #include "rsc/trace_format.hpp"
 #include "rsc/verb.hpp"
 
@@ -20,9 +21,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kMicroseconds = 1000;  // in a millisecond
-constexpr std::uint64_t kBefore = 500'000;     // what led to it, in microseconds
-constexpr std::size_t kTimelineEnds = 15;      // lines at each end of a long timeline
+constexpr std::uint64_t kBefore = 500'000;  // what led to it, in microseconds
+constexpr std::size_t kTimelineEnds = 15;   // lines at each end of a long timeline
 
 struct Options {
   std::vector<std::string> files;
