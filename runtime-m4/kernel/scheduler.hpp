@@ -6,9 +6,10 @@
 #include <bit>
 #include <cstdint>
 
+#include "runtime-m4/limits.hpp"
+
 namespace robosync::kernel {
 
-inline constexpr unsigned kMaxThreads = 64;
 inline constexpr std::uint8_t kIdleRank = kMaxThreads;  // what an empty ready set selects
 
 // The paper's four categories, and the two kinds of threads around them. Inside one behaviour's

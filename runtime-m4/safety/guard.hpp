@@ -65,7 +65,7 @@ private:
   kernel::Thread& step_thread_;
   kernel::Events acted_;  // signalled when something was set
   const layers::Program* program_ = nullptr;
-  layers::RuleMask tripped_ = 0;
+  layers::RuleSet tripped_;
   vm::Machine machine_;
   std::array<vm::Word, layers::kMaxSafetyOutput> output_{};
 };
