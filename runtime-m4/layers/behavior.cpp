@@ -126,6 +126,7 @@ void BehaviorLayer::retire(unsigned behavior) {
   for (unsigned r = 0; r < wiring.rule_count; ++r)
     layers_.triggers.retire(wiring.first_rule + r);
   retired_ |= bit<BehaviorMask>(behavior);
+  const auto lock = kernel_.lock();
   released_ &= ~bit<BehaviorMask>(behavior);
 }
 

@@ -9,7 +9,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 
 #include "runtime-m4/kernel/kernel.hpp"
@@ -55,7 +54,10 @@ public:
   void evaluate(const RuleSet& rules, const Snapshot& snapshot);
   void respond(unsigned rule, Side side);
   void go_on(unsigned rule);
-  bool busy() const { return released_.load(std::memory_order_relaxed) != 0; }
+  bool busy() const {
+    const auto lock = kernel_.lock();
+    return released_ != 0;
+  }
   // The response has been run: tells what it has put out, stages its commands, and notes where it
   // waits. Not before, so that the behaviours' stacks can be short.
   void conclude(unsigned rule);
@@ -98,7 +100,7 @@ private:
   const Program* program_ = nullptr;
   const Snapshot* snapshot_ = nullptr;
   const RuleSet* concerned_ = nullptr;
-  std::atomic<BehaviorMask> released_ = 0;
+  BehaviorMask released_ = 0;  // under the kernel's lock
   BehaviorMask retired_ = 0;
   // What the behaviour that is released for it runs: the response of which rule, and from where.
   std::uint16_t rule_ = 0;

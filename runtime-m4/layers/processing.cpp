@@ -142,12 +142,12 @@ bool ProcessingLayer::latch(bool anyway, InputMask& changed) {
 InputMask ProcessingLayer::latch_channels(Stamp stamp) {
   const InputMask announced = layers_.mailboxes.take_announced();
   const kernel::Time now = stamp.time + trace_.activated_at();
-  InputMask changed = 0;
-  for (unsigned c = 0; c < program_->image.channels.size(); ++c) {
+  const InputMask changed =
+      announced | layers_.mailboxes.take_expired(program_->image.channels, announced, now);
+  for (InputMask left = changed; left != 0; left &= left - 1) {
+    const auto c = static_cast<unsigned>(std::countr_zero(left));
     const bool fresh = has(announced, c);
-    if (!fresh && !layers_.mailboxes.expire(c, program_->image.channels[c], now)) continue;
     trace_.begin_step(stamp);
-    changed |= bit<InputMask>(c);
     const vm::Value value = fresh ? layers_.mailboxes.value(c) : vm::kUnknown;
     snapshot_.values_[c] = value;
     if (fresh) {
@@ -217,14 +217,7 @@ kernel::Time ProcessingLayer::next_time() const {
   const std::uint32_t delay = next_due(now_ms());
   const kernel::Time due =
       delay == kNever ? kernel::kForever : kernel_.now() + kernel::milliseconds(delay);
-  return std::min(due, next_expiry());
-}
-
-kernel::Time ProcessingLayer::next_expiry() const {
-  kernel::Time next = kernel::kForever;
-  for (unsigned c = 0; c < program_->image.channels.size(); ++c)
-    next = std::min(next, layers_.mailboxes.expires_at(c, program_->image.channels[c]));
-  return next;
+  return std::min(due, layers_.mailboxes.next_expiry());
 }
 
 // --- threads that were stopped ---

@@ -116,7 +116,6 @@ private:
   void add_waiting(unsigned rule, Soonest& due) const;
   void add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const;
   kernel::Time next_time() const;
-  kernel::Time next_expiry() const;
   void note_stops();
   void retire(const Crew::Member& member);
 

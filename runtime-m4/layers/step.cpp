@@ -107,10 +107,10 @@ void ProcessingLayer::serve(const Claim& claim, bool silent) {
   layers_.triggers.won(claim.rule, snapshot_.milliseconds());
   running_.insert(claim.rule);
   holdings_[claim.rule] = Holding{.actuators = static_cast<ActuatorBits>(claim.actuators),
-                           .pending = 0,
-                           .behavior = claim.behavior,
-                           .side = claim.side,
-                           .won_now = true};
+                                  .pending = 0,
+                                  .behavior = claim.behavior,
+                                  .side = claim.side,
+                                  .won_now = true};
 }
 
 void ProcessingLayer::interrupt(unsigned rule, unsigned by) {

@@ -20,14 +20,13 @@
 #include "runtime-m4/layers/program.hpp"
 #include "runtime-m4/layers/trace.hpp"
 #include "runtime-m4/layers/variables.hpp"
+#include "runtime-m4/safety/period.hpp"
 #include "vm/output.hpp"
 
 namespace robosync::safety {
 
 class Guard {
 public:
-  static constexpr kernel::Duration kPeriod = kernel::milliseconds(10);
-
   struct Neighbours {
     layers::Trace& trace;
     layers::Mailboxes& mailboxes;
