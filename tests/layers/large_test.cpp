@@ -12,7 +12,7 @@ static_assert(kLarge);
 
 TEST_CASE("64 behaviours, 1,000 rules, 64 KB: one reading evaluates and fires the one rule") {
   const test::Spread spread{
-      .rules = 1000, .behaviors = 64, .channels = 32, .text = " is the rule that fired"};
+      .rules = 1000, .behaviors = 64, .channels = 32, .text = " is what fired"};
   const auto bytes = test::compile(spread.rsl(), spread.json());
   INFO(bytes.size() << " bytes");
   CHECK(bytes.size() > 60'000);
