@@ -97,7 +97,7 @@ def run(elf, arguments=(), extra=None):
         out = Path(folder) / "marks"
         done = subprocess.run(["qemu-system-arm", "-M", "mps2-an386", "-display", "none",
                                "-monitor", "none", "-serial", "none", "-kernel", str(elf),
-                               "-icount", "shift=0", "-semihosting",
+                               "-icount", "shift=0,sleep=off", "-semihosting",
                                *plugin_arguments(names, out), *arguments],
                               check=False, timeout=TIMEOUT, text=True, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)

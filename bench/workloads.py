@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 import rsc
-from counting import BUILT, ROOT, BenchError, run_given
+from counting import BUILT, ROOT, BenchError, run_given, symbols
 
 PROGRAMS = ROOT / "bench/programs"
 PAPER = ROOT / "examples/touch_companion/robot.rsl"
@@ -26,10 +26,11 @@ class Workload:
     """A program, compiled as users do, and its first rule run once for each reading."""
 
     def __init__(self, folder, source, readings):
-        self.image = Path(folder) / f"{source.parent.name}.rsb"
-        rsc.run("compile", source, "-o", self.image, "--strip")
-        self.dump = rsc.run("dump", self.image)
-        self.marks = run_given(BUILT / "bench_workload", self.image, readings)
+        image = Path(folder) / f"{source.parent.name}.rsb"
+        rsc.run("compile", source, "-o", image, "--strip")
+        self.words = image.stat().st_size // 4
+        self.dump = rsc.run("dump", image)
+        self.marks = run_given(BUILT / "bench_workload", image, readings)
         self.spans = self.marks.spans("mark_rule_begin", "mark_rule_end")
         if len(self.spans) != len(readings):
             raise BenchError(f"{source} ran {len(self.spans)} times, not {len(readings)}")
@@ -116,9 +117,10 @@ def workload_figures():
     with tempfile.TemporaryDirectory() as folder:
         one, two, three = w1(folder), w2(folder), w3(folder)
         natural = w3_natural(folder)
-        verify = two.marks
     per_round = two.spans[0] / ROUNDS
     opcodes = two.number(r"\bagain +r\d+, -(\d+)")  # from there back: the loop has no branches
+    cells = one.number(r"(\d+) cells")
+    verify = one.marks.spans("mark_verify_begin", "mark_verify_end")[0]
     works = {"W1": one, "W2": two, "W3": three}
     return {
         "vm/W1": (max(one.spans), "insn"),
@@ -126,6 +128,8 @@ def workload_figures():
         "vm/W3": (max(three.spans), "insn"),
         "vm/W3_natural": (max(natural), "insn"),
         "vm/insn_per_op": (round(per_round / opcodes, 1), "insn"),
+        "vm/verify_per_word": (round(verify / one.words, 1), "insn"),
+        "vm/ram_per_thread": (symbols(BUILT / "bench_workload")["size_machine"] + 4 * cells, "B"),
         **{f"vm/bytes_{name}": (work.bytes_of("code"), "B") for name, work in works.items()},
         **{f"vm/constants_{name}": (work.bytes_of("constants"), "B") for name, work in works.items()},
     }
