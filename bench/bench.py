@@ -82,7 +82,6 @@ def main():
         found, failed = measure_all(show, comparison)
     except (BenchError, BoardError, RscError, OSError, subprocess.SubprocessError) as error:
         print(f"bench: {error}", file=sys.stderr)
-        print("0 passed, 1 failed")
         return 1
     passed = len(found) - failed
     if wanted.record:
