@@ -1,43 +1,73 @@
 // How large a program this firmware can hold. Everything the runtime keeps is static and sized
 // here; what is larger is refused before the running program is touched. The host has the same
 // limits, so that `rsc run` refuses what the board would refuse.
+//
+// There are two profiles, chosen when the runtime is compiled: `standard` fits a microcontroller
+// with 64 KB of RAM and leaves half of it; `large` (ROBOSYNC_LARGE) holds what the image format can
+// express, for boards with megabytes. Nothing else in the runtime knows which one it is.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
+namespace robosync {
+
+#if defined(ROBOSYNC_LARGE)
+inline constexpr bool kLarge = true;
+#else
+inline constexpr bool kLarge = false;
+#endif
+
+template <class Number>
+constexpr Number limit(Number standard, Number large) {
+  return kLarge ? large : standard;
+}
+
+}  // namespace robosync
+
+namespace robosync::kernel {
+
+inline constexpr unsigned kMaxThreads = limit(64U, 128U);  // one bit each in the ready set
+
+}  // namespace robosync::kernel
+
 namespace robosync::layers {
 
-inline constexpr std::size_t kSlotBytes = 5120;        // largest image
-inline constexpr std::uint32_t kStepBudget = 100'000;  // M4 instructions of VM code in one step
+//                                                        standard    large
+inline constexpr std::size_t kSlotBytes = limit<std::size_t>(4992, 65536);  // largest image
+// M4 instructions of VM code in one step.
+inline constexpr std::uint32_t kStepBudget = limit<std::uint32_t>(100'000, 1'000'000);
 
-inline constexpr unsigned kMaxSensors = 12;
+inline constexpr unsigned kMaxSensors = limit(12U, 32U);
 inline constexpr unsigned kMaxChannels = 32;
 inline constexpr unsigned kMaxVariables = 32;  // one bit each in a VariableMask
 // Channels and variables; one bit each in an InputMask.
 inline constexpr unsigned kMaxInputs = kMaxChannels + kMaxVariables;
-inline constexpr unsigned kMaxFading = 8;  // of the variables, the ones that fade
-inline constexpr unsigned kMaxChecks = 12;
-inline constexpr unsigned kMaxSamples = 64;  // of all windows that a median is taken of
-inline constexpr unsigned kMaxTimerWords = 96;
-inline constexpr unsigned kMaxSafetyOutput = 32;  // words that the body of a SAFETY rule puts out
-inline constexpr unsigned kMaxActuators = 10;
-inline constexpr unsigned kMaxBehaviors = 11;  // the safety rules count as one
-inline constexpr unsigned kMaxRules = 40;      // one bit each in a RuleMask
-inline constexpr unsigned kMaxFrameCells = 128;
+inline constexpr unsigned kMaxFading = limit(8U, 32U);  // of the variables, the ones that fade
+inline constexpr unsigned kMaxChecks = limit(12U, 32U);
+inline constexpr unsigned kMaxSamples =
+    limit(64U, 240U);  // of all windows that a median is taken of
+inline constexpr unsigned kMaxTimerWords = limit(96U, 4096U);
+inline constexpr unsigned kMaxSafetyOutput = limit(32U, 64U);  // words a SAFETY rule puts out
+inline constexpr unsigned kMaxActuators = limit(10U, 32U);
+inline constexpr unsigned kMaxBehaviors = limit(11U, 64U);  // the safety rules count as one
+inline constexpr unsigned kMaxRules = limit(40U, 1000U);    // one bit each in a RuleSet
+inline constexpr unsigned kMaxFrameCells = limit(128U, 4096U);
 
-inline constexpr unsigned kMaxQueued = 8;           // commands that wait for one actuator
-inline constexpr unsigned kMaxCommands = 24;        // … and for all of them
-inline constexpr unsigned kMaxFeeds = 40;           // readings that wait for their time
-inline constexpr unsigned kMaxProgramThreads = 16;  // sensors, behaviours, actuators, the step
+inline constexpr unsigned kMaxQueued = 8;                   // commands that wait for one actuator
+inline constexpr unsigned kMaxCommands = limit(24U, 128U);  // … and for all of them
+inline constexpr unsigned kMaxFeeds = limit(40U, 200U);     // readings that wait for their time
+// Sensors, behaviours, actuators, the step.
+inline constexpr unsigned kMaxProgramThreads = limit(16U, 120U);
 
 // Stacks, in bytes, guard included. High-water marks in QEMU (`rsc info`), plus a fifth, plus what
 // an interrupt puts on them. Who traces needs most: an event is built and encoded on the stack.
 inline constexpr std::size_t kSensorStack = 512;
-inline constexpr std::size_t kStepStack = 736;
-inline constexpr std::size_t kBehaviorStack = 352;
+inline constexpr std::size_t kStepStack = limit<std::size_t>(736, 1536);
+inline constexpr std::size_t kBehaviorStack = limit<std::size_t>(352, 512);
 inline constexpr std::size_t kControlStack = 544;
-inline constexpr std::size_t kSafetyStack = 896;
-inline constexpr std::size_t kStackArena = 6208;  // for all threads of a program
+inline constexpr std::size_t kSafetyStack = limit<std::size_t>(896, 1536);
+// For all threads of a program.
+inline constexpr std::size_t kStackArena = limit<std::size_t>(6208, 73728);
 
 }  // namespace robosync::layers

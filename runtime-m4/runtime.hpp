@@ -57,6 +57,9 @@ public:
 
   // Measures with `sampler` in place of the drivers. Before activate().
   void measure_with(layers::Sampler& sampler) { sampler_ = &sampler; }
+  // For tests, on the host: see processing.hpp and behavior.hpp.
+  void evaluate_all() { processing_.evaluate_all(); }
+  std::uint32_t evaluations() const { return behaviors_.evaluations(); }
 
 private:
   bool resting() const override { return !running_ || processing_.resting(); }

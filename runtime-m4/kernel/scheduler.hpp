@@ -3,12 +3,15 @@
 // "who runs next" is two CLZ however many threads there are.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 
+#include "runtime-m4/limits.hpp"
+
 namespace robosync::kernel {
 
-inline constexpr unsigned kMaxThreads = 64;
+// kMaxThreads: limits.hpp.
 inline constexpr std::uint8_t kIdleRank = kMaxThreads;  // what an empty ready set selects
 
 // The paper's four categories, and the two kinds of threads around them. Inside one behaviour's
@@ -29,50 +32,60 @@ constexpr std::int32_t standing(Category category, std::int16_t priority) {
   }
 }
 
-// The threads that can run: a 64-bit word by rank, the highest rank in the top bit, kept as two
-// halves so that one thread's bit is one load, one OR, one store.
-class ReadySet {
+// The threads that can run: one bit each by rank, the highest rank in the top bit of the first
+// word, so that one thread's bit is one load, one OR, one store. Two words hold 64 threads; where
+// there are more (the large profile), the words are looked at in turn, which costs the selection
+// two instructions a word and nothing else.
+template <unsigned kWords>
+class BasicReadySet {
 public:
   // Where a rank's bit stands. Good as long as the set.
   struct Place {
-    std::uint32_t* half = nullptr;
+    std::uint32_t* word = nullptr;
     std::uint32_t bit = 0;
   };
 
   constexpr Place place(unsigned rank) {
-    return {rank < 32 ? &high_ : &low_, std::uint32_t{1} << (31 - rank % 32)};
+    return {&words_[rank / kBits], std::uint32_t{1} << (kBits - 1 - rank % kBits)};
   }
-  static constexpr void insert(Place place) { *place.half |= place.bit; }
-  static constexpr void erase(Place place) { *place.half &= ~place.bit; }
-  static constexpr bool contains(Place place) { return (*place.half & place.bit) != 0; }
+  static constexpr void insert(Place place) { *place.word |= place.bit; }
+  static constexpr void erase(Place place) { *place.word &= ~place.bit; }
+  static constexpr bool contains(Place place) { return (*place.word & place.bit) != 0; }
 
-  // Highest rank in the set; kIdleRank when it is empty.
+  // Highest rank in the set; the number of ranks when it is empty.
   constexpr unsigned first() const {
-    if (high_ != 0) return static_cast<unsigned>(std::countl_zero(high_));
-    return 32 + static_cast<unsigned>(std::countl_zero(low_));
+    for (unsigned w = 0; w + 1 < kWords; ++w)
+      if (words_[w] != 0) return highest(w);
+    return highest(kWords - 1);
   }
 
   // A thread comes in at `rank`: it and all below move down one place. The new place is not ready.
   constexpr void open_place(unsigned rank) {
-    const std::uint64_t below = word() & from(rank);
-    set_word((word() & ~from(rank)) | (below >> 1));
+    const unsigned first = rank / kBits;
+    for (unsigned w = kWords - 1; w > first; --w)
+      words_[w] = words_[w] >> 1 | words_[w - 1] << (kBits - 1);
+    words_[first] = (words_[first] & ~from(rank)) | (words_[first] & from(rank)) >> 1;
   }
   // The thread at `rank` goes: all below move up one place.
   constexpr void close_place(unsigned rank) {
-    const std::uint64_t below = word() & (from(rank) >> 1);
-    set_word((word() & ~from(rank)) | (below << 1));
+    const unsigned first = rank / kBits;
+    words_[first] = (words_[first] & ~from(rank)) | (words_[first] & from(rank) >> 1) << 1;
+    for (unsigned w = first + 1; w < kWords; ++w) {
+      words_[w - 1] |= words_[w] >> (kBits - 1);
+      words_[w] <<= 1;
+    }
   }
 
 private:
-  static constexpr std::uint64_t from(unsigned rank) { return ~std::uint64_t{0} >> rank; }
-  constexpr std::uint64_t word() const { return (std::uint64_t{high_} << 32) | low_; }
-  constexpr void set_word(std::uint64_t word) {
-    high_ = static_cast<std::uint32_t>(word >> 32);
-    low_ = static_cast<std::uint32_t>(word);
+  static constexpr unsigned kBits = 32;
+  static constexpr std::uint32_t from(unsigned rank) { return ~std::uint32_t{0} >> rank % kBits; }
+  constexpr unsigned highest(unsigned w) const {
+    return w * kBits + static_cast<unsigned>(std::countl_zero(words_[w]));
   }
 
-  std::uint32_t high_ = 0;  // ranks 0–31
-  std::uint32_t low_ = 0;   // ranks 32–63
+  std::array<std::uint32_t, kWords> words_{};
 };
+
+using ReadySet = BasicReadySet<kMaxThreads / 32>;
 
 }  // namespace robosync::kernel

@@ -16,35 +16,34 @@ bool may_take(const Claim& claim, const Holding& from) {
 
 }  // namespace
 
-Decision decide(const Claim& claim, std::span<const Holding> holdings, ActuatorMask halted) {
-  Decision decision{.interrupted = 0, .wins = true, .owner = claim.behavior};
-  const Holding& own = holdings[claim.rule];
-  if (own.running && own.side == claim.side && !claim.restarting) {
+Decision decide(const Claim& claim, std::span<const Holding> holdings, const RuleSet& running,
+                ActuatorMask halted) {
+  Decision decision{.interrupted = {}, .wins = true, .owner = claim.behavior};
+  const bool runs = running.has(claim.rule);
+  if (runs && holdings[claim.rule].side == claim.side && !claim.restarting) {
     decision.wins = false;  // already running: the trigger is ignored
     return decision;
   }
-  RuleMask taken = 0;
   std::uint8_t owner = kNobody;
   if ((claim.actuators & halted) != 0) {
     decision.wins = false;
     owner = kSafety;
   }
-  for (unsigned rule = 0; rule < holdings.size(); ++rule) {
+  for (const unsigned rule : running) {
     const Holding& other = holdings[rule];
-    if (!other.running || rule == claim.rule || (other.actuators & claim.actuators) == 0) continue;
+    if (rule == claim.rule || (other.actuators & claim.actuators) == 0) continue;
     if (may_take(claim, other)) {
-      taken |= bit<RuleMask>(rule);
+      decision.interrupted.insert(rule);
     } else {
       decision.wins = false;
       owner = std::min(owner, other.behavior);
     }
   }
-  if (decision.wins) {
-    decision.interrupted = taken;
-  } else {
+  if (!decision.wins) {
+    decision.interrupted.clear();
     decision.owner = owner;
   }
-  if (own.running) decision.interrupted |= bit<RuleMask>(claim.rule);
+  if (runs) decision.interrupted.insert(claim.rule);
   return decision;
 }
 

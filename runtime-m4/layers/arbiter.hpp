@@ -16,6 +16,7 @@
 #include <span>
 
 #include "runtime-m4/layers/messages.hpp"
+#include "runtime-m4/layers/rule_set.hpp"
 
 namespace robosync::layers {
 
@@ -23,7 +24,7 @@ enum class Side : std::uint8_t { otherwise, then };  // the number is the `side`
 
 // A rule triggered and wants its response to run.
 struct Claim {
-  std::uint8_t rule;
+  std::uint16_t rule;
   std::uint8_t behavior;
   Side side;
   ActuatorMask actuators;   // all its response can ever use; it gets all or none
@@ -31,24 +32,23 @@ struct Claim {
   bool retries = false;     // it did not trigger now, but wants to run since earlier
 };
 
-// What a rule has at present. A table of these, by rule, is all there is to know of ownership.
+// What a rule has while its response runs. A table of these, by rule, and the set of those that run
+// are all there is to know of ownership.
 struct Holding {
-  ActuatorMask actuators = 0;  // while `running`
-  ActuatorMask pending = 0;    // of these, the ones with commands not yet done
+  ActuatorBits actuators = 0;
+  ActuatorBits pending = 0;  // of these, the ones with commands not yet done
   std::uint8_t behavior = 0;
-  Side side = Side::then;
-  bool running : 1 = false;
+  Side side : 1 = Side::then;
   bool won_now : 1 = false;  // in this step
-  bool has_run : 1 = false;  // its response began or went on in the millisecond of the last step
 };
 
 struct Decision {
-  RuleMask interrupted = 0;  // running rules that end because of this claim
+  RuleSet interrupted;  // running rules that end because of this claim
   bool wins = false;
   std::uint8_t owner = 0;  // if it does not win: the behaviour in its way, of the highest priority
 };
 
 [[nodiscard]] Decision decide(const Claim& claim, std::span<const Holding> holdings,
-                              ActuatorMask halted = 0);
+                              const RuleSet& running, ActuatorMask halted = 0);
 
 }  // namespace robosync::layers

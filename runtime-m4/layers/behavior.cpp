@@ -27,7 +27,6 @@ bool BehaviorLayer::start_unit(unsigned behavior, Crew& crew) {
   Unit& unit = units_[behavior];
   unit.layer = this;
   unit.behavior = static_cast<std::uint8_t>(behavior);
-  unit.wake = kNever;
   const vm::Behavior& wiring = program_->image.behaviors[behavior];
   kernel::ThreadSpec spec;
   spec.name = name_of(program_->image, wiring.name, "rule");
@@ -44,8 +43,12 @@ bool BehaviorLayer::start_unit(unsigned behavior, Crew& crew) {
 
 // --- called from the step thread ---
 
-void BehaviorLayer::evaluate(BehaviorMask behaviors, const Snapshot& snapshot) {
+void BehaviorLayer::evaluate(const RuleSet& rules, const Snapshot& snapshot) {
   snapshot_ = &snapshot;
+  concerned_ = &rules;
+  BehaviorMask behaviors = 0;
+  for (const unsigned rule : rules)
+    behaviors |= bit<BehaviorMask>(program_->behavior_of[rule]);
   const auto lock = kernel_.lock();  // all of them are ready before the first one runs
   for (BehaviorMask left = behaviors & ~retired_; left != 0; left &= left - 1)
     release(static_cast<unsigned>(std::countr_zero(left)), kEvaluate);
@@ -61,7 +64,7 @@ void BehaviorLayer::go_on(unsigned rule) {
 }
 
 void BehaviorLayer::release(unsigned rule, std::uint16_t code) {
-  rule_ = static_cast<std::uint8_t>(rule);
+  rule_ = static_cast<std::uint16_t>(rule);
   code_ = code;
   result_ = {};
   const unsigned behavior = program_->behavior_of[rule];
@@ -122,8 +125,8 @@ void BehaviorLayer::retire(unsigned behavior) {
   const vm::Behavior& wiring = program_->image.behaviors[behavior];
   for (unsigned r = 0; r < wiring.rule_count; ++r)
     layers_.triggers.retire(wiring.first_rule + r);
-  units_[behavior].wake = kNever;
   retired_ |= bit<BehaviorMask>(behavior);
+  const auto lock = kernel_.lock();
   released_ &= ~bit<BehaviorMask>(behavior);
 }
 
@@ -154,36 +157,33 @@ void BehaviorLayer::latch(const Unit& unit, vm::Machine& machine) {
   machine.wake = kNever;
 }
 
-void BehaviorLayer::evaluate_rules(Unit& unit, vm::Machine& machine) {
-  const vm::Image& image = program_->image;
-  const vm::Behavior& behavior = image.behaviors[unit.behavior];
-  vm::Value* watched = machine.frame + behavior.input_count + behavior.locals;
-  Soonest wake(machine.now);
-  for (unsigned r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count; ++r) {
-    switch (image.rules[r].kind) {
-      case vm::RuleKind::start:
-        layers_.triggers.begin(r);
-        break;
-      case vm::RuleKind::every:
-        evaluate_period(r, machine);
-        wake.at(layers_.triggers.next_period(r));
-        break;
-      case vm::RuleKind::watch:
-        *watched++ = evaluate_rule(r, machine);
-        break;
-      default: {
-        const vm::Value condition = evaluate_rule(r, machine);
-        layers_.triggers.judge(r, condition, machine.event);
-      }
-    }
+void BehaviorLayer::evaluate_rules(const Unit& unit, vm::Machine& machine) {
+  const vm::Behavior& behavior = program_->image.behaviors[unit.behavior];
+  const unsigned end = behavior.first_rule + 0U + behavior.rule_count;
+  for (unsigned r = concerned_->from(behavior.first_rule); r < end; r = concerned_->from(r + 1))
+    judge_rule(r, machine);
+}
+
+void BehaviorLayer::judge_rule(unsigned rule, vm::Machine& machine) {
+  switch (program_->image.rules[rule].kind) {
+    case vm::RuleKind::start:
+      return layers_.triggers.begin(rule);
+    case vm::RuleKind::every:
+      return evaluate_period(rule, machine);
+    case vm::RuleKind::watch:
+      machine.frame[program_->truth_cell[rule]] = evaluate_rule(rule, machine);
+      break;
+    default:
+      const vm::Value condition = evaluate_rule(rule, machine);
+      layers_.triggers.judge(rule, condition, machine.event);
   }
-  wake.at(machine.wake);
-  unit.wake =
-      wake.delay() == kNever ? kNever : machine.now + std::max<std::uint32_t>(wake.delay(), 1);
+  layers_.triggers.note_past(rule, machine.wake, machine.event);
 }
 
 vm::Value BehaviorLayer::evaluate_rule(unsigned rule, vm::Machine& machine) {
   machine.event = false;
+  machine.wake = kNever;
+  if (!port::kTimeFlows) ++evaluations_;
   const vm::Value value =
       vm::evaluate(machine, &program_->image.code[program_->image.rules[rule].condition_start]);
   if (std::exchange(machine.divided_by_zero, false)) layers_.triggers.note_zero_divide(rule);

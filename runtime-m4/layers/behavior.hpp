@@ -1,14 +1,14 @@
 // Behaviour layer: one thread per behaviour, ranked by priority.
 //
 // Released by the step thread, a behaviour copies its inputs from the snapshot into its frame and
-// evaluates the conditions of all its rules; what follows from them is up to Triggers and the step
-// thread. It is released again to run a response, from its beginning or from where it waits; what
-// that sets is staged with the variables, what it puts out the step thread takes from here:
-// commands to the control layer, texts to the trace. It sees its frame and nothing else.
+// evaluates the conditions of those of its rules that the step concerns; what follows from them is
+// up to Triggers and the step thread. It is released again to run a response, from its beginning or
+// from where it waits; what that sets is staged with the variables, what it puts out the step
+// thread takes from here: commands to the control layer, texts to the trace. It sees its frame and
+// nothing else.
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 
 #include "runtime-m4/kernel/kernel.hpp"
@@ -50,20 +50,25 @@ public:
   [[nodiscard]] bool start(const Program& program, Crew& crew);
 
   // --- for the step thread; busy() until all released ones have finished ---
-  void evaluate(BehaviorMask behaviors, const Snapshot& snapshot);
+  // `rules` must stay until then.
+  void evaluate(const RuleSet& rules, const Snapshot& snapshot);
   void respond(unsigned rule, Side side);
   void go_on(unsigned rule);
-  bool busy() const { return released_.load(std::memory_order_relaxed) != 0; }
+  bool busy() const {
+    const auto lock = kernel_.lock();
+    return released_ != 0;
+  }
   // The response has been run: tells what it has put out, stages its commands, and notes where it
   // waits. Not before, so that the behaviours' stacks can be short.
   void conclude(unsigned rule);
   const Place& place(unsigned rule) const { return places_[rule]; }
   void forget_place(unsigned rule) { places_[rule] = {}; }
-  // When the conditions of a behaviour may change although its inputs do not; kNever for never.
-  std::uint32_t wake(unsigned behavior) const { return units_[behavior].wake; }
   void retire(unsigned behavior);  // its thread was stopped
 
   std::uint16_t response_of(unsigned rule, Side side) const;
+
+  // Conditions that were ever evaluated; for tests, on the host.
+  std::uint32_t evaluations() const { return evaluations_; }
 
 private:
   static constexpr kernel::Events kEvaluate = 1;
@@ -72,14 +77,14 @@ private:
   struct Unit {
     BehaviorLayer* layer = nullptr;
     kernel::Thread* thread = nullptr;
-    std::uint32_t wake = vm::Machine::kNever;
     std::uint8_t behavior = 0;
   };
 
   [[nodiscard]] bool start_unit(unsigned behavior, Crew& crew);
   void run(Unit& unit);
   void latch(const Unit& unit, vm::Machine& machine);
-  void evaluate_rules(Unit& unit, vm::Machine& machine);
+  void evaluate_rules(const Unit& unit, vm::Machine& machine);
+  void judge_rule(unsigned rule, vm::Machine& machine);
   vm::Value evaluate_rule(unsigned rule, vm::Machine& machine);
   void evaluate_period(unsigned rule, vm::Machine& machine);
   void run_response(const Unit& unit, vm::Machine& machine);
@@ -94,10 +99,11 @@ private:
   kernel::Events finished_;
   const Program* program_ = nullptr;
   const Snapshot* snapshot_ = nullptr;
-  std::atomic<BehaviorMask> released_ = 0;
+  const RuleSet* concerned_ = nullptr;
+  BehaviorMask released_ = 0;  // under the kernel's lock
   BehaviorMask retired_ = 0;
   // What the behaviour that is released for it runs: the response of which rule, and from where.
-  std::uint8_t rule_ = 0;
+  std::uint16_t rule_ = 0;
   std::uint16_t code_ = 0;
   struct {
     vm::Progress progress;
@@ -105,6 +111,7 @@ private:
   } result_;                  // what came of it
   std::array<Unit, kMaxBehaviors> units_{};
   std::array<Place, kMaxRules> places_{};
+  std::uint32_t evaluations_ = 0;
   // One response runs at a time, so one output is enough.
   std::array<vm::Word, vm::kMaxResponseOutput> output_{};
 };

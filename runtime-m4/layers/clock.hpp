@@ -16,6 +16,12 @@ constexpr bool reached(std::uint32_t time, std::uint32_t now) {
   return static_cast<std::int32_t>(now - time) >= 0;
 }
 
+// `time` comes before `other`; kNever is after all.
+constexpr bool sooner(std::uint32_t time, std::uint32_t other) {
+  if (time == kNever || other == kNever) return time != kNever && other == kNever;
+  return static_cast<std::int32_t>(time - other) < 0;
+}
+
 // The first of several times that are to come; one that is over counts as now.
 class Soonest {
 public:

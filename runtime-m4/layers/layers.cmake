@@ -5,6 +5,7 @@ target_sources(robosync_runtime PRIVATE
   layers/behavior.cpp
   layers/checks.cpp
   layers/command_pool.cpp
+  layers/concern.cpp
   layers/control.cpp
   layers/crew.cpp
   layers/feed_queue.cpp

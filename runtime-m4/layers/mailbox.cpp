@@ -17,6 +17,7 @@ void Mailboxes::reset() {
   boxes_.fill({});
   announced_ = 0;
   forgotten_ = 0;
+  next_expiry_ = kernel::kForever;
 }
 
 bool Mailboxes::post(const Reading& reading, const vm::Channel& channel) {
@@ -24,8 +25,10 @@ bool Mailboxes::post(const Reading& reading, const vm::Channel& channel) {
   Mailbox& box = boxes_[reading.channel()];
   box.sampled_at = reading.time();
   if (box.sequence != 0 && !differs(reading.value(), box.value, channel.change)) return false;
+  const bool was_known = box.sequence != 0;
   box.value = reading.value();
   if (++box.sequence == 0) box.sequence = 1;
+  if (!was_known) next_expiry_ = std::min(next_expiry_, expires_at(reading.channel(), channel));
   return true;
 }
 
@@ -37,11 +40,25 @@ void Mailboxes::announce(InputMask channels) {
 void Mailboxes::forget(unsigned channel) {
   const auto lock = kernel_.lock();
   forgotten_ |= bit<InputMask>(channel);
+  next_expiry_ = 0;
 }
 
 InputMask Mailboxes::take_announced() {
   const auto lock = kernel_.lock();
   return std::exchange(announced_, 0);
+}
+
+InputMask Mailboxes::take_expired(std::span<const vm::Channel> channels, InputMask fresh,
+                                  kernel::Time now) {
+  if (now < next_expiry_) return 0;
+  const auto lock = kernel_.lock();
+  InputMask expired = 0;
+  next_expiry_ = kernel::kForever;
+  for (unsigned c = 0; c < channels.size(); ++c) {
+    if (!has(fresh, c) && expire(c, channels[c], now)) expired |= bit<InputMask>(c);
+    next_expiry_ = std::min(next_expiry_, expires_at(c, channels[c]));
+  }
+  return expired;
 }
 
 bool Mailboxes::expire(unsigned channel, const vm::Channel& wiring, kernel::Time now) {

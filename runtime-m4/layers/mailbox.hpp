@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 
 #include "runtime-m4/kernel/kernel.hpp"
@@ -34,11 +35,13 @@ public:
   vm::Value fresh_value(unsigned channel, const vm::Channel& wiring, kernel::Time now) const {
     return now < expires_at(channel, wiring) ? value(channel) : vm::kUnknown;
   }
-  // True once when the last sample is older than channel.stale_ms, or the channel was forgotten;
-  // then the channel is unknown.
-  [[nodiscard]] bool expire(unsigned channel, const vm::Channel& wiring, kernel::Time now);
-  // When expire() may be true for the first time; kForever for never.
-  kernel::Time expires_at(unsigned channel, const vm::Channel& wiring) const;
+  // Those, but for `fresh` ones, whose last sample is older than channel.stale_ms, or that were
+  // forgotten; each once. They are unknown from now on.
+  [[nodiscard]] InputMask take_expired(std::span<const vm::Channel> channels, InputMask fresh,
+                                       kernel::Time now);
+  // Before this none expires; kForever: none ever does. Readings that come in between put it off,
+  // so that it may be too early.
+  kernel::Time next_expiry() const { return next_expiry_; }
 
 private:
   struct Mailbox {
@@ -47,7 +50,12 @@ private:
     std::uint32_t sequence = 0;  // of the value, from 1; 0: unknown
   };
 
+  [[nodiscard]] bool expire(unsigned channel, const vm::Channel& wiring, kernel::Time now);
+  // When expire() may be true for the first time; kForever for never.
+  kernel::Time expires_at(unsigned channel, const vm::Channel& wiring) const;
+
   kernel::Kernel& kernel_;
+  kernel::Time next_expiry_ = kernel::kForever;
   std::array<Mailbox, kMaxChannels> boxes_{};
   InputMask announced_ = 0;
   InputMask forgotten_ = 0;

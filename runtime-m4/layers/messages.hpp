@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <type_traits>
 
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/limits.hpp"
@@ -19,8 +20,10 @@ namespace robosync::layers {
 using InputMask = std::uint64_t;     // bit i: input i, a channel or, behind them, a variable
 using VariableMask = std::uint32_t;  // bit v: variable v of the image
 using ActuatorMask = std::uint32_t;  // bit a: actuator a
-using RuleMask = std::uint64_t;      // bit r: rule r
-using BehaviorMask = std::uint32_t;  // bit b: behaviour b, 0 being the one of the highest priority
+// … where it is kept for each rule.
+using ActuatorBits = std::conditional_t<kMaxActuators <= 16, std::uint16_t, std::uint32_t>;
+// Bit b: behaviour b, 0 being the one of the highest priority.
+using BehaviorMask = std::conditional_t<kMaxBehaviors <= 32, std::uint32_t, std::uint64_t>;
 
 template <class Mask>
 constexpr Mask bit(unsigned index) {

@@ -36,14 +36,19 @@ bool ProcessingLayer::start(const Program& program) {
                           std::span(snapshot_.values_).subspan(program.image.channels.size()));
   checks_.start(program.image);
   layers_.triggers.start(program.image);
-  holdings_.fill({});
+  holdings_.fill(Holding{});
+  running_.clear();
+  has_run_.clear();
   cancelled_ = 0;
   lost_behaviors_ = 0;
   unstarted_ = 0;
+  untouched_ = 0;
   in_pass_ = false;
-  for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b)
+  for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b) {
+    untouched_ |= bit<BehaviorMask>(b);
     if (starts_at_once(program.image, program.image.behaviors[b]))
       unstarted_ |= bit<BehaviorMask>(b);
+  }
   kernel::ThreadSpec spec;
   spec.name = "step";
   spec.category = kernel::Category::processing;
@@ -87,7 +92,8 @@ void ProcessingLayer::pass() {
   cancelled_ = 0;
   interrupt_lost(lost);
   interrupt_halted(halted);
-  step(due_behaviors(changed) | first);
+  find_concerned(changed, first);
+  step();
 }
 
 std::uint32_t ProcessingLayer::now_ms() const {
@@ -98,26 +104,25 @@ std::uint32_t ProcessingLayer::now_ms() const {
 
 void ProcessingLayer::finish_done() {
   const ActuatorMask idle = layers_.control.take_idle();
-  for (unsigned r = 0; r < rules(); ++r) {
-    Holding& holding = holdings_[r];
+  for (const unsigned rule : running_) {
+    Holding& holding = holdings_[rule];
     holding.won_now = false;
-    holding.pending &= ~idle;
-    finish_if_done(r);
+    holding.pending = static_cast<ActuatorBits>(holding.pending & ~idle);
+    finish_if_done(rule);
   }
 }
 
 void ProcessingLayer::finish_if_done(unsigned rule) {
-  Holding& holding = holdings_[rule];
-  if (!holding.running || holding.pending != 0) return;
+  if (holdings_[rule].pending != 0) return;
   if (layers_.behaviors.place(rule).pause != vm::Pause::ended) return;
-  holding.running = false;
+  running_.erase(rule);
   trace_.emit(EventKind::finished, trace_.now(), rule);
 }
 
 ActuatorMask ProcessingLayer::owned() const {
   ActuatorMask owned = 0;
-  for (const Holding& holding : holdings())
-    if (holding.running) owned |= holding.actuators;
+  for (const unsigned rule : running_)
+    owned |= holdings_[rule].actuators;
   return owned;
 }
 
@@ -137,12 +142,12 @@ bool ProcessingLayer::latch(bool anyway, InputMask& changed) {
 InputMask ProcessingLayer::latch_channels(Stamp stamp) {
   const InputMask announced = layers_.mailboxes.take_announced();
   const kernel::Time now = stamp.time + trace_.activated_at();
-  InputMask changed = 0;
-  for (unsigned c = 0; c < program_->image.channels.size(); ++c) {
+  const InputMask changed =
+      announced | layers_.mailboxes.take_expired(program_->image.channels, announced, now);
+  for (InputMask left = changed; left != 0; left &= left - 1) {
+    const auto c = static_cast<unsigned>(std::countr_zero(left));
     const bool fresh = has(announced, c);
-    if (!fresh && !layers_.mailboxes.expire(c, program_->image.channels[c], now)) continue;
     trace_.begin_step(stamp);
-    changed |= bit<InputMask>(c);
     const vm::Value value = fresh ? layers_.mailboxes.value(c) : vm::kUnknown;
     snapshot_.values_[c] = value;
     if (fresh) {
@@ -183,42 +188,36 @@ std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
   if (layers_.variables.staged()) due.at(set_due_);
   due.in(layers_.variables.next_fade(now, std::span(snapshot_.values_).subspan(channels())));
   due.in(checks_.next(now));
-  for (unsigned b = program_->first_behavior(); b < program_->image.behaviors.size(); ++b)
-    due.at(layers_.behaviors.wake(b));
-  for (unsigned r = 0; r < rules(); ++r)
-    add_rule(r, due, now);
+  due.at(layers_.triggers.next_wake());
+  for (const unsigned rule : running_)
+    add_waiting(rule, due);
+  for (const unsigned rule : layers_.triggers.active())
+    if (!running_.has(rule)) add_wanting(rule, due, now);
   return due.delay();
 }
 
-// A response that waits; a rule that wants to run and may.
-void ProcessingLayer::add_rule(unsigned rule, Soonest& due, std::uint32_t now) const {
-  const std::uint32_t earliest = has_run(rule, now) ? now + 1 : now;
-  if (holdings_[rule].running) {
-    const BehaviorLayer::Place& place = layers_.behaviors.place(rule);
-    if (place.pause == vm::Pause::ended) return;
-    if (place.pause == vm::Pause::until_done && holdings_[rule].pending != 0) return;
-    due.at(place.wake);
-    return;
-  }
+// A response that waits.
+void ProcessingLayer::add_waiting(unsigned rule, Soonest& due) const {
+  const BehaviorLayer::Place& place = layers_.behaviors.place(rule);
+  if (place.pause == vm::Pause::ended) return;
+  if (place.pause == vm::Pause::until_done && holdings_[rule].pending != 0) return;
+  due.at(place.wake);
+}
+
+// A rule that wants to run and may.
+void ProcessingLayer::add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const {
   due.at(layers_.triggers.cooled_at(rule));
   Claim claim{};
   bool silent = false;
-  if (claim_of(rule, claim, silent) && decide(claim, holdings(), layers_.control.halted()).wins)
-    due.at(earliest);
+  if (claim_of(rule, claim, silent) && decide_now(claim).wins)
+    due.at(has_run(rule, now) ? now + 1 : now);
 }
 
 kernel::Time ProcessingLayer::next_time() const {
   const std::uint32_t delay = next_due(now_ms());
   const kernel::Time due =
       delay == kNever ? kernel::kForever : kernel_.now() + kernel::milliseconds(delay);
-  return std::min(due, next_expiry());
-}
-
-kernel::Time ProcessingLayer::next_expiry() const {
-  kernel::Time next = kernel::kForever;
-  for (unsigned c = 0; c < program_->image.channels.size(); ++c)
-    next = std::min(next, layers_.mailboxes.expires_at(c, program_->image.channels[c]));
-  return next;
+  return std::min(due, layers_.mailboxes.next_expiry());
 }
 
 // --- threads that were stopped ---

@@ -5,9 +5,12 @@
 // activation. Reasons are: readings were announced or became too old, a thread was stopped, safety
 // halted something that was at work, or something is due (next_due()). Inside a step:
 //
-//   latch → behaviours that read a changed input, or are due, evaluate → claims are decided →
-//   responses run: those that go on and those that won → cancellations, then commands, are
-//   committed
+//   latch → rules that read a changed input, or are due, are evaluated by their behaviours → claims
+//   are decided → responses run: those that go on and those that won → cancellations, then
+//   commands, are committed
+//
+// So a step costs what the rules cost that it concerns, and those that run, wait or want to run;
+// the others cost nothing (concern.cpp).
 //
 // What a step causes by itself (SET and SIGNAL, a WHILE that starts again, the end of a wait) is
 // due in the next millisecond at the earliest, so the number of steps at one time is bounded by
@@ -93,6 +96,10 @@ public:
   bool resting() const;
   std::uint32_t passes() const { return passes_.load(std::memory_order_relaxed); }
 
+  // For tests, on the host: evaluates all rules of a behaviour when one of them is concerned, which
+  // must make no difference.
+  void evaluate_all() { evaluates_all_ = true; }
+
 private:
   // --- processing.cpp: passes, and what makes a step ---
   void run();
@@ -106,34 +113,39 @@ private:
   void report_set(unsigned variable, Stamp stamp);
   std::uint32_t now_ms() const;
   std::uint32_t next_due(std::uint32_t now) const;
-  void add_rule(unsigned rule, Soonest& due, std::uint32_t now) const;
+  void add_waiting(unsigned rule, Soonest& due) const;
+  void add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const;
   kernel::Time next_time() const;
-  kernel::Time next_expiry() const;
   void note_stops();
   void retire(const Crew::Member& member);
 
+  // --- concern.cpp: what a step is about ---
+  void find_concerned(InputMask changed, BehaviorMask begins);
+  void concern_all(unsigned behavior);
+  bool stirred(unsigned behavior) const;
+
   // --- step.cpp: what happens in one ---
-  void step(BehaviorMask released);
-  BehaviorMask due_behaviors(InputMask changed) const;
+  void step();
   void interrupt_lost(BehaviorMask lost);
   void interrupt_halted(ActuatorMask halted);
   void report_triggers();
   void interrupt_over();
   void arbitrate();
   bool claim_of(unsigned rule, Claim& claim, bool& silent) const;
+  Decision decide_now(const Claim& claim) const {
+    return decide(claim, holdings_, running_, layers_.control.halted());
+  }
   void serve(const Claim& claim, bool silent);
   void interrupt(unsigned rule, unsigned by);
-  bool goes_on(unsigned rule, BehaviorMask released) const;
-  void run_responses(BehaviorMask released);
+  bool goes_on(unsigned rule) const;
+  void run_responses();
   void commit();
   void report(const Claim& claim, link::EventKind kind, unsigned object = 0);
 
   unsigned channels() const { return static_cast<unsigned>(program_->image.channels.size()); }
-  unsigned rules() const { return static_cast<unsigned>(program_->image.rules.size()); }
-  std::span<const Holding> holdings() const { return std::span(holdings_).first(rules()); }
   // It has run in this millisecond, and must not again.
   bool has_run(unsigned rule, std::uint32_t now) const {
-    return now == ran_at_ && holdings_[rule].has_run;
+    return now == ran_at_ && has_run_.has(rule);
   }
 
   template <class Pending>
@@ -150,13 +162,20 @@ private:
   Checks checks_;
   Snapshot snapshot_;
   std::array<Holding, kMaxRules> holdings_{};
-  std::uint32_t ran_at_ = 0;         // millisecond of the last step: of Holding::has_run
+  RuleSet running_;                  // their responses run, or wait
+  RuleSet has_run_;                  // … began or went on in the millisecond of the last step
+  RuleSet concerned_;                // evaluated in this step
+  InputMask changed_ = 0;            // in this step
+  BehaviorMask woken_ = 0;           // have a rule whose time has come in this step
+  BehaviorMask untouched_ = 0;       // no rule of theirs was ever evaluated
+  std::uint32_t ran_at_ = 0;         // millisecond of the last step
   std::uint32_t set_due_ = 0;        // when what is staged may take effect
   ActuatorMask cancelled_ = 0;       // in this step
   BehaviorMask lost_behaviors_ = 0;  // stopped; their responses are still to be interrupted
   BehaviorMask unstarted_ = 0;       // have something to do before the first reading
   std::atomic<std::uint32_t> passes_ = 0;
   std::atomic<bool> in_pass_ = false;
+  bool evaluates_all_ = false;
 };
 
 }  // namespace robosync::layers

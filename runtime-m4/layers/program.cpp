@@ -6,6 +6,24 @@
 #include "vm/timers.hpp"
 
 namespace robosync::layers {
+namespace {
+
+// By opcode, bit i: operand i is a cell that is read. The verifier's table has more in it, and
+// vm::kOpcodes has the documentation, which is not for the board.
+constexpr std::array<std::uint8_t, vm::kOpcodes.size()> kReads = [] {
+  std::array<std::uint8_t, vm::kOpcodes.size()> reads{};
+  for (std::size_t op = 0; op < reads.size(); ++op) {
+    unsigned mask = 0;
+    for (unsigned i = 0; i < 3; ++i) {
+      const vm::Operand kind = vm::kOpcodes[op].operands[i];
+      if (kind == vm::Operand::read || kind == vm::Operand::read_truth) mask |= 1U << i;
+    }
+    reads[op] = static_cast<std::uint8_t>(mask);
+  }
+  return reads;
+}();
+
+}  // namespace
 
 bool is_fed(const vm::Sensor& sensor) {
   return sensor.period_ms == 0 || sensor.driver == vm::DriverId::virtual_sensor;
@@ -13,6 +31,7 @@ bool is_fed(const vm::Sensor& sensor) {
 
 void Program::load(const vm::Image& loaded) {
   image = loaded;
+  readers.fill({});
   std::uint16_t cell = 0;
   for (unsigned b = 0; b < image.behaviors.size(); ++b) {
     const vm::Behavior& behavior = image.behaviors[b];
@@ -22,8 +41,31 @@ void Program::load(const vm::Image& loaded) {
     for (const std::uint8_t input :
          image.inputs.subspan(behavior.first_input, behavior.input_count))
       inputs[b] |= bit<InputMask>(input);
-    for (unsigned r = 0; r < behavior.rule_count; ++r)
-      behavior_of[behavior.first_rule + r] = static_cast<std::uint8_t>(b);
+    load_rules(b);
+  }
+}
+
+// SAFETY rules are evaluated all together, whatever changes: nobody looks them up.
+void Program::load_rules(unsigned b) {
+  const vm::Behavior& behavior = image.behaviors[b];
+  unsigned cell = behavior.input_count + 0U + behavior.locals;
+  for (unsigned r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count; ++r) {
+    behavior_of[r] = static_cast<std::uint8_t>(b);
+    if (image.rules[r].kind == vm::RuleKind::watch)
+      truth_cell[r] = static_cast<std::uint8_t>(cell++);
+    if (b >= first_behavior()) note_readings(behavior, r);
+  }
+}
+
+void Program::note_readings(const vm::Behavior& behavior, unsigned rule) {
+  const vm::Rule& wiring = image.rules[rule];
+  for (vm::Word word : image.code.subspan(wiring.condition_start, wiring.condition_length)) {
+    for (unsigned reads = kReads[word & 0xFF]; reads != 0; reads >>= 1) {
+      word >>= 8;
+      const std::size_t cell = word & 0xFF;
+      if ((reads & 1) != 0 && cell < behavior.input_count)
+        readers[image.inputs[behavior.first_input + cell]].insert(rule);
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "runtime-m4/layers/messages.hpp"
+#include "runtime-m4/layers/rule_set.hpp"
 #include "vm/image.hpp"
 #include "vm/verifier.hpp"
 
@@ -12,8 +13,10 @@ namespace robosync::layers {
 
 struct Program {
   vm::Image image;
-  std::array<InputMask, kMaxBehaviors> inputs{};          // that each behaviour reads
+  std::array<InputMask, kMaxBehaviors> inputs{};  // that each behaviour reads
+  std::array<RuleSet, kMaxInputs> readers{};      // by input: the rules whose conditions read it
   std::array<std::uint8_t, kMaxRules> behavior_of{};      // by rule
+  std::array<std::uint8_t, kMaxRules> truth_cell{};       // of a WATCH: where its truth is kept
   std::array<std::uint16_t, kMaxBehaviors> first_cell{};  // in the shared frame memory
 
   // `image` is verified and fits().
@@ -35,6 +38,10 @@ struct Program {
   bool has_fed_sensors() const;
   // Lowest priority a thread of this program can have: of those that no behaviour needs.
   std::int16_t idle_priority() const;
+
+private:
+  void load_rules(unsigned behavior);
+  void note_readings(const vm::Behavior& behavior, unsigned rule);
 };
 
 // Its readings come from outside, at any time: it is not sampled.

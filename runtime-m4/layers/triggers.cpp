@@ -17,11 +17,21 @@ std::uint32_t milliseconds_of(vm::Value thousandths) {
   return static_cast<std::uint32_t>(std::max<vm::Value>(thousandths, 0));
 }
 
+// kNever is no time: the millisecond after it is taken, once in 49 days.
+std::uint32_t as_time(std::uint32_t time) {
+  return time == kNever ? 0 : time;
+}
+
 }  // namespace
 
 void Triggers::start(const vm::Image& image) {
   image_ = &image;
   states_.fill(State{});
+  times_.fill({});
+  eventful_.clear();
+  active_.clear();
+  sleeping_.clear();
+  first_to_wake_ = kNobody;
 }
 
 const vm::Modifiers& Triggers::modifiers(unsigned rule) const {
@@ -54,37 +64,68 @@ void Triggers::begin(unsigned rule) {
 }
 
 bool Triggers::begin_period(unsigned rule, std::uint32_t now) {
-  State& state = states_[rule];
-  if (!state.has_period) return true;
-  if (!reached(state.period_end, now)) return false;
-  state.trigger = Trigger::then;
+  if (due(rule) == kNever) return true;
+  if (!reached(due(rule), now)) return false;
+  states_[rule].trigger = Trigger::then;
   return true;
 }
 
 // Counted from the end of the last period, so that they do not drift; one that is over already is
 // skipped.
 void Triggers::draw_period(unsigned rule, vm::Value thousandths, std::uint32_t now) {
-  State& state = states_[rule];
-  const std::uint32_t begin = state.has_period ? state.period_end : now;
-  state.has_period = thousandths != vm::kUnknown;
-  if (!state.has_period) return;
-  state.period_end = begin + std::max<std::uint32_t>(milliseconds_of(thousandths), 1);
-  if (reached(state.period_end, now)) state.period_end = now + 1;
+  const std::uint32_t begin = due(rule) != kNever ? due(rule) : now;
+  std::uint32_t end = begin + std::max<std::uint32_t>(milliseconds_of(thousandths), 1);
+  if (reached(end, now)) end = now + 1;
+  times_[rule].due = thousandths == vm::kUnknown ? kNever : as_time(end);
 }
 
-std::uint32_t Triggers::next_period(unsigned rule) const {
-  const State& state = states_[rule];
-  return state.has_period ? state.period_end : kNever;
+void Triggers::note_past(unsigned rule, std::uint32_t wake, bool event) {
+  times_[rule].due = wake;
+  states_[rule].event = event;
 }
 
 // --- what follows from it ---
 
+void Triggers::collect(const RuleSet& evaluated) {
+  const unsigned first = first_to_wake_;
+  bool first_is_gone = false;
+  for (const unsigned rule : evaluated) {
+    eventful_.put(rule, states_[rule].event);
+    sleeping_.put(rule, due(rule) != kNever);
+    note_active(rule);
+    if (rule == first) first_is_gone = true;
+    if (sooner(due(rule), next_wake())) first_to_wake_ = static_cast<std::uint16_t>(rule);
+  }
+  if (first_is_gone) find_first_to_wake();
+}
+
+// It ends a phase, or a WHILE that holds.
+void Triggers::note_active(unsigned rule) {
+  const State& state = states_[rule];
+  active_.put(rule, state.phase != Phase::free || (is_while(rule) && state.truth == Truth::yes));
+}
+
+void Triggers::find_first_to_wake() {
+  first_to_wake_ = kNobody;
+  for (const unsigned rule : sleeping_)
+    if (sooner(due(rule), next_wake())) first_to_wake_ = static_cast<std::uint16_t>(rule);
+}
+
+void Triggers::add_woken(std::uint32_t now, RuleSet& rules) const {
+  if (next_wake() == kNever || !reached(next_wake(), now)) return;
+  for (const unsigned rule : sleeping_)
+    if (reached(due(rule), now)) rules.insert(rule);
+}
+
 void Triggers::settle(std::uint32_t now) {
-  for (State& state : states_) {
+  for (const unsigned rule : active_) {
+    State& state = states_[rule];
+    const std::uint32_t until = times_[rule].until;
     const bool cooling = state.phase == Phase::cooling;
-    const bool over = cooling ? reached(state.until, now) : !reached(now, state.until);
+    const bool over = cooling ? reached(until, now) : !reached(now, until);
     if (over) state.phase = Phase::free;
     if (cooling && !over) state.trigger = Trigger::none;
+    note_active(rule);
   }
 }
 
@@ -123,7 +164,8 @@ void Triggers::won(unsigned rule, std::uint32_t now) {
   const std::uint32_t cooldown = milliseconds_of(modifiers(rule).cooldown);
   state.told = false;
   state.phase = cooldown > 0 ? Phase::cooling : Phase::free;
-  state.until = now + cooldown;
+  times_[rule].until = now + cooldown;
+  note_active(rule);
 }
 
 // A WHILE goes on wanting anyway; and who runs already does not wait for himself.
@@ -133,22 +175,28 @@ void Triggers::lost(unsigned rule, Side side, bool to_itself, std::uint32_t now)
   const std::uint32_t waiting = milliseconds_of(modifiers(rule).waiting);
   if (state.trigger == Trigger::none || waiting == 0 || to_itself || is_while(rule)) return;
   state.phase = side == Side::then ? Phase::wants_then : Phase::wants_otherwise;
-  state.until = now + waiting;
+  times_[rule].until = now + waiting;
+  active_.insert(rule);
 }
 
-void Triggers::forget_all() {
-  for (State& state : states_)
-    state.trigger = Trigger::none;
+void Triggers::forget(const RuleSet& triggers) {
+  for (const unsigned rule : triggers)
+    states_[rule].trigger = Trigger::none;
 }
 
 void Triggers::retire(unsigned rule) {
   states_[rule] = State{};
+  times_[rule] = {};
+  eventful_.erase(rule);
+  active_.erase(rule);
+  sleeping_.erase(rule);
+  if (rule == first_to_wake_) find_first_to_wake();
 }
 
 std::uint32_t Triggers::cooled_at(unsigned rule) const {
   const State& state = states_[rule];
   const bool cools = is_while(rule) && state.truth == Truth::yes && state.phase == Phase::cooling;
-  return cools ? state.until : kNever;
+  return cools ? times_[rule].until : kNever;
 }
 
 }  // namespace robosync::layers

@@ -6,15 +6,19 @@
 // so a sensor that drops out and comes back does not trigger by that alone. WHILE is other: unknown
 // ends it, so that it fires again when its condition is known to be true.
 //
-// The behaviours' threads say what they have evaluated, each of its own rules; the step thread asks
-// what follows from it. Times are milliseconds of program time.
+// The behaviours' threads say what they have evaluated, each of its own rules; the step thread
+// collects that and asks what follows from it. What is not free of the past (a wait, a cooldown, a
+// WHILE that holds, a time word) is in a set, so that all other rules cost a step nothing. The sets
+// belong to the step thread. Times are milliseconds of program time.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
 #include "runtime-m4/layers/arbiter.hpp"
+#include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/layers/messages.hpp"
+#include "runtime-m4/layers/rule_set.hpp"
 #include "vm/interpreter.hpp"
 
 namespace robosync::layers {
@@ -30,10 +34,24 @@ public:
   // EVERY: it triggers if its time has come. True when its next period is to be drawn.
   [[nodiscard]] bool begin_period(unsigned rule, std::uint32_t now);
   void draw_period(unsigned rule, vm::Value thousandths, std::uint32_t now);
-  std::uint32_t next_period(unsigned rule) const;
+  // Its condition may change at `wake` (kNever: not by itself); it had an event, which is over in
+  // the next evaluation.
+  void note_past(unsigned rule, std::uint32_t wake, bool event);
   void note_zero_divide(unsigned rule) { states_[rule].zero_divide = true; }
 
   // --- for the step thread ---
+  // These were evaluated, and no behaviour is at work any more.
+  void collect(const RuleSet& evaluated);
+  // Those whose last evaluation had an event.
+  const RuleSet& eventful() const { return eventful_; }
+  // Those that cool down, or may want to run without a new trigger.
+  const RuleSet& active() const { return active_; }
+  // The first time at which one is to be evaluated again; kNever for never.
+  std::uint32_t next_wake() const {
+    return first_to_wake_ == kNobody ? kNever : due(first_to_wake_);
+  }
+  // Adds those whose time has come.
+  void add_woken(std::uint32_t now, RuleSet& rules) const;
   struct Wish {
     Side side;
     bool fresh;   // it triggered in this step
@@ -53,8 +71,7 @@ public:
   void won(unsigned rule, std::uint32_t now);
   void lost(unsigned rule, Side side, bool to_itself, std::uint32_t now);
   void interrupted(unsigned rule) { states_[rule].told = true; }
-  void forget(unsigned rule) { states_[rule].trigger = Trigger::none; }
-  void forget_all();
+  void forget(const RuleSet& triggers);
   // Its behaviour was stopped: it never triggers again.
   void retire(unsigned rule);
   // When a WHILE that cools down may start again; kNever for never.
@@ -66,21 +83,32 @@ private:
   enum class Phase : std::uint8_t { free, cooling, wants_otherwise, wants_then };
 
   struct State {
-    std::uint32_t period_end = 0;  // EVERY
-    std::uint32_t until = 0;       // end of a phase other than `free`
     Truth truth : 2 = Truth::unknown;
     Trigger trigger : 2 = Trigger::none;
     Phase phase : 2 = Phase::free;
     bool told : 1 = false;  // WHILE: that it wants to run and does not
-    bool has_period : 1 = false;
+    bool event : 1 = false;
     bool zero_divide = false;
   };
+  struct Times {
+    std::uint32_t due = kNever;  // when it is to be evaluated again; EVERY: the end of its period
+    std::uint32_t until = 0;     // end of a phase other than `free`
+  };
+  static constexpr unsigned kNobody = kMaxRules;
 
   bool is_while(unsigned rule) const { return image_->rules[rule].kind == vm::RuleKind::while_; }
   const vm::Modifiers& modifiers(unsigned rule) const;
+  std::uint32_t due(unsigned rule) const { return times_[rule].due; }
+  void note_active(unsigned rule);
+  void find_first_to_wake();
 
   const vm::Image* image_ = nullptr;
   std::array<State, kMaxRules> states_{};
+  std::array<Times, kMaxRules> times_{};
+  RuleSet eventful_;
+  RuleSet active_;
+  RuleSet sleeping_;  // those that are due at some time
+  std::uint16_t first_to_wake_ = kNobody;
 };
 
 }  // namespace robosync::layers

@@ -40,10 +40,13 @@ void Variables::start(const vm::Image& image, std::span<vm::Value> values) {
   entered_ = 0;
   staged_ = 0;
   set_ = 0;
+  fading_ = 0;
   unsigned fading = 0;
   for (unsigned v = 0; v < image_->variables.size(); ++v) {
     values[v] = image_->variables[v].initial;
-    if (image_->variables[v].fade != 0) fades_[fading++] = {.from = values[v], .since = 0};
+    if (image_->variables[v].fade == 0) continue;
+    fading_ |= bit<VariableMask>(v);
+    fades_[fading++] = {.from = values[v], .since = 0};
   }
 }
 
@@ -106,7 +109,8 @@ VariableMask Variables::enter(std::uint32_t now, std::span<vm::Value> values) {
   VariableMask changed = 0;
   unsigned fading = 0;
   entered_ = now;
-  for (unsigned v = 0; v < image_->variables.size(); ++v) {
+  for (VariableMask left = staged_ | fading_; left != 0; left &= left - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(left));
     const vm::Variable& wiring = image_->variables[v];
     Fade* const fade = wiring.fade != 0 ? &fades_[fading++] : nullptr;
     vm::Value value = values[v];
@@ -130,8 +134,8 @@ VariableMask Variables::enter(std::uint32_t now, std::span<vm::Value> values) {
 std::uint32_t Variables::next_fade(std::uint32_t now, std::span<const vm::Value> values) const {
   Soonest next(now);
   unsigned fading = 0;
-  for (unsigned v = 0; v < image_->variables.size(); ++v) {
-    if (image_->variables[v].fade == 0) continue;
+  for (VariableMask left = fading_; left != 0; left &= left - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(left));
     const std::uint32_t since = fades_[fading++].since;
     if (values[v] == image_->variables[v].fades_to) continue;
     next.at(since + (ticks_since(since, entered_) + 1) * vm::kFadeTickMs);

@@ -69,6 +69,7 @@ private:
   kernel::Kernel& kernel_;
   const vm::Image* image_ = nullptr;
   std::uint32_t entered_ = 0;  // when enter() was called last
+  VariableMask fading_ = 0;
   VariableMask staged_ = 0;
   VariableMask set_ = 0;  // of these, the ones of which the sum ends with a SET
   std::array<vm::Value, kMaxVariables> sums_{};

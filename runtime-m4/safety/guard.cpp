@@ -11,7 +11,6 @@
 namespace robosync::safety {
 
 using layers::ActuatorMask;
-using layers::RuleMask;
 using link::EventKind;
 
 namespace {
@@ -24,7 +23,7 @@ ActuatorMask actuators_of(const vm::Image& image, std::uint8_t target) {
 
 void Guard::start(const layers::Program& program) {
   program_ = &program;
-  tripped_ = 0;
+  tripped_.clear();
   layers_.alarm.watch(program.has_safety() ? program.inputs[kSafety] : 0);
   if (program.has_safety()) machine_ = layers_.frames.machine(program, kSafety);
 }
@@ -52,7 +51,7 @@ void Guard::evaluate(unsigned rule) {
       rule + 1 < image.rules.size() && image.rules[rule + 1].kind == vm::RuleKind::resume;
   const vm::Value safe_again = can_resume ? truth_of(rule + 1) : vm::kFalse;
   const bool measured = layers_.trace.program_time() >= kPeriod;
-  if (!layers::has(tripped_, rule)) {
+  if (!tripped_.has(rule)) {
     if (danger == vm::kTrue || (danger == vm::kUnknown && measured)) trip(rule);
   } else if (danger == vm::kFalse && safe_again == vm::kTrue) {
     resume(rule);
@@ -68,7 +67,7 @@ vm::Value Guard::truth_of(unsigned rule) {
 }
 
 void Guard::trip(unsigned rule) {
-  tripped_ |= layers::bit<RuleMask>(rule);
+  tripped_.insert(rule);
   layers_.trace.emit(EventKind::trip, layers_.trace.now(), rule);
   const vm::Image& image = program_->image;
   machine_.output = output_.data();
@@ -95,11 +94,11 @@ void Guard::act(const vm::Output& said) {
 }
 
 void Guard::resume(unsigned rule) {
-  tripped_ &= ~layers::bit<RuleMask>(rule);
+  tripped_.erase(rule);
   layers_.trace.emit(EventKind::resume, layers_.trace.now(), rule);
   ActuatorMask still = 0;
-  for (unsigned r = 0; r < program_->image.rules.size(); ++r)
-    if (layers::has(tripped_, r)) still |= halted_by(r);
+  for (const unsigned tripped : tripped_)
+    still |= halted_by(tripped);
   layers_.control.let_go(halted_by(rule) & ~still);
 }
 

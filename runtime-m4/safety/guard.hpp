@@ -20,14 +20,13 @@
 #include "runtime-m4/layers/program.hpp"
 #include "runtime-m4/layers/trace.hpp"
 #include "runtime-m4/layers/variables.hpp"
+#include "runtime-m4/safety/period.hpp"
 #include "vm/output.hpp"
 
 namespace robosync::safety {
 
 class Guard {
 public:
-  static constexpr kernel::Duration kPeriod = kernel::milliseconds(10);
-
   struct Neighbours {
     layers::Trace& trace;
     layers::Mailboxes& mailboxes;
@@ -65,7 +64,7 @@ private:
   kernel::Thread& step_thread_;
   kernel::Events acted_;  // signalled when something was set
   const layers::Program* program_ = nullptr;
-  layers::RuleMask tripped_ = 0;
+  layers::RuleSet tripped_;
   vm::Machine machine_;
   std::array<vm::Word, layers::kMaxSafetyOutput> output_{};
 };

@@ -14,6 +14,7 @@
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/limits.hpp"
+#include "runtime-m4/safety/period.hpp"
 
 namespace robosync::safety {
 
@@ -34,7 +35,6 @@ protected:
 
 class Monitor {
 public:
-  static constexpr kernel::Duration kPeriod = kernel::milliseconds(10);
   static constexpr unsigned kPatience = 5;
 
   Monitor(kernel::Kernel& kernel, boards::Board& board, Patient& patient)

@@ -30,42 +30,52 @@ TEST_CASE("the empty ready set selects idle") {
   CHECK(ReadySet{}.first() == kIdleRank);
 }
 
-// One operation on the set: bit 7..6 what, bit 5..0 the rank.
-TEST_CASE("the ready set behaves like a set of ranks") {
-  const bool holds = rc::check([](const std::vector<std::uint8_t>& operations) {
-    ReadySet ready;
-    std::set<unsigned> model;
-    for (const std::uint8_t operation : operations) {
-      const unsigned rank = operation % kMaxThreads;
-      std::set<unsigned> moved;
-      switch (operation / kMaxThreads) {
-        case 0:
-          ReadySet::insert(ready.place(rank));
-          model.insert(rank);
-          break;
-        case 1:
-          ReadySet::erase(ready.place(rank));
-          model.erase(rank);
-          break;
-        case 2:
-          ready.open_place(rank);
-          for (const unsigned r : model)
-            moved.insert(r < rank ? r : r + 1);
-          moved.erase(kMaxThreads);  // the last place falls off; the kernel never fills it
-          model = moved;
-          break;
-        default:
-          ready.close_place(rank);
-          for (const unsigned r : model) {
-            if (r != rank) moved.insert(r < rank ? r : r - 1);
-          }
-          model = moved;
-      }
-      RC_ASSERT(ready.first() == (model.empty() ? kIdleRank : *model.begin()));
-      for (unsigned r = 0; r < kMaxThreads; ++r) {
-        RC_ASSERT(ReadySet::contains(ready.place(r)) == model.contains(r));
-      }
+namespace {
+
+// Are these operations on a ready set the same as on a set of ranks? Each is one of four, and a
+// rank.
+template <unsigned kWords>
+void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
+  constexpr unsigned kRanks = kWords * 32;
+  using Ready = BasicReadySet<kWords>;
+  Ready ready;
+  std::set<unsigned> model;
+  for (const std::uint16_t operation : operations) {
+    const unsigned rank = operation % kRanks;
+    std::set<unsigned> moved;
+    switch (operation / kRanks % 4) {
+      case 0:
+        Ready::insert(ready.place(rank));
+        model.insert(rank);
+        break;
+      case 1:
+        Ready::erase(ready.place(rank));
+        model.erase(rank);
+        break;
+      case 2:
+        ready.open_place(rank);
+        for (const unsigned r : model)
+          moved.insert(r < rank ? r : r + 1);
+        moved.erase(kRanks);  // the last place falls off; the kernel never fills it
+        model = moved;
+        break;
+      default:
+        ready.close_place(rank);
+        for (const unsigned r : model) {
+          if (r != rank) moved.insert(r < rank ? r : r - 1);
+        }
+        model = moved;
     }
-  });
-  CHECK(holds);
+    RC_ASSERT(ready.first() == (model.empty() ? kRanks : *model.begin()));
+    for (unsigned r = 0; r < kRanks; ++r) {
+      RC_ASSERT(Ready::contains(ready.place(r)) == model.contains(r));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the ready set behaves like a set of ranks") {
+  CHECK(rc::check("64 of them", behaves_like_a_set<2>));
+  CHECK(rc::check("128 of them", behaves_like_a_set<4>));
 }

@@ -83,38 +83,48 @@ private:
   }
 };
 
-// What ProcessingLayer does with a decision, and nothing else.
-void apply(const Claim& claim, const Decision& decision, std::vector<Holding>& holdings) {
-  for (unsigned r = 0; r < holdings.size(); ++r)
-    if (has(decision.interrupted, r)) holdings[r].running = false;
-  if (!decision.wins) return;
-  holdings[claim.rule] = {.actuators = claim.actuators,
-                          .pending = claim.actuators,
-                          .behavior = claim.behavior,
-                          .side = claim.side,
-                          .running = true,
-                          .won_now = true};
-}
+// What the arbiter is told of the responses that run.
+struct Table {
+  explicit Table(std::size_t rules) : holdings(rules) {}
 
-void begin_step(Model& model, std::vector<Holding>& holdings) {
+  Decision decide(const Claim& claim) const {
+    return robosync::layers::decide(claim, holdings, running);
+  }
+  // What ProcessingLayer does with a decision, and nothing else.
+  void apply(const Claim& claim, const Decision& decision) {
+    for (const unsigned rule : decision.interrupted)
+      running.erase(rule);
+    if (!decision.wins) return;
+    running.insert(claim.rule);
+    const auto actuators = static_cast<ActuatorBits>(claim.actuators);
+    holdings[claim.rule] = Holding{.actuators = actuators,
+                                   .pending = actuators,
+                                   .behavior = claim.behavior,
+                                   .side = claim.side,
+                                   .won_now = true};
+  }
+  bool disjoint() const {
+    ActuatorMask seen = 0;
+    for (const unsigned rule : running) {
+      if ((seen & holdings[rule].actuators) != 0) return false;
+      seen |= holdings[rule].actuators;
+    }
+    return true;
+  }
+
+  std::vector<Holding> holdings;
+  RuleSet running;
+};
+
+void begin_step(Model& model, Table& table) {
   model.started_now.clear();
-  for (Holding& holding : holdings)
+  for (Holding& holding : table.holdings)
     holding.won_now = false;
 }
 
 Claim claim(std::uint8_t rule, std::uint8_t behavior, ActuatorMask actuators,
             Side side = Side::then) {
   return {.rule = rule, .behavior = behavior, .side = side, .actuators = actuators};
-}
-
-bool disjoint(const std::vector<Holding>& holdings) {
-  ActuatorMask seen = 0;
-  for (const Holding& holding : holdings) {
-    if (!holding.running) continue;
-    if ((seen & holding.actuators) != 0) return false;
-    seen |= holding.actuators;
-  }
-  return true;
 }
 
 }  // namespace
@@ -129,28 +139,28 @@ TEST_CASE("the arbiter decides as the language says, over many steps") {
       behavior_of[r] = behavior;
     }
     Model model;
-    std::vector<Holding> holdings(kRules);
+    Table table(kRules);
     const int steps = *rc::gen::inRange(1, 12);
     for (int step = 0; step < steps; ++step) {
-      begin_step(model, holdings);
+      begin_step(model, table);
       for (std::uint8_t r = 0; r < kRules; ++r) {
         if (!*rc::gen::weightedElement<bool>({{1, true}, {2, false}})) continue;
         const auto mask = *rc::gen::inRange<ActuatorMask>(0, 1U << kActuators);
         const Side side = *rc::gen::element(Side::then, Side::otherwise);
         const Claim c = claim(r, behavior_of[r], mask, side);
-        const Decision decision = decide(c, holdings);
+        const Decision decision = table.decide(c);
         const auto expected = model.serve({r, behavior_of[r], side, as_set(mask)});
         RC_ASSERT(decision.wins == expected.wins);
         std::set<unsigned> interrupted;
-        for (unsigned q = 0; q < kRules; ++q)
-          if (has(decision.interrupted, q)) interrupted.insert(q);
+        for (const unsigned rule : decision.interrupted)
+          interrupted.insert(rule);
         RC_ASSERT(interrupted == expected.interrupted);
-        apply(c, decision, holdings);
-        RC_ASSERT(disjoint(holdings));
+        table.apply(c, decision);
+        RC_ASSERT(table.disjoint());
       }
       for (unsigned r = 0; r < kRules; ++r) {  // some responses finish
         if (!*rc::gen::arbitrary<bool>()) continue;
-        holdings[r].running = false;
+        table.running.erase(r);
         std::erase_if(model.running, [&](const Response& response) { return response.rule == r; });
       }
     }
@@ -159,29 +169,29 @@ TEST_CASE("the arbiter decides as the language says, over many steps") {
 }
 
 TEST_CASE("a loser learns which behaviour is in its way: the one of the highest priority") {
-  std::vector<Holding> holdings(4);
-  apply(claim(0, 0, 0b001), {.wins = true}, holdings);
-  apply(claim(1, 1, 0b010), {.wins = true}, holdings);
-  const Decision decision = decide(claim(3, 2, 0b111), holdings);
+  Table table(4);
+  table.apply(claim(0, 0, 0b001), {.interrupted = {}, .wins = true});
+  table.apply(claim(1, 1, 0b010), {.interrupted = {}, .wins = true});
+  const Decision decision = table.decide(claim(3, 2, 0b111));
   CHECK_FALSE(decision.wins);
   CHECK(decision.owner == 0);
-  CHECK(decision.interrupted == 0);
+  CHECK(decision.interrupted.empty());
 }
 
 TEST_CASE("a rule that runs already loses to its own behaviour") {
-  std::vector<Holding> holdings(3);
-  apply(claim(2, 1, 0b1), {.wins = true}, holdings);
-  holdings[2].won_now = false;
-  const Decision decision = decide(claim(2, 1, 0b1), holdings);
+  Table table(3);
+  table.apply(claim(2, 1, 0b1), {.interrupted = {}, .wins = true});
+  table.holdings[2].won_now = false;
+  const Decision decision = table.decide(claim(2, 1, 0b1));
   CHECK_FALSE(decision.wins);
   CHECK(decision.owner == 1);
-  CHECK(decision.interrupted == 0);
+  CHECK(decision.interrupted.empty());
 }
 
 TEST_CASE("responses without actuators never conflict") {
-  std::vector<Holding> holdings(2);
-  apply(claim(0, 0, ~0U), {.wins = true}, holdings);
-  const Decision decision = decide(claim(1, 1, 0), holdings);
+  Table table(2);
+  table.apply(claim(0, 0, ~0U), {.interrupted = {}, .wins = true});
+  const Decision decision = table.decide(claim(1, 1, 0));
   CHECK(decision.wins);
-  CHECK(decision.interrupted == 0);
+  CHECK(decision.interrupted.empty());
 }
