@@ -9,7 +9,10 @@ import rsc
 from counting import BUILT, BenchError, run_given
 
 ABOVE, BELOW = 60_000, 40_000  # thousandths: on either side of the threshold of the rule
-READINGS = (ABOVE, BELOW) * 3
+READINGS = (ABOVE, BELOW) * 4
+RULES = (10, 20, 40, 100, 300, 1000)
+MOST_RULES = 40  # of the board's firmware; beyond, the large profile, up to the format's limits
+ACTUATORS = 2
 COMMANDS_OF_64K = 2540  # of 1,000 rules, so that their image is just below 64 KB
 
 
@@ -41,24 +44,37 @@ def program(rules, behaviors, channels, actuators, commands):
     return "\n".join(lines) + "\n"
 
 
-def compiled(folder, rules, behaviors, channels, actuators=2, commands=None):
+def behaviors_of(rules):
+    return 10 if rules <= MOST_RULES else 64
+
+
+def firmware_of(rules):
+    return BUILT / ("bench_step.elf" if rules <= MOST_RULES else "bench_step_large.elf")
+
+
+def compiled(folder, rules, commands=None):
+    channels = 8 if rules <= MOST_RULES else 32
     source = Path(folder) / f"grown_{rules}.rsl"
-    source.write_text(program(rules, behaviors, channels, actuators, commands or rules))
-    source.with_suffix(".json").write_text(json.dumps(robot(channels, actuators)))
+    source.write_text(program(rules, behaviors_of(rules), channels, ACTUATORS, commands or rules))
+    source.with_suffix(".json").write_text(json.dumps(robot(channels, ACTUATORS)))
     image = source.with_suffix(".rsb")
     rsc.run("compile", source, "-o", image, "--strip")
     return image
 
 
-def run_steps(elf, image):
-    """(instructions of the dearest step in which the rule acts, instructions of loading)."""
-    marks = run_given(elf, image, READINGS)
-    wanted = [[1, 1] if reading == ABOVE else [0, 0] for reading in READINGS]
-    if marks.heard("step") != wanted:
-        raise BenchError(f"{image.stem}: rules fired and commands were {marks.heard('step')}, "
-                         f"not {wanted}")
-    steps = marks.spans("mark_step_begin", "mark_step_end")
-    return max(steps), marks.spans("mark_load_begin", "mark_load_end")[0]
+class Steps:
+    """Instructions of loading an image, of the first step in which the rule acts, and of the dearest
+    later one: the first time, a behaviour evaluates all of its rules."""
+
+    def __init__(self, elf, image):
+        marks = run_given(elf, image, READINGS)
+        wanted = [[1, 1] if reading == ABOVE else [0, 0] for reading in READINGS]
+        if marks.heard("step") != wanted:
+            raise BenchError(f"{image.stem}: rules fired and commands were {marks.heard('step')}, "
+                             f"not {wanted}")
+        self.load = marks.spans("mark_load_begin", "mark_load_end")[0]
+        self.first, *later = marks.spans("mark_step_begin", "mark_step_end")
+        self.later = max(later)
 
 
 def verify_cost(image):
@@ -70,13 +86,16 @@ def verify_cost(image):
 
 def growth_figures():
     with tempfile.TemporaryDirectory() as folder:
-        figures = {}
-        for rules in (10, 20, 40):
-            image = compiled(folder, rules, behaviors=10, channels=8)
-            step, load = run_steps(BUILT / "bench_step.elf", image)
-            figures[f"path/step_{rules}_rules"] = (step, "insn")
-        figures["path/load_40_rules"] = (load, "insn")
-        largest = compiled(folder, 1000, behaviors=64, channels=32, commands=COMMANDS_OF_64K)
-        figures["image/largest_bytes"] = (largest.stat().st_size, "B")
-        figures["vm/verify_64k"] = (verify_cost(largest), "insn")
-    return figures
+        steps = {rules: Steps(firmware_of(rules), compiled(folder, rules)) for rules in RULES}
+        largest = compiled(folder, RULES[-1], COMMANDS_OF_64K)
+        load_64k = Steps(firmware_of(RULES[-1]), largest).load
+        size, verify = largest.stat().st_size, verify_cost(largest)
+    return {
+        **{f"path/step_{rules}_rules": (step.later, "insn") for rules, step in steps.items()},
+        "path/first_step_40_rules": (steps[40].first, "insn"),
+        "path/first_step_1000_rules": (steps[1000].first, "insn"),
+        "path/load_40_rules": (steps[40].load, "insn"),
+        "path/load_64k": (load_64k, "insn"),
+        "image/largest_bytes": (size, "B"),
+        "vm/verify_64k": (verify, "insn"),
+    }

@@ -4,6 +4,8 @@ import json
 import re
 from pathlib import Path
 
+import growth
+
 PEERS = json.loads((Path(__file__).parent / "peers.json").read_text())
 OURS = "**RoboSync**, all checks on"
 MISSED = "MISSED"
@@ -29,12 +31,14 @@ limit of 64 KB (`image/largest_bytes`), nearly all of it rules and code, of whic
 
 GROWTH = """## Rules that have nothing to do
 
-A reading is fed that concerns one rule among N, which stand evenly in the behaviours; each has a response of its own.
-Instructions from the reading to the end of the step and of all that came of it, kernel and the driver's command
-included, by the runtime in the layout of the firmware (`bench/firmware/step_bench.cpp`).
+A reading is fed that concerns one rule among N, which stand evenly in the behaviours; each has a response of its own
+(`bench/growth.py`). Instructions from the reading to the end of the step and of all that came of it, kernel and the
+driver's command included, by the runtime linked as in the firmware (`bench/firmware/step_bench.cpp`). Up to 40 rules stand
+in 10 behaviours, on the firmware; more in 64, on the large profile, whose kernel has more threads to choose from. The first
+step that a behaviour has evaluates all of its rules, once: `path/first_step_…`.
 
-| rules | instructions of the step |
-|---|---|"""
+| rules | behaviours | instructions of the step |
+|---|---|---|"""
 
 WORKLOADS = """## Beside other virtual machines
 
@@ -66,7 +70,8 @@ def as_row(figure):
 def growth_rows(values):
     for name, value in values.items():
         if match := re.fullmatch(r"path/step_(\d+)_rules", name):
-            yield f"| {int(match[1]):,} | {value:,} |"
+            rules = int(match[1])
+            yield f"| {rules:,} | {growth.behaviors_of(rules)} | {value:,} |"
 
 
 def number(value):

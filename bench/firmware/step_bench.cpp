@@ -22,7 +22,7 @@ namespace {
 
 constexpr kernel::Duration kSettling = kernel::milliseconds(100);
 
-// What happened since it was asked last. A board to which nobody listens counts nothing, so this
+// What happened since begin(). A board to which nobody listens counts nothing, so this
 // adds a few instructions to each event.
 class Counts final : public EventSink {
 public:
@@ -30,10 +30,8 @@ public:
     if (event.kind == link::EventKind::fire) ++fired_;
     if (event.kind == link::EventKind::command) ++commands_;
   }
-  void say_and_forget() {
-    say("step", std::array{fired_, commands_});
-    fired_ = commands_ = 0;
-  }
+  void begin() { fired_ = commands_ = 0; }
+  void tell() const { say("step", std::array{fired_, commands_}); }
 
 private:
   std::int32_t fired_ = 0;
@@ -68,8 +66,9 @@ void drive(void*) {
   load();
   robosync_kernel.sleep_until(robosync_kernel.now() + kSettling);
   for (const vm::Value reading : given_readings()) {
+    counts.begin();
     feed(reading);
-    counts.say_and_forget();
+    counts.tell();
     robosync_kernel.sleep_until(robosync_kernel.now() + kSettling);
   }
   leave(true);
