@@ -9,7 +9,7 @@ import unittest
 from pathlib import Path
 
 import rsc
-from board import FAST, Board
+from board import FAST, FIRMWARE, Board
 from stimuli import UNITS
 
 HERE = Path(__file__).resolve().parent
@@ -20,13 +20,14 @@ CONFIG = PROGRAMS / "robot.json"
 class RobotTest(unittest.TestCase):
     """One board for each test, and a folder that is deleted after it."""
 
+    elf = FIRMWARE
     units = UNITS  # of the channels that scenarios feed
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="robosync-e2e-")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
-        self.board = Board(icount=FAST)
+        self.board = Board(self.elf, icount=FAST)
         self.addCleanup(self.board.stop)
 
     def compile(self, program, config=CONFIG):

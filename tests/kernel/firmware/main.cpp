@@ -89,6 +89,7 @@ void first_boot() {
   run_all(rig::interrupt_scenarios());
   run_all(rig::fault_scenarios());
   run_all(rig::device_scenarios());
+  run_all(rig::division_scenarios());
   robosync_board.pwm_write(3, 1500);
   robosync::kernel::ThreadSpec spec;
   spec.name = "safety";

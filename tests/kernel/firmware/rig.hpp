@@ -28,6 +28,7 @@ std::span<const Scenario> register_scenarios();
 std::span<const Scenario> interrupt_scenarios();
 std::span<const Scenario> fault_scenarios();
 std::span<const Scenario> device_scenarios();
+std::span<const Scenario> division_scenarios();
 
 // Starts worker `index` (0 … kWorkers - 1) and returns its thread.
 inline constexpr unsigned kWorkers = 4;
