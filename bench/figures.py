@@ -11,7 +11,7 @@ from pathlib import Path
 import rsc
 from board import FAST, FIRMWARE, Board
 from counting import (BUILT, ROOT, BenchError, Marks, plugin_arguments, return_instruction, run,
-                      run_given, symbols)
+                      symbols)
 from tap import Tap
 from workloads import PAPER
 
@@ -61,9 +61,8 @@ def opcode_spans(marks):
 
 
 def opcode_figures():
-    with tempfile.TemporaryDirectory() as folder:
-        marks = run_given(BUILT / "bench_vm", compile_example(folder))
-    over = {name: costs for name, costs in opcode_spans(marks).items() if costs[0] > costs[1]}
+    spans = opcode_spans(run(BUILT / "bench_vm"))
+    over = {name: costs for name, costs in spans.items() if costs[0] > costs[1]}
     for name, (measured, declared) in over.items():
         print(f"opcode {name} takes {measured} instructions, declared are {declared}", file=sys.stderr)
     return {"vm/opcodes_over_declared_cost": (len(over), "")}

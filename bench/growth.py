@@ -84,6 +84,11 @@ def verify_cost(image):
     return round(marks.spans("mark_verify_begin", "mark_verify_end")[0] / words, 1)
 
 
+def growth_between(steps, few, many):
+    """How many times as dear a step is among `many` rules as among `few` in as many behaviours."""
+    return round(steps[many].later / steps[few].later, 3)
+
+
 def growth_figures():
     with tempfile.TemporaryDirectory() as folder:
         steps = {rules: Steps(firmware_of(rules), compiled(folder, rules)) for rules in RULES}
@@ -92,6 +97,8 @@ def growth_figures():
         size, verify = largest.stat().st_size, verify_cost(largest)
     return {
         **{f"path/step_{rules}_rules": (step.later, "insn") for rules, step in steps.items()},
+        "path/growth_to_40_rules": (growth_between(steps, 10, 40), ""),
+        "path/growth_to_1000_rules": (growth_between(steps, 100, 1000), ""),
         "path/first_step_40_rules": (steps[40].first, "insn"),
         "path/first_step_1000_rules": (steps[1000].first, "insn"),
         "path/load_40_rules": (steps[40].load, "insn"),
