@@ -63,8 +63,8 @@ def compiled(folder, rules, commands=None):
 
 
 class Steps:
-    """Instructions of loading an image, of the first step in which the rule acts, and of the dearest
-    later one: the first time, a behaviour evaluates all of its rules."""
+    """Instructions of loading an image, of the dearest step in which a channel has its first reading
+    (the first time, a behaviour evaluates all of its rules), and of the dearest later one."""
 
     def __init__(self, elf, image):
         marks = run_given(elf, image, READINGS)
@@ -73,8 +73,8 @@ class Steps:
             raise BenchError(f"{image.stem}: rules fired and commands were {marks.heard('step')}, "
                              f"not {wanted}")
         self.load = marks.spans("mark_load_begin", "mark_load_end")[0]
-        self.first, *later = marks.spans("mark_step_begin", "mark_step_end")
-        self.later = max(later)
+        self.first = max(marks.spans("mark_first_begin", "mark_first_end"))
+        self.later = max(marks.spans("mark_step_begin", "mark_step_end"))
 
 
 def verify_cost(image):
