@@ -1,8 +1,8 @@
-"""scripts/bench: measures every figure there is, and holds it against its bar.
+"""scripts/bench: measures every figure there is, and holds it against its bar and its record.
 
 Prints a table for people, with --json one object a line for programs, with --markdown the page
 docs/measurements.md. Figures are executed Cortex-M4 instructions (in QEMU, exact), bytes and times.
-Exit code 1 when a bar is missed.
+Exit code 1 when a bar is missed, or a counted figure grew (recorded.py).
 """
 
 import argparse
@@ -12,14 +12,18 @@ import sys
 from pathlib import Path
 
 import figures
+import growth
+import page
+import recorded
+import workloads
 from board import BoardError
 from counting import BenchError
 from rsc import RscError
 
 BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
-GROUPS = (figures.vm_figures, figures.image_figures, figures.kernel_figures,
-          figures.size_figures, figures.link_figures, figures.path_figures,
-          figures.compiler_figures)
+GROUPS = (workloads.workload_figures, figures.opcode_figures, figures.image_figures,
+          figures.kernel_figures, figures.size_figures, growth.growth_figures,
+          figures.link_figures, figures.path_figures, figures.compiler_figures)
 
 
 def measure():
@@ -29,61 +33,66 @@ def measure():
             yield {"name": name, "value": value, "unit": unit, "bar": BARS.get(name)}
 
 
-def verdict(figure):
-    if figure["bar"] is None:
-        return ""
-    return "ok" if figure["value"] <= figure["bar"] else "MISSED"
-
-
-def as_line(figure):
+def as_line(figure, grew):
     bar = "" if figure["bar"] is None else f"bar {figure['bar']}"
+    verdict = page.verdict(figure)
     return (f"{figure['name']:32} {figure['value']:>10} {figure['unit']:8} {bar:11} "
-            f"{verdict(figure)}").rstrip()
+            f"{verdict}{' GREW' if grew else ''}").rstrip()
 
 
-def as_row(figure):
-    bar = "–" if figure["bar"] is None else f"≤ {figure['bar']}"
-    return f"| `{figure['name']}` | {figure['value']} | {figure['unit']} | {bar} | {verdict(figure)} |"
+def complain(messages):
+    """How many there were."""
+    messages = list(messages)
+    for message in messages:
+        print(f"bench: {message}", file=sys.stderr)
+    return len(messages)
 
 
-MARKDOWN_HEAD = """# Measurements
+def measure_all(show, comparison):
+    """(figures measured, how many of them failed); shows each as it comes."""
+    found, failed = [], 0
+    for figure in measure():
+        grew = not comparison.add(figure)
+        failed += grew or page.verdict(figure) == page.MISSED
+        found.append(figure)
+        show(figure, grew)
+    return found, failed
 
-Printed by `scripts/bench --markdown`. `insn` are executed Cortex-M4 instructions, counted exactly by a plugin in
-QEMU 7.2 (`bench/count_plugin/`); they are not cycles. Bytes are what the linker kept. Times are wall clock on the
-machine that printed this page. What each figure means: `bench/figures.py`; bars: `bench/bars.json`.
 
-`vm/flash` and `vm/verify_per_word` stand above the design's bars (4,096 bytes, 60 a word): those were for arithmetic,
-comparisons and commands. The whole language came since: time words, blocks, loops, waits, variables, CHECKs, SAFETY, and
-the verification of all of them. Their bars in `bench/bars.json` keep them from growing unnoticed.
-
-| figure | value | unit | bar | |
-|---|---|---|---|---|"""
+def arguments():
+    parser = argparse.ArgumentParser(prog="scripts/bench")
+    parser.add_argument("--record", action="store_true")
+    style = parser.add_mutually_exclusive_group()
+    style.add_argument("--json", action="store_true")
+    style.add_argument("--markdown", action="store_true")
+    return parser.parse_args()
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/bench")
-    style = parser.add_mutually_exclusive_group()
-    style.add_argument("--json", dest="show", action="store_const", const=json.dumps)
-    style.add_argument("--markdown", dest="show", action="store_const", const=as_row)
-    show = parser.parse_args().show or as_line
-    if show is as_row:
-        print(MARKDOWN_HEAD)
-    passed = failed = 0
-    seen = set()
+    wanted = arguments()
+
+    def show(figure, grew):
+        if wanted.json:
+            print(json.dumps(figure), flush=True)
+        elif not wanted.markdown:
+            print(as_line(figure, grew), flush=True)
+
+    comparison = recorded.Comparison(None if wanted.record else recorded.load())
     try:
-        for figure in measure():
-            seen.add(figure["name"])
-            missed = verdict(figure) == "MISSED"
-            passed, failed = passed + (not missed), failed + missed
-            print(show(figure), flush=True)
+        found, failed = measure_all(show, comparison)
     except (BenchError, BoardError, RscError, OSError, subprocess.SubprocessError) as error:
         print(f"bench: {error}", file=sys.stderr)
-        failed += 1
-    else:
-        for name in sorted(BARS.keys() - seen):
-            print(f"bench: nothing measures {name}", file=sys.stderr)
-            failed += 1
-    if show is as_line:
+        return 1
+    passed = len(found) - failed
+    if wanted.record:
+        recorded.save(found)
+    if wanted.markdown:
+        print(page.page(found))
+    complain(comparison.grown + comparison.shrunk)
+    gone = BARS.keys() - {figure["name"] for figure in found}
+    failed += complain(f"nothing measures {name}, which has a bar" for name in sorted(gone))
+    failed += complain(f"nothing measures {name}, which is recorded" for name in comparison.missing())
+    if not wanted.json and not wanted.markdown:
         print(f"{passed} passed, {failed} failed")
     return 1 if failed else 0
 

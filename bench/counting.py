@@ -1,12 +1,16 @@
 """Runs an ELF in QEMU under the counting plugin, and gives what was counted between markers."""
 
+import struct
 import subprocess
 import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+BUILT = ROOT / "build/m4/bench"
 PLUGIN = ROOT / "build/host/bench/libcount_plugin.so"
 TIMEOUT = 120
+IMAGE_ADDRESS = 0x21000000  # bench/firmware/given.hpp
+READINGS_ADDRESS = 0x21100000
 
 
 class BenchError(RuntimeError):
@@ -26,12 +30,15 @@ def symbols(elf):
 
 
 class Marks:
-    """What the plugin wrote: [(marker name, instructions executed before it)]."""
+    """What the plugin wrote: [(marker name, instructions executed before it)]; and what the firmware
+    said: [[word, number …]]."""
 
-    def __init__(self, names, path):
+    def __init__(self, names, path, said=""):
         by_address = {address: name for name, address in names.items()}
         lines = (line.split() for line in path.read_text().splitlines())
         self.all = [(by_address[int(address, 16)], int(count)) for address, count in lines]
+        lines = (line.split() for line in said.splitlines())
+        self.said = [[word, *map(int, numbers)] for word, *numbers in lines]
 
     def spans(self, begin, end):
         """Instructions from each `begin` to the next `end`."""
@@ -45,6 +52,10 @@ class Marks:
         if not found:
             raise BenchError(f"never ran from {begin} to {end}")
         return found
+
+    def heard(self, what):
+        """The numbers of each line that began with this word."""
+        return [numbers for word, *numbers in self.said if word == what]
 
 
 def plugin_arguments(names, out):
@@ -64,6 +75,18 @@ def return_instruction(elf, function):
     return int(found[0], 16)
 
 
+def loaded(path, address):
+    return ["-device", f"loader,file={path},addr={address:#x},force-raw=on"]
+
+
+def run_given(elf, image, readings=(), extra=None):
+    """run() with an image, and the readings that its rules or CHECKs get one after the other."""
+    with tempfile.TemporaryDirectory(prefix="robosync-bench-") as folder:
+        file = Path(folder) / "readings"
+        file.write_bytes(struct.pack(f"<{1 + len(readings)}i", len(readings), *readings))
+        return run(elf, loaded(image, IMAGE_ADDRESS) + loaded(file, READINGS_ADDRESS), extra)
+
+
 def run(elf, arguments=(), extra=None):
     """Boots a bench firmware (it ends QEMU itself); gives its marks, and the `extra` ones."""
     if not Path(elf).exists():
@@ -74,10 +97,10 @@ def run(elf, arguments=(), extra=None):
         out = Path(folder) / "marks"
         done = subprocess.run(["qemu-system-arm", "-M", "mps2-an386", "-display", "none",
                                "-monitor", "none", "-serial", "none", "-kernel", str(elf),
-                               "-icount", "shift=0", "-semihosting",
+                               "-icount", "shift=0,sleep=off", "-semihosting",
                                *plugin_arguments(names, out), *arguments],
                               check=False, timeout=TIMEOUT, text=True, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         if done.returncode:
             raise BenchError(f"{Path(elf).name} failed ({done.returncode}): {done.stdout.strip()}")
-        return Marks(names, out)
+        return Marks(names, out, done.stdout)

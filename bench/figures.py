@@ -10,26 +10,18 @@ from pathlib import Path
 
 import rsc
 from board import FAST, FIRMWARE, Board
-from counting import (ROOT, BenchError, Marks, plugin_arguments, return_instruction, run, symbols)
+from counting import (BUILT, ROOT, BenchError, Marks, plugin_arguments, return_instruction, run,
+                      symbols)
 from tap import Tap
+from workloads import PAPER
 
 SPIN = 2_000_001  # instructions of spin() in bench/firmware/kernel_bench.cpp
-M4 = ROOT / "build/m4"
-EXAMPLE = ROOT / "examples/touch_companion/robot.rsl"
-IMAGE_ADDRESS = 0x21000000  # where bench/firmware/vm_bench.cpp looks
 
 
 def compile_example(folder, *options):
     image = Path(folder) / "paper.rsb"
-    rsc.run("compile", EXAMPLE, "-o", image, *options)
+    rsc.run("compile", PAPER, "-o", image, *options)
     return image
-
-
-def number_in(pattern, text):
-    found = re.search(pattern, text, re.M)
-    if not found:
-        raise BenchError(f"rsc dump does not say {pattern}")
-    return int(found[1])
 
 
 def image_figures():
@@ -37,16 +29,10 @@ def image_figures():
     `rsc upload` sends it, and with it."""
     with tempfile.TemporaryDirectory() as folder:
         with_lines = compile_example(folder).stat().st_size
-        image = compile_example(folder, "--strip")
-        said, size = rsc.run("dump", image), image.stat().st_size
-    parts = {part: number_in(rf"^  {part} +(\d+) x", said) for part in ("rules", "constants", "code")}
-    cells = number_in(r"(\d+) cells", said)
-    machine = symbols(M4 / "bench/bench_vm")["size_machine"]
+        size = compile_example(folder, "--strip").stat().st_size
     return {
         "image/paper_bytes": (size, "B"),
         "image/paper_bytes_with_lines": (with_lines, "B"),
-        "vm/bytes_W1": (4 * (parts["code"] + parts["constants"]) // parts["rules"], "B"),
-        "vm/ram_per_thread": (machine + 4 * cells, "B"),
     }
 
 
@@ -74,23 +60,12 @@ def opcode_spans(marks):
             for name, declared in listed}
 
 
-def vm_figures():
-    with tempfile.TemporaryDirectory() as folder:
-        image = compile_example(folder)
-        words = image.stat().st_size // 4
-        marks = run(M4 / "bench/bench_vm", ["-device", f"loader,file={image},addr={IMAGE_ADDRESS:#x},"
-                                            "force-raw=on"])
-    opcodes = opcode_spans(marks)
-    over = {name: costs for name, costs in opcodes.items() if costs[0] > costs[1]}
+def opcode_figures():
+    spans = opcode_spans(run(BUILT / "bench_vm"))
+    over = {name: costs for name, costs in spans.items() if costs[0] > costs[1]}
     for name, (measured, declared) in over.items():
         print(f"opcode {name} takes {measured} instructions, declared are {declared}", file=sys.stderr)
-    verify = marks.spans("mark_verify_begin", "mark_verify_end")[0]
-    return {
-        "vm/W1": (max(marks.spans("mark_rule_begin", "mark_rule_end")), "insn"),
-        "vm/insn_per_op": (round(statistics.mean(m for m, _ in opcodes.values()), 1), "insn"),
-        "vm/opcodes_over_declared_cost": (len(over), ""),
-        "vm/verify_per_word": (round(verify / words, 1), "insn"),
-    }
+    return {"vm/opcodes_over_declared_cost": (len(over), "")}
 
 
 def tick_cost(marks):
@@ -109,7 +84,7 @@ def tick_cost(marks):
 
 
 def kernel_figures():
-    elf = M4 / "bench/bench_kernel"
+    elf = BUILT / "bench_kernel"
     handlers = {name: symbols(elf)[name] for name in ("SysTick_Handler", "PendSV_Handler")}
     marks = run(elf, extra={**handlers, "return": return_instruction(elf, "PendSV_Handler")})
     return {
@@ -130,10 +105,13 @@ def sections_by_object(map_file):
     return [(path, section, int(size, 16)) for section, address, size, path in found]
 
 
-def flash_of(map_file, folders):
-    """Bytes in flash of the sources in `folders`. The map names objects by file name only."""
-    names = {path.name for folder in folders for path in (ROOT / folder).iterdir()
-             if path.suffix in (".cpp", ".S")}
+def sources_in(*folders):
+    return {path.name for folder in folders for path in (ROOT / folder).iterdir()
+            if path.suffix in (".cpp", ".S")}
+
+
+def flash_of(map_file, names):
+    """Bytes in flash of these sources. The map names objects by file name only."""
     loaded = (".text", ".rodata", ".data", ".init_array")
     return sum(size for path, section, size in sections_by_object(map_file)
                if section.startswith(loaded) and "robosync" in path
@@ -147,9 +125,14 @@ def size_figures():
                              stdout=subprocess.PIPE).stdout
     text, data, bss = (int(word) for word in listing.splitlines()[1].split()[:3])
     link_map = FIRMWARE.with_suffix(".map")
+    vm = sources_in("vm")
+    verifier = {name for name in vm if name.startswith("verif") or name == "image.cpp"}
+    kernel = sources_in("runtime-m4/kernel", "runtime-m4/port/cortex-m4")
     return {
-        "vm/flash": (flash_of(link_map, ["vm"]), "B"),
-        "kernel/flash": (flash_of(link_map, ["runtime-m4/kernel", "runtime-m4/port/cortex-m4"]), "B"),
+        "vm/flash_interpreter": (flash_of(link_map, vm - verifier), "B"),
+        "vm/flash_verifier": (flash_of(link_map, verifier), "B"),
+        "vm/flash": (flash_of(link_map, vm), "B"),
+        "kernel/flash": (flash_of(link_map, kernel), "B"),
         "firmware/flash": (text + data, "B"),
         "firmware/ram": (data + bss, "B"),
     }
@@ -194,7 +177,7 @@ def compiler_figures():
         times = []
         for _ in range(5):
             begin = time.monotonic()
-            rsc.run("check", source, "--config", EXAMPLE.with_name("robot.json"))
+            rsc.run("check", source, "--config", PAPER.with_name("robot.json"))
             times.append(time.monotonic() - begin)
     return {"compile/lines_per_second": (round(len(lines) / min(times)), "lines/s")}
 

@@ -1,25 +1,18 @@
-// Runs the shipped VM between markers: the verifier and the first rule of an image that QEMU's
-// loader has put into RAM, then each opcode alone over operands from the edges of its range.
+// Runs each opcode of the shipped VM alone between markers, over operands from the edges of its
+// range.
 //
 // bench/bench.py reads the counts; the order of the markers is the order of opcodes.def.
 #include <array>
-#include <cstring>
-#include <span>
 
 #include "bench/firmware/mark.hpp"
-#include "vm/image.hpp"
 #include "vm/interpreter.hpp"
 #include "vm/opcode.hpp"
-#include "vm/verifier.hpp"
 
 namespace robosync::bench {
 namespace {
 
 using vm::Value;
 using vm::Word;
-
-// bench.py: -device loader,file=IMAGE,addr=0x21000000,force-raw=on
-const auto* const kImage = reinterpret_cast<const std::byte*>(0x21000000);
 
 std::array<Value, 256> frame;
 std::array<Word, 64> output;
@@ -37,34 +30,6 @@ vm::Machine machine(const Value* constants) {
   m.now = 1000;
   m.wake = 5000;  // so that a sooner time must be compared with it
   return m;
-}
-
-bool measure_verifier(vm::Image& image) {
-  vm::ImageHeader header;
-  std::memcpy(&header, kImage, sizeof header);
-  const std::span bytes(kImage, header.total_length);
-  BENCH_MARK(verify_begin);
-  const vm::Verdict verdict = vm::verify(bytes, vm::Limits{}, image);
-  BENCH_MARK(verify_end);
-  return verdict.ok();
-}
-
-// W1: from setting the reading to both outputs done, once for each side of the paper's rule.
-bool measure_rule(const vm::Image& image) {
-  const vm::Rule& rule = image.rules[0];
-  const Word* const condition = &image.code[rule.condition_start];
-  const Word* const do_side = &image.code[image.responses[rule.then_response].start];
-  const Word* const else_side = &image.code[image.responses[rule.else_response].start];
-  for (const Value reading : {0, 1000, 2000, 3000, 4000, 5000}) {
-    vm::Machine m = machine(image.constants.data());
-    BENCH_MARK(rule_begin);
-    frame[0] = reading;
-    const Value truth = vm::evaluate(m, condition);
-    (void)vm::respond(m, truth == vm::kTrue ? do_side : else_side);
-    BENCH_MARK(rule_end);
-    if (m.output != output.data() + 2) return false;  // the two commands of either response
-  }
-  return true;
 }
 
 constexpr std::array<Value, 16> kEdges = {
@@ -129,19 +94,10 @@ void measure_opcodes() {
   }
 }
 
-// The size of what a thread needs to run code, as a symbol.
-void record_sizes() {
-  asm volatile(".global size_machine\n.equ size_machine, %c0" ::"i"(sizeof(vm::Machine)));
-}
-
 }  // namespace
 }  // namespace robosync::bench
 
 int main() {
-  robosync::bench::record_sizes();
-  robosync::vm::Image image;
-  if (!robosync::bench::measure_verifier(image)) robosync::bench::leave(false);
-  if (!robosync::bench::measure_rule(image)) robosync::bench::leave(false);
   robosync::bench::measure_opcodes();
   robosync::bench::leave(true);
 }

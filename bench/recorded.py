@@ -1,0 +1,59 @@
+"""What was counted last time (recorded.json), so that nothing grows unnoticed under its bar.
+
+Only counted figures are recorded: instructions and bytes are the same on every machine. Times are
+not, and are never compared.
+"""
+
+import json
+from pathlib import Path
+
+FILE = Path(__file__).parent / "recorded.json"
+TOLERANCE = 0.02
+WALL_CLOCK = {"ms", "x", "lines/s"}  # units of what depends on the machine that measures
+
+
+def is_counted(figure):
+    return figure["unit"] not in WALL_CLOCK
+
+
+def load(path=FILE):
+    return json.loads(Path(path).read_text()) if Path(path).exists() else {}
+
+
+def save(figures, path=FILE):
+    counted = {figure["name"]: figure["value"] for figure in figures if is_counted(figure)}
+    Path(path).write_text(json.dumps(counted, indent=2, sort_keys=True) + "\n")
+
+
+class Comparison:
+    """Holds figures against recorded ones; while recording there are none, and None is given.
+    `grown` and `shrunk` are messages for people."""
+
+    def __init__(self, recorded):
+        self._recorded = recorded
+        self._seen = set()
+        self.grown = []
+        self.shrunk = []
+
+    def add(self, figure):
+        """False when this one grew, or was never recorded."""
+        if self._recorded is None or not is_counted(figure):
+            return True
+        name, now, unit = figure["name"], figure["value"], figure["unit"]
+        self._seen.add(name)
+        if name not in self._recorded:
+            self.grown.append(f"{name} ({now} {unit}) was never recorded: scripts/bench --record")
+            return False
+        before = self._recorded[name]
+        change = f"{name}: {before} {unit} recorded, {now} {unit} now"
+        if now > before * (1 + TOLERANCE):
+            self.grown.append(f"{change}, more than {TOLERANCE:.0%} above. Find out why; if it is "
+                              "worth it: scripts/bench --record, and say so in the commit")
+            return False
+        if now < before * (1 - TOLERANCE):
+            self.shrunk.append(f"{change}. So that it stays there: scripts/bench --record")
+        return True
+
+    def missing(self):
+        """Recorded figures that nothing measures any more."""
+        return sorted((self._recorded or {}).keys() - self._seen)

@@ -1,0 +1,135 @@
+"""The workloads W1 to W3 (bench/programs; W1 is the paper's program): what they cost, run by the
+shipped interpreter, and whether they come to what the same in Python comes to."""
+
+import re
+import tempfile
+from pathlib import Path
+
+import rsc
+from counting import BUILT, ROOT, BenchError, run_given, symbols
+
+PROGRAMS = ROOT / "bench/programs"
+PAPER = ROOT / "examples/touch_companion/robot.rsl"
+W1, W2, W3, W3_NATURAL = (PAPER, *(PROGRAMS / name / "robot.rsl"
+                                   for name in ("w2", "w3", "w3_natural")))
+ROUNDS = 1000  # of W2's loop
+NEAR, FAR = 500_000, 600_000  # thousandths of a millimetre: 50cm, 60cm
+SAMPLES = 8
+
+# A person comes nearer, turns round between the two limits, goes away, and comes back at once.
+DISTANCES = tuple(1000 * mm for mm in (
+    *range(900, 380, -40), *[470] * 6, 555, *[590] * 9, 610, 601, *[599, 620] * 5, *[1234] * 4,
+    *[333] * 9, 20, 4000, 501, 499))
+
+
+class Workload:
+    """A program, compiled as users do, and its first rule run once for each reading."""
+
+    def __init__(self, folder, source, readings):
+        image = Path(folder) / f"{source.parent.name}.rsb"
+        rsc.run("compile", source, "-o", image, "--strip")
+        self.words = image.stat().st_size // 4
+        self.dump = rsc.run("dump", image)
+        self.marks = run_given(BUILT / "bench_workload", image, readings)
+        self.spans = self.marks.spans("mark_rule_begin", "mark_rule_end")
+        if len(self.spans) != len(readings):
+            raise BenchError(f"{source} ran {len(self.spans)} times, not {len(readings)}")
+
+    def number(self, pattern):
+        found = re.search(pattern, self.dump, re.M)
+        if not found:
+            raise BenchError(f"rsc dump does not say {pattern}")
+        return int(found[1])
+
+    def bytes_of(self, part):
+        return 4 * self.number(rf"^  {part} +(\d+) x")
+
+    def inputs(self):
+        """[{name: value}] after each run."""
+        names = re.findall(r"^  cell \d+ = (.+)$", self.dump, re.M)
+        return [dict(zip(names, values)) for values in self.marks.heard("inputs")]
+
+
+def expect(what, wanted, got):
+    """A workload that comes to something else has not done the work that is measured."""
+    if wanted != got:
+        raise BenchError(f"{what} came to {got}, not to {wanted}")
+
+
+def w1(folder):
+    work = Workload(folder, W1, range(0, 6000, 1000))
+    expect("W1", [[2]] * 6, work.marks.heard("words"))  # each response has two commands
+    return work
+
+
+def w2(folder):
+    work = Workload(folder, W2, [0])
+    total = sum(i * i % 251 for i in range(ROUNDS))
+    expect("W2", [{"i": 1000 * ROUNDS, "s": 1000 * total}], work.inputs())
+    return work
+
+
+def mean(taps):
+    return (sum(taps) + SAMPLES // 2) // SAMPLES  # none is negative
+
+
+def filtered(readings):
+    """[{name: value}] of W3's variables after each reading."""
+    taps, side = [0] * SAMPLES, 0
+    for reading in readings:
+        taps = [reading, *taps[:-1]]
+        side = 1000 if mean(taps) < NEAR else 0 if mean(taps) > FAR else side
+        yield {**{f"x{i}": tap for i, tap in enumerate(taps)}, "mean": mean(taps), "side": side}
+
+
+def w3(folder):
+    work = Workload(folder, W3, DISTANCES)
+    got = [{name: value for name, value in values.items() if "DISTANCE" not in name}
+           for values in work.inputs()]
+    expect("W3", list(filtered(DISTANCES)), got)
+    return work
+
+
+def median(samples):
+    return sorted(samples)[(len(samples) - 1) // 2]
+
+
+def bands(readings):
+    """[(whether it changed, band)] of W3's CHECK after each reading: 0 near, 1000 far."""
+    band = None
+    for i in range(len(readings)):
+        value = median(readings[max(0, i + 1 - SAMPLES):i + 1])
+        before, limit = band, FAR if band == 0 else NEAR - 1
+        band = 0 if value <= limit else 1000
+        yield ["same" if band == before else "changed", band]
+
+
+def w3_natural(folder):
+    """Instructions from each new reading to its band."""
+    image = Path(folder) / "check.rsb"
+    rsc.run("compile", W3_NATURAL, "-o", image)
+    marks = run_given(BUILT / "bench_check", image, DISTANCES)
+    expect("W3's CHECK", list(bands(DISTANCES)), marks.said)
+    return marks.spans("mark_check_begin", "mark_check_end")
+
+
+def workload_figures():
+    with tempfile.TemporaryDirectory() as folder:
+        one, two, three = w1(folder), w2(folder), w3(folder)
+        natural = w3_natural(folder)
+    per_round = two.spans[0] / ROUNDS
+    opcodes = two.number(r"\bagain +r\d+, -(\d+)")  # from there back: the loop has no branches
+    cells = one.number(r"(\d+) cells")
+    verify = one.marks.spans("mark_verify_begin", "mark_verify_end")[0]
+    works = {"W1": one, "W2": two, "W3": three}
+    return {
+        "vm/W1": (max(one.spans), "insn"),
+        "vm/W2": (round(per_round, 1), "insn"),
+        "vm/W3": (max(three.spans), "insn"),
+        "vm/W3_natural": (max(natural), "insn"),
+        "vm/insn_per_op": (round(per_round / opcodes, 1), "insn"),
+        "vm/verify_per_word": (round(verify / one.words, 1), "insn"),
+        "vm/ram_per_thread": (symbols(BUILT / "bench_workload")["size_machine"] + 4 * cells, "B"),
+        **{f"vm/bytes_{name}": (work.bytes_of("code"), "B") for name, work in works.items()},
+        **{f"vm/constants_{name}": (work.bytes_of("constants"), "B") for name, work in works.items()},
+    }

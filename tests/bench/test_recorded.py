@@ -1,0 +1,86 @@
+"""bench/recorded.py: which change of a figure fails scripts/bench, and what it says then."""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench"))
+
+import recorded
+
+
+def figure(name, value, unit="insn"):
+    return {"name": name, "value": value, "unit": unit, "bar": None}
+
+
+def compared(before, *figures):
+    comparison = recorded.Comparison(before)
+    return comparison, [comparison.add(one) for one in figures]
+
+
+class Growth(unittest.TestCase):
+    def test_what_stays_passes_without_a_word(self):
+        comparison, passed = compared({"vm/W2": 50}, figure("vm/W2", 50))
+        self.assertEqual((passed, comparison.grown, comparison.shrunk), ([True], [], []))
+
+    def test_two_percent_are_tolerated_and_no_more(self):
+        for now, passes in ((101.9, True), (102, True), (102.1, False)):
+            self.assertEqual(compared({"vm/W2": 100}, figure("vm/W2", now))[1], [passes], now)
+
+    def test_the_message_says_which_figure_recorded_now_and_what_to_do(self):
+        comparison, _ = compared({"vm/W2": 100}, figure("vm/W2", 110))
+        self.assertEqual(comparison.grown,
+                         ["vm/W2: 100 insn recorded, 110 insn now, more than 2% above. Find out why; "
+                          "if it is worth it: scripts/bench --record, and say so in the commit"])
+
+    def test_nothing_may_become_something(self):
+        self.assertEqual(compared({"vm/over": 0}, figure("vm/over", 1, ""))[1], [False])
+        self.assertEqual(compared({"vm/over": 0}, figure("vm/over", 0, ""))[1], [True])
+
+    def test_each_figure_is_compared_with_its_own_record(self):
+        before = {"vm/W1": 10, "vm/W2": 1000}
+        self.assertEqual(compared(before, figure("vm/W1", 1000), figure("vm/W2", 10))[1],
+                         [False, True])
+
+
+class Shrinking(unittest.TestCase):
+    def test_it_passes_with_a_hint_to_record(self):
+        comparison, passed = compared({"vm/W2": 100}, figure("vm/W2", 97))
+        self.assertEqual((passed, comparison.grown), ([True], []))
+        self.assertEqual(comparison.shrunk, ["vm/W2: 100 insn recorded, 97 insn now. So that it stays "
+                                             "there: scripts/bench --record"])
+
+    def test_within_the_tolerance_there_is_no_hint(self):
+        self.assertEqual(compared({"vm/W2": 100}, figure("vm/W2", 98))[0].shrunk, [])
+
+
+class Lists(unittest.TestCase):
+    def test_a_figure_that_was_never_recorded_fails(self):
+        comparison, passed = compared({}, figure("vm/new", 5))
+        self.assertEqual(passed, [False])
+        self.assertIn("vm/new (5 insn) was never recorded", comparison.grown[0])
+
+    def test_a_record_that_nothing_measures_is_told(self):
+        comparison, _ = compared({"vm/W1": 1, "vm/gone": 2}, figure("vm/W1", 1))
+        self.assertEqual(comparison.missing(), ["vm/gone"])
+
+    def test_while_recording_nothing_is_compared(self):
+        comparison, passed = compared(None, figure("vm/new", 5))
+        self.assertEqual((passed, comparison.grown, comparison.missing()), ([True], [], []))
+
+    def test_times_are_neither_recorded_nor_compared(self):
+        figures = [figure("link/upload_time", 80, "ms"), figure("compile/speed", 9, "lines/s"),
+                   figure("link/over", 2.0, "x"), figure("vm/W1", 69), figure("vm/flash", 8, "B")]
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "recorded.json"
+            self.assertEqual(recorded.load(path), {})
+            recorded.save(figures, path)
+            kept = recorded.load(path)
+        self.assertEqual(kept, {"vm/W1": 69, "vm/flash": 8})
+        slower = [dict(one, value=one["value"] * 10) for one in figures[:3]]
+        self.assertEqual(compared(kept, *slower)[1], [True, True, True])
+
+
+if __name__ == "__main__":
+    unittest.main()
