@@ -3,18 +3,16 @@
 
 #include <algorithm>
 #include <functional>
-#include <ranges>
 
 #include <fmt/format.h>
 
+#include "compiler/codegen/dearest_rules.hpp"
 #include "rsc/program.hpp"
 #include "runtime-m4/limits.hpp"
 #include "vm/timers.hpp"
 
 namespace robosync::tool {
 namespace {
-
-constexpr std::size_t kDearestShown = 3;
 
 std::vector<vm::RuleCost> costs_of(const vm::Image& image) {
   std::vector<vm::RuleCost> costs(image.rules.size());
@@ -98,25 +96,24 @@ Timing timing_of(const vm::Image& image) {
 }
 
 std::string too_costly_text(const vm::Image& image, std::uint32_t budget) {
-  std::vector<RuleTiming> rules;
-  const std::vector<vm::RuleCost> costs = costs_of(image);
-  for (std::size_t r = 0; r < costs.size(); ++r)
-    rules.push_back(rule_timing(image, r, costs[r]));
-  std::ranges::stable_sort(rules, std::greater(),
-                           [](const RuleTiming& rule) { return rule.cost.step(); });
   std::string text =
       fmt::format("a step costs up to {} instructions, the board allows {}; the dearest rules:",
                   image.header->step_cost, budget);
-  for (const RuleTiming& rule : rules | std::views::take(kDearestShown)) {
+  for (const compiler::DearRule& dear : compiler::dearest_rules(image)) {
+    const RuleTiming rule = rule_timing(image, dear.rule, dear.cost);
     text += fmt::format("\n  line {}: {} instructions", rule.line, rule.cost.step());
     if (rule.response_line != 0) {
       text += fmt::format(", {} of them in its {} (line {})", rule.cost.dearer_response(),
                           rule.else_is_dearer ? "ELSE" : "DO", rule.response_line);
     }
   }
-  return text +
-         "\n  A REPEAT counts as often as it runs: fewer rounds, or a WAIT in it, which leaves the "
-         "rest to later steps";
+  return text + fmt::format("\n  {}", compiler::kMendOfCostlyStep);
+}
+
+std::string refusal_text(const vm::Image& image, const vm::Verdict& verdict) {
+  if (verdict.refusal == vm::Refusal::too_costly)
+    return too_costly_text(image, layers::kStepBudget);
+  return describe_refusal(verdict, source_line(image, verdict.section, verdict.index));
 }
 
 }  // namespace robosync::tool

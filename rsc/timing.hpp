@@ -16,6 +16,7 @@
 #include "rsc/sections.hpp"
 #include "vm/cost.hpp"
 #include "vm/image.hpp"
+#include "vm/verifier.hpp"
 
 namespace robosync::tool {
 
@@ -59,5 +60,7 @@ struct Timing {
 // What is wrong with a program whose step is dearer than `budget`: its dearest rules with their
 // lines, and what would make them cheaper.
 [[nodiscard]] std::string too_costly_text(const vm::Image& image, std::uint32_t budget);
+// Why the board would refuse the program: that, or the verifier's reason with its place.
+[[nodiscard]] std::string refusal_text(const vm::Image& image, const vm::Verdict& verdict);
 
 }  // namespace robosync::tool
