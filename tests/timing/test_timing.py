@@ -9,6 +9,7 @@ import timing
 PROGRAMS = int(os.environ.get("ROBOSYNC_TIMING_PROGRAMS", "300"))
 LOOSEST = 2.0  # an example's bound is at most this many times the worst that was seen
 EXAMPLE_STEPS = 2000
+NEAR = 5  # instructions: entering and leaving the VM, measured here and in bench/, differs by a few
 
 
 class Tally:
@@ -16,7 +17,7 @@ class Tally:
 
     def __init__(self):
         self.programs, self.over, self.used = 0, [], []
-        self.parts = self.reached = 0
+        self.parts = self.near = 0
         self.opcodes = set()
 
     def add(self, program):
@@ -26,13 +27,13 @@ class Tally:
         self.used.append(program.step.worst / program.step.bound)
         parts = [part for part in program.parts() if part.worst]
         self.parts += len(parts)
-        self.reached += sum(part.worst == part.bound for part in parts)
+        self.near += sum(part.bound - part.worst <= NEAR for part in parts)
 
     def __str__(self):
         unseen = ", ".join(sorted(timing.opcodes() - self.opcodes)) or "none"
         return (f"{self.programs} programs: a step took at most {max(self.used):.3f} of what was said, "
                 f"the median program's worst {statistics.median(self.used):.3f}; of {self.parts} "
-                f"conditions, responses and steps {self.reached} took exactly what was said, "
+                f"conditions, responses and steps {self.near} came within {NEAR} instructions of it, "
                 f"{len(self.over)} took more\n  opcodes that stand in none of them: {unseen}")
 
 
@@ -46,7 +47,7 @@ class Bounds(unittest.TestCase):
         print(f"\n  {tally}")
         self.assertEqual(tally.programs, PROGRAMS)
         # A bound that nothing comes near would prove little.
-        self.assertGreater(tally.reached, tally.parts // 10)
+        self.assertGreater(tally.near, tally.parts // 3)
         self.assertGreater(max(tally.used), 0.9)
 
     def test_the_examples_take_at_least_half_of_what_was_said(self):
