@@ -74,6 +74,7 @@ target_sources(robosync_compiler PRIVATE
   sema/variables.cpp
   codegen/code_draft.cpp
   codegen/code_pool.cpp
+  codegen/dearest_rules.cpp
   codegen/expression_emitter.cpp
   codegen/frame.cpp
   codegen/image_writer.cpp

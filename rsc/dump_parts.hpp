@@ -25,6 +25,9 @@ namespace robosync::tool {
 [[nodiscard]] std::string shown_value(const vm::Image& image, const vm::Variable& variable,
                                       vm::Value value);
 
+inline constexpr std::array<std::string_view, static_cast<std::size_t>(vm::RuleKind::count_)>
+    kRuleKinds = {"when", "when/else", "while", "every", "at start", "watch", "safety", "resume"};
+
 template <typename Enum, std::size_t N>
 std::string_view word_of(const std::array<std::string_view, N>& words, Enum value) {
   return words.at(static_cast<std::size_t>(value));

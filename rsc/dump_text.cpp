@@ -10,9 +10,6 @@
 namespace robosync::tool {
 namespace {
 
-constexpr std::array<std::string_view, static_cast<std::size_t>(vm::RuleKind::count_)> kRuleKinds =
-    {"when", "when/else", "while", "every", "at start", "watch", "safety", "resume"};
-
 std::string header_text(const vm::Image& image) {
   const vm::ImageHeader& header = *image.header;
   std::string text = fmt::format("image {:02x}, format {}.{}, opcode set {:04x}, crc32 {:08x}\n",

@@ -9,6 +9,7 @@
 
 #include "rsc/failure.hpp"
 #include "rsc/time_units.hpp"
+#include "rsc/timing.hpp"
 #include "runtime-m4/port/host/simulator.hpp"
 
 namespace robosync::tool {
@@ -38,9 +39,8 @@ Recording record(const Program& program, const compiler::testing::TestPlan& plan
     recording.events.push_back(event);
   });
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
-    const std::uint16_t line = source_line(program.image(), verdict.section, verdict.index);
     throw Failure(Exit::program, fmt::format("the board would refuse the program: {}",
-                                             describe_refusal(verdict, line)));
+                                             refusal_text(program.image(), verdict)));
   }
   for (const PlannedReading& reading : test.readings) {
     const auto channel = channel_of(program.image(), plan.channels.at(reading.channel));

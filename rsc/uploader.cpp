@@ -15,6 +15,7 @@
 #include "link/wire.hpp"
 #include "rsc/driver_names.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/timing.hpp"
 #include "vm/opcode.hpp"
 #include "vm/verifier.hpp"
 
@@ -191,8 +192,7 @@ std::vector<std::string> obstacles(const link::HelloReply& board, const vm::Imag
                                 header.total_length, board.slot_bytes));
   }
   if (header.step_cost > board.step_budget) {
-    found.push_back(fmt::format("a step costs up to {} instructions, the board allows {}",
-                                header.step_cost, board.step_budget));
+    found.push_back(too_costly_text(image, board.step_budget));
   }
   for (const vm::Sensor& sensor : image.sensors)
     check_driver(board, sensor.driver, "sensor", image.string(sensor.name), found);

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <span>
 
+#include "compiler/codegen/dearest_rules.hpp"
 #include "compiler/codegen/records.hpp"
 #include "compiler/codegen/rules.hpp"
 #include "vm/opcode.hpp"
@@ -47,6 +48,7 @@ private:
   std::uint16_t section(const std::vector<Record>& records);
   void finish_header(const ProgramHash& hash);
   bool verified();
+  bool too_costly(Span span);
   // False, to be returned.
   bool too_large(const std::string& what, Span span = {}) {
     diagnostics_.report(Code::E0407, what).label(span);
@@ -131,6 +133,30 @@ void ImageWriter::finish_header(const ProgramHash& hash) {
   std::memcpy(bytes_.data(), &header_, sizeof header_);
 }
 
+// Shows what makes the step dear. One object alone may be too dear to be counted: that is `span`.
+bool ImageWriter::too_costly(Span span) {
+  Diagnostic& report = diagnostics_.report(
+      Code::E0407, "one step of the program could take too long on the robot: at most " +
+                       std::to_string(vm::Limits{}.step_cost) + " instructions may run in it");
+  report.helps(std::string(kMendOfCostlyStep));
+  vm::Image image;
+  const bool whole = vm::view_image(bytes_, image);
+  bool primary = true;
+  for (const DearRule& dear : whole ? dearest_rules(image) : std::vector<DearRule>{}) {
+    const vm::Rule& rule = rules_.rules[dear.rule];
+    const bool in_else = dear.cost.else_response > dear.cost.then_response;
+    const std::uint16_t response = in_else ? rule.else_response : rule.then_response;
+    const bool in_response = dear.cost.dearer_response() > dear.cost.condition;
+    const std::size_t word = in_response ? rules_.responses[response].start : rule.condition_start;
+    report.label(rules_.pool.span_of(word),
+                 "its rule takes up to " + std::to_string(dear.cost.step()) + " instructions",
+                 primary);
+    primary = false;
+  }
+  if (primary) report.label(span);
+  return false;
+}
+
 bool ImageWriter::verified() {
   vm::Image image;
   const vm::Verdict verdict = vm::verify(bytes_, vm::Limits{}, image);
@@ -141,7 +167,7 @@ bool ImageWriter::verified() {
     case vm::Refusal::too_large:
       return too_large("the program is larger than 64 KiB", span);
     case vm::Refusal::too_costly:
-      return too_large("one step of the program could take too long on the robot", span);
+      return too_costly(span);
     case vm::Refusal::too_many:
       return too_large("the program needs more memory than a robot has", span);
     case vm::Refusal::too_much_output:

@@ -1,7 +1,10 @@
-// rsc check FILE… [--config FILE] [--format human|json]
+// rsc check FILE… [--timing] [--config FILE] [--format human|json]
+#include <cstddef>
+#include <cstdint>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -11,6 +14,7 @@
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/program.hpp"
+#include "rsc/timing.hpp"
 #include "rsc/verb.hpp"
 
 namespace robosync::tool {
@@ -19,6 +23,7 @@ namespace {
 struct Options {
   std::vector<std::string> files;
   std::string config;
+  bool timing = false;
   Format format = Format::human;
 };
 
@@ -34,22 +39,41 @@ void append(nlohmann::ordered_json& all, const nlohmann::ordered_json& one) {
     all[count] = all.at(count).get<std::size_t>() + one.at(count).get<std::size_t>();
 }
 
+// What a program without errors costs. False when that is more than the board allows in a step.
+bool report_timing(const Options& options, const std::string& file, std::vector<std::byte> image,
+                   nlohmann::ordered_json& report) {
+  const Program program(std::move(image), file);
+  const Timing timing = timing_of(program.image());
+  if (options.format == Format::json) {
+    report["timing"].push_back(timing_json(timing, file));
+  } else {
+    std::cout << '\n' << timing_text(timing, file) << std::flush;
+  }
+  if (timing.step.used <= timing.step.limit) return true;
+  const auto budget = static_cast<std::uint32_t>(timing.step.limit);
+  std::cerr << fmt::format("rsc: {}: {}\n", file, too_costly_text(program.image(), budget));
+  return false;
+}
+
 void check(const Options& options) {
   nlohmann::ordered_json report;
   std::size_t errors = 0;
+  bool affordable = true;
   for (const std::string& file : options.files) {
-    const compiler::Result result = compile_file(file, options.config);
+    compiler::Result result = compile_file(file, options.config);
     errors += result.diagnostics.errors();
     if (options.format == Format::json) {
       append(report, nlohmann::ordered_json::parse(
                          compiler::render_json(result.diagnostics, result.sources)));
-      continue;
+    } else {
+      std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+      std::cout << fmt::format("{}: {}", file, summary(result.diagnostics)) << std::endl;
     }
-    std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
-    std::cout << fmt::format("{}: {}", file, summary(result.diagnostics)) << std::endl;
+    if (options.timing && result.diagnostics.errors() == 0)
+      affordable = report_timing(options, file, std::move(result.image), report) && affordable;
   }
   if (options.format == Format::json) std::cout << report.dump() << '\n';
-  if (errors > 0) throw Failure(Exit::program, "");
+  if (errors > 0 || !affordable) throw Failure(Exit::program, "");
 }
 
 }  // namespace
@@ -57,6 +81,8 @@ void check(const Options& options) {
 void add_check(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("FILE", options->files, "programs (.rsl)")->required()->option_text("...");
+  app.add_flag("--timing", options->timing,
+               "show what a step costs, rule by rule, and the memory it takes");
   add_config_option(app, options->config);
   add_format_option(app, options->format);
   app.callback([options] { check(*options); });

@@ -13,6 +13,7 @@
 #include "rsc/files.hpp"
 #include "rsc/program.hpp"
 #include "rsc/scenario.hpp"
+#include "rsc/timing.hpp"
 #include "rsc/trace_format.hpp"
 #include "rsc/verb.hpp"
 #include "runtime-m4/port/host/simulator.hpp"
@@ -46,9 +47,8 @@ void run(const Options& options) {
     std::cout << (options.format == Format::json ? json : trace_line(event, names) + "\n");
   });
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
-    const std::uint16_t line = source_line(program.image(), verdict.section, verdict.index);
     throw Failure(Exit::program, fmt::format("{}: the board would refuse it: {}", options.file,
-                                             describe_refusal(verdict, line)));
+                                             refusal_text(program.image(), verdict)));
   }
   for (const Stimulus& stimulus : scenario.stimuli)
     simulator.feed(stimulus.at_us, stimulus.channel, stimulus.value);

@@ -1,0 +1,25 @@
+// Which rules make a step dear, for whoever has to say that it is too dear.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "vm/cost.hpp"
+
+namespace robosync::compiler {
+
+struct DearRule {
+  std::size_t rule = 0;  // its number
+  vm::RuleCost cost;
+};
+
+// The three that cost most in a step, the dearest first. None when the verifier would refuse the
+// code for anything but its cost. `image` must be a view that vm::view_image() accepted.
+[[nodiscard]] std::vector<DearRule> dearest_rules(const vm::Image& image);
+
+inline constexpr std::string_view kMendOfCostlyStep =
+    "what stands in a REPEAT counts as often as it runs: repeat it less often, or WAIT in it, so "
+    "that a later step goes on";
+
+}  // namespace robosync::compiler

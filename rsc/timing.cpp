@@ -1,0 +1,119 @@
+// May assume a verified image, so every index in it is good.
+#include "rsc/timing.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "compiler/codegen/dearest_rules.hpp"
+#include "rsc/program.hpp"
+#include "runtime-m4/limits.hpp"
+#include "vm/timers.hpp"
+
+namespace robosync::tool {
+namespace {
+
+std::vector<vm::RuleCost> costs_of(const vm::Image& image) {
+  std::vector<vm::RuleCost> costs(image.rules.size());
+  // It has been verified, so this cannot fail.
+  if (!vm::rule_costs(image, costs)) costs.assign(costs.size(), {});
+  return costs;
+}
+
+RuleTiming rule_timing(const vm::Image& image, std::size_t number, const vm::RuleCost& cost) {
+  const vm::Rule& rule = image.rules[number];
+  RuleTiming timing{number, rule.kind, rule.line, cost, cost.else_response > cost.then_response, 0};
+  const std::uint16_t dearer = timing.else_is_dearer ? rule.else_response : rule.then_response;
+  if (dearer != vm::kNoIndex) {
+    timing.response_line = source_line(image, vm::Section::code, image.responses[dearer].start);
+  }
+  return timing;
+}
+
+BehaviorTiming behavior_timing(const vm::Image& image, const vm::Behavior& behavior,
+                               const std::vector<vm::RuleCost>& costs) {
+  BehaviorTiming timing;
+  timing.name = image.string(behavior.name);
+  timing.priority = behavior.priority;
+  timing.frame_bytes = behavior.cells * sizeof(vm::Value);
+  if (behavior.priority != vm::kSafetyPriority) timing.stack_bytes = layers::kBehaviorStack;
+  for (std::size_t r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count;
+       ++r) {
+    timing.rules.push_back(rule_timing(image, r, costs[r]));
+    timing.step += costs[r].step();
+  }
+  std::ranges::stable_sort(timing.rules, {}, &RuleTiming::line);
+  return timing;
+}
+
+// The board has no use for source lines: rsc upload leaves them out.
+std::vector<SectionSize> uploaded_sections(const vm::Image& image) {
+  std::vector<SectionSize> sizes = section_sizes(image);
+  std::erase_if(sizes,
+                [](const SectionSize& size) { return size.section == vm::Section::source_lines; });
+  return sizes;
+}
+
+template <typename Record, typename SizeOf>
+std::size_t sum(const Record& records, SizeOf size_of) {
+  std::size_t all = 0;
+  for (const auto& record : records)
+    all += size_of(record);
+  return all;
+}
+
+std::vector<Share> memory_of(const vm::Image& image, const std::vector<SectionSize>& sections) {
+  constexpr std::size_t kTimerWord = sizeof(std::uint32_t);
+  const std::size_t bytes = sum(sections, std::mem_fn(&SectionSize::bytes));
+  const std::size_t cells = sum(image.behaviors, std::mem_fn(&vm::Behavior::cells));
+  const std::size_t timer_words = sum(image.timers, [](const vm::Timer& timer) {
+    return vm::timer_words(timer.kind, timer.count);
+  });
+  return {
+      {"image", "bytes", bytes, layers::kSlotBytes},
+      {"frames", "bytes", cells * sizeof(vm::Value), layers::kMaxFrameCells * sizeof(vm::Value)},
+      {"timer memory", "bytes", timer_words * kTimerWord, layers::kMaxTimerWords * kTimerWord},
+      {"behaviours", "", image.behaviors.size(), layers::kMaxBehaviors},
+      {"rules", "", image.rules.size(), layers::kMaxRules}};
+}
+
+}  // namespace
+
+Timing timing_of(const vm::Image& image) {
+  const std::vector<vm::RuleCost> costs = costs_of(image);
+  Timing timing;
+  for (const vm::Behavior& behavior : image.behaviors)
+    if (behavior.rule_count > 0)
+      timing.behaviors.push_back(behavior_timing(image, behavior, costs));
+  std::ranges::stable_sort(timing.behaviors, {},
+                           [](const BehaviorTiming& behavior) { return behavior.rules[0].line; });
+  timing.step = {"step", "instructions", sum(costs, std::mem_fn(&vm::RuleCost::step)),
+                 layers::kStepBudget};
+  timing.sections = uploaded_sections(image);
+  timing.memory = memory_of(image, timing.sections);
+  return timing;
+}
+
+std::string too_costly_text(const vm::Image& image, std::uint32_t budget) {
+  std::string text =
+      fmt::format("a step costs up to {} instructions, the board allows {}; the dearest rules:",
+                  image.header->step_cost, budget);
+  for (const compiler::DearRule& dear : compiler::dearest_rules(image)) {
+    const RuleTiming rule = rule_timing(image, dear.rule, dear.cost);
+    text += fmt::format("\n  line {}: {} instructions", rule.line, rule.cost.step());
+    if (rule.response_line != 0) {
+      text += fmt::format(", {} of them in its {} (line {})", rule.cost.dearer_response(),
+                          rule.else_is_dearer ? "ELSE" : "DO", rule.response_line);
+    }
+  }
+  return text + fmt::format("\n  {}", compiler::kMendOfCostlyStep);
+}
+
+std::string refusal_text(const vm::Image& image, const vm::Verdict& verdict) {
+  if (verdict.refusal == vm::Refusal::too_costly)
+    return too_costly_text(image, layers::kStepBudget);
+  return describe_refusal(verdict, source_line(image, verdict.section, verdict.index));
+}
+
+}  // namespace robosync::tool

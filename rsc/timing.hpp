@@ -1,0 +1,66 @@
+// What a program costs on the board: instructions of a step, rule by rule, and memory.
+//
+// Instructions are worked out from the image by the verifier's own pass (vm/cost.hpp); they are not
+// cycles. The board is the one whose limits the host shares (runtime-m4/limits.hpp). Images must be
+// verified.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "rsc/sections.hpp"
+#include "vm/cost.hpp"
+#include "vm/image.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::tool {
+
+struct RuleTiming {
+  std::size_t number = 0;  // in the image
+  vm::RuleKind kind{};
+  std::uint16_t line = 0;
+  vm::RuleCost cost;
+  bool else_is_dearer = false;
+  std::uint16_t response_line = 0;  // of the dearer response; 0: it has none, or not known
+};
+
+struct BehaviorTiming {
+  std::string_view name;  // empty: a rule outside a BEHAVIOR
+  int priority = 0;       // vm::kSafetyPriority: the SAFETY rules
+  std::vector<RuleTiming> rules;
+  std::uint32_t step = 0;       // instructions
+  std::size_t frame_bytes = 0;  // of its cells
+  std::size_t stack_bytes = 0;  // of its thread; 0: the safety monitor runs it on its own
+};
+
+// How much the program takes of what the board has.
+struct Share {
+  std::string_view what, unit;
+  std::size_t used = 0, limit = 0;
+};
+
+struct Timing {
+  std::vector<BehaviorTiming> behaviors;  // in the order of the source, as their rules
+  std::vector<SectionSize> sections;      // of the image that rsc upload sends
+  Share step;
+  std::vector<Share> memory;
+};
+
+[[nodiscard]] Timing timing_of(const vm::Image& image);
+
+// For people, whole lines. `file` names the program.
+[[nodiscard]] std::string timing_text(const Timing& timing, const std::string& file);
+[[nodiscard]] nlohmann::ordered_json timing_json(const Timing& timing, const std::string& file);
+
+// What is wrong with a program whose step is dearer than `budget`: its dearest rules with their
+// lines, and what would make them cheaper.
+[[nodiscard]] std::string too_costly_text(const vm::Image& image, std::uint32_t budget);
+// Why the board would refuse the program: that, or the verifier's reason with its place.
+[[nodiscard]] std::string refusal_text(const vm::Image& image, const vm::Verdict& verdict);
+
+}  // namespace robosync::tool

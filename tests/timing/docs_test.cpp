@@ -1,0 +1,59 @@
+// docs/timing.md shows what rsc prints. ROBOSYNC_UPDATE_GOLDEN=1 rewrites what it shows.
+#include <catch2/catch.hpp>
+
+#include "rsc/timing.hpp"
+#include "runtime-m4/limits.hpp"
+#include "tests/timing/programs.hpp"
+
+using namespace robosync;
+
+namespace {
+
+const std::filesystem::path kPage = std::filesystem::path(ROBOSYNC_SOURCE_DIR) / "docs/timing.md";
+
+// The text between `opening` and the end of the fenced block that it begins.
+struct Block {
+  std::size_t begin = 0, end = 0;
+};
+Block block_after(const std::string& page, const std::string& opening) {
+  const std::size_t at = page.find(opening);
+  REQUIRE(at != std::string::npos);
+  const std::size_t begin = at + opening.size();
+  return {begin, page.find("```", begin)};
+}
+
+void expect_printed(const std::string& command, const std::string& printed) {
+  std::string page = testing::read_file(kPage);
+  const Block block = block_after(page, "<!-- printed: " + command + " -->\n```\n");
+  if (testing::updating_golden()) {
+    page.replace(block.begin, block.end - block.begin, printed);
+    std::ofstream(kPage, std::ios::binary) << page;
+    return;
+  }
+  CHECK(page.substr(block.begin, block.end - block.begin) == printed);
+}
+
+}  // namespace
+
+TEST_CASE("docs/timing.md: the table of an example") {
+  const std::string file = "examples/greeting_robot/robot.rsl";
+  const tool::Program program = test::compile_example(file);
+  expect_printed("rsc check --timing " + file,
+                 tool::timing_text(tool::timing_of(program.image()), file));
+}
+
+TEST_CASE("docs/timing.md: a program that is too dear, and its mend") {
+  const std::string page = testing::read_file(kPage);
+  const Block block = block_after(page, "```rsl\n");
+  const std::string text = page.substr(block.begin, block.end - block.begin);
+  const tool::Program program = test::compile_with_docs_robot(text);
+  CHECK(tool::timing_of(program.image()).step.used > layers::kStepBudget);
+  expect_printed(
+      "rsc check --timing",
+      "rsc: robot.rsl: " + tool::too_costly_text(program.image(), layers::kStepBudget) + "\n");
+
+  std::string mended = text;
+  mended.insert(mended.find("    END"), "      WAIT 1ms\n");
+  const tool::Program cheap = test::compile_with_docs_robot(mended);
+  CHECK(tool::timing_of(cheap.image()).step.used < 1000);
+}
