@@ -57,6 +57,7 @@ void Flow::visit(ProgramSet& set, State& state) {
   const Fact result = clamp(wanted, variable.min, variable.max);
   Owned& owned = state.owned[set.variable];
   const Owned needed = set.relative ? Owned::shifted : Owned::assigned;
+  set.before = cell;
   set.may_be_below = wanted.low < variable.min;
   set.may_be_above = wanted.high > variable.max;
   set.in_place = in_place_ && wanted.known && owned >= needed;
@@ -114,6 +115,12 @@ void Flow::branch(ProgramBlock& statements, State& state, bool may_run) {
   if (!may_run) --dead_;
 }
 
+// The verifier reads code once, from its start to its end: a pause on one way takes what the response
+// owns from the ways that stand behind it, too.
+void Flow::pass(const ProgramBlock& before, State& state) {
+  if (pauses(before)) std::fill(state.owned.begin(), state.owned.end(), Owned::no);
+}
+
 // What a block writes is owned until that block ends.
 void Flow::visit(ProgramIf& choice, State& state) {
   const Fact condition = look(choice.condition, state);
@@ -121,6 +128,7 @@ void Flow::visit(ProgramIf& choice, State& state) {
   const bool may_be_true = !condition.never_true();
   const bool may_be_false = condition.high == vm::kFalse;
   branch(choice.then_block, then_state, may_be_true);
+  pass(choice.then_block, else_state);
   branch(choice.else_block, else_state, may_be_false);
   State after = may_be_true ? then_state : state;
   if (may_be_true && may_be_false) after = merged(then_state, else_state);
@@ -137,6 +145,7 @@ void Flow::visit(ProgramPick& pick, State& state) {
   for (ProgramOption& option : pick.options) {
     State inner = state;
     block(option.body, inner);
+    pass(option.body, state);
     after = after ? merged(*after, inner) : inner;
   }
   if (after) state = merged(*after, {after->variables, state.owned});

@@ -59,6 +59,8 @@ private:
   // `may_run`: otherwise the block is only looked at, and counts for nothing.
   void branch(ProgramBlock& statements, State& state, bool may_run);
   void pause(State& state) const;
+  // The way of `state` stands behind that of `before`.
+  static void pass(const ProgramBlock& before, State& state);
   void forget_written(const ProgramBlock& body, State& state) const;
   void counted(ProgramRepeat& repeat, vm::Value times, State& state);
   void claim(ProgramRepeat& repeat, State& head);

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "compiler/codegen/operations.hpp"
 #include "compiler/codegen/walk.hpp"
 #include "compiler/optimize/expression_facts.hpp"
 #include "compiler/optimize/simplify.hpp"
@@ -13,15 +14,38 @@
 namespace robosync::compiler {
 namespace {
 
-// Operands only: by itself, a cell is as good as a constant, and sometimes better.
+// Does a constant cost less than a cell, as this operand?
+bool takes_constant(Operation operation, std::size_t place, vm::Value value) {
+  const bool whole = value % vm::kScale == 0;
+  switch (operation) {
+    case Operation::add:
+      return true;
+    case Operation::subtract:
+      return place == 1;
+    case Operation::multiply:
+      return whole;
+    case Operation::divide:
+      return place == 1 && value > 0 && whole;
+    case Operation::modulo:
+      return place == 1 && value > 0;
+    default:
+      return is_comparison(operation);
+  }
+}
+
+// By itself, a cell is as good as a constant, and sometimes better.
 void fold_operands(Expression& expression) {
-  for (Expression& operand : expression.operands) {
+  for (std::size_t place = 0; place < expression.operands.size(); ++place) {
+    Expression& operand = expression.operands[place];
     fold_operands(operand);
+    const bool wanted = !operand.operands.empty() ||
+                        takes_constant(expression.operation, place, operand.fact.low);
+    if (operand.operation == Operation::constant || !wanted) continue;
     if (operand.fact.is_constant() && is_pure(operand)) {
-      Expression constant;
-      constant.constant = operand.fact.low;
-      constant.fact = operand.fact;
-      operand = std::move(constant);
+      const Fact fact = operand.fact;
+      operand = {};
+      operand.constant = fact.low;
+      operand.fact = fact;
     }
   }
 }

@@ -17,7 +17,7 @@ namespace robosync::compiler {
 namespace {
 
 constexpr std::size_t kReach = 32;     // statements to look ahead in a block
-constexpr std::size_t kMaxShared = 8;  // locals for one response
+constexpr std::size_t kMaxShared = 32;  // locals for one behaviour
 
 using Visit = std::function<void(Expression&)>;
 
@@ -120,7 +120,8 @@ private:
 
 class Sharer {
 public:
-  explicit Sharer(ProgramBlock& response) {
+  // `left`: how many locals may still be made.
+  Sharer(ProgramBlock& response, std::size_t& left) : left_(left) {
     for_each_statement(response, [this](const ProgramStatement& statement) {
       if (const auto* local = std::get_if<ProgramLocal>(&statement.node))
         next_local_ = std::max(next_local_, local->number + 1);
@@ -135,13 +136,13 @@ private:
   static bool go_through(Replacement& replacement, ProgramBlock& statements, std::size_t from);
 
   std::size_t next_local_ = 0;
-  std::size_t shared_ = 0;
+  std::size_t& left_;
 };
 
 void Sharer::block(ProgramBlock& statements) {
   for (std::size_t at = 0; at < statements.size(); ++at) {
     bool found = true;
-    while (found && shared_ < kMaxShared) {
+    while (found && left_ > 0) {
       found = false;
       // A copy: to share a part puts a statement in front of this one.
       std::vector<Expression> beginnings;
@@ -167,7 +168,7 @@ bool Sharer::share_part(Expression& expression, ProgramBlock& statements, std::s
       const ProgramStatement& first = statements[from];
       ProgramStatement local{ProgramLocal{next_local_++, expression}, first.line, first.span};
       statements.insert(statements.begin() + static_cast<std::ptrdiff_t>(from), std::move(local));
-      ++shared_;
+      --left_;
       return true;
     }
   }
@@ -185,11 +186,13 @@ bool Sharer::go_through(Replacement& replacement, ProgramBlock& statements, std:
 }  // namespace
 
 void share_numbers(Program& program) {
-  for (ProgramBehavior& behavior : program.behaviors)
+  for (ProgramBehavior& behavior : program.behaviors) {
+    std::size_t left = kMaxShared;
     for (ProgramRule& rule : behavior.rules) {
-      Sharer(rule.then_response);
-      Sharer(rule.else_response);
+      Sharer(rule.then_response, left);
+      Sharer(rule.else_response, left);
     }
+  }
 }
 
 }  // namespace robosync::compiler

@@ -1,33 +1,71 @@
 // By iteration: at first a variable is what it starts with; then all responses are followed again
-// and again, each time with what they were found to write, until nothing is added. What is still
-// growing after a few rounds is taken to grow as far as it can.
+// and again, each time with what they were found to write, until nothing is added. What has grown a
+// few times is taken to grow as far as it can.
 //
 // A response to AT START runs once. If it does so in one go, it does not see what it has written
 // itself, so its writes do not feed on themselves.
 #include "compiler/optimize/variable_facts.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
+#include "compiler/codegen/walk.hpp"
 #include "compiler/optimize/flow.hpp"
 #include "compiler/sema/program_walk.hpp"
 
 namespace robosync::compiler {
 namespace {
 
-constexpr unsigned kPatience = 3;  // rounds, before what grows is widened
+constexpr unsigned kPatience = 3;     // changes, before what grows is widened
+constexpr unsigned kMaxChanges = 12;  // changes, before it is widened to the variable's limits
+
+// What a response leaves in a variable.
+struct Written {
+  std::optional<Fact> fact;
+  unsigned changes = 0;
+};
 
 struct Response {
   ProgramBlock* block = nullptr;
   bool once = false;
   bool safety = false;
-  std::vector<std::optional<Fact>> writes{};  // by variable: what it leaves there
+  std::vector<Written> writes{};  // by variable
 };
+
+// The numbers of a program: what grows often stops at one of them.
+using Thresholds = std::set<vm::Value>;
+
+void add_numbers(const Expression& expression, Thresholds& thresholds) {
+  if (expression.operation == Operation::constant && expression.constant != vm::kUnknown) {
+    thresholds.insert(expression.constant);
+    thresholds.insert(-expression.constant);
+  }
+  for (const Expression& operand : expression.operands)
+    add_numbers(operand, thresholds);
+}
+
+void add_numbers(const ProgramBlock& block, Thresholds& thresholds) {
+  const PartsOfStatement parts(
+      [&](const Expression& expression) { add_numbers(expression, thresholds); },
+      [&](const ProgramBlock& inner) { add_numbers(inner, thresholds); });
+  for (const ProgramStatement& statement : block)
+    std::visit(parts, statement.node);
+}
 
 // Widens `next` in the directions in which it has grown. That it is whole is not affected: sums that
 // saturate are not.
-Fact widened(const Fact& before, Fact next, const ProgramVariable& variable) {
-  if (next.low < before.low) next.low = variable.min;
-  if (next.high > before.high) next.high = variable.max;
+Fact widened(const Fact& before, Fact next, const ProgramVariable& variable,
+             const Thresholds& thresholds) {
+  if (next.low < before.low) {
+    const auto above = thresholds.upper_bound(next.low);
+    const vm::Value least = above == thresholds.begin() ? variable.min : *std::prev(above);
+    next.low = std::max(least, variable.min);
+  }
+  if (next.high > before.high) {
+    const auto most = thresholds.lower_bound(next.high);
+    next.high = std::min(most == thresholds.end() ? variable.max : *most, variable.max);
+  }
   return next;
 }
 
@@ -42,14 +80,16 @@ public:
         add(rule.else_response, false, false);
       }
     count_shifts();
+    for (const Response& response : responses_)
+      add_numbers(*response.block, thresholds_);
   }
 
   VariableFacts prove() {
-    for (unsigned round = 0;; ++round) {
+    while (true) {
       const VariableFacts anytime = without(nullptr);
       bool grew = false;
       for (Response& response : responses_)
-        if (follow(response, anytime, round)) grew = true;
+        if (follow(response, anytime)) grew = true;
       if (!grew) return anytime;
     }
   }
@@ -58,10 +98,10 @@ private:
   void add(ProgramBlock& block, bool start, bool safety) {
     if (block.empty()) return;
     responses_.push_back({&block, start && !pauses(block), safety,
-                          std::vector<std::optional<Fact>>(program_.variables.size())});
+                          std::vector<Written>(program_.variables.size())});
   }
   void count_shifts();
-  bool follow(Response& response, const VariableFacts& anytime, unsigned round);
+  bool follow(Response& response, const VariableFacts& anytime);
   [[nodiscard]] VariableFacts without(const Response* response) const;
   [[nodiscard]] Fact initial(std::size_t place) const;
   [[nodiscard]] Fact shifted(std::size_t place, const Fact& result, const Fact& difference) const;
@@ -69,6 +109,7 @@ private:
   Program& program_;
   const Robot& robot_;
   std::vector<Response> responses_;
+  Thresholds thresholds_;
   std::vector<std::int64_t> shifts_;  // statements that RAISE or LOWER each variable
 };
 
@@ -112,7 +153,7 @@ VariableFacts Prover::without(const Response* response) const {
     Fact fact = initial(i);
     for (const Response& other : responses_) {
       const bool counts = &other != response || shifts_[i] > 0;
-      if (counts && other.writes[i]) fact = either(fact, *other.writes[i]);
+      if (counts && other.writes[i].fact) fact = either(fact, *other.writes[i].fact);
     }
     if (program_.variables[i].fade != 0) fact.whole = false;
     facts.push_back(fact);
@@ -121,7 +162,7 @@ VariableFacts Prover::without(const Response* response) const {
 }
 
 // Did it write more than before?
-bool Prover::follow(Response& response, const VariableFacts& anytime, unsigned round) {
+bool Prover::follow(Response& response, const VariableFacts& anytime) {
   Flow flow(program_, robot_, anytime);
   const VariableFacts entry = response.once ? without(&response) : anytime;
   const WriteFacts found = flow.follow(*response.block, entry, !response.safety);
@@ -130,10 +171,12 @@ bool Prover::follow(Response& response, const VariableFacts& anytime, unsigned r
     if (!found.results[i]) continue;
     Fact next = *found.results[i];
     if (found.differences[i]) next = shifted(i, next, *found.differences[i]);
-    std::optional<Fact>& before = response.writes[i];
+    auto& [before, changes] = response.writes[i];
     if (before) next = either(*before, next);
     if (before == next) continue;
-    if (before && round >= kPatience) next = widened(*before, next, program_.variables[i]);
+    const bool last = ++changes > kMaxChanges;
+    if (before && changes > kPatience)
+      next = widened(*before, next, program_.variables[i], last ? Thresholds{} : thresholds_);
     before = next;
     grew = true;
   }

@@ -140,6 +140,7 @@ struct ProgramSet {
   // computed where it stands; and the result may be outside of the variable's range.
   bool in_place = false;
   bool may_be_below = true, may_be_above = true;
+  Fact before{};  // what the variable is before
 };
 struct ProgramWait {
   Expression duration;
