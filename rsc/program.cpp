@@ -57,10 +57,9 @@ compiler::Result compile(const std::string& file, const CompileOptions& options,
                          const compiler::ModuleReader& modules) {
   std::string text = read_text(file);
   const std::filesystem::path path = find_configuration(file, options.config);
-  return compiler::compile({file, std::move(text)}, {path.string(), read_text(path)},
-                           {.source_lines = options.source_lines,
-                            .optimize = options.optimize,
-                            .read_module = modules});
+  return compiler::compile(
+      {file, std::move(text)}, {path.string(), read_text(path)},
+      {.source_lines = options.source_lines, .optimize = options.optimize, .read_module = modules});
 }
 
 }  // namespace

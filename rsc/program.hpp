@@ -19,8 +19,7 @@ struct CompileOptions {
 };
 
 // Compiles `file` with its configuration. Throws Failure (outside) when one cannot be read.
-[[nodiscard]] compiler::Result compile_file(const std::string& file,
-                                            const CompileOptions& options);
+[[nodiscard]] compiler::Result compile_file(const std::string& file, const CompileOptions& options);
 
 // "0 errors, 1 warning, 2 notes".
 [[nodiscard]] std::string summary(const compiler::Diagnostics& diagnostics);

@@ -21,13 +21,57 @@ bool is_double(const Expression& expression) {
          expression.operands[1].constant == kTwo;
 }
 
+// May it be worked out once instead of twice? Of two equal time words, both always are the same;
+// but those with two operands keep something in the register of the first.
+bool can_be_shared(const Expression& expression) {
+  const bool two = is_time_word(expression.operation) && expression.operands.size() > 1;
+  return expression.operation != Operation::random && !two &&
+         std::all_of(expression.operands.begin(), expression.operands.end(), can_be_shared);
+}
+
+constexpr std::size_t kMaxLookedAt = 64;  // parts of a condition
+
 std::uint32_t after(Cell cell, std::uint32_t depth) {
   return cell.zone == Zone::temporary ? depth + 1 : depth;
 }
 
 }  // namespace
 
+Cell ExpressionEmitter::condition(const Expression& expression) {
+  std::vector<const Expression*> seen;
+  if (parts_.program.optimized) share(expression, seen);
+  return value(expression, static_cast<std::uint32_t>(shared_.size()));
+}
+
+// Outer parts first: what is inside of an equal part is not looked at again.
+void ExpressionEmitter::share(const Expression& expression, std::vector<const Expression*>& seen) {
+  if (expression.operands.empty() || seen.size() == kMaxLookedAt) return;
+  const auto same = [&](const Expression* other) { return *other == expression; };
+  const auto first = std::find_if(seen.begin(), seen.end(), same);
+  if (first != seen.end() && can_be_shared(expression)) {
+    const auto known = [&](const Shared& shared) { return shared.part == *first; };
+    if (std::none_of(shared_.begin(), shared_.end(), known)) {
+      const auto place = static_cast<std::uint32_t>(shared_.size());
+      shared_.push_back({*first, parts_.frame.temporary(place)});
+    }
+    return;
+  }
+  seen.push_back(&expression);
+  for (const Expression& operand : expression.operands)
+    share(operand, seen);
+}
+
 Cell ExpressionEmitter::value(const Expression& expression, std::uint32_t depth) {
+  for (Shared& shared : shared_) {
+    if (!(*shared.part == expression)) continue;
+    if (!shared.done) put_into(shared.cell, worked_out(expression, depth));
+    shared.done = true;
+    return shared.cell;
+  }
+  return worked_out(expression, depth);
+}
+
+Cell ExpressionEmitter::worked_out(const Expression& expression, std::uint32_t depth) {
   const auto& operands = expression.operands;
   const Operation operation = expression.operation;
   switch (operation) {
@@ -116,8 +160,7 @@ std::optional<std::size_t> ExpressionEmitter::jump_unless(const Expression& comp
     return jump_unless(operation, value(left), right.constant);
   }
   // In the same order as comparison(): it may draw random numbers.
-  const bool turned =
-      operation == Operation::greater || operation == Operation::greater_equal;
+  const bool turned = operation == Operation::greater || operation == Operation::greater_equal;
   const Cell first = value(turned ? right : left);
   const Cell second = value(turned ? left : right, after(first, 0));
   (void)parts_.frame.temporary(0);  // CodeDraft::land() may need it

@@ -19,10 +19,15 @@ public:
   ExpressionEmitter(Parts& parts, CodeDraft& code, TimeWords time_words)
       : parts_(parts), code_(code), time_words_(time_words) {}
 
+  // The whole of a condition, ready for `ret`. When the program is optimised, parts of it that are
+  // equal are worked out once: every part is evaluated whatever the others are.
+  Cell condition(const Expression& expression);
   // Gives the cell where the value is; `depth` registers are in use.
   Cell value(const Expression& expression, std::uint32_t depth = 0);
   // `target`: a local, or a variable that is written in place.
-  void value_into(Cell target, const Expression& expression) { put_into(target, value(expression)); }
+  void value_into(Cell target, const Expression& expression) {
+    put_into(target, value(expression));
+  }
   // `cell` is what was worked out last.
   void put_into(Cell target, Cell cell);
   Cell constant(vm::Value value, std::uint32_t depth = 0);
@@ -38,6 +43,14 @@ public:
   [[nodiscard]] LocalCells& locals() { return locals_; }
 
 private:
+  struct Shared {
+    const Expression* part = nullptr;
+    Cell cell;  // a register below all others
+    bool done = false;
+  };
+
+  void share(const Expression& expression, std::vector<const Expression*>& seen);
+  Cell worked_out(const Expression& expression, std::uint32_t depth);
   Cell unary(vm::Opcode opcode, const Expression& operand, std::uint32_t depth);
   Cell binary(vm::Opcode opcode, const Expression& left, const Expression& right,
               std::uint32_t depth, bool exchanged = false);
@@ -52,6 +65,7 @@ private:
   CodeDraft& code_;
   TimeWords time_words_;
   LocalCells locals_;
+  std::vector<Shared> shared_;
 };
 
 }  // namespace robosync::compiler

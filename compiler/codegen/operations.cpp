@@ -6,10 +6,9 @@ namespace robosync::compiler {
 namespace {
 
 // Comparisons, in the order of the jumps that do them.
-constexpr vm::Opcode kCompared[] = {vm::Opcode::lt,   vm::Opcode::le,   vm::Opcode::eq,
-                                    vm::Opcode::ne,   vm::Opcode::lt_k, vm::Opcode::le_k,
-                                    vm::Opcode::gt_k, vm::Opcode::ge_k, vm::Opcode::eq_k,
-                                    vm::Opcode::ne_k};
+constexpr vm::Opcode kCompared[] = {
+    vm::Opcode::lt,   vm::Opcode::le,   vm::Opcode::eq,   vm::Opcode::ne,   vm::Opcode::lt_k,
+    vm::Opcode::le_k, vm::Opcode::gt_k, vm::Opcode::ge_k, vm::Opcode::eq_k, vm::Opcode::ne_k};
 constexpr auto kFirstCompared = static_cast<std::size_t>(vm::Opcode::unless_lt);
 static_assert(static_cast<std::size_t>(vm::Opcode::unless_ne_k) ==
               kFirstCompared + std::size(kCompared) - 1);

@@ -9,14 +9,15 @@
 
 namespace robosync::compiler {
 
-using VariableFacts = std::vector<Fact>;            // by place in Program::variables
-using LocalFacts = std::map<std::size_t, Fact>;     // by ProgramLocal::number
+using VariableFacts = std::vector<Fact>;         // by place in Program::variables
+using LocalFacts = std::map<std::size_t, Fact>;  // by ProgramLocal::number
 
 // What an expression reads, when it is evaluated.
 struct Sight {
   const Robot& robot;
-  const VariableFacts& now;      // here
-  const VariableFacts& anytime;  // in any step: time words in a response are evaluated in all of them
+  const VariableFacts& now;  // here
+  const VariableFacts&
+      anytime;  // in any step: time words in a response are evaluated in all of them
   const LocalFacts& locals;
 };
 

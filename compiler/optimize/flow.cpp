@@ -22,7 +22,8 @@ WriteFacts Flow::follow(ProgramBlock& response, const VariableFacts& entry, bool
   writes_ = {std::vector<std::optional<Fact>>(variables),
              std::vector<std::optional<Fact>>(variables)};
   in_place_ = in_place;
-  State state{entry, std::vector<Owned>(variables, Owned::no)};
+  State state{entry, std::vector<Owned>(variables, Owned::no), std::vector<bool>(variables),
+              std::vector<bool>(variables)};
   block(response, state);
   return std::move(writes_);
 }
@@ -60,7 +61,8 @@ void Flow::visit(ProgramSet& set, State& state) {
   set.before = cell;
   set.may_be_below = wanted.low < variable.min;
   set.may_be_above = wanted.high > variable.max;
-  set.in_place = in_place_ && wanted.known && owned >= needed;
+  set.in_place = in_place_ && wanted.known && owned >= needed && !state.barred[set.variable];
+  state.held[set.variable] = true;
   if (growths_ != nullptr && dead_ == 0) note_growth(set);
   cell = wanted.known ? result : either(cell, result);
   cell.known = true;
@@ -81,6 +83,8 @@ void Flow::record(const ProgramSet& set, const Fact& result) {
 void Flow::pause(State& state) const {
   state.variables = anytime_;
   std::fill(state.owned.begin(), state.owned.end(), Owned::no);
+  std::fill(state.held.begin(), state.held.end(), false);
+  std::fill(state.barred.begin(), state.barred.end(), false);
 }
 
 void Flow::visit(ProgramWait& wait, State& state) {
@@ -105,6 +109,8 @@ Flow::State Flow::merged(const State& one, const State& other) {
   for (std::size_t i = 0; i < result.variables.size(); ++i) {
     result.variables[i] = either(one.variables[i], other.variables[i]);
     result.owned[i] = std::min(one.owned[i], other.owned[i]);
+    result.held[i] = one.held[i] || other.held[i];
+    result.barred[i] = one.barred[i] || other.barred[i];
   }
   return result;
 }
@@ -115,8 +121,8 @@ void Flow::branch(ProgramBlock& statements, State& state, bool may_run) {
   if (!may_run) --dead_;
 }
 
-// The verifier reads code once, from its start to its end: a pause on one way takes what the response
-// owns from the ways that stand behind it, too.
+// The verifier reads code once, from its start to its end: a pause on one way takes what the
+// response owns from the ways that stand behind it, too.
 void Flow::pass(const ProgramBlock& before, State& state) {
   if (pauses(before)) std::fill(state.owned.begin(), state.owned.end(), Owned::no);
 }
@@ -148,7 +154,9 @@ void Flow::visit(ProgramPick& pick, State& state) {
     pass(option.body, state);
     after = after ? merged(*after, inner) : inner;
   }
-  if (after) state = merged(*after, {after->variables, state.owned});
+  if (!after) return;
+  after->owned = merged(*after, state).owned;
+  state = std::move(*after);
 }
 
 }  // namespace robosync::compiler

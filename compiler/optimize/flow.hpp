@@ -33,6 +33,9 @@ private:
   struct State {
     VariableFacts variables;
     std::vector<Owned> owned;
+    // What the verifier takes for owned, which may be more; and what it had for owned when a loop
+    // that pauses began: that is not computed in place before the first pause.
+    std::vector<bool> held, barred;
   };
   // What one round of a loop does to a variable, if it only adds to it.
   struct Growth {
@@ -62,6 +65,7 @@ private:
   // The way of `state` stands behind that of `before`.
   static void pass(const ProgramBlock& before, State& state);
   void forget_written(const ProgramBlock& body, State& state) const;
+  void begin_resting(State& state) const;
   void counted(ProgramRepeat& repeat, vm::Value times, State& state);
   void claim(ProgramRepeat& repeat, State& head);
   State grown(const ProgramRepeat& repeat, const State& before, const Growths& growths,

@@ -57,7 +57,7 @@ void Flow::visit(ProgramRepeat& repeat, State& state) {
   const bool rests = pauses(repeat.body);
   if (times && !rests) return counted(repeat, *times / vm::kScale, state);
   if (rests)
-    pause(state);
+    begin_resting(state);
   else
     forget_written(repeat.body, state);
   if (repeat.kind == RepeatKind::while_) look(repeat.control, state);
@@ -66,6 +66,15 @@ void Flow::visit(ProgramRepeat& repeat, State& state) {
   block(repeat.body, inner);
   --inner_loops_;
   state = times ? inner : merged(state, inner);
+}
+
+// In a loop that pauses, a round may begin in another step.
+void Flow::begin_resting(State& state) const {
+  std::vector<bool> barred = state.barred;
+  for (std::size_t i = 0; i < barred.size(); ++i)
+    barred[i] = barred[i] || state.held[i];
+  pause(state);
+  state.barred = std::move(barred);
 }
 
 // The body runs `times`, at least once, and never gives up the processor.

@@ -38,8 +38,8 @@ void fold_operands(Expression& expression) {
   for (std::size_t place = 0; place < expression.operands.size(); ++place) {
     Expression& operand = expression.operands[place];
     fold_operands(operand);
-    const bool wanted = !operand.operands.empty() ||
-                        takes_constant(expression.operation, place, operand.fact.low);
+    const bool wanted =
+        !operand.operands.empty() || takes_constant(expression.operation, place, operand.fact.low);
     if (operand.operation == Operation::constant || !wanted) continue;
     if (operand.fact.is_constant() && is_pure(operand)) {
       const Fact fact = operand.fact;
@@ -79,7 +79,7 @@ private:
 // The statement, with its parts pruned; or what is left of it.
 void Pruner::keep(ProgramStatement statement, ProgramBlock& result) {
   const PartsOfStatement parts([](Expression& expression) { fold(expression); },
-                                      [this](ProgramBlock& inner) { block(inner); });
+                               [this](ProgramBlock& inner) { block(inner); });
   std::visit(parts, statement.node);
   if (std::holds_alternative<ProgramIf>(statement.node))
     choose(std::move(statement), result);
@@ -114,8 +114,7 @@ void Pruner::choose(ProgramStatement statement, ProgramBlock& result) {
 // where there is an ELSE, false and unknown differ.
 void prune(ProgramRule& rule) {
   fold(rule.condition);
-  const bool only_when_true =
-      rule.kind == vm::RuleKind::when || rule.kind == vm::RuleKind::while_;
+  const bool only_when_true = rule.kind == vm::RuleKind::when || rule.kind == vm::RuleKind::while_;
   if (only_when_true && rule.condition.fact.never_true() && is_pure(rule.condition)) {
     rule.condition = {};
     rule.condition.constant = vm::kFalse;

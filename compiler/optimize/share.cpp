@@ -16,7 +16,7 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::size_t kReach = 32;     // statements to look ahead in a block
+constexpr std::size_t kReach = 32;      // statements to look ahead in a block
 constexpr std::size_t kMaxShared = 32;  // locals for one behaviour
 
 using Visit = std::function<void(Expression&)>;

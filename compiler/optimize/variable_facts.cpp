@@ -53,8 +53,8 @@ void add_numbers(const ProgramBlock& block, Thresholds& thresholds) {
     std::visit(parts, statement.node);
 }
 
-// Widens `next` in the directions in which it has grown. That it is whole is not affected: sums that
-// saturate are not.
+// Widens `next` in the directions in which it has grown. That it is whole is not affected: sums
+// that saturate are not.
 Fact widened(const Fact& before, Fact next, const ProgramVariable& variable,
              const Thresholds& thresholds) {
   if (next.low < before.low) {
@@ -97,8 +97,8 @@ public:
 private:
   void add(ProgramBlock& block, bool start, bool safety) {
     if (block.empty()) return;
-    responses_.push_back({&block, start && !pauses(block), safety,
-                          std::vector<Written>(program_.variables.size())});
+    responses_.push_back(
+        {&block, start && !pauses(block), safety, std::vector<Written>(program_.variables.size())});
   }
   void count_shifts();
   bool follow(Response& response, const VariableFacts& anytime);

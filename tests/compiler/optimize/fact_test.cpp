@@ -1,10 +1,11 @@
 // Facts about results, against the results of all values that the operands may have.
+#include "compiler/optimize/fact.hpp"
+
 #include <functional>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
-#include "compiler/optimize/fact.hpp"
 #include "compiler/sema/compute.hpp"
 #include "vm/arithmetic.hpp"
 
@@ -106,13 +107,15 @@ TEST_CASE("facts about comparisons hold, and decide what can be decided") {
 
 TEST_CASE("facts about three-valued truths hold") {
   const std::vector<std::vector<Value>> sets = {
-      {vm::kTrue}, {vm::kFalse}, {vm::kTrue, vm::kFalse}, {vm::kTrue, kUnknown},
-      {vm::kFalse, kUnknown}, {vm::kTrue, vm::kFalse, kUnknown}};
+      {vm::kTrue},           {vm::kFalse},           {vm::kTrue, vm::kFalse},
+      {vm::kTrue, kUnknown}, {vm::kFalse, kUnknown}, {vm::kTrue, vm::kFalse, kUnknown}};
   const auto fact_for = [](const std::vector<Value>& values) {
     Fact fact{true, false, vm::kFalse, vm::kTrue};
     for (const Value value : values) {
-      if (value == kUnknown) fact.known = false;
-      else fact = {fact.known, false, std::min(fact.low, value), std::max(fact.high, value)};
+      if (value == kUnknown)
+        fact.known = false;
+      else
+        fact = {fact.known, false, std::min(fact.low, value), std::max(fact.high, value)};
     }
     return fact;
   };

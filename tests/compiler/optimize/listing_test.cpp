@@ -19,9 +19,8 @@ const fs::path kFolder = fs::path(ROBOSYNC_SOURCE_DIR) / "tests/compiler/optimiz
 
 std::vector<std::byte> compiled(const fs::path& program, bool optimize) {
   const Options options{.source_lines = false, .optimize = optimize};
-  Result result =
-      compile({"robot.rsl", read_file(program)},
-              {"robot.json", read_file(kFolder / "robot.json")}, options);
+  Result result = compile({"robot.rsl", read_file(program)},
+                          {"robot.json", read_file(kFolder / "robot.json")}, options);
   for (const Diagnostic& one : result.diagnostics.all())
     UNSCOPED_INFO(one.message);
   REQUIRE(!result.image.empty());
@@ -53,9 +52,9 @@ TEST_CASE("programs as they are written, and optimised", "[golden]") {
     const std::vector<std::byte> plain = compiled(program, false);
     const std::vector<std::byte> optimized = compiled(program, true);
     fs::path golden = program;
-    robosync::testing::expect_golden(golden.replace_extension(".txt"),
-                                     "-O0\n" + listing(view(plain)) + "\n-O1\n" +
-                                         listing(view(optimized)));
+    robosync::testing::expect_golden(
+        golden.replace_extension(".txt"),
+        "-O0\n" + listing(view(plain)) + "\n-O1\n" + listing(view(optimized)));
     CHECK(view(optimized).code.size() <= view(plain).code.size());
     CHECK(view(optimized).header->step_cost <= view(plain).header->step_cost);
   }

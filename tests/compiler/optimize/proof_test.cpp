@@ -86,8 +86,8 @@ TEST_CASE("a loop whose body waits proves nothing about its rounds") {
 }
 
 TEST_CASE("a variable that is only set to constants is one of them") {
-  const VariableFacts facts = prove(program_of(
-      {when(kClose, {set(kI, number(3))}), when(kClose, {set(kI, number(-2))})}, kTwo));
+  const VariableFacts facts = prove(
+      program_of({when(kClose, {set(kI, number(3))}), when(kClose, {set(kI, number(-2))})}, kTwo));
   CHECK(facts[kI] == units(-2, 3));
   CHECK(facts[kS] == units(0, 0));
 }

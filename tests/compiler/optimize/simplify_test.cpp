@@ -1,10 +1,11 @@
 // Simplified expressions give what they gave before, whatever their parts turn out to be.
+#include "compiler/optimize/simplify.hpp"
+
 #include <random>
 
 #include <catch2/catch.hpp>
 
 #include "compiler/optimize/expression_facts.hpp"
-#include "compiler/optimize/simplify.hpp"
 #include "compiler/sema/compute.hpp"
 #include "vm/arithmetic.hpp"
 
@@ -51,10 +52,30 @@ Value evaluate(const Expression& expression, const std::vector<Value>& variables
   }
 }
 
-const std::vector<Value> kValues = {
-    vm::kUnknown, vm::kValueMin, vm::kValueMin + 1, -2000000, -4000, -3996, -1001, -1000, -501, -500,
-    -1,           0,             1,                 499,      500,   1000,  1499,  1500,  3995, 3996,
-    4000,         1234567,       vm::kValueMax - 1, vm::kValueMax};
+const std::vector<Value> kValues = {vm::kUnknown,
+                                    vm::kValueMin,
+                                    vm::kValueMin + 1,
+                                    -2000000,
+                                    -4000,
+                                    -3996,
+                                    -1001,
+                                    -1000,
+                                    -501,
+                                    -500,
+                                    -1,
+                                    0,
+                                    1,
+                                    499,
+                                    500,
+                                    1000,
+                                    1499,
+                                    1500,
+                                    3995,
+                                    3996,
+                                    4000,
+                                    1234567,
+                                    vm::kValueMax - 1,
+                                    vm::kValueMax};
 
 class Maker {
 public:
@@ -63,8 +84,7 @@ public:
   Expression number(unsigned depth) {
     if (depth == 0 || below(4) == 0) return below(2) == 0 ? variable(below(2)) : some_constant();
     if (below(6) == 0) return of(Operation::negate, {number(depth - 1)});
-    const auto operation =
-        static_cast<Operation>(static_cast<unsigned>(Operation::add) + below(5));
+    const auto operation = static_cast<Operation>(static_cast<unsigned>(Operation::add) + below(5));
     return of(operation, {number(depth - 1), number(depth - 1)});
   }
 
@@ -118,13 +138,13 @@ TEST_CASE("simplified expressions give the same values") {
 
 TEST_CASE("a comparison of a computed number becomes one of what it was computed from") {
   // x / 8 < 0.5 is true up to 3.995, for 3.996 / 8 is rounded to 0.5.
-  Expression mean = of(Operation::less, {of(Operation::divide, {variable(0), constant(8000)}),
-                                         constant(500)});
+  Expression mean =
+      of(Operation::less, {of(Operation::divide, {variable(0), constant(8000)}), constant(500)});
   simplify(mean);
   CHECK(mean == of(Operation::less, {variable(0), constant(3996)}));
 
-  Expression falling = of(Operation::less, {of(Operation::subtract, {constant(5000), variable(0)}),
-                                            constant(2000)});
+  Expression falling =
+      of(Operation::less, {of(Operation::subtract, {constant(5000), variable(0)}), constant(2000)});
   simplify(falling);
   CHECK(falling == of(Operation::greater, {variable(0), constant(3000)}));
 
@@ -138,7 +158,7 @@ TEST_CASE("what draws, remembers or may divide by zero is not pure") {
   CHECK(is_pure(of(Operation::divide, {variable(0), constant(1)})));
   CHECK(!is_pure(of(Operation::divide, {variable(0), variable(1)})));
   CHECK(!is_pure(of(Operation::modulo, {variable(0), constant(0)})));
-  CHECK(!is_pure(of(Operation::add, {of(Operation::random, {variable(0), variable(1)}),
-                                     constant(1)})));
+  CHECK(!is_pure(
+      of(Operation::add, {of(Operation::random, {variable(0), variable(1)}), constant(1)})));
   CHECK(!is_pure(of(Operation::held, {variable(0)})));
 }
