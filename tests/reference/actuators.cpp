@@ -35,7 +35,8 @@ bool Actuators::submit(std::size_t actuator, const Order& order, Millis now) {
     start(actuator, now);
     return true;
   }
-  if (queue.orders.size() >= kMostWaiting) return false;
+  const std::size_t waiting = queue.orders.size() - (queue.busy ? 1 : 0);
+  if (waiting >= kMostWaiting) return false;
   queue.orders.push_back(order);
   return true;
 }

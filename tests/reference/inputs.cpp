@@ -91,7 +91,7 @@ void Inputs::enter_variables(Millis now) {
   staged_.clear();
   for (const auto& [variable, value] : values) {
     if (snapshot_.variables[variable] == value) continue;
-    put(variable, value);
+    snapshot_.variables[variable] = value;
     begin_fade(variable, now);
   }
 }
@@ -115,7 +115,7 @@ void Inputs::fade(Millis now) {
       const long double part = static_cast<long double>(config.fade) / 2147483648.0L;
       left = static_cast<std::int64_t>(static_cast<long double>(fade.way) *
                                        std::pow(part, static_cast<long double>(since / kFadeEvery)));
-      put(variable, config.fades_to + left);
+      snapshot_.variables[variable] = config.fades_to + left;
     }
     next = left == 0 ? fades_.erase(next) : std::next(next);
   }
@@ -173,8 +173,11 @@ void Inputs::check(const compiler::ProgramCheck& check, Smoothing& smoothing, Mi
 
 void Inputs::enter(Millis now) {
   enter_readings(now);
-  enter_variables(now);
+  const std::vector<Number> before = snapshot_.variables;
   fade(now);
+  enter_variables(now);
+  for (std::size_t v = 0; v < before.size(); ++v)
+    if (snapshot_.variables[v] != before[v]) trace_.variable(v, snapshot_.variables[v]);
   for (std::size_t c = 0; c < program_.checks.size(); ++c)
     check(program_.checks[c], smoothing_[c], now);
 }

@@ -55,9 +55,9 @@ void Interpreter::run(const std::vector<Reading>& readings, Millis end) {
     trace_.set_time(now_.at);
     guard(now_.at % kGuardEvery == 0);
     advance_actuators(true);
-    step();
+    steps();
     feed(readings, next);
-    if (advance_actuators(false)) step();
+    if (advance_actuators(false)) steps();
   }
 }
 
@@ -74,7 +74,7 @@ void Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) 
     guarded = guarded || guarded_.contains(channel);
   }
   if (guarded) guard(true);
-  if (news) step();
+  if (news) steps();
 }
 
 // True if somebody's commands are all done now.
@@ -96,14 +96,33 @@ void Interpreter::end_responses() {
     if (!rule.running || actuators_.works_for(r)) continue;
     if (!rule.running->response.ended() || rule.running->response.waits()) continue;
     trace_.rule("finished", *rule.rule, rule.behavior);
+    if (rule.running->ran_now) rule.ended = now_.at;
+    freed_.merge(rule.running->actuators);
     rule.running.reset();
   }
+}
+
+// Actuators that became free in a step are there for who waits for them, in the same millisecond.
+void Interpreter::steps() {
+  do {
+    freed_.clear();
+    step();
+  } while (is_awaited(freed_));
+}
+
+bool Interpreter::is_awaited(const std::set<std::size_t>& freed) const {
+  return std::any_of(rules_.begin(), rules_.end(), [&](const Rule& rule) {
+    return rule.lost && std::any_of(freed.begin(), freed.end(), [&](std::size_t actuator) {
+             return rule.then_actuators.contains(actuator) ||
+                    rule.else_actuators.contains(actuator);
+           });
+  });
 }
 
 void Interpreter::step() {
   ++now_.step;
   for (Rule& rule : rules_)
-    if (rule.running) rule.running->won_now = false;
+    if (rule.running) rule.running->won_now = rule.running->ran_now = false;
   inputs_.enter(now_.at);
   remember();
   interrupt_halted();
@@ -154,6 +173,7 @@ void Interpreter::run_responses() {
       if (!running->response.waits() || !running->response.may_go_on(here)) continue;
       trace_.rule("go_on", *rules_[r].rule, rules_[r].behavior);
     }
+    running->ran_now = true;
     outputs.emplace_back(r, running->response.run(here));
     if (running->response.waits()) trace_.rule("wait", *rules_[r].rule, rules_[r].behavior);
   }

@@ -41,6 +41,7 @@ private:
     bool side = true;
     std::set<std::size_t> actuators;
     bool won_now = false;
+    bool ran_now = false;  // in this step
   };
   struct Waiting {
     bool side = true;
@@ -55,6 +56,8 @@ private:
     std::optional<Running> running;
     std::optional<Waiting> waiting;
     std::optional<Millis> started;  // last
+    Millis ended = -1;              // last, by coming to its end in a step
+    bool lost = false;              // it would run, but others have its actuators
     std::optional<Millis> due;      // the end of the period
   };
   struct Claim {
@@ -69,7 +72,9 @@ private:
 
   bool advance_actuators(bool important);
   void end_responses();
+  [[nodiscard]] bool is_awaited(const std::set<std::size_t>& actuators) const;
   void feed(const std::vector<Reading>& readings, std::size_t& next);
+  void steps();
   void step();
   void remember();
   void interrupt_halted();
@@ -103,6 +108,7 @@ private:
   std::vector<bool> important_;  // by actuator: the most important behaviour commands it
   std::set<compiler::ChannelRef> guarded_;
   Moment now_;
+  std::set<std::size_t> freed_;  // actuators, since the last step began
   Moment guard_now_;
   Millis looked_at_ = 0;  // when SAFETY rules last looked whether sensors still report
 };

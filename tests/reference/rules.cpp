@@ -31,10 +31,12 @@ void Interpreter::look_at(std::size_t r, std::vector<Claim>& claims) {
       break;
   }
   if (!rule.waiting) return;
-  if (claims.size() > before || now_.at > rule.waiting->until)
+  if (claims.size() > before || now_.at > rule.waiting->until) {
     rule.waiting.reset();
-  else
+    rule.lost = false;
+  } else {
     claims.push_back({r, rule.waiting->side, false});
+  }
 }
 
 // "After the response has started, further triggers are dropped until the time is over."
@@ -62,12 +64,13 @@ void Interpreter::look_at_while(std::size_t r, std::vector<Claim>& claims) {
   const bool rises = truth == true && rule.last != true;
   rule.last = truth == true;
   if (truth != true) {
+    rule.lost = false;
     if (rule.running) interrupt(r, name_of(rule));
     return;
   }
   if (rises) return trigger(r, true, claims);
   const bool cools = rule.started && now_.at < *rule.started + std::max<Millis>(rule.rule->cooldown, 1);
-  if (!rule.running && !cools) claims.push_back({r, true, false});
+  if (!rule.running && !cools && now_.at > rule.ended) claims.push_back({r, true, false});
 }
 
 void Interpreter::look_at_every(std::size_t r, std::vector<Claim>& claims) {
@@ -97,6 +100,7 @@ void Interpreter::serve(const Claim& claim) {
   std::vector<std::size_t> losers;
   const std::string obstacle = in_the_way(claim, losers);
   if (!obstacle.empty()) {
+    rule.lost = rule.rule->kind == vm::RuleKind::while_ || rule.rule->waiting > 0;
     if (!claim.trigger) return;
     trace_.rule("lose", *rule.rule, rule.behavior, claim.side, obstacle);
     if (rule.rule->waiting > 0) rule.waiting = Waiting{claim.side, now_.at + rule.rule->waiting};
@@ -107,8 +111,9 @@ void Interpreter::serve(const Claim& claim) {
   trace_.rule("win", *rule.rule, rule.behavior, claim.side);
   const auto& block = claim.side ? rule.rule->then_response : rule.rule->else_response;
   rule.running = Running{Response(block, claim.rule), claim.side,
-                         actuators(claim.rule, claim.side), true};
+                         actuators(claim.rule, claim.side), true, false};
   rule.waiting.reset();
+  rule.lost = false;
   rule.started = now_.at;
 }
 
