@@ -27,12 +27,11 @@ Millis duration(const Order& order) {
 
 }  // namespace
 
-bool Actuators::submit(std::size_t actuator, const Order& order, Millis now) {
+bool Actuators::submit(std::size_t actuator, const Order& order) {
   Queue& queue = queues_[actuator];
   if (order.command->verb.action == vm::Action::stop) {
-    if (!queue.orders.empty()) cancel(actuator);
-    queue.orders.push_back(order);
-    start(actuator, now);
+    if (queue.busy) cancel(actuator);
+    queue.orders = {order};
     return true;
   }
   const std::size_t waiting = queue.orders.size() - (queue.busy ? 1 : 0);
@@ -43,7 +42,7 @@ bool Actuators::submit(std::size_t actuator, const Order& order, Millis now) {
 
 void Actuators::start(std::size_t actuator, Millis now) {
   Queue& queue = queues_[actuator];
-  while (!queue.busy && !queue.orders.empty()) {
+  while (!queue.busy && !queue.halted && !queue.orders.empty()) {
     trace_.command(actuator, queue.orders.front());
     queue.busy = true;
     queue.ends = now + duration(queue.orders.front());
@@ -58,7 +57,13 @@ void Actuators::cancel(std::size_t actuator) {
 
 void Actuators::halt(std::size_t actuator) {
   trace_.actuator("halt", actuator);
-  queues_[actuator] = {};
+  queues_[actuator].busy = false;
+  queues_[actuator].halted = true;
+}
+
+void Actuators::release(std::size_t actuator) {
+  trace_.actuator("release", actuator);
+  queues_[actuator].halted = false;
 }
 
 bool Actuators::advance(std::size_t actuator, Millis now) {

@@ -1,5 +1,7 @@
 #include "tests/reference/evaluator.hpp"
 
+#include <algorithm>
+
 namespace robosync::reference {
 namespace {
 
@@ -60,8 +62,7 @@ Number Evaluator::number(const Expression& expression, const Sight& sight) {
 
 Truth Evaluator::truth(const Expression& expression, const Sight& sight) {
   const auto part = [&](std::size_t i) { return truth(expression.operands[i], sight); };
-  if (is_time_word(expression.operation))
-    return at_rest_ && is_event(expression.operation) ? Truth(false) : words_[&expression].now;
+  if (is_time_word(expression.operation)) return words_[&expression].now;
   switch (expression.operation) {
     case Operation::logical_not:
       return opposite(part(0));
@@ -114,11 +115,10 @@ void Evaluator::remember(const Expression& expression, const Sight& sight, Momen
   word.now = word.past.truth(expression, now);
 }
 
-Truth Evaluator::truth_at_rest(const Expression& expression, const Sight& sight) {
-  at_rest_ = true;
-  const Truth result = truth(expression, sight);
-  at_rest_ = false;
-  return result;
+bool Evaluator::happens(const Expression& expression) const {
+  if (is_event(expression.operation) && words_.at(&expression).now == true) return true;
+  return std::any_of(expression.operands.begin(), expression.operands.end(),
+                     [this](const Expression& operand) { return happens(operand); });
 }
 
 }  // namespace robosync::reference

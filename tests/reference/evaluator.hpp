@@ -30,9 +30,8 @@ public:
 
   // Notes what the time words of an expression see in this step; `truth` gives them from then on.
   void remember(const compiler::Expression& expression, const Sight& sight, Moment now);
-  // The truth if no event happened now: BECOMES, CHANGES, TIMES WITHIN and THEN … WITHIN are true
-  // for a moment only.
-  [[nodiscard]] Truth truth_at_rest(const compiler::Expression& expression, const Sight& sight);
+  // Is an event in it true now? BECOMES, CHANGES, TIMES WITHIN and THEN … WITHIN are, for a moment.
+  [[nodiscard]] bool happens(const compiler::Expression& expression) const;
 
 private:
   struct Word {
@@ -42,7 +41,6 @@ private:
   [[nodiscard]] Truth comparison(const compiler::Expression& expression, const Sight& sight);
 
   std::map<const compiler::Expression*, Word> words_;
-  bool at_rest_ = false;
 };
 
 }  // namespace robosync::reference

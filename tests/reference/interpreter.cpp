@@ -57,7 +57,8 @@ void Interpreter::run(const std::vector<Reading>& readings, Millis end) {
     advance_actuators(true);
     steps();
     feed(readings, next);
-    if (advance_actuators(false)) steps();
+    advance_actuators(false);
+    if (somebody_could_go_on() || somebody_could_start()) steps();
   }
 }
 
@@ -77,16 +78,10 @@ void Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) 
   if (news) steps();
 }
 
-// True if somebody's commands are all done now.
-bool Interpreter::advance_actuators(bool important) {
-  std::vector<std::size_t> at_work;
-  for (std::size_t r = 0; r < rules_.size(); ++r)
-    if (rules_[r].running && actuators_.works_for(r)) at_work.push_back(r);
+void Interpreter::advance_actuators(bool important) {
   for (std::size_t actuator = 0; actuator < important_.size(); ++actuator)
     if (important_[actuator] == important) actuators_.advance(actuator, now_.at);
   end_responses();
-  return std::any_of(at_work.begin(), at_work.end(),
-                     [&](std::size_t r) { return !actuators_.works_for(r); });
 }
 
 // A response is finished when all its commands are done.
@@ -96,33 +91,38 @@ void Interpreter::end_responses() {
     if (!rule.running || actuators_.works_for(r)) continue;
     if (!rule.running->response.ended() || rule.running->response.waits()) continue;
     trace_.rule("finished", *rule.rule, rule.behavior);
-    if (rule.running->ran_now) rule.ended = now_.at;
-    freed_.merge(rule.running->actuators);
     rule.running.reset();
   }
 }
 
 // Actuators that became free in a step are there for who waits for them, in the same millisecond.
 void Interpreter::steps() {
-  do {
-    freed_.clear();
+  do
     step();
-  } while (is_awaited(freed_));
+  while (somebody_could_start());
 }
 
-bool Interpreter::is_awaited(const std::set<std::size_t>& freed) const {
-  return std::any_of(rules_.begin(), rules_.end(), [&](const Rule& rule) {
-    return rule.lost && std::any_of(freed.begin(), freed.end(), [&](std::size_t actuator) {
-             return rule.then_actuators.contains(actuator) ||
-                    rule.else_actuators.contains(actuator);
-           });
-  });
+bool Interpreter::somebody_could_go_on() {
+  for (std::size_t r = 0; r < rules_.size(); ++r)
+    if (rules_[r].running && rules_[r].running->response.waits() &&
+        rules_[r].running->response.may_go_on(around(r)))
+      return true;
+  return false;
+}
+
+bool Interpreter::somebody_could_start() const {
+  for (std::size_t r = 0; r < rules_.size(); ++r) {
+    std::vector<std::size_t> losers;
+    const std::optional<bool> side = wish(r);
+    if (side && in_the_way({r, *side, false}, losers).empty()) return true;
+  }
+  return false;
 }
 
 void Interpreter::step() {
   ++now_.step;
   for (Rule& rule : rules_)
-    if (rule.running) rule.running->won_now = rule.running->ran_now = false;
+    if (rule.running) rule.running->won_now = false;
   inputs_.enter(now_.at);
   remember();
   interrupt_halted();
@@ -173,7 +173,7 @@ void Interpreter::run_responses() {
       if (!running->response.waits() || !running->response.may_go_on(here)) continue;
       trace_.rule("go_on", *rules_[r].rule, rules_[r].behavior);
     }
-    running->ran_now = true;
+    rules_[r].ran = now_.at;
     outputs.emplace_back(r, running->response.run(here));
     if (running->response.waits()) trace_.rule("wait", *rules_[r].rule, rules_[r].behavior);
   }
@@ -188,13 +188,12 @@ void Interpreter::run_responses() {
 
 void Interpreter::carry_out(const Output& output) {
   std::set<std::size_t> started;
-  bool overrun = false;  // which is said once a step
+  std::set<std::size_t> overrun;  // which is said once a step
   for (const auto& [targets, order] : output.commands)
     for (const std::size_t actuator : targets) {
       started.insert(actuator);
-      if (actuators_.submit(actuator, order, now_.at)) continue;
-      if (!overrun) trace_.actuator("overrun", actuator);
-      overrun = true;
+      if (actuators_.submit(actuator, order)) continue;
+      if (overrun.insert(actuator).second) trace_.actuator("overrun", actuator);
     }
   for (const std::size_t actuator : started)
     actuators_.start(actuator, now_.at);

@@ -41,7 +41,6 @@ private:
     bool side = true;
     std::set<std::size_t> actuators;
     bool won_now = false;
-    bool ran_now = false;  // in this step
   };
   struct Waiting {
     bool side = true;
@@ -56,8 +55,7 @@ private:
     std::optional<Running> running;
     std::optional<Waiting> waiting;
     std::optional<Millis> started;  // last
-    Millis ended = -1;              // last, by coming to its end in a step
-    bool lost = false;              // it would run, but others have its actuators
+    Millis ran = -1;                // its response, last
     std::optional<Millis> due;      // the end of the period
   };
   struct Claim {
@@ -70,9 +68,10 @@ private:
     bool tripped = false;
   };
 
-  bool advance_actuators(bool important);
+  void advance_actuators(bool important);
   void end_responses();
-  [[nodiscard]] bool is_awaited(const std::set<std::size_t>& actuators) const;
+  [[nodiscard]] bool somebody_could_start() const;
+  [[nodiscard]] bool somebody_could_go_on();
   void feed(const std::vector<Reading>& readings, std::size_t& next);
   void steps();
   void step();
@@ -83,6 +82,8 @@ private:
   void look_at_when(std::size_t rule, std::vector<Claim>& claims);
   void look_at_while(std::size_t rule, std::vector<Claim>& claims);
   void look_at_every(std::size_t rule, std::vector<Claim>& claims);
+  // The side that a rule would run, though it did not trigger now: a WHILE, or one that is WAITING.
+  [[nodiscard]] std::optional<bool> wish(std::size_t rule) const;
   void serve(const Claim& claim);
   // Who is in the way of a claim; empty if it wins. Fills those who lose.
   std::string in_the_way(const Claim& claim, std::vector<std::size_t>& losers) const;
@@ -108,7 +109,6 @@ private:
   std::vector<bool> important_;  // by actuator: the most important behaviour commands it
   std::set<compiler::ChannelRef> guarded_;
   Moment now_;
-  std::set<std::size_t> freed_;  // actuators, since the last step began
   Moment guard_now_;
   Millis looked_at_ = 0;  // when SAFETY rules last looked whether sensors still report
 };

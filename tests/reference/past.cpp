@@ -82,6 +82,7 @@ Truth Past::sequence(Millis within, Moment now) const {
     used_to = second.step;
     result = second.step == now.step;
   }
+  if (!samples_.back().second) return std::nullopt;
   return result;
 }
 

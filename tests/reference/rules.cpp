@@ -30,13 +30,19 @@ void Interpreter::look_at(std::size_t r, std::vector<Claim>& claims) {
       look_at_when(r, claims);
       break;
   }
-  if (!rule.waiting) return;
-  if (claims.size() > before || now_.at > rule.waiting->until) {
+  if (claims.size() > before) {
     rule.waiting.reset();
-    rule.lost = false;
-  } else {
-    claims.push_back({r, rule.waiting->side, false});
+  } else if (const std::optional<bool> side = wish(r)) {
+    claims.push_back({r, *side, false});
   }
+}
+
+std::optional<bool> Interpreter::wish(std::size_t r) const {
+  const Rule& rule = rules_[r];
+  if (rule.waiting && now_.at <= rule.waiting->until) return rule.waiting->side;
+  const bool cools = rule.started && now_.at < *rule.started + rule.rule->cooldown;
+  const bool wants = rule.rule->kind == vm::RuleKind::while_ && rule.last == true;
+  return wants && !rule.running && !cools && rule.ran < now_.at ? std::optional(true) : std::nullopt;
 }
 
 // "After the response has started, further triggers are dropped until the time is over."
@@ -52,10 +58,10 @@ void Interpreter::look_at_when(std::size_t r, std::vector<Claim>& claims) {
   const Sight sight{inputs_.snapshot()};
   const Truth truth = evaluator_.truth(rule.rule->condition, sight);
   if (!truth) return;
-  const bool change = *truth ? rule.last != true : rule.last != false;
+  const bool change = rule.last != truth || (*truth && evaluator_.happens(rule.rule->condition));
   const bool has_else = rule.rule->kind == vm::RuleKind::when_else;
   if (change && (*truth || has_else)) trigger(r, *truth, claims);
-  rule.last = has_else ? truth : evaluator_.truth_at_rest(rule.rule->condition, sight);
+  rule.last = truth;
 }
 
 void Interpreter::look_at_while(std::size_t r, std::vector<Claim>& claims) {
@@ -64,13 +70,10 @@ void Interpreter::look_at_while(std::size_t r, std::vector<Claim>& claims) {
   const bool rises = truth == true && rule.last != true;
   rule.last = truth == true;
   if (truth != true) {
-    rule.lost = false;
-    if (rule.running) interrupt(r, name_of(rule));
+      if (rule.running) interrupt(r, name_of(rule));
     return;
   }
-  if (rises) return trigger(r, true, claims);
-  const bool cools = rule.started && now_.at < *rule.started + std::max<Millis>(rule.rule->cooldown, 1);
-  if (!rule.running && !cools && now_.at > rule.ended) claims.push_back({r, true, false});
+  if (rises) trigger(r, true, claims);
 }
 
 void Interpreter::look_at_every(std::size_t r, std::vector<Claim>& claims) {
@@ -100,7 +103,6 @@ void Interpreter::serve(const Claim& claim) {
   std::vector<std::size_t> losers;
   const std::string obstacle = in_the_way(claim, losers);
   if (!obstacle.empty()) {
-    rule.lost = rule.rule->kind == vm::RuleKind::while_ || rule.rule->waiting > 0;
     if (!claim.trigger) return;
     trace_.rule("lose", *rule.rule, rule.behavior, claim.side, obstacle);
     if (rule.rule->waiting > 0) rule.waiting = Waiting{claim.side, now_.at + rule.rule->waiting};
@@ -111,9 +113,8 @@ void Interpreter::serve(const Claim& claim) {
   trace_.rule("win", *rule.rule, rule.behavior, claim.side);
   const auto& block = claim.side ? rule.rule->then_response : rule.rule->else_response;
   rule.running = Running{Response(block, claim.rule), claim.side,
-                         actuators(claim.rule, claim.side), true, false};
+                         actuators(claim.rule, claim.side), true};
   rule.waiting.reset();
-  rule.lost = false;
   rule.started = now_.at;
 }
 
@@ -186,7 +187,7 @@ void Interpreter::guard(bool look) {
     trace_.rule("resume", *guard.rule, nullptr);
     const std::set<std::size_t> after = halted();
     for (const std::size_t actuator : before)
-      if (!after.contains(actuator)) trace_.actuator("release", actuator);
+      if (!after.contains(actuator)) actuators_.release(actuator);
   }
 }
 
