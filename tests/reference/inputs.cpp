@@ -43,7 +43,7 @@ bool Inputs::is_stale(const Channel& channel, Millis now) const {
   return channel.config->stale_ms != 0 && now > channel.heard + channel.config->stale_ms;
 }
 
-void Inputs::enter_readings(Millis now) {
+void Inputs::enter_readings(Millis now, bool news) {
   for (auto& [ref, channel] : channels_) {
     Number& seen = snapshot_.channels[ref];
     if (channel.value && is_stale(channel, now)) {
@@ -51,7 +51,7 @@ void Inputs::enter_readings(Millis now) {
       if (seen) trace_.channel("stale", ref, std::nullopt);
       seen = std::nullopt;
     }
-    if (!channel.news) continue;
+    if (!channel.news || !news) continue;
     channel.news = false;
     if (seen != channel.value) trace_.channel("input", ref, channel.value);
     seen = channel.value;
@@ -90,7 +90,6 @@ void Inputs::enter_variables(Millis now) {
       }
   staged_.clear();
   for (const auto& [variable, value] : values) {
-    if (snapshot_.variables[variable] == value) continue;
     snapshot_.variables[variable] = value;
     begin_fade(variable, now);
   }
@@ -171,8 +170,8 @@ void Inputs::check(const compiler::ProgramCheck& check, Smoothing& smoothing, Mi
   put(check.variable, static_cast<std::int64_t>(smoothing.band) * 1000);
 }
 
-void Inputs::enter(Millis now) {
-  enter_readings(now);
+void Inputs::enter(Millis now, bool readings) {
+  enter_readings(now, readings);
   const std::vector<Number> before = snapshot_.variables;
   fade(now);
   enter_variables(now);

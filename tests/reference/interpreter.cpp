@@ -55,14 +55,16 @@ void Interpreter::run(const std::vector<Reading>& readings, Millis end) {
     trace_.set_time(now_.at);
     guard(now_.at % kGuardEvery == 0);
     advance_actuators(true);
-    steps();
-    feed(readings, next);
+    const bool news = feed(readings, next);
+    step(false);
+    if (news || somebody_could_start()) step(true);
     advance_actuators(false);
-    if (somebody_could_go_on() || somebody_could_start()) steps();
+    while (somebody_could_go_on() || somebody_could_start())
+      step(true);
   }
 }
 
-void Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) {
+bool Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) {
   // Of several readings of one channel in one millisecond the last one counts.
   std::map<compiler::ChannelRef, std::int64_t> last;
   for (; next < readings.size() && readings[next].at <= now_.at; ++next)
@@ -75,7 +77,7 @@ void Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) 
     guarded = guarded || guarded_.contains(channel);
   }
   if (guarded) guard(true);
-  if (news) steps();
+  return news;
 }
 
 void Interpreter::advance_actuators(bool important) {
@@ -95,13 +97,7 @@ void Interpreter::end_responses() {
   }
 }
 
-// Actuators that became free in a step are there for who waits for them, in the same millisecond.
-void Interpreter::steps() {
-  do
-    step();
-  while (somebody_could_start());
-}
-
+// Actuators that became free are there for who waits for them in the same millisecond.
 bool Interpreter::somebody_could_go_on() {
   for (std::size_t r = 0; r < rules_.size(); ++r)
     if (rules_[r].running && rules_[r].running->response.waits() &&
@@ -119,11 +115,11 @@ bool Interpreter::somebody_could_start() const {
   return false;
 }
 
-void Interpreter::step() {
+void Interpreter::step(bool readings) {
   ++now_.step;
   for (Rule& rule : rules_)
     if (rule.running) rule.running->won_now = false;
-  inputs_.enter(now_.at);
+  inputs_.enter(now_.at, readings);
   remember();
   interrupt_halted();
   std::vector<Claim> claims;

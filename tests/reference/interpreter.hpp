@@ -72,9 +72,8 @@ private:
   void end_responses();
   [[nodiscard]] bool somebody_could_start() const;
   [[nodiscard]] bool somebody_could_go_on();
-  void feed(const std::vector<Reading>& readings, std::size_t& next);
-  void steps();
-  void step();
+  bool feed(const std::vector<Reading>& readings, std::size_t& next);
+  void step(bool readings);
   void remember();
   void interrupt_halted();
   void look_at(std::size_t rule, std::vector<Claim>& claims);

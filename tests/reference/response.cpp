@@ -100,8 +100,8 @@ void Response::run(const compiler::ProgramSet& node) {
     change = {seen, 0};
   else if (change.set)
     change.set = seen;
-  else
-    change.raise = *add(change.raise, given);
+  else  // what counts is the difference that it made
+    change.raise = *subtract(seen, inputs.snapshot().variables[node.variable]);
 }
 
 void Response::run(const compiler::ProgramWait& node) {
