@@ -100,7 +100,6 @@ void ProcessingLayer::finish_done() {
   const ActuatorMask idle = layers_.control.take_idle();
   for (unsigned r = 0; r < rules(); ++r) {
     Holding& holding = holdings_[r];
-    holding.won_now = false;
     holding.pending &= ~idle;
     finish_if_done(r);
   }

@@ -125,7 +125,7 @@ private:
   void interrupt(unsigned rule, unsigned by);
   bool goes_on(unsigned rule, BehaviorMask released) const;
   void run_responses(BehaviorMask released);
-  void commit();
+  void cancel_interrupted();
   void report(const Claim& claim, link::EventKind kind, unsigned object = 0);
 
   unsigned channels() const { return static_cast<unsigned>(program_->image.channels.size()); }

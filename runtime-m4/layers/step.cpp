@@ -30,11 +30,15 @@ void ProcessingLayer::step(BehaviorMask released) {
   report_triggers();
   interrupt_over();
   arbitrate();
+  cancel_interrupted();
   run_responses(released);
   set_due_ = now + 1;
-  commit();
+  layers_.control.commit();
   for (unsigned r = 0; r < rules(); ++r)
     finish_if_done(r);
+  // What is due next is looked for as if the step were over.
+  for (Holding& holding : holdings_)
+    holding.won_now = false;
 }
 
 BehaviorMask ProcessingLayer::due_behaviors(InputMask changed) const {
@@ -174,13 +178,12 @@ void ProcessingLayer::run_responses(BehaviorMask released) {
   }
 }
 
-// The old ones end before the new ones begin.
-void ProcessingLayer::commit() {
-  if (cancelled_ != 0) {
-    layers_.control.cancel(cancelled_);
-    await(kCancelled, [this] { return layers_.control.cancelling(); });
-  }
-  layers_.control.commit();
+// The old ones end before the new ones begin, and before those send commands: what the old ones had
+// in their queues takes no place from them.
+void ProcessingLayer::cancel_interrupted() {
+  if (cancelled_ == 0) return;
+  layers_.control.cancel(cancelled_);
+  await(kCancelled, [this] { return layers_.control.cancelling(); });
 }
 
 }  // namespace robosync::layers
