@@ -106,7 +106,6 @@ void ProcessingLayer::finish_done() {
   const ActuatorMask idle = layers_.control.take_idle();
   for (const unsigned rule : running_) {
     Holding& holding = holdings_[rule];
-    holding.won_now = false;
     holding.pending = static_cast<ActuatorBits>(holding.pending & ~idle);
     finish_if_done(rule);
   }

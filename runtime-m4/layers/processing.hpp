@@ -139,7 +139,7 @@ private:
   void interrupt(unsigned rule, unsigned by);
   bool goes_on(unsigned rule) const;
   void run_responses();
-  void commit();
+  void cancel_interrupted();
   void report(const Claim& claim, link::EventKind kind, unsigned object = 0);
 
   unsigned channels() const { return static_cast<unsigned>(program_->image.channels.size()); }

@@ -25,11 +25,14 @@ void ProcessingLayer::step() {
   report_triggers();
   interrupt_over();
   arbitrate();
+  cancel_interrupted();
   run_responses();
   set_due_ = now + 1;
-  commit();
-  for (const unsigned rule : running_)
+  layers_.control.commit();
+  for (const unsigned rule : running_) {
     finish_if_done(rule);
+    holdings_[rule].won_now = false;  // what is due next is looked for as if the step were over
+  }
 }
 
 // --- interruptions that no claim is the cause of ---
@@ -165,13 +168,12 @@ void ProcessingLayer::run_responses() {
   }
 }
 
-// The old ones end before the new ones begin.
-void ProcessingLayer::commit() {
-  if (cancelled_ != 0) {
-    layers_.control.cancel(cancelled_);
-    await(kCancelled, [this] { return layers_.control.cancelling(); });
-  }
-  layers_.control.commit();
+// The old ones end before the new ones begin, and before those send commands: what the old ones had
+// in their queues takes no place from them.
+void ProcessingLayer::cancel_interrupted() {
+  if (cancelled_ == 0) return;
+  layers_.control.cancel(cancelled_);
+  await(kCancelled, [this] { return layers_.control.cancelling(); });
 }
 
 }  // namespace robosync::layers

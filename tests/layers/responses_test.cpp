@@ -229,3 +229,16 @@ END
         "0 #1 command a MOVE for_=0.100\n100 #2 done a\n100 #2 interrupt r2 by b1\n"
         "100 #2 cancel a\n100 #2 command a MOVE for_=1\n1100 #2 done a\n1100 #2 finished r1\n");
 }
+
+TEST_CASE("what an interrupted response had in its queue takes no place from its successor") {
+  std::string sweep;
+  for (int i = 0; i < 8; ++i)
+    sweep += "MOVE a FOR 50ms\n";
+  Robot robot("BEHAVIOR high PRIORITY 20\nWHEN far Y > 50\nDO\n" + sweep +
+              "END\nEND\nBEHAVIOR low PRIORITY 10\nWHEN near X > 10\nDO\n" + sweep + "END\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(10, "Y", 60);
+  robot.run(1000);
+  CHECK(robot.only("overrun").empty());
+  CHECK(robot.only("finished") == "410 #2 finished r0\n");
+}

@@ -124,3 +124,26 @@ END
         "100 #2 fire r1 DO\n100 #2 interrupt r0 by b0\n100 #2 win r1 DO\n100 #2 cancel a\n"
         "100 #2 command a MOVE for_=0.050\n");
 }
+
+TEST_CASE(
+    "a WHILE that ends and starts again takes back at once what a lower one took in between") {
+  Robot robot(R"(
+BEHAVIOR high PRIORITY 20
+  WHILE near X > 10
+  DO
+    MOVE a FOR 10ms
+    WAIT 50ms
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHILE far Y > 10
+  DO MOVE a FOR 1s
+  END
+END
+)");
+  robot.feed(0, "X", 20);
+  robot.feed(0, "Y", 20);
+  robot.run(60);
+  CHECK(robot.only("win interrupt") ==
+        "0 #1 win r0 DO\n50 #3 win r1 DO\n51 #4 interrupt r1 by b0\n51 #4 win r0 DO\n");
+}

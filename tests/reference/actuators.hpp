@@ -1,0 +1,38 @@
+// Actuators: each does its commands one after the other, and says when it is done.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <set>
+#include <vector>
+
+#include "tests/reference/trace.hpp"
+
+namespace robosync::reference {
+
+class Actuators {
+public:
+  Actuators(const compiler::Robot& robot, Trace& trace) : trace_(trace), queues_(robot.actuators.size()) {}
+
+  // False if too many wait already: the command is dropped.
+  bool submit(std::size_t actuator, const Order& order);
+  void start(std::size_t actuator, Millis now);  // if it is idle and has something to do
+  void cancel(std::size_t actuator);
+  void halt(std::size_t actuator);
+  void release(std::size_t actuator);
+  // Ends what is over at `now`, and begins what follows. True if something was done.
+  bool advance(std::size_t actuator, Millis now);
+  [[nodiscard]] bool works_for(std::size_t rule) const;
+
+private:
+  struct Queue {
+    std::deque<Order> orders;  // the first one is under way if busy
+    bool busy = false;
+    bool halted = false;  // what it was doing is neither done nor cancelled yet
+    Millis ends = 0;
+  };
+  Trace& trace_;
+  std::vector<Queue> queues_;
+};
+
+}  // namespace robosync::reference

@@ -1,0 +1,198 @@
+#include "tests/reference/interpreter.hpp"
+
+#include <algorithm>
+
+namespace robosync::reference {
+namespace {
+
+constexpr Millis kGuardEvery = 10;
+
+void collect(const compiler::Expression& expression, std::set<compiler::ChannelRef>& channels) {
+  if (expression.operation == compiler::Operation::input) channels.insert(expression.channel);
+  for (const compiler::Expression& operand : expression.operands)
+    collect(operand, channels);
+}
+
+}  // namespace
+
+Interpreter::Interpreter(const compiler::Program& program, const compiler::Robot& robot,
+                         std::uint32_t seed, Trace& trace)
+    : program_(program),
+      trace_(trace),
+      no_chance_(seed, 0),
+      inputs_(program, robot, trace),
+      actuators_(robot, trace),
+      important_(robot.actuators.size()) {
+  const std::uint32_t first = program.safety.empty() ? 0 : 1;
+  for (std::size_t rank = 0; rank < program.behaviors.size(); ++rank) {
+    chances_.emplace_back(seed, first + static_cast<std::uint32_t>(rank));
+    for (const compiler::ProgramRule& rule : program.behaviors[rank].rules) {
+      Rule made;
+      made.rule = &rule;
+      made.behavior = &program.behaviors[rank];
+      made.rank = rank;
+      made.then_actuators = actuators_of(rule.then_response);
+      made.else_actuators = actuators_of(rule.else_response);
+      if (rank == 0)
+        for (const auto* set : {&made.then_actuators, &made.else_actuators})
+          for (const std::size_t actuator : *set)
+            important_[actuator] = true;
+      rules_.push_back(std::move(made));
+    }
+  }
+  for (const compiler::ProgramRule& rule : program.safety) {
+    guards_.push_back({&rule, false});
+    collect(rule.condition, guarded_);
+    if (rule.resume) collect(*rule.resume, guarded_);
+  }
+}
+
+// ---- time
+
+void Interpreter::run(const std::vector<Reading>& readings, Millis end) {
+  std::size_t next = 0;
+  for (now_.at = 0; now_.at <= end; ++now_.at) {
+    trace_.set_time(now_.at);
+    guard(now_.at % kGuardEvery == 0);
+    advance_actuators(true);
+    const bool news = feed(readings, next);
+    step(false);
+    if (news || somebody_could_start()) step(true);
+    advance_actuators(false);
+    while (somebody_could_go_on() || somebody_could_start())
+      step(true);
+  }
+}
+
+bool Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) {
+  // Of several readings of one channel in one millisecond the last one counts.
+  std::map<compiler::ChannelRef, std::int64_t> last;
+  for (; next < readings.size() && readings[next].at <= now_.at; ++next)
+    last[readings[next].channel] = readings[next].value;
+  bool news = false;
+  bool guarded = false;
+  for (const auto& [channel, value] : last) {
+    if (!inputs_.feed(channel, value, now_.at)) continue;
+    news = true;
+    guarded = guarded || guarded_.contains(channel);
+  }
+  if (guarded) guard(true);
+  return news;
+}
+
+void Interpreter::advance_actuators(bool important) {
+  for (std::size_t actuator = 0; actuator < important_.size(); ++actuator)
+    if (important_[actuator] == important) actuators_.advance(actuator, now_.at);
+  end_responses();
+}
+
+// A response is finished when all its commands are done.
+void Interpreter::end_responses() {
+  for (std::size_t r = 0; r < rules_.size(); ++r) {
+    Rule& rule = rules_[r];
+    if (!rule.running || actuators_.works_for(r)) continue;
+    if (!rule.running->response.ended() || rule.running->response.waits()) continue;
+    trace_.rule("finished", *rule.rule, rule.behavior);
+    rule.running.reset();
+  }
+}
+
+// Actuators that became free are there for who waits for them in the same millisecond.
+bool Interpreter::somebody_could_go_on() {
+  for (std::size_t r = 0; r < rules_.size(); ++r)
+    if (rules_[r].running && rules_[r].running->response.waits() &&
+        rules_[r].running->response.may_go_on(around(r)))
+      return true;
+  return false;
+}
+
+bool Interpreter::somebody_could_start() const {
+  for (std::size_t r = 0; r < rules_.size(); ++r) {
+    std::vector<std::size_t> losers;
+    const std::optional<bool> side = wish(r);
+    if (side && in_the_way({r, *side, false}, losers).empty()) return true;
+  }
+  return false;
+}
+
+void Interpreter::step(bool readings) {
+  ++now_.step;
+  for (Rule& rule : rules_)
+    if (rule.running) rule.running->won_now = false;
+  inputs_.enter(now_.at, readings);
+  remember();
+  interrupt_halted();
+  std::vector<Claim> claims;
+  for (std::size_t r = 0; r < rules_.size(); ++r)
+    look_at(r, claims);
+  for (const Claim& claim : claims)
+    serve(claim);
+  run_responses();
+}
+
+void Interpreter::remember() {
+  const Sight sight{inputs_.snapshot()};
+  const auto note = [&](const compiler::Expression& condition) {
+    evaluator_.remember(condition, sight, now_);
+  };
+  for (const Rule& rule : rules_) {
+    if (rule.rule->kind != vm::RuleKind::every && rule.rule->kind != vm::RuleKind::start)
+      note(rule.rule->condition);
+    for_each_condition(rule.rule->then_response, note);
+    for_each_condition(rule.rule->else_response, note);
+  }
+}
+
+// ---- responses
+
+const std::set<std::size_t>& Interpreter::actuators(std::size_t rule, bool side) const {
+  return side ? rules_[rule].then_actuators : rules_[rule].else_actuators;
+}
+
+std::string Interpreter::name_of(const Rule& rule) {
+  if (!rule.behavior->name.empty()) return "behaviour " + rule.behavior->name;
+  return "the rule at line " + std::to_string(rule.behavior->rules.front().line);
+}
+
+Surroundings Interpreter::around(std::size_t rule) {
+  return {evaluator_, chances_[rules_[rule].rank], trace_, inputs_, now_.at,
+          !actuators_.works_for(rule)};
+}
+
+void Interpreter::run_responses() {
+  std::vector<std::pair<std::size_t, Output>> outputs;
+  for (std::size_t r = 0; r < rules_.size(); ++r) {
+    std::optional<Running>& running = rules_[r].running;
+    if (!running) continue;
+    const Surroundings here = around(r);
+    if (!running->won_now) {
+      if (!running->response.waits() || !running->response.may_go_on(here)) continue;
+      trace_.rule("go_on", *rules_[r].rule, rules_[r].behavior);
+    }
+    rules_[r].ran = now_.at;
+    outputs.emplace_back(r, running->response.run(here));
+    if (running->response.waits()) trace_.rule("wait", *rules_[r].rule, rules_[r].behavior);
+  }
+  std::vector<Changes> changes;
+  for (auto& [rule, output] : outputs) {
+    carry_out(output);
+    changes.push_back(std::move(output.changes));
+  }
+  inputs_.stage(std::move(changes));
+  end_responses();
+}
+
+void Interpreter::carry_out(const Output& output) {
+  std::set<std::size_t> started;
+  std::set<std::size_t> overrun;  // which is said once a step
+  for (const auto& [targets, order] : output.commands)
+    for (const std::size_t actuator : targets) {
+      started.insert(actuator);
+      if (actuators_.submit(actuator, order)) continue;
+      if (overrun.insert(actuator).second) trace_.actuator("overrun", actuator);
+    }
+  for (const std::size_t actuator : started)
+    actuators_.start(actuator, now_.at);
+}
+
+}  // namespace robosync::reference

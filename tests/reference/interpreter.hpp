@@ -1,0 +1,115 @@
+// The robot of docs/language.md, read naively: a step in every millisecond, all rules in each step,
+// and one more step when readings have come.
+//
+// It walks the analysed program (compiler/sema/program.hpp), not the syntax tree: the tree would
+// mean to resolve names, units, USE, DEFINE and robot.json a second time. So what sema makes of a
+// text (a LIMIT that becomes a SAFETY rule, a MARGIN that becomes a second comparison, the borders
+// of bands, the part that is left of a fading FEELING) is believed here; tests/compiler/ is about
+// that. Nothing of codegen, vm/ (but its names of kinds) or runtime-m4/ is used.
+//
+// What the language leaves open within one millisecond is as docs/kernel.md ranks threads: SAFETY
+// every 10 ms, then actuators of the most important behaviour that is there, what is due, readings,
+// then all other actuators.
+#pragma once
+
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "tests/reference/actuators.hpp"
+#include "tests/reference/response.hpp"
+
+namespace robosync::reference {
+
+struct Reading {
+  Millis at = 0;
+  compiler::ChannelRef channel;
+  std::int64_t value = 0;
+};
+
+class Interpreter {
+public:
+  Interpreter(const compiler::Program& program, const compiler::Robot& robot, std::uint32_t seed,
+              Trace& trace);
+
+  // Readings in the order of their times. Everything up to `end`, that included.
+  void run(const std::vector<Reading>& readings, Millis end);
+
+private:
+  struct Running {
+    Response response;
+    bool side = true;
+    std::set<std::size_t> actuators;
+    bool won_now = false;
+  };
+  struct Waiting {
+    bool side = true;
+    Millis until = 0;
+  };
+  struct Rule {
+    const compiler::ProgramRule* rule = nullptr;
+    const compiler::ProgramBehavior* behavior = nullptr;
+    std::size_t rank = 0;  // of the behaviour, 0 the most important
+    std::set<std::size_t> then_actuators, else_actuators;
+    Truth last;  // known truth
+    std::optional<Running> running;
+    std::optional<Waiting> waiting;
+    std::optional<Millis> started;  // last
+    Millis ran = -1;                // its response, last
+    std::optional<Millis> due;      // the end of the period
+  };
+  struct Claim {
+    std::size_t rule = 0;
+    bool side = true;
+    bool trigger = true;  // or tried again
+  };
+  struct Guard {
+    const compiler::ProgramRule* rule = nullptr;
+    bool tripped = false;
+  };
+
+  void advance_actuators(bool important);
+  void end_responses();
+  [[nodiscard]] bool somebody_could_start() const;
+  [[nodiscard]] bool somebody_could_go_on();
+  bool feed(const std::vector<Reading>& readings, std::size_t& next);
+  void step(bool readings);
+  void remember();
+  void interrupt_halted();
+  void look_at(std::size_t rule, std::vector<Claim>& claims);
+  void trigger(std::size_t rule, bool side, std::vector<Claim>& claims);
+  void look_at_when(std::size_t rule, std::vector<Claim>& claims);
+  void look_at_while(std::size_t rule, std::vector<Claim>& claims);
+  void look_at_every(std::size_t rule, std::vector<Claim>& claims);
+  // The side that a rule would run, though it did not trigger now: a WHILE, or one that is WAITING.
+  [[nodiscard]] std::optional<bool> wish(std::size_t rule) const;
+  void serve(const Claim& claim);
+  // Who is in the way of a claim; empty if it wins. Fills those who lose.
+  std::string in_the_way(const Claim& claim, std::vector<std::size_t>& losers) const;
+  void interrupt(std::size_t rule, const std::string& by);
+  void run_responses();
+  void carry_out(const Output& output);
+  void guard(bool look);
+  void trip(Guard& guard);
+  Surroundings around(std::size_t rule);
+  [[nodiscard]] const std::set<std::size_t>& actuators(std::size_t rule, bool side) const;
+  [[nodiscard]] std::set<std::size_t> halted() const;
+  [[nodiscard]] static std::string name_of(const Rule& rule);
+
+  const compiler::Program& program_;
+  Trace& trace_;
+  std::vector<Chance> chances_;  // by rank
+  Chance no_chance_;             // of SAFETY rules, which draw nothing
+  Evaluator evaluator_;
+  Inputs inputs_;
+  Actuators actuators_;
+  std::vector<Rule> rules_;
+  std::vector<Guard> guards_;
+  std::vector<bool> important_;  // by actuator: the most important behaviour commands it
+  std::set<compiler::ChannelRef> guarded_;
+  Moment now_;
+  Moment guard_now_;
+  Millis looked_at_ = 0;  // when SAFETY rules last looked whether sensors still report
+};
+
+}  // namespace robosync::reference

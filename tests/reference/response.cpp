@@ -1,0 +1,205 @@
+#include "tests/reference/response.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "compiler/sema/program_walk.hpp"
+
+namespace robosync::reference {
+
+Sight Response::sight(const Surroundings& around) const {
+  return {around.inputs.snapshot(), &own_, &locals_, &around.chance};
+}
+
+Number Response::number(const compiler::Expression& expression) const {
+  return around_->evaluator.number(expression, sight(*around_));
+}
+
+Truth Response::truth(const compiler::Expression& expression) const {
+  return around_->evaluator.truth(expression, sight(*around_));
+}
+
+// ---- the walk
+
+bool Response::may_go_on(const Surroundings& around) const {
+  if (around.now <= paused_at_) return false;  // "Every wait takes at least until the next step."
+  if (pause_ == Pause::commands) return around.commands_done;
+  const bool over = until_ && around.now >= *until_;
+  if (pause_ == Pause::time || over) return over;
+  return around.evaluator.truth(*condition_, sight(around)) == true;
+}
+
+Output Response::run(const Surroundings& around) {
+  around_ = &around;
+  pause_ = Pause::none;
+  own_.clear();
+  output_ = {};
+  while (!places_.empty() && pause_ == Pause::none) {
+    Place& place = places_.back();
+    if (place.next == place.block->size()) {
+      leave_block();
+      continue;
+    }
+    const compiler::ProgramStatement& statement = (*place.block)[place.next++];
+    std::visit([this](const auto& node) { run(node); }, statement.node);
+  }
+  // What stands behind a pause is nothing if all blocks are at their end.
+  own_.clear();
+  return std::move(output_);
+}
+
+void Response::leave_block() {
+  Place& place = places_.back();
+  bool again = false;
+  if (place.loop != nullptr) switch (place.loop->kind) {
+      case compiler::RepeatKind::times:
+        again = --place.rounds > 0;
+        break;
+      case compiler::RepeatKind::while_:
+        again = truth(place.loop->control) == true;
+        break;
+      case compiler::RepeatKind::forever:
+        again = true;
+        break;
+    }
+  if (again)
+    place.next = 0;
+  else
+    places_.pop_back();
+}
+
+void Response::pause(Pause why, Number duration) {
+  pause_ = why;
+  paused_at_ = around_->now;
+  until_.reset();
+  if (why == Pause::time) until_ = around_->now + std::max<Millis>(duration.value_or(0), 0);
+}
+
+// ---- statements
+
+void Response::run(const compiler::ProgramCommand& node) {
+  Order order{rule_, &node, {}};
+  for (const compiler::ProgramArgument& argument : node.arguments)
+    order.given.emplace_back(argument.param, number(argument.value));
+  output_.commands.emplace_back(node.actuators, std::move(order));
+}
+
+void Response::run(const compiler::ProgramLocal& node) {
+  locals_[node.number] = number(node.value);
+}
+
+void Response::run(const compiler::ProgramSet& node) {
+  const Number given = number(node.value);
+  if (!given) return;
+  Change& change = output_.changes[node.variable];
+  const Inputs& inputs = around_->inputs;
+  Number& seen =
+      own_.emplace(node.variable, inputs.snapshot().variables[node.variable]).first->second;
+  seen = inputs.clamped(node.variable, node.relative ? *add(seen, given) : *given);
+  if (!node.relative)
+    change = {seen, 0};
+  else if (change.set)
+    change.set = seen;
+  else  // what counts is the difference that it made
+    change.raise = *subtract(seen, inputs.snapshot().variables[node.variable]);
+}
+
+void Response::run(const compiler::ProgramWait& node) {
+  pause(Pause::time, number(node.duration));
+}
+
+void Response::run(const compiler::ProgramWaitUntil& node) {
+  const Number within = node.within ? number(*node.within) : std::nullopt;
+  pause(Pause::condition, std::nullopt);
+  condition_ = &node.condition;
+  if (node.within) until_ = around_->now + std::max<Millis>(within.value_or(0), 0);
+}
+
+void Response::run(const compiler::ProgramThen&) {
+  pause(Pause::commands, std::nullopt);
+}
+
+void Response::run(const compiler::ProgramIf& node) {
+  const Truth side = truth(node.condition);
+  if (side) enter(*side ? node.then_block : node.else_block);
+}
+
+void Response::run(const compiler::ProgramRepeat& node) {
+  std::int64_t rounds = 0;
+  if (node.kind == compiler::RepeatKind::times) {
+    rounds = number(node.control).value_or(0) / 1000;
+    if (rounds < 1) return;
+  }
+  if (node.kind == compiler::RepeatKind::while_ && truth(node.control) != true) return;
+  places_.push_back({&node.body, 0, &node, rounds});
+}
+
+void Response::run(const compiler::ProgramPick& node) {
+  std::int64_t sum = 0;
+  for (const compiler::ProgramOption& option : node.options)
+    sum += option.weight;
+  std::int64_t drawn = node.options.size() > 1 ? *around_->chance.draw(0, sum - 1) : 0;
+  for (const compiler::ProgramOption& option : node.options) {
+    if (drawn < option.weight) return enter(option.body);
+    drawn -= option.weight;
+  }
+}
+
+void Response::run(const compiler::ProgramLog& node) {
+  std::vector<Number> values;
+  for (const compiler::Expression& value : node.values)
+    values.push_back(number(value));
+  around_->trace.log(filled_in(node.text, values), values);
+}
+
+void Response::run(const compiler::ProgramAlert& node) {
+  around_->trace.alert(node.text);
+}
+
+void Response::run(const compiler::ProgramHalt&) {}  // of SAFETY rules, which have no responses
+
+// ---- about blocks
+
+std::set<std::size_t> actuators_of(const compiler::ProgramBlock& block) {
+  std::set<std::size_t> result;
+  compiler::for_each_statement(block, [&](const compiler::ProgramStatement& statement) {
+    if (const auto* command = std::get_if<compiler::ProgramCommand>(&statement.node))
+      result.insert(command->actuators.begin(), command->actuators.end());
+    if (const auto* halt = std::get_if<compiler::ProgramHalt>(&statement.node))
+      result.insert(halt->actuators.begin(), halt->actuators.end());
+  });
+  return result;
+}
+
+void for_each_condition(const compiler::ProgramBlock& block,
+                        const std::function<void(const compiler::Expression&)>& visit) {
+  compiler::for_each_statement(block, [&](const compiler::ProgramStatement& statement) {
+    if (const auto* choice = std::get_if<compiler::ProgramIf>(&statement.node))
+      visit(choice->condition);
+    if (const auto* wait = std::get_if<compiler::ProgramWaitUntil>(&statement.node))
+      visit(wait->condition);
+    if (const auto* loop = std::get_if<compiler::ProgramRepeat>(&statement.node))
+      if (loop->kind == compiler::RepeatKind::while_) visit(loop->control);
+  });
+}
+
+std::string filled_in(const std::string& text, const std::vector<Number>& values) {
+  std::string result = text;
+  std::size_t from = 0;
+  for (const Number& value : values) {
+    const std::size_t place = result.find("{}", from);
+    if (place == std::string::npos) break;
+    std::string shown = "unknown";
+    if (value) {
+      const std::string digits = std::to_string(1000 + std::abs(*value) % 1000).substr(1);
+      shown = (*value < 0 ? "-" : "") + std::to_string(std::abs(*value) / 1000) + "." + digits;
+      shown.erase(shown.find_last_not_of('0') + 1);
+      if (shown.back() == '.') shown.pop_back();
+    }
+    result.replace(place, 2, shown);
+    from = place + shown.size();
+  }
+  return result;
+}
+
+}  // namespace robosync::reference

@@ -1,0 +1,94 @@
+// One run of a response: where it is, what it has worked out, what it waits for. The tree itself is
+// walked; a place in it is a stack of blocks.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "tests/reference/inputs.hpp"
+
+namespace robosync::reference {
+
+// What a response puts out in one step.
+struct Output {
+  std::vector<std::pair<std::vector<std::size_t>, Order>> commands;  // actuators and what to do
+  Changes changes;
+};
+
+// What a response needs of the robot it runs on.
+struct Surroundings {
+  Evaluator& evaluator;
+  Chance& chance;
+  Trace& trace;
+  const Inputs& inputs;
+  Millis now = 0;
+  bool commands_done = false;  // of this response, all so far
+};
+
+class Response {
+public:
+  Response(const compiler::ProgramBlock& block, std::size_t rule) : rule_(rule) {
+    places_.push_back({&block, 0, nullptr, 0});
+  }
+
+  [[nodiscard]] bool ended() const { return places_.empty(); }
+  [[nodiscard]] bool waits() const { return pause_ != Pause::none; }
+  // Is what it waits for there?
+  [[nodiscard]] bool may_go_on(const Surroundings& around) const;
+  // To the next pause, or the end.
+  Output run(const Surroundings& around);
+
+private:
+  enum class Pause { none, time, commands, condition };
+  struct Place {
+    const compiler::ProgramBlock* block = nullptr;
+    std::size_t next = 0;
+    const compiler::ProgramRepeat* loop = nullptr;
+    std::int64_t rounds = 0;  // that are left, of a loop that counts
+  };
+
+  [[nodiscard]] Sight sight(const Surroundings& around) const;
+  [[nodiscard]] Number number(const compiler::Expression& expression) const;
+  [[nodiscard]] Truth truth(const compiler::Expression& expression) const;
+  void enter(const compiler::ProgramBlock& block) { places_.push_back({&block, 0, nullptr, 0}); }
+  void leave_block();
+  void pause(Pause why, Number duration);
+
+  void run(const compiler::ProgramCommand& node);
+  void run(const compiler::ProgramLocal& node);
+  void run(const compiler::ProgramSet& node);
+  void run(const compiler::ProgramWait& node);
+  void run(const compiler::ProgramWaitUntil& node);
+  void run(const compiler::ProgramThen& node);
+  void run(const compiler::ProgramIf& node);
+  void run(const compiler::ProgramRepeat& node);
+  void run(const compiler::ProgramPick& node);
+  void run(const compiler::ProgramLog& node);
+  void run(const compiler::ProgramAlert& node);
+  void run(const compiler::ProgramHalt& node);
+
+  std::size_t rule_;
+  std::vector<Place> places_;
+  std::map<std::size_t, Number> locals_;
+  Pause pause_ = Pause::none;
+  Millis paused_at_ = 0;
+  std::optional<Millis> until_;
+  const compiler::Expression* condition_ = nullptr;
+
+  // While it runs.
+  const Surroundings* around_ = nullptr;
+  std::map<std::size_t, Number> own_;  // what it has SET and sees at once
+  Output output_;
+};
+
+// Every actuator that a block could ever command or halt.
+[[nodiscard]] std::set<std::size_t> actuators_of(const compiler::ProgramBlock& block);
+// Calls visit(expression) for every expression in a block.
+void for_each_condition(const compiler::ProgramBlock& block,
+                        const std::function<void(const compiler::Expression&)>& visit);
+// A LOG's text with the values in its {} places.
+[[nodiscard]] std::string filled_in(const std::string& text, const std::vector<Number>& values);
+
+}  // namespace robosync::reference

@@ -1,0 +1,40 @@
+// Numbers and truths as docs/language.md has them: thousandths, rounded half away from zero, kept
+// inside ±2,147,483.647; nothing stands for "unknown". Written anew, in 64 and 128 bits: none of
+// vm/arithmetic.hpp.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace robosync::reference {
+
+using Number = std::optional<std::int64_t>;  // thousandths
+using Truth = std::optional<bool>;
+
+[[nodiscard]] Number add(Number a, Number b);
+[[nodiscard]] Number subtract(Number a, Number b);
+[[nodiscard]] Number multiply(Number a, Number b);
+[[nodiscard]] Number divide(Number a, Number b);  // by 0: 0
+[[nodiscard]] Number modulo(Number a, Number b);  // has the sign of b; by 0: 0
+[[nodiscard]] Number negate(Number a);
+
+[[nodiscard]] Truth both(Truth a, Truth b);
+[[nodiscard]] Truth either(Truth a, Truth b);
+[[nodiscard]] Truth opposite(Truth a);
+
+// Where RANDOM, PICK ONE and EVERY … TO draw from: Marsaglia's xorshift32 (13, 17, 5). Each behaviour
+// has one of its own, which begins with a mixture (MurmurHash3's finalizer) of the program's seed and
+// its number: from the most important one, with SAFETY rules in front as one behaviour if there are
+// any. A number of n possible ones is the place ⌊state · n / 2^32⌋ among them, after one round for
+// each draw.
+class Chance {
+public:
+  Chance(std::uint32_t program_seed, std::uint32_t behavior);
+  // From `a` to `b`, in whichever order, both included; nothing is drawn where one is unknown.
+  [[nodiscard]] Number draw(Number a, Number b);
+
+private:
+  std::uint32_t state_ = 0;
+};
+
+}  // namespace robosync::reference
