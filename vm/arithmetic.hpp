@@ -72,6 +72,23 @@ constexpr Value modulo(Value b, Value c) {
   return remainder != 0 && (remainder ^ c) < 0 ? remainder + c : remainder;
 }
 
+// b / n for a whole n > 0, rounded half away from zero.
+constexpr Value divide_by_whole(Value b, std::int32_t n) {
+  if (b == kUnknown) return kUnknown;
+  const auto size = static_cast<std::uint32_t>(b < 0 ? -b : b);
+  const auto divisor = static_cast<std::uint32_t>(n);
+  const auto quotient = static_cast<Value>((size + divisor / 2) / divisor);
+  return b < 0 ? -quotient : quotient;
+}
+
+// Sums and products of what was proved to be known and in range: their lower 32 bits.
+constexpr Value add_unchecked(Value b, Value c) {
+  return static_cast<Value>(static_cast<std::uint32_t>(b) + static_cast<std::uint32_t>(c));
+}
+constexpr Value multiply_unchecked(std::int32_t b, Value c) {
+  return static_cast<Value>(static_cast<std::uint32_t>(b) * static_cast<std::uint32_t>(c));
+}
+
 constexpr Value logical_not(Value truth) {
   return truth == kUnknown ? kUnknown : ~truth;
 }

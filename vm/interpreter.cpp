@@ -102,6 +102,7 @@ Value run(Machine& machine, const Word* pc, Progress* progress) {
   const auto b = [&] { return frame[operand_b(word)]; };
   const auto c = [&] { return frame[operand_c(word)]; };
   const auto k = [&] { return constants[operand_c(word)]; };
+  const auto b_k = [&] { return constants[operand_b(word)]; };
   const auto wide_k = [&] { return constants[operand_wide(word)]; };
   goto next;
 store:
@@ -147,6 +148,13 @@ rare:
   SET(mul, multiply(b(), c()));
   SET(random, draw(machine, b(), c()));
   SET(neg, negate(b()));
+  SET(add_k, add(b(), k()));
+  SET(div_k, divide_by_whole(b(), k()));
+  SET(mod_k, modulo(b(), k()));
+  SET(add_fast, add_unchecked(b(), c()));
+  SET(add_k_fast, add_unchecked(b(), k()));
+  SET(mul_fast, multiply_unchecked(b() / kScale, c()));
+  SET(mul_k_fast, multiply_unchecked(b(), k()));
 
   SET(and_, b() & c());
   SET(or_, b() | c());
@@ -260,6 +268,28 @@ op_unless:
   goto next;
 op_unless_known:
   if (a() == kUnknown) goto ahead;
+  goto next;
+  // An unknown is less than all that is known. So an unknown right side makes no order true, and an
+  // unknown left side none that wants it greater.
+#define UNLESS(name, right_side, holds) \
+  op_unless_##name : result = a();      \
+  right = right_side;                   \
+  if (holds) goto next;                 \
+  goto ahead8
+
+  UNLESS(lt, b(), result != kUnknown && result < right);
+  UNLESS(le, b(), result != kUnknown && result <= right);
+  UNLESS(eq, b(), result != kUnknown && result == right);
+  UNLESS(ne, b(), result != kUnknown && right != kUnknown && result != right);
+  UNLESS(lt_k, b_k(), result != kUnknown && result < right);
+  UNLESS(le_k, b_k(), result != kUnknown && result <= right);
+  UNLESS(gt_k, b_k(), result > right);
+  UNLESS(ge_k, b_k(), result >= right);
+  UNLESS(eq_k, b_k(), result == right);
+  UNLESS(ne_k, b_k(), result != kUnknown && result != right);
+#undef UNLESS
+ahead8:
+  pc += operand_c(word);
   goto next;
 op_jump:
 ahead:
