@@ -15,7 +15,7 @@ constexpr std::size_t kLongest = 1400;  // of what is kept: short images are qui
 constexpr int kRepairs = 8;
 
 std::uint32_t all_of(std::size_t actuators) {
-  return static_cast<std::uint32_t>((std::uint64_t{1} << actuators) - 1);
+  return actuators >= 32 ? UINT32_MAX : (std::uint32_t{1} << actuators) - 1;
 }
 
 }  // namespace

@@ -35,7 +35,6 @@ Drawer::Drawer(const Draft& draft, const Object& object, Random& random)
 
 void Drawer::forget() {
   known_.reset();
-  owned_ = 0;
   truths_.reset();
   for (std::size_t i = locals_end_; i < first_register_ && i < 256; ++i)
     truths_.set(i);
@@ -44,6 +43,7 @@ void Drawer::forget() {
 void Drawer::learn(Word word) {
   if (!is_opcode(word)) return;
   const Opcode opcode = vm::opcode_of(word);
+  if (opcode >= Opcode::wait && opcode <= Opcode::until && !random_.one_in(4)) owned_ = 0;
   if (is_flow(opcode) && !begins_if(opcode)) return forget();
   const unsigned a = operand(word, 0);
   bool truth = false;
@@ -236,7 +236,7 @@ unsigned Drawer::verb(unsigned target) {
   const unsigned first = random_.below(image_.verbs.size());
   for (unsigned i = 0; i < image_.verbs.size(); ++i) {
     const auto at = static_cast<unsigned>((first + i) % image_.verbs.size());
-    if ((known >> at & 1) != 0) return at;
+    if (at < 32 && (known >> at & 1) != 0) return at;
   }
   return first;
 }
@@ -246,7 +246,7 @@ unsigned Drawer::entry(unsigned verb) {
     for (int tries = 0; tries < kTries; ++tries) {
       const unsigned index = random_.below(image_.words.size());
       const auto param = static_cast<unsigned>(image_.words[index].param);
-      if ((image_.verbs[verb].params >> param & 1) != 0) return index;
+      if (param < 8 && (image_.verbs[verb].params >> param & 1) != 0) return index;
     }
   }
   return vm::kNoWord;

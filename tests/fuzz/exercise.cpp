@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 
-#include "vm/opcode.hpp"
+#include "tests/fuzz/operands.hpp"
 #include "vm/output.hpp"
 #include "vm/timers.hpp"
 
@@ -151,8 +151,10 @@ private:
     require(output.size() <= vm::kMaxResponseOutput, "too much output");
     require(run.pause == vm::Pause::ended || run.next < response.length, "pauses outside");
     check_output(output, response.actuators);
+    const std::uint32_t owned = owned_by(response);
+    require((machine_.written & ~owned) == 0, "wrote what it does not set");
     check_written();
-    check_inputs(machine_.written);
+    check_inputs(owned);
     for (const Word word : output)
       note(word);
     for (std::size_t i = 0; i < behavior_.cells; ++i)
@@ -194,6 +196,14 @@ private:
     require(used <= output.size() && (output.empty() || used > 0), "output that is none");
   }
 
+  // The inputs that it sets, a bit each. To set one to an unknown does nothing, but then the response
+  // owns it all the same, and may change it in place.
+  [[nodiscard]] std::uint32_t owned_by(const vm::Response& response) const {
+    std::uint32_t owned = 0;
+    for (const Word word : image_.code.subspan(response.start, response.length))
+      if (kind_of(word, 0) == Operand::variable) owned |= std::uint32_t{1} << operand(word, 0) % 32;
+    return owned;
+  }
   // What was written are variables of the behaviour that are no bands.
   void check_written() {
     require((machine_.assigned & ~machine_.written) == 0, "assigned and not written");
@@ -207,10 +217,10 @@ private:
               "wrote an input that is no variable");
     }
   }
-  void check_inputs(std::uint32_t written) {
+  void check_inputs(std::uint32_t owned) {
     for (std::size_t i = 0; i < behavior_.input_count; ++i)
-      if (i >= 32 || (written >> i & 1) == 0)
-        require(frame_[i] == latched_[i], "changed an input and did not say so");
+      if (i >= 32 || (owned >> i & 1) == 0)
+        require(frame_[i] == latched_[i], "changed an input that it does not set");
   }
 
   const Image& image_;
