@@ -18,7 +18,7 @@ constexpr std::uint32_t kEdges[] = {0,     1,      2,          31,         32,  
 }  // namespace
 
 void Mutator::mutate(Draft& draft) {
-  for (auto left = 1 + random_.below(random_.one_in(4) ? 4 : 2); left > 0 && draft.sound(); --left)
+  for (auto left = 1 + random_.below(4); left > 0 && draft.sound(); --left)
     change(draft);
   draft.put_crc();
   if (random_.one_in(500)) draft.bytes()[random_.below(draft.bytes().size())] ^= std::byte{1};

@@ -105,6 +105,7 @@ void Writer::close(Opcode opcode, unsigned a, std::size_t start) {
 
 void Writer::counted(unsigned depth) {
   if (drawer_.locals() == 0) return put(drawer_.plain());
+  if (random_.one_in(3)) put(drawer_.instruction(Opcode::set));  // to be changed in place
   const bool constant = random_.below(3) != 0;
   Word begin = drawer_.instruction(constant ? Opcode::times : Opcode::times_v);
   const unsigned local = vm::operand_a(begin);
