@@ -16,11 +16,12 @@ void fault() {
   robosync::bench::leave(false);
 }
 
-// The kernel's port brings its own.
+// The kernel's port and the fuzzer's sandbox bring their own.
 [[gnu::weak, gnu::alias("fault")]] void HardFault_Handler();
 [[gnu::weak, gnu::alias("fault")]] void MemManage_Handler();
 [[gnu::weak, gnu::alias("fault")]] void BusFault_Handler();
 [[gnu::weak, gnu::alias("fault")]] void UsageFault_Handler();
+[[gnu::weak, gnu::alias("fault")]] void SVC_Handler();
 [[gnu::weak, gnu::alias("fault")]] void PendSV_Handler();
 [[gnu::weak, gnu::alias("fault")]] void SysTick_Handler();
 [[gnu::weak, gnu::alias("fault")]] void bench_interrupt();  // interrupt 0
@@ -33,7 +34,7 @@ struct Vectors {
 [[gnu::section(".vectors"), gnu::used]] const Vectors vectors = {
     &stack_top,
     {reset, fault, HardFault_Handler, MemManage_Handler, BusFault_Handler, UsageFault_Handler,
-     fault, fault, fault, fault, fault, fault, fault, PendSV_Handler, SysTick_Handler,
+     fault, fault, fault, fault, SVC_Handler, fault, fault, PendSV_Handler, SysTick_Handler,
      bench_interrupt}};
 
 void reset() {

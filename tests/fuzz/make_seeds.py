@@ -1,0 +1,38 @@
+"""Compiles what the fuzzer starts from: every example, and programs of tests/e2e/generator.py.
+
+usage: make_seeds.py RSC FOLDER
+
+Afterwards FOLDER holds their images, and a file `made`. Which programs are drawn is fixed.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+E2E = ROOT / "tests/e2e"
+sys.path.insert(0, str(E2E))
+from generator import Generator  # noqa: E402  (found by the line before)
+
+DRAWN = 16
+
+
+def compile_program(rsc, source, image, *options):
+    subprocess.run([rsc, "compile", source, "--strip", "-o", image, *options], check=True,
+                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+
+
+def make(rsc, folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    for source in sorted((ROOT / "examples").glob("*/robot.rsl")):
+        compile_program(rsc, source, folder / f"{source.parent.name}.rsb")
+    for seed in range(DRAWN):
+        source = folder / f"drawn{seed:02}.rsl"
+        source.write_text(Generator(seed).program())
+        compile_program(rsc, source, source.with_suffix(".rsb"), "--config",
+                        E2E / "programs/robot.json")
+    (folder / "made").touch()
+
+
+if __name__ == "__main__":
+    make(sys.argv[1], Path(sys.argv[2]))

@@ -1,0 +1,66 @@
+// An instruction word by the kinds of its operands, as opcodes.def lists them: whatever opcodes there
+// are, nothing here knows them by name.
+#pragma once
+
+#include "vm/opcode.hpp"
+
+namespace robosync::fuzz {
+
+using vm::Opcode;
+using vm::Operand;
+using vm::Word;
+
+constexpr std::size_t kPlaces = 3;  // A, B, C
+constexpr std::size_t kOpcodeCount = vm::kOpcodes.size();
+
+constexpr bool is_opcode(Word word) {
+  return (word & 0xFF) < kOpcodeCount;
+}
+// Of a word that is_opcode().
+constexpr const vm::OpcodeInfo& info_of(Word word) {
+  return vm::kOpcodes[word & 0xFF];
+}
+constexpr Operand kind_of(Word word, std::size_t place) {
+  return info_of(word).operands[place];
+}
+constexpr bool has_context(Opcode opcode, vm::Context context) {
+  const auto contexts = static_cast<unsigned>(vm::kOpcodes[static_cast<unsigned>(opcode)].contexts);
+  return (contexts & static_cast<unsigned>(context)) != 0;
+}
+
+constexpr unsigned operand(Word word, std::size_t place) {
+  return vm::is_wide(kind_of(word, place)) ? word >> 16 : word >> (8 + 8 * place) & 0xFF;
+}
+constexpr Word with_operand(Word word, std::size_t place, unsigned value) {
+  const unsigned shift = 8 + 8 * static_cast<unsigned>(place);
+  const Word mask = (vm::is_wide(kind_of(word, place)) ? 0xFFFFU : 0xFFU) << shift;
+  return (word & ~mask) | (value << shift & mask);
+}
+
+enum class Jump : std::uint8_t { none, ahead, back };
+
+// Where in the word its distance stands, and which way it goes.
+struct Distance {
+  Jump jump = Jump::none;
+  std::size_t place = 0;
+};
+constexpr Distance distance_of(Opcode opcode) {
+  const auto& kinds = vm::kOpcodes[static_cast<unsigned>(opcode)].operands;
+  for (std::size_t place = 0; place < kPlaces; ++place) {
+    if (kinds[place] == Operand::ahead || kinds[place] == Operand::ahead8)
+      return {Jump::ahead, place};
+    if (kinds[place] == Operand::back) return {Jump::back, place};
+  }
+  return {};
+}
+
+// What begins or ends blocks, or waits, stands together in the list (the verifier asserts that).
+constexpr bool is_flow(Opcode opcode) {
+  return opcode >= Opcode::jump && opcode <= Opcode::until;
+}
+// Begins a block that ends at its target: IF.
+constexpr bool begins_if(Opcode opcode) {
+  return distance_of(opcode).jump == Jump::ahead && opcode != Opcode::jump;
+}
+
+}  // namespace robosync::fuzz
