@@ -8,23 +8,12 @@
 #include <algorithm>
 
 #include "vm/arithmetic.hpp"
+#include "vm/dispatch.hpp"
 #include "vm/opcode.hpp"
 #include "vm/timers.hpp"
 
 namespace robosync::vm {
 namespace {
-
-// The opcodes that are reached at once: those of the measured programs, and what the examples have
-// most of. `asm goto` takes no more than these; the others are reached by way of a switch, which
-// takes them three instructions more. (clang-format never comes to rest on this list.)
-// clang-format off
-#define FREQUENT_OPCODES(X)                                                  \
-  X(move) X(load) X(add) X(sub) X(mul)                                       \
-  X(add_k) X(div_k) X(mod_k) X(add_fast) X(add_k_fast) X(mul_fast)           \
-  X(lt_k) X(gt_k) X(ge_k) X(eq_k) X(and_) X(ret)                             \
-  X(unless) X(unless_lt_k) X(unless_gt_k) X(again)                           \
-  X(set) X(arg) X(arg_k) X(cmd) X(cmd_end) X(end)
-// clang-format on
 
 // Appends to the output; what does not fit is dropped as a whole.
 inline void put(Machine& machine, Word word) {
@@ -78,37 +67,6 @@ std::uint32_t milliseconds(Value duration) {
 }
 
 }  // namespace
-
-#if defined(__thumb2__)
-// On the board the assembler makes the table of where each opcode's code begins, out of the labels
-// that the first `asm goto` names. gcc makes five instructions of `goto*` (it sets the Thumb bit
-// each time), and where addresses of labels are taken it keeps code for jumps that never come.
-extern "C" const void* const robosync_dispatch[];
-#define TARGET(name) , op_##name
-#define PLACE(name) ".set .Ldispatch_" #name ", %l[op_" #name "]\n"
-// `place` tells the copies apart: gcc would make one of them again.
-// clang-format off
-#define JUMP(place)                           \
-  "ldr pc, [%0, %1, lsl #2] @ " #place        \
-      :: "r"(table), "r"(word & 0xFF) : : rare FREQUENT_OPCODES(TARGET)
-// clang-format on
-#define DISPATCH(place)  \
-  asm goto(JUMP(place)); \
-  __builtin_unreachable()
-#else
-#define DISPATCH(place) goto* table[word & 0xFF]
-#endif
-
-// Without the `asm`, gcc keeps the `pc` of a jump in a register of its own, and every instruction
-// pays for moving it.
-#define FETCH() \
-  word = *pc;   \
-  ++pc;         \
-  asm volatile("" : "+r"(pc))
-// What stands at the end of a frequent opcode instead of a jump to `next`.
-#define NEXT(place) \
-  FETCH();          \
-  DISPATCH(place)
 
 // NOLINTNEXTLINE(readability-function-size): the loop's state lives in registers
 Value run(Machine& machine, const Word* pc, Progress* progress) {
