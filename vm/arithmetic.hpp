@@ -37,15 +37,15 @@ constexpr std::int32_t cut_off_difference(std::int32_t b, std::int32_t c) {
 }
 #endif
 
-constexpr Value keep_off_unknown(std::int32_t result) {
-  return result + (result == kUnknown ? 1 : 0);
-}
-
 }  // namespace detail
 
+// b + c, both known. What is cut off is one less than the sum, so that it cannot become unknown.
+inline Value add_known(Value b, Value c) {
+  return detail::cut_off_sum(detail::cut_off_sum(b - 1, c), 1);
+}
+
 inline Value add(Value b, Value c) {
-  if (b == kUnknown || c == kUnknown) return kUnknown;
-  return detail::keep_off_unknown(detail::cut_off_sum(b, c));
+  return b == kUnknown || c == kUnknown ? kUnknown : add_known(b, c);
 }
 
 // Wrapping negation turns kUnknown into itself.
@@ -70,6 +70,29 @@ constexpr Value modulo(Value b, Value c) {
   if (c == 0) return 0;
   const Value remainder = b % c;
   return remainder != 0 && (remainder ^ c) < 0 ? remainder + c : remainder;
+}
+
+// The same for a known b and c > 0.
+constexpr Value modulo_positive(Value b, Value c) {
+  const Value remainder = b % c;
+  return remainder < 0 ? remainder + c : remainder;
+}
+
+// b / n for a whole n > 0, rounded half away from zero.
+constexpr Value divide_by_whole(Value b, std::int32_t n) {
+  if (b == kUnknown) return kUnknown;
+  const auto size = static_cast<std::uint32_t>(b < 0 ? -b : b);
+  const auto divisor = static_cast<std::uint32_t>(n);
+  const auto quotient = static_cast<Value>((size + divisor / 2) / divisor);
+  return b < 0 ? -quotient : quotient;
+}
+
+// Sums and products of what was proved to be known and in range: their lower 32 bits.
+constexpr Value add_unchecked(Value b, Value c) {
+  return static_cast<Value>(static_cast<std::uint32_t>(b) + static_cast<std::uint32_t>(c));
+}
+constexpr Value multiply_unchecked(std::int32_t b, Value c) {
+  return static_cast<Value>(static_cast<std::uint32_t>(b) * static_cast<std::uint32_t>(c));
 }
 
 constexpr Value logical_not(Value truth) {

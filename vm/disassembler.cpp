@@ -154,6 +154,8 @@ void put_operand(Writer& out, const Image& image, Word word, std::size_t place, 
       return put_sign(out, 't', byte);
     case Operand::ahead:
       return put_sign(out, '+', operand_wide(word));
+    case Operand::ahead8:
+      return put_sign(out, '+', byte);
     case Operand::back:
       return put_sign(out, '-', operand_wide(word));
     case Operand::string:

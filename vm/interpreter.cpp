@@ -8,28 +8,12 @@
 #include <algorithm>
 
 #include "vm/arithmetic.hpp"
+#include "vm/dispatch.hpp"
 #include "vm/opcode.hpp"
 #include "vm/timers.hpp"
 
 namespace robosync::vm {
 namespace {
-
-// The opcodes that are reached at once. `asm goto` takes no more than these; the others are reached
-// by way of a switch, which takes them three instructions more. (clang-format never comes to rest
-// on this list.)
-// clang-format off
-#define FREQUENT_OPCODES(X)                                                  \
-  X(move) X(load) X(add) X(sub) X(mul) X(div) X(mod)                         \
-  X(lt) X(le) X(eq) X(ne) X(lt_k) X(le_k) X(gt_k) X(ge_k) X(eq_k) X(ne_k)    \
-  X(and_) X(or_) X(not_) X(ret)                                              \
-  X(arg) X(arg_k) X(cmd) X(cmd_end) X(end) X(again)
-// clang-format on
-
-constexpr bool is_frequent(Opcode opcode) {
-#define IS_IT(name) opcode == Opcode::name ||
-  return FREQUENT_OPCODES(IS_IT) false;
-#undef IS_IT
-}
 
 // Appends to the output; what does not fit is dropped as a whole.
 inline void put(Machine& machine, Word word) {
@@ -44,6 +28,14 @@ inline void put(Machine& machine, Word word, Value value) {
   output[0] = word;
   output[1] = static_cast<Word>(value);
   machine.output = output + 2;
+}
+
+// The whole number that `b` counts the thousandths of. In two instructions: gcc takes four, to
+// multiply by the reciprocal.
+inline std::int32_t whole(Value b) {
+  Value scale = kScale;
+  asm("" : "+r"(scale));
+  return b / scale;
 }
 
 // A number from `b` to `c`, in whichever order, both included: Marsaglia's xorshift32, spread over
@@ -69,7 +61,7 @@ std::uint32_t milliseconds(Value duration) {
 // Is it `time` now, or later? If not, it wakes the machine then.
 [[gnu::noinline]] Value has_come(Machine& machine, Value time) {
   const auto due = static_cast<std::uint32_t>(time);
-  if (static_cast<std::int32_t>(machine.now - due) >= 0) return kTrue;
+  if (reached(due, machine.now)) return kTrue;
   wake_at(machine, due);
   return kFalse;
 }
@@ -78,19 +70,6 @@ std::uint32_t milliseconds(Value duration) {
 
 // NOLINTNEXTLINE(readability-function-size): the loop's state lives in registers
 Value run(Machine& machine, const Word* pc, Progress* progress) {
-#if defined(__thumb2__)
-#define LABEL(label) reinterpret_cast<const char*>(&&label) + 1  // bit 0: Thumb code
-#else
-#define LABEL(label) &&label
-#endif
-  static const void* const kLabels[] = {
-#define OPCODE(name, a, b, c, contexts, cost, doc) \
-  is_frequent(Opcode::name) ? LABEL(op_##name) : LABEL(rare),
-#include "vm/opcodes.def"
-#undef OPCODE
-  };
-#undef LABEL
-
   Value* const frame = machine.frame;
   const Value* const constants = machine.constants;
   Word word = 0;
@@ -102,30 +81,46 @@ Value run(Machine& machine, const Word* pc, Progress* progress) {
   const auto b = [&] { return frame[operand_b(word)]; };
   const auto c = [&] { return frame[operand_c(word)]; };
   const auto k = [&] { return constants[operand_c(word)]; };
+  const auto b_k = [&] { return constants[operand_b(word)]; };
   const auto wide_k = [&] { return constants[operand_wide(word)]; };
-  goto next;
-store:
-  frame[operand_a(word)] = result;
-next:
-  word = *pc;
-  ++pc;
-  // Without this, gcc keeps the `pc` of a jump in a register of its own, and every instruction pays
-  // for moving it.
-  asm volatile("" : "+r"(pc));
 #if defined(__thumb2__)
-  // gcc makes five instructions of `goto*` (it sets the Thumb bit each time); three are enough.
-#define TARGET(name) , op_##name
-  asm goto("ldr pc, [%0, %1, lsl #2]"
-           :
-           : "r"(kLabels), "r"(word & 0xFF)
-           :
-           : rare FREQUENT_OPCODES(TARGET));
-#undef TARGET
+  const void* const* table = robosync_dispatch;
+  asm("" : "+r"(table));  // stays in its register
+  FETCH();
+  // clang-format off
+  asm goto(
+    FREQUENT_OPCODES(PLACE)
+    ".pushsection .rodata.robosync_dispatch, \"a\"\n"
+    ".balign 4\n"
+    "robosync_dispatch:\n"
+#define OPCODE(name, a, b, c, contexts, cost, doc) \
+    ".ifdef .Ldispatch_" #name "\n"               \
+    "  .word .Ldispatch_" #name " + 1\n"          \
+    ".else\n"                                     \
+    "  .word %l[rare] + 1\n"                      \
+    ".endif\n"
+#include "vm/opcodes.def"
+#undef OPCODE
+    ".popsection\n"
+    JUMP(first));
+  // clang-format on
   __builtin_unreachable();
 #else
-  goto* kLabels[word & 0xFF];
+  static const void* const table[] = {
+#define OPCODE(name, a, b, c, contexts, cost, doc) &&op_##name,
+#include "vm/opcodes.def"
+#undef OPCODE
+  };
+  NEXT(first);
 #endif
 
+store:
+  frame[operand_a(word)] = result;
+  NEXT(store);
+next:
+  NEXT(next);
+
+#if defined(__thumb2__)
 rare:
   switch (opcode_of(word)) {
 #define OPCODE(name, a, b, c, contexts, cost, doc) \
@@ -137,30 +132,54 @@ rare:
       break;
   }
   __builtin_unreachable();
+#endif
 
 #define SET(name, value)        \
   op_##name : result = (value); \
   goto store
+#define SET_HOT(name, value)                    \
+  op_##name : frame[operand_a(word)] = (value); \
+  NEXT(name)
 
-  SET(move, b());
-  SET(load, wide_k());
+  SET_HOT(move, b());
+  SET_HOT(load, wide_k());
   SET(mul, multiply(b(), c()));
   SET(random, draw(machine, b(), c()));
   SET(neg, negate(b()));
+  SET(div_k, divide_by_whole(b(), k()));
+  SET_HOT(add_fast, add_unchecked(b(), c()));
+  SET_HOT(add_k_fast, add_unchecked(b(), k()));
+  SET_HOT(mul_fast, multiply_unchecked(whole(b()), c()));
+  SET(mul_k_fast, multiply_unchecked(b(), k()));
 
   SET(and_, b() & c());
   SET(or_, b() | c());
   SET(not_, logical_not(b()));
+#undef SET_HOT
 #undef SET
 
 op_sub:
   right = negate(c());
   goto sum;
+op_mod_k:
+  result = b();
+  if (result == kUnknown) goto store;
+  frame[operand_a(word)] = modulo_positive(result, k());
+  NEXT(mod_k);
 op_add:
   right = c();
 sum:
-  result = add(b(), right);
-  goto store;
+  result = right;
+  if (right == kUnknown) goto store;
+  result = b();
+  if (result == kUnknown) goto store;
+  frame[operand_a(word)] = add_known(result, right);
+  NEXT(sum);
+op_add_k:
+  result = b();
+  if (result == kUnknown) goto store;
+  frame[operand_a(word)] = add_known(result, k());
+  NEXT(add_k);
 
 op_div:
   right = c();
@@ -248,11 +267,14 @@ op_halt:
   goto next;
 
 op_set:
-  machine.assigned |= (b() != kUnknown ? 1U : 0U) << operand_a(word);
+  result = b();
+  if (result == kUnknown) goto next;
+  machine.assigned |= 1U << operand_a(word);
+  goto store;
 op_shift:
   result = b();
   if (result == kUnknown) goto next;
-  machine.written |= 1U << operand_a(word);
+  machine.shifted |= 1U << operand_a(word);
   goto store;
 
 op_unless:
@@ -260,6 +282,29 @@ op_unless:
   goto next;
 op_unless_known:
   if (a() == kUnknown) goto ahead;
+  goto next;
+  // An unknown is less than all that is known. So an unknown right side makes no order true, and an
+  // unknown left side none that wants it greater.
+#define UNLESS(name, holds)                     \
+  op_unless_##name : right = b();               \
+  goto unless_##name;                           \
+  op_unless_##name##_k : right = b_k();         \
+  unless_##name : result = a();                 \
+  if (result != kUnknown && (holds)) goto next; \
+  goto ahead8
+
+  UNLESS(lt, result < right);
+  UNLESS(le, result <= right);
+  UNLESS(eq, result == right);
+  UNLESS(ne, right != kUnknown && result != right);
+#undef UNLESS
+op_unless_gt_k:
+  if (a() > b_k()) goto next;
+  goto ahead8;
+op_unless_ge_k:
+  if (a() >= b_k()) goto next;
+ahead8:
+  pc += operand_c(word);
   goto next;
 op_jump:
 ahead:
@@ -276,13 +321,14 @@ op_times_v:
 op_again:
   result = a() - kScale;
   frame[operand_a(word)] = result;
-  if (result > 0) goto back;
+  if (result <= 0) goto next;
+  pc -= operand_wide(word);
+  NEXT(again);
 op_loop:
   goto next;
 op_around:
   if (a() != kTrue) goto next;
 op_around_always:
-back:
   pc -= operand_wide(word);
   goto next;
 
@@ -316,9 +362,6 @@ give_up:
 op_cmd_end:
   put(machine, word);
 op_end:
-  // Not an empty block: gcc would send the jumps elsewhere and leave the label, whose address is in
-  // the table, where it happens to be.
-  asm volatile("");
   return kUnknown;
 }
 

@@ -34,6 +34,7 @@ enum class Operand : std::uint8_t {
   local,
   variable,
   ahead,
+  ahead8,
   back,
   timer,
   string
@@ -61,6 +62,11 @@ inline constexpr std::array<OpcodeInfo, static_cast<std::size_t>(Opcode::count_)
 constexpr bool is_terminator(Opcode op) {
   return op == Opcode::ret || op == Opcode::ret_number || op == Opcode::cmd_end ||
          op == Opcode::end;
+}
+
+// Does it begin a block that ends at its target? IF.
+constexpr bool is_unless(Opcode op) {
+  return op >= Opcode::unless && op <= Opcode::unless_ne_k;
 }
 
 // Does this operand take the bytes of B and C together?

@@ -15,12 +15,23 @@ unsigned counter_of(Word word) {
   return counts ? operand_a(word) : kNone;
 }
 
+// How far `unless` and its like jump.
+std::size_t skipped(Word word) {
+  const bool wide = opcode_of(word) <= Opcode::unless_known;
+  return wide ? operand_wide(word) : operand_c(word);
+}
+
+bool pauses(Opcode opcode) {
+  return opcode >= Opcode::wait && opcode <= Opcode::until;
+}
+
 }  // namespace
 
 // A loop must have been closed before the block around it ends.
 Refusal Blocks::arrive(std::size_t at, bool& changed) {
   for (; depth_ > 0 && top().end <= at; --depth_) {
-    if (top().kind == Kind::loop) return Refusal::bad_jump;
+    if (top().kind != Kind::forward) return Refusal::bad_jump;
+    owned_ = top().owned;
     spent_.cost = std::max(spent_.cost, top().cost);
     spent_.output = std::max<std::uint32_t>(spent_.output, top().output);
     changed = true;
@@ -38,10 +49,10 @@ Refusal Blocks::spend(std::uint32_t cost, std::uint32_t output) {
 Refusal Blocks::flow(std::size_t at, Word word) {
   const std::size_t next = at + 1;
   const std::size_t distance = operand_wide(word);
-  switch (opcode_of(word)) {
-    case Opcode::unless:
-    case Opcode::unless_known:
-      return open(Kind::forward, next, next + distance);
+  const Opcode opcode = opcode_of(word);
+  if (is_unless(opcode)) return open(Kind::forward, next, next + skipped(word));
+  if (pauses(opcode) && !disown()) return Refusal::lost_variable;
+  switch (opcode) {
     case Opcode::jump:
       return jump(next, next + distance);
     case Opcode::times:
@@ -67,7 +78,7 @@ Refusal Blocks::flow(std::size_t at, Word word) {
 
 bool Blocks::is_counter(std::uint8_t cell) const {
   for (unsigned i = 0; i < depth_; ++i)
-    if (open_[i].kind == Kind::loop && counter_of(opener(open_[i])) == cell) return true;
+    if (open_[i].kind != Kind::forward && counter_of(opener(open_[i])) == cell) return true;
   return false;
 }
 
@@ -79,13 +90,12 @@ Refusal Blocks::open(Kind kind, std::size_t start, std::size_t end) {
   if (end > limit()) return Refusal::bad_jump;
   if (depth_ == open_.size()) return Refusal::too_deep;
   open_[depth_++] = {spent_.cost,
-                     0,
+                     {owned_},
                      static_cast<std::uint16_t>(start),
                      static_cast<std::uint16_t>(end),
                      static_cast<std::uint8_t>(spent_.output),
                      0,
-                     kind,
-                     false};
+                     kind};
   return Refusal::none;
 }
 
@@ -100,6 +110,7 @@ void Blocks::take_dearer(Block& block) const {
 Refusal Blocks::jump(std::size_t next, std::size_t target) {
   if (depth_ == 0 || top().kind != Kind::forward || top().end != next) return Refusal::bad_jump;
   const Spent before{top().cost, top().output};
+  owned_ = top().owned;
   --depth_;
   Refusal refusal = Refusal::none;
   if (depth_ > 0 && top().kind == Kind::forward && top().end == target)
@@ -111,7 +122,7 @@ Refusal Blocks::jump(std::size_t next, std::size_t target) {
 }
 
 Refusal Blocks::close_loop(std::size_t target, Word word) {
-  if (depth_ == 0 || top().kind != Kind::loop || top().start != target) return Refusal::bad_jump;
+  if (depth_ == 0 || top().kind == Kind::forward || top().start != target) return Refusal::bad_jump;
   const Block& loop = top();
   --depth_;
   const Word begin = opener(loop);
@@ -125,7 +136,8 @@ Refusal Blocks::close_loop(std::size_t target, Word word) {
 
 // Takes into account that the loop, whose end is reached, runs more than once.
 Refusal Blocks::repeat(const Block& loop) {
-  if (loop.waits) {  // a run can come from the last wait around to the first one
+  if (loop.kind ==
+      Kind::waiting_loop) {  // a run can come from the last wait around to the first one
     dearest_ = std::max(dearest_, spent_.cost + loop.lead_cost);
     return good_or(Refusal::too_much_output,
                    spent_.output + loop.lead_output <= kMaxResponseOutput);
@@ -141,18 +153,37 @@ Refusal Blocks::repeat(const Block& loop) {
   return spend(static_cast<std::uint32_t>(cost), static_cast<std::uint32_t>(output));
 }
 
+// The inputs are read anew in the next step.
+bool Blocks::disown() {
+  for (unsigned i = 0; i < depth_; ++i) {
+    if (open_[i].kind == Kind::keeping_loop) return false;
+    if (open_[i].kind != Kind::waiting_loop) open_[i].owned = 0;
+  }
+  owned_ = 0;
+  return true;
+}
+
+bool Blocks::change(std::uint8_t input) {
+  const std::uint32_t bit = bit_of(input);
+  if ((owned_ & bit) == 0) return false;
+  for (unsigned i = 0; i < depth_; ++i)
+    if (open_[i].kind == Kind::loop && (open_[i].owned & bit) != 0)
+      open_[i].kind = Kind::keeping_loop;
+  return true;
+}
+
 // The run ends here. Loops around it, up to the first IF, wait in every round.
 void Blocks::wait() {
   unsigned block = depth_;
-  for (; block > 0 && open_[block - 1].kind == Kind::loop; --block) {
+  for (; block > 0 && open_[block - 1].kind != Kind::forward; --block) {
     Block& loop = open_[block - 1];
-    if (loop.waits) continue;
-    loop.waits = true;
+    if (loop.kind == Kind::waiting_loop) continue;
+    loop.kind = Kind::waiting_loop;
     loop.lead_cost = spent_.cost - loop.cost;
     loop.lead_output = static_cast<std::uint8_t>(spent_.output - loop.output);
   }
   for (; block > 0; --block)  // one further out: the wait may be left out in a round of it
-    if (open_[block - 1].kind == Kind::loop) return;
+    if (open_[block - 1].kind != Kind::forward) return;
   dearest_ = std::max(dearest_, spent_.cost);
   spent_ = {};
 }

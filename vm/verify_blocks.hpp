@@ -6,6 +6,10 @@
 // body counts as often; or it waits in every round, and a run sees at most what stands behind its
 // last wait and, around the loop's end, what stands before its first one. A wait that may be jumped
 // over inside a loop counts as if it were none.
+//
+// Which variables the response owns is known in the same way: `set` gives one to it, a block ends
+// with those that it began with, a wait takes all away. In a loop that changes one which it began
+// with, nothing may wait: the next round would not own it.
 #pragma once
 
 #include <array>
@@ -26,6 +30,11 @@ public:
   // Then, if it begins or ends a block, or waits.
   [[nodiscard]] Refusal flow(std::size_t at, Word word);
 
+  // The response owns this input from here on.
+  void own(std::uint8_t input) { owned_ |= bit_of(input); }
+  // May this input be changed in place? It is, then.
+  [[nodiscard]] bool change(std::uint8_t input);
+
   // Is it the cell of an open loop?
   [[nodiscard]] bool is_counter(std::uint8_t cell) const;
   // Cost of the dearest run.
@@ -36,18 +45,29 @@ private:
     std::uint32_t cost = 0;
     std::uint32_t output = 0;
   };
-  enum class Kind : std::uint8_t { forward, loop };
+  enum class Kind : std::uint8_t {
+    forward,
+    loop,
+    keeping_loop,  // changes a variable that it began with, so it must not wait
+    waiting_loop   // waits in every round
+  };
   struct Block {
-    std::uint32_t cost;       // forward: spent where a jump to its end starts, at most; loop: spent
-    std::uint32_t lead_cost;  // at its start. The lead: from there to the first wait
-    std::uint16_t start;      // loop: where a jump back goes to
-    std::uint16_t end;        // forward: where it ends; loop: where it must have ended
+    std::uint32_t cost;  // forward: spent where a jump to its end starts, at most; loop: spent
+                         // at its start. The lead: from there to the first wait
+    union {
+      std::uint32_t lead_cost;  // waiting_loop
+      std::uint32_t owned;      // of those it began with, the ones that no wait took away
+    };
+    std::uint16_t start;  // loop: where a jump back goes to
+    std::uint16_t end;    // forward: where it ends; loop: where it must have ended
     std::uint8_t output, lead_output;
     Kind kind;
-    bool waits;  // loop: in every round
   };
   static_assert(sizeof(Block) == 16, "stands kMaxBlocks times on a small stack");
 
+  static constexpr std::uint32_t bit_of(std::uint8_t input) {
+    return input < kMaxWritable ? std::uint32_t{1} << input : 0;
+  }
   Block& top() { return open_[depth_ - 1]; }
   [[nodiscard]] std::size_t limit() const { return depth_ > 0 ? open_[depth_ - 1].end : last_; }
   [[nodiscard]] const Word& opener(const Block& loop) const { return image_.code[loop.start - 1U]; }
@@ -56,6 +76,7 @@ private:
   Refusal jump(std::size_t next, std::size_t target);
   Refusal close_loop(std::size_t target, Word word);
   Refusal repeat(const Block& loop);
+  [[nodiscard]] bool disown();
   void wait();
   void take_dearer(Block& block) const;
 
@@ -63,6 +84,7 @@ private:
   std::size_t last_;
   Spent spent_;  // since the last wait, on the dearest way
   std::uint32_t dearest_ = 0;
+  std::uint32_t owned_ = 0;  // bit i: input i
   unsigned depth_ = 0;
   std::array<Block, kMaxBlocks> open_;  // initialized: the first depth_
 };

@@ -48,7 +48,16 @@ constexpr Context context_of(ObjectKind kind) {
   return kind == ObjectKind::safety ? Context::safety : Context::condition;
 }
 
+// A constructor, as an aggregate would be filled with zeros first, the places of blocks as well.
 struct Pass {
+  Pass(Verification& all, const Behavior& of, Cells& frame, ObjectKind what, std::size_t last)
+      : verification(all),
+        image(all.image),
+        behavior(of),
+        cells(frame),
+        kind(what),
+        blocks(all.image, last) {}
+
   Verification& verification;
   const Image& image;
   const Behavior& behavior;
@@ -72,9 +81,12 @@ Refusal check_local(const Pass& pass, std::uint8_t cell) {
                  !pass.cells.is_taken(cell) && !pass.blocks.is_counter(cell));
 }
 
-Refusal check_write(const Pass& pass, std::uint8_t cell) {
+// A register takes anything, a variable that the response owns only numbers.
+Refusal check_write(Pass& pass, std::uint8_t cell, bool truth) {
   if (pass.cells.is_local(cell)) return check_local(pass, cell);
-  return good_or(Refusal::bad_operand, pass.cells.is_register(cell));
+  return good_or(Refusal::bad_operand,
+                 pass.cells.is_register(cell) ||
+                     (!truth && pass.cells.is_input(cell) && pass.blocks.change(cell)));
 }
 
 // A variable that is not the result of a CHECK, among the inputs that have a bit of their own.
@@ -105,6 +117,12 @@ bool is_wide_good(const Pass& pass, Operand kind, Word word) {
   return opcode_of(word) != Opcode::times || (constant > 0 && constant % kScale == 0);
 }
 
+bool is_const8_good(const Pass& pass, Opcode opcode, std::uint8_t index) {
+  if (index >= pass.image.constants.size()) return false;
+  const bool divides = opcode == Opcode::div_k || opcode == Opcode::mod_k;
+  return !divides || pass.image.constants[index] > 0;
+}
+
 // An operand that is only looked at. Targets, verbs and words are looked at together (command).
 Refusal check_operand(const Pass& pass, Operand kind, Opcode opcode, std::uint8_t byte) {
   switch (kind) {
@@ -114,7 +132,7 @@ Refusal check_operand(const Pass& pass, Operand kind, Opcode opcode, std::uint8_
     case Operand::read_truth:
       return check_read(pass, byte, kind == Operand::read_truth);
     case Operand::const8:
-      return good_or(Refusal::bad_operand, byte < pass.image.constants.size());
+      return good_or(Refusal::bad_operand, is_const8_good(pass, opcode, byte));
     case Operand::timer:
       return check_timer(pass, opcode, byte);
     default:
@@ -183,6 +201,7 @@ Refusal perform(Pass& pass, Operand kind, Word word) {
       if (opcode == Opcode::again) return Refusal::none;  // the cell of its loop: verify_blocks.cpp
       break;
     case Operand::variable:
+      pass.blocks.own(a);
       return good_or(Refusal::bad_operand, is_writable(pass, a));
     case Operand::param:
       pass.params |= std::uint32_t{1} << (a & 31U);
@@ -193,7 +212,7 @@ Refusal perform(Pass& pass, Operand kind, Word word) {
       if (opcode == Opcode::log) pass.params = 0;
       return check_operand(pass, kind, opcode, a);
   }
-  if (refusal == Refusal::none) refusal = check_write(pass, a);
+  if (refusal == Refusal::none) refusal = check_write(pass, a, truth);
   pass.cells.set(a, truth);
   return refusal;
 }
@@ -224,14 +243,15 @@ Refusal flow(Pass& pass, std::size_t at, Word word) {
   const Opcode opcode = opcode_of(word);
   if (opcode < Opcode::jump || opcode > Opcode::until) return Refusal::none;
   if (pass.params != 0) return Refusal::unused_param;
-  if (opcode != Opcode::unless && opcode != Opcode::unless_known) pass.cells.forget_registers();
+  if (!is_unless(opcode)) pass.cells.forget_registers();
   return pass.blocks.flow(at, word);
 }
 
 constexpr bool is_flow(const OpcodeInfo& info) {
   return info.name == "wait" || info.name == "wait_done" || info.name == "poll" ||
          info.operands[1] == Operand::ahead || info.operands[1] == Operand::back ||
-         info.name == "times" || info.name == "times_v" || info.name == "loop";
+         info.operands[2] == Operand::ahead8 || info.name == "times" || info.name == "times_v" ||
+         info.name == "loop";
 }
 static_assert([] {
   for (std::size_t i = 0; i < kOpcodes.size(); ++i) {
@@ -282,8 +302,7 @@ bool check_object(Verification& verification, const Behavior& behavior, Cells& c
   verification.words += range.length;
   if (verification.words > verification.limits.step_cost)
     return verification.refuse(Refusal::too_costly, Section::code, range.start);
-  Pass pass{
-      verification, verification.image, behavior, cells, kind, Blocks(verification.image, last)};
+  Pass pass(verification, behavior, cells, kind, last);
   cells.begin_object();
   for (std::size_t at = range.start; at <= last; ++at) {
     const Refusal refusal = check_instruction(pass, at, pass.image.code[at], at == last);

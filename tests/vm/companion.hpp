@@ -131,6 +131,7 @@ inline void add_greet(ImageBuilder& image, unsigned three) {
                          encode_wide(Op::load, 8, one),
                          encode(Op::add, 8, 0, 8),
                          encode(Op::set, 0, 8),
+                         encode(Op::min_k, 0, 0, three),
                          encode_wide(Op::unless_known, 7, 4),
                          encode_wide(Op::unless, 7, 2),
                          encode(Op::cmd, left_arm, move_verb, slowly),

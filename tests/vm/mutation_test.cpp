@@ -33,7 +33,7 @@ public:
     inputs_.assign(cells(), cells() + behavior.input_count);
   }
   Value* cells() { return memory_.get() + 1; }
-  // Nothing was written around it, and no inputs but those in `written`.
+  // Nothing was written around it, and no inputs but those in `written`, a bit each.
   void check(std::uint32_t written = 0) {
     REQUIRE((memory_[0] == kGuard && memory_[cells_ + 1] == kGuard));
     for (std::size_t i = 0; i < inputs_.size(); ++i)
@@ -120,12 +120,12 @@ private:
       machine_.output = output.data();
       machine_.output_end = output.data() + output.size();
       machine_.wake = Machine::kNever;
-      machine_.written = machine_.assigned = 0;
+      machine_.assigned = machine_.shifted = 0;
       const Progress progress = respond(machine_, place);
       const auto length = static_cast<std::size_t>(machine_.output - output.data());
       REQUIRE(length <= kMaxResponseOutput);
       check_output(image_, {output.data(), length}, response.actuators);
-      check_written();
+      check_written(image_.code.subspan(response.start, response.length));
       frame_.latch();
       machine_.now += static_cast<std::uint32_t>(random_() % 1000);
       place = progress.next;
@@ -134,14 +134,21 @@ private:
       REQUIRE((place == nullptr) == (progress.pause == Pause::ended));
     }
   }
-  void check_written() {
-    for (std::uint32_t left = machine_.written; left != 0; left &= left - 1) {
+  // Only variables, and of these only those that the code sets or shifts. A SET to an unknown does
+  // nothing, but gives the variable to the response all the same.
+  void check_written(std::span<const Word> code) {
+    std::uint32_t owned = 0;
+    for (const Word word : code)
+      if (opcode_of(word) == Opcode::set || opcode_of(word) == Opcode::shift)
+        owned |= 1U << (operand_a(word) & 31U);
+    REQUIRE((machine_.written() & ~owned) == 0);
+    for (std::uint32_t left = machine_.written(); left != 0; left &= left - 1) {
       const auto cell = static_cast<std::size_t>(std::countr_zero(left));
       REQUIRE(cell < behavior_.input_count);
       REQUIRE(image_.inputs[behavior_.first_input + cell] >= image_.channels.size());
     }
-    REQUIRE((machine_.assigned & ~machine_.written) == 0);
-    frame_.check(machine_.written);
+    REQUIRE((machine_.assigned & ~machine_.written()) == 0);
+    frame_.check(owned);
   }
 
   const Image& image_;
