@@ -1,6 +1,7 @@
 #include "compiler/codegen/expression_emitter.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "compiler/codegen/operations.hpp"
 
@@ -12,13 +13,65 @@ bool reads_local(const Expression& expression) {
          std::any_of(expression.operands.begin(), expression.operands.end(), reads_local);
 }
 
+// x * 2 saturates where x + x does. Known products have an instruction of their own.
+bool is_double(const Expression& expression) {
+  constexpr vm::Value kTwo = 2 * vm::kScale;
+  return expression.operation == Operation::multiply && !expression.operands[0].fact.known &&
+         expression.operands[1].operation == Operation::constant &&
+         expression.operands[1].constant == kTwo;
+}
+
+// May it be worked out once instead of twice? Of two equal time words, both always are the same;
+// but those with two operands keep something in the register of the first.
+bool can_be_shared(const Expression& expression) {
+  const bool two = is_time_word(expression.operation) && expression.operands.size() > 1;
+  return expression.operation != Operation::random && !two &&
+         std::all_of(expression.operands.begin(), expression.operands.end(), can_be_shared);
+}
+
+constexpr std::size_t kMaxLookedAt = 64;  // parts of a condition
+
 std::uint32_t after(Cell cell, std::uint32_t depth) {
   return cell.zone == Zone::temporary ? depth + 1 : depth;
 }
 
 }  // namespace
 
+Cell ExpressionEmitter::condition(const Expression& expression) {
+  std::vector<const Expression*> seen;
+  if (parts_.program.optimized) share(expression, seen);
+  return value(expression, static_cast<std::uint32_t>(shared_.size()));
+}
+
+// Outer parts first: what is inside of an equal part is not looked at again.
+void ExpressionEmitter::share(const Expression& expression, std::vector<const Expression*>& seen) {
+  if (expression.operands.empty() || seen.size() == kMaxLookedAt) return;
+  const auto same = [&](const Expression* other) { return *other == expression; };
+  const auto first = std::find_if(seen.begin(), seen.end(), same);
+  if (first != seen.end() && can_be_shared(expression)) {
+    const auto known = [&](const Shared& shared) { return shared.part == *first; };
+    if (std::none_of(shared_.begin(), shared_.end(), known)) {
+      const auto place = static_cast<std::uint32_t>(shared_.size());
+      shared_.push_back({*first, parts_.frame.temporary(place)});
+    }
+    return;
+  }
+  seen.push_back(&expression);
+  for (const Expression& operand : expression.operands)
+    share(operand, seen);
+}
+
 Cell ExpressionEmitter::value(const Expression& expression, std::uint32_t depth) {
+  for (Shared& shared : shared_) {
+    if (!(*shared.part == expression)) continue;
+    if (!shared.done) put_into(shared.cell, worked_out(expression, depth));
+    shared.done = true;
+    return shared.cell;
+  }
+  return worked_out(expression, depth);
+}
+
+Cell ExpressionEmitter::worked_out(const Expression& expression, std::uint32_t depth) {
   const auto& operands = expression.operands;
   const Operation operation = expression.operation;
   switch (operation) {
@@ -40,15 +93,16 @@ Cell ExpressionEmitter::value(const Expression& expression, std::uint32_t depth)
   if (is_time_word(operation))
     return time_words_ == TimeWords::watched ? watched(expression) : time_word(expression, depth);
   if (is_comparison(operation)) return comparison(operation, operands[0], operands[1], depth);
+  if (parts_.program.optimized)
+    if (const auto cell = cheaper(expression, depth)) return *cell;
   return binary(with_cells(operation), operands[0], operands[1], depth);
 }
 
-void ExpressionEmitter::value_into(Cell local, const Expression& expression) {
-  const Cell cell = value(expression);
+void ExpressionEmitter::put_into(Cell target, Cell cell) {
   if (cell.zone == Zone::temporary)
-    code_.retarget(local);  // the last instruction is the one that gives the value
+    code_.retarget(target);  // the last instruction is the one that gives the value
   else
-    code_.emit(vm::Opcode::move, local, cell);
+    code_.emit(vm::Opcode::move, target, cell);
 }
 
 Cell ExpressionEmitter::constant(vm::Value value, std::uint32_t depth) {
@@ -65,12 +119,60 @@ Cell ExpressionEmitter::unary(vm::Opcode opcode, const Expression& operand, std:
 }
 
 Cell ExpressionEmitter::binary(vm::Opcode opcode, const Expression& left, const Expression& right,
-                               std::uint32_t depth) {
-  const Cell left_cell = value(left, depth);
-  const Cell right_cell = value(right, after(left_cell, depth));
+                               std::uint32_t depth, bool exchanged) {
+  Cell left_cell = value(left, depth);
+  Cell right_cell = value(right, after(left_cell, depth));
+  if (exchanged) std::swap(left_cell, right_cell);
   const Cell cell = parts_.frame.temporary(depth);
   code_.emit(opcode, cell, left_cell, right_cell);
   return cell;
+}
+
+// With a constant in the instruction, or without checks that were proved to be needless.
+std::optional<Cell> ExpressionEmitter::cheaper(const Expression& expression, std::uint32_t depth) {
+  if (is_double(expression)) {
+    const Cell once = value(expression.operands[0], depth);
+    const Cell cell = parts_.frame.temporary(depth);
+    code_.emit(vm::Opcode::add, cell, once, once);
+    return cell;
+  }
+  if (const auto form = constant_form(expression)) {
+    if (const auto place = parts_.pool.near_constant(form->constant)) {
+      const Cell left = value(expression.operands[0], depth);
+      const Cell cell = parts_.frame.temporary(depth);
+      code_.emit(form->opcode, cell, left, *place);
+      return cell;
+    }
+  }
+  if (const auto form = unchecked_form(expression))
+    return binary(form->opcode, expression.operands[0], expression.operands[1], depth,
+                  form->exchanged);
+  return std::nullopt;
+}
+
+std::optional<std::size_t> ExpressionEmitter::jump_unless(const Expression& comparison) {
+  const Operation operation = comparison.operation;
+  if (!is_comparison(operation)) return std::nullopt;
+  const Expression& left = comparison.operands[0];
+  const Expression& right = comparison.operands[1];
+  if (right.operation == Operation::constant) {
+    if (!parts_.pool.near_constant(right.constant)) return std::nullopt;
+    return jump_unless(operation, value(left), right.constant);
+  }
+  // In the same order as comparison(): it may draw random numbers.
+  const bool turned = operation == Operation::greater || operation == Operation::greater_equal;
+  const Cell first = value(turned ? right : left);
+  const Cell second = value(turned ? left : right, after(first, 0));
+  (void)parts_.frame.temporary(0);  // CodeDraft::land() may need it
+  return code_.emit(unless_with_cells(turned ? mirrored(operation) : operation), first, second);
+}
+
+std::optional<std::size_t> ExpressionEmitter::jump_unless(Operation comparison, Cell left,
+                                                          vm::Value right) {
+  const auto place = parts_.pool.near_constant(right);
+  if (!place) return std::nullopt;
+  (void)parts_.frame.temporary(0);  // CodeDraft::land() may need it
+  return code_.emit(unless_with_constant(comparison), left, *place);
 }
 
 Cell ExpressionEmitter::comparison(Operation operation, const Expression& left,
@@ -106,6 +208,8 @@ Cell ExpressionEmitter::time_word(const Expression& expression, std::uint32_t de
   const Cell cell = parts_.frame.temporary(depth);
   Cell source = value(operands[0], depth);
   // The opcodes of two operands have the first one where they put the result.
+  const bool there = source.zone == cell.zone && source.number == cell.number;
+  if (operands.size() > 1 && !there) code_.emit(vm::Opcode::move, cell, source);
   if (operands.size() > 1) source = value(operands[1], depth + 1);
   code_.emit(opcode, cell, source, static_cast<std::uint32_t>(parts_.timers.add(expression)));
   return cell;
@@ -121,9 +225,12 @@ Cell ExpressionEmitter::watched(const Expression& expression) {
   return watches.back().truth;
 }
 
-Cell ExpressionEmitter::clamped(Cell source, const ProgramVariable& variable) {
-  if (variable.min > vm::kValueMin) source = limited(vm::Opcode::max_k, source, variable.min);
-  if (variable.max < vm::kValueMax) source = limited(vm::Opcode::min_k, source, variable.max);
+Cell ExpressionEmitter::clamped(Cell source, const ProgramVariable& variable,
+                                const ProgramSet& set) {
+  if (variable.min > vm::kValueMin && set.may_be_below)
+    source = limited(vm::Opcode::max_k, source, variable.min);
+  if (variable.max < vm::kValueMax && set.may_be_above)
+    source = limited(vm::Opcode::min_k, source, variable.max);
   return source;
 }
 

@@ -39,7 +39,7 @@ CodeDraft make_condition(Parts& parts, const Expression& expression, vm::RuleKin
   code.mark(source);
   ExpressionEmitter emitter(parts, code, TimeWords::evaluated);
   emitter.locals() = locals;
-  const Cell result = emitter.value(expression);
+  const Cell result = emitter.condition(expression);
   const bool number = kind == vm::RuleKind::every;
   code.emit(number ? vm::Opcode::ret_number : vm::Opcode::ret, result);
   return code;

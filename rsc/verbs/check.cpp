@@ -18,7 +18,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> files;
-  std::string config;
+  CompileOptions how;
   Format format = Format::human;
 };
 
@@ -38,7 +38,7 @@ void check(const Options& options) {
   nlohmann::ordered_json report;
   std::size_t errors = 0;
   for (const std::string& file : options.files) {
-    const compiler::Result result = compile_file(file, options.config);
+    const compiler::Result result = compile_file(file, options.how);
     errors += result.diagnostics.errors();
     if (options.format == Format::json) {
       append(report, nlohmann::ordered_json::parse(
@@ -57,7 +57,7 @@ void check(const Options& options) {
 void add_check(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("FILE", options->files, "programs (.rsl)")->required()->option_text("...");
-  add_config_option(app, options->config);
+  add_compile_options(app, options->how);
   add_format_option(app, options->format);
   app.callback([options] { check(*options); });
 }

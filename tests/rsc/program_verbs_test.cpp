@@ -136,6 +136,29 @@ TEST_CASE("dump shows names, rules and instructions with their lines") {
   }
 }
 
+TEST_CASE("dump of a program shows each line above its instructions, optimised or not") {
+  const RobotFolder robot;
+  const std::string program = robot.write("counts.rsl", R"(REMEMBER count = 0
+WHEN touch LEVEL > 2 DO
+  SET count TO (count + 1) MOD 5
+  IF count < 3 DO
+    MOVE left_arm
+  END
+END
+)");
+  const std::string config = robot.path("robot.json");
+  const Outcome optimized = test::rsc({"dump", program, "--config", config});
+  REQUIRE(optimized.exit == 0);
+  CHECK_THAT(optimized.out, Contains("  line 3: SET count TO (count + 1) MOD 5\n") &&
+                                Contains("  add_k_fast ") && Contains("  unless_lt_k "));
+  CHECK_THAT(optimized.out, Contains("  line 4: IF count < 3 DO\n") && Contains("  -> "));
+  const Outcome plain = test::rsc({"dump", program, "--config", config, "-O0"});
+  REQUIRE(plain.exit == 0);
+  CHECK_THAT(plain.out, Contains("  line 4: IF count < 3 DO\n") && Contains("  mod "));
+  CHECK_THAT(plain.out, !Contains("_fast") && !Contains("unless_lt"));
+  CHECK(test::rsc({"dump", program, "--config", config, "-O2"}).exit == 2);
+}
+
 TEST_CASE("dump shows what a program remembers, its checks, timers and safety rules") {
   const RobotFolder robot;
   const std::string program = robot.write("memory.rsl", R"(STATE mood: calm, very scared

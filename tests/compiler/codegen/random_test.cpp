@@ -1,4 +1,6 @@
 // Random programs: what is accepted can be verified, and does what the program says.
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include "tests/compiler/codegen/generator.hpp"
@@ -17,11 +19,18 @@ vm::Value some_reading(std::mt19937& random) {
   return drawn == 14 ? vm::kUnknown : drawn * 500;
 }
 
-World some_world(std::uint32_t seed) {
+// A robot keeps readings in the channel's range: the key is 0 or 1.
+void some_readings(std::uint32_t seed, World& world) {
   std::mt19937 random(seed);
-  World world;
   for (vm::Value& channel : world.channels)
     channel = some_reading(random);
+  vm::Value& key = world.channels.back();
+  if (key != vm::kUnknown) key = std::clamp(key, 0, vm::kScale);
+}
+
+World some_world(std::uint32_t seed) {
+  World world;
+  some_readings(seed, world);
   for (const ProgramVariable& variable : Generator::variables())
     world.variables.push_back(variable.initial);
   return world;
@@ -30,13 +39,15 @@ World some_world(std::uint32_t seed) {
 }  // namespace
 
 TEST_CASE("a random program is refused as too large, or can be verified") {
+  const bool optimize = GENERATE(false, true);
   constexpr std::uint32_t kPrograms = 4000;
   unsigned accepted = 0;
   for (std::uint32_t seed = 0; seed < kPrograms; ++seed) {
     INFO("seed " << seed);
     Taste taste;
     taste.depth = 2 + seed % 6;
-    const Built built = build(Generator(seed, taste).program());
+    const Built built =
+        build(Generator(seed, taste).program(), {.source_lines = false, .optimize = optimize});
     for (const Diagnostic& diagnostic : built.diagnostics.all()) {
       INFO(diagnostic.message);
       REQUIRE(diagnostic.code == Code::E0407);
@@ -54,20 +65,18 @@ TEST_CASE("a random program is refused as too large, or can be verified") {
 }
 
 TEST_CASE("a random response does what its program says, whatever happens while it waits") {
+  const bool optimize = GENERATE(false, true);
   constexpr std::uint32_t kResponses = 6000;
   constexpr unsigned kPauses = 20;
   constexpr Taste kTaste{.chance = false, .time_words = false, .depth = 4};
   std::size_t done = 0;
   for (std::uint32_t seed = 0; seed < kResponses; ++seed) {
     const ProgramBlock block = Generator(seed, kTaste).response();
-    const Built built = build(program_of({at_start(block)}, Generator::variables()));
+    const Built built = build(program_of({at_start(block)}, Generator::variables()),
+                              {.source_lines = false, .optimize = optimize});
     if (built.bytes.empty()) continue;
-    INFO("seed " << seed << "\n" << listing(built.image));
-    const auto weather = [seed](World& world) {
-      std::mt19937 random(seed ^ world.now);
-      for (vm::Value& channel : world.channels)
-        channel = some_reading(random);
-    };
+    INFO("seed " << seed << ", optimised " << optimize << "\n" << listing(built.image));
+    const auto weather = [seed](World& world) { some_readings(seed ^ world.now, world); };
     World world = some_world(seed), expected_world = world;
     const Deeds expected =
         expected_deeds(block, Generator::variables(), expected_world, kPauses, weather);
@@ -77,4 +86,40 @@ TEST_CASE("a random response does what its program says, whatever happens while 
     done += expected.size();
   }
   CHECK(done > kResponses);
+}
+
+// Of a rule that only asks whether its condition is true, unknown is as good as false.
+TEST_CASE("conditions are the same, optimised or not, in every step") {
+  constexpr std::uint32_t kPrograms = 1500;
+  constexpr std::uint32_t kSteps = 12;
+  std::size_t truths = 0;
+  for (std::uint32_t seed = 0; seed < kPrograms; ++seed) {
+    const Program program = Generator(seed, {.chance = false, .time_words = true}).program();
+    const Built plain = build(program, {.source_lines = false});
+    const Built optimized = build(program, {.source_lines = false, .optimize = true});
+    if (plain.bytes.empty()) continue;
+    REQUIRE(!optimized.bytes.empty());
+    for (std::size_t b = 0; b < plain.image.behaviors.size(); ++b) {
+      Runner one(plain.image, b), other(optimized.image, b);
+      World world = some_world(seed);
+      for (std::uint32_t step = 0; step < kSteps; ++step) {
+        world.now += step * 200;
+        some_readings(seed ^ world.now, world);
+        for (std::size_t r = 0; r < plain.image.behaviors[b].rule_count; ++r) {
+          const vm::Rule& rule = plain.image.rules[plain.image.behaviors[b].first_rule + r];
+          if (rule.kind == vm::RuleKind::watch) break;
+          if (rule.kind == vm::RuleKind::start) continue;
+          const bool only_true =
+              rule.kind == vm::RuleKind::when || rule.kind == vm::RuleKind::while_;
+          const vm::Value before = one.condition(r, world), after = other.condition(r, world);
+          INFO("seed " << seed << " rule " << r << " step " << step << " " << before << " " << after
+                       << "\n"
+                       << listing(optimized.image));
+          REQUIRE((only_true ? (before == vm::kTrue) == (after == vm::kTrue) : before == after));
+          if (before == vm::kTrue) ++truths;
+        }
+      }
+    }
+  }
+  CHECK(truths > kPrograms);
 }
