@@ -32,11 +32,8 @@ bool is_fed(const vm::Sensor& sensor) {
 void Program::load(const vm::Image& loaded) {
   image = loaded;
   readers.fill({});
-  std::uint16_t cell = 0;
   for (unsigned b = 0; b < image.behaviors.size(); ++b) {
     const vm::Behavior& behavior = image.behaviors[b];
-    first_cell[b] = cell;
-    cell = static_cast<std::uint16_t>(cell + behavior.cells);
     inputs[b] = 0;
     for (const std::uint8_t input :
          image.inputs.subspan(behavior.first_input, behavior.input_count))
@@ -169,7 +166,7 @@ vm::Verdict fits(const vm::Image& image) {
     (is_fed(sensor) ? fed_sensors : sensors) += 1;
   if (fed_sensors > 0) ++sensors;  // one thread for all
   std::size_t behaviors = image.behaviors.size();
-  if (behaviors > 0 && image.behaviors[0].priority == vm::kSafetyPriority) --behaviors;
+  if (has_safety(image)) --behaviors;
   const std::size_t actuators = image.actuators.size();
   const std::size_t threads = sensors + behaviors + actuators;
   const std::size_t stacks =
