@@ -18,8 +18,8 @@ inline bool has_safety(const vm::Image& image) {
 
 struct Program {
   vm::Image image;
-  std::array<InputMask, kMaxBehaviors> inputs{};  // that each behaviour reads
-  std::array<RuleSet, kMaxInputs> readers{};      // by input: the rules whose conditions read it
+  std::array<InputMask, kMaxBehaviors> inputs{};      // that each behaviour reads
+  std::array<RuleSet, kMaxInputs> readers{};          // by input: the rules that read or set it
   std::array<std::uint8_t, kMaxRules> behavior_of{};  // by rule
   std::array<std::uint8_t, kMaxRules> truth_cell{};   // of a WATCH: where its truth is kept
 
@@ -42,7 +42,9 @@ struct Program {
 
 private:
   void load_rules(unsigned behavior);
-  void note_readings(const vm::Behavior& behavior, unsigned rule);
+  void note_inputs(const vm::Behavior& behavior, unsigned rule);
+  void note_inputs(const vm::Behavior& behavior, unsigned rule, std::uint16_t start,
+                   std::uint16_t length);
 };
 
 // Its readings come from outside, at any time: it is not sampled.
