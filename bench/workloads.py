@@ -27,7 +27,7 @@ class Workload:
 
     def __init__(self, folder, source, readings):
         image = Path(folder) / f"{source.parent.name}.rsb"
-        rsc.run("compile", source, "-o", image, "--strip")
+        rsc.run("compile", source, "-o", image)
         self.words = image.stat().st_size // 4
         self.dump = rsc.run("dump", image)
         self.marks = run_given(BUILT / "bench_workload", image, readings)

@@ -208,6 +208,8 @@ Cell ExpressionEmitter::time_word(const Expression& expression, std::uint32_t de
   const Cell cell = parts_.frame.temporary(depth);
   Cell source = value(operands[0], depth);
   // The opcodes of two operands have the first one where they put the result.
+  const bool there = source.zone == cell.zone && source.number == cell.number;
+  if (operands.size() > 1 && !there) code_.emit(vm::Opcode::move, cell, source);
   if (operands.size() > 1) source = value(operands[1], depth + 1);
   code_.emit(opcode, cell, source, static_cast<std::uint32_t>(parts_.timers.add(expression)));
   return cell;

@@ -35,8 +35,8 @@ public:
     const Tables tables(program, diagnostics_);
     if (diagnostics_.errors() > 0) return {};
     // Devices and variables stay: what the robot measures and shows is the program's business.
-    rules_ = make_rules(options_.optimize ? optimize(program, robot) : program, tables, strings_,
-                        diagnostics_);
+    rules_ = make_rules(options_.optimize ? optimize(program, robot) : program, program, tables,
+                        strings_, diagnostics_);
     records_ = make_records(program, robot, tables, strings_);
     if (diagnostics_.errors() > 0 || !counts_fit()) return {};
     lay_out();

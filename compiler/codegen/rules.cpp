@@ -55,23 +55,62 @@ RuleDraft draft_without_response(Parts& parts, const Expression& condition, vm::
   return draft;
 }
 
+// Makes inputs of everything that a rule reads or sets.
+class Listener {
+public:
+  explicit Listener(Parts& parts) : parts_(parts) {}
+
+  void listen(const ProgramRule& rule) {
+    listen(rule.condition);
+    if (rule.resume) listen(*rule.resume);
+    listen(rule.then_response);
+    listen(rule.else_response);
+  }
+
+private:
+  void listen(const Expression& expression) {
+    if (expression.operation == Operation::input)
+      (void)parts_.frame.read(parts_.tables.input(expression.channel));
+    if (expression.operation == Operation::variable)
+      (void)parts_.frame.read(parts_.tables.variable(expression.index));
+    for (const Expression& operand : expression.operands)
+      listen(operand);
+  }
+  void listen(const ProgramBlock& block) {
+    const PartsOfStatement parts([this](const Expression& expression) { listen(expression); },
+                                 [this](const ProgramBlock& inner) { listen(inner); });
+    for (const ProgramStatement& statement : block) {
+      if (const auto* set = std::get_if<ProgramSet>(&statement.node))
+        (void)parts_.frame.read(parts_.tables.variable(set->variable));
+      std::visit(parts, statement.node);
+    }
+  }
+
+  Parts& parts_;
+};
+
 class RuleWriter {
 public:
-  RuleWriter(const Program& program, const Tables& tables, Strings& strings,
+  RuleWriter(const Program& program, const Program& written, const Tables& tables, Strings& strings,
              Diagnostics& diagnostics)
-      : program_(program), tables_(tables), strings_(strings), diagnostics_(diagnostics) {}
+      : program_(program),
+        written_(written),
+        tables_(tables),
+        strings_(strings),
+        diagnostics_(diagnostics) {}
 
   RuleSections write() {
     reserve_limits();
-    if (!program_.safety.empty()) add({vm::kSafetyPriority, {}, program_.safety});
-    for (const ProgramBehavior& behavior : program_.behaviors)
-      if (!behavior.rules.empty()) add(behavior);
+    if (!program_.safety.empty()) add({vm::kSafetyPriority, {}, program_.safety}, written_.safety);
+    for (std::size_t i = 0; i < program_.behaviors.size(); ++i)
+      if (!program_.behaviors[i].rules.empty())
+        add(program_.behaviors[i], written_.behaviors[i].rules);
     return std::move(sections_);
   }
 
 private:
   void reserve_limits();
-  void add(const ProgramBehavior& behavior);
+  void add(const ProgramBehavior& behavior, const std::vector<ProgramRule>& written);
   std::vector<RuleDraft> make_drafts(Parts& parts, const ProgramBehavior& behavior);
   RuleDraft draft(Parts& parts, const ProgramRule& rule);
   std::uint8_t modifiers(const ProgramRule& rule);
@@ -81,6 +120,7 @@ private:
   std::uint16_t add(const ResponseCode& response, const Frame& frame);
 
   const Program& program_;
+  const Program& written_;
   const Tables& tables_;
   Strings& strings_;
   Diagnostics& diagnostics_;
@@ -106,8 +146,10 @@ void RuleWriter::reserve_limits() {
     diagnostics_.report(Code::E0407, "the variables have too many different limits").label({});
 }
 
-void RuleWriter::add(const ProgramBehavior& behavior) {
+void RuleWriter::add(const ProgramBehavior& behavior, const std::vector<ProgramRule>& written) {
   Parts parts{program_, tables_, strings_, sections_.pool, sections_.timers, diagnostics_};
+  for (const ProgramRule& rule : written)
+    Listener(parts).listen(rule);
   std::vector<RuleDraft> drafts = make_drafts(parts, behavior);
   if (!fits(parts, behavior, drafts.size())) return;
   const std::vector<std::uint32_t> inputs = parts.frame.inputs();
@@ -224,9 +266,9 @@ std::uint16_t RuleWriter::add(const ResponseCode& response, const Frame& frame) 
 
 }  // namespace
 
-RuleSections make_rules(const Program& program, const Tables& tables, Strings& strings,
-                        Diagnostics& diagnostics) {
-  return RuleWriter(program, tables, strings, diagnostics).write();
+RuleSections make_rules(const Program& program, const Program& written, const Tables& tables,
+                        Strings& strings, Diagnostics& diagnostics) {
+  return RuleWriter(program, written, tables, strings, diagnostics).write();
 }
 
 }  // namespace robosync::compiler

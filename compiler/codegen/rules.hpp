@@ -20,8 +20,10 @@ struct RuleSections {
 };
 
 // Reports E0407 for what does not fit; the sections are not usable then. Names and texts go into
-// `strings`.
-[[nodiscard]] RuleSections make_rules(const Program& program, const Tables& tables,
-                                      Strings& strings, Diagnostics& diagnostics);
+// `strings`. `written`: the program before it was optimised. What a behaviour reads there stays a
+// reason to evaluate it, so that it is evaluated in the same steps.
+[[nodiscard]] RuleSections make_rules(const Program& program, const Program& written,
+                                      const Tables& tables, Strings& strings,
+                                      Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

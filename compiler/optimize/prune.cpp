@@ -62,6 +62,18 @@ void fold(Expression& expression) {
   expression.fact = fact;
 }
 
+// Time words in a response are evaluated in every step, whether the response runs or not; and the
+// robot wakes up for them.
+bool has_time_words(const ProgramBlock& block) {
+  bool found = false;
+  const PartsOfStatement parts(
+      [&](const Expression& expression) { found = found || has_time_word(expression); },
+      [&](const ProgramBlock& inner) { found = found || has_time_words(inner); });
+  for (const ProgramStatement& statement : block)
+    std::visit(parts, statement.node);
+  return found;
+}
+
 class Pruner {
 public:
   void block(ProgramBlock& statements) {
@@ -92,12 +104,15 @@ void Pruner::choose(ProgramStatement statement, ProgramBlock& result) {
   auto& choice = std::get<ProgramIf>(statement.node);
   const Fact& condition = choice.condition.fact;
   if (is_pure(choice.condition)) {
-    if (condition.never_true()) choice.then_block.clear();
-    if (condition.high == vm::kTrue) choice.else_block.clear();
+    if (condition.never_true() && !has_time_words(choice.then_block)) choice.then_block.clear();
+    if (condition.high == vm::kTrue && !has_time_words(choice.else_block))
+      choice.else_block.clear();
     if (choice.then_block.empty() && choice.else_block.empty()) return;
-    if (condition.is_constant()) {
-      ProgramBlock& rest = choice.then_block.empty() ? choice.else_block : choice.then_block;
-      std::move(rest.begin(), rest.end(), std::back_inserter(result));
+    const bool is_true = condition.low == vm::kTrue;
+    const ProgramBlock& never = is_true ? choice.else_block : choice.then_block;
+    if (condition.is_constant() && never.empty()) {
+      ProgramBlock& always = is_true ? choice.then_block : choice.else_block;
+      std::move(always.begin(), always.end(), std::back_inserter(result));
       return;
     }
   }
@@ -115,7 +130,8 @@ void Pruner::choose(ProgramStatement statement, ProgramBlock& result) {
 void prune(ProgramRule& rule) {
   fold(rule.condition);
   const bool only_when_true = rule.kind == vm::RuleKind::when || rule.kind == vm::RuleKind::while_;
-  if (only_when_true && rule.condition.fact.never_true() && is_pure(rule.condition)) {
+  if (only_when_true && rule.condition.fact.never_true() && is_pure(rule.condition) &&
+      !has_time_words(rule.then_response)) {
     rule.condition = {};
     rule.condition.constant = vm::kFalse;
     rule.then_response.clear();

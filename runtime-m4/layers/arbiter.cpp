@@ -7,7 +7,6 @@ namespace robosync::layers {
 namespace {
 
 constexpr std::uint8_t kNobody = 0xFF;
-constexpr std::uint8_t kSafety = 0;  // number of the behaviour that holds the safety rules
 
 bool may_take(const Claim& claim, const Holding& from) {
   if (from.won_now) return false;
@@ -27,7 +26,7 @@ Decision decide(const Claim& claim, std::span<const Holding> holdings, const Rul
   std::uint8_t owner = kNobody;
   if ((claim.actuators & halted) != 0) {
     decision.wins = false;
-    owner = kSafety;
+    owner = kSafetyBehavior;
   }
   for (const unsigned rule : running) {
     const Holding& other = holdings[rule];

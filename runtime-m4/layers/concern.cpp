@@ -4,7 +4,11 @@
 // * What a condition gives depends on its inputs, on the past of its time words and on the time. A
 //   time word that changes with time alone says when (Triggers::next_wake()).
 // * A time word that was true for one evaluation only is false in the next. That is the next step
-//   that stirs its behaviour, and one millisecond later at the latest.
+//   that stirs its behaviour, and one millisecond later at the latest. A division by zero is told
+//   in each of these steps, as long as there is one.
+// * An input that only a rule's responses read, or set, concerns it too: it stirs the behaviour,
+// and
+//   responses that wait for something look again (goes_on()).
 // * The first time, all rules of a behaviour are evaluated: there are conditions without inputs,
 // and
 //   such that are known whatever their inputs are.

@@ -19,7 +19,9 @@ std::uint32_t seed_of(std::uint32_t program_seed, unsigned behavior) {
 
 vm::Machine Frames::machine(const Program& program, unsigned behavior) {
   vm::Machine machine;
-  machine.frame = cells_.data() + program.first_cell[behavior];
+  machine.frame = cells_.data();
+  for (const vm::Behavior& before : program.image.behaviors.first(behavior))
+    machine.frame += before.cells;
   machine.constants = program.image.constants.data();
   machine.timers = program.image.timers.data();
   machine.timer_memory = timer_memory_.data();

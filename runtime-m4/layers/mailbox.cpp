@@ -23,11 +23,10 @@ void Mailboxes::reset() {
 bool Mailboxes::post(const Reading& reading, const vm::Channel& channel) {
   const auto lock = kernel_.lock();
   Mailbox& box = boxes_[reading.channel()];
-  box.sampled_at = reading.time();
-  if (box.sequence != 0 && !differs(reading.value(), box.value, channel.change)) return false;
-  const bool was_known = box.sequence != 0;
+  box.sample_at(reading.time());
+  const bool was_known = box.is_known();
+  if (was_known && !differs(reading.value(), box.value, channel.change)) return false;
   box.value = reading.value();
-  if (++box.sequence == 0) box.sequence = 1;
   if (!was_known) next_expiry_ = std::min(next_expiry_, expires_at(reading.channel(), channel));
   return true;
 }
@@ -64,7 +63,6 @@ InputMask Mailboxes::take_expired(std::span<const vm::Channel> channels, InputMa
 bool Mailboxes::expire(unsigned channel, const vm::Channel& wiring, kernel::Time now) {
   const auto lock = kernel_.lock();
   if (now < expires_at(channel, wiring)) return false;
-  boxes_[channel].sequence = 0;
   boxes_[channel].value = vm::kUnknown;
   return true;
 }
@@ -72,10 +70,10 @@ bool Mailboxes::expire(unsigned channel, const vm::Channel& wiring, kernel::Time
 kernel::Time Mailboxes::expires_at(unsigned channel, const vm::Channel& wiring) const {
   const auto lock = kernel_.lock();
   const Mailbox& box = boxes_[channel];
-  if (box.sequence == 0) return kernel::kForever;
+  if (!box.is_known()) return kernel::kForever;
   if (has(forgotten_, channel)) return 0;
   if (wiring.stale_ms == 0) return kernel::kForever;
-  return box.sampled_at + kernel::milliseconds(wiring.stale_ms) + kernel::kTick;
+  return box.sampled_at() + kernel::milliseconds(wiring.stale_ms) + kernel::kTick;
 }
 
 }  // namespace robosync::layers

@@ -44,10 +44,20 @@ public:
   kernel::Time next_expiry() const { return next_expiry_; }
 
 private:
-  struct Mailbox {
-    kernel::Time sampled_at = 0;
+  class Mailbox {
+  public:
+    bool is_known() const { return value != vm::kUnknown; }
+    kernel::Time sampled_at() const { return kernel::Time{sampled_high_} << 32 | sampled_low_; }
+    void sample_at(kernel::Time time) {
+      sampled_low_ = static_cast<std::uint32_t>(time);
+      sampled_high_ = static_cast<std::uint32_t>(time >> 32);
+    }
+
     vm::Value value = vm::kUnknown;
-    std::uint32_t sequence = 0;  // of the value, from 1; 0: unknown
+
+  private:
+    std::uint32_t sampled_low_ = 0;  // in halves, which need no padding
+    std::uint32_t sampled_high_ = 0;
   };
 
   [[nodiscard]] bool expire(unsigned channel, const vm::Channel& wiring, kernel::Time now);

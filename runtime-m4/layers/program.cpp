@@ -8,19 +8,21 @@
 namespace robosync::layers {
 namespace {
 
-// By opcode, bit i: operand i is a cell that is read. The verifier's table has more in it, and
-// vm::kOpcodes has the documentation, which is not for the board.
-constexpr std::array<std::uint8_t, vm::kOpcodes.size()> kReads = [] {
-  std::array<std::uint8_t, vm::kOpcodes.size()> reads{};
-  for (std::size_t op = 0; op < reads.size(); ++op) {
+// By opcode, bit i: operand i is a cell that may be an input. The verifier's table has more in it,
+// and vm::kOpcodes has the documentation, which is not for the board.
+constexpr std::array<std::uint8_t, vm::kOpcodes.size()> kInputs = [] {
+  std::array<std::uint8_t, vm::kOpcodes.size()> inputs{};
+  for (std::size_t op = 0; op < inputs.size(); ++op) {
     unsigned mask = 0;
     for (unsigned i = 0; i < 3; ++i) {
       const vm::Operand kind = vm::kOpcodes[op].operands[i];
-      if (kind == vm::Operand::read || kind == vm::Operand::read_truth) mask |= 1U << i;
+      if (kind == vm::Operand::read || kind == vm::Operand::read_truth ||
+          kind == vm::Operand::variable)
+        mask |= 1U << i;
     }
-    reads[op] = static_cast<std::uint8_t>(mask);
+    inputs[op] = static_cast<std::uint8_t>(mask);
   }
-  return reads;
+  return inputs;
 }();
 
 }  // namespace
@@ -32,11 +34,8 @@ bool is_fed(const vm::Sensor& sensor) {
 void Program::load(const vm::Image& loaded) {
   image = loaded;
   readers.fill({});
-  std::uint16_t cell = 0;
   for (unsigned b = 0; b < image.behaviors.size(); ++b) {
     const vm::Behavior& behavior = image.behaviors[b];
-    first_cell[b] = cell;
-    cell = static_cast<std::uint16_t>(cell + behavior.cells);
     inputs[b] = 0;
     for (const std::uint8_t input :
          image.inputs.subspan(behavior.first_input, behavior.input_count))
@@ -53,17 +52,28 @@ void Program::load_rules(unsigned b) {
     behavior_of[r] = static_cast<std::uint8_t>(b);
     if (image.rules[r].kind == vm::RuleKind::watch)
       truth_cell[r] = static_cast<std::uint8_t>(cell++);
-    if (b >= first_behavior()) note_readings(behavior, r);
+    if (b >= first_behavior()) note_inputs(behavior, r);
   }
 }
 
-void Program::note_readings(const vm::Behavior& behavior, unsigned rule) {
+// Those of its responses as well: they stir the behaviour, for responses that wait.
+void Program::note_inputs(const vm::Behavior& behavior, unsigned rule) {
   const vm::Rule& wiring = image.rules[rule];
-  for (vm::Word word : image.code.subspan(wiring.condition_start, wiring.condition_length)) {
-    for (unsigned reads = kReads[word & 0xFF]; reads != 0; reads >>= 1) {
+  note_inputs(behavior, rule, wiring.condition_start, wiring.condition_length);
+  for (const std::uint16_t index : {wiring.then_response, wiring.else_response}) {
+    if (index == vm::kNoIndex) continue;
+    const vm::Response& response = image.responses[index];
+    note_inputs(behavior, rule, response.start, response.length);
+  }
+}
+
+void Program::note_inputs(const vm::Behavior& behavior, unsigned rule, std::uint16_t start,
+                          std::uint16_t length) {
+  for (vm::Word word : image.code.subspan(start, length)) {
+    for (unsigned places = kInputs[word & 0xFF]; places != 0; places >>= 1) {
       word >>= 8;
       const std::size_t cell = word & 0xFF;
-      if ((reads & 1) != 0 && cell < behavior.input_count)
+      if ((places & 1) != 0 && cell < behavior.input_count)
         readers[image.inputs[behavior.first_input + cell]].insert(rule);
     }
   }
@@ -169,7 +179,7 @@ vm::Verdict fits(const vm::Image& image) {
     (is_fed(sensor) ? fed_sensors : sensors) += 1;
   if (fed_sensors > 0) ++sensors;  // one thread for all
   std::size_t behaviors = image.behaviors.size();
-  if (behaviors > 0 && image.behaviors[0].priority == vm::kSafetyPriority) --behaviors;
+  if (has_safety(image)) --behaviors;
   const std::size_t actuators = image.actuators.size();
   const std::size_t threads = sensors + behaviors + actuators;
   const std::size_t stacks =

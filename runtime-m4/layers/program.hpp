@@ -11,22 +11,23 @@
 
 namespace robosync::layers {
 
+inline bool has_safety(const vm::Image& image) {
+  return !image.behaviors.empty() &&
+         image.behaviors[kSafetyBehavior].priority == vm::kSafetyPriority;
+}
+
 struct Program {
   vm::Image image;
-  std::array<InputMask, kMaxBehaviors> inputs{};  // that each behaviour reads
-  std::array<RuleSet, kMaxInputs> readers{};      // by input: the rules whose conditions read it
-  std::array<std::uint8_t, kMaxRules> behavior_of{};      // by rule
-  std::array<std::uint8_t, kMaxRules> truth_cell{};       // of a WATCH: where its truth is kept
-  std::array<std::uint16_t, kMaxBehaviors> first_cell{};  // in the shared frame memory
+  std::array<InputMask, kMaxBehaviors> inputs{};      // that each behaviour reads
+  std::array<RuleSet, kMaxInputs> readers{};          // by input: the rules that read or set it
+  std::array<std::uint8_t, kMaxRules> behavior_of{};  // by rule
+  std::array<std::uint8_t, kMaxRules> truth_cell{};   // of a WATCH: where its truth is kept
 
   // `image` is verified and fits().
   void load(const vm::Image& image);
 
-  // The behaviour that only holds the safety rules comes first, if there is one.
-  bool has_safety() const {
-    return !image.behaviors.empty() && image.behaviors[0].priority == vm::kSafetyPriority;
-  }
-  unsigned first_behavior() const { return has_safety() ? 1 : 0; }
+  bool has_safety() const { return layers::has_safety(image); }
+  unsigned first_behavior() const { return has_safety() ? kSafetyBehavior + 1 : 0; }
   bool is_variable(unsigned input) const { return input >= image.channels.size(); }
 
   // Priority(T) = max over the behaviours that need T; below all of them when none does.
@@ -41,7 +42,9 @@ struct Program {
 
 private:
   void load_rules(unsigned behavior);
-  void note_readings(const vm::Behavior& behavior, unsigned rule);
+  void note_inputs(const vm::Behavior& behavior, unsigned rule);
+  void note_inputs(const vm::Behavior& behavior, unsigned rule, std::uint16_t start,
+                   std::uint16_t length);
 };
 
 // Its readings come from outside, at any time: it is not sampled.

@@ -8,12 +8,6 @@ namespace robosync::layers {
 
 using link::EventKind;
 
-namespace {
-
-constexpr unsigned kSafety = 0;  // number of the behaviour that holds the safety rules
-
-}  // namespace
-
 void ProcessingLayer::step() {
   const std::uint32_t now = snapshot_.milliseconds();
   if (now != ran_at_) has_run_.clear();
@@ -46,7 +40,7 @@ void ProcessingLayer::interrupt_lost(BehaviorMask lost) {
 void ProcessingLayer::interrupt_halted(ActuatorMask halted) {
   if (halted == 0) return;
   for (const unsigned rule : running_)
-    if ((holdings_[rule].actuators & halted) != 0) interrupt(rule, kSafety);
+    if ((holdings_[rule].actuators & halted) != 0) interrupt(rule, kSafetyBehavior);
 }
 
 void ProcessingLayer::interrupt_over() {

@@ -81,7 +81,7 @@ void Triggers::draw_period(unsigned rule, vm::Value thousandths, std::uint32_t n
 
 void Triggers::note_past(unsigned rule, std::uint32_t wake, bool event) {
   times_[rule].due = wake;
-  states_[rule].event = event;
+  states_[rule].event = event || states_[rule].zero_divide;
 }
 
 // --- what follows from it ---

@@ -42,7 +42,8 @@ public:
   // --- for the step thread ---
   // These were evaluated, and no behaviour is at work any more.
   void collect(const RuleSet& evaluated);
-  // Those whose last evaluation had an event.
+  // Those whose last evaluation had an event, or divided by zero, which each step tells that could
+  // have found it.
   const RuleSet& eventful() const { return eventful_; }
   // Those that cool down, or may want to run without a new trigger.
   const RuleSet& active() const { return active_; }

@@ -24,8 +24,8 @@ ActuatorMask actuators_of(const vm::Image& image, std::uint8_t target) {
 void Guard::start(const layers::Program& program) {
   program_ = &program;
   tripped_.clear();
-  layers_.alarm.watch(program.has_safety() ? program.inputs[kSafety] : 0);
-  if (program.has_safety()) machine_ = layers_.frames.machine(program, kSafety);
+  layers_.alarm.watch(program.has_safety() ? program.inputs[layers::kSafetyBehavior] : 0);
+  if (program.has_safety()) machine_ = layers_.frames.machine(program, layers::kSafetyBehavior);
 }
 
 kernel::Time Guard::look() {

@@ -48,8 +48,6 @@ public:
   kernel::Time look();
 
 private:
-  static constexpr unsigned kSafety = 0;  // number of the behaviour that holds the rules
-
   void evaluate(unsigned rule);
   vm::Value truth_of(unsigned rule);
   void trip(unsigned rule);
@@ -57,7 +55,7 @@ private:
   void act(const vm::Output& said);
   layers::ActuatorMask halted_by(unsigned rule) const;
   kernel::Time next_look() const;
-  const vm::Behavior& rules() const { return program_->image.behaviors[kSafety]; }
+  const vm::Behavior& rules() const { return program_->image.behaviors[layers::kSafetyBehavior]; }
 
   kernel::Kernel& kernel_;
   Neighbours layers_;

@@ -40,6 +40,7 @@ struct DrawnConditions {
         code.push_back(word(draw));
       code.push_back(vm::encode(vm::Opcode::ret_number, kInputs + draw.below(kRegisters)));
       rule.condition_length = static_cast<std::uint16_t>(words + 1);
+      rule.then_response = rule.else_response = vm::kNoIndex;
     }
     image.behaviors = {&behavior, 1};
     image.rules = rules;
@@ -86,7 +87,7 @@ TEST_CASE("the index has every rule whose result an input can change, and names 
   Draw draw(4);
   const auto program = std::make_unique<layers::Program>();
   unsigned seen = 0;
-  for (unsigned round = 0; round < 200; ++round) {
+  for (unsigned round = 0; round < 400; ++round) {
     const DrawnConditions drawn(draw);
     program->load(drawn.image);
     for (unsigned rule = 0; rule < DrawnConditions::kRules; ++rule) {

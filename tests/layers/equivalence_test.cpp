@@ -126,7 +126,7 @@ private:
       case 1:
         return "WAIT UNTIL " + comparison() + " WITHIN " + time();
       case 2:
-        return "WAIT UNTIL near X > 20 FOR " + time() + " WITHIN 100ms";
+        return "WAIT UNTIL (near X > 20 FOR " + time() + ") WITHIN 100ms";
       case 3:
         return "THEN";
       default:
@@ -191,6 +191,11 @@ TEST_CASE("no program can tell whether all rules are evaluated or only those con
       const auto [here, there] =
           std::mismatch(few.lines.begin(), few.lines.end(), every.lines.begin(), every.lines.end());
       INFO("seed " << seed << "\n" << rsl);
+      std::string before;
+      for (auto line = here - std::min<std::ptrdiff_t>(here - few.lines.begin(), 12); line != here;
+           ++line)
+        before += *line + "\n";
+      INFO("so far:\n" << before);
       INFO("few: " << (here == few.lines.end() ? "the end" : *here));
       INFO("all: " << (there == every.lines.end() ? "the end" : *there));
       FAIL("the traces differ");

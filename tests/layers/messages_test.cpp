@@ -21,7 +21,7 @@ concept Posted = requires(Mailboxes& boxes, const Message& message, const vm::Ch
 };
 template <class Message>
 concept Evaluated = requires(BehaviorLayer& layer, const Message& message) {
-  layer.evaluate(BehaviorMask{1}, message);
+  layer.evaluate(RuleSet(), message);
 };
 template <class Message>
 concept Staged = requires(ControlLayer& layer, const Message& message) {

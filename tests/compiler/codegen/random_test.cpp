@@ -87,3 +87,39 @@ TEST_CASE("a random response does what its program says, whatever happens while 
   }
   CHECK(done > kResponses);
 }
+
+// Of a rule that only asks whether its condition is true, unknown is as good as false.
+TEST_CASE("conditions are the same, optimised or not, in every step") {
+  constexpr std::uint32_t kPrograms = 1500;
+  constexpr std::uint32_t kSteps = 12;
+  std::size_t truths = 0;
+  for (std::uint32_t seed = 0; seed < kPrograms; ++seed) {
+    const Program program = Generator(seed, {.chance = false, .time_words = true}).program();
+    const Built plain = build(program, {.source_lines = false});
+    const Built optimized = build(program, {.source_lines = false, .optimize = true});
+    if (plain.bytes.empty()) continue;
+    REQUIRE(!optimized.bytes.empty());
+    for (std::size_t b = 0; b < plain.image.behaviors.size(); ++b) {
+      Runner one(plain.image, b), other(optimized.image, b);
+      World world = some_world(seed);
+      for (std::uint32_t step = 0; step < kSteps; ++step) {
+        world.now += step * 200;
+        some_readings(seed ^ world.now, world);
+        for (std::size_t r = 0; r < plain.image.behaviors[b].rule_count; ++r) {
+          const vm::Rule& rule = plain.image.rules[plain.image.behaviors[b].first_rule + r];
+          if (rule.kind == vm::RuleKind::watch) break;
+          if (rule.kind == vm::RuleKind::start) continue;
+          const bool only_true =
+              rule.kind == vm::RuleKind::when || rule.kind == vm::RuleKind::while_;
+          const vm::Value before = one.condition(r, world), after = other.condition(r, world);
+          INFO("seed " << seed << " rule " << r << " step " << step << " " << before << " " << after
+                       << "\n"
+                       << listing(optimized.image));
+          REQUIRE((only_true ? (before == vm::kTrue) == (after == vm::kTrue) : before == after));
+          if (before == vm::kTrue) ++truths;
+        }
+      }
+    }
+  }
+  CHECK(truths > kPrograms);
+}

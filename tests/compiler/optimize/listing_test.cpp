@@ -60,6 +60,31 @@ TEST_CASE("programs as they are written, and optimised", "[golden]") {
   }
 }
 
+// 255 words: what a jump that compares can skip.
+TEST_CASE("a jump that compares becomes two instructions where its target is too far away") {
+  using namespace robosync::compiler::testing;
+  for (const std::size_t sets : {252U, 253U, 300U}) {
+    ProgramBlock body;
+    for (std::size_t i = 0; i < sets; ++i)
+      body.push_back(line(2, ProgramSet{i % 2, number(static_cast<double>(i % 7) + 1)}));
+    body.push_back(line(3, ProgramThen{}));
+    const ProgramIf inner{less(channel(1), number(2)), body, {}};
+    const ProgramIf outer{less(channel(0), number(1)), {line(1, inner)}, {}};
+    const ProgramRule rule = at_start({line(1, outer), line(4, ProgramThen{})});
+    const Built built = build(program_of({rule}, {plain("a"), plain("b")}),
+                              {.source_lines = true, .optimize = true});
+    INFO(sets);
+    REQUIRE(!built.bytes.empty());  // so it was verified
+    const std::string text = listing(built.image);
+    const bool near = sets == 252;  // of the inner one; the outer one skips one word more
+    CHECK((text.find("unless_lt_k r3, 2, +255") != std::string::npos) == near);
+    CHECK((text.find("lt_k     r4, r3, 2") != std::string::npos) == !near);
+    CHECK(text.find("lt_k     r4, r2, 1") != std::string::npos);
+    CHECK(built.image.source_lines.back().line == 4);
+    CHECK(built.image.source_lines.back().word + 2U == built.image.code.size());
+  }
+}
+
 TEST_CASE("the workloads fit their bars") {
   CHECK(response_bytes("sum_of_squares.rsl") <= 40);
   CHECK(response_bytes("filter.rsl") <= 90);
