@@ -76,6 +76,15 @@ target_sources(robosync_compiler PRIVATE
   sema/texts.cpp
   sema/time_words.cpp
   sema/variables.cpp
+  optimize/expression_facts.cpp
+  optimize/fact.cpp
+  optimize/flow.cpp
+  optimize/flow_loops.cpp
+  optimize/optimize.cpp
+  optimize/prune.cpp
+  optimize/share.cpp
+  optimize/simplify.cpp
+  optimize/variable_facts.cpp
   codegen/code_draft.cpp
   codegen/code_pool.cpp
   codegen/dearest_rules.cpp

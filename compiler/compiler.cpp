@@ -83,7 +83,9 @@ Result compile(Input program, Input configuration, const Options& options) {
       texts.push_back(result.sources.file(module.file).text());
     const ProgramHash hash = hash_of(result.sources.file(program_file).text(),
                                      result.sources.file(configuration_file).text(), texts);
-    result.image = write_image(*resolved, *robot, hash, options.source_lines, diagnostics);
+    result.image = write_image(*resolved, *robot, hash,
+                               {.source_lines = options.source_lines, .optimize = options.optimize},
+                               diagnostics);
   }
   diagnostics.finish();
   return result;

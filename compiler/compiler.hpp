@@ -25,6 +25,7 @@ using ModuleReader =
 
 struct Options {
   bool source_lines = true;  // keep the debug section
+  bool optimize = true;
   ModuleReader read_module{};
 };
 

@@ -39,6 +39,15 @@ void add_config_option(CLI::App& app, std::string& config) {
       ->option_text("FILE");
 }
 
+void add_compile_options(CLI::App& app, CompileOptions& options) {
+  add_config_option(app, options.config);
+  app.add_option_function<int>(
+         "-O", [&options](int level) { options.optimize = level > 0; },
+         "1: optimise (default), 0: translate as it is written")
+      ->check(CLI::Range(0, 1))
+      ->option_text("0|1");
+}
+
 void add_duration_option(CLI::App& app, const std::string& name,
                          std::optional<std::chrono::milliseconds>& duration,
                          const std::string& description) {

@@ -1,4 +1,6 @@
 // Instructions as text. May assume verified code: blocks nest, jumps go to the ends of blocks.
+#include <algorithm>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,7 +14,6 @@ namespace {
 
 constexpr std::size_t kIndent = 2;
 constexpr std::size_t kColumn = 44;  // where the source line stands
-constexpr unsigned kWideShift = 16;  // operands B and C together
 
 // How deep an instruction stands in the blocks of its response.
 class Nesting {
@@ -25,7 +26,7 @@ public:
   }
   // After it was printed.
   void leave(vm::Opcode op, std::size_t target) {
-    if (op == vm::Opcode::unless || op == vm::Opcode::unless_known) ends_.push_back(target);
+    if (vm::is_unless(op)) ends_.push_back(target);
     if (op == vm::Opcode::jump) {
       if (!ends_.empty()) ends_.pop_back();  // it is the last word of the block before ELSE
       ends_.push_back(target);
@@ -48,51 +49,65 @@ private:
   std::size_t loops_ = 0;
 };
 
-enum class Jump : std::uint8_t { none, ahead, back };
+// Where the instruction at `at` may go on, if it is a jump.
+std::optional<std::size_t> target_of(std::size_t at, vm::Word word) {
+  const auto& operands = vm::kOpcodes[static_cast<std::size_t>(vm::opcode_of(word))].operands;
+  if (operands[1] == vm::Operand::ahead) return at + 1 + vm::operand_wide(word);
+  if (operands[1] == vm::Operand::back) return at + 1 - vm::operand_wide(word);
+  if (operands[2] == vm::Operand::ahead8) return at + 1 + vm::operand_c(word);
+  return std::nullopt;
+}
 
-Jump jump_of(vm::Opcode op) {
-  switch (op) {
-    case vm::Opcode::jump:
-    case vm::Opcode::unless:
-    case vm::Opcode::unless_known:
-      return Jump::ahead;
-    case vm::Opcode::again:
-    case vm::Opcode::around:
-    case vm::Opcode::around_always:
-    case vm::Opcode::until:
-      return Jump::back;
-    default:
-      return Jump::none;
+// The number of a source line beside an instruction, or its text above.
+class Lines {
+public:
+  Lines(const vm::Image& image, const SourceLines& source) : image_(image), source_(source) {}
+
+  // Before the instruction at `at` is printed: is it the first of another line?
+  bool arrive(std::size_t at) {
+    const std::uint16_t before = line_;
+    while (next_ < image_.source_lines.size() && image_.source_lines[next_].word <= at)
+      line_ = image_.source_lines[next_++].line;
+    return line_ != before;
   }
-}
+  std::string above() const {
+    if (line_ == 0 || line_ > source_.size()) return {};
+    const std::string& text = source_[line_ - 1U];
+    const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+    return fmt::format("  line {}: {}\n", line_, text.substr(begin));
+  }
+  std::string beside() const {
+    return line_ == 0 || !source_.empty() ? std::string() : fmt::format("  line {}", line_);
+  }
 
-std::size_t target_of(std::size_t at, vm::Word word, Jump jump) {
-  const std::size_t distance = word >> kWideShift;
-  return jump == Jump::ahead ? at + 1 + distance : at + 1 - distance;
-}
+private:
+  const vm::Image& image_;
+  const SourceLines& source_;
+  std::size_t next_ = 0;
+  std::uint16_t line_ = 0;
+};
 
 }  // namespace
 
-std::string dump_code(const vm::Image& image, std::size_t start, std::size_t length) {
+std::string dump_code(const vm::Image& image, const SourceLines& source, std::size_t start,
+                      std::size_t length) {
   std::string text;
-  std::size_t next = 0;
-  std::uint16_t line = 0;
+  Lines lines(image, source);
   Nesting nesting;
   for (std::size_t at = start; at < start + length; ++at) {
-    while (next < image.source_lines.size() && image.source_lines[next].word <= at)
-      line = image.source_lines[next++].line;
+    if (lines.arrive(at)) text += lines.above();
     std::array<char, 120> buffer{};
     const std::size_t count = vm::disassemble(image, image.code[at], buffer);
-    const auto op = static_cast<vm::Opcode>(image.code[at] & 0xFF);
-    const Jump jump = jump_of(op);
-    const std::size_t target = target_of(at, image.code[at], jump);
+    const vm::Opcode op = vm::opcode_of(image.code[at]);
+    const std::optional<std::size_t> target = target_of(at, image.code[at]);
     nesting.arrive(at, op);
     const std::string shown = fmt::format("{:{}}{}{}", "", nesting.depth() * kIndent,
                                           std::string_view(buffer.data(), count),
-                                          jump == Jump::none ? "" : fmt::format("  -> {}", target));
-    text += fmt::format("    {:>4}  {:08x}  {:<{}}{}\n", at, image.code[at], shown, kColumn,
-                        line == 0 ? "" : fmt::format("  line {}", line));
-    nesting.leave(op, target);
+                                          target ? fmt::format("  -> {}", *target) : "");
+    const std::string beside = lines.beside();
+    text += fmt::format("    {:>4}  {:08x}  {:<{}}{}\n", at, image.code[at], shown,
+                        beside.empty() ? 0 : kColumn, beside);
+    nesting.leave(op, target.value_or(0));
   }
   return text;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "rsc/dump_text.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::tool {
@@ -14,9 +15,10 @@ namespace robosync::tool {
 [[nodiscard]] std::string dump_wiring(const vm::Image& image);
 // Variables, checks, timers, modifiers, constants.
 [[nodiscard]] std::string dump_memory(const vm::Image& image);
-// `length` instructions from word `start` on, with their source lines; blocks are indented and
-// jumps say where they go.
-[[nodiscard]] std::string dump_code(const vm::Image& image, std::size_t start, std::size_t length);
+// `length` instructions from word `start` on; blocks are indented and jumps say where they go. Each
+// source line stands above its instructions, or its number beside them when its text is not there.
+[[nodiscard]] std::string dump_code(const vm::Image& image, const SourceLines& source,
+                                    std::size_t start, std::size_t length);
 
 // "touch LEVEL" or "mood": what a number of an input means.
 [[nodiscard]] std::string input_name(const vm::Image& image, std::size_t input);

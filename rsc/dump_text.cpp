@@ -24,14 +24,14 @@ std::string header_text(const vm::Image& image) {
   return text;
 }
 
-std::string rule_text(const vm::Image& image, std::size_t index) {
+std::string rule_text(const vm::Image& image, const SourceLines& source, std::size_t index) {
   const vm::Rule& rule = image.rules[index];
   std::string text =
       fmt::format("  rule {} (line {}, {})", index, rule.line, word_of(kRuleKinds, rule.kind));
   if (rule.then_response != vm::kNoIndex) text += fmt::format(": response {}", rule.then_response);
   if (rule.else_response != vm::kNoIndex) text += fmt::format(", else {}", rule.else_response);
   if (rule.modifiers != vm::kNoModifiers) text += fmt::format(", modifiers {}", rule.modifiers);
-  return text + "\n" + dump_code(image, rule.condition_start, rule.condition_length);
+  return text + "\n" + dump_code(image, source, rule.condition_start, rule.condition_length);
 }
 
 std::string behavior_title(const vm::Image& image, std::size_t index) {
@@ -42,7 +42,7 @@ std::string behavior_title(const vm::Image& image, std::size_t index) {
                      behavior.priority);
 }
 
-std::string behavior_text(const vm::Image& image, std::size_t index) {
+std::string behavior_text(const vm::Image& image, const SourceLines& source, std::size_t index) {
   const vm::Behavior& behavior = image.behaviors[index];
   std::string text =
       fmt::format("\nbehaviour {}, {} cells, actuators: {}\n", behavior_title(image, index),
@@ -56,20 +56,20 @@ std::string behavior_text(const vm::Image& image, std::size_t index) {
                         behavior.input_count + behavior.locals - 1);
   }
   for (std::size_t rule = 0; rule < behavior.rule_count; ++rule)
-    text += rule_text(image, behavior.first_rule + rule);
+    text += rule_text(image, source, behavior.first_rule + rule);
   return text;
 }
 
 }  // namespace
 
-std::string dump_text(const vm::Image& image) {
+std::string dump_text(const vm::Image& image, const SourceLines& source) {
   std::string text = header_text(image) + dump_wiring(image) + dump_memory(image);
   for (std::size_t i = 0; i < image.behaviors.size(); ++i)
-    text += behavior_text(image, i);
+    text += behavior_text(image, source, i);
   for (std::size_t i = 0; i < image.responses.size(); ++i) {
     const vm::Response& response = image.responses[i];
     text += fmt::format("\nresponse {}: {}\n", i, actuator_names(image, response.actuators));
-    text += dump_code(image, response.start, response.length);
+    text += dump_code(image, source, response.start, response.length);
   }
   return text;
 }

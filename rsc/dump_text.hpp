@@ -2,12 +2,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "vm/image.hpp"
 
 namespace robosync::tool {
 
-// `image` must be verified.
-[[nodiscard]] std::string dump_text(const vm::Image& image);
+using SourceLines = std::vector<std::string>;
+
+// `image` must be verified. `source`: the lines of its program, or none when they are not there.
+[[nodiscard]] std::string dump_text(const vm::Image& image, const SourceLines& source = {});
 
 }  // namespace robosync::tool

@@ -43,14 +43,30 @@ std::optional<compiler::Input> read_module(const std::string& user, const std::s
   return compiler::Input{path.string(), read_text(path)};
 }
 
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+compiler::Result compile(const std::string& file, const CompileOptions& options,
+                         const compiler::ModuleReader& modules) {
+  std::string text = read_text(file);
+  const std::filesystem::path path = find_configuration(file, options.config);
+  return compiler::compile({file, std::move(text)}, {path.string(), read_text(path)},
+                           {.source_lines = options.source_lines,
+                            .optimize = options.optimize,
+                            .read_module = modules});
+}
+
 }  // namespace
 
-compiler::Result compile_file(const std::string& file, const std::string& config,
-                              bool source_lines) {
-  std::string text = read_text(file);
-  const std::filesystem::path path = find_configuration(file, config);
-  return compiler::compile({file, std::move(text)}, {path.string(), read_text(path)},
-                           {.source_lines = source_lines, .read_module = read_module});
+compiler::Result compile_file(const std::string& file, const CompileOptions& options) {
+  return compile(file, options, read_module);
 }
 
 std::string summary(const compiler::Diagnostics& diagnostics) {
@@ -60,22 +76,31 @@ std::string summary(const compiler::Diagnostics& diagnostics) {
                      counted(diagnostics.warnings(), "warning"), counted(notes, "note"));
 }
 
-Program::Program(std::vector<std::byte> bytes, const std::string& name) : bytes_(std::move(bytes)) {
+Program::Program(std::vector<std::byte> bytes, const std::string& name,
+                 std::vector<std::string> source)
+    : bytes_(std::move(bytes)), source_(std::move(source)) {
   const vm::Verdict verdict = vm::verify(bytes_, vm::Limits{}, image_);
   if (!verdict.ok()) {
     throw Failure(Exit::program, fmt::format("{}: {}", name, describe_refusal(verdict, 0)));
   }
 }
 
-Program load_program(const std::string& file, const std::string& config) {
+Program load_program(const std::string& file, const CompileOptions& options) {
   std::vector<std::byte> bytes = read_bytes(file);
   if (is_image(file, bytes)) return {std::move(bytes), file};
-  compiler::Result result = compile_file(file, config);
+  bool has_modules = false;  // then a line number may be one of another file
+  compiler::Result result =
+      compile(file, options, [&](const std::string& user, const std::string& name) {
+        has_modules = true;
+        return read_module(user, name);
+      });
   std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
   if (result.diagnostics.errors() > 0) {
     throw Failure(Exit::program, fmt::format("{}: {}", file, summary(result.diagnostics)));
   }
-  return {std::move(result.image), file};
+  std::vector<std::string> source;
+  if (!has_modules) source = lines_of(result.sources.file(0).text());
+  return {std::move(result.image), file, std::move(source)};
 }
 
 // It is the last section, so the image is cut there and the header told.

@@ -12,9 +12,15 @@
 
 namespace robosync::tool {
 
+struct CompileOptions {
+  std::string config;  // empty: the one that belongs to the program
+  bool optimize = true;
+  bool source_lines = true;
+};
+
 // Compiles `file` with its configuration. Throws Failure (outside) when one cannot be read.
-[[nodiscard]] compiler::Result compile_file(const std::string& file, const std::string& config,
-                                            bool source_lines = true);
+[[nodiscard]] compiler::Result compile_file(const std::string& file,
+                                            const CompileOptions& options);
 
 // "0 errors, 1 warning, 2 notes".
 [[nodiscard]] std::string summary(const compiler::Diagnostics& diagnostics);
@@ -23,7 +29,8 @@ namespace robosync::tool {
 class Program {
 public:
   // Throws Failure (program) with the verifier's reason. `name` stands in the message.
-  Program(std::vector<std::byte> bytes, const std::string& name);
+  Program(std::vector<std::byte> bytes, const std::string& name,
+          std::vector<std::string> source = {});
   Program(Program&&) = default;
   Program& operator=(Program&&) = default;
   Program(const Program&) = delete;
@@ -31,15 +38,18 @@ public:
 
   std::span<const std::byte> bytes() const { return bytes_; }
   const vm::Image& image() const { return image_; }
+  // The lines that the image's line numbers mean; none when that is not known.
+  const std::vector<std::string>& source() const { return source_; }
 
 private:
   std::vector<std::byte> bytes_;
   vm::Image image_;
+  std::vector<std::string> source_;
 };
 
 // Source or image, whichever `file` is. Diagnostics go to stderr. Throws Failure (program) when it
 // is wrong.
-[[nodiscard]] Program load_program(const std::string& file, const std::string& config);
+[[nodiscard]] Program load_program(const std::string& file, const CompileOptions& options);
 
 // The same program without its debug section, which the board has no use for.
 [[nodiscard]] std::vector<std::byte> without_source_lines(const Program& program);

@@ -59,8 +59,10 @@ public:
   // What is emitted from now on comes from `source`.
   void mark(const Source& source);
   [[nodiscard]] Source source() const { return marks_.empty() ? Source{} : marks_.back().source; }
-  // Makes the jump at `from`, whose target lies ahead, go to what is emitted next.
-  void land(std::size_t from) { instructions_[from].operands[1] = distance(from + 1, size()); }
+  // Makes the jump at `from`, whose target lies ahead, go to what is emitted next. All jumps
+  // behind it that stay behind it must have landed. Where one that compares does not reach that
+  // far, it becomes two instructions.
+  void land(std::size_t from);
   // Makes the last instruction put its result into `cell`.
   void retarget(Cell cell) { instructions_.back().operands[0] = cell; }
   // Makes the last instruction, a command, the end of the response.
@@ -76,6 +78,8 @@ private:
   static Operand distance(std::size_t from, std::size_t to) {
     return static_cast<std::uint32_t>(to - from);
   }
+
+  void split(std::size_t from);
 
   std::vector<Instruction> instructions_;
   std::vector<Mark> marks_;

@@ -10,6 +10,14 @@ std::size_t CodePool::constant(vm::Value value) {
   return place->second;
 }
 
+std::optional<std::uint32_t> CodePool::near_constant(vm::Value value) {
+  const auto known = constant_places_.find(value);
+  const bool near =
+      known == constant_places_.end() ? constants_.size() < kMaxConst8 : known->second < kMaxConst8;
+  if (!near) return std::nullopt;
+  return static_cast<std::uint32_t>(constant(value));
+}
+
 std::size_t CodePool::add(const CodeObject& object) {
   const auto [place, added] = object_places_.emplace(object.words, code_.size());
   if (!added) return place->second;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "compiler/codegen/code_draft.hpp"
@@ -22,6 +23,8 @@ struct CodeObject {
 class CodePool {
 public:
   [[nodiscard]] std::size_t constant(vm::Value value);
+  // The same for an operand of one byte; nothing when it stands too far behind.
+  [[nodiscard]] std::optional<std::uint32_t> near_constant(vm::Value value);
   // Where the object stands in the code section.
   [[nodiscard]] std::size_t add(const CodeObject& object);
 

@@ -1,6 +1,7 @@
 #include "compiler/codegen/expression_emitter.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "compiler/codegen/operations.hpp"
 
@@ -10,6 +11,14 @@ namespace {
 bool reads_local(const Expression& expression) {
   return expression.operation == Operation::local ||
          std::any_of(expression.operands.begin(), expression.operands.end(), reads_local);
+}
+
+// x * 2 saturates where x + x does. Known products have an instruction of their own.
+bool is_double(const Expression& expression) {
+  constexpr vm::Value kTwo = 2 * vm::kScale;
+  return expression.operation == Operation::multiply && !expression.operands[0].fact.known &&
+         expression.operands[1].operation == Operation::constant &&
+         expression.operands[1].constant == kTwo;
 }
 
 std::uint32_t after(Cell cell, std::uint32_t depth) {
@@ -40,15 +49,16 @@ Cell ExpressionEmitter::value(const Expression& expression, std::uint32_t depth)
   if (is_time_word(operation))
     return time_words_ == TimeWords::watched ? watched(expression) : time_word(expression, depth);
   if (is_comparison(operation)) return comparison(operation, operands[0], operands[1], depth);
+  if (parts_.program.optimized)
+    if (const auto cell = cheaper(expression, depth)) return *cell;
   return binary(with_cells(operation), operands[0], operands[1], depth);
 }
 
-void ExpressionEmitter::value_into(Cell local, const Expression& expression) {
-  const Cell cell = value(expression);
+void ExpressionEmitter::put_into(Cell target, Cell cell) {
   if (cell.zone == Zone::temporary)
-    code_.retarget(local);  // the last instruction is the one that gives the value
+    code_.retarget(target);  // the last instruction is the one that gives the value
   else
-    code_.emit(vm::Opcode::move, local, cell);
+    code_.emit(vm::Opcode::move, target, cell);
 }
 
 Cell ExpressionEmitter::constant(vm::Value value, std::uint32_t depth) {
@@ -65,12 +75,61 @@ Cell ExpressionEmitter::unary(vm::Opcode opcode, const Expression& operand, std:
 }
 
 Cell ExpressionEmitter::binary(vm::Opcode opcode, const Expression& left, const Expression& right,
-                               std::uint32_t depth) {
-  const Cell left_cell = value(left, depth);
-  const Cell right_cell = value(right, after(left_cell, depth));
+                               std::uint32_t depth, bool exchanged) {
+  Cell left_cell = value(left, depth);
+  Cell right_cell = value(right, after(left_cell, depth));
+  if (exchanged) std::swap(left_cell, right_cell);
   const Cell cell = parts_.frame.temporary(depth);
   code_.emit(opcode, cell, left_cell, right_cell);
   return cell;
+}
+
+// With a constant in the instruction, or without checks that were proved to be needless.
+std::optional<Cell> ExpressionEmitter::cheaper(const Expression& expression, std::uint32_t depth) {
+  if (is_double(expression)) {
+    const Cell once = value(expression.operands[0], depth);
+    const Cell cell = parts_.frame.temporary(depth);
+    code_.emit(vm::Opcode::add, cell, once, once);
+    return cell;
+  }
+  if (const auto form = constant_form(expression)) {
+    if (const auto place = parts_.pool.near_constant(form->constant)) {
+      const Cell left = value(expression.operands[0], depth);
+      const Cell cell = parts_.frame.temporary(depth);
+      code_.emit(form->opcode, cell, left, *place);
+      return cell;
+    }
+  }
+  if (const auto form = unchecked_form(expression))
+    return binary(form->opcode, expression.operands[0], expression.operands[1], depth,
+                  form->exchanged);
+  return std::nullopt;
+}
+
+std::optional<std::size_t> ExpressionEmitter::jump_unless(const Expression& comparison) {
+  const Operation operation = comparison.operation;
+  if (!is_comparison(operation)) return std::nullopt;
+  const Expression& left = comparison.operands[0];
+  const Expression& right = comparison.operands[1];
+  if (right.operation == Operation::constant) {
+    if (!parts_.pool.near_constant(right.constant)) return std::nullopt;
+    return jump_unless(operation, value(left), right.constant);
+  }
+  // In the same order as comparison(): it may draw random numbers.
+  const bool turned =
+      operation == Operation::greater || operation == Operation::greater_equal;
+  const Cell first = value(turned ? right : left);
+  const Cell second = value(turned ? left : right, after(first, 0));
+  (void)parts_.frame.temporary(0);  // CodeDraft::land() may need it
+  return code_.emit(unless_with_cells(turned ? mirrored(operation) : operation), first, second);
+}
+
+std::optional<std::size_t> ExpressionEmitter::jump_unless(Operation comparison, Cell left,
+                                                          vm::Value right) {
+  const auto place = parts_.pool.near_constant(right);
+  if (!place) return std::nullopt;
+  (void)parts_.frame.temporary(0);  // CodeDraft::land() may need it
+  return code_.emit(unless_with_constant(comparison), left, *place);
 }
 
 Cell ExpressionEmitter::comparison(Operation operation, const Expression& left,
@@ -121,9 +180,12 @@ Cell ExpressionEmitter::watched(const Expression& expression) {
   return watches.back().truth;
 }
 
-Cell ExpressionEmitter::clamped(Cell source, const ProgramVariable& variable) {
-  if (variable.min > vm::kValueMin) source = limited(vm::Opcode::max_k, source, variable.min);
-  if (variable.max < vm::kValueMax) source = limited(vm::Opcode::min_k, source, variable.max);
+Cell ExpressionEmitter::clamped(Cell source, const ProgramVariable& variable,
+                                const ProgramSet& set) {
+  if (variable.min > vm::kValueMin && set.may_be_below)
+    source = limited(vm::Opcode::max_k, source, variable.min);
+  if (variable.max < vm::kValueMax && set.may_be_above)
+    source = limited(vm::Opcode::min_k, source, variable.max);
   return source;
 }
 

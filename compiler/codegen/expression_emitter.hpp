@@ -21,19 +21,27 @@ public:
 
   // Gives the cell where the value is; `depth` registers are in use.
   Cell value(const Expression& expression, std::uint32_t depth = 0);
-  void value_into(Cell local, const Expression& expression);
+  // `target`: a local, or a variable that is written in place.
+  void value_into(Cell target, const Expression& expression) { put_into(target, value(expression)); }
+  // `cell` is what was worked out last.
+  void put_into(Cell target, Cell cell);
   Cell constant(vm::Value value, std::uint32_t depth = 0);
   // The truth of "left <operation> right".
   Cell compare(Operation operation, Cell left, vm::Value right, std::uint32_t depth);
-  // `source`, but not outside min … max of the variable.
-  Cell clamped(Cell source, const ProgramVariable& variable);
+  // Jumps unless the comparison is true; gives the place of the jump. Nothing: it is no comparison,
+  // or its constant stands too far behind.
+  std::optional<std::size_t> jump_unless(const Expression& comparison);
+  std::optional<std::size_t> jump_unless(Operation comparison, Cell left, vm::Value right);
+  // `source`, but not outside min … max of the variable, as far as that has to be looked after.
+  Cell clamped(Cell source, const ProgramVariable& variable, const ProgramSet& set);
 
   [[nodiscard]] LocalCells& locals() { return locals_; }
 
 private:
   Cell unary(vm::Opcode opcode, const Expression& operand, std::uint32_t depth);
   Cell binary(vm::Opcode opcode, const Expression& left, const Expression& right,
-              std::uint32_t depth);
+              std::uint32_t depth, bool exchanged = false);
+  std::optional<Cell> cheaper(const Expression& expression, std::uint32_t depth);
   Cell comparison(Operation operation, const Expression& left, const Expression& right,
                   std::uint32_t depth);
   Cell time_word(const Expression& expression, std::uint32_t depth);

@@ -1,12 +1,14 @@
 // Lays out records and code, fills in the header, and has the verifier check the result.
 #include "compiler/codegen/image_writer.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <span>
 
 #include "compiler/codegen/dearest_rules.hpp"
 #include "compiler/codegen/records.hpp"
 #include "compiler/codegen/rules.hpp"
+#include "compiler/optimize/optimize.hpp"
 #include "vm/opcode.hpp"
 #include "vm/verifier.hpp"
 
@@ -25,14 +27,16 @@ std::uint32_t seed_of(const ProgramHash& hash) {
 
 class ImageWriter {
 public:
-  ImageWriter(bool source_lines, Diagnostics& diagnostics)
-      : source_lines_(source_lines), diagnostics_(diagnostics) {}
+  ImageWriter(ImageOptions options, Diagnostics& diagnostics)
+      : options_(options), diagnostics_(diagnostics) {}
 
   std::vector<std::byte> write(const Program& program, const Robot& robot,
                                const ProgramHash& hash) {
     const Tables tables(program, diagnostics_);
     if (diagnostics_.errors() > 0) return {};
-    rules_ = make_rules(program, tables, strings_, diagnostics_);
+    // Devices and variables stay: what the robot measures and shows is the program's business.
+    rules_ = make_rules(options_.optimize ? optimize(program, robot) : program, tables, strings_,
+                        diagnostics_);
     records_ = make_records(program, robot, tables, strings_);
     if (diagnostics_.errors() > 0 || !counts_fit()) return {};
     lay_out();
@@ -55,7 +59,7 @@ private:
     return false;
   }
 
-  bool source_lines_;
+  ImageOptions options_;
   Diagnostics& diagnostics_;
   Strings strings_;
   Records records_;
@@ -113,7 +117,7 @@ void ImageWriter::lay_out() {
   header_.code = section(rules_.pool.code());
   header_.labels = section(strings_.labels());
   header_.string_bytes = section(std::vector<char>(strings_.text().begin(), strings_.text().end()));
-  if (source_lines_) header_.source_lines = section(rules_.pool.lines());
+  if (options_.source_lines) header_.source_lines = section(rules_.pool.lines());
 }
 
 void ImageWriter::finish_header(const ProgramHash& hash) {
@@ -190,9 +194,21 @@ bool ImageWriter::verified() {
 }  // namespace
 
 std::vector<std::byte> write_image(const Program& program, const Robot& robot,
-                                   const ProgramHash& hash, bool source_lines,
+                                   const ProgramHash& hash, ImageOptions options,
                                    Diagnostics& diagnostics) {
-  return ImageWriter(source_lines, diagnostics).write(program, robot, hash);
+  if (options.optimize) {
+    Diagnostics trial;
+    std::vector<std::byte> image = ImageWriter(options, trial).write(program, robot, hash);
+    const bool fits = std::none_of(trial.all().begin(), trial.all().end(),
+                                   [](const Diagnostic& one) { return one.code == Code::E0407; });
+    if (fits) {
+      for (const Diagnostic& one : trial.all())
+        diagnostics.report(one.code, one.message) = one;
+      return image;
+    }
+    options.optimize = false;
+  }
+  return ImageWriter(options, diagnostics).write(program, robot, hash);
 }
 
 }  // namespace robosync::compiler

@@ -1,6 +1,32 @@
 #include "compiler/codegen/operations.hpp"
 
+#include "vm/arithmetic.hpp"
+
 namespace robosync::compiler {
+namespace {
+
+// Comparisons, in the order of the jumps that do them.
+constexpr vm::Opcode kCompared[] = {vm::Opcode::lt,   vm::Opcode::le,   vm::Opcode::eq,
+                                    vm::Opcode::ne,   vm::Opcode::lt_k, vm::Opcode::le_k,
+                                    vm::Opcode::gt_k, vm::Opcode::ge_k, vm::Opcode::eq_k,
+                                    vm::Opcode::ne_k};
+constexpr auto kFirstCompared = static_cast<std::size_t>(vm::Opcode::unless_lt);
+static_assert(static_cast<std::size_t>(vm::Opcode::unless_ne_k) ==
+              kFirstCompared + std::size(kCompared) - 1);
+
+vm::Opcode unless(vm::Opcode comparison) {
+  std::size_t place = 0;
+  while (kCompared[place] != comparison)
+    ++place;
+  return static_cast<vm::Opcode>(kFirstCompared + place);
+}
+
+WithConstant sum_with(const Expression& left, vm::Value constant) {
+  const bool unchecked = left.fact.known && sum_fits(left.fact, fact_of(constant));
+  return {unchecked ? vm::Opcode::add_k_fast : vm::Opcode::add_k, constant};
+}
+
+}  // namespace
 
 bool is_comparison(Operation operation) {
   return operation >= Operation::less && operation <= Operation::not_equal;
@@ -82,6 +108,62 @@ vm::Opcode of_time_word(Operation time_word) {
     default:
       return vm::Opcode::changed;
   }
+}
+
+vm::Opcode unless_with_constant(Operation comparison) {
+  return unless(with_constant(comparison));
+}
+
+vm::Opcode unless_with_cells(Operation comparison) {
+  return unless(with_cells(comparison));
+}
+
+std::optional<vm::Opcode> compared_by(vm::Opcode jump) {
+  const auto number = static_cast<std::size_t>(jump);
+  if (number < kFirstCompared || number >= kFirstCompared + std::size(kCompared))
+    return std::nullopt;
+  return kCompared[number - kFirstCompared];
+}
+
+std::optional<WithConstant> constant_form(const Expression& expression) {
+  if (expression.operands.size() != 2) return std::nullopt;
+  const Expression& left = expression.operands[0];
+  const Expression& right = expression.operands[1];
+  if (right.operation != Operation::constant) return std::nullopt;
+  const vm::Value constant = right.constant;
+  const bool whole = constant % vm::kScale == 0;
+  switch (expression.operation) {
+    case Operation::add:
+      return sum_with(left, constant);
+    case Operation::subtract:
+      return sum_with(left, vm::negate(constant));
+    case Operation::multiply:
+      if (!whole || !left.fact.known || !product_fits(left.fact, fact_of(constant))) break;
+      return WithConstant{vm::Opcode::mul_k_fast, constant / vm::kScale};
+    case Operation::divide:
+      if (!whole || constant <= 0) break;
+      return WithConstant{vm::Opcode::div_k, constant / vm::kScale};
+    case Operation::modulo:
+      if (constant <= 0) break;
+      return WithConstant{vm::Opcode::mod_k, constant};
+    default:
+      break;
+  }
+  return std::nullopt;
+}
+
+std::optional<Unchecked> unchecked_form(const Expression& expression) {
+  if (expression.operands.size() != 2) return std::nullopt;
+  const Fact& left = expression.operands[0].fact;
+  const Fact& right = expression.operands[1].fact;
+  if (!left.known || !right.known) return std::nullopt;
+  if (expression.operation == Operation::add && sum_fits(left, right))
+    return Unchecked{vm::Opcode::add_fast};
+  if (expression.operation == Operation::multiply && product_fits(left, right)) {
+    if (left.whole) return Unchecked{vm::Opcode::mul_fast};
+    if (right.whole) return Unchecked{vm::Opcode::mul_fast, true};
+  }
+  return std::nullopt;
 }
 
 }  // namespace robosync::compiler

@@ -1,6 +1,8 @@
 // Which opcode an operation of the program becomes.
 #pragma once
 
+#include <optional>
+
 #include "compiler/sema/program.hpp"
 #include "vm/opcode.hpp"
 
@@ -15,5 +17,26 @@ namespace robosync::compiler {
 // mirrored.
 [[nodiscard]] vm::Opcode with_cells(Operation operation);
 [[nodiscard]] vm::Opcode of_time_word(Operation time_word);
+// A jump unless the comparison with a constant, or with a cell, is true. Of cells as with_cells().
+[[nodiscard]] vm::Opcode unless_with_constant(Operation comparison);
+[[nodiscard]] vm::Opcode unless_with_cells(Operation comparison);
+// The comparison that such a jump does.
+[[nodiscard]] std::optional<vm::Opcode> compared_by(vm::Opcode jump);
+
+// ---- cheaper instructions, where facts allow them
+
+// An operation with a constant as its second operand.
+struct WithConstant {
+  vm::Opcode opcode{};
+  vm::Value constant = 0;
+};
+[[nodiscard]] std::optional<WithConstant> constant_form(const Expression& expression);
+
+// An operation that checks nothing. `exchanged`: its operands stand the other way round.
+struct Unchecked {
+  vm::Opcode opcode{};
+  bool exchanged = false;
+};
+[[nodiscard]] std::optional<Unchecked> unchecked_form(const Expression& expression);
 
 }  // namespace robosync::compiler

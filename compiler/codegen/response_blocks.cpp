@@ -4,29 +4,61 @@
 #include <algorithm>
 
 #include "compiler/codegen/response_emitter.hpp"
+#include "compiler/optimize/expression_facts.hpp"
 
 namespace robosync::compiler {
 namespace {
 
-// A part of a time counts as a time, as it does where the robot works out the number.
-std::int64_t whole(vm::Value times) {
-  constexpr std::int64_t kMost = vm::kValueMax / vm::kScale;
-  return std::min(kMost, (std::int64_t{times} + vm::kScale - 1) / vm::kScale) * vm::kScale;
-}
+// An AND becomes blocks in blocks as long as so many places for blocks are left.
+constexpr unsigned kSpareBlocks = vm::kMaxBlocks / 2;
 
 }  // namespace
 
-std::size_t ResponseEmitter::open(Opcode opcode, Operand a, Operand b) {
+void ResponseEmitter::count_block() {
   ++open_blocks_;
   if (open_blocks_ == vm::kMaxBlocks + 1)
     parts_.too_large("blocks are nested too deeply here for the robot", current_->span);
+}
+
+std::size_t ResponseEmitter::open(Opcode opcode, Operand a, Operand b) {
+  count_block();
   return code().emit(opcode, a, b);
 }
 
+std::size_t ResponseEmitter::open_unless(const Expression& condition) {
+  if (parts_.program.optimized)
+    if (const auto jump = expressions_.jump_unless(condition)) {
+      count_block();
+      return *jump;
+    }
+  return open(Opcode::unless, expressions_.value(condition));
+}
+
+std::size_t ResponseEmitter::open_unless(Operation comparison, Cell left, vm::Value right) {
+  if (parts_.program.optimized)
+    if (const auto jump = expressions_.jump_unless(comparison, left, right)) {
+      count_block();
+      return *jump;
+    }
+  return open(Opcode::unless, expressions_.compare(comparison, left, right, 0));
+}
+
+// The right side is left out when the left one is not true, so nobody may notice that.
+std::vector<std::size_t> ResponseEmitter::open_unless_all(const Expression& condition) {
+  const bool splits = parts_.program.optimized && open_blocks_ < kSpareBlocks &&
+                      condition.operation == Operation::logical_and &&
+                      is_pure(condition.operands[1]);
+  if (!splits) return {open_unless(condition)};
+  std::vector<std::size_t> begins = open_unless_all(condition.operands[0]);
+  for (const std::size_t inner : open_unless_all(condition.operands[1]))
+    begins.push_back(inner);
+  return begins;
+}
+
 std::size_t ResponseEmitter::otherwise(std::size_t begin) {
-  const std::size_t jump = code().emit(Opcode::jump);
+  code().emit(Opcode::jump);
   code().land(begin);
-  return jump;
+  return code().size() - 1;
 }
 
 std::size_t ResponseEmitter::otherwise_to_same_end(std::size_t begin) {
@@ -47,10 +79,18 @@ void ResponseEmitter::close_around(Opcode opcode, Operand a, std::size_t begin) 
 // With the condition unknown neither side runs; without ELSE that comes by itself.
 void ResponseEmitter::emit(const ProgramIf& choice) {
   if (choice.else_block.empty()) {
+    const std::vector<std::size_t> begins = open_unless_all(choice.condition);
+    block(choice.then_block);
+    std::for_each(begins.rbegin(), begins.rend(), [this](std::size_t begin) { close(begin); });
+    return;
+  }
+  if (parts_.program.optimized && choice.condition.fact.known) {
     const std::size_t begin = open_unless(choice.condition);
     block(choice.then_block);
-    close(begin);
-    return;
+    mark();
+    const std::size_t jump = otherwise(begin);
+    block(choice.else_block);
+    return close(jump);
   }
   const Cell truth = expressions_.value(choice.condition);
   const std::size_t known = open(Opcode::unless_known, truth);
@@ -66,7 +106,7 @@ void ResponseEmitter::emit(const ProgramIf& choice) {
 void ResponseEmitter::emit(const ProgramRepeat& repeat) {
   switch (repeat.kind) {
     case RepeatKind::times:
-      if (repeat.control.operation == Operation::constant) return repeat_constant_times(repeat);
+      if (constant_count(repeat)) return repeat_constant_times(repeat);
       return repeat_times(repeat);
     case RepeatKind::while_:
       return repeat_while(repeat);
@@ -76,21 +116,33 @@ void ResponseEmitter::emit(const ProgramRepeat& repeat) {
 }
 
 void ResponseEmitter::repeat_constant_times(const ProgramRepeat& repeat) {
-  const std::int64_t times = whole(repeat.control.constant);
-  if (times <= 0) return;
+  const vm::Value times = constant_count(repeat).value_or(0);
+  if (times == 0) return;
+  write_ahead(repeat);
   const Cell counter = parts_.frame.add_local();
-  const auto place = parts_.pool.constant(static_cast<vm::Value>(times));
+  const auto place = parts_.pool.constant(times);
   const std::size_t begin = open(Opcode::times, counter, static_cast<std::uint32_t>(place));
   block(repeat.body);
   mark();
   close_around(Opcode::again, counter, begin);
 }
 
+// To what they are: the loop certainly writes them, and then need not say so in each round.
+void ResponseEmitter::write_ahead(const ProgramRepeat& repeat) {
+  const auto write = [this](Opcode opcode, std::size_t variable) {
+    const Cell target = parts_.frame.write(parts_.tables.variable(variable));
+    code().emit(opcode, target, target);
+  };
+  for (const std::size_t variable : repeat.assigned)
+    write(Opcode::set, variable);
+  for (const std::size_t variable : repeat.shifted)
+    write(Opcode::shift, variable);
+}
+
 void ResponseEmitter::repeat_times(const ProgramRepeat& repeat) {
   const Cell counter = parts_.frame.add_local();
   expressions_.value_into(counter, repeat.control);
-  const std::size_t any =
-      open(Opcode::unless, expressions_.compare(Operation::greater, counter, 0, 0));
+  const std::size_t any = open_unless(Operation::greater, counter, 0);
   const std::size_t begin = open(Opcode::times_v, counter, counter);
   block(repeat.body);
   mark();
@@ -139,8 +191,7 @@ void ResponseEmitter::options(const ProgramPick& pick, Cell drawn) {
       block(option.body);
       break;
     }
-    const std::size_t begin =
-        open(Opcode::unless, expressions_.compare(Operation::less, drawn, share, 0));
+    const std::size_t begin = open_unless(Operation::less, drawn, share);
     block(option.body);
     mark();
     jumps.push_back(jumps.empty() ? otherwise(begin) : otherwise_to_same_end(begin));

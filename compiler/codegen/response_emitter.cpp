@@ -2,8 +2,30 @@
 #include "compiler/codegen/response_emitter.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace robosync::compiler {
+
+namespace {
+
+// What RAISE and LOWER set.
+Expression sum_of(const ProgramSet& set) {
+  Expression before;
+  before.operation = Operation::variable;
+  before.index = set.variable;
+  before.fact = set.before;
+  Expression sum;
+  sum.operation = Operation::add;
+  sum.operands = {std::move(before), set.value};
+  return sum;
+}
+
+// To `load`, these are truth values, which a variable must not hold.
+bool looks_like_truth(vm::Value constant) {
+  return constant == vm::kTrue || constant == vm::kFalse;
+}
+
+}  // namespace
 
 bool needs_clamping(const ProgramSet& set) {
   return set.relative || set.value.operation != Operation::constant;
@@ -58,19 +80,20 @@ void ResponseEmitter::emit(const ProgramLocal& local) {
 void ResponseEmitter::emit(const ProgramSet& set) {
   const ProgramVariable& variable = parts_.program.variables[set.variable];
   const Cell target = parts_.frame.write(parts_.tables.variable(set.variable));
-  if (!needs_clamping(set)) {
-    const vm::Value value = std::clamp(set.value.constant, variable.min, variable.max);
-    code().emit(Opcode::set, target, expressions_.constant(value));
-    return;
+  bool in_place = set.in_place;
+  Cell value;
+  if (needs_clamping(set)) {
+    value = expressions_.value(set.relative ? sum_of(set) : set.value);
+    value = expressions_.clamped(value, variable, set);
+  } else {
+    const vm::Value constant = std::clamp(set.value.constant, variable.min, variable.max);
+    value = expressions_.constant(constant);
+    in_place = in_place && !looks_like_truth(constant);
   }
-  Cell value = expressions_.value(set.value);
-  if (set.relative) {
-    const Cell sum = parts_.frame.temporary(0);
-    code().emit(Opcode::add, sum, target, value);
-    value = sum;
-  }
-  code().emit(set.relative ? Opcode::shift : Opcode::set, target,
-              expressions_.clamped(value, variable));
+  if (in_place)
+    expressions_.put_into(target, value);
+  else
+    code().emit(set.relative ? Opcode::shift : Opcode::set, target, value);
 }
 
 void ResponseEmitter::emit(const ProgramWait& wait) {

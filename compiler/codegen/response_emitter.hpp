@@ -44,6 +44,7 @@ private:
   void emit(const ProgramIf& choice);
   void emit(const ProgramRepeat& repeat);
   void emit(const ProgramPick& pick);
+  void write_ahead(const ProgramRepeat& repeat);
   void repeat_times(const ProgramRepeat& repeat);
   void repeat_constant_times(const ProgramRepeat& repeat);
   void repeat_forever(const ProgramRepeat& repeat);
@@ -51,9 +52,13 @@ private:
   void options(const ProgramPick& pick, Cell drawn);
   // Emits what begins a block; gives its place, for the jump that ends there.
   std::size_t open(Opcode opcode, Operand a = {}, Operand b = {});
-  std::size_t open_unless(const Expression& condition) {
-    return open(Opcode::unless, expressions_.value(condition));
-  }
+  // Opens a block that runs if the condition is true.
+  std::size_t open_unless(const Expression& condition);
+  std::size_t open_unless(Operation comparison, Cell left, vm::Value right);
+  // The same, as one block in the other for each part of an AND; the outermost comes first.
+  std::vector<std::size_t> open_unless_all(const Expression& condition);
+  // One more block is open.
+  void count_block();
   // Ends the block that began at `begin`, and begins its ELSE; gives the place of that.
   std::size_t otherwise(std::size_t begin);
   // The same where the block around both ends in the same place: it takes the ELSE in.

@@ -1,9 +1,16 @@
 // The parts of a statement: every expression and every block that it holds, in the program's order.
 #pragma once
 
+#include <concepts>
+#include <type_traits>
+
 #include "compiler/sema/program.hpp"
 
 namespace robosync::compiler {
+
+// A statement of this kind, to be looked at or to be changed.
+template <typename Statement, typename Kind>
+concept Either = std::same_as<std::remove_const_t<Statement>, Kind>;
 
 template <typename OnExpression, typename OnBlock>
 class PartsOfStatement {
@@ -11,37 +18,37 @@ public:
   PartsOfStatement(OnExpression on_expression, OnBlock on_block)
       : expression_(on_expression), block_(on_block) {}
 
-  void operator()(const ProgramCommand& command) const {
-    for (const ProgramArgument& argument : command.arguments)
+  void operator()(Either<ProgramCommand> auto& command) const {
+    for (auto& argument : command.arguments)
       expression_(argument.value);
   }
-  void operator()(const ProgramLocal& local) const { expression_(local.value); }
-  void operator()(const ProgramSet& set) const { expression_(set.value); }
-  void operator()(const ProgramWait& wait) const { expression_(wait.duration); }
-  void operator()(const ProgramWaitUntil& wait) const {
+  void operator()(Either<ProgramLocal> auto& local) const { expression_(local.value); }
+  void operator()(Either<ProgramSet> auto& set) const { expression_(set.value); }
+  void operator()(Either<ProgramWait> auto& wait) const { expression_(wait.duration); }
+  void operator()(Either<ProgramWaitUntil> auto& wait) const {
     expression_(wait.condition);
     if (wait.within) expression_(*wait.within);
   }
-  void operator()(const ProgramThen&) const {}
-  void operator()(const ProgramIf& choice) const {
+  void operator()(Either<ProgramThen> auto&) const {}
+  void operator()(Either<ProgramIf> auto& choice) const {
     expression_(choice.condition);
     block_(choice.then_block);
     block_(choice.else_block);
   }
-  void operator()(const ProgramRepeat& repeat) const {
+  void operator()(Either<ProgramRepeat> auto& repeat) const {
     expression_(repeat.control);
     block_(repeat.body);
   }
-  void operator()(const ProgramPick& pick) const {
-    for (const ProgramOption& option : pick.options)
+  void operator()(Either<ProgramPick> auto& pick) const {
+    for (auto& option : pick.options)
       block_(option.body);
   }
-  void operator()(const ProgramLog& log) const {
-    for (const Expression& value : log.values)
+  void operator()(Either<ProgramLog> auto& log) const {
+    for (auto& value : log.values)
       expression_(value);
   }
-  void operator()(const ProgramAlert&) const {}
-  void operator()(const ProgramHalt&) const {}
+  void operator()(Either<ProgramAlert> auto&) const {}
+  void operator()(Either<ProgramHalt> auto&) const {}
 
 private:
   OnExpression expression_;

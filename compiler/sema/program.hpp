@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/optimize/fact.hpp"
 #include "compiler/source/source_file.hpp"
 #include "vm/image.hpp"
 
@@ -62,7 +63,9 @@ struct Expression {
   std::size_t index = 0;
   ChannelRef channel;
   std::vector<Expression> operands;
-  bool operator==(const Expression&) const = default;
+  Fact fact{};  // what the optimiser has proved of it, in this place
+  // The same computation, whatever is known of it.
+  bool operator==(const Expression& other) const;
 };
 
 // Does it, or a part of it, remember the past?
@@ -133,6 +136,11 @@ struct ProgramSet {
   std::size_t variable = 0;
   Expression value;
   bool relative = false;  // RAISE, LOWER, SIGNAL: `value` is added
+  // What the optimiser has proved: the variable was written in this run already, so that it can be
+  // computed where it stands; and the result may be outside of the variable's range.
+  bool in_place = false;
+  bool may_be_below = true, may_be_above = true;
+  Fact before{};  // what the variable is before
 };
 struct ProgramWait {
   Expression duration;
@@ -147,10 +155,16 @@ struct ProgramIf {
   ProgramBlock then_block, else_block;
 };
 enum class RepeatKind : std::uint8_t { times, while_, forever };
+struct ProgramRepeat;
+// How often it runs, when that is constant: a whole number in thousandths, 0 for never.
+[[nodiscard]] std::optional<vm::Value> constant_count(const ProgramRepeat& repeat);
 struct ProgramRepeat {
   RepeatKind kind{};
   Expression control;  // times: the number; while_: the condition
   ProgramBlock body;
+  // Variables that the body certainly writes: the optimiser has them written once before the loop
+  // (to what they are), so that the body computes them in place.
+  std::vector<std::size_t> assigned{}, shifted{};
 };
 struct ProgramOption {
   vm::Value weight = 0;  // share of the sum of all weights; positive
@@ -208,6 +222,7 @@ struct Program {
   std::vector<ProgramBehavior> behaviors;  // priorities descending, distinct
   // LIMIT … SPEED, by place in Robot::actuators; the stricter of this and the robot's own holds.
   std::vector<std::pair<std::size_t, vm::Value>> speed_limits;
+  bool optimized = false;  // facts are filled in, and codegen may make use of them
 };
 
 }  // namespace robosync::compiler

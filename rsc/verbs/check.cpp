@@ -22,7 +22,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> files;
-  std::string config;
+  CompileOptions how;
   bool timing = false;
   Format format = Format::human;
 };
@@ -60,7 +60,7 @@ void check(const Options& options) {
   std::size_t errors = 0;
   bool affordable = true;
   for (const std::string& file : options.files) {
-    compiler::Result result = compile_file(file, options.config);
+    compiler::Result result = compile_file(file, options.how);
     errors += result.diagnostics.errors();
     if (options.format == Format::json) {
       append(report, nlohmann::ordered_json::parse(
@@ -83,7 +83,7 @@ void add_check(CLI::App& app) {
   app.add_option("FILE", options->files, "programs (.rsl)")->required()->option_text("...");
   app.add_flag("--timing", options->timing,
                "show what a step costs, rule by rule, and the memory it takes");
-  add_config_option(app, options->config);
+  add_compile_options(app, options->how);
   add_format_option(app, options->format);
   app.callback([options] { check(*options); });
 }

@@ -1,4 +1,4 @@
-// rsc compile FILE [-o X.rsb] [--strip] [--config FILE] [--format human|json]
+// rsc compile FILE [-o X.rsb] [--strip] [--config FILE] [-O0] [--format human|json]
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -19,8 +19,8 @@ namespace robosync::tool {
 namespace {
 
 struct Options {
-  std::string file, output, config;
-  bool strip = false;
+  std::string file, output;
+  CompileOptions how;
   Format format = Format::human;
 };
 
@@ -58,7 +58,7 @@ void print_json(const std::string& output, const Program& program) {
 
 void compile(const Options& options) {
   const std::string output = output_name(options);
-  compiler::Result result = compile_file(options.file, options.config, !options.strip);
+  compiler::Result result = compile_file(options.file, options.how);
   std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
   if (result.diagnostics.errors() > 0) {
     throw Failure(Exit::program, fmt::format("{}: {}; nothing was written", options.file,
@@ -75,8 +75,9 @@ void add_compile(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("FILE", options->file, "program (.rsl)")->required()->option_text(" ");
   app.add_option("-o,--output", options->output, "the image; else STEM.rsb")->option_text("X.rsb");
-  app.add_flag("--strip", options->strip, "leave the source lines out");
-  add_config_option(app, options->config);
+  app.add_flag_callback(
+      "--strip", [options] { options->how.source_lines = false; }, "leave the source lines out");
+  add_compile_options(app, options->how);
   add_format_option(app, options->format);
   app.callback([options] { compile(*options); });
 }

@@ -1,21 +1,32 @@
-// rsc dump X.rsb
+// rsc dump FILE|X.rsb [--config FILE] [-O0]
 #include <iostream>
 #include <memory>
 #include <string>
 
+#include "rsc/console.hpp"
 #include "rsc/dump_text.hpp"
-#include "rsc/files.hpp"
 #include "rsc/program.hpp"
 #include "rsc/verb.hpp"
 
 namespace robosync::tool {
+namespace {
+
+struct Options {
+  std::string file;
+  CompileOptions how;
+};
+
+}  // namespace
 
 void add_dump(CLI::App& app) {
-  auto file = std::make_shared<std::string>();
-  app.add_option("FILE", *file, "image (.rsb)")->required()->option_text(" ");
-  app.callback([file] {
-    const Program program(read_bytes(*file), *file);
-    std::cout << dump_text(program.image());
+  auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->file, "program (.rsl) or image (.rsb)")
+      ->required()
+      ->option_text(" ");
+  add_compile_options(app, options->how);
+  app.callback([options] {
+    const Program program = load_program(options->file, options->how);
+    std::cout << dump_text(program.image(), program.source());
   });
 }
 

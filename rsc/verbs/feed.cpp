@@ -31,7 +31,8 @@ constexpr milliseconds kQueuePause{20};
 
 struct Options {
   std::vector<std::string> readings;
-  std::string scenario, upload, config, port;
+  std::string scenario, upload, port;
+  CompileOptions how;
   std::optional<milliseconds> at, watch;
   Format format = Format::human;
 };
@@ -112,7 +113,7 @@ void feed(const Options& options) {
     throw Failure(Exit::usage, "name a reading, as in touch.LEVEL=2, or a --scenario");
   }
   std::optional<Program> program;
-  if (!options.upload.empty()) program = load_program(options.upload, options.config);
+  if (!options.upload.empty()) program = load_program(options.upload, options.how);
   Session session(options.port);
   std::optional<Watch> watch;
   if (options.watch) watch.emplace(session, options.format);
@@ -145,7 +146,7 @@ void add_feed(CLI::App& app) {
   app.add_option("--upload", options->upload,
                  "upload this program (.rsl or .rsb) first; --watch shows all it does")
       ->option_text("FILE");
-  add_config_option(app, options->config);
+  add_compile_options(app, options->how);
   add_duration_option(app, "--watch", options->watch, "then show what happens for so long");
   add_format_option(app, options->format);
   app.callback([options] { feed(*options); });

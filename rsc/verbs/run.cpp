@@ -1,4 +1,4 @@
-// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--config FILE]
+// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--config FILE] [-O0]
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -24,7 +24,8 @@ namespace {
 constexpr std::uint64_t kDefaultDurationUs = 10'000'000;
 
 struct Options {
-  std::string file, config, scenario, trace;
+  std::string file, scenario, trace;
+  CompileOptions how;
   std::optional<std::chrono::milliseconds> duration;
   Format format = Format::human;
 };
@@ -35,7 +36,7 @@ std::uint64_t duration_us(const Options& options, const Scenario& scenario) {
 }
 
 void run(const Options& options) {
-  const Program program = load_program(options.file, options.config);
+  const Program program = load_program(options.file, options.how);
   Scenario scenario;
   if (!options.scenario.empty()) scenario = read_scenario(options.scenario, program.image());
 
@@ -68,7 +69,7 @@ void add_run(CLI::App& app) {
   add_duration_option(app, "--duration", options->duration, "else the scenario's, else 10s");
   app.add_option("--trace", options->trace, "write the trace as JSON lines")
       ->option_text("T.jsonl");
-  add_config_option(app, options->config);
+  add_compile_options(app, options->how);
   add_format_option(app, options->format);
   app.callback([options] { run(*options); });
 }

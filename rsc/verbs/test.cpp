@@ -26,7 +26,7 @@ constexpr std::size_t kTimelineEnds = 15;      // lines at each end of a long ti
 
 struct Options {
   std::vector<std::string> files;
-  std::string config;
+  CompileOptions how;
   Format format = Format::human;
 };
 
@@ -115,7 +115,7 @@ private:
 };
 
 void test_file(const std::string& file, const Options& options, Tally& tally) {
-  compiler::Result compiled = compile_file(file, options.config);
+  compiler::Result compiled = compile_file(file, options.how);
   std::cerr << compiler::render_human(compiled.diagnostics, compiled.sources, color_on_stderr());
   if (compiled.diagnostics.errors() > 0) {
     throw Failure(Exit::program,
@@ -146,7 +146,7 @@ void test(const Options& options) {
 void add_test(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("FILE", options->files, "programs (.rsl)")->required()->option_text("...");
-  add_config_option(app, options->config);
+  add_compile_options(app, options->how);
   add_format_option(app, options->format);
   app.callback([options] { test(*options); });
 }

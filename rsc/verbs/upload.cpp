@@ -22,7 +22,8 @@ constexpr double kBitsPerByte = 10;  // 8N1
 constexpr double kBaudRate = 115200;
 
 struct Options {
-  std::string file, config, port;
+  std::string file, port;
+  CompileOptions how;
   std::optional<milliseconds> timeout;
   Format format = Format::human;
 };
@@ -58,7 +59,7 @@ void report(const Options& options, const UploadResult& result, const Program& p
 }
 
 void upload(const Options& options) {
-  const Program program = load_program(options.file, options.config);
+  const Program program = load_program(options.file, options.how);
   UploadOptions how;
   how.timeout = options.timeout.value_or(how.timeout);
   if (stderr_is_terminal()) how.progress = show_progress;
@@ -75,7 +76,7 @@ void add_upload(CLI::App& app) {
       ->required()
       ->option_text(" ");
   add_port_option(app, options->port);
-  add_config_option(app, options->config);
+  add_compile_options(app, options->how);
   add_duration_option(app, "--timeout", options->timeout, "give up after (10s)");
   add_format_option(app, options->format);
   app.callback([options] { upload(*options); });

@@ -182,17 +182,17 @@ ProgramVariable ranged(std::string name, double min, double max) {
   return made;
 }
 
-Built build(const Program& program, bool source_lines) {
+Built build(const Program& program, ImageOptions options) {
   constexpr ProgramHash kHash = {1, 2, 3, 4, 5, 6, 7, 8};
   const Robot robot = small_robot();
   Built built;
-  built.bytes = write_image(program, robot, kHash, source_lines, built.diagnostics);
+  built.bytes = write_image(program, robot, kHash, options, built.diagnostics);
   if (!built.bytes.empty()) REQUIRE(vm::view_image(built.bytes, built.image));
   return built;
 }
 
 Built must_build(const Program& program, bool source_lines) {
-  Built built = build(program, source_lines);
+  Built built = build(program, {.source_lines = source_lines});
   for (const Diagnostic& diagnostic : built.diagnostics.all())
     UNSCOPED_INFO(code_name(diagnostic.code) << " " << diagnostic.message);
   REQUIRE(!built.bytes.empty());

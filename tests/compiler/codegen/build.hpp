@@ -47,7 +47,7 @@ struct Built {
   Diagnostics diagnostics;
   vm::Image image;  // views bytes
 };
-Built build(const Program& program, bool source_lines = false);
+Built build(const Program& program, ImageOptions options = {.source_lines = false});
 // The same, with everything accepted.
 Built must_build(const Program& program, bool source_lines = false);
 // Behaviours, rules, timers and instructions of the image.

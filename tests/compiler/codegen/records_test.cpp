@@ -179,7 +179,7 @@ TEST_CASE("the seed is of the hash") {
   CHECK(must_build(program_of({when(kClose, {kLeft})})).image.header->seed == 0x05060708);
   Diagnostics diagnostics;
   const auto bytes =
-      write_image(program_of({when(kClose, {kLeft})}), small_robot(), {}, false, diagnostics);
+      write_image(program_of({when(kClose, {kLeft})}), small_robot(), {}, {.source_lines = false}, diagnostics);
   vm::Image image;
   REQUIRE(vm::view_image(bytes, image));
   CHECK(image.header->seed != 0);

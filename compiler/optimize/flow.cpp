@@ -1,0 +1,154 @@
+#include "compiler/optimize/flow.hpp"
+
+#include <algorithm>
+
+#include "compiler/sema/program_walk.hpp"
+
+namespace robosync::compiler {
+
+bool pauses(const ProgramBlock& block) {
+  bool found = false;
+  for_each_statement(block, [&](const ProgramStatement& statement) {
+    found = found || std::holds_alternative<ProgramWait>(statement.node) ||
+            std::holds_alternative<ProgramWaitUntil>(statement.node) ||
+            std::holds_alternative<ProgramThen>(statement.node);
+  });
+  return found;
+}
+
+WriteFacts Flow::follow(ProgramBlock& response, const VariableFacts& entry, bool in_place) {
+  const std::size_t variables = program_.variables.size();
+  locals_.clear();
+  writes_ = {std::vector<std::optional<Fact>>(variables),
+             std::vector<std::optional<Fact>>(variables)};
+  in_place_ = in_place;
+  State state{entry, std::vector<Owned>(variables, Owned::no)};
+  block(response, state);
+  return std::move(writes_);
+}
+
+void Flow::block(ProgramBlock& statements, State& state) {
+  for (ProgramStatement& statement : statements)
+    std::visit([&](auto& node) { visit(node, state); }, statement.node);
+}
+
+void Flow::visit(ProgramCommand& command, State& state) {
+  for (ProgramArgument& argument : command.arguments)
+    look(argument.value, state);
+}
+
+void Flow::visit(ProgramLocal& local, State& state) {
+  locals_[local.number] = look(local.value, state);
+}
+
+void Flow::visit(ProgramLog& log, State& state) {
+  for (Expression& value : log.values)
+    look(value, state);
+}
+
+// ---- writes
+
+// To set something unknown does nothing.
+void Flow::visit(ProgramSet& set, State& state) {
+  const ProgramVariable& variable = program_.variables[set.variable];
+  Fact& cell = state.variables[set.variable];
+  const Fact value = look(set.value, state);
+  const Fact wanted = set.relative ? add(cell, value) : value;
+  const Fact result = clamp(wanted, variable.min, variable.max);
+  Owned& owned = state.owned[set.variable];
+  const Owned needed = set.relative ? Owned::shifted : Owned::assigned;
+  set.before = cell;
+  set.may_be_below = wanted.low < variable.min;
+  set.may_be_above = wanted.high > variable.max;
+  set.in_place = in_place_ && wanted.known && owned >= needed;
+  if (growths_ != nullptr && dead_ == 0) note_growth(set);
+  cell = wanted.known ? result : either(cell, result);
+  cell.known = true;
+  if (wanted.known) owned = std::max(owned, needed);
+  if (growths_ == nullptr && dead_ == 0) record(set, cell);
+}
+
+void Flow::record(const ProgramSet& set, const Fact& result) {
+  const auto add_to = [](std::optional<Fact>& all, const Fact& one) {
+    all = all ? either(*all, one) : one;
+  };
+  add_to(writes_.results[set.variable], result);
+  if (set.relative) add_to(writes_.differences[set.variable], set.value.fact);
+}
+
+// ---- pauses
+
+void Flow::pause(State& state) const {
+  state.variables = anytime_;
+  std::fill(state.owned.begin(), state.owned.end(), Owned::no);
+}
+
+void Flow::visit(ProgramWait& wait, State& state) {
+  look(wait.duration, state);
+  pause(state);
+}
+
+void Flow::visit(ProgramWaitUntil& wait, State& state) {
+  if (wait.within) look(*wait.within, state);
+  pause(state);
+  look(wait.condition, state);
+}
+
+void Flow::visit(ProgramThen&, State& state) {
+  pause(state);
+}
+
+// ---- choices
+
+Flow::State Flow::merged(const State& one, const State& other) {
+  State result = one;
+  for (std::size_t i = 0; i < result.variables.size(); ++i) {
+    result.variables[i] = either(one.variables[i], other.variables[i]);
+    result.owned[i] = std::min(one.owned[i], other.owned[i]);
+  }
+  return result;
+}
+
+void Flow::branch(ProgramBlock& statements, State& state, bool may_run) {
+  if (!may_run) ++dead_;
+  block(statements, state);
+  if (!may_run) --dead_;
+}
+
+// The verifier reads code once, from its start to its end: a pause on one way takes what the response
+// owns from the ways that stand behind it, too.
+void Flow::pass(const ProgramBlock& before, State& state) {
+  if (pauses(before)) std::fill(state.owned.begin(), state.owned.end(), Owned::no);
+}
+
+// What a block writes is owned until that block ends.
+void Flow::visit(ProgramIf& choice, State& state) {
+  const Fact condition = look(choice.condition, state);
+  State then_state = state, else_state = state;
+  const bool may_be_true = !condition.never_true();
+  const bool may_be_false = condition.high == vm::kFalse;
+  branch(choice.then_block, then_state, may_be_true);
+  pass(choice.then_block, else_state);
+  branch(choice.else_block, else_state, may_be_false);
+  State after = may_be_true ? then_state : state;
+  if (may_be_true && may_be_false) after = merged(then_state, else_state);
+  if (!may_be_true && may_be_false) after = else_state;
+  if (!condition.known) after = merged(after, state);
+  for (std::size_t i = 0; i < state.owned.size(); ++i)
+    after.owned[i] = std::min(after.owned[i], state.owned[i]);
+  state = std::move(after);
+}
+
+void Flow::visit(ProgramPick& pick, State& state) {
+  if (pick.options.size() == 1) return block(pick.options.front().body, state);
+  std::optional<State> after;
+  for (ProgramOption& option : pick.options) {
+    State inner = state;
+    block(option.body, inner);
+    pass(option.body, state);
+    after = after ? merged(*after, inner) : inner;
+  }
+  if (after) state = merged(*after, {after->variables, state.owned});
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,91 @@
+// Follows a response from its start to its end, and fills in what is proved of each of its
+// expressions, and which of its writes can be made in place.
+//
+// Between two pauses a variable is what this response has set; a pause forgets that, for the frame
+// is latched again. A loop begins with what its body can make of the variables: of one that every
+// round raises by some amount, the rounds are counted; of all others anything is assumed that they
+// can ever be.
+#pragma once
+
+#include <optional>
+
+#include "compiler/optimize/expression_facts.hpp"
+
+namespace robosync::compiler {
+
+// What a response can make of each variable; nothing: it never writes it.
+struct WriteFacts {
+  std::vector<std::optional<Fact>> results;      // what its cell holds then
+  std::vector<std::optional<Fact>> differences;  // of RAISE and LOWER: what is added
+};
+
+class Flow {
+public:
+  // `anytime`: what the variables can be whenever they are read.
+  Flow(const Program& program, const Robot& robot, const VariableFacts& anytime)
+      : program_(program), robot_(robot), anytime_(anytime) {}
+
+  // `entry`: what the variables can be when it starts.
+  WriteFacts follow(ProgramBlock& response, const VariableFacts& entry, bool in_place);
+
+private:
+  enum class Owned : std::uint8_t { no, shifted, assigned };  // what was written in this run
+  struct State {
+    VariableFacts variables;
+    std::vector<Owned> owned;
+  };
+  // What one round of a loop does to a variable, if it only adds to it.
+  struct Growth {
+    bool written = false;
+    bool regular = true;
+    Fact step = fact_of(0);
+  };
+  using Growths = std::vector<Growth>;
+
+  void block(ProgramBlock& statements, State& state);
+  void visit(ProgramCommand& command, State& state);
+  void visit(ProgramLocal& local, State& state);
+  void visit(ProgramSet& set, State& state);
+  void visit(ProgramWait& wait, State& state);
+  void visit(ProgramWaitUntil& wait, State& state);
+  void visit(ProgramThen& then, State& state);
+  void visit(ProgramIf& choice, State& state);
+  void visit(ProgramRepeat& repeat, State& state);
+  void visit(ProgramPick& pick, State& state);
+  void visit(ProgramLog& log, State& state);
+  static void visit(ProgramAlert&, State&) {}
+  static void visit(ProgramHalt&, State&) {}
+
+  // `may_run`: otherwise the block is only looked at, and counts for nothing.
+  void branch(ProgramBlock& statements, State& state, bool may_run);
+  void pause(State& state) const;
+  // The way of `state` stands behind that of `before`.
+  static void pass(const ProgramBlock& before, State& state);
+  void forget_written(const ProgramBlock& body, State& state) const;
+  void counted(ProgramRepeat& repeat, vm::Value times, State& state);
+  void claim(ProgramRepeat& repeat, State& head);
+  State grown(const ProgramRepeat& repeat, const State& before, const Growths& growths,
+              vm::Value times) const;
+  Growths measure(ProgramRepeat& repeat, State head);
+  void note_growth(const ProgramSet& set);
+  void record(const ProgramSet& set, const Fact& result);
+  static State merged(const State& one, const State& other);
+  Fact look(Expression& expression, const State& state) const {
+    return annotate(expression, {robot_, state.variables, anytime_, locals_});
+  }
+
+  const Program& program_;
+  const Robot& robot_;
+  const VariableFacts& anytime_;
+  LocalFacts locals_;
+  WriteFacts writes_;
+  bool in_place_ = false;
+  Growths* growths_ = nullptr;  // while a loop's body is only measured
+  unsigned inner_loops_ = 0;    // in that body
+  unsigned dead_ = 0;           // blocks around, that never run
+};
+
+// Does it give up the processor somewhere?
+[[nodiscard]] bool pauses(const ProgramBlock& block);
+
+}  // namespace robosync::compiler

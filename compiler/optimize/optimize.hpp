@@ -1,0 +1,14 @@
+// The program again, for fewer and cheaper instructions: what it does stays the same, in every
+// step. docs/optimizer.md says what is proved and what is done with it.
+#pragma once
+
+#include "compiler/config/robot.hpp"
+#include "compiler/sema/program.hpp"
+
+namespace robosync::compiler {
+
+// `program` as sema made it. The result has its facts filled in, and the same rules in the same
+// order.
+[[nodiscard]] Program optimize(Program program, const Robot& robot);
+
+}  // namespace robosync::compiler

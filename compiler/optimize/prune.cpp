@@ -1,0 +1,139 @@
+// What draws a random number, remembers the past or may divide by zero stays: the program would
+// go on differently without it, or not say that it divided by zero.
+#include "compiler/optimize/prune.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "compiler/codegen/operations.hpp"
+#include "compiler/codegen/walk.hpp"
+#include "compiler/optimize/expression_facts.hpp"
+#include "compiler/optimize/simplify.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+// Does a constant cost less than a cell, as this operand?
+bool takes_constant(Operation operation, std::size_t place, vm::Value value) {
+  const bool whole = value % vm::kScale == 0;
+  switch (operation) {
+    case Operation::add:
+      return true;
+    case Operation::subtract:
+      return place == 1;
+    case Operation::multiply:
+      return whole;
+    case Operation::divide:
+      return place == 1 && value > 0 && whole;
+    case Operation::modulo:
+      return place == 1 && value > 0;
+    default:
+      return is_comparison(operation);
+  }
+}
+
+// By itself, a cell is as good as a constant, and sometimes better.
+void fold_operands(Expression& expression) {
+  for (std::size_t place = 0; place < expression.operands.size(); ++place) {
+    Expression& operand = expression.operands[place];
+    fold_operands(operand);
+    const bool wanted = !operand.operands.empty() ||
+                        takes_constant(expression.operation, place, operand.fact.low);
+    if (operand.operation == Operation::constant || !wanted) continue;
+    if (operand.fact.is_constant() && is_pure(operand)) {
+      const Fact fact = operand.fact;
+      operand = {};
+      operand.constant = fact.low;
+      operand.fact = fact;
+    }
+  }
+}
+
+void fold(Expression& expression) {
+  fold_operands(expression);
+  const bool computed = !expression.operands.empty();
+  const Fact fact = expression.fact;
+  if (computed && fact.is_constant() && is_pure(expression)) {
+    expression = {};
+    expression.constant = fact.low;
+  }
+  simplify(expression);
+  expression.fact = fact;
+}
+
+class Pruner {
+public:
+  void block(ProgramBlock& statements) {
+    ProgramBlock result;
+    for (ProgramStatement& statement : statements)
+      keep(std::move(statement), result);
+    statements = std::move(result);
+  }
+
+private:
+  void keep(ProgramStatement statement, ProgramBlock& result);
+  static void choose(ProgramStatement statement, ProgramBlock& result);
+};
+
+// The statement, with its parts pruned; or what is left of it.
+void Pruner::keep(ProgramStatement statement, ProgramBlock& result) {
+  const PartsOfStatement parts([](Expression& expression) { fold(expression); },
+                                      [this](ProgramBlock& inner) { block(inner); });
+  std::visit(parts, statement.node);
+  if (std::holds_alternative<ProgramIf>(statement.node))
+    choose(std::move(statement), result);
+  else
+    result.push_back(std::move(statement));
+}
+
+// Also turns an IF with nothing but an ELSE around: with the condition unknown neither runs.
+void Pruner::choose(ProgramStatement statement, ProgramBlock& result) {
+  auto& choice = std::get<ProgramIf>(statement.node);
+  const Fact& condition = choice.condition.fact;
+  if (is_pure(choice.condition)) {
+    if (condition.never_true()) choice.then_block.clear();
+    if (condition.high == vm::kTrue) choice.else_block.clear();
+    if (choice.then_block.empty() && choice.else_block.empty()) return;
+    if (condition.is_constant()) {
+      ProgramBlock& rest = choice.then_block.empty() ? choice.else_block : choice.then_block;
+      std::move(rest.begin(), rest.end(), std::back_inserter(result));
+      return;
+    }
+  }
+  if (choice.then_block.empty() && !choice.else_block.empty()) {
+    const Fact inverse = logical_not(condition);
+    choice.condition = negated(std::move(choice.condition));
+    choice.condition.fact = inverse;
+    choice.then_block = std::exchange(choice.else_block, {});
+  }
+  result.push_back(std::move(statement));
+}
+
+// A condition that is never true starts nothing. The rule stays, so that rules keep their numbers;
+// where there is an ELSE, false and unknown differ.
+void prune(ProgramRule& rule) {
+  fold(rule.condition);
+  const bool only_when_true =
+      rule.kind == vm::RuleKind::when || rule.kind == vm::RuleKind::while_;
+  if (only_when_true && rule.condition.fact.never_true() && is_pure(rule.condition)) {
+    rule.condition = {};
+    rule.condition.constant = vm::kFalse;
+    rule.then_response.clear();
+  }
+  Pruner().block(rule.then_response);
+  Pruner().block(rule.else_response);
+}
+
+}  // namespace
+
+// Of SAFETY rules only the numbers: what they do is not touched.
+void prune(Program& program) {
+  for (ProgramRule& rule : program.safety)
+    fold(rule.condition);
+  for (ProgramBehavior& behavior : program.behaviors)
+    for (ProgramRule& rule : behavior.rules)
+      prune(rule);
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,198 @@
+// For each statement, from the outer parts of its expressions inwards: is the same part needed
+// again, in the statement or in those that follow? What begins a statement is evaluated whenever
+// the statement is, so a local in front of it costs nothing that was not paid for before.
+#include "compiler/optimize/share.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "compiler/codegen/operations.hpp"
+#include "compiler/codegen/walk.hpp"
+#include "compiler/optimize/expression_facts.hpp"
+#include "compiler/optimize/flow.hpp"
+#include "compiler/sema/program_walk.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr std::size_t kReach = 32;     // statements to look ahead in a block
+constexpr std::size_t kMaxShared = 32;  // locals for one behaviour
+
+using Visit = std::function<void(Expression&)>;
+
+bool is_number(const Expression& expression) {
+  return expression.operation >= Operation::negate && expression.operation <= Operation::modulo;
+}
+
+bool reads(const Expression& expression, std::size_t variable) {
+  if (expression.operation == Operation::variable) return expression.index == variable;
+  return std::any_of(expression.operands.begin(), expression.operands.end(),
+                     [&](const Expression& operand) { return reads(operand, variable); });
+}
+
+// Does it read what is latched again in each step?
+bool reads_input(const Expression& expression) {
+  if (expression.operation == Operation::variable || expression.operation == Operation::input)
+    return true;
+  return std::any_of(expression.operands.begin(), expression.operands.end(), reads_input);
+}
+
+// Does a statement, or one inside of it, make `expression` another number?
+bool spoils(const ProgramStatement& statement, const Expression& expression) {
+  const auto spoils_by_itself = [&](const ProgramStatement& one) {
+    if (const auto* set = std::get_if<ProgramSet>(&one.node))
+      return reads(expression, set->variable);
+    const bool pause = std::holds_alternative<ProgramWait>(one.node) ||
+                       std::holds_alternative<ProgramWaitUntil>(one.node) ||
+                       std::holds_alternative<ProgramThen>(one.node);
+    return pause && reads_input(expression);
+  };
+  bool found = spoils_by_itself(statement);
+  const PartsOfStatement parts([](const Expression&) {},
+                               [&](const ProgramBlock& block) {
+                                 for (const ProgramStatement& inner : block)
+                                   found = found || spoils(inner, expression);
+                               });
+  std::visit(parts, statement.node);
+  return found;
+}
+
+// What is evaluated when the statement begins, and only then.
+void for_each_beginning(ProgramStatement& statement, const Visit& visit) {
+  if (std::holds_alternative<ProgramWaitUntil>(statement.node)) return;
+  const auto* repeat = std::get_if<ProgramRepeat>(&statement.node);
+  if (repeat != nullptr && repeat->kind == RepeatKind::while_) return;
+  const PartsOfStatement parts(visit, [](ProgramBlock&) {});
+  std::visit(parts, statement.node);
+}
+
+// Puts a local in the place of a number, wherever that is worked out again.
+class Replacement {
+public:
+  Replacement(const Expression& number, std::size_t local) : number_(number) {
+    local_.operation = Operation::local;
+    local_.index = local;
+    local_.fact = number.fact;
+  }
+
+  [[nodiscard]] unsigned found() const { return found_; }
+  // Only counts, until told otherwise.
+  void replace() { replaces_ = true; }
+
+  void in(Expression& expression) {
+    if (expression.operation >= Operation::held) return;  // evaluated in other steps, too
+    if (expression == number_) {
+      ++found_;
+      if (replaces_) expression = local_;
+      return;
+    }
+    for (Expression& operand : expression.operands)
+      in(operand);
+  }
+
+  // False when the number is another one from there on.
+  bool in(ProgramStatement& statement) {
+    const bool spoilt = spoils(statement, number_);
+    for_each_beginning(statement, [this](Expression& expression) { in(expression); });
+    if (auto* choice = std::get_if<ProgramIf>(&statement.node)) {
+      in(choice->then_block);
+      in(choice->else_block);
+    } else if (auto* pick = std::get_if<ProgramPick>(&statement.node)) {
+      for (ProgramOption& option : pick->options)
+        in(option.body);
+    } else if (auto* repeat = std::get_if<ProgramRepeat>(&statement.node); repeat && !spoilt) {
+      in(repeat->body);
+    }
+    return !spoilt;
+  }
+
+private:
+  void in(ProgramBlock& block) {
+    for (ProgramStatement& statement : block)
+      if (!in(statement)) return;
+  }
+
+  Expression number_, local_;
+  unsigned found_ = 0;
+  bool replaces_ = false;
+};
+
+class Sharer {
+public:
+  // `left`: how many locals may still be made.
+  Sharer(ProgramBlock& response, std::size_t& left) : left_(left) {
+    for_each_statement(response, [this](const ProgramStatement& statement) {
+      if (const auto* local = std::get_if<ProgramLocal>(&statement.node))
+        next_local_ = std::max(next_local_, local->number + 1);
+    });
+    block(response);
+  }
+
+private:
+  void block(ProgramBlock& statements);
+  // The first part of `expression` that pays in `statements` from `from` on.
+  bool share_part(Expression& expression, ProgramBlock& statements, std::size_t from);
+  static bool go_through(Replacement& replacement, ProgramBlock& statements, std::size_t from);
+
+  std::size_t next_local_ = 0;
+  std::size_t& left_;
+};
+
+void Sharer::block(ProgramBlock& statements) {
+  for (std::size_t at = 0; at < statements.size(); ++at) {
+    bool found = true;
+    while (found && left_ > 0) {
+      found = false;
+      // A copy: to share a part puts a statement in front of this one.
+      std::vector<Expression> beginnings;
+      for_each_beginning(statements[at],
+                         [&](Expression& expression) { beginnings.push_back(expression); });
+      for (Expression& expression : beginnings)
+        found = found || share_part(expression, statements, at);
+      if (found) ++at;
+    }
+    const PartsOfStatement parts([](Expression&) {}, [this](ProgramBlock& inner) { block(inner); });
+    std::visit(parts, statements[at].node);
+  }
+}
+
+bool Sharer::share_part(Expression& expression, ProgramBlock& statements, std::size_t from) {
+  if (expression.operation >= Operation::held) return false;
+  if (is_number(expression) && is_pure(expression)) {
+    Replacement replacement(expression, next_local_);
+    go_through(replacement, statements, from);
+    if (replacement.found() > 1) {
+      replacement.replace();
+      go_through(replacement, statements, from);
+      const ProgramStatement& first = statements[from];
+      ProgramStatement local{ProgramLocal{next_local_++, expression}, first.line, first.span};
+      statements.insert(statements.begin() + static_cast<std::ptrdiff_t>(from), std::move(local));
+      --left_;
+      return true;
+    }
+  }
+  return std::any_of(expression.operands.begin(), expression.operands.end(),
+                     [&](Expression& part) { return share_part(part, statements, from); });
+}
+
+bool Sharer::go_through(Replacement& replacement, ProgramBlock& statements, std::size_t from) {
+  const std::size_t end = std::min(statements.size(), from + kReach);
+  for (std::size_t at = from; at < end; ++at)
+    if (!replacement.in(statements[at])) return false;
+  return true;
+}
+
+}  // namespace
+
+void share_numbers(Program& program) {
+  for (ProgramBehavior& behavior : program.behaviors) {
+    std::size_t left = kMaxShared;
+    for (ProgramRule& rule : behavior.rules) {
+      Sharer(rule.then_response, left);
+      Sharer(rule.else_response, left);
+    }
+  }
+}
+
+}  // namespace robosync::compiler

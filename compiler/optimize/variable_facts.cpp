@@ -1,0 +1,192 @@
+// By iteration: at first a variable is what it starts with; then all responses are followed again
+// and again, each time with what they were found to write, until nothing is added. What has grown a
+// few times is taken to grow as far as it can.
+//
+// A response to AT START runs once. If it does so in one go, it does not see what it has written
+// itself, so its writes do not feed on themselves.
+#include "compiler/optimize/variable_facts.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "compiler/codegen/walk.hpp"
+#include "compiler/optimize/flow.hpp"
+#include "compiler/sema/program_walk.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr unsigned kPatience = 3;     // changes, before what grows is widened
+constexpr unsigned kMaxChanges = 12;  // changes, before it is widened to the variable's limits
+
+// What a response leaves in a variable.
+struct Written {
+  std::optional<Fact> fact;
+  unsigned changes = 0;
+};
+
+struct Response {
+  ProgramBlock* block = nullptr;
+  bool once = false;
+  bool safety = false;
+  std::vector<Written> writes{};  // by variable
+};
+
+// The numbers of a program: what grows often stops at one of them.
+using Thresholds = std::set<vm::Value>;
+
+void add_numbers(const Expression& expression, Thresholds& thresholds) {
+  if (expression.operation == Operation::constant && expression.constant != vm::kUnknown) {
+    thresholds.insert(expression.constant);
+    thresholds.insert(-expression.constant);
+  }
+  for (const Expression& operand : expression.operands)
+    add_numbers(operand, thresholds);
+}
+
+void add_numbers(const ProgramBlock& block, Thresholds& thresholds) {
+  const PartsOfStatement parts(
+      [&](const Expression& expression) { add_numbers(expression, thresholds); },
+      [&](const ProgramBlock& inner) { add_numbers(inner, thresholds); });
+  for (const ProgramStatement& statement : block)
+    std::visit(parts, statement.node);
+}
+
+// Widens `next` in the directions in which it has grown. That it is whole is not affected: sums that
+// saturate are not.
+Fact widened(const Fact& before, Fact next, const ProgramVariable& variable,
+             const Thresholds& thresholds) {
+  if (next.low < before.low) {
+    const auto above = thresholds.upper_bound(next.low);
+    const vm::Value least = above == thresholds.begin() ? variable.min : *std::prev(above);
+    next.low = std::max(least, variable.min);
+  }
+  if (next.high > before.high) {
+    const auto most = thresholds.lower_bound(next.high);
+    next.high = std::min(most == thresholds.end() ? variable.max : *most, variable.max);
+  }
+  return next;
+}
+
+class Prover {
+public:
+  Prover(Program& program, const Robot& robot) : program_(program), robot_(robot) {
+    for (ProgramRule& rule : program.safety)
+      add(rule.then_response, false, true);
+    for (ProgramBehavior& behavior : program.behaviors)
+      for (ProgramRule& rule : behavior.rules) {
+        add(rule.then_response, rule.kind == vm::RuleKind::start, false);
+        add(rule.else_response, false, false);
+      }
+    count_shifts();
+    for (const Response& response : responses_)
+      add_numbers(*response.block, thresholds_);
+  }
+
+  VariableFacts prove() {
+    while (true) {
+      const VariableFacts anytime = without(nullptr);
+      bool grew = false;
+      for (Response& response : responses_)
+        if (follow(response, anytime)) grew = true;
+      if (!grew) return anytime;
+    }
+  }
+
+private:
+  void add(ProgramBlock& block, bool start, bool safety) {
+    if (block.empty()) return;
+    responses_.push_back({&block, start && !pauses(block), safety,
+                          std::vector<Written>(program_.variables.size())});
+  }
+  void count_shifts();
+  bool follow(Response& response, const VariableFacts& anytime);
+  [[nodiscard]] VariableFacts without(const Response* response) const;
+  [[nodiscard]] Fact initial(std::size_t place) const;
+  [[nodiscard]] Fact shifted(std::size_t place, const Fact& result, const Fact& difference) const;
+
+  Program& program_;
+  const Robot& robot_;
+  std::vector<Response> responses_;
+  Thresholds thresholds_;
+  std::vector<std::int64_t> shifts_;  // statements that RAISE or LOWER each variable
+};
+
+void Prover::count_shifts() {
+  shifts_.resize(program_.variables.size());
+  for (const Response& response : responses_)
+    for_each_statement(*response.block, [&](const ProgramStatement& statement) {
+      const auto* set = std::get_if<ProgramSet>(&statement.node);
+      if (set != nullptr && set->relative) ++shifts_[set->variable];
+    });
+}
+
+// A band is unknown when its input is, or between bands.
+Fact Prover::initial(std::size_t place) const {
+  const ProgramVariable& variable = program_.variables[place];
+  if (variable.kind == vm::VariableKind::band) return {false, true, 0, vm::kValueMax};
+  const Fact start = fact_of(variable.initial);
+  if (variable.fade == 0) return start;
+  Fact fading = either(start, fact_of(variable.fades_to));
+  fading.whole = false;  // on its way
+  return fading;
+}
+
+// Differences of several responses come together in one step, whatever each of them has seen.
+Fact Prover::shifted(std::size_t place, const Fact& result, const Fact& difference) const {
+  const ProgramVariable& variable = program_.variables[place];
+  Fact sum = result;
+  if (difference.low < 0) sum.low = variable.min;
+  if (difference.high > 0) sum.high = variable.max;
+  const std::int64_t most = (std::int64_t{variable.max} - variable.min) * (shifts_[place] + 1);
+  const bool whole_limits =
+      variable.min % vm::kScale == 0 && variable.max % vm::kScale == 0 && most <= vm::kValueMax;
+  sum.whole = result.whole && difference.whole && whole_limits;
+  return sum;
+}
+
+// The variables as all responses leave them, but this one if it runs once only.
+VariableFacts Prover::without(const Response* response) const {
+  VariableFacts facts;
+  for (std::size_t i = 0; i < program_.variables.size(); ++i) {
+    Fact fact = initial(i);
+    for (const Response& other : responses_) {
+      const bool counts = &other != response || shifts_[i] > 0;
+      if (counts && other.writes[i].fact) fact = either(fact, *other.writes[i].fact);
+    }
+    if (program_.variables[i].fade != 0) fact.whole = false;
+    facts.push_back(fact);
+  }
+  return facts;
+}
+
+// Did it write more than before?
+bool Prover::follow(Response& response, const VariableFacts& anytime) {
+  Flow flow(program_, robot_, anytime);
+  const VariableFacts entry = response.once ? without(&response) : anytime;
+  const WriteFacts found = flow.follow(*response.block, entry, !response.safety);
+  bool grew = false;
+  for (std::size_t i = 0; i < anytime.size(); ++i) {
+    if (!found.results[i]) continue;
+    Fact next = *found.results[i];
+    if (found.differences[i]) next = shifted(i, next, *found.differences[i]);
+    auto& [before, changes] = response.writes[i];
+    if (before) next = either(*before, next);
+    if (before == next) continue;
+    const bool last = ++changes > kMaxChanges;
+    if (before && changes > kPatience)
+      next = widened(*before, next, program_.variables[i], last ? Thresholds{} : thresholds_);
+    before = next;
+    grew = true;
+  }
+  return grew;
+}
+
+}  // namespace
+
+VariableFacts prove_variables(Program& program, const Robot& robot) {
+  return Prover(program, robot).prove();
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,144 @@
+// Simplified expressions give what they gave before, whatever their parts turn out to be.
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "compiler/optimize/expression_facts.hpp"
+#include "compiler/optimize/simplify.hpp"
+#include "compiler/sema/compute.hpp"
+#include "vm/arithmetic.hpp"
+
+using namespace robosync;
+using namespace robosync::compiler;
+
+namespace {
+
+using vm::Value;
+
+Expression constant(Value value) {
+  Expression made;
+  made.constant = value;
+  return made;
+}
+
+Expression variable(std::size_t place) {
+  Expression made;
+  made.operation = Operation::variable;
+  made.index = place;
+  return made;
+}
+
+Expression of(Operation operation, std::vector<Expression> operands) {
+  Expression made;
+  made.operation = operation;
+  made.operands = std::move(operands);
+  return made;
+}
+
+Value evaluate(const Expression& expression, const std::vector<Value>& variables) {
+  const auto operand = [&](std::size_t i) { return evaluate(expression.operands[i], variables); };
+  switch (expression.operation) {
+    case Operation::constant:
+      return expression.constant;
+    case Operation::variable:
+      return variables[expression.index];
+    case Operation::negate:
+      return vm::negate(operand(0));
+    case Operation::logical_not:
+      return vm::logical_not(operand(0));
+    default:
+      return compute(expression.operation, operand(0), operand(1));
+  }
+}
+
+const std::vector<Value> kValues = {
+    vm::kUnknown, vm::kValueMin, vm::kValueMin + 1, -2000000, -4000, -3996, -1001, -1000, -501, -500,
+    -1,           0,             1,                 499,      500,   1000,  1499,  1500,  3995, 3996,
+    4000,         1234567,       vm::kValueMax - 1, vm::kValueMax};
+
+class Maker {
+public:
+  explicit Maker(unsigned seed) : random_(seed) {}
+
+  Expression number(unsigned depth) {
+    if (depth == 0 || below(4) == 0) return below(2) == 0 ? variable(below(2)) : some_constant();
+    if (below(6) == 0) return of(Operation::negate, {number(depth - 1)});
+    const auto operation =
+        static_cast<Operation>(static_cast<unsigned>(Operation::add) + below(5));
+    return of(operation, {number(depth - 1), number(depth - 1)});
+  }
+
+  Expression truth(unsigned depth) {
+    if (depth > 0 && below(4) == 0) return of(Operation::logical_not, {truth(depth - 1)});
+    if (depth > 0 && below(3) == 0)
+      return of(below(2) == 0 ? Operation::logical_and : Operation::logical_or,
+                {truth(depth - 1), truth(depth - 1)});
+    const auto operation =
+        static_cast<Operation>(static_cast<unsigned>(Operation::less) + below(6));
+    return of(operation, {number(3), number(2)});
+  }
+
+private:
+  unsigned below(unsigned end) {
+    return std::uniform_int_distribution<unsigned>(0, end - 1)(random_);
+  }
+  Expression some_constant() {
+    return constant(kValues[1 + below(static_cast<unsigned>(kValues.size()) - 1)]);
+  }
+
+  std::mt19937 random_;
+};
+
+std::size_t size_of(const Expression& expression) {
+  std::size_t size = 1;
+  for (const Expression& operand : expression.operands)
+    size += size_of(operand);
+  return size;
+}
+
+}  // namespace
+
+TEST_CASE("simplified expressions give the same values") {
+  std::size_t saved = 0;
+  for (unsigned seed = 0; seed < 3000; ++seed) {
+    const Expression before = Maker(seed).truth(3);
+    Expression after = before;
+    simplify(after);
+    CHECK(size_of(after) <= size_of(before));
+    saved += size_of(before) - size_of(after);
+    for (const Value x : kValues)
+      for (const Value y : kValues) {
+        if (evaluate(before, {x, y}) == evaluate(after, {x, y})) continue;
+        CAPTURE(seed, x, y);
+        FAIL("another value");
+      }
+  }
+  CHECK(saved > 3000);
+}
+
+TEST_CASE("a comparison of a computed number becomes one of what it was computed from") {
+  // x / 8 < 0.5 is true up to 3.995, for 3.996 / 8 is rounded to 0.5.
+  Expression mean = of(Operation::less, {of(Operation::divide, {variable(0), constant(8000)}),
+                                         constant(500)});
+  simplify(mean);
+  CHECK(mean == of(Operation::less, {variable(0), constant(3996)}));
+
+  Expression falling = of(Operation::less, {of(Operation::subtract, {constant(5000), variable(0)}),
+                                            constant(2000)});
+  simplify(falling);
+  CHECK(falling == of(Operation::greater, {variable(0), constant(3000)}));
+
+  Expression never = of(Operation::greater, {of(Operation::divide, {variable(0), constant(8000)}),
+                                             constant(vm::kValueMax)});
+  simplify(never);
+  CHECK(never == of(Operation::less, {variable(0), constant(vm::kValueMin)}));
+}
+
+TEST_CASE("what draws, remembers or may divide by zero is not pure") {
+  CHECK(is_pure(of(Operation::divide, {variable(0), constant(1)})));
+  CHECK(!is_pure(of(Operation::divide, {variable(0), variable(1)})));
+  CHECK(!is_pure(of(Operation::modulo, {variable(0), constant(0)})));
+  CHECK(!is_pure(of(Operation::add, {of(Operation::random, {variable(0), variable(1)}),
+                                     constant(1)})));
+  CHECK(!is_pure(of(Operation::held, {variable(0)})));
+}
