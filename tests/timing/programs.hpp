@@ -23,7 +23,7 @@ inline tool::Program as_program(compiler::Result result) {
 
 // `file` from the top of the repository.
 inline tool::Program compile_example(const std::string& file) {
-  return as_program(tool::compile_file((kRoot / file).string(), ""));
+  return as_program(tool::compile_file((kRoot / file).string(), {}));
 }
 
 // On docs/robot.json.

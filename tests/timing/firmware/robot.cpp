@@ -106,7 +106,7 @@ void Robot::respond(std::size_t rule, Run run) {
   latch(behavior_of_[rule], machine.now);
   machine.output = output_.data();
   machine.output_end = output_.data() + output_.size();
-  machine.written = 0;
+  machine.shifted = 0;
   machine.assigned = 0;
   const vm::Progress progress = count_response(machine, code);
   places_[rule] = progress.pause == vm::Pause::ended ? nullptr : progress.next;
