@@ -35,6 +35,7 @@ bool takes_constant(Operation operation, std::size_t place, vm::Value value) {
 
 // By itself, a cell is as good as a constant, and sometimes better.
 void fold_operands(Expression& expression) {
+  if (expression.operation >= Operation::held) return;  // as simplify() does
   for (std::size_t place = 0; place < expression.operands.size(); ++place) {
     Expression& operand = expression.operands[place];
     fold_operands(operand);
