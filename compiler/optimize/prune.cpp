@@ -10,6 +10,7 @@
 #include "compiler/codegen/walk.hpp"
 #include "compiler/optimize/expression_facts.hpp"
 #include "compiler/optimize/simplify.hpp"
+#include "compiler/sema/program_walk.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -75,6 +76,11 @@ bool has_time_words(const ProgramBlock& block) {
   return found;
 }
 
+// A response owns all actuators that it has commands for while it runs, also those of branches.
+bool has_effect(const ProgramBlock& block) {
+  return has_time_words(block) || any_command(block, [](const ProgramCommand&) { return true; });
+}
+
 class Pruner {
 public:
   void block(ProgramBlock& statements) {
@@ -105,9 +111,8 @@ void Pruner::choose(ProgramStatement statement, ProgramBlock& result) {
   auto& choice = std::get<ProgramIf>(statement.node);
   const Fact& condition = choice.condition.fact;
   if (is_pure(choice.condition)) {
-    if (condition.never_true() && !has_time_words(choice.then_block)) choice.then_block.clear();
-    if (condition.high == vm::kTrue && !has_time_words(choice.else_block))
-      choice.else_block.clear();
+    if (condition.never_true() && !has_effect(choice.then_block)) choice.then_block.clear();
+    if (condition.high == vm::kTrue && !has_effect(choice.else_block)) choice.else_block.clear();
     if (choice.then_block.empty() && choice.else_block.empty()) return;
     const bool is_true = condition.low == vm::kTrue;
     const ProgramBlock& never = is_true ? choice.else_block : choice.then_block;
