@@ -10,6 +10,7 @@
 #include "compiler/codegen/walk.hpp"
 #include "compiler/optimize/expression_facts.hpp"
 #include "compiler/optimize/simplify.hpp"
+#include "compiler/sema/program_walk.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -35,6 +36,7 @@ bool takes_constant(Operation operation, std::size_t place, vm::Value value) {
 
 // By itself, a cell is as good as a constant, and sometimes better.
 void fold_operands(Expression& expression) {
+  if (expression.operation >= Operation::held) return;  // as simplify() does
   for (std::size_t place = 0; place < expression.operands.size(); ++place) {
     Expression& operand = expression.operands[place];
     fold_operands(operand);
@@ -74,6 +76,11 @@ bool has_time_words(const ProgramBlock& block) {
   return found;
 }
 
+// A response owns all actuators that it has commands for while it runs, also those of branches.
+bool has_effect(const ProgramBlock& block) {
+  return has_time_words(block) || any_command(block, [](const ProgramCommand&) { return true; });
+}
+
 class Pruner {
 public:
   void block(ProgramBlock& statements) {
@@ -104,9 +111,8 @@ void Pruner::choose(ProgramStatement statement, ProgramBlock& result) {
   auto& choice = std::get<ProgramIf>(statement.node);
   const Fact& condition = choice.condition.fact;
   if (is_pure(choice.condition)) {
-    if (condition.never_true() && !has_time_words(choice.then_block)) choice.then_block.clear();
-    if (condition.high == vm::kTrue && !has_time_words(choice.else_block))
-      choice.else_block.clear();
+    if (condition.never_true() && !has_effect(choice.then_block)) choice.then_block.clear();
+    if (condition.high == vm::kTrue && !has_effect(choice.else_block)) choice.else_block.clear();
     if (choice.then_block.empty() && choice.else_block.empty()) return;
     const bool is_true = condition.low == vm::kTrue;
     const ProgramBlock& never = is_true ? choice.else_block : choice.then_block;

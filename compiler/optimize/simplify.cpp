@@ -192,6 +192,7 @@ void simplify_binary(Expression& expression) {
 }  // namespace
 
 void simplify(Expression& expression) {
+  if (expression.operation >= Operation::held) return;
   for (Expression& operand : expression.operands)
     simplify(operand);
   switch (expression.operation) {
@@ -202,8 +203,7 @@ void simplify(Expression& expression) {
     default:
       break;
   }
-  const bool time_word = expression.operation >= Operation::held;
-  if (!time_word && expression.operands.size() == 2) simplify_binary(expression);
+  if (expression.operands.size() == 2) simplify_binary(expression);
 }
 
 Expression negated(Expression condition) {

@@ -6,7 +6,8 @@
 namespace robosync::compiler {
 
 // Unknown stays unknown, and what saturates still does. Facts are not looked at, and those of new
-// parts are not filled in.
+// parts are not filled in. Time words are left alone: equal ones in a response share a rule, so to
+// make two of them equal would change the numbers of the rules behind.
 void simplify(Expression& expression);
 
 // NOT `condition`, simplified.
