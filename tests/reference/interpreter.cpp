@@ -21,7 +21,7 @@ Interpreter::Interpreter(const compiler::Program& program, const compiler::Robot
       trace_(trace),
       no_chance_(seed, 0),
       inputs_(program, robot, trace),
-      actuators_(robot, trace),
+      actuators_(program, robot, trace),
       important_(robot.actuators.size()) {
   const std::uint32_t first = program.safety.empty() ? 0 : 1;
   for (std::size_t rank = 0; rank < program.behaviors.size(); ++rank) {
