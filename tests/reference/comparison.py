@@ -115,7 +115,7 @@ def traces(source, image, readings, folder, rsc=RSC):
     end_ms = (readings[-1].at_ms if readings else 0) + AFTER_MS
     ours = call(rsc, "run", image, "--scenario", scenario, "--duration", f"{end_ms}ms", "--format", "json")
     if ours.returncode:
-        raise RuntimeError(ours.stderr)
+        raise (Refused if "would refuse" in ours.stderr else RuntimeError)(ours.stderr)
     lines = ours.stdout.splitlines()
     seed = json.loads(lines[0])["seed"]
     theirs = call(REFERENCE, source, programs.CONFIG, scenario, end_ms, seed)

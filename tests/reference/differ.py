@@ -36,13 +36,13 @@ def check(seed, rsc=comparison.RSC, scripts=SCRIPTS):
         for options in OPTIONS:
             try:
                 source, image = comparison.compile_program(text, folder, *options, rsc=rsc)
+                for script in range(scripts):
+                    readings = programs.drawn_readings(seed * scripts + script, text)
+                    difference = comparison.compare(source, image, readings, folder, rsc)
+                    if difference is not None:
+                        cases.append(Case(text, readings, difference))
             except comparison.Refused:
                 return None
-            for script in range(scripts):
-                readings = programs.drawn_readings(seed * scripts + script, text)
-                difference = comparison.compare(source, image, readings, folder, rsc)
-                if difference is not None:
-                    cases.append(Case(text, readings, difference))
     return cases
 
 

@@ -47,7 +47,6 @@ void Inputs::enter_readings(Millis now, bool news) {
   for (auto& [ref, channel] : channels_) {
     Number& seen = snapshot_.channels[ref];
     if (channel.value && is_stale(channel, now)) {
-      channel.value = std::nullopt;
       if (seen) trace_.channel("stale", ref, std::nullopt);
       seen = std::nullopt;
     }

@@ -41,9 +41,11 @@ Interpreter::Interpreter(const compiler::Program& program, const compiler::Robot
     }
   }
   for (const compiler::ProgramRule& rule : program.safety) {
-    guards_.push_back({&rule, false});
-    collect(rule.condition, guarded_);
-    if (rule.resume) collect(*rule.resume, guarded_);
+    Guard guard;
+    guard.rule = &rule;
+    collect(rule.condition, guard.channels);
+    if (rule.resume) collect(*rule.resume, guard.channels);
+    guards_.push_back(std::move(guard));
   }
 }
 
@@ -69,15 +71,11 @@ bool Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) 
   std::map<compiler::ChannelRef, std::int64_t> last;
   for (; next < readings.size() && readings[next].at <= now_.at; ++next)
     last[readings[next].channel] = readings[next].value;
-  bool news = false;
-  bool guarded = false;
-  for (const auto& [channel, value] : last) {
-    if (!inputs_.feed(channel, value, now_.at)) continue;
-    news = true;
-    guarded = guarded || guarded_.contains(channel);
-  }
-  if (guarded) guard(true);
-  return news;
+  std::set<compiler::ChannelRef> news;
+  for (const auto& [channel, value] : last)
+    if (inputs_.feed(channel, value, now_.at)) news.insert(channel);
+  if (!news.empty()) guard(false, news);
+  return !news.empty();
 }
 
 void Interpreter::advance_actuators(bool important) {

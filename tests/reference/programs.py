@@ -113,7 +113,7 @@ class Generator(generator.Generator):
             f"REPEAT count MOD 4 TIMES\n{self._block(depth)}    WAIT {self._pause()}\n    END",
             f"REPEAT (last) TIMES\n{self._block(depth)}    THEN\n    END",
             "WAIT count * 10ms", "WAIT RANDOM(0s, 0.1s)",
-            f"WAIT UNTIL {self._condition(0)} FOR 40ms WITHIN 600ms",
+            f"WAIT UNTIL ({self._condition(0)} FOR 40ms) WITHIN 600ms",
             f"PICK ONE\n    OPTION\n{self._block(depth)}    OPTION\n{self._block(depth)}"
             f"    OPTION\n{self._block(depth)}    END"]
 

@@ -127,7 +127,7 @@ void Response::run(const compiler::ProgramIf& node) {
 void Response::run(const compiler::ProgramRepeat& node) {
   std::int64_t rounds = 0;
   if (node.kind == compiler::RepeatKind::times) {
-    rounds = number(node.control).value_or(0) / 1000;
+    rounds = (number(node.control).value_or(0) + 999) / 1000;
     if (rounds < 1) return;
   }
   if (node.kind == compiler::RepeatKind::while_ && truth(node.control) != true) return;

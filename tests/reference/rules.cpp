@@ -166,29 +166,35 @@ void Interpreter::interrupt_halted() {
 
 // "It trips whenever its condition is true. Unknown is danger", but not before every sensor had the
 // time to measure.
-void Interpreter::guard(bool look) {
-  if (look) looked_at_ = now_.at;
+void Interpreter::guard(bool all, const std::set<compiler::ChannelRef>& channels) {
   ++guard_now_.step;
   guard_now_.at = now_.at;
-  const Snapshot readings = inputs_.readings(looked_at_);
-  const Sight sight{readings};
   for (Guard& guard : guards_) {
-    evaluator_.remember(guard.rule->condition, sight, guard_now_);
-    if (guard.rule->resume) evaluator_.remember(*guard.rule->resume, sight, guard_now_);
-    const Truth danger = evaluator_.truth(guard.rule->condition, sight);
-    if (danger == true || (!danger && now_.at >= kGraceEnds)) {
-      if (!guard.tripped) trip(guard);
-      continue;
-    }
-    if (!guard.tripped || !guard.rule->resume) continue;
-    if (evaluator_.truth(*guard.rule->resume, sight) != true) continue;
-    const std::set<std::size_t> before = halted();
-    guard.tripped = false;
-    trace_.rule("resume", *guard.rule, nullptr);
-    const std::set<std::size_t> after = halted();
-    for (const std::size_t actuator : before)
-      if (!after.contains(actuator)) actuators_.release(actuator);
+    const bool reads = std::any_of(channels.begin(), channels.end(),
+                                   [&](const auto& channel) { return guard.channels.contains(channel); });
+    if (all || reads) guard.looked_at = now_.at;
+    look_at(guard);
   }
+}
+
+void Interpreter::look_at(Guard& guard) {
+  const Snapshot readings = inputs_.readings(guard.looked_at);
+  const Sight sight{readings};
+  evaluator_.remember(guard.rule->condition, sight, guard_now_);
+  if (guard.rule->resume) evaluator_.remember(*guard.rule->resume, sight, guard_now_);
+  const Truth danger = evaluator_.truth(guard.rule->condition, sight);
+  if (danger == true || (!danger && now_.at >= kGraceEnds)) {
+    if (!guard.tripped) trip(guard);
+    return;
+  }
+  if (!guard.tripped || !guard.rule->resume) return;
+  if (evaluator_.truth(*guard.rule->resume, sight) != true) return;
+  const std::set<std::size_t> before = halted();
+  guard.tripped = false;
+  trace_.rule("resume", *guard.rule, nullptr);
+  const std::set<std::size_t> after = halted();
+  for (const std::size_t actuator : before)
+    if (!after.contains(actuator)) actuators_.release(actuator);
 }
 
 void Interpreter::trip(Guard& guard) {
