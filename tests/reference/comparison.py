@@ -4,6 +4,10 @@ Compared is, for every millisecond, which events there are, and in which order e
 commands. Not compared: the numbers of steps and rules; zero_divide, which depends on how often a
 condition is looked at; that a WHILE tries in vain again (`lose` without `fire`); whether an actuator
 was just done when it is cancelled (`done` beside `cancel`): that is a matter of the threads' ranks.
+
+A *tie* is a millisecond in which rsc makes several steps, or a step while an actuator is done: which
+of them sees what is a matter of ranks, too, and not of the language. A difference that begins in a tie
+ends the comparison of that script, and is counted.
 """
 
 import json
@@ -20,6 +24,8 @@ RSC = ROOT / "build/host/rsc"
 AFTER_MS = 3_000  # after the last reading
 TIMEOUT = 60
 IGNORED = {"activated", "zero_divide"}
+WITHOUT_STEP = {"done", "trip", "halt", "resume", "release"}  # come between steps
+IN_STEP = {"input", "fire", "win", "lose", "interrupt", "go_on", "set"}
 
 
 class Refused(Exception):
@@ -28,6 +34,7 @@ class Refused(Exception):
 
 class Difference(NamedTuple):
     at_ms: int
+    tie: bool
     rsc: list  # events that only rsc has
     reference: list
 
@@ -96,6 +103,14 @@ def text_of(event):
     return json.dumps(event, sort_keys=True)
 
 
+def is_tie(lines, at_ms):
+    events = [e for e in map(json.loads, lines) if e["t_us"] // 1000 == at_ms]
+    kinds = {e["event"] for e in events}
+    steps = {e["step"] for e in events if e["event"] not in WITHOUT_STEP}
+    apart = bool(kinds & WITHOUT_STEP) and bool(kinds & IN_STEP)
+    return len(steps) > 1 or apart
+
+
 def first_difference(rsc_lines, reference_lines):
     """Nothing when they are the same."""
     rsc, reference = by_millisecond(rsc_lines), by_millisecond(reference_lines)
@@ -103,9 +118,10 @@ def first_difference(rsc_lines, reference_lines):
         left, right = rsc.get(at, []), reference.get(at, [])
         ours, theirs = Counter(map(text_of, left)), Counter(map(text_of, right))
         if ours != theirs:
-            return Difference(at, list((ours - theirs).elements()), list((theirs - ours).elements()))
+            return Difference(at, is_tie(rsc_lines, at), list((ours - theirs).elements()),
+                              list((theirs - ours).elements()))
         if commands(left) != commands(right):
-            return Difference(at, [*map(text_of, left)], [*map(text_of, right)])
+            return Difference(at, is_tie(rsc_lines, at), [*map(text_of, left)], [*map(text_of, right)])
     return None
 
 

@@ -28,10 +28,16 @@ class Case(NamedTuple):
     difference: comparison.Difference
 
 
+class Result(NamedTuple):
+    compared: int = 0  # scripts
+    ties: int = 0
+    cases: tuple = ()  # that differ
+
+
 def check(seed, rsc=comparison.RSC, scripts=SCRIPTS):
-    """None: refused by the compiler; else the cases that differ."""
+    """Nothing is compared when the compiler refuses the program."""
     text = programs.program(seed)
-    cases = []
+    compared, ties, cases = 0, 0, []
     with tempfile.TemporaryDirectory(prefix="robosync-reference-") as folder:
         for options in OPTIONS:
             try:
@@ -39,11 +45,14 @@ def check(seed, rsc=comparison.RSC, scripts=SCRIPTS):
                 for script in range(scripts):
                     readings = programs.drawn_readings(seed * scripts + script, text)
                     difference = comparison.compare(source, image, readings, folder, rsc)
-                    if difference is not None:
+                    compared += 1
+                    if difference is not None and difference.tie:
+                        ties += 1
+                    elif difference is not None:
                         cases.append(Case(text, readings, difference))
             except comparison.Refused:
-                return None
-    return cases
+                return Result()
+    return Result(compared, ties, tuple(cases))
 
 
 def shown(case):
@@ -60,26 +69,29 @@ def main():
     parser.add_argument("--all", action="store_true", help="go on after a difference")
     wanted = parser.parse_args()
     seeds = range(wanted.seed, wanted.seed + wanted.programs)
-    compared = refused = differ = 0
+    compared = ties = differ = refused = 0
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        for seed, cases in zip(seeds, pool.map(lambda s: check(s, wanted.rsc), seeds)):
-            if cases is None:
-                refused += 1
-                continue
-            compared += 1
-            if not cases:
-                continue
-            differ += 1
-            print(f"program {seed}: {cases[0].difference}", flush=True)
-            if wanted.all:
-                continue
-            pool.shutdown(cancel_futures=True)
-            if not wanted.no_shrink:
-                text, readings = shrink.shrunk(cases[0].text, cases[0].readings, wanted.rsc)
-                print(text, *readings, sep="\n")
-            break
-    print(f"{compared} programs compared, {differ} differ; {refused} are no programs")
+        for seed, result in zip(seeds, pool.map(lambda s: check(s, wanted.rsc), seeds)):
+            compared += result.compared
+            ties += result.ties
+            differ += len(result.cases)
+            refused += result.compared == 0
+            for case in result.cases[:1]:
+                print(f"program {seed}: {case.difference}", flush=True)
+            if result.cases and not wanted.all:
+                pool.shutdown(cancel_futures=True)
+                report(result.cases[0], wanted)
+                break
+    print(f"{compared} scripts compared, {differ} differ, {ties} as far as a tie; "
+          f"{refused} programs refused")
     return 1 if differ or not compared else 0
+
+
+def report(case, wanted):
+    if not wanted.no_shrink:
+        text, readings = shrink.shrunk(case.text, case.readings, wanted.rsc)
+        case = case._replace(text=text, readings=readings)
+    print(shown(case))
 
 
 if __name__ == "__main__":

@@ -95,7 +95,7 @@ private:
   void guard(bool all, const std::set<compiler::ChannelRef>& channels = {});
   void look_at(Guard& guard);
 
-  void trip(Guard& guard);
+  void trip(Guard& guard, const Snapshot& readings);
   Surroundings around(std::size_t rule);
   [[nodiscard]] const std::set<std::size_t>& actuators(std::size_t rule, bool side) const;
   [[nodiscard]] std::set<std::size_t> halted() const;

@@ -184,7 +184,7 @@ void Interpreter::look_at(Guard& guard) {
   if (guard.rule->resume) evaluator_.remember(*guard.rule->resume, sight, guard_now_);
   const Truth danger = evaluator_.truth(guard.rule->condition, sight);
   if (danger == true || (!danger && now_.at >= kGraceEnds)) {
-    if (!guard.tripped) trip(guard);
+    if (!guard.tripped) trip(guard, readings);
     return;
   }
   if (!guard.tripped || !guard.rule->resume) return;
@@ -197,14 +197,14 @@ void Interpreter::look_at(Guard& guard) {
     if (!after.contains(actuator)) actuators_.release(actuator);
 }
 
-void Interpreter::trip(Guard& guard) {
+void Interpreter::trip(Guard& guard, const Snapshot& readings) {
   trace_.rule("trip", *guard.rule, nullptr);
   const std::set<std::size_t> before = halted();
   guard.tripped = true;
   for (const std::size_t actuator : actuators_of(guard.rule->then_response))
     if (!before.contains(actuator)) actuators_.halt(actuator);
   Response response(guard.rule->then_response, rules_.size());
-  const Surroundings here{evaluator_, no_chance_, trace_, inputs_, now_.at, false};
+  const Surroundings here{evaluator_, no_chance_, trace_, inputs_, readings, now_.at, false};
   const Output output = response.run(here);
   inputs_.stage({output.changes});
 }

@@ -12,7 +12,8 @@ def differs(text, readings, rsc):
     with tempfile.TemporaryDirectory(prefix="robosync-shrink-") as folder:
         try:
             source, image = comparison.compile_program(text, folder, rsc=rsc)
-            return comparison.compare(source, image, readings, folder, rsc) is not None
+            difference = comparison.compare(source, image, readings, folder, rsc)
+            return difference is not None and not difference.tie
         except (comparison.Refused, RuntimeError):
             return False
 
