@@ -11,16 +11,18 @@ ends the comparison of that script, and is counted.
 """
 
 import json
+import os
 import subprocess
 from collections import Counter, defaultdict
 from pathlib import Path
 from typing import NamedTuple
 
-import programs
+import drawn
 
 ROOT = Path(__file__).resolve().parents[2]
-REFERENCE = ROOT / "build/host/tests/reference/reference"
-RSC = ROOT / "build/host/rsc"
+BUILD = Path(os.environ.get("ROBOSYNC_BUILD", ROOT / "build/host"))
+REFERENCE = BUILD / "tests/reference/reference"
+RSC = BUILD / "rsc"
 AFTER_MS = 3_000  # after the last reading
 TIMEOUT = 60
 IGNORED = {"activated", "zero_divide"}
@@ -55,7 +57,7 @@ def compile_program(text, folder, *options, rsc=RSC):
     source = Path(folder) / "program.rsl"
     image = Path(folder) / ("program" + "".join(options) + ".rsb")
     source.write_text(text)
-    done = call(rsc, "compile", source, "--config", programs.CONFIG, "-o", image, *options)
+    done = call(rsc, "compile", source, "--config", drawn.CONFIG, "-o", image, *options)
     if done.returncode:
         raise Refused(done.stderr)
     return source, image
@@ -66,7 +68,7 @@ def write_scenario(readings, folder):
     for at_ms, channel, value in readings:
         sensor, name = channel.split(".")
         stimuli.append({"at": f"{at_ms}ms", "sensor": sensor, "channel": name,
-                        "value": f"{value}{programs.UNITS[channel]}"})
+                        "value": f"{value}{drawn.UNITS[channel]}"})
     path = Path(folder) / "scenario.json"
     path.write_text(json.dumps({"stimuli": stimuli}))
     return path
@@ -134,7 +136,7 @@ def traces(source, image, readings, folder, rsc=RSC):
         raise (Refused if "would refuse" in ours.stderr else RuntimeError)(ours.stderr)
     lines = ours.stdout.splitlines()
     seed = json.loads(lines[0])["seed"]
-    theirs = call(REFERENCE, source, programs.CONFIG, scenario, end_ms, seed)
+    theirs = call(REFERENCE, source, drawn.CONFIG, scenario, end_ms, seed)
     if theirs.returncode:
         raise RuntimeError(theirs.stderr)
     return lines, theirs.stdout.splitlines()

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import comparison
-import programs
+import drawn
 import shrink
 
 SCRIPTS = 3  # of readings for each program
@@ -36,14 +36,14 @@ class Result(NamedTuple):
 
 def check(seed, rsc=comparison.RSC, scripts=SCRIPTS):
     """Nothing is compared when the compiler refuses the program."""
-    text = programs.program(seed)
+    text = drawn.program(seed)
     compared, ties, cases = 0, 0, []
     with tempfile.TemporaryDirectory(prefix="robosync-reference-") as folder:
         for options in OPTIONS:
             try:
                 source, image = comparison.compile_program(text, folder, *options, rsc=rsc)
                 for script in range(scripts):
-                    readings = programs.drawn_readings(seed * scripts + script, text)
+                    readings = drawn.readings(seed * scripts + script, text)
                     difference = comparison.compare(source, image, readings, folder, rsc)
                     compared += 1
                     if difference is not None and difference.tie:

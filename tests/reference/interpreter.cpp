@@ -153,8 +153,8 @@ std::string Interpreter::name_of(const Rule& rule) {
 }
 
 Surroundings Interpreter::around(std::size_t rule) {
-  return {evaluator_, chances_[rules_[rule].rank], trace_, inputs_, inputs_.snapshot(), now_.at,
-          !actuators_.works_for(rule)};
+  return {evaluator_, chances_[rules_[rule].rank], trace_, inputs_, inputs_.snapshot(),
+          now_.at,    !actuators_.works_for(rule)};
 }
 
 void Interpreter::run_responses() {

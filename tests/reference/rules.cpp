@@ -42,7 +42,8 @@ std::optional<bool> Interpreter::wish(std::size_t r) const {
   if (rule.waiting && now_.at <= rule.waiting->until) return rule.waiting->side;
   const bool cools = rule.started && now_.at < *rule.started + rule.rule->cooldown;
   const bool wants = rule.rule->kind == vm::RuleKind::while_ && rule.last == true;
-  return wants && !rule.running && !cools && rule.ran < now_.at ? std::optional(true) : std::nullopt;
+  return wants && !rule.running && !cools && rule.ran < now_.at ? std::optional(true)
+                                                                : std::nullopt;
 }
 
 // "After the response has started, further triggers are dropped until the time is over."
@@ -70,7 +71,7 @@ void Interpreter::look_at_while(std::size_t r, std::vector<Claim>& claims) {
   const bool rises = truth == true && rule.last != true;
   rule.last = truth == true;
   if (truth != true) {
-      if (rule.running) interrupt(r, name_of(rule));
+    if (rule.running) interrupt(r, name_of(rule));
     return;
   }
   if (rises) trigger(r, true, claims);
@@ -112,8 +113,8 @@ void Interpreter::serve(const Claim& claim) {
     interrupt(loser, name_of(rule));
   trace_.rule("win", *rule.rule, rule.behavior, claim.side);
   const auto& block = claim.side ? rule.rule->then_response : rule.rule->else_response;
-  rule.running = Running{Response(block, claim.rule), claim.side,
-                         actuators(claim.rule, claim.side), true};
+  rule.running =
+      Running{Response(block, claim.rule), claim.side, actuators(claim.rule, claim.side), true};
   rule.waiting.reset();
   rule.started = now_.at;
 }
@@ -170,8 +171,9 @@ void Interpreter::guard(bool all, const std::set<compiler::ChannelRef>& channels
   ++guard_now_.step;
   guard_now_.at = now_.at;
   for (Guard& guard : guards_) {
-    const bool reads = std::any_of(channels.begin(), channels.end(),
-                                   [&](const auto& channel) { return guard.channels.contains(channel); });
+    const bool reads = std::any_of(channels.begin(), channels.end(), [&](const auto& channel) {
+      return guard.channels.contains(channel);
+    });
     if (all || reads) guard.looked_at = now_.at;
     look_at(guard);
   }

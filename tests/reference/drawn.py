@@ -122,13 +122,13 @@ def program(seed):
     return Generator(seed).program()
 
 
-def drawn_readings(seed, text, count=40):
+def readings(seed, text, count=40):
     """`count` readings of what the program reads: the image has no other channels."""
     random_ = random.Random(f"readings {seed}")
     channels = [c for c in CHANNELS if c.replace(".", " ") in text]
-    at, readings = 0, []
+    at, result = 0, []
     for _ in range(count):
         channel = random_.choice(channels)
-        readings.append(Reading(at, channel, random_.choice(CHANNELS[channel])))
+        result.append(Reading(at, channel, random_.choice(CHANNELS[channel])))
         at += random_.choice(GAPS_MS)
-    return readings
+    return result
