@@ -7,6 +7,7 @@ Ends with code 1 and the smallest case that it finds when something differs.
 """
 
 import argparse
+import functools
 import os
 import sys
 import tempfile
@@ -19,7 +20,13 @@ import drawn
 import shrink
 
 SCRIPTS = 3  # of readings for each program
-OPTIONS = [()]  # of rsc compile, each of which must give the same
+LEVELS = [("-O0",), ("-O1",)]  # of rsc compile, each of which must give the same
+
+
+@functools.cache
+def options_of(rsc):
+    """What a compiler without levels has: one, which is not named."""
+    return LEVELS if "-O0" in comparison.call(rsc, "compile", "--help").stdout else [()]
 
 
 class Case(NamedTuple):
@@ -39,7 +46,7 @@ def check(seed, rsc=comparison.RSC, scripts=SCRIPTS):
     text = drawn.program(seed)
     compared, ties, cases = 0, 0, []
     with tempfile.TemporaryDirectory(prefix="robosync-reference-") as folder:
-        for options in OPTIONS:
+        for options in options_of(rsc):
             try:
                 source, image = comparison.compile_program(text, folder, *options, rsc=rsc)
                 for script in range(scripts):
