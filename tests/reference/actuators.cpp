@@ -27,7 +27,20 @@ Millis duration(const Order& order) {
 
 }  // namespace
 
-bool Actuators::submit(std::size_t actuator, const Order& order) {
+Actuators::Actuators(const compiler::Program& program, const compiler::Robot& robot, Trace& trace)
+    : trace_(trace), queues_(robot.actuators.size()) {
+  for (const compiler::ActuatorConfig& actuator : robot.actuators)
+    limits_.push_back({actuator.min, actuator.max, actuator.speed_limit});
+  for (const auto& [actuator, speed] : program.speed_limits)
+    limits_[actuator].speed = std::min<std::int64_t>(limits_[actuator].speed, speed);
+}
+
+bool Actuators::submit(std::size_t actuator, Order order) {
+  const Limits& limits = limits_[actuator];
+  for (auto& [param, value] : order.given) {
+    if (value && param == vm::Param::to) value = std::clamp(*value, limits.least, limits.most);
+    if (value && param == vm::Param::at) value = std::clamp<std::int64_t>(*value, 0, limits.speed);
+  }
   Queue& queue = queues_[actuator];
   if (order.command->verb.action == vm::Action::stop) {
     if (queue.busy) cancel(actuator);

@@ -12,10 +12,11 @@ namespace robosync::reference {
 
 class Actuators {
 public:
-  Actuators(const compiler::Robot& robot, Trace& trace) : trace_(trace), queues_(robot.actuators.size()) {}
+  Actuators(const compiler::Program& program, const compiler::Robot& robot, Trace& trace);
 
-  // False if too many wait already: the command is dropped.
-  bool submit(std::size_t actuator, const Order& order);
+  // False if too many wait already: the command is dropped. "What is out of the actuator's range is
+  // moved to its end", and no speed is above the LIMIT.
+  bool submit(std::size_t actuator, Order order);
   void start(std::size_t actuator, Millis now);  // if it is idle and has something to do
   void cancel(std::size_t actuator);
   void halt(std::size_t actuator);
@@ -25,6 +26,9 @@ public:
   [[nodiscard]] bool works_for(std::size_t rule) const;
 
 private:
+  struct Limits {
+    std::int64_t least = 0, most = 0, speed = 0;
+  };
   struct Queue {
     std::deque<Order> orders;  // the first one is under way if busy
     bool busy = false;
@@ -33,6 +37,7 @@ private:
   };
   Trace& trace_;
   std::vector<Queue> queues_;
+  std::vector<Limits> limits_;
 };
 
 }  // namespace robosync::reference

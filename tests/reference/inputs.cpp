@@ -47,7 +47,6 @@ void Inputs::enter_readings(Millis now, bool news) {
   for (auto& [ref, channel] : channels_) {
     Number& seen = snapshot_.channels[ref];
     if (channel.value && is_stale(channel, now)) {
-      channel.value = std::nullopt;
       if (seen) trace_.channel("stale", ref, std::nullopt);
       seen = std::nullopt;
     }
@@ -85,8 +84,7 @@ void Inputs::enter_variables(Millis now) {
     for (auto response = step.rbegin(); response != step.rend(); ++response)
       for (const auto& [variable, change] : *response) {
         const auto before = values.emplace(variable, *snapshot_.variables[variable]).first->second;
-        values[variable] =
-            clamped(variable, change.set ? *change.set : *add(before, change.raise));
+        values[variable] = clamped(variable, change.set ? *change.set : *add(before, change.raise));
       }
   staged_.clear();
   for (const auto& [variable, value] : values) {
@@ -112,8 +110,9 @@ void Inputs::fade(Millis now) {
     if (since > 0 && since % kFadeEvery == 0) {
       const compiler::ProgramVariable& config = program_.variables[variable];
       const long double part = static_cast<long double>(config.fade) / 2147483648.0L;
-      left = static_cast<std::int64_t>(static_cast<long double>(fade.way) *
-                                       std::pow(part, static_cast<long double>(since / kFadeEvery)));
+      left =
+          static_cast<std::int64_t>(static_cast<long double>(fade.way) *
+                                    std::pow(part, static_cast<long double>(since / kFadeEvery)));
       snapshot_.variables[variable] = config.fades_to + left;
     }
     next = left == 0 ? fades_.erase(next) : std::next(next);
@@ -145,10 +144,10 @@ Number Inputs::smoothed(const compiler::ProgramCheck& check, Smoothing& smoothin
 // by the margin."
 void Inputs::check(const compiler::ProgramCheck& check, Smoothing& smoothing, Millis now) {
   const bool channel = check.input.operation == compiler::Operation::input;
-  const Number value = smoothed(check, smoothing,
-                                channel ? snapshot_.channels[check.input.channel]
-                                        : snapshot_.variables[check.input.index],
-                                now);
+  const Number value = smoothed(
+      check, smoothing,
+      channel ? snapshot_.channels[check.input.channel] : snapshot_.variables[check.input.index],
+      now);
   if (!value) {
     put(check.variable, std::nullopt);
     return;

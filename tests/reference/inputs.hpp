@@ -36,7 +36,7 @@ public:
 private:
   struct Channel {
     const compiler::ChannelConfig* config = nullptr;
-    Number value;      // as last published
+    Number value;  // as last published
     bool news = false;
     Millis heard = 0;  // when the last reading came
   };

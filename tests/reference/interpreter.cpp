@@ -21,7 +21,7 @@ Interpreter::Interpreter(const compiler::Program& program, const compiler::Robot
       trace_(trace),
       no_chance_(seed, 0),
       inputs_(program, robot, trace),
-      actuators_(robot, trace),
+      actuators_(program, robot, trace),
       important_(robot.actuators.size()) {
   const std::uint32_t first = program.safety.empty() ? 0 : 1;
   for (std::size_t rank = 0; rank < program.behaviors.size(); ++rank) {
@@ -41,9 +41,11 @@ Interpreter::Interpreter(const compiler::Program& program, const compiler::Robot
     }
   }
   for (const compiler::ProgramRule& rule : program.safety) {
-    guards_.push_back({&rule, false});
-    collect(rule.condition, guarded_);
-    if (rule.resume) collect(*rule.resume, guarded_);
+    Guard guard;
+    guard.rule = &rule;
+    collect(rule.condition, guard.channels);
+    if (rule.resume) collect(*rule.resume, guard.channels);
+    guards_.push_back(std::move(guard));
   }
 }
 
@@ -69,15 +71,11 @@ bool Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) 
   std::map<compiler::ChannelRef, std::int64_t> last;
   for (; next < readings.size() && readings[next].at <= now_.at; ++next)
     last[readings[next].channel] = readings[next].value;
-  bool news = false;
-  bool guarded = false;
-  for (const auto& [channel, value] : last) {
-    if (!inputs_.feed(channel, value, now_.at)) continue;
-    news = true;
-    guarded = guarded || guarded_.contains(channel);
-  }
-  if (guarded) guard(true);
-  return news;
+  std::set<compiler::ChannelRef> news;
+  for (const auto& [channel, value] : last)
+    if (inputs_.feed(channel, value, now_.at)) news.insert(channel);
+  if (!news.empty()) guard(false, news);
+  return !news.empty();
 }
 
 void Interpreter::advance_actuators(bool important) {
@@ -155,8 +153,8 @@ std::string Interpreter::name_of(const Rule& rule) {
 }
 
 Surroundings Interpreter::around(std::size_t rule) {
-  return {evaluator_, chances_[rules_[rule].rank], trace_, inputs_, now_.at,
-          !actuators_.works_for(rule)};
+  return {evaluator_, chances_[rules_[rule].rank], trace_, inputs_, inputs_.snapshot(),
+          now_.at,    !actuators_.works_for(rule)};
 }
 
 void Interpreter::run_responses() {

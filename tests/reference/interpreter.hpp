@@ -65,7 +65,9 @@ private:
   };
   struct Guard {
     const compiler::ProgramRule* rule = nullptr;
+    std::set<compiler::ChannelRef> channels;  // that it reads
     bool tripped = false;
+    Millis looked_at = 0;  // when it looked last whether they still report
   };
 
   void advance_actuators(bool important);
@@ -89,8 +91,11 @@ private:
   void interrupt(std::size_t rule, const std::string& by);
   void run_responses();
   void carry_out(const Output& output);
-  void guard(bool look);
-  void trip(Guard& guard);
+  // Looks at all SAFETY rules, or at those that read one of `channels` and at what is due.
+  void guard(bool all, const std::set<compiler::ChannelRef>& channels = {});
+  void look_at(Guard& guard);
+
+  void trip(Guard& guard, const Snapshot& readings);
   Surroundings around(std::size_t rule);
   [[nodiscard]] const std::set<std::size_t>& actuators(std::size_t rule, bool side) const;
   [[nodiscard]] std::set<std::size_t> halted() const;
@@ -106,10 +111,8 @@ private:
   std::vector<Rule> rules_;
   std::vector<Guard> guards_;
   std::vector<bool> important_;  // by actuator: the most important behaviour commands it
-  std::set<compiler::ChannelRef> guarded_;
   Moment now_;
   Moment guard_now_;
-  Millis looked_at_ = 0;  // when SAFETY rules last looked whether sensors still report
 };
 
 }  // namespace robosync::reference

@@ -49,8 +49,8 @@ std::vector<reference::Reading> scenario(const std::string& file, const compiler
   std::vector<reference::Reading> result;
   const Json root = Json::parse(read(file));
   for (const Json& stimulus : root.at("stimuli"))
-    result.push_back({quantity(stimulus.at("at")), channel(robot, stimulus),
-                      quantity(stimulus.at("value"))});
+    result.push_back(
+        {quantity(stimulus.at("at")), channel(robot, stimulus), quantity(stimulus.at("value"))});
   std::stable_sort(result.begin(), result.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
   return result;

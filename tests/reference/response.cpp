@@ -8,7 +8,7 @@
 namespace robosync::reference {
 
 Sight Response::sight(const Surroundings& around) const {
-  return {around.inputs.snapshot(), &own_, &locals_, &around.chance};
+  return {around.snapshot, &own_, &locals_, &around.chance};
 }
 
 Number Response::number(const compiler::Expression& expression) const {
@@ -94,14 +94,14 @@ void Response::run(const compiler::ProgramSet& node) {
   Change& change = output_.changes[node.variable];
   const Inputs& inputs = around_->inputs;
   Number& seen =
-      own_.emplace(node.variable, inputs.snapshot().variables[node.variable]).first->second;
+      own_.emplace(node.variable, around_->snapshot.variables[node.variable]).first->second;
   seen = inputs.clamped(node.variable, node.relative ? *add(seen, given) : *given);
   if (!node.relative)
     change = {seen, 0};
   else if (change.set)
     change.set = seen;
   else  // what counts is the difference that it made
-    change.raise = *subtract(seen, inputs.snapshot().variables[node.variable]);
+    change.raise = *subtract(seen, around_->snapshot.variables[node.variable]);
 }
 
 void Response::run(const compiler::ProgramWait& node) {
@@ -127,7 +127,7 @@ void Response::run(const compiler::ProgramIf& node) {
 void Response::run(const compiler::ProgramRepeat& node) {
   std::int64_t rounds = 0;
   if (node.kind == compiler::RepeatKind::times) {
-    rounds = number(node.control).value_or(0) / 1000;
+    rounds = (number(node.control).value_or(0) + 999) / 1000;
     if (rounds < 1) return;
   }
   if (node.kind == compiler::RepeatKind::while_ && truth(node.control) != true) return;

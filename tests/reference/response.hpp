@@ -23,6 +23,7 @@ struct Surroundings {
   Chance& chance;
   Trace& trace;
   const Inputs& inputs;
+  const Snapshot& snapshot;
   Millis now = 0;
   bool commands_done = false;  // of this response, all so far
 };

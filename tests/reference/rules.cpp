@@ -42,7 +42,8 @@ std::optional<bool> Interpreter::wish(std::size_t r) const {
   if (rule.waiting && now_.at <= rule.waiting->until) return rule.waiting->side;
   const bool cools = rule.started && now_.at < *rule.started + rule.rule->cooldown;
   const bool wants = rule.rule->kind == vm::RuleKind::while_ && rule.last == true;
-  return wants && !rule.running && !cools && rule.ran < now_.at ? std::optional(true) : std::nullopt;
+  return wants && !rule.running && !cools && rule.ran < now_.at ? std::optional(true)
+                                                                : std::nullopt;
 }
 
 // "After the response has started, further triggers are dropped until the time is over."
@@ -70,7 +71,7 @@ void Interpreter::look_at_while(std::size_t r, std::vector<Claim>& claims) {
   const bool rises = truth == true && rule.last != true;
   rule.last = truth == true;
   if (truth != true) {
-      if (rule.running) interrupt(r, name_of(rule));
+    if (rule.running) interrupt(r, name_of(rule));
     return;
   }
   if (rises) trigger(r, true, claims);
@@ -112,8 +113,8 @@ void Interpreter::serve(const Claim& claim) {
     interrupt(loser, name_of(rule));
   trace_.rule("win", *rule.rule, rule.behavior, claim.side);
   const auto& block = claim.side ? rule.rule->then_response : rule.rule->else_response;
-  rule.running = Running{Response(block, claim.rule), claim.side,
-                         actuators(claim.rule, claim.side), true};
+  rule.running =
+      Running{Response(block, claim.rule), claim.side, actuators(claim.rule, claim.side), true};
   rule.waiting.reset();
   rule.started = now_.at;
 }
@@ -166,39 +167,46 @@ void Interpreter::interrupt_halted() {
 
 // "It trips whenever its condition is true. Unknown is danger", but not before every sensor had the
 // time to measure.
-void Interpreter::guard(bool look) {
-  if (look) looked_at_ = now_.at;
+void Interpreter::guard(bool all, const std::set<compiler::ChannelRef>& channels) {
   ++guard_now_.step;
   guard_now_.at = now_.at;
-  const Snapshot readings = inputs_.readings(looked_at_);
-  const Sight sight{readings};
   for (Guard& guard : guards_) {
-    evaluator_.remember(guard.rule->condition, sight, guard_now_);
-    if (guard.rule->resume) evaluator_.remember(*guard.rule->resume, sight, guard_now_);
-    const Truth danger = evaluator_.truth(guard.rule->condition, sight);
-    if (danger == true || (!danger && now_.at >= kGraceEnds)) {
-      if (!guard.tripped) trip(guard);
-      continue;
-    }
-    if (!guard.tripped || !guard.rule->resume) continue;
-    if (evaluator_.truth(*guard.rule->resume, sight) != true) continue;
-    const std::set<std::size_t> before = halted();
-    guard.tripped = false;
-    trace_.rule("resume", *guard.rule, nullptr);
-    const std::set<std::size_t> after = halted();
-    for (const std::size_t actuator : before)
-      if (!after.contains(actuator)) actuators_.release(actuator);
+    const bool reads = std::any_of(channels.begin(), channels.end(), [&](const auto& channel) {
+      return guard.channels.contains(channel);
+    });
+    if (all || reads) guard.looked_at = now_.at;
+    look_at(guard);
   }
 }
 
-void Interpreter::trip(Guard& guard) {
+void Interpreter::look_at(Guard& guard) {
+  const Snapshot readings = inputs_.readings(guard.looked_at);
+  const Sight sight{readings};
+  evaluator_.remember(guard.rule->condition, sight, guard_now_);
+  if (guard.rule->resume) evaluator_.remember(*guard.rule->resume, sight, guard_now_);
+  const Truth danger = evaluator_.truth(guard.rule->condition, sight);
+  if (danger == true || (!danger && now_.at >= kGraceEnds)) {
+    if (!guard.tripped) trip(guard, readings);
+    return;
+  }
+  if (!guard.tripped || !guard.rule->resume) return;
+  if (evaluator_.truth(*guard.rule->resume, sight) != true) return;
+  const std::set<std::size_t> before = halted();
+  guard.tripped = false;
+  trace_.rule("resume", *guard.rule, nullptr);
+  const std::set<std::size_t> after = halted();
+  for (const std::size_t actuator : before)
+    if (!after.contains(actuator)) actuators_.release(actuator);
+}
+
+void Interpreter::trip(Guard& guard, const Snapshot& readings) {
   trace_.rule("trip", *guard.rule, nullptr);
   const std::set<std::size_t> before = halted();
   guard.tripped = true;
   for (const std::size_t actuator : actuators_of(guard.rule->then_response))
     if (!before.contains(actuator)) actuators_.halt(actuator);
   Response response(guard.rule->then_response, rules_.size());
-  const Surroundings here{evaluator_, no_chance_, trace_, inputs_, now_.at, false};
+  const Surroundings here{evaluator_, no_chance_, trace_, inputs_, readings, now_.at, false};
   const Output output = response.run(here);
   inputs_.stage({output.changes});
 }

@@ -22,11 +22,11 @@ using Truth = std::optional<bool>;
 [[nodiscard]] Truth either(Truth a, Truth b);
 [[nodiscard]] Truth opposite(Truth a);
 
-// Where RANDOM, PICK ONE and EVERY … TO draw from: Marsaglia's xorshift32 (13, 17, 5). Each behaviour
-// has one of its own, which begins with a mixture (MurmurHash3's finalizer) of the program's seed and
-// its number: from the most important one, with SAFETY rules in front as one behaviour if there are
-// any. A number of n possible ones is the place ⌊state · n / 2^32⌋ among them, after one round for
-// each draw.
+// Where RANDOM, PICK ONE and EVERY … TO draw from: Marsaglia's xorshift32 (13, 17, 5). Each
+// behaviour has one of its own, which begins with a mixture (MurmurHash3's finalizer) of the
+// program's seed and its number: from the most important one, with SAFETY rules in front as one
+// behaviour if there are any. A number of n possible ones is the place ⌊state · n / 2^32⌋ among
+// them, after one round for each draw.
 class Chance {
 public:
   Chance(std::uint32_t program_seed, std::uint32_t behavior);

@@ -1,0 +1,146 @@
+"""One program and one script of readings, by the reference and by rsc run; what differs first.
+
+Compared is, for every millisecond, which events there are, and in which order each actuator gets its
+commands. Not compared: the numbers of steps and rules; zero_divide, which depends on how often a
+condition is looked at; that a WHILE tries in vain again (`lose` without `fire`); whether an actuator
+was just done when it is cancelled (`done` beside `cancel`): that is a matter of the threads' ranks.
+
+A *tie* is a millisecond in which rsc makes several steps, or a step while an actuator is done: which
+of them sees what is a matter of ranks, too, and not of the language. A difference that begins in a tie
+ends the comparison of that script, and is counted.
+"""
+
+import json
+import os
+import subprocess
+from collections import Counter, defaultdict
+from pathlib import Path
+from typing import NamedTuple
+
+import drawn
+
+ROOT = Path(__file__).resolve().parents[2]
+BUILD = Path(os.environ.get("ROBOSYNC_BUILD", ROOT / "build/host"))
+REFERENCE = BUILD / "tests/reference/reference"
+RSC = BUILD / "rsc"
+AFTER_MS = 3_000  # after the last reading
+TIMEOUT = 60
+IGNORED = {"activated", "zero_divide"}
+WITHOUT_STEP = {"done", "trip", "halt", "resume", "release"}  # come between steps
+IN_STEP = {"input", "fire", "win", "lose", "interrupt", "go_on", "set"}
+
+
+class Refused(Exception):
+    """The program cannot be compiled; the message is the compiler's."""
+
+
+class Difference(NamedTuple):
+    at_ms: int
+    tie: bool
+    rsc: list  # events that only rsc has
+    reference: list
+
+    def __str__(self):
+        lines = [f"first difference at {self.at_ms} ms"]
+        lines += [f"  only rsc:       {event}" for event in self.rsc]
+        lines += [f"  only reference: {event}" for event in self.reference]
+        return "\n".join(lines)
+
+
+def call(*arguments):
+    return subprocess.run([str(a) for a in arguments], check=False, text=True, timeout=TIMEOUT,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def compile_program(text, folder, *options, rsc=RSC):
+    """The program and its image in `folder`."""
+    source = Path(folder) / "program.rsl"
+    image = Path(folder) / ("program" + "".join(options) + ".rsb")
+    source.write_text(text)
+    done = call(rsc, "compile", source, "--config", drawn.CONFIG, "-o", image, *options)
+    if done.returncode:
+        raise Refused(done.stderr)
+    return source, image
+
+
+def write_scenario(readings, folder):
+    stimuli = []
+    for at_ms, channel, value in readings:
+        sensor, name = channel.split(".")
+        stimuli.append({"at": f"{at_ms}ms", "sensor": sensor, "channel": name,
+                        "value": f"{value}{drawn.UNITS[channel]}"})
+    path = Path(folder) / "scenario.json"
+    path.write_text(json.dumps({"stimuli": stimuli}))
+    return path
+
+
+def by_millisecond(lines):
+    events = defaultdict(list)
+    for line in lines:
+        event = json.loads(line)
+        if event["event"] in IGNORED:
+            continue
+        event.pop("step", None)
+        event.pop("rule", None)
+        events[event["t_us"] // 1000].append(event)
+    return {at: [e for e in found if not is_incidental(e, found)] for at, found in events.items()}
+
+
+def is_incidental(event, others):
+    def beside(kind, key):
+        return any(o["event"] == kind and o.get(key) == event[key] for o in others)
+    return (event["event"] == "done" and beside("cancel", "actuator")
+            or event["event"] == "lose" and not beside("fire", "line"))
+
+
+def commands(events):
+    found = defaultdict(list)
+    for event in events:
+        if event["event"] == "command":
+            found[event["actuator"]].append(text_of(event))
+    return found
+
+
+def text_of(event):
+    return json.dumps(event, sort_keys=True)
+
+
+def is_tie(lines, at_ms):
+    events = [e for e in map(json.loads, lines) if e["t_us"] // 1000 == at_ms]
+    kinds = {e["event"] for e in events}
+    steps = {e["step"] for e in events if e["event"] not in WITHOUT_STEP}
+    apart = bool(kinds & WITHOUT_STEP) and bool(kinds & IN_STEP)
+    return len(steps) > 1 or apart
+
+
+def first_difference(rsc_lines, reference_lines):
+    """Nothing when they are the same."""
+    rsc, reference = by_millisecond(rsc_lines), by_millisecond(reference_lines)
+    for at in sorted(rsc.keys() | reference.keys()):
+        left, right = rsc.get(at, []), reference.get(at, [])
+        ours, theirs = Counter(map(text_of, left)), Counter(map(text_of, right))
+        if ours != theirs:
+            return Difference(at, is_tie(rsc_lines, at), list((ours - theirs).elements()),
+                              list((theirs - ours).elements()))
+        if commands(left) != commands(right):
+            return Difference(at, is_tie(rsc_lines, at), [*map(text_of, left)], [*map(text_of, right)])
+    return None
+
+
+def traces(source, image, readings, folder, rsc=RSC):
+    """The lines of rsc run and of the reference."""
+    scenario = write_scenario(readings, folder)
+    end_ms = (readings[-1].at_ms if readings else 0) + AFTER_MS
+    ours = call(rsc, "run", image, "--scenario", scenario, "--duration", f"{end_ms}ms", "--format", "json")
+    if ours.returncode:
+        raise (Refused if "would refuse" in ours.stderr else RuntimeError)(ours.stderr)
+    lines = ours.stdout.splitlines()
+    seed = json.loads(lines[0])["seed"]
+    theirs = call(REFERENCE, source, drawn.CONFIG, scenario, end_ms, seed)
+    if theirs.returncode:
+        raise RuntimeError(theirs.stderr)
+    return lines, theirs.stdout.splitlines()
+
+
+def compare(source, image, readings, folder, rsc=RSC):
+    return first_difference(*traces(source, image, readings, folder, rsc))

@@ -1,0 +1,47 @@
+"""Makes a program and its readings smaller as long as they still differ.
+
+Lines are taken out in pieces, whole blocks among them; what no longer compiles is put back.
+"""
+
+import tempfile
+
+import comparison
+
+
+def differs(text, readings, rsc):
+    with tempfile.TemporaryDirectory(prefix="robosync-shrink-") as folder:
+        try:
+            source, image = comparison.compile_program(text, folder, rsc=rsc)
+            difference = comparison.compare(source, image, readings, folder, rsc)
+            return difference is not None and not difference.tie
+        except (comparison.Refused, RuntimeError):
+            return False
+
+
+def without_pieces(items, still_differs):
+    """`items` without what is not needed: halves first, single ones at last."""
+    size = max(len(items) // 2, 1)
+    while True:
+        at, before = 0, len(items)
+        while at < len(items):
+            less = items[:at] + items[at + size:]
+            if still_differs(less):
+                items = less
+            else:
+                at += 1 if size <= 4 else size
+        if size == 1 and len(items) == before:
+            return items
+        size = max(size // 2, 1)
+
+
+def shrunk(text, readings, rsc=comparison.RSC):
+    def programs_differ(lines):
+        return differs("".join(lines), readings, rsc)
+
+    def readings_differ(less):
+        return bool(less) and differs(text, less, rsc)
+
+    readings = without_pieces(readings, readings_differ)
+    text = "".join(without_pieces(text.splitlines(keepends=True), programs_differ))
+    readings = without_pieces(readings, readings_differ)
+    return text, readings

@@ -1,0 +1,72 @@
+"""rsc run does what the reference interpreter says; and the comparison can tell when it does not."""
+
+import json
+import os
+import tempfile
+import unittest
+from concurrent.futures import ThreadPoolExecutor
+
+import comparison
+import differ
+import drawn
+import shrink
+
+PROGRAMS = int(os.environ.get("ROBOSYNC_REFERENCE_PROGRAMS", "100"))
+LEAST_COMPARED = 2 * PROGRAMS  # scripts; the compiler refuses some programs, as too large
+MOST_TIES = 0.2  # of the scripts
+
+FINE = """\
+WHEN touch LEVEL > 4
+DO LIGHT lamp ON
+END
+WHILE proximity DISTANCE > 1m
+DO
+  WAIT 40ms
+  LOG "far"
+END
+"""
+READINGS = [drawn.Reading(5, "touch.LEVEL", 2), drawn.Reading(15, "proximity.DISTANCE", 400),
+            drawn.Reading(25, "touch.LEVEL", 7), drawn.Reading(95, "touch.LEVEL", 0)]
+
+
+class Reference(unittest.TestCase):
+    def test_drawn_programs(self):
+        with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+            results = list(pool.map(differ.check, range(PROGRAMS)))
+        for seed, result in enumerate(results):
+            for case in result.cases:
+                with self.subTest(seed=seed):
+                    smaller = shrink.shrunk(case.text, case.readings)
+                    self.fail(differ.shown(case._replace(text=smaller[0], readings=smaller[1])))
+        compared = sum(result.compared for result in results)
+        self.assertGreaterEqual(compared, LEAST_COMPARED)
+        self.assertLess(sum(result.ties for result in results) / compared, MOST_TIES)
+
+
+class Comparison(unittest.TestCase):
+    """A trace that is changed by one thing is another one."""
+
+    def setUp(self):
+        with tempfile.TemporaryDirectory() as folder:
+            source, image = comparison.compile_program(FINE, folder)
+            self.rsc, self.reference = comparison.traces(source, image, READINGS, folder)
+
+    def test_the_same(self):
+        self.assertGreater(len(self.reference), 20)
+        self.assertIsNone(comparison.first_difference(self.rsc, self.reference))
+
+    def test_one_event_more_or_less(self):
+        for at in range(len(self.reference)):
+            less = self.reference[:at] + self.reference[at + 1:]
+            self.assertIsNotNone(comparison.first_difference(self.rsc, less))
+
+    def test_one_event_later(self):
+        for at, line in enumerate(self.reference):
+            event = json.loads(line)
+            event["t_us"] += 1000
+            other = [*self.reference[:at], json.dumps(event), *self.reference[at + 1:]]
+            self.assertIsNotNone(comparison.first_difference(self.rsc, other))
+
+
+if __name__ == "__main__":
+    unittest.main()
