@@ -62,9 +62,11 @@ std::string summary(const compiler::Diagnostics& diagnostics) {
 
 Program::Program(std::vector<std::byte> bytes, const std::string& name) : bytes_(std::move(bytes)) {
   const vm::Verdict verdict = vm::verify(bytes_, vm::Limits{}, image_);
-  if (!verdict.ok()) {
-    throw Failure(Exit::program, fmt::format("{}: {}", name, describe_refusal(verdict, 0)));
-  }
+  if (verdict.ok()) return;
+  vm::Image view;  // what is wrong may stand between good source lines
+  const bool sections_fit = vm::view_image(bytes_, view);
+  const std::uint16_t line = sections_fit ? source_line(view, verdict.section, verdict.index) : 0;
+  throw Failure(Exit::program, fmt::format("{}: {}", name, describe_refusal(verdict, line)));
 }
 
 Program load_program(const std::string& file, const std::string& config) {
