@@ -37,15 +37,18 @@ constexpr std::int32_t cut_off_difference(std::int32_t b, std::int32_t c) {
 }
 #endif
 
-constexpr Value keep_off_unknown(std::int32_t result) {
-  return result + (result == kUnknown ? 1 : 0);
-}
-
 }  // namespace detail
 
+// b + c for a known c. What is cut off is one less than the sum, so that it cannot become unknown;
+// and only of unknown there is no one less.
+inline Value add_known(Value b, Value c) {
+  std::int32_t less = 0;
+  if (__builtin_sub_overflow(b, 1, &less)) return kUnknown;
+  return detail::cut_off_sum(detail::cut_off_sum(less, c), 1);
+}
+
 inline Value add(Value b, Value c) {
-  if (b == kUnknown || c == kUnknown) return kUnknown;
-  return detail::keep_off_unknown(detail::cut_off_sum(b, c));
+  return c == kUnknown ? kUnknown : add_known(b, c);
 }
 
 // Wrapping negation turns kUnknown into itself.
@@ -70,6 +73,12 @@ constexpr Value modulo(Value b, Value c) {
   if (c == 0) return 0;
   const Value remainder = b % c;
   return remainder != 0 && (remainder ^ c) < 0 ? remainder + c : remainder;
+}
+
+// The same for a known b and c > 0.
+constexpr Value modulo_positive(Value b, Value c) {
+  const Value remainder = b % c;
+  return remainder < 0 ? remainder + c : remainder;
 }
 
 // b / n for a whole n > 0, rounded half away from zero.

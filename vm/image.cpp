@@ -95,12 +95,14 @@ std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t seed) {
   std::uint32_t crc = ~seed;
   const std::byte* next = bytes.data();
   const std::byte* const end = next + bytes.size();
-  const std::byte* const words_end = end - bytes.size() % sizeof(std::uint32_t);
-  while (next != words_end) {
-    std::uint32_t word = 0;
-    std::memcpy(&word, next, sizeof word);
-    next += sizeof word;
-    crc = crc_byte(crc_byte(crc_byte(crc_byte(crc ^ word))));
+  std::size_t words = bytes.size() / sizeof(std::uint32_t);
+  if (words > 0) {
+    do {
+      std::uint32_t word = 0;
+      std::memcpy(&word, next, sizeof word);
+      next += sizeof word;
+      crc = crc_byte(crc_byte(crc_byte(crc_byte(crc ^ word))));
+    } while (--words > 0);
   }
   while (next != end)
     crc = crc_byte(crc ^ std::to_integer<std::uint32_t>(*next++));

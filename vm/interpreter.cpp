@@ -19,17 +19,12 @@ namespace {
 // on this list.)
 // clang-format off
 #define FREQUENT_OPCODES(X)                                                  \
-  X(move) X(load) X(add) X(sub) X(mul) X(div) X(mod)                         \
-  X(lt) X(le) X(eq) X(ne) X(lt_k) X(le_k) X(gt_k) X(ge_k) X(eq_k) X(ne_k)    \
-  X(and_) X(or_) X(not_) X(ret)                                              \
-  X(arg) X(arg_k) X(cmd) X(cmd_end) X(end) X(again)
+  X(move) X(load) X(add) X(sub) X(mul)                                       \
+  X(add_k) X(mod_k) X(add_fast) X(add_k_fast) X(mul_fast)                    \
+  X(lt_k) X(le_k) X(gt_k) X(ge_k) X(eq_k) X(and_) X(or_) X(ret)              \
+  X(unless) X(unless_lt_k) X(unless_ge_k) X(again)                           \
+  X(set) X(arg) X(cmd) X(cmd_end) X(end)
 // clang-format on
-
-constexpr bool is_frequent(Opcode opcode) {
-#define IS_IT(name) opcode == Opcode::name ||
-  return FREQUENT_OPCODES(IS_IT) false;
-#undef IS_IT
-}
 
 // Appends to the output; what does not fit is dropped as a whole.
 inline void put(Machine& machine, Word word) {
@@ -44,6 +39,14 @@ inline void put(Machine& machine, Word word, Value value) {
   output[0] = word;
   output[1] = static_cast<Word>(value);
   machine.output = output + 2;
+}
+
+// The whole number that `b` counts the thousandths of. In two instructions: gcc takes four, to
+// multiply by the reciprocal.
+inline std::int32_t whole(Value b) {
+  Value scale = kScale;
+  asm("" : "+r"(scale));
+  return b / scale;
 }
 
 // A number from `b` to `c`, in whichever order, both included: Marsaglia's xorshift32, spread over
@@ -76,21 +79,39 @@ std::uint32_t milliseconds(Value duration) {
 
 }  // namespace
 
+#if defined(__thumb2__)
+// On the board the assembler makes the table of where each opcode's code begins, out of the labels
+// that the first `asm goto` names. gcc makes five instructions of `goto*` (it sets the Thumb bit
+// each time), and where addresses of labels are taken it keeps code for jumps that never come.
+extern "C" const void* const robosync_dispatch[];
+#define TARGET(name) , op_##name
+#define PLACE(name) ".set .Ldispatch_" #name ", %l[op_" #name "]\n"
+// `place` tells the copies apart: gcc would make one of them again.
+// clang-format off
+#define JUMP(place)                           \
+  "ldr pc, [%0, %1, lsl #2] @ " #place        \
+      :: "r"(table), "r"(word & 0xFF) : : rare FREQUENT_OPCODES(TARGET)
+// clang-format on
+#define DISPATCH(place)  \
+  asm goto(JUMP(place)); \
+  __builtin_unreachable()
+#else
+#define DISPATCH(place) goto* table[word & 0xFF]
+#endif
+
+// Without the `asm`, gcc keeps the `pc` of a jump in a register of its own, and every instruction
+// pays for moving it.
+#define FETCH() \
+  word = *pc;   \
+  ++pc;         \
+  asm volatile("" : "+r"(pc))
+// What stands at the end of a frequent opcode instead of a jump to `next`.
+#define NEXT(place) \
+  FETCH();          \
+  DISPATCH(place)
+
 // NOLINTNEXTLINE(readability-function-size): the loop's state lives in registers
 Value run(Machine& machine, const Word* pc, Progress* progress) {
-#if defined(__thumb2__)
-#define LABEL(label) reinterpret_cast<const char*>(&&label) + 1  // bit 0: Thumb code
-#else
-#define LABEL(label) &&label
-#endif
-  static const void* const kLabels[] = {
-#define OPCODE(name, a, b, c, contexts, cost, doc) \
-  is_frequent(Opcode::name) ? LABEL(op_##name) : LABEL(rare),
-#include "vm/opcodes.def"
-#undef OPCODE
-  };
-#undef LABEL
-
   Value* const frame = machine.frame;
   const Value* const constants = machine.constants;
   Word word = 0;
@@ -104,29 +125,42 @@ Value run(Machine& machine, const Word* pc, Progress* progress) {
   const auto k = [&] { return constants[operand_c(word)]; };
   const auto b_k = [&] { return constants[operand_b(word)]; };
   const auto wide_k = [&] { return constants[operand_wide(word)]; };
-  goto next;
-store:
-  frame[operand_a(word)] = result;
-next:
-  word = *pc;
-  ++pc;
-  // Without this, gcc keeps the `pc` of a jump in a register of its own, and every instruction pays
-  // for moving it.
-  asm volatile("" : "+r"(pc));
 #if defined(__thumb2__)
-  // gcc makes five instructions of `goto*` (it sets the Thumb bit each time); three are enough.
-#define TARGET(name) , op_##name
-  asm goto("ldr pc, [%0, %1, lsl #2]"
-           :
-           : "r"(kLabels), "r"(word & 0xFF)
-           :
-           : rare FREQUENT_OPCODES(TARGET));
-#undef TARGET
+  const void* const* table = robosync_dispatch;
+  asm("" : "+r"(table));  // stays in its register
+  FETCH();
+  asm goto(FREQUENT_OPCODES(
+      PLACE) ".pushsection .rodata.robosync_dispatch, \"a\"\n"
+             ".balign 4\n"
+             "robosync_dispatch:\n"
+#define OPCODE(name, a, b, c, contexts, cost, doc) \
+  ".ifdef .Ldispatch_" #name                       \
+  "\n"                                             \
+  ".word .Ldispatch_" #name                        \
+  " + 1\n"                                         \
+  ".else\n"                                        \
+  ".word %l[rare] + 1\n"                           \
+  ".endif\n"
+#include "vm/opcodes.def"
+#undef OPCODE
+             ".popsection\n" JUMP(first));
   __builtin_unreachable();
 #else
-  goto* kLabels[word & 0xFF];
+  static const void* const table[] = {
+#define OPCODE(name, a, b, c, contexts, cost, doc) &&op_##name,
+#include "vm/opcodes.def"
+#undef OPCODE
+  };
+  NEXT(first);
 #endif
 
+store:
+  frame[operand_a(word)] = result;
+  NEXT(store);
+next:
+  NEXT(next);
+
+#if defined(__thumb2__)
 rare:
   switch (opcode_of(word)) {
 #define OPCODE(name, a, b, c, contexts, cost, doc) \
@@ -138,37 +172,46 @@ rare:
       break;
   }
   __builtin_unreachable();
+#endif
 
 #define SET(name, value)        \
   op_##name : result = (value); \
   goto store
+#define SET_HOT(name, value)                    \
+  op_##name : frame[operand_a(word)] = (value); \
+  NEXT(name)
 
-  SET(move, b());
-  SET(load, wide_k());
+  SET_HOT(move, b());
+  SET_HOT(load, wide_k());
   SET(mul, multiply(b(), c()));
   SET(random, draw(machine, b(), c()));
   SET(neg, negate(b()));
-  SET(add_k, add(b(), k()));
   SET(div_k, divide_by_whole(b(), k()));
-  SET(mod_k, modulo(b(), k()));
-  SET(add_fast, add_unchecked(b(), c()));
-  SET(add_k_fast, add_unchecked(b(), k()));
-  SET(mul_fast, multiply_unchecked(b() / kScale, c()));
+  SET_HOT(add_k, add_known(b(), k()));
+  SET_HOT(add_fast, add_unchecked(b(), c()));
+  SET_HOT(add_k_fast, add_unchecked(b(), k()));
+  SET_HOT(mul_fast, multiply_unchecked(whole(b()), c()));
   SET(mul_k_fast, multiply_unchecked(b(), k()));
 
   SET(and_, b() & c());
   SET(or_, b() | c());
   SET(not_, logical_not(b()));
+#undef SET_HOT
 #undef SET
 
 op_sub:
   right = negate(c());
   goto sum;
+op_mod_k:
+  result = b();
+  if (result == kUnknown) goto store;
+  frame[operand_a(word)] = modulo_positive(result, k());
+  NEXT(mod_k);
 op_add:
   right = c();
 sum:
-  result = add(b(), right);
-  goto store;
+  frame[operand_a(word)] = add(b(), right);
+  NEXT(sum);
 
 op_div:
   right = c();
@@ -256,11 +299,14 @@ op_halt:
   goto next;
 
 op_set:
-  machine.assigned |= (b() != kUnknown ? 1U : 0U) << operand_a(word);
+  result = b();
+  if (result == kUnknown) goto next;
+  machine.assigned |= 1U << operand_a(word);
+  goto store;
 op_shift:
   result = b();
   if (result == kUnknown) goto next;
-  machine.written |= 1U << operand_a(word);
+  machine.shifted |= 1U << operand_a(word);
   goto store;
 
 op_unless:
@@ -306,13 +352,14 @@ op_times_v:
 op_again:
   result = a() - kScale;
   frame[operand_a(word)] = result;
-  if (result > 0) goto back;
+  if (result <= 0) goto next;
+  pc -= operand_wide(word);
+  NEXT(again);
 op_loop:
   goto next;
 op_around:
   if (a() != kTrue) goto next;
 op_around_always:
-back:
   pc -= operand_wide(word);
   goto next;
 
@@ -346,9 +393,6 @@ give_up:
 op_cmd_end:
   put(machine, word);
 op_end:
-  // Not an empty block: gcc would send the jumps elsewhere and leave the label, whose address is in
-  // the table, where it happens to be.
-  asm volatile("");
   return kUnknown;
 }
 

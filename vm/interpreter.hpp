@@ -25,10 +25,11 @@ struct Machine {
   std::uint32_t random = 1;     // state of the random numbers, never 0
   bool event = false;  // set when a condition is true for this step only (BECOMES, CHANGES …)
   bool divided_by_zero = false;  // set when it happened
-  // Bit a: input cell a was written by the response; of these, the ones that were `set`, not only
-  // shifted. Cleared by the caller.
-  std::uint32_t written = 0;
+  // Bit a: input cell a was `set` by the response; it was shifted. Cleared by the caller.
   std::uint32_t assigned = 0;
+  std::uint32_t shifted = 0;
+
+  [[nodiscard]] std::uint32_t written() const { return assigned | shifted; }
 
   static constexpr std::uint32_t kNever = 0xFFFFFFFF;
 };

@@ -8,6 +8,9 @@ namespace {
 
 // The rules of one behaviour, which share a frame.
 struct Rules {
+  Rules(Verification& all, const Behavior& of)
+      : verification(all), behavior(of), cells(of, count_watches(all.image, of)) {}
+
   Verification& verification;
   const Behavior& behavior;
   Cells cells;
@@ -59,7 +62,7 @@ bool check_code(Verification& verification) {
   const Image& image = verification.image;
   for (std::size_t b = 0; b < image.behaviors.size(); ++b) {
     const Behavior& behavior = image.behaviors[b];
-    Rules rules{verification, behavior, Cells(behavior, count_watches(image, behavior))};
+    Rules rules(verification, behavior);
     for (std::size_t r = 0; r < behavior.rule_count; ++r)
       if (!check_rule(rules, image.rules[behavior.first_rule + r])) return false;
     if (rules.actuators != behavior.actuators)

@@ -48,7 +48,16 @@ constexpr Context context_of(ObjectKind kind) {
   return kind == ObjectKind::safety ? Context::safety : Context::condition;
 }
 
+// A constructor, as an aggregate would be filled with zeros first, the places of blocks as well.
 struct Pass {
+  Pass(Verification& all, const Behavior& of, Cells& frame, ObjectKind what, std::size_t last)
+      : verification(all),
+        image(all.image),
+        behavior(of),
+        cells(frame),
+        kind(what),
+        blocks(all.image, last) {}
+
   Verification& verification;
   const Image& image;
   const Behavior& behavior;
@@ -293,8 +302,7 @@ bool check_object(Verification& verification, const Behavior& behavior, Cells& c
   verification.words += range.length;
   if (verification.words > verification.limits.step_cost)
     return verification.refuse(Refusal::too_costly, Section::code, range.start);
-  Pass pass{
-      verification, verification.image, behavior, cells, kind, Blocks(verification.image, last)};
+  Pass pass(verification, behavior, cells, kind, last);
   cells.begin_object();
   for (std::size_t at = range.start; at <= last; ++at) {
     const Refusal refusal = check_instruction(pass, at, pass.image.code[at], at == last);

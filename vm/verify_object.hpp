@@ -21,7 +21,10 @@ public:
     taken_end_ = written_end_;
     forget_registers();
   }
-  void forget_registers() { known_.fill(0); }
+  void forget_registers() {
+    for (unsigned word = 0; word <= count_ / 32; ++word)
+      known_[word] = 0;
+  }
 
   [[nodiscard]] bool is_input(std::uint8_t cell) const { return cell < inputs_; }
   [[nodiscard]] bool is_local(std::uint8_t cell) const {
@@ -56,7 +59,8 @@ private:
   unsigned inputs_, locals_end_, first_register_, count_;
   unsigned written_end_ = 0;  // behind the last local written by the objects so far
   unsigned taken_end_ = 0;    // the same, when this object began
-  Bits known_{}, truths_{};   // of the registers
+  Bits known_;   // of the registers; initialized by begin_object(), as far as there are cells
+  Bits truths_;  // initialized for what is known
 };
 
 struct CodeRange {

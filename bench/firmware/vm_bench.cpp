@@ -95,23 +95,38 @@ void fill_timer(vm::Opcode opcode, unsigned old) {
   timer_memory[0] = timer.kind == vm::TimerKind::counted ? vm::kMaxEdges - 1 : old;
 }
 
-// The opcode before a terminator, or as the terminator; operands in cells 0 and 1 and constant 0.
-// Truth operands only have their three values; more do not hurt. Jumps skip nothing.
+constexpr bool has_constant(const vm::OpcodeInfo& info) {
+  return info.operands[1] == vm::Operand::const8 || info.operands[2] == vm::Operand::const8;
+}
+
+// Does the verifier allow this constant?
+constexpr bool is_allowed(vm::Opcode opcode, Value constant) {
+  const bool divides = opcode == vm::Opcode::div_k || opcode == vm::Opcode::mod_k;
+  return divides ? constant > 0 : constant != vm::kUnknown;
+}
+
+// Operands are in cells 0 and 1 and constant 0, the result goes to cell 2. Jumps skip nothing.
+constexpr Word word_of(vm::Opcode opcode) {
+  const vm::OpcodeInfo& info = vm::kOpcodes[static_cast<std::size_t>(opcode)];
+  const unsigned right = has_constant(info) || info.operands[2] == vm::Operand::timer ? 0 : 1;
+  if (info.operands[2] == vm::Operand::ahead8) return vm::encode(opcode, 0, right, 0);
+  const unsigned a = info.operands[0] == vm::Operand::param ? 0 : 2;
+  return vm::is_wide(info.operands[1]) ? vm::encode_wide(opcode, a, 0)
+                                       : vm::encode(opcode, a, 0, right);
+}
+
+// The opcode before a terminator, or as the terminator. Truth operands only have their three
+// values; more do not hurt.
 void measure_opcode(vm::Opcode opcode) {
   const vm::OpcodeInfo& info = vm::kOpcodes[static_cast<std::size_t>(opcode)];
   const bool in_conditions = (static_cast<unsigned>(info.contexts) & 1) != 0;
   const bool in_responses = (static_cast<unsigned>(info.contexts) & 6) != 0;
-  const bool wide = vm::is_wide(info.operands[1]);
-  const bool timed = info.operands[2] == vm::Operand::timer;
-  const bool constant = info.operands[2] == vm::Operand::const8;
-  const bool writes = info.operands[0] != vm::Operand::param;
-  const Word word = wide ? vm::encode_wide(opcode, writes ? 2 : 0, 0)
-                         : vm::encode(opcode, writes ? 2 : 0, 0, constant || timed ? 0 : 1);
+  const Word word = word_of(opcode);
   const std::array condition = {word, vm::encode(vm::Opcode::ret, 2)};
   const std::array response = {word, vm::encode(vm::Opcode::end)};
   for (const Value left : kEdges) {
     for (const Value right : kEdges) {
-      if (constant && right == vm::kUnknown) continue;  // the verifier allows none
+      if (has_constant(info) && !is_allowed(opcode, right)) continue;
       frame[0] = left;
       frame[1] = frame[2] = right;
       fill_timer(opcode, static_cast<unsigned>(&right - kEdges.data()));

@@ -198,7 +198,7 @@ void BehaviorLayer::evaluate_period(unsigned rule, vm::Machine& machine) {
 void BehaviorLayer::run_response(const Unit& unit, vm::Machine& machine) {
   machine.output = output_.data();
   machine.output_end = output_.data() + output_.size();
-  machine.written = 0;
+  machine.shifted = 0;
   machine.assigned = 0;
   result_.progress = vm::respond(machine, &program_->image.code[code_]);
   result_.words = static_cast<std::uint16_t>(machine.output - output_.data());

@@ -51,7 +51,7 @@ void Variables::start(const vm::Image& image, std::span<vm::Value> values) {
 
 void Variables::stage_all(const vm::Machine& machine, const vm::Behavior& behavior,
                           const Snapshot& before, void (Variables::*add_one)(const Write&)) {
-  for (std::uint32_t left = machine.written; left != 0; left &= left - 1) {
+  for (std::uint32_t left = machine.written(); left != 0; left &= left - 1) {
     const auto cell = static_cast<unsigned>(std::countr_zero(left));
     const std::uint8_t input = image_->inputs[behavior.first_input + cell];
     const bool set = has(machine.assigned, cell);

@@ -73,7 +73,7 @@ void Guard::trip(unsigned rule) {
   const vm::Image& image = program_->image;
   machine_.output = output_.data();
   machine_.output_end = output_.data() + output_.size();
-  machine_.written = 0;
+  machine_.shifted = 0;
   machine_.assigned = 0;
   (void)vm::respond(machine_, &image.code[image.responses[image.rules[rule].then_response].start]);
   const std::span<const vm::Word> output = output_;
@@ -81,7 +81,7 @@ void Guard::trip(unsigned rule) {
   vm::Output said{};
   while (reader.next(said))
     act(said);
-  if (machine_.written == 0) return;
+  if (machine_.written() == 0) return;
   layers_.variables.stage_first(machine_, rules(), layers_.snapshot);
   kernel_.signal(step_thread_, acted_);
 }

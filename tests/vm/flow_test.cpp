@@ -229,14 +229,14 @@ TEST_CASE("set and shift write the response's own cell, and say what they wrote"
   };
   Run run = write({encode(Op::set, 5, 1)}, 70);
   CHECK(run.frame[5] == 70);
-  CHECK(run.machine.written == 1U << 5);
+  CHECK(run.machine.written() == 1U << 5);
   CHECK(run.machine.assigned == 1U << 5);
   run = write({encode(Op::shift, 0, 1)}, -70);
   CHECK(run.frame[0] == -70);
-  CHECK(run.machine.written == 1);
+  CHECK(run.machine.written() == 1);
   CHECK(run.machine.assigned == 0);
   run = write({encode(Op::set, 2, 1), encode(Op::shift, 2, 1), encode(Op::shift, 3, 1)}, 5);
-  CHECK(run.machine.written == 0b1100);
+  CHECK(run.machine.written() == 0b1100);
   CHECK(run.machine.assigned == 0b0100);
 }
 
@@ -247,7 +247,7 @@ TEST_CASE("an unknown value is not set") {
     run.frame[1] = kUnknown;
     CHECK(run.go().pause == Pause::ended);
     CHECK(run.frame[5] == 3);
-    CHECK(run.machine.written == 0);
+    CHECK(run.machine.written() == 0);
     CHECK(run.machine.assigned == 0);
   }
 }

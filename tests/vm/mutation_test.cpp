@@ -120,7 +120,7 @@ private:
       machine_.output = output.data();
       machine_.output_end = output.data() + output.size();
       machine_.wake = Machine::kNever;
-      machine_.written = machine_.assigned = 0;
+      machine_.assigned = machine_.shifted = 0;
       const Progress progress = respond(machine_, place);
       const auto length = static_cast<std::size_t>(machine_.output - output.data());
       REQUIRE(length <= kMaxResponseOutput);
@@ -141,13 +141,13 @@ private:
     for (const Word word : code)
       if (opcode_of(word) == Opcode::set || opcode_of(word) == Opcode::shift)
         owned |= 1U << (operand_a(word) & 31U);
-    REQUIRE((machine_.written & ~owned) == 0);
-    for (std::uint32_t left = machine_.written; left != 0; left &= left - 1) {
+    REQUIRE((machine_.written() & ~owned) == 0);
+    for (std::uint32_t left = machine_.written(); left != 0; left &= left - 1) {
       const auto cell = static_cast<std::size_t>(std::countr_zero(left));
       REQUIRE(cell < behavior_.input_count);
       REQUIRE(image_.inputs[behavior_.first_input + cell] >= image_.channels.size());
     }
-    REQUIRE((machine_.assigned & ~machine_.written) == 0);
+    REQUIRE((machine_.assigned & ~machine_.written()) == 0);
     frame_.check(owned);
   }
 
