@@ -44,8 +44,8 @@ private:
 // The same program without its debug section, which the board has no use for.
 [[nodiscard]] std::vector<std::byte> without_source_lines(const Program& program);
 
-// Source line of the place a verifier refused; 0 when it is not known. `image` may be a view that is
-// not verified.
+// Source line of the place a verifier refused; 0 when it is not known. `image` may be a view that
+// is not verified.
 [[nodiscard]] std::uint16_t source_line(const vm::Image& image, vm::Section section,
                                         std::uint16_t index);
 // "an operand is out of range (code, word 12, source line 4)".

@@ -62,8 +62,8 @@ TEST_CASE("a refused word is shown with its place and its source line") {
   WrongImage image;
   const std::size_t word = image.rule().condition_start;
   image.change(image.view.code[word], vm::Word{0xFF});
-  image.check(fmt::format("there is no such opcode (code, word {}, source line {})", word,
-                          kDistanceLine));
+  image.check(
+      fmt::format("there is no such opcode (code, word {}, source line {})", word, kDistanceLine));
 }
 
 TEST_CASE("a refused rule is shown with its source line") {
@@ -71,8 +71,9 @@ TEST_CASE("a refused rule is shown with its source line") {
   vm::Rule wrong = image.rule();
   wrong.then_response = 99;
   image.change(image.rule(), wrong);
-  image.check(fmt::format("a record refers to one that does not exist (rules, record {}, source line {})",
-                          &image.rule() - image.view.rules.data(), kDistanceLine));
+  image.check(
+      fmt::format("a record refers to one that does not exist (rules, record {}, source line {})",
+                  &image.rule() - image.view.rules.data(), kDistanceLine));
 }
 
 TEST_CASE("a refused record of another section is shown without a line") {
