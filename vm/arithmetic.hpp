@@ -39,16 +39,13 @@ constexpr std::int32_t cut_off_difference(std::int32_t b, std::int32_t c) {
 
 }  // namespace detail
 
-// b + c for a known c. What is cut off is one less than the sum, so that it cannot become unknown;
-// and only of unknown there is no one less.
+// b + c, both known. What is cut off is one less than the sum, so that it cannot become unknown.
 inline Value add_known(Value b, Value c) {
-  std::int32_t less = 0;
-  if (__builtin_sub_overflow(b, 1, &less)) return kUnknown;
-  return detail::cut_off_sum(detail::cut_off_sum(less, c), 1);
+  return detail::cut_off_sum(detail::cut_off_sum(b - 1, c), 1);
 }
 
 inline Value add(Value b, Value c) {
-  return c == kUnknown ? kUnknown : add_known(b, c);
+  return b == kUnknown || c == kUnknown ? kUnknown : add_known(b, c);
 }
 
 // Wrapping negation turns kUnknown into itself.

@@ -8,23 +8,12 @@
 #include <algorithm>
 
 #include "vm/arithmetic.hpp"
+#include "vm/dispatch.hpp"
 #include "vm/opcode.hpp"
 #include "vm/timers.hpp"
 
 namespace robosync::vm {
 namespace {
-
-// The opcodes that are reached at once. `asm goto` takes no more than these; the others are reached
-// by way of a switch, which takes them three instructions more. (clang-format never comes to rest
-// on this list.)
-// clang-format off
-#define FREQUENT_OPCODES(X)                                                  \
-  X(move) X(load) X(add) X(sub) X(mul)                                       \
-  X(add_k) X(mod_k) X(add_fast) X(add_k_fast) X(mul_fast)                    \
-  X(lt_k) X(le_k) X(gt_k) X(ge_k) X(eq_k) X(and_) X(or_) X(ret)              \
-  X(unless) X(unless_lt_k) X(unless_ge_k) X(again)                           \
-  X(set) X(arg) X(cmd) X(cmd_end) X(end)
-// clang-format on
 
 // Appends to the output; what does not fit is dropped as a whole.
 inline void put(Machine& machine, Word word) {
@@ -72,43 +61,12 @@ std::uint32_t milliseconds(Value duration) {
 // Is it `time` now, or later? If not, it wakes the machine then.
 [[gnu::noinline]] Value has_come(Machine& machine, Value time) {
   const auto due = static_cast<std::uint32_t>(time);
-  if (static_cast<std::int32_t>(machine.now - due) >= 0) return kTrue;
+  if (reached(due, machine.now)) return kTrue;
   wake_at(machine, due);
   return kFalse;
 }
 
 }  // namespace
-
-#if defined(__thumb2__)
-// On the board the assembler makes the table of where each opcode's code begins, out of the labels
-// that the first `asm goto` names. gcc makes five instructions of `goto*` (it sets the Thumb bit
-// each time), and where addresses of labels are taken it keeps code for jumps that never come.
-extern "C" const void* const robosync_dispatch[];
-#define TARGET(name) , op_##name
-#define PLACE(name) ".set .Ldispatch_" #name ", %l[op_" #name "]\n"
-// `place` tells the copies apart: gcc would make one of them again.
-// clang-format off
-#define JUMP(place)                           \
-  "ldr pc, [%0, %1, lsl #2] @ " #place        \
-      :: "r"(table), "r"(word & 0xFF) : : rare FREQUENT_OPCODES(TARGET)
-// clang-format on
-#define DISPATCH(place)  \
-  asm goto(JUMP(place)); \
-  __builtin_unreachable()
-#else
-#define DISPATCH(place) goto* table[word & 0xFF]
-#endif
-
-// Without the `asm`, gcc keeps the `pc` of a jump in a register of its own, and every instruction
-// pays for moving it.
-#define FETCH() \
-  word = *pc;   \
-  ++pc;         \
-  asm volatile("" : "+r"(pc))
-// What stands at the end of a frequent opcode instead of a jump to `next`.
-#define NEXT(place) \
-  FETCH();          \
-  DISPATCH(place)
 
 // NOLINTNEXTLINE(readability-function-size): the loop's state lives in registers
 Value run(Machine& machine, const Word* pc, Progress* progress) {
@@ -129,21 +87,23 @@ Value run(Machine& machine, const Word* pc, Progress* progress) {
   const void* const* table = robosync_dispatch;
   asm("" : "+r"(table));  // stays in its register
   FETCH();
-  asm goto(FREQUENT_OPCODES(
-      PLACE) ".pushsection .rodata.robosync_dispatch, \"a\"\n"
-             ".balign 4\n"
-             "robosync_dispatch:\n"
+  // clang-format off
+  asm goto(
+    FREQUENT_OPCODES(PLACE)
+    ".pushsection .rodata.robosync_dispatch, \"a\"\n"
+    ".balign 4\n"
+    "robosync_dispatch:\n"
 #define OPCODE(name, a, b, c, contexts, cost, doc) \
-  ".ifdef .Ldispatch_" #name                       \
-  "\n"                                             \
-  ".word .Ldispatch_" #name                        \
-  " + 1\n"                                         \
-  ".else\n"                                        \
-  ".word %l[rare] + 1\n"                           \
-  ".endif\n"
+    ".ifdef .Ldispatch_" #name "\n"               \
+    "  .word .Ldispatch_" #name " + 1\n"          \
+    ".else\n"                                     \
+    "  .word %l[rare] + 1\n"                      \
+    ".endif\n"
 #include "vm/opcodes.def"
 #undef OPCODE
-             ".popsection\n" JUMP(first));
+    ".popsection\n"
+    JUMP(first));
+  // clang-format on
   __builtin_unreachable();
 #else
   static const void* const table[] = {
@@ -187,7 +147,6 @@ rare:
   SET(random, draw(machine, b(), c()));
   SET(neg, negate(b()));
   SET(div_k, divide_by_whole(b(), k()));
-  SET_HOT(add_k, add_known(b(), k()));
   SET_HOT(add_fast, add_unchecked(b(), c()));
   SET_HOT(add_k_fast, add_unchecked(b(), k()));
   SET_HOT(mul_fast, multiply_unchecked(whole(b()), c()));
@@ -210,8 +169,17 @@ op_mod_k:
 op_add:
   right = c();
 sum:
-  frame[operand_a(word)] = add(b(), right);
+  result = right;
+  if (right == kUnknown) goto store;
+  result = b();
+  if (result == kUnknown) goto store;
+  frame[operand_a(word)] = add_known(result, right);
   NEXT(sum);
+op_add_k:
+  result = b();
+  if (result == kUnknown) goto store;
+  frame[operand_a(word)] = add_known(result, k());
+  NEXT(add_k);
 
 op_div:
   right = c();

@@ -8,11 +8,6 @@
 namespace robosync::vm {
 namespace {
 
-// Is `time` over?
-bool is_past(std::uint32_t now, std::uint32_t time) {
-  return static_cast<std::int32_t>(now - time) >= 0;
-}
-
 // True in this step only: the condition is looked at again in the next millisecond.
 Value happened(Machine& machine) {
   machine.event = true;
@@ -34,7 +29,7 @@ Value held(Machine& machine, std::uint32_t duration, std::uint32_t& state, Value
     state = due == kNotHeld || due == kHeld ? 1 : due;  // 2 ms late, once in 49 days
     if (duration == 0) state = kHeld;
   }
-  if (state != kHeld && is_past(machine.now, state)) state = kHeld;
+  if (state != kHeld && reached(state, machine.now)) state = kHeld;
   if (state == kHeld) return kTrue;
   wake_at(machine, state);
   return kFalse;

@@ -20,6 +20,11 @@ constexpr unsigned timer_words(TimerKind kind, unsigned count) {
   return kind == TimerKind::sequence ? 2 : 1;
 }
 
+// `now` is `time`, or later.
+constexpr bool reached(std::uint32_t time, std::uint32_t now) {
+  return static_cast<std::int32_t>(now - time) >= 0;
+}
+
 // Lowers machine.wake to `time`.
 inline void wake_at(Machine& machine, std::uint32_t time) {
   const std::uint32_t told = time == Machine::kNever ? 0 : time;  // 1 ms late, once in 49 days

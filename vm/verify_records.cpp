@@ -168,7 +168,7 @@ Refusal check_behavior(Walk& walk, const Behavior& behavior, std::size_t index) 
   if (index > 0 && behavior.priority == walk.last_priority) return Refusal::same_priority;
   if (behavior.priority >= walk.last_priority) return Refusal::bad_value;
   walk.last_priority = behavior.priority;
-  if (behavior.priority == kSafetyPriority) walk.safety_rules = behavior.rule_count;
+  if (index == kSafetyBehavior && walk.image.has_safety()) walk.safety_rules = behavior.rule_count;
 
   if (behavior.first_rule != walk.next_rule || behavior.rule_count == 0) return Refusal::bad_index;
   walk.next_rule += behavior.rule_count;
@@ -344,6 +344,7 @@ bool check_records(Verification& verification) {
     const SectionInfo& section = kSections[s];
     const auto here = static_cast<Section>(s + 1);
     const std::size_t count = record_count(*image.header, section);
+    if (count == 0) continue;
     for (std::size_t i = 0; i < count && section.check != nullptr; ++i) {
       const std::byte* const record = next + i * section.record_size;
       if (here <= kLastNamed && !is_string(walk, *reinterpret_cast<const std::uint16_t*>(record)))

@@ -5,16 +5,13 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "vm/interpreter.hpp"
+#include "vm/timers.hpp"
 
 namespace robosync::layers {
 
 inline constexpr std::uint32_t kNever = vm::Machine::kNever;
 
-// `now` is `time`, or later.
-constexpr bool reached(std::uint32_t time, std::uint32_t now) {
-  return static_cast<std::int32_t>(now - time) >= 0;
-}
+using vm::reached;
 
 // The first of several times that are to come; one that is over counts as now.
 class Soonest {
