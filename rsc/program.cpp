@@ -79,9 +79,11 @@ Program::Program(std::vector<std::byte> bytes, const std::string& name,
                  std::vector<std::string> source)
     : bytes_(std::move(bytes)), source_(std::move(source)) {
   const vm::Verdict verdict = vm::verify(bytes_, vm::Limits{}, image_);
-  if (!verdict.ok()) {
-    throw Failure(Exit::program, fmt::format("{}: {}", name, describe_refusal(verdict, 0)));
-  }
+  if (verdict.ok()) return;
+  vm::Image view;  // what is wrong may stand between good source lines
+  const bool sections_fit = vm::view_image(bytes_, view);
+  const std::uint16_t line = sections_fit ? source_line(view, verdict.section, verdict.index) : 0;
+  throw Failure(Exit::program, fmt::format("{}: {}", name, describe_refusal(verdict, line)));
 }
 
 Program load_program(const std::string& file, const CompileOptions& options) {

@@ -53,10 +53,11 @@ private:
 // The same program without its debug section, which the board has no use for.
 [[nodiscard]] std::vector<std::byte> without_source_lines(const Program& program);
 
-// Source line of the place a verifier refused; 0 when it is not known.
+// Source line of the place a verifier refused; 0 when it is not known. `image` may be a view that
+// is not verified.
 [[nodiscard]] std::uint16_t source_line(const vm::Image& image, vm::Section section,
                                         std::uint16_t index);
-// "the code at word 12 (line 4): an operand is out of range".
+// "an operand is out of range (code, word 12, source line 4)".
 [[nodiscard]] std::string describe_refusal(const vm::Verdict& verdict, std::uint16_t line);
 
 }  // namespace robosync::tool

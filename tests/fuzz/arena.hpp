@@ -1,6 +1,6 @@
-// Memory of exactly the wanted size, so that ASan sees one step outside: slots far from each other in
-// one block, where everything that was not asked for is poisoned. Asking again costs no allocation.
-// In a build without ASan they are slots, and that is all.
+// Memory of exactly the wanted size, so that ASan sees one step outside: slots far from each other
+// in one block, where everything that was not asked for is poisoned. Asking again costs no
+// allocation. In a build without ASan they are slots, and that is all.
 #pragma once
 
 #include <cstddef>

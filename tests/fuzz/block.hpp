@@ -35,8 +35,8 @@ constexpr std::uint32_t verdict_word(const vm::Verdict& verdict) {
          static_cast<std::uint32_t>(verdict.section) << 8 | std::uint32_t{verdict.index} << 16;
 }
 
-// What a fuzzed image is verified against: what a board offers, but for steps that are short enough to
-// run many; `tight`: so little that images meet its limits.
+// What a fuzzed image is verified against: what a board offers, but for steps that are short enough
+// to run many; `tight`: so little that images meet its limits.
 constexpr vm::Limits limits(bool tight) {
   vm::Limits limits;
   limits.step_cost = 60000;

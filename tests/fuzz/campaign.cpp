@@ -54,8 +54,7 @@ bool Campaign::repair(const vm::Verdict& verdict) {
     draft_.header().step_cost = vm::step_cost(draft_.view());
   } else if (verdict.refusal == Refusal::mask_differs) {
     if (verdict.section == Section::responses) {
-      draft_.as<vm::Response>(Section::responses, verdict.index).actuators =
-          mask_of(verdict.index);
+      draft_.as<vm::Response>(Section::responses, verdict.index).actuators = mask_of(verdict.index);
     } else {
       auto& behavior = draft_.as<vm::Behavior>(Section::behaviors, verdict.index);
       std::uint32_t mask = 0;

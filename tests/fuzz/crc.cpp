@@ -1,5 +1,5 @@
-// The checksum of a mutant, fast: tables for eight bytes at a time. That it is the VM's is seen by what
-// is accepted.
+// The checksum of a mutant, fast: tables for eight bytes at a time. That it is the VM's is seen by
+// what is accepted.
 #include <cstring>
 
 #include "tests/fuzz/draft.hpp"

@@ -135,8 +135,8 @@ std::optional<Object> Draft::object_of(std::size_t rule, Part part) const {
     ++b;
   if (b == view_.behaviors.size()) return std::nullopt;
   const vm::Rule& record = view_.rules[rule];
-  Object object{b, rule, part, record.condition_start, record.condition_length,
-                vm::Context::condition};
+  Object object{
+      b, rule, part, record.condition_start, record.condition_length, vm::Context::condition};
   if (part != Part::condition) {
     const auto index = part == Part::then_response ? record.then_response : record.else_response;
     if (index >= view_.responses.size()) return std::nullopt;
@@ -167,8 +167,8 @@ void Draft::move_jumps(const Object& object, std::size_t at, std::ptrdiff_t by) 
     const Distance distance = distance_of(vm::opcode_of(before));
     if (distance.jump == Jump::none) continue;
     const std::size_t far = operand(before, distance.place);
-    const bool crosses = distance.jump == Jump::ahead ? w < at && w + 1 + far > at
-                                                      : w >= at && w + 1 <= at + far;
+    const bool crosses =
+        distance.jump == Jump::ahead ? w < at && w + 1 + far > at : w >= at && w + 1 <= at + far;
     if (!crosses) continue;
     const auto moved = static_cast<std::ptrdiff_t>(far) + by;
     word(w) = with_operand(before, distance.place, static_cast<unsigned>(moved));

@@ -1,7 +1,8 @@
-// An image that is being changed, in memory of its own: records and code words can be put in and taken
-// out of any section, and what refers to code is moved with it.
+// An image that is being changed, in memory of its own: records and code words can be put in and
+// taken out of any section, and what refers to code is moved with it.
 //
-// While sound(), the sections fill it as the header says. Nothing else about the records is assumed.
+// While sound(), the sections fill it as the header says. Nothing else about the records is
+// assumed.
 #pragma once
 
 #include <array>

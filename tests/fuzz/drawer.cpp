@@ -150,8 +150,7 @@ unsigned Drawer::draw_kind(Word word, std::size_t place) {
 }
 
 unsigned Drawer::cell(const Cells& among, bool with_inputs) {
-  if (with_inputs && locals_end_ > 0 && random_.below(3) != 0)
-    return random_.below(locals_end_);
+  if (with_inputs && locals_end_ > 0 && random_.below(3) != 0) return random_.below(locals_end_);
   const std::size_t end = std::min<std::size_t>(std::max(cells_, first_register_), 256);
   if (end <= locals_end_) return 0;
   const std::size_t from = locals_end_ + random_.below(end - locals_end_);
@@ -159,8 +158,7 @@ unsigned Drawer::cell(const Cells& among, bool with_inputs) {
     const std::size_t at = locals_end_ + (from - locals_end_ + i) % (end - locals_end_);
     if (among[at]) return static_cast<unsigned>(at);
   }
-  return with_inputs && locals_end_ > 0 ? random_.below(locals_end_)
-                                        : static_cast<unsigned>(from);
+  return with_inputs && locals_end_ > 0 ? random_.below(locals_end_) : static_cast<unsigned>(from);
 }
 
 unsigned Drawer::truth() {

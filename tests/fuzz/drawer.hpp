@@ -1,7 +1,7 @@
 // Draws operands and instructions that are likely to be right at a place in a code object.
 //
-// It keeps what the words before have left in the registers, roughly as the verifier does; but nothing
-// here decides what is right: now and then an operand is drawn from all there are.
+// It keeps what the words before have left in the registers, roughly as the verifier does; but
+// nothing here decides what is right: now and then an operand is drawn from all there are.
 #pragma once
 
 #include <bitset>

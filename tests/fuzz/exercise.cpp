@@ -111,8 +111,7 @@ private:
     result_ = engine_.evaluate(
         machine_, {&behavior_, rule.condition_start, rule.condition_length, true, false}, cost);
     ++facts_.runs;
-    const bool truth =
-        result_ == vm::kTrue || result_ == vm::kFalse || result_ == vm::kUnknown;
+    const bool truth = result_ == vm::kTrue || result_ == vm::kFalse || result_ == vm::kUnknown;
     require(truth || rule.kind == vm::RuleKind::every, "a condition is no truth value");
     note(static_cast<std::uint32_t>(result_));
     note(machine_.event ? machine_.wake + 1 : machine_.wake);
@@ -133,7 +132,7 @@ private:
       machine_.output = output;
       machine_.output_end = output + kOutputRoom;
       machine_.wake = Machine::kNever;
-      machine_.written = machine_.assigned = 0;
+      machine_.assigned = machine_.shifted = 0;
       const Run run = engine_.respond(machine_, object, from);
       ++facts_.runs;
       dearest = std::max(dearest, run.cost);
@@ -152,7 +151,7 @@ private:
     require(run.pause == vm::Pause::ended || run.next < response.length, "pauses outside");
     check_output(output, response.actuators);
     const std::uint32_t owned = owned_by(response);
-    require((machine_.written & ~owned) == 0, "wrote what it does not set");
+    require((machine_.written() & ~owned) == 0, "wrote what it does not set");
     check_written();
     check_inputs(owned);
     for (const Word word : output)
@@ -163,7 +162,7 @@ private:
     note(static_cast<std::uint32_t>(run.next));
     note(run.wake);
     note(machine_.random);
-    note(machine_.written);
+    note(machine_.shifted);
     note(machine_.assigned);
   }
 
@@ -188,16 +187,17 @@ private:
       require(said.word == vm::kNoWord || said.word < image_.words.size(), "no such word");
       require((said.given & ~image_.verbs[said.verb].params) == 0, "not the verb's parameter");
       for (std::uint32_t left = targets; left != 0; left &= left - 1)
-        require((image_.actuators[static_cast<std::size_t>(std::countr_zero(left))].verbs >>
-                     said.verb & 1) != 0,
-                "not the actuator's verb");
+        require(
+            (image_.actuators[static_cast<std::size_t>(std::countr_zero(left))].verbs >> said.verb &
+             1) != 0,
+            "not the actuator's verb");
     }
     // A parameter that is given twice is put out twice, and read once.
     require(used <= output.size() && (output.empty() || used > 0), "output that is none");
   }
 
-  // The inputs that it sets, a bit each. To set one to an unknown does nothing, but then the response
-  // owns it all the same, and may change it in place.
+  // The inputs that it sets, a bit each. To set one to an unknown does nothing, but then the
+  // response owns it all the same, and may change it in place.
   [[nodiscard]] std::uint32_t owned_by(const vm::Response& response) const {
     std::uint32_t owned = 0;
     for (const Word word : image_.code.subspan(response.start, response.length))
@@ -206,15 +206,14 @@ private:
   }
   // What was written are variables of the behaviour that are no bands.
   void check_written() {
-    require((machine_.assigned & ~machine_.written) == 0, "assigned and not written");
-    for (std::uint32_t left = machine_.written; left != 0; left &= left - 1) {
+    for (std::uint32_t left = machine_.written(); left != 0; left &= left - 1) {
       const auto cell = static_cast<std::size_t>(std::countr_zero(left));
       require(cell < behavior_.input_count, "wrote an input that is none");
       const std::size_t input = image_.inputs[behavior_.first_input + cell];
       const std::size_t channels = image_.channels.size();
-      require(input >= channels && image_.variables[input - channels].kind !=
-                                       vm::VariableKind::band,
-              "wrote an input that is no variable");
+      require(
+          input >= channels && image_.variables[input - channels].kind != vm::VariableKind::band,
+          "wrote an input that is no variable");
     }
   }
   void check_inputs(std::uint32_t owned) {

@@ -1,9 +1,9 @@
-// Runs everything that an accepted image may run, with inputs drawn from the edges, and looks at what
-// comes of it: conditions are true, false or unknown; responses put out what exists and was declared,
-// and write the variables they may write.
+// Runs everything that an accepted image may run, with inputs drawn from the edges, and looks at
+// what comes of it: conditions are true, false or unknown; responses put out what exists and was
+// declared, and write the variables they may write.
 //
-// The same on the host and on the board: what differs is the Engine. It draws the same there, and the
-// hash over frames, outputs and results is the same.
+// The same on the host and on the board: what differs is the Engine. It draws the same there, and
+// the hash over frames, outputs and results is the same.
 #pragma once
 
 #include <cstddef>

@@ -47,7 +47,7 @@ void HostEngine::compare(const Machine& machine) {
                     std::equal(machine.timer_memory, machine.timer_memory + timer_words_,
                                stepped_memory_.begin()) &&
                     machine.wake == stepped_.wake && machine.random == stepped_.random &&
-                    machine.event == stepped_.event && machine.written == stepped_.written &&
+                    machine.event == stepped_.event && machine.shifted == stepped_.shifted &&
                     machine.assigned == stepped_.assigned &&
                     machine.divided_by_zero == stepped_.divided_by_zero;
   if (!same) fail("word by word, the interpreter leaves something else");

@@ -1,6 +1,7 @@
 // Fuzzes the verifier and runs what it accepts; scripts/fuzz is for people. Prints one JSON object.
 //
-// usage: fuzz_images --images N --seed S --seeds FOLDER [--saved FILE] [--emit FILE] [--all-refusals]
+// usage: fuzz_images --images N --seed S --seeds FOLDER [--saved FILE] [--emit FILE]
+// [--all-refusals]
 //   --saved         where the image at fault is written to (default: fuzz-failed.rsb)
 //   --emit          writes the images and what came of them, for the board (block.hpp)
 //   --all-refusals  fails unless every reason to refuse, and every opcode, was seen
@@ -103,11 +104,10 @@ bool saw_all(const Totals& totals) {
 
 void print(const Options& options, const Totals& totals) {
   const double seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-  std::printf("{\"seed\": %llu, \"images\": %llu, \"bytes\": %llu, \"runs\": %llu, ",
-              static_cast<unsigned long long>(options.seed),
-              static_cast<unsigned long long>(totals.images),
-              static_cast<unsigned long long>(totals.length),
-              static_cast<unsigned long long>(totals.runs));
+  std::printf(
+      "{\"seed\": %llu, \"images\": %llu, \"bytes\": %llu, \"runs\": %llu, ",
+      static_cast<unsigned long long>(options.seed), static_cast<unsigned long long>(totals.images),
+      static_cast<unsigned long long>(totals.length), static_cast<unsigned long long>(totals.runs));
   std::printf("\"pauses\": %llu, \"exact\": %llu, \"worst_ratio\": %.4f, \"cpu_seconds\": %.1f",
               static_cast<unsigned long long>(totals.pauses),
               static_cast<unsigned long long>(totals.exact), totals.worst_ratio, seconds);

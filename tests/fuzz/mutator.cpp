@@ -11,9 +11,9 @@ using vm::ImageHeader;
 
 namespace {
 
-constexpr std::uint32_t kEdges[] = {0,     1,      2,          31,         32,         33,        63,
-                                    64,    127,    128,        254,        255,        256,       1000,
-                                    0x7FFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0x80000001, 0xFFFFFFFF};
+constexpr std::uint32_t kEdges[] = {
+    0,   1,   2,   31,   32,     33,     63,         64,         127,        128,
+    254, 255, 256, 1000, 0x7FFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0x80000001, 0xFFFFFFFF};
 
 }  // namespace
 
@@ -91,9 +91,8 @@ void Mutator::change_opcode(Draft& draft, const Object& object) {
     return;
   }
   const auto opcode = static_cast<Opcode>(random_.below(kOpcodeCount));
-  const bool alike =
-      is_opcode(before) &&
-      vm::kOpcodes[static_cast<unsigned>(opcode)].operands == info_of(before).operands;
+  const bool alike = is_opcode(before) && vm::kOpcodes[static_cast<unsigned>(opcode)].operands ==
+                                              info_of(before).operands;
   if (alike) {
     draft.word(at) = (before & ~0xFFU) | static_cast<Word>(opcode);
     return;
@@ -112,10 +111,9 @@ void Mutator::insert_word(Draft& draft, const Object& object) {
   Drawer drawer(draft, object, random_);
   for (std::size_t w = object.start; w < at; ++w)
     drawer.learn(draft.word(w));
-  const Word word =
-      random_.one_in(4)
-          ? drawer.instruction(static_cast<Opcode>(random_.below(kOpcodeCount)))
-          : drawer.plain();
+  const Word word = random_.one_in(4)
+                        ? drawer.instruction(static_cast<Opcode>(random_.below(kOpcodeCount)))
+                        : drawer.plain();
   draft.insert_words(object, at, std::span(&word, 1), !random_.one_in(8));
 }
 

@@ -1,5 +1,5 @@
-// An instruction word by the kinds of its operands, as opcodes.def lists them: whatever opcodes there
-// are, nothing here knows them by name.
+// An instruction word by the kinds of its operands, as opcodes.def lists them: whatever opcodes
+// there are, nothing here knows them by name.
 #pragma once
 
 #include "vm/opcode.hpp"

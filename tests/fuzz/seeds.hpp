@@ -1,5 +1,5 @@
-// What mutation starts from: the images of a folder, each as it is, and, small enough to be quick, each
-// of its behaviours by itself.
+// What mutation starts from: the images of a folder, each as it is, and, small enough to be quick,
+// each of its behaviours by itself.
 #pragma once
 
 #include <string>

@@ -25,8 +25,7 @@ void Stepper::begin(Machine& machine, const CodeObject& object) {
   locals_end_ = inputs_ + behavior.locals;
   first_register_ = locals_end_;
   for (std::size_t r = 0; r < behavior.rule_count; ++r)
-    first_register_ +=
-        image_.rules[behavior.first_rule + r].kind == vm::RuleKind::watch ? 1 : 0;
+    first_register_ += image_.rules[behavior.first_rule + r].kind == vm::RuleKind::watch ? 1 : 0;
   cells_ = behavior.cells;
   cost_ = owned_ = 0;
   known_.reset();
@@ -58,8 +57,7 @@ Run Stepper::respond(Machine& machine, const CodeObject& object, std::size_t fro
     check(at);
     const Word word = image_.code[object.start + at];
     const Distance distance = distance_of(vm::opcode_of(word));
-    const std::size_t far =
-        distance.jump == Jump::none ? 0 : operand(word, distance.place);
+    const std::size_t far = distance.jump == Jump::none ? 0 : operand(word, distance.place);
     const std::size_t target = distance.jump == Jump::back ? at + 1 - far : at + 1 + far;
     vm::Progress progress;
     switch (probe(word, progress)) {
@@ -79,8 +77,8 @@ Run Stepper::respond(Machine& machine, const CodeObject& object, std::size_t fro
   }
 }
 
-// Runs the one word between words that tell which way it went: where it jumps, its distance is made so
-// that it leads to one of them.
+// Runs the one word between words that tell which way it went: where it jumps, its distance is made
+// so that it leads to one of them.
 Stepper::Went Stepper::probe(Word word, vm::Progress& progress) {
   const Word end = vm::encode(Opcode::end);
   const Word marker = vm::encode(Opcode::wait_done);
@@ -183,8 +181,8 @@ void Stepper::check_write(Word word, unsigned cell) {
 
 void Stepper::check_distance(std::size_t at, Word word, std::size_t place) {
   const std::size_t far = operand(word, place);
-  const bool inside = kind_of(word, place) == Operand::back ? far <= at + 1
-                                                            : at + 1 + far < object_->length;
+  const bool inside =
+      kind_of(word, place) == Operand::back ? far <= at + 1 : at + 1 + far < object_->length;
   require(inside, "jumps outside");
 }
 

@@ -1,9 +1,10 @@
-// Runs code one instruction at a time, by the shipped interpreter, and holds every instruction against
-// opcodes.def before it runs: that it may stand there, and that each operand is one that exists, was
-// written before, and is of its type. Counts what the instructions are declared to cost.
+// Runs code one instruction at a time, by the shipped interpreter, and holds every instruction
+// against opcodes.def before it runs: that it may stand there, and that each operand is one that
+// exists, was written before, and is of its type. Counts what the instructions are declared to
+// cost.
 //
-// This is a second opinion about what the verifier proves once for all ways through the code, taken on
-// the way that is run. It shares nothing with the verifier but the list of opcodes.
+// This is a second opinion about what the verifier proves once for all ways through the code, taken
+// on the way that is run. It shares nothing with the verifier but the list of opcodes.
 #pragma once
 
 #include <bitset>

@@ -123,9 +123,8 @@ void Writer::loop(unsigned depth) {
   statements(depth);
   pause();
   if (random_.one_in(2)) statements(depth);
-  put(drawer_.instruction(drawer_.opcode_with([](Opcode op) {
-    return op == Opcode::lt_k || op == Opcode::not_ || op == Opcode::gt_k;
-  })));
+  put(drawer_.instruction(drawer_.opcode_with(
+      [](Opcode op) { return op == Opcode::lt_k || op == Opcode::not_ || op == Opcode::gt_k; })));
   if (random_.one_in(2)) return close(Opcode::around_always, 0, start);
   close(Opcode::around, drawer_.truth(), start);
 }

@@ -1,5 +1,5 @@
-// Grows code objects that are well-formed but for an accident now and then: blocks nest, jumps lead to
-// their ends, commands get parameters they take.
+// Grows code objects that are well-formed but for an accident now and then: blocks nest, jumps lead
+// to their ends, commands get parameters they take.
 #pragma once
 
 #include <vector>

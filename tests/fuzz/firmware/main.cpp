@@ -1,5 +1,6 @@
-// Verifies and runs a block of images (tests/fuzz/block.hpp) that QEMU's loader has put into RAM, each
-// without privileges and behind the MPU, and compares what comes of it with what the host has found.
+// Verifies and runs a block of images (tests/fuzz/block.hpp) that QEMU's loader has put into RAM,
+// each without privileges and behind the MPU, and compares what comes of it with what the host has
+// found.
 //
 // Before that it steps outside of every zone on purpose, to see that the trap works.
 #include <cstring>
@@ -111,13 +112,12 @@ void test_traps() {
   test_zone(Zone::timer_memory, 3 * 4);
   test_zone(Zone::output, 72 * 4);
   test_zone(Zone::image, 900);
-  const std::uintptr_t elsewhere[] = {
-      0x100,        // the firmware
-      0x00100000,   // RAM nobody uses
-      0x20004000,   // behind the stack
-      0x21000000,   // the block
-      0x40004000,   // a serial line
-      0xE000ED08};  // the core's own registers
+  const std::uintptr_t elsewhere[] = {0x100,        // the firmware
+                                      0x00100000,   // RAM nobody uses
+                                      0x20004000,   // behind the stack
+                                      0x21000000,   // the block
+                                      0x40004000,   // a serial line
+                                      0xE000ED08};  // the core's own registers
   for (const std::uintptr_t address : elsewhere)
     require(traps_write(address), "written to", address);
   require(traps_read(0x21000000) && traps_read(0x20004000), "read elsewhere", 0);

@@ -179,14 +179,14 @@ extern const char fuzz_after_poke[];
 }
 
 // The stack that was in use is the one the frame is on.
-#define FUZZ_FAULT_HANDLER(name)    \
-  [[gnu::naked]] void name() {      \
-    asm volatile(                   \
-        "tst lr, #4\n\t"            \
-        "ite eq\n\t"                \
-        "mrseq r0, msp\n\t"         \
-        "mrsne r0, psp\n\t"         \
-        "b fuzz_fault");            \
+#define FUZZ_FAULT_HANDLER(name) \
+  [[gnu::naked]] void name() {   \
+    asm volatile(                \
+        "tst lr, #4\n\t"         \
+        "ite eq\n\t"             \
+        "mrseq r0, msp\n\t"      \
+        "mrsne r0, psp\n\t"      \
+        "b fuzz_fault");         \
   }
 FUZZ_FAULT_HANDLER(HardFault_Handler)
 FUZZ_FAULT_HANDLER(MemManage_Handler)

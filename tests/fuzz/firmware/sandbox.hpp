@@ -1,6 +1,6 @@
-// Runs a function on the board without privileges, behind the MPU: it may write the frame, the timer
-// memory, the output, its stack and the job it is given, read the image besides, and execute the
-// firmware. Every other access faults, and a fault ends the test as failed.
+// Runs a function on the board without privileges, behind the MPU: it may write the frame, the
+// timer memory, the output, its stack and the job it is given, read the image besides, and execute
+// the firmware. Every other access faults, and a fault ends the test as failed.
 //
 // Each piece of memory ends where its MPU region ends, so that the first word behind it faults; it
 // begins where an eighth of the region begins, because that is how fine the MPU is.
