@@ -76,7 +76,8 @@ bool has_time_words(const ProgramBlock& block) {
   return found;
 }
 
-// A response owns all actuators that it has commands for while it runs, also those of branches.
+// A response owns all actuators that it has commands for while it runs, also those of branches; and
+// which behaviours command an actuator ranks its thread.
 bool has_effect(const ProgramBlock& block) {
   return has_time_words(block) || any_command(block, [](const ProgramCommand&) { return true; });
 }
@@ -136,11 +137,10 @@ void Pruner::choose(ProgramStatement statement, ProgramBlock& result) {
 void prune(ProgramRule& rule) {
   fold(rule.condition);
   const bool only_when_true = rule.kind == vm::RuleKind::when || rule.kind == vm::RuleKind::while_;
-  if (only_when_true && rule.condition.fact.never_true() && is_pure(rule.condition) &&
-      !has_time_words(rule.then_response)) {
+  if (only_when_true && rule.condition.fact.never_true() && is_pure(rule.condition)) {
     rule.condition = {};
     rule.condition.constant = vm::kFalse;
-    rule.then_response.clear();
+    if (!has_effect(rule.then_response)) rule.then_response.clear();
   }
   Pruner().block(rule.then_response);
   Pruner().block(rule.else_response);
