@@ -34,6 +34,7 @@ extern "C" const void* const robosync_dispatch[];
   asm goto(JUMP(place)); \
   __builtin_unreachable()
 #else
+// NOLINTNEXTLINE(bugprone-macro-parentheses): no product, a statement
 #define DISPATCH(place) goto* table[word & 0xFF]
 #endif
 

@@ -285,23 +285,24 @@ op_unless_known:
   goto next;
   // An unknown is less than all that is known. So an unknown right side makes no order true, and an
   // unknown left side none that wants it greater.
-#define UNLESS(name, right_side, holds) \
-  op_unless_##name : result = a();      \
-  right = right_side;                   \
-  if (holds) goto next;                 \
+#define UNLESS(name, holds)                     \
+  op_unless_##name : right = b();               \
+  goto unless_##name;                           \
+  op_unless_##name##_k : right = b_k();         \
+  unless_##name : result = a();                 \
+  if (result != kUnknown && (holds)) goto next; \
   goto ahead8
 
-  UNLESS(lt, b(), result != kUnknown && result < right);
-  UNLESS(le, b(), result != kUnknown && result <= right);
-  UNLESS(eq, b(), result != kUnknown && result == right);
-  UNLESS(ne, b(), result != kUnknown && right != kUnknown && result != right);
-  UNLESS(lt_k, b_k(), result != kUnknown && result < right);
-  UNLESS(le_k, b_k(), result != kUnknown && result <= right);
-  UNLESS(gt_k, b_k(), result > right);
-  UNLESS(ge_k, b_k(), result >= right);
-  UNLESS(eq_k, b_k(), result == right);
-  UNLESS(ne_k, b_k(), result != kUnknown && result != right);
+  UNLESS(lt, result < right);
+  UNLESS(le, result <= right);
+  UNLESS(eq, result == right);
+  UNLESS(ne, right != kUnknown && result != right);
 #undef UNLESS
+op_unless_gt_k:
+  if (a() > b_k()) goto next;
+  goto ahead8;
+op_unless_ge_k:
+  if (a() >= b_k()) goto next;
 ahead8:
   pc += operand_c(word);
   goto next;

@@ -105,3 +105,15 @@ TEST_CASE("target_mask() knows actuators and groups, and nothing else") {
   for (unsigned target = 3; target < 256; ++target)
     if (target != companion::arms) CHECK(image.target_mask(static_cast<std::uint8_t>(target)) == 0);
 }
+
+TEST_CASE("there are SAFETY rules if the first behaviour has their priority") {
+  CHECK_FALSE(Image{}.has_safety());
+  ImageBuilder builder = companion::make();
+  for (const bool expected : {true, false}) {
+    const Bytes bytes = builder.build();
+    Image image;
+    REQUIRE(view_image(bytes, image));
+    CHECK(image.has_safety() == expected);
+    builder.behaviors.erase(builder.behaviors.begin() + kSafetyBehavior);
+  }
+}

@@ -325,3 +325,11 @@ TEST_CASE("any content of the timer memory is harmless") {
     REQUIRE((result == kTrue || result == kFalse || result == kUnknown));
   }
 }
+
+TEST_CASE("a time is reached from itself on, where the clock wraps as well") {
+  CHECK(reached(5, 5));
+  CHECK(reached(5, 6));
+  CHECK_FALSE(reached(6, 5));
+  CHECK(reached(0xFFFFFFFF, 0));
+  CHECK_FALSE(reached(0, 0xFFFFFFFF));
+}
