@@ -106,11 +106,15 @@ def text_of(event):
 
 
 def is_tie(lines, at_ms):
-    events = [e for e in map(json.loads, lines) if e["t_us"] // 1000 == at_ms]
+    trace = [json.loads(line) for line in lines]
+    events = [e for e in trace if e["t_us"] // 1000 == at_ms]
     kinds = {e["event"] for e in events}
     steps = {e["step"] for e in events if e["event"] not in WITHOUT_STEP}
     apart = bool(kinds & WITHOUT_STEP) and bool(kinds & IN_STEP)
-    return len(steps) > 1 or apart
+    before = max((e["step"] for e in trace if e["t_us"] // 1000 < at_ms), default=0)
+    # A step without events, of a WAIT UNTIL that looks in vain: it may have been in this millisecond.
+    hidden = "input" in kinds and min(steps) > before + 1
+    return len(steps) > 1 or apart or hidden
 
 
 def first_difference(rsc_lines, reference_lines):
