@@ -79,7 +79,7 @@ def filtered(readings):
     for reading in readings:
         taps = [reading, *taps[:-1]]
         side = 1000 if mean(taps) < NEAR else 0 if mean(taps) > FAR else side
-        yield {**{f"x{i}": tap for i, tap in enumerate(taps)}, "mean": mean(taps), "side": side}
+        yield {**{f"x{i}": tap for i, tap in enumerate(taps)}, "side": side}
 
 
 def w3(folder):

@@ -172,6 +172,10 @@ void check_driver(const link::HelloReply& board, vm::DriverId id, std::string_vi
 
 }  // namespace
 
+milliseconds patience(std::size_t image_bytes) {
+  return milliseconds(10000) + milliseconds(1) * image_bytes;
+}
+
 std::vector<std::string> obstacles(const link::HelloReply& board, const vm::Image& image) {
   std::vector<std::string> found;
   const vm::ImageHeader& header = *image.header;
@@ -206,15 +210,15 @@ std::vector<std::string> obstacles(const link::HelloReply& board, const vm::Imag
 UploadResult upload(Client& client, const link::HelloReply& hello, std::span<const std::byte> image,
                     const UploadOptions& options) {
   const auto start = client.now();
+  const auto give_up = start + options.timeout.value_or(patience(image.size()));
   UploadResult result;
   result.bytes = image.size();
   do {
-    Transfer transfer(client, hello.receive_window, image, options, start + options.timeout);
+    Transfer transfer(client, hello.receive_window, image, options, give_up);
     transfer.run();
     result.frames_sent += transfer.frames_sent();
     result.activation = client.activate();
-  } while (result.activation.refusal == link::kNothingToActivate &&
-           client.now() < start + options.timeout);
+  } while (result.activation.refusal == link::kNothingToActivate && client.now() < give_up);
   result.time = std::chrono::duration_cast<std::chrono::microseconds>(client.now() - start);
   return result;
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,9 +17,13 @@
 namespace robosync::tool {
 
 struct UploadOptions {
-  std::chrono::milliseconds timeout{10000};                           // for all of it
+  std::optional<std::chrono::milliseconds> timeout;  // for all of it; else patience()
   std::function<void(std::size_t sent, std::size_t total)> progress;  // may be empty
 };
+
+// How long an upload may take when nobody says: ten times what the bytes take on the wire, and some
+// seconds for a board that is busy.
+[[nodiscard]] std::chrono::milliseconds patience(std::size_t image_bytes);
 
 struct UploadResult {
   link::ActivateResult activation{};

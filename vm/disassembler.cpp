@@ -97,6 +97,19 @@ void put_constant(Writer& out, const Image& image, std::size_t index) {
   out.put_number(static_cast<std::uint32_t>(index));
 }
 
+// Is the opcode's constant the number itself, not thousandths of it?
+bool holds_whole(Opcode opcode) {
+  return opcode == Opcode::div_k || opcode == Opcode::mul_k_fast;
+}
+
+void put_whole(Writer& out, const Image& image, std::size_t index) {
+  if (index >= image.constants.size()) return put_constant(out, image, index);
+  const Value number = image.constants[index];
+  if (number < 0) out.put('-');
+  const auto bits = static_cast<std::uint32_t>(number);
+  out.put_number(number < 0 ? 0 - bits : bits);
+}
+
 void put_target(Writer& out, const Image& image, std::uint8_t target) {
   if (target == kAllActuators)
     out.put("ALL");
@@ -161,7 +174,8 @@ void put_operand(Writer& out, const Image& image, Word word, std::size_t place, 
     case Operand::string:
       return put_string(out, image, operand_wide(word));
     case Operand::const8:
-      return put_constant(out, image, byte);
+      return holds_whole(opcode_of(word)) ? put_whole(out, image, byte)
+                                          : put_constant(out, image, byte);
     case Operand::const16:
       return put_constant(out, image, operand_wide(word));
     case Operand::param:

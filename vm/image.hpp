@@ -29,7 +29,7 @@ inline constexpr std::uint8_t kAllActuators = 0xFF;  // target operand of halt: 
 inline constexpr std::uint8_t kNoModifiers = 0xFF;   // Rule::modifiers: none
 inline constexpr std::int16_t kSafetyPriority =
     100;                                        // of the behaviour that holds the SAFETY rules
-inline constexpr unsigned kSafetyBehavior = 0;  // where it stands, if there are any
+inline constexpr std::uint8_t kSafetyBehavior = 0;  // where it stands, if there are any
 inline constexpr unsigned kFadeTickMs = 100;    // how often a fading variable moves
 inline constexpr unsigned kMaxWindow = 32;      // samples a median is taken of
 inline constexpr unsigned kMaxEdges = 16;       // n TIMES WITHIN

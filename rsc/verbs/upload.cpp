@@ -61,9 +61,10 @@ void report(const Options& options, const UploadResult& result, const Program& p
 void upload(const Options& options) {
   const Program program = load_program(options.file, options.how);
   UploadOptions how;
-  how.timeout = options.timeout.value_or(how.timeout);
+  how.timeout = options.timeout;
   if (stderr_is_terminal()) how.progress = show_progress;
-  Session session(options.port, std::min(how.timeout, milliseconds(2000)));
+  constexpr milliseconds kAnswer{2000};
+  Session session(options.port, std::min(how.timeout.value_or(kAnswer), kAnswer));
   const UploadResult result = upload_program(session, program, how);
   report(options, result, program);
 }
@@ -77,7 +78,8 @@ void add_upload(CLI::App& app) {
       ->option_text(" ");
   add_port_option(app, options->port);
   add_compile_options(app, options->how);
-  add_duration_option(app, "--timeout", options->timeout, "give up after (10s)");
+  add_duration_option(app, "--timeout", options->timeout,
+                      "give up after (10s, longer for a large image)");
   add_format_option(app, options->format);
   app.callback([options] { upload(*options); });
 }

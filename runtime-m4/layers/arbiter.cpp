@@ -26,7 +26,7 @@ Decision decide(const Claim& claim, std::span<const Holding> holdings, const Rul
   std::uint8_t owner = kNobody;
   if ((claim.actuators & halted) != 0) {
     decision.wins = false;
-    owner = kSafetyBehavior;
+    owner = vm::kSafetyBehavior;
   }
   for (const unsigned rule : running) {
     const Holding& other = holdings[rule];

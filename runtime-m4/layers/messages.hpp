@@ -25,9 +25,6 @@ using ActuatorBits = std::conditional_t<kMaxActuators <= 16, std::uint16_t, std:
 // Bit b: behaviour b, 0 being the one of the highest priority.
 using BehaviorMask = std::conditional_t<kMaxBehaviors <= 32, std::uint32_t, std::uint64_t>;
 
-// The behaviour that only holds the SAFETY rules, in a program that has some.
-inline constexpr std::uint8_t kSafetyBehavior = 0;
-
 template <class Mask>
 constexpr Mask bit(unsigned index) {
   return Mask{1} << index;

@@ -179,7 +179,7 @@ vm::Verdict fits(const vm::Image& image) {
     (is_fed(sensor) ? fed_sensors : sensors) += 1;
   if (fed_sensors > 0) ++sensors;  // one thread for all
   std::size_t behaviors = image.behaviors.size();
-  if (has_safety(image)) --behaviors;
+  if (image.has_safety()) --behaviors;
   const std::size_t actuators = image.actuators.size();
   const std::size_t threads = sensors + behaviors + actuators;
   const std::size_t stacks =

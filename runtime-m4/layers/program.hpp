@@ -11,11 +11,6 @@
 
 namespace robosync::layers {
 
-inline bool has_safety(const vm::Image& image) {
-  return !image.behaviors.empty() &&
-         image.behaviors[kSafetyBehavior].priority == vm::kSafetyPriority;
-}
-
 struct Program {
   vm::Image image;
   std::array<InputMask, kMaxBehaviors> inputs{};      // that each behaviour reads
@@ -26,8 +21,7 @@ struct Program {
   // `image` is verified and fits().
   void load(const vm::Image& image);
 
-  bool has_safety() const { return layers::has_safety(image); }
-  unsigned first_behavior() const { return has_safety() ? kSafetyBehavior + 1 : 0; }
+  unsigned first_behavior() const { return image.has_safety() ? vm::kSafetyBehavior + 1 : 0; }
   bool is_variable(unsigned input) const { return input >= image.channels.size(); }
 
   // Priority(T) = max over the behaviours that need T; below all of them when none does.

@@ -40,7 +40,7 @@ void ProcessingLayer::interrupt_lost(BehaviorMask lost) {
 void ProcessingLayer::interrupt_halted(ActuatorMask halted) {
   if (halted == 0) return;
   for (const unsigned rule : running_)
-    if ((holdings_[rule].actuators & halted) != 0) interrupt(rule, kSafetyBehavior);
+    if ((holdings_[rule].actuators & halted) != 0) interrupt(rule, vm::kSafetyBehavior);
 }
 
 void ProcessingLayer::interrupt_over() {

@@ -24,12 +24,12 @@ ActuatorMask actuators_of(const vm::Image& image, std::uint8_t target) {
 void Guard::start(const layers::Program& program) {
   program_ = &program;
   tripped_.clear();
-  layers_.alarm.watch(program.has_safety() ? program.inputs[layers::kSafetyBehavior] : 0);
-  if (program.has_safety()) machine_ = layers_.frames.machine(program, layers::kSafetyBehavior);
+  layers_.alarm.watch(program.image.has_safety() ? program.inputs[vm::kSafetyBehavior] : 0);
+  if (program.image.has_safety()) machine_ = layers_.frames.machine(program, vm::kSafetyBehavior);
 }
 
 kernel::Time Guard::look() {
-  if (!program_->has_safety()) return kernel::kForever;
+  if (!program_->image.has_safety()) return kernel::kForever;
   const vm::Image& image = program_->image;
   const kernel::Time now = kernel_.now();
   layers::Frames::latch(machine_, image, rules(), [&](std::uint8_t input) {

@@ -55,7 +55,7 @@ private:
   void act(const vm::Output& said);
   layers::ActuatorMask halted_by(unsigned rule) const;
   kernel::Time next_look() const;
-  const vm::Behavior& rules() const { return program_->image.behaviors[layers::kSafetyBehavior]; }
+  const vm::Behavior& rules() const { return program_->image.behaviors[vm::kSafetyBehavior]; }
 
   kernel::Kernel& kernel_;
   Neighbours layers_;

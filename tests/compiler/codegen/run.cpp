@@ -72,12 +72,12 @@ void Runner::latch(const World& world) {
   std::fill(frame_.begin() + behavior_.input_count + behavior_.locals, frame_.end(), kGarbage);
   machine.now = world.now;
   machine.wake = vm::Machine::kNever;
-  machine.written = machine.assigned = 0;
+  machine.assigned = machine.shifted = 0;
 }
 
 void Runner::commit(World& world) {
   for (unsigned cell = 0; cell < behavior_.input_count; ++cell)
-    if (cell < vm::kMaxWritable && (machine.written >> cell & 1) != 0)
+    if (cell < vm::kMaxWritable && (machine.written() >> cell & 1) != 0)
       world.variables[input_of(cell) - image_.channels.size()] = frame_[cell];
 }
 

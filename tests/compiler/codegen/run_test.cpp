@@ -130,7 +130,7 @@ TEST_CASE("SET assigns, RAISE only shifts, and unknown does neither") {
   world.variables = {0, 2000, 7000};
   (void)runner.respond(0, world, 0);
   CHECK(runner.machine.assigned == 1);
-  CHECK(runner.machine.written == 3);
+  CHECK(runner.machine.written() == 3);
   CHECK(world.variables == std::vector<vm::Value>{5000, 3000, 7000});
 }
 
