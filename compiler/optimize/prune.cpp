@@ -93,14 +93,29 @@ public:
 
 private:
   void keep(ProgramStatement statement, ProgramBlock& result);
+  template <class Parts>
+  static void keep_claims(ProgramRepeat& repeat, const Parts& parts);
   static void choose(ProgramStatement statement, ProgramBlock& result);
 };
+
+// A loop that is said to run no times has no code. One that is only proved to has, if its body
+// matters without being run.
+template <class Parts>
+void Pruner::keep_claims(ProgramRepeat& repeat, const Parts& parts) {
+  const Expression control = repeat.control;
+  parts(repeat);
+  if (constant_count(repeat) == 0 && has_effect(repeat.body)) repeat.control = control;
+}
 
 // The statement, with its parts pruned; or what is left of it.
 void Pruner::keep(ProgramStatement statement, ProgramBlock& result) {
   const PartsOfStatement parts([](Expression& expression) { fold(expression); },
                                [this](ProgramBlock& inner) { block(inner); });
-  std::visit(parts, statement.node);
+  if (auto* const repeat = std::get_if<ProgramRepeat>(&statement.node)) {
+    keep_claims(*repeat, parts);
+  } else {
+    std::visit(parts, statement.node);
+  }
   if (std::holds_alternative<ProgramIf>(statement.node))
     choose(std::move(statement), result);
   else

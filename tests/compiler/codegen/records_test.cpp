@@ -244,7 +244,7 @@ TEST_CASE("what does not fit is said in words") {
                                                              {line(9, ProgramSet{0, number(1),
                                                                                  true})}})}})})},
           {plain("n")}),
-      "too long");
+      "too long", 80);
   variables.resize(65, plain("w"));
   expect_too_large(program_of({at_start({kLeft})}, variables), "65 channels and variables");
 }
