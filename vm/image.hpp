@@ -28,13 +28,13 @@ inline constexpr std::uint8_t kGroupBit = 0x80;      // target operand: a group,
 inline constexpr std::uint8_t kAllActuators = 0xFF;  // target operand of halt: every actuator
 inline constexpr std::uint8_t kNoModifiers = 0xFF;   // Rule::modifiers: none
 inline constexpr std::int16_t kSafetyPriority =
-    100;                                        // of the behaviour that holds the SAFETY rules
+    100;                                            // of the behaviour that holds the SAFETY rules
 inline constexpr std::uint8_t kSafetyBehavior = 0;  // where it stands, if there are any
-inline constexpr unsigned kFadeTickMs = 100;    // how often a fading variable moves
-inline constexpr unsigned kMaxWindow = 32;      // samples a median is taken of
-inline constexpr unsigned kMaxEdges = 16;       // n TIMES WITHIN
-inline constexpr unsigned kMaxWritable = 32;    // input cells a behaviour can set: one bit each
-inline constexpr unsigned kMaxBlocks = 16;      // blocks open at once in a response
+inline constexpr unsigned kFadeTickMs = 100;        // how often a fading variable moves
+inline constexpr unsigned kMaxWindow = 32;          // samples a median is taken of
+inline constexpr unsigned kMaxEdges = 16;           // n TIMES WITHIN
+inline constexpr unsigned kMaxWritable = 32;        // input cells a behaviour can set: one bit each
+inline constexpr unsigned kMaxBlocks = 16;          // blocks open at once in a response
 
 // Limits of the format. A board may have smaller ones (Limits in verifier.hpp).
 inline constexpr unsigned kMaxBehaviors = 64;

@@ -78,7 +78,8 @@ void Kernel::block(Thread& thread, Events mask) {
   machine_.request_switch();
 }
 
-// The switch waits for the end of the lock. To ask for it first leaves the compiler enough registers.
+// The switch waits for the end of the lock. To ask for it first leaves the compiler enough
+// registers.
 void Kernel::make_ready(Thread& thread) {
   if (thread.rank_ < running_rank_) machine_.request_switch();
   ReadySet::insert(thread.ready_place_);
