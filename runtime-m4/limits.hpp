@@ -67,6 +67,8 @@ inline constexpr std::size_t kStepStack = limit<std::size_t>(736, 1536);
 inline constexpr std::size_t kBehaviorStack = limit<std::size_t>(352, 512);
 inline constexpr std::size_t kControlStack = 544;
 inline constexpr std::size_t kSafetyStack = limit<std::size_t>(896, 1536);
+inline constexpr std::size_t kLinkStack =
+    limit<std::size_t>(1536, 3072);  // it verifies and loads programs
 // For all threads of a program.
 inline constexpr std::size_t kStackArena = limit<std::size_t>(6208, 73728);
 

@@ -49,7 +49,6 @@ public:
 
 private:
   static constexpr kernel::Duration kPollPeriod = kernel::milliseconds(5);
-  static constexpr std::size_t kStackBytes = 1536;
   static constexpr std::size_t kKeptFaults = 2;
 
   using Slot = std::array<std::byte, layers::kSlotBytes>;
@@ -106,7 +105,7 @@ private:
 
   kernel::Thread thread_;
   alignas(8) std::array<Slot, 2> slots_{};
-  alignas(port::kStackAlignment) std::array<std::byte, kStackBytes> stack_{};
+  alignas(port::kStackAlignment) std::array<std::byte, layers::kLinkStack> stack_{};
 };
 
 }  // namespace robosync::update
