@@ -86,7 +86,7 @@ public:
 
   VariableFacts prove() {
     while (true) {
-      const VariableFacts anytime = without(nullptr);
+      VariableFacts anytime = without(nullptr);
       bool grew = false;
       for (Response& response : responses_)
         if (follow(response, anytime)) grew = true;
