@@ -14,6 +14,7 @@ function(embed folder suffix header type function out)
     DEPENDS ${files} ${script}
     COMMENT "Embedding ${folder}/*.${suffix}"
     VERBATIM)
+  set_source_files_properties(${out} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 set(device_texts ${CMAKE_CURRENT_BINARY_DIR}/device_texts.cpp)
 embed(${PROJECT_SOURCE_DIR}/stdlib/devices json compiler/config/devices.hpp DeviceText device_texts

@@ -1,8 +1,6 @@
 // Promises a channel of the image or a message that names the nearest one.
 #include "rsc/channels.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -11,14 +9,10 @@
 
 #include "compiler/diagnostics/nearest.hpp"
 #include "rsc/quantity.hpp"
+#include "rsc/same_name.hpp"
 
 namespace robosync::tool {
 namespace {
-
-bool same(std::string_view a, std::string_view b) {
-  return std::ranges::equal(
-      a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
 
 [[noreturn]] void no_such(std::string_view what, std::string_view name,
                           const std::vector<std::string>& known) {
@@ -34,7 +28,7 @@ std::uint8_t channel_of(const vm::Image& image, const vm::Sensor& sensor, std::s
   std::vector<std::string> known;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const std::string_view candidate = image.string(channels[i].name);
-    if (same(candidate, name)) return static_cast<std::uint8_t>(sensor.first_channel + i);
+    if (same_name(candidate, name)) return static_cast<std::uint8_t>(sensor.first_channel + i);
     known.emplace_back(candidate);
   }
   if (name.empty()) {
@@ -51,7 +45,7 @@ std::uint8_t find_channel(const vm::Image& image, std::string_view sensor,
   std::vector<std::string> known;
   for (const vm::Sensor& candidate : image.sensors) {
     const std::string_view name = image.string(candidate.name);
-    if (same(name, sensor)) return channel_of(image, candidate, channel);
+    if (same_name(name, sensor)) return channel_of(image, candidate, channel);
     known.emplace_back(name);
   }
   no_such("sensor", sensor, known);
@@ -69,10 +63,10 @@ vm::Value parse_reading(const vm::Image& image, std::uint8_t channel, std::strin
   std::vector<std::string> labels;
   for (std::size_t i = 0; i < record.label_count; ++i) {
     labels.emplace_back(image.string(image.labels[record.first_label + i]));
-    if (same(labels.back(), text)) return static_cast<vm::Value>(i) * vm::kScale;
+    if (same_name(labels.back(), text)) return static_cast<vm::Value>(i) * vm::kScale;
   }
-  if (labels.size() == 2 && same(text, "false")) return 0;
-  if (labels.size() == 2 && same(text, "true")) return vm::kScale;
+  if (labels.size() == 2 && same_name(text, "false")) return 0;
+  if (labels.size() == 2 && same_name(text, "true")) return vm::kScale;
   no_such(fmt::format("reading of {}", image.string(record.name)), text, labels);
 }
 

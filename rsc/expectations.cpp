@@ -2,11 +2,11 @@
 #include "rsc/expectations.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 #include <fmt/format.h>
 
 #include "rsc/event_reader.hpp"
+#include "rsc/same_name.hpp"
 #include "rsc/time_units.hpp"
 #include "rsc/trace_format.hpp"
 
@@ -19,11 +19,6 @@ using compiler::testing::ExpectedSilence;
 using compiler::testing::ExpectedStop;
 using compiler::testing::ExpectedTruth;
 using link::EventKind;
-
-bool same(std::string_view a, std::string_view b) {
-  return std::ranges::equal(
-      a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
 
 class Judge {
 public:
@@ -123,8 +118,8 @@ private:
                   const ExpectedCommand& expected) const {
     if (event.kind != EventKind::command) return false;
     const EventReader reader(event, names_);
-    if (reader.actuator_name() != actuator || !same(reader.verb_name(), expected.verb) ||
-        (!expected.word.empty() && !same(reader.word_name(), expected.word))) {
+    if (reader.actuator_name() != actuator || !same_name(reader.verb_name(), expected.verb) ||
+        (!expected.word.empty() && !same_name(reader.word_name(), expected.word))) {
       return false;
     }
     return std::ranges::all_of(expected.arguments, [&](const compiler::ProgramArgument& argument) {
@@ -143,7 +138,7 @@ private:
       return false;
     }
     return event.kind == EventKind::halt || event.kind == EventKind::cancel ||
-           (event.kind == EventKind::command && same(reader.verb_name(), "STOP"));
+           (event.kind == EventKind::command && same_name(reader.verb_name(), "STOP"));
   }
 
   // At the beginning of the window.

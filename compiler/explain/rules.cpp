@@ -8,11 +8,11 @@
 namespace robosync::compiler::explain {
 namespace {
 
-constexpr std::size_t kIndent = 2;
+constexpr std::size_t kRuleIndent = 2;
 
-class Writer {
+class RuleWriter {
 public:
-  Writer(const Defines& defines, std::size_t line, std::size_t indent)
+  RuleWriter(const Defines& defines, std::size_t line, std::size_t indent)
       : defines_(defines), line_(line), indent_(indent) {}
 
   void write(const ast::WhenRule& rule) {
@@ -21,14 +21,14 @@ public:
     if (!rule.else_block) return;
     say(0, "As soon as that is no longer true:");
     body(*rule.else_block);
-    say(kIndent,
+    say(kRuleIndent,
         "Each side interrupts the other. At start, as soon as it is known which side is "
         "right, that side is done once.");
   }
   void write(const ast::WhileRule& rule) {
     title(while_true(*rule.condition));
     body(rule.body);
-    say(kIndent,
+    say(kRuleIndent,
         "It stops at once when that is no longer true. If it gets to its end before, it "
         "starts again from the top.");
   }
@@ -37,7 +37,7 @@ public:
                                 number(*rule.to))
                   : fmt::format("Every {}", number(*rule.period)));
     body(rule.body);
-    say(kIndent, "If it is still busy when its time comes, that time is left out.");
+    say(kRuleIndent, "If it is still busy when its time comes, that time is left out.");
   }
   void write(const ast::AtStartRule& rule) {
     title("Once, when the program starts");
@@ -46,23 +46,24 @@ public:
 
   void write(const ast::Modifiers& modifiers) {
     if (modifiers.margin) {
-      say(kIndent, fmt::format("Once true, it stays true until the value is {} back past its "
-                               "limit, so that it does not flicker.",
-                               number(*modifiers.margin)));
+      say(kRuleIndent, fmt::format("Once true, it stays true until the value is {} back past its "
+                                   "limit, so that it does not flicker.",
+                                   number(*modifiers.margin)));
     }
     if (modifiers.cooldown) {
-      say(kIndent, fmt::format("After it has started, it does not start again for {}.",
-                               number(*modifiers.cooldown)));
+      say(kRuleIndent, fmt::format("After it has started, it does not start again for {}.",
+                                   number(*modifiers.cooldown)));
     }
     if (modifiers.restarting) {
-      say(kIndent,
+      say(kRuleIndent,
           "If it becomes true again while this is still going on, it starts again from "
           "the top.");
     }
     if (modifiers.waiting) {
-      say(kIndent, fmt::format("If something more important is using what it needs, it waits for "
-                               "that, but at most {}.",
-                               number(*modifiers.waiting)));
+      say(kRuleIndent,
+          fmt::format("If something more important is using what it needs, it waits for "
+                      "that, but at most {}.",
+                      number(*modifiers.waiting)));
     }
   }
 
@@ -86,7 +87,7 @@ private:
     text += fmt::format("{:{}}{}\n", "", indent_ + more, words);
   }
   void title(std::string_view words) { say(0, fmt::format("{} (line {}):", words, line_)); }
-  void body(const ast::Block& block) { text += statements(block, defines_, indent_ + kIndent); }
+  void body(const ast::Block& block) { text += statements(block, defines_, indent_ + kRuleIndent); }
 
   const Defines& defines_;
   std::size_t line_;
@@ -97,14 +98,14 @@ private:
 
 std::string rule_text(const ast::Rule& rule, std::size_t line, const Defines& defines,
                       std::size_t indent) {
-  Writer writer(defines, line, indent);
+  RuleWriter writer(defines, line, indent);
   std::visit([&](const auto& node) { writer.write(node); }, rule.node);
   writer.write(rule.modifiers);
   return std::move(writer.text);
 }
 
 std::string safety_text(const ast::Safety& safety, const Defines& defines, std::size_t indent) {
-  Writer writer(defines, 0, indent);
+  RuleWriter writer(defines, 0, indent);
   writer.write(safety);
   return std::move(writer.text);
 }

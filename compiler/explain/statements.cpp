@@ -12,7 +12,7 @@
 namespace robosync::compiler::explain {
 namespace {
 
-constexpr std::size_t kIndent = 4;
+constexpr std::size_t kStatementIndent = 4;
 
 bool is_capital(std::string_view word) {
   return std::ranges::none_of(word, [](unsigned char c) { return std::islower(c) != 0; });
@@ -52,9 +52,10 @@ std::string value_of(const ast::Argument& argument) {
   return count == "1" ? "once" : count + " times";
 }
 
-class Writer {
+class StatementWriter {
 public:
-  Writer(const Defines& defines, std::size_t indent) : defines_(defines), indent_(indent) {}
+  StatementWriter(const Defines& defines, std::size_t indent)
+      : defines_(defines), indent_(indent) {}
 
   void block(const ast::Block& block) {
     for (const ast::Stmt& stmt : block)
@@ -66,9 +67,9 @@ private:
   void line(std::string_view words) { text += fmt::format("{:{}}- {}\n", "", indent_, words); }
 
   void nested(const ast::Block& inner) {
-    indent_ += kIndent;
+    indent_ += kStatementIndent;
     block(inner);
-    indent_ -= kIndent;
+    indent_ -= kStatementIndent;
   }
 
   void write(const ast::Command& node) {
@@ -130,12 +131,12 @@ private:
         node.options, [](const ast::Option& option) { return option.weight != nullptr; });
     line(weighted ? "one of these, picked at random, the more often the larger its number:"
                   : "one of these, picked at random, each as often as the others:");
-    indent_ += kIndent;
+    indent_ += kStatementIndent;
     for (const ast::Option& option : node.options) {
       line(option.weight ? fmt::format("option {}:", number(*option.weight)) : "option:");
       nested(option.body);
     }
-    indent_ -= kIndent;
+    indent_ -= kStatementIndent;
   }
 
   void write(const ast::Stop& node) {
@@ -183,7 +184,7 @@ std::string command(const ast::Command& command) {
 }
 
 std::string statements(const ast::Block& block, const Defines& defines, std::size_t indent) {
-  Writer writer(defines, indent);
+  StatementWriter writer(defines, indent);
   writer.block(block);
   return std::move(writer.text);
 }

@@ -8,7 +8,7 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::size_t kMaxNesting = 64;  // of DEFINEs: the translation recurses
+constexpr std::size_t kMaxNestedDefines = 64;  // of DEFINEs: the translation recurses
 
 std::string counted(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " value" : " values");
@@ -63,7 +63,7 @@ bool Statements::may_run(const DefineName& name, Span use) {
     report_cycle(name, use);
     return false;
   }
-  if (open_.size() < kMaxNesting) return true;
+  if (open_.size() < kMaxNestedDefines) return true;
   diagnostics_.report(Code::E0407, "DEFINEs use each other more than 64 levels deep").label(use);
   return false;
 }

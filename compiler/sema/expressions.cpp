@@ -10,7 +10,7 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::size_t kMaxNesting = 64;  // of LETs: the translation recurses
+constexpr std::size_t kMaxNestedLets = 64;  // of LETs: the translation recurses
 
 }  // namespace
 
@@ -168,7 +168,7 @@ Typed Expressions::constant(ConstantName& name, const ast::Operand& operand, Spa
     return make_nothing(span);
   }
   name.used = true;
-  if (open_.size() == kMaxNesting) {
+  if (open_.size() == kMaxNestedLets) {
     diagnostics_.report(Code::E0407, "LETs use each other more than 64 levels deep").label(span);
     return make_nothing(span);
   }

@@ -6,22 +6,22 @@
 namespace robosync::compiler {
 namespace {
 
-struct Range {
+struct Interval {
   std::int64_t low = 0, high = 0;  // both included
 };
 
 // What is left of `ranges` without `taken`.
-std::vector<Range> without(const std::vector<Range>& ranges, const Range& taken) {
-  std::vector<Range> left;
-  for (const Range& range : ranges) {
+std::vector<Interval> without(const std::vector<Interval>& ranges, const Interval& taken) {
+  std::vector<Interval> left;
+  for (const Interval& range : ranges) {
     if (range.low < taken.low) left.push_back({range.low, std::min(range.high, taken.low - 1)});
     if (range.high > taken.high) left.push_back({std::max(range.low, taken.high + 1), range.high});
   }
   return left;
 }
 
-bool overlaps(const std::vector<Range>& ranges, const Range& wanted) {
-  return std::any_of(ranges.begin(), ranges.end(), [&](const Range& range) {
+bool overlaps(const std::vector<Interval>& ranges, const Interval& wanted) {
+  return std::any_of(ranges.begin(), ranges.end(), [&](const Interval& range) {
     return range.low <= wanted.high && wanted.low <= range.high;
   });
 }
@@ -31,9 +31,9 @@ bool overlaps(const std::vector<Range>& ranges, const Range& wanted) {
 void lint_bands(const ast::Check& node, const ProgramCheck& check, const Typed& input,
                 Diagnostics& diagnostics) {
   const Unit& unit = input.unit != nullptr ? *input.unit : canonical_unit(vm::Dimension::number);
-  std::vector<Range> left{{input.low, input.high}};
+  std::vector<Interval> left{{input.low, input.high}};
   for (std::size_t i = 0; i < check.bands.size(); ++i) {
-    const Range band{check.bands[i].low, check.bands[i].high};
+    const Interval band{check.bands[i].low, check.bands[i].high};
     if (!overlaps(left, band))
       diagnostics
           .report(Code::W0201,

@@ -9,30 +9,31 @@ namespace robosync::compiler::utf8 {
 
 namespace {
 
-struct Range {
+struct CodePoints {
   char32_t first, last;
 };
 
 template <std::size_t N>
-bool contains(const std::array<Range, N>& ranges, char32_t value) {
-  return std::any_of(ranges.begin(), ranges.end(),
-                     [value](Range range) { return range.first <= value && value <= range.last; });
+bool contains(const std::array<CodePoints, N>& ranges, char32_t value) {
+  return std::any_of(ranges.begin(), ranges.end(), [value](CodePoints range) {
+    return range.first <= value && value <= range.last;
+  });
 }
 
-constexpr std::array<Range, 4> zero_width = {
+constexpr std::array<CodePoints, 4> zero_width = {
     {{0x0300, 0x036F}, {0x200B, 0x200D}, {0x20D0, 0x20FF}, {0xFE00, 0xFE0F}}};
 
-constexpr std::array<Range, 8> double_width = {{{0x1100, 0x115F},
-                                                {0x2E80, 0xA4CF},
-                                                {0xAC00, 0xD7A3},
-                                                {0xF900, 0xFAFF},
-                                                {0xFE30, 0xFE6F},
-                                                {0xFF00, 0xFF60},
-                                                {0x1F300, 0x1FAFF},
-                                                {0x20000, 0x3FFFD}}};
+constexpr std::array<CodePoints, 8> double_width = {{{0x1100, 0x115F},
+                                                     {0x2E80, 0xA4CF},
+                                                     {0xAC00, 0xD7A3},
+                                                     {0xF900, 0xFAFF},
+                                                     {0xFE30, 0xFE6F},
+                                                     {0xFF00, 0xFF60},
+                                                     {0x1F300, 0x1FAFF},
+                                                     {0x20000, 0x3FFFD}}};
 
 // Controls, and the marks that reverse the direction of writing ("Trojan Source").
-constexpr std::array<Range, 5> unprintable = {
+constexpr std::array<CodePoints, 5> unprintable = {
     {{0x00, 0x1F}, {0x7F, 0x9F}, {0x200E, 0x200F}, {0x2028, 0x202E}, {0x2066, 0x2069}}};
 
 // Bytes of the sequence that `lead` opens, and the smallest value it may carry; 0: not a lead byte.

@@ -22,8 +22,8 @@ constexpr Keyword table[] = {
 #undef KEYWORD
 };
 
-constexpr std::size_t kinds = Grammar::YYNTOKENS;
-using RoleTable = std::array<unsigned, kinds>;
+constexpr std::size_t token_kinds = Grammar::YYNTOKENS;
+using RoleTable = std::array<unsigned, token_kinds>;
 
 constexpr std::size_t number_of(TokenKind kind) {
   return static_cast<std::size_t>(kind);
@@ -44,7 +44,7 @@ constexpr RoleTable make_roles() {
 constexpr RoleTable role_table = make_roles();
 
 constexpr bool every_token_has_its_row() {
-  for (std::size_t kind = Kinds::USE; kind < kinds; ++kind) {
+  for (std::size_t kind = Kinds::USE; kind < token_kinds; ++kind) {
     bool found = false;
     for (const Keyword& keyword : table)
       found = found || number_of(keyword.kind) == kind;
@@ -105,7 +105,7 @@ const std::vector<std::string>& keyword_spellings() {
 
 unsigned roles_of(TokenKind kind) {
   const std::size_t number = number_of(kind);
-  return number < kinds ? role_table[number] : 0U;
+  return number < token_kinds ? role_table[number] : 0U;
 }
 
 const Keyword* nearest_keyword(std::string_view word, unsigned roles) {

@@ -15,19 +15,20 @@ constexpr char32_t byte_order_mark = 0xFEFF;
 constexpr char32_t no_break_space = 0xA0;
 constexpr char32_t degree_sign = 0xB0;
 
-struct Range {
+struct CodePoints {
   char32_t first, last;
 };
 
 // Above ASCII: blocks of punctuation, arrows, signs, dingbats and emoji. All others are letters.
-constexpr Range not_letters[] = {
+constexpr CodePoints not_letters[] = {
     {0x80, 0xA9},     {0xAB, 0xB4},     {0xB6, 0xB9},     {0xBB, 0xBF},       {0xD7, 0xD7},
     {0xF7, 0xF7},     {0x2000, 0x2BFF}, {0x2E00, 0x2E7F}, {0x3000, 0x303F},   {0xE000, 0xF8FF},
     {0xFE00, 0xFE6F}, {0xFEFF, 0xFF20}, {0xFFF0, 0xFFFF}, {0x1F000, 0x1FAFF}, {0xE0000, 0x10FFFF}};
 
 bool is_letter(char32_t point) {
-  return std::none_of(std::begin(not_letters), std::end(not_letters),
-                      [point](Range range) { return range.first <= point && point <= range.last; });
+  return std::none_of(std::begin(not_letters), std::end(not_letters), [point](CodePoints range) {
+    return range.first <= point && point <= range.last;
+  });
 }
 
 bool is_high(char c) {

@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/share.hpp"
 #include "tests/vm/companion.hpp"
 #include "vm/verifier.hpp"
 
@@ -215,10 +216,10 @@ private:
 
 TEST_CASE("no way through a drawn response is dearer than what the verifier has found") {
   const std::uint32_t conditions = 2 * (cost_of(Op::lt_k) + cost_of(Op::ret));
-  constexpr std::uint32_t kPrograms = 1500;
+  const auto programs = robosync::test::share_of<std::uint32_t>(1500);
   unsigned accepted = 0;
   unsigned exact = 0;
-  for (std::uint32_t seed = 0; seed < kPrograms; ++seed) {
+  for (std::uint32_t seed = 0; seed < programs; ++seed) {
     const std::vector<Word> code = Writer(seed).write();
     const Bytes bytes = image_of(code);
     Image image;
@@ -239,7 +240,7 @@ TEST_CASE("no way through a drawn response is dearer than what the verifier has 
     }
     exact += dearest == found ? 1 : 0;
   }
-  CHECK(accepted > kPrograms * 9 / 10);
+  CHECK(accepted > programs * 9 / 10);
   CAPTURE(accepted, exact);
   CHECK(exact > accepted * 7 / 10);
 }

@@ -5,6 +5,7 @@
 
 #include "tests/compiler/codegen/generator.hpp"
 #include "tests/compiler/codegen/model.hpp"
+#include "tests/support/share.hpp"
 #include "vm/verifier.hpp"
 
 using namespace robosync;
@@ -40,9 +41,9 @@ World some_world(std::uint32_t seed) {
 
 TEST_CASE("a random program is refused as too large, or can be verified") {
   const bool optimize = GENERATE(false, true);
-  constexpr std::uint32_t kPrograms = 4000;
+  const auto programs = robosync::test::share_of<std::uint32_t>(4000);
   unsigned accepted = 0;
-  for (std::uint32_t seed = 0; seed < kPrograms; ++seed) {
+  for (std::uint32_t seed = 0; seed < programs; ++seed) {
     INFO("seed " << seed);
     Taste taste;
     taste.depth = 2 + seed % 6;
@@ -60,17 +61,17 @@ TEST_CASE("a random program is refused as too large, or can be verified") {
     REQUIRE(verdict.ok());
     ++accepted;
   }
-  CHECK(accepted > kPrograms / 2);
-  CHECK(accepted < kPrograms);
+  CHECK(accepted > programs / 2);
+  CHECK(accepted < programs);
 }
 
 TEST_CASE("a random response does what its program says, whatever happens while it waits") {
   const bool optimize = GENERATE(false, true);
-  constexpr std::uint32_t kResponses = 6000;
+  const auto responses = robosync::test::share_of<std::uint32_t>(6000);
   constexpr unsigned kPauses = 20;
   constexpr Taste kTaste{.chance = false, .time_words = false, .depth = 4};
   std::size_t done = 0;
-  for (std::uint32_t seed = 0; seed < kResponses; ++seed) {
+  for (std::uint32_t seed = 0; seed < responses; ++seed) {
     const ProgramBlock block = Generator(seed, kTaste).response();
     const Built built = build(program_of({at_start(block)}, Generator::variables()),
                               {.source_lines = false, .optimize = optimize});
@@ -85,15 +86,15 @@ TEST_CASE("a random response does what its program says, whatever happens while 
     REQUIRE(world.now == expected_world.now);
     done += expected.size();
   }
-  CHECK(done > kResponses);
+  CHECK(done > responses);
 }
 
 // Of a rule that only asks whether its condition is true, unknown is as good as false.
 TEST_CASE("conditions are the same, optimised or not, in every step") {
-  constexpr std::uint32_t kPrograms = 1500;
+  const auto programs = robosync::test::share_of<std::uint32_t>(1500);
   constexpr std::uint32_t kSteps = 12;
   std::size_t truths = 0;
-  for (std::uint32_t seed = 0; seed < kPrograms; ++seed) {
+  for (std::uint32_t seed = 0; seed < programs; ++seed) {
     const Program program = Generator(seed, {.chance = false, .time_words = true}).program();
     const Built plain = build(program, {.source_lines = false});
     const Built optimized = build(program, {.source_lines = false, .optimize = true});
@@ -121,5 +122,5 @@ TEST_CASE("conditions are the same, optimised or not, in every step") {
       }
     }
   }
-  CHECK(truths > kPrograms);
+  CHECK(truths > programs);
 }

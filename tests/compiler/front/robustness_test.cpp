@@ -1,29 +1,18 @@
 // Nothing in a source may crash the front end or keep it busy: random bytes, random words, huge and
 // deep programs. The sanitizers of the host-asan preset watch.
 #include <chrono>
-#include <cstdlib>
 #include <random>
 
 #include <catch2/catch.hpp>
 
 #include "compiler/syntax/keywords.hpp"
 #include "front.hpp"
+#include "tests/support/share.hpp"
 
 using namespace robosync::compiler;
 using namespace robosync::compiler::testing;
 
 namespace {
-
-// The sanitizers make everything twenty times slower: a tenth of the work then, unless
-// ROBOSYNC_FULL_FUZZ=1 asks for all of it.
-int share_of(int count) {
-#ifdef __SANITIZE_ADDRESS__
-  const char* full = std::getenv("ROBOSYNC_FULL_FUZZ");
-  return full != nullptr && std::string(full) == "1" ? count : count / 10;
-#else
-  return count;
-#endif
-}
 
 // Parses and renders both ways; gives the number of errors.
 std::size_t survive(std::string text) {
@@ -67,14 +56,14 @@ std::string repeated(const std::string& part, std::size_t count) {
 
 TEST_CASE("random bytes", "[fuzz]") {
   std::mt19937 random(1);
-  const int rounds = share_of(60000);
+  const int rounds = robosync::test::share_of(60000);
   for (int i = 0; i < rounds; ++i)
     survive(random_bytes(random));
 }
 
 TEST_CASE("random words", "[fuzz]") {
   std::mt19937 random(2);
-  const int rounds = share_of(40000);
+  const int rounds = robosync::test::share_of(40000);
   int wrong = 0;
   for (int i = 0; i < rounds; ++i) {
     if (survive(random_words(random)) > 0) ++wrong;
@@ -83,7 +72,7 @@ TEST_CASE("random words", "[fuzz]") {
 }
 
 TEST_CASE("huge and deep programs end soon", "[robust]") {
-  const auto bytes = static_cast<std::size_t>(share_of(1000000));
+  const auto bytes = static_cast<std::size_t>(robosync::test::share_of(1000000));
   const std::string parts[] = {"x ",
                                "x y\n",
                                "WHEN\n",
