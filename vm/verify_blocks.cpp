@@ -8,11 +8,11 @@ namespace {
 // Nothing may cost more, so that sums of a few costs fit 32 bits.
 constexpr std::uint32_t kMaxCost = 1U << 29;
 
-// The cell in which a loop counts that begins with `word`; kNone if it does not count.
-constexpr unsigned kNone = kMaxCells + 1;
+// The cell in which a loop counts that begins with `word`; kNotCounted if it does not count.
+constexpr unsigned kNotCounted = kMaxCells + 1;
 unsigned counter_of(Word word) {
   const bool counts = opcode_of(word) == Opcode::times || opcode_of(word) == Opcode::times_v;
-  return counts ? operand_a(word) : kNone;
+  return counts ? operand_a(word) : kNotCounted;
 }
 
 // How far `unless` and its like jump.
