@@ -1,4 +1,5 @@
-// Makes threads runnable, takes the decisions of the context switch, and drives the tick.
+// Makes threads runnable, takes the decisions of the context switch, takes system calls, and drives
+// the tick.
 #include "runtime-m4/port/cortex-m4/machine.hpp"
 
 #include <array>
@@ -112,6 +113,7 @@ extern "C" {
 const robosync::port::Context* robosync_switch(std::uint32_t* sp, robosync::kernel::Kernel& kernel);
 void PendSV_Open_Handler();
 void SysTick_Handler();
+void SVC_Handler();
 
 // Called by switch.S with the stack pointer of the thread that ran; returns the context of the next
 // one.
@@ -135,6 +137,18 @@ void PendSV_Open_Handler() {
   const auto stack = robosync_kernel.current().stack();
   if (psp - kSaved - word_of(stack.data()) >= stack.size()) return robosync_no_room();
   return robosync_save_open(psp);
+}
+
+// A system call of a thread without privileges: only its vector table has this. At the kernel's own
+// priority, so that no Lock is needed. Nothing is believed: number and argument are numbers, and the
+// frame they come in was stacked by the core with the rights of the thread, so it lies where the
+// thread may write.
+void SVC_Handler() {
+  using namespace robosync::port;
+  CoreFrame* frame = nullptr;
+  asm volatile("mrs %0, psp" : "=r"(frame));
+  if (!robosync_kernel.answer(frame->r0, frame->r1, frame->r0)) [[unlikely]]
+    refuse_call();
 }
 
 void SysTick_Handler() {

@@ -78,7 +78,7 @@ inline std::uint32_t fetch_and_clear(std::uint32_t& word, std::uint32_t mask) {
   return before;
 }
 
-// Number and argument go in r0 and r1, the result comes in r0 (calls.cpp).
+// Number and argument go in r0 and r1, the result comes in r0 (SVC_Handler).
 inline std::uint32_t call(kernel::Kernel&, std::uint32_t number, std::uint32_t argument) {
   register std::uint32_t r0 asm("r0") = number;
   register std::uint32_t r1 asm("r1") = argument;
