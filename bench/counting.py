@@ -65,14 +65,12 @@ def plugin_arguments(names, out):
     return ["-plugin", f"{PLUGIN},out={out}{marks}"]
 
 
-def return_instruction(elf, function):
-    """Address of the instruction by which an exception handler returns."""
+def return_instructions(elf, function):
+    """Addresses of the instructions by which an exception handler returns."""
     listing = subprocess.run(["arm-none-eabi-objdump", "-d", f"--disassemble={function}", str(elf)],
                              check=True, text=True, stdout=subprocess.PIPE).stdout
     found = [line.split(":")[0] for line in listing.splitlines() if line.endswith("bx\tlr")]
-    if len(found) != 1:
-        raise BenchError(f"{function} returns at {len(found)} places")
-    return int(found[0], 16)
+    return [int(address, 16) for address in found]
 
 
 def loaded(path, address):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import rsc
 from board import FAST, FIRMWARE, Board
-from counting import (BUILT, ROOT, BenchError, Marks, plugin_arguments, return_instruction, run,
+from counting import (BUILT, ROOT, BenchError, Marks, plugin_arguments, return_instructions, run,
                       symbols)
 from tap import Tap
 from workloads import PAPER
@@ -87,12 +87,36 @@ def tick_cost(marks):
     return round(max(costs), 1)
 
 
+def switches(marks, begin, end):
+    """Instructions of each context switch that began and ended there, both included. The two ends of
+    the handler: into a thread with privileges, and without (port/cortex-m4/switch.S)."""
+    ends = [(name, count) for name, count in marks.all
+            if name.startswith(("PendSV", "return"))]
+    found = [last - first + 1 for (first_name, first), (last_name, last) in zip(ends, ends[1:])
+             if (first_name, last_name) == (begin, end)]
+    if not found:
+        raise BenchError(f"no switch from {begin} to {end}")
+    return found
+
+
 def kernel_figures():
     elf = BUILT / "bench_kernel"
-    handlers = {name: symbols(elf)[name] for name in ("SysTick_Handler", "PendSV_Handler")}
-    marks = run(elf, extra={**handlers, "return": return_instruction(elf, "PendSV_Handler")})
+    places = {name: symbols(elf)[name]
+              for name in ("SysTick_Handler", "PendSV_Handler", "PendSV_Open_Handler")}
+    returns = return_instructions(elf, "PendSV_Handler")
+    if len(returns) != 2:
+        raise BenchError(f"PendSV_Handler returns at {len(returns)} places")
+    places["return"], places["return_open"] = returns
+    marks = run(elf, extra=places)
     return {
-        "kernel/switch": (max(marks.spans("PendSV_Handler", "return")) + 1, "insn"),
+        "kernel/switch": (max(switches(marks, "PendSV_Handler", "return")), "insn"),
+        "kernel/switch_isolated":
+            (max(switches(marks, "PendSV_Open_Handler", "return_open")), "insn"),
+        "kernel/post_to_run_isolated":
+            (max(marks.spans("mark_post_open", "mark_open_runs")), "insn"),
+        "kernel/block_isolated": (max(marks.spans("mark_open_blocks", "mark_low_runs_again")), "insn"),
+        "kernel/irq_to_thread_isolated":
+            (max(marks.spans("mark_pend_open", "mark_open_runs")), "insn"),
         "kernel/post_to_run": (max(marks.spans("mark_post", "mark_high_runs")), "insn"),
         "kernel/block": (max(marks.spans("mark_high_blocks", "mark_low_runs")), "insn"),
         "kernel/irq_to_thread": (max(marks.spans("mark_pend", "mark_high_runs")), "insn"),

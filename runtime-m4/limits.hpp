@@ -53,6 +53,13 @@ inline constexpr unsigned kMaxActuators = limit(10U, 32U);
 inline constexpr unsigned kMaxBehaviors = limit(11U, 64U);  // the safety rules count as one
 inline constexpr unsigned kMaxRules = limit(40U, 1000U);    // one bit each in a RuleSet
 inline constexpr unsigned kMaxFrameCells = limit(128U, 4096U);
+// What the behaviours' threads write (layers/workspace.hpp): where it begins, and in what units the
+// MPU can close a part of it. The unit is an eighth of the larger power of two that half of it
+// fits.
+inline constexpr std::size_t kWorkspaceAlignment = limit<std::size_t>(512, 16384);
+inline constexpr std::size_t kWorkspaceUnit = limit<std::size_t>(128, 4096);
+// Where that begins which they read (runtime.hpp). Where RAM is scarce it begins anywhere.
+inline constexpr std::size_t kReadableAlignment = limit<std::size_t>(8, 65536);
 
 inline constexpr unsigned kMaxQueued = 8;                   // commands that wait for one actuator
 inline constexpr unsigned kMaxCommands = limit(24U, 128U);  // … and for all of them
@@ -64,12 +71,12 @@ inline constexpr unsigned kMaxProgramThreads = limit(16U, 120U);
 // an interrupt puts on them. Who traces needs most: an event is built and encoded on the stack.
 inline constexpr std::size_t kSensorStack = 512;
 inline constexpr std::size_t kStepStack = limit<std::size_t>(736, 1536);
-inline constexpr std::size_t kBehaviorStack = limit<std::size_t>(352, 512);
+inline constexpr std::size_t kBehaviorStack = limit<std::size_t>(320, 512);  // no guard
 inline constexpr std::size_t kControlStack = 544;
 inline constexpr std::size_t kSafetyStack = limit<std::size_t>(896, 1536);
 inline constexpr std::size_t kLinkStack =
     limit<std::size_t>(1536, 3072);  // it verifies and loads programs
 // For all threads of a program.
-inline constexpr std::size_t kStackArena = limit<std::size_t>(6208, 73728);
+inline constexpr std::size_t kStackArena = limit<std::size_t>(6080, 73728);
 
 }  // namespace robosync::layers

@@ -9,34 +9,11 @@ namespace robosync {
 
 using link::EventKind;
 
-Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events)
+Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events,
+                 layers::Workspace& workspace)
     : kernel_(kernel),
       board_(board),
-      trace_(kernel, events),
-      drivers_(board),
-      crew_(kernel),
-      mailboxes_(kernel),
-      alarm_(kernel, monitor_.thread(), safety::Monitor::kNews),
-      variables_(kernel),
-      sensors_(kernel, trace_, mailboxes_, alarm_, step_thread_, layers::kNews),
-      control_(kernel, board, trace_, step_thread_,
-               {.idle = layers::kIdle, .cancelled = layers::kCancelled, .halted = layers::kHalted}),
-      behaviors_(kernel,
-                 {.trace = trace_,
-                  .frames = frames_,
-                  .triggers = triggers_,
-                  .variables = variables_,
-                  .control = control_},
-                 step_thread_, layers::kFinished),
-      processing_(kernel, trace_, step_thread_,
-                  {.mailboxes = mailboxes_,
-                   .sensors = sensors_,
-                   .variables = variables_,
-                   .triggers = triggers_,
-                   .behaviors = behaviors_,
-                   .control = control_,
-                   .crew = crew_,
-                   .alarm = alarm_}),
+      monitor_(kernel, board, *this),
       guard_(kernel,
              {.trace = trace_,
               .mailboxes = mailboxes_,
@@ -46,7 +23,32 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
               .alarm = alarm_,
               .snapshot = processing_.snapshot()},
              step_thread_, layers::kHalted),
-      monitor_(kernel, board, *this) {}
+      crew_(kernel),
+      mailboxes_(kernel),
+      sensors_(kernel, trace_, mailboxes_, alarm_, step_thread_, layers::kNews),
+      control_(kernel, board, trace_, step_thread_,
+               {.idle = layers::kIdle, .cancelled = layers::kCancelled, .halted = layers::kHalted}),
+      variables_(kernel),
+      drivers_(board),
+      alarm_(kernel, monitor_.thread(), safety::Monitor::kNews),
+      trace_(kernel, events),
+      frames_(workspace),
+      triggers_(workspace),
+      behaviors_(kernel, {.trace = trace_,
+                          .workspace = workspace,
+                          .frames = frames_,
+                          .triggers = triggers_,
+                          .variables = variables_,
+                          .control = control_}),
+      processing_(kernel, trace_, step_thread_,
+                  {.mailboxes = mailboxes_,
+                   .sensors = sensors_,
+                   .variables = variables_,
+                   .triggers = triggers_,
+                   .behaviors = behaviors_,
+                   .control = control_,
+                   .crew = crew_,
+                   .alarm = alarm_}) {}
 
 bool Runtime::start() {
   return monitor_.start();
@@ -86,7 +88,8 @@ vm::Verdict Runtime::activate(std::span<const std::byte> bytes) {
 // The threads wait until all of them are there.
 bool Runtime::start_program() {
   mailboxes_.reset();
-  frames_.start();
+  frames_.start(program_);
+  kernel_.open(areas());
   const auto seed = static_cast<std::int32_t>(program_.image.header->seed);
   trace_.emit(EventKind::activated, {}, 0, 0, seed);
   if (!control_.start(program_, crew_) || !behaviors_.start(program_, crew_) ||
@@ -95,6 +98,18 @@ bool Runtime::start_program() {
   guard_.start(program_);
   go();
   return true;
+}
+
+// To the behaviours' threads. What lies between the object and the image is theirs to read as well,
+// so on the board nothing does.
+port::Areas Runtime::areas() {
+  const vm::ImageHeader* const image = program_.image.header;
+  const auto address = [](const void* of) { return reinterpret_cast<std::uintptr_t>(of); };
+  const std::uintptr_t begin = std::min(address(&program_), address(image));
+  const std::uintptr_t end =
+      std::max<std::uintptr_t>(address(this + 1), address(image) + image->total_length);
+  return {.readable = {reinterpret_cast<const std::byte*>(begin), end - begin},
+          .writable = frames_.open(program_)};
 }
 
 // The program's clock begins at a tick that none of its threads can have missed.

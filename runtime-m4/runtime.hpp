@@ -1,7 +1,9 @@
 // The runtime of one robot: the safety thread, and the program's threads and layers made from an
 // image. The same on the board (boards/NAME/main.cpp) and on the host (port/host/simulator.cpp).
 //
-// All memory is inside the object and sized by limits.hpp: put it into static storage.
+// All memory is inside the object, the workspace and the image, and sized by limits.hpp: put them
+// into static storage, on the board the image behind the object. The members stand in the order of
+// what is closed to the behaviours' threads.
 #pragma once
 
 #include <atomic>
@@ -26,6 +28,7 @@
 #include "runtime-m4/layers/trace.hpp"
 #include "runtime-m4/layers/triggers.hpp"
 #include "runtime-m4/layers/variables.hpp"
+#include "runtime-m4/layers/workspace.hpp"
 #include "runtime-m4/safety/guard.hpp"
 #include "runtime-m4/safety/monitor.hpp"
 #include "vm/verifier.hpp"
@@ -34,7 +37,8 @@ namespace robosync {
 
 class Runtime final : private safety::Patient {
 public:
-  Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events);
+  Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events,
+          layers::Workspace& workspace);
 
   // Creates the safety thread. Once, before Kernel::run(). False when the kernel has no place.
   bool start();
@@ -69,32 +73,37 @@ private:
 
   bool start_program();
   void go();
+  port::Areas areas();
 
   kernel::Kernel& kernel_;
   boards::Board& board_;
-  layers::Trace trace_;
-  layers::DriverSampler drivers_;
-  layers::Sampler* sampler_ = &drivers_;
 
   std::atomic<bool> running_ = false;
   bool halted_ = false;  // this program, by safety
   std::uint16_t activations_ = 0;
   unsigned faults_ = 0;  // of programs that are gone
-  layers::Program program_;
-
+  safety::Monitor monitor_;
+  safety::Guard guard_;
   kernel::Thread step_thread_;
   layers::Crew crew_;
+
+  // May be readable to them, as the MPU's regions fall: nothing of the kernel and of safety, no
+  // stack.
   layers::Mailboxes mailboxes_;
-  layers::Alarm alarm_;
-  layers::Frames frames_;
-  layers::Variables variables_;
-  layers::Triggers triggers_;
   layers::SensorLayer sensors_;
   layers::ControlLayer control_;
+  layers::Variables variables_;
+  layers::DriverSampler drivers_;
+  layers::Sampler* sampler_ = &drivers_;
+  layers::Alarm alarm_;
+  layers::Trace trace_;
+
+  // Readable to them, and behind it the image.
+  alignas(layers::kReadableAlignment) layers::Program program_;
+  layers::Frames frames_;
+  layers::Triggers triggers_;
   layers::BehaviorLayer behaviors_;
   layers::ProcessingLayer processing_;
-  safety::Guard guard_;
-  safety::Monitor monitor_;
 };
 
 }  // namespace robosync

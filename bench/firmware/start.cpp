@@ -1,5 +1,5 @@
-// Vector table and reset of the bench firmware. QEMU loads the ELF as it runs (bare.ld) into memory
-// of zeros, so there is nothing to copy or clear. A fault ends the measurement as failed.
+// Vector tables and reset of the bench firmware. QEMU loads the ELF as it runs (bare.ld) into
+// memory of zeros, so there is nothing to copy or clear. A fault ends the measurement as failed.
 #include <cstdint>
 
 #include "bench/firmware/mark.hpp"
@@ -23,6 +23,7 @@ void fault() {
 [[gnu::weak, gnu::alias("fault")]] void UsageFault_Handler();
 [[gnu::weak, gnu::alias("fault")]] void SVC_Handler();
 [[gnu::weak, gnu::alias("fault")]] void PendSV_Handler();
+[[gnu::weak, gnu::alias("fault")]] void PendSV_Open_Handler();
 [[gnu::weak, gnu::alias("fault")]] void SysTick_Handler();
 [[gnu::weak, gnu::alias("fault")]] void bench_interrupt();  // interrupt 0
 
@@ -31,10 +32,18 @@ struct Vectors {
   Handler handlers[16];
 };
 
-[[gnu::section(".vectors"), gnu::used]] const Vectors vectors = {
+[[gnu::section(".vectors.0"), gnu::used,
+  gnu::aligned(256)]] extern const Vectors robosync_vectors = {
     &stack_top,
     {reset, fault, HardFault_Handler, MemManage_Handler, BusFault_Handler, UsageFault_Handler,
      fault, fault, fault, fault, SVC_Handler, fault, fault, PendSV_Handler, SysTick_Handler,
+     bench_interrupt}};
+// While a thread without privileges runs (port/cortex-m4/switch.S).
+[[gnu::section(".vectors.1"), gnu::used,
+  gnu::aligned(256)]] extern const Vectors robosync_open_vectors = {
+    &stack_top,
+    {reset, fault, HardFault_Handler, MemManage_Handler, BusFault_Handler, UsageFault_Handler,
+     fault, fault, fault, fault, SVC_Handler, fault, fault, PendSV_Open_Handler, SysTick_Handler,
      bench_interrupt}};
 
 void reset() {

@@ -39,7 +39,8 @@ private:
 };
 
 Counts counts;
-Runtime runtime(robosync_kernel, robosync_board, counts);
+layers::Workspace workspace;
+Runtime runtime(robosync_kernel, robosync_board, counts, workspace);
 kernel::Thread thread;
 alignas(port::kStackAlignment) std::array<std::byte, 2048> stack;
 

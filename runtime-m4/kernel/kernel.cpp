@@ -108,7 +108,12 @@ void Kernel::stop(Thread& thread) {
     running_rank_ = kNoneRuns;
     machine_.request_switch();
   }
-  if (stop_watcher_ != nullptr) signal(*stop_watcher_, stop_events_);
+  if (watcher_ != nullptr) signal(*watcher_, stop_events_);
+}
+
+void Kernel::report() {
+  port::Lock lock(machine_);
+  if (watcher_ != nullptr) signal(*watcher_, report_events_);
 }
 
 void Kernel::wake_due() {

@@ -21,6 +21,12 @@
 
 namespace robosync::kernel {
 
+enum class Call : std::uint32_t {
+#define CALL(name, number, doc) name = number,
+#include "runtime-m4/kernel/calls.def"
+#undef CALL
+};
+
 class Kernel {
 public:
   Kernel();
@@ -52,8 +58,13 @@ public:
   void signal(Thread& thread, Events events);
   // Stops a thread for good (fault, or its entry returned); it is never run again.  [any]
   void stop(Thread& thread);
-  // From now on `events` of `watcher` are signalled whenever a thread is stopped.  [init, thread]
-  void watch_stops(Thread& watcher, Events events);
+  // From now on `stops` of `watcher` are signalled whenever a thread is stopped, and `reports`
+  // whenever one without privileges makes the call `report`.  [init, thread]
+  void watch(Thread& watcher, Events stops, Events reports);
+
+  // From now on threads without privileges may read and write what `areas` says, besides their own
+  // stacks. The host has no such borders.  [init, thread]
+  void open(const port::Areas& areas);
 
   // While it is held no other thread runs and no interrupt of the kernel's level is taken. Hold it
   // for a few hundred instructions at most; blocking under it is an error.  [any]
@@ -84,9 +95,23 @@ public:
     return *running_;
   }
 
+  // Does what a thread without privileges asks for: the system call `number` of calls.def. False:
+  // there is no such call.
+  bool answer(std::uint32_t number, std::uint32_t argument, std::uint32_t& result) {
+    switch (static_cast<Call>(number)) {
+      case Call::wait:
+        result = take_or_block(argument);
+        return true;
+      case Call::report:
+        report();
+        return true;
+    }
+    return false;
+  }
+
   Thread& idle() { return idle_; }
   port::Machine& machine() { return machine_; }
-  static port::Context& context(Thread& thread) { return thread.context_; }
+  static port::Context& context(Thread& thread) { return thread; }
 
 private:
   static constexpr std::uint8_t kNoneRuns = 0xFF;  // ranks below everything: any wake-up switches
@@ -96,6 +121,8 @@ private:
   bool arm(Thread& thread, Time deadline);
   void disarm(Thread& thread);
   void block(Thread& thread, Events mask);
+  Events take_or_block(Events mask);
+  void report();
   void make_ready(Thread& thread);
   void make_unready(Thread& thread);
   void wake_due();
@@ -108,10 +135,23 @@ private:
   std::uint8_t count_ = 0;
   std::uint64_t ticks_ = 0;
   TimerQueue timers_;
-  Thread* stop_watcher_ = nullptr;
+  Thread* watcher_ = nullptr;
   Events stop_events_ = 0;
+  Events report_events_ = 0;
   Thread idle_;
   [[no_unique_address]] port::Machine machine_;
 };
+
+// Its interrupts are held off.
+inline Events Kernel::take_or_block(Events mask) {
+  Thread& self = *running_;
+  const Events taken = self.events_ & mask;
+  if (taken != 0) [[likely]] {
+    self.events_ &= ~mask;
+  } else {
+    block(self, mask);
+  }
+  return taken;
+}
 
 }  // namespace robosync::kernel

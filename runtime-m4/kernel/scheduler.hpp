@@ -55,7 +55,8 @@ public:
   // Highest rank in the set; the number of ranks when it is empty.
   constexpr unsigned first() const {
     for (unsigned w = 0; w + 1 < kWords; ++w)
-      if (words_[w] != 0) return highest(w);
+      if (words_[w] != 0) [[likely]]
+        return highest(w);
     return highest(kWords - 1);
   }
 

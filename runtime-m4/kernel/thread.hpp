@@ -21,12 +21,17 @@ struct ThreadSpec {
   void (*entry)(void*) = nullptr;
   void* argument = nullptr;
   std::span<std::byte> stack;  // alignas(port::kStackAlignment), at least port::kMinStack
+  // Without privileges it has its stack and what Kernel::open() gives, and the system calls of
+  // calls.def. Its stack: alignas(port::kOpenStackAlignment), a multiple of that, at most
+  // port::kMaxOpenStack bytes.
+  bool privileged = true;
 };
 
 // Unused stack is filled with this, to see later how deep it was used.
 inline constexpr std::byte kPaint{0xA5};
 
-class Thread : private Timer {
+// The context stands first: the switch finds it where the thread is.
+class Thread : private port::Context, private Timer {
 public:
   // How it stands; the numbers are link::ThreadInfo::state.
   enum class State : std::uint8_t { blocked, ready, stopped, absent };
@@ -59,7 +64,6 @@ private:
   ReadySet::Place ready_place_;
   Events events_ = 0;  // signalled and not yet taken
   Events wanted_ = 0;  // what it waits for, or waited for last
-  port::Context context_;
   std::byte* stack_ = nullptr;
   const char* name_ = "";
   std::uint32_t activations_ = 0;

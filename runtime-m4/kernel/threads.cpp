@@ -17,15 +17,15 @@ std::int32_t standing(const Thread& thread) {
 bool Kernel::add(Thread& thread, const ThreadSpec& spec) {
   if (thread.state_ != Thread::State::absent || count_ == kMaxThreads) return false;
   if (spec.entry == nullptr || spec.stack.size() < port::kMinStack) return false;
-  if (spec.stack.size() > 0xFFFF) return false;
+  if (spec.stack.size() > 0xFFFF || !port::Machine::can_run(spec)) return false;
   thread.name_ = spec.name;
   thread.category_ = spec.category;
   thread.priority_ = spec.priority;
-  thread.set_stack(port::Machine::usable(spec.stack));
+  thread.set_stack(port::Machine::usable(spec));
   thread.events_ = 0;
   thread.wanted_ = 0;
   thread.activations_ = 0;
-  machine_.prepare(thread.context_, spec, thread.stack());
+  machine_.prepare(thread, spec, thread.stack());
 
   port::Lock lock(machine_);
   const auto begin = by_rank_.begin();
@@ -47,7 +47,7 @@ void Kernel::remove(Thread& thread) {
   port::Lock lock(machine_);
   if (thread.state_ == Thread::State::absent) return;
   make_unready(thread);
-  if (stop_watcher_ == &thread) stop_watcher_ = nullptr;
+  if (watcher_ == &thread) watcher_ = nullptr;
   const unsigned rank = thread.rank_;
   const auto place = by_rank_.begin() + rank;
   std::move(place + 1, by_rank_.begin() + count_, place);
@@ -64,10 +64,16 @@ void Kernel::shift_ranks(unsigned from) {
   if (running_rank_ != kNoneRuns) running_rank_ = running_->rank_;
 }
 
-void Kernel::watch_stops(Thread& watcher, Events events) {
+void Kernel::watch(Thread& watcher, Events stops, Events reports) {
   port::Lock lock(machine_);
-  stop_watcher_ = &watcher;
-  stop_events_ = events;
+  watcher_ = &watcher;
+  stop_events_ = stops;
+  report_events_ = reports;
+}
+
+void Kernel::open(const port::Areas& areas) {
+  port::Lock lock(machine_);
+  port::Machine::open(areas);
 }
 
 Thread::State Kernel::state(const Thread& thread) const {
@@ -95,7 +101,7 @@ void Thread::set_stack(std::span<std::byte> stack) {
 
 Kernel::Kernel() : machine_(*this) {
   idle_.name_ = "idle";
-  idle_.set_stack(port::Machine::prepare_idle(idle_.context_));
+  idle_.set_stack(port::Machine::prepare_idle(context(idle_)));
   by_rank_.fill(&idle_);
 }
 

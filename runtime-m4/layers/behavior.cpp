@@ -1,11 +1,10 @@
-// See behavior.hpp. May rely on the verifier for every index in the image, and for responses that
-// give up within the step's budget and kMaxResponseOutput words.
+// See behavior.hpp. May rely on the verifier for every index in the image; of what the behaviours'
+// threads leave in the workspace it believes nothing.
 #include "runtime-m4/layers/behavior.hpp"
 
+#include <algorithm>
 #include <bit>
-#include <utility>
 
-#include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/layers/report.hpp"
 
 namespace robosync::layers {
@@ -32,6 +31,7 @@ bool BehaviorLayer::start_unit(unsigned behavior, Crew& crew) {
   spec.name = name_of(program_->image, wiring.name, "rule");
   spec.category = kernel::Category::behavior;
   spec.priority = wiring.priority;
+  spec.privileged = false;
   spec.entry = [](void* self) {
     auto& mine = *static_cast<Unit*>(self);
     mine.layer->run(mine);
@@ -66,27 +66,54 @@ void BehaviorLayer::go_on(unsigned rule) {
 void BehaviorLayer::release(unsigned rule, std::uint16_t code) {
   rule_ = static_cast<std::uint16_t>(rule);
   code_ = code;
-  result_ = {};
+  workspace_.result = {};
   const unsigned behavior = program_->behavior_of[rule];
-  const auto lock = kernel_.lock();
   if (!has(retired_, behavior)) release(behavior, kRespond);
 }
 
 void BehaviorLayer::release(unsigned behavior, kernel::Events event) {
   released_ |= bit<BehaviorMask>(behavior);
+  workspace_.finished[behavior] = false;
   kernel_.signal(*units_[behavior].thread, event);
 }
 
+bool BehaviorLayer::busy() {
+  for (BehaviorMask left = released_; left != 0; left &= left - 1) {
+    const auto behavior = static_cast<unsigned>(std::countr_zero(left));
+    if (workspace_.finished[behavior]) released_ &= ~bit<BehaviorMask>(behavior);
+  }
+  return released_ != 0;
+}
+
+// A place in the code, or none.
+vm::Progress BehaviorLayer::checked_progress() const {
+  const Result& result = workspace_.result;
+  vm::Progress progress{.pause = result.pause, .next = result.next, .wake = result.wake};
+  const std::span<const vm::Word> code = program_->image.code;
+  const bool inside = progress.next >= code.data() && progress.next < code.data() + code.size();
+  if (progress.pause > vm::Pause::still_polling || !inside) progress.pause = vm::Pause::ended;
+  return progress;
+}
+
+// Nothing comes of a response whose behaviour was stopped meanwhile.
 void BehaviorLayer::conclude(unsigned rule) {
+  const unsigned behavior = program_->behavior_of[rule];
+  if (has(retired_, behavior)) workspace_.result = {};
   Place& place = places_[rule];
-  const vm::Progress& progress = result_.progress;
+  const vm::Progress progress = checked_progress();
   const bool waited = place.pause != vm::Pause::ended;
   const bool moved = progress.pause != vm::Pause::still_polling;
   const Stamp stamp = layers_.trace.step();
   if (waited && moved) layers_.trace.emit(EventKind::go_on, stamp, rule);
   if (layers_.triggers.take_zero_divide(rule))
     layers_.trace.emit(EventKind::zero_divide, stamp, rule);
-  put_out(std::span(output_).first(result_.words));
+  const std::size_t words =
+      std::min<std::size_t>(workspace_.result.words, workspace_.output.size());
+  put_out(std::span(workspace_.output).first(words));
+  vm::Machine machine = layers_.frames.machine(*program_, behavior);
+  machine.assigned = workspace_.result.assigned;
+  machine.shifted = workspace_.result.shifted;
+  layers_.variables.stage(machine, program_->image.behaviors[behavior], *snapshot_);
   place = {};
   if (progress.pause == vm::Pause::ended) return;
   const bool for_commands = progress.pause == vm::Pause::until_done;
@@ -110,12 +137,15 @@ void BehaviorLayer::put_out(std::span<const vm::Word> output) {
 
 // A command to a group goes to each member.
 void BehaviorLayer::stage(const vm::Output& said) {
+  const vm::Image& image = program_->image;
+  if (said.verb >= image.verbs.size()) return;
+  if (said.word != vm::kNoWord && said.word >= image.words.size()) return;
   Command command;
   command.verb_ = said.verb;
   command.word_ = said.word;
   command.given_ = said.given;
   command.params_ = said.params;
-  for (ActuatorMask left = program_->image.target_mask(said.target); left != 0; left &= left - 1) {
+  for (ActuatorMask left = image.target_mask(said.target); left != 0; left &= left - 1) {
     command.actuator_ = static_cast<std::uint8_t>(std::countr_zero(left));
     layers_.control.stage(command);
   }
@@ -126,84 +156,12 @@ void BehaviorLayer::retire(unsigned behavior) {
   for (unsigned r = 0; r < wiring.rule_count; ++r)
     layers_.triggers.retire(wiring.first_rule + r);
   retired_ |= bit<BehaviorMask>(behavior);
-  const auto lock = kernel_.lock();
   released_ &= ~bit<BehaviorMask>(behavior);
 }
 
 std::uint16_t BehaviorLayer::response_of(unsigned rule, Side side) const {
   const vm::Rule& wiring = program_->image.rules[rule];
   return side == Side::then ? wiring.then_response : wiring.else_response;
-}
-
-// --- the behaviour's thread ---
-
-void BehaviorLayer::run(Unit& unit) {
-  vm::Machine machine = layers_.frames.machine(*program_, unit.behavior);
-  while (true) {
-    const kernel::Events events = kernel_.wait(kEvaluate | kRespond);
-    latch(unit, machine);
-    if ((events & kEvaluate) != 0) evaluate_rules(unit, machine);
-    if ((events & kRespond) != 0) run_response(unit, machine);
-    const auto lock = kernel_.lock();
-    released_ &= ~bit<BehaviorMask>(unit.behavior);
-    kernel_.signal(step_thread_, finished_);
-  }
-}
-
-void BehaviorLayer::latch(const Unit& unit, vm::Machine& machine) {
-  Frames::latch(machine, program_->image, program_->image.behaviors[unit.behavior],
-                [this](std::uint8_t input) { return snapshot_->value(input); });
-  machine.now = snapshot_->milliseconds();
-  machine.wake = kNever;
-}
-
-void BehaviorLayer::evaluate_rules(const Unit& unit, vm::Machine& machine) {
-  const vm::Behavior& behavior = program_->image.behaviors[unit.behavior];
-  const unsigned end = behavior.first_rule + 0U + behavior.rule_count;
-  for (unsigned r = concerned_->from(behavior.first_rule); r < end; r = concerned_->from(r + 1))
-    judge_rule(r, machine);
-}
-
-void BehaviorLayer::judge_rule(unsigned rule, vm::Machine& machine) {
-  switch (program_->image.rules[rule].kind) {
-    case vm::RuleKind::start:
-      return layers_.triggers.begin(rule);
-    case vm::RuleKind::every:
-      return evaluate_period(rule, machine);
-    case vm::RuleKind::watch:
-      machine.frame[program_->truth_cell[rule]] = evaluate_rule(rule, machine);
-      break;
-    default:
-      const vm::Value condition = evaluate_rule(rule, machine);
-      layers_.triggers.judge(rule, condition, machine.event);
-  }
-  layers_.triggers.note_past(rule, machine.wake, machine.event);
-}
-
-vm::Value BehaviorLayer::evaluate_rule(unsigned rule, vm::Machine& machine) {
-  machine.event = false;
-  machine.wake = kNever;
-  if (!port::kTimeFlows) ++evaluations_;
-  const vm::Value value =
-      vm::evaluate(machine, &program_->image.code[program_->image.rules[rule].condition_start]);
-  if (std::exchange(machine.divided_by_zero, false)) layers_.triggers.note_zero_divide(rule);
-  return value;
-}
-
-void BehaviorLayer::evaluate_period(unsigned rule, vm::Machine& machine) {
-  if (!layers_.triggers.begin_period(rule, machine.now)) return;
-  layers_.triggers.draw_period(rule, evaluate_rule(rule, machine), machine.now);
-}
-
-void BehaviorLayer::run_response(const Unit& unit, vm::Machine& machine) {
-  machine.output = output_.data();
-  machine.output_end = output_.data() + output_.size();
-  machine.shifted = 0;
-  machine.assigned = 0;
-  result_.progress = vm::respond(machine, &program_->image.code[code_]);
-  result_.words = static_cast<std::uint16_t>(machine.output - output_.data());
-  if (std::exchange(machine.divided_by_zero, false)) layers_.triggers.note_zero_divide(rule_);
-  layers_.variables.stage(machine, program_->image.behaviors[unit.behavior], *snapshot_);
 }
 
 }  // namespace robosync::layers

@@ -1,11 +1,11 @@
-// Behaviour layer: one thread per behaviour, ranked by priority.
+// Behaviour layer: one thread per behaviour, ranked by priority, without privileges.
 //
 // Released by the step thread, a behaviour copies its inputs from the snapshot into its frame and
 // evaluates the conditions of those of its rules that the step concerns; what follows from them is
 // up to Triggers and the step thread. It is released again to run a response, from its beginning or
-// from where it waits; what that sets is staged with the variables, what it puts out the step
-// thread takes from here: commands to the control layer, texts to the trace. It sees its frame and
-// nothing else.
+// from where it waits. What comes of that stays in the workspace, from where the step thread takes
+// it: what was set to the variables, commands to the control layer, texts to the trace. A
+// behaviour's thread writes the workspace and nothing else (behavior_thread.cpp).
 #pragma once
 
 #include <array>
@@ -20,6 +20,7 @@
 #include "runtime-m4/layers/trace.hpp"
 #include "runtime-m4/layers/triggers.hpp"
 #include "runtime-m4/layers/variables.hpp"
+#include "runtime-m4/layers/workspace.hpp"
 #include "vm/interpreter.hpp"
 #include "vm/output.hpp"
 
@@ -29,6 +30,7 @@ class BehaviorLayer {
 public:
   struct Neighbours {
     Trace& trace;
+    Workspace& workspace;
     Frames& frames;
     Triggers& triggers;
     Variables& variables;
@@ -41,23 +43,19 @@ public:
     vm::Pause pause = vm::Pause::ended;
   };
 
-  // `finished` of `step_thread` is signalled when a behaviour has done what it was released for.
-  BehaviorLayer(kernel::Kernel& kernel, const Neighbours& neighbours, kernel::Thread& step_thread,
-                kernel::Events finished)
-      : kernel_(kernel), layers_(neighbours), step_thread_(step_thread), finished_(finished) {}
+  BehaviorLayer(kernel::Kernel& kernel, const Neighbours& neighbours)
+      : kernel_(kernel), layers_(neighbours), workspace_(neighbours.workspace) {}
 
   // Starts the threads of `program`, which must stay until they are dismissed.
   [[nodiscard]] bool start(const Program& program, Crew& crew);
 
-  // --- for the step thread; busy() until all released ones have finished ---
+  // --- for the step thread; busy() until all released ones have finished. When one has, its thread
+  // makes the call `report` ---
   // `rules` must stay until then.
   void evaluate(const RuleSet& rules, const Snapshot& snapshot);
   void respond(unsigned rule, Side side);
   void go_on(unsigned rule);
-  bool busy() const {
-    const auto lock = kernel_.lock();
-    return released_ != 0;
-  }
+  bool busy();
   // The response has been run: tells what it has put out, stages its commands, and notes where it
   // waits. Not before, so that the behaviours' stacks can be short.
   void conclude(unsigned rule);
@@ -68,7 +66,7 @@ public:
   std::uint16_t response_of(unsigned rule, Side side) const;
 
   // Conditions that were ever evaluated; for tests, on the host.
-  std::uint32_t evaluations() const { return evaluations_; }
+  std::uint32_t evaluations() const { return workspace_.evaluations; }
 
 private:
   static constexpr kernel::Events kEvaluate = 1;
@@ -81,39 +79,34 @@ private:
   };
 
   [[nodiscard]] bool start_unit(unsigned behavior, Crew& crew);
+  // --- behavior_thread.cpp: without privileges ---
   void run(Unit& unit);
   void latch(const Unit& unit, vm::Machine& machine);
   void evaluate_rules(const Unit& unit, vm::Machine& machine);
   void judge_rule(unsigned rule, vm::Machine& machine);
   vm::Value evaluate_rule(unsigned rule, vm::Machine& machine);
   void evaluate_period(unsigned rule, vm::Machine& machine);
-  void run_response(const Unit& unit, vm::Machine& machine);
+  void run_response(vm::Machine& machine);
+
   void put_out(std::span<const vm::Word> output);
   void stage(const vm::Output& said);
+  vm::Progress checked_progress() const;
   void release(unsigned rule, std::uint16_t code);
   void release(unsigned behavior, kernel::Events event);
 
   kernel::Kernel& kernel_;
   Neighbours layers_;
-  kernel::Thread& step_thread_;
-  kernel::Events finished_;
+  Workspace& workspace_;
   const Program* program_ = nullptr;
   const Snapshot* snapshot_ = nullptr;
   const RuleSet* concerned_ = nullptr;
-  BehaviorMask released_ = 0;  // under the kernel's lock
+  BehaviorMask released_ = 0;
   BehaviorMask retired_ = 0;
   // What the behaviour that is released for it runs: the response of which rule, and from where.
   std::uint16_t rule_ = 0;
   std::uint16_t code_ = 0;
-  struct {
-    vm::Progress progress;
-    std::uint16_t words = 0;  // in output_
-  } result_;                  // what came of it
   std::array<Unit, kMaxBehaviors> units_{};
   std::array<Place, kMaxRules> places_{};
-  std::uint32_t evaluations_ = 0;
-  // One response runs at a time, so one output is enough.
-  std::array<vm::Word, vm::kMaxResponseOutput> output_{};
 };
 
 }  // namespace robosync::layers

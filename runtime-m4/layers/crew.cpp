@@ -5,16 +5,17 @@
 
 namespace robosync::layers {
 
-std::span<std::byte> Crew::take_stack(std::size_t bytes) {
-  if (bytes > stacks_.size() - stack_used_) return {};
-  const std::span stack = std::span(stacks_).subspan(stack_used_, bytes);
-  stack_used_ += bytes;
-  return stack;
+std::span<std::byte> Crew::take_stack(std::size_t bytes, bool privileged) {
+  const std::size_t free = stacks_.size() - stack_used_ - open_stack_used_;
+  if (bytes > free) return {};
+  std::size_t& used = privileged ? stack_used_ : open_stack_used_;
+  used += bytes;
+  return std::span(stacks_).subspan(privileged ? used - bytes : stacks_.size() - used, bytes);
 }
 
 kernel::Thread* Crew::start(kernel::ThreadSpec spec, unsigned index, std::size_t stack_bytes) {
   if (count_ == members_.size()) return nullptr;
-  spec.stack = take_stack(stack_bytes);
+  spec.stack = take_stack(stack_bytes, spec.privileged);
   if (spec.stack.empty()) return nullptr;
   Member& member = members_[count_];
   if (!kernel_.add(member.thread, spec)) return nullptr;
@@ -25,7 +26,7 @@ kernel::Thread* Crew::start(kernel::ThreadSpec spec, unsigned index, std::size_t
 }
 
 bool Crew::start_step_thread(kernel::Thread& thread, kernel::ThreadSpec spec) {
-  spec.stack = take_stack(kStepStack);
+  spec.stack = take_stack(kStepStack, spec.privileged);
   if (spec.stack.empty() || !kernel_.add(thread, spec)) return false;
   step_thread_ = &thread;
   return true;
@@ -38,6 +39,7 @@ void Crew::dismiss() {
   step_thread_ = nullptr;
   count_ = 0;
   stack_used_ = 0;
+  open_stack_used_ = 0;
 }
 
 Crew::Member* Crew::next_stopped() {

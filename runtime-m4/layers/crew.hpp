@@ -36,14 +36,20 @@ public:
   unsigned stopped() const;
 
 private:
-  std::span<std::byte> take_stack(std::size_t bytes);
+  std::span<std::byte> take_stack(std::size_t bytes, bool privileged);
 
   kernel::Kernel& kernel_;
   std::array<Member, kMaxProgramThreads - 1> members_;
   kernel::Thread* step_thread_ = nullptr;
   std::size_t count_ = 0;
+  // Stacks of threads with privileges from the beginning on, of those without from the end down:
+  // these must be aligned, and so they are if the arena and their sizes are.
   std::size_t stack_used_ = 0;
-  alignas(port::kStackAlignment) std::array<std::byte, kStackArena> stacks_{};
+  std::size_t open_stack_used_ = 0;
+  static_assert(kStackArena % port::kOpenStackAlignment == 0);
+  static_assert(kBehaviorStack % port::kOpenStackAlignment == 0);
+  static_assert(kBehaviorStack <= port::kMaxOpenStack);
+  alignas(port::kOpenStackAlignment) std::array<std::byte, kStackArena> stacks_{};
 };
 
 }  // namespace robosync::layers

@@ -1,6 +1,8 @@
 // See frames.hpp.
 #include "runtime-m4/layers/frames.hpp"
 
+#include <algorithm>
+
 namespace robosync::layers {
 namespace {
 
@@ -17,14 +19,36 @@ std::uint32_t seed_of(std::uint32_t program_seed, unsigned behavior) {
 
 }  // namespace
 
-vm::Machine Frames::machine(const Program& program, unsigned behavior) {
+std::size_t Frames::closed_words(const Program& program) {
+  constexpr std::size_t kUnit = kWorkspaceUnit / sizeof(std::uint32_t);
+  const std::size_t words = program.safety_cells + std::size_t{program.safety_timer_words};
+  return (words + kUnit - 1) / kUnit * kUnit;
+}
+
+void Frames::start(const Program& program) {
+  const std::span memory = workspace_.memory;
+  std::ranges::fill(memory, 0);
+  const auto unknown = static_cast<std::uint32_t>(vm::kUnknown);
+  std::ranges::fill(memory.first(program.safety_cells), unknown);
+  std::ranges::fill(memory.subspan(closed_words(program), kMaxFrameCells - program.safety_cells),
+                    unknown);
+}
+
+// The timers of a behaviour are numbered from the first one of the program.
+vm::Machine Frames::machine(const Program& program, unsigned behavior) const {
+  std::uint32_t* const memory = workspace_.memory.data();
+  const bool safety = behavior < program.first_behavior();
+  std::size_t frame = safety ? 0 : closed_words(program);
+  const std::size_t timers =
+      safety ? program.safety_cells
+             : frame + kMaxFrameCells - program.safety_cells - program.safety_timer_words;
+  for (unsigned before = program.first_behavior(); before < behavior; ++before)
+    frame += program.image.behaviors[before].cells;
   vm::Machine machine;
-  machine.frame = cells_.data();
-  for (const vm::Behavior& before : program.image.behaviors.first(behavior))
-    machine.frame += before.cells;
+  machine.frame = reinterpret_cast<vm::Value*>(memory + frame);
   machine.constants = program.image.constants.data();
   machine.timers = program.image.timers.data();
-  machine.timer_memory = timer_memory_.data();
+  machine.timer_memory = memory + timers;
   machine.random = seed_of(program.image.header->seed, behavior);
   return machine;
 }

@@ -1,26 +1,34 @@
 // The memory that bytecode works on: the frames of all behaviours, one behind the other, and what
-// their time words remember.
+// their time words remember. It stands in the workspace:
+//
+//   | frame and timers of SAFETY | up to a unit | other frames | other timers
+//   |<-- closed to the behaviours' threads ---->|
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/workspace.hpp"
 #include "vm/interpreter.hpp"
 
 namespace robosync::layers {
 
 class Frames {
 public:
+  explicit Frames(Workspace& workspace) : workspace_(workspace) {}
+
   // Nothing is known, nothing remembered.
-  void start() {
-    cells_.fill(vm::kUnknown);
-    timer_memory_.fill(0);
-  }
+  void start(const Program& program);
 
   // A machine for one behaviour. Its random numbers depend on the program's seed and on the number
   // of the behaviour only.
-  vm::Machine machine(const Program& program, unsigned behavior);
+  vm::Machine machine(const Program& program, unsigned behavior) const;
+
+  // What the behaviours' threads may write.
+  std::span<std::byte> open(const Program& program) const {
+    return workspace_.open_from(closed_words(program));
+  }
 
   // Puts the inputs of `behavior` into its frame: value(input) is what each is.
   template <class ValueOf>
@@ -31,8 +39,9 @@ public:
   }
 
 private:
-  std::array<vm::Value, kMaxFrameCells> cells_{};
-  std::array<std::uint32_t, kMaxTimerWords> timer_memory_{};
+  static std::size_t closed_words(const Program& program);
+
+  Workspace& workspace_;
 };
 
 }  // namespace robosync::layers

@@ -3,6 +3,7 @@ target_sources(robosync_runtime PRIVATE
   runtime.cpp
   layers/arbiter.cpp
   layers/behavior.cpp
+  layers/behavior_thread.cpp
   layers/checks.cpp
   layers/command_pool.cpp
   layers/concern.cpp

@@ -56,7 +56,7 @@ bool ProcessingLayer::start(const Program& program) {
   spec.entry = [](void* self) { static_cast<ProcessingLayer*>(self)->run(); };
   spec.argument = this;
   if (!layers_.crew.start_step_thread(thread_, spec)) return false;
-  kernel_.watch_stops(thread_, kStopped);
+  kernel_.watch(thread_, kStopped, kFinished);
   return true;
 }
 

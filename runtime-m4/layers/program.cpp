@@ -34,6 +34,9 @@ bool is_fed(const vm::Sensor& sensor) {
 void Program::load(const vm::Image& loaded) {
   image = loaded;
   readers.fill({});
+  safety_cells = 0;
+  safety_timer_words = 0;
+  if (image.has_safety()) safety_cells = image.behaviors[vm::kSafetyBehavior].cells;
   for (unsigned b = 0; b < image.behaviors.size(); ++b) {
     const vm::Behavior& behavior = image.behaviors[b];
     inputs[b] = 0;
@@ -52,7 +55,11 @@ void Program::load_rules(unsigned b) {
     behavior_of[r] = static_cast<std::uint8_t>(b);
     if (image.rules[r].kind == vm::RuleKind::watch)
       truth_cell[r] = static_cast<std::uint8_t>(cell++);
-    if (b >= first_behavior()) note_inputs(behavior, r);
+    if (b >= first_behavior()) {
+      note_inputs(behavior, r);
+    } else {
+      note_timers(image.rules[r]);
+    }
   }
 }
 
@@ -76,6 +83,18 @@ void Program::note_inputs(const vm::Behavior& behavior, unsigned rule, std::uint
       if ((places & 1) != 0 && cell < behavior.input_count)
         readers[image.inputs[behavior.first_input + cell]].insert(rule);
     }
+  }
+}
+
+// Of a SAFETY rule: its condition has them all. They are numbered as they stand in the code, and
+// the code of the SAFETY rules stands first; so the last one ends what belongs to SAFETY.
+void Program::note_timers(const vm::Rule& rule) {
+  for (const vm::Word word : image.code.subspan(rule.condition_start, rule.condition_length)) {
+    const vm::Opcode opcode = vm::opcode_of(word);
+    if (opcode < vm::Opcode::held || opcode > vm::Opcode::changed) continue;
+    const vm::Timer& timer = image.timers[vm::operand_c(word)];
+    safety_timer_words =
+        static_cast<std::uint16_t>(timer.state + vm::timer_words(timer.kind, timer.count));
   }
 }
 

@@ -17,6 +17,8 @@ struct Program {
   std::array<RuleSet, kMaxInputs> readers{};          // by input: the rules that read or set it
   std::array<std::uint8_t, kMaxRules> behavior_of{};  // by rule
   std::array<std::uint8_t, kMaxRules> truth_cell{};   // of a WATCH: where its truth is kept
+  std::uint16_t safety_cells = 0;                     // of the frame of the SAFETY rules
+  std::uint16_t safety_timer_words = 0;  // … and of their timers, which are the first
 
   // `image` is verified and fits().
   void load(const vm::Image& image);
@@ -39,6 +41,7 @@ private:
   void note_inputs(const vm::Behavior& behavior, unsigned rule);
   void note_inputs(const vm::Behavior& behavior, unsigned rule, std::uint16_t start,
                    std::uint16_t length);
+  void note_timers(const vm::Rule& rule);
 };
 
 // Its readings come from outside, at any time: it is not sampled.

@@ -1,9 +1,8 @@
-// See triggers.hpp. A state belongs to its behaviour's thread while that is released, and to the
-// step thread otherwise.
+// See triggers.hpp. A judgement belongs to its behaviour's thread while that is released, and to
+// the step thread otherwise.
 #include "runtime-m4/layers/triggers.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "runtime-m4/layers/clock.hpp"
 
@@ -26,8 +25,10 @@ std::uint32_t as_time(std::uint32_t time) {
 
 void Triggers::start(const vm::Image& image) {
   image_ = &image;
-  states_.fill(State{});
-  times_.fill({});
+  workspace_.judgements.fill(Judgement{});
+  workspace_.due.fill(kNever);
+  phases_.fill(State{});
+  until_.fill(0);
   eventful_.clear();
   active_.clear();
   sleeping_.clear();
@@ -42,7 +43,7 @@ const vm::Modifiers& Triggers::modifiers(unsigned rule) const {
 // --- what was evaluated ---
 
 void Triggers::judge(unsigned rule, vm::Value condition, bool event) {
-  State& state = states_[rule];
+  Judgement& state = judgement(rule);
   if (condition == vm::kUnknown) {
     if (is_while(rule)) state.truth = Truth::unknown;
     return;
@@ -58,7 +59,7 @@ void Triggers::judge(unsigned rule, vm::Value condition, bool event) {
 }
 
 void Triggers::begin(unsigned rule) {
-  State& state = states_[rule];
+  Judgement& state = judgement(rule);
   if (state.truth == Truth::unknown) state.trigger = Trigger::then;
   state.truth = Truth::yes;
 }
@@ -66,7 +67,7 @@ void Triggers::begin(unsigned rule) {
 bool Triggers::begin_period(unsigned rule, std::uint32_t now) {
   if (due(rule) == kNever) return true;
   if (!reached(due(rule), now)) return false;
-  states_[rule].trigger = Trigger::then;
+  judgement(rule).trigger = Trigger::then;
   return true;
 }
 
@@ -76,12 +77,12 @@ void Triggers::draw_period(unsigned rule, vm::Value thousandths, std::uint32_t n
   const std::uint32_t begin = due(rule) != kNever ? due(rule) : now;
   std::uint32_t end = begin + std::max<std::uint32_t>(milliseconds_of(thousandths), 1);
   if (reached(end, now)) end = now + 1;
-  times_[rule].due = thousandths == vm::kUnknown ? kNever : as_time(end);
+  workspace_.due[rule] = thousandths == vm::kUnknown ? kNever : as_time(end);
 }
 
 void Triggers::note_past(unsigned rule, std::uint32_t wake, bool event) {
-  times_[rule].due = wake;
-  states_[rule].event = event || states_[rule].zero_divide;
+  workspace_.due[rule] = wake;
+  judgement(rule).event = event || judgement(rule).zero_divide;
 }
 
 // --- what follows from it ---
@@ -90,7 +91,7 @@ void Triggers::collect(const RuleSet& evaluated) {
   const unsigned first = first_to_wake_;
   bool first_is_gone = false;
   for (const unsigned rule : evaluated) {
-    eventful_.put(rule, states_[rule].event);
+    eventful_.put(rule, judgement(rule).event);
     sleeping_.put(rule, due(rule) != kNever);
     note_active(rule);
     if (rule == first) first_is_gone = true;
@@ -101,8 +102,8 @@ void Triggers::collect(const RuleSet& evaluated) {
 
 // It ends a phase, or a WHILE that holds.
 void Triggers::note_active(unsigned rule) {
-  const State& state = states_[rule];
-  active_.put(rule, state.phase != Phase::free || (is_while(rule) && state.truth == Truth::yes));
+  const bool holds = judgement(rule).truth == Truth::yes;
+  active_.put(rule, phases_[rule].phase != Phase::free || (is_while(rule) && holds));
 }
 
 void Triggers::find_first_to_wake() {
@@ -119,40 +120,43 @@ void Triggers::add_woken(std::uint32_t now, RuleSet& rules) const {
 
 void Triggers::settle(std::uint32_t now) {
   for (const unsigned rule : active_) {
-    State& state = states_[rule];
-    const std::uint32_t until = times_[rule].until;
+    State& state = phases_[rule];
+    const std::uint32_t until = until_[rule];
     const bool cooling = state.phase == Phase::cooling;
     const bool over = cooling ? reached(until, now) : !reached(now, until);
     if (over) state.phase = Phase::free;
-    if (cooling && !over) state.trigger = Trigger::none;
+    if (cooling && !over) judgement(rule).trigger = Trigger::none;
     note_active(rule);
   }
 }
 
 bool Triggers::take_zero_divide(unsigned rule) {
-  return std::exchange(states_[rule].zero_divide, false);
+  const bool divided = judgement(rule).zero_divide;
+  judgement(rule).zero_divide = false;
+  return divided;
 }
 
 bool Triggers::fired(unsigned rule, Side& side) const {
-  const Trigger trigger = states_[rule].trigger;
+  const Trigger trigger = judgement(rule).trigger;
   side = trigger == Trigger::then ? Side::then : Side::otherwise;
   return trigger != Trigger::none;
 }
 
 bool Triggers::wish(unsigned rule, bool running, Wish& wish) const {
-  const State& state = states_[rule];
+  const State& state = phases_[rule];
   wish = {.side = Side::then, .fresh = false, .silent = state.told};
   if (Side side{}; fired(rule, side)) {
     wish = {.side = side, .fresh = true, .silent = false};
     return true;
   }
-  if (is_while(rule)) return state.truth == Truth::yes && !running && state.phase == Phase::free;
+  if (is_while(rule))
+    return judgement(rule).truth == Truth::yes && !running && state.phase == Phase::free;
   if (state.phase == Phase::wants_otherwise) wish.side = Side::otherwise;
   return state.phase == Phase::wants_then || state.phase == Phase::wants_otherwise;
 }
 
 bool Triggers::is_over(unsigned rule) const {
-  return is_while(rule) && states_[rule].truth != Truth::yes;
+  return is_while(rule) && judgement(rule).truth != Truth::yes;
 }
 
 bool Triggers::restarting(unsigned rule) const {
@@ -160,33 +164,36 @@ bool Triggers::restarting(unsigned rule) const {
 }
 
 void Triggers::won(unsigned rule, std::uint32_t now) {
-  State& state = states_[rule];
+  State& state = phases_[rule];
   const std::uint32_t cooldown = milliseconds_of(modifiers(rule).cooldown);
   state.told = false;
   state.phase = cooldown > 0 ? Phase::cooling : Phase::free;
-  times_[rule].until = now + cooldown;
+  until_[rule] = now + cooldown;
   note_active(rule);
 }
 
 // A WHILE goes on wanting anyway; and who runs already does not wait for himself.
 void Triggers::lost(unsigned rule, Side side, bool to_itself, std::uint32_t now) {
-  State& state = states_[rule];
+  State& state = phases_[rule];
   state.told = true;
   const std::uint32_t waiting = milliseconds_of(modifiers(rule).waiting);
-  if (state.trigger == Trigger::none || waiting == 0 || to_itself || is_while(rule)) return;
+  const bool triggered = judgement(rule).trigger != Trigger::none;
+  if (!triggered || waiting == 0 || to_itself || is_while(rule)) return;
   state.phase = side == Side::then ? Phase::wants_then : Phase::wants_otherwise;
-  times_[rule].until = now + waiting;
+  until_[rule] = now + waiting;
   active_.insert(rule);
 }
 
 void Triggers::forget(const RuleSet& triggers) {
   for (const unsigned rule : triggers)
-    states_[rule].trigger = Trigger::none;
+    judgement(rule).trigger = Trigger::none;
 }
 
 void Triggers::retire(unsigned rule) {
-  states_[rule] = State{};
-  times_[rule] = {};
+  judgement(rule) = Judgement{};
+  workspace_.due[rule] = kNever;
+  phases_[rule] = State{};
+  until_[rule] = 0;
   eventful_.erase(rule);
   active_.erase(rule);
   sleeping_.erase(rule);
@@ -194,9 +201,9 @@ void Triggers::retire(unsigned rule) {
 }
 
 std::uint32_t Triggers::cooled_at(unsigned rule) const {
-  const State& state = states_[rule];
-  const bool cools = is_while(rule) && state.truth == Truth::yes && state.phase == Phase::cooling;
-  return cools ? times_[rule].until : kNever;
+  const bool holds = judgement(rule).truth == Truth::yes;
+  const bool cools = is_while(rule) && holds && phases_[rule].phase == Phase::cooling;
+  return cools ? until_[rule] : kNever;
 }
 
 }  // namespace robosync::layers

@@ -19,12 +19,15 @@
 #include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/layers/messages.hpp"
 #include "runtime-m4/layers/rule_set.hpp"
+#include "runtime-m4/layers/workspace.hpp"
 #include "vm/interpreter.hpp"
 
 namespace robosync::layers {
 
 class Triggers {
 public:
+  explicit Triggers(Workspace& workspace) : workspace_(workspace) {}
+
   void start(const vm::Image& image);
 
   // --- for the behaviour of the rule ---
@@ -37,7 +40,7 @@ public:
   // Its condition may change at `wake` (kNever: not by itself); it had an event, which is over in
   // the next evaluation.
   void note_past(unsigned rule, std::uint32_t wake, bool event);
-  void note_zero_divide(unsigned rule) { states_[rule].zero_divide = true; }
+  void note_zero_divide(unsigned rule) { judgement(rule).zero_divide = true; }
 
   // --- for the step thread ---
   // These were evaluated, and no behaviour is at work any more.
@@ -71,7 +74,7 @@ public:
   // What became of its wish, or of its response.
   void won(unsigned rule, std::uint32_t now);
   void lost(unsigned rule, Side side, bool to_itself, std::uint32_t now);
-  void interrupted(unsigned rule) { states_[rule].told = true; }
+  void interrupted(unsigned rule) { phases_[rule].told = true; }
   void forget(const RuleSet& triggers);
   // Its behaviour was stopped: it never triggers again.
   void retire(unsigned rule);
@@ -79,33 +82,26 @@ public:
   std::uint32_t cooled_at(unsigned rule) const;
 
 private:
-  enum class Truth : std::uint8_t { unknown, no, yes };
-  enum class Trigger : std::uint8_t { none, otherwise, then };
   enum class Phase : std::uint8_t { free, cooling, wants_otherwise, wants_then };
 
+  // What only the step thread knows of a rule.
   struct State {
-    Truth truth : 2 = Truth::unknown;
-    Trigger trigger : 2 = Trigger::none;
     Phase phase : 2 = Phase::free;
     bool told : 1 = false;  // WHILE: that it wants to run and does not
-    bool event : 1 = false;
-    bool zero_divide = false;
-  };
-  struct Times {
-    std::uint32_t due = kNever;  // when it is to be evaluated again; EVERY: the end of its period
-    std::uint32_t until = 0;     // end of a phase other than `free`
   };
   static constexpr unsigned kNobody = kMaxRules;
 
   bool is_while(unsigned rule) const { return image_->rules[rule].kind == vm::RuleKind::while_; }
   const vm::Modifiers& modifiers(unsigned rule) const;
-  std::uint32_t due(unsigned rule) const { return times_[rule].due; }
+  Judgement& judgement(unsigned rule) const { return workspace_.judgements[rule]; }
+  std::uint32_t due(unsigned rule) const { return workspace_.due[rule]; }
   void note_active(unsigned rule);
   void find_first_to_wake();
 
+  Workspace& workspace_;
   const vm::Image* image_ = nullptr;
-  std::array<State, kMaxRules> states_{};
-  std::array<Times, kMaxRules> times_{};
+  std::array<State, kMaxRules> phases_{};
+  std::array<std::uint32_t, kMaxRules> until_{};  // end of a phase other than `free`
   RuleSet eventful_;
   RuleSet active_;
   RuleSet sleeping_;  // those that are due at some time

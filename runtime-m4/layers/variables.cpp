@@ -52,11 +52,14 @@ void Variables::start(const vm::Image& image, std::span<vm::Value> values) {
 
 // --- writes ---
 
+// Which cells were written is not believed: it comes from a behaviour's thread.
 void Variables::stage_all(const vm::Machine& machine, const vm::Behavior& behavior,
                           const Snapshot& before, void (Variables::*add_one)(const Write&)) {
   for (std::uint32_t left = machine.written(); left != 0; left &= left - 1) {
     const auto cell = static_cast<unsigned>(std::countr_zero(left));
+    if (cell >= behavior.input_count) break;
     const std::uint8_t input = image_->inputs[behavior.first_input + cell];
+    if (input < image_->channels.size()) continue;
     const bool set = has(machine.assigned, cell);
     const vm::Value value = machine.frame[cell];
     (this->*add_one)({.variable = static_cast<std::uint8_t>(input - image_->channels.size()),

@@ -35,7 +35,7 @@ public:
   void start(const vm::Image& image, std::span<vm::Value> values);
 
   // Stages what a response has written into the frame of `behavior`, which was latched from
-  // `before`: in a step from the most important response down  [behaviour threads, one at a time]
+  // `before`: in a step from the most important response down  [step thread]
   void stage(const vm::Machine& machine, const vm::Behavior& behavior, const Snapshot& before) {
     stage_all(machine, behavior, before, &Variables::add);
   }

@@ -6,13 +6,21 @@
 //   kTimeFlows              Does time pass while threads run? On the host it stands still until all
 //                           wait.
 //   kMinStack               Least bytes of stack a thread must have.
+//   kOpenStackAlignment, kMaxOpenStack   What the stack of a thread without privileges must be.
+//   struct Areas            What threads without privileges may use besides their stacks:
+//   `readable`
+//                           and, perhaps inside of it, `writable`.
+//   call(kernel, number, argument)       A system call: Kernel::answer() from a thread without
+//                                        privileges.
 //   fetch_and_clear(word, mask)   Clears bits and returns what was there; an interrupt that changes
 //                                 the word meanwhile is not lost.
 //   class Lock(Machine&)    Critical section, RAII, nests. Keeps out the kernel's own interrupts
 //                           (never those above its level) and holds a requested switch back until
 //                           the outermost one ends.
 //   class Machine(Kernel&)  The processor a kernel runs on:
-//     usable(stack)                 What a thread can use of a stack: without alignment and guard.
+//     usable(spec)                  What a thread can use of its stack: without alignment, guard.
+//     can_run(spec)                 Is its stack as a thread without privileges needs it?
+//     open(areas)                   Gives those threads what they may use. Under a Lock.
 //     prepare(context, spec, stack) Makes a thread start with entry(argument) on a usable stack;
 //                                   when that returns, the thread is stopped.
 //     prepare_idle(context)         The idle thread's context; returns its usable stack.

@@ -29,11 +29,23 @@ namespace robosync::update {
 // board verifies an image it does not read the line.
 inline constexpr std::uint16_t kReceiveWindow = 2 * link::kMaxEncodedFrame;
 
+// One for the running program, one to receive into.
+struct Slots {
+  using Slot = std::array<std::byte, layers::kSlotBytes>;
+  alignas(8) std::array<Slot, 2> slots{};
+};
+
 class Server {
 public:
   // `ring` is the sink that `runtime` was made with.
-  Server(kernel::Kernel& kernel, boards::Board& board, Runtime& runtime, TraceRing& ring)
-      : kernel_(kernel), board_(board), runtime_(runtime), ring_(ring), writer_(board) {}
+  Server(kernel::Kernel& kernel, boards::Board& board, Runtime& runtime, TraceRing& ring,
+         Slots& slots)
+      : kernel_(kernel),
+        board_(board),
+        runtime_(runtime),
+        ring_(ring),
+        slots_(slots.slots),
+        writer_(board) {}
 
   // Creates the link thread. Once, before Kernel::run(). False when the kernel has no place.
   [[nodiscard]] bool start();
@@ -50,8 +62,6 @@ public:
 private:
   static constexpr kernel::Duration kPollPeriod = kernel::milliseconds(5);
   static constexpr std::size_t kKeptFaults = 2;
-
-  using Slot = std::array<std::byte, layers::kSlotBytes>;
 
   void run();
   bool work();  // one thing that is due; false when there is nothing, or the line does not take it
@@ -81,6 +91,7 @@ private:
   boards::Board& board_;
   Runtime& runtime_;
   TraceRing& ring_;
+  std::array<Slots::Slot, 2>& slots_;
 
   link::FrameDecoder decoder_;
   LineWriter writer_;
@@ -104,7 +115,6 @@ private:
   std::uint8_t faults_sent_ = 0;
 
   kernel::Thread thread_;
-  alignas(8) std::array<Slot, 2> slots_{};
   alignas(port::kStackAlignment) std::array<std::byte, layers::kLinkStack> stack_{};
 };
 

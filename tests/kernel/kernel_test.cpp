@@ -218,7 +218,7 @@ TEST_CASE("a thread whose entry returns is stopped, the watcher is told, the oth
     CHECK(rig.kernel.wait(kB) == kB);
     rig.note("told");
   });
-  rig.kernel.watch_stops(watcher.thread, kB);
+  rig.kernel.watch(watcher.thread, kB, 0);
   auto& brief = rig.add("brief", Category::behavior, 5, [&] { rig.note("brief"); });
   rig.add("other", Category::behavior, 1, [&] {
     rig.note("other");

@@ -7,7 +7,7 @@
 
 namespace robosync::test {
 
-Rig::Rig() : runtime(kernel, board, *this) {
+Rig::Rig() : runtime(kernel, board, *this, workspace) {
   REQUIRE(runtime.start());
 }
 

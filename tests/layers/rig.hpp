@@ -72,6 +72,7 @@ public:
 
   kernel::Kernel kernel;
   NotingBoard board;
+  layers::Workspace workspace;
   Runtime runtime;
   std::vector<std::string> lines;
 

@@ -92,7 +92,10 @@ class Robot final : public tool::Transport {
 public:
   static constexpr unsigned kBytesPerSecond = 11520;  // 115,200 baud, 8N1
 
-  Robot() : ring(kernel), runtime(kernel, board, ring), server(kernel, board, runtime, ring) {
+  Robot()
+      : ring(kernel),
+        runtime(kernel, board, ring, workspace),
+        server(kernel, board, runtime, ring, slots) {
     started = runtime.start() && server.start();
   }
 
@@ -140,7 +143,9 @@ public:
   kernel::Kernel kernel;
   LineBoard board;
   update::TraceRing ring;
+  layers::Workspace workspace;
   Runtime runtime;
+  update::Slots slots;
   update::Server server;
   bool started = false;
 

@@ -11,10 +11,14 @@ robosync::boards::mps2::Board robosync_board;
 
 namespace {
 
-// Constructed in this order, after the two above.
+// Constructed in this order, after the two above. The linker script says where they stand, for the
+// MPU.
+[[gnu::section(".bss.writable")]] robosync::layers::Workspace workspace;
 robosync::update::TraceRing trace(robosync_kernel);
-robosync::Runtime runtime(robosync_kernel, robosync_board, trace);
-robosync::update::Server server(robosync_kernel, robosync_board, runtime, trace);
+[[gnu::section(".bss.readable.0")]] robosync::Runtime runtime(robosync_kernel, robosync_board,
+                                                              trace, workspace);
+[[gnu::section(".bss.readable.1")]] robosync::update::Slots slots;
+robosync::update::Server server(robosync_kernel, robosync_board, runtime, trace, slots);
 
 static_assert(robosync::boards::mps2::Uart::kBufferBytes >= robosync::update::kReceiveWindow);
 

@@ -1,4 +1,4 @@
-// From reset to main(): vector table, FPU, memory, constructors. Nothing here may use the FPU
+// From reset to main(): vector tables, FPU, memory, constructors. Nothing here may use the FPU
 // before it is on, or .data and .bss before they are set up.
 #include <array>
 #include <cstddef>
@@ -21,7 +21,9 @@ void HardFault_Handler();
 void MemManage_Handler();
 void BusFault_Handler();
 void UsageFault_Handler();
+void SVC_Handler();
 void PendSV_Handler();
+void PendSV_Open_Handler();
 void SysTick_Handler();
 void Uart0Receive_Handler();
 void Uart0Transmit_Handler();
@@ -56,8 +58,12 @@ constexpr Vector handler(void (*function)()) {
 
 constexpr Vector kUnexpected = {.handler = Unexpected_Handler};
 
-[[gnu::section(".vectors"), gnu::used]] const std::array<Vector, 16 + 32> vectors = [] {
-  std::array<Vector, 16 + 32> table{};
+using Vectors = std::array<Vector, 16 + 32>;
+
+// The second one is used while a thread without privileges runs: such a thread may call, and is
+// left in another way (port/cortex-m4/switch.S).
+constexpr Vectors table(bool open) {
+  Vectors table{};
   table.fill(kUnexpected);
   table[0] = {.stack = &main_stack_top};
   table[1] = handler(Reset_Handler);
@@ -66,15 +72,25 @@ constexpr Vector kUnexpected = {.handler = Unexpected_Handler};
   table[4] = handler(MemManage_Handler);
   table[5] = handler(BusFault_Handler);
   table[6] = handler(UsageFault_Handler);
-  table[14] = handler(PendSV_Handler);
+  if (open) table[11] = handler(SVC_Handler);
+  table[14] = handler(open ? PendSV_Open_Handler : PendSV_Handler);
   table[15] = handler(SysTick_Handler);
   table[16] = handler(Uart0Receive_Handler);
   table[17] = handler(Uart0Transmit_Handler);
   table[24] = handler(Timer0_Handler);
   return table;
-}();
+}
+
+constexpr std::size_t kTableAlignment = 256;  // VTOR: the next power of two
 
 }  // namespace
+
+extern "C" {
+[[gnu::section(".vectors.0"),
+  gnu::used]] alignas(kTableAlignment) extern const Vectors robosync_vectors = table(false);
+[[gnu::section(".vectors.1"),
+  gnu::used]] alignas(kTableAlignment) extern const Vectors robosync_open_vectors = table(true);
+}
 
 void Reset_Handler() {
   namespace core = robosync::port::core;

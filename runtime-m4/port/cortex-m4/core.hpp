@@ -17,8 +17,10 @@ inline constexpr std::uintptr_t kNvicIser = 0xE000'E100;  // interrupt set-enabl
 inline constexpr std::uintptr_t kNvicIspr = 0xE000'E200;  // interrupt set-pending
 inline constexpr std::uintptr_t kNvicIpr = 0xE000'E400;   // interrupt priorities, a byte each
 inline constexpr std::uintptr_t kIcsr = 0xE000'ED04;      // interrupt control and state
+inline constexpr std::uintptr_t kVtor = 0xE000'ED08;      // where the vector table is
 inline constexpr std::uintptr_t kAircr = 0xE000'ED0C;     // reset control
 inline constexpr std::uintptr_t kCcr = 0xE000'ED14;       // traps
+inline constexpr std::uintptr_t kShpr2 = 0xE000'ED1C;     // priority of SVC
 inline constexpr std::uintptr_t kShpr3 = 0xE000'ED20;     // priorities of PendSV and SysTick
 inline constexpr std::uintptr_t kShcsr = 0xE000'ED24;     // enables of the fault handlers
 inline constexpr std::uintptr_t kCfsr = 0xE000'ED28;      // what kind of fault
@@ -37,9 +39,19 @@ inline constexpr std::uint32_t kCfsrDataAccess = 1U << 1;       // MemManage: ad
 inline constexpr std::uint32_t kCfsrMemoryStacking = 1U << 4;   // MemManage: frame not stacked
 inline constexpr std::uint32_t kCfsrMmarValid = 1U << 7;
 inline constexpr std::uint32_t kCfsrBfarValid = 1U << 15;
-inline constexpr std::uint32_t kMpuOn = 0b101;                // what no region covers is as without
-inline constexpr std::uint32_t kMpuBaseValid = 1U << 4;       // RBAR names its region
-inline constexpr std::uint32_t kMpuNoAccess32 = 0x1000'0009;  // never execute, no access, 32 bytes
+
+// What no region covers is as without an MPU to those with privileges, and closed to others.
+inline constexpr std::uint32_t kMpuOn = 0b101;
+inline constexpr std::uint32_t kMpuBaseValid = 1U << 4;  // RBAR names its region
+
+// RASR: who may do what. All of it is normal memory, so that unaligned accesses work.
+inline constexpr std::uint32_t kMpuNormal = 1U << 17;
+inline constexpr std::uint32_t kMpuNeverExecute = 1U << 28;
+inline constexpr std::uint32_t kMpuClosed = 0U << 24 | kMpuNormal | kMpuNeverExecute;
+inline constexpr std::uint32_t kMpuPrivileged = 1U << 24 | kMpuNormal | kMpuNeverExecute;
+inline constexpr std::uint32_t kMpuOthersRead = 2U << 24 | kMpuNormal | kMpuNeverExecute;
+inline constexpr std::uint32_t kMpuAllWrite = 3U << 24 | kMpuNormal | kMpuNeverExecute;
+inline constexpr std::uint32_t kMpuCode = 6U << 24 | kMpuNormal;  // read and execute, for all
 
 // Interrupt priorities, the lower number the more urgent. Everything from kKernelPriority on is
 // held off by the kernel's critical sections and may call the kernel; what is more urgent is never

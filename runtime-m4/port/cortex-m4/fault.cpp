@@ -17,6 +17,9 @@ extern "C" {
 void robosync_saving_core();
 void robosync_saving_fpu();
 void robosync_saved();
+void robosync_saving_open_fpu();
+void robosync_no_room();
+void robosync_saved_open();
 }
 
 namespace robosync::port {
@@ -32,11 +35,6 @@ struct FaultEntry {
   std::uint32_t msp, psp;
   std::array<std::uint32_t, 8> r4_r11;
   std::uint32_t exc_return;
-};
-
-// What the core stacks.
-struct CoreFrame {
-  std::uint32_t r0, r1, r2, r3, r12, lr, pc, xpsr;
 };
 
 std::uint32_t word_of(const void* address) {
@@ -101,11 +99,22 @@ bool from_thread(const FaultEntry& entry) {
   return (entry.exc_return & kThread) == kThread;
 }
 
-// True when the context switch faulted while it saved a thread's registers on that thread's stack.
+// The handler that faulted did so there.
+bool from_place(const FaultEntry& entry, void (*place)()) {
+  return (entry.exc_return & kFromThreadMode) == 0 &&
+         handler_frame(entry).pc == (word_of(place) & ~1U);
+}
+
+// True when the context switch faulted, or gave up, while it saved the registers of a thread
+// without privileges on that thread's stack.
+bool from_saving_open(const FaultEntry& entry) {
+  return from_place(entry, robosync_saving_open_fpu) || from_place(entry, robosync_no_room);
+}
+
+// … of any thread.
 bool from_saving(const FaultEntry& entry) {
-  if ((entry.exc_return & kFromThreadMode) != 0) return false;
-  const std::uint32_t pc = handler_frame(entry).pc;
-  return pc == (word_of(robosync_saving_core) & ~1U) || pc == (word_of(robosync_saving_fpu) & ~1U);
+  return from_place(entry, robosync_saving_core) || from_place(entry, robosync_saving_fpu) ||
+         from_saving_open(entry);
 }
 
 // Whether the fault is the thread's own doing, in a state in which the kernel can go on without it.
@@ -126,6 +135,7 @@ link::Fault describe(const kernel::Thread& thread, const FaultEntry& entry) {
   fault.thread = name_of(thread);
   fault.cause = core::reg(core::kCfsr);
   fault.address = fault_address(fault.cause);
+  if (from_place(entry, robosync_no_room)) fault.cause = kCauseStackOverflow;
   if (is_overflow(thread, fault.cause, fault.address)) fault.cause |= kCauseStackOverflow;
   std::copy(entry.r4_r11.begin(), entry.r4_r11.end(), fault.r.begin() + 4);
   // What a thread left on its own stack, even when it is the context switch that faulted.
@@ -145,7 +155,7 @@ link::Fault describe(const kernel::Thread& thread, const FaultEntry& entry) {
 void skip_saving(const FaultEntry& entry) {
   constexpr std::uint32_t kPartOfInstruction = 0x0600'FC00;  // how far a store-multiple had come
   CoreFrame& frame = handler_frame(entry);
-  frame.pc = word_of(robosync_saved) & ~1U;
+  frame.pc = word_of(from_saving_open(entry) ? robosync_saved_open : robosync_saved) & ~1U;
   frame.xpsr &= ~kPartOfInstruction;
 }
 
@@ -154,6 +164,21 @@ void skip_saving(const FaultEntry& entry) {
 void enable_fault_handlers() {
   core::reg(core::kShcsr) |= core::kShcsrFaultHandlers;
   core::reg(core::kCcr) |= core::kCcrDivideByZeroTrap;
+}
+
+// A fault before it may have stopped the thread already: the call was still pending then.
+void refuse_call() {
+  kernel::Thread& thread = robosync_kernel.current();
+  if (robosync_kernel.state(thread) == kernel::Thread::State::stopped) return;
+  link::Fault fault{};
+  fault.thread = name_of(thread);
+  fault.cause = kCauseNoSuchCall;
+  asm volatile("mrs %0, psp" : "=r"(fault.sp));
+  if (frame_lies_in(thread.stack(), fault.sp))
+    copy_frame(*reinterpret_cast<const CoreFrame*>(fault.sp), fault);
+  fault.address = fault.r[0];
+  robosync_kernel.stop(thread);
+  hooks::thread_faulted(thread, fault);
 }
 
 }  // namespace robosync::port

@@ -8,8 +8,19 @@ namespace robosync::port {
 // Set in link::Fault::cause when the fault is a stack that was too small: an unused bit of CFSR,
 // which ARMv8-M uses for the same thing (STKOF).
 inline constexpr std::uint32_t kCauseStackOverflow = 1U << 20;
+// Set when a thread without privileges made a system call that there is not; the address is its
+// number. An unused bit as well.
+inline constexpr std::uint32_t kCauseNoSuchCall = 1U << 21;
+
+// What the core stacks.
+struct CoreFrame {
+  std::uint32_t r0, r1, r2, r3, r12, lr, pc, xpsr;
+};
 
 // From now on faults have handlers of their own, and a division by zero is one.
 void enable_fault_handlers();
+
+// Stops the running thread for a system call that there is not. [the handler of system calls]
+void refuse_call();
 
 }  // namespace robosync::port

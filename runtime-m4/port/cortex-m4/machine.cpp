@@ -1,4 +1,5 @@
-// Makes threads runnable, takes the decisions of the context switch, and drives the tick.
+// Makes threads runnable, takes the decisions of the context switch, takes system calls, and drives
+// the tick.
 #include "runtime-m4/port/cortex-m4/machine.hpp"
 
 #include <array>
@@ -6,9 +7,14 @@
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/port/cortex-m4/fault.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
+#include "runtime-m4/port/cortex-m4/isolation.hpp"
 
 // switch.S
-extern "C" [[noreturn]] void robosync_become_idle(std::byte* stack_top);
+extern "C" {
+[[noreturn]] void robosync_become_idle(std::byte* stack_top);
+void robosync_save_open(std::uint32_t psp);
+void robosync_no_room();
+}
 
 namespace robosync::port {
 
@@ -16,6 +22,7 @@ namespace {
 
 constexpr std::uint32_t kXpsrThumb = 1U << 24;
 constexpr std::uint32_t kReturnToThread = 0xFFFF'FFFD;  // thread mode, PSP, no FPU frame
+constexpr std::uint32_t kReturnToOpen = 0xFFFF'FFCD;    // … without privileges, for switch.S
 
 // What a thread's stack holds before it runs for the first time; switch.S draws it.
 struct FirstFrame {
@@ -40,14 +47,30 @@ std::uint32_t word_of(const void* address) {
 
 // What the MPU's base register needs to guard the bytes below a usable stack.
 std::uint32_t guard_below(std::span<const std::byte> stack) {
-  return word_of(stack.data()) - kGuard + core::kMpuBaseValid + kGuardRegion;
+  return base_of(RegionNumber::guard, word_of(stack.data()) - kGuard);
+}
+
+// The window of a thread without privileges.
+void open_stack(Context& context, std::span<const std::byte> stack) {
+  const auto bytes = static_cast<std::uint32_t>(stack.size());
+  const regions::Window window = regions::window(word_of(stack.data()), bytes, kStackWindowBits);
+  context.region = base_of(RegionNumber::stack, window.lower.base);
+  context.windows = window.lower.size_and_eighths | window.upper.size_and_eighths << 16;
 }
 
 }  // namespace
 
-std::span<std::byte> Machine::usable(std::span<std::byte> stack) {
-  const std::uint32_t begin = (word_of(stack.data()) + kGuard - 1) / kGuard * kGuard + kGuard;
-  return stack.subspan(begin - word_of(stack.data()));
+bool Machine::can_run(const kernel::ThreadSpec& spec) {
+  return spec.privileged ||
+         regions::fits_window(word_of(spec.stack.data()),
+                              static_cast<std::uint32_t>(spec.stack.size()), kStackWindowBits);
+}
+
+std::span<std::byte> Machine::usable(const kernel::ThreadSpec& spec) {
+  if (!spec.privileged) return spec.stack;
+  const std::uint32_t stack = word_of(spec.stack.data());
+  const std::uint32_t begin = (stack + kGuard - 1) / kGuard * kGuard + kGuard;
+  return spec.stack.subspan(begin - stack);
 }
 
 void Machine::prepare(Context& context, const kernel::ThreadSpec& spec,
@@ -55,26 +78,26 @@ void Machine::prepare(Context& context, const kernel::ThreadSpec& spec,
   const std::uint32_t top = word_of(stack.data() + stack.size()) & ~7U;
   auto* const frame = reinterpret_cast<FirstFrame*>(top - sizeof(FirstFrame));
   *frame = {};
-  frame->exc_return = kReturnToThread;
+  frame->exc_return = spec.privileged ? kReturnToThread : kReturnToOpen;
   frame->r0 = word_of(spec.argument);
   frame->lr = word_of(reinterpret_cast<const void*>(&thread_ended));
   frame->pc = word_of(reinterpret_cast<const void*>(spec.entry)) & ~1U;
   frame->xpsr = kXpsrThumb;
   context.sp = reinterpret_cast<std::uint32_t*>(frame);
-  context.guard = guard_below(stack);
+  context.region = guard_below(stack);
+  if (!spec.privileged) open_stack(context, stack);
 }
 
 std::span<std::byte> Machine::prepare_idle(Context& context) {
   const auto stack = std::span<std::byte>(idle_stack).subspan(kGuard);
-  context.guard = guard_below(stack);
+  context.region = guard_below(stack);
   return stack;
 }
 
 void Machine::run() {
   enable_fault_handlers();
-  core::reg(core::kMpuRbar) = kernel::Kernel::context(robosync_kernel.idle()).guard;
-  core::reg(core::kMpuRasr) = core::kMpuNoAccess32;
-  core::reg(core::kMpuCtrl) = core::kMpuOn;
+  core::reg(core::kShpr2) = core::kKernelPriority << 24;
+  start_isolation();
   core::reg(core::kSystRvr) =
       static_cast<std::uint32_t>(hooks::kCoreHz / 1'000'000 * kernel::kTick) - 1;
   core::reg(core::kSystCvr) = 0;
@@ -87,17 +110,45 @@ void Machine::run() {
 
 extern "C" {
 
-std::uint32_t* robosync_switch(robosync::kernel::Kernel& kernel, std::uint32_t* sp);
+const robosync::port::Context* robosync_switch(std::uint32_t* sp, robosync::kernel::Kernel& kernel);
+void PendSV_Open_Handler();
 void SysTick_Handler();
+void SVC_Handler();
 
-// Called by switch.S with the stack pointer of the thread that ran; returns that of the next one.
-std::uint32_t* robosync_switch(robosync::kernel::Kernel& kernel, std::uint32_t* sp) {
+// Called by switch.S with the stack pointer of the thread that ran; returns the context of the next
+// one.
+const robosync::port::Context* robosync_switch(std::uint32_t* sp,
+                                               robosync::kernel::Kernel& kernel) {
   namespace core = robosync::port::core;
   using robosync::kernel::Kernel;
   Kernel::context(kernel.current()).sp = sp;
   const robosync::port::Context& next = Kernel::context(kernel.select_next());
-  core::reg(core::kMpuRbar) = next.guard;
-  return next.sp;
+  core::reg(core::kMpuRbar) = next.region;
+  return &next;
+}
+
+// PendSV while a thread without privileges runs. Its stack pointer may be anything at which the
+// core was let stack a frame, and saving has privileges: there must be room on the thread's own
+// stack. Ends in a jump, so that lr and r4–r11 are the thread's when switch.S saves them.
+void PendSV_Open_Handler() {
+  using namespace robosync::port;
+  std::uint32_t psp = 0;
+  asm volatile("mrs %0, psp" : "=r"(psp));
+  const auto stack = robosync_kernel.current().stack();
+  if (psp - kSaved - word_of(stack.data()) >= stack.size()) return robosync_no_room();
+  return robosync_save_open(psp);
+}
+
+// A system call of a thread without privileges: only its vector table has this. At the kernel's own
+// priority, so that no Lock is needed. Nothing is believed: number and argument are numbers, and the
+// frame they come in was stacked by the core with the rights of the thread, so it lies where the
+// thread may write.
+void SVC_Handler() {
+  using namespace robosync::port;
+  CoreFrame* frame = nullptr;
+  asm volatile("mrs %0, psp" : "=r"(frame));
+  if (!robosync_kernel.answer(frame->r0, frame->r1, frame->r0)) [[unlikely]]
+    refuse_call();
 }
 
 void SysTick_Handler() {

@@ -3,6 +3,8 @@
 // Threads run on PSP, handlers on MSP. The switch is PendSV at the lowest priority (switch.S).
 // Critical sections raise BASEPRI: interrupts above the kernel's level are never held off. Until
 // run() the kernel's level is held off altogether (the board's reset handler sees to that).
+//
+// What the MPU closes, and to whom: isolation.hpp.
 #pragma once
 
 #include <cstddef>
@@ -18,19 +20,36 @@ struct ThreadSpec;
 
 namespace robosync::port {
 
-// Below each stack stand 32 bytes that nobody may touch while its thread runs: the MPU makes a
-// fault of the first access. Bytes between a stack's start and what a thread can use of it:
+// Below the stack of each thread with privileges stand 32 bytes that nobody may touch while it
+// runs: the MPU makes a fault of the first access. Bytes between a stack's start and what a thread
+// can use of it:
 inline constexpr std::size_t kGuard = 32;
 inline constexpr bool kTimeFlows = true;
 inline constexpr std::size_t kStackAlignment = kGuard;  // any other alignment wastes bytes
-inline constexpr std::size_t kGuardRegion = 7;          // of the MPU; the highest number wins
+
+// The stack of a thread without privileges is all that it can write around there, so it needs no
+// guard; its borders are those of the eighths of a window of two MPU regions (regions.hpp).
+inline constexpr unsigned kStackWindowBits = 9;
+inline constexpr std::size_t kOpenStackAlignment = (std::size_t{1} << kStackWindowBits) / 8;
+inline constexpr std::size_t kMaxOpenStack = 9 * kOpenStackAlignment;  // wherever it begins
 
 // Alignment and guard, what the core stacks with FPU registers, and what switch.S adds.
-inline constexpr std::size_t kMinStack = kGuard - 8 + kGuard + 104 + 100;
+inline constexpr std::size_t kFrame = 104;
+inline constexpr std::size_t kSaved = 100;
+inline constexpr std::size_t kMinStack = kGuard - 8 + kGuard + kFrame + kSaved;
 
+// switch.S knows where these stand.
 struct Context {
   std::uint32_t* sp = nullptr;  // r4–r11 and EXC_RETURN stand there, below the core's own frame
-  std::uint32_t guard = 0;      // for the MPU's base register
+  // For the MPU's base register: the guard; without privileges, the lower region of the window.
+  std::uint32_t region = 0;
+  // Without privileges: sizes and eighths of the lower region, and above them of the upper one.
+  std::uint32_t windows = 0;
+};
+
+struct Areas {
+  std::span<const std::byte> readable;
+  std::span<std::byte> writable;
 };
 
 class Machine {
@@ -39,7 +58,9 @@ public:
   void prepare(Context& context, const kernel::ThreadSpec& spec, std::span<std::byte> stack);
   void request_switch() { core::reg(core::kIcsr) = core::kIcsrPendSvSet; }
   [[noreturn]] void run();
-  static std::span<std::byte> usable(std::span<std::byte> stack);
+  static std::span<std::byte> usable(const kernel::ThreadSpec& spec);
+  static bool can_run(const kernel::ThreadSpec& spec);
+  static void open(const Areas& areas);
   static std::span<std::byte> prepare_idle(Context& context);
 };
 
@@ -55,6 +76,14 @@ inline std::uint32_t fetch_and_clear(std::uint32_t& word, std::uint32_t mask) {
       : "r"(mask)
       : "cc", "memory");
   return before;
+}
+
+// Number and argument go in r0 and r1, the result comes in r0 (SVC_Handler).
+inline std::uint32_t call(kernel::Kernel&, std::uint32_t number, std::uint32_t argument) {
+  register std::uint32_t r0 asm("r0") = number;
+  register std::uint32_t r1 asm("r1") = argument;
+  asm volatile("svc 0" : "+r"(r0) : "r"(r1) : "memory");
+  return r0;
 }
 
 // Never make one const: GCC then keeps it in memory ("store to a read-only decl" stops its scalar

@@ -13,40 +13,101 @@
    then faults, fault.cpp stops the thread, and the switch goes on at robosync_saved.
 
    Bit 4 of EXC_RETURN is 0 if the thread used the FPU; storing s16 makes the core store s0–s15
-   first where it put that off. Which thread comes next is decided in C++: robosync_switch. */
+   first where it put that off. Which thread comes next is decided in C++: robosync_switch.
+
+   A thread without privileges ("open") costs the others nothing. It leaves by a vector table of its
+   own, and what it saves as EXC_RETURN has bits 4 and 5 cleared, and bit 6 if it used the FPU: they
+   are told apart where the FPU is. */
 
     .syntax unified
     .cpu    cortex-m4
     .fpu    fpv4-sp-d16
     .thumb
 
+    .equ    VTOR, 0xE000ED08
+    .equ    MPU_RASR, 0xE000EDA0
+    .equ    ALL_WRITE, 0x1302       /* upper half of core::kMpuAllWrite */
+
     .section .text.PendSV_Handler, "ax"
     .global PendSV_Handler, robosync_saving_core, robosync_saving_fpu, robosync_saved
+    .global robosync_save_open, robosync_saving_open_fpu, robosync_saved_open, robosync_no_room
     .type   PendSV_Handler, %function
+    .type   robosync_save_open, %function
+    .type   robosync_no_room, %function
     .thumb_func
 PendSV_Handler:
-    mrs     r1, psp
+    mrs     r0, psp
     tst     lr, #0x10
     beq     2f
 robosync_saving_core:
-    stmdb   r1!, {r4-r11, lr}
+    stmdb   r0!, {r4-r11, lr}
 
 robosync_saved:
-    ldr     r0, =robosync_kernel
-    bl      robosync_switch         /* (kernel, sp of the thread that ran) -> sp of the next one */
+    ldr     r1, =robosync_kernel
+    bl      robosync_switch         /* (sp that was, kernel) -> Context of the next one */
 
-    ldmia   r0!, {r4-r11, lr}
+    ldr     r1, [r0]                /* Context::sp */
+    ldmia   r1!, {r4-r11, lr}
     tst     lr, #0x10
     beq     3f
-1:  msr     psp, r0
+1:  msr     psp, r1
     bx      lr
 
 2:
 robosync_saving_fpu:
-    vstmdb  r1!, {s16-s31}
+    vstmdb  r0!, {s16-s31}
     b       robosync_saving_core
-3:  vldmia  r0!, {s16-s31}
+3:  tst     lr, #0x20
+    beq     4f
+    vldmia  r1!, {s16-s31}
     b       1b
+
+/* Into a thread without privileges: its window, its vector table, its rights. robosync_switch has
+   set the base of the lower region already. */
+4:  tst     lr, #0x40
+    beq     6f
+    orr     lr, lr, #0x30
+5:  msr     psp, r1
+    ldrd    r1, r2, [r0, #4]        /* Context::region, ::windows */
+    ldr     r0, =MPU_RASR
+    addw    r3, r1, #0x201          /* 512 bytes on, and the next number */
+    movt    r12, #ALL_WRITE
+    pkhbt   r1, r2, r12
+    pkhtb   r12, r12, r2, asr #16
+    stmia   r0, {r1, r3, r12}
+    ldr     r1, =robosync_open_vectors
+    str     r1, [r0, #VTOR - MPU_RASR]
+    movs    r1, #1
+    msr     control, r1
+    bx      lr
+6:  vldmia  r1!, {s16-s31}
+    orr     lr, lr, #0x60
+    b       5b
+
+/* Out of one: (psp), when there is room on its stack (PendSV_Open_Handler). */
+    .thumb_func
+robosync_save_open:
+    tst     lr, #0x10
+    bic     lr, lr, #0x30
+    beq     7f
+8:  stmdb   r0!, {r4-r11, lr}
+robosync_saved_open:
+    ldr     r1, =VTOR
+    ldr     r2, =robosync_vectors
+    str     r2, [r1]
+    movs    r2, #0
+    msr     control, r2
+    b       robosync_saved
+7:
+robosync_saving_open_fpu:
+    vstmdb  r0!, {s16-s31}
+    bic     lr, lr, #0x40
+    b       8b
+
+/* When there is none: a fault in the name of the thread (fault.cpp). */
+    .thumb_func
+robosync_no_room:
+    udf     #0
     .pool
     .size   PendSV_Handler, . - PendSV_Handler
 

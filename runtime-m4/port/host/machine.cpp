@@ -49,6 +49,17 @@ void Machine::prepare(Context& context, const kernel::ThreadSpec& spec, std::spa
   makecontext(&context.registers, &Machine::fiber_main, 0);
 }
 
+std::span<std::byte> Machine::usable(const kernel::ThreadSpec& spec) {
+  return spec.stack;
+}
+
+std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t argument) {
+  std::uint32_t result = 0;
+  const auto lock = kernel.lock();
+  kernel.answer(number, argument, result);
+  return result;
+}
+
 void Machine::fiber_main() {
   switching->enter_fiber();
 }

@@ -26,7 +26,15 @@ namespace robosync::port {
 
 inline constexpr bool kTimeFlows = false;
 inline constexpr std::size_t kStackAlignment = 8;
-inline constexpr std::size_t kMinStack = 0;  // a fiber has a host-sized stack of its own
+inline constexpr std::size_t kMinStack = 0;             // a fiber has a host-sized stack of its own
+inline constexpr std::size_t kOpenStackAlignment = 64;  // as on the board
+inline constexpr std::size_t kMaxOpenStack = 576;
+
+// Nothing is closed here.
+struct Areas {
+  std::span<const std::byte> readable;
+  std::span<std::byte> writable;
+};
 
 struct Context {
   ucontext_t registers{};
@@ -48,7 +56,9 @@ public:
   void prepare(Context& context, const kernel::ThreadSpec& spec, std::span<std::byte> stack);
   void request_switch() { switch_requested_ = true; }
   void run() { run_until(kernel::kForever); }
-  static std::span<std::byte> usable(std::span<std::byte> stack) { return stack; }
+  static std::span<std::byte> usable(const kernel::ThreadSpec& spec);
+  static bool can_run(const kernel::ThreadSpec&) { return true; }
+  static void open(const Areas&) {}
   static std::span<std::byte> prepare_idle(Context&) { return {}; }  // it is the caller
 
   // Runs threads until all are blocked and the next deadline lies after `until`; then now() is
@@ -97,5 +107,8 @@ public:
 private:
   Machine& machine_;
 };
+
+// Straight to the kernel: there are no privileges.
+std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t argument);
 
 }  // namespace robosync::port

@@ -57,7 +57,8 @@ constexpr std::uint64_t next_tick(std::uint64_t time_us) {
 }  // namespace
 
 struct Simulator::Impl {
-  explicit Impl(Sink sink) : events(std::move(sink)), runtime(kernel, board, events), held(kernel) {
+  explicit Impl(Sink sink)
+      : events(std::move(sink)), runtime(kernel, board, events, workspace), held(kernel) {
     runtime.measure_with(held);
   }
 
@@ -74,6 +75,7 @@ struct Simulator::Impl {
   kernel::Kernel kernel;
   HostBoard board;
   Forwarder events;
+  layers::Workspace workspace;
   Runtime runtime;
   HeldValues held;
   std::vector<std::uint32_t> image;  // aligned as the VM wants it

@@ -121,6 +121,56 @@ void woken_runs_next() {
   CHECK(longest_ticks < 400);
 }
 
+// --- interrupts above the kernel's level ---
+
+volatile bool measuring = false;
+volatile unsigned measured = 0;
+volatile std::uint32_t latest = 0;
+
+// Instead of waking a thread: how long ago the timer struck. Then the next one.
+void measure() {
+  const std::uint32_t late = kFull - timer().value;
+  if (late > latest) latest = late;
+  measured = measured + 1;
+  post_after(delay(measured) + 200);
+}
+
+// The worst of many interrupts of this priority, in ticks of 25 MHz.
+std::uint32_t worst_lateness(std::uint32_t priority) {
+  core::enable_interrupt(kTimer0Interrupt);
+  reinterpret_cast<volatile std::uint8_t*>(core::kNvicIpr)[kTimer0Interrupt] =
+      static_cast<std::uint8_t>(priority);
+  measured = 0;
+  latest = 0;
+  measuring = true;
+  post_after(1000);
+  rig::sleep_ms(100);
+  timer().control = 0;
+  measuring = false;
+  core::enable_interrupt(kTimer0Interrupt);  // at the kernel's level again
+  CHECK(measured > 3000);
+  return latest;
+}
+
+void sleeps(void*) {
+  while (true)
+    rig::sleep_ms(1);
+}
+
+// What the kernel holds off costs others up to the length of its critical sections, and these not
+// one tick more than when it does nothing.
+void urgent_interrupts() {
+  const std::uint32_t floor = worst_lateness(0);
+  above = &rig::start(0, 49, waits_for_own);
+  rig::start(1, 48, sleeps);
+  rig::start(2, 47, sleeps);
+  rig::start(3, 40, waker);
+  const std::uint32_t urgent = worst_lateness(0);
+  const std::uint32_t held_off = worst_lateness(core::kKernelPriority);
+  CHECK(urgent <= floor + 1);  // the two clocks beat
+  CHECK(held_off > floor + 8);
+}
+
 // The kernel's time against a second clock.
 void tick_is_true() {
   constexpr std::uint32_t kSpan = 0xFFFF'FFFF;
@@ -139,6 +189,7 @@ void tick_is_true() {
 constexpr rig::Scenario kScenarios[] = {
     {"100 ms of the kernel are 100 ms of another clock", tick_is_true},
     {"an interrupt wakes a thread", interrupt_wakes},
+    {"interrupts above the kernel's level are not held off by it", urgent_interrupts},
     {"interrupts while a thread changes its own events: none is lost", no_event_is_lost},
     {"interrupts during switches: the woken thread runs next", woken_runs_next},
 };
@@ -148,6 +199,7 @@ constexpr rig::Scenario kScenarios[] = {
 extern "C" void Timer0_Handler();
 void Timer0_Handler() {
   timer().interrupt = 1;
+  if (measuring) return measure();
   robosync_kernel.signal(*waiter, kPosted);
 }
 

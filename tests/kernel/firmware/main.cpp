@@ -4,6 +4,10 @@
 #include "tests/kernel/firmware/rig.hpp"
 #include "tests/kernel/firmware/semihosting.hpp"
 
+// 256 bytes, as one region of the MPU may be; assembler code refers to it.
+extern "C" {
+alignas(256) std::array<std::uint32_t, rig::kOpenWords> open_area_of_tests;
+}
 robosync::kernel::Kernel robosync_kernel;
 robosync::boards::mps2::Board robosync_board;
 
@@ -30,7 +34,7 @@ robosync::link::Fault fault_record;
 struct Worker {
   rig::Thread thread;
   std::array<std::byte, 192> room;  // for the stack overflows that are part of the test
-  alignas(8) std::array<std::byte, rig::kWorkerStack> stack;
+  alignas(robosync::port::kOpenStackAlignment) std::array<std::byte, rig::kWorkerStack> stack;
 };
 std::array<Worker, rig::kWorkers> workers;
 rig::Thread conductor_thread;
@@ -40,17 +44,28 @@ alignas(8) std::array<std::byte, 320> spinner_stack;
 rig::Thread safety_thread;
 alignas(8) std::array<std::byte, 512> safety_stack;
 
+volatile unsigned checks = 0;
+volatile std::uint64_t lateness = 0;
+
+void check_safety(void*) {
+  for (robosync::kernel::Time due = robosync_kernel.now();;) {
+    due += robosync::kernel::milliseconds(10);
+    robosync_kernel.sleep_until(due);
+    const std::uint64_t late = robosync_kernel.now() - due;
+    if (late > lateness) lateness = late;
+    checks = checks + 1;
+  }
+}
+
 void print_number(std::uint32_t number) {
-  std::array<char, 11> text{};
-  std::size_t at = text.size() - 1;
-  do {
-    text[--at] = static_cast<char>('0' + number % 10);
-    number /= 10;
-  } while (number != 0);
-  print(&text[at]);
+  static constexpr char kDigits[10][2] = {"0", "1", "2", "3", "4", "5", "6", "7", "8", "9"};
+  constexpr std::uint32_t kBillion = 1'000'000'000;
+  for (std::uint32_t power = kBillion; power != 0; power /= 10)
+    if (number >= power || power == 1) print(kDigits[number / power % 10]);
 }
 
 void begin() {
+  open_area_of_tests.fill(0);
   scenario_failed = false;
   fault_count = 0;
 }
@@ -68,6 +83,7 @@ void run_all(std::span<const rig::Scenario> scenarios) {
     scenario.run();
     for (Worker& worker : workers)
       robosync_kernel.remove(worker.thread);
+    robosync_kernel.remove(safety_thread);
     end(scenario.name);
   }
 }
@@ -88,6 +104,8 @@ void first_boot() {
   run_all(rig::register_scenarios());
   run_all(rig::interrupt_scenarios());
   run_all(rig::fault_scenarios());
+  run_all(rig::isolation_scenarios());
+  run_all(rig::call_scenarios());
   run_all(rig::device_scenarios());
   run_all(rig::division_scenarios());
   robosync_board.pwm_write(3, 1500);
@@ -170,6 +188,50 @@ Thread& start(unsigned index, std::int16_t priority, void (*entry)(void*), Categ
   spec.stack = worker.stack;
   CHECK(robosync_kernel.add(worker.thread, spec));
   return worker.thread;
+}
+
+Thread& start_open(unsigned index, std::int16_t priority, void (*entry)(void*), Category category,
+                   const char* name) {
+  Worker& worker = workers[index];
+  robosync::kernel::ThreadSpec spec;
+  spec.name = name;
+  spec.category = category;
+  spec.priority = priority;
+  spec.entry = entry;
+  spec.argument = worker.stack.data();
+  spec.stack = std::span(worker.stack).first(kOpenStack);
+  spec.privileged = false;
+  const std::span area(open_area_of_tests);
+  robosync_kernel.open({.readable = std::as_bytes(area), .writable = std::as_writable_bytes(area)});
+  CHECK(robosync_kernel.add(worker.thread, spec));
+  return worker.thread;
+}
+
+std::span<std::uint32_t> open_area() {
+  return open_area_of_tests;
+}
+
+std::span<std::byte> stack_of(unsigned index) {
+  return workers[index].stack;
+}
+
+void watch_safety() {
+  checks = 0;
+  lateness = 0;
+  robosync::kernel::ThreadSpec spec;
+  spec.name = "safety";
+  spec.category = Category::safety;
+  spec.entry = check_safety;
+  spec.stack = safety_stack;
+  CHECK(robosync_kernel.add(safety_thread, spec));
+}
+
+unsigned safety_checks() {
+  return checks;
+}
+
+std::uint64_t safety_lateness() {
+  return lateness;
 }
 
 Thread& conductor() {

@@ -29,16 +29,32 @@ std::span<const Scenario> interrupt_scenarios();
 std::span<const Scenario> fault_scenarios();
 std::span<const Scenario> device_scenarios();
 std::span<const Scenario> division_scenarios();
+std::span<const Scenario> isolation_scenarios();
+std::span<const Scenario> call_scenarios();
 
 // Starts worker `index` (0 … kWorkers - 1) and returns its thread.
 inline constexpr unsigned kWorkers = 4;
 inline constexpr std::size_t kWorkerStack = 768;
 Thread& start(unsigned index, std::int16_t priority, void (*entry)(void*),
               Category category = Category::behavior, const char* name = "worker");
+// The same without privileges: it may read and write `open_area()`, and its stack is smaller.
+inline constexpr std::size_t kOpenStack = 512;
+Thread& start_open(unsigned index, std::int16_t priority, void (*entry)(void*),
+                   Category category = Category::behavior, const char* name = "worker");
+std::span<std::uint32_t> open_area();  // kOpenWords
+inline constexpr std::size_t kOpenWords = 64;
+std::span<std::byte> stack_of(unsigned index);  // of a worker, whatever runs on it
+
 Thread& conductor();
 
 // Sleeps for some milliseconds.
 void sleep_ms(std::uint32_t ms);
+
+// A thread of category safety that looks at the time every 10 ms, as the safety monitor does. Its
+// checks so far, and the most that one came too late, in microseconds.
+void watch_safety();
+unsigned safety_checks();
+std::uint64_t safety_lateness();
 
 // Faults since the scenario began; the last one and its thread.
 unsigned faults();

@@ -1,0 +1,25 @@
+// System calls, as a thread without privileges makes them. The list: calls.def. What they do:
+// Kernel::answer(). How they get there: port::call().
+//
+// Nothing here touches the kernel's memory, which such a thread has no access to.
+#pragma once
+
+#include "runtime-m4/kernel/kernel.hpp"
+
+namespace robosync::kernel::calls {
+
+// As Kernel::wait(mask).  [a thread without privileges]
+inline Events wait(Kernel& kernel, Events mask) {
+  Events taken = 0;
+  do
+    taken = port::call(kernel, static_cast<std::uint32_t>(Call::wait), mask);
+  while (taken == 0);
+  return taken;
+}
+
+// Says that it has done what it was woken for.  [a thread without privileges]
+inline void report(Kernel& kernel) {
+  port::call(kernel, static_cast<std::uint32_t>(Call::report), 0);
+}
+
+}  // namespace robosync::kernel::calls

@@ -1,0 +1,65 @@
+// All that the behaviours' threads write, in one place: they run without privileges, and besides
+// their stacks this is the only memory open to them. Others read what stands here as they would
+// read what comes from outside: numbers, of which none is an index or an address until it is
+// checked.
+//
+// Its beginning may be closed again: there stands what the SAFETY rules remember (frames.hpp).
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "runtime-m4/limits.hpp"
+#include "vm/interpreter.hpp"
+
+namespace robosync::layers {
+
+// What is known of a rule's condition, and what follows from that (triggers.hpp).
+enum class Truth : std::uint8_t { unknown, no, yes };
+enum class Trigger : std::uint8_t { none, otherwise, then };
+struct Judgement {
+  Truth truth : 2 = Truth::unknown;
+  Trigger trigger : 2 = Trigger::none;
+  bool event : 1 = false;
+  bool zero_divide : 1 = false;
+};
+static_assert(sizeof(Judgement) == 1);
+
+// What came of a response that was run. All zero at first, so that it takes no flash.
+struct Result {
+  vm::Pause pause = vm::Pause::ended;  // vm::Progress
+  const vm::Word* next = nullptr;
+  std::uint32_t wake = 0;
+  std::uint32_t assigned = 0;  // vm::Machine
+  std::uint32_t shifted = 0;
+  std::uint16_t words = 0;  // of the output
+};
+
+struct alignas(kWorkspaceAlignment) Workspace {
+  // Cells of the frames and states of the timers; the last words make up for what closing the
+  // beginning wastes.
+  static constexpr std::size_t kMemoryWords =
+      kMaxFrameCells + kMaxTimerWords + kWorkspaceUnit / sizeof(std::uint32_t) - 1;
+
+  // What is open when the first `words` are closed, which are whole units.
+  std::span<std::byte> open_from(std::size_t words) {
+    return std::as_writable_bytes(std::span(this, 1)).subspan(words * sizeof(std::uint32_t));
+  }
+
+  std::array<std::uint32_t, kMemoryWords> memory{};
+  std::array<std::uint32_t, kMaxRules>
+      due{};  // when it is to be evaluated again; of EVERY, the end
+  std::array<Judgement, kMaxRules> judgements{};
+  // One response runs at a time, so one output is enough.
+  std::array<vm::Word, vm::kMaxResponseOutput> output{};
+  Result result;
+  // By behaviour: it has done what it was released for.
+  std::array<std::atomic<bool>, kMaxBehaviors> finished{};
+  std::uint32_t evaluations = 0;  // conditions that were ever evaluated; for tests, on the host
+};
+static_assert(sizeof(Workspace) % kWorkspaceUnit == 0);
+
+}  // namespace robosync::layers

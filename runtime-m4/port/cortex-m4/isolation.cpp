@@ -1,0 +1,50 @@
+// See isolation.hpp. The regions of the running thread are set by the switch (switch.S).
+#include "runtime-m4/port/cortex-m4/isolation.hpp"
+
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/port/cortex-m4/hooks.hpp"
+
+namespace robosync::port {
+
+namespace {
+
+constexpr unsigned kHalfGigabyteBits = 29;
+constexpr std::uint32_t kRam = 0x2000'0000;
+constexpr unsigned kGuardBits = 5;
+static_assert(1U << kGuardBits == kGuard);
+
+std::uint32_t word_of(const void* address) {
+  return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(address));
+}
+
+// Under a Lock: the switch sets regions, too.
+void set(RegionNumber number, regions::Region region, std::uint32_t access) {
+  core::reg(core::kMpuRbar) = base_of(number, region.base);
+  core::reg(core::kMpuRasr) = region.size_and_eighths == 0 ? 0 : access | region.size_and_eighths;
+}
+
+}  // namespace
+
+void start_isolation() {
+  set(RegionNumber::code, {0, regions::size_field(kHalfGigabyteBits)}, core::kMpuCode);
+  set(RegionNumber::ram, {kRam, regions::size_field(kHalfGigabyteBits)}, core::kMpuPrivileged);
+  set(RegionNumber::guard,
+      {word_of(robosync_kernel.idle().stack().data()) - kGuard, regions::size_field(kGuardBits)},
+      core::kMpuClosed);
+  core::reg(core::kMpuCtrl) = core::kMpuOn;
+  asm volatile("dsb\n\tisb" ::: "memory");
+}
+
+void Machine::open(const Areas& areas) {
+  const std::uint32_t begin = word_of(areas.readable.data());
+  set(RegionNumber::readable,
+      regions::cover(begin, begin + static_cast<std::uint32_t>(areas.readable.size())),
+      core::kMpuOthersRead);
+  const regions::Window window = regions::finest_window(
+      word_of(areas.writable.data()), static_cast<std::uint32_t>(areas.writable.size()));
+  set(RegionNumber::writable, window.lower, core::kMpuAllWrite);
+  set(RegionNumber::writable_upper, window.upper, core::kMpuAllWrite);
+  asm volatile("dsb\n\tisb" ::: "memory");
+}
+
+}  // namespace robosync::port

@@ -1,0 +1,76 @@
+// Which regions of the MPU cover a piece of memory. Pure arithmetic, tested on the host.
+//
+// A region is a power of two in size and aligned to it; from 256 bytes on, each of its eighths can
+// be left out. So two neighboring ones of a size, a window, cover any run of eighths that begins
+// in the first: that is how a stack gets its exact borders without being a power of two.
+#pragma once
+
+#include <cstdint>
+
+namespace robosync::port::regions {
+
+inline constexpr std::uint32_t kEighths = 8;
+inline constexpr std::uint32_t kEnabled = 1;
+
+// What goes into the base register, and into the attribute register but for the access.
+struct Region {
+  std::uint32_t base = 0;
+  std::uint32_t size_and_eighths = 0;  // 0: covers nothing
+};
+struct Window {
+  Region lower, upper;
+};
+
+// The SIZE field for 2^bits bytes.
+constexpr std::uint32_t size_field(unsigned bits) {
+  return (bits - 1) << 1 | kEnabled;
+}
+
+// One region of 2^bits bytes, of which it covers the eighths in `mask`.
+constexpr Region region(std::uint32_t base, unsigned bits, std::uint32_t mask) {
+  mask &= 0xFF;
+  if (mask == 0) return {base, 0};
+  return {base, size_field(bits) | (~mask & 0xFF) << 8};
+}
+
+// Whether a window of two regions of 2^bits bytes covers exactly that.
+constexpr bool fits_window(std::uint32_t begin, std::uint32_t bytes, unsigned bits) {
+  const std::uint32_t eighth = (1U << bits) / kEighths;
+  return begin % eighth == 0 && bytes % eighth == 0 &&
+         begin % (1U << bits) / eighth + bytes / eighth <= 2 * kEighths;
+}
+
+// It, when it fits.
+constexpr Window window(std::uint32_t begin, std::uint32_t bytes, unsigned bits) {
+  const std::uint32_t size = 1U << bits;
+  const std::uint32_t base = begin & ~(size - 1);
+  const std::uint32_t eighth = size / kEighths;
+  const std::uint32_t mask = ((1U << bytes / eighth) - 1) << (begin - base) / eighth;
+  return {region(base, bits, mask), region(base + size, bits, mask >> kEighths)};
+}
+
+inline constexpr unsigned kSmallest = 8;  // 256 bytes, which is the smallest with eighths
+inline constexpr unsigned kLargest = 31;
+
+// The finest window that covers exactly that; one that covers nothing when there is none.
+constexpr Window finest_window(std::uint32_t begin, std::uint32_t bytes) {
+  for (unsigned bits = kSmallest; bits < kLargest; ++bits)
+    if (fits_window(begin, bytes, bits)) return window(begin, bytes, bits);
+  return {};
+}
+
+// The one region that covers begin … end - 1 with the least around it. It may need more than there
+// is at both sides: up to an eighth.
+constexpr Region cover(std::uint32_t begin, std::uint32_t end) {
+  for (unsigned bits = kSmallest; bits < kLargest; ++bits) {
+    if (begin >> bits != (end - 1) >> bits) continue;
+    const std::uint32_t base = begin >> bits << bits;
+    const std::uint32_t eighth = (1U << bits) / kEighths;
+    const std::uint32_t first = (begin - base) / eighth;
+    const std::uint32_t last = (end - 1 - base) / eighth;
+    return region(base, bits, (2U << last) - (1U << first));
+  }
+  return {};
+}
+
+}  // namespace robosync::port::regions

@@ -1,0 +1,82 @@
+"""QEMU's debugger port: stops the board at an instruction, and changes what a register holds.
+
+So a fault can be made to happen in the firmware as it is shipped, which has no hook for that.
+"""
+
+import socket
+import time
+from pathlib import Path
+
+PATIENCE = 20
+CONNECTED = "T02"
+
+
+class Debugger:
+    """Connecting stops the board; the end of the `with` block lets it run on."""
+
+    def __init__(self, path):
+        deadline = time.monotonic() + PATIENCE
+        while not Path(path).exists() and time.monotonic() < deadline:
+            time.sleep(0.02)
+        self._socket = socket.socket(socket.AF_UNIX)
+        self._socket.settimeout(PATIENCE)
+        self._socket.connect(str(path))
+        self._received = b""
+        self._ask("qXfer:features:read:target.xml:0,100")  # else QEMU sets no single register
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._ask("D")
+        self._socket.close()
+
+    def run_to(self, address, meanwhile):
+        """Lets the board run until it comes to `address`; meanwhile() sees to it that it does."""
+        self._expect_ok(f"Z0,{address:x},2")
+        self._send("c")
+        meanwhile()
+        stopped = self._receive()
+        if not stopped.startswith(("T05", "S05")):
+            raise AssertionError(f"the board stopped for another reason: {stopped}")
+        self._expect_ok(f"z0,{address:x},2")
+
+    def set_register(self, number, value):
+        self._expect_ok(f"P{number:x}={value.to_bytes(4, 'little').hex()}")
+
+    def read_words(self, address, count):
+        raw = bytes.fromhex(self._ask(f"m{address:x},{4 * count:x}"))
+        return [int.from_bytes(raw[i:i + 4], "little") for i in range(0, len(raw), 4)]
+
+    def _expect_ok(self, request):
+        answer = self._ask(request)
+        if answer != "OK":
+            raise AssertionError(f"QEMU answers {request} with {answer!r}")
+
+    def _ask(self, request):
+        self._send(request)
+        return self._receive()
+
+    def _send(self, text):
+        body = text.encode()
+        self._socket.sendall(b"$" + body + b"#" + f"{sum(body) % 256:02x}".encode())
+
+    def _receive(self):
+        """The next packet, acknowledged. That connecting has stopped the board is no news."""
+        while (packet := self._next()).startswith(CONNECTED):
+            pass
+        return packet
+
+    def _next(self):
+        while True:
+            start = self._received.find(b"$")
+            end = self._received.find(b"#", start)
+            if start >= 0 and 0 <= end <= len(self._received) - 3:
+                packet = self._received[start + 1:end].decode()
+                self._received = self._received[end + 3:]
+                self._socket.sendall(b"+")
+                return packet
+            data = self._socket.recv(4096)
+            if not data:
+                raise AssertionError("QEMU closed the debugger port")
+            self._received += data

@@ -1,0 +1,110 @@
+"""A behaviour's thread that goes wild in the shipped firmware: it is stopped and reported, its actuator
+comes to rest, the others go on, and safety is never late."""
+
+import json
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import rsc
+from board import FAST, FIRMWARE, Board
+from debugger import Debugger
+from support import LineReader
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
+from counting import symbols  # noqa: E402
+
+PATIENCE = 20
+UART = 0x40004000
+NO_ACCESS = 0x82  # CFSR: a data access that the MPU refused, with its address
+AT_REST, AT_60_DEGREES = 500, 1500  # us
+PWM_PULSES = "robosync_virtual_pwm"
+INTERPRETER = "robosync::vm::run("  # (machine, code, progress)
+WILD, TAME = 0, 1  # inputs of the sensor
+CONFIG = """{
+  "sensors": [
+    {"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
+     "channels": {"WILD": {"input": 0, "range": [0, 10], "rate": "50Hz"},
+                  "TAME": {"input": 1, "range": [0, 10], "rate": "50Hz"}}}],
+  "actuators": [
+    {"name": "left_arm", "type": "PWM", "pin": 0, "device": "servo", "range": ["0deg", "120deg"],
+     "on_release": "rest"},
+    {"name": "right_arm", "type": "PWM", "pin": 1, "device": "servo", "range": ["0deg", "120deg"]}]
+}"""
+PROGRAM = """
+BEHAVIOR wild PRIORITY 20
+  WHEN touch WILD > 2
+  DO MOVE left_arm TO 100deg AT 20deg/s
+  END
+END
+BEHAVIOR tame PRIORITY 10
+  WHEN touch TAME > 2
+  DO MOVE right_arm TO 60deg
+  END
+END
+"""
+
+
+class Isolation(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="robosync-isolation-")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.gdb = self.folder / "gdb"
+        self.board = Board(icount=FAST, extra=["-gdb", f"unix:{self.gdb},server=on,wait=off"])
+        self.addCleanup(self.board.stop)
+        self.symbols = symbols(FIRMWARE)
+
+    def expect(self, reader, **wanted):
+        def came(lines):
+            found = [json.loads(line) for line in lines]
+            return any(all(e.get(key) == value for key, value in wanted.items()) for e in found)
+
+        self.assertTrue(reader.wait_for(came, PATIENCE), f"no {wanted} in {reader.lines}")
+
+    def pulses(self):
+        """What the servos are told."""
+        with Debugger(self.gdb) as debugger:
+            return debugger.read_words(self.symbols[PWM_PULSES], 2)
+
+    def make_wild(self):
+        """The next time the interpreter runs for the behaviour, it takes a serial line for its machine."""
+        interpreter = next(at for name, at in self.symbols.items() if name.startswith(INTERPRETER))
+        with Debugger(self.gdb) as debugger:
+            debugger.run_to(interpreter, lambda: self.board.set_touch(9, WILD))
+            debugger.set_register(0, UART)
+
+    def test_a_wild_behaviour_is_stopped(self):
+        program, config = self.folder / "program.rsl", self.folder / "robot.json"
+        program.write_text(PROGRAM)
+        config.write_text(CONFIG)
+        rsc.run("upload", program, "--config", config, "--port", self.board.port)
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
+        try:
+            for value in [1, 2] * 50:  # until it listens
+                self.board.set_touch(value, TAME)
+                if reader.wait_for(lambda lines: lines, 0.2):
+                    break
+            self.board.set_touch(5, WILD)
+            self.expect(reader, event="command", actuator="left_arm")
+            self.make_wild()
+            self.expect(reader, event="fault", thread="wild", cause=NO_ACCESS, address=UART)
+            self.expect(reader, event="interrupt", behavior="wild")
+            self.expect(reader, event="cancel", actuator="left_arm")
+            self.board.set_touch(6, TAME)
+            self.expect(reader, event="command", actuator="right_arm")
+            self.expect(reader, event="done", actuator="right_arm")
+        finally:
+            reader.stop()
+        self.assertEqual(self.pulses(), [AT_REST, AT_60_DEGREES])
+        info = rsc.info(self.board.port)
+        states = {thread["name"]: thread["state"] for thread in info["threads"]}
+        self.assertEqual((states["wild"], states["tame"]), ("stopped", "blocked"))
+        status = info["status"]
+        self.assertEqual((status["faults"], status["safety_late_us"]), (1, 0))
+        self.assertGreaterEqual(status["safety_checks"], status["uptime_us"] // 10_000)
+
+
+if __name__ == "__main__":
+    unittest.main()

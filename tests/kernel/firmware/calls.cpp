@@ -1,0 +1,148 @@
+// System calls of threads without privileges: what they do, and that nothing else comes of them,
+// whatever their numbers and arguments are.
+#include "runtime-m4/kernel/calls.hpp"
+#include "tests/kernel/firmware/rig.hpp"
+
+namespace {
+
+namespace calls = robosync::kernel::calls;
+using rig::Events;
+
+constexpr unsigned kCaller = 1;
+constexpr Events kPing = 1;
+constexpr Events kPong = 2;
+constexpr Events kOther = 4;
+constexpr std::uint32_t kNoSuchCall = 1U << 21;  // port/cortex-m4/fault.hpp
+
+enum Word : std::uint8_t { kTaken, kRounds, kSeed };
+
+// The open area, by an address that is no variable.
+volatile std::uint32_t& open(Word word) {
+  std::uint32_t area = 0;
+  asm("movw %0, #:lower16:open_area_of_tests\n\tmovt %0, #:upper16:open_area_of_tests" : "=r"(area));
+  return reinterpret_cast<volatile std::uint32_t*>(area)[word];
+}
+
+// Answers each event with a report.
+void answer(void*) {
+  while (true) {
+    open(kTaken) = calls::wait(robosync_kernel, kPing | kOther);
+    open(kRounds) = open(kRounds) + 1;
+    calls::report(robosync_kernel);
+  }
+}
+
+void wait_and_report() {
+  robosync_kernel.watch(rig::conductor(), 0, kPong);
+  rig::Thread& caller = rig::start_open(kCaller, 40, answer);
+  for (unsigned round = 1; round <= 100; ++round) {
+    robosync_kernel.signal(caller, round % 2 != 0 ? kPing : kOther);
+    CHECK(robosync_kernel.wait(kPong, robosync_kernel.now() + 10'000) == kPong);
+    CHECK(rig::open_area()[kRounds] == round);
+    CHECK(rig::open_area()[kTaken] == (round % 2 != 0 ? kPing : kOther));
+  }
+  CHECK(rig::faults() == 0);
+}
+
+// Events that come before the wait, and such that nobody waits for.
+void events_are_kept() {
+  robosync_kernel.watch(rig::conductor(), 0, kPong);
+  rig::Thread& caller = rig::start_open(kCaller, 40, answer);
+  robosync_kernel.signal(caller, kPing | kOther | 8);
+  CHECK(robosync_kernel.wait(kPong, robosync_kernel.now() + 10'000) == kPong);
+  CHECK(rig::open_area()[kTaken] == (kPing | kOther));
+  rig::sleep_ms(2);
+  CHECK(rig::open_area()[kRounds] == 1);
+  CHECK(robosync_kernel.state(caller) == rig::Thread::State::blocked);
+}
+
+std::uint32_t draw(std::uint32_t& state) {
+  state ^= state << 13;
+  state ^= state >> 17;
+  state ^= state << 5;
+  return state;
+}
+
+// Calls with whatever comes: every register is drawn, and half of the numbers are calls that exist.
+void call_anything(void*) {
+  std::uint32_t state = open(kSeed);
+  while (true) {
+    const std::uint32_t drawn = draw(state);
+    const std::uint32_t number = (drawn & 2) != 0 ? drawn >> 2 & 1 : drawn;
+    const std::array<std::uint32_t, 3> others = {draw(state), draw(state), draw(state)};
+    open(kSeed) = state;
+    open(kRounds) = open(kRounds) + 1;
+    register std::uint32_t r0 asm("r0") = number;
+    register std::uint32_t r1 asm("r1") = others[0];
+    register std::uint32_t r2 asm("r2") = others[1];
+    register std::uint32_t r3 asm("r3") = others[2];
+    asm volatile("svc 0" : "+r"(r0), "+r"(r1), "+r"(r2), "+r"(r3)::"memory");
+  }
+}
+
+// A thread that is stopped for its call is started again with the next seed. One that waits is
+// signalled what it may wait for.
+void hostile_calls() {
+  constexpr unsigned kThreads = 2000;
+  std::uint32_t seed = 12345;
+  unsigned made = 0;
+  unsigned waits = 0;
+  robosync_kernel.watch(rig::conductor(), 0, kPong);
+  rig::watch_safety();
+  const robosync::kernel::Time begin = robosync_kernel.now();
+  for (unsigned i = 0; i < kThreads; ++i) {
+    rig::open_area()[kRounds] = 0;
+    rig::open_area()[kSeed] = draw(seed);
+    rig::Thread& caller = rig::start_open(kCaller, 60, call_anything);
+    for (unsigned tries = 0; tries < 100; ++tries) {
+      if (robosync_kernel.state(caller) != rig::Thread::State::blocked) break;
+      ++waits;
+      robosync_kernel.signal(caller, 0xFFFF'FFFF);
+    }
+    made += rig::open_area()[kRounds];
+    if (robosync_kernel.state(caller) == rig::Thread::State::stopped) {
+      CHECK(rig::last_fault().cause == kNoSuchCall);
+      CHECK(rig::last_fault().address == rig::last_fault().r[0]);
+      CHECK(rig::last_fault().address > 1);
+    }
+    robosync_kernel.remove(caller);
+  }
+  CHECK(rig::faults() == kThreads);
+  CHECK(made > kThreads);
+  CHECK(waits > kThreads / 8);
+  CHECK(rig::safety_lateness() == 0);
+  CHECK(rig::safety_checks() == (robosync_kernel.now() - begin) / 10'000);
+  robosync_kernel.wait(kPong, 0);
+}
+
+[[gnu::naked]] void calls_with_lost_stack(void*) {
+  asm volatile(
+      "ldr  r0, =0x60000000 \n"
+      "mov  sp, r0          \n"
+      "movs r0, #0          \n"
+      "svc  0               \n"
+      "1: b 1b              \n"
+      ".ltorg               \n");
+}
+
+// The call cannot be stacked: one fault, and the call comes after it for a thread that is stopped.
+void call_without_stack() {
+  rig::Thread& caller = rig::start_open(kCaller, 60, calls_with_lost_stack);
+  rig::sleep_ms(2);
+  CHECK(rig::faults() == 1);
+  CHECK((rig::last_fault().cause & 1U << 4) != 0);
+  CHECK(robosync_kernel.state(caller) == rig::Thread::State::stopped);
+}
+
+constexpr rig::Scenario kScenarios[] = {
+    {"system calls: wait and report", wait_and_report},
+    {"system calls: events are kept until they are waited for", events_are_kept},
+    {"system calls: thousands with drawn numbers and arguments", hostile_calls},
+    {"system calls: without a stack to make them from", call_without_stack},
+};
+
+}  // namespace
+
+std::span<const rig::Scenario> rig::call_scenarios() {
+  return kScenarios;
+}

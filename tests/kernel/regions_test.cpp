@@ -1,0 +1,78 @@
+// Regions of the MPU (port/cortex-m4/regions.hpp) against what the ARMv7-M manual says they cover,
+// byte by byte.
+#include <catch2/catch.hpp>
+
+#include "runtime-m4/port/cortex-m4/regions.hpp"
+
+using namespace robosync::port::regions;
+
+namespace {
+
+// As the core reads the two registers.
+bool covers(const Region& region, std::uint32_t address) {
+  if ((region.size_and_eighths & 1) == 0) return false;
+  const std::uint32_t size = 2U << (region.size_and_eighths >> 1 & 0x1F);
+  REQUIRE(region.base % size == 0);
+  if (address - region.base >= size) return false;
+  const std::uint32_t eighth = (address - region.base) / (size / 8);
+  return (region.size_and_eighths >> (8 + eighth) & 1) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("a window covers exactly what it is for") {
+  constexpr unsigned kBits = 9;
+  constexpr std::uint32_t kEighth = 64;
+  unsigned fitting = 0;
+  for (std::uint32_t begin = 0x2000'0000; begin < 0x2000'0000 + 1024; begin += 32)
+    for (std::uint32_t bytes = 32; bytes <= 640; bytes += 32) {
+      const bool aligned = begin % kEighth == 0 && bytes % kEighth == 0;
+      const bool inside = begin % 512 + bytes <= 1024;
+      CHECK(fits_window(begin, bytes, kBits) == (aligned && inside));
+      if (!fits_window(begin, bytes, kBits)) continue;
+      ++fitting;
+      const Window made = window(begin, bytes, kBits);
+      unsigned wrong = 0;
+      for (std::uint32_t address = begin - 2048; address < begin + 2048; address += 4) {
+        const bool covered = covers(made.lower, address) || covers(made.upper, address);
+        if (covered != (address - begin < bytes)) ++wrong;
+      }
+      CHECK(wrong == 0);
+    }
+  CHECK(fitting > 100);
+}
+
+TEST_CASE("the finest window is exact, whatever its size; there may be none") {
+  for (const std::uint32_t unit : {32U, 128U, 4096U})
+    for (std::uint32_t units = 1; units <= 12; ++units)
+      for (std::uint32_t first = 0; first < 8; first += 4) {
+        const std::uint32_t begin = 0x2000'0000 + first * unit;
+        const Window made = finest_window(begin, units * unit);
+        unsigned wrong = 0;
+        for (std::uint32_t at = begin - 16 * unit; at < begin + 32 * unit; at += 4)
+          if ((covers(made.lower, at) || covers(made.upper, at)) != (at - begin < units * unit))
+            ++wrong;
+        CHECK(wrong == 0);
+      }
+  const Window none = finest_window(0x2000'0004, 100);
+  CHECK(none.lower.size_and_eighths == 0);
+  CHECK(none.upper.size_and_eighths == 0);
+}
+
+TEST_CASE("one region covers a piece of memory, with less than an eighth of itself around") {
+  std::uint32_t state = 1;
+  for (unsigned round = 0; round < 500; ++round) {
+    state = state * 1664525 + 1013904223;
+    const std::uint32_t begin = 0x2000'0000 + state % 0x8000;
+    state = state * 1664525 + 1013904223;
+    const std::uint32_t end = begin + 1 + state % 0x4000;
+    const Region made = cover(begin, end);
+    REQUIRE(made.size_and_eighths != 0);
+    const std::uint32_t eighth = (2U << (made.size_and_eighths >> 1 & 0x1F)) / 8;
+    CHECK(covers(made, begin));
+    CHECK(covers(made, end - 1));
+    CHECK(covers(made, begin + (end - begin) / 2));
+    CHECK(!covers(made, begin - eighth));
+    CHECK(!covers(made, end - 1 + eighth));
+  }
+}
