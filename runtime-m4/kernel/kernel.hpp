@@ -22,7 +22,7 @@
 namespace robosync::kernel {
 
 enum class Call : std::uint32_t {
-#define CALL(name, number, doc) name = number,
+#define CALL(name, number, doc) name = (number),
 #include "runtime-m4/kernel/calls.def"
 #undef CALL
 };

@@ -1,6 +1,7 @@
 // System calls of threads without privileges: what they do, and that nothing else comes of them,
 // whatever their numbers and arguments are.
 #include "runtime-m4/kernel/calls.hpp"
+
 #include "tests/kernel/firmware/rig.hpp"
 
 namespace {
@@ -19,7 +20,8 @@ enum Word : std::uint8_t { kTaken, kRounds, kSeed };
 // The open area, by an address that is no variable.
 volatile std::uint32_t& open(Word word) {
   std::uint32_t area = 0;
-  asm("movw %0, #:lower16:open_area_of_tests\n\tmovt %0, #:upper16:open_area_of_tests" : "=r"(area));
+  asm("movw %0, #:lower16:open_area_of_tests\n\tmovt %0, #:upper16:open_area_of_tests"
+      : "=r"(area));
   return reinterpret_cast<volatile std::uint32_t*>(area)[word];
 }
 
@@ -42,6 +44,23 @@ void wait_and_report() {
     CHECK(rig::open_area()[kTaken] == (round % 2 != 0 ? kPing : kOther));
   }
   CHECK(rig::faults() == 0);
+}
+
+// Takes one of two events that are there, then the other one.
+void take_one_by_one(void*) {
+  open(kTaken) = calls::wait(robosync_kernel, kPing);
+  open(kRounds) = calls::wait(robosync_kernel, kOther);
+  calls::report(robosync_kernel);
+  calls::wait(robosync_kernel, kPing | kOther);
+}
+
+void others_stay() {
+  robosync_kernel.watch(rig::conductor(), 0, kPong);
+  rig::Thread& caller = rig::start_open(kCaller, 40, take_one_by_one);
+  robosync_kernel.signal(caller, kPing | kOther);
+  CHECK(robosync_kernel.wait(kPong, robosync_kernel.now() + 10'000) == kPong);
+  CHECK(rig::open_area()[kTaken] == kPing);
+  CHECK(rig::open_area()[kRounds] == kOther);
 }
 
 // Events that come before the wait, and such that nobody waits for.
@@ -137,6 +156,7 @@ void call_without_stack() {
 constexpr rig::Scenario kScenarios[] = {
     {"system calls: wait and report", wait_and_report},
     {"system calls: events are kept until they are waited for", events_are_kept},
+    {"system calls: events that are not waited for stay", others_stay},
     {"system calls: thousands with drawn numbers and arguments", hostile_calls},
     {"system calls: without a stack to make them from", call_without_stack},
 };
