@@ -13,7 +13,7 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
     : kernel_(kernel),
       board_(board),
       trace_(kernel, events),
-      drivers_(board),
+      drivers_(kernel, board),
       crew_(kernel),
       mailboxes_(kernel),
       alarm_(kernel, monitor_.thread(), safety::Monitor::kNews),

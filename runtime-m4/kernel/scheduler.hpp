@@ -18,6 +18,7 @@ inline constexpr std::uint8_t kIdleRank = kMaxThreads;  // what an empty ready s
 // priority, a later category of the four ranks higher: a decision reaches the actuator before new
 // data is gathered. `safety` ranks above everything, `system` (the link) below everything.
 enum class Category : std::uint8_t { system, sensor, processing, behavior, control, safety };
+inline constexpr unsigned kCategories = 6;
 
 // A thread's place in the order as one number: the higher outranks. Equals rank by age.
 constexpr std::int32_t standing(Category category, std::int16_t priority) {
@@ -55,7 +56,8 @@ public:
   // Highest rank in the set; the number of ranks when it is empty.
   constexpr unsigned first() const {
     for (unsigned w = 0; w + 1 < kWords; ++w)
-      if (words_[w] != 0) return highest(w);
+      if (words_[w] != 0) [[likely]]
+        return highest(w);
     return highest(kWords - 1);
   }
 

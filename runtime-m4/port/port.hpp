@@ -11,6 +11,7 @@
 //   class Lock(Machine&)    Critical section, RAII, nests. Keeps out the kernel's own interrupts
 //                           (never those above its level) and holds a requested switch back until
 //                           the outermost one ends.
+//   class OnlyLock(Machine&)  The same, for a thread that holds no Lock; may be cheaper.
 //   class Machine(Kernel&)  The processor a kernel runs on:
 //     usable(stack)                 What a thread can use of a stack: without alignment and guard.
 //     prepare(context, spec, stack) Makes a thread start with entry(argument) on a usable stack;

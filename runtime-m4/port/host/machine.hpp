@@ -98,4 +98,6 @@ private:
   Machine& machine_;
 };
 
+using OnlyLock = Lock;
+
 }  // namespace robosync::port

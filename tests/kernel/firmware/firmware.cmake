@@ -2,4 +2,4 @@
 set(folder ${PROJECT_SOURCE_DIR}/tests/kernel/firmware)
 robosync_elf(robosync_kernel_test kernel-test
   ${folder}/main.cpp ${folder}/scheduling.cpp ${folder}/registers.cpp ${folder}/interrupts.cpp
-  ${folder}/faults.cpp ${folder}/devices.cpp ${folder}/division.cpp)
+  ${folder}/mutex.cpp ${folder}/../mutex_cases.cpp ${folder}/faults.cpp ${folder}/devices.cpp ${folder}/division.cpp)
