@@ -1,5 +1,6 @@
 """Runs an ELF in QEMU under the counting plugin, and gives what was counted between markers."""
 
+import copy
 import struct
 import subprocess
 import tempfile
@@ -51,6 +52,16 @@ class Marks:
                 start = None
         if not found:
             raise BenchError(f"never ran from {begin} to {end}")
+        return found
+
+    def parts(self, begin, end):
+        """The marks from each `begin` to the next `end`, as marks of their own."""
+        names = [name for name, _ in self.all]
+        found = []
+        for start in (i for i, name in enumerate(names) if name == begin):
+            part = copy.copy(self)
+            part.all = self.all[start:names.index(end, start)]
+            found.append(part)
         return found
 
     def heard(self, what):

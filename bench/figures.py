@@ -99,7 +99,52 @@ def switches(marks, begin, end):
     return found
 
 
+def kernel_figures_of(marks):
+    """What the kernel's steps cost at most, in instructions."""
+    return {
+        "switch": max(switches(marks, "PendSV_Handler", "return")),
+        "switch_isolated": max(switches(marks, "PendSV_Open_Handler", "return_open")),
+        "post_to_run_isolated": max(marks.spans("mark_post_open", "mark_open_runs")),
+        "block_isolated": max(marks.spans("mark_open_blocks", "mark_low_runs_again")),
+        "irq_to_thread_isolated": max(marks.spans("mark_pend_open", "mark_open_runs")),
+        "post_to_run": max(marks.spans("mark_post", "mark_high_runs")),
+        "block": max(marks.spans("mark_high_blocks", "mark_low_runs")),
+        "irq_to_thread": max(marks.spans("mark_pend", "mark_high_runs")),
+        "timed_post_to_run": max(marks.spans("mark_post_timed", "mark_timed_runs")),
+        "timed_block": max(marks.spans("mark_timed_blocks", "mark_low_runs_after_timed")),
+        "mutex": max(marks.spans("mark_mutex_begin", "mark_mutex_end")),
+        "tick": tick_cost(marks),
+        "tick_to_sleeper": max(marks.spans("SysTick_Handler", "mark_sleeper_runs")),
+    }
+
+
+def lock_out(elf, marks):
+    """The most instructions in a row with BASEPRI raised: how long an interrupt may be held off."""
+    raising = set(basepri_instructions(elf, "BASEPRI_MAX"))
+    longest, depth, since = 0, 0, 0
+    for name, count in marks.all:
+        if not name.startswith("basepri"):
+            continue
+        up = name in raising or depth == 0  # OnlyLock writes BASEPRI itself, and is never inside
+        if up and depth == 0:
+            since = count
+        depth += 1 if up else -1
+        if depth == 0:
+            longest = max(longest, count - since)
+    return longest
+
+
+def basepri_instructions(elf, register="BASEPRI"):
+    """{name: address} of the instructions that write BASEPRI, or only those that raise it."""
+    listing = subprocess.run(["arm-none-eabi-objdump", "-d", str(elf)], check=True, text=True,
+                             stdout=subprocess.PIPE).stdout
+    found = re.findall(rf"^\s*([0-9a-f]+):.*\tmsr\t{register}", listing, re.M)
+    return {f"basepri {address}": int(address, 16) for address in found}
+
+
 def kernel_figures():
+    """Each figure as it is among 64 threads, and by how much the one grows most that does since
+    there were 4."""
     elf = BUILT / "bench_kernel"
     places = {name: symbols(elf)[name]
               for name in ("SysTick_Handler", "PendSV_Handler", "PendSV_Open_Handler")}
@@ -107,20 +152,15 @@ def kernel_figures():
     if len(returns) != 2:
         raise BenchError(f"PendSV_Handler returns at {len(returns)} places")
     places["return"], places["return_open"] = returns
-    marks = run(elf, extra=places)
+    marks = run(elf, extra={**places, **basepri_instructions(elf)})
+    parts = marks.parts("mark_measure", "mark_measured")
+    [all_due] = marks.parts("mark_wake_all", "mark_all_woken")
+    few, *_, many = map(kernel_figures_of, parts)
     return {
-        "kernel/switch": (max(switches(marks, "PendSV_Handler", "return")), "insn"),
-        "kernel/switch_isolated":
-            (max(switches(marks, "PendSV_Open_Handler", "return_open")), "insn"),
-        "kernel/post_to_run_isolated":
-            (max(marks.spans("mark_post_open", "mark_open_runs")), "insn"),
-        "kernel/block_isolated": (max(marks.spans("mark_open_blocks", "mark_low_runs_again")), "insn"),
-        "kernel/irq_to_thread_isolated":
-            (max(marks.spans("mark_pend_open", "mark_open_runs")), "insn"),
-        "kernel/post_to_run": (max(marks.spans("mark_post", "mark_high_runs")), "insn"),
-        "kernel/block": (max(marks.spans("mark_high_blocks", "mark_low_runs")), "insn"),
-        "kernel/irq_to_thread": (max(marks.spans("mark_pend", "mark_high_runs")), "insn"),
-        "kernel/tick": (tick_cost(marks), "insn"),
+        **{f"kernel/{name}": (value, "insn") for name, value in many.items()},
+        "kernel/growth_to_64_threads": (max(many[name] - few[name] for name in many), "insn"),
+        "kernel/lock_out": (max(lock_out(elf, part) for part in parts), "insn"),
+        "kernel/lock_out_all_due": (lock_out(elf, all_due), "insn"),
         "kernel/tcb": (symbols(elf)["size_tcb"], "B"),
     }
 

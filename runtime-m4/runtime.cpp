@@ -29,7 +29,7 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
       control_(kernel, board, trace_, step_thread_,
                {.idle = layers::kIdle, .cancelled = layers::kCancelled, .halted = layers::kHalted}),
       variables_(kernel),
-      drivers_(board),
+      drivers_(kernel, board),
       alarm_(kernel, monitor_.thread(), safety::Monitor::kNews),
       trace_(kernel, events),
       frames_(workspace),

@@ -1,8 +1,9 @@
 // Runs the shipped kernel between markers: a thread of low rank wakes one of high rank, by itself
-// and from an interrupt, and spins while the tick comes; then the woken one is without privileges
-// ("open"), and two such take turns. First with few threads, then with 64.
+// and from an interrupt, with and without a deadline, takes a mutex, spins while the tick comes and
+// sleeps; then the woken one is without privileges ("open"), and two such take turns. Among 6, 16
+// and 64 threads, all others of which sleep.
 //
-// bench/bench.py reads the counts.
+// bench/figures.py reads the counts.
 #include <array>
 #include <cstdint>
 
@@ -45,10 +46,14 @@ struct Task {
 };
 std::array<Task, kernel::kMaxThreads> tasks;
 unsigned used = 0;
+unsigned first_sleeper = 0;
 Task* high = nullptr;
 Task* open = nullptr;
 Task* turning = nullptr;
 kernel::Thread* woken = nullptr;  // by the interrupt
+Task* timed = nullptr;
+kernel::Mutex mutex{Category::system};
+kernel::Time common_deadline = 0;
 
 Task* add(const char* name, Category category, std::int16_t priority, void (*entry)(void*),
           bool privileged = true) {
@@ -57,7 +62,7 @@ Task* add(const char* name, Category category, std::int16_t priority, void (*ent
                                          .category = category,
                                          .priority = priority,
                                          .entry = entry,
-                                         .argument = nullptr,
+                                         .argument = &task,
                                          .stack = task.stack,
                                          .privileged = privileged})) {
     leave(false);
@@ -94,9 +99,25 @@ void run_lower(void*) {
   }
 }
 
-void sleep_forever(void*) {
-  while (true)
-    (void)robosync_kernel.wait(kGo, robosync_kernel.now() + kernel::milliseconds(60'000));
+// As run_high, but each time it arms a deadline, and takes it back.
+void run_timed(void*) {
+  while (true) {
+    const kernel::Time deadline = robosync_kernel.now() + kernel::milliseconds(1000);
+    BENCH_MARK(timed_blocks);
+    (void)robosync_kernel.wait(kGo, deadline);
+    BENCH_MARK(timed_runs);
+  }
+}
+
+// Each for another time, so that the buckets of all wheels are in use; when called, until one they
+// have in common.
+void sleep_forever(void* self) {
+  const auto number = static_cast<std::uint32_t>(static_cast<Task*>(self) - tasks.data());
+  while (true) {
+    (void)robosync_kernel.wait(kGo,
+                               robosync_kernel.now() + kernel::milliseconds(2000 + 977 * number));
+    robosync_kernel.sleep_until(common_deadline);
+  }
 }
 
 void post() {
@@ -125,6 +146,25 @@ void pend_open() {
   BENCH_MARK(low_runs_after_open);
 }
 
+void post_timed() {
+  BENCH_MARK(post_timed);
+  robosync_kernel.signal(timed->thread, kGo);
+  BENCH_MARK(low_runs_after_timed);
+}
+
+void take_mutex() {
+  BENCH_MARK(mutex_begin);
+  robosync_kernel.acquire(mutex);
+  robosync_kernel.release(mutex);
+  BENCH_MARK(mutex_end);
+}
+
+void sleep_a_tick() {
+  const kernel::Time deadline = robosync_kernel.now() + kernel::kTick;
+  robosync_kernel.sleep_until(deadline);
+  BENCH_MARK(sleeper_runs);
+}
+
 // 1 + 2 × 1,000,000 instructions between the markers, plus what the ticks that come meanwhile take.
 void spin() {
   unsigned rounds = 1'000'000;
@@ -137,41 +177,51 @@ void spin() {
       : "cc");
 }
 
-void measure() {
+[[gnu::noinline]] void measure() {
+  BENCH_MARK(measure);
   for (unsigned i = 0; i < kRounds; ++i)
     post();
   woken = &high->thread;
   for (unsigned i = 0; i < kRounds; ++i)
     pend();
-  spin();
-}
-
-void measure_open() {
   for (unsigned i = 0; i < kRounds; ++i)
     post_open();
   woken = &open->thread;
   for (unsigned i = 0; i < kRounds; ++i)
     pend_open();
   robosync_kernel.signal(turning->thread, kGo);
+  for (unsigned i = 0; i < kRounds; ++i)
+    post_timed();
+  for (unsigned i = 0; i < kRounds; ++i)
+    take_mutex();
+  spin();
+  for (unsigned i = 0; i < kRounds; ++i)
+    sleep_a_tick();
+  BENCH_MARK(measured);
 }
 
-void add_open() {
-  open = add("open", Category::behavior, 40, run_open, false);
-  Task* const upper = add("upper", Category::behavior, 31, run_upper, false);
-  turning = add("lower", Category::behavior, 30, run_lower, false);
-  robosync_kernel.watch(upper->thread, 0, kGo);
+// All sleepers are due at one tick.
+void wake_all() {
+  common_deadline = robosync_kernel.now() + kernel::milliseconds(20);
+  for (unsigned i = first_sleeper; i < used; ++i)
+    robosync_kernel.signal(tasks[i].thread, kGo);
+  BENCH_MARK(wake_all);
+  robosync_kernel.sleep_until(common_deadline + kernel::milliseconds(10));
+  BENCH_MARK(all_woken);
 }
 
-void run_low(void*) {
-  measure();
-  add_open();
-  measure_open();
-  BENCH_MARK(more_threads);
-  while (used < kernel::kMaxThreads)
+void measure_with(unsigned threads) {
+  while (used < threads)
     add("sleeper", Category::sensor, 1, sleep_forever);
   robosync_kernel.sleep_until(robosync_kernel.now() + kernel::milliseconds(10));
   measure();
-  measure_open();
+}
+
+void run_low(void*) {
+  first_sleeper = used;
+  for (const unsigned threads : {6U, 16U, 64U})
+    measure_with(threads);
+  wake_all();
   leave(true);
 }
 
@@ -191,6 +241,11 @@ int main() {
   using namespace robosync::bench;
   record_sizes();
   high = add("high", Category::behavior, 50, run_high);
+  timed = add("timed", Category::behavior, 40, run_timed);
+  open = add("open", Category::behavior, 35, run_open, false);
+  Task* const upper = add("upper", Category::behavior, 31, run_upper, false);
+  turning = add("lower", Category::behavior, 30, run_lower, false);
+  robosync_kernel.watch(upper->thread, 0, kGo);
   add("low", Category::system, 0, run_low);
   robosync::port::core::enable_interrupt(0);
   robosync_kernel.run();

@@ -81,12 +81,14 @@ void Kernel::block(Thread& thread, Events mask) {
 // The switch waits for the end of the lock. To ask for it first leaves the compiler enough
 // registers.
 void Kernel::make_ready(Thread& thread) {
-  if (thread.rank_ < running_rank_) machine_.request_switch();
+  if (thread.rank_ < running_rank_) [[likely]]
+    machine_.request_switch();
   ReadySet::insert(thread.ready_place_);
 }
 
 void Kernel::make_unready(Thread& thread) {
   disarm(thread);
+  release_all(thread);
   thread.wanted_ = 0;
   ReadySet::erase(thread.ready_place_);
 }

@@ -1,5 +1,5 @@
-// The kernel's services: threads, event bits, time. Preemptive, fixed priority, one rank per
-// thread.
+// The kernel's services: threads, event bits, time, mutexes. Preemptive, fixed priority, one rank
+// per thread.
 //
 // Legal context of each function: [thread] from a running thread, [any] from a thread or an
 // interrupt handler, [init] before run(). Nothing here allocates; threads and their stacks belong
@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime-m4/kernel/mutex.hpp"
 #include "runtime-m4/kernel/scheduler.hpp"
 #include "runtime-m4/kernel/thread.hpp"
 #include "runtime-m4/kernel/time.hpp"
@@ -70,6 +71,28 @@ public:
   // for a few hundred instructions at most; blocking under it is an error.  [any]
   [[nodiscard]] port::Lock lock() { return port::Lock(machine_); }
 
+  // Takes a mutex, without ever waiting for it, and gives it back (mutex.hpp; MutexGuard does
+  // both). [thread]
+  [[gnu::always_inline]] void acquire(Mutex& mutex) {
+    if (held_ != nullptr) [[unlikely]]
+      return acquire_another(mutex);
+    const port::OnlyLock lock(machine_);
+    mutex.owner_ = running_;
+    held_ = &mutex;
+    ceiling_ = highest_of_[index(mutex.highest_)];
+    running_rank_ = ceiling_;
+  }
+  [[gnu::always_inline]] void release(Mutex& mutex) {
+    if (mutex.not_alone_) [[unlikely]]
+      return release_one(mutex);
+    const port::OnlyLock lock(machine_);
+    mutex.owner_ = nullptr;
+    held_ = nullptr;
+    running_rank_ = running_->rank_;
+    if (ready_.first() < running_rank_) [[unlikely]]
+      machine_.request_switch();
+  }
+
   // All threads, by rank.  [any; the span is good until threads are added or removed]
   std::span<Thread* const> threads() const { return {by_rank_.data(), count_}; }
   Thread::State state(const Thread& thread) const;  // [any]
@@ -84,12 +107,17 @@ public:
   // Ticks until on_tick() may have to wake a thread, at least 1; 0 when no thread sleeps.
   std::uint32_t ticks_to_next_wake() const;
 
-  // The context switch: takes the highest ready thread as the running one. Interrupts may come in
-  // between: after `ready_` is read they compare with a rank that is not above the one found, so
-  // none they make ready is overlooked.
+  // The context switch: takes the highest ready thread as the running one, unless the holder of a
+  // mutex stands at its ceiling. Interrupts may come in between: after `ready_` is read they
+  // compare with a rank that is not above the one found, so none they make ready is overlooked.
   Thread& select_next() {
     const unsigned rank = ready_.first();
     std::atomic_signal_fence(std::memory_order_seq_cst);
+    if (held_ != nullptr && rank >= ceiling_) [[unlikely]] {
+      running_rank_ = ceiling_;
+      running_ = held_->owner_;
+      return *running_;
+    }
     running_rank_ = static_cast<std::uint8_t>(rank);
     running_ = by_rank_[rank];
     return *running_;
@@ -127,12 +155,23 @@ private:
   void make_unready(Thread& thread);
   void wake_due();
   void shift_ranks(unsigned from);
+  static constexpr unsigned index(Category category) { return static_cast<unsigned>(category); }
+  [[gnu::cold]] void acquire_another(Mutex& mutex);
+  [[gnu::cold]] void release_one(Mutex& mutex);
+  [[gnu::cold]] void release_all(const Thread& thread);
+  [[gnu::cold]] std::uint8_t find_ceiling() const;
+  std::uint8_t rank_of_running() const;
 
   std::array<Thread*, kMaxThreads + 1> by_rank_{};  // the last is idle_
   ReadySet ready_;
   Thread* running_ = &idle_;
-  std::uint8_t running_rank_ = kIdleRank;  // kNoneRuns from the moment the running thread blocks
+  // The ceiling of what the running thread holds, else its rank; kNoneRuns from the moment it
+  // blocks.
+  std::uint8_t running_rank_ = kIdleRank;
   std::uint8_t count_ = 0;
+  std::array<std::uint8_t, kCategories> highest_of_;  // rank of the highest thread of each category
+  Mutex* held_ = nullptr;                             // the latest of those that are held
+  std::uint8_t ceiling_ = kIdleRank;                  // … and the highest of their ceilings
   std::uint64_t ticks_ = 0;
   TimerQueue timers_;
   Thread* watcher_ = nullptr;

@@ -18,6 +18,7 @@ inline constexpr std::uint8_t kIdleRank = kMaxThreads;  // what an empty ready s
 // priority, a later category of the four ranks higher: a decision reaches the actuator before new
 // data is gathered. `safety` ranks above everything, `system` (the link) below everything.
 enum class Category : std::uint8_t { system, sensor, processing, behavior, control, safety };
+inline constexpr unsigned kCategories = 6;
 
 // A thread's place in the order as one number: the higher outranks. Equals rank by age.
 constexpr std::int32_t standing(Category category, std::int16_t priority) {

@@ -61,7 +61,11 @@ void Kernel::remove(Thread& thread) {
 void Kernel::shift_ranks(unsigned from) {
   for (unsigned rank = from; rank < count_; ++rank)
     by_rank_[rank]->set_rank(rank, ready_);
-  if (running_rank_ != kNoneRuns) running_rank_ = running_->rank_;
+  highest_of_.fill(kIdleRank);
+  for (unsigned rank = count_; rank-- > 0;)
+    highest_of_[index(by_rank_[rank]->category_)] = static_cast<std::uint8_t>(rank);
+  ceiling_ = find_ceiling();
+  if (running_rank_ != kNoneRuns) running_rank_ = rank_of_running();
 }
 
 void Kernel::watch(Thread& watcher, Events stops, Events reports) {
@@ -103,6 +107,7 @@ Kernel::Kernel() : machine_(*this) {
   idle_.name_ = "idle";
   idle_.set_stack(port::Machine::prepare_idle(context(idle_)));
   by_rank_.fill(&idle_);
+  highest_of_.fill(kIdleRank);
 }
 
 }  // namespace robosync::kernel

@@ -21,7 +21,10 @@ bool DriverSampler::sample(const vm::Image& image, std::uint8_t channel, vm::Val
   const vm::Channel& wiring = image.channels[channel];
   const vm::Sensor& sensor = image.sensors[wiring.sensor];
   std::int32_t raw = 0;
-  if (!drivers::driver(sensor.driver).read(board_, sensor, wiring, raw)) return false;
+  {
+    const kernel::MutexGuard mine(kernel_, buses_);
+    if (!drivers::driver(sensor.driver).read(board_, sensor, wiring, raw)) return false;
+  }
   value = scaled(raw, wiring);
   return true;
 }

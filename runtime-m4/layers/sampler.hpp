@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::layers {
@@ -15,14 +16,17 @@ protected:
   ~Sampler() = default;
 };
 
-// Asks the channel's driver and scales what it counts.
+// Asks the channel's driver and scales what it counts. One thread at a time has the board's buses:
+// a driver may need several transfers that belong together.
 class DriverSampler final : public Sampler {
 public:
-  explicit DriverSampler(boards::Board& board) : board_(board) {}
+  DriverSampler(kernel::Kernel& kernel, boards::Board& board) : kernel_(kernel), board_(board) {}
   bool sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) override;
 
 private:
+  kernel::Kernel& kernel_;
   boards::Board& board_;
+  kernel::Mutex buses_{kernel::Category::sensor};
 };
 
 // raw * scale_num / scale_den + offset, rounded half away from zero, saturating.

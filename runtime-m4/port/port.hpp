@@ -17,6 +17,7 @@
 //   class Lock(Machine&)    Critical section, RAII, nests. Keeps out the kernel's own interrupts
 //                           (never those above its level) and holds a requested switch back until
 //                           the outermost one ends.
+//   class OnlyLock(Machine&)  The same, for a thread that holds no Lock; may be cheaper.
 //   class Machine(Kernel&)  The processor a kernel runs on:
 //     usable(spec)                  What a thread can use of its stack: without alignment, guard.
 //     can_run(spec)                 Is its stack as a thread without privileges needs it?

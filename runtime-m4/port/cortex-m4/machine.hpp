@@ -110,4 +110,16 @@ private:
   std::uint32_t outer_;
 };
 
+// The same for a thread that holds no Lock: what was before need not be kept.
+class OnlyLock {
+public:
+  explicit OnlyLock(const Machine&) { set(core::kKernelPriority); }
+  ~OnlyLock() { set(0); }
+  OnlyLock(const OnlyLock&) = delete;
+  OnlyLock& operator=(const OnlyLock&) = delete;
+
+private:
+  static void set(std::uint32_t level) { asm volatile("msr basepri, %0" ::"r"(level) : "memory"); }
+};
+
 }  // namespace robosync::port

@@ -110,5 +110,6 @@ private:
 
 // Straight to the kernel: there are no privileges.
 std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t argument);
+using OnlyLock = Lock;
 
 }  // namespace robosync::port

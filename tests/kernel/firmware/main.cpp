@@ -103,6 +103,7 @@ void first_boot() {
   run_all(rig::scheduling_scenarios());
   run_all(rig::register_scenarios());
   run_all(rig::interrupt_scenarios());
+  run_all(rig::mutex_scenarios());
   run_all(rig::fault_scenarios());
   run_all(rig::isolation_scenarios());
   run_all(rig::call_scenarios());

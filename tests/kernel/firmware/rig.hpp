@@ -26,6 +26,7 @@ struct Scenario {
 std::span<const Scenario> scheduling_scenarios();
 std::span<const Scenario> register_scenarios();
 std::span<const Scenario> interrupt_scenarios();
+std::span<const Scenario> mutex_scenarios();
 std::span<const Scenario> fault_scenarios();
 std::span<const Scenario> device_scenarios();
 std::span<const Scenario> division_scenarios();

@@ -1,0 +1,324 @@
+// Hours of virtual time on the board: many threads signal, wait, sleep and take mutexes at random,
+// and a timer interrupts them after random times, at any instruction. Every decision of the context
+// switch, and who runs at every fourth interrupt, is compared with a naive policy that goes over
+// all threads. Says "N decisions compared".
+//
+// The decision is seen by the linker's --wrap (firmware.cmake): __wrap_robosync_switch stands
+// between switch.S and the port. run_stress.sh runs it.
+#include <array>
+#include <bit>
+
+#include "runtime-m4/boards/mps2-an386/board.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/port/cortex-m4/core.hpp"
+#include "runtime-m4/port/cortex-m4/hooks.hpp"
+#include "tests/kernel/firmware/semihosting.hpp"
+
+robosync::kernel::Kernel robosync_kernel;
+robosync::boards::mps2::Board robosync_board;
+
+namespace {
+
+using namespace robosync::kernel;
+namespace core = robosync::port::core;
+
+// Seconds of virtual time to run; run_stress.sh has QEMU put them there.
+std::uint32_t seconds() {
+  return *reinterpret_cast<const volatile std::uint32_t*>(0x2100'0000);
+}
+
+constexpr unsigned kWorkers = 40;
+constexpr unsigned kMutexes = 3;
+
+// Marsaglia's xorshift32.
+class Draw {
+public:
+  explicit constexpr Draw(std::uint32_t seed) : state_(seed) {}
+  std::uint32_t below(std::uint32_t limit) {
+    state_ ^= state_ << 13;
+    state_ ^= state_ >> 17;
+    state_ ^= state_ << 5;
+    return (state_ >> 8) % limit;
+  }
+  // Of any magnitude below 2^bits.
+  std::uint32_t of_any_size(std::uint32_t bits) { return below(1U << (1 + below(bits))); }
+
+private:
+  std::uint32_t state_;
+};
+
+// What the naive policy knows of a thread, by a book of its own.
+struct Worker {
+  Thread thread;
+  alignas(32) std::array<std::byte, 384> stack;
+  Events signalled;  // and perhaps not yet taken
+  Events wanted;     // 0: it does not wait for any
+  Time deadline;
+  bool waits;  // or is about to
+};
+std::array<Worker, kWorkers> workers;
+std::array<Mutex, kMutexes> mutexes = {Mutex{Category::control}, Mutex{Category::behavior},
+                                       Mutex{Category::processing}};
+constexpr std::array kCeilings = {Category::control, Category::behavior, Category::processing};
+std::array<Thread*, kMutexes> holders{};
+
+std::uint32_t decisions = 0;
+std::uint32_t interrupts = 0;
+std::array<std::uint32_t, 1024> interrupted{};  // a bit for each halfword of flash
+Draw chance{2463534242U};
+
+void print_number(std::uint32_t number) {
+  std::array<char, 11> text{};
+  std::size_t at = text.size() - 1;
+  do {
+    text[--at] = static_cast<char>('0' + number % 10);
+    number /= 10;
+  } while (number != 0);
+  semihosting::print(&text[at]);
+}
+
+[[noreturn]] void fail(const char* what, const Thread& runs, const Thread* should) {
+  semihosting::print("FAIL ");
+  semihosting::print(what);
+  semihosting::print(": runs rank ");
+  print_number(runs.rank());
+  semihosting::print(", should rank ");
+  print_number(should == nullptr ? 99 : should->rank());
+  semihosting::print(" after decision ");
+  print_number(decisions);
+  semihosting::print("\n0 passed, 1 failed\n");
+  semihosting::exit(1);
+}
+
+unsigned ceiling_of(unsigned mutex) {
+  unsigned rank = 0;
+  for (const Thread* thread : robosync_kernel.threads()) {
+    if (thread->category() == kCeilings[mutex]) return rank;
+    ++rank;
+  }
+  return rank;
+}
+
+// The policy in the plainest words: the highest thread that can run, unless someone holds a mutex
+// whose ceiling is not below it; then the holder, of the latest if of several.
+const Thread* highest_ready() {
+  for (const Thread* thread : robosync_kernel.threads())
+    if (robosync_kernel.state(*thread) == Thread::State::ready) return thread;
+  return &robosync_kernel.idle();
+}
+
+const Thread* should_run() {
+  const Thread* best = highest_ready();
+  unsigned best_rank = best->rank();
+  for (unsigned m = 0; m < kMutexes; ++m) {
+    if (holders[m] == nullptr || ceiling_of(m) > best_rank) continue;
+    best_rank = ceiling_of(m);
+    best = holders[m];
+  }
+  return best;
+}
+
+// Has it been signalled what it waits for, or is its time over? By the book, not by the kernel.
+bool can_surely_run(const Worker& worker) {
+  return !worker.waits || (worker.signalled & worker.wanted) != 0 ||
+         worker.deadline <= robosync_kernel.now();
+}
+
+bool switch_is_pending() {
+  return (core::reg(core::kIcsr) & core::kIcsrPendSvSet) != 0;
+}
+bool switch_is_active() {
+  return (core::reg(core::kShcsr) & 1U << 10) != 0;
+}
+
+// False between taking or giving back a mutex, and noting it.
+bool book_is_right() {
+  for (unsigned m = 0; m < kMutexes; ++m)
+    if (mutexes[m].held() != (holders[m] != nullptr)) return false;
+  return true;
+}
+
+// With the kernel locked, and no switch on its way.
+void compare_decision() {
+  if (!book_is_right()) return;
+  const Thread& runs = robosync_kernel.current();
+  const Thread* const should = should_run();
+  if (&runs != should) fail("the wrong thread", runs, should);
+  for (const Worker& worker : workers)
+    if (can_surely_run(worker) && robosync_kernel.state(worker.thread) != Thread::State::ready)
+      fail("a wake-up is lost", runs, &worker.thread);
+  ++decisions;
+}
+
+void signal(Worker& to, Events events) {
+  const auto lock = robosync_kernel.lock();
+  to.signalled |= events;
+  robosync_kernel.signal(to.thread, events);
+}
+
+void wait(Worker& self, Events mask, Time deadline) {
+  {
+    const auto lock = robosync_kernel.lock();
+    self.wanted = mask;
+    self.deadline = deadline;
+    self.waits = true;
+  }
+  // What the book says is true once the thread has begun to wait; so that it is when others look,
+  // they look at what is ready only. A wait that ends at once changes nothing.
+  robosync_kernel.wait(mask, deadline);
+  const auto lock = robosync_kernel.lock();
+  self.waits = false;
+  self.signalled = 0;
+}
+
+void compute(std::uint32_t rounds) {
+  for (std::uint32_t i = 0; i < rounds; ++i)
+    asm volatile("");
+}
+
+// Takes the mutex if it may: its category is not above the ceiling's.
+void use_mutex(Worker& self, Draw& draw, unsigned mutex) {
+  if (self.thread.rank() < ceiling_of(mutex)) return;
+  robosync_kernel.acquire(mutexes[mutex]);
+  if (holders[mutex] != nullptr) fail("a mutex held by two", self.thread, holders[mutex]);
+  holders[mutex] = &self.thread;
+  compute(draw.below(60));
+  signal(workers[draw.below(kWorkers)], 1U << draw.below(4));
+  if (mutex + 1 < kMutexes && draw.below(3) == 0) use_mutex(self, draw, mutex + 1);
+  compute(draw.below(60));
+  holders[mutex] = nullptr;
+  robosync_kernel.release(mutexes[mutex]);
+}
+
+void work(void* argument) {
+  Worker& self = *static_cast<Worker*>(argument);
+  Draw draw(1 + static_cast<std::uint32_t>(&self - workers.data()) * 7919U);
+  while (true) {
+    switch (draw.below(4)) {
+      case 0:
+        use_mutex(self, draw, draw.below(kMutexes));
+        break;
+      case 1:
+        compute(draw.below(200));
+        break;
+      default:
+        signal(workers[draw.below(kWorkers)], 1U << draw.below(4));
+    }
+    if (draw.below(2) == 0)
+      wait(self, draw.below(16), robosync_kernel.now() + kTick * draw.of_any_size(14));
+  }
+}
+
+// --- interrupts ---
+
+constexpr unsigned kTimer0Interrupt = 8;
+struct TimerRegisters {  // CMSDK APB timer
+  volatile std::uint32_t control, value, reload, interrupt;
+};
+TimerRegisters& timer() {
+  return *reinterpret_cast<TimerRegisters*>(0x4000'0000);
+}
+
+void interrupt_after(std::uint32_t cycles) {
+  timer().control = 0;
+  timer().reload = cycles;
+  timer().value = cycles;
+  timer().control = 0b1001;
+}
+
+// Where a thread was interrupted.
+void note_where() {
+  std::uint32_t frame = 0;
+  asm volatile("mrs %0, psp" : "=r"(frame));
+  const std::uint32_t pc = reinterpret_cast<const std::uint32_t*>(frame)[6];
+  const std::uint32_t bit = pc / 2 % (interrupted.size() * 32);
+  interrupted[bit / 32] |= 1U << bit % 32;
+}
+
+std::uint32_t places() {
+  std::uint32_t count = 0;
+  for (const std::uint32_t word : interrupted)
+    count += static_cast<std::uint32_t>(std::popcount(word));
+  return count;
+}
+
+void conclude(void*) {
+  robosync_kernel.sleep_until(Time{seconds()} * 1'000'000);
+  print_number(decisions);
+  semihosting::print(" decisions compared, ");
+  print_number(interrupts);
+  semihosting::print(" interrupts at ");
+  print_number(places());
+  semihosting::print(" places in the code, in ");
+  print_number(seconds());
+  semihosting::print(" seconds\n1 passed, 0 failed\n");
+  semihosting::exit(0);
+}
+
+Thread conclusion;
+alignas(32) std::array<std::byte, 512> conclusion_stack;
+
+bool start() {
+  constexpr std::array kKinds = {Category::sensor, Category::processing, Category::behavior,
+                                 Category::control};
+  ThreadSpec spec;
+  for (unsigned i = 0; i < kWorkers; ++i) {
+    spec.category = kKinds[i % kKinds.size()];
+    spec.priority = static_cast<std::int16_t>(i * 37 % 11);
+    spec.entry = work;
+    spec.argument = &workers[i];
+    spec.stack = workers[i].stack;
+    if (!robosync_kernel.add(workers[i].thread, spec)) return false;
+  }
+  spec.category = Category::safety;
+  spec.entry = conclude;
+  spec.stack = conclusion_stack;
+  return robosync_kernel.add(conclusion, spec);
+}
+
+}  // namespace
+
+extern "C" {
+
+std::uint32_t* __real_robosync_switch(Kernel& kernel, std::uint32_t* sp);  // NOLINT: --wrap
+std::uint32_t* __wrap_robosync_switch(Kernel& kernel, std::uint32_t* sp);  // NOLINT
+
+// The context switch, and then the comparison, unless an interrupt has already asked for another.
+std::uint32_t* __wrap_robosync_switch(Kernel& kernel, std::uint32_t* sp) {  // NOLINT
+  std::uint32_t* const next = __real_robosync_switch(kernel, sp);
+  const auto lock = kernel.lock();
+  if (!switch_is_pending()) compare_decision();
+  return next;
+}
+
+void Timer0_Handler();
+void Timer0_Handler() {
+  timer().interrupt = 1;
+  ++interrupts;
+  if (!switch_is_active()) {
+    note_where();
+    if (!switch_is_pending() && chance.below(4) == 0) compare_decision();
+  }
+  signal(workers[chance.below(kWorkers)], 1U << chance.below(4));
+  if (chance.below(2) == 0) signal(workers[chance.below(kWorkers)], 1U << chance.below(4));
+  interrupt_after(1 + (chance.below(4) == 0 ? chance.of_any_size(22) : chance.below(400)));
+}
+}
+
+namespace robosync::port::hooks {
+
+void thread_faulted(kernel::Thread& thread, const link::Fault&) {
+  fail("a fault", thread, nullptr);
+}
+void fatal_fault(const link::Fault&) {
+  fail("a fault", robosync_kernel.current(), nullptr);
+}
+
+}  // namespace robosync::port::hooks
+
+int main() {
+  if (!start()) semihosting::exit(2);
+  core::enable_interrupt(kTimer0Interrupt);
+  interrupt_after(1000);
+  robosync_kernel.run();
+}

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+"""Has spin try the model of switching and waking (switch.pml) in every order, then each of its mutants,
+in which it must find the mistake. Ends with "N passed, N failed".
+
+usage: tests/model/check_model.py
+"""
+
+import re
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+MODEL = Path(__file__).resolve().parent / "switch.pml"
+DEPTH = 500_000
+FEWEST_STATES = 100_000  # of the model as it is: fewer would mean that it got stuck
+
+
+def search(mutant):
+    """(states, errors) that spin has found in all orders, or until the first error."""
+    with tempfile.TemporaryDirectory(prefix="robosync-model-") as folder:
+        for command in (["spin", "-a", *([f"-D{mutant}"] if mutant else []), str(MODEL)],
+                        ["gcc", "-w", "-O0", "-DSAFETY", "-DMEMLIM=1000", "-o", "pan", "pan.c"]):
+            subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
+        output = subprocess.run(["./pan", f"-m{DEPTH}"], cwd=folder, check=True, text=True,
+                                stdout=subprocess.PIPE).stdout
+    if "max search depth too small" in output or "Search not completed" in output and not mutant:
+        return 0, -1
+    states = re.search(r"(\d+) states, stored", output)
+    errors = re.search(r"errors: (\d+)", output)
+    return int(states[1]), int(errors[1])
+
+
+def judge(mutant):
+    """(passed, line to print)"""
+    states, errors = search(mutant)
+    if not mutant:
+        good = errors == 0 and states >= FEWEST_STATES
+        return good, f"no mistake in {states:,} states" if good else f"{errors} errors in {states:,} states"
+    good = errors > 0
+    return good, f"{mutant.lower()}: {'found' if good else 'NOT FOUND'} after {states:,} states"
+
+
+def main():
+    mutants = sorted(set(re.findall(r"\bMUTANT_[A-Z_]*[A-Z]\b", MODEL.read_text())))
+    with ThreadPoolExecutor() as pool:
+        results = list(pool.map(judge, [None, *mutants]))
+    for good, line in results:
+        print("ok  " if good else "FAIL", line)
+    failed = sum(not good for good, _ in results)
+    print(f"{len(results) - failed} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
