@@ -17,6 +17,8 @@ from counting import symbols  # noqa: E402
 
 PATIENCE = 20
 UART = 0x40004000
+RAM = 0x20000000
+NMI_NEEDS = 192  # bytes: a frame with FPU registers, and what it calls
 NO_ACCESS = 0x82  # CFSR: a data access that the MPU refused, with its address
 AT_REST, AT_60_DEGREES = 500, 1500  # us
 PWM_PULSES = "robosync_virtual_pwm"
@@ -68,6 +70,13 @@ class Isolation(unittest.TestCase):
         with Debugger(self.gdb) as debugger:
             return debugger.read_words(self.symbols[PWM_PULSES], 2)
 
+    def main_stack_left(self):
+        """Bytes of the handlers' stack that were never used: the board's RAM is zero when it starts."""
+        top = self.symbols["main_stack_top"]
+        with Debugger(self.gdb) as debugger:
+            words = debugger.read_words(RAM, (top - RAM) // 4)
+        return 4 * next(i for i, word in enumerate(words) if word)
+
     def make_wild(self):
         """The next time the interpreter runs for the behaviour, it takes a serial line for its machine."""
         interpreter = next(at for name, at in self.symbols.items() if name.startswith(INTERPRETER))
@@ -98,6 +107,8 @@ class Isolation(unittest.TestCase):
         finally:
             reader.stop()
         self.assertEqual(self.pulses(), [AT_REST, AT_60_DEGREES])
+        # Telling of a fault is the deepest that a handler goes; the NMI may still come on top of it.
+        self.assertGreaterEqual(self.main_stack_left(), NMI_NEEDS)
         info = rsc.info(self.board.port)
         states = {thread["name"]: thread["state"] for thread in info["threads"]}
         self.assertEqual((states["wild"], states["tame"]), ("stopped", "blocked"))
