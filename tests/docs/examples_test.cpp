@@ -16,7 +16,7 @@ using robosync::test::Outcome;
 using robosync::test::rsc;
 using robosync::testing::read_file;
 
-const fs::path kRoot = ROBOSYNC_SOURCE_DIR;
+const fs::path kExamplesRoot = ROBOSYNC_SOURCE_DIR;
 
 std::vector<fs::path> files(const fs::path& folder, const std::string& extension) {
   std::vector<fs::path> found;
@@ -28,7 +28,7 @@ std::vector<fs::path> files(const fs::path& folder, const std::string& extension
 
 std::vector<fs::path> examples() {
   std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(kRoot / "examples"))
+  for (const auto& entry : fs::directory_iterator(kExamplesRoot / "examples"))
     if (fs::exists(entry.path() / "robot.rsl")) found.push_back(entry.path());
   std::ranges::sort(found);
   return found;
@@ -62,13 +62,13 @@ TEST_CASE("every example is right, passes its TESTs and lives through its scenar
 }
 
 TEST_CASE("every module of the standard library passes its TESTs") {
-  const std::string robot = kRoot / "stdlib/robot.json";
-  const auto modules = files(kRoot / "stdlib", ".rsl");
+  const std::string robot = kExamplesRoot / "stdlib/robot.json";
+  const auto modules = files(kExamplesRoot / "stdlib", ".rsl");
   CHECK(modules.size() >= 8);
   for (const fs::path& module : modules) {
     INFO(module);
     works({"check", module});
-    const fs::path around = kRoot / "stdlib/tests" / module.filename();
+    const fs::path around = kExamplesRoot / "stdlib/tests" / module.filename();
     CHECK((has_tests(module) || fs::exists(around)));
     if (has_tests(module)) works({"test", module});
     if (fs::exists(around)) works({"test", around, "--config", robot});
@@ -79,6 +79,6 @@ TEST_CASE("every module of the standard library is used by an example") {
   std::string programs;
   for (const fs::path& folder : examples())
     programs += read_file(folder / "robot.rsl");
-  for (const fs::path& module : files(kRoot / "stdlib", ".rsl"))
+  for (const fs::path& module : files(kExamplesRoot / "stdlib", ".rsl"))
     CHECK_THAT(programs, Catch::Contains("\nUSE " + module.stem().string() + "\n"));
 }

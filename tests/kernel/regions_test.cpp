@@ -1,8 +1,8 @@
 // Regions of the MPU (port/cortex-m4/regions.hpp) against what the ARMv7-M manual says they cover,
 // byte by byte.
-#include <catch2/catch.hpp>
-
 #include "runtime-m4/port/cortex-m4/regions.hpp"
+
+#include <catch2/catch.hpp>
 
 using namespace robosync::port::regions;
 

@@ -16,7 +16,7 @@ using robosync::test::Robot;
 
 namespace {
 
-const std::vector<std::string> kActuators = {"a", "b", "c", "d"};
+const std::vector<std::string> kActuatorNames = {"a", "b", "c", "d"};
 
 struct Condition {
   int above_x;  // near X > above_x
@@ -64,7 +64,8 @@ std::string text_of(const Condition& c) {
 std::string text_of(const std::vector<Step>& steps) {
   std::string text;
   for (const Step& step : steps)
-    text += "MOVE " + kActuators[step.actuator] + " FOR " + std::to_string(step.length_ms) + "ms\n";
+    text +=
+        "MOVE " + kActuatorNames[step.actuator] + " FOR " + std::to_string(step.length_ms) + "ms\n";
   return text;
 }
 
@@ -141,7 +142,7 @@ private:
   }
 
   void start_command(State& state, unsigned actuator) {
-    say("command", kActuators[actuator] + " " + std::to_string(state.queue[actuator].front()));
+    say("command", kActuatorNames[actuator] + " " + std::to_string(state.queue[actuator].front()));
     state.ends[actuator] = now_ + state.queue[actuator].front();
   }
 
@@ -151,7 +152,7 @@ private:
       if (!state.running) continue;
       for (auto& [actuator, lengths] : state.queue) {
         if (lengths.empty() || state.ends[actuator] != now_) continue;
-        say("done", kActuators[actuator]);
+        say("done", kActuatorNames[actuator]);
         lengths.erase(lengths.begin());
         if (!lengths.empty()) start_command(state, actuator);
       }
@@ -177,7 +178,7 @@ private:
     State& state = state_[rule];
     say("interrupt", "r" + std::to_string(rule));
     for (const unsigned actuator : actuators_of(steps_of(rule, *state.running)))
-      say("cancel", kActuators[actuator]);
+      say("cancel", kActuatorNames[actuator]);
     state.running.reset();
     state.queue.clear();
     state.ends.clear();

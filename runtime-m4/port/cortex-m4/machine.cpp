@@ -140,9 +140,9 @@ void PendSV_Open_Handler() {
 }
 
 // A system call of a thread without privileges: only its vector table has this. At the kernel's own
-// priority, so that no Lock is needed. Nothing is believed: number and argument are numbers, and the
-// frame they come in was stacked by the core with the rights of the thread, so it lies where the
-// thread may write.
+// priority, so that no Lock is needed. Nothing is believed: number and argument are numbers, and
+// the frame they come in was stacked by the core with the rights of the thread, so it lies where
+// the thread may write.
 void SVC_Handler() {
   using namespace robosync::port;
   CoreFrame* frame = nullptr;

@@ -62,8 +62,7 @@ void expect_fault(void (*entry)(void*), std::uint32_t cause, std::uint32_t targe
   rig::watch_safety();
   rig::start(kHeart, 60, heart);
   rig::open_area()[kTarget] = target;
-  rig::Thread& victim =
-      rig::start_open(kVictim, 40, entry, rig::Category::behavior, "victim");
+  rig::Thread& victim = rig::start_open(kVictim, 40, entry, rig::Category::behavior, "victim");
   rig::open_area()[kTarget] = target;
   rig::sleep_ms(25);
   CHECK(rig::faults() == 1);
