@@ -180,13 +180,8 @@ namespace rig {
 Thread& start(unsigned index, std::int16_t priority, void (*entry)(void*), Category category,
               const char* name) {
   Worker& worker = workers[index];
-  robosync::kernel::ThreadSpec spec;
-  spec.name = name;
-  spec.category = category;
-  spec.priority = priority;
-  spec.entry = entry;
-  spec.argument = &worker.thread;
-  spec.stack = worker.stack;
+  const robosync::kernel::ThreadSpec spec{name,  category,       priority,
+                                          entry, &worker.thread, worker.stack};
   CHECK(robosync_kernel.add(worker.thread, spec));
   return worker.thread;
 }
@@ -194,16 +189,15 @@ Thread& start(unsigned index, std::int16_t priority, void (*entry)(void*), Categ
 Thread& start_open(unsigned index, std::int16_t priority, void (*entry)(void*), Category category,
                    const char* name) {
   Worker& worker = workers[index];
-  robosync::kernel::ThreadSpec spec;
-  spec.name = name;
-  spec.category = category;
-  spec.priority = priority;
-  spec.entry = entry;
-  spec.argument = worker.stack.data();
-  spec.stack = std::span(worker.stack).first(kOpenStack);
-  spec.privileged = false;
   const std::span area(open_area_of_tests);
   robosync_kernel.open({.readable = std::as_bytes(area), .writable = std::as_writable_bytes(area)});
+  const robosync::kernel::ThreadSpec spec{name,
+                                          category,
+                                          priority,
+                                          entry,
+                                          worker.stack.data(),
+                                          std::span(worker.stack).first(kOpenStack),
+                                          false};
   CHECK(robosync_kernel.add(worker.thread, spec));
   return worker.thread;
 }
