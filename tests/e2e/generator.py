@@ -114,6 +114,9 @@ class Generator:
         return f"EVERY {self._one('90ms', '400ms')}{to}\n  DO\n{self._block(1)}"
 
     def _start(self):
+        if self._random.random() < 0.3:
+            return (f"AT START DO\n{self._block(1)}    REPEAT FOREVER\n{self._block(1)}"
+                    f"    WAIT {self._pause()}\n    END\n")
         return f"AT START DO\n{self._block(2)}"
 
     def _modifiers(self, words):
@@ -154,7 +157,15 @@ class Generator:
 
     def _variable(self):
         return self._one("joy > calm", "fear >= 30%", "count MOD 3 = 0", "last IS BETWEEN 1 AND 4",
-                         "count + last > touch LEVEL")
+                         "count + last > touch LEVEL",
+                         f"{self._number(2)} {self._random.choice(RELATIONS)} {self._number(1)}")
+
+    def _number(self, depth):
+        """A plain number that is worked out, of every operator, by zero and out of range included."""
+        if depth == 0 or self._random.random() < 0.2:
+            return self._one("count", "last", "touch LEVEL", "0", "7", "-3", "2.5")
+        operator = self._one("+", "-", "*", "/", "MOD", "+ -")
+        return f"({self._number(depth - 1)} {operator} {self._number(depth - 1)})"
 
     # --- statements
 
@@ -174,12 +185,14 @@ class Generator:
         return [
             f"IF {self._condition(1)} DO\n{self._block(depth)}    ELSE\n{self._block(depth)}    END",
             f"REPEAT {self._random.randint(1, 3)} TIMES\n{self._block(depth)}    END",
+            f"REPEAT count MOD 4 TIMES\n{self._block(depth)}    WAIT {self._pause()}\n    END",
             f"REPEAT WHILE {self._condition(0)}\n{self._block(depth)}    WAIT {self._pause()}\n    END",
             f"PICK ONE\n    OPTION 30%\n{self._block(depth)}    OPTION 70%\n{self._block(depth)}    END",
         ]
 
     def _set(self):
-        return self._one("SET count TO count + 1", "SET last TO RANDOM(0, 5)", "SIGNAL knock",
+        return self._one("SET count TO count + 1", f"SET last TO {self._number(2)}",
+                         f"SET count TO {self._number(3)}", "SET last TO RANDOM(0, 5)", "SIGNAL knock",
                          "RAISE joy BY 15%", "LOWER joy BY 40%", "RAISE fear BY 25%",
                          "SET fear TO 0%", "SET mood TO very happy", "SET mood TO wary",
                          "SET mood TO calm_down", 'LOG "count", count, "joy", joy',
