@@ -82,10 +82,6 @@ bool is_frequent(TokenKind kind) {
   }
 }
 
-bool contains(const std::vector<TokenKind>& kinds, TokenKind kind) {
-  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
-}
-
 int insertion_cost(TokenKind kind, const std::vector<TokenKind>& expected) {
   if (is_value(kind)) return cost::insert_value;
   if (kind == Kinds::PLUS) return cost::insert_operator;

@@ -42,10 +42,6 @@ const std::vector<Group>& groups() {
   return all;
 }
 
-bool contains(const std::vector<TokenKind>& kinds, TokenKind kind) {
-  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
-}
-
 void remove(std::vector<TokenKind>& kinds, TokenKind kind) {
   kinds.erase(std::remove(kinds.begin(), kinds.end(), kind), kinds.end());
 }

@@ -1,6 +1,7 @@
 // A token: its kind and its place. Its text is read from the source when it is needed.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "compiler/source/source_file.hpp"
@@ -10,6 +11,10 @@ namespace robosync::compiler {
 
 using Kinds = grammar::Grammar::token;
 using TokenKind = grammar::Grammar::token_kind_type;
+
+inline bool contains(const std::vector<TokenKind>& kinds, TokenKind kind) {
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
 
 struct Token {
   TokenKind kind = TokenKind{};
