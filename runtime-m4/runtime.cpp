@@ -103,12 +103,12 @@ bool Runtime::start_program() {
 // To the behaviours' threads. What lies between the object and the image is theirs to read as well,
 // so on the board nothing does.
 port::Areas Runtime::areas() {
+  const auto bytes = [](const void* of) { return static_cast<const std::byte*>(of); };
   const vm::ImageHeader* const image = program_.image.header;
-  const auto address = [](const void* of) { return reinterpret_cast<std::uintptr_t>(of); };
-  const std::uintptr_t begin = std::min(address(&program_), address(image));
-  const std::uintptr_t end =
-      std::max<std::uintptr_t>(address(this + 1), address(image) + image->total_length);
-  return {.readable = {reinterpret_cast<const std::byte*>(begin), end - begin},
+  // Addresses compare as numbers on all our machines, those of different objects as well.
+  const std::byte* const begin = std::min(bytes(&program_), bytes(image));
+  const std::byte* const end = std::max(bytes(this + 1), bytes(image) + image->total_length);
+  return {.readable = {begin, static_cast<std::size_t>(end - begin)},
           .writable = frames_.open(program_)};
 }
 
