@@ -18,6 +18,8 @@ from generator import Generator
 from support import CONFIG
 
 COUNT = 40  # programs in the test suite
+REFUSED = 1  # exit code of rsc
+MOST_TOO_LARGE = 0.15  # of the programs
 AFTER_MS = 4_000  # program time in which everything started goes on
 
 
@@ -31,7 +33,8 @@ def scenario_of(readings):
 def traces(seed, folder):
     """The traces of one program, as it is written and optimised; and its text.
 
-    Some programs are too large for a robot; they have to be so at both levels.
+    Some programs are too large for a robot. As written they may be so where the optimised one fits;
+    then there is nothing to compare, and both traces are empty.
     """
     text = Generator(seed).program()
     readings = stimuli.drawn(seed, text)
@@ -41,19 +44,23 @@ def traces(seed, folder):
     until_ms = readings[-1].at_ms + AFTER_MS
     runs = [rsc.call("run", program, level, "--config", CONFIG, "--scenario", scenario,
                      "--duration", f"{until_ms}ms", "--format", "json") for level in ("-O0", "-O1")]
+    if runs[0].returncode == REFUSED:
+        return (), (), text
     return (*((run.returncode, *run.stdout.splitlines()) for run in runs), text)
 
 
 class Levels(unittest.TestCase):
     def test_drawn_programs(self):
         print(f"seeds 0 to {COUNT - 1}")
-        events = 0
+        events = too_large = 0
         with tempfile.TemporaryDirectory(prefix="robosync-levels-") as folder:
             for seed in range(COUNT):
                 with self.subTest(seed=seed):
                     plain, optimized, text = traces(seed, Path(folder))
                     self.assertEqual(plain, optimized, text)
                     events += len(plain)
+                    too_large += not plain
+        self.assertLess(too_large, MOST_TOO_LARGE * COUNT)
         self.assertGreater(events, 20 * COUNT)
 
 
