@@ -314,6 +314,29 @@ TEST_CASE("responses") {
   refused(0, [](Response& r) { r.length = 0xFFFF; });
 }
 
+TEST_CASE("adaptation: none or one, in its ranges") {
+  const auto with = [](auto change) {
+    ImageBuilder image = robot::make();
+    image.adaptations = {{.alpha = 2000, .window_ms = 10'000, .cap = 95, .reserved = {}}};
+    change(image.adaptations);
+    return image;
+  };
+  check_accepted(with([](auto&) {}));
+  check_accepted(with([](auto& a) { a[0] = {1, kMinAdaptationMs, 1, {}}; }));
+  check_accepted(with([](auto& a) { a[0] = {0xFFFF, 0xFFFF, kMaxPriority, {}}; }));
+  const auto refused = [&](auto wrong) {
+    check_refused([&](auto& image) { image = with([&](auto& a) { wrong(a[0]); }); },
+                  {Refusal::bad_value, Section::adaptations, 0});
+  };
+  refused([](auto& a) { a.alpha = 0; });
+  refused([](auto& a) { a.window_ms = kMinAdaptationMs - 1; });
+  refused([](auto& a) { a.cap = 0; });
+  refused([](auto& a) { a.cap = kMaxPriority + 1; });
+  refused([](auto& a) { a.reserved[2] = 1; });
+  check_refused([&](auto& image) { image = with([](auto& a) { a.push_back(a[0]); }); },
+                {Refusal::bad_value, Section::header, 0});
+}
+
 TEST_CASE("inputs, constants, source lines") {
   check_refused([](auto& i) { i.inputs[2] = 8; }, {Refusal::bad_index, Section::inputs, 2});
   check_refused([](auto& i) { i.constants[1] = kUnknown; },
