@@ -97,6 +97,7 @@ def kernel_figures():
         "kernel/block": (max(marks.spans("mark_high_blocks", "mark_low_runs")), "insn"),
         "kernel/irq_to_thread": (max(marks.spans("mark_pend", "mark_high_runs")), "insn"),
         "kernel/tick": (tick_cost(marks), "insn"),
+        "kernel/set_priority": (max(marks.spans("mark_set_priority", "mark_priority_set")), "insn"),
         "kernel/tcb": (symbols(elf)["size_tcb"], "B"),
     }
 

@@ -50,6 +50,11 @@ public:
   void sleep_until(Time deadline) { wait_until(0, deadline); }
   // Sets events of a thread and lets it run if it waits for one of them.  [any]
   void signal(Thread& thread, Events events);
+  // Gives a thread another priority: its place is then the one it would have if it were added now,
+  // behind its equals. The order changes by pairs of neighbours, each under a lock of its own, so
+  // nothing is held off for longer however far the thread moves. One caller at a time, and not
+  // during add() or remove().  [init, thread]
+  void set_priority(Thread& thread, Priority priority);
   // Stops a thread for good (fault, or its entry returned); it is never run again.  [any]
   void stop(Thread& thread);
   // From now on `events` of `watcher` are signalled whenever a thread is stopped.  [init, thread]
@@ -62,6 +67,9 @@ public:
   // All threads, by rank.  [any; the span is good until threads are added or removed]
   std::span<Thread* const> threads() const { return {by_rank_.data(), count_}; }
   Thread::State state(const Thread& thread) const;  // [any]
+
+  // What Thread::run_time() counts in; wraps.  [any]
+  std::uint32_t clock() const { return 0 - port::Machine::clock(); }
 
   // --- for the port ---
 
@@ -77,6 +85,7 @@ public:
   // between: after `ready_` is read they compare with a rank that is not above the one found, so
   // none they make ready is overlooked.
   Thread& select_next() {
+    charge();
     const unsigned rank = ready_.first();
     std::atomic_signal_fence(std::memory_order_seq_cst);
     running_rank_ = static_cast<std::uint8_t>(rank);
@@ -99,7 +108,15 @@ private:
   void make_ready(Thread& thread);
   void make_unready(Thread& thread);
   void wake_due();
+  // The thread that ran until now has run since the last switch, interrupts meanwhile included.
+  void charge() {
+    if (!port::kTimeFlows) return;
+    const std::uint32_t now = port::Machine::clock();
+    running_->run_time_ += switched_at_ - now;
+    switched_at_ = now;
+  }
   void shift_ranks(unsigned from);
+  void swap_with_next(unsigned rank);
 
   std::array<Thread*, kMaxThreads + 1> by_rank_{};  // the last is idle_
   ReadySet ready_;
@@ -107,6 +124,7 @@ private:
   std::uint8_t running_rank_ = kIdleRank;  // kNoneRuns from the moment the running thread blocks
   std::uint8_t count_ = 0;
   std::uint64_t ticks_ = 0;
+  std::uint32_t switched_at_ = 0;  // the machine's clock at the last switch
   TimerQueue timers_;
   Thread* stop_watcher_ = nullptr;
   Events stop_events_ = 0;

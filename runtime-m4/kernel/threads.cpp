@@ -1,6 +1,7 @@
 // Which threads there are: creation, removal, ranks. Bounded: a change moves at most kMaxThreads
 // places. Built for size; what is in a hurry stands in kernel.cpp.
 #include <algorithm>
+#include <utility>
 
 #include "runtime-m4/kernel/kernel.hpp"
 
@@ -8,7 +9,7 @@ namespace robosync::kernel {
 
 namespace {
 
-std::int32_t standing(const Thread& thread) {
+[[gnu::always_inline]] inline std::int32_t standing(const Thread& thread) {
   return standing(thread.category(), thread.priority());
 }
 
@@ -17,14 +18,17 @@ std::int32_t standing(const Thread& thread) {
 bool Kernel::add(Thread& thread, const ThreadSpec& spec) {
   if (thread.state_ != Thread::State::absent || count_ == kMaxThreads) return false;
   if (spec.entry == nullptr || spec.stack.size() < port::kMinStack) return false;
-  if (spec.stack.size() > 0xFFFF) return false;
+  const auto priority = static_cast<std::int8_t>(spec.priority);
+  if (spec.stack.size() > 0xFFFF || priority != spec.priority) return false;
   thread.name_ = spec.name;
   thread.category_ = spec.category;
-  thread.priority_ = spec.priority;
+  thread.priority_ = {priority, priority};
   thread.set_stack(port::Machine::usable(spec.stack));
   thread.events_ = 0;
   thread.wanted_ = 0;
   thread.activations_ = 0;
+  thread.run_time_ = 0;
+  thread.missed_ = 0;
   machine_.prepare(thread.context_, spec, thread.stack());
 
   port::Lock lock(machine_);
@@ -62,6 +66,40 @@ void Kernel::shift_ranks(unsigned from) {
   for (unsigned rank = from; rank < count_; ++rank)
     by_rank_[rank]->set_rank(rank, ready_);
   if (running_rank_ != kNoneRuns) running_rank_ = running_->rank_;
+}
+
+void Kernel::set_priority(Thread& thread, Priority priority) {
+  const bool rises = priority > thread.priority_;
+  thread.priority_ = priority;
+  if (thread.state_ == Thread::State::absent) return;
+  const std::int32_t mine = standing(thread);
+  unsigned rank = thread.rank_;
+  if (rises) {
+    while (rank > 0 && standing(*by_rank_[rank - 1]) < mine)
+      swap_with_next(--rank);
+  } else {
+    while (rank + 1 < count_ && standing(*by_rank_[rank + 1]) >= mine)
+      swap_with_next(rank++);
+  }
+}
+
+// The threads at `rank` and below it change places, and their bits with them. Only if the lower one
+// is ready and the upper one runs does another thread have to run.
+void Kernel::swap_with_next(unsigned rank) {
+  port::Lock lock(machine_);
+  Thread& sinks = *by_rank_[rank];
+  Thread& rises = *by_rank_[rank + 1];
+  const bool rising_ready = ReadySet::contains(rises.ready_place_);
+  if (ReadySet::contains(sinks.ready_place_) != rising_ready) {
+    ReadySet::toggle(sinks.ready_place_);
+    ReadySet::toggle(rises.ready_place_);
+  }
+  std::swap(sinks.ready_place_, rises.ready_place_);
+  std::swap(sinks.rank_, rises.rank_);
+  std::swap(by_rank_[rank], by_rank_[rank + 1]);
+  if (running_rank_ == kNoneRuns) return;
+  running_rank_ = running_->rank_;
+  if (rising_ready && running_ == &sinks) machine_.request_switch();
 }
 
 void Kernel::watch_stops(Thread& watcher, Events events) {

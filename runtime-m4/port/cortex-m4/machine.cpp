@@ -94,7 +94,9 @@ void SysTick_Handler();
 std::uint32_t* robosync_switch(robosync::kernel::Kernel& kernel, std::uint32_t* sp) {
   namespace core = robosync::port::core;
   using robosync::kernel::Kernel;
-  Kernel::context(kernel.current()).sp = sp;
+  robosync::port::Context& left = Kernel::context(kernel.current());
+  left.sp = sp;
+  asm volatile("" : : "m"(left.sp));  // at once: what follows then needs a register less
   const robosync::port::Context& next = Kernel::context(kernel.select_next());
   core::reg(core::kMpuRbar) = next.guard;
   return next.sp;

@@ -11,6 +11,10 @@
 
 #include "runtime-m4/port/cortex-m4/core.hpp"
 
+// A free-running counter of the core's clock that counts down; the board's linker script says where
+// it is, and the board starts it.
+extern "C" const volatile std::uint32_t robosync_clock;
+
 namespace robosync::kernel {
 class Kernel;
 struct ThreadSpec;
@@ -37,6 +41,7 @@ class Machine {
 public:
   explicit Machine(kernel::Kernel&) {}
   void prepare(Context& context, const kernel::ThreadSpec& spec, std::span<std::byte> stack);
+  static std::uint32_t clock() { return robosync_clock; }
   void request_switch() { core::reg(core::kIcsr) = core::kIcsrPendSvSet; }
   [[noreturn]] void run();
   static std::span<std::byte> usable(std::span<std::byte> stack);

@@ -46,6 +46,7 @@ public:
   Machine& operator=(const Machine&) = delete;
 
   void prepare(Context& context, const kernel::ThreadSpec& spec, std::span<std::byte> stack);
+  static std::uint32_t clock() { return 0; }
   void request_switch() { switch_requested_ = true; }
   void run() { run_until(kernel::kForever); }
   static std::span<std::byte> usable(std::span<std::byte> stack) { return stack; }

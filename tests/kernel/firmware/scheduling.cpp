@@ -88,7 +88,7 @@ std::array<unsigned, 3> woken;
 
 void periodic(void* argument) {
   const auto* self = static_cast<rig::Thread*>(argument);
-  const unsigned index = static_cast<unsigned>(self->priority() - 60);
+  const unsigned index = static_cast<unsigned>(self->priority().now - 60);
   const Time period = 1000 * (2 * index + 1);
   Time due = robosync_kernel.now();
   for (unsigned i = 0; i < 200; ++i) {
