@@ -84,7 +84,7 @@ TEST_CASE("a channel's sensor exists, whatever stands behind the last sensor") {
 TEST_CASE("the ends of what is allowed are allowed") {
   ImageBuilder image = robot::make();
   image.behaviors[robot::greet].priority = 99;
-  image.behaviors[robot::back_off].priority = INT16_MIN;
+  image.behaviors[robot::back_off].priority = kMinPriority;
   image.channels[1].max = image.channels[1].min;
   image.actuators[2].max = image.actuators[2].min = kValueMin;
   image.actuators[2].speed_limit = 0;
@@ -232,6 +232,7 @@ TEST_CASE("behaviours") {
   refused(Refusal::same_priority, 1, [](auto& b) { b[1].priority = kSafetyPriority; });
   refused(Refusal::bad_value, 2, [](auto& b) { b[2].priority = 51; });
   refused(Refusal::bad_value, 0, [](auto& b) { b[0].priority = kSafetyPriority + 1; });
+  refused(Refusal::bad_value, 2, [](auto& b) { b[2].priority = kMinPriority - 1; });
   refused(Refusal::bad_index, 0, [](auto& b) { b[0].first_rule = 1; });
   refused(Refusal::bad_index, 1, [](auto& b) { b[1].first_rule = 0; });
   refused(Refusal::bad_index, 1, [](auto& b) { b[1].first_rule = 3; });
