@@ -1,7 +1,6 @@
 // Which threads there are: creation, removal, ranks. Bounded: a change moves at most kMaxThreads
 // places. Built for size; what is in a hurry stands in kernel.cpp.
 #include <algorithm>
-#include <utility>
 
 #include "runtime-m4/kernel/kernel.hpp"
 
@@ -94,12 +93,19 @@ void Kernel::swap_with_next(unsigned rank) {
     ReadySet::toggle(sinks.ready_place_);
     ReadySet::toggle(rises.ready_place_);
   }
-  std::swap(sinks.ready_place_, rises.ready_place_);
-  std::swap(sinks.rank_, rises.rank_);
-  std::swap(by_rank_[rank], by_rank_[rank + 1]);
-  if (running_rank_ == kNoneRuns) return;
-  running_rank_ = running_->rank_;
-  if (rising_ready && running_ == &sinks) machine_.request_switch();
+  const ReadySet::Place upper = sinks.ready_place_;
+  sinks.ready_place_ = rises.ready_place_;
+  rises.ready_place_ = upper;
+  sinks.rank_ = static_cast<std::uint8_t>(rank + 1);
+  rises.rank_ = static_cast<std::uint8_t>(rank);
+  by_rank_[rank] = &rises;
+  by_rank_[rank + 1] = &sinks;
+  if (running_rank_ == rank + 1) {
+    running_rank_ = rises.rank_;
+  } else if (running_rank_ == rank) {
+    running_rank_ = sinks.rank_;
+    if (rising_ready) machine_.request_switch();
+  }
 }
 
 void Kernel::watch_stops(Thread& watcher, Events events) {

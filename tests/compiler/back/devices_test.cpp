@@ -41,6 +41,8 @@ const nlohmann::json& described(Object object) {
       return definitions.at("limits");
     case Object::behavior:
       return definitions.at("behavior");
+    case Object::scheduler:
+      return definitions.at("scheduler");
     default:
       return definitions.at("algorithm");
   }
