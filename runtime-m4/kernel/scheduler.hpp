@@ -27,6 +27,7 @@ struct Priority {
   std::int8_t now = 0;
   std::int8_t base = 0;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 sees a 0 in what it is defaulted to
   friend constexpr auto operator<=>(const Priority&, const Priority&) = default;
 };
 
