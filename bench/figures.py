@@ -113,6 +113,7 @@ def kernel_figures_of(marks):
         "timed_post_to_run": max(marks.spans("mark_post_timed", "mark_timed_runs")),
         "timed_block": max(marks.spans("mark_timed_blocks", "mark_low_runs_after_timed")),
         "mutex": max(marks.spans("mark_mutex_begin", "mark_mutex_end")),
+        "mailbox": max(marks.spans("mark_reading_sent", "mark_reading_there")),
         "tick": tick_cost(marks),
         "tick_to_sleeper": max(marks.spans("SysTick_Handler", "mark_sleeper_runs")),
     }
@@ -144,7 +145,7 @@ def basepri_instructions(elf, register="BASEPRI"):
 
 def kernel_figures():
     """Each figure as it is among 64 threads, and by how much the one grows most that does since
-    there were 6."""
+    there were 7."""
     elf = BUILT / "bench_kernel"
     places = {name: symbols(elf)[name]
               for name in ("SysTick_Handler", "PendSV_Handler", "PendSV_Open_Handler")}

@@ -138,6 +138,12 @@ void Runtime::fill_status(link::Status& status) const {
   status.reset_reason = board_.reset_reason();
 }
 
+void Runtime::hold_to_budgets(bool alive) {
+  if (alive) return budget_.forget();
+  kernel::Thread* const over = budget_.look(kernel_);
+  if (over != nullptr) port::stop_overrun(kernel_, *over);
+}
+
 // The first time it is reported, as a missed deadline of the step thread.
 void Runtime::halt(kernel::Duration stuck_for) {
   control_.halt_for_good();

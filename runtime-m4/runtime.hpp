@@ -17,6 +17,7 @@
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/alarm.hpp"
 #include "runtime-m4/layers/behavior.hpp"
+#include "runtime-m4/layers/budget.hpp"
 #include "runtime-m4/layers/control.hpp"
 #include "runtime-m4/layers/crew.hpp"
 #include "runtime-m4/layers/frames.hpp"
@@ -68,6 +69,7 @@ public:
 private:
   bool resting() const override { return !running_ || processing_.resting(); }
   std::uint32_t progress() const override { return processing_.passes(); }
+  void hold_to_budgets(bool alive) override;
   void halt(kernel::Duration stuck_for) override;
   kernel::Time guard() override;
 
@@ -84,6 +86,7 @@ private:
   unsigned faults_ = 0;  // of programs that are gone
   safety::Monitor monitor_;
   safety::Guard guard_;
+  layers::Budget budget_;
   kernel::Thread step_thread_;
   layers::Crew crew_;
 

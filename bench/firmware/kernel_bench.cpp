@@ -1,15 +1,17 @@
 // Runs the shipped kernel between markers: a thread of low rank wakes one of high rank, by itself
 // and from an interrupt, with and without a deadline, takes a mutex, spins while the tick comes and
-// sleeps; then the woken one is without privileges ("open"), and two such take turns. Among 6, 16
-// and 64 threads, all others of which sleep.
+// sleeps; sends it a reading through a mailbox; then the woken one is without privileges ("open"),
+// and two such take turns. Among 7, 16 and 64 threads, all others of which sleep.
 //
 // bench/figures.py reads the counts.
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "bench/firmware/mark.hpp"
 #include "runtime-m4/kernel/calls.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/mailbox.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 
@@ -52,6 +54,8 @@ Task* open = nullptr;
 Task* turning = nullptr;
 kernel::Thread* woken = nullptr;  // by the interrupt
 Task* timed = nullptr;
+Task* reader = nullptr;
+layers::Mailboxes mailboxes(robosync_kernel);
 kernel::Mutex mutex{Category::system};
 kernel::Time common_deadline = 0;
 
@@ -126,6 +130,34 @@ void post() {
   BENCH_MARK(low_runs);
 }
 
+// As the step thread takes what a sensor's thread announces.
+void run_reader(void*) {
+  vm::Value read = 0;
+  while (true) {
+    (void)robosync_kernel.wait(kGo);
+    if (mailboxes.take_announced() != 0) read = mailboxes.value(0);
+    asm volatile("" ::"r"(read));
+    BENCH_MARK(reading_there);
+  }
+}
+
+// A layers::Reading, which only the sensor layer may make.
+struct RawReading {
+  kernel::Time time;
+  vm::Value value;
+  std::uint8_t channel;
+};
+
+void send_reading(unsigned round) {
+  const vm::Channel wiring{};
+  const RawReading raw{robosync_kernel.now(), static_cast<vm::Value>(round), 0};
+  BENCH_MARK(reading_sent);
+  if (mailboxes.post(std::bit_cast<layers::Reading>(raw), wiring)) {
+    mailboxes.announce(1);
+    robosync_kernel.signal(reader->thread, kGo);
+  }
+}
+
 void pend() {
   BENCH_MARK(pend);
   port::core::reg(kNvicIspr) = 1;
@@ -194,6 +226,8 @@ void spin() {
     post_timed();
   for (unsigned i = 0; i < kRounds; ++i)
     take_mutex();
+  for (unsigned i = 0; i < kRounds; ++i)
+    send_reading(i);
   spin();
   for (unsigned i = 0; i < kRounds; ++i)
     sleep_a_tick();
@@ -234,7 +268,7 @@ void measure_with(unsigned threads) {
 
 void run_low(void*) {
   first_sleeper = used;
-  for (const unsigned threads : {6U, 16U, 64U})
+  for (const unsigned threads : {7U, 16U, 64U})
     measure_with(threads);
   wake_all();
   change_priority();
@@ -258,6 +292,7 @@ int main() {
   record_sizes();
   high = add("high", Category::behavior, 50, run_high);
   timed = add("timed", Category::behavior, 40, run_timed);
+  reader = add("reader", Category::behavior, 38, run_reader);
   open = add("open", Category::behavior, 35, run_open, false);
   Task* const upper = add("upper", Category::behavior, 31, run_upper, false);
   turning = add("lower", Category::behavior, 30, run_lower, false);

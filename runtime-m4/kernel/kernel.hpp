@@ -174,6 +174,7 @@ private:
   std::uint8_t rank_of_running() const;
   void swap_with_next(unsigned rank);
   void move_highest(const Thread& sunk, const Thread& risen);
+  [[gnu::cold]] void running_moved(bool other_ready);
 
   Thread* running_ = &idle_;                        // stands first: switch.S reads it
   std::array<Thread*, kMaxThreads + 1> by_rank_{};  // the last is idle_

@@ -14,22 +14,25 @@ void Kernel::shift_ranks(unsigned from) {
     by_rank_[rank]->set_rank(rank, ready_);
   highest_of_.fill(kIdleRank);
   for (unsigned rank = count_; rank-- > 0;)
-    highest_of_[index(by_rank_[rank]->category_)] = static_cast<std::uint8_t>(rank);
+    highest_of_[index(by_rank_[rank]->category())] = static_cast<std::uint8_t>(rank);
   ceiling_ = find_ceiling();
   if (running_rank_ != kNoneRuns) running_rank_ = rank_of_running();
 }
 
 void Kernel::set_priority(Thread& thread, Priority priority) {
-  const bool rises = priority > thread.priority_;
-  thread.priority_ = priority;
+  const Standing before = thread.standing_;
+  const Standing mine = standing(thread.category(), priority);
+  {
+    port::Lock lock(machine_);
+    thread.set_standing(mine);
+  }
   if (thread.state_ == Thread::State::absent) return;
-  const std::int32_t mine = thread.standing();
   unsigned rank = thread.rank_;
-  if (rises) {
-    while (rank > 0 && by_rank_[rank - 1]->standing() < mine)
+  if (mine > before) {
+    while (rank > 0 && by_rank_[rank - 1]->standing_ < mine)
       swap_with_next(--rank);
   } else {
-    while (rank + 1 < count_ && by_rank_[rank + 1]->standing() >= mine)
+    while (rank + 1 < count_ && by_rank_[rank + 1]->standing_ >= mine)
       swap_with_next(rank++);
   }
 }
@@ -49,23 +52,27 @@ void Kernel::swap_with_next(unsigned rank) {
   rises.rank_ = static_cast<std::uint8_t>(rank);
   by_rank_[rank] = &rises;
   by_rank_[rank + 1] = &sinks;
-  move_highest(sinks, rises);
-  // Another thread has to run only if it is ready and this one ran before it; or if it is the
-  // holder of a mutex, whose ceiling this may have been.
-  if (running_ == &sinks && (rising_ready || held_ != nullptr)) machine_.request_switch();
+  if (sinks.category() != rises.category()) move_highest(sinks, rises);
+  if (running_ == &sinks || running_ == &rises) running_moved(rising_ready);
 }
 
-// Of two categories each other's neighbour: the highest of one may now stand a place lower, that of
-// the other a place higher, and so may a ceiling.
+// Two of different categories have changed places: the highest of one may now stand a place lower,
+// that of the other a place higher, and so may a ceiling.
 void Kernel::move_highest(const Thread& sunk, const Thread& risen) {
-  if (sunk.category_ != risen.category_) {
-    std::uint8_t& upper = highest_of_[index(sunk.category_)];
-    if (upper == risen.rank_) upper = sunk.rank_;
-    std::uint8_t& lower = highest_of_[index(risen.category_)];
-    if (lower == sunk.rank_) lower = risen.rank_;
-    if (held_ != nullptr) ceiling_ = find_ceiling();
-  }
-  if (running_rank_ != kNoneRuns) running_rank_ = rank_of_running();
+  std::uint8_t& upper = highest_of_[index(sunk.category())];
+  if (upper == risen.rank_) upper = sunk.rank_;
+  std::uint8_t& lower = highest_of_[index(risen.category())];
+  if (lower == sunk.rank_) lower = risen.rank_;
+  ceiling_ = find_ceiling();
+}
+
+// The running thread has changed places with another: with one that can run, it may be its turn;
+// and so it may be the turn of who holds a mutex, if its ceiling was the place.
+void Kernel::running_moved(bool other_ready) {
+  if (running_rank_ == kNoneRuns) return;
+  const std::uint8_t before = running_rank_;
+  running_rank_ = rank_of_running();
+  if (running_rank_ > before && (other_ready || held_ != nullptr)) machine_.request_switch();
 }
 
 }  // namespace robosync::kernel

@@ -32,17 +32,29 @@ struct Priority {
   friend constexpr auto operator<=>(const Priority&, const Priority&) = default;
 };
 
-// A thread's place in the order as one number: the higher outranks. Equals rank by age.
-constexpr std::int32_t standing(Category category, Priority priority) {
-  constexpr std::int32_t kBeyondAnyPriority = 1 << 24;
-  const std::int32_t level = std::int32_t{priority.now} * 256 + priority.base;
-  const std::int32_t place = level * 8 + static_cast<std::int32_t>(category);
-  if (category == Category::safety) return place + kBeyondAnyPriority;
-  if (category == Category::system) return place - kBeyondAnyPriority;
-  return place;
+// A thread's place in the order as one number, below 2^kStandingBits: the higher outranks. Equals
+// rank by age. What it was made of can be had of it again.
+//
+//   bits 22–21: 2 safety, 0 system, else 1 | 18–11: now + 128 | 10–3: base + 128 | 2–0: category
+using Standing = std::uint32_t;
+inline constexpr unsigned kStandingBits = 24;
+constexpr Standing standing(Category category, Priority priority) {
+  const unsigned beyond = category == Category::safety ? 2 : category == Category::system ? 0 : 1;
+  const auto now = static_cast<unsigned>(priority.now + 128);
+  const auto base = static_cast<unsigned>(priority.base + 128);
+  return beyond << 21 | now << 11 | base << 3 | static_cast<unsigned>(category);
 }
-constexpr std::int32_t standing(Category category, std::int8_t priority) {
+constexpr Standing standing(Category category, std::int8_t priority) {
   return standing(category, Priority{priority, priority});
+}
+constexpr Category category_of(Standing standing) {
+  return static_cast<Category>(standing & 7);
+}
+constexpr Priority priority_of(Standing standing) {
+  const auto unbiased = [](Standing bits) {
+    return static_cast<std::int8_t>(static_cast<int>(bits & 0xFF) - 128);
+  };
+  return {unbiased(standing >> 11), unbiased(standing >> 3)};
 }
 
 // The threads that can run: one bit each by rank, the highest rank in the top bit of the first

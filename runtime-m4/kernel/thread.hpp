@@ -41,8 +41,8 @@ public:
   Thread& operator=(const Thread&) = delete;
 
   const char* name() const { return name_; }
-  Category category() const { return category_; }
-  Priority priority() const { return priority_; }
+  Category category() const { return category_of(standing_); }
+  Priority priority() const { return priority_of(standing_); }
   std::uint8_t rank() const { return rank_; }                 // 0 is the highest
   std::uint32_t activations() const { return activations_; }  // times it went to wait
   // Deadlines it missed, as it says itself; 255: that many or more.
@@ -58,7 +58,9 @@ private:
   friend class Kernel;
 
   void set_stack(std::span<std::byte> stack);  // and paints it
-  std::int32_t standing() const { return kernel::standing(category_, priority_); }
+  void set_standing(Standing standing) {
+    standing_ = standing & ((Standing{1} << kStandingBits) - 1);
+  }
   void set_rank(unsigned rank, ReadySet& ready) {
     rank_ = static_cast<std::uint8_t>(rank);
     ready_place_ = ready.place(rank);
@@ -74,11 +76,11 @@ private:
   const char* name_ = "";
   std::uint32_t activations_ = 0;
   std::uint16_t stack_bytes_ = 0;
-  Priority priority_;
-  Category category_ = Category::system;
   std::uint8_t rank_ = kIdleRank;
   std::uint8_t missed_ = 0;
-  State state_ = State::absent;  // stopped or absent; else the ready set says whether it is blocked
+  // Both change under a Lock only, as they share a word.
+  Standing standing_ : kStandingBits = 0;
+  State state_ : 8 = State::absent;  // or stopped; else the ready set says whether it is blocked
 };
 
 }  // namespace robosync::kernel

@@ -1,5 +1,5 @@
-// Which threads there are: creation and removal. Bounded: a change moves at most kMaxThreads places.
-// Built for size; what is in a hurry stands in kernel.cpp.
+// Which threads there are: creation and removal. Bounded: a change moves at most kMaxThreads
+// places. Built for size; what is in a hurry stands in kernel.cpp.
 #include <algorithm>
 
 #include "runtime-m4/kernel/kernel.hpp"
@@ -13,8 +13,6 @@ bool Kernel::add(Thread& thread, const ThreadSpec& spec) {
   if (spec.stack.size() > 0xFFFF || priority != spec.priority) return false;
   if (!port::Machine::can_run(spec)) return false;
   thread.name_ = spec.name;
-  thread.category_ = spec.category;
-  thread.priority_ = {priority, priority};
   thread.set_stack(port::Machine::usable(spec));
   thread.events_ = 0;
   thread.wanted_ = 0;
@@ -23,9 +21,10 @@ bool Kernel::add(Thread& thread, const ThreadSpec& spec) {
   machine_.prepare(thread, spec, thread.stack());
 
   port::Lock lock(machine_);
+  thread.set_standing(standing(spec.category, priority));
   const auto begin = by_rank_.begin();
   const auto place = std::find_if(begin, begin + count_, [&](const Thread* other) {
-    return other->standing() < thread.standing();
+    return other->standing_ < thread.standing_;
   });
   const auto rank = static_cast<unsigned>(place - begin);
   std::move_backward(place, begin + count_, begin + count_ + 1);

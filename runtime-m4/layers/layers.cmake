@@ -4,6 +4,7 @@ target_sources(robosync_runtime PRIVATE
   layers/adaptation.cpp
   layers/arbiter.cpp
   layers/behavior.cpp
+  layers/budget.cpp
   layers/behavior_thread.cpp
   layers/checks.cpp
   layers/command_pool.cpp

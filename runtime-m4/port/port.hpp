@@ -12,6 +12,8 @@
 //                           and, perhaps inside of it, `writable`.
 //   call(kernel, number, argument)       A system call: Kernel::answer() from a thread without
 //                                        privileges.
+//   stop_overrun(kernel, thread)         Stops a thread, not the calling one, that runs longer than
+//                                        it may, and reports it as a fault.
 //   fetch_and_clear(word, mask)   Clears bits and returns what was there; an interrupt that changes
 //                                 the word meanwhile is not lost.
 //   class Lock(Machine&)    Critical section, RAII, nests. Keeps out the kernel's own interrupts

@@ -35,6 +35,7 @@ void Monitor::check(kernel::Duration late) {
   const std::uint32_t progress = patient_.progress();
   const bool alive = patient_.resting() || progress != last_progress_;
   last_progress_ = progress;
+  patient_.hold_to_budgets(alive);
   without_progress_ = alive ? 0 : std::min(without_progress_ + 1, kPatience);
   if (without_progress_ < kPatience) {
     board_.watchdog_kick();

@@ -23,6 +23,9 @@ class Patient {
 public:
   virtual bool resting() const = 0;            // it has nothing to do
   virtual std::uint32_t progress() const = 0;  // changes with every piece of work it finishes
+  // Called at each check: did it finish any, or had nothing to do, since the last one? If it did
+  // not, who holds it up may be stopped.
+  virtual void hold_to_budgets(bool alive) = 0;
   // Puts all actuators into their safe state, and lets no command through from then on. May be
   // called again.
   virtual void halt(kernel::Duration stuck_for) = 0;

@@ -2,6 +2,8 @@
 comes to rest, the others go on, and safety is never late."""
 
 import json
+import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -20,6 +22,8 @@ UART = 0x40004000
 RAM = 0x20000000
 NMI_NEEDS = 192  # bytes: a frame with FPU registers, and what it calls
 NO_ACCESS = 0x82  # CFSR: a data access that the MPU refused, with its address
+OVERRUN = 1 << 22  # port/cortex-m4/fault.hpp
+PC = 15
 AT_REST, AT_60_DEGREES = 500, 1500  # us
 PWM_PULSES = "robosync_virtual_pwm"
 INTERPRETER = "robosync::vm::run("  # (machine, code, progress)
@@ -46,6 +50,13 @@ BEHAVIOR tame PRIORITY 10
   END
 END
 """
+
+
+def endless_loop():
+    """The address of an instruction of the firmware that jumps to itself."""
+    listing = subprocess.run(["arm-none-eabi-objdump", "-d", str(FIRMWARE)], check=True, text=True,
+                             stdout=subprocess.PIPE).stdout
+    return int(re.search(r"^\s*([0-9a-f]+):\s+e7fe\s", listing, re.M)[1], 16)
 
 
 class Isolation(unittest.TestCase):
@@ -84,7 +95,20 @@ class Isolation(unittest.TestCase):
             debugger.run_to(interpreter, lambda: self.board.set_touch(9, WILD))
             debugger.set_register(0, UART)
 
+    def make_endless(self):
+        """The next time the interpreter runs for the behaviour, it jumps to where nothing leaves again."""
+        interpreter = next(at for name, at in self.symbols.items() if name.startswith(INTERPRETER))
+        with Debugger(self.gdb) as debugger:
+            debugger.run_to(interpreter, lambda: self.board.set_touch(9, WILD))
+            debugger.set_register(PC, endless_loop())
+
     def test_a_wild_behaviour_is_stopped(self):
+        self.stops(self.make_wild, cause=NO_ACCESS, address=UART)
+
+    def test_a_behaviour_that_never_ends_is_stopped(self):
+        self.stops(self.make_endless, cause=OVERRUN, pc=endless_loop())
+
+    def stops(self, make_wild, **report):
         program, config = self.folder / "program.rsl", self.folder / "robot.json"
         program.write_text(PROGRAM)
         config.write_text(CONFIG)
@@ -97,8 +121,8 @@ class Isolation(unittest.TestCase):
                     break
             self.board.set_touch(5, WILD)
             self.expect(reader, event="command", actuator="left_arm")
-            self.make_wild()
-            self.expect(reader, event="fault", thread="wild", cause=NO_ACCESS, address=UART)
+            make_wild()
+            self.expect(reader, event="fault", thread="wild", **report)
             self.expect(reader, event="interrupt", behavior="wild")
             self.expect(reader, event="cancel", actuator="left_arm")
             self.board.set_touch(6, TAME)

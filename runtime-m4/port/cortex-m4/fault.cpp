@@ -27,7 +27,10 @@ namespace robosync::port {
 namespace {
 
 constexpr std::uint32_t kReturnToThread = 0xFFFF'FFFD;  // thread mode, PSP, no FPU frame
-constexpr std::uint32_t kFromThreadMode = 1U << 3;      // bits of EXC_RETURN
+constexpr std::uint32_t kWithoutFpu = 1U << 4;          // bits of EXC_RETURN as switch.S saves it
+constexpr std::uint32_t kMarkOpen = 1U << 5;        // … 0: of a thread without privileges, for
+constexpr std::uint32_t kOpenWithoutFpu = 1U << 6;  // … which this says what bit 4 says
+constexpr std::uint32_t kFromThreadMode = 1U << 3;  // bits of EXC_RETURN
 constexpr std::uint32_t kFromPsp = 1U << 2;
 
 // What fault.S pushes.
@@ -164,6 +167,25 @@ void skip_saving(const FaultEntry& entry) {
 void enable_fault_handlers() {
   core::reg(core::kShcsr) |= core::kShcsrFaultHandlers;
   core::reg(core::kCcr) |= core::kCcrDivideByZeroTrap;
+}
+
+// What it was at is told by what the switch saved: switch.S draws it, and says what the bits mean.
+void stop_overrun(kernel::Kernel& kernel, kernel::Thread& thread) {
+  constexpr std::size_t kExcReturn = 8;  // index, above r4–r11
+  constexpr std::size_t kFpuWords = 16;
+  const std::uint32_t* const saved = kernel::Kernel::context(thread).sp;
+  const std::uint32_t exc_return = saved[kExcReturn];
+  const bool open = (exc_return & kMarkOpen) == 0;
+  const bool used_fpu = (exc_return & (open ? kOpenWithoutFpu : kWithoutFpu)) == 0;
+  link::Fault fault{};
+  fault.thread = name_of(thread);
+  fault.cause = kCauseOverrun;
+  std::copy_n(saved, kExcReturn, fault.r.begin() + 4);
+  fault.sp = word_of(saved + kExcReturn + 1 + (used_fpu ? kFpuWords : 0));
+  if (frame_lies_in(thread.stack(), fault.sp))
+    copy_frame(*reinterpret_cast<const CoreFrame*>(fault.sp), fault);
+  kernel.stop(thread);
+  hooks::thread_faulted(thread, fault);
 }
 
 // A fault before it may have stopped the thread already: the call was still pending then.

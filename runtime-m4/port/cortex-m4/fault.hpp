@@ -11,6 +11,8 @@ inline constexpr std::uint32_t kCauseStackOverflow = 1U << 20;
 // Set when a thread without privileges made a system call that there is not; the address is its
 // number. An unused bit as well.
 inline constexpr std::uint32_t kCauseNoSuchCall = 1U << 21;
+// Set when a thread ran longer than it may (stop_overrun()). Unused as well.
+inline constexpr std::uint32_t kCauseOverrun = 1U << 22;
 
 // What the core stacks.
 struct CoreFrame {

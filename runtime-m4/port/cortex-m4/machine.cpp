@@ -12,7 +12,7 @@
 // switch.S
 extern "C" {
 [[noreturn]] void robosync_become_idle(std::byte* stack_top);
-void robosync_save_open(robosync::kernel::Kernel& kernel, std::uint32_t psp);
+void robosync_save_open(std::uint32_t psp);
 void robosync_no_room();
 }
 
@@ -112,13 +112,15 @@ void Machine::run() {
 
 extern "C" {
 
-const robosync::port::Context* robosync_switch(robosync::kernel::Kernel& kernel);
+const robosync::port::Context* robosync_switch(std::uint32_t* sp, robosync::kernel::Kernel& kernel);
 void PendSV_Open_Handler();
 void SysTick_Handler();
 void SVC_Handler();
 
-// Called by switch.S when the thread that ran is saved; returns the context of the next one.
-const robosync::port::Context* robosync_switch(robosync::kernel::Kernel& kernel) {
+// Called by switch.S when the thread that ran is saved, its stack pointer noted; returns the
+// context of the next one.
+const robosync::port::Context* robosync_switch(std::uint32_t* /*sp*/,
+                                               robosync::kernel::Kernel& kernel) {
   namespace core = robosync::port::core;
   const robosync::port::Context& next = robosync::kernel::Kernel::context(kernel.select_next());
   core::reg(core::kMpuRbar) = next.region;
@@ -134,7 +136,7 @@ void PendSV_Open_Handler() {
   asm volatile("mrs %0, psp" : "=r"(psp));
   const auto stack = robosync_kernel.current().stack();
   if (psp - kSaved - word_of(stack.data()) >= stack.size()) return robosync_no_room();
-  return robosync_save_open(robosync_kernel, psp);
+  return robosync_save_open(psp);
 }
 
 // A system call of a thread without privileges: only its vector table has this. At the kernel's own

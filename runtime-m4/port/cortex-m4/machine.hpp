@@ -19,6 +19,7 @@ extern "C" const volatile std::uint32_t robosync_clock;
 
 namespace robosync::kernel {
 class Kernel;
+class Thread;
 struct ThreadSpec;
 }  // namespace robosync::kernel
 
@@ -88,6 +89,8 @@ inline std::uint32_t fetch_and_clear(std::uint32_t& word, std::uint32_t mask) {
       : "cc", "memory");
   return before;
 }
+
+void stop_overrun(kernel::Kernel& kernel, kernel::Thread& thread);  // fault.cpp
 
 // Number and argument go in r0 and r1, the result comes in r0 (SVC_Handler).
 inline std::uint32_t call(kernel::Kernel&, std::uint32_t number, std::uint32_t argument) {

@@ -39,21 +39,21 @@
     .type   robosync_no_room, %function
     .thumb_func
 PendSV_Handler:
-    mrs     r1, psp
+    mrs     r0, psp
     tst     lr, #0x10
     beq     2f
 robosync_saving_core:
-    stmdb   r1!, {r4-r11, lr}
+    stmdb   r0!, {r4-r11, lr}
 
 robosync_saved:
-    ldr     r0, =robosync_kernel
+    ldr     r1, =robosync_kernel
     ldr     r4, =robosync_clock
-    ldr     r3, [r0]                /* Kernel::running_: its Context */
+    ldr     r3, [r1]                /* Kernel::running_: its Context */
     ldr     r4, [r4]
     ldr     r2, [r3, #4]
     subs    r2, r4
-    strd    r1, r2, [r3]            /* Context::sp, ::run_time */
-    bl      robosync_switch         /* (kernel) -> Context of the next one */
+    strd    r0, r2, [r3]            /* Context::sp, ::run_time */
+    bl      robosync_switch         /* (sp that was, kernel) -> Context of the next one */
 
     ldrd    r1, r2, [r0]
     add     r2, r4
@@ -66,7 +66,7 @@ robosync_saved:
 
 2:
 robosync_saving_fpu:
-    vstmdb  r1!, {s16-s31}
+    vstmdb  r0!, {s16-s31}
     b       robosync_saving_core
 3:  tst     lr, #0x20
     beq     4f
@@ -95,23 +95,23 @@ robosync_saving_fpu:
     orr     lr, lr, #0x60
     b       5b
 
-/* Out of one: (kernel, psp), when there is room on its stack (PendSV_Open_Handler). */
+/* Out of one: (psp), when there is room on its stack (PendSV_Open_Handler). */
     .thumb_func
 robosync_save_open:
     tst     lr, #0x10
     bic     lr, lr, #0x30
     beq     7f
-8:  stmdb   r1!, {r4-r11, lr}
+8:  stmdb   r0!, {r4-r11, lr}
 robosync_saved_open:
-    ldr     r3, =VTOR
+    ldr     r1, =VTOR
     ldr     r2, =robosync_vectors
-    str     r2, [r3]
+    str     r2, [r1]
     movs    r2, #0
     msr     control, r2
     b       robosync_saved
 7:
 robosync_saving_open_fpu:
-    vstmdb  r1!, {s16-s31}
+    vstmdb  r0!, {s16-s31}
     bic     lr, lr, #0x40
     b       8b
 

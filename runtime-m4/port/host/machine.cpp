@@ -60,6 +60,10 @@ std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t a
   return result;
 }
 
+void stop_overrun(kernel::Kernel& kernel, kernel::Thread& thread) {
+  kernel.stop(thread);
+}
+
 void Machine::fiber_main() {
   switching->enter_fiber();
 }

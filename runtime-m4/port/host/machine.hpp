@@ -112,6 +112,7 @@ private:
 
 // Straight to the kernel: there are no privileges.
 std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t argument);
+void stop_overrun(kernel::Kernel& kernel, kernel::Thread& thread);
 using OnlyLock = Lock;
 
 }  // namespace robosync::port

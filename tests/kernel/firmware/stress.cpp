@@ -1,7 +1,8 @@
 // Hours of virtual time on the board: many threads signal, wait, sleep and take mutexes at random,
-// and a timer interrupts them after random times, at any instruction. Every decision of the context
-// switch, and who runs at every fourth interrupt, is compared with a naive policy that goes over
-// all threads. Says "N decisions compared".
+// one changes their priorities and its own, and a timer interrupts them after random times, at any
+// instruction. Every decision of the context switch, and who runs at every fourth interrupt, is
+// compared with a naive policy that goes over all threads; after each change of a priority the
+// order is looked at. Says "N decisions compared".
 //
 // The decision is seen by the linker's --wrap (firmware.cmake): __wrap_robosync_switch stands
 // between switch.S and the port. run_stress.sh runs it.
@@ -61,9 +62,17 @@ std::array<Mutex, kMutexes> mutexes = {Mutex{Category::control}, Mutex{Category:
                                        Mutex{Category::processing}};
 constexpr std::array kCeilings = {Category::control, Category::behavior, Category::processing};
 std::array<Thread*, kMutexes> holders{};
+// While priorities change, only the threads of its category use a mutex: the others might come to
+// stand above its ceiling.
+bool adapting = false;
+unsigned users = 0;  // threads that use a mutex, or are about to
+
+Thread adapter;
+alignas(32) std::array<std::byte, 384> adapter_stack;
 
 std::uint32_t decisions = 0;
 std::uint32_t interrupts = 0;
+std::uint32_t changes = 0;                      // of priorities
 std::array<std::uint32_t, 1024> interrupted{};  // a bit for each halfword of flash
 Draw chance{2463534242U};
 
@@ -176,9 +185,17 @@ void compute(std::uint32_t rounds) {
     asm volatile("");
 }
 
-// Takes the mutex if it may: its category is not above the ceiling's.
+bool may_use(const Worker& self, unsigned mutex) {
+  if (adapting) return self.thread.category() == kCeilings[mutex];
+  return self.thread.rank() >= ceiling_of(mutex);
+}
+
 void use_mutex(Worker& self, Draw& draw, unsigned mutex) {
-  if (self.thread.rank() < ceiling_of(mutex)) return;
+  {
+    const auto lock = robosync_kernel.lock();
+    if (!may_use(self, mutex)) return;
+    ++users;
+  }
   robosync_kernel.acquire(mutexes[mutex]);
   if (holders[mutex] != nullptr) fail("a mutex held by two", self.thread, holders[mutex]);
   holders[mutex] = &self.thread;
@@ -188,6 +205,8 @@ void use_mutex(Worker& self, Draw& draw, unsigned mutex) {
   compute(draw.below(60));
   holders[mutex] = nullptr;
   robosync_kernel.release(mutexes[mutex]);
+  const auto lock = robosync_kernel.lock();
+  --users;
 }
 
 void work(void* argument) {
@@ -206,6 +225,54 @@ void work(void* argument) {
     }
     if (draw.below(2) == 0)
       wait(self, draw.below(16), robosync_kernel.now() + kTick * draw.of_any_size(14));
+  }
+}
+
+// --- priorities ---
+
+Standing standing_of(const Thread& thread) {
+  return standing(thread.category(), thread.priority());
+}
+
+void check_order() {
+  const auto lock = robosync_kernel.lock();
+  const auto threads = robosync_kernel.threads();
+  for (unsigned rank = 0; rank + 1 < threads.size(); ++rank)
+    if (threads[rank]->rank() != rank ||
+        standing_of(*threads[rank]) < standing_of(*threads[rank + 1]))
+      fail("the order is wrong", *threads[rank], threads[rank + 1]);
+}
+
+void begin_or_end_adapting(bool begin) {
+  while (true) {
+    {
+      const auto lock = robosync_kernel.lock();
+      if (users == 0) {
+        adapting = begin;
+        return;
+      }
+    }
+    robosync_kernel.sleep_until(robosync_kernel.now() + kTick);
+  }
+}
+
+// A while of changes, and a while without.
+void adapt(void*) {
+  Draw draw(48271);
+  while (true) {
+    begin_or_end_adapting(true);
+    for (unsigned left = draw.below(400); left > 0; --left) {
+      const unsigned whose = draw.below(kWorkers + 1);
+      Thread& thread = whose == kWorkers ? adapter : workers[whose].thread;
+      const auto now = static_cast<std::int8_t>(draw.below(12));
+      robosync_kernel.set_priority(thread, {now, thread.priority().base});
+      check_order();
+      ++changes;
+      if (draw.below(4) == 0)
+        robosync_kernel.sleep_until(robosync_kernel.now() + kTick * draw.of_any_size(6));
+    }
+    begin_or_end_adapting(false);
+    robosync_kernel.sleep_until(robosync_kernel.now() + kTick * draw.below(500));
   }
 }
 
@@ -246,6 +313,8 @@ void conclude(void*) {
   robosync_kernel.sleep_until(Time{seconds()} * 1'000'000);
   print_number(decisions);
   semihosting::print(" decisions compared, ");
+  print_number(changes);
+  semihosting::print(" changes of priority, ");
   print_number(interrupts);
   semihosting::print(" interrupts at ");
   print_number(places());
@@ -270,6 +339,11 @@ bool start() {
     spec.stack = workers[i].stack;
     if (!robosync_kernel.add(workers[i].thread, spec)) return false;
   }
+  spec.category = Category::processing;
+  spec.priority = 5;
+  spec.entry = adapt;
+  spec.stack = adapter_stack;
+  if (!robosync_kernel.add(adapter, spec)) return false;
   spec.category = Category::safety;
   spec.entry = conclude;
   spec.stack = conclusion_stack;
@@ -280,12 +354,14 @@ bool start() {
 
 extern "C" {
 
-const robosync::port::Context* __real_robosync_switch(Kernel& kernel);  // NOLINT: --wrap
-const robosync::port::Context* __wrap_robosync_switch(Kernel& kernel);  // NOLINT
+const robosync::port::Context* __real_robosync_switch(std::uint32_t* sp,  // NOLINT: --wrap
+                                                      Kernel& kernel);
+const robosync::port::Context* __wrap_robosync_switch(std::uint32_t* sp, Kernel& kernel);  // NOLINT
 
 // The context switch, and then the comparison, unless an interrupt has already asked for another.
-const robosync::port::Context* __wrap_robosync_switch(Kernel& kernel) {  // NOLINT
-  const robosync::port::Context* const next = __real_robosync_switch(kernel);
+const robosync::port::Context* __wrap_robosync_switch(std::uint32_t* sp,
+                                                      Kernel& kernel) {  // NOLINT
+  const robosync::port::Context* const next = __real_robosync_switch(sp, kernel);
   const auto lock = kernel.lock();
   if (!switch_is_pending()) compare_decision();
   return next;
