@@ -118,28 +118,52 @@ def kernel_figures_of(marks):
     }
 
 
-def lock_out(elf, marks):
-    """The most instructions in a row with BASEPRI raised: how long an interrupt may be held off."""
-    raising = set(basepri_instructions(elf, "BASEPRI_MAX"))
-    longest, depth, since = 0, 0, 0
+KERNEL_LEVEL = 0x40  # core::kKernelPriority: what a Lock holds off; a SwitchLock, nothing but the switch
+
+
+def lock_out(raised, marks):
+    """The most instructions in a row with BASEPRI at the kernel's level: how long an interrupt may be
+    held off. `raised`: raised_levels()."""
+    longest, levels, since = 0, [], 0
     for name, count in marks.all:
         if not name.startswith("basepri"):
             continue
-        up = name in raising or depth == 0  # OnlyLock writes BASEPRI itself, and is never inside
-        if up and depth == 0:
+        held = KERNEL_LEVEL in levels
+        if name in raised:
+            levels.append(raised[name])
+        elif levels:
+            levels.pop()
+        else:
+            levels.append(KERNEL_LEVEL)  # OnlyLock writes BASEPRI itself, and is never inside
+        if not held and KERNEL_LEVEL in levels:
             since = count
-        depth += 1 if up else -1
-        if depth == 0:
+        elif held and KERNEL_LEVEL not in levels:
             longest = max(longest, count - since)
     return longest
 
 
-def basepri_instructions(elf, register="BASEPRI"):
-    """{name: address} of the instructions that write BASEPRI, or only those that raise it."""
-    listing = subprocess.run(["arm-none-eabi-objdump", "-d", str(elf)], check=True, text=True,
-                             stdout=subprocess.PIPE).stdout
-    found = re.findall(rf"^\s*([0-9a-f]+):.*\tmsr\t{register}", listing, re.M)
+def listing_of(elf):
+    return subprocess.run(["arm-none-eabi-objdump", "-d", str(elf)], check=True, text=True,
+                          stdout=subprocess.PIPE).stdout
+
+
+def basepri_instructions(elf):
+    """{name: address} of the instructions that write BASEPRI."""
+    found = re.findall(r"^\s*([0-9a-f]+):.*\tmsr\tBASEPRI", listing_of(elf), re.M)
     return {f"basepri {address}": int(address, 16) for address in found}
+
+
+def raised_levels(elf):
+    """{name: level} of the instructions that raise BASEPRI: what was last moved into their register."""
+    levels, moved = {}, {}
+    for line in listing_of(elf).splitlines():
+        if move := re.search(r"\tmov[sw.]*\t(\w+), #(\d+)", line):
+            moved[move[1]] = int(move[2])
+        elif raises := re.match(r"\s*([0-9a-f]+):.*\tmsr\tBASEPRI_MAX, (\w+)", line):
+            levels[f"basepri {raises[1]}"] = moved[raises[2]]
+    if not set(levels.values()) <= {KERNEL_LEVEL, 0xFF}:
+        raise BenchError(f"BASEPRI is raised to levels that are none: {levels}")
+    return levels
 
 
 def kernel_figures():
@@ -156,11 +180,12 @@ def kernel_figures():
     parts = marks.parts("mark_measure", "mark_measured")
     [all_due] = marks.parts("mark_wake_all", "mark_all_woken")
     few, *_, many = map(kernel_figures_of, parts)
+    raised = raised_levels(elf)
     return {
         **{f"kernel/{name}": (value, "insn") for name, value in many.items()},
         "kernel/growth_to_64_threads": (max(many[name] - few[name] for name in many), "insn"),
-        "kernel/lock_out": (max(lock_out(elf, part) for part in parts), "insn"),
-        "kernel/lock_out_all_due": (lock_out(elf, all_due), "insn"),
+        "kernel/lock_out": (max(lock_out(raised, part) for part in parts), "insn"),
+        "kernel/lock_out_all_due": (lock_out(raised, all_due), "insn"),
         "kernel/tcb": (symbols(elf)["size_tcb"], "B"),
     }
 

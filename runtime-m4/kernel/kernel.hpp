@@ -57,7 +57,9 @@ public:
   void sleep_until(Time deadline) { wait_until(0, deadline); }
   // Sets events of a thread and lets it run if it waits for one of them.  [any]
   void signal(Thread& thread, Events events);
-  // Stops a thread for good (fault, or its entry returned); it is never run again.  [any]
+  // Stops a thread for good (fault, or its entry returned); it is never run again. From a handler
+  // only the running thread, and not one that holds a SwitchLock: the timers would be in the midst
+  // of a change.  [thread; handlers of a thread's own faults and calls]
   void stop(Thread& thread);
   // From now on `stops` of `watcher` are signalled whenever a thread is stopped, and `reports`
   // whenever one without privileges makes the call `report`.  [init, thread]
@@ -100,9 +102,10 @@ public:
   // --- for the port ---
 
   // The tick interrupt: `elapsed` ticks have passed, none of them beyond next_wake().
+  // Nothing preempts it but interrupts of the kernel's level and above, and it preempts no switch.
   void on_tick(std::uint32_t elapsed = 1) {
-    ticks_ += elapsed;
-    if (timers_.has_work(static_cast<std::uint32_t>(ticks_))) wake_due();
+    pass(elapsed);
+    if (timers_.has_work(tick_)) wake_due();
   }
   // Ticks until on_tick() may have to wake a thread, at least 1; 0 when no thread sleeps.
   std::uint32_t ticks_to_next_wake() const;
@@ -146,6 +149,7 @@ private:
 
   Events wait_for(Events mask);
   Events wait_until(Events mask, Time deadline);
+  [[gnu::always_inline]] bool block_until(Thread& thread, Events mask, Time deadline);
   bool arm(Thread& thread, Time deadline);
   void disarm(Thread& thread);
   void block(Thread& thread, Events mask);
@@ -154,6 +158,24 @@ private:
   void make_ready(Thread& thread);
   void make_unready(Thread& thread);
   void wake_due();
+  // One word changes, so that an interrupt which asks for the time finds it right; two under a
+  // lock.
+  void pass(std::uint32_t ticks) {
+    const std::uint32_t next = tick_ + ticks;
+    if (next < ticks) [[unlikely]] {
+      port::OnlyLock lock(machine_);
+      tick_ = next;
+      ++eras_;
+      return;
+    }
+    tick_ = next;
+  }
+  // Under a SwitchLock. In two multiplications, where one of 64 bits takes three times as long.
+  Time time() const {
+    constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);
+    const std::uint32_t upper = eras_ * kTickLength;
+    return Time{tick_} * kTickLength + (Time{upper} << 32U);
+  }
   void shift_ranks(unsigned from);
   static constexpr unsigned index(Category category) { return static_cast<unsigned>(category); }
   [[gnu::cold]] void acquire_another(Mutex& mutex);
@@ -172,7 +194,8 @@ private:
   std::array<std::uint8_t, kCategories> highest_of_;  // rank of the highest thread of each category
   Mutex* held_ = nullptr;                             // the latest of those that are held
   std::uint8_t ceiling_ = kIdleRank;                  // … and the highest of their ceilings
-  std::uint64_t ticks_ = 0;
+  std::uint32_t tick_ = 0;                            // wraps …
+  std::uint32_t eras_ = 0;                            // … and so often it did
   TimerQueue timers_;
   Thread* watcher_ = nullptr;
   Events stop_events_ = 0;

@@ -87,7 +87,7 @@ Thread::State Kernel::state(const Thread& thread) const {
 
 std::uint32_t Kernel::ticks_to_next_wake() const {
   if (timers_.empty()) return 0;
-  return timers_.next_work() - static_cast<std::uint32_t>(ticks_);
+  return timers_.next_work() - tick_;
 }
 
 std::size_t Thread::stack_used() const {

@@ -146,6 +146,20 @@ TEST_CASE("a sleep beyond the reach of the timer lasts to its end") {
   CHECK(rig.log == "720000");
 }
 
+TEST_CASE("time goes on when the count of ticks wraps") {
+  Rig rig;
+  const Time wrap = (Time{1} << 32) * kTick;
+  rig.add("sleeper", Category::behavior, 1, [&] {
+    for (const Time due : {wrap - kTick, wrap, wrap + 3 * kTick, 2 * wrap + kTick}) {
+      rig.kernel.sleep_until(due);
+      CHECK(rig.kernel.now() == due);
+    }
+    rig.note("done");
+  });
+  rig.kernel.run();
+  CHECK(rig.log == "done");
+}
+
 TEST_CASE("an event ends a timed wait, and its deadline does not strike later") {
   Rig rig;
   auto& waiter = rig.add("waiter", Category::behavior, 9, [&] {

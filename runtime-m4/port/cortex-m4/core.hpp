@@ -56,7 +56,8 @@ inline constexpr std::uint32_t kMpuCode = 6U << 24 | kMpuNormal;  // read and ex
 // Interrupt priorities, the lower number the more urgent. Everything from kKernelPriority on is
 // held off by the kernel's critical sections and may call the kernel; what is more urgent is never
 // held off and must not call it. All interrupts of the kernel's level have the same priority, so
-// they do not nest.
+// they do not nest. The switch and the tick have the lowest there is: neither preempts the other,
+// and neither delays an interrupt.
 inline constexpr std::uint32_t kKernelPriority = 0x40;
 inline constexpr std::uint32_t kSwitchPriority = 0xFF;
 
@@ -64,7 +65,7 @@ inline constexpr std::uint32_t kSwitchPriority = 0xFF;
 // Machine::run().
 [[gnu::always_inline]] inline void prepare() {
   reg(kCpacr) = 0xFU << 20;
-  reg(kShpr3) = (kKernelPriority << 24) | (kSwitchPriority << 16);
+  reg(kShpr3) = (kSwitchPriority << 24) | (kSwitchPriority << 16);
   asm volatile("msr basepri, %0\n\tdsb\n\tisb" ::"r"(kKernelPriority) : "memory");
 }
 

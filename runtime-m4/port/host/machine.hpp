@@ -111,5 +111,6 @@ private:
 // Straight to the kernel: there are no privileges.
 std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t argument);
 using OnlyLock = Lock;
+using SwitchLock = Lock;  // there are no interrupts
 
 }  // namespace robosync::port
