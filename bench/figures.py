@@ -142,6 +142,18 @@ def lock_out(raised, marks):
     return longest
 
 
+def idle_figures_of(marks):
+    """A second in which no thread has anything to do: how often the core wakes, and what it executes;
+    and the longest stretch with all interrupts held off, around the sleep."""
+    [second] = marks.parts("mark_idle", "mark_idled")
+    return {
+        "kernel/idle_wakes": (sum(name == "robosync_count_sleep" for name, _ in second.all), "1/s"),
+        "kernel/idle_second": (marks.spans("mark_idle", "mark_idled")[0], "insn"),
+        "kernel/idle_lock_out": (max(marks.spans("robosync_idle_masks", "robosync_idle_unmasks")),
+                                 "insn"),
+    }
+
+
 def listing_of(elf):
     return subprocess.run(["arm-none-eabi-objdump", "-d", str(elf)], check=True, text=True,
                           stdout=subprocess.PIPE).stdout
@@ -171,7 +183,8 @@ def kernel_figures():
     there were 6."""
     elf = BUILT / "bench_kernel"
     places = {name: symbols(elf)[name]
-              for name in ("SysTick_Handler", "PendSV_Handler", "PendSV_Open_Handler")}
+              for name in ("SysTick_Handler", "PendSV_Handler", "PendSV_Open_Handler",
+                           "robosync_count_sleep", "robosync_idle_masks", "robosync_idle_unmasks")}
     returns = return_instructions(elf, "PendSV_Handler")
     if len(returns) != 2:
         raise BenchError(f"PendSV_Handler returns at {len(returns)} places")
@@ -187,6 +200,7 @@ def kernel_figures():
         "kernel/lock_out": (max(lock_out(raised, part) for part in parts), "insn"),
         "kernel/set_priority": (max(marks.spans("mark_set_priority", "mark_priority_set")), "insn"),
         "kernel/lock_out_all_due": (lock_out(raised, all_due), "insn"),
+        **idle_figures_of(marks),
         "kernel/tcb": (symbols(elf)["size_tcb"], "B"),
     }
 

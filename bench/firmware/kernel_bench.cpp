@@ -20,7 +20,7 @@ void bench_interrupt();
 
 namespace robosync::port::hooks {
 
-const std::uint32_t kCoreHz = 25'000'000;
+const std::uint32_t kTickCounts = 25'000;
 void thread_faulted(kernel::Thread&, const link::Fault&) {
   bench::leave(false);
 }
@@ -215,6 +215,13 @@ void change_priority() {
   }
 }
 
+// No thread has anything to do but the one that waits up to a second each time.
+[[gnu::noinline]] void idle() {
+  BENCH_MARK(idle);
+  robosync_kernel.sleep_until(robosync_kernel.now() + kernel::milliseconds(1000));
+  BENCH_MARK(idled);
+}
+
 // All sleepers are due at one tick.
 void wake_all() {
   common_deadline = robosync_kernel.now() + kernel::milliseconds(20);
@@ -234,6 +241,7 @@ void measure_with(unsigned threads) {
 
 void run_low(void*) {
   first_sleeper = used;
+  idle();
   for (const unsigned threads : {6U, 16U, 64U})
     measure_with(threads);
   wake_all();

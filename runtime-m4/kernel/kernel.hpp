@@ -112,14 +112,28 @@ public:
 
   // --- for the port ---
 
-  // The tick interrupt: `elapsed` ticks have passed, none of them beyond next_wake().
-  // Nothing preempts it but interrupts of the kernel's level and above, and it preempts no switch.
-  void on_tick(std::uint32_t elapsed = 1) {
-    pass(elapsed);
+  // The tick interrupt: so many ticks have passed, be it none; wakes who is due. Nothing preempts
+  // it but interrupts of the kernel's level and above, and it preempts no switch.
+  void on_tick(std::uint32_t ticks) {
+    pass(ticks);
     if (timers_.has_work(tick_)) wake_due();
+  }
+  // The same without waking anybody: on_tick() must follow before a thread runs. One word changes,
+  // so that an interrupt which asks for the time finds it right; two change under a lock.
+  void pass(std::uint32_t ticks) {
+    const std::uint32_t next = tick_ + ticks;
+    if (next < ticks) [[unlikely]] {
+      port::OnlyLock lock(machine_);
+      tick_ = next;
+      ++eras_;
+      return;
+    }
+    tick_ = next;
   }
   // Ticks until on_tick() may have to wake a thread, at least 1; 0 when no thread sleeps.
   std::uint32_t ticks_to_next_wake() const;
+  // … whether one sleeps or not: found at once, and perhaps for nothing.
+  std::uint32_t ticks_to_next_work() const { return timers_.next_work() - tick_; }
 
   // The context switch: takes the highest ready thread as the running one, unless the holder of a
   // mutex stands at its ceiling. Interrupts may come in between: after `ready_` is read they
@@ -169,18 +183,6 @@ private:
   void make_ready(Thread& thread);
   void make_unready(Thread& thread);
   void wake_due();
-  // One word changes, so that an interrupt which asks for the time finds it right; two under a
-  // lock.
-  void pass(std::uint32_t ticks) {
-    const std::uint32_t next = tick_ + ticks;
-    if (next < ticks) [[unlikely]] {
-      port::OnlyLock lock(machine_);
-      tick_ = next;
-      ++eras_;
-      return;
-    }
-    tick_ = next;
-  }
   // Under a SwitchLock. In two multiplications, where one of 64 bits takes three times as long.
   Time time() const {
     constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);

@@ -1,5 +1,5 @@
-// Which threads there are: creation and removal. Bounded: a change moves at most kMaxThreads places.
-// Built for size; what is in a hurry stands in kernel.cpp.
+// Which threads there are: creation and removal. Bounded: a change moves at most kMaxThreads
+// places. Built for size; what is in a hurry stands in kernel.cpp.
 #include <algorithm>
 
 #include "runtime-m4/kernel/kernel.hpp"
@@ -77,7 +77,7 @@ std::uint32_t Kernel::run_time(const Thread& thread) const {
 
 std::uint32_t Kernel::ticks_to_next_wake() const {
   if (timers_.empty()) return 0;
-  return timers_.next_work() - tick_;
+  return ticks_to_next_work();
 }
 
 std::size_t Thread::stack_used() const {

@@ -125,15 +125,18 @@ bool switch_is_pending() {
 bool switch_is_active() {
   return (core::reg(core::kShcsr) & 1U << 10) != 0;
 }
-// Then it may be that a deadline has come, and that who waited for it is still to be woken.
 bool tick_is_active() {
   return (core::reg(core::kShcsr) & 1U << 11) != 0;
+}
+// Then it may be that a deadline has come, and that who waited for it is still to be woken.
+bool tick_is_due() {
+  return tick_is_active() || (core::reg(core::kIcsr) & core::kIcsrSysTickSet) != 0;
 }
 
 // Has it been signalled what it waits for, or is its time over? By the book, not by the kernel.
 bool can_surely_run(const Worker& worker) {
   return !worker.waits || (worker.signalled & worker.wanted) != 0 ||
-         (worker.deadline <= robosync_kernel.now() && !tick_is_active());
+         (worker.deadline <= robosync_kernel.now() && !tick_is_due());
 }
 
 // False between taking or giving back a mutex, and noting it.
