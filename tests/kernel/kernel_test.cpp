@@ -146,6 +146,22 @@ TEST_CASE("a sleep beyond the reach of the timer lasts to its end") {
   CHECK(rig.log == "720000");
 }
 
+TEST_CASE("ticks that are counted late, many at once, wake all who were due") {
+  Rig rig;
+  for (const auto& [name, due] : {std::pair{"a", 1}, {"b", 40}, {"c", 33}, {"d", 2000}, {"e", 60}})
+    rig.add(name, Category::behavior, 1, [&rig, due = due, name = name] {
+      rig.kernel.sleep_until(Time(due) * kTick);
+      rig.note(name + std::to_string(rig.kernel.now() / kTick));
+    });
+  rig.kernel.machine().run_until(0);
+  rig.kernel.on_tick(50);
+  rig.kernel.on_tick(0);
+  rig.kernel.machine().run_until(0);
+  CHECK(rig.log == "a50 b50 c50");
+  rig.kernel.run();
+  CHECK(rig.log == "a50 b50 c50 e60 d2000");
+}
+
 TEST_CASE("time goes on when the count of ticks wraps") {
   Rig rig;
   const Time wrap = (Time{1} << 32) * kTick;
