@@ -199,6 +199,8 @@ def kernel_figures():
         "kernel/growth_to_64_threads": (max(many[name] - few[name] for name in many), "insn"),
         "kernel/lock_out": (max(lock_out(raised, part) for part in parts), "insn"),
         "kernel/set_priority": (max(marks.spans("mark_set_priority", "mark_priority_set")), "insn"),
+        "kernel/lock_out_add": (max(lock_out(raised, part)
+                                    for part in marks.parts("mark_add", "mark_added")), "insn"),
         "kernel/lock_out_all_due": (lock_out(raised, all_due), "insn"),
         **idle_figures_of(marks),
         "kernel/tcb": (symbols(elf)["size_tcb"], "B"),

@@ -232,9 +232,11 @@ void wake_all() {
   BENCH_MARK(all_woken);
 }
 
-void measure_with(unsigned threads) {
+[[gnu::noinline]] void measure_with(unsigned threads) {
+  BENCH_MARK(add);
   while (used < threads)
     add("sleeper", Category::sensor, 1, sleep_forever);
+  BENCH_MARK(added);
   robosync_kernel.sleep_until(robosync_kernel.now() + kernel::milliseconds(10));
   measure();
 }

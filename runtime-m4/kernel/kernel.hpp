@@ -189,7 +189,11 @@ private:
     const std::uint32_t upper = eras_ * kTickLength;
     return Time{tick_} * kTickLength + (Time{upper} << 32U);
   }
-  void shift_ranks(unsigned from);
+  void enter(Thread& thread);
+  void leave(const Thread& thread);
+  void rise(const Thread& thread);
+  void sink_below(const Thread& thread, std::int32_t standing);
+  void follow_ranks();
   static constexpr unsigned index(Category category) { return static_cast<unsigned>(category); }
   [[gnu::cold]] void acquire_another(Mutex& mutex);
   [[gnu::cold]] void release_one(Mutex& mutex);

@@ -1,36 +1,56 @@
 // The order of the threads, kept: ranks when a thread comes or goes, and when its priority changes.
-// Who outranks whom: scheduler.hpp. The choice of who runs is Kernel::select_next().
+// All of it is done by exchanges of neighbours, each under a Lock of its own, so that interrupts
+// are held off for the length of one: a thread comes in at the bottom, and goes from there. Who
+// outranks whom: scheduler.hpp. The choice of who runs is Kernel::select_next().
 #include "runtime-m4/kernel/scheduler.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "runtime-m4/kernel/kernel.hpp"
 
 namespace robosync::kernel {
 
-// Under a Lock, from add() and remove(): all from `from` on have moved.
-void Kernel::shift_ranks(unsigned from) {
-  for (unsigned rank = from; rank < count_; ++rank)
-    by_rank_[rank]->set_rank(rank, ready_);
-  highest_of_.fill(kIdleRank);
-  for (unsigned rank = count_; rank-- > 0;)
-    highest_of_[index(by_rank_[rank]->category_)] = static_cast<std::uint8_t>(rank);
-  ceiling_ = find_ceiling();
-  if (running_rank_ != kNoneRuns) running_rank_ = rank_of_running();
+// The thread becomes the lowest of all. Under a Lock.
+void Kernel::enter(Thread& thread) {
+  by_rank_[count_] = &thread;
+  thread.set_rank(count_, ready_);
+  std::uint8_t& highest = highest_of_[index(thread.category_)];
+  highest = std::min(highest, count_);
+  ++count_;
+  follow_ranks();
+}
+
+// The lowest of all goes; it is not ready. Under a Lock.
+void Kernel::leave(const Thread& thread) {
+  --count_;
+  by_rank_[count_] = &idle_;
+  std::uint8_t& highest = highest_of_[index(thread.category_)];
+  if (highest == count_) highest = kIdleRank;
+  follow_ranks();
+}
+
+void Kernel::rise(const Thread& thread) {
+  const std::int32_t mine = thread.standing();
+  unsigned rank = thread.rank_;
+  while (rank > 0 && by_rank_[rank - 1]->standing() < mine)
+    swap_with_next(--rank);
+}
+
+void Kernel::sink_below(const Thread& thread, std::int32_t standing) {
+  unsigned rank = thread.rank_;
+  while (rank + 1 < count_ && by_rank_[rank + 1]->standing() >= standing)
+    swap_with_next(rank++);
 }
 
 void Kernel::set_priority(Thread& thread, Priority priority) {
   const bool rises = priority > thread.priority_;
   thread.priority_ = priority;
   if (thread.state_ == Thread::State::absent) return;
-  const std::int32_t mine = thread.standing();
-  unsigned rank = thread.rank_;
   if (rises) {
-    while (rank > 0 && by_rank_[rank - 1]->standing() < mine)
-      swap_with_next(--rank);
+    rise(thread);
   } else {
-    while (rank + 1 < count_ && by_rank_[rank + 1]->standing() >= mine)
-      swap_with_next(rank++);
+    sink_below(thread, thread.standing());
   }
 }
 
@@ -63,8 +83,13 @@ void Kernel::move_highest(const Thread& sunk, const Thread& risen) {
     if (upper == risen.rank_) upper = sunk.rank_;
     std::uint8_t& lower = highest_of_[index(risen.category_)];
     if (lower == sunk.rank_) lower = risen.rank_;
-    if (held_ != nullptr) ceiling_ = find_ceiling();
   }
+  follow_ranks();
+}
+
+// After a change of ranks: so may ceilings have changed, and the rank of who runs.
+void Kernel::follow_ranks() {
+  if (held_ != nullptr) ceiling_ = find_ceiling();
   if (running_rank_ != kNoneRuns) running_rank_ = rank_of_running();
 }
 

@@ -44,6 +44,7 @@ constexpr std::int32_t standing(Category category, Priority priority) {
 constexpr std::int32_t standing(Category category, std::int8_t priority) {
   return standing(category, Priority{priority, priority});
 }
+inline constexpr std::int32_t kBelowAll = INT32_MIN;
 
 // The threads that can run: one bit each by rank, the highest rank in the top bit of the first
 // word, so that one thread's bit is one load, one OR, one store. Two words hold 64 threads; where
@@ -74,26 +75,8 @@ public:
     return highest(kWords - 1);
   }
 
-  // A thread comes in at `rank`: it and all below move down one place. The new place is not ready.
-  constexpr void open_place(unsigned rank) {
-    const unsigned first = rank / kBits;
-    for (unsigned w = kWords - 1; w > first; --w)
-      words_[w] = words_[w] >> 1 | words_[w - 1] << (kBits - 1);
-    words_[first] = (words_[first] & ~from(rank)) | (words_[first] & from(rank)) >> 1;
-  }
-  // The thread at `rank` goes: all below move up one place.
-  constexpr void close_place(unsigned rank) {
-    const unsigned first = rank / kBits;
-    words_[first] = (words_[first] & ~from(rank)) | (words_[first] & from(rank) >> 1) << 1;
-    for (unsigned w = first + 1; w < kWords; ++w) {
-      words_[w - 1] |= words_[w] >> (kBits - 1);
-      words_[w] <<= 1;
-    }
-  }
-
 private:
   static constexpr unsigned kBits = 32;
-  static constexpr std::uint32_t from(unsigned rank) { return ~std::uint32_t{0} >> rank % kBits; }
   constexpr unsigned highest(unsigned w) const {
     return w * kBits + static_cast<unsigned>(std::countl_zero(words_[w]));
   }
