@@ -119,28 +119,64 @@ def kernel_figures_of(marks):
     }
 
 
-def lock_out(elf, marks):
-    """The most instructions in a row with BASEPRI raised: how long an interrupt may be held off."""
-    raising = set(basepri_instructions(elf, "BASEPRI_MAX"))
-    longest, depth, since = 0, 0, 0
+KERNEL_LEVEL = 0x40  # core::kKernelPriority: what a Lock holds off; a SwitchLock, nothing but the switch
+
+
+def lock_out(raised, marks):
+    """The most instructions in a row with BASEPRI at the kernel's level: how long an interrupt may be
+    held off. `raised`: raised_levels()."""
+    longest, levels, since = 0, [], 0
     for name, count in marks.all:
         if not name.startswith("basepri"):
             continue
-        up = name in raising or depth == 0  # OnlyLock writes BASEPRI itself, and is never inside
-        if up and depth == 0:
+        held = KERNEL_LEVEL in levels
+        if name in raised:
+            levels.append(raised[name])
+        elif levels:
+            levels.pop()
+        else:
+            levels.append(KERNEL_LEVEL)  # OnlyLock writes BASEPRI itself, and is never inside
+        if not held and KERNEL_LEVEL in levels:
             since = count
-        depth += 1 if up else -1
-        if depth == 0:
+        elif held and KERNEL_LEVEL not in levels:
             longest = max(longest, count - since)
     return longest
 
 
-def basepri_instructions(elf, register="BASEPRI"):
-    """{name: address} of the instructions that write BASEPRI, or only those that raise it."""
-    listing = subprocess.run(["arm-none-eabi-objdump", "-d", str(elf)], check=True, text=True,
-                             stdout=subprocess.PIPE).stdout
-    found = re.findall(rf"^\s*([0-9a-f]+):.*\tmsr\t{register}", listing, re.M)
+def idle_figures_of(marks):
+    """A second in which no thread has anything to do: how often the core wakes, and what it executes;
+    and the longest stretch with all interrupts held off, around the sleep."""
+    [second] = marks.parts("mark_idle", "mark_idled")
+    return {
+        "kernel/idle_wakes": (sum(name == "robosync_count_sleep" for name, _ in second.all), "1/s"),
+        "kernel/idle_second": (marks.spans("mark_idle", "mark_idled")[0], "insn"),
+        "kernel/idle_lock_out": (max(marks.spans("robosync_idle_masks", "robosync_idle_unmasks")),
+                                 "insn"),
+    }
+
+
+def listing_of(elf):
+    return subprocess.run(["arm-none-eabi-objdump", "-d", str(elf)], check=True, text=True,
+                          stdout=subprocess.PIPE).stdout
+
+
+def basepri_instructions(elf):
+    """{name: address} of the instructions that write BASEPRI."""
+    found = re.findall(r"^\s*([0-9a-f]+):.*\tmsr\tBASEPRI", listing_of(elf), re.M)
     return {f"basepri {address}": int(address, 16) for address in found}
+
+
+def raised_levels(elf):
+    """{name: level} of the instructions that raise BASEPRI: what was last moved into their register."""
+    levels, moved = {}, {}
+    for line in listing_of(elf).splitlines():
+        if move := re.search(r"\tmov[sw.]*\t(\w+), #(\d+)", line):
+            moved[move[1]] = int(move[2])
+        elif raises := re.match(r"\s*([0-9a-f]+):.*\tmsr\tBASEPRI_MAX, (\w+)", line):
+            levels[f"basepri {raises[1]}"] = moved[raises[2]]
+    if not set(levels.values()) <= {KERNEL_LEVEL, 0xFF}:
+        raise BenchError(f"BASEPRI is raised to levels that are none: {levels}")
+    return levels
 
 
 def kernel_figures():
@@ -148,7 +184,8 @@ def kernel_figures():
     there were 7."""
     elf = BUILT / "bench_kernel"
     places = {name: symbols(elf)[name]
-              for name in ("SysTick_Handler", "PendSV_Handler", "PendSV_Open_Handler")}
+              for name in ("SysTick_Handler", "PendSV_Handler", "PendSV_Open_Handler",
+                           "robosync_count_sleep", "robosync_idle_masks", "robosync_idle_unmasks")}
     returns = return_instructions(elf, "PendSV_Handler")
     if len(returns) != 2:
         raise BenchError(f"PendSV_Handler returns at {len(returns)} places")
@@ -157,12 +194,16 @@ def kernel_figures():
     parts = marks.parts("mark_measure", "mark_measured")
     [all_due] = marks.parts("mark_wake_all", "mark_all_woken")
     few, *_, many = map(kernel_figures_of, parts)
+    raised = raised_levels(elf)
     return {
         **{f"kernel/{name}": (value, "insn") for name, value in many.items()},
         "kernel/growth_to_64_threads": (max(many[name] - few[name] for name in many), "insn"),
-        "kernel/lock_out": (max(lock_out(elf, part) for part in parts), "insn"),
+        "kernel/lock_out": (max(lock_out(raised, part) for part in parts), "insn"),
         "kernel/set_priority": (max(marks.spans("mark_set_priority", "mark_priority_set")), "insn"),
-        "kernel/lock_out_all_due": (lock_out(elf, all_due), "insn"),
+        "kernel/lock_out_add": (max(lock_out(raised, part)
+                                    for part in marks.parts("mark_add", "mark_added")), "insn"),
+        "kernel/lock_out_all_due": (lock_out(raised, all_due), "insn"),
+        **idle_figures_of(marks),
         "kernel/tcb": (symbols(elf)["size_tcb"], "B"),
     }
 

@@ -22,7 +22,7 @@ void bench_interrupt();
 
 namespace robosync::port::hooks {
 
-const std::uint32_t kCoreHz = 25'000'000;
+const std::uint32_t kTickCounts = 25'000;
 void thread_faulted(kernel::Thread&, const link::Fault&) {
   bench::leave(false);
 }
@@ -249,6 +249,13 @@ void change_priority() {
   }
 }
 
+// No thread has anything to do but the one that waits up to a second each time.
+[[gnu::noinline]] void idle() {
+  BENCH_MARK(idle);
+  robosync_kernel.sleep_until(robosync_kernel.now() + kernel::milliseconds(1000));
+  BENCH_MARK(idled);
+}
+
 // All sleepers are due at one tick.
 void wake_all() {
   common_deadline = robosync_kernel.now() + kernel::milliseconds(20);
@@ -259,15 +266,18 @@ void wake_all() {
   BENCH_MARK(all_woken);
 }
 
-void measure_with(unsigned threads) {
+[[gnu::noinline]] void measure_with(unsigned threads) {
+  BENCH_MARK(add);
   while (used < threads)
     add("sleeper", Category::sensor, 1, sleep_forever);
+  BENCH_MARK(added);
   robosync_kernel.sleep_until(robosync_kernel.now() + kernel::milliseconds(10));
   measure();
 }
 
 void run_low(void*) {
   first_sleeper = used;
+  idle();
   for (const unsigned threads : {7U, 16U, 64U})
     measure_with(threads);
   wake_all();

@@ -49,8 +49,12 @@ struct Vectors {
 void reset() {
   *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88) |= 0xF00000;  // CPACR: the FPU may be used
   // As the board's reset does: the kernel's interrupts are held off until it runs.
-  *reinterpret_cast<volatile std::uint32_t*>(0xE000ED20) = 0x40FF0000;  // SHPR3: SysTick, PendSV
+  *reinterpret_cast<volatile std::uint32_t*>(0xE000ED20) = 0xFFFF0000;  // SHPR3: SysTick, PendSV
   asm volatile("dsb\n\tisb\n\tmsr basepri, %0" ::"r"(0x40) : "memory");
+  // … and the clock that times threads and counts ticks, timer 1, begins to count down.
+  *reinterpret_cast<volatile std::uint32_t*>(0x40001008) = ~std::uint32_t{0};  // reload
+  *reinterpret_cast<volatile std::uint32_t*>(0x40001004) = ~std::uint32_t{0};  // value
+  *reinterpret_cast<volatile std::uint32_t*>(0x40001000) = 1;                  // control: on
   for (const Handler* init = init_array_begin; init != init_array_end; ++init)
     (*init)();
   main();

@@ -1,8 +1,10 @@
 // Waiting, waking and time: the paths that are in a hurry. bench/ counts their instructions.
 //
 // A thread's bit in the ready set and its events change under a Lock only, so that interrupts see
-// them whole; the one exception is Thread::take(), which is atomic by itself. Every path is
-// bounded: the longest is wake_due() when all threads are due at one tick.
+// them whole; the one exception is Thread::take(), which is atomic by itself. Timers are no
+// business of interrupts: the queue is changed by the tick, which nothing but they can preempt, and
+// by threads under a SwitchLock, which they come through. So a Lock is held for a few instructions
+// only. Every path is bounded: the longest is wake_due() when all threads are due at one tick.
 #include "runtime-m4/kernel/kernel.hpp"
 
 #include <algorithm>
@@ -16,8 +18,8 @@ constexpr std::uint32_t kLongestSleep = 0xFFFF'FFFF;  // microseconds; wait() sl
 }  // namespace
 
 Time Kernel::now() const {
-  port::Lock lock(machine_);
-  return ticks_ * kTick;
+  port::SwitchLock still(machine_);
+  return time();
 }
 
 Events Kernel::wait_for(Events mask) {
@@ -33,18 +35,23 @@ Events Kernel::wait_for(Events mask) {
   return taken;
 }
 
+// False when the deadline is reached already. To arm and to block are one to the tick, which would
+// else make ready what is about to block, for nothing; an interrupt that signals in between is
+// seen by the look under the lock.
+inline bool Kernel::block_until(Thread& thread, Events mask, Time deadline) {
+  port::SwitchLock still(machine_);
+  if (!arm(thread, deadline)) return false;
+  port::Lock lock(machine_);
+  if ((thread.events_ & mask) == 0) block(thread, mask);
+  return true;
+}
+
 Events Kernel::wait_until(Events mask, Time deadline) {
   Thread& self = *running_;
   Events taken = 0;
   bool reached = false;
   do {
-    {
-      port::Lock lock(machine_);
-      if ((self.events_ & mask) == 0) {
-        reached = !arm(self, deadline);
-        if (!reached) block(self, mask);
-      }
-    }
+    if ((self.events_ & mask) == 0) reached = !block_until(self, mask, deadline);
     taken = self.take(mask);
     // The timer is taken back here and not by signal(), whose path it would lengthen. Until then
     // it can do no harm: it would make this thread ready, which it is.
@@ -54,19 +61,18 @@ Events Kernel::wait_until(Events mask, Time deadline) {
 }
 
 void Kernel::disarm(Thread& thread) {
-  port::Lock lock(machine_);
+  port::SwitchLock still(machine_);
   if (thread.armed()) TimerQueue::disarm(thread);
 }
 
-// False when the deadline is reached already.
+// Under a SwitchLock. False when the deadline is reached already.
 bool Kernel::arm(Thread& thread, Time deadline) {
-  const Time time = ticks_ * kTick;
-  if (deadline <= time) return false;
-  const auto sleep = static_cast<std::uint32_t>(std::min<Time>(deadline - time, kLongestSleep));
+  const Time present = time();
+  if (deadline <= present) return false;
+  const auto sleep = static_cast<std::uint32_t>(std::min<Time>(deadline - present, kLongestSleep));
   constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);
   const std::uint32_t ticks = sleep / kTickLength + (sleep % kTickLength != 0 ? 1 : 0);
-  const auto tick = static_cast<std::uint32_t>(ticks_);
-  timers_.arm(thread, tick + ticks, tick);
+  timers_.arm(thread, tick_ + ticks, tick_);
   return true;
 }
 
@@ -119,13 +125,12 @@ void Kernel::report() {
 }
 
 void Kernel::wake_due() {
-  port::Lock lock(machine_);
-  const auto tick = static_cast<std::uint32_t>(ticks_);
-  while (timers_.has_work(tick)) {
+  while (timers_.has_work(tick_)) {
     Timer* due = timers_.collect();
     while (due != nullptr) {
       auto& thread = static_cast<Thread&>(*due);
       due = due->next;
+      port::OnlyLock lock(machine_);  // of its own, so that interrupts come in between
       make_ready(thread);
     }
   }

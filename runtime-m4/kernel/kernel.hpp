@@ -62,7 +62,9 @@ public:
   // nothing is held off for longer however far the thread moves. One caller at a time, and not
   // during add() or remove().  [init, thread]
   void set_priority(Thread& thread, Priority priority);
-  // Stops a thread for good (fault, or its entry returned); it is never run again.  [any]
+  // Stops a thread for good (fault, or its entry returned); it is never run again. From a handler
+  // only the running thread, and not one that holds a SwitchLock: the timers would be in the midst
+  // of a change.  [thread; handlers of a thread's own faults and calls]
   void stop(Thread& thread);
   // From now on `stops` of `watcher` are signalled whenever a thread is stopped, and `reports`
   // whenever one without privileges makes the call `report`.  [init, thread]
@@ -110,13 +112,28 @@ public:
 
   // --- for the port ---
 
-  // The tick interrupt: `elapsed` ticks have passed, none of them beyond next_wake().
-  void on_tick(std::uint32_t elapsed = 1) {
-    ticks_ += elapsed;
-    if (timers_.has_work(static_cast<std::uint32_t>(ticks_))) wake_due();
+  // The tick interrupt: so many ticks have passed, be it none; wakes who is due. Nothing preempts
+  // it but interrupts of the kernel's level and above, and it preempts no switch.
+  void on_tick(std::uint32_t ticks) {
+    pass(ticks);
+    if (timers_.has_work(tick_)) wake_due();
+  }
+  // The same without waking anybody: on_tick() must follow before a thread runs. One word changes,
+  // so that an interrupt which asks for the time finds it right; two change under a lock.
+  void pass(std::uint32_t ticks) {
+    const std::uint32_t next = tick_ + ticks;
+    if (next < ticks) [[unlikely]] {
+      port::OnlyLock lock(machine_);
+      tick_ = next;
+      ++eras_;
+      return;
+    }
+    tick_ = next;
   }
   // Ticks until on_tick() may have to wake a thread, at least 1; 0 when no thread sleeps.
   std::uint32_t ticks_to_next_wake() const;
+  // … whether one sleeps or not: found at once, and perhaps for nothing.
+  std::uint32_t ticks_to_next_work() const { return timers_.next_work() - tick_; }
 
   // The context switch: takes the highest ready thread as the running one, unless the holder of a
   // mutex stands at its ceiling. Interrupts may come in between: after `ready_` is read they
@@ -157,6 +174,7 @@ private:
 
   Events wait_for(Events mask);
   Events wait_until(Events mask, Time deadline);
+  [[gnu::always_inline]] bool block_until(Thread& thread, Events mask, Time deadline);
   bool arm(Thread& thread, Time deadline);
   void disarm(Thread& thread);
   void block(Thread& thread, Events mask);
@@ -165,7 +183,18 @@ private:
   void make_ready(Thread& thread);
   void make_unready(Thread& thread);
   void wake_due();
-  void shift_ranks(unsigned from);
+  // Under a SwitchLock. In two multiplications, where one of 64 bits takes three times as long.
+  Time time() const {
+    constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);
+    const std::uint32_t upper = eras_ * kTickLength;
+    return Time{tick_} * kTickLength + (Time{upper} << 32U);
+  }
+  void enter(Thread& thread);
+  void leave(const Thread& thread);
+  void rise(const Thread& thread);
+  void sink_below(const Thread& thread, Standing standing);
+  void follow_highest();
+  void follow_running();
   static constexpr unsigned index(Category category) { return static_cast<unsigned>(category); }
   [[gnu::cold]] void acquire_another(Mutex& mutex);
   [[gnu::cold]] void release_one(Mutex& mutex);
@@ -174,7 +203,6 @@ private:
   std::uint8_t rank_of_running() const;
   void swap_with_next(unsigned rank);
   void move_highest(const Thread& sunk, const Thread& risen);
-  [[gnu::cold]] void running_moved(bool other_ready);
 
   Thread* running_ = &idle_;                        // stands first: switch.S reads it
   std::array<Thread*, kMaxThreads + 1> by_rank_{};  // the last is idle_
@@ -186,7 +214,8 @@ private:
   std::array<std::uint8_t, kCategories> highest_of_;  // rank of the highest thread of each category
   Mutex* held_ = nullptr;                             // the latest of those that are held
   std::uint8_t ceiling_ = kIdleRank;                  // … and the highest of their ceilings
-  std::uint64_t ticks_ = 0;
+  std::uint32_t tick_ = 0;                            // wraps …
+  std::uint32_t eras_ = 0;                            // … and so often it did
   TimerQueue timers_;
   Thread* watcher_ = nullptr;
   Events stop_events_ = 0;

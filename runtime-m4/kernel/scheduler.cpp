@@ -1,39 +1,59 @@
 // The order of the threads, kept: ranks when a thread comes or goes, and when its priority changes.
-// Who outranks whom: scheduler.hpp. The choice of who runs is Kernel::select_next().
+// All of it is done by exchanges of neighbours, each under a Lock of its own, so that interrupts
+// are held off for the length of one: a thread comes in at the bottom, and goes from there. Who
+// outranks whom: scheduler.hpp. The choice of who runs is Kernel::select_next().
 #include "runtime-m4/kernel/scheduler.hpp"
 
-#include <utility>
+#include <algorithm>
 
 #include "runtime-m4/kernel/kernel.hpp"
 
 namespace robosync::kernel {
 
-// Under a Lock, from add() and remove(): all from `from` on have moved.
-void Kernel::shift_ranks(unsigned from) {
-  for (unsigned rank = from; rank < count_; ++rank)
-    by_rank_[rank]->set_rank(rank, ready_);
-  highest_of_.fill(kIdleRank);
-  for (unsigned rank = count_; rank-- > 0;)
-    highest_of_[index(by_rank_[rank]->category())] = static_cast<std::uint8_t>(rank);
-  ceiling_ = find_ceiling();
-  if (running_rank_ != kNoneRuns) running_rank_ = rank_of_running();
+// The thread becomes the lowest of all. Under a Lock.
+void Kernel::enter(Thread& thread) {
+  by_rank_[count_] = &thread;
+  thread.set_rank(count_, ready_);
+  std::uint8_t& highest = highest_of_[index(thread.category())];
+  highest = std::min(highest, count_);
+  ++count_;
+  follow_highest();
+}
+
+// The lowest of all goes; it is not ready. Under a Lock.
+void Kernel::leave(const Thread& thread) {
+  --count_;
+  by_rank_[count_] = &idle_;
+  std::uint8_t& highest = highest_of_[index(thread.category())];
+  if (highest == count_) highest = kIdleRank;
+  follow_highest();
+}
+
+void Kernel::rise(const Thread& thread) {
+  const Standing mine = thread.standing_;
+  unsigned rank = thread.rank_;
+  while (rank > 0 && by_rank_[rank - 1]->standing_ < mine)
+    swap_with_next(--rank);
+}
+
+void Kernel::sink_below(const Thread& thread, Standing standing) {
+  unsigned rank = thread.rank_;
+  while (rank + 1 < count_ && by_rank_[rank + 1]->standing_ >= standing)
+    swap_with_next(rank++);
 }
 
 void Kernel::set_priority(Thread& thread, Priority priority) {
   const Standing before = thread.standing_;
-  const Standing mine = standing(thread.category(), priority);
+  const Standing mine = with_priority(before, priority);
   {
     port::Lock lock(machine_);
     thread.set_standing(mine);
   }
   if (thread.state_ == Thread::State::absent) return;
-  unsigned rank = thread.rank_;
   if (mine > before) {
-    while (rank > 0 && by_rank_[rank - 1]->standing_ < mine)
-      swap_with_next(--rank);
+    rise(thread);
   } else {
-    while (rank + 1 < count_ && by_rank_[rank + 1]->standing_ >= mine)
-      swap_with_next(rank++);
+    sink_below(thread, mine);
   }
 }
 
@@ -42,18 +62,22 @@ void Kernel::swap_with_next(unsigned rank) {
   port::Lock lock(machine_);
   Thread& sinks = *by_rank_[rank];
   Thread& rises = *by_rank_[rank + 1];
-  const bool rising_ready = ReadySet::contains(rises.ready_place_);
-  if (ReadySet::contains(sinks.ready_place_) != rising_ready) {
-    ReadySet::toggle(sinks.ready_place_);
-    ReadySet::toggle(rises.ready_place_);
-  }
-  std::swap(sinks.ready_place_, rises.ready_place_);
+  const ReadySet::Place upper = sinks.ready_place_;
+  const ReadySet::Place lower = rises.ready_place_;
+  const bool rising_ready = ReadySet::exchange(upper, lower);
+  sinks.ready_place_ = lower;
+  rises.ready_place_ = upper;
   sinks.rank_ = static_cast<std::uint8_t>(rank + 1);
   rises.rank_ = static_cast<std::uint8_t>(rank);
   by_rank_[rank] = &rises;
   by_rank_[rank + 1] = &sinks;
   if (sinks.category() != rises.category()) move_highest(sinks, rises);
-  if (running_ == &sinks || running_ == &rises) running_moved(rising_ready);
+  if (running_ == &rises) follow_running();
+  if (running_ == &sinks) {
+    follow_running();
+    // The other's turn, if it can run; or that of who holds a mutex whose ceiling this was.
+    if (rising_ready || held_ != nullptr) machine_.request_switch();
+  }
 }
 
 // Two of different categories have changed places: the highest of one may now stand a place lower,
@@ -63,16 +87,19 @@ void Kernel::move_highest(const Thread& sunk, const Thread& risen) {
   if (upper == risen.rank_) upper = sunk.rank_;
   std::uint8_t& lower = highest_of_[index(risen.category())];
   if (lower == sunk.rank_) lower = risen.rank_;
-  ceiling_ = find_ceiling();
+  follow_highest();
 }
 
-// The running thread has changed places with another: with one that can run, it may be its turn;
-// and so it may be the turn of who holds a mutex, if its ceiling was the place.
-void Kernel::running_moved(bool other_ready) {
-  if (running_rank_ == kNoneRuns) return;
-  const std::uint8_t before = running_rank_;
-  running_rank_ = rank_of_running();
-  if (running_rank_ > before && (other_ready || held_ != nullptr)) machine_.request_switch();
+// After a change of the highest of a category: so may the ceiling have changed, and with it the rank
+// of who runs.
+void Kernel::follow_highest() {
+  if (held_ == nullptr) return;
+  ceiling_ = find_ceiling();
+  follow_running();
+}
+
+void Kernel::follow_running() {
+  if (running_rank_ != kNoneRuns) running_rank_ = rank_of_running();
 }
 
 }  // namespace robosync::kernel

@@ -38,11 +38,15 @@ struct Priority {
 //   bits 22–21: 2 safety, 0 system, else 1 | 18–11: now + 128 | 10–3: base + 128 | 2–0: category
 using Standing = std::uint32_t;
 inline constexpr unsigned kStandingBits = 24;
-constexpr Standing standing(Category category, Priority priority) {
-  const unsigned beyond = category == Category::safety ? 2 : category == Category::system ? 0 : 1;
+constexpr Standing with_priority(Standing standing, Priority priority) {
+  constexpr Standing kPriorityBits = 0xFFFF << 3;
   const auto now = static_cast<unsigned>(priority.now + 128);
   const auto base = static_cast<unsigned>(priority.base + 128);
-  return beyond << 21 | now << 11 | base << 3 | static_cast<unsigned>(category);
+  return (standing & ~kPriorityBits) | now << 11 | base << 3;
+}
+constexpr Standing standing(Category category, Priority priority) {
+  const unsigned beyond = category == Category::safety ? 2 : category == Category::system ? 0 : 1;
+  return with_priority(beyond << 21 | static_cast<unsigned>(category), priority);
 }
 constexpr Standing standing(Category category, std::int8_t priority) {
   return standing(category, Priority{priority, priority});
@@ -56,6 +60,7 @@ constexpr Priority priority_of(Standing standing) {
   };
   return {unbiased(standing >> 11), unbiased(standing >> 3)};
 }
+inline constexpr Standing kBelowAll = 0;
 
 // The threads that can run: one bit each by rank, the highest rank in the top bit of the first
 // word, so that one thread's bit is one load, one OR, one store. Two words hold 64 threads; where
@@ -75,7 +80,17 @@ public:
   }
   static constexpr void insert(Place place) { *place.word |= place.bit; }
   static constexpr void erase(Place place) { *place.word &= ~place.bit; }
-  static constexpr void toggle(Place place) { *place.word ^= place.bit; }
+  // Two places change what is there. True if `b` was in the set.
+  static constexpr bool exchange(Place a, Place b) {
+    const std::uint32_t in_a = *a.word & a.bit;
+    const std::uint32_t in_b = *b.word & b.bit;
+    if ((in_a | in_b) == 0) return false;
+    if ((in_a != 0) != (in_b != 0)) {
+      *a.word ^= a.bit;
+      *b.word ^= b.bit;
+    }
+    return in_b != 0;
+  }
   static constexpr bool contains(Place place) { return (*place.word & place.bit) != 0; }
 
   // Highest rank in the set; the number of ranks when it is empty.
@@ -86,26 +101,8 @@ public:
     return highest(kWords - 1);
   }
 
-  // A thread comes in at `rank`: it and all below move down one place. The new place is not ready.
-  constexpr void open_place(unsigned rank) {
-    const unsigned first = rank / kBits;
-    for (unsigned w = kWords - 1; w > first; --w)
-      words_[w] = words_[w] >> 1 | words_[w - 1] << (kBits - 1);
-    words_[first] = (words_[first] & ~from(rank)) | (words_[first] & from(rank)) >> 1;
-  }
-  // The thread at `rank` goes: all below move up one place.
-  constexpr void close_place(unsigned rank) {
-    const unsigned first = rank / kBits;
-    words_[first] = (words_[first] & ~from(rank)) | (words_[first] & from(rank) >> 1) << 1;
-    for (unsigned w = first + 1; w < kWords; ++w) {
-      words_[w - 1] |= words_[w] >> (kBits - 1);
-      words_[w] <<= 1;
-    }
-  }
-
 private:
   static constexpr unsigned kBits = 32;
-  static constexpr std::uint32_t from(unsigned rank) { return ~std::uint32_t{0} >> rank % kBits; }
   constexpr unsigned highest(unsigned w) const {
     return w * kBits + static_cast<unsigned>(std::countl_zero(words_[w]));
   }

@@ -20,35 +20,30 @@ bool Kernel::add(Thread& thread, const ThreadSpec& spec) {
   thread.missed_ = 0;
   machine_.prepare(thread, spec, thread.stack());
 
+  port::SwitchLock still(machine_);  // one change of the order at a time
+  {
+    port::Lock lock(machine_);
+    thread.set_standing(standing(spec.category, priority));
+    enter(thread);
+  }
+  rise(thread);
   port::Lock lock(machine_);
-  thread.set_standing(standing(spec.category, priority));
-  const auto begin = by_rank_.begin();
-  const auto place = std::find_if(begin, begin + count_, [&](const Thread* other) {
-    return other->standing_ < thread.standing_;
-  });
-  const auto rank = static_cast<unsigned>(place - begin);
-  std::move_backward(place, begin + count_, begin + count_ + 1);
-  *place = &thread;
-  ++count_;
-  ready_.open_place(rank);
-  shift_ranks(rank);
   thread.state_ = Thread::State::ready;
   make_ready(thread);
   return true;
 }
 
 void Kernel::remove(Thread& thread) {
-  port::Lock lock(machine_);
+  port::SwitchLock still(machine_);
   if (thread.state_ == Thread::State::absent) return;
-  make_unready(thread);
-  if (watcher_ == &thread) watcher_ = nullptr;
-  const unsigned rank = thread.rank_;
-  const auto place = by_rank_.begin() + rank;
-  std::move(place + 1, by_rank_.begin() + count_, place);
-  --count_;
-  by_rank_[count_] = &idle_;
-  ready_.close_place(rank);
-  shift_ranks(rank);
+  {
+    port::Lock lock(machine_);
+    make_unready(thread);
+    if (watcher_ == &thread) watcher_ = nullptr;
+  }
+  sink_below(thread, kBelowAll);
+  port::Lock lock(machine_);
+  leave(thread);
   thread.state_ = Thread::State::absent;
 }
 
@@ -76,7 +71,7 @@ std::uint32_t Kernel::run_time(const Thread& thread) const {
 
 std::uint32_t Kernel::ticks_to_next_wake() const {
   if (timers_.empty()) return 0;
-  return timers_.next_work() - static_cast<std::uint32_t>(ticks_);
+  return ticks_to_next_work();
 }
 
 std::size_t Thread::stack_used() const {

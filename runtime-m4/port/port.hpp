@@ -19,7 +19,10 @@
 //   class Lock(Machine&)    Critical section, RAII, nests. Keeps out the kernel's own interrupts
 //                           (never those above its level) and holds a requested switch back until
 //                           the outermost one ends.
-//   class OnlyLock(Machine&)  The same, for a thread that holds no Lock; may be cheaper.
+//   class OnlyLock(Machine&)  The same, for who holds no Lock; may be cheaper.
+//   class SwitchLock(Machine&)  The weaker one: no switch and no tick, but interrupts come in.
+//   Inside
+//                           of a Lock, and around one, as well.
 //   class Machine(Kernel&)  The processor a kernel runs on:
 //     usable(spec)                  What a thread can use of its stack: without alignment, guard.
 //     can_run(spec)                 Is its stack as a thread without privileges needs it?

@@ -146,6 +146,36 @@ TEST_CASE("a sleep beyond the reach of the timer lasts to its end") {
   CHECK(rig.log == "720000");
 }
 
+TEST_CASE("ticks that are counted late, many at once, wake all who were due") {
+  Rig rig;
+  for (const auto& [name, due] : {std::pair{"a", 1}, {"b", 40}, {"c", 33}, {"d", 2000}, {"e", 60}})
+    rig.add(name, Category::behavior, 1, [&rig, due = due, name = name] {
+      rig.kernel.sleep_until(Time(due) * kTick);
+      rig.note(name + std::to_string(rig.kernel.now() / kTick));
+    });
+  rig.kernel.machine().run_until(0);
+  rig.kernel.on_tick(50);
+  rig.kernel.on_tick(0);
+  rig.kernel.machine().run_until(0);
+  CHECK(rig.log == "a50 b50 c50");
+  rig.kernel.run();
+  CHECK(rig.log == "a50 b50 c50 e60 d2000");
+}
+
+TEST_CASE("time goes on when the count of ticks wraps") {
+  Rig rig;
+  const Time wrap = (Time{1} << 32) * kTick;
+  rig.add("sleeper", Category::behavior, 1, [&] {
+    for (const Time due : {wrap - kTick, wrap, wrap + 3 * kTick, 2 * wrap + kTick}) {
+      rig.kernel.sleep_until(due);
+      CHECK(rig.kernel.now() == due);
+    }
+    rig.note("done");
+  });
+  rig.kernel.run();
+  CHECK(rig.log == "done");
+}
+
 TEST_CASE("an event ends a timed wait, and its deadline does not strike later") {
   Rig rig;
   auto& waiter = rig.add("waiter", Category::behavior, 9, [&] {

@@ -37,8 +37,8 @@ TEST_CASE("the empty ready set selects idle") {
 
 namespace {
 
-// Are these operations on a ready set the same as on a set of ranks? Each is one of four, and a
-// rank.
+// Are these operations on a ready set the same as on a set of ranks? Each is one of three, and
+// a rank.
 template <unsigned kWords>
 void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
   constexpr unsigned kRanks = kWords * 32;
@@ -47,8 +47,7 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
   std::set<unsigned> model;
   for (const std::uint16_t operation : operations) {
     const unsigned rank = operation % kRanks;
-    std::set<unsigned> moved;
-    switch (operation / kRanks % 4) {
+    switch (operation / kRanks % 3) {
       case 0:
         Ready::insert(ready.place(rank));
         model.insert(rank);
@@ -57,19 +56,12 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
         Ready::erase(ready.place(rank));
         model.erase(rank);
         break;
-      case 2:
-        ready.open_place(rank);
-        for (const unsigned r : model)
-          moved.insert(r < rank ? r : r + 1);
-        moved.erase(kRanks);  // the last place falls off; the kernel never fills it
-        model = moved;
-        break;
       default:
-        ready.close_place(rank);
-        for (const unsigned r : model) {
-          if (r != rank) moved.insert(r < rank ? r : r - 1);
-        }
-        model = moved;
+        if (Ready::contains(ready.place(rank)))
+          Ready::erase(ready.place(rank));
+        else
+          Ready::insert(ready.place(rank));
+        if (model.erase(rank) == 0) model.insert(rank);
     }
     RC_ASSERT(ready.first() == (model.empty() ? kRanks : *model.begin()));
     for (unsigned r = 0; r < kRanks; ++r) {

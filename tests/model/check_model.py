@@ -14,7 +14,7 @@ from pathlib import Path
 
 MODEL = Path(__file__).resolve().parent / "switch.pml"
 DEPTH = 500_000
-FEWEST_STATES = 100_000  # of the model as it is: fewer would mean that it got stuck
+FEWEST_STATES = 1_000_000  # of the model as it is: fewer would mean that it got stuck
 
 
 def search(mutant):

@@ -1,13 +1,15 @@
 /* The protocol of switching and waking (docs/kernel.md, "Waiting and waking"; kernel.hpp, kernel.cpp,
-   mutex.cpp), for spin to try in every order: three threads, the idle thread, and interrupts that come
-   between any two steps and signal any of them. Rank 0 waits; 1 waits, and then takes a mutex whose
-   ceiling it is; 2 signals the others, with and without that mutex, and waits.
+   mutex.cpp), for spin to try in every order: three threads, the idle thread, interrupts that come
+   between any two steps and signal any of them, and the tick, which comes between those of threads.
+   Rank 0 waits; 1 waits, with and without a deadline, and then takes a mutex whose ceiling it is; 2
+   signals the others, with and without that mutex, and waits.
 
    A step is what one instruction does that others can see. The ready set stands in two words, which
    select_next() reads one after the other: rank 0 in the first, 1 and 2 in the second.
 
    What is found: an event that was signalled and is gone, or is there while its thread is blocked on
-   it (a lost wake-up); a thread that runs while one that outranks it is ready; a mutex that is
+   it (a lost wake-up); a thread that is blocked until a deadline for which no timer stands; a timer
+   taken out that is out; a thread that runs while one that outranks it is ready; a mutex that is
    taken while it is held; a holder overtaken at or below the ceiling (priority inversion).
 
    With a MUTANT_… defined the model has a mistake, which must be found: check_model.py tries all. */
@@ -26,7 +28,12 @@ byte ghost[THREADS];          /* signalled and not yet taken, by a book that no 
 bool ready[THREADS];
 byte running = IDLE, running_rank = IDLE;
 byte owner = FREE;            /* of the mutex; held_ */
-bool masked = false;          /* BASEPRI */
+bool masked = false;          /* BASEPRI: a Lock */
+bool still = false;           /* … or a SwitchLock */
+bool ticking = false;         /* SysTick is active */
+bool armed = false;           /* the timer of thread 1 */
+bool struck = false;          /* … has been due */
+bool timed = false;           /* it is blocked until then */
 bool pending = true;          /* PendSV */
 bool switching = false;       /* PendSV is active */
 bool slack = false;           /* the core has finished one instruction more than it should */
@@ -58,16 +65,18 @@ inline check_running() {
 #define NONE_LOST(thread) \
   ((ghost[thread] & ~events[thread]) == 0 && (ready[thread] || (events[thread] & wanted[thread]) == 0))
 inline check_events() {
-  assert(NONE_LOST(0) && NONE_LOST(1) && NONE_LOST(2))
+  assert(NONE_LOST(0) && NONE_LOST(1) && NONE_LOST(2));
+  assert(ready[1] || !timed || armed)
 }
 
-#define MAY_RUN(me) (running == me && !switching && (!pending || masked || !slack))
+#define NO_SWITCH (masked || still)
+#define MAY_RUN(me) (running == me && !switching && !ticking && (!pending || NO_SWITCH || !slack))
 
 /* One step of thread `me`. */
 #define STEP(me, what)                                                        \
   atomic {                                                                    \
     MAY_RUN(me) ->                                                            \
-    if :: pending && !masked -> slack = true :: else fi;                      \
+    if :: pending && !NO_SWITCH -> slack = true :: else fi;                   \
     if :: !pending && !masked -> check_running() :: else fi;                  \
     if :: !masked -> check_events() :: else fi;                               \
     what                                                                      \
@@ -102,7 +111,7 @@ proctype switch_threads() {
   bool none;
 end:
   do
-  :: atomic { pending && !masked && !switching -> pending = false; slack = false; switching = true };
+  :: atomic { pending && !NO_SWITCH && !switching && !ticking -> pending = false; slack = false; switching = true };
      atomic { none = !ready[0]; rank = 0 };                   /* first word */
      if
      :: none -> atomic { if :: ready[1] -> rank = 1           /* the others */
@@ -125,6 +134,26 @@ end:
   od
 }
 
+/* SysTick: Kernel::on_tick(), with interrupts in between; some time after the timer was armed. */
+proctype tick() {
+  bool other;
+end:
+  do
+  :: atomic { armed && !NO_SWITCH && !switching -> ticking = true; armed = false; struck = true };
+#ifdef MUTANT_TICK_WITHOUT_LOCK
+     other = ready[2];                                        /* one word */
+     atomic { if :: 1 < running_rank -> pending = true :: else fi };
+     atomic { ready[1] = true; ready[2] = other; other = false };
+#else
+     masked = true;
+     atomic { if :: 1 < running_rank -> pending = true :: else fi };
+     ready[1] = true;
+     masked = false;
+#endif
+     ticking = false
+  od
+}
+
 #ifdef MUTANT_LOOK_OUTSIDE_THE_LOCK
 #define LOCK_BEFORE_LOOK(me)
 #define LOCK_AFTER_LOOK(me)  STEP(me, masked = true)
@@ -132,6 +161,26 @@ end:
 #define LOCK_BEFORE_LOOK(me) STEP(me, masked = true)
 #define LOCK_AFTER_LOOK(me)
 #endif
+
+/* Kernel::block() */
+inline block(me) {
+  STEP(me, wanted[me] = A | B);
+  STEP(me, ready[me] = false);
+#ifndef MUTANT_RUNNING_RANK_KEPT
+  STEP(me, running_rank = NONE);
+#endif
+  STEP(me, pending = true)
+}
+
+/* Thread::take(): LDREX … STREX, which starts over when an interrupt came in between. */
+inline take(me) {
+#ifdef MUTANT_TAKEN_IN_TWO_STEPS
+  STEP(me, taken = events[me]; ghost[me] = ghost[me] & ~taken);
+  STEP(me, events[me] = 0)
+#else
+  STEP(me, taken = events[me]; ghost[me] = ghost[me] & ~taken; events[me] = 0)
+#endif
+}
 
 /* Kernel::wait(A | B), without a deadline. */
 inline wait(me) {
@@ -142,25 +191,65 @@ inline wait(me) {
      STEP(me, there = ((events[me] & (A | B)) != 0));
      LOCK_AFTER_LOOK(me);
      if
-     :: !there ->
-        STEP(me, wanted[me] = A | B);
-        STEP(me, ready[me] = false);
-#ifndef MUTANT_RUNNING_RANK_KEPT
-        STEP(me, running_rank = NONE);
-#endif
-        STEP(me, pending = true)
+     :: !there -> block(me)
      :: else
      fi;
      STEP(me, masked = false);
-     /* Thread::take(): LDREX … STREX, which starts over when an interrupt came in between. */
-#ifdef MUTANT_TAKEN_IN_TWO_STEPS
-     STEP(me, taken = events[me]; ghost[me] = ghost[me] & ~taken);
-     STEP(me, events[me] = 0)
-#else
-     STEP(me, taken = events[me]; ghost[me] = ghost[me] & ~taken; events[me] = 0)
-#endif
+     take(me)
   :: else -> break
   od
+}
+
+/* … with one, until it is reached. Thread 1's: there is one timer. */
+inline wait_until(me) {
+  taken = 0;
+  reached = false;
+  do
+  :: taken == 0 && !reached ->
+     STEP(me, there = ((events[me] & (A | B)) != 0));
+     if
+     :: !there ->
+        STEP(me, still = true);
+        STEP(me, reached = struck; struck = false; armed = !reached);
+#ifdef MUTANT_TICK_BETWEEN_ARM_AND_BLOCK
+        STEP(me, still = false);
+#endif
+        if
+        :: !reached ->
+           STEP(me, masked = true);
+#ifndef MUTANT_NO_LOOK_AFTER_ARMING
+           STEP(me, there = ((events[me] & (A | B)) != 0));
+#endif
+           if
+           :: !there ->
+              STEP(me, timed = true);
+              block(me)
+           :: else
+           fi;
+           STEP(me, masked = false)
+        :: else
+        fi;
+        STEP(me, still = false)
+     :: else
+     fi;
+     take(me);
+     STEP(me, timed = false);
+     disarm(me)
+  :: else -> break
+  od;
+  reached = false
+}
+
+inline disarm(me) {
+#ifndef MUTANT_TICK_IN_DISARM
+  STEP(me, still = true);
+#endif
+  STEP(me, there = armed);
+  if
+  :: there -> STEP(me, assert(armed); armed = false)
+  :: else
+  fi;
+  STEP(me, still = false)
 }
 
 /* Kernel::signal() from a thread. */
@@ -215,9 +304,9 @@ proctype high() {
 /* A user of the mutex. */
 proctype middle() {
   byte taken;
-  bool there;
+  bool there, reached;
   do
-  :: wait(1);
+  :: if :: wait(1) :: wait_until(1) fi;
      acquire(1);
      release(1)
   od
@@ -246,6 +335,6 @@ proctype idle() {
 init {
   atomic {
     ready[0] = true; ready[1] = true; ready[2] = true;
-    run interrupt(); run switch_threads(); run high(); run middle(); run low(); run idle()
+    run interrupt(); run switch_threads(); run tick(); run high(); run middle(); run low(); run idle()
   }
 }

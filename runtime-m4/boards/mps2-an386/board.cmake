@@ -1,7 +1,7 @@
 # The board's own code, shared by the firmware and by the kernel's tests on the board.
 add_library(robosync_board OBJECT
   boards/mps2-an386/startup.cpp boards/mps2-an386/board.cpp boards/mps2-an386/uart.cpp
-  boards/mps2-an386/i2c.cpp)
+  boards/mps2-an386/i2c.cpp boards/mps2-an386/alarm.cpp)
 target_link_libraries(robosync_board PUBLIC robosync_runtime)
 robosync_large(robosync_board)
 target_link_libraries(robosync_board_large PUBLIC robosync_runtime_large)

@@ -80,7 +80,8 @@ void reset_after(const link::Fault& fault) {
 
 }  // namespace robosync::boards::mps2
 
-const std::uint32_t robosync::port::hooks::kCoreHz = robosync::boards::mps2::kClockHz;
+const std::uint32_t robosync::port::hooks::kTickCounts =
+    robosync::boards::mps2::kClockHz / 1'000'000 * robosync::kernel::kTick;
 
 extern "C" {
 

@@ -57,6 +57,17 @@ struct TimerRegisters {  // CMSDK APB timer: counts down, and begins again at `r
 inline constexpr std::uintptr_t kTimer1 = 0x4000'1000;
 inline constexpr std::uint32_t kTimerOn = 1U << 0;
 
+struct OneShotRegisters {  // CMSDK APB dual timer, the first of the two: counts down
+  volatile std::uint32_t load;
+  volatile std::uint32_t value;
+  volatile std::uint32_t control;
+  volatile std::uint32_t interrupt_clear;
+};
+inline constexpr std::uintptr_t kDualTimer = 0x4000'2000;
+inline constexpr unsigned kDualTimerInterrupt = 10;
+inline constexpr std::uint32_t kOneShot = 0b10'0011;  // once, 32 bits, with its interrupt
+inline constexpr std::uint32_t kOneShotOn = kOneShot | 1U << 7;
+
 template <typename Registers>
 Registers& at(std::uintptr_t address) {
   return *reinterpret_cast<Registers*>(address);

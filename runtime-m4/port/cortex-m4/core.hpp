@@ -15,6 +15,7 @@ inline constexpr std::uintptr_t kSystRvr = 0xE000'E014;   // SysTick reload
 inline constexpr std::uintptr_t kSystCvr = 0xE000'E018;   // SysTick current value
 inline constexpr std::uintptr_t kNvicIser = 0xE000'E100;  // interrupt set-enable
 inline constexpr std::uintptr_t kNvicIspr = 0xE000'E200;  // interrupt set-pending
+inline constexpr std::uintptr_t kNvicIcpr = 0xE000'E280;  // interrupt clear-pending
 inline constexpr std::uintptr_t kNvicIpr = 0xE000'E400;   // interrupt priorities, a byte each
 inline constexpr std::uintptr_t kIcsr = 0xE000'ED04;      // interrupt control and state
 inline constexpr std::uintptr_t kVtor = 0xE000'ED08;      // where the vector table is
@@ -33,6 +34,7 @@ inline constexpr std::uintptr_t kMpuRbar = 0xE000'ED9C;  // MPU region: number a
 inline constexpr std::uintptr_t kMpuRasr = 0xE000'EDA0;  // … size and access
 
 inline constexpr std::uint32_t kIcsrPendSvSet = 1U << 28;
+inline constexpr std::uint32_t kIcsrSysTickSet = 1U << 26;
 inline constexpr std::uint32_t kCcrDivideByZeroTrap = 1U << 4;
 inline constexpr std::uint32_t kShcsrFaultHandlers = 7U << 16;  // MemManage, BusFault, UsageFault
 inline constexpr std::uint32_t kCfsrDataAccess = 1U << 1;       // MemManage: address in MMFAR
@@ -56,7 +58,8 @@ inline constexpr std::uint32_t kMpuCode = 6U << 24 | kMpuNormal;  // read and ex
 // Interrupt priorities, the lower number the more urgent. Everything from kKernelPriority on is
 // held off by the kernel's critical sections and may call the kernel; what is more urgent is never
 // held off and must not call it. All interrupts of the kernel's level have the same priority, so
-// they do not nest.
+// they do not nest. The switch and the tick have the lowest there is: neither preempts the other,
+// and neither delays an interrupt.
 inline constexpr std::uint32_t kKernelPriority = 0x40;
 inline constexpr std::uint32_t kSwitchPriority = 0xFF;
 
@@ -64,19 +67,24 @@ inline constexpr std::uint32_t kSwitchPriority = 0xFF;
 // Machine::run().
 [[gnu::always_inline]] inline void prepare() {
   reg(kCpacr) = 0xFU << 20;
-  reg(kShpr3) = (kKernelPriority << 24) | (kSwitchPriority << 16);
+  reg(kShpr3) = (kSwitchPriority << 24) | (kSwitchPriority << 16);
   asm volatile("msr basepri, %0\n\tdsb\n\tisb" ::"r"(kKernelPriority) : "memory");
 }
 
-// Enables interrupt `number` at the kernel's level.
-inline void enable_interrupt(unsigned number) {
-  reinterpret_cast<volatile std::uint8_t*>(kNvicIpr)[number] = kKernelPriority;
+// Enables interrupt `number`, at the kernel's level.
+inline void enable_interrupt(unsigned number, std::uint8_t priority = kKernelPriority) {
+  reinterpret_cast<volatile std::uint8_t*>(kNvicIpr)[number] = priority;
   reg(kNvicIser + number / 32 * 4) = 1U << (number % 32);
 }
 
 // Makes interrupt `number` happen.
 inline void pend_interrupt(unsigned number) {
   reg(kNvicIspr + number / 32 * 4) = 1U << (number % 32);
+}
+
+// … and takes it back.
+inline void clear_interrupt(unsigned number) {
+  reg(kNvicIcpr + number / 32 * 4) = 1U << (number % 32);
 }
 
 [[noreturn]] inline void reset() {

@@ -11,8 +11,14 @@ extern "C" robosync::kernel::Kernel robosync_kernel;
 
 namespace robosync::port::hooks {
 
-// Frequency of the core's clock, which SysTick counts.
-extern const std::uint32_t kCoreHz;
+// Counts of the core's clock, which SysTick and robosync_clock count, in a tick (kernel::kTick).
+extern const std::uint32_t kTickCounts;
+
+// All threads wait: after so many counts an interrupt of the lowest priority is to end the core's
+// sleep, unless another did before. It is pending then, and never taken: clear_alarm() takes it
+// back. The alarm does not repeat itself.
+void set_alarm(std::uint32_t counts);
+void clear_alarm();
 
 // A thread was stopped by a fault; the others go on. Called from the fault handler or the context
 // switch: may signal threads, must be short.

@@ -1,5 +1,4 @@
-// Makes threads runnable, takes the decisions of the context switch, takes system calls, and drives
-// the tick.
+// Makes threads runnable, takes the decisions of the context switch, and takes system calls.
 #include "runtime-m4/port/cortex-m4/machine.hpp"
 
 #include <array>
@@ -8,6 +7,7 @@
 #include "runtime-m4/port/cortex-m4/fault.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 #include "runtime-m4/port/cortex-m4/isolation.hpp"
+#include "runtime-m4/port/cortex-m4/tick.hpp"
 
 // switch.S
 extern "C" {
@@ -99,10 +99,7 @@ void Machine::run() {
   enable_fault_handlers();
   core::reg(core::kShpr2) = core::kKernelPriority << 24;
   start_isolation();
-  core::reg(core::kSystRvr) =
-      static_cast<std::uint32_t>(hooks::kCoreHz / 1'000'000 * kernel::kTick) - 1;
-  core::reg(core::kSystCvr) = 0;
-  core::reg(core::kSystCsr) = 7;  // core clock, interrupt, on
+  start_tick();
   kernel::Kernel::context(robosync_kernel.idle()).run_time = clock();
   request_switch();
   robosync_become_idle(idle_stack.data() + idle_stack.size());
@@ -114,7 +111,6 @@ extern "C" {
 
 const robosync::port::Context* robosync_switch(std::uint32_t* sp, robosync::kernel::Kernel& kernel);
 void PendSV_Open_Handler();
-void SysTick_Handler();
 void SVC_Handler();
 
 // Called by switch.S when the thread that ran is saved, its stack pointer noted; returns the
@@ -149,10 +145,6 @@ void SVC_Handler() {
   asm volatile("mrs %0, psp" : "=r"(frame));
   if (!robosync_kernel.answer(frame->r0, frame->r1, frame->r0)) [[unlikely]]
     refuse_call();
-}
-
-void SysTick_Handler() {
-  robosync_kernel.on_tick();
 }
 
 }  // extern "C"

@@ -1,7 +1,8 @@
 // The Cortex-M4 as a machine for the kernel. There is one, and it runs `robosync_kernel`.
 //
-// Threads run on PSP, handlers on MSP. The switch is PendSV at the lowest priority (switch.S).
-// Critical sections raise BASEPRI: interrupts above the kernel's level are never held off. Until
+// Threads run on PSP, handlers on MSP. The switch is PendSV at the lowest priority (switch.S), and
+// so is the tick, SysTick. Critical sections raise BASEPRI, to the kernel's level or to that of
+// these two only: interrupts above the kernel's level are never held off. Until
 // run() the kernel's level is held off altogether (the board's reset handler sees to that).
 //
 // What the MPU closes, and to whom: isolation.hpp.
@@ -102,29 +103,30 @@ inline std::uint32_t call(kernel::Kernel&, std::uint32_t number, std::uint32_t a
 
 // Never make one const: GCC then keeps it in memory ("store to a read-only decl" stops its scalar
 // replacement), which costs four instructions in every path.
-class Lock {
+template <std::uint32_t kLevel>
+class LockOfLevel {
 public:
-  explicit Lock(const Machine&) : outer_(raise()) {}
+  explicit LockOfLevel(const Machine&) : outer_(raise()) {}
   // A switch that was requested under the lock happens here, give or take an instruction: without
   // a barrier the core may finish what it has fetched. Waiting does not rely on it.
-  ~Lock() { asm volatile("msr basepri, %0" ::"r"(outer_) : "memory"); }
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
+  ~LockOfLevel() { asm volatile("msr basepri, %0" ::"r"(outer_) : "memory"); }
+  LockOfLevel(const LockOfLevel&) = delete;
+  LockOfLevel& operator=(const LockOfLevel&) = delete;
 
 private:
   static std::uint32_t raise() {
     std::uint32_t outer;
-    asm volatile("mrs %0, basepri\n\tmsr basepri_max, %1"
-                 : "=&r"(outer)
-                 : "r"(core::kKernelPriority)
-                 : "memory");
+    asm volatile("mrs %0, basepri\n\tmsr basepri_max, %1" : "=&r"(outer) : "r"(kLevel) : "memory");
     return outer;
   }
 
   std::uint32_t outer_;
 };
+using Lock = LockOfLevel<core::kKernelPriority>;
+using SwitchLock = LockOfLevel<core::kSwitchPriority>;
 
-// The same for a thread that holds no Lock: what was before need not be kept.
+// A Lock for who holds none, nor a SwitchLock: a thread, or the tick. What was before need not be
+// kept.
 class OnlyLock {
 public:
   explicit OnlyLock(const Machine&) { set(core::kKernelPriority); }

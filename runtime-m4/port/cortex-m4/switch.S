@@ -122,9 +122,10 @@ robosync_no_room:
     .pool
     .size   PendSV_Handler, . - PendSV_Handler
 
-/* void robosync_become_idle(stack top): what called becomes the idle thread, on that stack. */
+/* void robosync_become_idle(stack top): what called becomes the idle thread, on that stack. It
+   sleeps, as tick.cpp says. */
     .section .text.robosync_become_idle, "ax"
-    .global robosync_become_idle
+    .global robosync_become_idle, robosync_idle_masks, robosync_idle_unmasks
     .type   robosync_become_idle, %function
     .thumb_func
 robosync_become_idle:
@@ -134,6 +135,16 @@ robosync_become_idle:
     isb
     movs    r0, #0
     msr     basepri, r0             /* the switch that waits happens here */
-1:  wfi
+1:  movs    r0, #0xFF               /* a SwitchLock */
+    msr     basepri_max, r0
+    bl      robosync_set_alarm
+robosync_idle_masks:
+    cpsid   i
+    movs    r0, #0
+    msr     basepri, r0
+    wfi                             /* ends with any interrupt, which then waits for cpsie */
+    bl      robosync_count_sleep
+robosync_idle_unmasks:
+    cpsie   i
     b       1b
     .size   robosync_become_idle, . - robosync_become_idle

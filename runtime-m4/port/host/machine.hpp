@@ -114,5 +114,6 @@ private:
 std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t argument);
 void stop_overrun(kernel::Kernel& kernel, kernel::Thread& thread);
 using OnlyLock = Lock;
+using SwitchLock = Lock;  // there are no interrupts
 
 }  // namespace robosync::port

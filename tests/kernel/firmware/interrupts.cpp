@@ -199,6 +199,7 @@ constexpr rig::Scenario kScenarios[] = {
 extern "C" void Timer0_Handler();
 void Timer0_Handler() {
   timer().interrupt = 1;
+  if (rig::all_sleep()) return rig::interrupted_in_sleep();
   if (measuring) return measure();
   robosync_kernel.signal(*waiter, kPosted);
 }

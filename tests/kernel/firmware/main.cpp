@@ -150,6 +150,7 @@ void third_boot() {
   robosync_kernel.remove(spinner_thread);
   rig::sleep_ms(20);
   end("threads wake from idle");
+  run_all(rig::idle_scenarios());
   begin();
   CHECK(progress.kicked);  // else it struck before the board locked up
   CHECK(robosync_board.reset_reason() == 1);
@@ -227,6 +228,10 @@ unsigned safety_checks() {
 
 std::uint64_t safety_lateness() {
   return lateness;
+}
+
+bool all_sleep() {
+  return robosync_kernel.state(spinner_thread) == Thread::State::absent;
 }
 
 Thread& conductor() {

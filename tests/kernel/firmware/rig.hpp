@@ -32,6 +32,11 @@ std::span<const Scenario> device_scenarios();
 std::span<const Scenario> division_scenarios();
 std::span<const Scenario> isolation_scenarios();
 std::span<const Scenario> call_scenarios();
+std::span<const Scenario> idle_scenarios();  // when no thread spins
+
+// For the handler of timer 0: all threads sleep.
+void interrupted_in_sleep();
+bool all_sleep();
 
 // Starts worker `index` (0 … kWorkers - 1) and returns its thread.
 inline constexpr unsigned kWorkers = 4;
