@@ -74,9 +74,12 @@ public:
   // stacks. The host has no such borders.  [init, thread]
   void open(const port::Areas& areas);
 
-  // While it is held no other thread runs and no interrupt of the kernel's level is taken. Hold it
-  // for a few hundred instructions at most; blocking under it is an error.  [any]
-  [[nodiscard]] port::Lock lock() { return port::Lock(machine_); }
+  // While it is held no other thread runs, and time stands still; interrupts come in. Hold it for a
+  // few hundred instructions at most; blocking under it is an error.  [any]
+  [[nodiscard]] port::SwitchLock lock() { return port::SwitchLock(machine_); }
+  // The same, and no interrupt of the kernel's level is taken either: for what interrupts change,
+  // too. Hold it for a few instructions.  [any]
+  [[nodiscard]] port::Lock lock_interrupts() { return port::Lock(machine_); }
 
   // Takes a mutex, without ever waiting for it, and gives it back (mutex.hpp; MutexGuard does
   // both). [thread]

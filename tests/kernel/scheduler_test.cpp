@@ -57,11 +57,13 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
         model.erase(rank);
         break;
       default:
-        if (Ready::contains(ready.place(rank)))
-          Ready::erase(ready.place(rank));
-        else
-          Ready::insert(ready.place(rank));
-        if (model.erase(rank) == 0) model.insert(rank);
+        const unsigned next = (rank + 1) % kRanks;
+        const bool was_in = model.contains(next);
+        RC_ASSERT(Ready::exchange(ready.place(rank), ready.place(next)) == was_in);
+        if (model.contains(rank) != was_in) {
+          if (model.erase(rank) == 0) model.insert(rank);
+          if (model.erase(next) == 0) model.insert(next);
+        }
     }
     RC_ASSERT(ready.first() == (model.empty() ? kRanks : *model.begin()));
     for (unsigned r = 0; r < kRanks; ++r) {

@@ -28,7 +28,7 @@ volatile std::uint32_t interrupted_at = 0;  // microseconds
 
 // By how much the clock is ahead of the time, in counts; by less than a tick, if the time is right.
 std::int32_t ahead() {
-  const auto lock = robosync_kernel.lock();
+  const auto lock = robosync_kernel.lock_interrupts();
   const auto time = static_cast<std::uint32_t>(robosync_kernel.now());
   return static_cast<std::int32_t>(robosync_kernel.clock() - time * kCountsPerMicrosecond);
 }

@@ -168,14 +168,14 @@ void compare_decision() {
 }
 
 void signal(Worker& to, Events events) {
-  const auto lock = robosync_kernel.lock();
+  const auto lock = robosync_kernel.lock_interrupts();
   to.signalled |= events;
   robosync_kernel.signal(to.thread, events);
 }
 
 void wait(Worker& self, Events mask, Time deadline) {
   {
-    const auto lock = robosync_kernel.lock();
+    const auto lock = robosync_kernel.lock_interrupts();
     self.wanted = mask;
     self.deadline = deadline;
     self.waits = true;
@@ -183,7 +183,7 @@ void wait(Worker& self, Events mask, Time deadline) {
   // What the book says is true once the thread has begun to wait; so that it is when others look,
   // they look at what is ready only. A wait that ends at once changes nothing.
   robosync_kernel.wait(mask, deadline);
-  const auto lock = robosync_kernel.lock();
+  const auto lock = robosync_kernel.lock_interrupts();
   self.waits = false;
   self.signalled = 0;
 }
@@ -200,7 +200,7 @@ bool may_use(const Worker& self, unsigned mutex) {
 
 void use_mutex(Worker& self, Draw& draw, unsigned mutex) {
   {
-    const auto lock = robosync_kernel.lock();
+    const auto lock = robosync_kernel.lock_interrupts();
     if (!may_use(self, mutex)) return;
     ++users;
   }
@@ -213,7 +213,7 @@ void use_mutex(Worker& self, Draw& draw, unsigned mutex) {
   compute(draw.below(60));
   holders[mutex] = nullptr;
   robosync_kernel.release(mutexes[mutex]);
-  const auto lock = robosync_kernel.lock();
+  const auto lock = robosync_kernel.lock_interrupts();
   --users;
 }
 
@@ -243,7 +243,7 @@ Standing standing_of(const Thread& thread) {
 }
 
 void check_order() {
-  const auto lock = robosync_kernel.lock();
+  const auto lock = robosync_kernel.lock_interrupts();
   const auto threads = robosync_kernel.threads();
   for (unsigned rank = 0; rank + 1 < threads.size(); ++rank)
     if (threads[rank]->rank() != rank ||
@@ -254,7 +254,7 @@ void check_order() {
 void begin_or_end_adapting(bool begin) {
   while (true) {
     {
-      const auto lock = robosync_kernel.lock();
+      const auto lock = robosync_kernel.lock_interrupts();
       if (users == 0) {
         adapting = begin;
         return;
@@ -372,7 +372,7 @@ const robosync::port::Context* __wrap_robosync_switch(std::uint32_t* sp, Kernel&
 const robosync::port::Context* __wrap_robosync_switch(std::uint32_t* sp,
                                                       Kernel& kernel) {  // NOLINT
   const robosync::port::Context* const next = __real_robosync_switch(sp, kernel);
-  const auto lock = kernel.lock();
+  const auto lock = kernel.lock_interrupts();
   if (!switch_is_pending()) compare_decision();
   return next;
 }
