@@ -1,8 +1,10 @@
 // What the runtime around the bytecode costs on the Cortex-M4: the one table that response times
 // are worked out with. Executed instructions, the worst seen, with somebody listening to the trace.
 //
-// Measured by tests/timing/test_paths.py, which fails when one is less than what is measured, or
-// much more; kSwitch, kWake and kTick are those of bench/recorded.json.
+// kStep, kBehavior, kRule, kFire, kText, kCommand and kQueued are measured again by
+// tests/timing/test_paths.py, which fails when one is less than what is measured, or much more; the
+// others were measured once in the same way; kSwitch, kWake and kTick are those of
+// bench/recorded.json.
 #pragma once
 
 #include <cstdint>

@@ -17,7 +17,7 @@
 
 namespace robosync::tool {
 
-using Inputs = std::bitset<2 * vm::kMaxInputs>;  // by number: channels, then variables
+using Inputs = std::bitset<std::size_t{2} * vm::kMaxInputs>;  // by number: channels, then variables
 using Actuators = std::uint32_t;
 using Rules = std::set<unsigned>;
 

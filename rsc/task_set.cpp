@@ -155,7 +155,7 @@ private:
   // A step may make others, a millisecond later each: what it sets changes, and a time word that
   // was true for one step, or is due, wants to be looked at. Each rule answers a reading once:
   // those that set each other off for ever are told (StepWork::cyclic()), not counted.
-  void add_with_followers(Source source, Rules evaluated, Rules fired, Inputs set) {
+  void add_with_followers(Source source, Rules evaluated, const Rules& fired, Inputs set) {
     Source follower;
     follower.name = fmt::format("what follows {}", source.name);
     follower.period = source.period;
