@@ -1,0 +1,104 @@
+// What a step does on the board, and what that costs at most: which rules a change concerns, what
+// their responses put out, what they set.
+//
+// The rules are those of runtime-m4/layers (concern.cpp, processing.hpp), the costs those of
+// response_costs.hpp and of the code itself (vm/cost.hpp). Images must be verified.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include "rsc/response_time.hpp"
+#include "vm/cost.hpp"
+#include "vm/image.hpp"
+#include "vm/opcode.hpp"
+
+namespace robosync::tool {
+
+using Inputs = std::bitset<std::size_t{2} * vm::kMaxInputs>;  // by number: channels, then variables
+using Actuators = std::uint32_t;
+using Rules = std::set<unsigned>;
+
+// What one response may do in one step, its code aside.
+struct ResponseWork {
+  Instructions other = 0;                 // all but its commands
+  std::vector<Instructions> by_actuator;  // its commands
+  Inputs sets;
+  Inputs later_sets;  // … after a pause
+  bool pauses = false;
+  bool polls = false;                  // WAIT UNTIL: looks again whenever something changes
+  bool loops = false;                  // with a pause inside: nobody knows how many parts it has
+  unsigned parts = 1;                  // between pauses
+  std::uint32_t shortest_wait_ms = 0;  // 0: it does not pause
+};
+
+class StepWork {
+public:
+  explicit StepWork(const vm::Image& image);
+
+  // With what is worked out of them in the same step: the bands of CHECKs.
+  [[nodiscard]] Inputs with_bands(Inputs changed) const;
+  // The rules that a change concerns, SAFETY rules aside.
+  [[nodiscard]] Rules concerned(const Inputs& changed) const;
+  // What the rules' responses may set.
+  [[nodiscard]] Inputs sets(const Rules& rules) const;
+  // … when one of them goes on after a pause.
+  [[nodiscard]] Inputs later_sets(unsigned rule) const { return dearest_[rule].later_sets; }
+  [[nodiscard]] Actuators actuators(const Rules& rules) const;
+  // The rules among them whose conditions read it: they can fire.
+  [[nodiscard]] Rules stirred(const Rules& rules, const Inputs& changed) const;
+  // A step in which `changed` has changed and `rules` are evaluated: all but the sampling, and what
+  // comes of rules that fire.
+  [[nodiscard]] Instructions step(const Rules& rules, const Inputs& changed) const;
+  // What comes of one that fires; 0 when it has no response.
+  [[nodiscard]] Instructions firing(unsigned rule) const;
+  // It fires when its condition becomes true, and for nothing else: never twice without being
+  // evaluated as false between.
+  [[nodiscard]] bool alternates(unsigned rule) const;
+  // It fires at most burst() times, its parts counted, and then not before gap_ms() is over:
+  // COOLDOWN, or FOR as its last word; 0: not known.
+  [[nodiscard]] unsigned burst(unsigned rule) const { return dearest_[rule].parts; }
+  [[nodiscard]] std::uint32_t gap_ms(unsigned rule) const;
+  // One look of the safety thread at its rules; and when all of them trip.
+  [[nodiscard]] Instructions look() const;
+  [[nodiscard]] Instructions trips() const;
+
+  // The inputs that SAFETY rules read: the safety thread looks when one changes.
+  [[nodiscard]] const Inputs& watched() const { return watched_; }
+  [[nodiscard]] bool is_timed(unsigned rule) const { return timed_[rule]; }
+  // The shortest time between two turns of a response that waits or a rule that starts again, and
+  // of an EVERY; 0: the rule is never due by itself again and again.
+  [[nodiscard]] std::uint32_t period_ms(unsigned rule) const;
+  // Rules that may set each other off for ever.
+  [[nodiscard]] Rules cyclic() const;
+
+private:
+  void add_inputs(const vm::Behavior& behavior, std::uint16_t start, std::uint16_t length,
+                  Inputs& inputs) const;
+  [[nodiscard]] vm::Word last_word(unsigned rule) const;
+  void load_rule(unsigned rule, const vm::Behavior& behavior);
+  [[nodiscard]] ResponseWork work_of(const vm::Behavior& behavior, std::uint16_t response) const;
+  [[nodiscard]] Instructions evaluation(unsigned rule) const;
+  [[nodiscard]] Instructions interruptions(unsigned rule) const;
+  [[nodiscard]] Instructions standing() const;
+  [[nodiscard]] Instructions running() const;
+  [[nodiscard]] std::uint32_t every_ms(unsigned rule) const;
+  [[nodiscard]] bool wants_on(unsigned rule) const;
+  [[nodiscard]] bool can_refire(unsigned rule) const;
+  [[nodiscard]] bool is_safety(unsigned rule) const;
+
+  const vm::Image& image_;
+  std::vector<vm::RuleCost> costs_;
+  std::vector<unsigned> behavior_of_;
+  std::vector<Inputs> condition_reads_;  // by rule
+  std::vector<Inputs> reads_;            // … and its responses
+  std::vector<Inputs> sets_;
+  std::vector<ResponseWork> dearest_;  // by rule: the dearer of its responses, part by part
+  std::vector<bool> timed_, divides_;
+  std::vector<unsigned> events_;  // by rule: time words that are true for one step
+  Inputs watched_;                // by SAFETY rules
+};
+
+}  // namespace robosync::tool
