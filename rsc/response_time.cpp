@@ -12,6 +12,7 @@
 #include "rsc/response_time.hpp"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 namespace robosync::tool {
@@ -29,14 +30,21 @@ double share(Instructions cost, Instructions period) {
   return static_cast<double>(cost) / static_cast<double>(period);
 }
 
+// Followers, one behind the other, up to the release of the one that is asked for; and the time
+// that passes besides work. Empty: the response of the source itself is asked for.
+struct Chain {
+  unsigned length = 0;
+  Instructions delays = 0;
+};
+
 class Analysis {
 public:
-  Analysis(const TaskSet& set, std::size_t mine, Priorities priorities)
-      : set_(set), mine_(mine), adapted_(priorities == Priorities::adapted) {
+  Analysis(const TaskSet& set, std::size_t mine, Priorities priorities, Chain chain = {})
+      : set_(set), mine_(mine), chain_(chain), adapted_(priorities == Priorities::adapted) {
     for (std::size_t j = 0; j < set.sources.size(); ++j)
       if (j != mine && place_of(j) == Place::below)
         blocking_ = std::max(blocking_, set.sources[j].step);
-    blocking_ += set.longest_lock;
+    blocking_ = (blocking_ + set.longest_lock) * (chain_.length + 1);
   }
 
   Response solve() const {
@@ -70,7 +78,8 @@ private:
     const Source& other = set_.sources[j];
     if (adapted_ ? other.may_outrank_one : other.outranks_a_behavior) return Place::always;
     const unsigned rank = adapted_ ? other.raised : other.rank;
-    return rank <= mine().rank ? Place::above : Place::below;
+    if (rank > mine().rank) return Place::below;
+    return chain_.length == 0 ? Place::above : Place::always;  // between the steps, it goes first
   }
 
   // The least t with demand(t) <= t, or none.
@@ -92,6 +101,10 @@ private:
   Instructions releases_of(std::size_t j, const Window& window) const {
     if (j == mine_) return window.own;
     const Source& other = set_.sources[j];
+    // What its own steps release comes after them: of the last step not any more, of those before
+    // the busy period what is late.
+    if (chain_.length == 0 && follows_mine(j))
+      return window.own - 1 + ceil_div(other.jitter, other.period);
     switch (place_of(j)) {
       case Place::always:
         return ceil_div(window.until + other.jitter, other.period);
@@ -102,18 +115,74 @@ private:
     }
   }
 
-  // How often a rule fires: not more than it is evaluated, the step that blocks included.
-  Instructions fires(const Firing& rule, const Window& window) const {
-    Instructions evaluations = 0;
+  bool follows_mine(std::size_t j) const {
+    for (std::size_t depth = 0; depth < set_.sources.size() && j != Source::kNone; ++depth) {
+      j = set_.sources[j].follows;
+      if (j == mine_) return true;
+    }
+    return false;
+  }
+
+  // In how many steps a rule with these sources is evaluated, the step that blocks included.
+  Instructions evaluations(const std::vector<std::size_t>& sources, const Window& window) const {
+    Instructions sum = 0;
     bool may_block = false;
-    for (const std::size_t j : rule.sources) {
-      evaluations += releases_of(j, window);
+    for (const std::size_t j : sources) {
+      sum += releases_of(j, window);
       may_block = may_block || (j != mine_ && place_of(j) == Place::below);
     }
-    if (may_block) ++evaluations;
-    if (rule.alternates) evaluations = ceil_div(evaluations, 2);
-    if (rule.gap == 0) return evaluations;
-    return std::min(evaluations, (window.until / rule.gap + 1) * rule.burst);
+    return sum + (may_block ? 1 : 0);
+  }
+
+  // How often a rule fires: not more than it is evaluated.
+  Instructions fires(const Firing& rule, const Window& window) const {
+    Instructions most = evaluations(rule.sources, window);
+    if (rule.alternates) most = ceil_div(most, 2);
+    if (rule.gap == 0) return most;
+    return std::min(most, (window.until / rule.gap + 1) * rule.burst);
+  }
+
+  // How often each rule fires, and how often it wins. Of rules among which there is a choice or a
+  // contest, the dearest as often as they may, in different steps.
+  struct Outcome {
+    const Firing* rule;
+    Instructions fired, won;
+  };
+
+  std::vector<Outcome> outcomes(const Window& window) const {
+    std::vector<Outcome> all;
+    for (const Firing& rule : set_.firings) {
+      const Instructions fired = fires(rule, window);
+      all.push_back({&rule, fired, fired});
+    }
+    std::ranges::stable_sort(all, std::ranges::greater{},
+                             [](const Outcome& one) { return one.rule->cost; });
+    limit(all, &Firing::choice, &Outcome::fired, window);
+    for (Outcome& one : all)
+      one.won = std::min(one.won, one.fired);
+    limit(all, &Firing::contest, &Outcome::won, window);
+    return all;
+  }
+
+  // All firings of one choice, or of one contest, together: as often as there are steps for them.
+  void limit(std::vector<Outcome>& all, std::size_t Firing::*which, Instructions Outcome::*count,
+             const Window& window) const {
+    std::map<std::size_t, std::vector<std::size_t>> sources;
+    for (const Firing& rule : set_.firings)
+      if (rule.*which != Firing::kNone) {
+        std::vector<std::size_t>& its = sources[rule.*which];
+        its.insert(its.end(), rule.sources.begin(), rule.sources.end());
+      }
+    for (auto& [number, its] : sources) {
+      std::ranges::sort(its);
+      its.erase(std::ranges::unique(its).begin(), its.end());
+      Instructions left = evaluations(its, window);
+      for (Outcome& one : all)
+        if (one.rule->*which == number) {
+          one.*count = std::min(one.*count, left);
+          left -= one.*count;
+        }
+    }
   }
 
   // Calls take(name, cost) for each share of the work in the window.
@@ -123,14 +192,14 @@ private:
       const Source& source = set_.sources[j];
       take(source.name, releases_of(j, window) * (source.sample + source.step));
     }
-    for (const Firing& rule : set_.firings)
-      take(rule.name, fires(rule, window) * rule.cost);
+    for (const Outcome& one : outcomes(window))
+      take(one.rule->name, one.won * one.rule->cost + (one.fired - one.won) * set_.lost);
     for (const Interference& one : set_.interferences)
       take(one.name, ceil_div(window.until, one.period) * one.cost);
   }
 
   Instructions demand(const Window& window) const {
-    Instructions sum = blocking_;
+    Instructions sum = blocking_ + chain_.delays;
     each_share(window, [&](const std::string&, Instructions cost) { sum += cost; });
     return sum;
   }
@@ -171,23 +240,37 @@ private:
 
   const TaskSet& set_;
   std::size_t mine_;
+  Chain chain_;
   bool adapted_;
   Instructions blocking_ = 0;
 };
 
+// From the release at the beginning of the chain until this one is released.
+Instructions lateness(const TaskSet& set, const Source& follower, Priorities priorities) {
+  Chain chain{1, follower.delay};
+  std::size_t root = follower.follows;
+  while (set.sources[root].follows != Source::kNone) {  // each follows one that stands before it
+    ++chain.length;
+    chain.delays += set.sources[root].delay;
+    root = set.sources[root].follows;
+  }
+  const Response response = Analysis(set, root, priorities, chain).solve();
+  return response.bounded ? response.time : kForeverLate;
+}
+
 }  // namespace
 
-// What follows a step comes as late as that step may be; how late that is depends on what follows
-// others. From below, as in response times; what does not settle may come as late as it likes.
+// What follows a step comes as late as that step may be, and what follows that later still: all the
+// work up to then is done in one stretch, which is idle for the delays between at most. How late it
+// is depends on what follows others. From below, as in response times; what does not settle may
+// come as late as it likes.
 void settle(TaskSet& set, Priorities priorities) {
-  constexpr unsigned kMostPasses = 30;
+  constexpr unsigned kMostPasses = 100;
   for (unsigned pass = 0; pass < kMostPasses; ++pass) {
     bool settled = true;
     for (Source& source : set.sources) {
       if (source.follows == Source::kNone) continue;
-      const Response before = response_of(set, source.follows, priorities);
-      const Instructions time = before.bounded ? before.time : kForeverLate;
-      const Instructions jitter = std::max(time, source.jitter);
+      const Instructions jitter = std::max(lateness(set, source, priorities), source.jitter);
       settled = settled && jitter == source.jitter;
       source.jitter = jitter;
     }

@@ -26,10 +26,11 @@ struct Source {
   unsigned raised = 0;  // the best rank that adapted priorities can give it
   bool outranks_a_behavior = false;  // so it can announce while a step is under way
   bool may_outrank_one = false;      // … with adapted priorities
-  // The source whose steps release this one, or kNone: then its releases come as late as those
-  // steps are, and two may come nearer to each other than `period` by `jitter` (settle()).
+  // The source whose steps release this one, a moment of at most `delay` after they have begun; or
+  // kNone. Then two releases may come nearer to each other than `period`, by `jitter` (settle()).
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::size_t follows = kNone;
+  Instructions delay = 0;
   Instructions jitter = 0;
   std::vector<std::string> actuators;  // that may be commanded in a step of its
 };
@@ -42,6 +43,12 @@ struct Firing {
   std::vector<std::size_t> sources;
   Instructions gap = 0;  // in this time it fires `burst` times at most; 0: not known
   Instructions burst = 1;
+  // In one step, one at most of those with the same `choice` fires, and of those with the same
+  // `contest` that fire, one at most wins; another one takes TaskSet::lost. A choice is in a
+  // contest as a whole or not at all.
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::size_t choice = kNone;
+  std::size_t contest = kNone;
 };
 
 // What outranks all sources: interrupts, the safety thread, actuators that are moving.
@@ -54,6 +61,7 @@ struct Interference {
 struct TaskSet {
   std::vector<Source> sources;
   std::vector<Firing> firings;
+  Instructions lost = 0;  // of a rule that fires and loses; no firing costs less
   std::vector<Interference> interferences;
   Instructions longest_lock = 0;  // the longest critical section of a thread below them
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "rsc/response_costs.hpp"
 
@@ -12,8 +13,33 @@ namespace {
 using vm::Opcode;
 using vm::RuleKind;
 
-bool is_time_word(Opcode op) {
-  return op >= Opcode::held && op <= Opcode::changed && op != Opcode::latch;
+// True for one step only.
+bool is_event(Opcode op) {
+  return op > Opcode::held && op <= Opcode::changed && op != Opcode::latch;
+}
+
+// Each side of each rule wants one that the other's sides want as well, all of them.
+bool common_actuator(const vm::Image& image, unsigned a, unsigned b) {
+  const auto everywhere = [&](unsigned r) {
+    const vm::Rule& rule = image.rules[r];
+    Actuators mask = ~Actuators{0};
+    for (const std::uint16_t index : {rule.then_response, rule.else_response})
+      if (index != vm::kNoIndex) mask &= image.responses[index].actuators;
+    return rule.then_response == vm::kNoIndex ? Actuators{0} : mask;
+  };
+  return (everywhere(a) & everywhere(b)) != 0;
+}
+
+unsigned most_wanted(const std::vector<Actuators>& masks) {
+  unsigned best = 0;
+  std::ptrdiff_t most = -1;
+  for (unsigned a = 0; a < std::numeric_limits<Actuators>::digits; ++a) {
+    const auto wanting =
+        std::ranges::count_if(masks, [&](Actuators m) { return (m >> a & 1) != 0; });
+    if (wanting > most) best = a;
+    most = std::max(most, wanting);
+  }
+  return best;
 }
 
 bool reads_cell(vm::Operand kind) {
@@ -48,7 +74,7 @@ StepWork::StepWork(const vm::Image& image) : image_(image), costs_(image.rules.s
   reads_.resize(image.rules.size());
   sets_.resize(image.rules.size());
   dearest_.resize(image.rules.size());
-  timed_.resize(image.rules.size());
+  held_ms_.resize(image.rules.size());
   events_.resize(image.rules.size());
   divides_.resize(image.rules.size());
   for (unsigned b = 0; b < image.behaviors.size(); ++b) {
@@ -75,13 +101,19 @@ void StepWork::load_rule(unsigned r, const vm::Behavior& behavior) {
   }
   for (const vm::Word word : image_.code.subspan(rule.condition_start, rule.condition_length)) {
     const Opcode op = vm::opcode_of(word);
-    if (is_time_word(op)) timed_[r] = true;
-    if (is_time_word(op) && op != Opcode::held) ++events_[r];
+    if (is_event(op)) ++events_[r];
+    if (op == Opcode::held) note_held(r, image_.timers[vm::operand_c(word)].duration);
     if (op == Opcode::div || op == Opcode::mod) divides_[r] = true;
   }
   dearest_[r] =
       dearer(work_of(behavior, rule.then_response), work_of(behavior, rule.else_response));
   sets_[r] = dearest_[r].sets;
+}
+
+// Two ends of one FOR are its duration apart; those of several may come together.
+void StepWork::note_held(unsigned rule, std::uint32_t duration_ms) {
+  const std::uint32_t before = held_ms_[rule];
+  held_ms_[rule] = std::max(before == 0 ? duration_ms : std::min(before, duration_ms) / 2, 1U);
 }
 
 void StepWork::add_inputs(const vm::Behavior& behavior, std::uint16_t start, std::uint16_t length,
@@ -138,7 +170,8 @@ Rules StepWork::stirred(const Rules& rules, const Inputs& changed) const {
 }
 
 Instructions StepWork::step(const Rules& rules, const Inputs& changed) const {
-  Instructions sum = costs::kStep + standing();
+  Instructions sum = standing();
+  sum += reads_channel(changed) ? costs::kStep : costs::kTimedStep;
   std::set<unsigned> behaviors;
   for (const unsigned rule : rules)
     behaviors.insert(behavior_of_[rule]);
@@ -147,7 +180,7 @@ Instructions StepWork::step(const Rules& rules, const Inputs& changed) const {
     sum += costs::kBehavior + Instructions{behavior.input_count} * costs::kInput;
     // What was true for one step only is evaluated again in the next that stirs the behaviour.
     for (unsigned r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count; ++r)
-      if (rules.contains(r) || timed_[r]) sum += evaluation(r);
+      if (rules.contains(r) || has_events(r)) sum += evaluation(r);
   }
   sum += changed.count() * Instructions{costs::kChanged};
   if ((changed & watched_).any()) sum += look() + trips();
@@ -163,10 +196,25 @@ Instructions StepWork::evaluation(unsigned rule) const {
 
 Instructions StepWork::firing(unsigned rule) const {
   if (image_.rules[rule].then_response == vm::kNoIndex) return 0;
-  Instructions sum = costs::kFire + costs_[rule].dearer_response() + dearest_[rule].other;
+  return costs::kClaim + costs::kRun + output(rule) + interruptions(rule);
+}
+
+Instructions StepWork::by_itself(unsigned rule) const {
+  const Instructions goes_on = dearest_[rule].pauses ? costs::kGoOn + output(rule) : 0;
+  const bool starts = wants_on(rule) || image_.rules[rule].kind == RuleKind::every;
+  return std::max(goes_on, starts ? firing(rule) : 0);
+}
+
+// The dearest part of its response.
+Instructions StepWork::output(unsigned rule) const {
+  Instructions sum = costs_[rule].dearer_response() + dearest_[rule].other;
   for (const Instructions commands : dearest_[rule].by_actuator)
     sum += commands;
-  return sum + interruptions(rule);
+  return sum;
+}
+
+bool StepWork::contend(unsigned a, unsigned b) const {
+  return common_actuator(image_, a, b);
 }
 
 // Every response that holds an actuator that the rule wants has to end; each has one that holds it.
@@ -192,15 +240,20 @@ vm::Word StepWork::last_word(unsigned r) const {
   return image_.code[rule.condition_start + rule.condition_length - 2U];
 }
 
+bool StepWork::fires_after_event(unsigned rule) const {
+  return !is_event(vm::opcode_of(last_word(rule)));
+}
+
 bool StepWork::alternates(unsigned rule) const {
-  if (image_.rules[rule].kind != RuleKind::when) return false;
+  const RuleKind kind = image_.rules[rule].kind;
+  if (kind != RuleKind::when && kind != RuleKind::while_) return false;
   const bool becomes = events_[rule] == 1 && vm::opcode_of(last_word(rule)) == Opcode::rose;
   return events_[rule] == 0 || becomes;
 }
 
 std::uint32_t StepWork::gap_ms(unsigned r) const {
   const vm::Rule& rule = image_.rules[r];
-  if (rule.kind != RuleKind::when || dearest_[r].loops) return 0;
+  if (rule.kind != RuleKind::when) return 0;
   vm::Value gap = 0;
   if (rule.modifiers != vm::kNoModifiers) gap = image_.modifiers[rule.modifiers].cooldown;
   if (vm::opcode_of(last_word(r)) == Opcode::held)
@@ -208,11 +261,18 @@ std::uint32_t StepWork::gap_ms(unsigned r) const {
   return static_cast<std::uint32_t>(std::max(gap, 0));
 }
 
+// Channels stand before variables.
+bool StepWork::reads_channel(const Inputs& changed) const {
+  for (std::size_t c = 0; c < image_.channels.size(); ++c)
+    if (changed.test(c)) return true;
+  return false;
+}
+
 // What a step pays for what is there, whatever it is about.
 Instructions StepWork::standing() const {
   Instructions sum = running();
   for (unsigned r = 0; r < image_.rules.size(); ++r)
-    if (!is_safety(r) && wants_on(r)) sum += costs::kWanting;
+    if (!is_safety(r) && wants_on(r) && may_lose(r)) sum += costs::kWanting;
   for (const vm::Check& check : image_.checks) {
     sum += costs::kCheck;
     if (check.window > 1) sum += Instructions{costs::kSquare} * check.window * check.window;
@@ -222,20 +282,34 @@ Instructions StepWork::standing() const {
   return sum;
 }
 
-// Responses that run or wait: as many as there are actuators, and those that need none.
+// Responses that run or wait: those that need no actuator, and of the others no more than there are
+// actuators of which each of them holds one. Any such set will do; this one takes the actuator that
+// most of them want, again and again.
 Instructions StepWork::running() const {
-  unsigned with = 0;
-  unsigned without = 0;
+  unsigned count = 0;
+  std::vector<Actuators> left;
   for (unsigned r = 0; r < image_.rules.size(); ++r) {
     if (is_safety(r)) continue;
-    if (actuators({r}) != 0) {
-      ++with;
-    } else if (dearest_[r].pauses) {
-      ++without;
-    }
+    for (const std::uint16_t side : {image_.rules[r].then_response, image_.rules[r].else_response})
+      if (side != vm::kNoIndex && image_.responses[side].actuators != 0)
+        left.push_back(image_.responses[side].actuators);
+    if (actuators({r}) == 0 && dearest_[r].pauses) ++count;
   }
-  with = std::min(with, static_cast<unsigned>(image_.actuators.size()));
-  return Instructions{costs::kRunning} * (with + without);
+  for (; !left.empty(); ++count) {
+    const unsigned most = most_wanted(left);
+    std::erase_if(left, [&](Actuators mask) { return (mask >> most & 1) != 0; });
+  }
+  return Instructions{costs::kRunning} * count;
+}
+
+// Something else may hold what it wants and not give way: SAFETY, or a rule that ranks no lower.
+bool StepWork::may_lose(unsigned rule) const {
+  if (image_.has_safety() || image_.rules[rule].modifiers != vm::kNoModifiers) return true;
+  for (unsigned r = 0; r < image_.rules.size(); ++r)
+    if (r != rule && behavior_of_[r] <= behavior_of_[rule] &&
+        (actuators({r}) & actuators({rule})) != 0)
+      return true;
+  return false;
 }
 
 // Loses today, asks again tomorrow.
@@ -290,35 +364,6 @@ std::uint32_t StepWork::period_ms(unsigned r) const {
   if (dearest_[r].pauses) return dearest_[r].shortest_wait_ms;
   if (!wants_on(r)) return 0;
   return kind != RuleKind::while_ || actuators({r}) != 0 ? costs::kServicePeriodMs : 1;
-}
-
-// Its own SET may make it fire again: a WHEN without a time word has to become false first, which
-// it does not do by itself twice.
-bool StepWork::can_refire(unsigned rule) const {
-  return image_.rules[rule].kind != RuleKind::when || timed_[rule];
-}
-
-// The rules that stand in a circle of "sets what the other's condition reads".
-Rules StepWork::cyclic() const {
-  Rules cyclic;
-  for (unsigned start = 0; start < image_.rules.size(); ++start) {
-    if (is_safety(start) || sets_[start].none()) continue;
-    Rules reached;
-    Rules fresh{start};
-    bool first = true;
-    while (!fresh.empty()) {  // at most as often as there are rules
-      const Inputs set = with_bands(sets(fresh));
-      fresh.clear();
-      for (unsigned r = 0; r < image_.rules.size(); ++r) {
-        const bool itself = first && r == start && !can_refire(start);
-        if (itself || is_safety(r) || (condition_reads_[r] & set).none()) continue;
-        if (reached.insert(r).second) fresh.insert(r);
-      }
-      first = false;
-    }
-    if (reached.contains(start)) cyclic.insert(start);
-  }
-  return cyclic;
 }
 
 }  // namespace robosync::tool

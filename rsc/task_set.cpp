@@ -3,11 +3,13 @@
 #include "rsc/task_set.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "rsc/exclusive.hpp"
 #include "rsc/response_costs.hpp"
 #include "rsc/step_work.hpp"
 #include "runtime-m4/safety/period.hpp"
@@ -34,6 +36,12 @@ Instructions read_cost(vm::DriverId driver) {
   }
 }
 
+Rules common(const Rules& a, const Rules& b) {
+  Rules rules;
+  std::ranges::set_intersection(a, b, std::inserter(rules, rules.end()));
+  return rules;
+}
+
 class Builder {
 public:
   Builder(const vm::Image& image, int cap) : image_(image), cap_(cap), work_(image) {}
@@ -41,18 +49,25 @@ public:
   TaskSet build() {
     for (unsigned s = 0; s < image_.sensors.size(); ++s)
       add_sensor(s);
-    for (unsigned r = 0; r < image_.rules.size(); ++r)
+    for (unsigned r = 0; r < image_.rules.size(); ++r) {
       if (work_.period_ms(r) != 0) add_rule(r);
+      if (work_.held_ms(r) != 0 && !is_safety(r)) add_held(r);
+    }
     add_fading();
     add_checks();
     add_firings();
     add_interferences();
-    set_.longest_lock = costs::kLongestLock;
+    set_.lost = costs::kClaim;
+    set_.longest_lock = longest_lock();
     return set_;
   }
 
 private:
   // --- priorities: as runtime-m4/layers/program.cpp has them ---
+
+  bool is_safety(unsigned rule) const {
+    return image_.has_safety() && work_.behavior_of(rule) == vm::kSafetyBehavior;
+  }
 
   unsigned first_behavior() const { return image_.has_safety() ? vm::kSafetyBehavior + 1U : 0; }
   int lowest_priority() const { return image_.behaviors.back().priority; }
@@ -118,8 +133,8 @@ private:
     source.period =
         milliseconds(is_fed(sensor) ? costs::kFedPeriodMs : std::uint32_t{sensor.period_ms});
     if (!is_fed(sensor))
-      source.sample =
-          costs::kWakeByTimer + sensor.channel_count * (read_cost(sensor.driver) + costs::kChannel);
+      source.sample = costs::kWakeByTimer + sensor.channel_count * read_cost(sensor.driver) +
+                      (sensor.channel_count - 1U) * costs::kChannel;  // the first is in the step
     if ((channels & work_.watched()).any()) source.sample += costs::kWake + looks() + work_.trips();
     source.step = work_.step(rules, changed);
     place(source, s, channels);
@@ -152,36 +167,37 @@ private:
     return work_.look();
   }
 
-  // A step may make others, a millisecond later each: what it sets changes, and a time word that
-  // was true for one step, or is due, wants to be looked at. Each rule answers a reading once:
-  // those that set each other off for ever are told (StepWork::cyclic()), not counted.
-  void add_with_followers(Source source, Rules evaluated, const Rules& fired, Inputs set) {
+  // A step may make others, a millisecond later each: what it sets changes, and a rule with a word
+  // that was true for one step is evaluated again. Each rule answers a reading once, also by way of
+  // others: that it does so again and again is not looked for.
+  void add_with_followers(Source source, const Rules& evaluated_in_it, const Rules& fired,
+                          Inputs set) {
     Source follower;
     follower.name = fmt::format("what follows {}", source.name);
     follower.period = source.period;
+    follower.delay = milliseconds(1);
     follower.outranks_a_behavior = true;
     follower.may_outrank_one = true;
     add(std::move(source), fired);
     Rules seen = fired;
-    for (std::size_t round = 0; round <= image_.rules.size(); ++round) {
+    Rules before = common(evaluated_in_it, fired);
+    for (std::size_t level = 0; level <= image_.rules.size() + 1; ++level) {
       const Inputs changed = work_.with_bands(set);
-      Rules next = work_.concerned(changed);
-      Rules fire = work_.stirred(next, changed);
-      for (const unsigned rule : evaluated)
-        if (work_.is_timed(rule)) {
-          next.insert(rule);
-          fire.insert(rule);
+      Rules evaluated = work_.concerned(changed);
+      Rules fire = work_.stirred(evaluated, changed);
+      std::erase_if(fire, [&](unsigned rule) { return seen.contains(rule); });
+      seen.insert(fire.begin(), fire.end());
+      for (const unsigned rule : before)
+        if (work_.has_events(rule)) {
+          evaluated.insert(rule);
+          if (work_.fires_after_event(rule)) fire.insert(rule);
         }
-      if (next.empty() && changed.none()) return;
-      std::erase_if(fire, [&](unsigned rule) { return round > 0 && seen.contains(rule); });
-      std::erase_if(next, [&](unsigned rule) { return round > 1 && seen.contains(rule); });
-      if (next.empty() && round > 1) return;
-      seen.insert(next.begin(), next.end());
-      follower.step = work_.step(next, changed);
+      if (evaluated.empty() && changed.none()) return;
+      follower.step = work_.step(evaluated, changed);
       follower.follows = set_.sources.size() - 1;
       add(follower, fire);
-      evaluated = std::move(next);
       set = work_.sets(fire);
+      before = std::move(fire);
     }
   }
 
@@ -192,27 +208,87 @@ private:
     set_.sources.push_back(std::move(source));
   }
 
+  // Starts of responses, of which a step may have few; and what goes on.
   void add_firings() {
-    for (const auto& [rule, sources] : triggered_by_)
-      if (!sources.empty()) set_.firings.push_back(firing(rule, work_.alternates(rule), sources));
+    std::vector<unsigned> rules;
+    for (const auto& [rule, sources] : triggered_by_) {
+      if (sources.empty() || work_.firing(rule) == 0) continue;
+      rules.push_back(rule);
+      set_.firings.push_back({name_of(rule), work_.firing(rule), work_.alternates(rule), sources,
+                              milliseconds(work_.gap_ms(rule))});
+    }
+    group(rules);
     for (const auto& [rule, sources] : goes_on_)
-      set_.firings.push_back(firing(rule, false, sources));
+      set_.firings.push_back({name_of(rule), work_.by_itself(rule), false, sources});
   }
 
-  Firing firing(unsigned rule, bool alternates, const std::vector<std::size_t>& sources) const {
-    return {fmt::format("the rule at line {}", image_.rules[rule].line),
-            work_.firing(rule),
-            alternates,
-            sources,
-            milliseconds(work_.gap_ms(rule)),
-            work_.burst(rule)};
+  // Which of the firings so far, those of `rules`, exclude each other; which want the same
+  // actuator.
+  void group(const std::vector<unsigned>& rules) {
+    std::vector<Needs> needs;
+    for (const unsigned rule : rules) {
+      needs.push_back(
+          needs_of(image_, image_.behaviors[work_.behavior_of(rule)], image_.rules[rule]));
+    }
+    put_together(&Firing::choice, [&](std::size_t a, std::size_t b) {
+      return exclude_each_other(needs[a], needs[b]);
+    });
+    // A choice is part of a contest as a whole or not at all: so "the dearest first" is the worst.
+    put_together(&Firing::contest, [&](std::size_t a, std::size_t b) {
+      return all_of_choice(a, [&](std::size_t x) {
+        return all_of_choice(b, [&](std::size_t y) {
+          return same_choice(x, y) || work_.contend(rules[x], rules[y]);
+        });
+      });
+    });
+  }
+
+  bool same_choice(std::size_t a, std::size_t b) const {
+    const std::size_t choice = set_.firings[a].choice;
+    return a == b || (choice != Firing::kNone && choice == set_.firings[b].choice);
+  }
+
+  template <class Test>
+  bool all_of_choice(std::size_t firing, Test test) const {
+    for (std::size_t i = 0; i < set_.firings.size(); ++i)
+      if (same_choice(firing, i) && !test(i)) return false;
+    return true;
+  }
+
+  // Each with the first others that it and all of them go together with.
+  template <class Together>
+  void put_together(std::size_t Firing::*which, Together together) {
+    for (std::size_t first = 0; first < set_.firings.size(); ++first) {
+      if (set_.firings[first].*which != Firing::kNone) continue;
+      std::vector<std::size_t> members{first};
+      for (std::size_t i = first + 1; i < set_.firings.size(); ++i)
+        if (set_.firings[i].*which == Firing::kNone &&
+            std::ranges::all_of(members, [&](std::size_t m) { return together(m, i); }))
+          members.push_back(i);
+      if (members.size() == 1) continue;
+      for (const std::size_t member : members)
+        set_.firings[member].*which = first;
+    }
+  }
+
+  std::string name_of(unsigned rule) const {
+    if (image_.rules[rule].line != 0)
+      return fmt::format("the rule at line {}", image_.rules[rule].line);
+    const auto name = image_.string(image_.behaviors[work_.behavior_of(rule)].name);
+    return fmt::format("rule {} of the module's {}", rule, name);
+  }
+
+  // A FOR of its is over.
+  void add_held(unsigned r) {
+    const bool fires = image_.rules[r].then_response != vm::kNoIndex;
+    add_timed(fmt::format("{}, FOR", name_of(r)), work_.held_ms(r), {r}, {},
+              fires ? Rules{r} : Rules{}, work_.sets({r}));
   }
 
   void add_rule(unsigned r) {
-    const auto line = image_.rules[r].line;
     // A response that goes on evaluates nothing.
     const bool evaluated = image_.rules[r].kind == vm::RuleKind::every;
-    add_timed(fmt::format("the rule at line {}, by itself", line), work_.period_ms(r),
+    add_timed(fmt::format("{}, by itself", name_of(r)), work_.period_ms(r),
               evaluated ? Rules{r} : Rules{}, {}, {r},
               evaluated ? work_.sets({r}) : work_.later_sets(r));
     // What it says of triggers does not hold for what goes on.
@@ -247,6 +323,18 @@ private:
 
   // --- what outranks the sources ---
 
+  // A transfer of another sensor on the bus, which no sensor interrupts; or a trace message.
+  Instructions longest_lock() const {
+    Instructions longest = 0;
+    unsigned on_bus = 0;
+    for (const vm::Sensor& sensor : image_.sensors) {
+      const Instructions transfer = is_fed(sensor) ? 0 : read_cost(sensor.driver);
+      on_bus += transfer != 0 ? 1 : 0;
+      longest = std::max(longest, transfer);
+    }
+    return costs::kLongestLock + (on_bus > 1 ? longest : 0);
+  }
+
   void add_interferences() {
     const Instructions period = milliseconds(robosync::safety::kPeriod / kernel::milliseconds(1));
     set_.interferences.push_back({"the tick", milliseconds(1), costs::kTick + costs::kSwitch});
@@ -260,12 +348,11 @@ private:
                                     milliseconds(costs::kTripPeriodMs), work_.trips()});
     for (const vm::Behavior& behavior : image_.behaviors.subspan(first_behavior()))
       commanded_ |= behavior.actuators;
-    // Its next setpoint, or the command that is done and the next one in its queue.
+    // Its next setpoint; or its command is done, and the next one in its queue begins.
     for (unsigned a = 0; a < image_.actuators.size(); ++a)
       if ((commanded_ >> a & 1) != 0)
         set_.interferences.push_back({std::string(image_.string(image_.actuators[a].name)),
-                                      milliseconds(costs::kServicePeriodMs),
-                                      costs::kWakeByTimer + costs::kDone + costs::kCommand});
+                                      milliseconds(costs::kServicePeriodMs), costs::kService});
   }
 
   const vm::Image& image_;

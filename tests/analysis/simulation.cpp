@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 namespace robosync::test {
 namespace {
@@ -140,20 +141,43 @@ private:
     for (const Job& job : step_) {
       step_left_ += set_.sources[job.source].step;
       for (std::size_t j = 0; j < set_.sources.size(); ++j)
-        if (set_.sources[j].follows == job.source) next_[j] = now_ + pattern_.follow_delay;
+        if (set_.sources[j].follows == job.source)
+          next_[j] =
+              std::min(next_[j], now_ + std::min(pattern_.follow_delay, set_.sources[j].delay));
     }
-    for (std::size_t r = 0; r < set_.firings.size(); ++r)
-      if (fires(r)) step_left_ += set_.firings[r].cost;
+    fire();
   }
 
-  bool fires(std::size_t r) {
+  // Of a choice, one that is drawn may be true; of a contest, one that is drawn wins.
+  void fire() {
+    const std::size_t favorite = random_();
+    std::map<std::size_t, std::vector<std::size_t>> choices;
+    for (std::size_t r = 0; r < set_.firings.size(); ++r)
+      if (evaluated(r))
+        choices[std::min(set_.firings[r].choice, set_.firings.size() + r)].push_back(r);
+    std::map<std::size_t, std::vector<std::size_t>> contests;
+    for (const auto& [choice, rules] : choices)
+      for (std::size_t i = 0; i < rules.size(); ++i)
+        if (fires(rules[i], i == favorite % rules.size()))
+          contests[std::min(set_.firings[rules[i]].contest, set_.firings.size() + rules[i])]
+              .push_back(rules[i]);
+    for (const auto& [contest, rules] : contests)
+      for (std::size_t i = 0; i < rules.size(); ++i) {
+        const tool::Firing& rule = set_.firings[rules[i]];
+        step_left_ += i == favorite % rules.size() ? rule.cost : set_.lost;
+      }
+  }
+
+  bool evaluated(std::size_t r) const {
     const tool::Firing& rule = set_.firings[r];
-    const bool evaluated = std::ranges::any_of(step_, [&](const Job& job) {
+    return std::ranges::any_of(step_, [&](const Job& job) {
       return std::ranges::find(rule.sources, job.source) != rule.sources.end();
     });
-    if (!evaluated) return false;
-    if (!rule.alternates) return true;
-    const bool is = std::uniform_real_distribution<double>(0, 1)(random_) < pattern_.truth;
+  }
+
+  bool fires(std::size_t r, bool may) {
+    const bool is = may && std::uniform_real_distribution<double>(0, 1)(random_) < pattern_.truth;
+    if (!set_.firings[r].alternates) return is;
     const bool was = was_true_[r];
     was_true_[r] = is && !(pattern_.truth >= 1 && was);
     return is && !was;

@@ -1,10 +1,11 @@
 // The whole runtime of a board, as the firmware has it and with somebody who listens to its trace,
-// driven from inside: a given image is activated, then readings are fed, channel and value in turn,
-// between markers. tests/timing/paths.py counts what one reading costs up to the last command that
-// comes of it.
+// driven from inside: a given image is activated, then readings are fed, channel and value in turn.
+// tests/timing/paths.py counts what a reading costs, and what a tick does.
 //
 // The thread that does it has the lowest rank, as the link has in the firmware. So when it comes
-// back from feed(), the step is over, and everything that came of it is done.
+// back from feed(), between its markers, the step is over and everything that came of it is done;
+// and when it has woken after a tick, so is all that was due in that tick. A reading of kPause is
+// none: it lets time pass, as many ticks as its channel says.
 #include <array>
 #include <cstdint>
 
@@ -22,25 +23,29 @@ robosync::boards::mps2::Board robosync_board;
 namespace robosync::bench {
 namespace {
 
-constexpr kernel::Duration kSettling = kernel::milliseconds(50);
+constexpr std::uint32_t kSettling = 50;  // ticks
+constexpr vm::Value kPause = INT32_MAX;
 
 update::TraceRing ring(robosync_kernel);
-Runtime runtime(robosync_kernel, robosync_board, ring);
+layers::Workspace workspace;
+Runtime runtime(robosync_kernel, robosync_board, ring, workspace);
 kernel::Thread thread;
 alignas(port::kStackAlignment) std::array<std::byte, 2048> stack;
 
-// Sleeps, and reads the trace all the while: a full ring would make events cheaper.
-void settle() {
+// Sleeps, and reads the trace all the while: a full ring would make events cheaper. It is read
+// before a tick, so that reading is no part of what the tick does.
+[[gnu::noinline]] void let_pass(std::uint32_t ticks) {
   std::array<std::byte, link::kMaxPayload> payload{};
   link::MessageType type{};
-  for (kernel::Duration slept = 0; slept < kSettling; slept += kernel::kTick) {
+  for (std::uint32_t tick = 0; tick < ticks; ++tick) {
     while (ring.take(type, payload) != 0) {
     }
     robosync_kernel.sleep_until(robosync_kernel.now() + kernel::kTick);
+    BENCH_MARK(woken);
   }
 }
 
-void feed(std::uint32_t channel, vm::Value reading) {
+[[gnu::noinline]] void feed(std::uint32_t channel, vm::Value reading) {
   const link::Feed feed{.at_us = 0, .channel = channel, .value = reading};
   BENCH_MARK(feed_begin);
   const link::FeedResult result = runtime.feed(feed);
@@ -56,12 +61,17 @@ void drive(void*) {
                           static_cast<std::int32_t>(verdict.index)};
   if (!verdict.ok()) say("refused", why);
   if (!verdict.ok()) leave(false);
-  settle();
+  let_pass(kSettling);
   const auto readings = given_readings();
   for (std::size_t i = 0; i + 1 < readings.size(); i += 2) {
-    feed(static_cast<std::uint32_t>(readings[i]), readings[i + 1]);
-    settle();
+    const auto channel = static_cast<std::uint32_t>(readings[i]);
+    if (readings[i + 1] == kPause) {
+      let_pass(channel);
+    } else {
+      feed(channel, readings[i + 1]);
+    }
   }
+  let_pass(kSettling);
   leave(ring.lost() == 0);
 }
 
