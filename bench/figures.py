@@ -160,6 +160,7 @@ def kernel_figures():
         **{f"kernel/{name}": (value, "insn") for name, value in many.items()},
         "kernel/growth_to_64_threads": (max(many[name] - few[name] for name in many), "insn"),
         "kernel/lock_out": (max(lock_out(elf, part) for part in parts), "insn"),
+        "kernel/set_priority": (max(marks.spans("mark_set_priority", "mark_priority_set")), "insn"),
         "kernel/lock_out_all_due": (lock_out(elf, all_due), "insn"),
         "kernel/tcb": (symbols(elf)["size_tcb"], "B"),
     }

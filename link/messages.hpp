@@ -8,7 +8,7 @@
 
 namespace robosync::link {
 
-inline constexpr std::uint8_t kProtocolVersion = 1;
+inline constexpr std::uint8_t kProtocolVersion = 2;
 inline constexpr std::size_t kMaxPayload = 240;
 inline constexpr std::size_t kNameLength = 16;  // NUL-padded
 using Name = std::array<char, kNameLength>;
@@ -103,11 +103,13 @@ struct ThreadInfo {
   std::uint8_t index, total;
   std::uint8_t category;  // kernel::Category
   std::uint8_t rank;
-  std::int16_t priority;
+  std::int8_t priority, base_priority;  // now, and as it is written
   std::uint16_t stack_bytes, stack_used;
-  std::uint8_t state;  // 0 blocked, 1 ready, 2 stopped by a fault
-  std::uint8_t reserved;
+  std::uint8_t state;         // 0 blocked, 1 ready, 2 stopped by a fault
+  std::uint8_t missed;        // deadlines; 255: that many or more
   std::uint32_t activations;  // times it was woken
+  std::uint32_t run_time;     // in counts of the board's clock; wraps
+  std::uint32_t clock;        // … which stands here now: two replies tell its share of the time
   Name name;
 };
 

@@ -105,6 +105,11 @@ std::string EventReader::behavior_name(std::uint16_t index) const {
                           : fmt::format("behaviour {}", index);
 }
 
+std::int16_t EventReader::base_priority() const {
+  const vm::Behavior* const behavior = at(&vm::Image::behaviors, event_.subject);
+  return behavior == nullptr ? std::int16_t{0} : behavior->priority;
+}
+
 // ---- other names
 
 std::string EventReader::sensor_name() const {

@@ -60,6 +60,7 @@ public:
   bool interrupts_itself() const;
 
   std::string rule_name() const;
+  std::int16_t base_priority() const;  // of the behaviour it is about, as it is written
   std::string behavior_name(std::uint16_t index) const;
   std::string sensor_name() const;   // of the channel that is the subject
   std::string channel_name() const;  // without its sensor

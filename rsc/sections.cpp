@@ -23,6 +23,7 @@ std::vector<SectionSize> section_sizes(const vm::Image& image) {
   add(vm::Section::bands, image.bands);
   add(vm::Section::behaviors, image.behaviors);
   add(vm::Section::modifiers, image.modifiers);
+  add(vm::Section::adaptations, image.adaptations);
   add(vm::Section::timers, image.timers);
   add(vm::Section::rules, image.rules);
   add(vm::Section::responses, image.responses);

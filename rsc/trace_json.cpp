@@ -57,6 +57,7 @@ void add_subject(Json& object, const EventReader& reader) {
       break;
     case About::behavior:
       object["behavior"] = reader.behavior_name(reader.event().subject);
+      object["base"] = reader.base_priority();
       break;
     case About::actuator:
       object["actuator"] = reader.actuator_name();

@@ -93,6 +93,14 @@ std::string actuator_words(const EventReader& reader) {
   }
 }
 
+std::string priority_words(const EventReader& reader) {
+  const std::string behavior = reader.behavior_name(reader.event().subject);
+  const auto written = reader.base_priority();
+  if (written == reader.value(0))
+    return fmt::format("{} has its priority of {} back", behavior, written);
+  return fmt::format("{} has priority {} now, in place of {}", behavior, reader.value(0), written);
+}
+
 std::string other_words(const EventReader& reader) {
   switch (reader.event().kind) {
     case EventKind::activated:
@@ -113,6 +121,8 @@ std::string other_words(const EventReader& reader) {
       return fmt::format("{} is stopped by a fault", reader.thread_name());
     case EventKind::deadline:
       return fmt::format("{} is late by {} us", reader.thread_name(), reader.value(0));
+    case EventKind::priority:
+      return priority_words(reader);
     default:
       return std::string(reader.shape().name);
   }

@@ -13,6 +13,7 @@
 
 #include "link/events.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/threads.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::tool {
@@ -22,7 +23,7 @@ using link::MessageType;
 using std::chrono::milliseconds;
 using Json = nlohmann::ordered_json;
 
-constexpr milliseconds kLookForLosses{1000};
+constexpr milliseconds kLookForLosses{1000};  // and at the threads
 
 volatile std::sig_atomic_t interrupted = 0;
 
@@ -57,8 +58,10 @@ Json registers(const link::Fault& fault) {
 
 }  // namespace
 
-Watch::Watch(Session& session, Format format) : session_(session), format_(format) {
+Watch::Watch(Session& session, Format format, bool threads)
+    : session_(session), format_(format), threads_(threads) {
   learn_names();
+  if (threads_) thread_list_ = session_.client.threads();
   lost_ = session_.client.set_trace(true).lost_events;
 }
 
@@ -74,6 +77,11 @@ void Watch::learn_names() {
   image_bytes_ = session_.client.running_image();
   const bool good = vm::verify(image_bytes_, vm::Limits{}, image_).ok();
   names_ = {good ? &image_ : nullptr, {}};
+  learn_threads();
+}
+
+void Watch::learn_threads() {
+  names_.threads.clear();
   for (const link::ThreadInfo& thread : session_.client.threads())
     names_.threads.push_back(text_of(thread.name));
 }
@@ -87,6 +95,7 @@ void Watch::show(std::optional<milliseconds> duration) {
     if (duration && now - start >= *duration) break;
     if (now >= next_look) {
       report_losses(session_.client.status());
+      if (threads_) show_threads();
       next_look = now + kLookForLosses;
     }
     auto wait = milliseconds(100);
@@ -125,6 +134,11 @@ void Watch::show_event(const Message& message) {
   if (!link::decode_event(message.payload, event)) return;
   // Another program runs: numbers mean something else from here on.
   if (event.kind == link::EventKind::activated) learn_names();
+  // Ranks, which is how events name threads, are others. Asked for only when one is named.
+  if (event.kind == link::EventKind::priority) names_.threads.clear();
+  const bool names_thread =
+      event.kind == link::EventKind::fault || event.kind == link::EventKind::deadline;
+  if (names_thread && names_.threads.empty()) learn_threads();
   std::cout << (format_ == Format::json ? trace_json(event, names_) : trace_line(event, names_))
             << '\n';
 }
@@ -146,6 +160,18 @@ void Watch::show_fault(const Message& message) {
       "xpsr {:08x} r0-r12 {:08x}\n",
       text_of(fault.thread), fault.cause, fault.address, fault.pc, fault.lr, fault.sp, fault.xpsr,
       fmt::join(fault.r, " "));
+}
+
+void Watch::show_threads() {
+  const std::vector<link::ThreadInfo> now = session_.client.threads();
+  if (format_ == Format::json) {
+    const Json line{{"event", "threads"}, {"threads", threads_json(now, thread_list_)}};
+    std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else {
+    std::cout << '\n' << threads_table(now, thread_list_) << '\n';
+  }
+  std::cout.flush();
+  thread_list_ = now;
 }
 
 void Watch::report_losses(const link::Status& status) {

@@ -34,7 +34,7 @@ inline constexpr unsigned kMaxThreads = limit(64U, 128U);  // one bit each in th
 namespace robosync::layers {
 
 //                                                        standard    large
-inline constexpr std::size_t kSlotBytes = limit<std::size_t>(5072, 65536);  // largest image
+inline constexpr std::size_t kSlotBytes = limit<std::size_t>(5024, 65536);  // largest image
 // M4 instructions of VM code in one step.
 inline constexpr std::uint32_t kStepBudget = limit<std::uint32_t>(100'000, 1'000'000);
 

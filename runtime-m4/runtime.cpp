@@ -95,6 +95,7 @@ bool Runtime::start_program() {
   if (!control_.start(program_, crew_) || !behaviors_.start(program_, crew_) ||
       !processing_.start(program_) || !sensors_.start(program_, *sampler_, crew_))
     return false;
+  processing_.rank();
   guard_.start(program_);
   go();
   return true;
@@ -143,6 +144,7 @@ void Runtime::halt(kernel::Duration stuck_for) {
   if (halted_) return;
   halted_ = true;
   const auto late = static_cast<std::int32_t>(stuck_for);
+  step_thread_.note_miss();
   trace_.emit(EventKind::deadline, trace_.now(), step_thread_.rank(), 0, late);
 }
 

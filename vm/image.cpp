@@ -62,6 +62,7 @@ bool view_image(std::span<const std::byte> bytes, Image& image) {
   place(next, header.bands, image.bands);
   place(next, header.behaviors, image.behaviors);
   place(next, header.modifiers, image.modifiers);
+  place(next, header.adaptations, image.adaptations);
   place(next, header.timers, image.timers);
   place(next, header.rules, image.rules);
   place(next, header.responses, image.responses);

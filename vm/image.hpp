@@ -35,6 +35,9 @@ inline constexpr unsigned kMaxWindow = 32;          // samples a median is taken
 inline constexpr unsigned kMaxEdges = 16;           // n TIMES WITHIN
 inline constexpr unsigned kMaxWritable = 32;        // input cells a behaviour can set: one bit each
 inline constexpr unsigned kMaxBlocks = 16;          // blocks open at once in a response
+inline constexpr unsigned kMinAdaptationMs = 100;   // shortest window of adaptive priorities
+inline constexpr int kMaxPriority = 99;             // that a behaviour can be given …
+inline constexpr int kMinPriority = -100;           // … and that one without a number can have
 
 // Limits of the format. A board may have smaller ones (Limits in verifier.hpp).
 inline constexpr unsigned kMaxBehaviors = 64;
@@ -119,7 +122,7 @@ struct ImageHeader {
   // Records in each section, in the order the sections stand in.
   std::uint8_t sensors, channels, actuators, groups;
   std::uint8_t verbs, words, variables, checks;
-  std::uint8_t bands, behaviors, modifiers, reserved;
+  std::uint8_t bands, behaviors, modifiers, adaptations;
   std::uint16_t timers, rules, responses;
   std::uint16_t inputs;  // numbers of channels and variables, u8 each
   std::uint16_t constants;
@@ -127,7 +130,7 @@ struct ImageHeader {
   std::uint16_t labels;  // offsets in the strings, u16 each
   std::uint16_t string_bytes;
   std::uint16_t source_lines;  // debug, dropped by --strip
-  std::uint16_t reserved2;
+  std::uint16_t reserved;
 };
 static_assert(sizeof(ImageHeader) == 64);
 
@@ -286,6 +289,16 @@ struct SourceLine {  // first instruction word that comes from `line`
 };
 static_assert(sizeof(SourceLine) == 4);
 
+// How priorities adapt: a behaviour that was triggered F times in a window is raised by alpha × F /
+// window_ms in the next one, up to the cap. Of threads only: who owns an actuator is never adapted.
+struct Adaptation {
+  std::uint16_t alpha;      // thousandths of a priority times a second, for each trigger
+  std::uint16_t window_ms;  // the windows follow each other from activation on
+  std::uint8_t cap;         // 1–99
+  std::array<std::uint8_t, 3> reserved;
+};
+static_assert(sizeof(Adaptation) == 8);
+
 // Read-only view of an image's sections. `bytes` must be 4-aligned and outlive the view.
 struct Image {
   const ImageHeader* header = nullptr;
@@ -300,6 +313,7 @@ struct Image {
   std::span<const Band> bands;
   std::span<const Behavior> behaviors;
   std::span<const Modifiers> modifiers;
+  std::span<const Adaptation> adaptations;  // one where priorities adapt, else none
   std::span<const Timer> timers;
   std::span<const Rule> rules;
   std::span<const Response> responses;
@@ -334,6 +348,7 @@ enum class Section : std::uint8_t {
   bands,
   behaviors,
   modifiers,
+  adaptations,
   timers,
   rules,
   responses,

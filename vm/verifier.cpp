@@ -38,7 +38,7 @@ Refusal check_header(std::span<const std::byte> bytes, const Limits& limits, Ima
   constexpr std::size_t kCovered = offsetof(ImageHeader, total_length);
   if (crc32(bytes.subspan(kCovered)) != header.crc32) return Refusal::bad_crc;
   if (header.opcode_set != kOpcodeSet) return Refusal::wrong_opcodes;
-  if (header.reserved != 0 || header.reserved2 != 0) return Refusal::bad_value;
+  if (header.adaptations > 1 || header.reserved != 0) return Refusal::bad_value;
   if (are_too_many(header, limits)) return Refusal::too_many;
   return header.step_cost > limits.step_cost ? Refusal::too_costly : Refusal::none;
 }
@@ -51,9 +51,10 @@ constexpr std::string_view kRefusalTexts[] = {
 };
 
 constexpr std::string_view kSectionNames[] = {
-    "header",    "sensors", "channels",  "actuators", "groups",    "verbs",   "words",
-    "variables", "checks",  "bands",     "behaviors", "modifiers", "timers",  "rules",
-    "responses", "inputs",  "constants", "code",      "labels",    "strings", "source lines"};
+    "header",     "sensors",   "channels", "actuators",   "groups",    "verbs",
+    "words",      "variables", "checks",   "bands",       "behaviors", "modifiers",
+    "adaptation", "timers",    "rules",    "responses",   "inputs",    "constants",
+    "code",       "labels",    "strings",  "source lines"};
 static_assert(std::size(kSectionNames) == static_cast<std::size_t>(Section::source_lines) + 1);
 
 }  // namespace

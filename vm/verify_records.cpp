@@ -166,7 +166,8 @@ Refusal check_band(Walk&, const Band& band, std::size_t) {
 Refusal check_behavior(Walk& walk, const Behavior& behavior, std::size_t index) {
   if (behavior.name != kNoIndex && !is_string(walk, behavior.name)) return Refusal::bad_string;
   if (index > 0 && behavior.priority == walk.last_priority) return Refusal::same_priority;
-  if (behavior.priority >= walk.last_priority) return Refusal::bad_value;
+  if (behavior.priority >= walk.last_priority || behavior.priority < kMinPriority)
+    return Refusal::bad_value;
   walk.last_priority = behavior.priority;
   if (index == kSafetyBehavior && walk.image.has_safety()) walk.safety_rules = behavior.rule_count;
 
@@ -271,6 +272,14 @@ Refusal check_source_line(Walk& walk, const SourceLine& line, std::size_t) {
   return good_or(Refusal::bad_value, sorted);
 }
 
+Refusal check_adaptation(Walk&, const Adaptation& adaptation, std::size_t) {
+  const auto& reserved = adaptation.reserved;
+  return good_or(Refusal::bad_value, adaptation.alpha > 0 &&
+                                         adaptation.window_ms >= kMinAdaptationMs &&
+                                         adaptation.cap > 0 && adaptation.cap <= kMaxPriority &&
+                                         (reserved[0] | reserved[1] | reserved[2]) == 0);
+}
+
 // A section as the walk sees it: how many records the header says, how large they are, their check.
 struct SectionInfo {
   Refusal (*check)(Walk&, const std::byte* record, std::size_t index);  // none: nothing to check
@@ -299,6 +308,7 @@ constexpr SectionInfo kSections[] = {
     SECTION(bands, Band, (check_at<Band, check_band>)),
     SECTION(behaviors, Behavior, (check_at<Behavior, check_behavior>)),
     SECTION(modifiers, Modifiers, (check_at<Modifiers, check_modifiers>)),
+    SECTION(adaptations, Adaptation, (check_at<Adaptation, check_adaptation>)),
     SECTION(timers, Timer, (check_at<Timer, check_timer>)),
     SECTION(rules, Rule, (check_at<Rule, check_rule>)),
     SECTION(responses, Response, (check_at<Response, check_response>)),

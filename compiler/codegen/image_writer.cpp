@@ -109,6 +109,7 @@ void ImageWriter::lay_out() {
   header_.bands = count8(section(records_.bands));
   header_.behaviors = count8(section(rules_.behaviors));
   header_.modifiers = count8(section(rules_.modifiers));
+  header_.adaptations = count8(section(records_.adaptations));
   header_.timers = section(rules_.timers.records());
   header_.rules = section(rules_.rules);
   header_.responses = section(rules_.responses);

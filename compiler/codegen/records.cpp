@@ -29,6 +29,9 @@ public:
       variable(one);
     for (const ProgramCheck& one : program_.checks)
       check(one);
+    if (robot_.scheduler && robot_.scheduler->alpha > 0)
+      records_.adaptations.push_back(
+          {robot_.scheduler->alpha, robot_.scheduler->window_ms, robot_.scheduler->cap, {}});
     return std::move(records_);
   }
 

@@ -18,6 +18,7 @@ struct Records {
   std::vector<vm::Variable> variables;
   std::vector<vm::Check> checks;
   std::vector<vm::Band> bands;
+  std::vector<vm::Adaptation> adaptations;
 };
 
 // Names and labels go into `strings`.

@@ -19,6 +19,7 @@ enum class Object : std::uint8_t {
   sound,
   limits,
   behavior,
+  scheduler,
   algorithm,
   device,
   device_to,

@@ -99,6 +99,13 @@ struct BehaviorConfig {
   Span action_span;
 };
 
+// How priorities adapt (vm::Adaptation says it to the board).
+struct SchedulerConfig {
+  std::uint16_t alpha = 2000;  // thousandths; 0: they do not
+  std::uint16_t window_ms = 10'000;
+  std::uint8_t cap = 95;
+};
+
 enum class LintLevel : std::uint8_t { allow, warn, deny };
 
 struct Robot {
@@ -106,6 +113,7 @@ struct Robot {
   std::vector<ActuatorConfig> actuators;
   std::vector<GroupConfig> groups;
   std::vector<BehaviorConfig> behaviors;
+  std::optional<SchedulerConfig> scheduler;
   std::map<Code, LintLevel> lints;
   bool complete = true;  // false: entries are missing, for mistakes that have been reported
 };

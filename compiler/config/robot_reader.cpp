@@ -96,6 +96,8 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
     report_algorithm(entry, diagnostics);
     return true;
   });
+  if (const auto* scheduler = fields.find("scheduler"))
+    robot.scheduler = read_scheduler(*scheduler, diagnostics);
   if (const auto* lints = fields.find("lints")) read_lints(*lints, robot, diagnostics);
   check_names(robot, diagnostics);
   return robot;

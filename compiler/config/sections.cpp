@@ -12,7 +12,8 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::int64_t kMaxPriority = 99;
+// Of α: what a u16 of thousandths holds, in whole numbers.
+constexpr vm::Value kMaxAlpha = 65 * vm::kScale;
 
 template <typename List>
 std::optional<std::size_t> place_of(const List& list, std::string_view name) {
@@ -118,7 +119,7 @@ bool read_behavior(const json::Value& value, Robot& robot, Diagnostics& diagnost
   behavior.name = *name;
   if (const auto* priority = fields.find("priority")) {
     behavior.priority_span = priority->span;
-    if (const auto number = read_whole(*priority, 1, kMaxPriority, diagnostics))
+    if (const auto number = read_whole(*priority, 1, vm::kMaxPriority, diagnostics))
       behavior.priority = static_cast<int>(*number);
   }
   if (const auto* action = fields.find("action"); action && read_text(*action, diagnostics)) {
@@ -130,6 +131,33 @@ bool read_behavior(const json::Value& value, Robot& robot, Diagnostics& diagnost
   }
   robot.behaviors.push_back(std::move(behavior));
   return true;
+}
+
+SchedulerConfig read_scheduler(const json::Value& value, Diagnostics& diagnostics) {
+  const Fields fields(value, Object::scheduler, diagnostics);
+  SchedulerConfig scheduler;
+  const auto out_of_range = [&](const json::Value& wrong, const std::string& range) {
+    diagnostics.report(Code::E0205, "this must be from " + range).label(wrong.span);
+  };
+  if (const auto* alpha = fields.find("alpha"))
+    if (const auto number =
+            read_quantity(*alpha, canonical_unit(vm::Dimension::number), diagnostics)) {
+      if (*number < 0 || *number > kMaxAlpha)
+        out_of_range(*alpha, "0 to " + std::to_string(kMaxAlpha / vm::kScale));
+      else
+        scheduler.alpha = static_cast<std::uint16_t>(*number);
+    }
+  if (const auto* window = fields.find("window"))
+    if (const auto time = read_milliseconds(*window, diagnostics)) {
+      if (*time < vm::kMinAdaptationMs)
+        out_of_range(*window, std::to_string(vm::kMinAdaptationMs) + " ms to 65535 ms");
+      else
+        scheduler.window_ms = *time;
+    }
+  if (const auto* cap = fields.find("cap"))
+    if (const auto number = read_whole(*cap, 1, vm::kMaxPriority, diagnostics))
+      scheduler.cap = static_cast<std::uint8_t>(*number);
+  return scheduler;
 }
 
 void report_algorithm(const json::Value& value, Diagnostics& diagnostics) {

@@ -7,7 +7,6 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr int kMaxPriority = 99;
 constexpr std::size_t kMaxRules = UINT8_MAX;  // of one behaviour
 
 }  // namespace
@@ -59,11 +58,12 @@ void Behaviors::check_count(Span span) {
 std::optional<Behaviors::Numbered> Behaviors::written_priority(const ast::Name& digits) {
   if (digits.text.empty()) return std::nullopt;
   const auto number = parse_decimal(digits.text);
-  const bool good =
-      number && number->decimals == 0 && number->mantissa >= 1 && number->mantissa <= kMaxPriority;
+  const bool good = number && number->decimals == 0 && number->mantissa >= 1 &&
+                    number->mantissa <= vm::kMaxPriority;
   if (good) return Numbered{static_cast<int>(number->mantissa), digits.span, true};
   diagnostics_
-      .report(Code::E0405, "a priority is a whole number from 1 to " + std::to_string(kMaxPriority))
+      .report(Code::E0405,
+              "a priority is a whole number from 1 to " + std::to_string(vm::kMaxPriority))
       .label(digits.span);
   return std::nullopt;
 }
@@ -96,9 +96,9 @@ void Behaviors::claim(const Numbered& priority) {
 }
 
 std::optional<int> Behaviors::next_free(int number) const {
-  for (int distance = 1; distance < kMaxPriority; ++distance)
+  for (int distance = 1; distance < vm::kMaxPriority; ++distance)
     for (const int candidate : {number + distance, number - distance})
-      if (candidate >= 1 && candidate <= kMaxPriority && !priorities_.contains(candidate))
+      if (candidate >= 1 && candidate <= vm::kMaxPriority && !priorities_.contains(candidate))
         return candidate;
   return std::nullopt;
 }

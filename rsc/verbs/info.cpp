@@ -11,6 +11,7 @@
 
 #include "rsc/console.hpp"
 #include "rsc/session.hpp"
+#include "rsc/threads.hpp"
 #include "rsc/verb.hpp"
 
 namespace robosync::tool {
@@ -18,15 +19,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The numbers of link::ThreadInfo and link::Status; kernel::Category has the same order.
-constexpr std::array<std::string_view, 6> kCategories = {"system",   "sensor",  "processing",
-                                                         "behavior", "control", "safety"};
-constexpr std::array<std::string_view, 4> kStates = {"blocked", "ready", "stopped", "absent"};
+// The numbers of link::Status.
 constexpr std::array<std::string_view, 3> kResetReasons = {"power", "watchdog", "software"};
 
-template <std::size_t N>
-std::string_view word(const std::array<std::string_view, N>& words, std::size_t number) {
-  return number < N ? words[number] : "?";
+std::string_view reset_reason(const link::Status& status) {
+  return status.reset_reason < kResetReasons.size() ? kResetReasons[status.reset_reason] : "?";
 }
 
 std::string hash(const link::HelloReply& board) {
@@ -61,26 +58,13 @@ Json status_json(const link::Status& status) {
           {"lost_events", status.lost_events},
           {"activations", status.activations},
           {"faults", status.faults},
-          {"reset_reason", word(kResetReasons, status.reset_reason)}};
-}
-
-Json thread_json(const link::ThreadInfo& thread) {
-  return {{"name", text_of(thread.name)},
-          {"category", word(kCategories, thread.category)},
-          {"rank", thread.rank},
-          {"priority", thread.priority},
-          {"state", word(kStates, thread.state)},
-          {"stack_bytes", thread.stack_bytes},
-          {"stack_used", thread.stack_used},
-          {"activations", thread.activations}};
+          {"reset_reason", reset_reason(status)}};
 }
 
 void print_json(const link::HelloReply& board, const link::Status& status,
                 const std::vector<link::ThreadInfo>& threads) {
   Json report{{"board", board_json(board)}, {"status", status_json(status)}};
-  report["threads"] = Json::array();
-  for (const link::ThreadInfo& thread : threads)
-    report["threads"].push_back(thread_json(thread));
+  report["threads"] = threads_json(threads, {});
   std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
@@ -98,21 +82,13 @@ void print_human(const link::HelloReply& board, const link::Status& status,
     std::cout << "program   none\n";
   }
   std::cout << fmt::format("up        {:.3f} s (reset: {}), {} activations, {} faults\n",
-                           static_cast<double>(status.uptime_us) / 1e6,
-                           word(kResetReasons, status.reset_reason), status.activations,
-                           status.faults);
+                           static_cast<double>(status.uptime_us) / 1e6, reset_reason(status),
+                           status.activations, status.faults);
   std::cout << fmt::format("safety    {} checks, latest by {} us\n", status.safety_checks,
                            status.safety_late_us);
   std::cout << fmt::format("line      {} bad frames, {} lost events\n\n", status.bad_frames,
                            status.lost_events);
-  std::cout
-      << "rank  thread            category    priority  state    stack used/bytes     woken\n";
-  for (const link::ThreadInfo& thread : threads) {
-    std::cout << fmt::format("{:>4}  {:<16}  {:<10}  {:>8}  {:<8} {:>10}/{:<6}  {:>9}\n",
-                             thread.rank, text_of(thread.name), word(kCategories, thread.category),
-                             thread.priority, word(kStates, thread.state), thread.stack_used,
-                             thread.stack_bytes, thread.activations);
-  }
+  std::cout << threads_table(threads, {});
 }
 
 void info(const std::string& port, Format format) {

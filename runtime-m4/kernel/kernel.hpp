@@ -57,6 +57,11 @@ public:
   void sleep_until(Time deadline) { wait_until(0, deadline); }
   // Sets events of a thread and lets it run if it waits for one of them.  [any]
   void signal(Thread& thread, Events events);
+  // Gives a thread another priority: its place is then the one it would have if it were added now,
+  // behind its equals. The order changes by pairs of neighbours, each under a lock of its own, so
+  // nothing is held off for longer however far the thread moves. One caller at a time, and not
+  // during add() or remove().  [init, thread]
+  void set_priority(Thread& thread, Priority priority);
   // Stops a thread for good (fault, or its entry returned); it is never run again.  [any]
   void stop(Thread& thread);
   // From now on `stops` of `watcher` are signalled whenever a thread is stopped, and `reports`
@@ -96,6 +101,12 @@ public:
   // All threads, by rank.  [any; the span is good until threads are added or removed]
   std::span<Thread* const> threads() const { return {by_rank_.data(), count_}; }
   Thread::State state(const Thread& thread) const;  // [any]
+
+  // A free-running counter of the processor's clock; wraps.  [any]
+  std::uint32_t clock() const { return 0 - port::Machine::clock(); }
+  // Counts of it that a thread ran since it was added, interrupts meanwhile included; wraps. Always
+  // 0 where time does not flow.  [any]
+  std::uint32_t run_time(const Thread& thread) const;
 
   // --- for the port ---
 
@@ -161,10 +172,12 @@ private:
   [[gnu::cold]] void release_all(const Thread& thread);
   [[gnu::cold]] std::uint8_t find_ceiling() const;
   std::uint8_t rank_of_running() const;
+  void swap_with_next(unsigned rank);
+  void move_highest(const Thread& sunk, const Thread& risen);
 
+  Thread* running_ = &idle_;                        // stands first: switch.S reads it
   std::array<Thread*, kMaxThreads + 1> by_rank_{};  // the last is idle_
   ReadySet ready_;
-  Thread* running_ = &idle_;
   // The ceiling of what the running thread holds, else its rank; kNoneRuns from the moment it
   // blocks.
   std::uint8_t running_rank_ = kIdleRank;

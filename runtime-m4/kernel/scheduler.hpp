@@ -5,6 +5,7 @@
 
 #include <array>
 #include <bit>
+#include <compare>
 #include <cstdint>
 
 #include "runtime-m4/limits.hpp"
@@ -20,17 +21,28 @@ inline constexpr std::uint8_t kIdleRank = kMaxThreads;  // what an empty ready s
 enum class Category : std::uint8_t { system, sensor, processing, behavior, control, safety };
 inline constexpr unsigned kCategories = 6;
 
+// What a thread's behaviour is worth: `now` decides, and between equals `base`, the priority as it
+// was written (adaptation.hpp says how the two come to differ). Behaviours have distinct bases, so
+// two behaviours are never equal.
+struct Priority {
+  std::int8_t now = 0;
+  std::int8_t base = 0;
+
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 sees a 0 in what it is defaulted to
+  friend constexpr auto operator<=>(const Priority&, const Priority&) = default;
+};
+
 // A thread's place in the order as one number: the higher outranks. Equals rank by age.
-constexpr std::int32_t standing(Category category, std::int16_t priority) {
+constexpr std::int32_t standing(Category category, Priority priority) {
   constexpr std::int32_t kBeyondAnyPriority = 1 << 24;
-  switch (category) {
-    case Category::safety:
-      return kBeyondAnyPriority + priority;
-    case Category::system:
-      return -kBeyondAnyPriority + priority;
-    default:
-      return std::int32_t{priority} * 8 + static_cast<std::int32_t>(category);
-  }
+  const std::int32_t level = std::int32_t{priority.now} * 256 + priority.base;
+  const std::int32_t place = level * 8 + static_cast<std::int32_t>(category);
+  if (category == Category::safety) return place + kBeyondAnyPriority;
+  if (category == Category::system) return place - kBeyondAnyPriority;
+  return place;
+}
+constexpr std::int32_t standing(Category category, std::int8_t priority) {
+  return standing(category, Priority{priority, priority});
 }
 
 // The threads that can run: one bit each by rank, the highest rank in the top bit of the first
@@ -51,6 +63,7 @@ public:
   }
   static constexpr void insert(Place place) { *place.word |= place.bit; }
   static constexpr void erase(Place place) { *place.word &= ~place.bit; }
+  static constexpr void toggle(Place place) { *place.word ^= place.bit; }
   static constexpr bool contains(Place place) { return (*place.word & place.bit) != 0; }
 
   // Highest rank in the set; the number of ranks when it is empty.

@@ -17,7 +17,7 @@ using Events = std::uint32_t;
 struct ThreadSpec {
   const char* name = "";  // for reports; must outlive the thread
   Category category = Category::system;
-  std::int16_t priority = 0;  // max over the behaviours that need it (paper: Priority(T))
+  std::int16_t priority = 0;  // -128 … 127: max over the behaviours that need it (Priority(T))
   void (*entry)(void*) = nullptr;
   void* argument = nullptr;
   std::span<std::byte> stack;  // alignas(port::kStackAlignment), at least port::kMinStack
@@ -42,9 +42,14 @@ public:
 
   const char* name() const { return name_; }
   Category category() const { return category_; }
-  std::int16_t priority() const { return priority_; }
+  Priority priority() const { return priority_; }
   std::uint8_t rank() const { return rank_; }                 // 0 is the highest
   std::uint32_t activations() const { return activations_; }  // times it went to wait
+  // Deadlines it missed, as it says itself; 255: that many or more.
+  std::uint8_t missed() const { return missed_; }
+  void note_miss() {
+    if (missed_ != 0xFF) ++missed_;
+  }
   // What it can use of its stack.
   std::span<std::byte> stack() const { return {stack_, stack_bytes_}; }
   std::size_t stack_used() const;  // most bytes in use since it was added
@@ -53,6 +58,7 @@ private:
   friend class Kernel;
 
   void set_stack(std::span<std::byte> stack);  // and paints it
+  std::int32_t standing() const { return kernel::standing(category_, priority_); }
   void set_rank(unsigned rank, ReadySet& ready) {
     rank_ = static_cast<std::uint8_t>(rank);
     ready_place_ = ready.place(rank);
@@ -68,9 +74,10 @@ private:
   const char* name_ = "";
   std::uint32_t activations_ = 0;
   std::uint16_t stack_bytes_ = 0;
-  std::int16_t priority_ = 0;
+  Priority priority_;
   Category category_ = Category::system;
   std::uint8_t rank_ = kIdleRank;
+  std::uint8_t missed_ = 0;
   State state_ = State::absent;  // stopped or absent; else the ready set says whether it is blocked
 };
 

@@ -1,36 +1,31 @@
-// Which threads there are: creation, removal, ranks. Bounded: a change moves at most kMaxThreads
-// places. Built for size; what is in a hurry stands in kernel.cpp.
+// Which threads there are: creation and removal. Bounded: a change moves at most kMaxThreads places.
+// Built for size; what is in a hurry stands in kernel.cpp.
 #include <algorithm>
 
 #include "runtime-m4/kernel/kernel.hpp"
 
 namespace robosync::kernel {
 
-namespace {
-
-std::int32_t standing(const Thread& thread) {
-  return standing(thread.category(), thread.priority());
-}
-
-}  // namespace
-
 bool Kernel::add(Thread& thread, const ThreadSpec& spec) {
   if (thread.state_ != Thread::State::absent || count_ == kMaxThreads) return false;
   if (spec.entry == nullptr || spec.stack.size() < port::kMinStack) return false;
-  if (spec.stack.size() > 0xFFFF || !port::Machine::can_run(spec)) return false;
+  const auto priority = static_cast<std::int8_t>(spec.priority);
+  if (spec.stack.size() > 0xFFFF || priority != spec.priority) return false;
+  if (!port::Machine::can_run(spec)) return false;
   thread.name_ = spec.name;
   thread.category_ = spec.category;
-  thread.priority_ = spec.priority;
+  thread.priority_ = {priority, priority};
   thread.set_stack(port::Machine::usable(spec));
   thread.events_ = 0;
   thread.wanted_ = 0;
   thread.activations_ = 0;
+  thread.missed_ = 0;
   machine_.prepare(thread, spec, thread.stack());
 
   port::Lock lock(machine_);
   const auto begin = by_rank_.begin();
   const auto place = std::find_if(begin, begin + count_, [&](const Thread* other) {
-    return standing(*other) < standing(thread);
+    return other->standing() < thread.standing();
   });
   const auto rank = static_cast<unsigned>(place - begin);
   std::move_backward(place, begin + count_, begin + count_ + 1);
@@ -58,16 +53,6 @@ void Kernel::remove(Thread& thread) {
   thread.state_ = Thread::State::absent;
 }
 
-void Kernel::shift_ranks(unsigned from) {
-  for (unsigned rank = from; rank < count_; ++rank)
-    by_rank_[rank]->set_rank(rank, ready_);
-  highest_of_.fill(kIdleRank);
-  for (unsigned rank = count_; rank-- > 0;)
-    highest_of_[index(by_rank_[rank]->category_)] = static_cast<std::uint8_t>(rank);
-  ceiling_ = find_ceiling();
-  if (running_rank_ != kNoneRuns) running_rank_ = rank_of_running();
-}
-
 void Kernel::watch(Thread& watcher, Events stops, Events reports) {
   port::Lock lock(machine_);
   watcher_ = &watcher;
@@ -83,6 +68,11 @@ void Kernel::open(const port::Areas& areas) {
 Thread::State Kernel::state(const Thread& thread) const {
   if (thread.state_ != Thread::State::ready) return thread.state_;
   return ReadySet::contains(thread.ready_place_) ? Thread::State::ready : Thread::State::blocked;
+}
+
+std::uint32_t Kernel::run_time(const Thread& thread) const {
+  port::Lock lock(machine_);
+  return port::Machine::run_time(thread, &thread == running_);
 }
 
 std::uint32_t Kernel::ticks_to_next_wake() const {

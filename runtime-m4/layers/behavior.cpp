@@ -30,7 +30,6 @@ bool BehaviorLayer::start_unit(unsigned behavior, Crew& crew) {
   kernel::ThreadSpec spec;
   spec.name = name_of(program_->image, wiring.name, "rule");
   spec.category = kernel::Category::behavior;
-  spec.priority = wiring.priority;
   spec.privileged = false;
   spec.entry = [](void* self) {
     auto& mine = *static_cast<Unit*>(self);

@@ -32,7 +32,6 @@ bool ControlLayer::start_unit(unsigned actuator, Crew& crew) {
   kernel::ThreadSpec spec;
   spec.name = name_of(program_->image, wiring(unit).name, "actuator");
   spec.category = kernel::Category::control;
-  spec.priority = program_->actuator_priority(actuator);
   spec.entry = [](void* self) {
     auto& mine = *static_cast<Unit*>(self);
     mine.layer->run(mine);

@@ -30,6 +30,15 @@ public:
   // Takes all threads out of the kernel. Not from one of them.
   void dismiss();
 
+  // Gives every thread the priority that `priority_of(thread, index)` says, in the order they were
+  // started in.
+  template <class PriorityOf>
+  void rank(PriorityOf priority_of) {
+    for (Member& member : std::span(members_).first(count_))
+      kernel_.set_priority(member.thread, priority_of(member.thread, member.index));
+    kernel_.set_priority(*step_thread_, priority_of(*step_thread_, 0));
+  }
+
   // A thread that was stopped and not returned before; null when there is none.
   Member* next_stopped();
   // How many of them were ever stopped.

@@ -1,6 +1,7 @@
 # The layers, their drivers, the safety monitor, and the runtime that joins them.
 target_sources(robosync_runtime PRIVATE
   runtime.cpp
+  layers/adaptation.cpp
   layers/arbiter.cpp
   layers/behavior.cpp
   layers/behavior_thread.cpp

@@ -35,6 +35,7 @@ bool ProcessingLayer::start(const Program& program) {
   layers_.variables.start(program.image,
                           std::span(snapshot_.values_).subspan(program.image.channels.size()));
   checks_.start(program.image);
+  adaptation_.start();
   layers_.triggers.start(program.image);
   holdings_.fill(Holding{});
   running_.clear();
@@ -52,7 +53,6 @@ bool ProcessingLayer::start(const Program& program) {
   kernel::ThreadSpec spec;
   spec.name = "step";
   spec.category = kernel::Category::processing;
-  spec.priority = program.step_priority();
   spec.entry = [](void* self) { static_cast<ProcessingLayer*>(self)->run(); };
   spec.argument = this;
   if (!layers_.crew.start_step_thread(thread_, spec)) return false;
@@ -80,6 +80,7 @@ void ProcessingLayer::run() {
 }
 
 void ProcessingLayer::pass() {
+  adaptation_.turn(*program_, layers_.crew, trace_, now_ms());
   finish_done();
   const BehaviorMask lost = std::exchange(lost_behaviors_, 0);
   const BehaviorMask first = std::exchange(unstarted_, 0);
@@ -213,7 +214,11 @@ void ProcessingLayer::add_wanting(unsigned rule, Soonest& due, std::uint32_t now
 }
 
 kernel::Time ProcessingLayer::next_time() const {
-  const std::uint32_t delay = next_due(now_ms());
+  const std::uint32_t now = now_ms();
+  Soonest soonest(now);
+  soonest.in(next_due(now));
+  soonest.at(adaptation_.next());
+  const std::uint32_t delay = soonest.delay();
   const kernel::Time due =
       delay == kNever ? kernel::kForever : kernel_.now() + kernel::milliseconds(delay);
   return std::min(due, layers_.mailboxes.next_expiry());

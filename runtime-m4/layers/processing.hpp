@@ -18,6 +18,7 @@
 //
 // Order of the trace events of one pass:
 //   fault                a thread was stopped
+//   priority             a window of adaptation ended, by behaviour; ranks change here
 //   finished             rules whose commands are all done, by rule
 //   input, stale         by channel; the step begins with the first of all these
 //   set                  variables but bands, by variable; then bands, by CHECK
@@ -43,6 +44,7 @@
 #include <cstdint>
 
 #include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/adaptation.hpp"
 #include "runtime-m4/layers/alarm.hpp"
 #include "runtime-m4/layers/arbiter.hpp"
 #include "runtime-m4/layers/behavior.hpp"
@@ -87,7 +89,9 @@ public:
 
   // Starts the step thread of `program`, which must stay until it is dismissed.
   [[nodiscard]] bool start(const Program& program);
-  // All threads of the program are there: the first step comes when its clock begins.
+  // All threads of the program are there: they get their ranks.
+  void rank() { adaptation_.rank(*program_, layers_.crew, trace_); }
+  // … and the first step comes when its clock begins.
   void go() { kernel_.signal(thread_, kBegin); }
 
   std::uint32_t steps() const { return trace_.step().step; }
@@ -160,6 +164,7 @@ private:
   Neighbours layers_;
   const Program* program_ = nullptr;
   Checks checks_;
+  Adaptation adaptation_;
   Snapshot snapshot_;
   std::array<Holding, kMaxRules> holdings_{};
   RuleSet running_;                  // their responses run, or wait

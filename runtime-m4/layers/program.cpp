@@ -98,32 +98,34 @@ void Program::note_timers(const vm::Rule& rule) {
   }
 }
 
-std::int16_t Program::step_priority() const {
-  return image.behaviors.empty() ? std::int16_t{0} : image.behaviors.front().priority;
-}
-
 std::int16_t Program::idle_priority() const {
   if (image.behaviors.empty()) return 0;
   return static_cast<std::int16_t>(image.behaviors.back().priority - 1);
 }
 
-// The first behaviour that needs it is the one of the highest priority.
-std::int16_t Program::sensor_priority(unsigned sensor) const {
-  const InputMask channels = channels_of(sensor);
-  for (unsigned b = 0; b < image.behaviors.size(); ++b)
-    if ((inputs[b] & channels) != 0) return image.behaviors[b].priority;
-  return idle_priority();
-}
-
-std::int16_t Program::actuator_priority(unsigned actuator) const {
-  for (const vm::Behavior& behavior : image.behaviors.subspan(first_behavior()))
-    if (has(behavior.actuators, actuator)) return behavior.priority;
-  return idle_priority();
+BehaviorMask Program::needing(kernel::Category category, unsigned index) const {
+  using kernel::Category;
+  const InputMask channels = category == Category::sensor ? channels_of(index) : 0;
+  BehaviorMask needing = 0;
+  for (unsigned b = 0; b < image.behaviors.size(); ++b) {
+    const bool reads = (inputs[b] & channels) != 0;
+    const bool commands = category == Category::control && b >= first_behavior() &&
+                          has(image.behaviors[b].actuators, index);
+    const bool is_it = category == Category::behavior && b == index;
+    if (reads || commands || is_it || category == Category::processing)
+      needing |= bit<BehaviorMask>(b);
+  }
+  return needing;
 }
 
 InputMask Program::channels_of(unsigned sensor) const {
-  const vm::Sensor& wiring = image.sensors[sensor];
-  return ((InputMask{1} << wiring.channel_count) - 1) << wiring.first_channel;
+  InputMask channels = 0;
+  for (unsigned s = 0; s < image.sensors.size(); ++s) {
+    const vm::Sensor& wiring = image.sensors[s];
+    if (s == sensor || (sensor == kFedSensors && is_fed(wiring)))
+      channels |= ((InputMask{1} << wiring.channel_count) - 1) << wiring.first_channel;
+  }
+  return channels;
 }
 
 bool Program::has_fed_sensors() const {

@@ -4,12 +4,16 @@
 #include <array>
 #include <cstdint>
 
+#include "runtime-m4/kernel/scheduler.hpp"
 #include "runtime-m4/layers/messages.hpp"
 #include "runtime-m4/layers/rule_set.hpp"
 #include "vm/image.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::layers {
+
+// In the place of a sensor: all that are fed, which one thread serves.
+inline constexpr unsigned kFedSensors = kMaxSensors;
 
 struct Program {
   vm::Image image;
@@ -26,14 +30,13 @@ struct Program {
   unsigned first_behavior() const { return image.has_safety() ? vm::kSafetyBehavior + 1 : 0; }
   bool is_variable(unsigned input) const { return input >= image.channels.size(); }
 
-  // Priority(T) = max over the behaviours that need T; below all of them when none does.
-  std::int16_t sensor_priority(unsigned sensor) const;
-  std::int16_t actuator_priority(unsigned actuator) const;
-  std::int16_t step_priority() const;
+  // The behaviours that need a thread, the SAFETY rules among them. `index` is that of its sensor
+  // (kFedSensors: all that are fed), behaviour or actuator; everybody needs the step thread.
+  BehaviorMask needing(kernel::Category category, unsigned index) const;
 
   InputMask channels_of(unsigned sensor) const;
   bool has_fed_sensors() const;
-  // Lowest priority a thread of this program can have: of those that no behaviour needs.
+  // Of threads that no behaviour needs: below all that one does.
   std::int16_t idle_priority() const;
 
 private:

@@ -31,7 +31,6 @@ bool SensorLayer::start_sensor(unsigned sensor, Crew& crew) {
   kernel::ThreadSpec spec;
   spec.name = name_of(program_->image, program_->image.sensors[sensor].name, "sensor");
   spec.category = kernel::Category::sensor;
-  spec.priority = program_->sensor_priority(sensor);
   spec.entry = entry;
   spec.argument = &station;
   station.thread = crew.start(spec, sensor, kSensorStack);
@@ -48,10 +47,6 @@ bool SensorLayer::start_feeds(Crew& crew) {
   kernel::ThreadSpec spec;
   spec.name = "feeds";
   spec.category = kernel::Category::sensor;
-  spec.priority = program_->idle_priority();
-  for (unsigned s = 0; s < program_->image.sensors.size(); ++s)
-    if (is_fed(program_->image.sensors[s]))
-      spec.priority = std::max(spec.priority, program_->sensor_priority(s));
   spec.entry = [](void* self) { static_cast<SensorLayer*>(self)->run_feeds(); };
   spec.argument = this;
   feed_thread_ = crew.start(spec, kFedSensors, kSensorStack);
@@ -75,6 +70,7 @@ kernel::Time SensorLayer::next_sample(unsigned sensor, kernel::Time last) {
   const kernel::Time next = last + period;
   if (now < next) return next;
   const auto late = static_cast<std::int32_t>(std::min<kernel::Duration>(now - next, INT32_MAX));
+  kernel_.current().note_miss();
   trace_.emit(link::EventKind::deadline, trace_.now(), kernel_.current().rank(), 0, late);
   return next + ((now - next) / period + 1) * period;
 }

@@ -48,7 +48,6 @@ public:
 private:
   static constexpr kernel::Events kFeed = 1;
   static constexpr kernel::Events kGo = 2;
-  static constexpr unsigned kFedSensors = kMaxSensors;  // index of the thread that serves feeds
 
   struct Station {
     SensorLayer* layer = nullptr;

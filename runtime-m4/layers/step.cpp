@@ -56,8 +56,10 @@ void ProcessingLayer::report_triggers() {
       trace_.emit(EventKind::zero_divide, trace_.step(), rule);
   Side side{};
   for (const unsigned rule : concerned_)
-    if (layers_.triggers.fired(rule, side))
+    if (layers_.triggers.fired(rule, side)) {
       trace_.emit(EventKind::fire, trace_.step(), rule, 0, static_cast<std::int32_t>(side));
+      adaptation_.count(*program_, program_->behavior_of[rule], snapshot_.milliseconds());
+    }
 }
 
 // What `rule` claims now; silent: that it does was told before.

@@ -25,6 +25,10 @@
 //     prepare(context, spec, stack) Makes a thread start with entry(argument) on a usable stack;
 //                                   when that returns, the thread is stopped.
 //     prepare_idle(context)         The idle thread's context; returns its usable stack.
+//     clock()                       A counter that counts down while threads run, and wraps at 32
+//                                   bits; stands still where kTimeFlows is false.
+//     run_time(context, runs)       How much of it passed while the thread ran, which does now if
+//                                   `runs`. Under a Lock.
 //     request_switch()              Runs Kernel::select_next() and switches, as soon as no Lock is
 //                                   held and no interrupt handler runs.
 //     run()                         Runs threads; the caller becomes the idle thread.

@@ -27,12 +27,15 @@ link::ThreadInfo describe(const kernel::Kernel& kernel, const kernel::Thread& th
           static_cast<std::uint8_t>(kernel.threads().size()),
           static_cast<std::uint8_t>(thread.category()),
           thread.rank(),
-          thread.priority(),
+          thread.priority().now,
+          thread.priority().base,
           static_cast<std::uint16_t>(thread.stack().size()),
           static_cast<std::uint16_t>(thread.stack_used()),
           static_cast<std::uint8_t>(kernel.state(thread)),
-          0,
+          thread.missed(),
           thread.activations(),
+          kernel.run_time(thread),
+          kernel.clock(),
           padded(thread.name())};
 }
 

@@ -1,5 +1,6 @@
 """The board and `rsc run` do the same, bit for bit, for programs of this folder and for drawn ones."""
 
+import json
 import unittest
 
 import stimuli
@@ -28,6 +29,25 @@ class Traces(TraceTest):
     def test_arithmetic(self):
         program = PROGRAMS / "arithmetic.rsl"
         self.check(program, stimuli.drawn(2, program.read_text(), count=60))
+
+    def test_adaptive_priorities(self):
+        """Ranks change at the same tick on both, and back again."""
+        config = self.folder / "adapting.json"
+        robot = json.loads((PROGRAMS / "robot.json").read_text("utf-8"))
+        robot["scheduler"] = {"alpha": 20, "window": "500ms"}
+        config.write_text(json.dumps(robot))
+        lines = self.check(PROGRAMS / "priorities.rsl", stimuli.PRIORITIES, config)
+        changes = [json.loads(line) for line in lines if '"event":"priority"' in line]
+        self.assertGreater(len(changes), 2)
+        self.assertTrue(all(change["t_us"] % 500_000 == 0 for change in changes))
+        last = {change["behavior"]: change for change in changes}
+        self.assertTrue(all(change["priority"] == change["base"] for change in last.values()))
+        for seed in range(4):
+            with self.subTest(seed=seed):
+                program = self.folder / f"adapting{seed}.rsl"
+                text = Generator(seed).program()
+                program.write_text(text)
+                self.check(program, stimuli.drawn(seed, text), config)
 
     def test_drawn_programs(self):
         for seed in range(12):

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 LINK = Path(__file__).resolve().parents[2] / "link"
-TYPES = {"std::uint8_t": "B", "std::uint16_t": "H", "std::int16_t": "h", "std::uint32_t": "I",
+TYPES = {"std::uint8_t": "B", "std::int8_t": "b", "std::uint16_t": "H", "std::int16_t": "h", "std::uint32_t": "I",
          "std::int32_t": "i", "std::uint64_t": "Q", "Name": "16s"}
 
 

@@ -24,6 +24,7 @@ const std::array<SectionInfo, kSectionCount> kSections = {{
     SECTION(bands, vm::Band),
     SECTION(behaviors, vm::Behavior),
     SECTION(modifiers, vm::Modifiers),
+    SECTION(adaptations, vm::Adaptation),
     SECTION(timers, vm::Timer),
     SECTION(rules, vm::Rule),
     SECTION(responses, vm::Response),

@@ -5,6 +5,7 @@ usage: make_seeds.py RSC FOLDER
 Afterwards FOLDER holds their images, and a file `made`. Which programs are drawn is fixed.
 """
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -26,11 +27,14 @@ def make(rsc, folder):
     folder.mkdir(parents=True, exist_ok=True)
     for source in sorted((ROOT / "examples").glob("*/robot.rsl")):
         compile_program(rsc, source, folder / f"{source.parent.name}.rsb")
+    plain = E2E / "programs/robot.json"
+    adapting = folder / "adapting.json"
+    adapting.write_text(json.dumps(json.loads(plain.read_text()) | {"scheduler": {"window": "1s"}}))
     for seed in range(DRAWN):
         source = folder / f"drawn{seed:02}.rsl"
         source.write_text(Generator(seed).program())
         compile_program(rsc, source, source.with_suffix(".rsb"), "--config",
-                        E2E / "programs/robot.json")
+                        adapting if seed % 4 == 0 else plain)
     (folder / "made").touch()
 
 

@@ -9,8 +9,8 @@
 using namespace robosync::kernel;
 
 TEST_CASE("safety ranks above everything, system below, whatever the priorities") {
-  constexpr std::int16_t kLowest = INT16_MIN;
-  constexpr std::int16_t kHighest = INT16_MAX;
+  constexpr std::int8_t kLowest = INT8_MIN;
+  constexpr std::int8_t kHighest = INT8_MAX;
   CHECK(standing(Category::safety, kLowest) > standing(Category::control, kHighest));
   CHECK(standing(Category::system, kHighest) < standing(Category::sensor, kLowest));
 }
@@ -18,6 +18,11 @@ TEST_CASE("safety ranks above everything, system below, whatever the priorities"
 TEST_CASE("a higher priority outranks any category of a lower one") {
   CHECK(standing(Category::sensor, 5) > standing(Category::control, 4));
   CHECK(standing(Category::sensor, -1) > standing(Category::control, -2));
+}
+
+TEST_CASE("between equal priorities the higher base decides, whatever the category") {
+  CHECK(standing(Category::sensor, {60, 50}) > standing(Category::control, {60, 40}));
+  CHECK(standing(Category::sensor, {61, -64}) > standing(Category::control, {60, 60}));
 }
 
 TEST_CASE("within one priority control > behavior > processing > sensor") {

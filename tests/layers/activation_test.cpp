@@ -58,7 +58,7 @@ END
               .ok());
   std::string order;
   for (const kernel::Thread* thread : rig.kernel.threads())
-    order += std::string(thread->name()) + ":" + std::to_string(thread->priority()) + " ";
+    order += std::string(thread->name()) + ":" + std::to_string(thread->priority().now) + " ";
   // Priority(T) = max over the behaviours that need T; then control, behaviour, processing, sensor.
   CHECK(order == "safety:0 a:20 high:20 step:20 feeds:20 b:10 low:10 ");
 }

@@ -142,6 +142,8 @@ std::string what(const link::Event& event, const vm::Image& image) {
       return "release " + actuator();
     case EventKind::zero_divide:
       return rule_only(event, "zero_divide");
+    case EventKind::priority:
+      return "priority b" + std::to_string(event.subject) + " " + std::to_string(event.values[0]);
   }
   return "?";
 }

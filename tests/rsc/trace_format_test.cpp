@@ -188,6 +188,22 @@ TEST_CASE("safety and waits in words") {
              Catch::EndsWith("safety has an actuator it needs"));
 }
 
+TEST_CASE("a priority that changes is told beside the one that is written") {
+  const auto& behaviors = program().image().behaviors;
+  const auto named = static_cast<std::uint16_t>(behaviors[0].name == vm::kNoIndex ? 1 : 0);
+  const std::int32_t base = behaviors[named].priority;
+  const std::string written = std::to_string(base);
+  const json raised = as_json(event(EventKind::priority, named, 0, {base + 7}));
+  CHECK(raised.at("behavior") == "behaviour shy");
+  CHECK(raised.at("priority") == base + 7);
+  CHECK(raised.at("base") == base);
+  CHECK_THAT(as_words(event(EventKind::priority, named, 0, {base + 7})),
+             Catch::EndsWith("behaviour shy has priority " + std::to_string(base + 7) +
+                             " now, in place of " + written));
+  CHECK_THAT(as_words(event(EventKind::priority, named, 0, {base})),
+             Catch::EndsWith("behaviour shy has its priority of " + written + " back"));
+}
+
 TEST_CASE("threads have their names") {
   CHECK(as_words(event(EventKind::deadline, 1, 0, {1500})) ==
         "   1.020 s  step is late by 1500 us");

@@ -48,6 +48,7 @@ struct ImageBuilder {
   std::vector<std::uint16_t> labels;
   std::string strings;
   std::vector<SourceLine> source_lines;
+  std::vector<Adaptation> adaptations;
   // Applied to the finished header, before the CRC.
   std::function<void(ImageHeader&)> patch_header = [](ImageHeader&) {};
 
@@ -114,6 +115,7 @@ struct ImageBuilder {
     append(bytes, bands);
     append(bytes, behaviors);
     append(bytes, modifiers);
+    append(bytes, adaptations);
     append(bytes, timers);
     append(bytes, rules);
     append(bytes, responses);
@@ -159,6 +161,7 @@ private:
     header.bands = static_cast<std::uint8_t>(bands.size());
     header.behaviors = static_cast<std::uint8_t>(behaviors.size());
     header.modifiers = static_cast<std::uint8_t>(modifiers.size());
+    header.adaptations = static_cast<std::uint8_t>(adaptations.size());
     header.timers = static_cast<std::uint16_t>(timers.size());
     header.labels = static_cast<std::uint16_t>(labels.size());
     header.rules = static_cast<std::uint16_t>(rules.size());

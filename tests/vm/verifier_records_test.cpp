@@ -84,7 +84,7 @@ TEST_CASE("a channel's sensor exists, whatever stands behind the last sensor") {
 TEST_CASE("the ends of what is allowed are allowed") {
   ImageBuilder image = robot::make();
   image.behaviors[robot::greet].priority = 99;
-  image.behaviors[robot::back_off].priority = INT16_MIN;
+  image.behaviors[robot::back_off].priority = kMinPriority;
   image.channels[1].max = image.channels[1].min;
   image.actuators[2].max = image.actuators[2].min = kValueMin;
   image.actuators[2].speed_limit = 0;
@@ -232,6 +232,7 @@ TEST_CASE("behaviours") {
   refused(Refusal::same_priority, 1, [](auto& b) { b[1].priority = kSafetyPriority; });
   refused(Refusal::bad_value, 2, [](auto& b) { b[2].priority = 51; });
   refused(Refusal::bad_value, 0, [](auto& b) { b[0].priority = kSafetyPriority + 1; });
+  refused(Refusal::bad_value, 2, [](auto& b) { b[2].priority = kMinPriority - 1; });
   refused(Refusal::bad_index, 0, [](auto& b) { b[0].first_rule = 1; });
   refused(Refusal::bad_index, 1, [](auto& b) { b[1].first_rule = 0; });
   refused(Refusal::bad_index, 1, [](auto& b) { b[1].first_rule = 3; });
@@ -312,6 +313,29 @@ TEST_CASE("responses") {
   refused(2, [](Response& r) { r.length = 0; });
   refused(2, [](Response& r) { r.start = 0xFFFF; });
   refused(0, [](Response& r) { r.length = 0xFFFF; });
+}
+
+TEST_CASE("adaptation: none or one, in its ranges") {
+  const auto with = [](auto change) {
+    ImageBuilder image = robot::make();
+    image.adaptations = {{.alpha = 2000, .window_ms = 10'000, .cap = 95, .reserved = {}}};
+    change(image.adaptations);
+    return image;
+  };
+  check_accepted(with([](auto&) {}));
+  check_accepted(with([](auto& a) { a[0] = {1, kMinAdaptationMs, 1, {}}; }));
+  check_accepted(with([](auto& a) { a[0] = {0xFFFF, 0xFFFF, kMaxPriority, {}}; }));
+  const auto refused = [&](auto wrong) {
+    check_refused([&](auto& image) { image = with([&](auto& a) { wrong(a[0]); }); },
+                  {Refusal::bad_value, Section::adaptations, 0});
+  };
+  refused([](auto& a) { a.alpha = 0; });
+  refused([](auto& a) { a.window_ms = kMinAdaptationMs - 1; });
+  refused([](auto& a) { a.cap = 0; });
+  refused([](auto& a) { a.cap = kMaxPriority + 1; });
+  refused([](auto& a) { a.reserved[2] = 1; });
+  check_refused([&](auto& image) { image = with([](auto& a) { a.push_back(a[0]); }); },
+                {Refusal::bad_value, Section::header, 0});
 }
 
 TEST_CASE("inputs, constants, source lines") {

@@ -29,6 +29,10 @@ WatchdogRegisters& watchdog() {
 }  // namespace
 
 Board::Board() {
+  auto& clock = at<TimerRegisters>(kTimer1);
+  clock.reload = ~std::uint32_t{0};
+  clock.value = ~std::uint32_t{0};
+  clock.control = kTimerOn;
   if (reset_record.magic == kMagic) {
     reset_reason_ = reset_record.reason;
     has_last_words_ = reset_record.has_fault;

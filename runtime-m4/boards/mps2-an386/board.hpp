@@ -25,7 +25,7 @@ enum class ResetReason : std::uint8_t { power, watchdog, software };
 
 class Board final : public boards::Board {
 public:
-  // Reads why the board was reset, and forgets it.
+  // Reads why the board was reset, and forgets it. Starts the clock that threads are timed with.
   Board();
 
   const char* name() const override { return "mps2-an386"; }

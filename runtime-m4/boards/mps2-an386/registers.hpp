@@ -48,6 +48,15 @@ inline constexpr std::uintptr_t kWatchdog = 0x4000'8000;
 inline constexpr std::uint32_t kWatchdogOn = 0b11;  // first time-out: NMI, second: reset
 inline constexpr std::uint32_t kWatchdogUnlock = 0x1ACC'E551;
 
+struct TimerRegisters {  // CMSDK APB timer: counts down, and begins again at `reload`
+  volatile std::uint32_t control;
+  volatile std::uint32_t value;  // timer 1's is robosync_clock in the linker script
+  volatile std::uint32_t reload;
+  volatile std::uint32_t interrupt;
+};
+inline constexpr std::uintptr_t kTimer1 = 0x4000'1000;
+inline constexpr std::uint32_t kTimerOn = 1U << 0;
+
 template <typename Registers>
 Registers& at(std::uintptr_t address) {
   return *reinterpret_cast<Registers*>(address);

@@ -12,7 +12,7 @@
 // switch.S
 extern "C" {
 [[noreturn]] void robosync_become_idle(std::byte* stack_top);
-void robosync_save_open(std::uint32_t psp);
+void robosync_save_open(robosync::kernel::Kernel& kernel, std::uint32_t psp);
 void robosync_no_room();
 }
 
@@ -84,6 +84,7 @@ void Machine::prepare(Context& context, const kernel::ThreadSpec& spec,
   frame->pc = word_of(reinterpret_cast<const void*>(spec.entry)) & ~1U;
   frame->xpsr = kXpsrThumb;
   context.sp = reinterpret_cast<std::uint32_t*>(frame);
+  context.run_time = 0;
   context.region = guard_below(stack);
   if (!spec.privileged) open_stack(context, stack);
 }
@@ -102,6 +103,7 @@ void Machine::run() {
       static_cast<std::uint32_t>(hooks::kCoreHz / 1'000'000 * kernel::kTick) - 1;
   core::reg(core::kSystCvr) = 0;
   core::reg(core::kSystCsr) = 7;  // core clock, interrupt, on
+  kernel::Kernel::context(robosync_kernel.idle()).run_time = clock();
   request_switch();
   robosync_become_idle(idle_stack.data() + idle_stack.size());
 }
@@ -110,19 +112,15 @@ void Machine::run() {
 
 extern "C" {
 
-const robosync::port::Context* robosync_switch(std::uint32_t* sp, robosync::kernel::Kernel& kernel);
+const robosync::port::Context* robosync_switch(robosync::kernel::Kernel& kernel);
 void PendSV_Open_Handler();
 void SysTick_Handler();
 void SVC_Handler();
 
-// Called by switch.S with the stack pointer of the thread that ran; returns the context of the next
-// one.
-const robosync::port::Context* robosync_switch(std::uint32_t* sp,
-                                               robosync::kernel::Kernel& kernel) {
+// Called by switch.S when the thread that ran is saved; returns the context of the next one.
+const robosync::port::Context* robosync_switch(robosync::kernel::Kernel& kernel) {
   namespace core = robosync::port::core;
-  using robosync::kernel::Kernel;
-  Kernel::context(kernel.current()).sp = sp;
-  const robosync::port::Context& next = Kernel::context(kernel.select_next());
+  const robosync::port::Context& next = robosync::kernel::Kernel::context(kernel.select_next());
   core::reg(core::kMpuRbar) = next.region;
   return &next;
 }
@@ -136,7 +134,7 @@ void PendSV_Open_Handler() {
   asm volatile("mrs %0, psp" : "=r"(psp));
   const auto stack = robosync_kernel.current().stack();
   if (psp - kSaved - word_of(stack.data()) >= stack.size()) return robosync_no_room();
-  return robosync_save_open(psp);
+  return robosync_save_open(robosync_kernel, psp);
 }
 
 // A system call of a thread without privileges: only its vector table has this. At the kernel's own

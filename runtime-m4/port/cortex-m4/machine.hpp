@@ -13,6 +13,10 @@
 
 #include "runtime-m4/port/cortex-m4/core.hpp"
 
+// A free-running counter of the core's clock that counts down; the board's linker script says where
+// it is, and the board starts it.
+extern "C" const volatile std::uint32_t robosync_clock;
+
 namespace robosync::kernel {
 class Kernel;
 struct ThreadSpec;
@@ -41,6 +45,9 @@ inline constexpr std::size_t kMinStack = kGuard - 8 + kGuard + kFrame + kSaved;
 // switch.S knows where these stand.
 struct Context {
   std::uint32_t* sp = nullptr;  // r4–r11 and EXC_RETURN stand there, below the core's own frame
+  // How long it ran: the switch adds the clock when the thread begins to run and takes it off when
+  // it stops.
+  std::uint32_t run_time = 0;
   // For the MPU's base register: the guard; without privileges, the lower region of the window.
   std::uint32_t region = 0;
   // Without privileges: sizes and eighths of the lower region, and above them of the upper one.
@@ -56,6 +63,10 @@ class Machine {
 public:
   explicit Machine(kernel::Kernel&) {}
   void prepare(Context& context, const kernel::ThreadSpec& spec, std::span<std::byte> stack);
+  static std::uint32_t clock() { return robosync_clock; }
+  static std::uint32_t run_time(const Context& context, bool runs) {
+    return context.run_time - (runs ? clock() : 0);
+  }
   void request_switch() { core::reg(core::kIcsr) = core::kIcsrPendSvSet; }
   [[noreturn]] void run();
   static std::span<std::byte> usable(const kernel::ThreadSpec& spec);

@@ -54,6 +54,8 @@ public:
   Machine& operator=(const Machine&) = delete;
 
   void prepare(Context& context, const kernel::ThreadSpec& spec, std::span<std::byte> stack);
+  static std::uint32_t clock() { return 0; }
+  static std::uint32_t run_time(const Context&, bool) { return 0; }
   void request_switch() { switch_requested_ = true; }
   void run() { run_until(kernel::kForever); }
   static std::span<std::byte> usable(const kernel::ThreadSpec& spec);

@@ -88,7 +88,7 @@ std::array<unsigned, 3> woken;
 
 void periodic(void* argument) {
   const auto* self = static_cast<rig::Thread*>(argument);
-  const unsigned index = static_cast<unsigned>(self->priority() - 60);
+  const unsigned index = static_cast<unsigned>(self->priority().now - 60);
   const Time period = 1000 * (2 * index + 1);
   Time due = robosync_kernel.now();
   for (unsigned i = 0; i < 200; ++i) {
@@ -122,9 +122,38 @@ void stack_use_is_known() {
   CHECK(used < rig::kWorkerStack);
 }
 
+// A thread of lower rank spins while the conductor sleeps: the time is nearly all its own, and no
+// count is anybody else's.
+void run_time_is_known() {
+  rig::Thread& spinner = rig::start(0, rig::kConductor - 1, [](void*) {
+    while (true)
+      asm volatile("");
+  });
+  const std::uint32_t begin = robosync_kernel.clock();
+  const std::uint32_t mine = robosync_kernel.run_time(rig::conductor());
+  rig::sleep_ms(5);
+  const std::uint32_t passed = robosync_kernel.clock() - begin;
+  const std::uint32_t own = robosync_kernel.run_time(rig::conductor()) - mine;
+  CHECK(passed > 4 * 25'000);
+  CHECK(robosync_kernel.run_time(spinner) > passed / 100 * 95);
+  CHECK(robosync_kernel.run_time(spinner) <= passed);
+  CHECK(own < passed / 20);
+}
+
+void raised_thread_preempts() {
+  log_length = 0;
+  rig::Thread& low = rig::start(0, rig::kConductor - 1, [](void*) { note('l'); });
+  note('a');
+  robosync_kernel.set_priority(low, {rig::kConductor + 1, rig::kConductor - 1});
+  note('b');
+  CHECK(log_is("alb"));
+}
+
 constexpr rig::Scenario kScenarios[] = {
     {"a signal to a higher thread runs it at once", higher_preempts},
     {"a lower thread runs when the higher one waits", lower_waits},
+    {"a thread that is raised above the running one runs at once", raised_thread_preempts},
+    {"how long threads run is known", run_time_is_known},
     {"a lock holds switches back; then the highest runs first", lock_holds_back},
     {"a sleep lasts as long as it should", sleep_lasts},
     {"a wait ends with its deadline or its event", timeout_and_event},

@@ -280,12 +280,12 @@ bool start() {
 
 extern "C" {
 
-std::uint32_t* __real_robosync_switch(Kernel& kernel, std::uint32_t* sp);  // NOLINT: --wrap
-std::uint32_t* __wrap_robosync_switch(Kernel& kernel, std::uint32_t* sp);  // NOLINT
+const robosync::port::Context* __real_robosync_switch(Kernel& kernel);  // NOLINT: --wrap
+const robosync::port::Context* __wrap_robosync_switch(Kernel& kernel);  // NOLINT
 
 // The context switch, and then the comparison, unless an interrupt has already asked for another.
-std::uint32_t* __wrap_robosync_switch(Kernel& kernel, std::uint32_t* sp) {  // NOLINT
-  std::uint32_t* const next = __real_robosync_switch(kernel, sp);
+const robosync::port::Context* __wrap_robosync_switch(Kernel& kernel) {  // NOLINT
+  const robosync::port::Context* const next = __real_robosync_switch(kernel);
   const auto lock = kernel.lock();
   if (!switch_is_pending()) compare_decision();
   return next;

@@ -1,0 +1,61 @@
+// See adaptation.hpp. May rely on the verifier: a window is never 0, priorities fit in a byte.
+#include "runtime-m4/layers/adaptation.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace robosync::layers {
+
+using kernel::Priority;
+
+void Adaptation::start() {
+  triggers_.fill(0);
+  end_ = kNever;
+}
+
+void Adaptation::count(const Program& program, unsigned behavior, std::uint32_t now) {
+  if (program.image.adaptations.empty()) return;
+  kernel::TriggerCount& triggers = triggers_[behavior];
+  if (triggers != kernel::kMostTriggers) ++triggers;
+  if (end_ == kNever) end_ = end_after(program, now);
+}
+
+std::uint32_t Adaptation::end_after(const Program& program, std::uint32_t now) {
+  const std::uint32_t window = program.image.adaptations.front().window_ms;
+  return now - now % window + window;
+}
+
+void Adaptation::turn(const Program& program, Crew& crew, Trace& trace, std::uint32_t now) {
+  if (end_ == kNever || !reached(end_, now)) return;
+  const bool counted = rank(program, crew, trace);
+  end_ = counted ? end_after(program, now) : kNever;
+}
+
+// The SAFETY rules count as a behaviour that nothing is counted for. Every thread takes its place
+// anew, in the order of age: so equals stand as they did at first.
+bool Adaptation::rank(const Program& program, Crew& crew, Trace& trace) {
+  kernel::AdaptationRule rule;
+  for (const vm::Adaptation& wiring : program.image.adaptations)
+    rule = {wiring.alpha, wiring.window_ms, static_cast<std::int8_t>(wiring.cap)};
+  const auto idle = static_cast<std::int8_t>(program.idle_priority());
+  const auto worth = [&](unsigned b) {
+    const auto base = static_cast<std::int8_t>(program.image.behaviors[b].priority);
+    return kernel::adapted(base, triggers_[b], rule);
+  };
+  crew.rank([&](const kernel::Thread& thread, unsigned index) {
+    Priority highest{idle, idle};
+    for (BehaviorMask left = program.needing(thread.category(), index); left != 0; left &= left - 1)
+      highest = std::max(highest, worth(static_cast<unsigned>(std::countr_zero(left))));
+    const bool changes = thread.category() == kernel::Category::behavior && end_ != kNever &&
+                         thread.priority() != highest;
+    if (changes) trace.emit(link::EventKind::priority, trace.now(), index, 0, highest.now);
+    return highest;
+  });
+  unsigned counted = 0;
+  for (kernel::TriggerCount& triggers : triggers_)
+    counted |= std::exchange(triggers, kernel::TriggerCount{0});
+  return counted != 0;
+}
+
+}  // namespace robosync::layers

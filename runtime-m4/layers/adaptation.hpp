@@ -1,0 +1,44 @@
+// Adaptive priorities of a program's threads: counts how often each behaviour is triggered, and at
+// the end of each window gives every thread the highest of what the behaviours that need it are
+// worth now (kernel/adaptation.hpp).
+//
+// Windows follow each other in program time from activation on, so host and board change ranks at
+// the same tick: the step thread does it, before anything else at that tick but what outranks it.
+// Only the order of threads changes. Who owns an actuator is decided by the priorities as they are
+// written (arbiter.hpp), whatever was triggered how often.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "runtime-m4/kernel/adaptation.hpp"
+#include "runtime-m4/layers/clock.hpp"
+#include "runtime-m4/layers/crew.hpp"
+#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/trace.hpp"
+
+namespace robosync::layers {
+
+class Adaptation {
+public:
+  void start();
+  // A rule of `behavior` triggered, at `now`.
+  void count(const Program& program, unsigned behavior, std::uint32_t now);
+  // Ends the window if `now` has reached its end: ranks change, the trace tells of each behaviour
+  // whose priority is another, by behaviour.
+  void turn(const Program& program, Crew& crew, Trace& trace, std::uint32_t now);
+  // When turn() has something to do; kNever while all are at their base and nothing was triggered.
+  std::uint32_t next() const { return end_; }
+
+  // Gives all threads their priorities, from what was counted; at first nothing was, and each has
+  // what is written. True if anything was counted; it is forgotten.
+  bool rank(const Program& program, Crew& crew, Trace& trace);
+
+private:
+  static std::uint32_t end_after(const Program& program, std::uint32_t now);
+
+  std::array<kernel::TriggerCount, kMaxBehaviors> triggers_{};  // in this window
+  std::uint32_t end_ = kNever;                                  // of this window
+};
+
+}  // namespace robosync::layers

@@ -1,0 +1,202 @@
+// Adaptive priorities against the formula in wide arithmetic, and what it promises whatever the
+// numbers; then the kernel's order after any changes of priorities against an order that is sorted.
+#include "runtime-m4/kernel/adaptation.hpp"
+
+#include <algorithm>
+#include <list>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <rapidcheck.h>
+
+#include "runtime-m4/kernel/kernel.hpp"
+
+using namespace robosync::kernel;
+
+namespace {
+
+constexpr AdaptationRule kRule{.alpha = 2000, .window_ms = 10'000, .cap = 95};
+
+AdaptationRule draw_rule() {
+  return {.alpha = *rc::gen::arbitrary<std::uint16_t>(),
+          .window_ms = *rc::gen::inRange<std::uint16_t>(1, UINT16_MAX),
+          .cap = *rc::gen::inRange<std::int8_t>(1, 100)};
+}
+
+std::int8_t draw_base() {
+  return *rc::gen::inRange<std::int8_t>(-64, 100);
+}
+
+int naive(int base, std::int64_t triggers, const AdaptationRule& rule) {
+  const double seconds = rule.window_ms / 1000.0;
+  const double raise = rule.alpha / 1000.0 * static_cast<double>(triggers) / seconds;
+  const double reached = base + raise;
+  if (base >= rule.cap) return base;
+  return reached >= rule.cap ? rule.cap : base + static_cast<int>(raise + 1e-9);
+}
+
+}  // namespace
+
+TEST_CASE("α·F/W: five triggers a second at α = 2 are worth ten") {
+  CHECK(adapted(40, 50, kRule) == Priority{50, 40});
+  CHECK(adapted(40, 0, kRule) == Priority{40, 40});
+  CHECK(adapted(40, 4, kRule) == Priority{40, 40});  // 0.8: whole numbers, rounded down
+  CHECK(adapted(40, 5, kRule) == Priority{41, 40});
+}
+
+TEST_CASE("the cap: nobody is raised beyond it, nobody is lowered to it") {
+  CHECK(adapted(40, 60'000, kRule) == Priority{95, 40});
+  CHECK(adapted(95, 60'000, kRule) == Priority{95, 95});
+  CHECK(adapted(99, 60'000, kRule) == Priority{99, 99});
+}
+
+TEST_CASE("without α every behaviour keeps its base") {
+  CHECK(adapted(40, 60'000, AdaptationRule{}) == Priority{40, 40});
+}
+
+TEST_CASE("the policy is the formula, whatever the numbers") {
+  CHECK(rc::check([] {
+    const AdaptationRule rule = draw_rule();
+    const std::int8_t base = draw_base();
+    const auto triggers = *rc::gen::arbitrary<TriggerCount>();
+    const Priority result = adapted(base, triggers, rule);
+    RC_ASSERT(result.now == naive(base, triggers, rule));
+    RC_ASSERT(result.base == base);
+  }));
+}
+
+TEST_CASE("more triggers never make a behaviour worth less, and none is beyond safety") {
+  CHECK(rc::check([] {
+    const AdaptationRule rule = draw_rule();
+    const std::int8_t base = draw_base();
+    const auto few = *rc::gen::arbitrary<TriggerCount>();
+    const auto many = *rc::gen::inRange<int>(few, 65'536);
+    const Priority calm = adapted(base, few, rule);
+    const Priority busy = adapted(base, static_cast<TriggerCount>(many), rule);
+    RC_ASSERT(busy >= calm);
+    RC_ASSERT(standing(Category::control, busy) < standing(Category::safety, std::int8_t{-128}));
+  }));
+}
+
+TEST_CASE("two behaviours are never equal, and equal triggers keep their order") {
+  CHECK(rc::check([] {
+    const AdaptationRule rule = draw_rule();
+    const std::int8_t one = draw_base();
+    const std::int8_t other = draw_base();
+    RC_PRE(one < other);
+    const auto triggers = *rc::gen::arbitrary<TriggerCount>();
+    RC_ASSERT(adapted(one, triggers, rule) < adapted(other, triggers, rule));
+    const auto others = *rc::gen::arbitrary<TriggerCount>();
+    RC_ASSERT(adapted(one, triggers, rule) != adapted(other, others, rule));
+  }));
+}
+
+namespace {
+
+struct Member {
+  Thread thread;
+  Category category{};
+  Priority priority;
+};
+
+std::string order_of(const Kernel& kernel) {
+  std::string order;
+  for (const Thread* thread : kernel.threads())
+    order += std::string(thread->name()) + " ";
+  return order;
+}
+
+// All of one window, in the order of their age: the same as if all were taken out and added anew.
+void ranks_are_sorted() {
+  static constexpr const char* kNames[] = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"};
+  Kernel kernel;
+  std::list<Member> members;
+  const unsigned count = *rc::gen::inRange(1U, 11U);
+  for (unsigned i = 0; i < count; ++i) {
+    Member& member = members.emplace_back();
+    member.category = static_cast<Category>(*rc::gen::inRange(0, 6));
+    const auto base = *rc::gen::inRange<std::int8_t>(1, 5);
+    member.priority = {base, base};
+    RC_ASSERT(kernel.add(member.thread, {.name = kNames[i],
+                                         .category = member.category,
+                                         .priority = base,
+                                         .entry = [](void*) {},
+                                         .argument = nullptr,
+                                         .stack = {}}));
+  }
+  const unsigned windows = *rc::gen::inRange(1U, 5U);
+  for (unsigned window = 0; window < windows; ++window) {
+    for (Member& member : members) {
+      member.priority.now = *rc::gen::inRange<std::int8_t>(1, 5);
+      kernel.set_priority(member.thread, member.priority);
+    }
+    std::vector<const Member*> sorted;
+    for (const Member& member : members)
+      sorted.push_back(&member);
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Member* one, const Member* other) {
+      return standing(one->category, one->priority) > standing(other->category, other->priority);
+    });
+    for (std::size_t rank = 0; rank < sorted.size(); ++rank) {
+      RC_ASSERT(kernel.threads()[rank] == &sorted[rank]->thread);
+      RC_ASSERT(sorted[rank]->thread.rank() == rank);
+      RC_ASSERT(kernel.state(sorted[rank]->thread) == Thread::State::ready);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("after each window the threads stand as if they were sorted anew") {
+  CHECK(rc::check(ranks_are_sorted));
+}
+
+TEST_CASE("who is overtaken while it runs gives way at once; who blocks stays blocked") {
+  Kernel kernel;
+  static std::string log;
+  log.clear();
+  struct Cast {
+    Kernel& kernel;
+    Thread runs, ready, waits;
+  } cast{kernel, {}, {}, {}};
+  const auto add = [&](Thread& thread, const char* name, std::int16_t priority,
+                       void (*entry)(void*)) {
+    REQUIRE(kernel.add(thread, {.name = name,
+                                .category = Category::behavior,
+                                .priority = priority,
+                                .entry = entry,
+                                .argument = &cast,
+                                .stack = {}}));
+  };
+  add(cast.waits, "waits", 90, [](void* argument) {
+    static_cast<Cast*>(argument)->kernel.wait(1);
+    log += "never ";
+  });
+  add(cast.runs, "runs", 50, [](void* argument) {
+    auto& all = *static_cast<Cast*>(argument);
+    log += "runs ";
+    all.kernel.set_priority(all.waits, {10, 90});
+    all.kernel.set_priority(all.waits, {90, 90});
+    log += "still ";
+    all.kernel.set_priority(all.ready, {60, 40});
+    log += "again ";
+  });
+  add(cast.ready, "ready", 40, [](void*) { log += "ready "; });
+  kernel.run();
+  CHECK(log == "runs still ready again ");
+  CHECK(order_of(kernel) == "waits ready runs ");
+  CHECK(kernel.state(cast.waits) == Thread::State::blocked);
+}
+
+TEST_CASE("a priority that does not fit is refused") {
+  Kernel kernel;
+  Thread thread;
+  ThreadSpec spec{.name = "too high",
+                  .category = Category::behavior,
+                  .priority = 128,
+                  .entry = [](void*) {},
+                  .argument = nullptr,
+                  .stack = {}};
+  CHECK_FALSE(kernel.add(thread, spec));
+  spec.priority = -128;
+  CHECK(kernel.add(thread, spec));
+}
