@@ -346,6 +346,9 @@ private:
     if (work_.trips() != 0)
       set_.interferences.push_back({"SAFETY rules that trip by time alone",
                                     milliseconds(costs::kTripPeriodMs), work_.trips()});
+    for (const vm::Adaptation& adaptation : image_.adaptations)
+      set_.interferences.push_back({"priorities that adapt", milliseconds(adaptation.window_ms),
+                                    costs::kRank * (image_.behaviors.size() - first_behavior())});
     for (const vm::Behavior& behavior : image_.behaviors.subspan(first_behavior()))
       commanded_ |= behavior.actuators;
     // Its next setpoint; or its command is done, and the next one in its queue begins.

@@ -46,7 +46,9 @@ bool report_timing(const Options& options, const std::string& file, std::vector<
                    nlohmann::ordered_json& report) {
   const Program program(std::move(image), file);
   const Timing timing = timing_of(program.image());
-  const ResponseReport responses = response_report(program.image());
+  const auto& adaptations = program.image().adaptations;
+  const ResponseReport responses =
+      response_report(program.image(), adaptations.empty() ? 0 : adaptations[0].cap);
   if (options.format == Format::json) {
     auto object = timing_json(timing, file);
     object["responses"] = response_json(responses);

@@ -48,6 +48,7 @@ TEST_CASE("examples: no simulated release takes longer than is printed") {
     INFO(file);
     const tool::Program program = test::compile_example(file);
     const tool::TaskSet set = tool::task_set_of(program.image());
+    CHECK(tool::response_report(program.image()).schedulable());
     for (unsigned p = 0; p < 100; ++p) {
       test::Pattern pattern;
       for (const tool::Source& source : set.sources)
@@ -72,6 +73,18 @@ TEST_CASE("adapted priorities make nothing shorter") {
   REQUIRE_FALSE(report.paths.empty());
   for (const tool::PathTiming& path : report.paths)
     CHECK((!path.adapted.bounded || path.adapted.time >= path.base.time));
+}
+
+TEST_CASE("adapted priorities: robot.json says so, and each path is told for both") {
+  std::string robot = kRobot;
+  robot.replace(robot.find("RATE"), 4, "50Hz");
+  robot.insert(robot.find('{') + 1, R"("scheduler": {"alpha": 2, "window": "1s", "cap": 90},)");
+  test::Folder folder;
+  folder.write("robot.json", robot);
+  const test::Outcome outcome =
+      test::rsc({"check", "--timing", folder.write("robot.rsl", kProgram)});
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("touch -> arm") && Contains("adapted to P_max"));
 }
 
 TEST_CASE("check --timing: a sensor that is read too often is refused, and why") {

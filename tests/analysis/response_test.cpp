@@ -21,12 +21,12 @@ using tool::TaskSet;
 
 namespace {
 
-constexpr unsigned kSets = 1'000;
+constexpr unsigned kSets = 300;
 
 // How many in all. `scripts/timing --patterns N` tries more.
 unsigned long patterns() {
   const char* const wanted = std::getenv("ROBOSYNC_ANALYSIS_PATTERNS");
-  return wanted == nullptr ? 20'000 : std::strtoul(wanted, nullptr, 10);
+  return wanted == nullptr ? 3'000 : std::strtoul(wanted, nullptr, 10);
 }
 constexpr double kNear = 0.95;
 constexpr double kNotFar = 0.85;
