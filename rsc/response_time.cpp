@@ -175,7 +175,7 @@ private:
       }
     for (auto& [number, its] : sources) {
       std::ranges::sort(its);
-      its.erase(std::ranges::unique(its).begin(), its.end());
+      its.erase(std::unique(its.begin(), its.end()), its.end());
       Instructions left = evaluations(its, window);
       for (Outcome& one : all)
         if (one.rule->*which == number) {

@@ -133,8 +133,9 @@ private:
     source.period =
         milliseconds(is_fed(sensor) ? costs::kFedPeriodMs : std::uint32_t{sensor.period_ms});
     if (!is_fed(sensor))
-      source.sample = costs::kWakeByTimer + sensor.channel_count * read_cost(sensor.driver) +
-                      (sensor.channel_count - 1U) * costs::kChannel;  // the first is in the step
+      source.sample =
+          costs::kWakeByTimer + sensor.channel_count * read_cost(sensor.driver) +
+          (sensor.channel_count - Instructions{1}) * costs::kChannel;  // the first is in the step
     if ((channels & work_.watched()).any()) source.sample += costs::kWake + looks() + work_.trips();
     source.step = work_.step(rules, changed);
     place(source, s, channels);
@@ -226,6 +227,7 @@ private:
   // actuator.
   void group(const std::vector<unsigned>& rules) {
     std::vector<Needs> needs;
+    needs.reserve(rules.size());
     for (const unsigned rule : rules) {
       needs.push_back(
           needs_of(image_, image_.behaviors[work_.behavior_of(rule)], image_.rules[rule]));

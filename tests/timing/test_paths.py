@@ -224,6 +224,20 @@ class Paths(unittest.TestCase):
             with self.subTest(program.parent.name), tempfile.TemporaryDirectory() as folder:
                 self.check(program, Path(folder))
 
+    def test_with_sampling(self):
+        """From the tick at which the sensor on the bus is due."""
+        for name in ("touch_companion", "tickle_companion", "housemate"):
+            program = paths.ROOT / "examples" / name / "robot.rsl"
+            config = program.with_suffix(".json")
+            with self.subTest(name), tempfile.TemporaryDirectory() as folder:
+                image = Path(folder) / "p.rsb"
+                paths.compiled(program, config, image)
+                worst = max(paths.Run(image, [wait(400)]).ticks)
+                said = self.said(program, config)["touch"]
+                print(f"\n  {name}: from the tick on, {worst} instructions, said {said}")
+                self.assertGreater(worst, paths.costs()["kReadMax34451"] / 2)
+                self.assertLessEqual(worst, said)
+
     def check(self, program, folder):
         wiring = json.loads(program.with_suffix(".json").read_text())
         wiring["sensors"] = [fed(sensor) for sensor in wiring["sensors"]]
