@@ -261,3 +261,37 @@ TEST_CASE("each term is needed: without it, the simulation takes longer than was
   alone.longest_lock = 0;
   CHECK(late[0] > bounds_of(alone)[0]);
 }
+
+// By hand: the root 1,100 and what joins it 5,000, two of what follows 2,000 each, 1,000 between;
+// and the step of the path, 3,000, blocks each of the two steps.
+TEST_CASE("what follows a step comes late, and the next one may come soon after") {
+  constexpr Time kPeriod = 20'000;
+  TaskSet set;
+  set.sources.resize(4);
+  for (tool::Source& source : set.sources) {
+    source.period = 5 * kPeriod;
+    source.outranks_a_behavior = source.may_outrank_one = true;
+  }
+  tool::Source& root = set.sources[0];
+  root.period = kPeriod;
+  root.sample = 100;
+  root.step = 1'000;
+  set.sources[1].step = 5'000;  // joins it
+  tool::Source& follower = set.sources[2];
+  follower.name = "follower";
+  follower.period = kPeriod;
+  follower.step = 2'000;
+  follower.follows = 0;
+  follower.delay = 1'000;
+  set.sources[3].rank = 9;  // the path
+  set.sources[3].outranks_a_behavior = false;
+  set.sources[3].step = 3'000;
+  set.sources[3].period = 5 * kPeriod;
+  tool::settle(set, Priorities::base);
+  CHECK(set.sources[2].jitter == 1'000 + 1'100 + 5'000 + 2 * 2'000 + 2 * 3'000);
+
+  const tool::Response response = tool::response_of(set, 3, Priorities::base);
+  const auto late = std::ranges::find(response.contributors, "follower", &tool::Contributor::name);
+  REQUIRE(late != response.contributors.end());
+  CHECK(late->cost == 2 * 2'000);
+}
