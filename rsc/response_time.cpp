@@ -139,7 +139,7 @@ private:
     Instructions most = evaluations(rule.sources, window);
     if (rule.alternates) most = ceil_div(most, 2);
     if (rule.gap == 0) return most;
-    return std::min(most, (window.until / rule.gap + 1) * rule.burst);
+    return std::min(most, window.until / rule.gap + 1);
   }
 
   // How often each rule fires, and how often it wins. Of rules among which there is a choice or a
@@ -284,7 +284,7 @@ double utilization(const TaskSet& set, const Firing& rule) {
   double sum = 0;
   for (const std::size_t j : rule.sources)
     sum += share(rule.cost, set.sources[j].period) / (rule.alternates ? 2 : 1);
-  return rule.gap == 0 ? sum : std::min(sum, share(rule.cost * rule.burst, rule.gap));
+  return rule.gap == 0 ? sum : std::min(sum, share(rule.cost, rule.gap));
 }
 
 double utilization(const TaskSet& set) {

@@ -57,7 +57,6 @@ std::uint32_t wait_ms(const vm::Image& image, std::span<const vm::Word> code, st
 
 void note_pause(ResponseWork& work, std::uint32_t ms) {
   work.pauses = true;
-  ++work.parts;
   work.shortest_wait_ms = work.shortest_wait_ms == 0 ? ms : std::min(work.shortest_wait_ms, ms);
 }
 
@@ -94,7 +93,6 @@ private:
 
   // Round a loop, the end of one part and the beginning of another run in one step.
   void go_round(std::size_t at, const std::vector<Instructions>& turns) {
-    work_.loops = true;
     const Instructions other = part_other_;
     const std::vector<Instructions> part = part_;
     for (std::size_t i = at + 1 - vm::operand_wide(code_[at]); i < at; ++i) {

@@ -55,8 +55,6 @@ ResponseWork dearer(const ResponseWork& a, const ResponseWork& b) {
                     .later_sets = a.later_sets | b.later_sets,
                     .pauses = a.pauses || b.pauses,
                     .polls = a.polls || b.polls,
-                    .loops = a.loops || b.loops,
-                    .parts = std::max(a.parts, b.parts),
                     .shortest_wait_ms = std::min(a.shortest_wait_ms, b.shortest_wait_ms)};
   for (std::size_t i = 0; i < both.by_actuator.size(); ++i)
     both.by_actuator[i] = std::max(a.by_actuator[i], b.by_actuator[i]);

@@ -29,8 +29,6 @@ struct ResponseWork {
   Inputs later_sets;  // … after a pause
   bool pauses = false;
   bool polls = false;                  // WAIT UNTIL: looks again whenever something changes
-  bool loops = false;                  // with a pause inside: nobody knows how many parts it has
-  unsigned parts = 1;                  // between pauses
   std::uint32_t shortest_wait_ms = 0;  // 0: it does not pause
 };
 
