@@ -14,6 +14,7 @@
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/program.hpp"
+#include "rsc/response_report.hpp"
 #include "rsc/timing.hpp"
 #include "rsc/verb.hpp"
 
@@ -39,19 +40,31 @@ void append(nlohmann::ordered_json& all, const nlohmann::ordered_json& one) {
     all[count] = all.at(count).get<std::size_t>() + one.at(count).get<std::size_t>();
 }
 
-// What a program without errors costs. False when that is more than the board allows in a step.
+// What a program without errors costs. False when that is more than the board allows in a step, or
+// when the board cannot keep up with its sensors.
 bool report_timing(const Options& options, const std::string& file, std::vector<std::byte> image,
                    nlohmann::ordered_json& report) {
   const Program program(std::move(image), file);
   const Timing timing = timing_of(program.image());
+  const auto& adaptations = program.image().adaptations;
+  const ResponseReport responses =
+      response_report(program.image(), adaptations.empty() ? 0 : adaptations[0].cap);
   if (options.format == Format::json) {
-    report["timing"].push_back(timing_json(timing, file));
+    auto object = timing_json(timing, file);
+    object["responses"] = response_json(responses);
+    report["timing"].push_back(std::move(object));
   } else {
-    std::cout << '\n' << timing_text(timing, file) << std::flush;
+    std::cout << '\n'
+              << timing_text(timing, file) << '\n'
+              << response_text(responses) << std::flush;
   }
-  if (timing.step.used <= timing.step.limit) return true;
-  const auto budget = static_cast<std::uint32_t>(timing.step.limit);
-  std::cerr << fmt::format("rsc: {}: {}\n", file, too_costly_text(program.image(), budget));
+  if (timing.step.used > timing.step.limit) {
+    const auto budget = static_cast<std::uint32_t>(timing.step.limit);
+    std::cerr << fmt::format("rsc: {}: {}\n", file, too_costly_text(program.image(), budget));
+    return false;
+  }
+  if (responses.schedulable()) return true;
+  std::cerr << fmt::format("rsc: {}: {}\n", file, unschedulable_text(responses));
   return false;
 }
 

@@ -1,0 +1,66 @@
+// See response_report.hpp.
+#include "rsc/response_report.hpp"
+
+#include <algorithm>
+
+#include "rsc/response_costs.hpp"
+#include "rsc/task_set.hpp"
+
+namespace robosync::tool {
+namespace {
+
+// What each source and interference takes of a millisecond.
+std::vector<Contributor> loads_of(const TaskSet& set) {
+  std::vector<Contributor> loads;
+  const auto add = [&](const std::string& name, Instructions cost, Instructions period) {
+    loads.push_back({name, cost * costs::kPerMillisecond / period});
+  };
+  for (const Source& source : set.sources)
+    add(source.name, source.sample + source.step, source.period);
+  for (const Firing& rule : set.firings)
+    loads.push_back(
+        {rule.name, static_cast<Instructions>(utilization(set, rule) * costs::kPerMillisecond)});
+  for (const Interference& one : set.interferences)
+    add(one.name, one.cost, one.period);
+  std::ranges::stable_sort(loads, std::ranges::greater{}, &Contributor::cost);
+  return loads;
+}
+
+bool keeps_up(const Response& response, Instructions period) {
+  return response.bounded && response.time <= period;
+}
+
+}  // namespace
+
+bool PathTiming::in_time() const {
+  return keeps_up(base, period) && (adapted.time == 0 || keeps_up(adapted, period));
+}
+
+bool ResponseReport::schedulable() const {
+  return utilization <= 1 && std::ranges::all_of(paths, &PathTiming::in_time);
+}
+
+ResponseReport response_report(const vm::Image& image, int cap) {
+  const TaskSet base = task_set_of(image);
+  const TaskSet adapted = task_set_of(image, cap);
+  ResponseReport report;
+  report.utilization = utilization(base);
+  report.adapts = cap > 0;
+  report.loads = loads_of(base);
+  for (std::size_t s = 0; s < base.sources.size(); ++s) {
+    const Source& source = base.sources[s];
+    if (source.actuators.empty()) continue;
+    PathTiming path;
+    path.sensor = source.name;
+    path.period = source.period;
+    path.base = response_of(base, s, Priorities::base);
+    if (cap > 0) path.adapted = response_of(adapted, s, Priorities::adapted);
+    for (const std::string& actuator : source.actuators) {
+      path.actuator = actuator;
+      report.paths.push_back(path);
+    }
+  }
+  return report;
+}
+
+}  // namespace robosync::tool

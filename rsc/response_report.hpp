@@ -1,0 +1,41 @@
+// The response times of a program, path by path, for people and for programs; and whether the board
+// can keep up with it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "rsc/response_time.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::tool {
+
+struct PathTiming {
+  std::string sensor, actuator;
+  Instructions period = 0;  // of the sensor: the reading has to be answered before the next one
+  Response base;
+  Response adapted;  // only where priorities adapt
+  [[nodiscard]] bool in_time() const;
+};
+
+struct ResponseReport {
+  double utilization = 0;
+  bool adapts = false;
+  std::vector<PathTiming> paths;
+  std::vector<Contributor> loads;  // for each millisecond, dearest first
+  [[nodiscard]] bool schedulable() const;
+};
+
+// `cap`: as in task_set.hpp. The image must be verified.
+[[nodiscard]] ResponseReport response_report(const vm::Image& image, int cap = 0);
+
+// A table, whole lines.
+[[nodiscard]] std::string response_text(const ResponseReport& report);
+[[nodiscard]] nlohmann::ordered_json response_json(const ResponseReport& report);
+// Why the board cannot keep up: which path, by how much, the dearest of it, the mend. Empty when it
+// can.
+[[nodiscard]] std::string unschedulable_text(const ResponseReport& report);
+
+}  // namespace robosync::tool

@@ -1,0 +1,305 @@
+// See response_time.hpp. Fixed points of R = C + B + sum of ceil(R / T) * C, by iteration from
+// below; every loop is bounded, and what does not end in time is called unbounded.
+//
+// A step is not interrupted by steps, so besides the classic terms:
+//  * A source ranked below may have its step under way: it blocks, once.
+//  * A source that outranks a behaviour may announce while a step is under way; what it has
+//  announced
+//    goes before a later reading even of a source that outranks it, so it counts as if it did.
+//  * All others ranked above can begin a step only until this one has begun its own.
+//  * As steps do not give way, the first release need not be the worst: every release of the busy
+//    period is looked at (Davis et al., Controller Area Network schedulability analysis, 2007).
+#include "rsc/response_time.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+namespace robosync::tool {
+namespace {
+
+constexpr unsigned kMostRounds = 10'000;       // of one fixed point
+constexpr Instructions kMostReleases = 1'000;  // of one busy period
+constexpr Instructions kForeverLate = Instructions{1} << 40;
+
+Instructions ceil_div(Instructions a, Instructions b) {
+  return (a + b - 1) / b;
+}
+
+double share(Instructions cost, Instructions period) {
+  return static_cast<double>(cost) / static_cast<double>(period);
+}
+
+// Followers, one behind the other, up to the release of the one that is asked for; and the time
+// that passes besides work. Empty: the response of the source itself is asked for.
+struct Chain {
+  unsigned length = 0;
+  Instructions delays = 0;
+};
+
+class Analysis {
+public:
+  Analysis(const TaskSet& set, std::size_t mine, Priorities priorities, Chain chain = {})
+      : set_(set), mine_(mine), chain_(chain), adapted_(priorities == Priorities::adapted) {
+    for (std::size_t j = 0; j < set.sources.size(); ++j)
+      if (j != mine && place_of(j) == Place::below)
+        blocking_ = std::max(blocking_, set.sources[j].step);
+    blocking_ = (blocking_ + set.longest_lock) * (chain_.length + 1);
+  }
+
+  Response solve() const {
+    Response response;
+    const std::optional<Instructions> busy = fixed_point([this](Instructions t) {
+      return demand({t, t, own_releases(t)});
+    });
+    if (!busy) return response;
+    response.bounded = true;
+    const Instructions releases = own_releases(*busy);
+    for (Instructions q = 1; q <= std::min(releases, kMostReleases); ++q)
+      if (!look_at(q, response)) return unbounded(response);
+    return releases > kMostReleases ? unbounded(response) : response;
+  }
+
+private:
+  enum class Place : std::uint8_t {
+    below,   // blocks at most
+    above,   // goes first, until the own step has begun
+    always,  // … and its announcements join in at any time
+  };
+
+  // A stretch of a busy period: until when, when its last own step begins, how many own there are.
+  struct Window {
+    Instructions until, begun, own;
+  };
+
+  const Source& mine() const { return set_.sources[mine_]; }
+
+  Place place_of(std::size_t j) const {
+    const Source& other = set_.sources[j];
+    if (adapted_ ? other.may_outrank_one : other.outranks_a_behavior) return Place::always;
+    const unsigned rank = adapted_ ? other.raised : other.rank;
+    if (rank > mine().rank) return Place::below;
+    return chain_.length == 0 ? Place::above : Place::always;  // between the steps, it goes first
+  }
+
+  // The least t with demand(t) <= t, or none.
+  template <class Demand>
+  static std::optional<Instructions> fixed_point(Demand demand) {
+    Instructions t = 1;
+    for (unsigned round = 0; round < kMostRounds && t < kForeverLate; ++round) {
+      const Instructions next = demand(t);
+      if (next <= t) return t;
+      t = next;
+    }
+    return std::nullopt;
+  }
+
+  Instructions own_releases(Instructions until) const {
+    return ceil_div(until + mine().jitter, mine().period);
+  }
+
+  Instructions releases_of(std::size_t j, const Window& window) const {
+    if (j == mine_) return window.own;
+    const Source& other = set_.sources[j];
+    // What its own steps release comes after them: of the last step not any more, of those before
+    // the busy period what is late.
+    if (chain_.length == 0 && follows_mine(j))
+      return window.own - 1 + ceil_div(other.jitter, other.period);
+    switch (place_of(j)) {
+      case Place::always:
+        return ceil_div(window.until + other.jitter, other.period);
+      case Place::above:
+        return (window.begun + other.jitter) / other.period + 1;
+      default:
+        return 0;
+    }
+  }
+
+  bool follows_mine(std::size_t j) const {
+    for (std::size_t depth = 0; depth < set_.sources.size() && j != Source::kNone; ++depth) {
+      j = set_.sources[j].follows;
+      if (j == mine_) return true;
+    }
+    return false;
+  }
+
+  // In how many steps a rule with these sources is evaluated, the step that blocks included.
+  Instructions evaluations(const std::vector<std::size_t>& sources, const Window& window) const {
+    Instructions sum = 0;
+    bool may_block = false;
+    for (const std::size_t j : sources) {
+      sum += releases_of(j, window);
+      may_block = may_block || (j != mine_ && place_of(j) == Place::below);
+    }
+    return sum + (may_block ? 1 : 0);
+  }
+
+  // How often a rule fires: not more than it is evaluated.
+  Instructions fires(const Firing& rule, const Window& window) const {
+    Instructions most = evaluations(rule.sources, window);
+    if (rule.alternates) most = ceil_div(most, 2);
+    if (rule.gap == 0) return most;
+    return std::min(most, window.until / rule.gap + 1);
+  }
+
+  // How often each rule fires, and how often it wins. Of rules among which there is a choice or a
+  // contest, the dearest as often as they may, in different steps.
+  struct Outcome {
+    const Firing* rule;
+    Instructions fired, won;
+  };
+
+  std::vector<Outcome> outcomes(const Window& window) const {
+    std::vector<Outcome> all;
+    for (const Firing& rule : set_.firings) {
+      const Instructions fired = fires(rule, window);
+      all.push_back({&rule, fired, fired});
+    }
+    std::ranges::stable_sort(all, std::ranges::greater{},
+                             [](const Outcome& one) { return one.rule->cost; });
+    limit(all, &Firing::choice, &Outcome::fired, window);
+    for (Outcome& one : all)
+      one.won = std::min(one.won, one.fired);
+    limit(all, &Firing::contest, &Outcome::won, window);
+    return all;
+  }
+
+  // All firings of one choice, or of one contest, together: as often as there are steps for them.
+  void limit(std::vector<Outcome>& all, std::size_t Firing::*which, Instructions Outcome::*count,
+             const Window& window) const {
+    std::map<std::size_t, std::vector<std::size_t>> sources;
+    for (const Firing& rule : set_.firings)
+      if (rule.*which != Firing::kNone) {
+        std::vector<std::size_t>& its = sources[rule.*which];
+        its.insert(its.end(), rule.sources.begin(), rule.sources.end());
+      }
+    for (auto& [number, its] : sources) {
+      std::ranges::sort(its);
+      its.erase(std::unique(its.begin(), its.end()), its.end());
+      Instructions left = evaluations(its, window);
+      for (Outcome& one : all)
+        if (one.rule->*which == number) {
+          one.*count = std::min(one.*count, left);
+          left -= one.*count;
+        }
+    }
+  }
+
+  // Calls take(name, cost) for each share of the work in the window.
+  template <class Take>
+  void each_share(const Window& window, Take take) const {
+    for (std::size_t j = 0; j < set_.sources.size(); ++j) {
+      const Source& source = set_.sources[j];
+      take(source.name, releases_of(j, window) * (source.sample + source.step));
+    }
+    for (const Outcome& one : outcomes(window))
+      take(one.rule->name, one.won * one.rule->cost + (one.fired - one.won) * set_.lost);
+    for (const Interference& one : set_.interferences)
+      take(one.name, ceil_div(window.until, one.period) * one.cost);
+  }
+
+  Instructions demand(const Window& window) const {
+    Instructions sum = blocking_ + chain_.delays;
+    each_share(window, [&](const std::string&, Instructions cost) { sum += cost; });
+    return sum;
+  }
+
+  std::vector<Contributor> contributors(const Window& window) const {
+    std::vector<Contributor> list{{"a step that is under way, or a lock", blocking_}};
+    each_share(window, [&](const std::string& name, Instructions cost) {
+      list.push_back({name, cost});
+    });
+    std::erase_if(list, [](const Contributor& one) { return one.cost == 0; });
+    std::ranges::stable_sort(list, std::ranges::greater{}, &Contributor::cost);
+    return list;
+  }
+
+  // The `q`-th release of the busy period. False when its response is unbounded.
+  bool look_at(Instructions q, Response& worst) const {
+    // One that outranks a behaviour may even join its own earlier announcement.
+    const bool joins = adapted_ ? mine().may_outrank_one : mine().outranks_a_behavior;
+    const auto window = [&](Instructions t) {
+      return Window{t, t - std::min(t, mine().step), joins ? std::max(q, own_releases(t)) : q};
+    };
+    const std::optional<Instructions> end =
+        fixed_point([&](Instructions t) { return demand(window(t)); });
+    if (!end) return false;
+    const Instructions first = (q - 1) * mine().period;  // without jitter
+    const Instructions released = first - std::min(first, mine().jitter);
+    const Instructions time = *end - std::min(*end, released);
+    if (time <= worst.time) return true;
+    worst.time = time;
+    worst.contributors = contributors(window(*end));
+    return true;
+  }
+
+  static Response unbounded(Response response) {
+    response.bounded = false;
+    return response;
+  }
+
+  const TaskSet& set_;
+  std::size_t mine_;
+  Chain chain_;
+  bool adapted_;
+  Instructions blocking_ = 0;
+};
+
+// From the release at the beginning of the chain until this one is released.
+Instructions lateness(const TaskSet& set, const Source& follower, Priorities priorities) {
+  Chain chain{1, follower.delay};
+  std::size_t root = follower.follows;
+  while (set.sources[root].follows != Source::kNone) {  // each follows one that stands before it
+    ++chain.length;
+    chain.delays += set.sources[root].delay;
+    root = set.sources[root].follows;
+  }
+  const Response response = Analysis(set, root, priorities, chain).solve();
+  return response.bounded ? response.time : kForeverLate;
+}
+
+}  // namespace
+
+// What follows a step comes as late as that step may be, and what follows that later still: all the
+// work up to then is done in one stretch, which is idle for the delays between at most. How late it
+// is depends on what follows others. From below, as in response times; what does not settle may
+// come as late as it likes.
+void settle(TaskSet& set, Priorities priorities) {
+  constexpr unsigned kMostPasses = 100;
+  for (unsigned pass = 0; pass < kMostPasses; ++pass) {
+    bool settled = true;
+    for (Source& source : set.sources) {
+      if (source.follows == Source::kNone) continue;
+      const Instructions jitter = std::max(lateness(set, source, priorities), source.jitter);
+      settled = settled && jitter == source.jitter;
+      source.jitter = jitter;
+    }
+    if (settled) return;
+  }
+  for (Source& source : set.sources)
+    if (source.follows != Source::kNone) source.jitter = kForeverLate;
+}
+
+double utilization(const TaskSet& set, const Firing& rule) {
+  double sum = 0;
+  for (const std::size_t j : rule.sources)
+    sum += share(rule.cost, set.sources[j].period) / (rule.alternates ? 2 : 1);
+  return rule.gap == 0 ? sum : std::min(sum, share(rule.cost, rule.gap));
+}
+
+double utilization(const TaskSet& set) {
+  double sum = 0;
+  for (const Source& source : set.sources)
+    sum += share(source.sample + source.step, source.period);
+  for (const Firing& rule : set.firings)
+    sum += utilization(set, rule);
+  for (const Interference& one : set.interferences)
+    sum += share(one.cost, one.period);
+  return sum;
+}
+
+Response response_of(const TaskSet& set, std::size_t source, Priorities priorities) {
+  return Analysis(set, source, priorities).solve();
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,180 @@
+// What one response puts out, from its code: see step_work.hpp.
+#include <algorithm>
+#include <array>
+
+#include "rsc/response_costs.hpp"
+#include "rsc/step_work.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using vm::Opcode;
+
+bool pauses(Opcode op) {
+  return op == Opcode::wait || op == Opcode::wait_done || op == Opcode::poll;
+}
+
+bool is_loop_end(vm::Word word) {
+  const Opcode op = vm::opcode_of(word);
+  return op == Opcode::again || op == Opcode::around || op == Opcode::around_always;
+}
+
+constexpr Instructions kMany = vm::kMaxResponseOutput;
+
+Instructions times_of(const vm::Image& image, vm::Word begin) {
+  if (vm::opcode_of(begin) != Opcode::times) return kMany;
+  const vm::Value times = image.constants[vm::operand_wide(begin)] / vm::kScale;
+  return static_cast<Instructions>(std::max(times, 1));
+}
+
+// How often each word can run in one step. A loop with a pause in it comes round once: it is left
+// there. A number that is worked out has no limit but that of the output.
+std::vector<Instructions> turns_of(const vm::Image& image, std::span<const vm::Word> code) {
+  std::vector<Instructions> turns(code.size(), 1);
+  for (std::size_t i = 0; i < code.size(); ++i) {
+    if (vm::opcode_of(code[i]) != Opcode::again) continue;
+    const std::size_t first = i + 1 - std::min<std::size_t>(vm::operand_wide(code[i]), i + 1);
+    const auto body = code.subspan(first, i - first);
+    if (std::ranges::any_of(body, [](vm::Word word) { return pauses(vm::opcode_of(word)); }))
+      continue;
+    const Instructions times = first == 0 ? kMany : times_of(image, code[first - 1]);
+    for (std::size_t w = first; w < i; ++w)
+      turns[w] = std::min(turns[w] * times, kMany);
+  }
+  return turns;
+}
+
+// In milliseconds; a wait of a length that is worked out may be as short as one.
+std::uint32_t wait_ms(const vm::Image& image, std::span<const vm::Word> code, std::size_t at) {
+  const std::uint8_t cell = vm::operand_a(code[at]);
+  for (std::size_t i = at; i-- > 0;) {
+    if (vm::operand_a(code[i]) != cell) continue;
+    if (vm::opcode_of(code[i]) != Opcode::load) return 1;
+    return static_cast<std::uint32_t>(std::max(image.constants[vm::operand_wide(code[i])], 1));
+  }
+  return 1;
+}
+
+void note_pause(ResponseWork& work, std::uint32_t ms) {
+  work.pauses = true;
+  work.shortest_wait_ms = work.shortest_wait_ms == 0 ? ms : std::min(work.shortest_wait_ms, ms);
+}
+
+class Reader {
+public:
+  Reader(const vm::Image& image, const vm::Behavior& behavior, const vm::Response& response)
+      : image_(image),
+        behavior_(behavior),
+        code_(image.code.subspan(response.start, response.length)) {}
+
+  ResponseWork read() {
+    const std::vector<Instructions> turns = turns_of(image_, code_);
+    work_.by_actuator.resize(image_.actuators.size());
+    part_.resize(image_.actuators.size());
+    for (std::size_t i = 0; i < code_.size(); ++i) {
+      take(i, turns[i]);
+      if (pauses(vm::opcode_of(code_[i]))) end_part();
+      if (work_.pauses && is_loop_end(code_[i])) go_round(i, turns);
+    }
+    end_part();
+    limit();
+    return work_;
+  }
+
+private:
+  // What stands between two pauses is over: the dearest of them counts.
+  void end_part() {
+    work_.other = std::max(work_.other, part_other_);
+    for (std::size_t a = 0; a < part_.size(); ++a)
+      work_.by_actuator[a] = std::max(work_.by_actuator[a], part_[a]);
+    part_other_ = 0;
+    part_.assign(part_.size(), 0);
+  }
+
+  // Round a loop, the end of one part and the beginning of another run in one step.
+  void go_round(std::size_t at, const std::vector<Instructions>& turns) {
+    const Instructions other = part_other_;
+    const std::vector<Instructions> part = part_;
+    for (std::size_t i = at + 1 - vm::operand_wide(code_[at]); i < at; ++i) {
+      if (pauses(vm::opcode_of(code_[i]))) break;
+      take(i, turns[i]);
+    }
+    end_part();
+    part_other_ = other;
+    part_ = part;
+  }
+
+  void take(std::size_t at, Instructions turns) {
+    const vm::Word word = code_[at];
+    switch (vm::opcode_of(word)) {
+      case Opcode::cmd:
+      case Opcode::cmd_end:
+        return command(word, turns);
+      case Opcode::log:
+      case Opcode::alert:
+        part_other_ += turns * costs::kText;
+        return;
+      case Opcode::arg:
+      case Opcode::arg_k:
+        part_other_ += turns * costs::kArgument;
+        return;
+      case Opcode::set:
+      case Opcode::shift:
+        part_other_ += turns * costs::kSet;
+        work_.sets.set(image_.inputs[behavior_.first_input + vm::operand_a(word)]);
+        if (work_.pauses)
+          work_.later_sets.set(image_.inputs[behavior_.first_input + vm::operand_a(word)]);
+        return;
+      case Opcode::wait:
+        return note_pause(work_, wait_ms(image_, code_, at));
+      case Opcode::poll:
+        work_.polls = true;
+        [[fallthrough]];
+      case Opcode::wait_done:
+        return note_pause(work_, costs::kServicePeriodMs);
+      default:
+        return;
+    }
+  }
+
+  void command(vm::Word word, Instructions turns) {
+    const bool stops = image_.verbs[vm::operand_b(word)].action == vm::Action::stop;
+    const std::uint32_t targets = image_.target_mask(vm::operand_a(word));
+    for (std::size_t a = 0; a < image_.actuators.size(); ++a) {
+      if ((targets >> a & 1) == 0) continue;
+      // Those behind the first wait in the queue, but where a command is done as soon as it began.
+      const bool at_once = stops || image_.actuators[a].driver == vm::DriverId::pwm;
+      Instructions& mine = part_[a];
+      const Instructions started = costs::kCommand + (at_once ? costs::kStop : 0);
+      const Instructions first = mine == 0 ? 1 : 0;
+      mine += first * started + (turns - first) * (at_once ? started : costs::kQueued);
+    }
+  }
+
+  // The verifier allows no more words of output in a step.
+  void limit() {
+    constexpr Instructions kMost =
+        Instructions{vm::kMaxResponseOutput} * (costs::kCommand + costs::kStop);
+    for (Instructions& commands : work_.by_actuator)
+      commands = std::min(commands, kMost);
+    work_.other = std::min(work_.other, kMost);
+  }
+
+  const vm::Image& image_;
+  const vm::Behavior& behavior_;
+  std::span<const vm::Word> code_;
+  ResponseWork work_;
+  Instructions part_other_ = 0;
+  std::vector<Instructions> part_;  // by actuator
+};
+
+}  // namespace
+
+ResponseWork StepWork::work_of(const vm::Behavior& behavior, std::uint16_t response) const {
+  ResponseWork nothing;
+  nothing.by_actuator.resize(image_.actuators.size());
+  if (response == vm::kNoIndex) return nothing;
+  return Reader(image_, behavior, image_.responses[response]).read();
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,367 @@
+// See step_work.hpp.
+#include "rsc/step_work.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "rsc/response_costs.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using vm::Opcode;
+using vm::RuleKind;
+
+// True for one step only.
+bool is_event(Opcode op) {
+  return op > Opcode::held && op <= Opcode::changed && op != Opcode::latch;
+}
+
+// Each side of each rule wants one that the other's sides want as well, all of them.
+bool common_actuator(const vm::Image& image, unsigned a, unsigned b) {
+  const auto everywhere = [&](unsigned r) {
+    const vm::Rule& rule = image.rules[r];
+    Actuators mask = ~Actuators{0};
+    for (const std::uint16_t index : {rule.then_response, rule.else_response})
+      if (index != vm::kNoIndex) mask &= image.responses[index].actuators;
+    return rule.then_response == vm::kNoIndex ? Actuators{0} : mask;
+  };
+  return (everywhere(a) & everywhere(b)) != 0;
+}
+
+unsigned most_wanted(const std::vector<Actuators>& masks) {
+  unsigned best = 0;
+  std::ptrdiff_t most = -1;
+  for (unsigned a = 0; a < std::numeric_limits<Actuators>::digits; ++a) {
+    const auto wanting =
+        std::ranges::count_if(masks, [&](Actuators m) { return (m >> a & 1) != 0; });
+    if (wanting > most) best = a;
+    most = std::max(most, wanting);
+  }
+  return best;
+}
+
+bool reads_cell(vm::Operand kind) {
+  return kind == vm::Operand::read || kind == vm::Operand::read_truth ||
+         kind == vm::Operand::variable;
+}
+
+// Part by part: only one of them runs in a step.
+ResponseWork dearer(const ResponseWork& a, const ResponseWork& b) {
+  ResponseWork both{.other = std::max(a.other, b.other),
+                    .by_actuator = a.by_actuator,
+                    .sets = a.sets | b.sets,
+                    .later_sets = a.later_sets | b.later_sets,
+                    .pauses = a.pauses || b.pauses,
+                    .polls = a.polls || b.polls,
+                    .shortest_wait_ms = std::min(a.shortest_wait_ms, b.shortest_wait_ms)};
+  for (std::size_t i = 0; i < both.by_actuator.size(); ++i)
+    both.by_actuator[i] = std::max(a.by_actuator[i], b.by_actuator[i]);
+  if (both.shortest_wait_ms == 0)
+    both.shortest_wait_ms = std::max(a.shortest_wait_ms, b.shortest_wait_ms);
+  return both;
+}
+
+}  // namespace
+
+StepWork::StepWork(const vm::Image& image) : image_(image), costs_(image.rules.size()) {
+  if (!vm::rule_costs(image, costs_)) costs_.assign(costs_.size(), {});  // it is verified
+  behavior_of_.resize(image.rules.size());
+  condition_reads_.resize(image.rules.size());
+  reads_.resize(image.rules.size());
+  sets_.resize(image.rules.size());
+  dearest_.resize(image.rules.size());
+  held_ms_.resize(image.rules.size());
+  events_.resize(image.rules.size());
+  divides_.resize(image.rules.size());
+  for (unsigned b = 0; b < image.behaviors.size(); ++b) {
+    const vm::Behavior& behavior = image.behaviors[b];
+    if (image.has_safety() && b == vm::kSafetyBehavior)
+      for (const std::uint8_t input :
+           image.inputs.subspan(behavior.first_input, behavior.input_count))
+        watched_.set(input);
+    for (unsigned i = 0; i < behavior.rule_count; ++i) {
+      behavior_of_[behavior.first_rule + i] = b;
+      load_rule(behavior.first_rule + i, behavior);
+    }
+  }
+}
+
+void StepWork::load_rule(unsigned r, const vm::Behavior& behavior) {
+  const vm::Rule& rule = image_.rules[r];
+  add_inputs(behavior, rule.condition_start, rule.condition_length, condition_reads_[r]);
+  reads_[r] = condition_reads_[r];
+  for (const std::uint16_t index : {rule.then_response, rule.else_response}) {
+    if (index == vm::kNoIndex) continue;
+    const vm::Response& response = image_.responses[index];
+    add_inputs(behavior, response.start, response.length, reads_[r]);
+  }
+  for (const vm::Word word : image_.code.subspan(rule.condition_start, rule.condition_length)) {
+    const Opcode op = vm::opcode_of(word);
+    if (is_event(op)) ++events_[r];
+    if (op == Opcode::held) note_held(r, image_.timers[vm::operand_c(word)].duration);
+    if (op == Opcode::div || op == Opcode::mod) divides_[r] = true;
+  }
+  dearest_[r] =
+      dearer(work_of(behavior, rule.then_response), work_of(behavior, rule.else_response));
+  sets_[r] = dearest_[r].sets;
+}
+
+// Two ends of one FOR are its duration apart; those of several may come together.
+void StepWork::note_held(unsigned rule, std::uint32_t duration_ms) {
+  const std::uint32_t before = held_ms_[rule];
+  held_ms_[rule] = std::max(before == 0 ? duration_ms : std::min(before, duration_ms) / 2, 1U);
+}
+
+void StepWork::add_inputs(const vm::Behavior& behavior, std::uint16_t start, std::uint16_t length,
+                          Inputs& inputs) const {
+  for (const vm::Word word : image_.code.subspan(start, length)) {
+    const vm::OpcodeInfo& info = vm::kOpcodes[static_cast<std::size_t>(vm::opcode_of(word))];
+    const std::array cells{vm::operand_a(word), vm::operand_b(word), vm::operand_c(word)};
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (reads_cell(info.operands[i]) && cells[i] < behavior.input_count)
+        inputs.set(image_.inputs[behavior.first_input + cells[i]]);
+  }
+}
+
+bool StepWork::is_safety(unsigned rule) const {
+  return image_.has_safety() && behavior_of_[rule] == vm::kSafetyBehavior;
+}
+
+Inputs StepWork::with_bands(Inputs changed) const {
+  for (const vm::Check& check : image_.checks)
+    if (changed.test(check.input)) changed.set(image_.channels.size() + check.variable);
+  return changed;
+}
+
+Rules StepWork::concerned(const Inputs& changed) const {
+  Rules rules;
+  for (unsigned r = 0; r < image_.rules.size(); ++r)
+    if (!is_safety(r) && (reads_[r] & changed).any()) rules.insert(r);
+  return rules;
+}
+
+Inputs StepWork::sets(const Rules& rules) const {
+  Inputs sets;
+  for (const unsigned rule : rules)
+    sets |= sets_[rule];
+  return sets;
+}
+
+Actuators StepWork::actuators(const Rules& rules) const {
+  Actuators mask = 0;
+  for (const unsigned rule : rules)
+    for (const std::uint16_t index :
+         {image_.rules[rule].then_response, image_.rules[rule].else_response})
+      if (index != vm::kNoIndex) mask |= image_.responses[index].actuators;
+  return mask;
+}
+
+// --- what a step costs ---
+
+Rules StepWork::stirred(const Rules& rules, const Inputs& changed) const {
+  Rules stirred;
+  for (const unsigned rule : rules)
+    if ((condition_reads_[rule] & changed).any()) stirred.insert(rule);
+  return stirred;
+}
+
+Instructions StepWork::step(const Rules& rules, const Inputs& changed) const {
+  Instructions sum = standing();
+  sum += reads_channel(changed) ? costs::kStep : costs::kTimedStep;
+  std::set<unsigned> behaviors;
+  for (const unsigned rule : rules)
+    behaviors.insert(behavior_of_[rule]);
+  for (const unsigned b : behaviors) {
+    const vm::Behavior& behavior = image_.behaviors[b];
+    sum += costs::kBehavior + Instructions{behavior.input_count} * costs::kInput;
+    // What was true for one step only is evaluated again in the next that stirs the behaviour.
+    for (unsigned r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count; ++r)
+      if (rules.contains(r) || has_events(r)) sum += evaluation(r);
+  }
+  sum += changed.count() * Instructions{costs::kChanged};
+  if ((changed & watched_).any()) sum += look() + trips();
+  return sum;
+}
+
+Instructions StepWork::evaluation(unsigned rule) const {
+  Instructions sum = costs::kRule + costs_[rule].condition;
+  if (divides_[rule]) sum += costs::kZeroDivide;
+  if (dearest_[rule].polls) sum += costs::kPoll + costs_[rule].dearer_response();
+  return sum;
+}
+
+Instructions StepWork::firing(unsigned rule) const {
+  if (image_.rules[rule].then_response == vm::kNoIndex) return 0;
+  return costs::kClaim + costs::kRun + output(rule) + interruptions(rule);
+}
+
+Instructions StepWork::by_itself(unsigned rule) const {
+  const Instructions goes_on = dearest_[rule].pauses ? costs::kGoOn + output(rule) : 0;
+  const bool starts = wants_on(rule) || image_.rules[rule].kind == RuleKind::every;
+  return std::max(goes_on, starts ? firing(rule) : 0);
+}
+
+// The dearest part of its response.
+Instructions StepWork::output(unsigned rule) const {
+  Instructions sum = costs_[rule].dearer_response() + dearest_[rule].other;
+  for (const Instructions commands : dearest_[rule].by_actuator)
+    sum += commands;
+  return sum;
+}
+
+bool StepWork::contend(unsigned a, unsigned b) const {
+  return common_actuator(image_, a, b);
+}
+
+// Every response that holds an actuator that the rule wants has to end; each has one that holds it.
+Instructions StepWork::interruptions(unsigned rule) const {
+  const Actuators wanted = actuators({rule});
+  unsigned holders = 0;
+  Actuators cancelled = 0;
+  for (unsigned r = 0; r < image_.rules.size(); ++r) {
+    const Actuators held = is_safety(r) ? 0 : actuators({r});
+    if ((held & wanted) == 0) continue;
+    ++holders;
+    cancelled |= held;
+  }
+  holders = std::min(holders, static_cast<unsigned>(std::popcount(wanted)));
+  return Instructions{costs::kInterrupt} * holders +
+         Instructions{costs::kCancel} * static_cast<unsigned>(std::popcount(cancelled));
+}
+
+// What the condition comes to: the word before its end.
+vm::Word StepWork::last_word(unsigned r) const {
+  const vm::Rule& rule = image_.rules[r];
+  if (rule.condition_length < 2) return vm::encode(Opcode::end);
+  return image_.code[rule.condition_start + rule.condition_length - 2U];
+}
+
+bool StepWork::fires_after_event(unsigned rule) const {
+  return !is_event(vm::opcode_of(last_word(rule)));
+}
+
+bool StepWork::alternates(unsigned rule) const {
+  const RuleKind kind = image_.rules[rule].kind;
+  if (kind != RuleKind::when && kind != RuleKind::while_) return false;
+  const bool becomes = events_[rule] == 1 && vm::opcode_of(last_word(rule)) == Opcode::rose;
+  return events_[rule] == 0 || becomes;
+}
+
+std::uint32_t StepWork::gap_ms(unsigned r) const {
+  const vm::Rule& rule = image_.rules[r];
+  if (rule.kind != RuleKind::when) return 0;
+  vm::Value gap = 0;
+  if (rule.modifiers != vm::kNoModifiers) gap = image_.modifiers[rule.modifiers].cooldown;
+  if (vm::opcode_of(last_word(r)) == Opcode::held)
+    gap = std::max(gap, image_.timers[vm::operand_c(last_word(r))].duration);
+  return static_cast<std::uint32_t>(std::max(gap, 0));
+}
+
+// Channels stand before variables.
+bool StepWork::reads_channel(const Inputs& changed) const {
+  for (std::size_t c = 0; c < image_.channels.size(); ++c)
+    if (changed.test(c)) return true;
+  return false;
+}
+
+// What a step pays for what is there, whatever it is about.
+Instructions StepWork::standing() const {
+  Instructions sum = running();
+  for (unsigned r = 0; r < image_.rules.size(); ++r)
+    if (!is_safety(r) && wants_on(r) && may_lose(r)) sum += costs::kWanting;
+  for (const vm::Check& check : image_.checks) {
+    sum += costs::kCheck;
+    if (check.window > 1) sum += Instructions{costs::kSquare} * check.window * check.window;
+  }
+  for (const vm::Variable& variable : image_.variables)
+    if (variable.fade != 0) sum += costs::kFading;
+  return sum;
+}
+
+// Responses that run or wait: those that need no actuator, and of the others no more than there are
+// actuators of which each of them holds one. Any such set will do; this one takes the actuator that
+// most of them want, again and again.
+Instructions StepWork::running() const {
+  unsigned count = 0;
+  std::vector<Actuators> left;
+  for (unsigned r = 0; r < image_.rules.size(); ++r) {
+    if (is_safety(r)) continue;
+    for (const std::uint16_t side : {image_.rules[r].then_response, image_.rules[r].else_response})
+      if (side != vm::kNoIndex && image_.responses[side].actuators != 0)
+        left.push_back(image_.responses[side].actuators);
+    if (actuators({r}) == 0 && dearest_[r].pauses) ++count;
+  }
+  for (; !left.empty(); ++count) {
+    const unsigned most = most_wanted(left);
+    std::erase_if(left, [&](Actuators mask) { return (mask >> most & 1) != 0; });
+  }
+  return Instructions{costs::kRunning} * count;
+}
+
+// Something else may hold what it wants and not give way: SAFETY, or a rule that ranks no lower.
+bool StepWork::may_lose(unsigned rule) const {
+  if (image_.has_safety() || image_.rules[rule].modifiers != vm::kNoModifiers) return true;
+  for (unsigned r = 0; r < image_.rules.size(); ++r)
+    if (r != rule && behavior_of_[r] <= behavior_of_[rule] &&
+        (actuators({r}) & actuators({rule})) != 0)
+      return true;
+  return false;
+}
+
+// Loses today, asks again tomorrow.
+bool StepWork::wants_on(unsigned r) const {
+  const vm::Rule& rule = image_.rules[r];
+  const bool waits =
+      rule.modifiers != vm::kNoModifiers && image_.modifiers[rule.modifiers].waiting > 0;
+  return rule.kind == RuleKind::while_ || waits;
+}
+
+Instructions StepWork::look() const {
+  if (!image_.has_safety()) return 0;
+  const vm::Behavior& behavior = image_.behaviors[vm::kSafetyBehavior];
+  Instructions sum = costs::kGuard + Instructions{behavior.input_count} * costs::kInput;
+  for (unsigned r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count; ++r)
+    sum += costs::kSafetyRule + costs_[r].condition;
+  return sum;
+}
+
+Instructions StepWork::trips() const {
+  if (!image_.has_safety()) return 0;
+  const vm::Behavior& behavior = image_.behaviors[vm::kSafetyBehavior];
+  Instructions sum = image_.actuators.size() * Instructions{costs::kHalt};
+  for (unsigned r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count; ++r)
+    if (image_.rules[r].kind == RuleKind::safety)
+      sum += costs::kTrip + costs_[r].dearer_response() + dearest_[r].other;
+  return sum;
+}
+
+// --- what is due by itself ---
+
+// The time of an EVERY, or the shortest that RANDOM gives; one that is worked out otherwise may be
+// as short as a millisecond.
+std::uint32_t StepWork::every_ms(unsigned r) const {
+  const vm::Rule& rule = image_.rules[r];
+  const auto code = image_.code.subspan(rule.condition_start, rule.condition_length);
+  const bool drawn = code.size() == 4 && vm::opcode_of(code[2]) == Opcode::random;
+  if (code.size() != 2 && !drawn) return 1;
+  vm::Value least = vm::kValueMax;
+  for (const vm::Word word : code.first(drawn ? 2 : 1)) {
+    if (vm::opcode_of(word) != Opcode::load) return 1;
+    least = std::min(least, image_.constants[vm::operand_wide(word)]);
+  }
+  return static_cast<std::uint32_t>(std::max(least, 1));
+}
+
+std::uint32_t StepWork::period_ms(unsigned r) const {
+  const RuleKind kind = image_.rules[r].kind;
+  if (is_safety(r)) return 0;
+  if (kind == RuleKind::every)
+    return dearest_[r].pauses ? std::min(every_ms(r), dearest_[r].shortest_wait_ms) : every_ms(r);
+  if (dearest_[r].pauses) return dearest_[r].shortest_wait_ms;
+  if (!wants_on(r)) return 0;
+  return kind != RuleKind::while_ || actuators({r}) != 0 ? costs::kServicePeriodMs : 1;
+}
+
+}  // namespace robosync::tool

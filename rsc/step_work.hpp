@@ -1,0 +1,117 @@
+// What a step does on the board, and what that costs at most: which rules a change concerns, what
+// their responses put out, what they set.
+//
+// The rules are those of runtime-m4/layers (concern.cpp, processing.hpp), the costs those of
+// response_costs.hpp and of the code itself (vm/cost.hpp). Images must be verified.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include "rsc/response_time.hpp"
+#include "vm/cost.hpp"
+#include "vm/image.hpp"
+#include "vm/opcode.hpp"
+
+namespace robosync::tool {
+
+using Inputs = std::bitset<std::size_t{2} * vm::kMaxInputs>;  // by number: channels, then variables
+using Actuators = std::uint32_t;
+using Rules = std::set<unsigned>;
+
+// What one response may do in one step, its code aside.
+struct ResponseWork {
+  Instructions other = 0;                 // all but its commands
+  std::vector<Instructions> by_actuator;  // its commands
+  Inputs sets;
+  Inputs later_sets;  // … after a pause
+  bool pauses = false;
+  bool polls = false;                  // WAIT UNTIL: looks again whenever something changes
+  std::uint32_t shortest_wait_ms = 0;  // 0: it does not pause
+};
+
+class StepWork {
+public:
+  explicit StepWork(const vm::Image& image);
+
+  // With what is worked out of them in the same step: the bands of CHECKs.
+  [[nodiscard]] Inputs with_bands(Inputs changed) const;
+  // The rules that a change concerns, SAFETY rules aside.
+  [[nodiscard]] Rules concerned(const Inputs& changed) const;
+  // What the rules' responses may set.
+  [[nodiscard]] Inputs sets(const Rules& rules) const;
+  // … when one of them goes on after a pause.
+  [[nodiscard]] Inputs later_sets(unsigned rule) const { return dearest_[rule].later_sets; }
+  [[nodiscard]] Actuators actuators(const Rules& rules) const;
+  // The rules among them whose conditions read it: they can fire.
+  [[nodiscard]] Rules stirred(const Rules& rules, const Inputs& changed) const;
+  // A step in which `changed` has changed and `rules` are evaluated: all but the sampling, and what
+  // comes of rules that fire.
+  [[nodiscard]] Instructions step(const Rules& rules, const Inputs& changed) const;
+  // What comes of one that fires and wins; 0 when it has no response.
+  [[nodiscard]] Instructions firing(unsigned rule) const;
+  // … when it goes on after a pause, or starts because of nothing but the time.
+  [[nodiscard]] Instructions by_itself(unsigned rule) const;
+  // It fires when its condition becomes true, and for nothing else: never twice without being
+  // evaluated as false between. A WHILE also starts again, which period_ms() is about.
+  [[nodiscard]] bool alternates(unsigned rule) const;
+  // It fires once, and then not before this is over: COOLDOWN, or FOR as its last word; 0: not
+  // known.
+  [[nodiscard]] std::uint32_t gap_ms(unsigned rule) const;
+  // Two rules of which one response at most runs in a step: they want the same actuator.
+  [[nodiscard]] bool contend(unsigned a, unsigned b) const;
+  // One look of the safety thread at its rules; and when all of them trip.
+  [[nodiscard]] Instructions look() const;
+  [[nodiscard]] Instructions trips() const;
+
+  [[nodiscard]] unsigned behavior_of(unsigned rule) const { return behavior_of_[rule]; }
+  // The inputs that SAFETY rules read: the safety thread looks when one changes.
+  [[nodiscard]] const Inputs& watched() const { return watched_; }
+  // Its condition has a word that time alone may make true or false.
+  [[nodiscard]] bool is_timed(unsigned rule) const {
+    return held_ms_[rule] != 0 || has_events(rule);
+  }
+  // … that is true for one step: the rule is evaluated again in the next millisecond.
+  [[nodiscard]] bool has_events(unsigned rule) const { return events_[rule] != 0; }
+  // … and that may make it fire: not where the condition is that word and nothing else.
+  [[nodiscard]] bool fires_after_event(unsigned rule) const;
+  // The shortest time between two evaluations that a FOR asks for; 0: it has none.
+  [[nodiscard]] std::uint32_t held_ms(unsigned rule) const { return held_ms_[rule]; }
+  // The shortest time between two turns of a response that waits or a rule that starts again, and
+  // of an EVERY; 0: the rule is never due by itself again and again.
+  [[nodiscard]] std::uint32_t period_ms(unsigned rule) const;
+
+private:
+  void add_inputs(const vm::Behavior& behavior, std::uint16_t start, std::uint16_t length,
+                  Inputs& inputs) const;
+  [[nodiscard]] vm::Word last_word(unsigned rule) const;
+  void note_held(unsigned rule, std::uint32_t duration_ms);
+  void load_rule(unsigned rule, const vm::Behavior& behavior);
+  [[nodiscard]] ResponseWork work_of(const vm::Behavior& behavior, std::uint16_t response) const;
+  [[nodiscard]] Instructions evaluation(unsigned rule) const;
+  [[nodiscard]] Instructions output(unsigned rule) const;
+  [[nodiscard]] Instructions interruptions(unsigned rule) const;
+  [[nodiscard]] bool reads_channel(const Inputs& changed) const;
+  [[nodiscard]] Instructions standing() const;
+  [[nodiscard]] Instructions running() const;
+  [[nodiscard]] std::uint32_t every_ms(unsigned rule) const;
+  [[nodiscard]] bool wants_on(unsigned rule) const;
+  [[nodiscard]] bool may_lose(unsigned rule) const;
+  [[nodiscard]] bool is_safety(unsigned rule) const;
+
+  const vm::Image& image_;
+  std::vector<vm::RuleCost> costs_;
+  std::vector<unsigned> behavior_of_;
+  std::vector<Inputs> condition_reads_;  // by rule
+  std::vector<Inputs> reads_;            // … and its responses
+  std::vector<Inputs> sets_;
+  std::vector<ResponseWork> dearest_;  // by rule: the dearer of its responses, part by part
+  std::vector<bool> divides_;
+  std::vector<std::uint32_t> held_ms_;
+  std::vector<unsigned> events_;  // by rule: time words that are true for one step
+  Inputs watched_;                // by SAFETY rules
+};
+
+}  // namespace robosync::tool

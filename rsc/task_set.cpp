@@ -1,0 +1,381 @@
+// See task_set.hpp. What is known of each source, and what is supposed where nothing is known,
+// stands in docs/timing.md.
+#include "rsc/task_set.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "rsc/exclusive.hpp"
+#include "rsc/response_costs.hpp"
+#include "rsc/step_work.hpp"
+#include "runtime-m4/safety/period.hpp"
+
+namespace robosync::tool {
+namespace {
+
+constexpr Instructions milliseconds(Instructions ms) {
+  return ms * costs::kPerMillisecond;
+}
+
+bool is_fed(const vm::Sensor& sensor) {
+  return sensor.period_ms == 0 || sensor.driver == vm::DriverId::virtual_sensor;
+}
+
+Instructions read_cost(vm::DriverId driver) {
+  switch (driver) {
+    case vm::DriverId::max34451:
+      return costs::kReadMax34451;
+    case vm::DriverId::i2c_register:
+      return costs::kReadI2cWord;
+    default:
+      return 0;
+  }
+}
+
+Rules common(const Rules& a, const Rules& b) {
+  Rules rules;
+  std::ranges::set_intersection(a, b, std::inserter(rules, rules.end()));
+  return rules;
+}
+
+class Builder {
+public:
+  Builder(const vm::Image& image, int cap) : image_(image), cap_(cap), work_(image) {}
+
+  TaskSet build() {
+    for (unsigned s = 0; s < image_.sensors.size(); ++s)
+      add_sensor(s);
+    for (unsigned r = 0; r < image_.rules.size(); ++r) {
+      if (work_.period_ms(r) != 0) add_rule(r);
+      if (work_.held_ms(r) != 0 && !is_safety(r)) add_held(r);
+    }
+    add_fading();
+    add_checks();
+    add_firings();
+    add_interferences();
+    set_.lost = costs::kClaim;
+    set_.longest_lock = longest_lock();
+    return set_;
+  }
+
+private:
+  // --- priorities: as runtime-m4/layers/program.cpp has them ---
+
+  bool is_safety(unsigned rule) const {
+    return image_.has_safety() && work_.behavior_of(rule) == vm::kSafetyBehavior;
+  }
+
+  unsigned first_behavior() const { return image_.has_safety() ? vm::kSafetyBehavior + 1U : 0; }
+  int lowest_priority() const { return image_.behaviors.back().priority; }
+
+  // Of the most important behaviour that reads the sensor; none of them: below all.
+  int priority_of(const Inputs& channels, bool raised) const {
+    int priority = image_.behaviors.empty() ? 0 : lowest_priority() - 1;
+    for (unsigned b = 0; b < image_.behaviors.size(); ++b) {
+      const vm::Behavior& behavior = image_.behaviors[b];
+      const auto inputs = image_.inputs.subspan(behavior.first_input, behavior.input_count);
+      if (std::ranges::none_of(inputs, [&](std::uint8_t input) { return channels.test(input); }))
+        continue;
+      const bool adapts = raised && b >= first_behavior();
+      priority = std::max(priority,
+                          adapts ? std::max<int>(behavior.priority, cap_) : int{behavior.priority});
+    }
+    return priority;
+  }
+
+  // The lower outranks; threads of one priority in the order in which they are started, and all fed
+  // sensors have one thread.
+  static unsigned rank_of(int priority, unsigned order) {
+    constexpr int kAbove = 1000;  // any priority
+    constexpr unsigned kThreads = 1000;
+    return static_cast<unsigned>(kAbove - priority) * kThreads + order;
+  }
+
+  void place(Source& source, unsigned sensor, const Inputs& channels) const {
+    const bool fed = is_fed(image_.sensors[sensor]);
+    const unsigned order = fed ? static_cast<unsigned>(image_.sensors.size()) : sensor;
+    const int base = fed ? fed_priority(false) : priority_of(channels, false);
+    const int raised = fed ? fed_priority(true) : priority_of(channels, true);
+    source.rank = rank_of(base, order);
+    source.raised = raised == base ? source.rank : rank_of(raised, 0);
+    const bool has_behavior = image_.behaviors.size() > first_behavior();
+    source.outranks_a_behavior = has_behavior && base > lowest_priority();
+    source.may_outrank_one = has_behavior && raised > lowest_priority();
+  }
+
+  int fed_priority(bool raised) const {
+    Inputs channels;
+    for (unsigned s = 0; s < image_.sensors.size(); ++s)
+      if (is_fed(image_.sensors[s])) channels |= channels_of(image_.sensors[s]);
+    return priority_of(channels, raised);
+  }
+
+  static Inputs channels_of(const vm::Sensor& sensor) {
+    Inputs channels;
+    for (unsigned i = 0; i < sensor.channel_count; ++i)
+      channels.set(sensor.first_channel + i);
+    return channels;
+  }
+
+  // --- sources ---
+
+  void add_sensor(unsigned s) {
+    const vm::Sensor& sensor = image_.sensors[s];
+    const Inputs channels = channels_of(sensor);
+    const Inputs changed = work_.with_bands(channels);
+    const Rules rules = work_.concerned(changed);
+    Source source;
+    source.name = image_.string(sensor.name);
+    source.period =
+        milliseconds(is_fed(sensor) ? costs::kFedPeriodMs : std::uint32_t{sensor.period_ms});
+    if (!is_fed(sensor))
+      source.sample =
+          costs::kWakeByTimer + sensor.channel_count * read_cost(sensor.driver) +
+          (sensor.channel_count - Instructions{1}) * costs::kChannel;  // the first is in the step
+    if ((channels & work_.watched()).any()) source.sample += costs::kWake + looks() + work_.trips();
+    source.step = work_.step(rules, changed);
+    place(source, s, channels);
+    const Rules fire = work_.stirred(rules, changed);
+    for (unsigned a = 0; a < image_.actuators.size(); ++a)
+      if ((work_.actuators(fire) >> a & 1) != 0)
+        source.actuators.emplace_back(image_.string(image_.actuators[a].name));
+    add_with_followers(std::move(source), rules, fire, work_.sets(fire));
+  }
+
+  // Due by itself, in the step thread.
+  void add_timed(std::string name, std::uint32_t period_ms, const Rules& rules,
+                 const Inputs& changed, const Rules& fire, const Inputs& set) {
+    Source source;
+    source.name = std::move(name);
+    source.period = milliseconds(period_ms);
+    source.step = work_.step(rules, changed);
+    source.outranks_a_behavior = true;
+    source.may_outrank_one = true;
+    by_itself_ = set_.sources.size();
+    add_with_followers(std::move(source), rules, fire, set);
+  }
+
+  // A time word of a SAFETY rule may call for one look more after each.
+  Instructions looks() const {
+    const unsigned rules =
+        image_.has_safety() ? image_.behaviors[vm::kSafetyBehavior].rule_count : 0;
+    for (unsigned r = 0; r < rules; ++r)
+      if (work_.is_timed(r)) return 2 * work_.look() + costs::kWakeByTimer;
+    return work_.look();
+  }
+
+  // A step may make others, a millisecond later each: what it sets changes, and a rule with a word
+  // that was true for one step is evaluated again. Each rule answers a reading once, also by way of
+  // others: that it does so again and again is not looked for.
+  void add_with_followers(Source source, const Rules& evaluated_in_it, const Rules& fired,
+                          Inputs set) {
+    Source follower;
+    follower.name = fmt::format("what follows {}", source.name);
+    follower.period = source.period;
+    follower.delay = milliseconds(1);
+    follower.outranks_a_behavior = true;
+    follower.may_outrank_one = true;
+    add(std::move(source), fired);
+    Rules seen = fired;
+    Rules before = common(evaluated_in_it, fired);
+    for (std::size_t level = 0; level <= image_.rules.size() + 1; ++level) {
+      const Inputs changed = work_.with_bands(set);
+      Rules evaluated = work_.concerned(changed);
+      Rules fire = work_.stirred(evaluated, changed);
+      std::erase_if(fire, [&](unsigned rule) { return seen.contains(rule); });
+      seen.insert(fire.begin(), fire.end());
+      for (const unsigned rule : before)
+        if (work_.has_events(rule)) {
+          evaluated.insert(rule);
+          if (work_.fires_after_event(rule)) fire.insert(rule);
+        }
+      if (evaluated.empty() && changed.none()) return;
+      follower.step = work_.step(evaluated, changed);
+      follower.follows = set_.sources.size() - 1;
+      add(follower, fire);
+      set = work_.sets(fire);
+      before = std::move(fire);
+    }
+  }
+
+  // The rules that may fire in its steps.
+  void add(Source source, const Rules& fired) {
+    for (const unsigned rule : fired)
+      triggered_by_[rule].push_back(set_.sources.size());
+    set_.sources.push_back(std::move(source));
+  }
+
+  // Starts of responses, of which a step may have few; and what goes on.
+  void add_firings() {
+    std::vector<unsigned> rules;
+    for (const auto& [rule, sources] : triggered_by_) {
+      if (sources.empty() || work_.firing(rule) == 0) continue;
+      rules.push_back(rule);
+      set_.firings.push_back({name_of(rule), work_.firing(rule), work_.alternates(rule), sources,
+                              milliseconds(work_.gap_ms(rule))});
+    }
+    group(rules);
+    for (const auto& [rule, sources] : goes_on_)
+      set_.firings.push_back({name_of(rule), work_.by_itself(rule), false, sources});
+  }
+
+  // Which of the firings so far, those of `rules`, exclude each other; which want the same
+  // actuator.
+  void group(const std::vector<unsigned>& rules) {
+    std::vector<Needs> needs;
+    needs.reserve(rules.size());
+    for (const unsigned rule : rules) {
+      needs.push_back(
+          needs_of(image_, image_.behaviors[work_.behavior_of(rule)], image_.rules[rule]));
+    }
+    put_together(&Firing::choice, [&](std::size_t a, std::size_t b) {
+      return exclude_each_other(needs[a], needs[b]);
+    });
+    // A choice is part of a contest as a whole or not at all: so "the dearest first" is the worst.
+    put_together(&Firing::contest, [&](std::size_t a, std::size_t b) {
+      return all_of_choice(a, [&](std::size_t x) {
+        return all_of_choice(b, [&](std::size_t y) {
+          return same_choice(x, y) || work_.contend(rules[x], rules[y]);
+        });
+      });
+    });
+  }
+
+  bool same_choice(std::size_t a, std::size_t b) const {
+    const std::size_t choice = set_.firings[a].choice;
+    return a == b || (choice != Firing::kNone && choice == set_.firings[b].choice);
+  }
+
+  template <class Test>
+  bool all_of_choice(std::size_t firing, Test test) const {
+    for (std::size_t i = 0; i < set_.firings.size(); ++i)
+      if (same_choice(firing, i) && !test(i)) return false;
+    return true;
+  }
+
+  // Each with the first others that it and all of them go together with.
+  template <class Together>
+  void put_together(std::size_t Firing::*which, Together together) {
+    for (std::size_t first = 0; first < set_.firings.size(); ++first) {
+      if (set_.firings[first].*which != Firing::kNone) continue;
+      std::vector<std::size_t> members{first};
+      for (std::size_t i = first + 1; i < set_.firings.size(); ++i)
+        if (set_.firings[i].*which == Firing::kNone &&
+            std::ranges::all_of(members, [&](std::size_t m) { return together(m, i); }))
+          members.push_back(i);
+      if (members.size() == 1) continue;
+      for (const std::size_t member : members)
+        set_.firings[member].*which = first;
+    }
+  }
+
+  std::string name_of(unsigned rule) const {
+    if (image_.rules[rule].line != 0)
+      return fmt::format("the rule at line {}", image_.rules[rule].line);
+    const auto name = image_.string(image_.behaviors[work_.behavior_of(rule)].name);
+    return fmt::format("rule {} of the module's {}", rule, name);
+  }
+
+  // A FOR of its is over.
+  void add_held(unsigned r) {
+    const bool fires = image_.rules[r].then_response != vm::kNoIndex;
+    add_timed(fmt::format("{}, FOR", name_of(r)), work_.held_ms(r), {r}, {},
+              fires ? Rules{r} : Rules{}, work_.sets({r}));
+  }
+
+  void add_rule(unsigned r) {
+    // A response that goes on evaluates nothing.
+    const bool evaluated = image_.rules[r].kind == vm::RuleKind::every;
+    add_timed(fmt::format("{}, by itself", name_of(r)), work_.period_ms(r),
+              evaluated ? Rules{r} : Rules{}, {}, {r},
+              evaluated ? work_.sets({r}) : work_.later_sets(r));
+    // What it says of triggers does not hold for what goes on.
+    auto& triggers = triggered_by_[r];
+    goes_on_[r].push_back(std::exchange(by_itself_, 0));
+    std::erase(triggers, goes_on_[r].back());
+  }
+
+  void add_fading() {
+    Inputs fading;
+    for (unsigned v = 0; v < image_.variables.size(); ++v)
+      if (image_.variables[v].fade != 0) fading.set(image_.channels.size() + v);
+    if (fading.none()) return;
+    const Inputs changed = work_.with_bands(fading);
+    const Rules rules = work_.concerned(changed);
+    add_timed("feelings that fade", vm::kFadeTickMs, rules, changed, work_.stirred(rules, changed),
+              work_.sets(work_.stirred(rules, changed)));
+  }
+
+  void add_checks() {
+    for (const vm::Check& check : image_.checks) {
+      if (check.window <= 1) continue;
+      Inputs band;
+      band.set(image_.channels.size() + check.variable);
+      const Rules rules = work_.concerned(band);
+      const vm::Variable& variable = image_.variables[check.variable];
+      add_timed(fmt::format("samples of {}", image_.string(variable.name)),
+                std::max<std::uint32_t>(check.sample_ms, 1), rules, band,
+                work_.stirred(rules, band), work_.sets(work_.stirred(rules, band)));
+    }
+  }
+
+  // --- what outranks the sources ---
+
+  // A transfer of another sensor on the bus, which no sensor interrupts; or a trace message.
+  Instructions longest_lock() const {
+    Instructions longest = 0;
+    unsigned on_bus = 0;
+    for (const vm::Sensor& sensor : image_.sensors) {
+      const Instructions transfer = is_fed(sensor) ? 0 : read_cost(sensor.driver);
+      on_bus += transfer != 0 ? 1 : 0;
+      longest = std::max(longest, transfer);
+    }
+    return costs::kLongestLock + (on_bus > 1 ? longest : 0);
+  }
+
+  void add_interferences() {
+    const Instructions period = milliseconds(robosync::safety::kPeriod / kernel::milliseconds(1));
+    set_.interferences.push_back({"the tick", milliseconds(1), costs::kTick + costs::kSwitch});
+    set_.interferences.push_back(
+        {"the serial line", Instructions{costs::kPerMillisecond} * 1000 / costs::kBytesPerSecond,
+         costs::kReceive + costs::kSend});
+    set_.interferences.push_back(
+        {"the safety thread", period, costs::kWakeByTimer + costs::kMonitor + looks()});
+    if (work_.trips() != 0)
+      set_.interferences.push_back({"SAFETY rules that trip by time alone",
+                                    milliseconds(costs::kTripPeriodMs), work_.trips()});
+    for (const vm::Adaptation& adaptation : image_.adaptations)
+      set_.interferences.push_back({"priorities that adapt", milliseconds(adaptation.window_ms),
+                                    costs::kRank * (image_.behaviors.size() - first_behavior())});
+    for (const vm::Behavior& behavior : image_.behaviors.subspan(first_behavior()))
+      commanded_ |= behavior.actuators;
+    // Its next setpoint; or its command is done, and the next one in its queue begins.
+    for (unsigned a = 0; a < image_.actuators.size(); ++a)
+      if ((commanded_ >> a & 1) != 0)
+        set_.interferences.push_back({std::string(image_.string(image_.actuators[a].name)),
+                                      milliseconds(costs::kServicePeriodMs), costs::kService});
+  }
+
+  const vm::Image& image_;
+  int cap_;
+  StepWork work_;
+  TaskSet set_;
+  // By rule: the sources whose steps may trigger it, or let it go on.
+  std::map<unsigned, std::vector<std::size_t>> triggered_by_, goes_on_;
+  std::size_t by_itself_ = 0;  // the source that add_timed() has made last
+  Actuators commanded_ = 0;
+};
+
+}  // namespace
+
+TaskSet task_set_of(const vm::Image& image, int cap) {
+  TaskSet set = Builder(image, cap).build();
+  settle(set, cap > 0 ? Priorities::adapted : Priorities::base);
+  return set;
+}
+
+}  // namespace robosync::tool

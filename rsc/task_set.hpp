@@ -1,0 +1,14 @@
+// The task set of a program (response_time.hpp): its sensors with their periods, ranks and steps,
+// what is due by itself, and what outranks both.
+#pragma once
+
+#include "rsc/response_time.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::tool {
+
+// Of a verified image. `cap`: the highest priority that an adapted behaviour can reach; 0:
+// priorities stay as they are written.
+[[nodiscard]] TaskSet task_set_of(const vm::Image& image, int cap = 0);
+
+}  // namespace robosync::tool

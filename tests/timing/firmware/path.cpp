@@ -1,0 +1,104 @@
+// The whole runtime of a board, as the firmware has it and with somebody who listens to its trace,
+// driven from inside: a given image is activated, then readings are fed, channel and value in turn.
+// tests/timing/paths.py counts what a reading costs, and what a tick does.
+//
+// The thread that does it has the lowest rank, as the link has in the firmware. So when it comes
+// back from feed(), between its markers, the step is over and everything that came of it is done;
+// and when it has woken after a tick, so is all that was due in that tick. A reading of kPause is
+// none: it lets time pass, as many ticks as its channel says.
+#include <array>
+#include <cstdint>
+
+#include "bench/firmware/given.hpp"
+#include "bench/firmware/mark.hpp"
+#include "runtime-m4/boards/mps2-an386/board.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/port/cortex-m4/hooks.hpp"
+#include "runtime-m4/runtime.hpp"
+#include "runtime-m4/update/trace_ring.hpp"
+
+robosync::kernel::Kernel robosync_kernel;
+robosync::boards::mps2::Board robosync_board;
+
+namespace robosync::bench {
+namespace {
+
+constexpr std::uint32_t kSettling = 50;  // ticks
+constexpr vm::Value kPause = INT32_MAX;
+
+update::TraceRing ring(robosync_kernel);
+layers::Workspace workspace;
+Runtime runtime(robosync_kernel, robosync_board, ring, workspace);
+kernel::Thread thread;
+alignas(port::kStackAlignment) std::array<std::byte, 2048> stack;
+
+// Sleeps, and reads the trace all the while: a full ring would make events cheaper. It is read
+// before a tick, so that reading is no part of what the tick does.
+[[gnu::noinline]] void let_pass(std::uint32_t ticks) {
+  std::array<std::byte, link::kMaxPayload> payload{};
+  link::MessageType type{};
+  for (std::uint32_t tick = 0; tick < ticks; ++tick) {
+    while (ring.take(type, payload) != 0) {
+    }
+    robosync_kernel.sleep_until(robosync_kernel.now() + kernel::kTick);
+    BENCH_MARK(woken);
+  }
+}
+
+[[gnu::noinline]] void feed(std::uint32_t channel, vm::Value reading) {
+  const link::Feed feed{.at_us = 0, .channel = channel, .value = reading};
+  BENCH_MARK(feed_begin);
+  const link::FeedResult result = runtime.feed(feed);
+  BENCH_MARK(feed_end);
+  if (result.error != link::FeedError::none) leave(false);
+}
+
+void drive(void*) {
+  ring.listen(true);
+  const vm::Verdict verdict = runtime.activate(given_image());
+  const std::array why = {static_cast<std::int32_t>(verdict.refusal),
+                          static_cast<std::int32_t>(verdict.section),
+                          static_cast<std::int32_t>(verdict.index)};
+  if (!verdict.ok()) say("refused", why);
+  if (!verdict.ok()) leave(false);
+  let_pass(kSettling);
+  const auto readings = given_readings();
+  for (std::size_t i = 0; i + 1 < readings.size(); i += 2) {
+    const auto channel = static_cast<std::uint32_t>(readings[i]);
+    if (readings[i + 1] == kPause) {
+      let_pass(channel);
+    } else {
+      feed(channel, readings[i + 1]);
+    }
+  }
+  let_pass(kSettling);
+  leave(ring.lost() == 0);
+}
+
+bool start() {
+  return runtime.start() && robosync_kernel.add(thread, {.name = "path",
+                                                         .category = kernel::Category::system,
+                                                         .priority = 0,
+                                                         .entry = drive,
+                                                         .argument = nullptr,
+                                                         .stack = stack});
+}
+
+}  // namespace
+}  // namespace robosync::bench
+
+namespace robosync::port::hooks {
+
+void thread_faulted(kernel::Thread&, const link::Fault&) {
+  bench::leave(false);
+}
+void fatal_fault(const link::Fault&) {
+  bench::leave(false);
+}
+
+}  // namespace robosync::port::hooks
+
+int main() {
+  if (!robosync::bench::start()) robosync::bench::leave(false);
+  robosync_kernel.run();
+}

@@ -1,0 +1,78 @@
+"""Counts what the whole runtime executes on the Cortex-M4 (firmware/path.cpp): for a reading that is fed, and for
+a tick with all that is due in it. Assumes that the presets host and m4 have been built."""
+
+import json
+import re
+import struct
+import subprocess
+import tempfile
+from pathlib import Path
+
+from timing import ROOT
+
+import counting
+
+RSC = ROOT / "build/host/rsc"
+FIRMWARE = ROOT / "build/m4/bench/path.elf"
+TABLE = ROOT / "rsc/response_costs.hpp"
+DEVICES = ["-device", "max34451,id=touch,address=0x70", "-device", "tmp105,address=0x48"]
+PAUSE = 2**31 - 1  # kPause of path.cpp
+TICK = "SysTick_Handler"
+
+
+def costs():
+    """{name: instructions} of the table that response times are worked out with."""
+    found = re.findall(r"constexpr std::uint32_t (k\w+) =\s+([\d']+);", TABLE.read_text())
+    return {name: int(value.replace("'", "")) for name, value in found}
+
+
+def robot(actuators=4, sensors=None):
+    """A robot.json: a sensor that is fed, and virtual actuators a0, a1 …"""
+    fed = {"name": "s", "type": "VIRTUAL", "channels": {f"c{c}": {"range": [0, 100]} for c in range(4)}}
+    return {"sensors": sensors or [fed],
+            "actuators": [{"name": f"a{a}", "type": "VIRTUAL"} for a in range(actuators)]}
+
+
+def feed(value, channel=0):
+    return channel, round(value * 1000)
+
+
+def wait(ticks=10):
+    return ticks, PAUSE
+
+
+def compiled(source, config, image):
+    said = subprocess.run([RSC, "compile", source, "--config", config, "-o", image, "--strip"],
+                          check=False, capture_output=True, text=True)
+    if said.returncode:
+        raise counting.BenchError(f"{source}: {said.stderr}")
+
+
+class Run:
+    """One boot: what each reading took until all that came of it was done, and what each tick took."""
+
+    def __init__(self, image, orders, extra=()):
+        values = [value for order in orders for value in order]
+        at = {TICK: counting.symbols(FIRMWARE)[TICK]} | dict(extra)
+        with tempfile.TemporaryDirectory(prefix="robosync-paths-") as folder:
+            given = Path(folder) / "orders"
+            given.write_bytes(struct.pack(f"<{1 + len(values)}i", len(values), *values))
+            self.marks = counting.run(FIRMWARE, counting.loaded(image, counting.IMAGE_ADDRESS) +
+                                      counting.loaded(given, counting.READINGS_ADDRESS) + DEVICES, at)
+        fed = any(value != PAUSE for _, value in orders)
+        self.feeds = self.marks.spans("mark_feed_begin", "mark_feed_end") if fed else []
+        self.ticks = self.marks.spans(TICK, "mark_woken")
+
+    @property
+    def idle_tick(self):
+        """A tick that nobody but the driving thread waits for."""
+        return min(self.ticks)
+
+
+def run(text, orders, config=None):
+    with tempfile.TemporaryDirectory(prefix="robosync-paths-") as folder:
+        source, image = Path(folder) / "p.rsl", Path(folder) / "p.rsb"
+        source.write_text(text)
+        source.with_suffix(".json").write_text(json.dumps(config or robot()))
+        compiled(source, source.with_suffix(".json"), image)
+        return Run(image, orders)

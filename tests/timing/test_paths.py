@@ -1,0 +1,274 @@
+"""The costs that `rsc check --timing` works out response times with (rsc/response_costs.hpp) against what the
+Cortex-M4 executes; the response times that it says of the examples against what their readings take."""
+
+import json
+import random
+import re
+import subprocess
+import tempfile
+import unittest
+from collections import Counter
+from pathlib import Path
+
+import paths
+from paths import feed, run, wait
+from timing import examples
+
+LOOSEST = 1.25  # a cost of the table is at most this many times what was measured, and 60 more
+SLACK = 60
+# A reading that fires nothing, twice (the first costs more), and one that fires all.
+FIRE = [feed(10), wait(), feed(20), wait(), feed(90), wait(40)]
+
+
+def behavior(body, when="s c0 > 80", head="WHEN", priority=90, name=None):
+    lines = [f"BEHAVIOR {name or f'b{priority}'} PRIORITY {priority}", f"  {head} {when}", "  DO",
+             *(f"    {line}" for line in body.splitlines()), "  END", "END"]
+    return "\n".join(lines) + "\n"
+
+
+def move(*actuators, ms=10):
+    return "\n".join(f"MOVE a{actuator} TO 1% OVER {ms}ms" for actuator in actuators)
+
+
+def fired(text, orders=None):
+    """Instructions of the last reading."""
+    return run(text, orders or FIRE).feeds[-1]
+
+
+def taken_over(high, *low, actuators=4):
+    """A response that starts while others have moved some of the actuators."""
+    text = behavior(high) + "".join(behavior(body, "s c0 > 50", priority=50 - i)
+                                    for i, body in enumerate(low))
+    return fired(text, [feed(10), wait(), feed(60), wait(), feed(90), wait()])
+
+
+class Table(unittest.TestCase):
+    """Each cost by the difference of two programs."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.costs = paths.costs()
+        cls.log = run(behavior('LOG "x"'), FIRE)
+        two_rules = behavior('LOG "x"').replace("END\nEND\n", "END\n") + behavior('LOG "x"').split("\n", 1)[1]
+        condition = 14 + 15  # gt_k, ret
+        cls.rule = run(two_rules, FIRE).feeds[1] - cls.log.feeds[1] - condition
+        apart = run(behavior('LOG "x"') + behavior('LOG "x"', priority=80), FIRE).feeds[1]
+        cls.behavior = apart - cls.log.feeds[1] - cls.rule - condition
+        cls.step = cls.log.feeds[1] - cls.rule - condition - cls.behavior
+        cls.text = fired(behavior('LOG "x"\nLOG "y"')) - cls.log.feeds[-1]
+        cls.fire = cls.log.feeds[-1] - cls.log.feeds[1] - cls.text
+        cls.one = fired(behavior(move(0)))
+        both = behavior(move(0)).replace("END\nEND\n", "END\n") + behavior(move(0)).split("\n", 1)[1]
+        cls.claim = fired(both) - cls.one - cls.rule - condition
+
+    def assert_covers(self, name, measured):
+        self.assertGreaterEqual(self.costs[name], measured, name)
+        self.assertLessEqual(self.costs[name], LOOSEST * measured + SLACK, name)
+
+    def test_a_step(self):
+        self.assert_covers("kRule", self.rule)
+        self.assert_covers("kBehavior", self.behavior)
+        self.assert_covers("kStep", self.step)
+
+    def test_a_rule_that_fires(self):
+        self.assert_covers("kText", self.text)
+        self.assert_covers("kClaim", self.claim)
+        self.assert_covers("kRun", self.fire - self.claim)
+
+    def test_commands(self):
+        self.assert_covers("kCommand", fired(behavior(move(0, 1))) - self.one)
+        self.assert_covers("kQueued", fired(behavior(move(0, 0))) - self.one)
+        self.assert_covers("kArgument", (fired(behavior("MOVE a0 TO 1% AT 5% OVER 10ms")) - self.one))
+        stop = fired(behavior("STOP a0\nSTOP a1")) - fired(behavior("STOP a0"))
+        self.assertGreaterEqual(self.costs["kCommand"] + self.costs["kStop"], stop)
+
+    def test_what_is_set(self):
+        one, two = (run(f"REMEMBER v = 0\nREMEMBER w = 0\n{behavior(body)}", FIRE)
+                    for body in ("SET v TO 1", "SET v TO 1\nSET w TO 1"))
+        self.assert_covers("kSet", two.feeds[-1] - one.feeds[-1])
+        changed = max(two.ticks) - max(one.ticks)
+        self.assert_covers("kChanged", changed)
+        # Nothing but the variable and the rule that sets it is in the step that follows.
+        follows = max(one.ticks) - one.idle_tick - changed - self.rule - self.behavior - 29
+        self.assert_covers("kTimedStep", follows)
+
+    def test_interruptions(self):
+        none, one, two = (taken_over(move(0), move(*low, ms=2000)) for low in ((1, 2), (0, 1), (0, 1, 2)))
+        less = taken_over(move(0), move(0, ms=2000)) - taken_over(move(0), move(1, ms=2000))
+        self.assert_covers("kCancel", two - one)
+        self.assert_covers("kInterrupt", less - (two - one))
+        self.assertGreaterEqual(self.costs["kInterrupt"] + 2 * self.costs["kCancel"], one - none)
+
+    def test_what_a_step_pays_for_what_is_there(self):
+        text = behavior(move(0, ms=2000), "s c0 > 50") + behavior(move(1, ms=2000), "s c0 > 40", "WHILE", 10)
+        orders = [feed(10), wait(), feed(20), wait(), feed(90), wait(), feed(91), wait(5)]
+        both = run(text, orders).feeds
+        self.assert_covers("kRunning", (both[-1] - both[1]) / 2)
+        loses = run(text.replace("MOVE a1", "MOVE a0"), orders).feeds
+        self.assert_covers("kWanting", loses[-1] - loses[1] - (both[-1] - both[1]) / 2)
+        fading = "FEELING {} FROM 0% TO 100% START 50%\n FADES TO 0% OVER 60s\n"
+        feels = [run("".join(fading.format(name) for name in names) +
+                     behavior("\n".join(f"RAISE {name} BY 10%" for name in names)), FIRE).feeds[1]
+                 for names in ("f", "fg")]
+        none = run(f"REMEMBER v = 0\n{behavior('SET v TO 1')}", FIRE).feeds[1]
+        self.assertGreaterEqual(self.costs["kFading"], feels[0] - none)
+        self.assertGreaterEqual(self.costs["kFading"], feels[1] - feels[0])
+
+    def test_what_goes_on(self):
+        waits = run(behavior('WAIT 25ms\nLOG "x"'), FIRE)
+        after = max(waits.ticks) - waits.idle_tick - self.text
+        self.assertGreaterEqual(self.costs["kGoOn"] + self.costs["kTimedStep"], after)
+        self.assertLessEqual(self.costs["kGoOn"], LOOSEST * (after - self.costs["kTimedStep"]) + SLACK)
+        polls = run(behavior('WAIT UNTIL s c1 > 50\nLOG "x"'), [feed(10, 1), *FIRE, feed(15, 1), wait()]).feeds
+        self.assertGreaterEqual(self.costs["kPoll"] + self.costs["kRunning"], polls[-1] - polls[2])
+
+    def test_division_by_zero(self):
+        runs = [run(behavior('LOG "x"', "s c1 / s c0 > 80"), [feed(10, 1), feed(10), wait(), feed(number), wait()])
+                for number in (20, 0)]
+        self.assert_covers("kZeroDivide", runs[1].feeds[-1] - runs[0].feeds[-1])
+
+    def test_an_actuator_that_is_served(self):
+        done = run(behavior(move(0, ms=13)), FIRE)
+        queued = run(behavior(move(0, 0, ms=13)), FIRE)
+        self.assertGreaterEqual(self.costs["kService"], max(done.ticks) - done.idle_tick)
+        self.assertGreaterEqual(self.costs["kService"], max(queued.ticks) - queued.idle_tick)
+        self.assertLessEqual(self.costs["kService"], LOOSEST * (max(done.ticks) - done.idle_tick) + SLACK)
+
+    def test_safety(self):
+        config = paths.robot()
+        config["sensors"][0]["channels"]["c1"]["unit"] = "N"
+        rule = "SAFETY g\n  WHEN s c1 > 50N\n  DO\n    {}\n  RESUME WHEN s c1 < 20N\nEND\n"
+        orders = [feed(10), feed(10, 1), wait(20), feed(20, 1), wait(20), feed(90, 1), wait(20)]
+        log = behavior('LOG "x"', "s c0 > 80 AND s c1 > 80N")
+        none, one, two = (run(text + log, orders, config)
+                          for text in ("", rule.format("STOP a0"), rule.format("STOP a0\n    STOP a1")))
+        check, look = (Counter(tick for tick in measured.ticks if tick > measured.idle_tick + 100)
+                       .most_common(1)[0][0] - measured.idle_tick for measured in (none, one))
+        self.assertGreaterEqual(self.costs["kMonitor"] + self.costs["kWakeByTimer"], check)
+        said = self.costs["kGuard"] + 2 * self.costs["kSafetyRule"]
+        self.assertGreaterEqual(said, look - check)
+        self.assertLessEqual(said, LOOSEST * (look - check) + SLACK)
+        self.assertGreaterEqual(self.costs["kHalt"], two.feeds[-1] - one.feeds[-1])
+        self.assertGreaterEqual(self.costs["kTrip"] + self.costs["kHalt"],
+                                one.feeds[-1] - one.feeds[2] - (none.feeds[-1] - none.feeds[2]))
+
+
+    def test_priorities_that_adapt(self):
+        config = paths.robot() | {"scheduler": {"alpha": 5, "window": "105ms", "cap": 95}}
+        text = "".join(behavior('LOG "x"', priority=50 + i) for i in range(4))
+        orders = [*FIRE, wait(300)]
+        turn = max(run(text, orders, config).ticks) - run(text, orders).idle_tick
+        self.assert_covers("kRank", turn / 4)
+
+
+class Sampling(unittest.TestCase):
+    """A tick in which a sensor on the bus is read, and nothing new is read."""
+
+    def worst(self, sensor, channel):
+        config = paths.robot(1, [{"name": "t", "type": "I2C", "address": sensor.pop("address"), **sensor}])
+        ticks = run(f'WHEN t {channel} > 5\nDO LOG "x"\nEND\n', [wait(200)], config)
+        return max(ticks.ticks[20:]) - ticks.idle_tick
+
+    def check(self, name, measured):
+        costs = paths.costs()
+        self.assertGreaterEqual(costs[name] + costs["kWakeByTimer"] + costs["kMonitor"], measured)
+        self.assertLessEqual(costs[name], LOOSEST * measured)
+
+    def test_max34451(self):
+        self.check("kReadMax34451", self.worst(
+            {"address": "0x70", "device": "max34451",
+             "channels": {"L": {"input": 0, "range": [0, 10], "rate": "50Hz"}}}, "L"))
+
+    def test_a_word(self):
+        self.check("kReadI2cWord", self.worst({"address": "0x48"}, ""))
+
+
+class Kernel(unittest.TestCase):
+    """What bench/ measures is not measured again."""
+
+    def test_costs_of_the_kernel(self):
+        costs = paths.costs()
+        recorded = json.loads((paths.ROOT / "bench/recorded.json").read_text())
+        for name, figure in (("kSwitch", "switch_isolated"), ("kWake", "post_to_run_isolated"),
+                             ("kTick", "tick"), ("kWakeByTimer", "tick_to_sleeper")):
+            self.assertGreaterEqual(costs[name], recorded[f"kernel/{figure}"], name)
+            self.assertLessEqual(costs[name], LOOSEST * recorded[f"kernel/{figure}"] + SLACK, name)
+
+
+def fed(sensor):
+    """The sensor as one that is fed, whose readings the test can choose."""
+    if sensor["type"] == "VIRTUAL":
+        return sensor
+    channels = {name: {key: value for key, value in channel.items() if key in ("unit", "range", "labels")}
+                for name, channel in sensor.get("channels", {"LEVEL": {"range": [0, 4095]}}).items()}
+    return {"name": sensor["name"], "type": "VIRTUAL", "channels": channels}
+
+
+def drawn_orders(channels, draw):
+    """Readings at random times, many of them at the ends of the ranges; and long pauses."""
+    orders = [feed(low, number) for number, low, _ in channels]
+    for _ in range(150):
+        number, low, high = draw.choice(channels)
+        value = draw.choice((low, high, draw.uniform(low, high)))
+        orders += [feed(value, number), wait(draw.choice((1, 3, 20, 100, 600)))]
+    return orders
+
+
+class Paths(unittest.TestCase):
+    """Of every example, with all its sensors fed: no reading takes longer than is said until all that it causes in
+    its step is done."""
+
+    def test_examples(self):
+        print()
+        for program, _ in examples():
+            with self.subTest(program.parent.name), tempfile.TemporaryDirectory() as folder:
+                self.check(program, Path(folder))
+
+    def test_with_sampling(self):
+        """From the tick at which the sensor on the bus is due."""
+        for name in ("touch_companion", "tickle_companion", "housemate"):
+            program = paths.ROOT / "examples" / name / "robot.rsl"
+            config = program.with_suffix(".json")
+            with self.subTest(name), tempfile.TemporaryDirectory() as folder:
+                image = Path(folder) / "p.rsb"
+                paths.compiled(program, config, image)
+                worst = max(paths.Run(image, [wait(400)]).ticks)
+                said = self.said(program, config)["touch"]
+                print(f"\n  {name}: from the tick on, {worst} instructions, said {said}")
+                self.assertGreater(worst, paths.costs()["kReadMax34451"] / 2)
+                self.assertLessEqual(worst, said)
+
+    def check(self, program, folder):
+        wiring = json.loads(program.with_suffix(".json").read_text())
+        wiring["sensors"] = [fed(sensor) for sensor in wiring["sensors"]]
+        config, image = folder / "robot.json", folder / "p.rsb"
+        config.write_text(json.dumps(wiring))
+        paths.compiled(program, config, image)
+        said = self.said(program, config)
+        sensor, channels, names = None, [], {}
+        for line in subprocess.run([paths.RSC, "dump", image], check=True, capture_output=True, text=True,
+                                   ).stdout.partition("\nactuators")[0].splitlines():
+            if found := re.match(r"  (\w+): ", line):
+                sensor = found[1]
+            if found := re.match(r"    channel (\d+) .*range (-?[\d.]+)\S* … (-?[\d.]+)", line):
+                channels.append((int(found[1]), float(found[2]), float(found[3])))
+                names[int(found[1])] = sensor
+        orders = drawn_orders(channels, random.Random(1))
+        measured = paths.Run(image, orders)
+        readings = [channel for channel, value in orders if value != paths.PAUSE]
+        worst = max(zip(measured.feeds, readings))
+        print(f"  {program.parent.name}: a reading takes up to {worst[0]} instructions, said {said.get(names[worst[1]])}"
+              f"; a tick up to {max(measured.ticks)}")
+        for count, channel in zip(measured.feeds, readings):
+            self.assertLessEqual(count, said.get(names[channel], count), program)
+
+    def said(self, program, config):
+        checked = subprocess.run([paths.RSC, "check", "--timing", program, "--config", config, "--format", "json"],
+                                 check=False, capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        responses = json.loads(checked.stdout)["timing"][0]["responses"]
+        return {path["sensor"]: path["base"]["instructions"] for path in responses["paths"]}
+
+
+if __name__ == "__main__":
+    unittest.main()
