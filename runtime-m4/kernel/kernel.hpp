@@ -65,7 +65,7 @@ public:
   // Stops a thread for good (fault, or its entry returned); it is never run again. From a handler
   // only the running thread, and not one that holds a SwitchLock: the timers would be in the midst
   // of a change.  [thread; handlers of a thread's own faults and calls]
-  void stop(Thread& thread);
+  [[gnu::cold]] void stop(Thread& thread);
   // From now on `stops` of `watcher` are signalled whenever a thread is stopped, and `reports`
   // whenever one without privileges makes the call `report`.  [init, thread]
   void watch(Thread& watcher, Events stops, Events reports);
@@ -184,7 +184,7 @@ private:
   Events take_or_block(Events mask);
   void report();
   void make_ready(Thread& thread);
-  void make_unready(Thread& thread);
+  [[gnu::cold]] void make_unready(Thread& thread);
   void wake_due();
   // Under a SwitchLock. In two multiplications, where one of 64 bits takes three times as long.
   Time time() const {

@@ -83,6 +83,18 @@ void copy_frame(const CoreFrame& frame, link::Fault& fault) {
   fault.r[12] = frame.r12;
 }
 
+// What the core stacked there for the thread, if it is the thread's own stack.
+[[gnu::noinline]] void copy_frame_at(std::uint32_t sp, const kernel::Thread& thread,
+                                     link::Fault& fault) {
+  fault.sp = sp;
+  if (frame_lies_in(thread.stack(), sp)) copy_frame(*reinterpret_cast<const CoreFrame*>(sp), fault);
+}
+
+[[gnu::noinline]] void stop_and_report(kernel::Thread& thread, const link::Fault& fault) {
+  robosync_kernel.stop(thread);
+  hooks::thread_faulted(thread, fault);
+}
+
 // A stopped thread's stack is free, so its stack pointer is put where the switch that follows can
 // save registers, whatever the thread made of it.
 void make_switch_safe(kernel::Thread& thread) {
@@ -143,10 +155,7 @@ link::Fault describe(const kernel::Thread& thread, const FaultEntry& entry) {
   std::copy(entry.r4_r11.begin(), entry.r4_r11.end(), fault.r.begin() + 4);
   // What a thread left on its own stack, even when it is the context switch that faulted.
   if (from_thread(entry) || from_saving(entry)) {
-    fault.sp = entry.psp;
-    if (frame_lies_in(thread.stack(), entry.psp)) {
-      copy_frame(*reinterpret_cast<const CoreFrame*>(entry.psp), fault);
-    }
+    copy_frame_at(entry.psp, thread, fault);
   } else {
     fault.sp = entry.msp;
     copy_frame(handler_frame(entry), fault);
@@ -170,7 +179,7 @@ void enable_fault_handlers() {
 }
 
 // What it was at is told by what the switch saved: switch.S draws it, and says what the bits mean.
-void stop_overrun(kernel::Kernel& kernel, kernel::Thread& thread) {
+void stop_overrun(kernel::Kernel&, kernel::Thread& thread) {
   constexpr std::size_t kExcReturn = 8;  // index, above r4–r11
   constexpr std::size_t kFpuWords = 16;
   const std::uint32_t* const saved = kernel::Kernel::context(thread).sp;
@@ -181,11 +190,8 @@ void stop_overrun(kernel::Kernel& kernel, kernel::Thread& thread) {
   fault.thread = name_of(thread);
   fault.cause = kCauseOverrun;
   std::copy_n(saved, kExcReturn, fault.r.begin() + 4);
-  fault.sp = word_of(saved + kExcReturn + 1 + (used_fpu ? kFpuWords : 0));
-  if (frame_lies_in(thread.stack(), fault.sp))
-    copy_frame(*reinterpret_cast<const CoreFrame*>(fault.sp), fault);
-  kernel.stop(thread);
-  hooks::thread_faulted(thread, fault);
+  copy_frame_at(word_of(saved + kExcReturn + 1 + (used_fpu ? kFpuWords : 0)), thread, fault);
+  stop_and_report(thread, fault);
 }
 
 // A fault before it may have stopped the thread already: the call was still pending then.
@@ -195,12 +201,11 @@ void refuse_call() {
   link::Fault fault{};
   fault.thread = name_of(thread);
   fault.cause = kCauseNoSuchCall;
-  asm volatile("mrs %0, psp" : "=r"(fault.sp));
-  if (frame_lies_in(thread.stack(), fault.sp))
-    copy_frame(*reinterpret_cast<const CoreFrame*>(fault.sp), fault);
+  std::uint32_t psp = 0;
+  asm volatile("mrs %0, psp" : "=r"(psp));
+  copy_frame_at(psp, thread, fault);
   fault.address = fault.r[0];
-  robosync_kernel.stop(thread);
-  hooks::thread_faulted(thread, fault);
+  stop_and_report(thread, fault);
 }
 
 }  // namespace robosync::port
@@ -216,8 +221,7 @@ std::uint32_t robosync_fault(const robosync::port::FaultEntry* entry) {
   core::reg(core::kCfsr) = 0xFFFF'FFFF;  // write 1 to clear
   // One instruction may make two faults: an undefined one whose frame could not be stacked either.
   if (robosync_kernel.state(thread) != robosync::kernel::Thread::State::stopped) {
-    robosync_kernel.stop(thread);
-    hooks::thread_faulted(thread, fault);
+    stop_and_report(thread, fault);
   }
   if (from_saving(*entry)) {
     skip_saving(*entry);

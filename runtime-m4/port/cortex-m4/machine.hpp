@@ -64,15 +64,16 @@ struct Areas {
 class Machine {
 public:
   explicit Machine(kernel::Kernel&) {}
-  void prepare(Context& context, const kernel::ThreadSpec& spec, std::span<std::byte> stack);
+  [[gnu::cold]] void prepare(Context& context, const kernel::ThreadSpec& spec,
+                             std::span<std::byte> stack);
   static std::uint32_t clock() { return robosync_clock; }
   static std::uint32_t run_time(const Context& context, bool runs) {
     return context.run_time - (runs ? clock() : 0);
   }
   void request_switch() { core::reg(core::kIcsr) = core::kIcsrPendSvSet; }
-  [[noreturn]] void run();
-  static std::span<std::byte> usable(const kernel::ThreadSpec& spec);
-  static bool can_run(const kernel::ThreadSpec& spec);
+  [[noreturn, gnu::cold]] void run();
+  [[gnu::cold]] static std::span<std::byte> usable(const kernel::ThreadSpec& spec);
+  [[gnu::cold]] static bool can_run(const kernel::ThreadSpec& spec);
   static void open(const Areas& areas);
   static std::span<std::byte> prepare_idle(Context& context);
 };

@@ -2,6 +2,7 @@
 // whatever their numbers and arguments are.
 #include "runtime-m4/kernel/calls.hpp"
 
+#include "tests/kernel/firmware/draw.hpp"
 #include "tests/kernel/firmware/rig.hpp"
 
 namespace {
@@ -76,10 +77,7 @@ void events_are_kept() {
 }
 
 std::uint32_t draw(std::uint32_t& state) {
-  state ^= state << 13;
-  state ^= state >> 17;
-  state ^= state << 5;
-  return state;
+  return state = xorshift32(state);
 }
 
 // Calls with whatever comes: every register is drawn, and half of the numbers are calls that exist.

@@ -13,6 +13,7 @@
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
+#include "tests/kernel/firmware/draw.hpp"
 #include "tests/kernel/firmware/semihosting.hpp"
 
 robosync::kernel::Kernel robosync_kernel;
@@ -30,23 +31,6 @@ std::uint32_t seconds() {
 
 constexpr unsigned kWorkers = 40;
 constexpr unsigned kMutexes = 3;
-
-// Marsaglia's xorshift32.
-class Draw {
-public:
-  explicit constexpr Draw(std::uint32_t seed) : state_(seed) {}
-  std::uint32_t below(std::uint32_t limit) {
-    state_ ^= state_ << 13;
-    state_ ^= state_ >> 17;
-    state_ ^= state_ << 5;
-    return (state_ >> 8) % limit;
-  }
-  // Of any magnitude below 2^bits.
-  std::uint32_t of_any_size(std::uint32_t bits) { return below(1U << (1 + below(bits))); }
-
-private:
-  std::uint32_t state_;
-};
 
 // What the naive policy knows of a thread, by a book of its own.
 struct Worker {
