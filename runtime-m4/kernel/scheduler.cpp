@@ -90,8 +90,8 @@ void Kernel::move_highest(const Thread& sunk, const Thread& risen) {
   follow_highest();
 }
 
-// After a change of the highest of a category: so may the ceiling have changed, and with it the rank
-// of who runs.
+// After a change of the highest of a category: so may the ceiling have changed, and with it the
+// rank of who runs.
 void Kernel::follow_highest() {
   if (held_ == nullptr) return;
   ceiling_ = find_ceiling();
