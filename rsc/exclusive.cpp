@@ -38,7 +38,7 @@ Range compared(Opcode op, vm::Value number) {
     case Opcode::le_k:
       return {vm::kValueMin, number};
     case Opcode::gt_k:
-      return {number + 1, vm::kValueMax};
+      return {number == vm::kValueMax ? number : number + 1, vm::kValueMax};
     case Opcode::ge_k:
       return {number, vm::kValueMax};
     case Opcode::eq_k:

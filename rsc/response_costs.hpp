@@ -13,8 +13,8 @@ namespace robosync::tool::costs {
 // --- the kernel ---
 inline constexpr std::uint32_t kSwitch = 70;        // between threads without privileges
 inline constexpr std::uint32_t kWake = 100;         // signal until the woken thread runs
-inline constexpr std::uint32_t kTick = 20;          // nothing due
-inline constexpr std::uint32_t kWakeByTimer = 300;  // a tick that wakes a thread, up to its work
+inline constexpr std::uint32_t kTick = 30;          // nothing due
+inline constexpr std::uint32_t kWakeByTimer = 350;  // a tick that wakes a thread, up to its work
 inline constexpr std::uint32_t kLongestLock = 620;  // a trace message into its ring (seen once)
 inline constexpr std::uint32_t kReceive = 120;      // a byte comes (counted in the listing)
 inline constexpr std::uint32_t kSend = 80;          // … or goes (the same)
@@ -54,8 +54,8 @@ inline constexpr std::uint32_t kZeroDivide = 600;
 
 // --- beside the steps ---
 inline constexpr std::uint32_t kMonitor = 150;     // the safety thread's check
-inline constexpr std::uint32_t kGuard = 150;       // it looks at the SAFETY rules
-inline constexpr std::uint32_t kSafetyRule = 160;  // … at each of them, without its code
+inline constexpr std::uint32_t kGuard = 110;       // it looks at the SAFETY rules
+inline constexpr std::uint32_t kSafetyRule = 130;  // … at each, without its code (both only in sum)
 inline constexpr std::uint32_t kTrip = 1'750;      // one trips, or lets go
 inline constexpr std::uint32_t kHalt = 1'150;      // … an actuator
 inline constexpr std::uint32_t kRank = 1'800;  // adapted priorities, at a window's end: a behaviour
