@@ -1,18 +1,14 @@
-// The whole runtime of a board, as the firmware has it, but driven from inside: a given image is
-// activated, and after a first reading of each channel, given ones of channel 0 are fed, between
-// markers. For bench/growth.py, which compares how many rules fired.
-//
-// The thread that does it has the lowest rank. So when it comes back from feed(), the step is over,
-// and everything that came of it is done.
+// The whole runtime of a board, as the firmware has it, but driven from inside (driven.hpp): after
+// a first reading of each channel, given ones of channel 0 are fed, between markers. For
+// bench/growth.py, which compares how many rules fired.
 #include <array>
 #include <cstdint>
 
+#include "bench/firmware/driven.hpp"
 #include "bench/firmware/given.hpp"
 #include "bench/firmware/mark.hpp"
 #include "runtime-m4/boards/mps2-an386/board.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
-#include "runtime-m4/port/cortex-m4/hooks.hpp"
-#include "runtime-m4/runtime.hpp"
 
 robosync::kernel::Kernel robosync_kernel;
 robosync::boards::mps2::Board robosync_board;
@@ -41,19 +37,12 @@ private:
 Counts counts;
 layers::Workspace workspace;
 Runtime runtime(robosync_kernel, robosync_board, counts, workspace);
-kernel::Thread thread;
-alignas(port::kStackAlignment) std::array<std::byte, 2048> stack;
 
 void load() {
   BENCH_MARK(load_begin);
   const vm::Verdict verdict = runtime.activate(given_image());
   BENCH_MARK(load_end);
-  const std::array why = {static_cast<std::int32_t>(verdict.refusal),
-                          static_cast<std::int32_t>(verdict.section),
-                          static_cast<std::int32_t>(verdict.index)};
-  if (verdict.ok()) return;
-  say("refused", why);
-  leave(false);
+  check(verdict);
 }
 
 void feed(std::uint32_t channel, vm::Value reading) {
@@ -90,30 +79,10 @@ void drive(void*) {
   leave(true);
 }
 
-bool start() {
-  return runtime.start() && robosync_kernel.add(thread, {.name = "bench",
-                                                         .category = kernel::Category::system,
-                                                         .priority = 0,
-                                                         .entry = drive,
-                                                         .argument = nullptr,
-                                                         .stack = stack});
-}
-
 }  // namespace
+
+bool start() {
+  return start_driven(runtime, drive);
+}
+
 }  // namespace robosync::bench
-
-namespace robosync::port::hooks {
-
-void thread_faulted(kernel::Thread&, const link::Fault&) {
-  bench::leave(false);
-}
-void fatal_fault(const link::Fault&) {
-  bench::leave(false);
-}
-
-}  // namespace robosync::port::hooks
-
-int main() {
-  if (!robosync::bench::start()) robosync::bench::leave(false);
-  robosync_kernel.run();
-}

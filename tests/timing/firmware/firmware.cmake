@@ -5,4 +5,4 @@ target_link_libraries(timing PRIVATE robosync_vm)
 
 # The runtime as the firmware has it, linked in the same way: build/m4/bench/path.elf.
 robosync_elf(timing_path bench/path ${folder}/path.cpp
-             ${PROJECT_SOURCE_DIR}/bench/firmware/semihosting.cpp)
+             ${PROJECT_SOURCE_DIR}/bench/firmware/driven.cpp ${PROJECT_SOURCE_DIR}/bench/firmware/semihosting.cpp)

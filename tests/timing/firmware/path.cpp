@@ -1,20 +1,16 @@
 // The whole runtime of a board, as the firmware has it and with somebody who listens to its trace,
-// driven from inside: a given image is activated, then readings are fed, channel and value in turn.
-// tests/timing/paths.py counts what a reading costs, and what a tick does.
-//
-// The thread that does it has the lowest rank, as the link has in the firmware. So when it comes
-// back from feed(), between its markers, the step is over and everything that came of it is done;
-// and when it has woken after a tick, so is all that was due in that tick. A reading of kPause is
+// driven from inside (driven.hpp): readings are fed, channel and value in turn.
+// tests/timing/paths.py counts what a reading costs, and what a tick does: when the thread that
+// drives has woken after a tick, all that was due in that tick is done. A reading of kPause is
 // none: it lets time pass, as many ticks as its channel says.
 #include <array>
 #include <cstdint>
 
+#include "bench/firmware/driven.hpp"
 #include "bench/firmware/given.hpp"
 #include "bench/firmware/mark.hpp"
 #include "runtime-m4/boards/mps2-an386/board.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
-#include "runtime-m4/port/cortex-m4/hooks.hpp"
-#include "runtime-m4/runtime.hpp"
 #include "runtime-m4/update/trace_ring.hpp"
 
 robosync::kernel::Kernel robosync_kernel;
@@ -29,8 +25,6 @@ constexpr vm::Value kPause = INT32_MAX;
 update::TraceRing ring(robosync_kernel);
 layers::Workspace workspace;
 Runtime runtime(robosync_kernel, robosync_board, ring, workspace);
-kernel::Thread thread;
-alignas(port::kStackAlignment) std::array<std::byte, 2048> stack;
 
 // Sleeps, and reads the trace all the while: a full ring would make events cheaper. It is read
 // before a tick, so that reading is no part of what the tick does.
@@ -55,12 +49,7 @@ alignas(port::kStackAlignment) std::array<std::byte, 2048> stack;
 
 void drive(void*) {
   ring.listen(true);
-  const vm::Verdict verdict = runtime.activate(given_image());
-  const std::array why = {static_cast<std::int32_t>(verdict.refusal),
-                          static_cast<std::int32_t>(verdict.section),
-                          static_cast<std::int32_t>(verdict.index)};
-  if (!verdict.ok()) say("refused", why);
-  if (!verdict.ok()) leave(false);
+  check(runtime.activate(given_image()));
   let_pass(kSettling);
   const auto readings = given_readings();
   for (std::size_t i = 0; i + 1 < readings.size(); i += 2) {
@@ -75,30 +64,10 @@ void drive(void*) {
   leave(ring.lost() == 0);
 }
 
-bool start() {
-  return runtime.start() && robosync_kernel.add(thread, {.name = "path",
-                                                         .category = kernel::Category::system,
-                                                         .priority = 0,
-                                                         .entry = drive,
-                                                         .argument = nullptr,
-                                                         .stack = stack});
-}
-
 }  // namespace
+
+bool start() {
+  return start_driven(runtime, drive);
+}
+
 }  // namespace robosync::bench
-
-namespace robosync::port::hooks {
-
-void thread_faulted(kernel::Thread&, const link::Fault&) {
-  bench::leave(false);
-}
-void fatal_fault(const link::Fault&) {
-  bench::leave(false);
-}
-
-}  // namespace robosync::port::hooks
-
-int main() {
-  if (!robosync::bench::start()) robosync::bench::leave(false);
-  robosync_kernel.run();
-}
