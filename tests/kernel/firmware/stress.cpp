@@ -233,6 +233,7 @@ void check_order() {
     if (threads[rank]->rank() != rank ||
         standing_of(*threads[rank]) < standing_of(*threads[rank + 1]))
       fail("the order is wrong", *threads[rank], threads[rank + 1]);
+  if (!switch_is_pending()) compare_decision();
 }
 
 void begin_or_end_adapting(bool begin) {
