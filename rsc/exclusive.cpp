@@ -48,9 +48,9 @@ Range compared(Opcode op, vm::Value number) {
   }
 }
 
-class Reader {
+class ConditionReader {
 public:
-  Reader(const vm::Image& image, const vm::Behavior& behavior)
+  ConditionReader(const vm::Image& image, const vm::Behavior& behavior)
       : image_(image), behavior_(behavior) {}
 
   Needs read(std::span<const vm::Word> condition) {
@@ -101,7 +101,7 @@ private:
 
 Needs needs_of(const vm::Image& image, const vm::Behavior& behavior, const vm::Rule& rule) {
   if (rule.kind != vm::RuleKind::when && rule.kind != vm::RuleKind::while_) return {};
-  return Reader(image, behavior)
+  return ConditionReader(image, behavior)
       .read(image.code.subspan(rule.condition_start, rule.condition_length));
 }
 

@@ -32,9 +32,9 @@ std::uint64_t microseconds(std::string_view text) {
   return static_cast<std::uint64_t>(parse_duration(text).count()) * 1000;
 }
 
-class Reader {
+class ScenarioReader {
 public:
-  Reader(const std::string& file, const vm::Image& image)
+  ScenarioReader(const std::string& file, const vm::Image& image)
       : file_(file), text_(read_text(file)), image_(image) {}
 
   Scenario read();
@@ -192,7 +192,7 @@ private:
   Scenario scenario_;
 };
 
-Scenario Reader::read() {
+Scenario ScenarioReader::read() {
   json_error_t error{};
   const std::unique_ptr<json_t, FreeJson> root(
       json_loadb(text_.data(), text_.size(), JSON_REJECT_DUPLICATES, &error));
@@ -211,7 +211,7 @@ Scenario Reader::read() {
 }  // namespace
 
 Scenario read_scenario(const std::string& file, const vm::Image& image) {
-  return Reader(file, image).read();
+  return ScenarioReader(file, image).read();
 }
 
 }  // namespace robosync::tool

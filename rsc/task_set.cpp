@@ -17,7 +17,7 @@
 namespace robosync::tool {
 namespace {
 
-constexpr Instructions milliseconds(Instructions ms) {
+constexpr Instructions instructions_in_ms(Instructions ms) {
   return ms * costs::kPerMillisecond;
 }
 
@@ -131,7 +131,7 @@ private:
     Source source;
     source.name = image_.string(sensor.name);
     source.period =
-        milliseconds(is_fed(sensor) ? costs::kFedPeriodMs : std::uint32_t{sensor.period_ms});
+        instructions_in_ms(is_fed(sensor) ? costs::kFedPeriodMs : std::uint32_t{sensor.period_ms});
     if (!is_fed(sensor))
       source.sample =
           costs::kWakeByTimer + sensor.channel_count * read_cost(sensor.driver) +
@@ -151,7 +151,7 @@ private:
                  const Inputs& changed, const Rules& fire, const Inputs& set) {
     Source source;
     source.name = std::move(name);
-    source.period = milliseconds(period_ms);
+    source.period = instructions_in_ms(period_ms);
     source.step = work_.step(rules, changed);
     source.outranks_a_behavior = true;
     source.may_outrank_one = true;
@@ -176,7 +176,7 @@ private:
     Source follower;
     follower.name = fmt::format("what follows {}", source.name);
     follower.period = source.period;
-    follower.delay = milliseconds(1);
+    follower.delay = instructions_in_ms(1);
     follower.outranks_a_behavior = true;
     follower.may_outrank_one = true;
     add(std::move(source), fired);
@@ -216,7 +216,7 @@ private:
       if (sources.empty() || work_.firing(rule) == 0) continue;
       rules.push_back(rule);
       set_.firings.push_back({name_of(rule), work_.firing(rule), work_.alternates(rule), sources,
-                              milliseconds(work_.gap_ms(rule))});
+                              instructions_in_ms(work_.gap_ms(rule))});
     }
     group(rules);
     for (const auto& [rule, sources] : goes_on_)
@@ -338,8 +338,10 @@ private:
   }
 
   void add_interferences() {
-    const Instructions period = milliseconds(robosync::safety::kPeriod / kernel::milliseconds(1));
-    set_.interferences.push_back({"the tick", milliseconds(1), costs::kTick + costs::kSwitch});
+    const Instructions period =
+        instructions_in_ms(robosync::safety::kPeriod / kernel::milliseconds(1));
+    set_.interferences.push_back(
+        {"the tick", instructions_in_ms(1), costs::kTick + costs::kSwitch});
     set_.interferences.push_back(
         {"the serial line", Instructions{costs::kPerMillisecond} * 1000 / costs::kBytesPerSecond,
          costs::kReceive + costs::kSend});
@@ -347,9 +349,10 @@ private:
         {"the safety thread", period, costs::kWakeByTimer + costs::kMonitor + looks()});
     if (work_.trips() != 0)
       set_.interferences.push_back({"SAFETY rules that trip by time alone",
-                                    milliseconds(costs::kTripPeriodMs), work_.trips()});
+                                    instructions_in_ms(costs::kTripPeriodMs), work_.trips()});
     for (const vm::Adaptation& adaptation : image_.adaptations)
-      set_.interferences.push_back({"priorities that adapt", milliseconds(adaptation.window_ms),
+      set_.interferences.push_back({"priorities that adapt",
+                                    instructions_in_ms(adaptation.window_ms),
                                     costs::kRank * (image_.behaviors.size() - first_behavior())});
     for (const vm::Behavior& behavior : image_.behaviors.subspan(first_behavior()))
       commanded_ |= behavior.actuators;
@@ -357,7 +360,8 @@ private:
     for (unsigned a = 0; a < image_.actuators.size(); ++a)
       if ((commanded_ >> a & 1) != 0)
         set_.interferences.push_back({std::string(image_.string(image_.actuators[a].name)),
-                                      milliseconds(costs::kServicePeriodMs), costs::kService});
+                                      instructions_in_ms(costs::kServicePeriodMs),
+                                      costs::kService});
   }
 
   const vm::Image& image_;
