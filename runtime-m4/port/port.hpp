@@ -7,9 +7,8 @@
 //                           wait.
 //   kMinStack               Least bytes of stack a thread must have.
 //   kOpenStackAlignment, kMaxOpenStack   What the stack of a thread without privileges must be.
-//   struct Areas            What threads without privileges may use besides their stacks:
-//   `readable`
-//                           and, perhaps inside of it, `writable`.
+//   struct Areas            What threads without privileges may use besides their stacks: what is
+//                           readable and, perhaps inside of it, writable.
 //   call(kernel, number, argument)       A system call: Kernel::answer() from a thread without
 //                                        privileges.
 //   stop_overrun(kernel, thread)         Stops a thread, not the calling one, that runs longer than
@@ -20,9 +19,8 @@
 //                           (never those above its level) and holds a requested switch back until
 //                           the outermost one ends.
 //   class OnlyLock(Machine&)  The same, for who holds no Lock; may be cheaper.
-//   class SwitchLock(Machine&)  The weaker one: no switch and no tick, but interrupts come in.
-//   Inside
-//                           of a Lock, and around one, as well.
+//   class SwitchLock(Machine&)  The weaker one: no switch and no tick, but interrupts come in. It
+//                           may stand inside of a Lock, and around one.
 //   class Machine(Kernel&)  The processor a kernel runs on:
 //     usable(spec)                  What a thread can use of its stack: without alignment, guard.
 //     can_run(spec)                 Is its stack as a thread without privileges needs it?

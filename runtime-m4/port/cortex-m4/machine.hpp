@@ -55,6 +55,8 @@ struct Context {
   // Without privileges: sizes and eighths of the lower region, and above them of the upper one.
   std::uint32_t windows = 0;
 };
+static_assert(offsetof(Context, sp) == 0 && offsetof(Context, run_time) == 4);
+static_assert(offsetof(Context, region) == 8 && offsetof(Context, windows) == 12);
 
 struct Areas {
   std::span<const std::byte> readable;
