@@ -1,12 +1,15 @@
 // Response times as a table for people, as JSON for programs, and as the reason of a refusal.
 #include <fmt/format.h>
 
-#include "rsc/response_costs.hpp"
-#include "rsc/response_report.hpp"
+#include "analysis/costs.hpp"
+#include "rsc/timing.hpp"
 
 namespace robosync::tool {
 namespace {
 
+using analysis::Contributor, analysis::Instructions, analysis::PathTiming, analysis::Response,
+    analysis::ResponseReport;
+namespace costs = analysis::costs;
 using Json = nlohmann::ordered_json;
 
 constexpr Instructions kMicroseconds = 1000;  // in a millisecond

@@ -13,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/report.hpp"
 #include "rsc/sections.hpp"
 #include "vm/cost.hpp"
 #include "vm/image.hpp"
@@ -56,6 +57,13 @@ struct Timing {
 // For people, whole lines. `file` names the program.
 [[nodiscard]] std::string timing_text(const Timing& timing, const std::string& file);
 [[nodiscard]] nlohmann::ordered_json timing_json(const Timing& timing, const std::string& file);
+
+// The response times: a table, whole lines, and the same as JSON.
+[[nodiscard]] std::string response_text(const analysis::ResponseReport& report);
+[[nodiscard]] nlohmann::ordered_json response_json(const analysis::ResponseReport& report);
+// Why the board cannot keep up: which path, by how much, the dearest of it, the mend. Empty when it
+// can.
+[[nodiscard]] std::string unschedulable_text(const analysis::ResponseReport& report);
 
 // What is wrong with a program whose step is dearer than `budget`: its dearest rules with their
 // lines, and what would make them cheaper.

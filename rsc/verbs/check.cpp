@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/report.hpp"
 #include "compiler/diagnostics/render.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/program.hpp"
-#include "rsc/response_report.hpp"
 #include "rsc/timing.hpp"
 #include "rsc/verb.hpp"
 
@@ -47,8 +47,8 @@ bool report_timing(const Options& options, const std::string& file, std::vector<
   const Program program(std::move(image), file);
   const Timing timing = timing_of(program.image());
   const auto& adaptations = program.image().adaptations;
-  const ResponseReport responses =
-      response_report(program.image(), adaptations.empty() ? 0 : adaptations[0].cap);
+  const analysis::ResponseReport responses =
+      analysis::response_report(program.image(), adaptations.empty() ? 0 : adaptations[0].cap);
   if (options.format == Format::json) {
     auto object = timing_json(timing, file);
     object["responses"] = response_json(responses);

@@ -4,8 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "rsc/response_report.hpp"
-#include "rsc/task_set.hpp"
+#include "analysis/report.hpp"
+#include "analysis/task_set.hpp"
 #include "tests/analysis/simulation.hpp"
 #include "tests/rsc/process.hpp"
 #include "tests/timing/programs.hpp"
@@ -47,20 +47,20 @@ TEST_CASE("examples: no simulated release takes longer than is printed") {
     if (!std::filesystem::exists(test::kRoot / file)) continue;
     INFO(file);
     const tool::Program program = test::compile_example(file);
-    const tool::TaskSet set = tool::task_set_of(program.image());
-    CHECK(tool::response_report(program.image()).schedulable());
+    const analysis::TaskSet set = analysis::task_set_of(program.image());
+    CHECK(analysis::response_report(program.image()).schedulable());
     for (unsigned p = 0; p < 100; ++p) {
       test::Pattern pattern;
-      for (const tool::Source& source : set.sources)
-        pattern.first.push_back(source.follows == tool::Source::kNone ? 1 + random() % 20'000
-                                                                      : ~test::Time{0});
-      for (const tool::Interference& one : set.interferences)
+      for (const analysis::Source& source : set.sources)
+        pattern.first.push_back(source.follows == analysis::Source::kNone ? 1 + random() % 20'000
+                                                                          : ~test::Time{0});
+      for (const analysis::Interference& one : set.interferences)
         pattern.interference_first.push_back(1 + random() % one.period);
       pattern.behaviors_begin = 2'000;
       pattern.follow_delay = 16'000;
       const auto seen = test::simulate(set, pattern, 1'000'000, random);
       for (std::size_t s = 0; s < seen.size(); ++s) {
-        const tool::Response said = tool::response_of(set, s, tool::Priorities::base);
+        const analysis::Response said = analysis::response_of(set, s, analysis::Priorities::base);
         if (said.bounded) CHECK(seen[s] <= said.time);
       }
     }
@@ -69,9 +69,9 @@ TEST_CASE("examples: no simulated release takes longer than is printed") {
 
 TEST_CASE("adapted priorities make nothing shorter") {
   const tool::Program program = test::compile_example("examples/tickle_companion/robot.rsl");
-  const tool::ResponseReport report = tool::response_report(program.image(), 99);
+  const analysis::ResponseReport report = analysis::response_report(program.image(), 99);
   REQUIRE_FALSE(report.paths.empty());
-  for (const tool::PathTiming& path : report.paths)
+  for (const analysis::PathTiming& path : report.paths)
     CHECK((!path.adapted.bounded || path.adapted.time >= path.base.time));
 }
 

@@ -7,17 +7,17 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/report.hpp"
+#include "analysis/task_set.hpp"
 #include "rsc/program.hpp"
-#include "rsc/response_report.hpp"
-#include "rsc/task_set.hpp"
 #include "tests/analysis/simulation.hpp"
 #include "tests/timing/programs.hpp"
 
 using namespace robosync;
+using analysis::Priorities;
+using analysis::TaskSet;
 using test::Pattern;
 using test::Time;
-using tool::Priorities;
-using tool::TaskSet;
 
 namespace {
 
@@ -46,8 +46,8 @@ private:
   std::mt19937 random_;
 };
 
-tool::Source drawn_source(Draw& draw, unsigned number) {
-  tool::Source source;
+analysis::Source drawn_source(Draw& draw, unsigned number) {
+  analysis::Source source;
   source.name = "s" + std::to_string(number);
   source.period = draw.number(5'000, 100'000);
   source.sample = draw.number(1, source.period / 20);
@@ -59,7 +59,7 @@ tool::Source drawn_source(Draw& draw, unsigned number) {
 
 // Due by itself, or up to three that follow each other.
 void add_timed(TaskSet& set, std::size_t like, Draw& draw) {
-  tool::Source timed = set.sources[like];
+  analysis::Source timed = set.sources[like];
   timed.name += " again";
   timed.sample = 0;
   timed.rank = 0;
@@ -91,7 +91,7 @@ TaskSet drawn_set(Draw& draw, bool sneaky) {
   set.lost = draw.number(0, 10);                // none costs less
   const std::size_t apart = draw.number(1, 3);  // of every so many, the last fires as it likes
   for (std::size_t r = 0; r < rules; ++r) {
-    tool::Firing rule{"r" + std::to_string(r), draw.number(10, 2'000), draw.chance(0.5), {}};
+    analysis::Firing rule{"r" + std::to_string(r), draw.number(10, 2'000), draw.chance(0.5), {}};
     for (std::size_t j = 0; j < set.sources.size(); ++j)
       if (draw.chance(0.5)) rule.sources.push_back(j);
     if (sneaky && r % (apart + 1) != 0) {  // choices 1 and 2, both in one contest
@@ -105,13 +105,13 @@ TaskSet drawn_set(Draw& draw, bool sneaky) {
     set.interferences.push_back({"i", period, draw.number(1, period / 25 + 1)});
   }
   set.longest_lock = draw.number(0, 60);
-  tool::settle(set, Priorities::base);
+  analysis::settle(set, Priorities::base);
   return set;
 }
 
 Time longest_period(const TaskSet& set) {
   Time longest = 0;
-  for (const tool::Source& source : set.sources)
+  for (const analysis::Source& source : set.sources)
     longest = std::max(longest, source.period);
   return longest;
 }
@@ -120,10 +120,10 @@ Time longest_period(const TaskSet& set) {
 Pattern drawn_pattern(const TaskSet& set, Draw& draw) {
   Pattern pattern;
   const Time spread = draw.chance(0.5) ? 1'000 : 50'000;
-  for (const tool::Source& source : set.sources)
-    pattern.first.push_back(source.follows == tool::Source::kNone ? draw.number(1, spread)
-                                                                  : ~Time{0});
-  for (const tool::Interference& one : set.interferences)
+  for (const analysis::Source& source : set.sources)
+    pattern.first.push_back(source.follows == analysis::Source::kNone ? draw.number(1, spread)
+                                                                      : ~Time{0});
+  for (const analysis::Interference& one : set.interferences)
     pattern.interference_first.push_back(draw.number(1, one.period));
   pattern.laziness = draw.chance(0.5) ? 0 : 1;
   pattern.truth = draw.chance(0.3) ? 1 : 0.5;
@@ -136,7 +136,7 @@ Pattern drawn_pattern(const TaskSet& set, Draw& draw) {
 std::vector<Time> bounds_of(const TaskSet& set) {
   std::vector<Time> bounds;
   for (std::size_t s = 0; s < set.sources.size(); ++s) {
-    const tool::Response response = tool::response_of(set, s, Priorities::base);
+    const analysis::Response response = analysis::response_of(set, s, Priorities::base);
     bounds.push_back(response.bounded ? response.time : ~Time{0});
   }
   return bounds;
@@ -169,7 +169,7 @@ TEST_CASE("nothing takes longer than was said, whatever the pattern of releases"
     REQUIRE(number < 2 * (kSets + 1));  // most of the sets that are drawn can be used
     Draw draw(number);
     const TaskSet set = drawn_set(draw, number % 4 != 0);
-    if (tool::utilization(set) > 0.85) continue;
+    if (analysis::utilization(set) > 0.85) continue;
     const std::vector<Time> bounds = bounds_of(set);
     for (unsigned long p = 0; p <= patterns() / kSets; ++p, ++tried) {
       const Pattern pattern = drawn_pattern(set, draw);
@@ -198,13 +198,13 @@ TEST_CASE("at the critical instant it takes at least 95 % of what was said") {
     set.longest_lock = 0;
     set.firings.clear();  // so that the step that blocks costs what it is said to
     const std::size_t last = set.sources.size() - 1;
-    if (tool::utilization(set) > 0.7) continue;
+    if (analysis::utilization(set) > 0.7) continue;
     for (std::size_t s = 0; s < last; ++s) {
       // The dearest step of those below.
       std::size_t blocker = s + 1;
       for (std::size_t j = s + 1; j <= last; ++j)
         if (set.sources[j].step > set.sources[blocker].step) blocker = j;
-      const tool::Response bound = tool::response_of(set, s, Priorities::base);
+      const analysis::Response bound = analysis::response_of(set, s, Priorities::base);
       const auto seen =
           test::simulate(set, critical_instant(set, blocker), 1'000'000, draw.random());
       INFO("set " << number << ", source " << s);
@@ -224,7 +224,7 @@ TEST_CASE("each term is needed: without it, the simulation takes longer than was
   TaskSet set;
   for (unsigned s = 0; s < 3; ++s)
     set.sources.push_back(drawn_source(draw, s));
-  for (tool::Source& source : set.sources) {
+  for (analysis::Source& source : set.sources) {
     source.period = 100'000;
     source.sample = 500;
     source.step = 3'000;
@@ -268,16 +268,16 @@ TEST_CASE("what follows a step comes late, and the next one may come soon after"
   constexpr Time kPeriod = 20'000;
   TaskSet set;
   set.sources.resize(4);
-  for (tool::Source& source : set.sources) {
+  for (analysis::Source& source : set.sources) {
     source.period = 5 * kPeriod;
     source.outranks_a_behavior = source.may_outrank_one = true;
   }
-  tool::Source& root = set.sources[0];
+  analysis::Source& root = set.sources[0];
   root.period = kPeriod;
   root.sample = 100;
   root.step = 1'000;
   set.sources[1].step = 5'000;  // joins it
-  tool::Source& follower = set.sources[2];
+  analysis::Source& follower = set.sources[2];
   follower.name = "follower";
   follower.period = kPeriod;
   follower.step = 2'000;
@@ -287,11 +287,12 @@ TEST_CASE("what follows a step comes late, and the next one may come soon after"
   set.sources[3].outranks_a_behavior = false;
   set.sources[3].step = 3'000;
   set.sources[3].period = 5 * kPeriod;
-  tool::settle(set, Priorities::base);
+  analysis::settle(set, Priorities::base);
   CHECK(set.sources[2].jitter == 1'000 + 1'100 + 5'000 + 2 * 2'000 + 2 * 3'000);
 
-  const tool::Response response = tool::response_of(set, 3, Priorities::base);
-  const auto late = std::ranges::find(response.contributors, "follower", &tool::Contributor::name);
+  const analysis::Response response = analysis::response_of(set, 3, Priorities::base);
+  const auto late =
+      std::ranges::find(response.contributors, "follower", &analysis::Contributor::name);
   REQUIRE(late != response.contributors.end());
   CHECK(late->cost == 2 * 2'000);
 }

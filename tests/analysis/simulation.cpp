@@ -18,7 +18,8 @@ struct Job {
 
 class Simulation {
 public:
-  Simulation(const tool::TaskSet& set, const Pattern& pattern, Time horizon, std::mt19937& random)
+  Simulation(const analysis::TaskSet& set, const Pattern& pattern, Time horizon,
+             std::mt19937& random)
       : set_(set),
         pattern_(pattern),
         horizon_(horizon),
@@ -62,11 +63,12 @@ private:
 
   void release() {
     for (std::size_t j = 0; j < set_.sources.size(); ++j) {
-      const tool::Source& source = set_.sources[j];
+      const analysis::Source& source = set_.sources[j];
       if (next_[j] > now_ || next_[j] >= horizon_) continue;
       const Job job{j, next_[j], source.sample};
       (source.sample == 0 && source.rank == 0 ? announced_ : sampling_).push_back(job);
-      next_[j] = source.follows == tool::Source::kNone ? next_[j] + pause(source.period) : kNever;
+      next_[j] =
+          source.follows == analysis::Source::kNone ? next_[j] + pause(source.period) : kNever;
     }
     for (std::size_t i = 0; i < set_.interferences.size(); ++i) {
       if (interference_next_[i] > now_ || interference_next_[i] >= horizon_) continue;
@@ -120,7 +122,7 @@ private:
   Job* next_sampling() {
     Job* best = nullptr;
     for (Job& job : sampling_) {
-      const tool::Source& source = set_.sources[job.source];
+      const analysis::Source& source = set_.sources[job.source];
       if (in_step_ && !source.outranks_a_behavior) continue;
       if (best == nullptr || source.rank < set_.sources[best->source].rank) best = &job;
     }
@@ -163,13 +165,13 @@ private:
               .push_back(rules[i]);
     for (const auto& [contest, rules] : contests)
       for (std::size_t i = 0; i < rules.size(); ++i) {
-        const tool::Firing& rule = set_.firings[rules[i]];
+        const analysis::Firing& rule = set_.firings[rules[i]];
         step_left_ += i == favorite % rules.size() ? rule.cost : set_.lost;
       }
   }
 
   bool evaluated(std::size_t r) const {
-    const tool::Firing& rule = set_.firings[r];
+    const analysis::Firing& rule = set_.firings[r];
     return std::ranges::any_of(step_, [&](const Job& job) {
       return std::ranges::find(rule.sources, job.source) != rule.sources.end();
     });
@@ -190,7 +192,7 @@ private:
     step_.clear();
   }
 
-  const tool::TaskSet& set_;
+  const analysis::TaskSet& set_;
   const Pattern& pattern_;
   Time horizon_;
   std::mt19937& random_;
@@ -208,7 +210,7 @@ private:
 
 }  // namespace
 
-std::vector<Time> simulate(const tool::TaskSet& set, const Pattern& pattern, Time horizon,
+std::vector<Time> simulate(const analysis::TaskSet& set, const Pattern& pattern, Time horizon,
                            std::mt19937& random) {
   return Simulation(set, pattern, horizon, random).run();
 }

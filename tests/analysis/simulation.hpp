@@ -1,4 +1,4 @@
-// A naive simulation of a task set (rsc/response_time.hpp), event by event, for holding the
+// A naive simulation of a task set (analysis/response_time.hpp), event by event, for holding the
 // analysis against. It shares the description of the set with the analysis, and no code.
 //
 // One processor. Interference first; then a step that is under way, up to where its behaviours run,
@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "rsc/response_time.hpp"
+#include "analysis/response_time.hpp"
 
 namespace robosync::test {
 
@@ -31,7 +31,7 @@ struct Pattern {
 
 // The longest time from a release to the end of the step with its announcement, by source, among
 // the releases before `horizon`.
-[[nodiscard]] std::vector<Time> simulate(const tool::TaskSet& set, const Pattern& pattern,
+[[nodiscard]] std::vector<Time> simulate(const analysis::TaskSet& set, const Pattern& pattern,
                                          Time horizon, std::mt19937& random);
 
 }  // namespace robosync::test

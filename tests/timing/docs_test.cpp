@@ -1,7 +1,7 @@
 // docs/timing.md shows what rsc prints. ROBOSYNC_UPDATE_GOLDEN=1 rewrites what it shows.
 #include <catch2/catch.hpp>
 
-#include "rsc/response_report.hpp"
+#include "analysis/report.hpp"
 #include "rsc/timing.hpp"
 #include "runtime-m4/limits.hpp"
 #include "tests/timing/programs.hpp"
@@ -47,7 +47,7 @@ TEST_CASE("docs/timing.md: the response times of an example") {
   const std::string file = "examples/touch_companion/robot.rsl";
   const tool::Program program = test::compile_example(file);
   expect_printed("rsc check --timing " + file + ", its end",
-                 tool::response_text(tool::response_report(program.image())));
+                 tool::response_text(analysis::response_report(program.image())));
 }
 
 TEST_CASE("docs/timing.md: a program that is too dear, and its mend") {

@@ -14,7 +14,7 @@ import counting
 
 RSC = ROOT / "build/host/rsc"
 FIRMWARE = ROOT / "build/m4/bench/path.elf"
-TABLE = ROOT / "rsc/response_costs.hpp"
+TABLE = ROOT / "analysis/costs.hpp"
 DEVICES = ["-device", "max34451,id=touch,address=0x70", "-device", "tmp105,address=0x48"]
 PAUSE = 2**31 - 1  # kPause of path.cpp
 TICK = "SysTick_Handler"

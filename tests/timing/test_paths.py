@@ -1,4 +1,4 @@
-"""The costs that `rsc check --timing` works out response times with (rsc/response_costs.hpp) against what the
+"""The costs that `rsc check --timing` works out response times with (analysis/costs.hpp) against what the
 Cortex-M4 executes; the response times that it says of the examples against what their readings take."""
 
 import json

@@ -1,6 +1,6 @@
 // See task_set.hpp. What is known of each source, and what is supposed where nothing is known,
 // stands in docs/timing.md.
-#include "rsc/task_set.hpp"
+#include "analysis/task_set.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -9,12 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "rsc/exclusive.hpp"
-#include "rsc/response_costs.hpp"
-#include "rsc/step_work.hpp"
+#include "analysis/costs.hpp"
+#include "analysis/exclusive.hpp"
+#include "analysis/step_work.hpp"
 #include "runtime-m4/safety/period.hpp"
 
-namespace robosync::tool {
+namespace robosync::analysis {
 namespace {
 
 constexpr Instructions instructions_in_ms(Instructions ms) {
@@ -382,4 +382,4 @@ TaskSet task_set_of(const vm::Image& image, int cap) {
   return set;
 }
 
-}  // namespace robosync::tool
+}  // namespace robosync::analysis

@@ -1,13 +1,13 @@
 // See step_work.hpp.
-#include "rsc/step_work.hpp"
+#include "analysis/step_work.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <limits>
 
-#include "rsc/response_costs.hpp"
+#include "analysis/costs.hpp"
 
-namespace robosync::tool {
+namespace robosync::analysis {
 namespace {
 
 using vm::Opcode;
@@ -364,4 +364,4 @@ std::uint32_t StepWork::period_ms(unsigned r) const {
   return kind != RuleKind::while_ || actuators({r}) != 0 ? costs::kServicePeriodMs : 1;
 }
 
-}  // namespace robosync::tool
+}  // namespace robosync::analysis

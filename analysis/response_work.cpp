@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <array>
 
-#include "rsc/response_costs.hpp"
-#include "rsc/step_work.hpp"
+#include "analysis/costs.hpp"
+#include "analysis/step_work.hpp"
 
-namespace robosync::tool {
+namespace robosync::analysis {
 namespace {
 
 using vm::Opcode;
@@ -177,4 +177,4 @@ ResponseWork StepWork::work_of(const vm::Behavior& behavior, std::uint16_t respo
   return Reader(image_, behavior, image_.responses[response]).read();
 }
 
-}  // namespace robosync::tool
+}  // namespace robosync::analysis

@@ -2,13 +2,13 @@
 // what is due by itself, and what outranks both.
 #pragma once
 
-#include "rsc/response_time.hpp"
+#include "analysis/response_time.hpp"
 #include "vm/image.hpp"
 
-namespace robosync::tool {
+namespace robosync::analysis {
 
 // Of a verified image. `cap`: the highest priority that an adapted behaviour can reach; 0:
 // priorities stay as they are written.
 [[nodiscard]] TaskSet task_set_of(const vm::Image& image, int cap = 0);
 
-}  // namespace robosync::tool
+}  // namespace robosync::analysis

@@ -9,13 +9,13 @@
 //  * All others ranked above can begin a step only until this one has begun its own.
 //  * As steps do not give way, the first release need not be the worst: every release of the busy
 //    period is looked at (Davis et al., Controller Area Network schedulability analysis, 2007).
-#include "rsc/response_time.hpp"
+#include "analysis/response_time.hpp"
 
 #include <algorithm>
 #include <map>
 #include <optional>
 
-namespace robosync::tool {
+namespace robosync::analysis {
 namespace {
 
 constexpr unsigned kMostRounds = 10'000;       // of one fixed point
@@ -302,4 +302,4 @@ Response response_of(const TaskSet& set, std::size_t source, Priorities prioriti
   return Analysis(set, source, priorities).solve();
 }
 
-}  // namespace robosync::tool
+}  // namespace robosync::analysis

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace robosync::tool {
+namespace robosync::analysis {
 
 using Instructions = std::uint64_t;
 
@@ -96,4 +96,4 @@ void settle(TaskSet& set, Priorities priorities);
 // From the release of a source to the end of the step that has its announcement.
 [[nodiscard]] Response response_of(const TaskSet& set, std::size_t source, Priorities priorities);
 
-}  // namespace robosync::tool
+}  // namespace robosync::analysis

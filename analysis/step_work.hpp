@@ -2,7 +2,7 @@
 // their responses put out, what they set.
 //
 // The rules are those of runtime-m4/layers (concern.cpp, processing.hpp), the costs those of
-// response_costs.hpp and of the code itself (vm/cost.hpp). Images must be verified.
+// costs.hpp and of the code itself (vm/cost.hpp). Images must be verified.
 #pragma once
 
 #include <bitset>
@@ -10,12 +10,12 @@
 #include <set>
 #include <vector>
 
-#include "rsc/response_time.hpp"
+#include "analysis/response_time.hpp"
 #include "vm/cost.hpp"
 #include "vm/image.hpp"
 #include "vm/opcode.hpp"
 
-namespace robosync::tool {
+namespace robosync::analysis {
 
 using Inputs = std::bitset<std::size_t{2} * vm::kMaxInputs>;  // by number: channels, then variables
 using Actuators = std::uint32_t;
@@ -114,4 +114,4 @@ private:
   Inputs watched_;                // by SAFETY rules
 };
 
-}  // namespace robosync::tool
+}  // namespace robosync::analysis

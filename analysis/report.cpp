@@ -1,12 +1,12 @@
-// See response_report.hpp.
-#include "rsc/response_report.hpp"
+// See report.hpp.
+#include "analysis/report.hpp"
 
 #include <algorithm>
 
-#include "rsc/response_costs.hpp"
-#include "rsc/task_set.hpp"
+#include "analysis/costs.hpp"
+#include "analysis/task_set.hpp"
 
-namespace robosync::tool {
+namespace robosync::analysis {
 namespace {
 
 // What each source and interference takes of a millisecond.
@@ -63,4 +63,4 @@ ResponseReport response_report(const vm::Image& image, int cap) {
   return report;
 }
 
-}  // namespace robosync::tool
+}  // namespace robosync::analysis

@@ -1,12 +1,12 @@
 // See exclusive.hpp. Conditions have no jumps, so one pass from the first word to the last follows
 // what must hold where each cell is true.
-#include "rsc/exclusive.hpp"
+#include "analysis/exclusive.hpp"
 
 #include <algorithm>
 
 #include "vm/opcode.hpp"
 
-namespace robosync::tool {
+namespace robosync::analysis {
 namespace {
 
 using vm::Opcode;
@@ -113,4 +113,4 @@ bool exclude_each_other(const Needs& a, const Needs& b) {
   });
 }
 
-}  // namespace robosync::tool
+}  // namespace robosync::analysis

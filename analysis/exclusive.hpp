@@ -9,7 +9,7 @@
 
 #include "vm/image.hpp"
 
-namespace robosync::tool {
+namespace robosync::analysis {
 
 // The values of an input that a condition can be true with, both ends included.
 struct Range {
@@ -23,4 +23,4 @@ using Needs = std::map<std::uint8_t, Range>;  // by input: all of it has to hold
                              const vm::Rule& rule);
 [[nodiscard]] bool exclude_each_other(const Needs& a, const Needs& b);
 
-}  // namespace robosync::tool
+}  // namespace robosync::analysis

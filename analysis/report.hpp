@@ -1,16 +1,13 @@
-// The response times of a program, path by path, for people and for programs; and whether the board
-// can keep up with it.
+// The response times of a program, path by path, and whether the board can keep up with it.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
-#include "rsc/response_time.hpp"
+#include "analysis/response_time.hpp"
 #include "vm/image.hpp"
 
-namespace robosync::tool {
+namespace robosync::analysis {
 
 struct PathTiming {
   std::string sensor, actuator;
@@ -31,11 +28,4 @@ struct ResponseReport {
 // `cap`: as in task_set.hpp. The image must be verified.
 [[nodiscard]] ResponseReport response_report(const vm::Image& image, int cap = 0);
 
-// A table, whole lines.
-[[nodiscard]] std::string response_text(const ResponseReport& report);
-[[nodiscard]] nlohmann::ordered_json response_json(const ResponseReport& report);
-// Why the board cannot keep up: which path, by how much, the dearest of it, the mend. Empty when it
-// can.
-[[nodiscard]] std::string unschedulable_text(const ResponseReport& report);
-
-}  // namespace robosync::tool
+}  // namespace robosync::analysis

@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-namespace robosync::tool::costs {
+namespace robosync::analysis::costs {
 
 // --- the kernel ---
 inline constexpr std::uint32_t kSwitch = 70;        // between threads without privileges
@@ -71,4 +71,4 @@ inline constexpr std::uint32_t kBytesPerSecond = 11'520;     // 115,200 baud, an
 
 inline constexpr std::uint32_t kPerMillisecond = 2 * (kClockHz / 1000) / kCyclesPer2Instructions;
 
-}  // namespace robosync::tool::costs
+}  // namespace robosync::analysis::costs
