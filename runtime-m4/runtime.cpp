@@ -9,6 +9,8 @@ namespace robosync {
 
 using link::EventKind;
 
+// A part gets references to others that may not be constructed yet, since the members stand in the
+// order of what is closed: no constructor may use what it is given, only keep it.
 Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events,
                  layers::Workspace& workspace)
     : kernel_(kernel),
@@ -21,7 +23,7 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
               .variables = variables_,
               .control = control_,
               .alarm = alarm_,
-              .snapshot = processing_.snapshot()},
+              .processing = processing_},
              step_thread_, layers::kHalted),
       crew_(kernel),
       mailboxes_(kernel),
@@ -49,6 +51,8 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
                    .control = control_,
                    .crew = crew_,
                    .alarm = alarm_}) {}
+
+static_assert(Runtime::layout().may_be_readable <= Runtime::layout().readable);
 
 bool Runtime::start() {
   return monitor_.start();

@@ -3,7 +3,7 @@
 //
 // All memory is inside the object, the workspace and the image, and sized by limits.hpp: put them
 // into static storage, on the board the image behind the object. The members stand in the order of
-// what is closed to the behaviours' threads.
+// what is closed to the behaviours' threads: see layout().
 #pragma once
 
 #include <atomic>
@@ -60,6 +60,15 @@ public:
   const vm::Image& image() const { return program_.image; }  // of the running program
   static const vm::Limits& limits();
 
+  // Offsets in the object, for the board's linker script, which looks whether it is so: behind
+  // `readable` the behaviours' threads read what they need. The region that lets them may begin
+  // earlier, by up to an eighth of its size, but not before `may_be_readable`: there stand the
+  // kernel's and the safety monitor's control blocks, and all stacks.
+  struct Layout {
+    std::size_t may_be_readable, readable;
+  };
+  static constexpr Layout layout();
+
   // Measures with `sampler` in place of the drivers. Before activate().
   void measure_with(layers::Sampler& sampler) { sampler_ = &sampler; }
   // For tests, on the host: see processing.hpp and behavior.hpp.
@@ -90,8 +99,7 @@ private:
   kernel::Thread step_thread_;
   layers::Crew crew_;
 
-  // May be readable to them, as the MPU's regions fall: nothing of the kernel and of safety, no
-  // stack.
+  // From here on layout().may_be_readable: nothing of the kernel and of safety, no stack.
   layers::Mailboxes mailboxes_;
   layers::SensorLayer sensors_;
   layers::ControlLayer control_;
@@ -101,12 +109,32 @@ private:
   layers::Alarm alarm_;
   layers::Trace trace_;
 
-  // Readable to them, and behind it the image.
+  // From here on layout().readable, and behind the object the image.
   alignas(layers::kReadableAlignment) layers::Program program_;
   layers::Frames frames_;
   layers::Triggers triggers_;
   layers::BehaviorLayer behaviors_;
   layers::ProcessingLayer processing_;
 };
+
+// offsetof is only guaranteed for simpler classes; both our compilers give it for all that have no
+// virtual bases.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Winvalid-offsetof"
+constexpr Runtime::Layout Runtime::layout() {
+  constexpr Layout kLayout{.may_be_readable = offsetof(Runtime, mailboxes_),
+                           .readable = offsetof(Runtime, program_)};
+  static_assert(offsetof(Runtime, monitor_) < kLayout.may_be_readable);
+  static_assert(offsetof(Runtime, guard_) < kLayout.may_be_readable);
+  static_assert(offsetof(Runtime, budget_) < kLayout.may_be_readable);
+  static_assert(offsetof(Runtime, step_thread_) < kLayout.may_be_readable);
+  static_assert(offsetof(Runtime, crew_) < kLayout.may_be_readable);
+  static_assert(kLayout.readable < offsetof(Runtime, frames_));
+  static_assert(kLayout.readable < offsetof(Runtime, triggers_));
+  static_assert(kLayout.readable < offsetof(Runtime, behaviors_));
+  static_assert(kLayout.readable < offsetof(Runtime, processing_));
+  return kLayout;
+}
+#pragma GCC diagnostic pop
 
 }  // namespace robosync

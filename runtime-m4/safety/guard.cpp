@@ -33,7 +33,7 @@ kernel::Time Guard::look() {
   const vm::Image& image = program_->image;
   const kernel::Time now = kernel_.now();
   layers::Frames::latch(machine_, image, rules(), [&](std::uint8_t input) {
-    if (program_->is_variable(input)) return layers_.snapshot.value(input);
+    if (program_->is_variable(input)) return snapshot().value(input);
     return layers_.mailboxes.fresh_value(input, image.channels[input], now);
   });
   machine_.now = static_cast<std::uint32_t>(layers_.trace.program_time() / kernel::kTick);
@@ -81,7 +81,7 @@ void Guard::trip(unsigned rule) {
   while (reader.next(said))
     act(said);
   if (machine_.written() == 0) return;
-  layers_.variables.stage_first(machine_, rules(), layers_.snapshot);
+  layers_.variables.stage_first(machine_, rules(), snapshot());
   kernel_.signal(step_thread_, acted_);
 }
 

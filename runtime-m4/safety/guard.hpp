@@ -17,6 +17,7 @@
 #include "runtime-m4/layers/control.hpp"
 #include "runtime-m4/layers/frames.hpp"
 #include "runtime-m4/layers/mailbox.hpp"
+#include "runtime-m4/layers/processing.hpp"
 #include "runtime-m4/layers/program.hpp"
 #include "runtime-m4/layers/trace.hpp"
 #include "runtime-m4/layers/variables.hpp"
@@ -34,7 +35,7 @@ public:
     layers::Variables& variables;
     layers::ControlLayer& control;
     layers::Alarm& alarm;
-    const layers::Snapshot& snapshot;
+    const layers::ProcessingLayer& processing;  // for the snapshot of its last step
   };
 
   Guard(kernel::Kernel& kernel, const Neighbours& neighbours, kernel::Thread& step_thread,
@@ -55,6 +56,7 @@ private:
   void act(const vm::Output& said);
   layers::ActuatorMask halted_by(unsigned rule) const;
   kernel::Time next_look() const;
+  const layers::Snapshot& snapshot() const { return layers_.processing.snapshot(); }
   const vm::Behavior& rules() const { return program_->image.behaviors[vm::kSafetyBehavior]; }
 
   kernel::Kernel& kernel_;

@@ -20,6 +20,15 @@ robosync::update::TraceRing trace(robosync_kernel);
 [[gnu::section(".bss.readable.1")]] robosync::update::Slots slots;
 robosync::update::Server server(robosync_kernel, robosync_board, runtime, trace, slots);
 
+// Two numbers for the linker script, which knows where `runtime` stands. No code.
+[[gnu::used]] void tell_linker() {
+  constexpr robosync::Runtime::Layout kLayout = robosync::Runtime::layout();
+  asm(".global runtime_may_be_readable, runtime_readable\n"
+      ".set runtime_may_be_readable, %c0\n"
+      ".set runtime_readable, %c1" ::"i"(kLayout.may_be_readable),
+      "i"(kLayout.readable));
+}
+
 static_assert(robosync::boards::mps2::Uart::kBufferBytes >= robosync::update::kReceiveWindow);
 
 }  // namespace
