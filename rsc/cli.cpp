@@ -1,21 +1,81 @@
-// Builds the parser from the list of verbs, so that help, dispatch and suggestions have one source.
+// Builds the parser from the list of verbs, so that help, dispatch and suggestions have one source. The only
+// file that includes CLI11: it takes longer to compile than all the verbs together.
 #include "rsc/cli.hpp"
 
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "compiler/diagnostics/nearest.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/options.hpp"
 #include "rsc/verb.hpp"
 
 namespace robosync::tool {
+
+void Options::argument(const std::string& name, std::string& value, const std::string& description,
+                       Need need) {
+  app_.add_option(name, value, description)->required(need == Need::required)->option_text(" ");
+}
+
+void Options::arguments(const std::string& name, std::vector<std::string>& values,
+                        const std::string& description, Need need) {
+  app_.add_option(name, values, description)->required(need == Need::required)->option_text("...");
+}
+
+void Options::option(const std::string& names, const std::string& text, std::string& value,
+                     const std::string& description, Need need) {
+  app_.add_option(names, value, description)
+      ->required(need == Need::required)
+      ->type_name(text)
+      ->option_text(text);
+}
+
+void Options::option(const std::string& names, const std::string& text, const Take& take,
+                     const std::string& description) {
+  const auto parse = [take](const std::string& word) {
+    try {
+      take(word);
+    } catch (const std::invalid_argument& error) {
+      throw CLI::ValidationError(error.what());
+    }
+  };
+  app_.add_option_function<std::string>(names, parse, description)
+      ->type_name(text)
+      ->option_text(text);
+}
+
+void Options::flag(const std::string& name, bool& value, const std::string& description) {
+  app_.add_flag(name, value, description);
+}
+
+void Options::choice(const std::string& name, const std::vector<std::string>& words,
+                     const std::function<void(std::size_t)>& take, const std::string& description) {
+  const auto find = [name, words, take](const std::string& word) {
+    const auto at = std::ranges::find(words, word);
+    if (at == words.end()) {
+      throw std::invalid_argument(
+          fmt::format("{} is {}, not `{}`", name, fmt::join(words, " or "), word));
+    }
+    take(static_cast<std::size_t>(at - words.begin()));
+  };
+  option(name, fmt::format("{}", fmt::join(words, "|")), find, description);
+}
+
+void Options::runs(std::function<void()> verb) {
+  app_.callback(std::move(verb));
+}
+
 namespace {
 
 constexpr std::string_view kEpilogue =
@@ -34,7 +94,8 @@ std::unique_ptr<CLI::App> make_parser() {
   for (const Verb& verb : kVerbs) {
     CLI::App* sub = app->add_subcommand(std::string(verb.name), std::string(verb.summary));
     sub->footer(fmt::format("Example:\n  {}", verb.example));
-    verb.add(*sub);
+    Options options(*sub);
+    verb.add(options);
   }
   return app;
 }

@@ -5,8 +5,7 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "rsc/options.hpp"
 #include "rsc/program.hpp"
 
 namespace robosync::tool {
@@ -16,12 +15,12 @@ namespace robosync::tool {
 [[nodiscard]] bool stderr_is_terminal();
 
 enum class Format { human, json };
-void add_format_option(CLI::App& app, Format& format);
-void add_port_option(CLI::App& app, std::string& port);
-void add_config_option(CLI::App& app, std::string& config);
+void add_format_option(Options& options, Format& format);
+void add_port_option(Options& options, std::string& port);
+void add_config_option(Options& options, std::string& config);
 // --config, and -O0 or -O1.
-void add_compile_options(CLI::App& app, CompileOptions& options);
-void add_duration_option(CLI::App& app, const std::string& name,
+void add_compile_options(Options& options, CompileOptions& how);
+void add_duration_option(Options& options, const std::string& name,
                          std::optional<std::chrono::milliseconds>& duration,
                          const std::string& description);
 

@@ -4,19 +4,18 @@
 #include <array>
 #include <string_view>
 
-#include <CLI/CLI.hpp>
+#include "rsc/options.hpp"
 
 namespace robosync::tool {
 
-// Adds the verb's options to `app` and sets what runs when it is called. That throws Failure when
-// it cannot do its work.
-#define VERB(name, summary, example) void add_##name(CLI::App& app);
+// Declares the verb's options, and what it does.
+#define VERB(name, summary, example) void add_##name(Options& options);
 #include "rsc/verbs.def"
 #undef VERB
 
 struct Verb {
   std::string_view name, summary, example;
-  void (*add)(CLI::App&);
+  void (*add)(Options&);
 };
 
 inline constexpr std::array kVerbs = {

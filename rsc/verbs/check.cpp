@@ -21,7 +21,7 @@
 namespace robosync::tool {
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::vector<std::string> files;
   CompileOptions how;
   bool timing = false;
@@ -42,8 +42,8 @@ void append(nlohmann::ordered_json& all, const nlohmann::ordered_json& one) {
 
 // What a program without errors costs. False when that is more than the board allows in a step, or
 // when the board cannot keep up with its sensors.
-bool report_timing(const Options& options, const std::string& file, std::vector<std::byte> image,
-                   nlohmann::ordered_json& report) {
+bool report_timing(const CheckOptions& options, const std::string& file,
+                   std::vector<std::byte> image, nlohmann::ordered_json& report) {
   const Program program(std::move(image), file);
   const Timing timing = timing_of(program.image());
   const auto& adaptations = program.image().adaptations;
@@ -68,7 +68,7 @@ bool report_timing(const Options& options, const std::string& file, std::vector<
   return false;
 }
 
-void check(const Options& options) {
+void check(const CheckOptions& options) {
   nlohmann::ordered_json report;
   std::size_t errors = 0;
   bool affordable = true;
@@ -91,14 +91,14 @@ void check(const Options& options) {
 
 }  // namespace
 
-void add_check(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  app.add_option("FILE", options->files, "programs (.rsl)")->required()->option_text("...");
-  app.add_flag("--timing", options->timing,
+void add_check(Options& options) {
+  auto asked = std::make_shared<CheckOptions>();
+  options.arguments("FILE", asked->files, "programs (.rsl)", Options::Need::required);
+  options.flag("--timing", asked->timing,
                "show what a step costs, rule by rule, and the memory it takes");
-  add_compile_options(app, options->how);
-  add_format_option(app, options->format);
-  app.callback([options] { check(*options); });
+  add_compile_options(options, asked->how);
+  add_format_option(options, asked->format);
+  options.runs([asked] { check(*asked); });
 }
 
 }  // namespace robosync::tool

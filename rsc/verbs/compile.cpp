@@ -18,13 +18,14 @@
 namespace robosync::tool {
 namespace {
 
-struct Options {
+struct OutputOptions {
   std::string file, output;
+  bool strip = false;
   CompileOptions how;
   Format format = Format::human;
 };
 
-std::string output_name(const Options& options) {
+std::string output_name(const OutputOptions& options) {
   if (!options.output.empty()) return options.output;
   auto name = std::filesystem::path(options.file).replace_extension(".rsb").string();
   if (name == options.file) {
@@ -56,7 +57,7 @@ void print_json(const std::string& output, const Program& program) {
   std::cout << report.dump() << '\n';
 }
 
-void compile(const Options& options) {
+void compile(const OutputOptions& options) {
   const std::string output = output_name(options);
   compiler::Result result = compile_file(options.file, options.how);
   std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
@@ -71,15 +72,17 @@ void compile(const Options& options) {
 
 }  // namespace
 
-void add_compile(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  app.add_option("FILE", options->file, "program (.rsl)")->required()->option_text(" ");
-  app.add_option("-o,--output", options->output, "the image; else STEM.rsb")->option_text("X.rsb");
-  app.add_flag_callback(
-      "--strip", [options] { options->how.source_lines = false; }, "leave the source lines out");
-  add_compile_options(app, options->how);
-  add_format_option(app, options->format);
-  app.callback([options] { compile(*options); });
+void add_compile(Options& options) {
+  auto asked = std::make_shared<OutputOptions>();
+  options.argument("FILE", asked->file, "program (.rsl)", Options::Need::required);
+  options.option("-o,--output", "X.rsb", asked->output, "the image; else STEM.rsb");
+  options.flag("--strip", asked->strip, "leave the source lines out");
+  add_compile_options(options, asked->how);
+  add_format_option(options, asked->format);
+  options.runs([asked] {
+    asked->how.source_lines = !asked->strip;
+    compile(*asked);
+  });
 }
 
 }  // namespace robosync::tool

@@ -11,21 +11,19 @@
 namespace robosync::tool {
 namespace {
 
-struct Options {
+struct DumpOptions {
   std::string file;
   CompileOptions how;
 };
 
 }  // namespace
 
-void add_dump(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  app.add_option("FILE", options->file, "program (.rsl) or image (.rsb)")
-      ->required()
-      ->option_text(" ");
-  add_compile_options(app, options->how);
-  app.callback([options] {
-    const Program program = load_program(options->file, options->how);
+void add_dump(Options& options) {
+  auto asked = std::make_shared<DumpOptions>();
+  options.argument("FILE", asked->file, "program (.rsl) or image (.rsb)", Options::Need::required);
+  add_compile_options(options, asked->how);
+  options.runs([asked] {
+    const Program program = load_program(asked->file, asked->how);
     std::cout << dump_text(program.image(), program.source());
   });
 }

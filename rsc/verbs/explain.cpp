@@ -26,7 +26,7 @@ namespace {
 
 namespace explain = compiler::explain;
 
-struct Options {
+struct ExplainOptions {
   std::string what, config;
   Format format = Format::human;
 };
@@ -38,7 +38,7 @@ bool looks_like_code(const std::string& what) {
          what.find_first_not_of("0123456789", 1) == std::string::npos;
 }
 
-void explain_code(const Options& options) {
+void explain_code(const ExplainOptions& options) {
   const std::optional<compiler::Code> code = explain::find_code(options.what);
   if (!code) {
     std::vector<std::string> known;
@@ -67,7 +67,8 @@ void explain_code(const Options& options) {
 
 // The configuration only says which actuators belong together, so a program can do without one;
 // what is wrong with it is for `rsc check`.
-std::optional<compiler::Robot> robot_for(const Options& options, compiler::SourceMap& sources) {
+std::optional<compiler::Robot> robot_for(const ExplainOptions& options,
+                                         compiler::SourceMap& sources) {
   std::filesystem::path path;
   try {
     path = find_configuration(options.what, options.config);
@@ -79,7 +80,7 @@ std::optional<compiler::Robot> robot_for(const Options& options, compiler::Sourc
   return compiler::read_robot(sources, file, ignored);
 }
 
-void explain_file(const Options& options) {
+void explain_file(const ExplainOptions& options) {
   compiler::SourceMap sources;
   compiler::Diagnostics diagnostics;
   const compiler::FileId file = sources.add(options.what, read_text(options.what));
@@ -100,16 +101,14 @@ void explain_file(const Options& options) {
 
 }  // namespace
 
-void add_explain(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  app.add_option("FILE|CODE", options->what, "program (.rsl), or a diagnostic such as E0301")
-      ->required()
-      ->option_text(" ");
-  add_config_option(app, options->config);
-  add_format_option(app, options->format);
-  app.callback([options] {
-    looks_like_code(options->what) ? explain_code(*options) : explain_file(*options);
-  });
+void add_explain(Options& options) {
+  auto asked = std::make_shared<ExplainOptions>();
+  options.argument("FILE|CODE", asked->what, "program (.rsl), or a diagnostic such as E0301",
+                   Options::Need::required);
+  add_config_option(options, asked->config);
+  add_format_option(options, asked->format);
+  options.runs(
+      [asked] { looks_like_code(asked->what) ? explain_code(*asked) : explain_file(*asked); });
 }
 
 }  // namespace robosync::tool

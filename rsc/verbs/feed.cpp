@@ -29,7 +29,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kQueueTimeout{30000};
 constexpr milliseconds kQueuePause{20};
 
-struct Options {
+struct FeedOptions {
   std::vector<std::string> readings;
   std::string scenario, upload, port;
   CompileOptions how;
@@ -88,7 +88,7 @@ void send(Session& session, const vm::Image& image, const Stimulus& stimulus) {
   }
 }
 
-std::vector<Stimulus> wanted(const Options& options, const vm::Image& image) {
+std::vector<Stimulus> wanted(const FeedOptions& options, const vm::Image& image) {
   std::vector<Stimulus> stimuli;
   if (!options.scenario.empty()) stimuli = read_scenario(options.scenario, image).stimuli;
   const auto at_us =
@@ -108,7 +108,7 @@ Program running_program(Session& session) {
   return {std::move(bytes), "the running program"};
 }
 
-void feed(const Options& options) {
+void feed(const FeedOptions& options) {
   if (options.readings.empty() && options.scenario.empty()) {
     throw Failure(Exit::usage, "name a reading, as in touch.LEVEL=2, or a --scenario");
   }
@@ -135,21 +135,19 @@ void feed(const Options& options) {
 
 }  // namespace
 
-void add_feed(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  app.add_option("READING", options->readings, "SENSOR.CHANNEL=VALUE, as in touch.LEVEL=2")
-      ->option_text("...");
-  add_port_option(app, options->port);
-  add_duration_option(app, "--at", options->at, "program time of the readings; else now");
-  app.add_option("--scenario", options->scenario, "readings with their times")
-      ->option_text("S.json");
-  app.add_option("--upload", options->upload,
-                 "upload this program (.rsl or .rsb) first; --watch shows all it does")
-      ->option_text("FILE");
-  add_compile_options(app, options->how);
-  add_duration_option(app, "--watch", options->watch, "then show what happens for so long");
-  add_format_option(app, options->format);
-  app.callback([options] { feed(*options); });
+void add_feed(Options& options) {
+  auto asked = std::make_shared<FeedOptions>();
+  options.arguments("READING", asked->readings, "SENSOR.CHANNEL=VALUE, as in touch.LEVEL=2",
+                    Options::Need::optional);
+  add_port_option(options, asked->port);
+  add_duration_option(options, "--at", asked->at, "program time of the readings; else now");
+  options.option("--scenario", "S.json", asked->scenario, "readings with their times");
+  options.option("--upload", "FILE", asked->upload,
+                 "upload this program (.rsl or .rsb) first; --watch shows all it does");
+  add_compile_options(options, asked->how);
+  add_duration_option(options, "--watch", asked->watch, "then show what happens for so long");
+  add_format_option(options, asked->format);
+  options.runs([asked] { feed(*asked); });
 }
 
 }  // namespace robosync::tool

@@ -7,11 +7,11 @@
 
 namespace robosync::tool {
 
-void add_help(CLI::App& app) {
+void add_help(Options& options) {
   auto verb = std::make_shared<std::string>();
-  app.add_option("VERB", *verb, "the verb to explain; without it, all are listed")
-      ->option_text(" ");
-  app.callback([verb] { print_help(verb->c_str()); });
+  options.argument("VERB", *verb, "the verb to explain; without it, all are listed",
+                   Options::Need::optional);
+  options.runs([verb] { print_help(verb->c_str()); });
 }
 
 }  // namespace robosync::tool

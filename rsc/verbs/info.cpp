@@ -101,15 +101,15 @@ void info(const std::string& port, Format format) {
 
 }  // namespace
 
-void add_info(CLI::App& app) {
-  struct Options {
+void add_info(Options& options) {
+  struct InfoOptions {
     std::string port;
     Format format = Format::human;
   };
-  auto options = std::make_shared<Options>();
-  add_port_option(app, options->port);
-  add_format_option(app, options->format);
-  app.callback([options] { info(options->port, options->format); });
+  auto asked = std::make_shared<InfoOptions>();
+  add_port_option(options, asked->port);
+  add_format_option(options, asked->format);
+  options.runs([asked] { info(asked->port, asked->format); });
 }
 
 }  // namespace robosync::tool

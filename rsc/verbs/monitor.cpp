@@ -11,7 +11,7 @@
 namespace robosync::tool {
 namespace {
 
-struct Options {
+struct MonitorOptions {
   std::string port;
   Format format = Format::human;
   std::optional<std::chrono::milliseconds> duration;
@@ -20,16 +20,16 @@ struct Options {
 
 }  // namespace
 
-void add_monitor(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  add_port_option(app, options->port);
-  add_format_option(app, options->format);
-  add_duration_option(app, "--duration", options->duration, "how long; else until Ctrl-C");
-  app.add_flag("--threads", options->threads,
+void add_monitor(Options& options) {
+  auto asked = std::make_shared<MonitorOptions>();
+  add_port_option(options, asked->port);
+  add_format_option(options, asked->format);
+  add_duration_option(options, "--duration", asked->duration, "how long; else until Ctrl-C");
+  options.flag("--threads", asked->threads,
                "once a second, every thread's priority and share of the processor, too");
-  app.callback([options] {
-    Session session(options->port);
-    Watch(session, options->format, options->threads).show(options->duration);
+  options.runs([asked] {
+    Session session(asked->port);
+    Watch(session, asked->format, asked->threads).show(asked->duration);
   });
 }
 

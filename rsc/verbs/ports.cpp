@@ -31,10 +31,10 @@ void ports(Format format) {
 
 }  // namespace
 
-void add_ports(CLI::App& app) {
+void add_ports(Options& options) {
   auto format = std::make_shared<Format>(Format::human);
-  add_format_option(app, *format);
-  app.callback([format] { ports(*format); });
+  add_format_option(options, *format);
+  options.runs([format] { ports(*format); });
 }
 
 }  // namespace robosync::tool

@@ -23,19 +23,19 @@ namespace {
 
 constexpr std::uint64_t kDefaultDurationUs = 10'000'000;
 
-struct Options {
+struct RunOptions {
   std::string file, scenario, trace;
   CompileOptions how;
   std::optional<std::chrono::milliseconds> duration;
   Format format = Format::human;
 };
 
-std::uint64_t duration_us(const Options& options, const Scenario& scenario) {
+std::uint64_t duration_us(const RunOptions& options, const Scenario& scenario) {
   if (options.duration) return static_cast<std::uint64_t>(options.duration->count()) * 1000;
   return scenario.duration_us.value_or(kDefaultDurationUs);
 }
 
-void run(const Options& options) {
+void run(const RunOptions& options) {
   const Program program = load_program(options.file, options.how);
   Scenario scenario;
   if (!options.scenario.empty()) scenario = read_scenario(options.scenario, program.image());
@@ -59,19 +59,15 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_run(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  app.add_option("FILE", options->file, "program (.rsl) or image (.rsb)")
-      ->required()
-      ->option_text(" ");
-  app.add_option("--scenario", options->scenario, "what the sensors measure, when")
-      ->option_text("S.json");
-  add_duration_option(app, "--duration", options->duration, "else the scenario's, else 10s");
-  app.add_option("--trace", options->trace, "write the trace as JSON lines")
-      ->option_text("T.jsonl");
-  add_compile_options(app, options->how);
-  add_format_option(app, options->format);
-  app.callback([options] { run(*options); });
+void add_run(Options& options) {
+  auto asked = std::make_shared<RunOptions>();
+  options.argument("FILE", asked->file, "program (.rsl) or image (.rsb)", Options::Need::required);
+  options.option("--scenario", "S.json", asked->scenario, "what the sensors measure, when");
+  add_duration_option(options, "--duration", asked->duration, "else the scenario's, else 10s");
+  options.option("--trace", "T.jsonl", asked->trace, "write the trace as JSON lines");
+  add_compile_options(options, asked->how);
+  add_format_option(options, asked->format);
+  options.runs([asked] { run(*asked); });
 }
 
 }  // namespace robosync::tool

@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::uint64_t kBefore = 500'000;  // what led to it, in microseconds
 constexpr std::size_t kTimelineEnds = 15;   // lines at each end of a long timeline
 
-struct Options {
+struct TestOptions {
   std::vector<std::string> files;
   CompileOptions how;
   Format format = Format::human;
@@ -38,7 +38,7 @@ struct Tally {
 // Prints one test after the other, as they end.
 class Reporter {
 public:
-  Reporter(const Options& options, const compiler::SourceMap& sources, Tally& tally)
+  Reporter(const TestOptions& options, const compiler::SourceMap& sources, Tally& tally)
       : options_(options), sources_(sources), tally_(tally) {}
 
   void report(const TestResult& result) {
@@ -109,12 +109,12 @@ private:
     tally_.tests.push_back(std::move(test));
   }
 
-  const Options& options_;
+  const TestOptions& options_;
   const compiler::SourceMap& sources_;
   Tally& tally_;
 };
 
-void test_file(const std::string& file, const Options& options, Tally& tally) {
+void test_file(const std::string& file, const TestOptions& options, Tally& tally) {
   compiler::Result compiled = compile_file(file, options.how);
   std::cerr << compiler::render_human(compiled.diagnostics, compiled.sources, color_on_stderr());
   if (compiled.diagnostics.errors() > 0) {
@@ -128,7 +128,7 @@ void test_file(const std::string& file, const Options& options, Tally& tally) {
     reporter.report(run_test(program, compiled.tests, test));
 }
 
-void test(const Options& options) {
+void test(const TestOptions& options) {
   Tally tally;
   for (const std::string& file : options.files)
     test_file(file, options, tally);
@@ -143,12 +143,12 @@ void test(const Options& options) {
 
 }  // namespace
 
-void add_test(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  app.add_option("FILE", options->files, "programs (.rsl)")->required()->option_text("...");
-  add_compile_options(app, options->how);
-  add_format_option(app, options->format);
-  app.callback([options] { test(*options); });
+void add_test(Options& options) {
+  auto asked = std::make_shared<TestOptions>();
+  options.arguments("FILE", asked->files, "programs (.rsl)", Options::Need::required);
+  add_compile_options(options, asked->how);
+  add_format_option(options, asked->format);
+  options.runs([asked] { test(*asked); });
 }
 
 }  // namespace robosync::tool

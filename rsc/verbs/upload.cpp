@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 constexpr double kBitsPerByte = 10;  // 8N1
 constexpr double kBaudRate = 115200;
 
-struct Options {
+struct SendOptions {
   std::string file, port;
   CompileOptions how;
   std::optional<milliseconds> timeout;
@@ -34,7 +34,7 @@ void show_progress(std::size_t sent, std::size_t total) {
   std::cerr.flush();
 }
 
-void report(const Options& options, const UploadResult& result, const Program& program) {
+void report(const SendOptions& options, const UploadResult& result, const Program& program) {
   const std::size_t bytes = result.bytes;
   const double ms = static_cast<double>(result.time.count()) / 1000;
   const double wire_ms = static_cast<double>(bytes) * kBitsPerByte / kBaudRate * 1000;
@@ -58,7 +58,7 @@ void report(const Options& options, const UploadResult& result, const Program& p
       static_cast<double>(result.activation.uptime_us) / 1e6);
 }
 
-void upload(const Options& options) {
+void upload(const SendOptions& options) {
   const Program program = load_program(options.file, options.how);
   UploadOptions how;
   how.timeout = options.timeout;
@@ -71,17 +71,15 @@ void upload(const Options& options) {
 
 }  // namespace
 
-void add_upload(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  app.add_option("FILE", options->file, "program (.rsl) or image (.rsb)")
-      ->required()
-      ->option_text(" ");
-  add_port_option(app, options->port);
-  add_compile_options(app, options->how);
-  add_duration_option(app, "--timeout", options->timeout,
+void add_upload(Options& options) {
+  auto asked = std::make_shared<SendOptions>();
+  options.argument("FILE", asked->file, "program (.rsl) or image (.rsb)", Options::Need::required);
+  add_port_option(options, asked->port);
+  add_compile_options(options, asked->how);
+  add_duration_option(options, "--timeout", asked->timeout,
                       "give up after (10s, longer for a large image)");
-  add_format_option(app, options->format);
-  app.callback([options] { upload(*options); });
+  add_format_option(options, asked->format);
+  options.runs([asked] { upload(*asked); });
 }
 
 }  // namespace robosync::tool
