@@ -11,7 +11,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// How unlikely a kind of mistake is. Found by trying: tests/compiler/front/mutation_test.cpp
+// How unlikely a kind of mistake is. Found by trying: tests/compiler/syntax/mutation_test.cpp
 // measures how many wrong programs give exactly one message.
 namespace cost {
 constexpr int respell_near = 8;  // and 2 more a wrong letter

@@ -1,4 +1,4 @@
-#include "tests/compiler/codegen/build.hpp"
+#include "tests/compiler/build.hpp"
 
 #include <cmath>
 

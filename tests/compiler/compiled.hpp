@@ -1,4 +1,4 @@
-// What the tests of the back end share.
+// Programs and configurations through the whole compiler, for the tests.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +19,13 @@ inline std::filesystem::path source_folder() {
   return ROBOSYNC_SOURCE_DIR;
 }
 
-inline std::filesystem::path back_folder() {
-  return source_folder() / "tests/compiler/back";
+// Wrong and doubtful programs, and the robot that they share.
+inline std::filesystem::path messages_folder() {
+  return source_folder() / "tests/compiler/diagnostics/golden";
+}
+
+inline std::filesystem::path disassembly_folder() {
+  return source_folder() / "tests/compiler/codegen/disassembly";
 }
 
 inline Result compile_text(std::string program, std::string configuration,
@@ -29,9 +34,8 @@ inline Result compile_text(std::string program, std::string configuration,
                  {.source_lines = source_lines});
 }
 
-// The robot that the golden cases share.
 inline std::string common_robot() {
-  return read_file(back_folder() / "golden/robot.json");
+  return read_file(messages_folder() / "robot.json");
 }
 
 inline std::string messages(const Result& result) {

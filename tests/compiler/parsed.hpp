@@ -1,4 +1,4 @@
-// What the tests of the front end share.
+// Programs through the parser, for the tests.
 #pragma once
 
 #include <algorithm>
@@ -15,22 +15,22 @@
 
 namespace robosync::compiler::testing {
 
-inline std::filesystem::path front_folder() {
-  return std::filesystem::path(ROBOSYNC_SOURCE_DIR) / "tests/compiler/front";
+inline std::filesystem::path syntax_folder() {
+  return std::filesystem::path(ROBOSYNC_SOURCE_DIR) / "tests/compiler/syntax";
 }
 
-// The files of a folder of the front end's tests that end with `extension`, by name.
+// The files of a folder of the parser's tests that end with `extension`, by name.
 inline std::vector<std::filesystem::path> files_in(const std::string& folder,
                                                    const std::string& extension) {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(front_folder() / folder)) {
+  for (const auto& entry : std::filesystem::directory_iterator(syntax_folder() / folder)) {
     if (entry.path().extension() == extension) paths.push_back(entry.path());
   }
   std::sort(paths.begin(), paths.end());
   return paths;
 }
 
-// A program after the front end, with all it said.
+// A program after the parser, with all that was said.
 struct Parsed {
   SourceMap sources;
   Diagnostics diagnostics;

@@ -3,11 +3,14 @@
 import json
 import random
 import re
+import sys
 from pathlib import Path
 
-from stimuli import Reading
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = ROOT / "examples"
+sys.path.insert(0, str(ROOT / "tests/generators/programs"))
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+from stimuli import Reading  # noqa: E402
 
 
 def folders():

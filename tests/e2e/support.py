@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -10,9 +11,12 @@ from pathlib import Path
 
 import rsc
 from board import FAST, FIRMWARE, Board
-from stimuli import UNITS
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "generators/programs"))
+
+from stimuli import UNITS  # noqa: E402
+
 PROGRAMS = HERE / "programs"
 CONFIG = PROGRAMS / "robot.json"
 

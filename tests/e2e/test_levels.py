@@ -10,7 +10,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-sys.path[:0] = [str(Path(__file__).resolve().parents[2] / "scripts/python")]
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "scripts/python"), str(ROOT / "tests/generators/programs")]
 
 import rsc
 import stimuli

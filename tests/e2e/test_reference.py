@@ -1,6 +1,6 @@
 """The board does what `rsc run` does, for programs on which that does what the reference says.
 
-tests/reference compares the same programs, with the same readings, with the interpreter that is
+tests/oracles/rsl compares the same programs, with the same readings, with the interpreter that is
 written from docs/language.md. A board of its own for each: some of them never rest.
 """
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 from traces import TraceTest
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "reference"))
+sys.path.append(str(Path(__file__).resolve().parents[1] / "properties"))
 
 import differ  # noqa: E402
 import drawn  # noqa: E402

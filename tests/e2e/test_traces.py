@@ -3,10 +3,11 @@
 import json
 import unittest
 
+from support import PROGRAMS  # and where what follows is found
+from traces import TraceTest
+
 import stimuli
 from generator import Generator
-from support import PROGRAMS
-from traces import TraceTest
 
 
 class Traces(TraceTest):

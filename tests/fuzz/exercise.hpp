@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "tests/fuzz/random.hpp"
+#include "tests/generators/images/random.hpp"
 #include "vm/interpreter.hpp"
 #include "vm/verifier.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/fuzz/arena.hpp"
-#include "tests/fuzz/stepper.hpp"
+#include "tests/oracles/bytecode/stepper.hpp"
 
 namespace robosync::fuzz {
 

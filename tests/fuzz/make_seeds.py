@@ -1,4 +1,4 @@
-"""Compiles what the fuzzer starts from: every example, and programs of tests/e2e/generator.py.
+"""Compiles what the fuzzer starts from: every example, and programs of tests/generators/programs.
 
 usage: make_seeds.py RSC FOLDER
 
@@ -11,8 +11,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-E2E = ROOT / "tests/e2e"
-sys.path.insert(0, str(E2E))
+CONFIG = ROOT / "tests/e2e/programs/robot.json"
+sys.path.insert(0, str(ROOT / "tests/generators/programs"))
 from generator import Generator  # noqa: E402  (found by the line before)
 
 DRAWN = 16
@@ -27,7 +27,7 @@ def make(rsc, folder):
     folder.mkdir(parents=True, exist_ok=True)
     for source in sorted((ROOT / "examples").glob("*/robot.rsl")):
         compile_program(rsc, source, folder / f"{source.parent.name}.rsb")
-    plain = E2E / "programs/robot.json"
+    plain = CONFIG
     adapting = folder / "adapting.json"
     adapting.write_text(json.dumps(json.loads(plain.read_text()) | {"scheduler": {"window": "1s"}}))
     for seed in range(DRAWN):

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "tests/fuzz/writer.hpp"
+#include "tests/generators/images/writer.hpp"
 
 namespace robosync::fuzz {
 

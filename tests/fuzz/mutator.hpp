@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tests/fuzz/draft.hpp"
+#include "tests/generators/images/draft.hpp"
 
 namespace robosync::fuzz {
 

@@ -21,7 +21,7 @@ import drawn
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("ROBOSYNC_BUILD", ROOT / "build/host"))
-REFERENCE = BUILD / "tests/reference/reference"
+REFERENCE = BUILD / "tests/oracles/rsl/reference"
 RSC = BUILD / "rsc"
 AFTER_MS = 3_000  # after the last reading
 TIMEOUT = 60

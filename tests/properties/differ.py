@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares rsc run with the reference interpreter on drawn programs and drawn readings.
 
-    tests/reference/differ.py --programs 1000 --seed 0
+    tests/properties/differ.py --programs 1000 --seed 0
 
 Ends with code 1 and the smallest case that it finds when something differs.
 """

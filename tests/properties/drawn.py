@@ -1,4 +1,4 @@
-"""What the reference is compared on: the programs of tests/e2e/generator.py, with more of the language.
+"""What the reference is compared on: the programs of tests/generators/programs/generator.py, with more of the language.
 
 What is in a program is drawn with a seed; so are the readings. RANDOM stands in responses and periods
 only: how often a condition is looked at is no matter of the language.
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "e2e"))
+sys.path.insert(0, str(HERE.parent / "generators/programs"))
 
 import generator  # noqa: E402
 import stimuli  # noqa: E402

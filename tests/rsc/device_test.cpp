@@ -17,7 +17,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "tests/link/robot.hpp"
+#include "tests/runtime-m4/update/robot.hpp"
 #include "tests/rsc/image.hpp"
 #include "tests/rsc/process.hpp"
 

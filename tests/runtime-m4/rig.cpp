@@ -1,9 +1,9 @@
 // See rig.hpp.
-#include "tests/layers/rig.hpp"
+#include "tests/runtime-m4/rig.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 namespace robosync::test {
 

@@ -1,5 +1,5 @@
 // See robot.hpp.
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "compiler/compiler.hpp"
 #include "compiler/diagnostics/render.hpp"
-#include "tests/layers/rig.hpp"
+#include "tests/runtime-m4/rig.hpp"
 
 namespace robosync::test {
 

@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path += [str(ROOT / "bench"), str(ROOT / "tests/e2e")]
+sys.path += [str(ROOT / "bench"), str(ROOT / "tests/generators/programs")]
 
 import counting  # noqa: E402
 from generator import Generator  # noqa: E402

@@ -30,4 +30,4 @@ if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/boards/mps2-an386/main.cpp)
   # The board has 4 MB of each.
   target_link_options(robosync_firmware_large PRIVATE -Wl,--defsym=flash_bytes=64K,--defsym=ram_bytes=512K)
 endif()
-include(${PROJECT_SOURCE_DIR}/tests/kernel/firmware/firmware.cmake)
+include(${PROJECT_SOURCE_DIR}/tests/runtime-m4/kernel/firmware/firmware.cmake)

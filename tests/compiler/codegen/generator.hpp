@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "tests/compiler/codegen/build.hpp"
+#include "tests/compiler/build.hpp"
 
 namespace robosync::compiler::testing {
 

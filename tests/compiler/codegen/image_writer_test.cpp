@@ -2,7 +2,7 @@
 // bytes.
 #include <catch2/catch.hpp>
 
-#include "back.hpp"
+#include "tests/compiler/compiled.hpp"
 #include "vm/arithmetic.hpp"
 #include "vm/interpreter.hpp"
 
@@ -60,12 +60,12 @@ TEST_CASE("the paper's program fits its bars") {
 
 TEST_CASE("the examples become these instructions", "[golden]") {
   for (const char* name : {"touch_companion", "paper"})
-    robosync::testing::expect_golden(back_folder() / "disassembly" / (std::string(name) + ".txt"),
+    robosync::testing::expect_golden(disassembly_folder() / (std::string(name) + ".txt"),
                                      disassembly(example(name)));
 }
 
 TEST_CASE("programs become these instructions", "[golden]") {
-  for (const auto& entry : fs::directory_iterator(back_folder() / "disassembly")) {
+  for (const auto& entry : fs::directory_iterator(disassembly_folder())) {
     if (entry.path().extension() != ".rsl") continue;
     fs::path golden = entry.path();
     golden.replace_extension(".txt");

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/compiler/codegen/build.hpp"
+#include "tests/compiler/build.hpp"
 #include "vm/verifier.hpp"
 
 using namespace robosync;

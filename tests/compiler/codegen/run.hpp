@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/compiler/codegen/build.hpp"
+#include "tests/compiler/build.hpp"
 #include "vm/interpreter.hpp"
 
 namespace robosync::compiler::testing {

@@ -1,7 +1,7 @@
 // What each statement becomes: instructions, frame and records, as golden listings.
 #include <catch2/catch.hpp>
 
-#include "tests/compiler/codegen/build.hpp"
+#include "tests/compiler/build.hpp"
 #include "tests/support/golden.hpp"
 
 using namespace robosync;

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "back.hpp"
+#include "tests/compiler/compiled.hpp"
 
 using namespace robosync;
 using namespace robosync::compiler;
@@ -139,7 +139,7 @@ TEST_CASE("damaged configurations") {
 TEST_CASE("damaged programs") {
   std::string whole;
   for (const char* name : {"conditions", "commands"})
-    whole += read_file(back_folder() / "disassembly" / (std::string(name) + ".rsl"));
+    whole += read_file(disassembly_folder() / (std::string(name) + ".rsl"));
   Mutator mutator(424242);
   for (int round = 0; round < kRounds / 3; ++round) {
     const std::string text = mutator.damage(whole);

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "back.hpp"
+#include "tests/compiler/compiled.hpp"
 #include "compiler/config/fields.hpp"
 #include "compiler/config/units.hpp"
 #include "compiler/config/wiring.hpp"

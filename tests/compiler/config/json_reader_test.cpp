@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "back.hpp"
+#include "tests/compiler/compiled.hpp"
 #include "compiler/config/json_reader.hpp"
 
 using namespace robosync::compiler;

@@ -1,72 +1,11 @@
-// Places, nearest words, and diagnostics for people and for programs.
+// Diagnostics for people and for programs.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "compiler/diagnostics/nearest.hpp"
 #include "compiler/diagnostics/snippet.hpp"
-#include "compiler/source/utf8.hpp"
-#include "front.hpp"
+#include "tests/compiler/parsed.hpp"
 
 using namespace robosync::compiler;
-
-TEST_CASE("lines and columns", "[source]") {
-  const SourceFile file("f", "ab\nçd\r\ne\rf");
-  const auto at = [&file](std::uint32_t offset) {
-    const Position position = file.position(offset);
-    return std::to_string(position.line) + ":" + std::to_string(position.column);
-  };
-  CHECK(at(0) == "1:1");
-  CHECK(at(2) == "1:3");
-  CHECK(at(3) == "2:1");
-  CHECK(at(5) == "2:2");  // ç takes two bytes and one column
-  CHECK(at(8) == "3:1");
-  CHECK(at(10) == "4:1");
-  CHECK(at(11) == "4:2");
-  CHECK(at(4000000000U) == "4:2");
-  CHECK(file.line(2) == "çd");
-  CHECK(file.line(3) == "e");
-  CHECK(file.line(4) == "f");
-  CHECK(file.line(0).empty());
-  CHECK(file.line(5).empty());
-  CHECK(file.text({0, 0, 2}) == "ab");
-  CHECK(file.text({0, 9, 4000000000U}) == "\rf");
-  CHECK(file.text({0, 5, 2}).empty());
-}
-
-TEST_CASE("UTF-8 is checked", "[source]") {
-  const auto value = [](std::string_view text) { return utf8::decode(text, 0).value; };
-  CHECK(value("A") == U'A');
-  CHECK(value("é") == U'é');
-  CHECK(value("触") == U'触');
-  CHECK(value("🤖") == U'🤖');
-  for (const std::string_view bad : {"\x80", "\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80",
-                                     "\xF4\x90\x80\x80", "\xE2\x82", "\xFF"}) {
-    CHECK(utf8::decode(bad, 0).value == utf8::replacement);
-    CHECK(utf8::decode(bad, 0).size == 1);
-  }
-  CHECK(utf8::printable("a\x1b[2Jé\xff") == "a�[2Jé�");
-}
-
-TEST_CASE("mistakes between words", "[nearest]") {
-  CHECK(mistakes("WHEN", "when") == 0);
-  CHECK(mistakes("WHNE", "WHEN") == 1);
-  CHECK(mistakes("COOLDWN", "COOLDOWN") == 1);
-  CHECK(mistakes("", "abc") == 3);
-  CHECK(mistakes("kitten", "sitting") == 3);
-  CHECK(mistakes(std::string(100000, 'a'), "b") == 100000);
-}
-
-TEST_CASE("the nearest word, if any is near", "[nearest]") {
-  const std::vector<std::string> words = {"WHEN", "WHILE", "DO", "END", "touch"};
-  CHECK(nearest("WHNE", words) == "WHEN");
-  CHECK(nearest("toch", words) == "touch");
-  CHECK(nearest("OD", words) == "DO");
-  CHECK(nearest("ENDD", words) == "END");
-  CHECK_FALSE(nearest("banana", words).has_value());
-  CHECK_FALSE(nearest("TO", words).has_value());  // no swap, no missing letter: another word
-  CHECK_FALSE(nearest("", words).has_value());
-  CHECK_FALSE(nearest("x", {}).has_value());
-}
 
 TEST_CASE("snippets", "[render]") {
   const auto check = [](std::string_view line, std::size_t begin, std::size_t end,

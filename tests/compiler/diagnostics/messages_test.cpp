@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "back.hpp"
+#include "tests/compiler/compiled.hpp"
 
 using namespace robosync::compiler;
 using namespace robosync::compiler::testing;
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path kFolder = back_folder() / "golden";
+const fs::path kFolder = messages_folder();
 
 std::set<std::string> case_names() {
   std::set<std::string> names;

@@ -65,7 +65,7 @@ std::string stmt(const std::string& text) {
 
 TEST_CASE("the programs of the language's design in plain English", "[golden]") {
   std::vector<fs::path> programs;
-  for (const auto& entry : fs::directory_iterator(kTests / "front/programs")) {
+  for (const auto& entry : fs::directory_iterator(kTests / "syntax/programs")) {
     if (entry.path().extension() == ".rsl") programs.push_back(entry.path());
   }
   REQUIRE(programs.size() >= 7);

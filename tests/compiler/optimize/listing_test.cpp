@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "compiler/compiler.hpp"
-#include "tests/compiler/codegen/build.hpp"
+#include "tests/compiler/build.hpp"
 #include "tests/support/golden.hpp"
 
 using namespace robosync;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "compiler/optimize/variable_facts.hpp"
-#include "tests/compiler/codegen/build.hpp"
+#include "tests/compiler/build.hpp"
 
 using namespace robosync;
 using namespace robosync::compiler;

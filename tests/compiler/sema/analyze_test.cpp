@@ -1,7 +1,7 @@
 // What sema makes of a program: the structure that codegen gets.
 #include <catch2/catch.hpp>
 
-#include "back.hpp"
+#include "tests/compiler/compiled.hpp"
 #include "compiler/config/robot_reader.hpp"
 #include "compiler/sema/analyze.hpp"
 #include "compiler/syntax/parser.hpp"

@@ -5,7 +5,7 @@
 
 #include "compiler/syntax/keywords.hpp"
 #include "compiler/syntax/layout.hpp"
-#include "front.hpp"
+#include "tests/compiler/parsed.hpp"
 
 using namespace robosync::compiler;
 

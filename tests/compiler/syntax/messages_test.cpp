@@ -1,7 +1,7 @@
 // Every wrong program in golden/ with all that the front end says about it.
 #include <catch2/catch.hpp>
 
-#include "front.hpp"
+#include "tests/compiler/parsed.hpp"
 
 using namespace robosync::compiler::testing;
 

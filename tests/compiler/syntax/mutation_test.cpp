@@ -4,8 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "front.hpp"
-#include "mutations.hpp"
+#include "tests/compiler/parsed.hpp"
+#include "tests/compiler/syntax/mutations.hpp"
 
 using namespace robosync::compiler::testing;
 

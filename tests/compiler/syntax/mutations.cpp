@@ -1,5 +1,5 @@
 // See mutations.hpp.
-#include "mutations.hpp"
+#include "tests/compiler/syntax/mutations.hpp"
 
 #include <utility>
 

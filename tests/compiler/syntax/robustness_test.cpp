@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "compiler/syntax/keywords.hpp"
-#include "front.hpp"
+#include "tests/compiler/parsed.hpp"
 #include "tests/support/share.hpp"
 
 using namespace robosync::compiler;

@@ -1,5 +1,5 @@
 // See sexpr.hpp. One overload of `show` for each node.
-#include "sexpr.hpp"
+#include "tests/compiler/syntax/sexpr.hpp"
 
 #include <initializer_list>
 

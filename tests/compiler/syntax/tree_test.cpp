@@ -1,8 +1,8 @@
 // Trees of programs: every form of the grammar, and the programs of the language's design.
 #include <catch2/catch.hpp>
 
-#include "front.hpp"
-#include "sexpr.hpp"
+#include "tests/compiler/parsed.hpp"
+#include "tests/compiler/syntax/sexpr.hpp"
 
 using namespace robosync::compiler;
 using namespace robosync::compiler::testing;
@@ -40,7 +40,7 @@ TEST_CASE("the programs of the design are read without a message", "[tree]") {
 }
 
 TEST_CASE("the paper's program", "[tree]") {
-  const auto path = front_folder() / "programs/paper.rsl";
+  const auto path = syntax_folder() / "programs/paper.rsl";
   CHECK(tree(robosync::testing::read_file(path)) ==
         "(when (< touch.LEVEL 3) (do (gentle_response)) (else (aggressive_response)))\n"
         "(define gentle_response () (do (MOVE arms SLOWLY) (PLAY sound \"greeting.wav\")))\n"

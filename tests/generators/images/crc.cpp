@@ -2,7 +2,7 @@
 // what is accepted.
 #include <cstring>
 
-#include "tests/fuzz/draft.hpp"
+#include "tests/generators/images/draft.hpp"
 
 namespace robosync::fuzz {
 namespace {

@@ -1,9 +1,9 @@
-#include "tests/fuzz/draft.hpp"
+#include "tests/generators/images/draft.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-#include "tests/fuzz/operands.hpp"
+#include "tests/generators/images/operands.hpp"
 
 namespace robosync::fuzz {
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-#include "tests/fuzz/random.hpp"
+#include "tests/generators/images/random.hpp"
 #include "vm/image.hpp"
 #include "vm/opcode.hpp"
 

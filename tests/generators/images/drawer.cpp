@@ -1,4 +1,4 @@
-#include "tests/fuzz/drawer.hpp"
+#include "tests/generators/images/drawer.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -6,8 +6,8 @@
 
 #include <bitset>
 
-#include "tests/fuzz/draft.hpp"
-#include "tests/fuzz/operands.hpp"
+#include "tests/generators/images/draft.hpp"
+#include "tests/generators/images/operands.hpp"
 
 namespace robosync::fuzz {
 

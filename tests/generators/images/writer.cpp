@@ -1,4 +1,4 @@
-#include "tests/fuzz/writer.hpp"
+#include "tests/generators/images/writer.hpp"
 
 namespace robosync::fuzz {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tests/fuzz/drawer.hpp"
+#include "tests/generators/images/drawer.hpp"
 
 namespace robosync::fuzz {
 

@@ -1,4 +1,4 @@
-#include "tests/fuzz/stepper.hpp"
+#include "tests/oracles/bytecode/stepper.hpp"
 
 #include <array>
 

@@ -10,7 +10,7 @@
 #include <bitset>
 
 #include "tests/fuzz/exercise.hpp"
-#include "tests/fuzz/operands.hpp"
+#include "tests/generators/images/operands.hpp"
 
 namespace robosync::fuzz {
 

@@ -1,4 +1,4 @@
-#include "tests/reference/actuators.hpp"
+#include "tests/oracles/rsl/actuators.hpp"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "tests/reference/trace.hpp"
+#include "tests/oracles/rsl/trace.hpp"
 
 namespace robosync::reference {
 

@@ -1,4 +1,4 @@
-#include "tests/reference/evaluator.hpp"
+#include "tests/oracles/rsl/evaluator.hpp"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compiler/sema/program.hpp"
-#include "tests/reference/past.hpp"
+#include "tests/oracles/rsl/past.hpp"
 
 namespace robosync::reference {
 

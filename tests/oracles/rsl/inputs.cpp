@@ -1,4 +1,4 @@
-#include "tests/reference/inputs.hpp"
+#include "tests/oracles/rsl/inputs.hpp"
 
 #include <algorithm>
 #include <cmath>

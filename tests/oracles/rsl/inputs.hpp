@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
-#include "tests/reference/evaluator.hpp"
-#include "tests/reference/trace.hpp"
+#include "tests/oracles/rsl/evaluator.hpp"
+#include "tests/oracles/rsl/trace.hpp"
 
 namespace robosync::reference {
 

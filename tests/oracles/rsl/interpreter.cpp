@@ -1,4 +1,4 @@
-#include "tests/reference/interpreter.hpp"
+#include "tests/oracles/rsl/interpreter.hpp"
 
 #include <algorithm>
 

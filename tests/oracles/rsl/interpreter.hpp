@@ -16,8 +16,8 @@
 #include <set>
 #include <vector>
 
-#include "tests/reference/actuators.hpp"
-#include "tests/reference/response.hpp"
+#include "tests/oracles/rsl/actuators.hpp"
+#include "tests/oracles/rsl/response.hpp"
 
 namespace robosync::reference {
 

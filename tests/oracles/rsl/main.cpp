@@ -12,7 +12,7 @@
 #include "compiler/modules.hpp"
 #include "compiler/sema/analyze.hpp"
 #include "compiler/syntax/parser.hpp"
-#include "tests/reference/interpreter.hpp"
+#include "tests/oracles/rsl/interpreter.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "tests/reference/past.hpp"
+#include "tests/oracles/rsl/past.hpp"
 
 #include <cstdlib>
 #include <optional>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compiler/sema/program.hpp"
-#include "tests/reference/values.hpp"
+#include "tests/oracles/rsl/values.hpp"
 
 namespace robosync::reference {
 

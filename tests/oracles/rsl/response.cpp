@@ -1,4 +1,4 @@
-#include "tests/reference/response.hpp"
+#include "tests/oracles/rsl/response.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "tests/reference/inputs.hpp"
+#include "tests/oracles/rsl/inputs.hpp"
 
 namespace robosync::reference {
 

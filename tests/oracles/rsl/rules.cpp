@@ -2,7 +2,7 @@
 // RESTARTING, WAITING, BEHAVIOR.
 #include <algorithm>
 
-#include "tests/reference/interpreter.hpp"
+#include "tests/oracles/rsl/interpreter.hpp"
 
 namespace robosync::reference {
 namespace {

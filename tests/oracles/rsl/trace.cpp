@@ -1,4 +1,4 @@
-#include "tests/reference/trace.hpp"
+#include "tests/oracles/rsl/trace.hpp"
 
 #include <array>
 #include <cmath>

@@ -9,7 +9,7 @@
 
 #include "compiler/config/robot.hpp"
 #include "compiler/sema/program.hpp"
-#include "tests/reference/past.hpp"
+#include "tests/oracles/rsl/past.hpp"
 
 namespace robosync::reference {
 

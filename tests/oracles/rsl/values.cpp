@@ -1,4 +1,4 @@
-#include "tests/reference/values.hpp"
+#include "tests/oracles/rsl/values.hpp"
 
 #include <algorithm>
 

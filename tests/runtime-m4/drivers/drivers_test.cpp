@@ -5,7 +5,7 @@
 #include <rapidcheck.h>
 
 #include "runtime-m4/layers/sampler.hpp"
-#include "tests/layers/rig.hpp"
+#include "tests/runtime-m4/rig.hpp"
 
 using namespace robosync;
 using drivers::ActuatorState;

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/kernel/rig.hpp"
+#include "tests/runtime-m4/kernel/rig.hpp"
 
 using namespace robosync::kernel;
 using robosync::kernel::test::Rig;

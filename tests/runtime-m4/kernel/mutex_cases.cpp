@@ -1,6 +1,6 @@
 // See mutex_cases.hpp. In each, `low` takes something, makes others ready that outrank it, and
 // gives back; what they note in between says who ran when. Capital letters are the others.
-#include "tests/kernel/mutex_cases.hpp"
+#include "tests/runtime-m4/kernel/mutex_cases.hpp"
 
 #include <array>
 

@@ -9,8 +9,8 @@
 #include <catch2/catch.hpp>
 #include <rapidcheck.h>
 
-#include "tests/kernel/mutex_cases.hpp"
-#include "tests/kernel/rig.hpp"
+#include "tests/runtime-m4/kernel/mutex_cases.hpp"
+#include "tests/runtime-m4/kernel/rig.hpp"
 
 using namespace robosync::kernel;
 

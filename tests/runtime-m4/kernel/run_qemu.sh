@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Runs the kernel's tests on the emulated board. Ends with "N passed, N failed".
 #
-# usage: tests/kernel/run_qemu.sh [ELF]     (default: build/m4/kernel-test.elf)
+# usage: tests/runtime-m4/kernel/run_qemu.sh [ELF]     (default: build/m4/kernel-test.elf)
 set -euo pipefail
-elf=${1:-$(dirname "$0")/../../build/m4/kernel-test.elf}
+elf=${1:-$(dirname "$0")/../../../build/m4/kernel-test.elf}
 [ -f "$elf" ] || { echo "run_qemu.sh: no $elf; build the m4 preset first" >&2; exit 3; }
 
 # -icount: 32 virtual nanoseconds an instruction, about the speed of the board, and the same in every

@@ -2,9 +2,9 @@
 # Runs the kernel's stress test on the emulated board (firmware/stress.cpp): every decision of the context
 # switch against a naive policy, under random use and random interrupts. Ends with "N passed, N failed".
 #
-# usage: tests/kernel/run_stress.sh [SECONDS]     of virtual time (default: 60; a minute takes some 20 s)
+# usage: tests/runtime-m4/kernel/run_stress.sh [SECONDS]     of virtual time (default: 60; a minute takes some 20 s)
 set -euo pipefail
-elf=$(dirname "$0")/../../build/m4/kernel-stress.elf
+elf=$(dirname "$0")/../../../build/m4/kernel-stress.elf
 seconds=${1:-60}
 [ -f "$elf" ] || { echo "run_stress.sh: no $elf; build the m4 preset first" >&2; exit 3; }
 

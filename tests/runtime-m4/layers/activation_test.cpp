@@ -1,8 +1,8 @@
 // Programs that come, go and are refused; what goes on meanwhile.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/rig.hpp"
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using namespace robosync;
 using robosync::test::Rig;

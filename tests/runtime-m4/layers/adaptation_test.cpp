@@ -2,8 +2,8 @@
 // and falls back; nothing but the order of threads changes.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/rig.hpp"
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using namespace robosync;
 using test::Rig;

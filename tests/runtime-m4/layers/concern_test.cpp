@@ -5,10 +5,10 @@
 #include <catch2/catch.hpp>
 
 #include "runtime-m4/layers/program.hpp"
-#include "tests/layers/draw.hpp"
-#include "tests/layers/rig.hpp"
-#include "tests/layers/robot.hpp"
-#include "tests/layers/spread.hpp"
+#include "tests/runtime-m4/layers/draw.hpp"
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
+#include "tests/runtime-m4/layers/spread.hpp"
 #include "vm/interpreter.hpp"
 #include "vm/opcode.hpp"
 

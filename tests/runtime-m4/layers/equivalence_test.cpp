@@ -7,9 +7,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/layers/draw.hpp"
-#include "tests/layers/rig.hpp"
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/layers/draw.hpp"
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using namespace robosync;
 using test::Draw;

@@ -1,7 +1,7 @@
 // EVERY: periods counted from activation, fixed or random; what comes too early is skipped.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using robosync::test::Robot;
 

@@ -2,8 +2,8 @@
 // monitor does when nothing does.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/rig.hpp"
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using namespace robosync;
 using robosync::test::Rig;

@@ -10,7 +10,7 @@
 #include <catch2/catch.hpp>
 #include <rapidcheck.h>
 
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using robosync::test::Robot;
 

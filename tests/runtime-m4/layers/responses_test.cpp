@@ -1,7 +1,7 @@
 // From triggers to commands: who runs, who is interrupted, in which order actuators work.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using robosync::test::Robot;
 

@@ -1,5 +1,5 @@
 // See spread.hpp.
-#include "tests/layers/spread.hpp"
+#include "tests/runtime-m4/layers/spread.hpp"
 
 namespace robosync::test {
 namespace {

@@ -1,7 +1,7 @@
 // From readings to steps: what is news, what is unknown, when a step begins.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using robosync::test::Robot;
 

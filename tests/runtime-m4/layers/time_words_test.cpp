@@ -1,7 +1,7 @@
 // The time words in rules, and what COOLDOWN, WAITING and RESTARTING make of triggers.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using robosync::test::Robot;
 

@@ -1,7 +1,7 @@
 // Whole programs on the whole runtime: what comes out of the robot, event by event.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/robot.hpp"
 #include "tests/support/golden.hpp"
 
 using robosync::test::Robot;
@@ -10,7 +10,7 @@ using robosync::testing::read_file;
 
 namespace {
 
-const std::string kGolden = ROBOSYNC_SOURCE_DIR "/tests/layers/golden/";
+const std::string kGolden = ROBOSYNC_SOURCE_DIR "/tests/runtime-m4/layers/golden/";
 const std::string kExamples = ROBOSYNC_SOURCE_DIR "/examples/";
 
 }  // namespace

@@ -1,7 +1,7 @@
 // What is set, who is heard when several set, and what enters the next step.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using robosync::test::Robot;
 

@@ -1,7 +1,7 @@
 // Responses that wait: for time, for their commands, for a condition.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using robosync::test::Robot;
 

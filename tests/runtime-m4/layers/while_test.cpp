@@ -1,7 +1,7 @@
 // WHILE: as long as its condition is true and its actuators are to be had.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using robosync::test::Robot;
 

@@ -1,8 +1,8 @@
 // SAFETY rules: what halts, when, for how long, and what a halted actuator means for the rest.
 #include <catch2/catch.hpp>
 
-#include "tests/layers/rig.hpp"
-#include "tests/layers/robot.hpp"
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
 
 using robosync::test::Rig;
 using robosync::test::Robot;

@@ -12,8 +12,8 @@
 #include "rsc/failure.hpp"
 #include "rsc/session.hpp"
 #include "rsc/uploader.hpp"
-#include "tests/link/programs.hpp"
-#include "tests/link/robot.hpp"
+#include "tests/runtime-m4/update/programs.hpp"
+#include "tests/runtime-m4/update/robot.hpp"
 #include "vm/opcode.hpp"
 
 using namespace robosync;

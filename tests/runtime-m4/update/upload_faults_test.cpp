@@ -9,8 +9,8 @@
 #include "rsc/client.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/uploader.hpp"
-#include "tests/link/programs.hpp"
-#include "tests/link/robot.hpp"
+#include "tests/runtime-m4/update/programs.hpp"
+#include "tests/runtime-m4/update/robot.hpp"
 
 using namespace robosync;
 using test::Bytes;

@@ -2,8 +2,8 @@
 // whatever their numbers and arguments are.
 #include "runtime-m4/kernel/calls.hpp"
 
-#include "tests/kernel/firmware/draw.hpp"
-#include "tests/kernel/firmware/rig.hpp"
+#include "tests/runtime-m4/kernel/firmware/draw.hpp"
+#include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // The board's drivers against the devices QEMU emulates: tmp105 at 0x48 on I2C bus 0.
 #include "runtime-m4/boards/mps2-an386/board.hpp"
-#include "tests/kernel/firmware/rig.hpp"
+#include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // 64-bit division on the board (port/cortex-m4/divide.S): what it gives is what division means.
-#include "tests/kernel/firmware/rig.hpp"
+#include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
 

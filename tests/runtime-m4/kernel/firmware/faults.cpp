@@ -1,5 +1,5 @@
 // Each way a thread can go wrong: it is stopped and described, the others do not notice.
-#include "tests/kernel/firmware/rig.hpp"
+#include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "runtime-m4/port/cortex-m4/core.hpp"
-#include "tests/kernel/firmware/rig.hpp"
+#include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // Threads woken by interrupts: none is lost, at whatever instruction they come.
 #include "runtime-m4/port/cortex-m4/core.hpp"
-#include "tests/kernel/firmware/rig.hpp"
+#include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "runtime-m4/port/cortex-m4/core.hpp"
-#include "tests/kernel/firmware/rig.hpp"
+#include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
 

@@ -1,8 +1,8 @@
 // Runs every scenario on the board, then two resets, and says "N passed, N failed".
 #include "runtime-m4/boards/mps2-an386/board.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
-#include "tests/kernel/firmware/rig.hpp"
-#include "tests/kernel/firmware/semihosting.hpp"
+#include "tests/runtime-m4/kernel/firmware/rig.hpp"
+#include "tests/runtime-m4/kernel/firmware/semihosting.hpp"
 
 // 256 bytes, as one region of the MPU may be; assembler code refers to it.
 extern "C" {

@@ -6,8 +6,8 @@
 
 #include "runtime-m4/boards/mps2-an386/board.hpp"
 #include "runtime-m4/layers/sampler.hpp"
-#include "tests/kernel/firmware/rig.hpp"
-#include "tests/kernel/mutex_cases.hpp"
+#include "tests/runtime-m4/kernel/firmware/rig.hpp"
+#include "tests/runtime-m4/kernel/mutex_cases.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // No register of a thread changes while it does not run.
-#include "tests/kernel/firmware/rig.hpp"
+#include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
 

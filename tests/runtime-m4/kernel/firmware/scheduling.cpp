@@ -1,6 +1,6 @@
 // Preemption, order and time on the board: the same promises the host tests check, with real
 // context switches and a real tick.
-#include "tests/kernel/firmware/rig.hpp"
+#include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
 

@@ -13,8 +13,8 @@
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
-#include "tests/kernel/firmware/draw.hpp"
-#include "tests/kernel/firmware/semihosting.hpp"
+#include "tests/runtime-m4/kernel/firmware/draw.hpp"
+#include "tests/runtime-m4/kernel/firmware/semihosting.hpp"
 
 robosync::kernel::Kernel robosync_kernel;
 robosync::boards::mps2::Board robosync_board;

@@ -2,7 +2,7 @@
 """Has spin try the model of switching and waking (switch.pml) in every order, then each of its mutants,
 in which it must find the mistake. Ends with "N passed, N failed".
 
-usage: tests/model/check_model.py
+usage: tests/runtime-m4/kernel/model/check_model.py
 """
 
 import re
