@@ -17,9 +17,9 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "tests/runtime-m4/update/robot.hpp"
 #include "tests/rsc/image.hpp"
 #include "tests/rsc/process.hpp"
+#include "tests/runtime-m4/update/robot.hpp"
 
 using namespace robosync;
 using Catch::Contains;

@@ -6,10 +6,10 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "tests/compiler/compiled.hpp"
 #include "compiler/config/fields.hpp"
 #include "compiler/config/units.hpp"
 #include "compiler/config/wiring.hpp"
+#include "tests/compiler/compiled.hpp"
 
 using namespace robosync;
 using namespace robosync::compiler;

@@ -1,10 +1,11 @@
 // Every value of a JSON text is found where it stands.
+#include "compiler/config/json_reader.hpp"
+
 #include <functional>
 
 #include <catch2/catch.hpp>
 
 #include "tests/compiler/compiled.hpp"
-#include "compiler/config/json_reader.hpp"
 
 using namespace robosync::compiler;
 using namespace robosync::compiler::testing;

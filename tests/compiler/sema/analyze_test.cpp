@@ -1,10 +1,11 @@
 // What sema makes of a program: the structure that codegen gets.
+#include "compiler/sema/analyze.hpp"
+
 #include <catch2/catch.hpp>
 
-#include "tests/compiler/compiled.hpp"
 #include "compiler/config/robot_reader.hpp"
-#include "compiler/sema/analyze.hpp"
 #include "compiler/syntax/parser.hpp"
+#include "tests/compiler/compiled.hpp"
 
 using namespace robosync;
 using namespace robosync::compiler;

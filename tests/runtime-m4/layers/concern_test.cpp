@@ -6,9 +6,9 @@
 
 #include "runtime-m4/layers/program.hpp"
 #include "tests/runtime-m4/layers/draw.hpp"
+#include "tests/runtime-m4/layers/spread.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
-#include "tests/runtime-m4/layers/spread.hpp"
 #include "vm/interpreter.hpp"
 #include "vm/opcode.hpp"
 

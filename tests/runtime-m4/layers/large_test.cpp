@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "runtime-m4/limits.hpp"
+#include "tests/runtime-m4/layers/spread.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
-#include "tests/runtime-m4/layers/spread.hpp"
 
 using namespace robosync;
 
