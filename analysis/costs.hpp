@@ -66,7 +66,6 @@ inline constexpr std::uint32_t kClockHz = 25'000'000;        // of mps2-an386
 inline constexpr std::uint32_t kCyclesPer2Instructions = 3;  // of an M4 whose memory does not wait
 inline constexpr std::uint32_t kFedPeriodMs = 100;           // of a sensor that is fed
 inline constexpr std::uint32_t kTripPeriodMs = 100;          // of a SAFETY rule, without a reading
-inline constexpr std::uint32_t kServicePeriodMs = 20;        // the frame of servos and PWM
 inline constexpr std::uint32_t kBytesPerSecond = 11'520;     // 115,200 baud, and as many back
 
 inline constexpr std::uint32_t kPerMillisecond = 2 * (kClockHz / 1000) / kCyclesPer2Instructions;

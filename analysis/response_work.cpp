@@ -4,6 +4,7 @@
 
 #include "analysis/costs.hpp"
 #include "analysis/step_work.hpp"
+#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::analysis {
 namespace {
@@ -131,7 +132,7 @@ private:
         work_.polls = true;
         [[fallthrough]];
       case Opcode::wait_done:
-        return note_pause(work_, costs::kServicePeriodMs);
+        return note_pause(work_, policy::kSetpointPeriodMs);
       default:
         return;
     }

@@ -6,6 +6,9 @@
 #include <limits>
 
 #include "analysis/costs.hpp"
+#include "runtime-m4/policy/concern.hpp"
+#include "runtime-m4/policy/rules.hpp"
+#include "runtime-m4/policy/threads.hpp"
 
 namespace robosync::analysis {
 namespace {
@@ -40,11 +43,6 @@ unsigned most_wanted(const std::vector<Actuators>& masks) {
     most = std::max(most, wanting);
   }
   return best;
-}
-
-bool reads_cell(vm::Operand kind) {
-  return kind == vm::Operand::read || kind == vm::Operand::read_truth ||
-         kind == vm::Operand::variable;
 }
 
 // Part by part: only one of them runs in a step.
@@ -90,13 +88,9 @@ StepWork::StepWork(const vm::Image& image) : image_(image), costs_(image.rules.s
 
 void StepWork::load_rule(unsigned r, const vm::Behavior& behavior) {
   const vm::Rule& rule = image_.rules[r];
-  add_inputs(behavior, rule.condition_start, rule.condition_length, condition_reads_[r]);
-  reads_[r] = condition_reads_[r];
-  for (const std::uint16_t index : {rule.then_response, rule.else_response}) {
-    if (index == vm::kNoIndex) continue;
-    const vm::Response& response = image_.responses[index];
-    add_inputs(behavior, response.start, response.length, reads_[r]);
-  }
+  policy::each_input_of_condition(image_, behavior, rule,
+                                  [&](unsigned input) { condition_reads_[r].set(input); });
+  policy::each_input_of_rule(image_, behavior, rule, [&](unsigned input) { reads_[r].set(input); });
   for (const vm::Word word : image_.code.subspan(rule.condition_start, rule.condition_length)) {
     const Opcode op = vm::opcode_of(word);
     if (is_event(op)) ++events_[r];
@@ -114,19 +108,8 @@ void StepWork::note_held(unsigned rule, std::uint32_t duration_ms) {
   held_ms_[rule] = std::max(before == 0 ? duration_ms : std::min(before, duration_ms) / 2, 1U);
 }
 
-void StepWork::add_inputs(const vm::Behavior& behavior, std::uint16_t start, std::uint16_t length,
-                          Inputs& inputs) const {
-  for (const vm::Word word : image_.code.subspan(start, length)) {
-    const vm::OpcodeInfo& info = vm::kOpcodes[static_cast<std::size_t>(vm::opcode_of(word))];
-    const std::array cells{vm::operand_a(word), vm::operand_b(word), vm::operand_c(word)};
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      if (reads_cell(info.operands[i]) && cells[i] < behavior.input_count)
-        inputs.set(image_.inputs[behavior.first_input + cells[i]]);
-  }
-}
-
 bool StepWork::is_safety(unsigned rule) const {
-  return image_.has_safety() && behavior_of_[rule] == vm::kSafetyBehavior;
+  return behavior_of_[rule] < policy::first_behavior(image_);
 }
 
 Inputs StepWork::with_bands(Inputs changed) const {
@@ -252,11 +235,10 @@ bool StepWork::alternates(unsigned rule) const {
 std::uint32_t StepWork::gap_ms(unsigned r) const {
   const vm::Rule& rule = image_.rules[r];
   if (rule.kind != RuleKind::when) return 0;
-  vm::Value gap = 0;
-  if (rule.modifiers != vm::kNoModifiers) gap = image_.modifiers[rule.modifiers].cooldown;
+  vm::Value gap = policy::modifiers_of(image_, rule).cooldown;
   if (vm::opcode_of(last_word(r)) == Opcode::held)
     gap = std::max(gap, image_.timers[vm::operand_c(last_word(r))].duration);
-  return static_cast<std::uint32_t>(std::max(gap, 0));
+  return policy::milliseconds_of(gap);
 }
 
 // Channels stand before variables.
@@ -304,7 +286,7 @@ Instructions StepWork::running() const {
 bool StepWork::may_lose(unsigned rule) const {
   if (image_.has_safety() || image_.rules[rule].modifiers != vm::kNoModifiers) return true;
   for (unsigned r = 0; r < image_.rules.size(); ++r)
-    if (r != rule && behavior_of_[r] <= behavior_of_[rule] &&
+    if (r != rule && !policy::may_take(behavior_of_[rule], behavior_of_[r], true) &&
         (actuators({r}) & actuators({rule})) != 0)
       return true;
   return false;
@@ -312,10 +294,7 @@ bool StepWork::may_lose(unsigned rule) const {
 
 // Loses today, asks again tomorrow.
 bool StepWork::wants_on(unsigned r) const {
-  const vm::Rule& rule = image_.rules[r];
-  const bool waits =
-      rule.modifiers != vm::kNoModifiers && image_.modifiers[rule.modifiers].waiting > 0;
-  return rule.kind == RuleKind::while_ || waits;
+  return policy::claims_again(image_, image_.rules[r]);
 }
 
 Instructions StepWork::look() const {
@@ -351,7 +330,7 @@ std::uint32_t StepWork::every_ms(unsigned r) const {
     if (vm::opcode_of(word) != Opcode::load) return 1;
     least = std::min(least, image_.constants[vm::operand_wide(word)]);
   }
-  return static_cast<std::uint32_t>(std::max(least, 1));
+  return policy::period_ms(least);
 }
 
 std::uint32_t StepWork::period_ms(unsigned r) const {
@@ -361,7 +340,7 @@ std::uint32_t StepWork::period_ms(unsigned r) const {
     return dearest_[r].pauses ? std::min(every_ms(r), dearest_[r].shortest_wait_ms) : every_ms(r);
   if (dearest_[r].pauses) return dearest_[r].shortest_wait_ms;
   if (!wants_on(r)) return 0;
-  return kind != RuleKind::while_ || actuators({r}) != 0 ? costs::kServicePeriodMs : 1;
+  return kind != RuleKind::while_ || actuators({r}) != 0 ? policy::kSetpointPeriodMs : 1;
 }
 
 }  // namespace robosync::analysis

@@ -1,8 +1,8 @@
 // What a step does on the board, and what that costs at most: which rules a change concerns, what
 // their responses put out, what they set.
 //
-// The rules are those of runtime-m4/layers (concern.cpp, processing.hpp), the costs those of
-// costs.hpp and of the code itself (vm/cost.hpp). Images must be verified.
+// What the runtime does is what runtime-m4/policy says, the costs are those of costs.hpp and of the
+// code itself (vm/cost.hpp). Images must be verified.
 #pragma once
 
 #include <bitset>
@@ -66,6 +66,7 @@ public:
   [[nodiscard]] Instructions look() const;
   [[nodiscard]] Instructions trips() const;
 
+  [[nodiscard]] bool is_safety(unsigned rule) const;
   [[nodiscard]] unsigned behavior_of(unsigned rule) const { return behavior_of_[rule]; }
   // The inputs that SAFETY rules read: the safety thread looks when one changes.
   [[nodiscard]] const Inputs& watched() const { return watched_; }
@@ -84,8 +85,6 @@ public:
   [[nodiscard]] std::uint32_t period_ms(unsigned rule) const;
 
 private:
-  void add_inputs(const vm::Behavior& behavior, std::uint16_t start, std::uint16_t length,
-                  Inputs& inputs) const;
   [[nodiscard]] vm::Word last_word(unsigned rule) const;
   void note_held(unsigned rule, std::uint32_t duration_ms);
   void load_rule(unsigned rule, const vm::Behavior& behavior);
@@ -99,7 +98,6 @@ private:
   [[nodiscard]] std::uint32_t every_ms(unsigned rule) const;
   [[nodiscard]] bool wants_on(unsigned rule) const;
   [[nodiscard]] bool may_lose(unsigned rule) const;
-  [[nodiscard]] bool is_safety(unsigned rule) const;
 
   const vm::Image& image_;
   std::vector<vm::RuleCost> costs_;

@@ -12,17 +12,19 @@
 #include "analysis/costs.hpp"
 #include "analysis/exclusive.hpp"
 #include "analysis/step_work.hpp"
-#include "runtime-m4/safety/period.hpp"
+#include "runtime-m4/policy/adaptation.hpp"
+#include "runtime-m4/policy/rules.hpp"
+#include "runtime-m4/policy/threads.hpp"
 
 namespace robosync::analysis {
 namespace {
 
+using policy::Category;
+
+constexpr unsigned kAgeBits = 8;  // of rank_of()
+
 constexpr Instructions instructions_in_ms(Instructions ms) {
   return ms * costs::kPerMillisecond;
-}
-
-bool is_fed(const vm::Sensor& sensor) {
-  return sensor.period_ms == 0 || sensor.driver == vm::DriverId::virtual_sensor;
 }
 
 Instructions read_cost(vm::DriverId driver) {
@@ -44,14 +46,15 @@ Rules common(const Rules& a, const Rules& b) {
 
 class Builder {
 public:
-  Builder(const vm::Image& image, int cap) : image_(image), cap_(cap), work_(image) {}
+  Builder(const vm::Image& image, int cap)
+      : image_(image), cap_(static_cast<std::int8_t>(cap)), work_(image) {}
 
   TaskSet build() {
     for (unsigned s = 0; s < image_.sensors.size(); ++s)
       add_sensor(s);
     for (unsigned r = 0; r < image_.rules.size(); ++r) {
       if (work_.period_ms(r) != 0) add_rule(r);
-      if (work_.held_ms(r) != 0 && !is_safety(r)) add_held(r);
+      if (work_.held_ms(r) != 0 && !work_.is_safety(r)) add_held(r);
     }
     add_fading();
     add_checks();
@@ -63,55 +66,49 @@ public:
   }
 
 private:
-  // --- priorities: as runtime-m4/layers/program.cpp has them ---
+  // --- ranks ---
 
-  bool is_safety(unsigned rule) const {
-    return image_.has_safety() && work_.behavior_of(rule) == vm::kSafetyBehavior;
+  static bool reads(const vm::Image& image, unsigned b, const Inputs& channels) {
+    const vm::Behavior& behavior = image.behaviors[b];
+    const auto inputs = image.inputs.subspan(behavior.first_input, behavior.input_count);
+    return std::ranges::any_of(inputs, [&](std::uint8_t input) { return channels.test(input); });
   }
 
-  unsigned first_behavior() const { return image_.has_safety() ? vm::kSafetyBehavior + 1U : 0; }
-  int lowest_priority() const { return image_.behaviors.back().priority; }
-
-  // Of the most important behaviour that reads the sensor; none of them: below all.
-  int priority_of(const Inputs& channels, bool raised) const {
-    int priority = image_.behaviors.empty() ? 0 : lowest_priority() - 1;
+  // Of a sensor's thread with these channels; `adapted`: where all behaviours are worth the most.
+  policy::Standing standing_of(const Inputs& channels, bool adapted) const {
+    std::int8_t priority = policy::idle_priority(image_);
     for (unsigned b = 0; b < image_.behaviors.size(); ++b) {
-      const vm::Behavior& behavior = image_.behaviors[b];
-      const auto inputs = image_.inputs.subspan(behavior.first_input, behavior.input_count);
-      if (std::ranges::none_of(inputs, [&](std::uint8_t input) { return channels.test(input); }))
-        continue;
-      const bool adapts = raised && b >= first_behavior();
-      priority = std::max(priority,
-                          adapts ? std::max<int>(behavior.priority, cap_) : int{behavior.priority});
+      if (!policy::needs(image_, b, Category::sensor, 0, reads(image_, b, channels))) continue;
+      const auto base = static_cast<std::int8_t>(image_.behaviors[b].priority);
+      const bool adapts = adapted && b >= policy::first_behavior(image_);
+      priority = std::max(priority, adapts ? policy::ceiling(base, cap_) : base);
     }
-    return priority;
+    return policy::standing(Category::sensor, priority);
   }
 
-  // The lower outranks; threads of one priority in the order in which they are started, and all fed
-  // sensors have one thread.
-  static unsigned rank_of(int priority, unsigned order) {
-    constexpr int kAbove = 1000;  // any priority
-    constexpr unsigned kThreads = 1000;
-    return static_cast<unsigned>(kAbove - priority) * kThreads + order;
+  // Does it interrupt the behaviour of the lowest priority?
+  bool outranks_a_behavior(policy::Standing standing) const {
+    if (image_.behaviors.size() <= policy::first_behavior(image_)) return false;
+    const auto lowest = static_cast<std::int8_t>(image_.behaviors.back().priority);
+    return standing > policy::standing(Category::behavior, lowest);
   }
 
-  void place(Source& source, unsigned sensor, const Inputs& channels) const {
-    const bool fed = is_fed(image_.sensors[sensor]);
-    const unsigned order = fed ? static_cast<unsigned>(image_.sensors.size()) : sensor;
-    const int base = fed ? fed_priority(false) : priority_of(channels, false);
-    const int raised = fed ? fed_priority(true) : priority_of(channels, true);
-    source.rank = rank_of(base, order);
-    source.raised = raised == base ? source.rank : rank_of(raised, 0);
-    const bool has_behavior = image_.behaviors.size() > first_behavior();
-    source.outranks_a_behavior = has_behavior && base > lowest_priority();
-    source.may_outrank_one = has_behavior && raised > lowest_priority();
+  // As a number: the lower outranks; threads of one standing by age, which is their order.
+  static unsigned rank_of(policy::Standing standing, unsigned order) {
+    return (policy::standing(Category::safety, std::int8_t{0}) - standing) << kAgeBits | order;
   }
 
-  int fed_priority(bool raised) const {
+  void place(Source& source, unsigned sensor) const {
+    const unsigned thread = policy::thread_of(image_, sensor);
     Inputs channels;
     for (unsigned s = 0; s < image_.sensors.size(); ++s)
-      if (is_fed(image_.sensors[s])) channels |= channels_of(image_.sensors[s]);
-    return priority_of(channels, raised);
+      if (policy::thread_of(image_, s) == thread) channels |= channels_of(image_.sensors[s]);
+    const policy::Standing base = standing_of(channels, false);
+    const policy::Standing raised = standing_of(channels, true);
+    source.rank = rank_of(base, thread);
+    source.raised = raised == base ? source.rank : rank_of(raised, 0);
+    source.outranks_a_behavior = outranks_a_behavior(base);
+    source.may_outrank_one = outranks_a_behavior(raised);
   }
 
   static Inputs channels_of(const vm::Sensor& sensor) {
@@ -130,15 +127,15 @@ private:
     const Rules rules = work_.concerned(changed);
     Source source;
     source.name = image_.string(sensor.name);
-    source.period =
-        instructions_in_ms(is_fed(sensor) ? costs::kFedPeriodMs : std::uint32_t{sensor.period_ms});
-    if (!is_fed(sensor))
+    source.period = instructions_in_ms(policy::is_fed(sensor) ? costs::kFedPeriodMs
+                                                              : std::uint32_t{sensor.period_ms});
+    if (!policy::is_fed(sensor))
       source.sample =
           costs::kWakeByTimer + sensor.channel_count * read_cost(sensor.driver) +
           (sensor.channel_count - Instructions{1}) * costs::kChannel;  // the first is in the step
     if ((channels & work_.watched()).any()) source.sample += costs::kWake + looks() + work_.trips();
     source.step = work_.step(rules, changed);
-    place(source, s, channels);
+    place(source, s);
     const Rules fire = work_.stirred(rules, changed);
     for (unsigned a = 0; a < image_.actuators.size(); ++a)
       if ((work_.actuators(fire) >> a & 1) != 0)
@@ -318,8 +315,8 @@ private:
       const Rules rules = work_.concerned(band);
       const vm::Variable& variable = image_.variables[check.variable];
       add_timed(fmt::format("samples of {}", image_.string(variable.name)),
-                std::max<std::uint32_t>(check.sample_ms, 1), rules, band,
-                work_.stirred(rules, band), work_.sets(work_.stirred(rules, band)));
+                policy::sample_period_ms(check), rules, band, work_.stirred(rules, band),
+                work_.sets(work_.stirred(rules, band)));
     }
   }
 
@@ -330,7 +327,7 @@ private:
     Instructions longest = 0;
     unsigned on_bus = 0;
     for (const vm::Sensor& sensor : image_.sensors) {
-      const Instructions transfer = is_fed(sensor) ? 0 : read_cost(sensor.driver);
+      const Instructions transfer = policy::is_fed(sensor) ? 0 : read_cost(sensor.driver);
       on_bus += transfer != 0 ? 1 : 0;
       longest = std::max(longest, transfer);
     }
@@ -338,8 +335,7 @@ private:
   }
 
   void add_interferences() {
-    const Instructions period =
-        instructions_in_ms(robosync::safety::kPeriod / kernel::milliseconds(1));
+    const Instructions period = instructions_in_ms(policy::kSafetyPeriodMs);
     set_.interferences.push_back(
         {"the tick", instructions_in_ms(1), costs::kTick + costs::kSwitch});
     set_.interferences.push_back(
@@ -351,21 +347,21 @@ private:
       set_.interferences.push_back({"SAFETY rules that trip by time alone",
                                     instructions_in_ms(costs::kTripPeriodMs), work_.trips()});
     for (const vm::Adaptation& adaptation : image_.adaptations)
-      set_.interferences.push_back({"priorities that adapt",
-                                    instructions_in_ms(adaptation.window_ms),
-                                    costs::kRank * (image_.behaviors.size() - first_behavior())});
-    for (const vm::Behavior& behavior : image_.behaviors.subspan(first_behavior()))
+      set_.interferences.push_back(
+          {"priorities that adapt", instructions_in_ms(adaptation.window_ms),
+           costs::kRank * (image_.behaviors.size() - policy::first_behavior(image_))});
+    for (const vm::Behavior& behavior : image_.behaviors.subspan(policy::first_behavior(image_)))
       commanded_ |= behavior.actuators;
     // Its next setpoint; or its command is done, and the next one in its queue begins.
     for (unsigned a = 0; a < image_.actuators.size(); ++a)
       if ((commanded_ >> a & 1) != 0)
         set_.interferences.push_back({std::string(image_.string(image_.actuators[a].name)),
-                                      instructions_in_ms(costs::kServicePeriodMs),
+                                      instructions_in_ms(policy::kSetpointPeriodMs),
                                       costs::kService});
   }
 
   const vm::Image& image_;
-  int cap_;
+  std::int8_t cap_;
   StepWork work_;
   TaskSet set_;
   // By rule: the sources whose steps may trigger it, or let it go on.

@@ -3,13 +3,14 @@
 #include <algorithm>
 
 #include "runtime-m4/drivers/drivers.hpp"
+#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::drivers::pwm {
 namespace {
 
 constexpr vm::Value kFull = 100 * vm::kScale;
 constexpr std::uint32_t kFrame = 20'000;  // microseconds
-constexpr kernel::Duration kSetpointPeriod = kernel::milliseconds(20);
+constexpr kernel::Duration kSetpointPeriod = kernel::milliseconds(policy::kSetpointPeriodMs);
 
 void output(Device device, vm::Value percent) {
   const auto duty = static_cast<std::uint64_t>(std::clamp(percent, vm::Value{0}, kFull));

@@ -10,11 +10,12 @@
 #include <algorithm>
 
 #include "runtime-m4/drivers/drivers.hpp"
+#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::drivers::servo {
 namespace {
 
-constexpr kernel::Duration kFrame = kernel::milliseconds(20);
+constexpr kernel::Duration kFrame = kernel::milliseconds(policy::kSetpointPeriodMs);
 constexpr std::uint32_t kShortestPulse = 500;  // microseconds
 constexpr std::uint32_t kPulseSpan = 2000;
 constexpr vm::Value kDefaultSpeed = 90 * vm::kScale;  // thousandths of a degree a second

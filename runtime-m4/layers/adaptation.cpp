@@ -16,8 +16,8 @@ void Adaptation::start() {
 
 void Adaptation::count(const Program& program, unsigned behavior, std::uint32_t now) {
   if (program.image.adaptations.empty()) return;
-  kernel::TriggerCount& triggers = triggers_[behavior];
-  if (triggers != kernel::kMostTriggers) ++triggers;
+  policy::TriggerCount& triggers = triggers_[behavior];
+  if (triggers != policy::kMostTriggers) ++triggers;
   if (end_ == kNever) end_ = end_after(program, now);
 }
 
@@ -35,13 +35,11 @@ void Adaptation::turn(const Program& program, Crew& crew, Trace& trace, std::uin
 // The SAFETY rules count as a behaviour that nothing is counted for. Every thread takes its place
 // anew, in the order of age: so equals stand as they did at first.
 bool Adaptation::rank(const Program& program, Crew& crew, Trace& trace) {
-  kernel::AdaptationRule rule;
-  for (const vm::Adaptation& wiring : program.image.adaptations)
-    rule = {wiring.alpha, wiring.window_ms, static_cast<std::int8_t>(wiring.cap)};
-  const auto idle = static_cast<std::int8_t>(program.idle_priority());
+  const policy::AdaptationRule rule = policy::adaptation_of(program.image);
+  const std::int8_t idle = policy::idle_priority(program.image);
   const auto worth = [&](unsigned b) {
     const auto base = static_cast<std::int8_t>(program.image.behaviors[b].priority);
-    return kernel::adapted(base, triggers_[b], rule);
+    return policy::adapted(base, triggers_[b], rule);
   };
   crew.rank([&](const kernel::Thread& thread, unsigned index) {
     Priority highest{idle, idle};
@@ -53,8 +51,8 @@ bool Adaptation::rank(const Program& program, Crew& crew, Trace& trace) {
     return highest;
   });
   unsigned counted = 0;
-  for (kernel::TriggerCount& triggers : triggers_)
-    counted |= std::exchange(triggers, kernel::TriggerCount{0});
+  for (policy::TriggerCount& triggers : triggers_)
+    counted |= std::exchange(triggers, policy::TriggerCount{0});
   return counted != 0;
 }
 

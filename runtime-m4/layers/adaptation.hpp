@@ -1,6 +1,6 @@
 // Adaptive priorities of a program's threads: counts how often each behaviour is triggered, and at
 // the end of each window gives every thread the highest of what the behaviours that need it are
-// worth now (kernel/adaptation.hpp).
+// worth now (policy/adaptation.hpp).
 //
 // Windows follow each other in program time from activation on, so host and board change ranks at
 // the same tick: the step thread does it, before anything else at that tick but what outranks it.
@@ -11,11 +11,11 @@
 #include <array>
 #include <cstdint>
 
-#include "runtime-m4/kernel/adaptation.hpp"
 #include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/layers/crew.hpp"
 #include "runtime-m4/layers/program.hpp"
 #include "runtime-m4/layers/trace.hpp"
+#include "runtime-m4/policy/adaptation.hpp"
 
 namespace robosync::layers {
 
@@ -37,7 +37,7 @@ public:
 private:
   static std::uint32_t end_after(const Program& program, std::uint32_t now);
 
-  std::array<kernel::TriggerCount, kMaxBehaviors> triggers_{};  // in this window
+  std::array<policy::TriggerCount, kMaxBehaviors> triggers_{};  // in this window
   std::uint32_t end_ = kNever;                                  // of this window
 };
 

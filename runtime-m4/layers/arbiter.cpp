@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "runtime-m4/policy/rules.hpp"
+
 namespace robosync::layers {
 namespace {
 
@@ -10,7 +12,7 @@ constexpr std::uint8_t kNobody = 0xFF;
 
 bool may_take(const Claim& claim, const Holding& from) {
   if (from.won_now) return false;
-  return claim.retries ? from.behavior > claim.behavior : from.behavior >= claim.behavior;
+  return policy::may_take(claim.behavior, from.behavior, claim.retries);
 }
 
 }  // namespace

@@ -5,16 +5,9 @@
 #include <algorithm>
 
 #include "runtime-m4/layers/clock.hpp"
+#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::layers {
-namespace {
-
-unsigned period_of(const vm::Check& check) {
-  return std::max<unsigned>(check.sample_ms, 1);
-}
-
-}  // namespace
-
 void Checks::start(const vm::Image& image) {
   wiring_ = image.checks;
   bands_ = image.bands;
@@ -33,7 +26,7 @@ bool Checks::update(unsigned check, std::uint32_t now, std::span<vm::Value> valu
   if (wiring.window > 1) {
     Window& window = windows_[check];
     const Samples samples = std::span(samples_).subspan(window.first, wiring.window);
-    value = smoothed(window, samples, period_of(wiring), now, value);
+    value = smoothed(window, samples, policy::sample_period_ms(wiring), now, value);
   }
   vm::Value& band = values[channels_ + wiring.variable];
   const vm::Value before = band;
@@ -46,7 +39,7 @@ std::uint32_t Checks::next(std::uint32_t now) const {
   for (unsigned c = 0; c < wiring_.size(); ++c) {
     // Once what is held is the median, more of it changes nothing.
     if (windows_[c].held == windows_[c].median) continue;
-    next.at(windows_[c].newest + period_of(wiring_[c]));
+    next.at(windows_[c].newest + policy::sample_period_ms(wiring_[c]));
   }
   return next.delay();
 }

@@ -2,34 +2,11 @@
 // rules follow each other without gaps, as the channels of the sensors do.
 #include "runtime-m4/layers/program.hpp"
 
+#include "runtime-m4/policy/concern.hpp"
 #include "vm/opcode.hpp"
 #include "vm/timers.hpp"
 
 namespace robosync::layers {
-namespace {
-
-// By opcode, bit i: operand i is a cell that may be an input. The verifier's table has more in it,
-// and vm::kOpcodes has the documentation, which is not for the board.
-constexpr std::array<std::uint8_t, vm::kOpcodes.size()> kInputs = [] {
-  std::array<std::uint8_t, vm::kOpcodes.size()> inputs{};
-  for (std::size_t op = 0; op < inputs.size(); ++op) {
-    unsigned mask = 0;
-    for (unsigned i = 0; i < 3; ++i) {
-      const vm::Operand kind = vm::kOpcodes[op].operands[i];
-      if (kind == vm::Operand::read || kind == vm::Operand::read_truth ||
-          kind == vm::Operand::variable)
-        mask |= 1U << i;
-    }
-    inputs[op] = static_cast<std::uint8_t>(mask);
-  }
-  return inputs;
-}();
-
-}  // namespace
-
-bool is_fed(const vm::Sensor& sensor) {
-  return sensor.period_ms == 0 || sensor.driver == vm::DriverId::virtual_sensor;
-}
 
 void Program::load(const vm::Image& loaded) {
   image = loaded;
@@ -56,32 +33,10 @@ void Program::load_rules(unsigned b) {
     if (image.rules[r].kind == vm::RuleKind::watch)
       truth_cell[r] = static_cast<std::uint8_t>(cell++);
     if (b >= first_behavior()) {
-      note_inputs(behavior, r);
+      policy::each_input_of_rule(image, behavior, image.rules[r],
+                                 [&](std::uint8_t input) { readers[input].insert(r); });
     } else {
       note_timers(image.rules[r]);
-    }
-  }
-}
-
-// Those of its responses as well: they stir the behaviour, for responses that wait.
-void Program::note_inputs(const vm::Behavior& behavior, unsigned rule) {
-  const vm::Rule& wiring = image.rules[rule];
-  note_inputs(behavior, rule, wiring.condition_start, wiring.condition_length);
-  for (const std::uint16_t index : {wiring.then_response, wiring.else_response}) {
-    if (index == vm::kNoIndex) continue;
-    const vm::Response& response = image.responses[index];
-    note_inputs(behavior, rule, response.start, response.length);
-  }
-}
-
-void Program::note_inputs(const vm::Behavior& behavior, unsigned rule, std::uint16_t start,
-                          std::uint16_t length) {
-  for (vm::Word word : image.code.subspan(start, length)) {
-    for (unsigned places = kInputs[word & 0xFF]; places != 0; places >>= 1) {
-      word >>= 8;
-      const std::size_t cell = word & 0xFF;
-      if ((places & 1) != 0 && cell < behavior.input_count)
-        readers[image.inputs[behavior.first_input + cell]].insert(rule);
     }
   }
 }
@@ -98,40 +53,23 @@ void Program::note_timers(const vm::Rule& rule) {
   }
 }
 
-std::int16_t Program::idle_priority() const {
-  if (image.behaviors.empty()) return 0;
-  return static_cast<std::int16_t>(image.behaviors.back().priority - 1);
-}
-
 BehaviorMask Program::needing(kernel::Category category, unsigned index) const {
-  using kernel::Category;
-  const InputMask channels = category == Category::sensor ? channels_of(index) : 0;
+  const InputMask channels = category == kernel::Category::sensor ? channels_of(index) : 0;
   BehaviorMask needing = 0;
-  for (unsigned b = 0; b < image.behaviors.size(); ++b) {
-    const bool reads = (inputs[b] & channels) != 0;
-    const bool commands = category == Category::control && b >= first_behavior() &&
-                          has(image.behaviors[b].actuators, index);
-    const bool is_it = category == Category::behavior && b == index;
-    if (reads || commands || is_it || category == Category::processing)
+  for (unsigned b = 0; b < image.behaviors.size(); ++b)
+    if (policy::needs(image, b, category, index, (inputs[b] & channels) != 0))
       needing |= bit<BehaviorMask>(b);
-  }
   return needing;
 }
 
-InputMask Program::channels_of(unsigned sensor) const {
+InputMask Program::channels_of(unsigned sensor_thread) const {
   InputMask channels = 0;
   for (unsigned s = 0; s < image.sensors.size(); ++s) {
     const vm::Sensor& wiring = image.sensors[s];
-    if (s == sensor || (sensor == kFedSensors && is_fed(wiring)))
+    if (policy::thread_of(image, s) == sensor_thread)
       channels |= ((InputMask{1} << wiring.channel_count) - 1) << wiring.first_channel;
   }
   return channels;
-}
-
-bool Program::has_fed_sensors() const {
-  for (const vm::Sensor& sensor : image.sensors)
-    if (is_fed(sensor)) return true;
-  return false;
 }
 
 namespace {
@@ -197,7 +135,7 @@ vm::Verdict fits(const vm::Image& image) {
   std::size_t sensors = 0;
   std::size_t fed_sensors = 0;
   for (const vm::Sensor& sensor : image.sensors)
-    (is_fed(sensor) ? fed_sensors : sensors) += 1;
+    (policy::is_fed(sensor) ? fed_sensors : sensors) += 1;
   if (fed_sensors > 0) ++sensors;  // one thread for all
   std::size_t behaviors = image.behaviors.size();
   if (image.has_safety()) --behaviors;

@@ -7,13 +7,11 @@
 #include "runtime-m4/kernel/scheduler.hpp"
 #include "runtime-m4/layers/messages.hpp"
 #include "runtime-m4/layers/rule_set.hpp"
+#include "runtime-m4/policy/threads.hpp"
 #include "vm/image.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::layers {
-
-// In the place of a sensor: all that are fed, which one thread serves.
-inline constexpr unsigned kFedSensors = kMaxSensors;
 
 struct Program {
   vm::Image image;
@@ -27,28 +25,20 @@ struct Program {
   // `image` is verified and fits().
   void load(const vm::Image& image);
 
-  unsigned first_behavior() const { return image.has_safety() ? vm::kSafetyBehavior + 1 : 0; }
+  unsigned first_behavior() const { return policy::first_behavior(image); }
   bool is_variable(unsigned input) const { return input >= image.channels.size(); }
 
   // The behaviours that need a thread, the SAFETY rules among them. `index` is that of its sensor
-  // (kFedSensors: all that are fed), behaviour or actuator; everybody needs the step thread.
+  // (policy::kFedSensors: all that are fed), behaviour or actuator.
   BehaviorMask needing(kernel::Category category, unsigned index) const;
 
-  InputMask channels_of(unsigned sensor) const;
-  bool has_fed_sensors() const;
-  // Of threads that no behaviour needs: below all that one does.
-  std::int16_t idle_priority() const;
+  // That a sensor's thread publishes.
+  InputMask channels_of(unsigned sensor_thread) const;
 
 private:
   void load_rules(unsigned behavior);
-  void note_inputs(const vm::Behavior& behavior, unsigned rule);
-  void note_inputs(const vm::Behavior& behavior, unsigned rule, std::uint16_t start,
-                   std::uint16_t length);
   void note_timers(const vm::Rule& rule);
 };
-
-// Its readings come from outside, at any time: it is not sampled.
-[[nodiscard]] bool is_fed(const vm::Sensor& sensor);
 
 // What the verifier's limits do not say: channels, variables, rules, threads and their stacks.
 [[nodiscard]] vm::Verdict fits(const vm::Image& image);

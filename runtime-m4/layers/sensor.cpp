@@ -17,8 +17,8 @@ bool SensorLayer::start(const Program& program, Sampler& sampler, Crew& crew) {
   feeds_.clear();
   stations_.fill({});
   for (unsigned s = 0; s < program.image.sensors.size(); ++s)
-    if (!is_fed(program.image.sensors[s]) && !start_sensor(s, crew)) return false;
-  return !program.has_fed_sensors() || start_feeds(crew);
+    if (!policy::is_fed(program.image.sensors[s]) && !start_sensor(s, crew)) return false;
+  return !policy::has_fed_sensors(program.image) || start_feeds(crew);
 }
 
 bool SensorLayer::start_sensor(unsigned sensor, Crew& crew) {
@@ -49,7 +49,7 @@ bool SensorLayer::start_feeds(Crew& crew) {
   spec.category = kernel::Category::sensor;
   spec.entry = [](void* self) { static_cast<SensorLayer*>(self)->run_feeds(); };
   spec.argument = this;
-  feed_thread_ = crew.start(spec, kFedSensors, kSensorStack);
+  feed_thread_ = crew.start(spec, policy::kFedSensors, kSensorStack);
   return feed_thread_ != nullptr;
 }
 
@@ -129,7 +129,7 @@ void SensorLayer::announce(InputMask channels) {
 
 link::FeedError SensorLayer::check(const link::Feed& feed) const {
   if (feed.channel >= program_->image.channels.size()) return link::FeedError::no_channel;
-  if (!is_fed(program_->image.sensors[program_->image.channels[feed.channel].sensor]))
+  if (!policy::is_fed(program_->image.sensors[program_->image.channels[feed.channel].sensor]))
     return link::FeedError::not_virtual;
   if (feed.at_us != 0 && feed.at_us < trace_.program_time()) return link::FeedError::in_the_past;
   return link::FeedError::none;
@@ -153,8 +153,7 @@ link::FeedResult SensorLayer::feed(const link::Feed& feed) {
 void SensorLayer::retire(unsigned member_index) {
   for (unsigned s = 0; s < program_->image.sensors.size(); ++s) {
     const vm::Sensor& wiring = program_->image.sensors[s];
-    const bool served = is_fed(wiring) ? member_index == kFedSensors : member_index == s;
-    if (!served) continue;
+    if (policy::thread_of(program_->image, s) != member_index) continue;
     for (unsigned i = 0; i < wiring.channel_count; ++i)
       mailboxes_.forget(wiring.first_channel + i);
   }

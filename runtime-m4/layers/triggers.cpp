@@ -5,16 +5,12 @@
 #include <algorithm>
 
 #include "runtime-m4/layers/clock.hpp"
+#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::layers {
 namespace {
 
-constexpr vm::Modifiers kPlain{};
-
-// Of a duration in thousandths of a second; none is negative.
-std::uint32_t milliseconds_of(vm::Value thousandths) {
-  return static_cast<std::uint32_t>(std::max<vm::Value>(thousandths, 0));
-}
+using policy::milliseconds_of;
 
 // kNever is no time: the millisecond after it is taken, once in 49 days.
 std::uint32_t as_time(std::uint32_t time) {
@@ -36,8 +32,7 @@ void Triggers::start(const vm::Image& image) {
 }
 
 const vm::Modifiers& Triggers::modifiers(unsigned rule) const {
-  const std::uint8_t index = image_->rules[rule].modifiers;
-  return index == vm::kNoModifiers ? kPlain : image_->modifiers[index];
+  return policy::modifiers_of(*image_, image_->rules[rule]);
 }
 
 // --- what was evaluated ---
@@ -75,7 +70,7 @@ bool Triggers::begin_period(unsigned rule, std::uint32_t now) {
 // skipped.
 void Triggers::draw_period(unsigned rule, vm::Value thousandths, std::uint32_t now) {
   const std::uint32_t begin = due(rule) != kNever ? due(rule) : now;
-  std::uint32_t end = begin + std::max<std::uint32_t>(milliseconds_of(thousandths), 1);
+  std::uint32_t end = begin + policy::period_ms(thousandths);
   if (reached(end, now)) end = now + 1;
   workspace_.due[rule] = thousandths == vm::kUnknown ? kNever : as_time(end);
 }

@@ -2,9 +2,10 @@
 #pragma once
 
 #include "runtime-m4/kernel/time.hpp"
+#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::safety {
 
-inline constexpr kernel::Duration kPeriod = kernel::milliseconds(10);
+inline constexpr kernel::Duration kPeriod = kernel::milliseconds(policy::kSafetyPeriodMs);
 
 }  // namespace robosync::safety

@@ -24,10 +24,10 @@ MACHINE = ("runtime-m4/boards/", "runtime-m4/port/")
 HOST_ONLY = "runtime-m4/port/host/"
 # Inside runtime-m4/: what each folder may include of it, besides itself.
 RUNTIME = {
-    "kernel": {"port"},
-    "layers": {"kernel", "port", "boards", "drivers"},
-    "drivers": {"kernel", "boards"},
-    "safety": {"kernel", "boards", "layers"},
+    "kernel": {"port", "policy"},
+    "layers": {"kernel", "port", "boards", "drivers", "policy"},
+    "drivers": {"kernel", "boards", "policy"},
+    "safety": {"kernel", "boards", "layers", "policy"},
     "update": {"kernel", "boards", "port"},
 }
 # Standard headers that allocate or throw, or need an operating system.
@@ -80,14 +80,15 @@ def read_tree(root):
 
 
 def read_layers(architecture):
-    """{folder: set of folders it may include, or None for all} from the table of the map."""
+    """{folder: set of folders it may include, or None for all} from the table of the map. A folder inside
+    another one may have a row of its own, which then holds for it, and may be what a row allows."""
     layers = {}
     for line in architecture:
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
-        folders = re.findall(r"`([\w-]+)/`", cells[0]) if len(cells) == 3 else []
+        folders = re.findall(r"`([\w/-]+)/`", cells[0]) if len(cells) == 3 else []
         if len(folders) != 1:
             continue
-        allowed = {folders[0], *re.findall(r"`([\w-]+)/`", cells[2])}
+        allowed = {folders[0], *re.findall(r"`([\w/-]+)/`", cells[2])}
         layers[folders[0]] = None if "all" in cells[2] else allowed
     return layers
 
@@ -98,19 +99,32 @@ def includes(source):
             yield number, match.group(1) == '"', match.group(2)
 
 
+def layer_of(path, layers):
+    """The innermost folder of the map that the file stands in; None outside of it."""
+    top = path.split("/")[0]
+    path = PART_OF.get(top, top) + path[len(top):]
+    inside = [folder for folder in layers if path.startswith(folder + "/")]
+    return max(inside, key=len, default=None)
+
+
+def may_include(allowed, folder):
+    """A folder is allowed with all that stands in it."""
+    return allowed is None or any(f"{folder}/".startswith(f"{other}/") for other in allowed)
+
+
 def check_layering(sources, layers):
     """Includes stand from the top of the repository and follow the table of the map."""
     for source in sources:
-        layer = PART_OF.get(source.top, source.top)
-        if source.suffix not in CODE or layer not in layers:
+        layer = layer_of(source.path, layers)
+        if source.suffix not in CODE or layer is None:
             continue
         for number, quoted, target in includes(source):
             if not quoted or target.startswith("rsl_"):  # generated from grammar/
                 continue
-            target_layer = PART_OF.get(target.split("/")[0], target.split("/")[0])
-            if target_layer not in layers:
+            target_layer = layer_of(target, layers)
+            if target_layer is None:
                 yield Problem(source.path, number, f'"{target}" does not start at a layer\'s folder')
-            elif layers[layer] is not None and target_layer not in layers[layer]:
+            elif not may_include(layers[layer], target_layer):
                 yield Problem(source.path, number, f"{layer}/ may not include {target_layer}/")
 
 

@@ -15,7 +15,9 @@ MAP = """
 | `compiler/` | RSL to image | `vm/` |
 | `vm/` | bytecode | itself |
 | `link/` | serial protocol | itself |
+| `analysis/` | worst case | `vm/`, `runtime-m4/policy/` |
 | `runtime-m4/` | the board | `vm/`, `link/` |
+| `runtime-m4/policy/` | pure functions | `vm/` |
 | `rsc/` | the tool | all of them |
 | `tests/ bench/` | | |
 """
@@ -33,6 +35,8 @@ class Repository(unittest.TestCase):
         layers = structure.read_layers(lines)
         self.assertEqual(layers["compiler"], {"compiler", "vm"})
         self.assertEqual(layers["runtime-m4"], {"runtime-m4", "vm", "link"})
+        self.assertEqual(layers["runtime-m4/policy"], {"runtime-m4/policy", "vm"})
+        self.assertEqual(layers["analysis"], {"analysis", "vm", "runtime-m4/policy"})
         self.assertIsNone(layers["rsc"])
 
     def assert_clean(self, rule):
@@ -72,6 +76,9 @@ class Planted(unittest.TestCase):
             "compiler/c.cpp": HEAD + '#include "vm/a.hpp"\n#include <string>\n',
             "runtime-m4/kernel/k.cpp": HEAD + '#include "runtime-m4/port/port.hpp"\n',
             "runtime-m4/boards/x/b.cpp": HEAD + "volatile int* p = (int*)0x40004000;\n",
+            "runtime-m4/policy/p.hpp": HEAD + '#include "vm/a.hpp"\n',
+            "runtime-m4/layers/l.cpp": HEAD + '#include "runtime-m4/policy/p.hpp"\n',
+            "analysis/a.cpp": HEAD + '#include "vm/a.hpp"\n#include "runtime-m4/policy/p.hpp"\n',
             "rsc/main.cpp": HEAD + '#include "link/frame.hpp"\n#include "compiler/c.hpp"\n',
             "scripts/go": "#!/bin/sh\n# Goes.\n",
         }), {})
@@ -81,6 +88,14 @@ class Planted(unittest.TestCase):
                              ("compiler/sema/a.cpp", "runtime-m4/runtime.hpp"),
                              ("grammar/rsl.yy", "rsc/main.hpp"), ("compiler/a.hpp", "link/frame.hpp"),
                              ("runtime-m4/layers/a.cpp", "compiler/compiler.hpp"),
+                             ("analysis/a.cpp", "runtime-m4/limits.hpp"),
+                             ("analysis/a.cpp", "runtime-m4/layers/concern.hpp"),
+                             ("analysis/a.cpp", "compiler/compiler.hpp"),
+                             ("analysis/a.cpp", "rsc/program.hpp"),
+                             ("runtime-m4/kernel/a.cpp", "analysis/report.hpp"),
+                             ("runtime-m4/policy/a.hpp", "link/frame.hpp"),
+                             ("runtime-m4/policy/a.hpp", "runtime-m4/limits.hpp"),
+                             ("runtime-m4/policy/a.hpp", "runtime-m4/kernel/time.hpp"),
                              ("vm/a.hpp", "image.hpp"), ("vm/a.hpp", "../link/frame.hpp")]:
             with self.subTest(name=name, target=target):
                 self.assert_red("layering", name, f'{HEAD}#include "{target}"\n')

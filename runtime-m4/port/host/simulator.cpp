@@ -88,7 +88,7 @@ struct Simulator::Impl {
 
 bool Simulator::Impl::is_fed(std::uint8_t channel) const {
   const vm::Image& program = runtime.image();
-  return layers::is_fed(program.sensors[program.channels[channel].sensor]);
+  return policy::is_fed(program.sensors[program.channels[channel].sensor]);
 }
 
 // Hands over whole ticks, as many as the runtime's queue has place for. Returns until when to run

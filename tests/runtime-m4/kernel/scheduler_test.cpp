@@ -1,4 +1,4 @@
-// The policy against naive models: an order that is sorted, a set that is a std::set.
+// The ready set against a std::set.
 #include "runtime-m4/kernel/scheduler.hpp"
 
 #include <set>
@@ -7,29 +7,6 @@
 #include <rapidcheck.h>
 
 using namespace robosync::kernel;
-
-TEST_CASE("safety ranks above everything, system below, whatever the priorities") {
-  constexpr std::int8_t kLowest = INT8_MIN;
-  constexpr std::int8_t kHighest = INT8_MAX;
-  CHECK(standing(Category::safety, kLowest) > standing(Category::control, kHighest));
-  CHECK(standing(Category::system, kHighest) < standing(Category::sensor, kLowest));
-}
-
-TEST_CASE("a higher priority outranks any category of a lower one") {
-  CHECK(standing(Category::sensor, 5) > standing(Category::control, 4));
-  CHECK(standing(Category::sensor, -1) > standing(Category::control, -2));
-}
-
-TEST_CASE("between equal priorities the higher base decides, whatever the category") {
-  CHECK(standing(Category::sensor, {60, 50}) > standing(Category::control, {60, 40}));
-  CHECK(standing(Category::sensor, {61, -64}) > standing(Category::control, {60, 60}));
-}
-
-TEST_CASE("within one priority control > behavior > processing > sensor") {
-  CHECK(standing(Category::control, 3) > standing(Category::behavior, 3));
-  CHECK(standing(Category::behavior, 3) > standing(Category::processing, 3));
-  CHECK(standing(Category::processing, 3) > standing(Category::sensor, 3));
-}
 
 TEST_CASE("the empty ready set selects idle") {
   CHECK(ReadySet{}.first() == kIdleRank);

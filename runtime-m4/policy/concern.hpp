@@ -1,0 +1,65 @@
+// What a step concerns: the inputs that the code of a rule reads or sets. Pure; the runtime makes
+// its index from inputs to rules of it (layers/program.cpp), analysis/ the same in its own shape.
+// layers/concern.cpp says why the rules that a step does not concern may be left out. Images are
+// verified.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "vm/image.hpp"
+#include "vm/opcode.hpp"
+
+namespace robosync::policy {
+
+// By opcode, bit i: operand i is a cell that may be an input. vm::kOpcodes has the documentation
+// too, which is not for the board.
+inline constexpr std::array<std::uint8_t, vm::kOpcodes.size()> kInputOperands = [] {
+  std::array<std::uint8_t, vm::kOpcodes.size()> inputs{};
+  for (std::size_t op = 0; op < inputs.size(); ++op) {
+    unsigned mask = 0;
+    for (unsigned i = 0; i < vm::kOpcodes[op].operands.size(); ++i) {
+      const vm::Operand kind = vm::kOpcodes[op].operands[i];
+      if (kind == vm::Operand::read || kind == vm::Operand::read_truth ||
+          kind == vm::Operand::variable)
+        mask |= 1U << i;
+    }
+    inputs[op] = static_cast<std::uint8_t>(mask);
+  }
+  return inputs;
+}();
+
+// Calls take(input) for each input that the code reads or sets, as often as it does.
+template <class Take>
+void each_input(const vm::Image& image, const vm::Behavior& behavior, std::uint16_t start,
+                std::uint16_t length, Take take) {
+  for (vm::Word word : image.code.subspan(start, length)) {
+    for (unsigned places = kInputOperands[word & 0xFF]; places != 0; places >>= 1) {
+      word >>= 8;
+      const std::size_t cell = word & 0xFF;
+      if ((places & 1) != 0 && cell < behavior.input_count)
+        take(image.inputs[behavior.first_input + cell]);
+    }
+  }
+}
+
+template <class Take>
+void each_input_of_condition(const vm::Image& image, const vm::Behavior& behavior,
+                             const vm::Rule& rule, Take take) {
+  each_input(image, behavior, rule.condition_start, rule.condition_length, take);
+}
+
+// Those of its responses as well: they stir the behaviour, for responses that wait.
+template <class Take>
+void each_input_of_rule(const vm::Image& image, const vm::Behavior& behavior, const vm::Rule& rule,
+                        Take take) {
+  each_input_of_condition(image, behavior, rule, take);
+  for (const std::uint16_t index : {rule.then_response, rule.else_response}) {
+    if (index == vm::kNoIndex) continue;
+    const vm::Response& response = image.responses[index];
+    each_input(image, behavior, response.start, response.length, take);
+  }
+}
+
+}  // namespace robosync::policy

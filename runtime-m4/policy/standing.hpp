@@ -1,0 +1,57 @@
+// Who outranks whom: a thread's standing, worked out from its category and its priority. Pure; the
+// kernel ranks threads by it, and analysis/ asks it which of them may interrupt which.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+
+namespace robosync::policy {
+
+// The paper's four categories, and the two kinds of threads around them. Inside one behaviour's
+// priority, a later category of the four ranks higher: a decision reaches the actuator before new
+// data is gathered. `safety` ranks above everything, `system` (the link) below everything.
+enum class Category : std::uint8_t { system, sensor, processing, behavior, control, safety };
+inline constexpr unsigned kCategories = 6;
+
+// What a thread's behaviour is worth: `now` decides, and between equals `base`, the priority as it
+// was written (adaptation.hpp says how the two come to differ). Behaviours have distinct bases, so
+// two behaviours are never equal.
+struct Priority {
+  std::int8_t now = 0;
+  std::int8_t base = 0;
+
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 sees a 0 in what it is defaulted to
+  friend constexpr auto operator<=>(const Priority&, const Priority&) = default;
+};
+
+// A thread's place in the order as one number, below 2^kStandingBits: the higher outranks. Equals
+// rank by age. What it was made of can be had of it again.
+//
+//   bits 22–21: 2 safety, 0 system, else 1 | 18–11: now + 128 | 10–3: base + 128 | 2–0: category
+using Standing = std::uint32_t;
+inline constexpr unsigned kStandingBits = 24;
+constexpr Standing with_priority(Standing standing, Priority priority) {
+  constexpr Standing kPriorityBits = 0xFFFF << 3;
+  const auto now = static_cast<unsigned>(priority.now + 128);
+  const auto base = static_cast<unsigned>(priority.base + 128);
+  return (standing & ~kPriorityBits) | now << 11 | base << 3;
+}
+constexpr Standing standing(Category category, Priority priority) {
+  const unsigned beyond = category == Category::safety ? 2 : category == Category::system ? 0 : 1;
+  return with_priority(beyond << 21 | static_cast<unsigned>(category), priority);
+}
+constexpr Standing standing(Category category, std::int8_t priority) {
+  return standing(category, Priority{priority, priority});
+}
+constexpr Category category_of(Standing standing) {
+  return static_cast<Category>(standing & 7);
+}
+constexpr Priority priority_of(Standing standing) {
+  const auto unbiased = [](Standing bits) {
+    return static_cast<std::int8_t>(static_cast<int>(bits & 0xFF) - 128);
+  };
+  return {unbiased(standing >> 11), unbiased(standing >> 3)};
+}
+inline constexpr Standing kBelowAll = 0;
+
+}  // namespace robosync::policy
