@@ -10,7 +10,7 @@
 #include "rsc/failure.hpp"
 #include "rsc/time_units.hpp"
 #include "rsc/timing.hpp"
-#include "runtime-m4/port/host/simulator.hpp"
+#include "runtime-m4/sim/simulator.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -35,7 +35,7 @@ std::optional<std::uint8_t> channel_of(const vm::Image& image, const ChannelName
 Recording record(const Program& program, const compiler::testing::TestPlan& plan,
                  const compiler::testing::PlannedTest& test) {
   Recording recording{&program.image(), &plan, &test, {}};
-  host::Simulator simulator(program.bytes(), [&recording](const link::Event& event) {
+  sim::Simulator simulator(program.bytes(), [&recording](const link::Event& event) {
     recording.events.push_back(event);
   });
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {

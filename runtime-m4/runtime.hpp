@@ -1,5 +1,5 @@
 // The runtime of one robot: the safety thread, and the program's threads and layers made from an
-// image. The same on the board (boards/NAME/main.cpp) and on the host (port/host/simulator.cpp).
+// image. The same on the board (boards/NAME/main.cpp) and on the host (sim/simulator.cpp).
 //
 // All memory is inside the object, the workspace and the image, and sized by limits.hpp: put them
 // into static storage, on the board the image behind the object. The members stand in the order of
@@ -13,7 +13,7 @@
 
 #include "link/messages.hpp"
 #include "runtime-m4/boards/board.hpp"
-#include "runtime-m4/event_sink.hpp"
+#include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/alarm.hpp"
 #include "runtime-m4/layers/behavior.hpp"

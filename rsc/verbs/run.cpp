@@ -16,7 +16,7 @@
 #include "rsc/timing.hpp"
 #include "rsc/trace_format.hpp"
 #include "rsc/verb.hpp"
-#include "runtime-m4/port/host/simulator.hpp"
+#include "runtime-m4/sim/simulator.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -42,7 +42,7 @@ void run(const RunOptions& options) {
 
   const TraceNames names{&program.image(), {}};
   std::string trace;
-  host::Simulator simulator(program.bytes(), [&](const link::Event& event) {
+  sim::Simulator simulator(program.bytes(), [&](const link::Event& event) {
     const std::string json = trace_json(event, names) + "\n";
     if (!options.trace.empty()) trace += json;
     std::cout << (options.format == Format::json ? json : trace_line(event, names) + "\n");

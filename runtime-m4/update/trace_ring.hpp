@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "link/messages.hpp"
-#include "runtime-m4/event_sink.hpp"
+#include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 
 namespace robosync::update {

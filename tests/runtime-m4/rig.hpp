@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "runtime-m4/boards/board.hpp"
-#include "runtime-m4/event_sink.hpp"
+#include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/runtime.hpp"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "link/events.hpp"
-#include "runtime-m4/port/host/simulator.hpp"
+#include "runtime-m4/sim/simulator.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::test {
@@ -48,7 +48,7 @@ private:
   std::vector<std::byte> bytes_;
   vm::Image image_;
   std::vector<std::string> lines_;
-  host::Simulator simulator_;
+  sim::Simulator simulator_;
 };
 
 }  // namespace robosync::test

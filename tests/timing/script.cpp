@@ -5,7 +5,7 @@
 #include "link/events.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/scenario.hpp"
-#include "runtime-m4/port/host/simulator.hpp"
+#include "runtime-m4/sim/simulator.hpp"
 #include "tests/timing/firmware/block.hpp"
 
 namespace robosync::timing {
@@ -77,7 +77,7 @@ private:
 std::vector<std::uint32_t> script_of(const tool::Program& program, const std::string& scenario) {
   const tool::Scenario stimuli = tool::read_scenario(scenario, program.image());
   Steps steps(program.image());
-  host::Simulator simulator(program.bytes(), [&](const link::Event& event) { steps.take(event); });
+  sim::Simulator simulator(program.bytes(), [&](const link::Event& event) { steps.take(event); });
   if (!simulator.verdict().ok())
     throw tool::Failure(tool::Exit::program, scenario + ": the board would refuse the program");
   for (const tool::Stimulus& stimulus : stimuli.stimuli)

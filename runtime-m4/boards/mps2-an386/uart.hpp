@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "runtime-m4/boards/ring.hpp"
+#include "runtime-m4/boards/common/ring.hpp"
 
 namespace robosync::boards::mps2 {
 

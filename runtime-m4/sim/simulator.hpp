@@ -12,7 +12,7 @@
 #include "link/messages.hpp"
 #include "vm/verifier.hpp"
 
-namespace robosync::host {
+namespace robosync::sim {
 
 class Simulator {
 public:
@@ -41,4 +41,4 @@ private:
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace robosync::host
+}  // namespace robosync::sim

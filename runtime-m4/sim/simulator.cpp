@@ -1,7 +1,7 @@
 // See simulator.hpp. Feeds wait in maps, ordered by tick. Those for fed channels go on to the
 // runtime's own queue, as much as it holds at a time; those for sampled ones are looked up by the
 // sampler.
-#include "runtime-m4/port/host/simulator.hpp"
+#include "runtime-m4/sim/simulator.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "runtime-m4/kernel/kernel.hpp"
-#include "runtime-m4/port/host/host_board.hpp"
+#include "runtime-m4/sim/host_board.hpp"
 #include "runtime-m4/runtime.hpp"
 
-namespace robosync::host {
+namespace robosync::sim {
 namespace {
 
 // Feeds by channel: what each measures from which time on.
@@ -144,4 +144,4 @@ link::Status Simulator::status() const {
   return status;
 }
 
-}  // namespace robosync::host
+}  // namespace robosync::sim

@@ -7,7 +7,7 @@
 
 #include "runtime-m4/boards/board.hpp"
 
-namespace robosync::host {
+namespace robosync::sim {
 
 class HostBoard final : public boards::Board {
 public:
@@ -31,4 +31,4 @@ private:
   std::uint64_t kicks_ = 0;
 };
 
-}  // namespace robosync::host
+}  // namespace robosync::sim

@@ -1,7 +1,7 @@
 // See host_board.hpp.
-#include "runtime-m4/port/host/host_board.hpp"
+#include "runtime-m4/sim/host_board.hpp"
 
-namespace robosync::host {
+namespace robosync::sim {
 
 bool HostBoard::i2c_transfer(std::uint8_t, std::uint8_t, std::span<const std::byte>,
                              std::span<std::byte>) {
@@ -13,4 +13,4 @@ std::uint32_t HostBoard::pwm_read(std::uint16_t pin) const {
   return found == pulses_.end() ? 0 : found->second;
 }
 
-}  // namespace robosync::host
+}  // namespace robosync::sim
