@@ -6,6 +6,8 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from board import qemu
+
 ROOT = Path(__file__).resolve().parents[1]
 BUILT = ROOT / "build/m4/bench"
 PLUGIN = ROOT / "build/host/bench/libcount_plugin.so"
@@ -104,8 +106,7 @@ def run(elf, arguments=(), extra=None):
     names |= extra or {}
     with tempfile.TemporaryDirectory(prefix="robosync-bench-") as folder:
         out = Path(folder) / "marks"
-        done = subprocess.run(["qemu-system-arm", "-M", "mps2-an386", "-display", "none",
-                               "-monitor", "none", "-serial", "none", "-kernel", str(elf),
+        done = subprocess.run([*qemu(), "-serial", "none", "-kernel", str(elf),
                                "-icount", "shift=0,sleep=off", "-semihosting",
                                *plugin_arguments(names, out), *arguments],
                               check=False, timeout=TIMEOUT, text=True, stdin=subprocess.DEVNULL,

@@ -1,5 +1,5 @@
 // The runtime of one robot: the safety thread, and the program's threads and layers made from an
-// image. The same on the board (boards/NAME/main.cpp) and on the host (sim/simulator.cpp).
+// image. The same on the board (boards/common/main.cpp) and on the host (sim/simulator.cpp).
 //
 // All memory is inside the object, the workspace and the image, and sized by limits.hpp: put them
 // into static storage, on the board the image behind the object. The members stand in the order of
@@ -13,13 +13,13 @@
 
 #include "link/messages.hpp"
 #include "runtime-m4/boards/board.hpp"
-#include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/alarm.hpp"
 #include "runtime-m4/layers/behavior.hpp"
 #include "runtime-m4/layers/budget.hpp"
 #include "runtime-m4/layers/control.hpp"
 #include "runtime-m4/layers/crew.hpp"
+#include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/layers/frames.hpp"
 #include "runtime-m4/layers/mailbox.hpp"
 #include "runtime-m4/layers/processing.hpp"

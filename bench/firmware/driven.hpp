@@ -3,7 +3,7 @@
 // it. So when that thread comes back from feeding, the step is over, and everything that came of it
 // is done.
 //
-// The firmware defines robosync_kernel, robosync_board, the runtime, and start().
+// The firmware defines robosync_kernel, the runtime, and start().
 #pragma once
 
 #include "runtime-m4/runtime.hpp"

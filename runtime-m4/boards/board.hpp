@@ -1,4 +1,5 @@
-// What the portable runtime needs of a board. Implemented by boards/NAME/ and by port/host/.
+// What the portable runtime needs of a board. Implemented by boards/NAME/ and, for
+// the simulated robot, by sim/.
 #pragma once
 
 #include <cstddef>

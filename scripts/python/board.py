@@ -14,17 +14,30 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FIRMWARE = ROOT / "build/m4/robosync-mps2-an386.elf"
+FIRMWARE = ROOT / "build/m4/robosync.elf"
+MACHINE = ROOT / "build/m4/machine"
 TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
 BOOT_SECONDS = 20  # on a busy machine
 # How virtual time passes: it counts instructions, so that a firmware that is held up by a busy host
 # does not miss its deadlines. While the firmware idles,
-REAL_TIME = "shift=5,sleep=on"  # 32 ns each (the MPS2 board's 25 MHz): it follows the host's clock;
+REAL_TIME = "shift=5,sleep=on"  # 32 ns each (about 25 MHz): it follows the host's clock;
 FAST = "shift=4,sleep=off"  # 16 ns each (an STM32F401's 84 MHz): idle time is skipped.
 
 
 class BoardError(RuntimeError):
     """QEMU is missing, did not start, or ended."""
+
+
+def machine():
+    """What QEMU calls the board that build/m4 was built for."""
+    if not MACHINE.is_file():
+        raise BoardError(f"no {MACHINE}: build the preset m4 first")
+    return MACHINE.read_text("utf-8").strip()
+
+
+def qemu():
+    """How QEMU is started for that board."""
+    return ["qemu-system-arm", "-M", machine(), "-display", "none", "-monitor", "none"]
 
 
 class Qmp:
@@ -82,8 +95,7 @@ class Board:
 
     def _start(self, elf, icount, extra):
         line = "pty" if self._pty else f"socket,path={self.serial_path},server=on,wait=off"
-        command = ["qemu-system-arm", "-M", "mps2-an386", "-display", "none", "-monitor", "none",
-                   "-kernel", str(elf),
+        command = [*qemu(), "-kernel", str(elf),
                    "-chardev", f"{line},id=line", "-serial", "chardev:line",
                    "-device", "max34451,id=touch,address=0x70",
                    "-qmp", f"unix:{self.qmp_path},server=on,wait=off",

@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 
 import rsc
-from board import Board, BoardError, end_on_signals
+from board import Board, BoardError, end_on_signals, machine
 
 ROOT = rsc.ROOT
 EXAMPLE = ROOT / "examples/touch_companion"
@@ -164,7 +164,7 @@ def show(folder):
     step("2. Check it, and compile it to bytecode")
     show_rsc("check", program)
     show_rsc("compile", program, "-o", image)
-    step("3. Boot the firmware on a Cortex-M4 (QEMU, mps2-an386, touch sensor MAX34451 on I2C)")
+    step(f"3. Boot the firmware on a Cortex-M4 (QEMU, {machine()}, touch sensor MAX34451 on I2C)")
     with Board() as board:
         board.set_touch(BEFORE)
         step("4. Upload the image over the serial line into the running firmware")

@@ -8,7 +8,7 @@ import rsc
 from board import ROOT
 from support import LineReader, RobotTest, host_trace
 
-FIRMWARE = ROOT / "build/m4/robosync-large-mps2-an386.elf"
+FIRMWARE = ROOT / "build/m4/robosync-large.elf"
 TOOL = ROOT / "build/host/rsc-large"
 RULES, BEHAVIORS, CHANNELS = 1000, 64, 32
 FIRST_VALUE = 10  # 0 means nothing to any rule

@@ -11,6 +11,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
+from board import qemu
+
 ROOT = Path(__file__).resolve().parents[2]
 FUZZER = ROOT / "build/host/tests/fuzz/fuzz_images"
 SEEDS = FUZZER.parent / "seeds"
@@ -35,8 +37,7 @@ def make_block(path, images, seed):
 
 def run_board(block):
     """The exit code, and what the firmware said."""
-    done = subprocess.run(["qemu-system-arm", "-M", "mps2-an386", "-display", "none", "-monitor", "none",
-                           "-serial", "none", "-semihosting-config", "enable=on,target=native",
+    done = subprocess.run([*qemu(), "-serial", "none", "-semihosting-config", "enable=on,target=native",
                            "-kernel", FIRMWARE,
                            "-device", f"loader,file={block},addr={BLOCK_AT:#x},force-raw=on"],
                           check=False, text=True, timeout=TIMEOUT, stdin=subprocess.DEVNULL,

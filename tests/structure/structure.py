@@ -21,14 +21,14 @@ PART_OF = {"grammar": "compiler"}
 # Folders whose code runs on the board, and in them the ones that may know a machine.
 FREESTANDING = ("vm/", "link/", "runtime-m4/")
 MACHINE = ("runtime-m4/boards/", "runtime-m4/port/")
-HOST_ONLY = "runtime-m4/port/host/"
+HOST_ONLY = ("runtime-m4/port/host/", "runtime-m4/sim/")
 # Inside runtime-m4/: what each folder may include of it, besides itself.
 RUNTIME = {
     "kernel": {"port", "policy"},
     "layers": {"kernel", "port", "boards", "drivers", "policy"},
     "drivers": {"kernel", "boards", "policy"},
     "safety": {"kernel", "boards", "layers", "policy"},
-    "update": {"kernel", "boards", "port"},
+    "update": {"kernel", "boards", "port", "layers"},
 }
 # Standard headers that allocate or throw, or need an operating system.
 HOSTED_HEADERS = {

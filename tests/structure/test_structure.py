@@ -103,7 +103,7 @@ class Planted(unittest.TestCase):
     def test_wrong_arrows_in_the_runtime(self):
         for name, target in [("runtime-m4/kernel/k.cpp", "runtime-m4/layers/step.hpp"),
                              ("runtime-m4/layers/s.cpp", "runtime-m4/safety/guard.hpp"),
-                             ("runtime-m4/layers/l.cpp", "runtime-m4/port/host/simulator.hpp"),
+                             ("runtime-m4/layers/l.cpp", "runtime-m4/port/host/machine.hpp"),
                              ("runtime-m4/drivers/d.cpp", "runtime-m4/boards/x/i2c.hpp")]:
             with self.subTest(name=name, target=target):
                 self.assert_red("runtime folders", name, f'{HEAD}#include "{target}"\n')

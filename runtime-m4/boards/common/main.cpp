@@ -1,5 +1,6 @@
-// The firmware: kernel, board, runtime and link, joined and started.
-#include "runtime-m4/boards/mps2-an386/board.hpp"
+// The firmware of any board: kernel, board, runtime and link, joined and started.
+#include "runtime-m4/boards/common/firmware.hpp"
+#include "runtime-m4/boards/common/reset.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 #include "runtime-m4/runtime.hpp"
@@ -7,12 +8,10 @@
 #include "runtime-m4/update/trace_ring.hpp"
 
 robosync::kernel::Kernel robosync_kernel;
-robosync::boards::mps2::Board robosync_board;
 
 namespace {
 
-// Constructed in this order, after the two above. The linker script says where they stand, for the
-// MPU.
+// Constructed in this order. The linker script says where they stand, for the MPU.
 [[gnu::section(".bss.writable")]] robosync::layers::Workspace workspace;
 robosync::update::TraceRing trace(robosync_kernel);
 [[gnu::section(".bss.readable.0")]] robosync::Runtime runtime(robosync_kernel, robosync_board,
@@ -29,7 +28,7 @@ robosync::update::Server server(robosync_kernel, robosync_board, runtime, trace,
       "i"(kLayout.readable));
 }
 
-static_assert(robosync::boards::mps2::Uart::kBufferBytes >= robosync::update::kReceiveWindow);
+static_assert(robosync::boards::kReceiveBuffer >= robosync::update::kReceiveWindow);
 
 }  // namespace
 
@@ -40,7 +39,7 @@ void thread_faulted(kernel::Thread&, const link::Fault& fault) {
 }
 
 void fatal_fault(const link::Fault& fault) {
-  boards::mps2::reset_after(fault);
+  boards::reset_after(fault);
 }
 
 }  // namespace robosync::port::hooks
@@ -48,10 +47,10 @@ void fatal_fault(const link::Fault& fault) {
 // A kernel that has no place for its first two threads is not built right: main() then returns, and
 // the board starts over.
 int main() {
-  if (robosync_board.last_words() != nullptr) server.report(*robosync_board.last_words());
+  const robosync::link::Fault* const last_words = robosync::boards::last_fault();
+  if (last_words != nullptr) server.report(*last_words);
   if (!runtime.start() || !server.start()) return 1;
-  robosync_board.uart().notify(
+  robosync::boards::start_line(
       [](void*) { robosync_kernel.signal(server.thread(), server.kLineReady); }, nullptr);
-  robosync_board.uart().start();
   robosync_kernel.run();
 }

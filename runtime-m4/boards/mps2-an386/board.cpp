@@ -1,9 +1,11 @@
 #include "runtime-m4/boards/mps2-an386/board.hpp"
 
-#include "runtime-m4/port/cortex-m4/core.hpp"
+#include "runtime-m4/boards/common/firmware.hpp"
+#include "runtime-m4/boards/common/reset.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 
-std::array<volatile std::uint32_t, kVirtualPwmPins> robosync_virtual_pwm{};
+[[gnu::section(".bss.low")]] std::array<volatile std::uint32_t, kVirtualPwmPins>
+    robosync_virtual_pwm{};
 
 namespace robosync::boards::mps2 {
 
@@ -12,15 +14,7 @@ namespace {
 // First time-out after 50 ms: NMI, outputs off. Second, 100 ms after the last kick: reset.
 constexpr std::uint32_t kWatchdogTicks = kClockHz / 20;
 
-// Survives a reset. Only believed when `magic` is right, which is taken away once it was read.
-struct ResetRecord {
-  std::uint32_t magic;
-  ResetReason reason;
-  bool has_fault;
-  link::Fault fault;
-};
-constexpr std::uint32_t kMagic = 0x52425354;
-[[gnu::section(".noinit")]] ResetRecord reset_record;
+Board board;
 
 WatchdogRegisters& watchdog() {
   return at<WatchdogRegisters>(kWatchdog);
@@ -33,12 +27,6 @@ Board::Board() {
   clock.reload = ~std::uint32_t{0};
   clock.value = ~std::uint32_t{0};
   clock.control = kTimerOn;
-  if (reset_record.magic == kMagic) {
-    reset_reason_ = reset_record.reason;
-    has_last_words_ = reset_record.has_fault;
-    last_words_ = reset_record.fault;
-  }
-  reset_record = {};
 }
 
 bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
@@ -67,18 +55,19 @@ void Board::watchdog_kick() {
   watchdog().lock = 0;
 }
 
-void switch_outputs_off() {
+}  // namespace robosync::boards::mps2
+
+robosync::boards::Board& robosync_board = robosync::boards::mps2::board;
+
+void robosync::boards::start_line(void (*ready)(void*), void* argument) {
+  mps2::board.uart().notify(ready, argument);
+  mps2::board.uart().start();
+}
+
+void robosync::boards::switch_outputs_off() {
   for (volatile std::uint32_t& pulse : robosync_virtual_pwm)
     pulse = 0;
 }
-
-void reset_after(const link::Fault& fault) {
-  switch_outputs_off();
-  reset_record = {kMagic, ResetReason::software, true, fault};
-  port::core::reset();
-}
-
-}  // namespace robosync::boards::mps2
 
 const std::uint32_t robosync::port::hooks::kTickCounts =
     robosync::boards::mps2::kClockHz / 1'000'000 * robosync::kernel::kTick;
@@ -92,19 +81,18 @@ void Uart0Transmit_Handler();
 // The watchdog was not kicked in time. It cannot be masked, so the outputs go off whatever hangs;
 // then the second time-out resets.
 void NMI_Handler() {
-  using namespace robosync::boards::mps2;
-  switch_outputs_off();
-  reset_record = {kMagic, ResetReason::watchdog, false, {}};
+  robosync::boards::switch_outputs_off();
+  robosync::boards::keep_watchdog_reset();
   while (true)
     asm volatile("" ::: "memory");  // the record is read after the reset: keep the store
 }
 
 void Uart0Receive_Handler() {
-  robosync_board.uart().on_receive();
+  robosync::boards::mps2::board.uart().on_receive();
 }
 
 void Uart0Transmit_Handler() {
-  robosync_board.uart().on_transmit();
+  robosync::boards::mps2::board.uart().on_transmit();
 }
 
 }  // extern "C"

@@ -5,14 +5,13 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/ring.hpp"
 
 namespace robosync::boards::mps2 {
 
 class Uart {
 public:
-  static constexpr std::size_t kBufferBytes = 512;  // in each direction
-
   // Starts the line at 115200 baud. Its interrupts come once the kernel runs.
   void start();
   // From now on `ready(argument)` is called, from interrupts, when bytes have arrived or there is
@@ -28,8 +27,8 @@ public:
   void on_transmit();
 
 private:
-  Ring<kBufferBytes> received_;
-  Ring<kBufferBytes> to_send_;
+  Ring<kReceiveBuffer> received_;
+  Ring<kReceiveBuffer> to_send_;
   void (*ready_)(void*) = [](void*) {};
   void* ready_argument_ = nullptr;
 };

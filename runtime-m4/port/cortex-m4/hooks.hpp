@@ -1,4 +1,5 @@
-// What the Cortex-M4 port asks of the program it is linked into (boards/NAME/main.cpp).
+// What the Cortex-M4 port asks of the program it is linked into (boards/common/main.cpp and
+// boards/NAME/).
 #pragma once
 
 #include <cstdint>

@@ -3,14 +3,15 @@
 #
 # usage: tests/runtime-m4/kernel/run_qemu.sh [ELF]     (default: build/m4/kernel-test.elf)
 set -euo pipefail
-elf=${1:-$(dirname "$0")/../../../build/m4/kernel-test.elf}
+built=$(dirname "$0")/../../../build/m4
+elf=${1:-$built/kernel-test.elf}
 [ -f "$elf" ] || { echo "run_qemu.sh: no $elf; build the m4 preset first" >&2; exit 3; }
 
 # -icount: 32 virtual nanoseconds an instruction, about the speed of the board, and the same in every
 # run. That is so only as long as the core does not wait for interrupts: QEMU then goes by the host's
 # clock and loses ticks. So the tests keep a thread spinning below all others.
 status=0
-timeout 120 qemu-system-arm -M mps2-an386 -nographic -monitor none -serial none \
+timeout 120 qemu-system-arm -M "$(cat "$built/machine")" -nographic -monitor none -serial none \
   -icount shift=5 -semihosting-config enable=on,target=native \
   -device tmp105,address=0x48 -kernel "$elf" 2>&1 || status=$?
 if [ $status -ne 0 ] && [ $status -ne 1 ]; then

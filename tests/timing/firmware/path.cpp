@@ -9,12 +9,11 @@
 #include "bench/firmware/driven.hpp"
 #include "bench/firmware/given.hpp"
 #include "bench/firmware/mark.hpp"
-#include "runtime-m4/boards/mps2-an386/board.hpp"
+#include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/update/trace_ring.hpp"
 
 robosync::kernel::Kernel robosync_kernel;
-robosync::boards::mps2::Board robosync_board;
 
 namespace robosync::bench {
 namespace {

@@ -1,5 +1,5 @@
 // The board's drivers against the devices QEMU emulates: tmp105 at 0x48 on I2C bus 0.
-#include "runtime-m4/boards/mps2-an386/board.hpp"
+#include "runtime-m4/boards/common/firmware.hpp"
 #include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
@@ -34,7 +34,7 @@ void pwm_pins() {
   CHECK(robosync_board.pwm_read(5) == 1234);
   robosync_board.pwm_write(60000, 1);  // no such pin
   CHECK(robosync_board.pwm_read(60000) == 0);
-  robosync::boards::mps2::switch_outputs_off();
+  robosync::boards::switch_outputs_off();
   CHECK(robosync_board.pwm_read(5) == 0);
 }
 

@@ -1,5 +1,6 @@
 // Runs every scenario on the board, then two resets, and says "N passed, N failed".
-#include "runtime-m4/boards/mps2-an386/board.hpp"
+#include "runtime-m4/boards/common/firmware.hpp"
+#include "runtime-m4/boards/common/reset.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "tests/runtime-m4/kernel/firmware/rig.hpp"
 #include "tests/runtime-m4/kernel/firmware/semihosting.hpp"
@@ -9,7 +10,6 @@ extern "C" {
 alignas(256) std::array<std::uint32_t, rig::kOpenWords> open_area_of_tests;
 }
 robosync::kernel::Kernel robosync_kernel;
-robosync::boards::mps2::Board robosync_board;
 
 namespace {
 
@@ -124,7 +124,7 @@ void first_boot() {
 void second_boot() {
   begin();
   CHECK(robosync_board.reset_reason() == 2);
-  const robosync::link::Fault* words = robosync_board.last_words();
+  const robosync::link::Fault* words = robosync::boards::last_fault();
   CHECK(words != nullptr);
   if (words != nullptr) {
     CHECK(words->thread[0] == 's' && words->thread[5] == 'y' && words->thread[6] == '\0');
@@ -154,7 +154,7 @@ void third_boot() {
   begin();
   CHECK(progress.kicked);  // else it struck before the board locked up
   CHECK(robosync_board.reset_reason() == 1);
-  CHECK(robosync_board.last_words() == nullptr);
+  CHECK(robosync::boards::last_fault() == nullptr);
   end("the watchdog resets a board that has locked up");
   finish();
 }
@@ -271,7 +271,7 @@ void thread_faulted(kernel::Thread&, const link::Fault& fault) {
 }
 
 void fatal_fault(const link::Fault& fault) {
-  boards::mps2::reset_after(fault);
+  boards::reset_after(fault);
 }
 
 }  // namespace robosync::port::hooks

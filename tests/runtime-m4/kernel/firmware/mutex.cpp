@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "runtime-m4/boards/mps2-an386/board.hpp"
+#include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/layers/sampler.hpp"
 #include "tests/runtime-m4/kernel/firmware/rig.hpp"
 #include "tests/runtime-m4/kernel/mutex_cases.hpp"

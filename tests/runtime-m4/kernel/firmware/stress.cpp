@@ -9,7 +9,7 @@
 #include <array>
 #include <bit>
 
-#include "runtime-m4/boards/mps2-an386/board.hpp"
+#include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
@@ -17,7 +17,6 @@
 #include "tests/runtime-m4/kernel/firmware/semihosting.hpp"
 
 robosync::kernel::Kernel robosync_kernel;
-robosync::boards::mps2::Board robosync_board;
 
 namespace {
 

@@ -1,0 +1,43 @@
+# The firmware for the board that the preset names (ROBOSYNC_BOARD): boards/NAME/board.cmake says what is special to it.
+#
+#   board_sources   the board's own sources, in boards/NAME/
+#   board_script    its linker script, which includes firmware.ld
+#   board_large     link options that give the large profile its memory; none: there is no such firmware
+#   board_machine   what QEMU calls the board (build/…/machine, for scripts and tests)
+include(boards/${ROBOSYNC_BOARD}/board.cmake)
+list(TRANSFORM board_sources PREPEND boards/${ROBOSYNC_BOARD}/)
+file(WRITE ${PROJECT_BINARY_DIR}/machine "${board_machine}\n")
+
+# Shared by the firmware and by the tests and benches on the board; brings the linker script.
+set(board_common ${CMAKE_CURRENT_LIST_DIR})
+set(board_script ${CMAKE_CURRENT_SOURCE_DIR}/boards/${ROBOSYNC_BOARD}/${board_script})
+add_library(robosync_board OBJECT boards/common/startup.cpp boards/common/reset.cpp ${board_sources})
+target_link_libraries(robosync_board PUBLIC robosync_runtime)
+robosync_large(robosync_board)
+target_link_libraries(robosync_board_large PUBLIC robosync_runtime_large)
+foreach(board robosync_board robosync_board_large)
+  target_link_options(${board} INTERFACE -L${board_common} -T${board_script})
+  set_property(TARGET ${board} PROPERTY INTERFACE_LINK_DEPENDS ${board_script} ${board_common}/firmware.ld)
+endforeach()
+target_link_options(robosync_board_large INTERFACE ${board_large})
+
+# robosync_elf(TARGET NAME SOURCES…): an ELF for this board, build/…/NAME.elf. With the libraries of the large
+# profile when the name of TARGET ends in _large.
+#
+# Linked as C, without the C++ library, and without a heap: newlib's malloc would need _sbrk, which
+# nobody defines, so code that allocates does not link.
+function(robosync_elf target name)
+  string(REGEX MATCH "_large$" large ${target})
+  add_executable(${target} ${ARGN})
+  target_link_libraries(${target} PRIVATE robosync_board${large} robosync_runtime${large})
+  target_link_options(${target} PRIVATE
+    -flto -Os -nostartfiles --specs=nano.specs -Wl,--gc-sections -Wl,--print-memory-usage
+    -Wl,--fatal-warnings -Wl,-Map=${PROJECT_BINARY_DIR}/${name}.map)
+  set_target_properties(${target} PROPERTIES
+    LINKER_LANGUAGE C OUTPUT_NAME ${name} SUFFIX .elf RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+endfunction()
+
+robosync_elf(robosync_firmware robosync boards/common/main.cpp)
+if(board_large)
+  robosync_elf(robosync_firmware_large robosync-large boards/common/main.cpp)
+endif()

@@ -1,0 +1,23 @@
+// Why the firmware started, and with which last words: kept in memory that survives a reset, read
+// when the firmware starts, and forgotten then.
+#pragma once
+
+#include <cstdint>
+
+#include "link/messages.hpp"
+
+namespace robosync::boards {
+
+// What link::Status::reset_reason says.
+enum class ResetReason : std::uint8_t { power, watchdog, software };
+
+ResetReason last_reset();
+// The fault that made the firmware reset itself before this start, or null.
+const link::Fault* last_fault();
+
+// The watchdog is about to reset the board. Legal in an NMI.
+void keep_watchdog_reset();
+// Switches the outputs off, keeps `fault` for the next start and resets.
+[[noreturn]] void reset_after(const link::Fault& fault);
+
+}  // namespace robosync::boards

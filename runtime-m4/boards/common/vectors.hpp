@@ -1,0 +1,72 @@
+// The two vector tables of a board with a Cortex-M4: the core's own exceptions, which are the same
+// everywhere, and behind them the interrupts that the board says it uses.
+//
+// A board defines robosync_vectors and robosync_open_vectors (section .vectors.0 and .vectors.1,
+// aligned to kVectorAlignment). The second one is used while a thread without privileges runs: such
+// a thread may call, and is left in another way (port/cortex-m4/switch.S).
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+extern "C" {
+
+extern std::uint32_t main_stack_top;  // from the linker script
+[[noreturn]] void Reset_Handler();
+void NMI_Handler();
+void HardFault_Handler();
+void MemManage_Handler();
+void BusFault_Handler();
+void UsageFault_Handler();
+void SVC_Handler();
+void PendSV_Handler();
+void PendSV_Open_Handler();
+void SysTick_Handler();
+void Unexpected_Handler();
+
+}  // extern "C"
+
+namespace robosync::boards {
+
+union Vector {
+  const std::uint32_t* stack;
+  void (*handler)();
+};
+struct Interrupt {
+  unsigned number;
+  void (*handler)();
+};
+
+inline constexpr std::size_t kExceptions = 16;  // and the stack, which stands first
+template <std::size_t kInterrupts>
+using Vectors = std::array<Vector, kExceptions + kInterrupts>;
+
+// What VTOR demands: the next power of two.
+template <std::size_t kInterrupts>
+inline constexpr std::size_t kVectorAlignment = std::bit_ceil(sizeof(Vectors<kInterrupts>));
+
+// `kInterrupts` is how many the processor has, `used` those that have a handler.
+template <std::size_t kInterrupts>
+constexpr Vectors<kInterrupts> vectors(std::span<const Interrupt> used, bool privileged) {
+  const auto handler = [](void (*function)()) { return Vector{.handler = function}; };
+  Vectors<kInterrupts> table{};
+  table.fill(handler(Unexpected_Handler));
+  table[0] = {.stack = &main_stack_top};
+  table[1] = handler(Reset_Handler);
+  table[2] = handler(NMI_Handler);
+  table[3] = handler(HardFault_Handler);
+  table[4] = handler(MemManage_Handler);
+  table[5] = handler(BusFault_Handler);
+  table[6] = handler(UsageFault_Handler);
+  if (!privileged) table[11] = handler(SVC_Handler);
+  table[14] = handler(privileged ? PendSV_Handler : PendSV_Open_Handler);
+  table[15] = handler(SysTick_Handler);
+  for (const Interrupt& interrupt : used)
+    table[kExceptions + interrupt.number] = handler(interrupt.handler);
+  return table;
+}
+
+}  // namespace robosync::boards

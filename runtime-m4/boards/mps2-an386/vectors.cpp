@@ -1,0 +1,30 @@
+// The interrupts of the board that the firmware uses.
+#include "runtime-m4/boards/common/vectors.hpp"
+
+#include "runtime-m4/boards/mps2-an386/registers.hpp"
+
+extern "C" {
+void Uart0Receive_Handler();
+void Uart0Transmit_Handler();
+void Timer0_Handler();  // nobody's in the firmware; the kernel's tests have one (mps2_an386.ld)
+}
+
+namespace {
+
+using namespace robosync::boards;
+
+constexpr std::size_t kInterrupts = 32;
+constexpr std::array kUsed{Interrupt{mps2::kUart0ReceiveInterrupt, Uart0Receive_Handler},
+                           Interrupt{mps2::kUart0TransmitInterrupt, Uart0Transmit_Handler},
+                           Interrupt{mps2::kTimer0Interrupt, Timer0_Handler}};
+
+}  // namespace
+
+extern "C" {
+[[gnu::section(".vectors.0"),
+  gnu::used]] alignas(kVectorAlignment<kInterrupts>) extern const Vectors<kInterrupts>
+    robosync_vectors = vectors<kInterrupts>(kUsed, true);
+[[gnu::section(".vectors.1"),
+  gnu::used]] alignas(kVectorAlignment<kInterrupts>) extern const Vectors<kInterrupts>
+    robosync_open_vectors = vectors<kInterrupts>(kUsed, false);
+}
