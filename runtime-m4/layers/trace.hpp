@@ -8,8 +8,8 @@
 #include <cstdint>
 
 #include "link/events.hpp"
-#include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/layers/messages.hpp"
 
 namespace robosync::layers {

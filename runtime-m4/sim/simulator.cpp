@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "runtime-m4/kernel/kernel.hpp"
-#include "runtime-m4/sim/host_board.hpp"
 #include "runtime-m4/runtime.hpp"
+#include "runtime-m4/sim/host_board.hpp"
 
 namespace robosync::sim {
 namespace {

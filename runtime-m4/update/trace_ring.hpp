@@ -11,8 +11,8 @@
 #include <string_view>
 
 #include "link/messages.hpp"
-#include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/event_sink.hpp"
 
 namespace robosync::update {
 

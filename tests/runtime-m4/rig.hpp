@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "runtime-m4/boards/board.hpp"
-#include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/runtime.hpp"
 
 namespace robosync::test {

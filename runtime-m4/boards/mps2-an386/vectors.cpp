@@ -21,10 +21,8 @@ constexpr std::array kUsed{Interrupt{mps2::kUart0ReceiveInterrupt, Uart0Receive_
 }  // namespace
 
 extern "C" {
-[[gnu::section(".vectors.0"),
-  gnu::used]] alignas(kVectorAlignment<kInterrupts>) extern const Vectors<kInterrupts>
-    robosync_vectors = vectors<kInterrupts>(kUsed, true);
-[[gnu::section(".vectors.1"),
-  gnu::used]] alignas(kVectorAlignment<kInterrupts>) extern const Vectors<kInterrupts>
-    robosync_open_vectors = vectors<kInterrupts>(kUsed, false);
+[[gnu::section(".vectors.0"), gnu::used]] alignas(kVectorAlignment<kInterrupts>) extern const
+    Vectors<kInterrupts> robosync_vectors = vectors<kInterrupts>(kUsed, true);
+[[gnu::section(".vectors.1"), gnu::used]] alignas(kVectorAlignment<kInterrupts>) extern const
+    Vectors<kInterrupts> robosync_open_vectors = vectors<kInterrupts>(kUsed, false);
 }
