@@ -1,5 +1,7 @@
 #include "tests/compiler/codegen/generator.hpp"
 
+#include <utility>
+
 namespace robosync::compiler::testing {
 namespace {
 
@@ -37,7 +39,8 @@ E Generator::number_expression(unsigned depth) {
   }
   constexpr Operation kOperations[] = {Operation::add,    Operation::subtract, Operation::multiply,
                                        Operation::divide, Operation::modulo,   Operation::random};
-  const Operation operation = kOperations[below(taste_.chance ? 6 : 5)];
+  const bool draws = taste_.chance && (taste_.surprise || !in_condition_);
+  const Operation operation = kOperations[below(draws ? 6 : 5)];
   return of(operation, {number_expression(depth - 1), number_expression(depth - 1)});
 }
 
@@ -54,7 +57,10 @@ E Generator::condition(unsigned depth) {
       break;
   }
   const auto operation = static_cast<Operation>(static_cast<unsigned>(Operation::less) + below(6));
-  return of(operation, {number_expression(2), number_expression(2)});
+  const bool outer = std::exchange(in_condition_, true);
+  E made = of(operation, {number_expression(2), number_expression(2)});
+  in_condition_ = outer;
+  return made;
 }
 
 E Generator::timed(unsigned depth) {

@@ -10,6 +10,7 @@ namespace robosync::compiler::testing {
 
 struct Taste {
   bool chance = true;      // RANDOM and PICK ONE
+  bool surprise = true;    // RANDOM in conditions: how often those are looked at is left open
   bool time_words = true;  // in conditions and in responses
   unsigned depth = 4;      // of blocks in blocks
 };
@@ -43,6 +44,7 @@ private:
 
   std::mt19937 random_;
   Taste taste_;
+  bool in_condition_ = false;
   std::vector<std::size_t> locals_;  // in scope
   std::size_t next_local_ = 0;
   std::uint16_t next_line_ = 1;

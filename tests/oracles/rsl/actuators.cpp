@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace robosync::reference {
+namespace robosync::oracle {
 namespace {
 
 constexpr std::size_t kMostWaiting = 8;
@@ -96,4 +96,4 @@ bool Actuators::works_for(std::size_t rule) const {
   });
 }
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

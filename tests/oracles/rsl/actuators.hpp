@@ -8,7 +8,7 @@
 
 #include "tests/oracles/rsl/trace.hpp"
 
-namespace robosync::reference {
+namespace robosync::oracle {
 
 class Actuators {
 public:
@@ -40,4 +40,4 @@ private:
   std::vector<Limits> limits_;
 };
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

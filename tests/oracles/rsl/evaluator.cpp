@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace robosync::reference {
+namespace robosync::oracle {
 namespace {
 
 using compiler::Expression;
@@ -17,17 +17,19 @@ bool is_event(Operation operation) {
          operation == Operation::rose || operation == Operation::changed;
 }
 
-Number known(vm::Value value) {
-  return value == vm::kUnknown ? std::nullopt : Number(value);
+TimeWord written(const Expression& expression) {
+  const auto kind =
+      static_cast<unsigned>(expression.operation) - static_cast<unsigned>(Operation::held);
+  return {static_cast<vm::TimerKind>(kind), expression.constant, expression.index};
 }
 
 }  // namespace
 
+// Operands from left to right, both of them always: RANDOM draws in that order.
 Number Evaluator::number(const Expression& expression, const Sight& sight) {
-  const auto part = [&](std::size_t i) { return number(expression.operands[i], sight); };
   switch (expression.operation) {
     case Operation::constant:
-      return known(expression.constant);
+      return number_of(expression.constant);
     case Operation::input: {
       const auto found = sight.snapshot.channels.find(expression.channel);
       return found == sight.snapshot.channels.end() ? std::nullopt : found->second;
@@ -39,37 +41,47 @@ Number Evaluator::number(const Expression& expression, const Sight& sight) {
     case Operation::local:
       return sight.locals->at(expression.index);
     case Operation::negate:
-      return negate(part(0));
-    case Operation::add:
-      return add(part(0), part(1));
-    case Operation::subtract:
-      return subtract(part(0), part(1));
-    case Operation::multiply:
-      return multiply(part(0), part(1));
-    case Operation::divide:
-      return divide(part(0), part(1));
-    case Operation::modulo:
-      return modulo(part(0), part(1));
-    case Operation::random: {
-      const Number low = part(0);
-      const Number high = part(1);
-      return sight.chance != nullptr ? sight.chance->draw(low, high) : low;
-    }
+      return negate(number(expression.operands[0], sight));
     default:
-      return std::nullopt;  // a truth: the compiler lets none stand here
+      return arithmetic(expression, sight);
+  }
+}
+
+Number Evaluator::arithmetic(const Expression& expression, const Sight& sight) {
+  if (expression.operands.size() != 2)
+    return std::nullopt;  // a truth: the compiler lets none stand here
+  const Number left = number(expression.operands[0], sight);
+  const Number right = number(expression.operands[1], sight);
+  switch (expression.operation) {
+    case Operation::add:
+      return add(left, right);
+    case Operation::subtract:
+      return subtract(left, right);
+    case Operation::multiply:
+      return multiply(left, right);
+    case Operation::divide:
+      return divide(left, right);
+    case Operation::modulo:
+      return modulo(left, right);
+    case Operation::random:
+      return sight.chance != nullptr ? sight.chance->draw(left, right) : left;
+    default:
+      return std::nullopt;  // a truth
   }
 }
 
 Truth Evaluator::truth(const Expression& expression, const Sight& sight) {
-  const auto part = [&](std::size_t i) { return truth(expression.operands[i], sight); };
   if (is_time_word(expression.operation)) return words_[&expression].now;
   switch (expression.operation) {
     case Operation::logical_not:
-      return opposite(part(0));
+      return opposite(truth(expression.operands[0], sight));
     case Operation::logical_and:
-      return both(part(0), part(1));
-    case Operation::logical_or:
-      return either(part(0), part(1));
+    case Operation::logical_or: {
+      const Truth left = truth(expression.operands[0], sight);
+      const Truth right = truth(expression.operands[1], sight);
+      return expression.operation == Operation::logical_and ? both(left, right)
+                                                            : either(left, right);
+    }
     default:
       return comparison(expression, sight);
   }
@@ -112,7 +124,7 @@ void Evaluator::remember(const Expression& expression, const Sight& sight, Momen
   }
   Word& word = words_[&expression];
   word.past.add(sample);
-  word.now = word.past.truth(expression, now);
+  word.now = word.past.truth(written(expression), now);
 }
 
 bool Evaluator::happens(const Expression& expression) const {
@@ -121,4 +133,4 @@ bool Evaluator::happens(const Expression& expression) const {
                      [this](const Expression& operand) { return happens(operand); });
 }
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

@@ -7,7 +7,7 @@
 #include "compiler/sema/program.hpp"
 #include "tests/oracles/rsl/past.hpp"
 
-namespace robosync::reference {
+namespace robosync::oracle {
 
 // The values that all rules of a step see.
 struct Snapshot {
@@ -38,9 +38,10 @@ private:
     Past past;
     Truth now;
   };
+  [[nodiscard]] Number arithmetic(const compiler::Expression& expression, const Sight& sight);
   [[nodiscard]] Truth comparison(const compiler::Expression& expression, const Sight& sight);
 
   std::map<const compiler::Expression*, Word> words_;
 };
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <iterator>
 
-namespace robosync::reference {
+namespace robosync::oracle {
 namespace {
 
 constexpr Millis kFadeEvery = 100;  // "ten times a second"
@@ -66,9 +66,8 @@ Snapshot Inputs::readings(Millis now) const {
 
 // ---- what is remembered
 
-std::int64_t Inputs::clamped(std::size_t variable, std::int64_t value) const {
-  const compiler::ProgramVariable& config = program_.variables[variable];
-  return std::clamp<std::int64_t>(value, config.min, config.max);
+std::int64_t clamped(const compiler::ProgramVariable& variable, std::int64_t value) {
+  return std::clamp<std::int64_t>(value, variable.min, variable.max);
 }
 
 void Inputs::put(std::size_t variable, Number value) {
@@ -84,7 +83,8 @@ void Inputs::enter_variables(Millis now) {
     for (auto response = step.rbegin(); response != step.rend(); ++response)
       for (const auto& [variable, change] : *response) {
         const auto before = values.emplace(variable, *snapshot_.variables[variable]).first->second;
-        values[variable] = clamped(variable, change.set ? *change.set : *add(before, change.raise));
+        values[variable] = clamped(program_.variables[variable],
+                                   change.set ? *change.set : *add(before, change.raise));
       }
   staged_.clear();
   for (const auto& [variable, value] : values) {
@@ -180,4 +180,4 @@ void Inputs::enter(Millis now, bool readings) {
     check(program_.checks[c], smoothing_[c], now);
 }
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

@@ -8,7 +8,7 @@
 #include "tests/oracles/rsl/evaluator.hpp"
 #include "tests/oracles/rsl/trace.hpp"
 
-namespace robosync::reference {
+namespace robosync::oracle {
 
 // What one response did to one variable.
 struct Change {
@@ -16,6 +16,9 @@ struct Change {
   std::int64_t raise = 0;  // … or only RAISEs and LOWERs
 };
 using Changes = std::map<std::size_t, Change>;
+
+// A value inside the variable's range.
+[[nodiscard]] std::int64_t clamped(const compiler::ProgramVariable& variable, std::int64_t value);
 
 class Inputs {
 public:
@@ -31,7 +34,6 @@ public:
   [[nodiscard]] const Snapshot& snapshot() const { return snapshot_; }
   // Readings as they are, which is what SAFETY rules look at.
   [[nodiscard]] Snapshot readings(Millis now) const;
-  [[nodiscard]] std::int64_t clamped(std::size_t variable, std::int64_t value) const;
 
 private:
   struct Channel {
@@ -69,4 +71,4 @@ private:
   std::vector<Smoothing> smoothing_;
 };
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

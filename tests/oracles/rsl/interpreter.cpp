@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace robosync::reference {
+namespace robosync::oracle {
 namespace {
 
 constexpr Millis kGuardEvery = 10;
@@ -153,7 +153,7 @@ std::string Interpreter::name_of(const Rule& rule) {
 }
 
 Surroundings Interpreter::around(std::size_t rule) {
-  return {evaluator_, chances_[rules_[rule].rank], trace_, inputs_, inputs_.snapshot(),
+  return {evaluator_, chances_[rules_[rule].rank], program_.variables, inputs_.snapshot(),
           now_.at,    !actuators_.works_for(rule)};
 }
 
@@ -180,17 +180,30 @@ void Interpreter::run_responses() {
   end_responses();
 }
 
+void Interpreter::say(const Said& said) {
+  if (said.alert)
+    trace_.alert(said.text);
+  else
+    trace_.log(filled_in(said.text, said.values), said.values);
+}
+
 void Interpreter::carry_out(const Output& output) {
   std::set<std::size_t> started;
   std::set<std::size_t> overrun;  // which is said once a step
-  for (const auto& [targets, order] : output.commands)
+  for (const Deed& deed : output.deeds) {
+    if (const auto* said = std::get_if<Said>(&deed)) {
+      say(*said);
+      continue;
+    }
+    const auto& [targets, order] = std::get<Commanded>(deed);
     for (const std::size_t actuator : targets) {
       started.insert(actuator);
       if (actuators_.submit(actuator, order)) continue;
       if (overrun.insert(actuator).second) trace_.actuator("overrun", actuator);
     }
+  }
   for (const std::size_t actuator : started)
     actuators_.start(actuator, now_.at);
 }
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

@@ -19,7 +19,7 @@
 #include "tests/oracles/rsl/actuators.hpp"
 #include "tests/oracles/rsl/response.hpp"
 
-namespace robosync::reference {
+namespace robosync::oracle {
 
 struct Reading {
   Millis at = 0;
@@ -90,6 +90,7 @@ private:
   std::string in_the_way(const Claim& claim, std::vector<std::size_t>& losers) const;
   void interrupt(std::size_t rule, const std::string& by);
   void run_responses();
+  void say(const Said& said);
   void carry_out(const Output& output);
   // Looks at all SAFETY rules, or at those that read one of `channels` and at what is due.
   void guard(bool all, const std::set<compiler::ChannelRef>& channels = {});
@@ -115,4 +116,4 @@ private:
   Moment guard_now_;
 };
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

@@ -45,8 +45,8 @@ compiler::ChannelRef channel(const compiler::Robot& robot, const Json& stimulus)
   throw std::runtime_error("no such channel: " + stimulus.dump());
 }
 
-std::vector<reference::Reading> scenario(const std::string& file, const compiler::Robot& robot) {
-  std::vector<reference::Reading> result;
+std::vector<oracle::Reading> scenario(const std::string& file, const compiler::Robot& robot) {
+  std::vector<oracle::Reading> result;
   const Json root = Json::parse(read(file));
   for (const Json& stimulus : root.at("stimuli"))
     result.push_back(
@@ -72,9 +72,9 @@ void run(const std::vector<std::string>& arguments) {
   const compiler::Program program = compiler::analyze(trees, *robot, sources, diagnostics);
   if (diagnostics.errors() > 0)
     throw std::runtime_error(compiler::render_human(diagnostics, sources, false));
-  reference::Trace trace(std::cout, program, *robot);
+  oracle::Trace trace(std::cout, program, *robot);
   const auto seed = static_cast<std::uint32_t>(std::stoll(arguments[4]));
-  reference::Interpreter interpreter(program, *robot, seed, trace);
+  oracle::Interpreter interpreter(program, *robot, seed, trace);
   interpreter.run(scenario(arguments[2], *robot), std::stoll(arguments[3]));
 }
 

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <optional>
 
-namespace robosync::reference {
+namespace robosync::oracle {
 namespace {
 
 // When it became true: it was known not to be, or was never known. What it was before an unknown
@@ -29,20 +29,20 @@ void Past::add(const Sample& sample) {
   samples_.push_back(sample);
 }
 
-Truth Past::truth(const compiler::Expression& word, Moment now) const {
-  switch (word.operation) {
-    case compiler::Operation::held:
-      return held(word.constant, now);
-    case compiler::Operation::counted:
-      return counted(word.index, word.constant, now);
-    case compiler::Operation::sequence:
-      return sequence(word.constant, now);
-    case compiler::Operation::latch:
+Truth Past::truth(const TimeWord& word, Moment now) const {
+  switch (word.kind) {
+    case vm::TimerKind::held:
+      return held(word.amount, now);
+    case vm::TimerKind::counted:
+      return counted(word.times, word.amount, now);
+    case vm::TimerKind::sequence:
+      return sequence(word.amount, now);
+    case vm::TimerKind::latch:
       return latched();
-    case compiler::Operation::rose:
+    case vm::TimerKind::rose:
       return rose(now);
     default:
-      return changed(word.constant, now);
+      return changed(word.amount, now);
   }
 }
 
@@ -126,4 +126,4 @@ Truth Past::changed(std::int64_t least, Moment now) const {
   return result;
 }
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "compiler/sema/program_walk.hpp"
 
-namespace robosync::reference {
+namespace robosync::oracle {
 
 Sight Response::sight(const Surroundings& around) const {
-  return {around.snapshot, &own_, &locals_, &around.chance};
+  return {around.snapshot, &output_.seen, &locals_, &around.chance};
 }
 
 Number Response::number(const compiler::Expression& expression) const {
@@ -29,10 +30,13 @@ bool Response::may_go_on(const Surroundings& around) const {
   return around.evaluator.truth(*condition_, sight(around)) == true;
 }
 
+std::optional<Millis> Response::wait_ends() const {
+  return pause_ == Pause::time ? until_ : std::nullopt;
+}
+
 Output Response::run(const Surroundings& around) {
   around_ = &around;
   pause_ = Pause::none;
-  own_.clear();
   output_ = {};
   while (!places_.empty() && pause_ == Pause::none) {
     Place& place = places_.back();
@@ -44,8 +48,7 @@ Output Response::run(const Surroundings& around) {
     std::visit([this](const auto& node) { run(node); }, statement.node);
   }
   // What stands behind a pause is nothing if all blocks are at their end.
-  own_.clear();
-  return std::move(output_);
+  return std::exchange(output_, {});
 }
 
 void Response::leave_block() {
@@ -81,7 +84,7 @@ void Response::run(const compiler::ProgramCommand& node) {
   Order order{rule_, &node, {}};
   for (const compiler::ProgramArgument& argument : node.arguments)
     order.given.emplace_back(argument.param, number(argument.value));
-  output_.commands.emplace_back(node.actuators, std::move(order));
+  output_.deeds.emplace_back(Commanded{node.actuators, std::move(order)});
 }
 
 void Response::run(const compiler::ProgramLocal& node) {
@@ -92,10 +95,10 @@ void Response::run(const compiler::ProgramSet& node) {
   const Number given = number(node.value);
   if (!given) return;
   Change& change = output_.changes[node.variable];
-  const Inputs& inputs = around_->inputs;
+  const compiler::ProgramVariable& variable = around_->variables[node.variable];
   Number& seen =
-      own_.emplace(node.variable, around_->snapshot.variables[node.variable]).first->second;
-  seen = inputs.clamped(node.variable, node.relative ? *add(seen, given) : *given);
+      output_.seen.emplace(node.variable, around_->snapshot.variables[node.variable]).first->second;
+  seen = clamped(variable, node.relative ? *add(seen, given) : *given);
   if (!node.relative)
     change = {seen, 0};
   else if (change.set)
@@ -149,11 +152,11 @@ void Response::run(const compiler::ProgramLog& node) {
   std::vector<Number> values;
   for (const compiler::Expression& value : node.values)
     values.push_back(number(value));
-  around_->trace.log(filled_in(node.text, values), values);
+  output_.deeds.emplace_back(Said{false, node.text, std::move(values)});
 }
 
 void Response::run(const compiler::ProgramAlert& node) {
-  around_->trace.alert(node.text);
+  output_.deeds.emplace_back(Said{true, node.text, {}});
 }
 
 void Response::run(const compiler::ProgramHalt&) {}  // of SAFETY rules, which have no responses
@@ -202,4 +205,4 @@ std::string filled_in(const std::string& text, const std::vector<Number>& values
   return result;
 }
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

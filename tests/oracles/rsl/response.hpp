@@ -5,24 +5,38 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <variant>
 #include <vector>
 
 #include "tests/oracles/rsl/inputs.hpp"
 
-namespace robosync::reference {
+namespace robosync::oracle {
+
+// A command and the actuators it is for.
+struct Commanded {
+  std::vector<std::size_t> actuators;
+  Order order;
+};
+// A LOG or an ALERT.
+struct Said {
+  bool alert = false;
+  std::string text;
+  std::vector<Number> values;
+};
+using Deed = std::variant<Commanded, Said>;
 
 // What a response puts out in one step.
 struct Output {
-  std::vector<std::pair<std::vector<std::size_t>, Order>> commands;  // actuators and what to do
+  std::vector<Deed> deeds;  // in their order
   Changes changes;
+  std::map<std::size_t, Number> seen;  // what it SET, RAISEd or LOWERed, as it sees it itself
 };
 
 // What a response needs of the robot it runs on.
 struct Surroundings {
   Evaluator& evaluator;
   Chance& chance;
-  Trace& trace;
-  const Inputs& inputs;
+  const std::vector<compiler::ProgramVariable>& variables;
   const Snapshot& snapshot;
   Millis now = 0;
   bool commands_done = false;  // of this response, all so far
@@ -36,6 +50,8 @@ public:
 
   [[nodiscard]] bool ended() const { return places_.empty(); }
   [[nodiscard]] bool waits() const { return pause_ != Pause::none; }
+  // When a WAIT is over. Nothing of other pauses: those are looked at in every step.
+  [[nodiscard]] std::optional<Millis> wait_ends() const;
   // Is what it waits for there?
   [[nodiscard]] bool may_go_on(const Surroundings& around) const;
   // To the next pause, or the end.
@@ -80,7 +96,6 @@ private:
 
   // While it runs.
   const Surroundings* around_ = nullptr;
-  std::map<std::size_t, Number> own_;  // what it has SET and sees at once
   Output output_;
 };
 
@@ -92,4 +107,4 @@ void for_each_condition(const compiler::ProgramBlock& block,
 // A LOG's text with the values in its {} places.
 [[nodiscard]] std::string filled_in(const std::string& text, const std::vector<Number>& values);
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

@@ -4,7 +4,7 @@
 
 #include "tests/oracles/rsl/interpreter.hpp"
 
-namespace robosync::reference {
+namespace robosync::oracle {
 namespace {
 
 constexpr Millis kGraceEnds = 10;
@@ -206,9 +206,11 @@ void Interpreter::trip(Guard& guard, const Snapshot& readings) {
   for (const std::size_t actuator : actuators_of(guard.rule->then_response))
     if (!before.contains(actuator)) actuators_.halt(actuator);
   Response response(guard.rule->then_response, rules_.size());
-  const Surroundings here{evaluator_, no_chance_, trace_, inputs_, readings, now_.at, false};
+  const Surroundings here{evaluator_, no_chance_, program_.variables, readings, now_.at, false};
   const Output output = response.run(here);
+  for (const Deed& deed : output.deeds)
+    if (const auto* said = std::get_if<Said>(&deed)) say(*said);
   inputs_.stage({output.changes});
 }
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

@@ -8,7 +8,7 @@
 
 #include "compiler/config/units.hpp"
 
-namespace robosync::reference {
+namespace robosync::oracle {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -101,4 +101,4 @@ void Trace::alert(const std::string& text) {
   out_ << object << "\n";
 }
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

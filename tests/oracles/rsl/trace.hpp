@@ -11,7 +11,7 @@
 #include "compiler/sema/program.hpp"
 #include "tests/oracles/rsl/past.hpp"
 
-namespace robosync::reference {
+namespace robosync::oracle {
 
 // A command as an actuator gets it.
 struct Order {
@@ -45,4 +45,4 @@ private:
   Millis now_ = 0;
 };
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace robosync::reference {
+namespace robosync::oracle {
 namespace {
 
 constexpr std::int64_t kMost = 2'147'483'647;
@@ -22,6 +22,23 @@ Wide rounded(Wide a, Wide b) {
 }
 
 }  // namespace
+
+Number number_of(vm::Value value) {
+  return value == vm::kUnknown ? std::nullopt : Number(value);
+}
+
+Truth truth_of(vm::Value value) {
+  return value == vm::kUnknown ? std::nullopt : Truth(value == vm::kTrue);
+}
+
+vm::Value value_of(Number number) {
+  return number ? static_cast<vm::Value>(*number) : vm::kUnknown;
+}
+
+vm::Value value_of(Truth truth) {
+  if (!truth) return vm::kUnknown;
+  return *truth ? vm::kTrue : vm::kFalse;
+}
 
 Number add(Number a, Number b) {
   if (!a || !b) return std::nullopt;
@@ -89,4 +106,4 @@ Number Chance::draw(Number a, Number b) {
   return least + static_cast<std::int64_t>(static_cast<Wide>(state_) * count >> 32);
 }
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

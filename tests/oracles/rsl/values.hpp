@@ -1,15 +1,23 @@
 // Numbers and truths as docs/language.md has them: thousandths, rounded half away from zero, kept
 // inside ±2,147,483.647; nothing stands for "unknown". Written anew, in 64 and 128 bits: none of
-// vm/arithmetic.hpp.
+// vm/arithmetic.hpp. The one naive arithmetic of the tests, from vm/ to whole programs.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
-namespace robosync::reference {
+#include "vm/value.hpp"
+
+namespace robosync::oracle {
 
 using Number = std::optional<std::int64_t>;  // thousandths
 using Truth = std::optional<bool>;
+
+// A value as the robot keeps it, and back.
+[[nodiscard]] Number number_of(vm::Value value);
+[[nodiscard]] Truth truth_of(vm::Value value);
+[[nodiscard]] vm::Value value_of(Number number);
+[[nodiscard]] vm::Value value_of(Truth truth);
 
 [[nodiscard]] Number add(Number a, Number b);
 [[nodiscard]] Number subtract(Number a, Number b);
@@ -30,11 +38,13 @@ using Truth = std::optional<bool>;
 class Chance {
 public:
   Chance(std::uint32_t program_seed, std::uint32_t behavior);
+  explicit Chance(std::uint32_t state) : state_(state) {}
   // From `a` to `b`, in whichever order, both included; nothing is drawn where one is unknown.
   [[nodiscard]] Number draw(Number a, Number b);
+  [[nodiscard]] std::uint32_t state() const { return state_; }
 
 private:
   std::uint32_t state_ = 0;
 };
 
-}  // namespace robosync::reference
+}  // namespace robosync::oracle

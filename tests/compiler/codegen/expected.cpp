@@ -1,0 +1,68 @@
+#include "tests/compiler/codegen/expected.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "tests/oracles/rsl/response.hpp"
+
+namespace robosync::compiler::testing {
+namespace {
+
+std::string told(const std::string& what, const std::map<std::size_t, oracle::Number>& values) {
+  std::string text = what;
+  for (const auto& [place, value] : values)
+    text += " " + std::to_string(place) + ":" + std::to_string(oracle::value_of(value));
+  return text;
+}
+
+std::string told(const oracle::Deed& deed) {
+  std::map<std::size_t, oracle::Number> values;
+  if (const auto* said = std::get_if<oracle::Said>(&deed)) {
+    for (std::size_t i = 0; i < said->values.size(); ++i)
+      values[i] = said->values[i];
+    return told((said->alert ? "alert " : "log ") + said->text, values);
+  }
+  constexpr const char* kNames[] = {"left", "right", "sound"};
+  const auto& [actuators, order] = std::get<oracle::Commanded>(deed);
+  for (const auto& [param, value] : order.given)
+    values[static_cast<std::size_t>(param)] = value;
+  return told(order.command->group ? "arms" : kNames[actuators[0]], values);
+}
+
+}  // namespace
+
+oracle::Snapshot snapshot_of(const World& world) {
+  constexpr std::array<ChannelRef, 4> kChannels = {{{0, 0}, {1, 0}, {1, 1}, {2, 0}}};
+  oracle::Snapshot snapshot;
+  for (std::size_t i = 0; i < kChannels.size(); ++i)
+    snapshot.channels[kChannels[i]] = oracle::number_of(world.channels[i]);
+  for (const vm::Value value : world.variables)
+    snapshot.variables.push_back(oracle::number_of(value));
+  return snapshot;
+}
+
+Deeds expected_deeds(const ProgramBlock& block, const std::vector<ProgramVariable>& variables,
+                     World& world, unsigned pauses, oracle::Chance chance,
+                     const std::function<void(World&)>& pass_time) {
+  oracle::Evaluator evaluator;
+  oracle::Response response(block, 0);
+  Deeds deeds;
+  for (unsigned pause = 0; pause <= pauses; ++pause) {
+    const oracle::Snapshot snapshot = snapshot_of(world);
+    const oracle::Surroundings around{evaluator, chance, variables, snapshot, world.now, true};
+    if (!response.waits() || response.may_go_on(around)) {
+      const oracle::Output output = response.run(around);
+      for (const oracle::Deed& deed : output.deeds)
+        deeds.push_back(told(deed));
+      for (const auto& [variable, value] : output.seen)
+        world.variables[variable] = oracle::value_of(value);
+    }
+    if (!response.waits() || pause == pauses) break;
+    const oracle::Millis next = world.now + 1;
+    world.now = static_cast<std::uint32_t>(std::max(next, response.wait_ends().value_or(next)));
+    pass_time(world);
+  }
+  return deeds;
+}
+
+}  // namespace robosync::compiler::testing
