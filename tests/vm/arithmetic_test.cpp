@@ -1,43 +1,18 @@
-// Arithmetic against an exact model in 128 bits: saturation, rounding, unknown.
+// Arithmetic against the naive one of tests/oracles: saturation, rounding, unknown.
 #include "vm/arithmetic.hpp"
-
-#include <algorithm>
 
 #include <catch2/catch.hpp>
 #include <rapidcheck.h>
 
+#include "tests/oracles/rsl/values.hpp"
+
 using namespace robosync::vm;
+namespace oracle = robosync::oracle;
 
 namespace {
 
-__extension__ using Exact = __int128;
-
-Value saturate(Exact value) {
-  return static_cast<Value>(
-      std::clamp(value, static_cast<Exact>(kValueMin), static_cast<Exact>(kValueMax)));
-}
-
-// numerator / denominator, rounded half away from zero, by the definition.
-Exact round_quotient(Exact numerator, Exact denominator) {
-  const bool negative = (numerator < 0) != (denominator < 0);
-  const Exact n = numerator < 0 ? -numerator : numerator;
-  const Exact d = denominator < 0 ? -denominator : denominator;
-  const Exact whole = n / d;
-  const Exact rounded = 2 * (n - whole * d) >= d ? whole + 1 : whole;
-  return negative ? -rounded : rounded;
-}
-
-Value model_multiply(Value b, Value c) {
-  return saturate(round_quotient(Exact{b} * c, kScale));
-}
-Value model_divide(Value b, Value c) {
-  return c == 0 ? 0 : saturate(round_quotient(Exact{b} * kScale, c));
-}
-Value model_modulo(Value b, Value c) {
-  if (c == 0) return 0;
-  const Exact r = Exact{b} % c;
-  return static_cast<Value>(r != 0 && (r < 0) != (c < 0) ? r + c : r);
-}
+const auto model_multiply = oracle::on_values(oracle::multiply);
+const auto model_divide = oracle::on_values(oracle::divide);
 
 // Known values of every size, and the ends of the range often.
 rc::Gen<Value> known() {
@@ -68,8 +43,8 @@ void agrees(Operation operation, Model model) {
 }  // namespace
 
 TEST_CASE("add and subtract are exact or saturate") {
-  agrees(add, [](Value b, Value c) { return saturate(Exact{b} + c); });
-  agrees(subtract, [](Value b, Value c) { return saturate(Exact{b} - c); });
+  agrees(add, oracle::on_values(oracle::add));
+  agrees(subtract, oracle::on_values(oracle::subtract));
   CHECK(add(kValueMin, -1) == kValueMin);
   CHECK(add(-1, kValueMin) == kValueMin);
   CHECK(subtract(kValueMin, 1) == kValueMin);
@@ -141,7 +116,7 @@ TEST_CASE("multiply and divide are right around every multiple where they round 
 }
 
 TEST_CASE("modulo has the sign of the divisor") {
-  agrees(modulo, model_modulo);
+  agrees(modulo, oracle::on_values(oracle::modulo));
   CHECK(modulo(370 * kScale, 360 * kScale) == 10 * kScale);
   CHECK(modulo(-10 * kScale, 360 * kScale) == 350 * kScale);
   CHECK(modulo(10, -3) == -2);

@@ -8,12 +8,14 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/oracles/rsl/values.hpp"
 #include "vm/arithmetic.hpp"
 #include "vm/opcode.hpp"
 #include "vm/output.hpp"
 
 using namespace robosync::vm;
 using Op = Opcode;
+namespace oracle = robosync::oracle;
 
 namespace {
 
@@ -131,14 +133,14 @@ TEST_CASE("move and load copy any value, unknown as well") {
   }
 }
 
-TEST_CASE("arithmetic opcodes do what arithmetic.hpp says") {
-  agrees(Op::add, robosync::vm::add);
-  agrees(Op::sub, subtract);
-  agrees(Op::mul, multiply);
-  agrees(Op::div, divide);
-  agrees(Op::mod, modulo);
+TEST_CASE("arithmetic opcodes do what the naive arithmetic says") {
+  agrees(Op::add, oracle::on_values(oracle::add));
+  agrees(Op::sub, oracle::on_values(oracle::subtract));
+  agrees(Op::mul, oracle::on_values(oracle::multiply));
+  agrees(Op::div, oracle::on_values(oracle::divide));
+  agrees(Op::mod, oracle::on_values(oracle::modulo));
   for (const Value value : kSamples)
-    CHECK(unary(Op::neg, value) == negate(value));
+    CHECK(unary(Op::neg, value) == oracle::value_of(oracle::negate(oracle::number_of(value))));
 }
 
 TEST_CASE("the lesser and the greater, unknown if the operand is") {

@@ -1,20 +1,21 @@
-// The time words against models that remember everything: each is worked out anew from the whole
-// history, as 10-language.md, section 3.4, tells it. Timelines are drawn, and start at any time,
-// also shortly before the milliseconds wrap.
+// The time words against those of tests/oracles, which remember everything: each is worked out anew
+// from the whole history. Timelines are drawn, and start at any time, also shortly before the
+// milliseconds wrap.
 #include "vm/timers.hpp"
 
 #include <array>
-#include <cstdlib>
 #include <optional>
 #include <random>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
+#include "tests/oracles/rsl/past.hpp"
 #include "vm/opcode.hpp"
 
 using namespace robosync::vm;
 using Op = Opcode;
+namespace oracle = robosync::oracle;
 
 namespace {
 
@@ -26,13 +27,16 @@ using History = std::vector<Moment>;
 
 constexpr std::uint32_t kGuard = 0x5EED5EED;
 
+TimerKind kind_of(Op op) {
+  return static_cast<TimerKind>(static_cast<unsigned>(op) - static_cast<unsigned>(Op::held));
+}
+
 // One timer in a condition of its own: cells 0 and 1 are its operands, 0 gets the result.
 class Subject {
 public:
   Subject(Op op, Value duration, unsigned count, std::uint32_t epoch)
       : code_{encode(op, 0, 1, 0), encode(Op::ret_number, 0)}, epoch_(epoch) {
-    const auto kind = static_cast<unsigned>(op) - static_cast<unsigned>(Op::held);
-    timer_ = {static_cast<TimerKind>(kind), static_cast<std::uint8_t>(count), 1, duration};
+    timer_ = {kind_of(op), static_cast<std::uint8_t>(count), 1, duration};
     memory_.fill(kGuard);
     for (unsigned i = 0; i < words(); ++i)
       memory_[1 + i] = 0;
@@ -67,89 +71,23 @@ private:
   std::array<std::uint32_t, kMaxEdges + 4> memory_{};
 };
 
-// ---- the models: the result in the last moment of a history
+// ---- the model: the result in the last moment of a history
 
-// Does the truth become true in moment `i`? Only known values count; the first one does.
-bool rises(const History& history, std::size_t i, Value Moment::*truth) {
-  if (history[i].*truth != kTrue) return false;
-  for (std::size_t before = i; before > 0; --before) {
-    const Value value = history[before - 1].*truth;
-    if (value != kUnknown) return value != kTrue;
-  }
-  return true;
-}
-
-Value model_held(const History& history, std::uint32_t duration) {
-  const Moment& now = history.back();
-  if (now.b != kTrue) return now.b;
-  std::uint32_t since = now.time;
-  for (std::size_t i = history.size(); i > 0 && history[i - 1].b == kTrue; --i)
-    since = history[i - 1].time;
-  return now.time - since >= duration ? kTrue : kFalse;
-}
-
-Value model_counted(const History& history, std::uint32_t duration, unsigned count) {
-  std::vector<std::uint32_t> edges;  // since it was true last
-  bool is_true = false;
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    is_true = false;
-    if (!rises(history, i, &Moment::b)) continue;
-    edges.push_back(history[i].time);
-    if (edges.size() < count) continue;
-    is_true = edges.back() - edges[edges.size() - count] <= duration;
-    if (is_true) edges.clear();
-  }
-  if (history.back().b == kUnknown) return kUnknown;
-  return is_true ? kTrue : kFalse;
-}
-
-Value model_sequence(const History& history, std::uint32_t duration) {
-  constexpr std::int64_t kNone = INT64_MIN / 2;  // longer ago than any duration
-  std::int64_t first = kNone;
-  bool is_true = false;
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    is_true = rises(history, i, &Moment::b) && history[i].time - first <= duration;
-    if (is_true) first = kNone;
-    if (rises(history, i, &Moment::a)) first = history[i].time;
-  }
-  if (is_true) return kTrue;
-  return history.back().b == kUnknown ? kUnknown : kFalse;
-}
-
-// Above the limit it becomes true, below the margin it becomes false, in between it stays.
-Value model_latch(const History& history) {
-  bool was = false;
-  Value result = kUnknown;
+Value model(TimerKind kind, const History& history, std::uint32_t amount, unsigned times) {
+  oracle::Past past;
+  const bool is_number = kind == TimerKind::changed;
+  const bool has_two = kind == TimerKind::sequence || kind == TimerKind::latch;
+  oracle::Moment now;
   for (const Moment& moment : history) {
-    const Value stays = was ? moment.b : kFalse;
-    if (moment.a == kTrue || stays == kTrue)
-      result = kTrue;
+    now = {now.step + 1, moment.time};
+    const oracle::Truth a = oracle::truth_of(moment.a);
+    const oracle::Truth b = oracle::truth_of(moment.b);
+    if (is_number)
+      past.add({now, {}, {}, oracle::number_of(moment.b)});
     else
-      result = moment.a == kUnknown || stays == kUnknown ? kUnknown : kFalse;
-    if (result != kUnknown) was = result == kTrue;
+      past.add({now, has_two ? a : b, has_two ? b : oracle::Truth(), {}});
   }
-  return result;
-}
-
-Value model_rose(const History& history) {
-  const Value now = history.back().b;
-  if (now != kTrue) return now;
-  for (std::size_t i = history.size() - 1; i > 0; --i)
-    if (history[i - 1].b != kUnknown) return history[i - 1].b == kFalse ? kTrue : kFalse;
-  return kFalse;
-}
-
-Value model_changed(const History& history, Value least) {
-  std::optional<std::int64_t> reference;
-  Value result = kUnknown;
-  for (const Moment& moment : history) {
-    result = kUnknown;
-    if (moment.b == kUnknown) continue;
-    const std::int64_t difference = reference ? std::abs(moment.b - *reference) : 0;
-    result = difference != 0 && difference >= least ? kTrue : kFalse;
-    if (!reference || result == kTrue) reference = moment.b;
-  }
-  return result;
+  return oracle::value_of(past.truth({kind, amount, times}, now));
 }
 
 // ---- timelines
@@ -191,9 +129,7 @@ private:
 };
 
 // Runs `op` and its model side by side, and counts how often each result came.
-template <typename Model>
-void agrees(Op op, unsigned count, bool is_event, Model model,
-            std::uint32_t last_epoch = 0xFFFFFF00) {
+void agrees(Op op, unsigned count, bool is_event, std::uint32_t last_epoch = 0xFFFFFF00) {
   std::array<int, 3> seen{};
   for (std::uint32_t seed = 0; seed < 300; ++seed) {
     Timeline line(seed);
@@ -202,7 +138,7 @@ void agrees(Op op, unsigned count, bool is_event, Model model,
     Subject subject(op, static_cast<Value>(duration), count, epoch);
     for (int i = 0; i < 60; ++i) {
       const Moment moment = line.next();
-      const Value expected = model(line.history(), duration);
+      const Value expected = model(kind_of(op), line.history(), duration, count);
       CAPTURE(seed, i, duration, count, epoch, moment.time);
       REQUIRE(subject.evaluate(moment) == expected);
       REQUIRE(subject.machine.event == (is_event && expected == kTrue));
@@ -219,28 +155,24 @@ void agrees(Op op, unsigned count, bool is_event, Model model,
 
 TEST_CASE("FOR: true at every sample for as long") {
   // At the wrap it may be 2 ms late: see FOR wakes.
-  agrees(Op::held, 0, false, model_held, 0xFFF00000);
+  agrees(Op::held, 0, false, 0xFFF00000);
 }
 
 TEST_CASE("n TIMES WITHIN: rising edges in a sliding window, then from 0") {
   for (const unsigned count : {1U, 2U, 3U, 5U})
-    agrees(Op::counted, count, true, [count](const History& history, std::uint32_t duration) {
-      return model_counted(history, duration, count);
-    });
+    agrees(Op::counted, count, true);
 }
 
 TEST_CASE("THEN WITHIN: a rising edge soon enough after another") {
-  agrees(Op::sequence, 0, true, model_sequence);
+  agrees(Op::sequence, 0, true);
 }
 
 TEST_CASE("MARGIN: stays until it is well past") {
-  agrees(Op::latch, 0, false,
-         [](const History& history, std::uint32_t) { return model_latch(history); });
+  agrees(Op::latch, 0, false);
 }
 
 TEST_CASE("BECOMES: true now, known to be false before") {
-  agrees(Op::rose, 0, true,
-         [](const History& history, std::uint32_t) { return model_rose(history); });
+  agrees(Op::rose, 0, true);
 }
 
 TEST_CASE("CHANGES: differs from the value it last was true for") {
@@ -251,7 +183,8 @@ TEST_CASE("CHANGES: differs from the value it last was true for") {
     Subject subject(Op::changed, least, 0, 0);
     for (int i = 0; i < 60; ++i) {
       const Moment moment = line.next_number();
-      const Value expected = model_changed(line.history(), least);
+      const Value expected =
+          model(TimerKind::changed, line.history(), static_cast<std::uint32_t>(least), 0);
       CAPTURE(seed, i, least, moment.b);
       REQUIRE(subject.evaluate(moment) == expected);
       REQUIRE(subject.machine.event == (expected == kTrue));

@@ -6,8 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "compiler/sema/compute.hpp"
-#include "vm/arithmetic.hpp"
+#include "tests/oracles/rsl/values.hpp"
 
 using namespace robosync;
 using namespace robosync::compiler;
@@ -78,24 +77,29 @@ std::size_t check_all(const char* name, OfFacts of_facts, const OfValues& of_val
   return useful;
 }
 
-OfValues computing(Operation operation) {
-  return [operation](Value b, Value c) { return compute(operation, b, c); };
+// A comparison of two numbers as a Value.
+template <typename Relation>
+OfValues comparing(Relation holds) {
+  return [holds](Value b, Value c) {
+    if (b == kUnknown || c == kUnknown) return kUnknown;
+    return holds(b, c) ? vm::kTrue : vm::kFalse;
+  };
 }
 
 }  // namespace
 
 TEST_CASE("facts about sums, products, quotients and remainders hold") {
-  CHECK(check_all("add", add, computing(Operation::add)) > 1000);
-  CHECK(check_all("subtract", subtract, computing(Operation::subtract)) > 1000);
-  CHECK(check_all("multiply", multiply, computing(Operation::multiply)) > 1000);
-  CHECK(check_all("divide", divide, computing(Operation::divide)) > 500);
-  CHECK(check_all("modulo", modulo, computing(Operation::modulo)) > 1000);
+  CHECK(check_all("add", add, oracle::on_values(oracle::add)) > 1000);
+  CHECK(check_all("subtract", subtract, oracle::on_values(oracle::subtract)) > 1000);
+  CHECK(check_all("multiply", multiply, oracle::on_values(oracle::multiply)) > 1000);
+  CHECK(check_all("divide", divide, oracle::on_values(oracle::divide)) > 500);
+  CHECK(check_all("modulo", modulo, oracle::on_values(oracle::modulo)) > 1000);
 }
 
 TEST_CASE("facts about comparisons hold, and decide what can be decided") {
-  check_all("<", is_less, computing(Operation::less));
-  check_all("<=", is_not_greater, computing(Operation::less_equal));
-  check_all("=", is_equal, computing(Operation::equal));
+  check_all("<", is_less, comparing(std::less<>()));
+  check_all("<=", is_not_greater, comparing(std::less_equal<>()));
+  check_all("=", is_equal, comparing(std::equal_to<>()));
   const Fact low = known_between(-5, 4, false);
   const Fact high = known_between(5, 9, false);
   CHECK(is_less(low, high) == known_between(vm::kTrue, vm::kTrue, false));
@@ -124,9 +128,14 @@ TEST_CASE("facts about three-valued truths hold") {
       for (const Value b : left)
         for (const Value c : right) {
           CAPTURE(b, c);
-          CHECK(allows(logical_and(fact_for(left), fact_for(right)), b & c));
-          CHECK(allows(logical_or(fact_for(left), fact_for(right)), b | c));
-          CHECK(allows(logical_not(fact_for(left)), vm::logical_not(b)));
+          const oracle::Truth one = oracle::truth_of(b);
+          const oracle::Truth other = oracle::truth_of(c);
+          const auto value = [](oracle::Truth truth) { return oracle::value_of(truth); };
+          CHECK(allows(logical_and(fact_for(left), fact_for(right)),
+                       value(oracle::both(one, other))));
+          CHECK(allows(logical_or(fact_for(left), fact_for(right)),
+                       value(oracle::either(one, other))));
+          CHECK(allows(logical_not(fact_for(left)), value(oracle::opposite(one))));
         }
 }
 

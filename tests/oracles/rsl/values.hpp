@@ -26,6 +26,12 @@ using Truth = std::optional<bool>;
 [[nodiscard]] Number modulo(Number a, Number b);  // has the sign of b; by 0: 0
 [[nodiscard]] Number negate(Number a);
 
+// One of these as an operator on Values.
+[[nodiscard]] inline auto on_values(Number (*operate)(Number, Number)) {
+  return
+      [operate](vm::Value a, vm::Value b) { return value_of(operate(number_of(a), number_of(b))); };
+}
+
 [[nodiscard]] Truth both(Truth a, Truth b);
 [[nodiscard]] Truth either(Truth a, Truth b);
 [[nodiscard]] Truth opposite(Truth a);
