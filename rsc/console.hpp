@@ -1,12 +1,5 @@
-// What the terminal can do, and options that several verbs share.
+// Whom the tool talks to: a person at a terminal, or a program.
 #pragma once
-
-#include <chrono>
-#include <optional>
-#include <string>
-
-#include "rsc/options.hpp"
-#include "rsc/program.hpp"
 
 namespace robosync::tool {
 
@@ -15,13 +8,5 @@ namespace robosync::tool {
 [[nodiscard]] bool stderr_is_terminal();
 
 enum class Format { human, json };
-void add_format_option(Options& options, Format& format);
-void add_port_option(Options& options, std::string& port);
-void add_config_option(Options& options, std::string& config);
-// --config, and -O0 or -O1.
-void add_compile_options(Options& options, CompileOptions& how);
-void add_duration_option(Options& options, const std::string& name,
-                         std::optional<std::chrono::milliseconds>& duration,
-                         const std::string& description);
 
 }  // namespace robosync::tool

@@ -60,4 +60,13 @@ private:
 // "an operand is out of range (code, word 12, source line 4)".
 [[nodiscard]] std::string describe_refusal(const vm::Verdict& verdict, std::uint16_t line);
 
+struct SectionSize {
+  vm::Section section;
+  std::size_t records = 0;
+  std::size_t bytes = 0;  // padding included
+};
+
+// Those that are not empty, in the order they stand in the image; together they are the image.
+[[nodiscard]] std::vector<SectionSize> section_sizes(const vm::Image& image);
+
 }  // namespace robosync::tool

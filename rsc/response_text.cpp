@@ -1,5 +1,6 @@
 // Response times as a table for people, as JSON for programs, and as the reason of a refusal.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "analysis/costs.hpp"
 #include "rsc/timing.hpp"

@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "analysis/report.hpp"
-#include "rsc/sections.hpp"
+#include "rsc/program.hpp"
 #include "vm/cost.hpp"
 #include "vm/image.hpp"
 #include "vm/verifier.hpp"

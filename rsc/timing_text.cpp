@@ -1,7 +1,8 @@
 // The timing as a table for people, and as JSON for programs: the same figures.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include "rsc/dump_parts.hpp"
+#include "rsc/names.hpp"
 #include "rsc/timing.hpp"
 #include "vm/verifier.hpp"
 
@@ -10,11 +11,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kPercent = 100;
-
 std::string percent(const Share& share) {
   return fmt::format("{:.1f} %",
-                     kPercent * static_cast<double>(share.used) / static_cast<double>(share.limit));
+                     100 * static_cast<double>(share.used) / static_cast<double>(share.limit));
 }
 
 std::string title(const BehaviorTiming& behavior) {

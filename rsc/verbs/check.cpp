@@ -17,6 +17,7 @@
 #include "rsc/program.hpp"
 #include "rsc/timing.hpp"
 #include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {

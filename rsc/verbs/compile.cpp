@@ -12,8 +12,8 @@
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
 #include "rsc/program.hpp"
-#include "rsc/sections.hpp"
 #include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {

@@ -1,12 +1,13 @@
 // rsc dump FILE|X.rsb [--config FILE] [-O0]
+#include "rsc/dump/dump.hpp"
+
 #include <iostream>
 #include <memory>
 #include <string>
 
-#include "rsc/console.hpp"
-#include "rsc/dump_text.hpp"
 #include "rsc/program.hpp"
 #include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {

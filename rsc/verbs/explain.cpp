@@ -20,6 +20,7 @@
 #include "rsc/files.hpp"
 #include "rsc/program.hpp"
 #include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {

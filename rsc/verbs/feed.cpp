@@ -12,13 +12,14 @@
 
 #include <fmt/format.h>
 
-#include "rsc/channels.hpp"
 #include "rsc/console.hpp"
+#include "rsc/device/uploader.hpp"
+#include "rsc/device/watch.hpp"
 #include "rsc/failure.hpp"
-#include "rsc/scenario.hpp"
-#include "rsc/upload_program.hpp"
+#include "rsc/trace/channels.hpp"
+#include "rsc/trace/scenario.hpp"
 #include "rsc/verb.hpp"
-#include "rsc/watch.hpp"
+#include "rsc/verb_options.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::tool {

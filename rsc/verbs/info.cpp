@@ -10,9 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
-#include "rsc/session.hpp"
-#include "rsc/threads.hpp"
+#include "rsc/device/session.hpp"
+#include "rsc/device/threads.hpp"
 #include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {

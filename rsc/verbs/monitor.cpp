@@ -5,8 +5,9 @@
 #include <string>
 
 #include "rsc/console.hpp"
+#include "rsc/device/watch.hpp"
 #include "rsc/verb.hpp"
-#include "rsc/watch.hpp"
+#include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {

@@ -6,8 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
-#include "rsc/serial_transport.hpp"
+#include "rsc/device/serial_transport.hpp"
 #include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {

@@ -12,10 +12,11 @@
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
 #include "rsc/program.hpp"
-#include "rsc/scenario.hpp"
 #include "rsc/timing.hpp"
-#include "rsc/trace_format.hpp"
+#include "rsc/trace/scenario.hpp"
+#include "rsc/trace/trace_format.hpp"
 #include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
 #include "runtime-m4/sim/simulator.hpp"
 
 namespace robosync::tool {

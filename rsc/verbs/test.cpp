@@ -9,12 +9,13 @@
 
 #include "compiler/diagnostics/render.hpp"
 #include "rsc/console.hpp"
-#include "rsc/expectations.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/program.hpp"
-#include "rsc/time_units.hpp"
-#include "rsc/trace_format.hpp"
+#include "rsc/trace/expectations.hpp"
+#include "rsc/trace/time_units.hpp"
+#include "rsc/trace/trace_format.hpp"
 #include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {

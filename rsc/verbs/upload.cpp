@@ -9,9 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
+#include "rsc/device/serial_transport.hpp"
+#include "rsc/device/uploader.hpp"
 #include "rsc/failure.hpp"
-#include "rsc/upload_program.hpp"
 #include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -19,7 +21,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double kBitsPerByte = 10;  // 8N1
-constexpr double kBaudRate = 115200;
 
 struct SendOptions {
   std::string file, port;

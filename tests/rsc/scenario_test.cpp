@@ -1,5 +1,5 @@
 // Scenarios: what they mean, and a message with file and line for each that is wrong.
-#include "rsc/scenario.hpp"
+#include "rsc/trace/scenario.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // The list of threads, for people and as JSON: priorities, shares of the processor.
-#include "rsc/threads.hpp"
+#include "rsc/device/threads.hpp"
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 // Trace events as JSON and as words; and with numbers that the image does not have.
-#include "rsc/trace_format.hpp"
+#include "rsc/trace/trace_format.hpp"
 
 #include <random>
 

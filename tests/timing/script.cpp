@@ -4,7 +4,7 @@
 
 #include "link/events.hpp"
 #include "rsc/failure.hpp"
-#include "rsc/scenario.hpp"
+#include "rsc/trace/scenario.hpp"
 #include "runtime-m4/sim/simulator.hpp"
 #include "tests/timing/firmware/block.hpp"
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "rsc/transport.hpp"
+#include "rsc/device/transport.hpp"
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/runtime.hpp"

@@ -8,10 +8,10 @@
 #include <catch2/catch.hpp>
 
 #include "link/events.hpp"
-#include "rsc/client.hpp"
+#include "rsc/device/client.hpp"
+#include "rsc/device/session.hpp"
+#include "rsc/device/uploader.hpp"
 #include "rsc/failure.hpp"
-#include "rsc/session.hpp"
-#include "rsc/uploader.hpp"
 #include "tests/runtime-m4/update/programs.hpp"
 #include "tests/runtime-m4/update/robot.hpp"
 #include "vm/opcode.hpp"

@@ -6,9 +6,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "rsc/client.hpp"
+#include "rsc/device/client.hpp"
+#include "rsc/device/uploader.hpp"
 #include "rsc/failure.hpp"
-#include "rsc/uploader.hpp"
 #include "tests/runtime-m4/update/programs.hpp"
 #include "tests/runtime-m4/update/robot.hpp"
 

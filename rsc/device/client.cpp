@@ -1,0 +1,184 @@
+// May assume nothing of what the line delivers. Promises that a reply is the one to the request:
+// type, sequence and length are compared.
+#include "rsc/device/client.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "rsc/failure.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using link::MessageType;
+using std::chrono::milliseconds;
+
+// A reply takes at most 45 ms on the wire; the board verifies an image in a few.
+constexpr milliseconds kRepeatAfter{250};
+constexpr std::size_t kMaxKept = 4096;  // unasked messages nobody has fetched
+
+bool is_unasked(MessageType type) {
+  return type == MessageType::event || type == MessageType::log || type == MessageType::fault;
+}
+
+std::optional<Message> pop(std::deque<Message>& queue) {
+  if (queue.empty()) return std::nullopt;
+  Message message = std::move(queue.front());
+  queue.pop_front();
+  return message;
+}
+
+}  // namespace
+
+Client::Client(Transport& transport, milliseconds timeout)
+    : transport_(transport), timeout_(timeout) {
+  // Whatever half frame the last host left in the board's decoder ends here.
+  transport_.write(std::array{std::byte{0}});
+}
+
+std::uint8_t Client::send(MessageType type, std::span<const std::byte> payload) {
+  std::array<std::byte, link::kMaxEncodedFrame> frame{};
+  const std::uint8_t sequence = sequence_++;
+  const std::size_t length = link::encode_frame(type, sequence, payload, frame);
+  transport_.write(std::span(frame).first(length));
+  return sequence;
+}
+
+// Reads once. False when it is too late.
+bool Client::receive(Transport::Clock::time_point until) {
+  const auto left = std::chrono::duration_cast<milliseconds>(until - transport_.now());
+  std::array<std::byte, 512> bytes{};
+  const std::size_t count = transport_.read(bytes, std::max(left, milliseconds(0)));
+  for (const std::byte byte : std::span(bytes).first(count)) {
+    if (!decoder_.push(byte)) continue;
+    const link::Frame& frame = decoder_.frame();
+    std::deque<Message>& queue = is_unasked(frame.type) ? unasked_ : replies_;
+    if (queue.size() == kMaxKept) queue.pop_front();
+    queue.push_back({frame.type, frame.sequence, {frame.payload.begin(), frame.payload.end()}});
+  }
+  return count > 0 || transport_.now() < until;
+}
+
+std::optional<Message> Client::next_reply(milliseconds timeout) {
+  const auto until = transport_.now() + timeout;
+  while (replies_.empty() && receive(until)) {
+  }
+  return pop(replies_);
+}
+
+std::optional<Message> Client::next_unasked(milliseconds timeout) {
+  const auto until = transport_.now() + timeout;
+  while (unasked_.empty() && receive(until)) {
+  }
+  return pop(unasked_);
+}
+
+// Replies to earlier requests, which came too late, are dropped.
+std::optional<Message> Client::reply_to(std::uint8_t sequence, MessageType type,
+                                        Transport::Clock::time_point until) {
+  while (true) {
+    while (std::optional<Message> reply = pop(replies_)) {
+      if (reply->type == type && reply->sequence == sequence) return reply;
+    }
+    if (!receive(until)) return std::nullopt;
+  }
+}
+
+template <typename Reply>
+Reply Client::request(MessageType type, MessageType reply_type,
+                      std::span<const std::byte> payload) {
+  const auto give_up = transport_.now() + timeout_;
+  while (transport_.now() < give_up) {
+    const std::uint8_t sequence = send(type, payload);
+    const auto until = std::min(give_up, transport_.now() + kRepeatAfter);
+    const std::optional<Message> answer = reply_to(sequence, reply_type, until);
+    Reply reply{};
+    if (answer && link::read_payload(answer->payload, reply)) return reply;
+  }
+  no_answer();
+}
+
+void Client::no_answer() const {
+  throw Failure(Exit::outside, transport_.name() +
+                                   ": the board does not answer: is it on, does it run the "
+                                   "RoboSync firmware, and is no other program using the port?");
+}
+
+// Its reply may be of another protocol: only the first byte is sure to mean the same.
+link::HelloReply Client::hello() {
+  const auto give_up = transport_.now() + timeout_;
+  while (transport_.now() < give_up) {
+    const std::uint8_t sequence = send(MessageType::hello);
+    const auto until = std::min(give_up, transport_.now() + kRepeatAfter);
+    const auto answer = reply_to(sequence, MessageType::hello_reply, until);
+    link::HelloReply reply{};
+    if (!answer || answer->payload.empty()) continue;
+    const auto protocol = std::to_integer<unsigned>(answer->payload.front());
+    if (protocol != link::kProtocolVersion) {
+      throw Failure(Exit::outside, "the firmware speaks version " + std::to_string(protocol) +
+                                       " of the protocol, this rsc version " +
+                                       std::to_string(link::kProtocolVersion) +
+                                       ": flash the firmware of this release");
+    }
+    if (link::read_payload(answer->payload, reply)) return reply;
+  }
+  no_answer();
+}
+
+link::Status Client::status() {
+  return request<link::Status>(MessageType::get_status, MessageType::status);
+}
+
+link::Status Client::set_trace(bool on) {
+  const link::TraceOn wish{static_cast<std::uint8_t>(on)};
+  return request<link::Status>(MessageType::trace_on, MessageType::status, link::wire_bytes(wish));
+}
+
+link::FeedResult Client::feed(const link::Feed& feed) {
+  return request<link::FeedResult>(MessageType::feed, MessageType::feed_result,
+                                   link::wire_bytes(feed));
+}
+
+link::ActivateResult Client::activate() {
+  return request<link::ActivateResult>(MessageType::activate, MessageType::activate_result);
+}
+
+std::vector<link::ThreadInfo> Client::threads() {
+  const auto give_up = transport_.now() + timeout_;
+  while (transport_.now() < give_up) {
+    std::vector<link::ThreadInfo> threads;
+    const std::uint8_t sequence = send(MessageType::get_threads);
+    while (true) {
+      const auto until = std::min(give_up, transport_.now() + kRepeatAfter);
+      const auto answer = reply_to(sequence, MessageType::thread_info, until);
+      link::ThreadInfo info{};
+      if (!answer || !link::read_payload(answer->payload, info)) break;
+      if (info.index != threads.size()) break;  // one got lost: all over again
+      threads.push_back(info);
+      if (threads.size() == info.total) return threads;
+    }
+  }
+  no_answer();
+}
+
+std::vector<std::byte> Client::running_image() {
+  const auto give_up = transport_.now() + 4 * timeout_;
+  std::vector<std::byte> image;
+  while (transport_.now() < give_up) {
+    const link::ReadImage wish{static_cast<std::uint32_t>(image.size())};
+    const std::uint8_t sequence = send(MessageType::read_image, link::wire_bytes(wish));
+    const auto until = std::min(give_up, transport_.now() + kRepeatAfter);
+    const auto answer = reply_to(sequence, MessageType::image_data, until);
+    link::Data head{};
+    if (!answer || !link::read_prefix(answer->payload, head) || head.offset != image.size()) {
+      continue;
+    }
+    const auto bytes = std::span(answer->payload).subspan(sizeof head);
+    if (bytes.empty()) return image;
+    image.insert(image.end(), bytes.begin(), bytes.end());
+  }
+  no_answer();
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,67 @@
+// The host's end of the link: requests and their replies over a line that may lose anything.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "link/frame.hpp"
+#include "link/messages.hpp"
+#include "link/wire.hpp"
+#include "rsc/device/transport.hpp"
+
+namespace robosync::tool {
+
+struct Message {
+  link::MessageType type{};
+  std::uint8_t sequence = 0;
+  std::vector<std::byte> payload;
+};
+
+class Client {
+public:
+  using Milliseconds = std::chrono::milliseconds;
+
+  // `timeout`: how long a request is repeated before it fails.
+  explicit Client(Transport& transport, Milliseconds timeout = Milliseconds(2000));
+
+  // Each sends its request again until its reply comes. Throw Failure (outside) after the timeout.
+  link::HelloReply hello();
+  link::Status status();
+  link::Status set_trace(bool on);
+  link::FeedResult feed(const link::Feed& feed);
+  link::ActivateResult activate();
+  std::vector<link::ThreadInfo> threads();
+  std::vector<std::byte> running_image();  // empty when no program runs
+
+  // For transfers, which have several requests under way: sends one frame, returns its sequence.
+  std::uint8_t send(link::MessageType type, std::span<const std::byte> payload = {});
+  // The next reply. Events, logs and faults that come meanwhile are kept for next_unasked().
+  std::optional<Message> next_reply(Milliseconds timeout);
+  // The next event, log line or fault record.
+  std::optional<Message> next_unasked(Milliseconds timeout);
+
+  Transport::Clock::time_point now() const { return transport_.now(); }
+
+private:
+  template <typename Reply>
+  Reply request(link::MessageType type, link::MessageType reply_type,
+                std::span<const std::byte> payload = {});
+  std::optional<Message> reply_to(std::uint8_t sequence, link::MessageType type,
+                                  Transport::Clock::time_point until);
+  bool receive(Transport::Clock::time_point until);
+  [[noreturn]] void no_answer() const;
+
+  Transport& transport_;
+  Milliseconds timeout_;
+  link::FrameDecoder decoder_;
+  std::uint8_t sequence_ = 0;
+  std::deque<Message> replies_;
+  std::deque<Message> unasked_;
+};
+
+}  // namespace robosync::tool

@@ -1,0 +1,88 @@
+// May assume nothing of the numbers: they come from the line. The board's counters wrap at 32 bits,
+// so only differences of them mean something, and of lists that are not minutes apart.
+#include "rsc/device/threads.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "rsc/device/session.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The numbers of link::ThreadInfo; kernel::Category has the same order.
+constexpr std::array<std::string_view, 6> kCategories = {"system",   "sensor",  "processing",
+                                                         "behavior", "control", "safety"};
+constexpr std::array<std::string_view, 4> kStates = {"blocked", "ready", "stopped", "absent"};
+
+template <std::size_t N>
+std::string_view word(const std::array<std::string_view, N>& words, std::size_t number) {
+  return number < N ? words[number] : "?";
+}
+
+// In percent. A thread that was not there before, or is another program's, has none yet.
+std::optional<double> share(const link::ThreadInfo& thread, ThreadList before) {
+  const auto earlier = std::find_if(before.begin(), before.end(), [&](const auto& other) {
+    return other.name == thread.name && other.category == thread.category &&
+           other.activations <= thread.activations;
+  });
+  if (earlier == before.end() || earlier->clock == thread.clock) return std::nullopt;
+  const double ran = thread.run_time - earlier->run_time;
+  return 100 * ran / (thread.clock - earlier->clock);
+}
+
+// "50", and "50+7" while it is raised by 7.
+std::string priority(const link::ThreadInfo& thread) {
+  const int raised = thread.priority - thread.base_priority;
+  return raised == 0 ? fmt::format("{}", thread.priority)
+                     : fmt::format("{}{:+}", thread.base_priority, raised);
+}
+
+std::string share_column(const link::ThreadInfo& thread, ThreadList before) {
+  if (before.empty()) return {};
+  const auto percent = share(thread, before);
+  return percent ? fmt::format(" {:>5.1f} %", *percent) : fmt::format(" {:>7}", "-");
+}
+
+}  // namespace
+
+std::string threads_table(ThreadList now, ThreadList before) {
+  std::string text = fmt::format(
+      "rank  thread            category    priority{}  state    stack used/bytes     "
+      "woken  missed\n",
+      before.empty() ? "" : "     cpu");
+  for (const link::ThreadInfo& thread : now) {
+    text += fmt::format("{:>4}  {:<16}  {:<10}  {:>8}{}  {:<8} {:>10}/{:<6}  {:>9}  {:>6}\n",
+                        thread.rank, text_of(thread.name), word(kCategories, thread.category),
+                        priority(thread), share_column(thread, before), word(kStates, thread.state),
+                        thread.stack_used, thread.stack_bytes, thread.activations, thread.missed);
+  }
+  return text;
+}
+
+Json threads_json(ThreadList now, ThreadList before) {
+  Json list = Json::array();
+  for (const link::ThreadInfo& thread : now) {
+    list.push_back({{"name", text_of(thread.name)},
+                    {"category", word(kCategories, thread.category)},
+                    {"rank", thread.rank},
+                    {"priority", thread.priority},
+                    {"base_priority", thread.base_priority},
+                    {"state", word(kStates, thread.state)},
+                    {"stack_bytes", thread.stack_bytes},
+                    {"stack_used", thread.stack_used},
+                    {"activations", thread.activations},
+                    {"missed_deadlines", thread.missed}});
+    if (const auto percent = share(thread, before)) list.back()["cpu_percent"] = *percent;
+  }
+  return list;
+}
+
+}  // namespace robosync::tool

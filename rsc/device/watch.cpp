@@ -1,0 +1,184 @@
+// May assume nothing of what the board sends. Promises that each line is written out at once, that
+// losses are said, and that the board's trace is off again afterwards.
+#include "rsc/device/watch.hpp"
+
+#include <atomic>
+#include <csignal>
+#include <iostream>
+#include <span>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "link/events.hpp"
+#include "rsc/device/threads.hpp"
+#include "rsc/failure.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using link::MessageType;
+using std::chrono::milliseconds;
+using Json = nlohmann::ordered_json;
+
+constexpr milliseconds kLookForLosses{1000};  // and at the threads
+
+volatile std::sig_atomic_t interrupted = 0;
+
+// SIGINT ends the watch instead of the program, so that the board is told to stop its trace.
+class Interruptible {
+public:
+  Interruptible() {
+    interrupted = 0;
+    struct sigaction action {};
+    action.sa_handler = [](int) { interrupted = 1; };
+    sigaction(SIGINT, &action, &before_int_);
+    sigaction(SIGTERM, &action, &before_term_);
+  }
+  ~Interruptible() {
+    sigaction(SIGINT, &before_int_, nullptr);
+    sigaction(SIGTERM, &before_term_, nullptr);
+  }
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+
+private:
+  struct sigaction before_int_ {};
+  struct sigaction before_term_ {};
+};
+
+Json registers(const link::Fault& fault) {
+  Json list = Json::array();
+  for (const std::uint32_t value : fault.r)
+    list.push_back(fmt::format("{:08x}", value));
+  return list;
+}
+
+}  // namespace
+
+Watch::Watch(Session& session, Format format, bool threads)
+    : session_(session), format_(format), threads_(threads) {
+  learn_names();
+  if (threads_) thread_list_ = session_.client.threads();
+  lost_ = session_.client.set_trace(true).lost_events;
+}
+
+Watch::~Watch() {
+  try {
+    session_.client.set_trace(false);
+  } catch (const Failure&) {
+    // The line is gone; the next hello stops the trace.
+  }
+}
+
+void Watch::learn_names() {
+  image_bytes_ = session_.client.running_image();
+  const bool good = vm::verify(image_bytes_, vm::Limits{}, image_).ok();
+  names_ = {good ? &image_ : nullptr, {}};
+  learn_threads();
+}
+
+void Watch::learn_threads() {
+  names_.threads.clear();
+  for (const link::ThreadInfo& thread : session_.client.threads())
+    names_.threads.push_back(text_of(thread.name));
+}
+
+void Watch::show(std::optional<milliseconds> duration) {
+  const Interruptible interruptible;
+  const auto start = session_.client.now();
+  auto next_look = start + kLookForLosses;
+  while (interrupted == 0) {
+    const auto now = session_.client.now();
+    if (duration && now - start >= *duration) break;
+    if (now >= next_look) {
+      report_losses(session_.client.status());
+      if (threads_) show_threads();
+      next_look = now + kLookForLosses;
+    }
+    auto wait = milliseconds(100);
+    if (duration) {
+      wait = std::min(wait, std::chrono::ceil<milliseconds>(start + *duration - now));
+    }
+    if (const auto message = session_.client.next_unasked(wait)) show(*message);
+  }
+  report_losses(session_.client.status());
+}
+
+void Watch::show(const Message& message) {
+  const std::string text(reinterpret_cast<const char*>(message.payload.data()),
+                         message.payload.size());
+  switch (message.type) {
+    case MessageType::event:
+      show_event(message);
+      break;
+    case MessageType::fault:
+      show_fault(message);
+      break;
+    default:
+      if (format_ == Format::json) {
+        const Json line{{"event", "log"}, {"text", text}};
+        std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+      } else {
+        std::cout << "          log  " << text << '\n';
+      }
+  }
+  std::cout.flush();
+  if (!std::cout) throw Failure(Exit::outside, "could not write to stdout");
+}
+
+void Watch::show_event(const Message& message) {
+  link::Event event;
+  if (!link::decode_event(message.payload, event)) return;
+  // Another program runs: numbers mean something else from here on.
+  if (event.kind == link::EventKind::activated) learn_names();
+  // Ranks, which is how events name threads, are others. Asked for only when one is named.
+  if (event.kind == link::EventKind::priority) names_.threads.clear();
+  const bool names_thread =
+      event.kind == link::EventKind::fault || event.kind == link::EventKind::deadline;
+  if (names_thread && names_.threads.empty()) learn_threads();
+  std::cout << (format_ == Format::json ? trace_json(event, names_) : trace_line(event, names_))
+            << '\n';
+}
+
+void Watch::show_fault(const Message& message) {
+  link::Fault fault{};
+  if (!link::read_payload(message.payload, fault)) return;
+  if (format_ == Format::json) {
+    const Json line{{"event", "fault"},     {"thread", text_of(fault.thread)},
+                    {"cause", fault.cause}, {"address", fault.address},
+                    {"pc", fault.pc},       {"lr", fault.lr},
+                    {"sp", fault.sp},       {"xpsr", fault.xpsr},
+                    {"r", registers(fault)}};
+    std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+    return;
+  }
+  std::cout << fmt::format(
+      "        fault  thread {} stopped: cause {:08x} address {:08x} pc {:08x} lr {:08x} sp {:08x} "
+      "xpsr {:08x} r0-r12 {:08x}\n",
+      text_of(fault.thread), fault.cause, fault.address, fault.pc, fault.lr, fault.sp, fault.xpsr,
+      fmt::join(fault.r, " "));
+}
+
+void Watch::show_threads() {
+  const std::vector<link::ThreadInfo> now = session_.client.threads();
+  if (format_ == Format::json) {
+    const Json line{{"event", "threads"}, {"threads", threads_json(now, thread_list_)}};
+    std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else {
+    std::cout << '\n' << threads_table(now, thread_list_) << '\n';
+  }
+  std::cout.flush();
+  thread_list_ = now;
+}
+
+void Watch::report_losses(const link::Status& status) {
+  const std::uint32_t now_lost = status.lost_events - lost_;
+  lost_ = status.lost_events;
+  if (now_lost == 0) return;
+  std::cerr << fmt::format("rsc: {} events did not fit on the line and are not shown\n", now_lost);
+}
+
+}  // namespace robosync::tool

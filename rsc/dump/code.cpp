@@ -1,0 +1,115 @@
+// Instructions as text. May assume verified code: blocks nest, jumps go to the ends of blocks.
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "rsc/dump/parts.hpp"
+#include "vm/disassembler.hpp"
+#include "vm/opcode.hpp"
+
+namespace robosync::tool {
+namespace {
+
+constexpr std::size_t kIndent = 2;
+constexpr std::size_t kColumn = 44;  // where the source line stands
+
+// How deep an instruction stands in the blocks of its response.
+class Nesting {
+public:
+  // Before the instruction at `at` is printed.
+  void arrive(std::size_t at, vm::Opcode op) {
+    while (!ends_.empty() && ends_.back() == at)
+      ends_.pop_back();
+    if (closes(op) && loops_ > 0) --loops_;
+  }
+  // After it was printed.
+  void leave(vm::Opcode op, std::size_t target) {
+    if (vm::is_unless(op)) ends_.push_back(target);
+    if (op == vm::Opcode::jump) {
+      if (!ends_.empty()) ends_.pop_back();  // it is the last word of the block before ELSE
+      ends_.push_back(target);
+    }
+    if (opens(op)) ++loops_;
+  }
+  std::size_t depth() const { return ends_.size() + loops_; }
+
+private:
+  static bool opens(vm::Opcode op) {
+    return op == vm::Opcode::times || op == vm::Opcode::times_v || op == vm::Opcode::loop ||
+           op == vm::Opcode::poll;
+  }
+  static bool closes(vm::Opcode op) {
+    return op == vm::Opcode::again || op == vm::Opcode::around || op == vm::Opcode::around_always ||
+           op == vm::Opcode::until;
+  }
+
+  std::vector<std::size_t> ends_;  // of IF blocks, outermost first
+  std::size_t loops_ = 0;
+};
+
+// Where the instruction at `at` may go on, if it is a jump.
+std::optional<std::size_t> target_of(std::size_t at, vm::Word word) {
+  const auto& operands = vm::kOpcodes[static_cast<std::size_t>(vm::opcode_of(word))].operands;
+  if (operands[1] == vm::Operand::ahead) return at + 1 + vm::operand_wide(word);
+  if (operands[1] == vm::Operand::back) return at + 1 - vm::operand_wide(word);
+  if (operands[2] == vm::Operand::ahead8) return at + 1 + vm::operand_c(word);
+  return std::nullopt;
+}
+
+// The number of a source line beside an instruction, or its text above.
+class Lines {
+public:
+  Lines(const vm::Image& image, const SourceLines& source) : image_(image), source_(source) {}
+
+  // Before the instruction at `at` is printed: is it the first of another line?
+  bool arrive(std::size_t at) {
+    const std::uint16_t before = line_;
+    while (next_ < image_.source_lines.size() && image_.source_lines[next_].word <= at)
+      line_ = image_.source_lines[next_++].line;
+    return line_ != before;
+  }
+  std::string above() const {
+    if (line_ == 0 || line_ > source_.size()) return {};
+    const std::string& text = source_[line_ - 1U];
+    const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+    return fmt::format("  line {}: {}\n", line_, text.substr(begin));
+  }
+  std::string beside() const {
+    return line_ == 0 || !source_.empty() ? std::string() : fmt::format("  line {}", line_);
+  }
+
+private:
+  const vm::Image& image_;
+  const SourceLines& source_;
+  std::size_t next_ = 0;
+  std::uint16_t line_ = 0;
+};
+
+}  // namespace
+
+std::string dump_code(const vm::Image& image, const SourceLines& source, std::size_t start,
+                      std::size_t length) {
+  std::string text;
+  Lines lines(image, source);
+  Nesting nesting;
+  for (std::size_t at = start; at < start + length; ++at) {
+    if (lines.arrive(at)) text += lines.above();
+    std::array<char, 120> buffer{};
+    const std::size_t count = vm::disassemble(image, image.code[at], buffer);
+    const vm::Opcode op = vm::opcode_of(image.code[at]);
+    const std::optional<std::size_t> target = target_of(at, image.code[at]);
+    nesting.arrive(at, op);
+    const std::string shown = fmt::format("{:{}}{}{}", "", nesting.depth() * kIndent,
+                                          std::string_view(buffer.data(), count),
+                                          target ? fmt::format("  -> {}", *target) : "");
+    const std::string beside = lines.beside();
+    text += fmt::format("    {:>4}  {:08x}  {:<{}}{}\n", at, image.code[at], shown,
+                        beside.empty() ? 0 : kColumn, beside);
+    nesting.leave(op, target.value_or(0));
+  }
+  return text;
+}
+
+}  // namespace robosync::tool

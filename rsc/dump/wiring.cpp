@@ -1,0 +1,119 @@
+// Sensors, actuators and what they understand. One line a record, in the image's order.
+#include <bit>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "rsc/dump/parts.hpp"
+#include "rsc/names.hpp"
+#include "rsc/quantity.hpp"
+
+namespace robosync::tool {
+namespace {
+
+constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::count_)> kReleases = {
+    "hold", "rest", "coast"};
+constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Action::count_)> kActions = {
+    "move", "play", "set", "stop"};
+constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Param::count_)> kParams = {
+#define PARAM(name, spelling, doc) #name,
+#include "vm/params.def"
+#undef PARAM
+};
+
+std::string number(vm::Value value) {
+  return format_quantity(value, vm::Dimension::number);
+}
+
+std::string labels_text(const vm::Image& image, std::size_t first, std::size_t count) {
+  std::vector<std::string_view> labels;
+  for (std::size_t i = 0; i < count; ++i)
+    labels.push_back(image.string(image.labels[first + i]));
+  return count == 0 ? "" : fmt::format(", labels {}", fmt::join(labels, " | "));
+}
+
+std::string channel_text(const vm::Image& image, std::size_t index) {
+  const vm::Channel& channel = image.channels[index];
+  const auto shown = [&](vm::Value value) { return format_quantity(value, channel.dimension); };
+  return fmt::format(
+      "    channel {} {}: input {}, x {}/{} + {}, range {} … {}, change {}, {}{}\n", index,
+      image.string(channel.name), channel.input, channel.scale_num, channel.scale_den,
+      channel.offset, shown(channel.min), shown(channel.max), shown(channel.change),
+      channel.stale_ms == 0 ? "never stale" : fmt::format("stale after {} ms", channel.stale_ms),
+      labels_text(image, channel.first_label, channel.label_count));
+}
+
+std::string sensors(const vm::Image& image) {
+  std::string text = "\nsensors\n";
+  for (const vm::Sensor& sensor : image.sensors) {
+    text += fmt::format(
+        "  {}: {} on bus {} address 0x{:x}, {}\n", image.string(sensor.name),
+        driver_name(sensor.driver), sensor.bus, sensor.address,
+        sensor.period_ms == 0 ? "when fed" : fmt::format("every {} ms", sensor.period_ms));
+    for (std::size_t i = 0; i < sensor.channel_count; ++i)
+      text += channel_text(image, sensor.first_channel + i);
+  }
+  return text;
+}
+
+std::string verb_names(const vm::Image& image, std::uint32_t mask) {
+  std::vector<std::string_view> verbs;
+  for (; mask != 0; mask &= mask - 1) {
+    verbs.push_back(
+        image.string(image.verbs[static_cast<std::size_t>(std::countr_zero(mask))].name));
+  }
+  return fmt::format("{}", fmt::join(verbs, " "));
+}
+
+std::string actuators(const vm::Image& image) {
+  std::string text = "\nactuators\n";
+  for (std::size_t i = 0; i < image.actuators.size(); ++i) {
+    const vm::Actuator& actuator = image.actuators[i];
+    text += fmt::format(
+        "  {} {}: {} on bus {} pin {}, range {} … {}, speed limit {}, release {}, safe {}; {}\n", i,
+        image.string(actuator.name), driver_name(actuator.driver), actuator.bus, actuator.pin,
+        number(actuator.min), number(actuator.max),
+        actuator.speed_limit == vm::kValueMax ? "none" : number(actuator.speed_limit),
+        word_of(kReleases, actuator.on_release), word_of(kReleases, actuator.safe),
+        verb_names(image, actuator.verbs));
+  }
+  for (const vm::Group& group : image.groups) {
+    text += fmt::format("  group {}: {}\n", image.string(group.name),
+                        actuator_names(image, group.members));
+  }
+  return text;
+}
+
+std::string verbs(const vm::Image& image) {
+  std::string text = "\nverbs\n";
+  for (const vm::Verb& verb : image.verbs) {
+    std::vector<std::string_view> params;
+    for (std::uint32_t mask = verb.params; mask != 0; mask &= mask - 1)
+      params.push_back(kParams.at(static_cast<std::size_t>(std::countr_zero(mask))));
+    text += fmt::format("  {}: {} ({})\n", image.string(verb.name), word_of(kActions, verb.action),
+                        fmt::join(params, " "));
+  }
+  if (!image.words.empty()) text += "\nwords\n";
+  for (const vm::WordEntry& entry : image.words) {
+    text += fmt::format("  {}: {} {}\n", image.string(entry.name), word_of(kParams, entry.param),
+                        number(entry.value));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string actuator_names(const vm::Image& image, std::uint32_t mask) {
+  std::vector<std::string_view> names;
+  for (; mask != 0; mask &= mask - 1) {
+    const auto index = static_cast<std::size_t>(std::countr_zero(mask));
+    names.push_back(image.string(image.actuators[index].name));
+  }
+  return fmt::format("{}", fmt::join(names, " "));
+}
+
+std::string dump_wiring(const vm::Image& image) {
+  return sensors(image) + actuators(image) + verbs(image);
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,41 @@
+// Names: of what an image only numbers, and how those that a person gives are compared.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstddef>
+#include <string_view>
+
+#include "vm/image.hpp"
+
+namespace robosync::tool {
+
+// In any case.
+inline bool same_name(std::string_view a, std::string_view b) {
+  return std::ranges::equal(
+      a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+// As it stands in vm/drivers.def.
+[[nodiscard]] constexpr std::string_view driver_name(vm::DriverId driver) {
+  constexpr std::array<std::string_view, static_cast<std::size_t>(vm::DriverId::count_)> kNames = {
+#define SENSOR_DRIVER(name, doc) #name,
+#define ACTUATOR_DRIVER(name, doc) #name,
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+  };
+  const auto index = static_cast<std::size_t>(driver);
+  return index < kNames.size() ? kNames[index] : "unknown";
+}
+
+inline constexpr std::array<std::string_view, static_cast<std::size_t>(vm::RuleKind::count_)>
+    kRuleKinds = {"when", "when/else", "while", "every", "at start", "watch", "safety", "resume"};
+
+template <typename Enum, std::size_t N>
+std::string_view word_of(const std::array<std::string_view, N>& words, Enum value) {
+  return words.at(static_cast<std::size_t>(value));
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,183 @@
+// May assume nothing of the event. Promises a name, or a number with the word for what it counts.
+#include "rsc/trace/event_reader.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "rsc/quantity.hpp"
+
+namespace robosync::tool {
+namespace {
+
+constexpr std::array kShapes = {
+#define EVENT(name, number, subject, object, values, doc) \
+  EventShape{link::EventKind::name, #name, About::subject, About::object, values},
+#include "link/events.def"
+#undef EVENT
+};
+
+const EventShape& shape_of(link::EventKind kind) {
+  return *std::ranges::find(kShapes, kind, &EventShape::kind);  // decode_event() knows the kind
+}
+
+}  // namespace
+
+vm::Dimension dimension_of_param(std::size_t param) {
+  const bool is_time = param == static_cast<std::size_t>(vm::Param::over) ||
+                       param == static_cast<std::size_t>(vm::Param::for_);
+  return is_time ? vm::Dimension::duration : vm::Dimension::number;
+}
+
+EventReader::EventReader(const link::Event& event, const TraceNames& names)
+    : event_(event), names_(names), shape_(shape_of(event.kind)) {}
+
+std::span<const std::int32_t> EventReader::values() const {
+  return std::span(event_.values)
+      .first(std::min<std::size_t>(event_.value_count, event_.values.size()));
+}
+
+vm::Value EventReader::value(std::size_t index) const {
+  return index < values().size() ? values()[index] : vm::kUnknown;
+}
+
+template <typename Record>
+std::string EventReader::name_at(std::span<const Record> vm::Image::*section, std::size_t index,
+                                 std::string_view what) const {
+  if (const Record* const record = at(section, index)) {
+    const std::string_view name = names_.image->string(record->name);
+    if (!name.empty()) return std::string(name);
+  }
+  return fmt::format("{} {}", what, index);
+}
+
+// ---- rules and behaviours
+
+const vm::Rule* EventReader::rule() const {
+  return at(&vm::Image::rules, event_.subject);
+}
+
+const vm::Behavior* EventReader::behavior_with_rule() const {
+  if (names_.image == nullptr) return nullptr;
+  for (const vm::Behavior& behavior : names_.image->behaviors) {
+    if (event_.subject >= behavior.first_rule &&
+        event_.subject < behavior.first_rule + behavior.rule_count) {
+      return &behavior;
+    }
+  }
+  return nullptr;
+}
+
+std::string_view EventReader::behavior_of_rule() const {
+  const vm::Behavior* const behavior = behavior_with_rule();
+  return behavior == nullptr ? std::string_view() : names_.image->string(behavior->name);
+}
+
+bool EventReader::is_safety_rule() const {
+  const vm::Behavior* const behavior = behavior_with_rule();
+  return behavior != nullptr && behavior->priority == vm::kSafetyPriority;
+}
+
+bool EventReader::interrupts_itself() const {
+  const vm::Behavior* const object = at(&vm::Image::behaviors, event_.object);
+  return object != nullptr && object == behavior_with_rule();
+}
+
+std::string EventReader::rule_name() const {
+  const vm::Rule* const found = rule();
+  if (found == nullptr) return fmt::format("rule {}", event_.subject);
+  if (is_safety_rule()) return fmt::format("safety rule at line {}", found->line);
+  const std::string_view behavior = behavior_of_rule();
+  return behavior.empty() ? fmt::format("rule at line {}", found->line)
+                          : fmt::format("{}, rule at line {}", behavior, found->line);
+}
+
+// A rule outside a BEHAVIOR is a behaviour without a name; its line says which one it is.
+std::string EventReader::behavior_name(std::uint16_t index) const {
+  const vm::Behavior* const behavior = at(&vm::Image::behaviors, index);
+  if (behavior == nullptr) return fmt::format("behaviour {}", index);
+  if (behavior->priority == vm::kSafetyPriority) return "safety";
+  const std::string_view name = names_.image->string(behavior->name);
+  if (!name.empty()) return fmt::format("behaviour {}", name);
+  const vm::Rule* const first = at(&vm::Image::rules, behavior->first_rule);
+  return first != nullptr ? fmt::format("the rule at line {}", first->line)
+                          : fmt::format("behaviour {}", index);
+}
+
+std::int16_t EventReader::base_priority() const {
+  const vm::Behavior* const behavior = at(&vm::Image::behaviors, event_.subject);
+  return behavior == nullptr ? std::int16_t{0} : behavior->priority;
+}
+
+// ---- other names
+
+std::string EventReader::sensor_name() const {
+  const vm::Channel* const channel = at(&vm::Image::channels, event_.subject);
+  return channel == nullptr ? "?" : name_at(&vm::Image::sensors, channel->sensor, "sensor");
+}
+std::string EventReader::channel_name() const {
+  return name_at(&vm::Image::channels, event_.subject, "channel");
+}
+std::string EventReader::variable_name() const {
+  return name_at(&vm::Image::variables, event_.subject, "variable");
+}
+std::string EventReader::actuator_name() const {
+  return name_at(&vm::Image::actuators, event_.subject, "actuator");
+}
+std::string EventReader::verb_name() const {
+  return name_at(&vm::Image::verbs, event_.object, "verb");
+}
+std::string EventReader::word_name() const {
+  const vm::Value word = value(0);
+  if (word < 0) return {};
+  return name_at(&vm::Image::words, static_cast<std::size_t>(word), "word");
+}
+std::string EventReader::thread_name() const {
+  return event_.subject < names_.threads.size() ? names_.threads[event_.subject]
+                                                : fmt::format("thread {}", event_.subject);
+}
+
+std::string EventReader::text() const {
+  if (names_.image == nullptr) return fmt::format("text {}", event_.subject);
+  std::string_view rest = names_.image->string(event_.subject);
+  std::string text;
+  std::size_t next = 0;
+  while (next < values().size()) {
+    const std::size_t place = rest.find("{}");
+    if (place == std::string_view::npos) break;
+    text += rest.substr(0, place);
+    text += format_quantity(values()[next++], vm::Dimension::number);
+    rest.remove_prefix(place + 2);
+  }
+  return text += rest;
+}
+
+// ---- values
+
+Meaning EventReader::meaning() const {
+  if (shape_.subject == About::channel) {
+    const vm::Channel* const channel = at(&vm::Image::channels, event_.subject);
+    if (channel != nullptr) return {channel->dimension, channel->first_label, channel->label_count};
+  } else if (shape_.subject == About::variable) {
+    const vm::Variable* const variable = at(&vm::Image::variables, event_.subject);
+    if (variable != nullptr)
+      return {variable->dimension, variable->first_label, variable->label_count};
+  }
+  return {};
+}
+
+std::string_view EventReader::label(const Meaning& meaning, vm::Value value) const {
+  if (value < 0 || value % vm::kScale != 0 || value / vm::kScale >= meaning.label_count) return {};
+  const auto number = static_cast<std::size_t>(value / vm::kScale);
+  const std::uint16_t* const offset = at(&vm::Image::labels, meaning.first_label + number);
+  return offset == nullptr ? std::string_view() : names_.image->string(*offset);
+}
+
+std::string EventReader::shown(vm::Value value) const {
+  const Meaning means = meaning();
+  const std::string_view word = label(means, value);
+  return word.empty() ? format_quantity(value, means.dimension) : std::string(word);
+}
+
+}  // namespace robosync::tool

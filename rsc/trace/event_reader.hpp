@@ -1,0 +1,113 @@
+// A trace event with the names of what it is about. It may come from the line and belong to another
+// image: a number that the image does not have is shown as the number itself.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "link/events.hpp"
+#include "rsc/trace/trace_format.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::tool {
+
+// What the subject and the object of an event are (events.def).
+enum class About : std::uint8_t {
+  none,
+  channel,
+  variable,
+  rule,
+  behavior,
+  actuator,
+  verb,
+  word,
+  thread,
+  string,
+  refusal
+};
+
+struct EventShape {
+  link::EventKind kind;
+  std::string_view name;
+  About subject, object;
+  std::string_view values;
+};
+
+// What kind of value an input has.
+struct Meaning {
+  vm::Dimension dimension = vm::Dimension::number;
+  std::uint16_t first_label = 0;
+  std::uint8_t label_count = 0;
+};
+
+class EventReader {
+public:
+  EventReader(const link::Event& event, const TraceNames& names);
+
+  const link::Event& event() const { return event_; }
+  const EventShape& shape() const { return shape_; }
+
+  std::span<const std::int32_t> values() const;
+  vm::Value value(std::size_t index) const;  // kUnknown when it is not there
+
+  const vm::Rule* rule() const;  // the subject; nullptr when the image does not have it
+  // The named behaviour of the event's rule; empty outside one.
+  std::string_view behavior_of_rule() const;
+  bool is_safety_rule() const;
+  // The behaviour that is the object is the one of the rule that is the subject.
+  bool interrupts_itself() const;
+
+  std::string rule_name() const;
+  std::int16_t base_priority() const;  // of the behaviour it is about, as it is written
+  std::string behavior_name(std::uint16_t index) const;
+  std::string sensor_name() const;   // of the channel that is the subject
+  std::string channel_name() const;  // without its sensor
+  std::string variable_name() const;
+  std::string actuator_name() const;
+  std::string verb_name() const;
+  std::string word_name() const;  // of a command; empty without one
+  std::string thread_name() const;
+  // The text of LOG and ALERT, with the values in its {} places.
+  std::string text() const;
+
+  // Of the channel or variable that is the subject.
+  Meaning meaning() const;
+  // The label that a value means; empty when it means none.
+  std::string_view label(const Meaning& meaning, vm::Value value) const;
+  // The value of the subject: "scared", "20.5mm", "unknown".
+  std::string shown(vm::Value value) const;
+
+  // Calls use(parameter, value) for each parameter of a command.
+  template <typename Use>
+  void for_each_param(Use use) const {
+    if (values().size() < 2) return;
+    const auto mask = static_cast<std::uint32_t>(values()[1]);
+    std::size_t next = 2;
+    for (std::size_t param = 0; param < kParamCount; ++param) {
+      if ((mask >> param & 1) != 0 && next < values().size()) use(param, values()[next++]);
+    }
+  }
+  static constexpr auto kParamCount = static_cast<std::size_t>(vm::Param::count_);
+
+private:
+  template <typename Record>
+  const Record* at(std::span<const Record> vm::Image::*section, std::size_t index) const {
+    const bool there = names_.image != nullptr && index < (names_.image->*section).size();
+    return there ? &(names_.image->*section)[index] : nullptr;
+  }
+  template <typename Record>
+  std::string name_at(std::span<const Record> vm::Image::*section, std::size_t index,
+                      std::string_view what) const;
+  const vm::Behavior* behavior_with_rule() const;
+
+  const link::Event& event_;
+  const TraceNames& names_;
+  const EventShape& shape_;
+};
+
+// OVER and FOR are times; the other parameters have the unit of their actuator, which no image has.
+[[nodiscard]] vm::Dimension dimension_of_param(std::size_t param);
+
+}  // namespace robosync::tool

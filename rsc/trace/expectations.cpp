@@ -1,0 +1,184 @@
+// May assume a recording that goes on to the end of the test. Windows include both their ends.
+#include "rsc/trace/expectations.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "rsc/names.hpp"
+#include "rsc/trace/event_reader.hpp"
+#include "rsc/trace/time_units.hpp"
+#include "rsc/trace/trace_format.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using compiler::testing::Expectation;
+using compiler::testing::ExpectedCommand;
+using compiler::testing::ExpectedSilence;
+using compiler::testing::ExpectedStop;
+using compiler::testing::ExpectedTruth;
+using link::EventKind;
+
+class Judge {
+public:
+  Judge(const Expectation& expectation, const Recording& recording)
+      : recording_(recording),
+        names_{recording.image, {}},
+        from_us_(expectation.from * kMicroseconds),
+        until_us_(expectation.until * kMicroseconds) {}
+
+  std::optional<std::string> judge(const ExpectedCommand& expected) const {
+    for (const std::string& actuator : expected.actuators) {
+      const auto matches = [&](const link::Event& event, const Playback& playback) {
+        return is_command(event, playback, actuator, expected);
+      };
+      const link::Event* const found = find(matches);
+      if (expected.no && found != nullptr) {
+        return fmt::format("{} was told at {}: {}", actuator, seconds_text(found->time_us),
+                           trace_words(*found, names_));
+      }
+      if (!expected.no && found == nullptr) {
+        return fmt::format("{} was not told to {}{}", actuator, window(), elsewhere(matches));
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<std::string> judge(const ExpectedStop& expected) const {
+    for (const std::string& actuator : expected.actuators) {
+      const auto stops = [&](const link::Event& event, const Playback&) {
+        return is_stop(event, actuator);
+      };
+      const link::Event* const found = find(stops);
+      const bool stopped = found != nullptr || is_halted(actuator);
+      if (expected.no && stopped) {
+        return found != nullptr
+                   ? fmt::format("{} was stopped at {}", actuator, seconds_text(found->time_us))
+                   : fmt::format("{} was halted before {}", actuator, seconds_text(from_us_));
+      }
+      if (!expected.no && !stopped) {
+        return fmt::format("{} was not stopped {}", actuator, window());
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<std::string> judge(const ExpectedSilence&) const {
+    const link::Event* const found = find(
+        [](const link::Event& event, const Playback&) { return event.kind == EventKind::command; });
+    if (found == nullptr) return std::nullopt;
+    return fmt::format("there was a command at {}: {}", seconds_text(found->time_us),
+                       trace_words(*found, names_));
+  }
+
+  std::optional<std::string> judge(const ExpectedTruth& expected) const {
+    Playback playback(recording_);
+    playback.advance(from_us_);
+    vm::Value truth = compiler::testing::evaluate(expected.condition, playback);
+    while (truth != vm::kTrue && playback.next_time() <= until_us_) {
+      playback.advance(playback.next_time());
+      truth = compiler::testing::evaluate(expected.condition, playback);
+    }
+    if (truth == vm::kTrue) return std::nullopt;
+    return fmt::format("it was {} {}", truth == vm::kUnknown ? "unknown" : "false", window());
+  }
+
+private:
+  std::string window() const {
+    if (from_us_ == until_us_) return fmt::format("at {}", seconds_text(from_us_));
+    return fmt::format("from {} to {}", seconds_text(from_us_), seconds_text(until_us_));
+  }
+
+  // The first event in the window that `matches`, with the values of its moment.
+  template <typename Matches>
+  const link::Event* find(Matches matches) const {
+    return find(matches, from_us_, until_us_);
+  }
+  template <typename Matches>
+  const link::Event* find(Matches matches, std::uint64_t from_us, std::uint64_t until_us) const {
+    Playback playback(recording_);
+    while (const link::Event* const event = playback.next()) {
+      if (event->time_us < from_us) continue;
+      if (event->time_us > until_us) return nullptr;
+      if (matches(*event, playback)) return event;
+    }
+    return nullptr;
+  }
+
+  // A window that is only a little off is the most common mistake in a test.
+  template <typename Matches>
+  std::string elsewhere(Matches matches) const {
+    const link::Event* const found = find(matches, 0, UINT64_MAX);
+    return found == nullptr ? std::string()
+                            : fmt::format("; it was at {}", seconds_text(found->time_us));
+  }
+
+  bool is_command(const link::Event& event, const Playback& playback, const std::string& actuator,
+                  const ExpectedCommand& expected) const {
+    if (event.kind != EventKind::command) return false;
+    const EventReader reader(event, names_);
+    if (reader.actuator_name() != actuator || !same_name(reader.verb_name(), expected.verb) ||
+        (!expected.word.empty() && !same_name(reader.word_name(), expected.word))) {
+      return false;
+    }
+    return std::ranges::all_of(expected.arguments, [&](const compiler::ProgramArgument& argument) {
+      const vm::Value wanted = compiler::testing::evaluate(argument.value, playback);
+      bool found = false;
+      reader.for_each_param([&](std::size_t param, vm::Value given) {
+        found = found || (param == static_cast<std::size_t>(argument.param) && given == wanted);
+      });
+      return found;
+    });
+  }
+
+  bool is_stop(const link::Event& event, const std::string& actuator) const {
+    const EventReader reader(event, names_);
+    if (reader.shape().subject != About::actuator || reader.actuator_name() != actuator) {
+      return false;
+    }
+    return event.kind == EventKind::halt || event.kind == EventKind::cancel ||
+           (event.kind == EventKind::command && same_name(reader.verb_name(), "STOP"));
+  }
+
+  // At the beginning of the window.
+  bool is_halted(const std::string& actuator) const {
+    bool halted = false;
+    for (const link::Event& event : recording_.events) {
+      if (event.time_us > from_us_) break;
+      if (event.kind != EventKind::halt && event.kind != EventKind::release) continue;
+      if (EventReader(event, names_).actuator_name() == actuator) {
+        halted = event.kind == EventKind::halt;
+      }
+    }
+    return halted;
+  }
+
+  const Recording& recording_;
+  TraceNames names_;
+  std::uint64_t from_us_;
+  std::uint64_t until_us_;
+};
+
+}  // namespace
+
+std::optional<std::string> disappointment(const Expectation& expectation,
+                                          const Recording& recording) {
+  const Judge judge(expectation, recording);
+  return std::visit([&](const auto& expected) { return judge.judge(expected); }, expectation.what);
+}
+
+TestResult run_test(const Program& program, const compiler::testing::TestPlan& plan,
+                    const compiler::testing::PlannedTest& test) {
+  TestResult result{&test, nullptr, {}, record(program, plan, test)};
+  for (const Expectation& expectation : test.expectations) {
+    auto reason = disappointment(expectation, result.recording);
+    if (!reason) continue;
+    result.failed = &expectation;
+    result.reason = std::move(*reason);
+    break;
+  }
+  return result;
+}
+
+}  // namespace robosync::tool

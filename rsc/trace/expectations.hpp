@@ -1,0 +1,24 @@
+// Compares what a TEST expects with what happened.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "rsc/trace/recording.hpp"
+
+namespace robosync::tool {
+
+// Nothing when it came as expected; else what was different, in one sentence.
+[[nodiscard]] std::optional<std::string> disappointment(
+    const compiler::testing::Expectation& expectation, const Recording& recording);
+
+struct TestResult {
+  const compiler::testing::PlannedTest* test = nullptr;
+  const compiler::testing::Expectation* failed = nullptr;  // the first; null: it passed
+  std::string reason;
+  Recording recording;
+};
+[[nodiscard]] TestResult run_test(const Program& program, const compiler::testing::TestPlan& plan,
+                                  const compiler::testing::PlannedTest& test);
+
+}  // namespace robosync::tool

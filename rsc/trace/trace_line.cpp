@@ -1,0 +1,144 @@
+// Trace events as lines for people. Promises a line for every event, whatever its numbers.
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "rsc/quantity.hpp"
+#include "rsc/trace/event_reader.hpp"
+#include "rsc/trace/time_units.hpp"
+#include "rsc/trace/trace_format.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using link::EventKind;
+
+constexpr std::array<std::string_view, EventReader::kParamCount> kParamWords = {
+#define PARAM(name, spelling, doc) spelling,
+#include "vm/params.def"
+#undef PARAM
+};
+
+std::string command_words(const EventReader& reader) {
+  std::string text = fmt::format("{} {}", reader.actuator_name(), reader.verb_name());
+  if (const std::string word = reader.word_name(); !word.empty()) text += " " + word;
+  reader.for_each_param([&](std::size_t param, vm::Value given) {
+    const std::string_view spelling = kParamWords.at(param);
+    if (spelling.empty()) return;  // said by its word
+    text += fmt::format(" {} {}", spelling, format_quantity(given, dimension_of_param(param)));
+  });
+  return text;
+}
+
+// Only a rule with ELSE has two sides to tell apart.
+std::string side(const EventReader& reader) {
+  return reader.value(0) == 0 ? "ELSE" : "DO";
+}
+
+std::string interrupt_words(const EventReader& reader) {
+  if (reader.interrupts_itself()) {
+    return fmt::format("{} gives up what it was doing", reader.rule_name());
+  }
+  return fmt::format("{} is interrupted by {}", reader.rule_name(),
+                     reader.behavior_name(reader.event().object));
+}
+
+std::string rule_words(const EventReader& reader) {
+  const std::string rule = reader.rule_name();
+  switch (reader.event().kind) {
+    case EventKind::fire:
+      return fmt::format("{} triggers its {} side", rule, side(reader));
+    case EventKind::win:
+      return fmt::format("{} starts its {} side", rule, side(reader));
+    case EventKind::lose:
+      return fmt::format("{} does not start its {} side: {} has an actuator it needs", rule,
+                         side(reader), reader.behavior_name(reader.event().object));
+    case EventKind::interrupt:
+      return interrupt_words(reader);
+    case EventKind::finished:
+      return fmt::format("{} is finished", rule);
+    case EventKind::wait:
+      return fmt::format("{} waits", rule);
+    case EventKind::go_on:
+      return fmt::format("{} goes on", rule);
+    case EventKind::trip:
+      return fmt::format("SAFETY: {} trips", rule);
+    case EventKind::resume:
+      return fmt::format("SAFETY: {} lets go", rule);
+    case EventKind::zero_divide:
+      return fmt::format("{} divided by zero, which gave 0", rule);
+    default:
+      return fmt::format("{}: {}", rule, reader.shape().name);
+  }
+}
+
+std::string actuator_words(const EventReader& reader) {
+  const std::string actuator = reader.actuator_name();
+  switch (reader.event().kind) {
+    case EventKind::command:
+      return command_words(reader);
+    case EventKind::done:
+      return fmt::format("{} is done", actuator);
+    case EventKind::cancel:
+      return fmt::format("{} is told to give up", actuator);
+    case EventKind::overrun:
+      return fmt::format("{} drops a command: too many wait", actuator);
+    case EventKind::halt:
+      return fmt::format("SAFETY: {} is halted", actuator);
+    case EventKind::release:
+      return fmt::format("SAFETY: {} may move again", actuator);
+    default:
+      return fmt::format("{}: {}", actuator, reader.shape().name);
+  }
+}
+
+std::string priority_words(const EventReader& reader) {
+  const std::string behavior = reader.behavior_name(reader.event().subject);
+  const auto written = reader.base_priority();
+  if (written == reader.value(0))
+    return fmt::format("{} has its priority of {} back", behavior, written);
+  return fmt::format("{} has priority {} now, in place of {}", behavior, reader.value(0), written);
+}
+
+std::string other_words(const EventReader& reader) {
+  switch (reader.event().kind) {
+    case EventKind::activated:
+      return "the program starts";
+    case EventKind::input:
+      return fmt::format("{} {} = {}", reader.sensor_name(), reader.channel_name(),
+                         reader.shown(reader.value(0)));
+    case EventKind::stale:
+      return fmt::format("{} {} is unknown: no reading for too long", reader.sensor_name(),
+                         reader.channel_name());
+    case EventKind::set:
+      return fmt::format("{} becomes {}", reader.variable_name(), reader.shown(reader.value(0)));
+    case EventKind::log:
+      return fmt::format("log: {}", reader.text());
+    case EventKind::alert:
+      return fmt::format("ALERT: {}", reader.text());
+    case EventKind::fault:
+      return fmt::format("{} is stopped by a fault", reader.thread_name());
+    case EventKind::deadline:
+      return fmt::format("{} is late by {} us", reader.thread_name(), reader.value(0));
+    case EventKind::priority:
+      return priority_words(reader);
+    default:
+      return std::string(reader.shape().name);
+  }
+}
+
+}  // namespace
+
+std::string trace_words(const link::Event& event, const TraceNames& names) {
+  const EventReader reader(event, names);
+  if (reader.shape().subject == About::rule) return rule_words(reader);
+  if (reader.shape().subject == About::actuator) return actuator_words(reader);
+  return other_words(reader);
+}
+
+std::string trace_line(const link::Event& event, const TraceNames& names) {
+  return fmt::format("{}  {}", seconds_text(event.time_us, 4), trace_words(event, names));
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,23 @@
+// Options that several verbs share.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "rsc/console.hpp"
+#include "rsc/options.hpp"
+#include "rsc/program.hpp"
+
+namespace robosync::tool {
+
+void add_format_option(Options& options, Format& format);
+void add_port_option(Options& options, std::string& port);
+void add_config_option(Options& options, std::string& config);
+// --config, and -O0 or -O1.
+void add_compile_options(Options& options, CompileOptions& how);
+void add_duration_option(Options& options, const std::string& name,
+                         std::optional<std::chrono::milliseconds>& duration,
+                         const std::string& description);
+
+}  // namespace robosync::tool
