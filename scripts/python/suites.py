@@ -18,7 +18,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-OURS = ("compiler", "vm", "link", "runtime-m4", "rsc", "tests", "bench")
+OURS = ("compiler", "vm", "link", "runtime-m4", "analysis", "rsc", "tests", "bench")
 CORES = os.cpu_count() or 1
 TIDY_BATCH = 12  # sources that clang-tidy looks at together
 
@@ -93,16 +93,24 @@ def run_format():
                 lambda path: ["clang-format", "--dry-run", "-Werror", str(path)])
 
 
+def compiled_together(path):
+    """The sources behind an entry of compile_commands.json: itself, or what CMake has put together in it."""
+    if "/Unity/unity_" not in path:
+        return [path]
+    return re.findall(r'^#include "(.*)"$', Path(path).read_text(), re.M)
+
+
 def product_sources(preset):
     """What the preset compiles of the product: {source: the flags it is compiled with}."""
     database = ROOT / "build" / preset
     product = tuple(str(ROOT / folder) + "/" for folder in OURS if folder not in ("tests", "bench"))
     flags = {}
     for command in json.loads((database / "compile_commands.json").read_text()):
-        if command["file"].startswith(product):
-            words = shlex.split(command["command"])
-            compiler = next(i for i, word in enumerate(words) if word.endswith(("c++", "g++")))
-            flags[command["file"]] = tuple(words[compiler + 1:words.index("-o")])
+        words = shlex.split(command["command"])
+        compiler = next(i for i, word in enumerate(words) if word.endswith(("cc", "c++", "g++")))
+        for source in compiled_together(command["file"]):
+            if source.startswith(product):
+                flags.setdefault(source, tuple(words[compiler + 1:words.index("-o")]))
     return flags
 
 
