@@ -23,7 +23,8 @@ from rsc import RscError
 BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
 GROUPS = (workloads.workload_figures, figures.opcode_figures, figures.image_figures,
           figures.kernel_figures, figures.size_figures, growth.growth_figures,
-          figures.link_figures, figures.path_figures, figures.compiler_figures)
+          figures.link_figures, figures.path_figures, figures.compiler_figures,
+          figures.tool_figures)
 
 
 def measure():

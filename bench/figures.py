@@ -36,6 +36,15 @@ def image_figures():
     }
 
 
+def tool_figures():
+    """What `scripts/build --prefix` puts on a computer."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(["cmake", "--install", ROOT / "build/host", "--prefix", folder, "--component", "tool",
+                        "--strip"], check=True, stdout=subprocess.DEVNULL)
+        size = sum(path.stat().st_size for path in Path(folder).rglob("*") if path.is_file())
+    return {"tool/size": (size, "B")}
+
+
 def opcode_spans(marks):
     """{opcode: [worst instructions in a condition or response, dispatch included]}."""
     listed = re.findall(r"^OPCODE\((\w+),.*?,\s*(\d+),\s*\"", (ROOT / "vm/opcodes.def").read_text(),

@@ -17,20 +17,24 @@ die() {
 # The head comment of the script that runs, for --help.
 usage() { sed -n '2,/^\. /{/^\. /d;s/^# \{0,1\}//;p}' "scripts/${0##*/}"; }
 
-# The packages of packages.txt that are not installed, one a line.
+# missing_packages [SECTION…]: the packages in these sections of packages.txt (all, when none is named) that are
+# not installed, one a line.
 missing_packages() {
   local package
-  sed 's/#.*//; /^[[:space:]]*$/d' scripts/packages.txt | while read -r package; do
+  awk -v wanted=" $* " '/^\[/ { section = substr($1, 2, length($1) - 2); next }
+       /^[^#]/ && (wanted == "  " || index(wanted, " " section " "))' scripts/packages.txt |
+    while read -r package; do
     dpkg-query -W -f='${db:Status-Abbrev}' "$package" 2>/dev/null | grep -q '^ii' || echo "$package"
   done
 }
 
-# Installs what is missing, as root or through sudo; asks for nothing when there is no terminal.
+# install_missing [SECTION…]: installs what is missing, as root or through sudo; asks for nothing when there is
+# no terminal.
 install_missing() {
   command -v dpkg-query >/dev/null && command -v apt-get >/dev/null ||
     die "needs Debian 12 with apt-get; elsewhere, install what scripts/packages.txt lists"
   local missing
-  missing=$(missing_packages | tr '\n' ' ')
+  missing=$(missing_packages "$@" | tr '\n' ' ')
   [ -n "$missing" ] || return 0
 
   local as_root=()
@@ -47,13 +51,24 @@ install_missing() {
   "${apt[@]}" install -y --no-install-recommends $missing || die "could not install: $missing"
 }
 
-# build PRESET: configures and builds build/PRESET. Quiet unless it fails.
+# build PRESET [TARGET…]: configures build/PRESET, and builds all of it or the targets. Quiet unless it fails.
+# What stands in `configuring` goes to cmake as well.
+configuring=()
 build() {
   local preset=$1 log=build/$1.log
-  say "Building $preset (CMake preset; log: $log)"
+  shift
+  say "Building $preset (CMake preset; ${*:+only $*; }log: $log)"
   mkdir -p build
-  if ! { cmake --preset "$preset" && cmake --build --preset "$preset"; } >"$log" 2>&1; then
+  if ! { cmake --preset "$preset" "${configuring[@]}" && cmake --build --preset "$preset" ${*:+--target "$@"}; } \
+    >"$log" 2>&1; then
     tail -n 60 "$log" >&2
     die "the build of $preset failed" 1
   fi
+}
+
+# Builds rsc without its tests, whose libraries need not be there; where they are configured already, they stay.
+build_tool() {
+  if ! grep -qs '^ROBOSYNC_TESTS:.*=ON' build/host/CMakeCache.txt; then configuring=(-D ROBOSYNC_TESTS=OFF); fi
+  build host rsc
+  configuring=()
 }
