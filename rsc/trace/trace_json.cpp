@@ -97,8 +97,9 @@ void add_value(Json& object, const EventReader& reader) {
 
 void add_command(Json& object, const EventReader& reader) {
   if (const std::string word = reader.word_name(); !word.empty()) object["word"] = word;
-  reader.for_each_param(
-      [&](std::size_t param, vm::Value given) { object[key_of_param(param)] = json_number(given); });
+  reader.for_each_param([&](std::size_t param, vm::Value given) {
+    object[key_of_param(param)] = json_number(given);
+  });
 }
 
 void add_values(Json& object, const EventReader& reader) {
