@@ -53,7 +53,8 @@ def run_ctest(preset):
         output = case.findtext("system-out") or ""
         good, bad = count_cases(output, ok)
         bad = max(bad, 0 if ok else 1)  # a program that crashed says nothing about its cases
-        print(f"  {'ok  ' if not bad else 'FAIL'} {case.get('name')} ({good} of {good + bad})")
+        print(f"  {'ok  ' if not bad else 'FAIL'} {case.get('name')} ({good} of {good + bad}, "
+              f"{float(case.get('time') or 0):.1f} s)")
         if bad:
             print(output)
         passed, failed = passed + good, failed + bad

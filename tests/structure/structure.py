@@ -30,6 +30,13 @@ RUNTIME = {
     "safety": {"kernel", "boards", "layers", "policy"},
     "update": {"kernel", "boards", "port", "layers"},
 }
+# Inside rsc/: the same. What stands in rsc/ itself includes none of them.
+TOOL = {
+    "verbs": {"device", "trace", "dump"},
+    "device": {"trace"},
+    "trace": set(),
+    "dump": set(),
+}
 # Standard headers that allocate or throw, or need an operating system.
 HOSTED_HEADERS = {
     "string", "vector", "map", "set", "unordered_map", "unordered_set", "list", "deque", "memory",
@@ -145,6 +152,19 @@ def check_runtime_folders(sources):
                 yield Problem(source.path, number, f"{parts[1]}/ may not include {to[1]}/")
 
 
+def check_tool_folders(sources):
+    """Inside rsc/ the arrows point from the verbs to what they use, and from there to rsc/ itself."""
+    for source in sources:
+        parts = source.path.split("/")
+        if parts[0] != "rsc" or source.suffix not in CODE:
+            continue
+        own = parts[1] if len(parts) > 2 else ""
+        for number, _, target in includes(source):
+            to = target.split("/")
+            if to[0] == "rsc" and len(to) > 2 and to[1] not in TOOL.get(own, set()) | {own}:
+                yield Problem(source.path, number, f"{own or 'rsc'}/ may not include {to[1]}/")
+
+
 def check_freestanding(sources):
     """What runs on the board uses no header that allocates, throws or needs an operating system."""
     for source in sources:
@@ -232,6 +252,7 @@ def check_left_overs(sources):
 
 RULES = {
     "runtime folders": check_runtime_folders,
+    "tool folders": check_tool_folders,
     "freestanding": check_freestanding,
     "hardware": check_hardware,
     "head comments": check_head_comments,

@@ -100,6 +100,14 @@ class Planted(unittest.TestCase):
             with self.subTest(name=name, target=target):
                 self.assert_red("layering", name, f'{HEAD}#include "{target}"\n')
 
+    def test_wrong_arrows_in_the_tool(self):
+        for name, target in [("rsc/trace/t.cpp", "rsc/device/client.hpp"), ("rsc/a.cpp", "rsc/dump/dump.hpp"),
+                             ("rsc/device/d.hpp", "rsc/verbs/check.hpp"), ("rsc/dump/d.cpp", "rsc/trace/scenario.hpp")]:
+            with self.subTest(name=name, target=target):
+                self.assert_red("tool folders", name, f'{HEAD}#include "{target}"\n')
+        self.assertEqual(self.check({"rsc/verbs/v.cpp": f'{HEAD}#include "rsc/device/client.hpp"\n',
+                                     "rsc/device/d.cpp": f'{HEAD}#include "rsc/trace/t.hpp"\n'}), {})
+
     def test_wrong_arrows_in_the_runtime(self):
         for name, target in [("runtime-m4/kernel/k.cpp", "runtime-m4/layers/step.hpp"),
                              ("runtime-m4/layers/s.cpp", "runtime-m4/safety/guard.hpp"),
