@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 
-#include "tests/generators/images/operands.hpp"
+#include "tests/support/operands.hpp"
 #include "vm/output.hpp"
 #include "vm/timers.hpp"
 

@@ -1,4 +1,4 @@
-// Runs code twice: word by word with every instruction checked (stepper.hpp), then by the shipped
+// Runs code twice: word by word with every instruction checked (the naive stepper), then by the shipped
 // interpreter in one go, in memory of exactly the declared size; and compares what they leave.
 #pragma once
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "tests/generators/images/operands.hpp"
+#include "tests/support/operands.hpp"
 #include "tests/vm/companion.hpp"
 
 namespace robosync::fuzz {

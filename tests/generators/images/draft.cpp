@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "tests/generators/images/operands.hpp"
+#include "tests/support/operands.hpp"
 
 namespace robosync::fuzz {
 

@@ -7,7 +7,7 @@
 #include <bitset>
 
 #include "tests/generators/images/draft.hpp"
-#include "tests/generators/images/operands.hpp"
+#include "tests/support/operands.hpp"
 
 namespace robosync::fuzz {
 

@@ -1,9 +1,10 @@
 #include "tests/oracles/bytecode/stepper.hpp"
 
-#include <array>
+#include "tests/oracles/bytecode/instruction.hpp"
 
 namespace robosync::fuzz {
 
+using oracle::Went;
 using vm::Context;
 using vm::Machine;
 using vm::Pause;
@@ -41,12 +42,10 @@ Value Stepper::evaluate(Machine& machine, const CodeObject& object, std::uint32_
   for (std::size_t at = 0;; ++at) {
     check(at);
     const Word word = image_.code[object.start + at];
-    if (vm::is_terminator(vm::opcode_of(word))) {
-      cost = cost_;
-      return vm::evaluate(machine, &word);
-    }
-    vm::Progress progress;
-    require(probe(word, progress) == Went::on, "a condition that does not go straight on");
+    const oracle::Done done = oracle::run(machine, word);
+    cost = cost_;
+    if (done.went == Went::ended) return done.result;
+    require(done.went == Went::on, "a condition that does not go straight on");
     learn(word);
   }
 }
@@ -56,11 +55,9 @@ Run Stepper::respond(Machine& machine, const CodeObject& object, std::size_t fro
   for (std::size_t at = from;;) {
     check(at);
     const Word word = image_.code[object.start + at];
-    const Distance distance = distance_of(vm::opcode_of(word));
-    const std::size_t far = distance.jump == Jump::none ? 0 : operand(word, distance.place);
-    const std::size_t target = distance.jump == Jump::back ? at + 1 - far : at + 1 + far;
-    vm::Progress progress;
-    switch (probe(word, progress)) {
+    const std::size_t target = target_of(at, word);
+    const oracle::Done done = oracle::run(machine, word);
+    switch (done.went) {
       case Went::on:
         learn(word);
         ++at;
@@ -70,35 +67,18 @@ Run Stepper::respond(Machine& machine, const CodeObject& object, std::size_t fro
         at = target;
         break;
       case Went::paused:
-        return {progress.pause, target, progress.wake, cost_};
+        return {done.pause, done.pauses_at_target ? target : at + 1, done.wake, cost_};
       case Went::ended:
-        return {Pause::ended, 0, progress.wake, cost_};
+        return {Pause::ended, 0, done.wake, cost_};
     }
   }
 }
 
-// Runs the one word between words that tell which way it went: where it jumps, its distance is made
-// so that it leads to one of them.
-Stepper::Went Stepper::probe(Word word, vm::Progress& progress) {
-  const Word end = vm::encode(Opcode::end);
-  const Word marker = vm::encode(Opcode::wait_done);
-  const Opcode opcode = vm::opcode_of(word);
-  const Distance distance = distance_of(opcode);
-  if (distance.jump == Jump::ahead) {
-    const std::array code = {with_operand(word, distance.place, 1), marker, end};
-    progress = vm::respond(*machine_, code.data());
-    return progress.pause == Pause::ended ? Went::to_target : Went::on;
-  }
-  if (distance.jump == Jump::back) {
-    const std::array code = {marker, with_operand(word, distance.place, 2), end};
-    progress = vm::respond(*machine_, &code[1]);
-    if (progress.pause == Pause::ended) return Went::on;
-    return progress.pause == Pause::until_done ? Went::to_target : Went::paused;
-  }
-  const std::array code = {word, end};
-  progress = vm::respond(*machine_, code.data());
-  if (progress.pause != Pause::ended) return Went::paused;
-  return vm::is_terminator(opcode) ? Went::ended : Went::on;
+// Where a jump at `at` leads; behind it where it is none.
+std::size_t Stepper::target_of(std::size_t at, Word word) {
+  const Distance distance = distance_of(vm::opcode_of(word));
+  const std::size_t far = distance.jump == Jump::none ? 0 : operand(word, distance.place);
+  return distance.jump == Jump::back ? at + 1 - far : at + 1 + far;
 }
 
 void Stepper::check(std::size_t at) {

@@ -1,16 +1,16 @@
-// Runs code one instruction at a time, by the shipped interpreter, and holds every instruction
-// against opcodes.def before it runs: that it may stand there, and that each operand is one that
-// exists, was written before, and is of its type. Counts what the instructions are declared to
-// cost.
+// Runs code one instruction at a time, as instruction.hpp says, and holds every instruction against
+// opcodes.def before it runs: that it may stand there, and that each operand is one that exists, was
+// written before, and is of its type. Counts what the instructions are declared to cost.
 //
 // This is a second opinion about what the verifier proves once for all ways through the code, taken
-// on the way that is run. It shares nothing with the verifier but the list of opcodes.
+// on the way that is run, and about what the interpreter does. It shares nothing with either but the
+// list of opcodes.
 #pragma once
 
 #include <bitset>
 
 #include "tests/fuzz/exercise.hpp"
-#include "tests/generators/images/operands.hpp"
+#include "tests/support/operands.hpp"
 
 namespace robosync::fuzz {
 
@@ -25,7 +25,6 @@ public:
 
 private:
   using Cells = std::bitset<256>;
-  enum class Went : std::uint8_t { on, to_target, paused, ended };
 
   void begin(vm::Machine& machine, const CodeObject& object);
   void check(std::size_t at);
@@ -34,7 +33,7 @@ private:
   void check_write(Word word, unsigned cell);
   void check_distance(std::size_t at, Word word, std::size_t place);
   void learn(Word word);
-  Went probe(Word word, vm::Progress& progress);
+  [[nodiscard]] static std::size_t target_of(std::size_t at, Word word);
   void require(bool holds, const char* what) {
     if (!holds) engine_.fail(what);
   }
