@@ -1,5 +1,6 @@
 // reference PROGRAM.rsl ROBOT.json SCENARIO.json END_MS SEED: the trace of a program, as the
 // language says it must be. The seed is the one that `rsc run` says in its first event.
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -7,12 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "compiler/config/robot_reader.hpp"
-#include "compiler/diagnostics/render.hpp"
-#include "compiler/modules.hpp"
-#include "compiler/sema/analyze.hpp"
-#include "compiler/syntax/parser.hpp"
-#include "tests/oracles/rsl/interpreter.hpp"
+#include "compiler/config/units.hpp"
+#include "tests/oracles/rsl/analysed.hpp"
 
 namespace {
 
@@ -36,46 +33,25 @@ std::int64_t quantity(const std::string& text) {
   return *value;
 }
 
-compiler::ChannelRef channel(const compiler::Robot& robot, const Json& stimulus) {
-  for (std::size_t s = 0; s < robot.sensors.size(); ++s) {
-    if (robot.sensors[s].name.text != stimulus.at("sensor")) continue;
-    for (std::size_t c = 0; c < robot.sensors[s].channels.size(); ++c)
-      if (robot.sensors[s].channels[c].name.text == stimulus.at("channel")) return {s, c};
-  }
-  throw std::runtime_error("no such channel: " + stimulus.dump());
-}
-
-std::vector<oracle::Reading> scenario(const std::string& file, const compiler::Robot& robot) {
+std::vector<oracle::Reading> scenario(const std::string& file, const oracle::Analysed& robot) {
   std::vector<oracle::Reading> result;
   const Json root = Json::parse(read(file));
-  for (const Json& stimulus : root.at("stimuli"))
-    result.push_back(
-        {quantity(stimulus.at("at")), channel(robot, stimulus), quantity(stimulus.at("value"))});
+  for (const Json& stimulus : root.at("stimuli")) {
+    const auto text = [&](const char* key) { return stimulus.at(key).get<std::string>(); };
+    result.push_back({quantity(text("at")), robot.channel(text("sensor"), text("channel")),
+                      quantity(text("value"))});
+  }
   std::stable_sort(result.begin(), result.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
   return result;
 }
 
 void run(const std::vector<std::string>& arguments) {
-  compiler::SourceMap sources;
-  compiler::Diagnostics diagnostics;
-  const compiler::FileId text = sources.add(arguments[0], read(arguments[0]));
-  const compiler::FileId config = sources.add(arguments[1], read(arguments[1]));
-  const compiler::ast::Program tree = compiler::parse(sources, text, diagnostics);
-  const auto modules = compiler::load_modules(tree, sources, {}, diagnostics);
-  const auto robot = compiler::read_robot(sources, config, diagnostics);
-  if (!robot || diagnostics.errors() > 0)
-    throw std::runtime_error(compiler::render_human(diagnostics, sources, false));
-  compiler::Trees trees{&tree};
-  for (const compiler::Module& module : modules)
-    trees.push_back(module.tree.get());
-  const compiler::Program program = compiler::analyze(trees, *robot, sources, diagnostics);
-  if (diagnostics.errors() > 0)
-    throw std::runtime_error(compiler::render_human(diagnostics, sources, false));
-  oracle::Trace trace(std::cout, program, *robot);
+  const oracle::Analysed analysed(arguments[0], read(arguments[0]), read(arguments[1]));
+  oracle::Trace trace(std::cout, analysed.program(), analysed.robot());
   const auto seed = static_cast<std::uint32_t>(std::stoll(arguments[4]));
-  oracle::Interpreter interpreter(program, *robot, seed, trace);
-  interpreter.run(scenario(arguments[2], *robot), std::stoll(arguments[3]));
+  oracle::Interpreter interpreter(analysed.program(), analysed.robot(), seed, trace);
+  interpreter.run(scenario(arguments[2], analysed), std::stoll(arguments[3]));
 }
 
 }  // namespace
