@@ -22,14 +22,27 @@ PART_OF = {"grammar": "compiler"}
 FREESTANDING = ("vm/", "link/", "runtime-m4/")
 MACHINE = ("runtime-m4/boards/", "runtime-m4/port/")
 HOST_ONLY = ("runtime-m4/port/host/", "runtime-m4/sim/")
-# Inside runtime-m4/: what each folder may include of it, besides itself.
+# Inside runtime-m4/, from the bottom up: what each part may include of it, besides itself. All of that stands further up
+# in this list, so no arrow points back. A part is a folder, but for these: the files at the top of runtime-m4/; the
+# interface of the processor (port/port.hpp, and the headers of the processor that it brings) and the sources that
+# implement it by the kernel; the interface of the board (boards/board.hpp) and the boards.
 RUNTIME = {
-    "kernel": {"port", "policy"},
-    "layers": {"kernel", "port", "boards", "drivers", "policy"},
-    "drivers": {"kernel", "boards", "policy"},
-    "safety": {"kernel", "boards", "layers", "policy"},
-    "update": {"kernel", "boards", "port", "layers"},
+    "limits": set(),
+    "policy": set(),
+    "port": set(),
+    "boards": set(),
+    "kernel": {"limits", "policy", "port"},
+    "port's sources": {"port", "kernel"},
+    "drivers": {"policy", "boards", "kernel"},
+    "layers": {"limits", "policy", "boards", "kernel", "drivers"},
+    "safety": {"limits", "policy", "boards", "kernel", "layers"},
+    "runtime": {"boards", "kernel", "drivers", "layers", "safety"},
+    "update": {"limits", "boards", "kernel", "layers", "runtime"},
+    "sim": {"boards", "kernel", "layers", "runtime"},
+    "boards/common": {"port", "boards", "kernel", "layers", "runtime", "update"},
+    "a board": {"port", "boards", "kernel", "boards/common"},
 }
+MAY_KNOW_THE_PROCESSOR = {"port", "port's sources", "boards/common", "a board"}
 # Inside rsc/: the same. What stands in rsc/ itself includes none of them.
 TOOL = {
     "verbs": {"device", "trace", "dump"},
@@ -135,21 +148,49 @@ def check_layering(sources, layers):
                 yield Problem(source.path, number, f"{layer}/ may not include {target_layer}/")
 
 
+def runtime_part(path):
+    """The part of runtime-m4/ (RUNTIME) that a file is in, or None."""
+    folders = path.split("/")[1:-1]
+    if not folders:
+        return Path(path).stem
+    if folders[0] == "port":
+        return "port's sources" if path.endswith(".cpp") else "port"
+    if folders[0] == "boards" and len(folders) > 1:
+        return "boards/common" if folders[1] == "common" else "a board"
+    return folders[0]
+
+
+def machine_of(path):
+    """The folder of the processor or of the board that a file is for, or None."""
+    folders = path.split("/")[1:-1]
+    return "/".join(folders) if len(folders) > 1 and folders[1] != "common" else None
+
+
 def check_runtime_folders(sources):
-    """Inside runtime-m4/ the arrows point to the kernel, and to the machine by its interface only."""
+    """Inside runtime-m4/ no arrow points back, and nobody but a machine knows which one it is."""
     for source in sources:
-        parts = source.path.split("/")
-        if parts[0] != "runtime-m4" or source.path.startswith(MACHINE) or source.suffix not in CODE:
+        if source.top != "runtime-m4" or source.suffix not in CODE:
             continue
-        allowed = RUNTIME.get(parts[1]) if len(parts) > 2 else None
+        part, machine = runtime_part(source.path), machine_of(source.path)
+        if part == "policy":
+            continue  # it has a line of its own in the map
+        if part not in RUNTIME:
+            yield Problem(source.path, 1, f"{part} has no place in the order of runtime-m4/")
+            continue
         for number, _, target in includes(source):
-            to = target.split("/")
-            if to[0] != "runtime-m4" or len(to) < 3:
+            if not target.startswith("runtime-m4/"):
                 continue
-            if to[1] in ("port", "boards") and len(to) > 3:
+            other, its_machine = runtime_part(target), machine_of(target)
+            if other not in RUNTIME[part] | {part}:
+                yield Problem(source.path, number, f"{part} may not include {other}")
+            elif its_machine not in (None, machine) and not knows(source.path, part, other):
                 yield Problem(source.path, number, f"{target} belongs to one machine")
-            elif allowed is not None and to[1] not in allowed | {parts[1]}:
-                yield Problem(source.path, number, f"{parts[1]}/ may not include {to[1]}/")
+
+
+def knows(path, part, other):
+    """May it include a file of `other` that is for one machine only?"""
+    return other == "port" and (part in MAY_KNOW_THE_PROCESSOR and machine_of(path) is None
+                                or part == "a board")
 
 
 def check_tool_folders(sources):

@@ -108,13 +108,45 @@ class Planted(unittest.TestCase):
         self.assertEqual(self.check({"rsc/verbs/v.cpp": f'{HEAD}#include "rsc/device/client.hpp"\n',
                                      "rsc/device/d.cpp": f'{HEAD}#include "rsc/trace/t.hpp"\n'}), {})
 
+    def test_the_order_of_the_runtime_has_no_cycle(self):
+        seen = set()
+        for part, may_include in structure.RUNTIME.items():
+            self.assertLessEqual(may_include, seen, part)
+            seen.add(part)
+
     def test_wrong_arrows_in_the_runtime(self):
-        for name, target in [("runtime-m4/kernel/k.cpp", "runtime-m4/layers/step.hpp"),
+        for name, target in [("runtime-m4/limits.hpp", "runtime-m4/kernel/time.hpp"),
+                             ("runtime-m4/kernel/k.cpp", "runtime-m4/layers/step.hpp"),
+                             ("runtime-m4/drivers/d.cpp", "runtime-m4/layers/order.hpp"),
                              ("runtime-m4/layers/s.cpp", "runtime-m4/safety/guard.hpp"),
-                             ("runtime-m4/layers/l.cpp", "runtime-m4/port/host/machine.hpp"),
-                             ("runtime-m4/drivers/d.cpp", "runtime-m4/boards/x/i2c.hpp")]:
+                             ("runtime-m4/safety/s.cpp", "runtime-m4/runtime.hpp"),
+                             ("runtime-m4/runtime.cpp", "runtime-m4/update/server.hpp"),
+                             ("runtime-m4/update/s.cpp", "runtime-m4/sim/simulator.hpp"),
+                             ("runtime-m4/port/x/machine.hpp", "runtime-m4/kernel/kernel.hpp"),
+                             ("runtime-m4/port/x/machine.cpp", "runtime-m4/layers/step.hpp"),
+                             ("runtime-m4/boards/board.hpp", "runtime-m4/kernel/time.hpp"),
+                             ("runtime-m4/boards/common/main.cpp", "runtime-m4/boards/x/board.hpp"),
+                             ("runtime-m4/extra.hpp", "runtime-m4/runtime.hpp"),
+                             ("runtime-m4/shelf/a.hpp", "runtime-m4/runtime.hpp"),
+                             # what belongs to one machine
+                             ("runtime-m4/kernel/k.hpp", "runtime-m4/port/x/machine.hpp"),
+                             ("runtime-m4/sim/s.cpp", "runtime-m4/port/x/machine.hpp"),
+                             ("runtime-m4/port/x/a.hpp", "runtime-m4/port/y/core.hpp"),
+                             ("runtime-m4/drivers/d.cpp", "runtime-m4/boards/x/i2c.hpp"),
+                             ("runtime-m4/boards/x/b.cpp", "runtime-m4/boards/y/i2c.hpp")]:
             with self.subTest(name=name, target=target):
                 self.assert_red("runtime folders", name, f'{HEAD}#include "{target}"\n')
+
+    def test_right_arrows_in_the_runtime(self):
+        for name, target in [("runtime-m4/port/port.hpp", "runtime-m4/port/x/machine.hpp"),
+                             ("runtime-m4/port/x/machine.cpp", "runtime-m4/kernel/kernel.hpp"),
+                             ("runtime-m4/port/x/machine.cpp", "runtime-m4/port/x/core.hpp"),
+                             ("runtime-m4/boards/common/main.cpp", "runtime-m4/update/server.hpp"),
+                             ("runtime-m4/boards/x/b.cpp", "runtime-m4/boards/x/i2c.hpp"),
+                             ("runtime-m4/boards/x/b.cpp", "runtime-m4/boards/common/reset.hpp"),
+                             ("runtime-m4/boards/x/b.cpp", "runtime-m4/port/x/core.hpp")]:
+            with self.subTest(name=name, target=target):
+                self.assertEqual(self.check({name: f'{HEAD}#include "{target}"\n'}), {})
 
     def test_hosted_headers_on_the_board(self):
         for name in ["vm/a.cpp", "link/a.hpp", "runtime-m4/port/cortex-m4/a.cpp"]:

@@ -2,6 +2,7 @@
 
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
+#include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 
 [[gnu::section(".bss.low")]] std::array<volatile std::uint32_t, kVirtualPwmPins>

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "link/messages.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 

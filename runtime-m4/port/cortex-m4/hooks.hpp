@@ -5,7 +5,11 @@
 #include <cstdint>
 
 #include "link/messages.hpp"
-#include "runtime-m4/kernel/kernel.hpp"
+
+namespace robosync::kernel {
+class Kernel;
+class Thread;
+}  // namespace robosync::kernel
 
 // The one kernel of the firmware.
 extern "C" robosync::kernel::Kernel robosync_kernel;

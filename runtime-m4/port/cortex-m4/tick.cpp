@@ -13,6 +13,7 @@
 
 #include <algorithm>
 
+#include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 #include "runtime-m4/port/cortex-m4/machine.hpp"
