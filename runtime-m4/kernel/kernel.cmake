@@ -1,4 +1,5 @@
 target_sources(robosync_runtime PRIVATE
+  kernel/assertions.cpp
   kernel/kernel.cpp
   kernel/mutex.cpp
   kernel/scheduler.cpp

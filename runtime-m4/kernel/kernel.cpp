@@ -18,6 +18,7 @@ constexpr std::uint32_t kLongestSleep = 0xFFFF'FFFF;  // microseconds; wait() sl
 }  // namespace
 
 Time Kernel::now() const {
+  expect().any();
   port::SwitchLock still(machine_);
   return time();
 }
@@ -77,6 +78,7 @@ bool Kernel::arm(Thread& thread, Time deadline) {
 }
 
 void Kernel::block(Thread& thread, Events mask) {
+  expect().locked();
   thread.wanted_ = mask;
   ++thread.activations_;
   ReadySet::erase(thread.ready_place_);
@@ -87,6 +89,7 @@ void Kernel::block(Thread& thread, Events mask) {
 // The switch waits for the end of the lock. To ask for it first leaves the compiler enough
 // registers.
 void Kernel::make_ready(Thread& thread) {
+  expect().locked();
   if (thread.rank_ < running_rank_) [[likely]]
     machine_.request_switch();
   ReadySet::insert(thread.ready_place_);
@@ -100,6 +103,7 @@ void Kernel::make_unready(Thread& thread) {
 }
 
 void Kernel::signal(Thread& thread, Events events) {
+  expect().any();
   port::Lock lock(machine_);
   const Events all = thread.events_ | events;
   thread.events_ = all;
@@ -108,6 +112,7 @@ void Kernel::signal(Thread& thread, Events events) {
 }
 
 void Kernel::stop(Thread& thread) {
+  expect_may_stop(thread);
   port::Lock lock(machine_);
   if (thread.state_ != Thread::State::ready) return;
   make_unready(thread);

@@ -2,8 +2,8 @@
 // per thread.
 //
 // Legal context of each function: [thread] from a running thread, [any] from a thread or an
-// interrupt handler, [init] before run(). Nothing here allocates; threads and their stacks belong
-// to the caller. Policy: scheduler.hpp. Time: timer_queue.hpp. Context switch:
+// interrupt handler, [init] before run(). Builds for tests assert it (assertions.hpp). Nothing here
+// allocates; threads and their stacks belong to the caller. Policy: scheduler.hpp. Time: timer_queue.hpp. Context switch:
 // port/cortex-m4/switch.S. Read docs/kernel.md first.
 #pragma once
 
@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime-m4/kernel/assertions.hpp"
 #include "runtime-m4/kernel/mutex.hpp"
 #include "runtime-m4/kernel/scheduler.hpp"
 #include "runtime-m4/kernel/thread.hpp"
@@ -43,18 +44,26 @@ public:
   void remove(Thread& thread);
 
   // Runs the threads. Returns only on the host, when nothing is left to happen.  [init]
-  void run() { machine_.run(); }
+  void run() {
+    expect().init();
+    machine_.run();
+  }
 
-  Time now() const;                        // [any]
-  Thread& current() { return *running_; }  // [thread]
+  Time now() const;  // [any]
+  // Who runs, or was interrupted.  [any]
+  Thread& current() { return *running_; }
 
   // Blocks until one of `mask` is signalled or `deadline` is reached. Returns the events that were
   // there, and clears them; 0 after the deadline. A deadline in the past only looks.  [thread]
   Events wait(Events mask, Time deadline = kForever) {
+    expect_may_block();
     return deadline == kForever ? wait_for(mask) : wait_until(mask, deadline);
   }
   // Blocks until `deadline`; events signalled meanwhile are kept.  [thread]
-  void sleep_until(Time deadline) { wait_until(0, deadline); }
+  void sleep_until(Time deadline) {
+    expect_may_block();
+    wait_until(0, deadline);
+  }
   // Sets events of a thread and lets it run if it waits for one of them.  [any]
   void signal(Thread& thread, Events events);
   // Gives a thread another priority: its place is then the one it would have if it were added now,
@@ -76,14 +85,21 @@ public:
 
   // While it is held no other thread runs, and time stands still; interrupts come in. Hold it for a
   // few hundred instructions at most; blocking under it is an error.  [any]
-  [[nodiscard]] port::SwitchLock lock() { return port::SwitchLock(machine_); }
+  [[nodiscard]] port::SwitchLock lock() {
+    expect().any();
+    return port::SwitchLock(machine_);
+  }
   // The same, and no interrupt of the kernel's level is taken either: for what interrupts change,
   // too. Hold it for a few instructions.  [any]
-  [[nodiscard]] port::Lock lock_interrupts() { return port::Lock(machine_); }
+  [[nodiscard]] port::Lock lock_interrupts() {
+    expect().any();
+    return port::Lock(machine_);
+  }
 
   // Takes a mutex, without ever waiting for it, and gives it back (mutex.hpp; MutexGuard does
   // both). [thread]
   [[gnu::always_inline]] void acquire(Mutex& mutex) {
+    expect().thread();
     if (held_ != nullptr) [[unlikely]]
       return acquire_another(mutex);
     const port::OnlyLock lock(machine_);
@@ -93,6 +109,8 @@ public:
     running_rank_ = ceiling_;
   }
   [[gnu::always_inline]] void release(Mutex& mutex) {
+    expect().thread();
+    expect().that(mutex.owner_ == running_, "by a thread that does not hold it");
     if (mutex.not_alone_) [[unlikely]]
       return release_one(mutex);
     const port::OnlyLock lock(machine_);
@@ -118,6 +136,7 @@ public:
   // The tick interrupt: so many ticks have passed, be it none; wakes who is due. Nothing preempts
   // it but interrupts of the kernel's level and above, and it preempts no switch.
   void on_tick(std::uint32_t ticks) {
+    expect().no_thread();
     pass(ticks);
     if (timers_.has_work(tick_)) wake_due();
   }
@@ -174,6 +193,22 @@ public:
 
 private:
   static constexpr std::uint8_t kNoneRuns = 0xFF;  // ranks below everything: any wake-up switches
+
+  Expect expect() const { return Expect(machine_); }
+  void expect_may_block(const char* service = __builtin_FUNCTION()) const {
+    expect().thread(service);
+    expect().that(held_ == nullptr || held_->owner_ != running_, "while it holds a mutex", service);
+  }
+
+  void expect_may_stop(const Thread& thread, const char* service = __builtin_FUNCTION()) const {
+    if constexpr (kAssertions) {
+      const bool handler = machine_.mode() == port::Mode::handler;
+      expect().that(!handler || &thread == running_, "from a handler, and not the running thread",
+                    service);
+      expect().that(!handler || machine_.held() == port::Held::none,
+                    "of a thread that holds a lock", service);
+    }
+  }
 
   Events wait_for(Events mask);
   Events wait_until(Events mask, Time deadline);

@@ -12,6 +12,7 @@ namespace robosync::kernel {
 
 // The thread becomes the lowest of all. Under a Lock.
 void Kernel::enter(Thread& thread) {
+  expect().locked();
   by_rank_[count_] = &thread;
   thread.set_rank(count_, ready_);
   std::uint8_t& highest = highest_of_[index(thread.category())];
@@ -22,6 +23,7 @@ void Kernel::enter(Thread& thread) {
 
 // The lowest of all goes; it is not ready. Under a Lock.
 void Kernel::leave(const Thread& thread) {
+  expect().locked();
   --count_;
   by_rank_[count_] = &idle_;
   std::uint8_t& highest = highest_of_[index(thread.category())];
@@ -43,6 +45,7 @@ void Kernel::sink_below(const Thread& thread, Standing standing) {
 }
 
 void Kernel::set_priority(Thread& thread, Priority priority) {
+  expect().no_handler();
   const Standing before = thread.standing_;
   const Standing mine = with_priority(before, priority);
   {

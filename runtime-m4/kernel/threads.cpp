@@ -7,6 +7,7 @@
 namespace robosync::kernel {
 
 bool Kernel::add(Thread& thread, const ThreadSpec& spec) {
+  expect().no_handler();
   if (thread.state_ != Thread::State::absent || count_ == kMaxThreads) return false;
   if (spec.entry == nullptr || spec.stack.size() < port::kMinStack) return false;
   const auto priority = static_cast<std::int8_t>(spec.priority);
@@ -34,6 +35,8 @@ bool Kernel::add(Thread& thread, const ThreadSpec& spec) {
 }
 
 void Kernel::remove(Thread& thread) {
+  expect().no_handler();
+  expect().that(&thread != running_, "of the running thread");
   port::SwitchLock still(machine_);
   if (thread.state_ == Thread::State::absent) return;
   {
@@ -48,6 +51,7 @@ void Kernel::remove(Thread& thread) {
 }
 
 void Kernel::watch(Thread& watcher, Events stops, Events reports) {
+  expect().no_handler();
   port::Lock lock(machine_);
   watcher_ = &watcher;
   stop_events_ = stops;
@@ -55,6 +59,7 @@ void Kernel::watch(Thread& watcher, Events stops, Events reports) {
 }
 
 void Kernel::open(const port::Areas& areas) {
+  expect().no_handler();
   port::Lock lock(machine_);
   port::Machine::open(areas);
 }
@@ -65,6 +70,7 @@ Thread::State Kernel::state(const Thread& thread) const {
 }
 
 std::uint32_t Kernel::run_time(const Thread& thread) const {
+  expect().any();
   port::Lock lock(machine_);
   return port::Machine::run_time(thread, &thread == running_);
 }

@@ -21,7 +21,12 @@
 //   class OnlyLock(Machine&)  The same, for who holds no Lock; may be cheaper.
 //   class SwitchLock(Machine&)  The weaker one: no switch and no tick, but interrupts come in. It
 //                           may stand inside of a Lock, and around one.
+//   enum class Mode         What runs: init (no thread does yet), thread, handler (of an interrupt).
+//   enum class Held         What holds others off: none, switch_lock, lock.
+//   panic(service, why)     An assertion did not hold (kernel/assertions.hpp): ends everything.
 //   class Machine(Kernel&)  The processor a kernel runs on:
+//     mode(), held()                For assertions. `held` counts for thread and handler.
+//     may_call()                    Is what runs of the kernel's level, or below it?
 //     usable(spec)                  What a thread can use of its stack: without alignment, guard.
 //     can_run(spec)                 Is its stack as a thread without privileges needs it?
 //     open(areas)                   Gives those threads what they may use. Under a Lock.

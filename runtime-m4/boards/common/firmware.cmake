@@ -13,23 +13,25 @@ set(board_common ${CMAKE_CURRENT_LIST_DIR})
 set(board_script ${CMAKE_CURRENT_SOURCE_DIR}/boards/${ROBOSYNC_BOARD}/${board_script})
 add_library(robosync_board OBJECT boards/common/startup.cpp boards/common/reset.cpp ${board_sources})
 target_link_libraries(robosync_board PUBLIC robosync_runtime)
-robosync_large(robosync_board)
+robosync_variant(robosync_board large ROBOSYNC_LARGE)
+robosync_variant(robosync_board asserted ROBOSYNC_ASSERTIONS)
 target_link_libraries(robosync_board_large PUBLIC robosync_runtime_large)
-foreach(board robosync_board robosync_board_large)
+target_link_libraries(robosync_board_asserted PUBLIC robosync_runtime_asserted)
+foreach(board robosync_board robosync_board_large robosync_board_asserted)
   target_link_options(${board} INTERFACE -L${board_common} -T${board_script})
   set_property(TARGET ${board} PROPERTY INTERFACE_LINK_DEPENDS ${board_script} ${board_common}/firmware.ld)
 endforeach()
 target_link_options(robosync_board_large INTERFACE ${board_large})
 
-# robosync_elf(TARGET NAME SOURCES…): an ELF for this board, build/…/NAME.elf. With the libraries of the large
-# profile when the name of TARGET ends in _large.
+# robosync_elf(TARGET NAME SOURCES…): an ELF for this board, build/…/NAME.elf. When the name of TARGET ends in that of a
+# variant, with the libraries of that one.
 #
 # Linked as C, without the C++ library, and without a heap: newlib's malloc would need _sbrk, which
 # nobody defines, so code that allocates does not link.
 function(robosync_elf target name)
-  string(REGEX MATCH "_large$" large ${target})
+  string(REGEX MATCH "_(large|asserted)$" variant ${target})
   add_executable(${target} ${ARGN})
-  target_link_libraries(${target} PRIVATE robosync_board${large} robosync_runtime${large})
+  target_link_libraries(${target} PRIVATE robosync_board${variant} robosync_runtime${variant})
   target_link_options(${target} PRIVATE
     -flto -Os -nostartfiles --specs=nano.specs -Wl,--gc-sections -Wl,--print-memory-usage
     -Wl,--fatal-warnings -Wl,-Map=${PROJECT_BINARY_DIR}/${name}.map)

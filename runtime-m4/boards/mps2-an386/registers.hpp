@@ -56,6 +56,7 @@ struct TimerRegisters {  // CMSDK APB timer: counts down, and begins again at `r
 };
 inline constexpr std::uintptr_t kTimer1 = 0x4000'1000;
 inline constexpr unsigned kTimer0Interrupt = 8;
+inline constexpr unsigned kFreeInterrupt = 20;  // of no device
 inline constexpr std::uint32_t kTimerOn = 1U << 0;
 
 struct OneShotRegisters {  // CMSDK APB dual timer, the first of the two: counts down

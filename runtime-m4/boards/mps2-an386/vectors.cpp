@@ -6,7 +6,9 @@
 extern "C" {
 void Uart0Receive_Handler();
 void Uart0Transmit_Handler();
-void Timer0_Handler();  // nobody's in the firmware; the kernel's tests have one (mps2_an386.ld)
+// Nobody's in the firmware; the kernel's tests have them (mps2_an386.ld).
+void Timer0_Handler();
+void TestsOwn_Handler();
 }
 
 namespace {
@@ -16,7 +18,8 @@ using namespace robosync::boards;
 constexpr std::size_t kInterrupts = 32;
 constexpr std::array kUsed{Interrupt{mps2::kUart0ReceiveInterrupt, Uart0Receive_Handler},
                            Interrupt{mps2::kUart0TransmitInterrupt, Uart0Transmit_Handler},
-                           Interrupt{mps2::kTimer0Interrupt, Timer0_Handler}};
+                           Interrupt{mps2::kTimer0Interrupt, Timer0_Handler},
+                           Interrupt{mps2::kFreeInterrupt, TestsOwn_Handler}};
 
 }  // namespace
 

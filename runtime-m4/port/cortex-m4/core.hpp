@@ -21,6 +21,7 @@ inline constexpr std::uintptr_t kIcsr = 0xE000'ED04;      // interrupt control a
 inline constexpr std::uintptr_t kVtor = 0xE000'ED08;      // where the vector table is
 inline constexpr std::uintptr_t kAircr = 0xE000'ED0C;     // reset control
 inline constexpr std::uintptr_t kCcr = 0xE000'ED14;       // traps
+inline constexpr std::uintptr_t kShpr1 = 0xE000'ED18;     // priorities of the faults
 inline constexpr std::uintptr_t kShpr2 = 0xE000'ED1C;     // priority of SVC
 inline constexpr std::uintptr_t kShpr3 = 0xE000'ED20;     // priorities of PendSV and SysTick
 inline constexpr std::uintptr_t kShcsr = 0xE000'ED24;     // enables of the fault handlers

@@ -63,9 +63,16 @@ struct Areas {
   std::span<std::byte> writable;
 };
 
+enum class Mode : std::uint8_t { init, thread, handler };
+enum class Held : std::uint8_t { none, switch_lock, lock };
+[[noreturn, gnu::cold]] void panic(const char* service, const char* why);
+
 class Machine {
 public:
   explicit Machine(kernel::Kernel&) {}
+  [[gnu::cold]] static Mode mode();
+  [[gnu::cold]] static Held held();
+  [[gnu::cold]] static bool may_call();
   [[gnu::cold]] void prepare(Context& context, const kernel::ThreadSpec& spec,
                              std::span<std::byte> stack);
   static std::uint32_t clock() { return robosync_clock; }

@@ -1,6 +1,8 @@
 #include "runtime-m4/port/host/machine.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 
 #include "runtime-m4/kernel/kernel.hpp"
 
@@ -55,9 +57,14 @@ std::span<std::byte> Machine::usable(const kernel::ThreadSpec& spec) {
 
 std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t argument) {
   std::uint32_t result = 0;
-  const auto lock = kernel.lock();
+  const auto lock = kernel.lock_interrupts();
   kernel.answer(number, argument, result);
   return result;
+}
+
+void panic(const char* service, const char* why) {
+  std::fprintf(stderr, "kernel: %s() was called %s\n", service, why);
+  std::abort();
 }
 
 void stop_overrun(kernel::Kernel& kernel, kernel::Thread& thread) {
@@ -91,6 +98,10 @@ void Machine::switch_now() {
   announce_switch(for_good ? nullptr : &from.sanitizer_stack, to);
   swapcontext(&from.registers, &to.registers);
   announce_arrival(from.sanitizer_stack, *from_);
+}
+
+void Machine::run() {
+  run_until(kernel::kForever);
 }
 
 void Machine::run_until(kernel::Time until) {

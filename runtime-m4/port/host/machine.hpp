@@ -14,8 +14,6 @@
 
 #include <ucontext.h>
 
-#include "runtime-m4/kernel/time.hpp"
-
 namespace robosync::kernel {
 class Kernel;
 class Thread;
@@ -47,6 +45,10 @@ struct Context {
   std::size_t stack_bytes = 0;
 };
 
+enum class Mode : std::uint8_t { init, thread, handler };  // there are no handlers
+enum class Held : std::uint8_t { none, switch_lock, lock };
+[[noreturn]] void panic(const char* service, const char* why);
+
 class Machine {
 public:
   explicit Machine(kernel::Kernel& kernel) : kernel_(kernel) {}
@@ -54,25 +56,32 @@ public:
   Machine& operator=(const Machine&) = delete;
 
   void prepare(Context& context, const kernel::ThreadSpec& spec, std::span<std::byte> stack);
+  Mode mode() const { return on_fiber_ ? Mode::thread : Mode::init; }
+  Held held() const {
+    if (interrupt_locks_ != 0) return Held::lock;
+    return lock_depth_ != 0 ? Held::switch_lock : Held::none;
+  }
+  static bool may_call() { return true; }
   static std::uint32_t clock() { return 0; }
   static std::uint32_t run_time(const Context&, bool) { return 0; }
   void request_switch() { switch_requested_ = true; }
-  void run() { run_until(kernel::kForever); }
+  void run();
   static std::span<std::byte> usable(const kernel::ThreadSpec& spec);
   static bool can_run(const kernel::ThreadSpec&) { return true; }
   static void open(const Areas&) {}
   static std::span<std::byte> prepare_idle(Context&) { return {}; }  // it is the caller
 
-  // Runs threads until all are blocked and the next deadline lies after `until`; then now() is
+  // Runs threads until all are blocked and the next deadline lies after `until` (kernel::Time); then now() is
   // `until`, rounded down to a tick. Call it again to go on; `until` in the past only runs
   // what is ready. With kForever: until no thread has a
   // deadline. Not from a thread.
-  void run_until(kernel::Time until);
+  void run_until(std::uint64_t until);
   // Makes run_until() return as soon as all threads are blocked, without moving the time on.
   // [a thread, or between two run_until()]
   void stop() { stop_requested_ = true; }
 
 private:
+  friend class SwitchLock;
   friend class Lock;
 
   static void fiber_main();
@@ -81,7 +90,8 @@ private:
 
   kernel::Kernel& kernel_;
   Context* from_ = nullptr;  // who switched to the running fiber
-  unsigned lock_depth_ = 0;
+  unsigned lock_depth_ = 0;  // of both kinds
+  unsigned interrupt_locks_ = 0;
   bool switch_requested_ = false;
   bool on_fiber_ = false;
   bool stop_requested_ = false;
@@ -93,27 +103,33 @@ inline std::uint32_t fetch_and_clear(std::uint32_t& word, std::uint32_t mask) {
   return before;
 }
 
-class Lock {
+class SwitchLock {
 public:
-  explicit Lock(const Machine& machine) : machine_(const_cast<Machine&>(machine)) {
+  explicit SwitchLock(const Machine& machine) : machine_(const_cast<Machine&>(machine)) {
     ++machine_.lock_depth_;
   }
-  ~Lock() {
+  ~SwitchLock() {
     if (--machine_.lock_depth_ == 0 && machine_.switch_requested_ && machine_.on_fiber_) {
       machine_.switch_now();
     }
   }
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
+  SwitchLock(const SwitchLock&) = delete;
+  SwitchLock& operator=(const SwitchLock&) = delete;
 
-private:
+protected:
   Machine& machine_;
+};
+
+// There are no interrupts: the difference is for assertions.
+class Lock : private SwitchLock {
+public:
+  explicit Lock(const Machine& machine) : SwitchLock(machine) { ++machine_.interrupt_locks_; }
+  ~Lock() { --machine_.interrupt_locks_; }
 };
 
 // Straight to the kernel: there are no privileges.
 std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t argument);
 void stop_overrun(kernel::Kernel& kernel, kernel::Thread& thread);
 using OnlyLock = Lock;
-using SwitchLock = Lock;  // there are no interrupts
 
 }  // namespace robosync::port

@@ -1,9 +1,11 @@
-# The kernel's tests on the board: build/…/kernel-test.elf, run by tests/runtime-m4/kernel/run_qemu.sh.
+# The kernel's tests on the board, with its assertions on: build/…/kernel-test.elf, run by
+# tests/runtime-m4/kernel/run_qemu.sh.
 set(folder ${PROJECT_SOURCE_DIR}/tests/runtime-m4/kernel/firmware)
-robosync_elf(robosync_kernel_test kernel-test
+robosync_elf(robosync_kernel_test_asserted kernel-test
   ${folder}/main.cpp ${folder}/scheduling.cpp ${folder}/registers.cpp ${folder}/interrupts.cpp
   ${folder}/mutex.cpp ${folder}/../mutex_cases.cpp ${folder}/faults.cpp ${folder}/isolation.cpp ${folder}/calls.cpp
-  ${folder}/devices.cpp ${folder}/division.cpp ${folder}/idle.cpp)
+  ${folder}/devices.cpp ${folder}/division.cpp ${folder}/idle.cpp ${folder}/contexts.cpp)
+target_link_options(robosync_kernel_test_asserted PRIVATE -Wl,--defsym=flash_bytes=64K)
 # Random use for hours of virtual time: build/…/kernel-stress.elf, run by tests/runtime-m4/kernel/run_stress.sh.
-robosync_elf(robosync_kernel_stress kernel-stress ${folder}/stress.cpp)
-target_link_options(robosync_kernel_stress PRIVATE -Wl,--wrap=robosync_switch)
+robosync_elf(robosync_kernel_stress_asserted kernel-stress ${folder}/stress.cpp)
+target_link_options(robosync_kernel_stress_asserted PRIVATE -Wl,--wrap=robosync_switch)

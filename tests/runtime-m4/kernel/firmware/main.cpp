@@ -109,6 +109,7 @@ void first_boot() {
   run_all(rig::call_scenarios());
   run_all(rig::device_scenarios());
   run_all(rig::division_scenarios());
+  run_all(rig::context_scenarios());
   robosync_board.pwm_write(3, 1500);
   robosync::kernel::ThreadSpec spec;
   spec.name = "safety";
