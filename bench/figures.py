@@ -112,7 +112,7 @@ def kernel_figures_of(marks):
     """What the kernel's steps cost at most, in instructions."""
     return {
         "switch": max(switches(marks, "PendSV_Handler", "return")),
-        "switch_isolated": max(switches(marks, "PendSV_Open_Handler", "return_open")),
+        "switch_isolated": max(switches(marks, "PendSV_Unprivileged_Handler", "return_open")),
         "post_to_run_isolated": max(marks.spans("mark_post_open", "mark_open_runs")),
         "block_isolated": max(marks.spans("mark_open_blocks", "mark_low_runs_again")),
         "irq_to_thread_isolated": max(marks.spans("mark_pend_open", "mark_open_runs")),
@@ -193,7 +193,7 @@ def kernel_figures():
     there were 7."""
     elf = BUILT / "bench_kernel"
     places = {name: symbols(elf)[name]
-              for name in ("SysTick_Handler", "PendSV_Handler", "PendSV_Open_Handler",
+              for name in ("SysTick_Handler", "PendSV_Handler", "PendSV_Unprivileged_Handler",
                            "robosync_count_sleep", "robosync_idle_masks", "robosync_idle_unmasks")}
     returns = return_instructions(elf, "PendSV_Handler")
     if len(returns) != 2:

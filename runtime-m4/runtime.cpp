@@ -25,7 +25,7 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
               .alarm = alarm_,
               .processing = processing_},
              step_thread_, layers::kHalted),
-      crew_(kernel),
+      threads_(kernel),
       mailboxes_(kernel),
       sensors_(kernel, trace_, mailboxes_, alarm_, step_thread_, layers::kNews),
       control_(kernel, board, trace_, step_thread_,
@@ -49,7 +49,7 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
                    .triggers = triggers_,
                    .behaviors = behaviors_,
                    .control = control_,
-                   .crew = crew_,
+                   .threads = threads_,
                    .alarm = alarm_}) {}
 
 static_assert(Runtime::layout().may_be_readable <= Runtime::layout().readable);
@@ -75,14 +75,14 @@ vm::Verdict Runtime::activate(std::span<const std::byte> bytes) {
   if (verdict.ok()) verdict = layers::fits(image);
   if (!verdict.ok()) return verdict;
 
-  faults_ += crew_.stopped();
+  faults_ += threads_.stopped();
   running_ = false;
-  crew_.dismiss();
+  threads_.dismiss();
   control_.release_all();
   halted_ = false;
   program_.load(image);
   if (!start_program()) {
-    crew_.dismiss();
+    threads_.dismiss();
     return {vm::Refusal::too_many, vm::Section::header, 0};
   }
   ++activations_;
@@ -93,11 +93,11 @@ vm::Verdict Runtime::activate(std::span<const std::byte> bytes) {
 bool Runtime::start_program() {
   mailboxes_.reset();
   frames_.start(program_);
-  kernel_.open(areas());
+  kernel_.grant(areas());
   const auto seed = static_cast<std::int32_t>(program_.image.header->seed);
   trace_.emit(EventKind::activated, {}, 0, 0, seed);
-  if (!control_.start(program_, crew_) || !behaviors_.start(program_, crew_) ||
-      !processing_.start(program_) || !sensors_.start(program_, *sampler_, crew_))
+  if (!control_.start(program_, threads_) || !behaviors_.start(program_, threads_) ||
+      !processing_.start(program_) || !sensors_.start(program_, *sampler_, threads_))
     return false;
   processing_.rank();
   guard_.start(program_);
@@ -114,7 +114,7 @@ port::Areas Runtime::areas() {
   const std::byte* const begin = std::min(bytes(&program_), bytes(image));
   const std::byte* const end = std::max(bytes(this + 1), bytes(image) + image->total_length);
   return {.readable = {begin, static_cast<std::size_t>(end - begin)},
-          .writable = frames_.open(program_)};
+          .writable = frames_.writable(program_)};
 }
 
 // The program's clock begins at a tick that none of its threads can have missed.
@@ -138,7 +138,7 @@ void Runtime::fill_status(link::Status& status) const {
   status.safety_checks = monitor_.checks();
   status.safety_late_us = monitor_.worst_lateness();
   status.activations = activations_;
-  status.faults = static_cast<std::uint8_t>(std::min(faults_ + crew_.stopped(), 255U));
+  status.faults = static_cast<std::uint8_t>(std::min(faults_ + threads_.stopped(), 255U));
   status.reset_reason = board_.reset_reason();
 }
 

@@ -18,12 +18,12 @@
 #include "runtime-m4/layers/behavior.hpp"
 #include "runtime-m4/layers/budget.hpp"
 #include "runtime-m4/layers/control.hpp"
-#include "runtime-m4/layers/crew.hpp"
 #include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/layers/frames.hpp"
+#include "runtime-m4/layers/loaded_program.hpp"
 #include "runtime-m4/layers/mailbox.hpp"
 #include "runtime-m4/layers/processing.hpp"
-#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/program_threads.hpp"
 #include "runtime-m4/layers/sampler.hpp"
 #include "runtime-m4/layers/sensor.hpp"
 #include "runtime-m4/layers/trace.hpp"
@@ -36,7 +36,7 @@
 
 namespace robosync {
 
-class Runtime final : private safety::Patient {
+class Runtime final : private safety::Supervised {
 public:
   Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events,
           layers::Workspace& workspace);
@@ -71,11 +71,10 @@ public:
 
   // Measures with `sampler` in place of the drivers. Before activate().
   void measure_with(layers::Sampler& sampler) { sampler_ = &sampler; }
-  // For tests, on the host: see processing.hpp and behavior.hpp.
-  void evaluate_all() { processing_.evaluate_all(); }
-  std::uint32_t evaluations() const { return behaviors_.evaluations(); }
 
 private:
+  friend struct RuntimePeer;
+
   bool resting() const override { return !running_ || processing_.resting(); }
   std::uint32_t progress() const override { return processing_.passes(); }
   void hold_to_budgets(bool alive) override;
@@ -97,7 +96,7 @@ private:
   safety::Guard guard_;
   layers::Budget budget_;
   kernel::Thread step_thread_;
-  layers::Crew crew_;
+  layers::ProgramThreads threads_;
 
   // From here on layout().may_be_readable: nothing of the kernel and of safety, no stack.
   layers::Mailboxes mailboxes_;
@@ -110,7 +109,7 @@ private:
   layers::Trace trace_;
 
   // From here on layout().readable, and behind the object the image.
-  alignas(layers::kReadableAlignment) layers::Program program_;
+  alignas(layers::kReadableAlignment) layers::LoadedProgram program_;
   layers::Frames frames_;
   layers::Triggers triggers_;
   layers::BehaviorLayer behaviors_;
@@ -128,7 +127,7 @@ constexpr Runtime::Layout Runtime::layout() {
   static_assert(offsetof(Runtime, guard_) < kLayout.may_be_readable);
   static_assert(offsetof(Runtime, budget_) < kLayout.may_be_readable);
   static_assert(offsetof(Runtime, step_thread_) < kLayout.may_be_readable);
-  static_assert(offsetof(Runtime, crew_) < kLayout.may_be_readable);
+  static_assert(offsetof(Runtime, threads_) < kLayout.may_be_readable);
   static_assert(kLayout.readable < offsetof(Runtime, frames_));
   static_assert(kLayout.readable < offsetof(Runtime, triggers_));
   static_assert(kLayout.readable < offsetof(Runtime, behaviors_));

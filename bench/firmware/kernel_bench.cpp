@@ -44,7 +44,7 @@ constexpr std::uintptr_t kNvicIspr = 0xE000E200;  // interrupt set-pending
 
 struct Task {
   kernel::Thread thread;
-  alignas(port::kOpenStackAlignment) std::array<std::byte, kStackBytes> stack;
+  alignas(port::kUnprivilegedStackAlignment) std::array<std::byte, kStackBytes> stack;
 };
 std::array<Task, kernel::kMaxThreads> tasks;
 unsigned used = 0;

@@ -23,7 +23,7 @@ void fault() {
 [[gnu::weak, gnu::alias("fault")]] void UsageFault_Handler();
 [[gnu::weak, gnu::alias("fault")]] void SVC_Handler();
 [[gnu::weak, gnu::alias("fault")]] void PendSV_Handler();
-[[gnu::weak, gnu::alias("fault")]] void PendSV_Open_Handler();
+[[gnu::weak, gnu::alias("fault")]] void PendSV_Unprivileged_Handler();
 [[gnu::weak, gnu::alias("fault")]] void SysTick_Handler();
 [[gnu::weak, gnu::alias("fault")]] void bench_interrupt();  // interrupt 0
 
@@ -40,11 +40,11 @@ struct Vectors {
      bench_interrupt}};
 // While a thread without privileges runs (port/cortex-m4/switch.S).
 [[gnu::section(".vectors.1"), gnu::used,
-  gnu::aligned(256)]] extern const Vectors robosync_open_vectors = {
+  gnu::aligned(256)]] extern const Vectors robosync_unprivileged_vectors = {
     &stack_top,
     {reset, fault, HardFault_Handler, MemManage_Handler, BusFault_Handler, UsageFault_Handler,
-     fault, fault, fault, fault, SVC_Handler, fault, fault, PendSV_Open_Handler, SysTick_Handler,
-     bench_interrupt}};
+     fault, fault, fault, fault, SVC_Handler, fault, fault, PendSV_Unprivileged_Handler,
+     SysTick_Handler, bench_interrupt}};
 
 void reset() {
   *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88) |= 0xF00000;  // CPACR: the FPU may be used

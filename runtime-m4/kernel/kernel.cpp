@@ -81,7 +81,7 @@ void Kernel::block(Thread& thread, Events mask) {
   expect().locked();
   thread.wanted_ = mask;
   ++thread.activations_;
-  ReadySet::erase(thread.ready_place_);
+  ReadySet::erase(thread.ready_position_);
   running_rank_ = kNoneRuns;
   machine_.request_switch();
 }
@@ -92,14 +92,14 @@ void Kernel::make_ready(Thread& thread) {
   expect().locked();
   if (thread.rank_ < running_rank_) [[likely]]
     machine_.request_switch();
-  ReadySet::insert(thread.ready_place_);
+  ReadySet::insert(thread.ready_position_);
 }
 
 void Kernel::make_unready(Thread& thread) {
   disarm(thread);
   release_all(thread);
   thread.wanted_ = 0;
-  ReadySet::erase(thread.ready_place_);
+  ReadySet::erase(thread.ready_position_);
 }
 
 void Kernel::signal(Thread& thread, Events events) {

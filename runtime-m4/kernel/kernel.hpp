@@ -81,7 +81,7 @@ public:
 
   // From now on threads without privileges may read and write what `areas` says, besides their own
   // stacks. The host has no such borders.  [init, thread]
-  void open(const port::Areas& areas);
+  void grant(const port::Areas& areas);
 
   // While it is held no other thread runs, and time stands still; interrupts come in. Hold it for a
   // few hundred instructions at most; blocking under it is an error.  [any]

@@ -65,11 +65,11 @@ void Kernel::swap_with_next(unsigned rank) {
   port::Lock lock(machine_);
   Thread& sinks = *by_rank_[rank];
   Thread& rises = *by_rank_[rank + 1];
-  const ReadySet::Place upper = sinks.ready_place_;
-  const ReadySet::Place lower = rises.ready_place_;
+  const ReadySet::Position upper = sinks.ready_position_;
+  const ReadySet::Position lower = rises.ready_position_;
   const bool rising_ready = ReadySet::exchange(upper, lower);
-  sinks.ready_place_ = lower;
-  rises.ready_place_ = upper;
+  sinks.ready_position_ = lower;
+  rises.ready_position_ = upper;
   sinks.rank_ = static_cast<std::uint8_t>(rank + 1);
   rises.rank_ = static_cast<std::uint8_t>(rank);
   by_rank_[rank] = &rises;

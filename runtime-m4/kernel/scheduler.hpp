@@ -34,18 +34,18 @@ template <unsigned kWords>
 class BasicReadySet {
 public:
   // Where a rank's bit stands. Good as long as the set.
-  struct Place {
+  struct Position {
     std::uint32_t* word = nullptr;
     std::uint32_t bit = 0;
   };
 
-  constexpr Place place(unsigned rank) {
+  constexpr Position position(unsigned rank) {
     return {&words_[rank / kBits], std::uint32_t{1} << (kBits - 1 - rank % kBits)};
   }
-  static constexpr void insert(Place place) { *place.word |= place.bit; }
-  static constexpr void erase(Place place) { *place.word &= ~place.bit; }
-  // Two places change what is there. True if `b` was in the set.
-  static constexpr bool exchange(Place a, Place b) {
+  static constexpr void insert(Position position) { *position.word |= position.bit; }
+  static constexpr void erase(Position position) { *position.word &= ~position.bit; }
+  // Two positions change what is there. True if `b` was in the set.
+  static constexpr bool exchange(Position a, Position b) {
     const std::uint32_t in_a = *a.word & a.bit;
     const std::uint32_t in_b = *b.word & b.bit;
     if ((in_a | in_b) == 0) return false;
@@ -55,7 +55,7 @@ public:
     }
     return in_b != 0;
   }
-  static constexpr bool contains(Place place) { return (*place.word & place.bit) != 0; }
+  static constexpr bool contains(Position position) { return (*position.word & position.bit) != 0; }
 
   // Highest rank in the set; the number of ranks when it is empty.
   constexpr unsigned first() const {

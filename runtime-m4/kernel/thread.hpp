@@ -21,9 +21,9 @@ struct ThreadSpec {
   void (*entry)(void*) = nullptr;
   void* argument = nullptr;
   std::span<std::byte> stack;  // alignas(port::kStackAlignment), at least port::kMinStack
-  // Without privileges it has its stack and what Kernel::open() gives, and the system calls of
-  // calls.def. Its stack: alignas(port::kOpenStackAlignment), a multiple of that, at most
-  // port::kMaxOpenStack bytes.
+  // Without privileges it has its stack and what Kernel::grant() gives, and the system calls of
+  // calls.def. Its stack: alignas(port::kUnprivilegedStackAlignment), a multiple of that, at most
+  // port::kMaxUnprivilegedStack bytes.
   bool privileged = true;
 };
 
@@ -63,13 +63,13 @@ private:
   }
   void set_rank(unsigned rank, ReadySet& ready) {
     rank_ = static_cast<std::uint8_t>(rank);
-    ready_place_ = ready.place(rank);
+    ready_position_ = ready.position(rank);
   }
 
   // Takes those of `mask` that are there. [the thread itself]
   Events take(Events mask) { return port::fetch_and_clear(events_, mask) & mask; }
 
-  ReadySet::Place ready_place_;
+  ReadySet::Position ready_position_;
   Events events_ = 0;  // signalled and not yet taken
   Events wanted_ = 0;  // what it waits for, or waited for last
   std::byte* stack_ = nullptr;

@@ -58,15 +58,15 @@ void Kernel::watch(Thread& watcher, Events stops, Events reports) {
   report_events_ = reports;
 }
 
-void Kernel::open(const port::Areas& areas) {
+void Kernel::grant(const port::Areas& areas) {
   expect().no_handler();
   port::Lock lock(machine_);
-  port::Machine::open(areas);
+  port::Machine::grant(areas);
 }
 
 Thread::State Kernel::state(const Thread& thread) const {
   if (thread.state_ != Thread::State::ready) return thread.state_;
-  return ReadySet::contains(thread.ready_place_) ? Thread::State::ready : Thread::State::blocked;
+  return ReadySet::contains(thread.ready_position_) ? Thread::State::ready : Thread::State::blocked;
 }
 
 std::uint32_t Kernel::run_time(const Thread& thread) const {

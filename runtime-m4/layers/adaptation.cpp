@@ -14,34 +14,35 @@ void Adaptation::start() {
   end_ = kNever;
 }
 
-void Adaptation::count(const Program& program, unsigned behavior, std::uint32_t now) {
+void Adaptation::count(const LoadedProgram& program, unsigned behavior, std::uint32_t now) {
   if (program.image.adaptations.empty()) return;
   policy::TriggerCount& triggers = triggers_[behavior];
   if (triggers != policy::kMostTriggers) ++triggers;
   if (end_ == kNever) end_ = end_after(program, now);
 }
 
-std::uint32_t Adaptation::end_after(const Program& program, std::uint32_t now) {
+std::uint32_t Adaptation::end_after(const LoadedProgram& program, std::uint32_t now) {
   const std::uint32_t window = program.image.adaptations.front().window_ms;
   return now - now % window + window;
 }
 
-void Adaptation::turn(const Program& program, Crew& crew, Trace& trace, std::uint32_t now) {
+void Adaptation::turn(const LoadedProgram& program, ProgramThreads& threads, Trace& trace,
+                      std::uint32_t now) {
   if (end_ == kNever || !reached(end_, now)) return;
-  const bool counted = rank(program, crew, trace);
+  const bool counted = rank(program, threads, trace);
   end_ = counted ? end_after(program, now) : kNever;
 }
 
 // The SAFETY rules count as a behaviour that nothing is counted for. Every thread takes its place
 // anew, in the order of age: so equals stand as they did at first.
-bool Adaptation::rank(const Program& program, Crew& crew, Trace& trace) {
+bool Adaptation::rank(const LoadedProgram& program, ProgramThreads& threads, Trace& trace) {
   const policy::AdaptationRule rule = policy::adaptation_of(program.image);
   const std::int8_t idle = policy::idle_priority(program.image);
   const auto worth = [&](unsigned b) {
     const auto base = static_cast<std::int8_t>(program.image.behaviors[b].priority);
     return policy::adapted(base, triggers_[b], rule);
   };
-  crew.rank([&](const kernel::Thread& thread, unsigned index) {
+  threads.rank([&](const kernel::Thread& thread, unsigned index) {
     Priority highest{idle, idle};
     for (BehaviorMask left = program.needing(thread.category(), index); left != 0; left &= left - 1)
       highest = std::max(highest, worth(static_cast<unsigned>(std::countr_zero(left))));

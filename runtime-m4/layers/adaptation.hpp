@@ -12,8 +12,8 @@
 #include <cstdint>
 
 #include "runtime-m4/layers/clock.hpp"
-#include "runtime-m4/layers/crew.hpp"
-#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/loaded_program.hpp"
+#include "runtime-m4/layers/program_threads.hpp"
 #include "runtime-m4/layers/trace.hpp"
 #include "runtime-m4/policy/adaptation.hpp"
 
@@ -23,19 +23,19 @@ class Adaptation {
 public:
   void start();
   // A rule of `behavior` triggered, at `now`.
-  void count(const Program& program, unsigned behavior, std::uint32_t now);
+  void count(const LoadedProgram& program, unsigned behavior, std::uint32_t now);
   // Ends the window if `now` has reached its end: ranks change, the trace tells of each behaviour
   // whose priority is another, by behaviour.
-  void turn(const Program& program, Crew& crew, Trace& trace, std::uint32_t now);
+  void turn(const LoadedProgram& program, ProgramThreads& threads, Trace& trace, std::uint32_t now);
   // When turn() has something to do; kNever while all are at their base and nothing was triggered.
   std::uint32_t next() const { return end_; }
 
   // Gives all threads their priorities, from what was counted; at first nothing was, and each has
   // what is written. True if anything was counted; it is forgotten.
-  bool rank(const Program& program, Crew& crew, Trace& trace);
+  bool rank(const LoadedProgram& program, ProgramThreads& threads, Trace& trace);
 
 private:
-  static std::uint32_t end_after(const Program& program, std::uint32_t now);
+  static std::uint32_t end_after(const LoadedProgram& program, std::uint32_t now);
 
   std::array<policy::TriggerCount, kMaxBehaviors> triggers_{};  // in this window
   std::uint32_t end_ = kNever;                                  // of this window

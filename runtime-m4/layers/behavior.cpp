@@ -4,25 +4,28 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
+#include "runtime-m4/kernel/calls.hpp"
+#include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/layers/report.hpp"
 
 namespace robosync::layers {
 
 using link::EventKind;
 
-bool BehaviorLayer::start(const Program& program, Crew& crew) {
+bool BehaviorLayer::start(const LoadedProgram& program, ProgramThreads& threads) {
   program_ = &program;
   snapshot_ = nullptr;
   released_ = 0;
   retired_ = 0;
-  places_.fill({});
+  resume_points_.fill({});
   for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b)
-    if (!start_unit(b, crew)) return false;
+    if (!start_unit(b, threads)) return false;
   return true;
 }
 
-bool BehaviorLayer::start_unit(unsigned behavior, Crew& crew) {
+bool BehaviorLayer::start_unit(unsigned behavior, ProgramThreads& threads) {
   Unit& unit = units_[behavior];
   unit.layer = this;
   unit.behavior = static_cast<std::uint8_t>(behavior);
@@ -36,7 +39,7 @@ bool BehaviorLayer::start_unit(unsigned behavior, Crew& crew) {
     mine.layer->run(mine);
   };
   spec.argument = &unit;
-  unit.thread = crew.start(spec, behavior, kBehaviorStack);
+  unit.thread = threads.start(spec, behavior, kBehaviorStack);
   return unit.thread != nullptr;
 }
 
@@ -54,12 +57,12 @@ void BehaviorLayer::evaluate(const RuleSet& rules, const Snapshot& snapshot) {
 }
 
 void BehaviorLayer::respond(unsigned rule, Side side) {
-  places_[rule] = {};
+  resume_points_[rule] = {};
   release(rule, program_->image.responses[response_of(rule, side)].start);
 }
 
 void BehaviorLayer::go_on(unsigned rule) {
-  release(rule, places_[rule].next);
+  release(rule, resume_points_[rule].next);
 }
 
 void BehaviorLayer::release(unsigned rule, std::uint16_t code) {
@@ -98,9 +101,9 @@ vm::Progress BehaviorLayer::checked_progress() const {
 void BehaviorLayer::conclude(unsigned rule) {
   const unsigned behavior = program_->behavior_of[rule];
   if (has(retired_, behavior)) workspace_.result = {};
-  Place& place = places_[rule];
+  ResumePoint& point = resume_points_[rule];
   const vm::Progress progress = checked_progress();
-  const bool waited = place.pause != vm::Pause::ended;
+  const bool waited = point.pause != vm::Pause::ended;
   const bool moved = progress.pause != vm::Pause::still_polling;
   const Stamp stamp = layers_.trace.step();
   if (waited && moved) layers_.trace.emit(EventKind::go_on, stamp, rule);
@@ -113,10 +116,10 @@ void BehaviorLayer::conclude(unsigned rule) {
   machine.assigned = workspace_.result.assigned;
   machine.shifted = workspace_.result.shifted;
   layers_.variables.stage(machine, program_->image.behaviors[behavior], *snapshot_);
-  place = {};
+  point = {};
   if (progress.pause == vm::Pause::ended) return;
   const bool for_commands = progress.pause == vm::Pause::until_done;
-  place = {.wake = for_commands ? snapshot_->milliseconds() + 1 : progress.wake,
+  point = {.wake = for_commands ? snapshot_->milliseconds() + 1 : progress.wake,
            .next = static_cast<std::uint16_t>(progress.next - program_->image.code.data()),
            .pause = progress.pause};
   if (moved) layers_.trace.emit(EventKind::wait, stamp, rule);
@@ -161,6 +164,84 @@ void BehaviorLayer::retire(unsigned behavior) {
 std::uint16_t BehaviorLayer::response_of(unsigned rule, Side side) const {
   const vm::Rule& wiring = program_->image.rules[rule];
   return side == Side::then ? wiring.then_response : wiring.else_response;
+}
+
+// --- a behaviour's thread: without privileges, behind the MPU ---
+
+// It reads the program, the snapshot and this layer; it writes its stack and the workspace; it asks
+// the kernel by the calls of kernel/calls.def. Anything else would stop it. It may rely on the
+// verifier for responses that give up within the step's budget and kMaxResponseOutput words.
+
+void BehaviorLayer::run(Unit& unit) {
+  vm::Machine machine = layers_.frames.machine(*program_, unit.behavior);
+  while (true) {
+    const kernel::Events events = kernel::calls::wait(kernel_, kEvaluate | kRespond);
+    latch(unit, machine);
+    if ((events & kEvaluate) != 0) evaluate_rules(unit, machine);
+    if ((events & kRespond) != 0) run_response(machine);
+    workspace_.finished[unit.behavior] = true;
+    kernel::calls::report(kernel_);
+  }
+}
+
+void BehaviorLayer::latch(const Unit& unit, vm::Machine& machine) {
+  Frames::latch(machine, program_->image, program_->image.behaviors[unit.behavior],
+                [this](std::uint8_t input) { return snapshot_->value(input); });
+  machine.now = snapshot_->milliseconds();
+  machine.wake = kNever;
+}
+
+void BehaviorLayer::evaluate_rules(const Unit& unit, vm::Machine& machine) {
+  const vm::Behavior& behavior = program_->image.behaviors[unit.behavior];
+  const unsigned end = behavior.first_rule + 0U + behavior.rule_count;
+  for (unsigned r = concerned_->from(behavior.first_rule); r < end; r = concerned_->from(r + 1))
+    judge_rule(r, machine);
+}
+
+void BehaviorLayer::judge_rule(unsigned rule, vm::Machine& machine) {
+  switch (program_->image.rules[rule].kind) {
+    case vm::RuleKind::start:
+      return layers_.triggers.begin(rule);
+    case vm::RuleKind::every:
+      return evaluate_period(rule, machine);
+    case vm::RuleKind::watch:
+      machine.frame[program_->truth_cell[rule]] = evaluate_rule(rule, machine);
+      break;
+    default:
+      const vm::Value condition = evaluate_rule(rule, machine);
+      layers_.triggers.judge(rule, condition, machine.event);
+  }
+  layers_.triggers.note_past(rule, machine.wake, machine.event);
+}
+
+vm::Value BehaviorLayer::evaluate_rule(unsigned rule, vm::Machine& machine) {
+  machine.event = false;
+  machine.wake = kNever;
+  const vm::Value value =
+      vm::evaluate(machine, &program_->image.code[program_->image.rules[rule].condition_start]);
+  if (std::exchange(machine.divided_by_zero, false)) layers_.triggers.note_zero_divide(rule);
+  return value;
+}
+
+void BehaviorLayer::evaluate_period(unsigned rule, vm::Machine& machine) {
+  if (!layers_.triggers.begin_period(rule, machine.now)) return;
+  layers_.triggers.draw_period(rule, evaluate_rule(rule, machine), machine.now);
+}
+
+void BehaviorLayer::run_response(vm::Machine& machine) {
+  machine.output = workspace_.output.data();
+  machine.output_end = workspace_.output.data() + workspace_.output.size();
+  machine.shifted = 0;
+  machine.assigned = 0;
+  const vm::Progress progress = vm::respond(machine, &program_->image.code[code_]);
+  workspace_.result = {
+      .pause = progress.pause,
+      .next = progress.next,
+      .wake = progress.wake,
+      .assigned = machine.assigned,
+      .shifted = machine.shifted,
+      .words = static_cast<std::uint16_t>(machine.output - workspace_.output.data())};
+  if (std::exchange(machine.divided_by_zero, false)) layers_.triggers.note_zero_divide(rule_);
 }
 
 }  // namespace robosync::layers

@@ -14,9 +14,9 @@
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/arbiter.hpp"
 #include "runtime-m4/layers/control.hpp"
-#include "runtime-m4/layers/crew.hpp"
 #include "runtime-m4/layers/frames.hpp"
-#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/loaded_program.hpp"
+#include "runtime-m4/layers/program_threads.hpp"
 #include "runtime-m4/layers/trace.hpp"
 #include "runtime-m4/layers/triggers.hpp"
 #include "runtime-m4/layers/variables.hpp"
@@ -37,7 +37,7 @@ public:
     ControlLayer& control;
   };
   // Where a response waits.
-  struct Place {
+  struct ResumePoint {
     std::uint32_t wake = vm::Machine::kNever;  // program time; of all waits but THEN
     std::uint16_t next = 0;                    // word of the code section
     vm::Pause pause = vm::Pause::ended;
@@ -47,7 +47,7 @@ public:
       : kernel_(kernel), layers_(neighbours), workspace_(neighbours.workspace) {}
 
   // Starts the threads of `program`, which must stay until they are dismissed.
-  [[nodiscard]] bool start(const Program& program, Crew& crew);
+  [[nodiscard]] bool start(const LoadedProgram& program, ProgramThreads& threads);
 
   // --- for the step thread; busy() until all released ones have finished. When one has, its thread
   // makes the call `report` ---
@@ -59,14 +59,11 @@ public:
   // The response has been run: tells what it has put out, stages its commands, and notes where it
   // waits. Not before, so that the behaviours' stacks can be short.
   void conclude(unsigned rule);
-  const Place& place(unsigned rule) const { return places_[rule]; }
-  void forget_place(unsigned rule) { places_[rule] = {}; }
+  const ResumePoint& resume_point(unsigned rule) const { return resume_points_[rule]; }
+  void forget_resume_point(unsigned rule) { resume_points_[rule] = {}; }
   void retire(unsigned behavior);  // its thread was stopped
 
   std::uint16_t response_of(unsigned rule, Side side) const;
-
-  // Conditions that were ever evaluated; for tests, on the host.
-  std::uint32_t evaluations() const { return workspace_.evaluations; }
 
 private:
   static constexpr kernel::Events kEvaluate = 1;
@@ -78,8 +75,8 @@ private:
     std::uint8_t behavior = 0;
   };
 
-  [[nodiscard]] bool start_unit(unsigned behavior, Crew& crew);
-  // --- behavior_thread.cpp: without privileges ---
+  [[nodiscard]] bool start_unit(unsigned behavior, ProgramThreads& threads);
+  // --- the behaviour's thread: without privileges ---
   void run(Unit& unit);
   void latch(const Unit& unit, vm::Machine& machine);
   void evaluate_rules(const Unit& unit, vm::Machine& machine);
@@ -97,7 +94,7 @@ private:
   kernel::Kernel& kernel_;
   Neighbours layers_;
   Workspace& workspace_;
-  const Program* program_ = nullptr;
+  const LoadedProgram* program_ = nullptr;
   const Snapshot* snapshot_ = nullptr;
   const RuleSet* concerned_ = nullptr;
   BehaviorMask released_ = 0;
@@ -106,7 +103,7 @@ private:
   std::uint16_t rule_ = 0;
   std::uint16_t code_ = 0;
   std::array<Unit, kMaxBehaviors> units_{};
-  std::array<Place, kMaxRules> places_{};
+  std::array<ResumePoint, kMaxRules> resume_points_{};
 };
 
 }  // namespace robosync::layers

@@ -7,19 +7,19 @@ namespace robosync::layers {
 
 CommandPool::CommandPool() {
   for (unsigned i = 0; i + 1 < kMaxCommands; ++i)
-    places_[i].next = static_cast<std::uint8_t>(i + 1);
+    nodes_[i].next = static_cast<std::uint8_t>(i + 1);
 }
 
 bool CommandPool::push(Queue& queue, const Command& command) {
   if (queue.count == kMaxQueued || free_ == kNone) return false;
   const std::uint8_t taken = free_;
-  Place& place = places_[taken];
-  free_ = std::exchange(place.next, kNone);
-  place.command = command;
+  Node& node = nodes_[taken];
+  free_ = std::exchange(node.next, kNone);
+  node.command = command;
   if (queue.count == 0) {
     queue.first = taken;
   } else {
-    places_[queue.last].next = taken;
+    nodes_[queue.last].next = taken;
   }
   queue.last = taken;
   ++queue.count;
@@ -28,7 +28,7 @@ bool CommandPool::push(Queue& queue, const Command& command) {
 
 void CommandPool::pop(Queue& queue) {
   const std::uint8_t freed = queue.first;
-  queue.first = std::exchange(places_[freed].next, free_);
+  queue.first = std::exchange(nodes_[freed].next, free_);
   free_ = freed;
   if (--queue.count == 0) queue = {};
 }
@@ -39,7 +39,7 @@ void CommandPool::append(Queue& queue, Queue& from) {
     return;
   }
   if (from.count == 0) return;
-  places_[queue.last].next = from.first;
+  nodes_[queue.last].next = from.first;
   queue.last = from.last;
   queue.count = static_cast<std::uint8_t>(queue.count + from.count);
   from = {};

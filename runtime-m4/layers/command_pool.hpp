@@ -23,7 +23,7 @@ public:
   // False when the queue has kMaxQueued commands or no place is left.
   [[nodiscard]] bool push(Queue& queue, const Command& command);
   // The first of `queue`, which is not empty; good until pop().
-  const Command& front(const Queue& queue) const { return places_[queue.first].command; }
+  const Command& front(const Queue& queue) const { return nodes_[queue.first].command; }
   void pop(Queue& queue);
   void clear(Queue& queue);
   // Moves all of `from` behind `queue`; together they are not longer than kMaxQueued.
@@ -31,12 +31,12 @@ public:
 
 private:
   static constexpr std::uint8_t kNone = 0xFF;
-  struct Place {
+  struct Node {
     Command command;
     std::uint8_t next = kNone;
   };
 
-  std::array<Place, kMaxCommands> places_{};
+  std::array<Node, kMaxCommands> nodes_{};
   std::uint8_t free_ = 0;
 };
 

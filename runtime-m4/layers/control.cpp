@@ -11,7 +11,7 @@ namespace robosync::layers {
 
 using link::EventKind;
 
-bool ControlLayer::start(const Program& program, Crew& crew) {
+bool ControlLayer::start(const LoadedProgram& program, ProgramThreads& threads) {
   program_ = &program;
   staged_ = 0;
   dropped_ = 0;
@@ -21,11 +21,11 @@ bool ControlLayer::start(const Program& program, Crew& crew) {
   halted_ = 0;
   newly_halted_ = 0;
   for (unsigned a = 0; a < program.image.actuators.size(); ++a)
-    if (!start_unit(a, crew)) return false;
+    if (!start_unit(a, threads)) return false;
   return true;
 }
 
-bool ControlLayer::start_unit(unsigned actuator, Crew& crew) {
+bool ControlLayer::start_unit(unsigned actuator, ProgramThreads& threads) {
   Unit& unit = units_[actuator];
   unit.layer = this;
   unit.actuator = static_cast<std::uint8_t>(actuator);
@@ -37,7 +37,7 @@ bool ControlLayer::start_unit(unsigned actuator, Crew& crew) {
     mine.layer->run(mine);
   };
   spec.argument = &unit;
-  unit.thread = crew.start(spec, actuator, kControlStack);
+  unit.thread = threads.start(spec, actuator, kControlStack);
   return unit.thread != nullptr;
 }
 

@@ -20,8 +20,8 @@
 #include "runtime-m4/drivers/drivers.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/command_pool.hpp"
-#include "runtime-m4/layers/crew.hpp"
-#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/loaded_program.hpp"
+#include "runtime-m4/layers/program_threads.hpp"
 #include "runtime-m4/layers/trace.hpp"
 
 namespace robosync::layers {
@@ -40,7 +40,7 @@ public:
       : kernel_(kernel), board_(board), trace_(trace), step_thread_(step_thread), events_(events) {}
 
   // Starts the threads of `program`, which must stay until they are dismissed.
-  [[nodiscard]] bool start(const Program& program, Crew& crew);
+  [[nodiscard]] bool start(const LoadedProgram& program, ProgramThreads& threads);
   // Releases all actuators of a program whose threads are dismissed, and forgets where they are:
   // what a program does must not depend on the one before it.
   void release_all();
@@ -86,7 +86,7 @@ private:
     std::uint8_t keeps = 0;    // commands at the end of `queue` that were handed over since
   };
 
-  [[nodiscard]] bool start_unit(unsigned actuator, Crew& crew);
+  [[nodiscard]] bool start_unit(unsigned actuator, ProgramThreads& threads);
   void run(Unit& unit);
   kernel::Time work_off(Unit& unit, Stamp stamp);
   void begin_next(Unit& unit, Stamp stamp, kernel::Time& wake);
@@ -112,7 +112,7 @@ private:
   Trace& trace_;
   kernel::Thread& step_thread_;
   StepEvents events_;
-  const Program* program_ = nullptr;
+  const LoadedProgram* program_ = nullptr;
   std::array<Unit, kMaxActuators> units_{};
   CommandPool pool_;
   std::atomic<ActuatorMask> cancelling_ = 0;

@@ -19,13 +19,13 @@ std::uint32_t seed_of(std::uint32_t program_seed, unsigned behavior) {
 
 }  // namespace
 
-std::size_t Frames::closed_words(const Program& program) {
+std::size_t Frames::closed_words(const LoadedProgram& program) {
   constexpr std::size_t kUnit = kWorkspaceUnit / sizeof(std::uint32_t);
   const std::size_t words = program.safety_cells + std::size_t{program.safety_timer_words};
   return (words + kUnit - 1) / kUnit * kUnit;
 }
 
-void Frames::start(const Program& program) {
+void Frames::start(const LoadedProgram& program) {
   const std::span memory = workspace_.memory;
   std::ranges::fill(memory, 0);
   const auto unknown = static_cast<std::uint32_t>(vm::kUnknown);
@@ -35,7 +35,7 @@ void Frames::start(const Program& program) {
 }
 
 // The timers of a behaviour are numbered from the first one of the program.
-vm::Machine Frames::machine(const Program& program, unsigned behavior) const {
+vm::Machine Frames::machine(const LoadedProgram& program, unsigned behavior) const {
   std::uint32_t* const memory = workspace_.memory.data();
   const bool safety = behavior < program.first_behavior();
   std::size_t frame = safety ? 0 : closed_words(program);

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/loaded_program.hpp"
 #include "runtime-m4/layers/workspace.hpp"
 #include "vm/interpreter.hpp"
 
@@ -19,15 +19,15 @@ public:
   explicit Frames(Workspace& workspace) : workspace_(workspace) {}
 
   // Nothing is known, nothing remembered.
-  void start(const Program& program);
+  void start(const LoadedProgram& program);
 
   // A machine for one behaviour. Its random numbers depend on the program's seed and on the number
   // of the behaviour only.
-  vm::Machine machine(const Program& program, unsigned behavior) const;
+  vm::Machine machine(const LoadedProgram& program, unsigned behavior) const;
 
   // What the behaviours' threads may write.
-  std::span<std::byte> open(const Program& program) const {
-    return workspace_.open_from(closed_words(program));
+  std::span<std::byte> writable(const LoadedProgram& program) const {
+    return workspace_.writable_from(closed_words(program));
   }
 
   // Puts the inputs of `behavior` into its frame: value(input) is what each is.
@@ -39,7 +39,7 @@ public:
   }
 
 private:
-  static std::size_t closed_words(const Program& program);
+  static std::size_t closed_words(const LoadedProgram& program);
 
   Workspace& workspace_;
 };

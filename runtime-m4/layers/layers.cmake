@@ -5,22 +5,19 @@ target_sources(robosync_runtime PRIVATE
   layers/arbiter.cpp
   layers/behavior.cpp
   layers/budget.cpp
-  layers/behavior_thread.cpp
   layers/checks.cpp
   layers/command_pool.cpp
-  layers/concern.cpp
   layers/control.cpp
-  layers/crew.cpp
+  layers/program_threads.cpp
   layers/feed_queue.cpp
   layers/frames.cpp
   layers/mailbox.cpp
   layers/order.cpp
   layers/processing.cpp
-  layers/program.cpp
+  layers/loaded_program.cpp
   layers/report.cpp
   layers/sampler.cpp
   layers/sensor.cpp
-  layers/step.cpp
   layers/trace.cpp
   layers/triggers.cpp
   layers/variables.cpp

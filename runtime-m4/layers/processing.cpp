@@ -1,4 +1,4 @@
-// See processing.hpp: passes, and what makes a step.
+// See processing.hpp: passes, what makes a step, what it concerns, and what happens in it.
 #include "runtime-m4/layers/processing.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ bool starts_at_once(const vm::Image& image, const vm::Behavior& behavior) {
 
 }  // namespace
 
-bool ProcessingLayer::start(const Program& program) {
+bool ProcessingLayer::start(const LoadedProgram& program) {
   program_ = &program;
   snapshot_.stamp_ = {};
   snapshot_.values_.fill(vm::kUnknown);
@@ -55,7 +55,7 @@ bool ProcessingLayer::start(const Program& program) {
   spec.category = kernel::Category::processing;
   spec.entry = [](void* self) { static_cast<ProcessingLayer*>(self)->run(); };
   spec.argument = this;
-  if (!layers_.crew.start_step_thread(thread_, spec)) return false;
+  if (!layers_.threads.start_step_thread(thread_, spec)) return false;
   kernel_.watch(thread_, kStopped, kFinished);
   return true;
 }
@@ -80,7 +80,7 @@ void ProcessingLayer::run() {
 }
 
 void ProcessingLayer::pass() {
-  adaptation_.turn(*program_, layers_.crew, trace_, now_ms());
+  adaptation_.turn(*program_, layers_.threads, trace_, now_ms());
   finish_done();
   const BehaviorMask lost = std::exchange(lost_behaviors_, 0);
   const BehaviorMask first = std::exchange(unstarted_, 0);
@@ -114,7 +114,7 @@ void ProcessingLayer::finish_done() {
 
 void ProcessingLayer::finish_if_done(unsigned rule) {
   if (holdings_[rule].pending != 0) return;
-  if (layers_.behaviors.place(rule).pause != vm::Pause::ended) return;
+  if (layers_.behaviors.resume_point(rule).pause != vm::Pause::ended) return;
   running_.erase(rule);
   trace_.emit(EventKind::finished, trace_.now(), rule);
 }
@@ -198,10 +198,10 @@ std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
 
 // A response that waits.
 void ProcessingLayer::add_waiting(unsigned rule, Soonest& due) const {
-  const BehaviorLayer::Place& place = layers_.behaviors.place(rule);
-  if (place.pause == vm::Pause::ended) return;
-  if (place.pause == vm::Pause::until_done && holdings_[rule].pending != 0) return;
-  due.at(place.wake);
+  const BehaviorLayer::ResumePoint& point = layers_.behaviors.resume_point(rule);
+  if (point.pause == vm::Pause::ended) return;
+  if (point.pause == vm::Pause::until_done && holdings_[rule].pending != 0) return;
+  due.at(point.wake);
 }
 
 // A rule that wants to run and may.
@@ -227,12 +227,12 @@ kernel::Time ProcessingLayer::next_time() const {
 // --- threads that were stopped ---
 
 void ProcessingLayer::note_stops() {
-  for (const Crew::Member* member = layers_.crew.next_stopped(); member != nullptr;
-       member = layers_.crew.next_stopped())
+  for (const ProgramThreads::Member* member = layers_.threads.next_stopped(); member != nullptr;
+       member = layers_.threads.next_stopped())
     retire(*member);
 }
 
-void ProcessingLayer::retire(const Crew::Member& member) {
+void ProcessingLayer::retire(const ProgramThreads::Member& member) {
   trace_.emit(EventKind::fault, trace_.now(), member.thread.rank());
   switch (member.thread.category()) {
     case kernel::Category::sensor:
@@ -248,6 +248,217 @@ void ProcessingLayer::retire(const Crew::Member& member) {
     default:
       break;
   }
+}
+
+// --- what a step concerns ---
+
+// Only these rules are evaluated; for all others the result would be that of last time:
+//
+// * What a condition gives depends on its inputs, on the past of its time words and on the time. A
+//   time word that changes with time alone says when (Triggers::next_wake()).
+// * A time word that was true for one evaluation only is false in the next. That is the next step
+//   that stirs its behaviour, and one millisecond later at the latest. A division by zero is told
+//   in each of these steps, as long as there is one.
+// * An input that only a rule's responses read, or set, concerns it too: it stirs the behaviour,
+//   and responses that wait for something look again (goes_on()).
+// * The first time, all rules of a behaviour are evaluated: there are conditions without inputs,
+//   and such that are known whatever their inputs are.
+//
+// `begins`: behaviours that have something to do without a reading.
+void ProcessingLayer::find_concerned(InputMask changed, BehaviorMask begins) {
+  concerned_.clear();
+  changed_ = changed;
+  woken_ = begins;
+  layers_.triggers.add_woken(snapshot_.milliseconds(), concerned_);
+  for (const unsigned rule : concerned_)
+    woken_ |= bit<BehaviorMask>(program_->behavior_of[rule]);
+  for (InputMask left = changed; left != 0; left &= left - 1)
+    concerned_ |= program_->readers[static_cast<unsigned>(std::countr_zero(left))];
+  for (const unsigned rule : layers_.triggers.eventful())
+    if (stirred(program_->behavior_of[rule])) concerned_.insert(rule);
+  for (BehaviorMask left = untouched_; left != 0; left &= left - 1) {
+    const auto behavior = static_cast<unsigned>(std::countr_zero(left));
+    if (behavior >= program_->image.behaviors.size()) break;
+    if (stirred(behavior)) concern_all(behavior);
+  }
+}
+
+void ProcessingLayer::concern_all(unsigned behavior) {
+  untouched_ &= ~bit<BehaviorMask>(behavior);
+  const vm::Behavior& wiring = program_->image.behaviors[behavior];
+  for (unsigned r = 0; r < wiring.rule_count; ++r)
+    concerned_.insert(wiring.first_rule + r);
+}
+
+// Something that it reads has changed, or the time of one of its rules has come.
+bool ProcessingLayer::stirred(unsigned behavior) const {
+  return has(woken_, behavior) || (program_->inputs[behavior] & changed_) != 0;
+}
+
+// --- a step, from the changed inputs to the commands ---
+
+void ProcessingLayer::step() {
+  const std::uint32_t now = snapshot_.milliseconds();
+  if (now != ran_at_) has_run_.clear();
+  ran_at_ = now;
+  layers_.behaviors.evaluate(concerned_, snapshot_);
+  await(kFinished, [this] { return layers_.behaviors.busy(); });
+  layers_.triggers.collect(concerned_);
+  layers_.triggers.settle(now);
+  report_triggers();
+  interrupt_over();
+  arbitrate();
+  cancel_interrupted();
+  run_responses();
+  set_due_ = now + 1;
+  layers_.control.commit();
+  for (const unsigned rule : running_) {
+    finish_if_done(rule);
+    holdings_[rule].won_now = false;  // what is due next is looked for as if the step were over
+  }
+}
+
+// --- interruptions that no claim is the cause of ---
+
+void ProcessingLayer::interrupt_lost(BehaviorMask lost) {
+  if (lost == 0) return;
+  for (const unsigned rule : running_)
+    if (has(lost, holdings_[rule].behavior)) interrupt(rule, holdings_[rule].behavior);
+}
+
+void ProcessingLayer::interrupt_halted(ActuatorMask halted) {
+  if (halted == 0) return;
+  for (const unsigned rule : running_)
+    if ((holdings_[rule].actuators & halted) != 0) interrupt(rule, vm::kSafetyBehavior);
+}
+
+void ProcessingLayer::interrupt_over() {
+  for (const unsigned rule : running_)
+    if (layers_.triggers.is_over(rule)) interrupt(rule, holdings_[rule].behavior);
+}
+
+// --- claims ---
+
+void ProcessingLayer::report_triggers() {
+  for (const unsigned rule : concerned_)
+    if (layers_.triggers.take_zero_divide(rule))
+      trace_.emit(EventKind::zero_divide, trace_.step(), rule);
+  Side side{};
+  for (const unsigned rule : concerned_)
+    if (layers_.triggers.fired(rule, side)) {
+      trace_.emit(EventKind::fire, trace_.step(), rule, 0, static_cast<std::int32_t>(side));
+      adaptation_.count(*program_, program_->behavior_of[rule], snapshot_.milliseconds());
+    }
+}
+
+// What `rule` claims now; silent: that it does was told before.
+bool ProcessingLayer::claim_of(unsigned rule, Claim& claim, bool& silent) const {
+  Triggers::Wish wish{};
+  if (!layers_.triggers.wish(rule, running_.has(rule), wish)) return false;
+  silent = wish.silent;
+  const std::uint16_t response = layers_.behaviors.response_of(rule, wish.side);
+  claim = {.rule = static_cast<std::uint16_t>(rule),
+           .behavior = program_->behavior_of[rule],
+           .side = wish.side,
+           .actuators = program_->image.responses[response].actuators,
+           .restarting = layers_.triggers.restarting(rule),
+           .retries = !wish.fresh};
+  return true;
+}
+
+void ProcessingLayer::arbitrate() {
+  const std::uint32_t now = snapshot_.milliseconds();
+  Claim claim{};
+  bool silent = false;
+  RuleSet wanting = concerned_;
+  wanting |= layers_.triggers.active();
+  for (const unsigned rule : wanting) {
+    const bool again =
+        program_->image.rules[rule].kind == vm::RuleKind::while_ && has_run(rule, now);
+    if (!again && claim_of(rule, claim, silent)) serve(claim, silent);
+  }
+  layers_.triggers.forget(concerned_);
+}
+
+void ProcessingLayer::serve(const Claim& claim, bool silent) {
+  const Decision decision = decide_now(claim);
+  const bool was_running = running_.has(claim.rule);
+  for (const unsigned rule : decision.interrupted)
+    interrupt(rule, claim.behavior);
+  if (!decision.wins) {
+    if (!silent) report(claim, EventKind::lose, decision.owner);
+    const bool to_itself = was_running && running_.has(claim.rule);
+    layers_.triggers.lost(claim.rule, claim.side, to_itself, snapshot_.milliseconds());
+    return;
+  }
+  report(claim, EventKind::win);
+  layers_.triggers.won(claim.rule, snapshot_.milliseconds());
+  running_.insert(claim.rule);
+  holdings_[claim.rule] = Holding{.actuators = static_cast<ActuatorBits>(claim.actuators),
+                                  .pending = 0,
+                                  .behavior = claim.behavior,
+                                  .side = claim.side,
+                                  .won_now = true};
+}
+
+void ProcessingLayer::interrupt(unsigned rule, unsigned by) {
+  trace_.emit(EventKind::interrupt, trace_.step(), rule, by);
+  cancelled_ |= holdings_[rule].actuators;
+  running_.erase(rule);
+  layers_.behaviors.forget_resume_point(rule);
+  layers_.triggers.interrupted(rule);
+}
+
+void ProcessingLayer::report(const Claim& claim, EventKind kind, unsigned object) {
+  trace_.emit(kind, trace_.step(), claim.rule, object, static_cast<std::int32_t>(claim.side));
+}
+
+// --- responses ---
+
+bool ProcessingLayer::goes_on(unsigned rule) const {
+  const Holding& holding = holdings_[rule];
+  const BehaviorLayer::ResumePoint& point = layers_.behaviors.resume_point(rule);
+  const std::uint32_t now = snapshot_.milliseconds();
+  if (point.pause == vm::Pause::ended || has_run(rule, now)) return false;
+  const bool due = point.wake != kNever && reached(point.wake, now);
+  switch (point.pause) {
+    case vm::Pause::until_done:
+      return due && holding.pending == 0;
+    case vm::Pause::polling:
+    case vm::Pause::still_polling:
+      return due || stirred(holding.behavior);
+    default:
+      return due;
+  }
+}
+
+void ProcessingLayer::run_responses() {
+  for (const unsigned rule : running_) {
+    Holding& holding = holdings_[rule];
+    if (holding.won_now) {
+      layers_.behaviors.respond(rule, holding.side);
+    } else if (goes_on(rule)) {
+      layers_.behaviors.go_on(rule);
+    } else {
+      continue;
+    }
+    await(kFinished, [this] { return layers_.behaviors.busy(); });
+    layers_.behaviors.conclude(rule);
+    has_run_.insert(rule);
+    holding.pending = static_cast<ActuatorBits>(holding.pending | layers_.control.take_staged());
+    for (ActuatorMask dropped = layers_.control.take_dropped(); dropped != 0;
+         dropped &= dropped - 1)
+      trace_.emit(EventKind::overrun, trace_.step(),
+                  static_cast<unsigned>(std::countr_zero(dropped)));
+  }
+}
+
+// The old ones end before the new ones begin, and before those send commands: what the old ones had
+// in their queues takes no place from them.
+void ProcessingLayer::cancel_interrupted() {
+  if (cancelled_ == 0) return;
+  layers_.control.cancel(cancelled_);
+  await(kCancelled, [this] { return layers_.control.cancelling(); });
 }
 
 }  // namespace robosync::layers

@@ -10,7 +10,7 @@
 //   commands, are committed
 //
 // So a step costs what the rules cost that it concerns, and those that run, wait or want to run;
-// the others cost nothing (concern.cpp).
+// the others cost nothing (find_concerned()).
 //
 // What a step causes by itself (SET and SIGNAL, a WHILE that starts again, the end of a wait) is
 // due in the next millisecond at the earliest, so the number of steps at one time is bounded by
@@ -51,13 +51,17 @@
 #include "runtime-m4/layers/checks.hpp"
 #include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/layers/control.hpp"
-#include "runtime-m4/layers/crew.hpp"
+#include "runtime-m4/layers/loaded_program.hpp"
 #include "runtime-m4/layers/mailbox.hpp"
-#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/program_threads.hpp"
 #include "runtime-m4/layers/sensor.hpp"
 #include "runtime-m4/layers/trace.hpp"
 #include "runtime-m4/layers/triggers.hpp"
 #include "runtime-m4/layers/variables.hpp"
+
+namespace robosync {
+struct RuntimePeer;  // of tests
+}
 
 namespace robosync::layers {
 
@@ -79,7 +83,7 @@ public:
     Triggers& triggers;
     BehaviorLayer& behaviors;
     ControlLayer& control;
-    Crew& crew;
+    ProgramThreads& threads;
     Alarm& alarm;
   };
 
@@ -88,9 +92,9 @@ public:
       : kernel_(kernel), trace_(trace), thread_(thread), layers_(neighbours) {}
 
   // Starts the step thread of `program`, which must stay until it is dismissed.
-  [[nodiscard]] bool start(const Program& program);
+  [[nodiscard]] bool start(const LoadedProgram& program);
   // All threads of the program are there: they get their ranks.
-  void rank() { adaptation_.rank(*program_, layers_.crew, trace_); }
+  void rank() { adaptation_.rank(*program_, layers_.threads, trace_); }
   // … and the first step comes when its clock begins.
   void go() { kernel_.signal(thread_, kBegin); }
 
@@ -100,12 +104,10 @@ public:
   bool resting() const;
   std::uint32_t passes() const { return passes_.load(std::memory_order_relaxed); }
 
-  // For tests, on the host: evaluates all rules of a behaviour when one of them is concerned, which
-  // must make no difference.
-  void evaluate_all() { evaluates_all_ = true; }
-
 private:
-  // --- processing.cpp: passes, and what makes a step ---
+  friend struct robosync::RuntimePeer;
+
+  // --- passes, and what makes a step ---
   void run();
   void pass();
   void finish_done();
@@ -121,14 +123,14 @@ private:
   void add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const;
   kernel::Time next_time() const;
   void note_stops();
-  void retire(const Crew::Member& member);
+  void retire(const ProgramThreads::Member& member);
 
-  // --- concern.cpp: what a step is about ---
+  // --- what a step concerns ---
   void find_concerned(InputMask changed, BehaviorMask begins);
   void concern_all(unsigned behavior);
   bool stirred(unsigned behavior) const;
 
-  // --- step.cpp: what happens in one ---
+  // --- what happens in one ---
   void step();
   void interrupt_lost(BehaviorMask lost);
   void interrupt_halted(ActuatorMask halted);
@@ -162,7 +164,7 @@ private:
   Trace& trace_;
   kernel::Thread& thread_;
   Neighbours layers_;
-  const Program* program_ = nullptr;
+  const LoadedProgram* program_ = nullptr;
   Checks checks_;
   Adaptation adaptation_;
   Snapshot snapshot_;
@@ -180,7 +182,6 @@ private:
   BehaviorMask unstarted_ = 0;       // have something to do before the first reading
   std::atomic<std::uint32_t> passes_ = 0;
   std::atomic<bool> in_pass_ = false;
-  bool evaluates_all_ = false;
 };
 
 }  // namespace robosync::layers

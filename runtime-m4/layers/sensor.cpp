@@ -10,46 +10,46 @@ constexpr std::uint64_t kLatestFeed = std::uint64_t{1} << 62;  // so that times 
 
 }  // namespace
 
-bool SensorLayer::start(const Program& program, Sampler& sampler, Crew& crew) {
+bool SensorLayer::start(const LoadedProgram& program, Sampler& sampler, ProgramThreads& threads) {
   program_ = &program;
   sampler_ = &sampler;
   feed_thread_ = nullptr;
   feeds_.clear();
-  stations_.fill({});
+  units_.fill({});
   for (unsigned s = 0; s < program.image.sensors.size(); ++s)
-    if (!policy::is_fed(program.image.sensors[s]) && !start_sensor(s, crew)) return false;
-  return !policy::has_fed_sensors(program.image) || start_feeds(crew);
+    if (!policy::is_fed(program.image.sensors[s]) && !start_sensor(s, threads)) return false;
+  return !policy::has_fed_sensors(program.image) || start_feeds(threads);
 }
 
-bool SensorLayer::start_sensor(unsigned sensor, Crew& crew) {
-  Station& station = stations_[sensor];
-  station = {this, nullptr, static_cast<std::uint8_t>(sensor)};
+bool SensorLayer::start_sensor(unsigned sensor, ProgramThreads& threads) {
+  Unit& unit = units_[sensor];
+  unit = {this, nullptr, static_cast<std::uint8_t>(sensor)};
   const auto entry = [](void* self) {
-    const auto& mine = *static_cast<Station*>(self);
+    const auto& mine = *static_cast<Unit*>(self);
     mine.layer->run_sensor(mine.sensor);
   };
   kernel::ThreadSpec spec;
   spec.name = name_of(program_->image, program_->image.sensors[sensor].name, "sensor");
   spec.category = kernel::Category::sensor;
   spec.entry = entry;
-  spec.argument = &station;
-  station.thread = crew.start(spec, sensor, kSensorStack);
-  return station.thread != nullptr;
+  spec.argument = &unit;
+  unit.thread = threads.start(spec, sensor, kSensorStack);
+  return unit.thread != nullptr;
 }
 
 void SensorLayer::go() {
   const auto lock = kernel_.lock();
-  for (const Station& station : stations_)
-    if (station.thread != nullptr) kernel_.signal(*station.thread, kGo);
+  for (const Unit& unit : units_)
+    if (unit.thread != nullptr) kernel_.signal(*unit.thread, kGo);
 }
 
-bool SensorLayer::start_feeds(Crew& crew) {
+bool SensorLayer::start_feeds(ProgramThreads& threads) {
   kernel::ThreadSpec spec;
   spec.name = "feeds";
   spec.category = kernel::Category::sensor;
   spec.entry = [](void* self) { static_cast<SensorLayer*>(self)->run_feeds(); };
   spec.argument = this;
-  feed_thread_ = crew.start(spec, policy::kFedSensors, kSensorStack);
+  feed_thread_ = threads.start(spec, policy::kFedSensors, kSensorStack);
   return feed_thread_ != nullptr;
 }
 

@@ -13,10 +13,10 @@
 #include "link/messages.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/alarm.hpp"
-#include "runtime-m4/layers/crew.hpp"
 #include "runtime-m4/layers/feed_queue.hpp"
+#include "runtime-m4/layers/loaded_program.hpp"
 #include "runtime-m4/layers/mailbox.hpp"
-#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/program_threads.hpp"
 #include "runtime-m4/layers/sampler.hpp"
 #include "runtime-m4/layers/trace.hpp"
 
@@ -35,7 +35,7 @@ public:
         news_(news) {}
 
   // Creates the threads of `program`, which must stay until they are dismissed.
-  [[nodiscard]] bool start(const Program& program, Sampler& sampler, Crew& crew);
+  [[nodiscard]] bool start(const LoadedProgram& program, Sampler& sampler, ProgramThreads& threads);
   // All threads of the program are there: sampling begins.
   void go();
 
@@ -49,14 +49,14 @@ private:
   static constexpr kernel::Events kFeed = 1;
   static constexpr kernel::Events kGo = 2;
 
-  struct Station {
+  struct Unit {
     SensorLayer* layer = nullptr;
     kernel::Thread* thread = nullptr;  // null: it is fed
     std::uint8_t sensor = 0;
   };
 
-  [[nodiscard]] bool start_sensor(unsigned sensor, Crew& crew);
-  [[nodiscard]] bool start_feeds(Crew& crew);
+  [[nodiscard]] bool start_sensor(unsigned sensor, ProgramThreads& threads);
+  [[nodiscard]] bool start_feeds(ProgramThreads& threads);
   void run_sensor(unsigned sensor);
   void run_feeds();
   kernel::Time next_sample(unsigned sensor, kernel::Time last);
@@ -72,10 +72,10 @@ private:
   Alarm& alarm_;
   kernel::Thread& step_thread_;
   kernel::Events news_;
-  const Program* program_ = nullptr;
+  const LoadedProgram* program_ = nullptr;
   Sampler* sampler_ = nullptr;
   kernel::Thread* feed_thread_ = nullptr;
-  std::array<Station, kMaxSensors> stations_{};
+  std::array<Unit, kMaxSensors> units_{};
   FeedQueue feeds_;
 };
 

@@ -1,5 +1,5 @@
 // All that the behaviours' threads write, in one place: they run without privileges, and besides
-// their stacks this is the only memory open to them. Others read what stands here as they would
+// their stacks this is the only memory that they may write. Others read what stands here as they would
 // read what comes from outside: numbers, of which none is an index or an address until it is
 // checked.
 //
@@ -44,8 +44,8 @@ struct alignas(kWorkspaceAlignment) Workspace {
   static constexpr std::size_t kMemoryWords =
       kMaxFrameCells + kMaxTimerWords + kWorkspaceUnit / sizeof(std::uint32_t) - 1;
 
-  // What is open when the first `words` are closed, which are whole units.
-  std::span<std::byte> open_from(std::size_t words) {
+  // What they may write when the first `words` are closed, which are whole units.
+  std::span<std::byte> writable_from(std::size_t words) {
     return std::as_writable_bytes(std::span(this, 1)).subspan(words * sizeof(std::uint32_t));
   }
 
@@ -58,7 +58,6 @@ struct alignas(kWorkspaceAlignment) Workspace {
   Result result;
   // By behaviour: it has done what it was released for.
   std::array<std::atomic<bool>, kMaxBehaviors> finished{};
-  std::uint32_t evaluations = 0;  // conditions that were ever evaluated; for tests, on the host
 };
 static_assert(sizeof(Workspace) % kWorkspaceUnit == 0);
 

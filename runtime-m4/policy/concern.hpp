@@ -1,6 +1,6 @@
 // What a step concerns: the inputs that the code of a rule reads or sets. Pure; the runtime makes
-// its index from inputs to rules of it (layers/program.cpp), analysis/ the same in its own shape.
-// layers/concern.cpp says why the rules that a step does not concern may be left out. Images are
+// its index from inputs to rules of it (layers/loaded_program.cpp), analysis/ the same in its own shape.
+// layers/processing.cpp says why the rules that a step does not concern may be left out. Images are
 // verified.
 #pragma once
 

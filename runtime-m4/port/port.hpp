@@ -6,7 +6,7 @@
 //   kTimeFlows              Does time pass while threads run? On the host it stands still until all
 //                           wait.
 //   kMinStack               Least bytes of stack a thread must have.
-//   kOpenStackAlignment, kMaxOpenStack   What the stack of a thread without privileges must be.
+//   kUnprivilegedStackAlignment, kMaxUnprivilegedStack   What the stack of a thread without privileges must be.
 //   struct Areas            What threads without privileges may use besides their stacks: what is
 //                           readable and, perhaps inside of it, writable.
 //   call(kernel, number, argument)       A system call: Kernel::answer() from a thread without
@@ -29,7 +29,7 @@
 //     may_call()                    Is what runs of the kernel's level, or below it?
 //     usable(spec)                  What a thread can use of its stack: without alignment, guard.
 //     can_run(spec)                 Is its stack as a thread without privileges needs it?
-//     open(areas)                   Gives those threads what they may use. Under a Lock.
+//     grant(areas)                  Gives those threads what they may use. Under a Lock.
 //     prepare(context, spec, stack) Makes a thread start with entry(argument) on a usable stack;
 //                                   when that returns, the thread is stopped.
 //     prepare_idle(context)         The idle thread's context; returns its usable stack.

@@ -21,7 +21,7 @@ ActuatorMask actuators_of(const vm::Image& image, std::uint8_t target) {
 
 }  // namespace
 
-void Guard::start(const layers::Program& program) {
+void Guard::start(const layers::LoadedProgram& program) {
   program_ = &program;
   tripped_.clear();
   layers_.alarm.watch(program.image.has_safety() ? program.inputs[vm::kSafetyBehavior] : 0);

@@ -16,9 +16,9 @@
 #include "runtime-m4/layers/alarm.hpp"
 #include "runtime-m4/layers/control.hpp"
 #include "runtime-m4/layers/frames.hpp"
+#include "runtime-m4/layers/loaded_program.hpp"
 #include "runtime-m4/layers/mailbox.hpp"
 #include "runtime-m4/layers/processing.hpp"
-#include "runtime-m4/layers/program.hpp"
 #include "runtime-m4/layers/trace.hpp"
 #include "runtime-m4/layers/variables.hpp"
 #include "runtime-m4/safety/period.hpp"
@@ -43,7 +43,7 @@ public:
       : kernel_(kernel), layers_(neighbours), step_thread_(step_thread), acted_(acted) {}
 
   // Nothing is tripped. `program` must stay until the next start().
-  void start(const layers::Program& program);
+  void start(const layers::LoadedProgram& program);
 
   // Evaluates all rules. Returns when to do it again, if nothing changes before.  [safety thread]
   kernel::Time look();
@@ -63,7 +63,7 @@ private:
   Neighbours layers_;
   kernel::Thread& step_thread_;
   kernel::Events acted_;  // signalled when something was set
-  const layers::Program* program_ = nullptr;
+  const layers::LoadedProgram* program_ = nullptr;
   layers::RuleSet tripped_;
   vm::Machine machine_;
   std::array<vm::Word, layers::kMaxSafetyOutput> output_{};

@@ -20,7 +20,7 @@ void Monitor::run() {
   kernel::Time guard_due = due;
   while (true) {
     kernel_.wait(kNews, std::min(due, guard_due));
-    guard_due = patient_.guard();
+    guard_due = supervised_.guard();
     const kernel::Time now = kernel_.now();
     if (now < due) continue;
     check(now - due);
@@ -32,15 +32,15 @@ void Monitor::check(kernel::Duration late) {
   const auto lateness = static_cast<std::uint32_t>(std::min<kernel::Duration>(late, UINT32_MAX));
   late_ = std::max(late_.load(std::memory_order_relaxed), lateness);
   checks_ += 1;
-  const std::uint32_t progress = patient_.progress();
-  const bool alive = patient_.resting() || progress != last_progress_;
+  const std::uint32_t progress = supervised_.progress();
+  const bool alive = supervised_.resting() || progress != last_progress_;
   last_progress_ = progress;
-  patient_.hold_to_budgets(alive);
-  without_progress_ = alive ? 0 : std::min(without_progress_ + 1, kPatience);
-  if (without_progress_ < kPatience) {
+  supervised_.hold_to_budgets(alive);
+  without_progress_ = alive ? 0 : std::min(without_progress_ + 1, kChecksUntilHung);
+  if (without_progress_ < kChecksUntilHung) {
     board_.watchdog_kick();
   } else {
-    patient_.halt(kPatience * kPeriod);
+    supervised_.halt(kChecksUntilHung * kPeriod);
   }
 }
 

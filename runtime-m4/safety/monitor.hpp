@@ -1,7 +1,7 @@
 // Safety monitor: a thread above all others that looks after the safety rules, checks every 10 ms
 // that the program is alive, and keeps the watchdog from resetting the board as long as it is.
 //
-// A program is hung when its step thread has work and has not finished a pass for kPatience checks
+// A program is hung when its step thread has work and has not finished a pass for kChecksUntilHung checks
 // in a row. Then the actuators are halted, again at every check, and the watchdog is left alone: it
 // resets the board. The monitor goes on through uploads and activations.
 #pragma once
@@ -19,7 +19,7 @@
 namespace robosync::safety {
 
 // What the monitor watches over. Called from the safety thread.
-class Patient {
+class Supervised {
 public:
   virtual bool resting() const = 0;            // it has nothing to do
   virtual std::uint32_t progress() const = 0;  // changes with every piece of work it finishes
@@ -33,15 +33,15 @@ public:
   virtual kernel::Time guard() = 0;
 
 protected:
-  ~Patient() = default;
+  ~Supervised() = default;
 };
 
 class Monitor {
 public:
-  static constexpr unsigned kPatience = 5;
+  static constexpr unsigned kChecksUntilHung = 5;
 
-  Monitor(kernel::Kernel& kernel, boards::Board& board, Patient& patient)
-      : kernel_(kernel), board_(board), patient_(patient) {}
+  Monitor(kernel::Kernel& kernel, boards::Board& board, Supervised& supervised)
+      : kernel_(kernel), board_(board), supervised_(supervised) {}
 
   // Creates the thread. False when the kernel has no place for it.
   [[nodiscard]] bool start();
@@ -59,7 +59,7 @@ private:
 
   kernel::Kernel& kernel_;
   boards::Board& board_;
-  Patient& patient_;
+  Supervised& supervised_;
   std::atomic<std::uint32_t> checks_ = 0;
   std::atomic<std::uint32_t> late_ = 0;
   std::uint32_t last_progress_ = 0;

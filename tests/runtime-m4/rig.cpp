@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/runtime-m4/peer.hpp"
 #include "tests/runtime-m4/robot.hpp"
 
 namespace robosync::test {
@@ -14,6 +15,16 @@ Rig::Rig() : runtime(kernel, board, *this, workspace) {
 vm::Verdict Rig::activate(const std::vector<std::byte>& bytes) {
   slots_.push_back(bytes);
   return runtime.activate(slots_.back());
+}
+
+// With concerns_all in single milliseconds: between two steps there is the end of one, or an event.
+void Rig::run(std::uint64_t until_ms) {
+  for (std::uint64_t now = kernel.now() / 1000; concerns_all && now < until_ms; ++now) {
+    RuntimePeer::concern_all(runtime);
+    kernel.machine().run_until(now * 1000);
+  }
+  if (concerns_all) RuntimePeer::concern_all(runtime);
+  kernel.machine().run_until(until_ms * 1000);
 }
 
 link::FeedError Rig::feed(std::uint8_t channel, int units, std::uint64_t at_ms) {
@@ -36,6 +47,7 @@ link::Status Rig::status() const {
 
 void Rig::emit(const link::Event& event) {
   lines.push_back(describe(event, runtime.image()));
+  if (concerns_all) RuntimePeer::concern_all(runtime);
 }
 
 std::string Rig::only(std::string_view events) const {

@@ -63,7 +63,7 @@ public:
 
   // Keeps the image, as a slot would.
   vm::Verdict activate(const std::vector<std::byte>& bytes);
-  void run(std::uint64_t until_ms) { kernel.machine().run_until(until_ms * 1000); }
+  void run(std::uint64_t until_ms);
   // Now, in units of the channel.
   link::FeedError feed(std::uint8_t channel, int units, std::uint64_t at_ms = 0);
   kernel::Thread& thread(std::string_view name);
@@ -75,6 +75,7 @@ public:
   layers::Workspace workspace;
   Runtime runtime;
   std::vector<std::string> lines;
+  bool concerns_all = false;  // in every step (RuntimePeer)
 
 private:
   void emit(const link::Event& event) override;

@@ -1,7 +1,7 @@
 // The two vector tables of a board with a Cortex-M4: the core's own exceptions, which are the same
 // everywhere, and behind them the interrupts that the board says it uses.
 //
-// A board defines robosync_vectors and robosync_open_vectors (section .vectors.0 and .vectors.1,
+// A board defines robosync_vectors and robosync_unprivileged_vectors (section .vectors.0 and .vectors.1,
 // aligned to kVectorAlignment). The second one is used while a thread without privileges runs: such
 // a thread may call, and is left in another way (port/cortex-m4/switch.S).
 #pragma once
@@ -23,7 +23,7 @@ void BusFault_Handler();
 void UsageFault_Handler();
 void SVC_Handler();
 void PendSV_Handler();
-void PendSV_Open_Handler();
+void PendSV_Unprivileged_Handler();
 void SysTick_Handler();
 void Unexpected_Handler();
 
@@ -62,7 +62,7 @@ constexpr Vectors<kInterrupts> vectors(std::span<const Interrupt> used, bool pri
   table[5] = handler(BusFault_Handler);
   table[6] = handler(UsageFault_Handler);
   if (!privileged) table[11] = handler(SVC_Handler);
-  table[14] = handler(privileged ? PendSV_Handler : PendSV_Open_Handler);
+  table[14] = handler(privileged ? PendSV_Handler : PendSV_Unprivileged_Handler);
   table[15] = handler(SysTick_Handler);
   for (const Interrupt& interrupt : used)
     table[kExceptions + interrupt.number] = handler(interrupt.handler);

@@ -27,5 +27,5 @@ extern "C" {
 [[gnu::section(".vectors.0"), gnu::used]] alignas(kVectorAlignment<kInterrupts>) extern const
     Vectors<kInterrupts> robosync_vectors = vectors<kInterrupts>(kUsed, true);
 [[gnu::section(".vectors.1"), gnu::used]] alignas(kVectorAlignment<kInterrupts>) extern const
-    Vectors<kInterrupts> robosync_open_vectors = vectors<kInterrupts>(kUsed, false);
+    Vectors<kInterrupts> robosync_unprivileged_vectors = vectors<kInterrupts>(kUsed, false);
 }

@@ -18,9 +18,9 @@ extern "C" {
 void robosync_saving_core();
 void robosync_saving_fpu();
 void robosync_saved();
-void robosync_saving_open_fpu();
+void robosync_saving_unprivileged_fpu();
 void robosync_no_room();
-void robosync_saved_open();
+void robosync_saved_unprivileged();
 }
 
 namespace robosync::port {
@@ -29,9 +29,9 @@ namespace {
 
 constexpr std::uint32_t kReturnToThread = 0xFFFF'FFFD;  // thread mode, PSP, no FPU frame
 constexpr std::uint32_t kWithoutFpu = 1U << 4;          // bits of EXC_RETURN as switch.S saves it
-constexpr std::uint32_t kMarkOpen = 1U << 5;        // … 0: of a thread without privileges, for
-constexpr std::uint32_t kOpenWithoutFpu = 1U << 6;  // … which this says what bit 4 says
-constexpr std::uint32_t kFromThreadMode = 1U << 3;  // bits of EXC_RETURN
+constexpr std::uint32_t kMarkUnprivileged = 1U << 5;  // … 0: of a thread without privileges, for
+constexpr std::uint32_t kUnprivilegedWithoutFpu = 1U << 6;  // … which this says what bit 4 says
+constexpr std::uint32_t kFromThreadMode = 1U << 3;          // bits of EXC_RETURN
 constexpr std::uint32_t kFromPsp = 1U << 2;
 
 // What fault.S pushes.
@@ -123,14 +123,14 @@ bool from_place(const FaultEntry& entry, void (*place)()) {
 
 // True when the context switch faulted, or gave up, while it saved the registers of a thread
 // without privileges on that thread's stack.
-bool from_saving_open(const FaultEntry& entry) {
-  return from_place(entry, robosync_saving_open_fpu) || from_place(entry, robosync_no_room);
+bool from_saving_unprivileged(const FaultEntry& entry) {
+  return from_place(entry, robosync_saving_unprivileged_fpu) || from_place(entry, robosync_no_room);
 }
 
 // … of any thread.
 bool from_saving(const FaultEntry& entry) {
   return from_place(entry, robosync_saving_core) || from_place(entry, robosync_saving_fpu) ||
-         from_saving_open(entry);
+         from_saving_unprivileged(entry);
 }
 
 // Whether the fault is the thread's own doing, in a state in which the kernel can go on without it.
@@ -168,7 +168,8 @@ link::Fault describe(const kernel::Thread& thread, const FaultEntry& entry) {
 void skip_saving(const FaultEntry& entry) {
   constexpr std::uint32_t kPartOfInstruction = 0x0600'FC00;  // how far a store-multiple had come
   CoreFrame& frame = handler_frame(entry);
-  frame.pc = word_of(from_saving_open(entry) ? robosync_saved_open : robosync_saved) & ~1U;
+  frame.pc =
+      word_of(from_saving_unprivileged(entry) ? robosync_saved_unprivileged : robosync_saved) & ~1U;
   frame.xpsr &= ~kPartOfInstruction;
 }
 
@@ -185,8 +186,8 @@ void stop_overrun(kernel::Kernel&, kernel::Thread& thread) {
   constexpr std::size_t kFpuWords = 16;
   const std::uint32_t* const saved = kernel::Kernel::context(thread).sp;
   const std::uint32_t exc_return = saved[kExcReturn];
-  const bool open = (exc_return & kMarkOpen) == 0;
-  const bool used_fpu = (exc_return & (open ? kOpenWithoutFpu : kWithoutFpu)) == 0;
+  const bool open = (exc_return & kMarkUnprivileged) == 0;
+  const bool used_fpu = (exc_return & (open ? kUnprivilegedWithoutFpu : kWithoutFpu)) == 0;
   link::Fault fault{};
   fault.thread = name_of(thread);
   fault.cause = kCauseOverrun;

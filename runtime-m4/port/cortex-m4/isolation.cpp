@@ -35,7 +35,7 @@ void start_isolation() {
   asm volatile("dsb\n\tisb" ::: "memory");
 }
 
-void Machine::open(const Areas& areas) {
+void Machine::grant(const Areas& areas) {
   const std::uint32_t begin = word_of(areas.readable.data());
   set(RegionNumber::readable,
       regions::cover(begin, begin + static_cast<std::uint32_t>(areas.readable.size())),

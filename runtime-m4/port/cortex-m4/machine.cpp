@@ -12,7 +12,7 @@
 // switch.S
 extern "C" {
 [[noreturn]] void robosync_become_idle(std::byte* stack_top);
-void robosync_save_open(std::uint32_t psp);
+void robosync_save_unprivileged(std::uint32_t psp);
 void robosync_no_room();
 }
 
@@ -21,8 +21,8 @@ namespace robosync::port {
 namespace {
 
 constexpr std::uint32_t kXpsrThumb = 1U << 24;
-constexpr std::uint32_t kReturnToThread = 0xFFFF'FFFD;  // thread mode, PSP, no FPU frame
-constexpr std::uint32_t kReturnToOpen = 0xFFFF'FFCD;    // … without privileges, for switch.S
+constexpr std::uint32_t kReturnToThread = 0xFFFF'FFFD;        // thread mode, PSP, no FPU frame
+constexpr std::uint32_t kReturnToUnprivileged = 0xFFFF'FFCD;  // … without privileges, for switch.S
 
 // What a thread's stack holds before it runs for the first time; switch.S draws it.
 struct FirstFrame {
@@ -51,7 +51,7 @@ std::uint32_t guard_below(std::span<const std::byte> stack) {
 }
 
 // The window of a thread without privileges.
-void open_stack(Context& context, std::span<const std::byte> stack) {
+void set_stack_window(Context& context, std::span<const std::byte> stack) {
   const auto bytes = static_cast<std::uint32_t>(stack.size());
   const regions::Window window = regions::window(word_of(stack.data()), bytes, kStackWindowBits);
   context.region = base_of(RegionNumber::stack, window.lower.base);
@@ -78,7 +78,7 @@ void Machine::prepare(Context& context, const kernel::ThreadSpec& spec,
   const std::uint32_t top = word_of(stack.data() + stack.size()) & ~7U;
   auto* const frame = reinterpret_cast<FirstFrame*>(top - sizeof(FirstFrame));
   *frame = {};
-  frame->exc_return = spec.privileged ? kReturnToThread : kReturnToOpen;
+  frame->exc_return = spec.privileged ? kReturnToThread : kReturnToUnprivileged;
   frame->r0 = word_of(spec.argument);
   frame->lr = word_of(reinterpret_cast<const void*>(&thread_ended));
   frame->pc = word_of(reinterpret_cast<const void*>(spec.entry)) & ~1U;
@@ -86,7 +86,7 @@ void Machine::prepare(Context& context, const kernel::ThreadSpec& spec,
   context.sp = reinterpret_cast<std::uint32_t*>(frame);
   context.run_time = 0;
   context.region = guard_below(stack);
-  if (!spec.privileged) open_stack(context, stack);
+  if (!spec.privileged) set_stack_window(context, stack);
 }
 
 std::span<std::byte> Machine::prepare_idle(Context& context) {
@@ -110,7 +110,7 @@ void Machine::run() {
 extern "C" {
 
 const robosync::port::Context* robosync_switch(std::uint32_t* sp, robosync::kernel::Kernel& kernel);
-void PendSV_Open_Handler();
+void PendSV_Unprivileged_Handler();
 void SVC_Handler();
 
 // Called by switch.S when the thread that ran is saved, its stack pointer noted; returns the
@@ -126,13 +126,13 @@ const robosync::port::Context* robosync_switch(std::uint32_t* /*sp*/,
 // PendSV while a thread without privileges runs. Its stack pointer may be anything at which the
 // core was let stack a frame, and saving has privileges: there must be room on the thread's own
 // stack. Ends in a jump, so that lr and r4–r11 are the thread's when switch.S saves them.
-void PendSV_Open_Handler() {
+void PendSV_Unprivileged_Handler() {
   using namespace robosync::port;
   std::uint32_t psp = 0;
   asm volatile("mrs %0, psp" : "=r"(psp));
   const auto stack = robosync_kernel.current().stack();
   if (psp - kSaved - word_of(stack.data()) >= stack.size()) return robosync_no_room();
-  return robosync_save_open(psp);
+  return robosync_save_unprivileged(psp);
 }
 
 // A system call of a thread without privileges: only its vector table has this. At the kernel's own

@@ -36,8 +36,9 @@ inline constexpr std::size_t kStackAlignment = kGuard;  // any other alignment w
 // The stack of a thread without privileges is all that it can write around there, so it needs no
 // guard; its borders are those of the eighths of a window of two MPU regions (regions.hpp).
 inline constexpr unsigned kStackWindowBits = 9;
-inline constexpr std::size_t kOpenStackAlignment = (std::size_t{1} << kStackWindowBits) / 8;
-inline constexpr std::size_t kMaxOpenStack = 9 * kOpenStackAlignment;  // wherever it begins
+inline constexpr std::size_t kUnprivilegedStackAlignment = (std::size_t{1} << kStackWindowBits) / 8;
+inline constexpr std::size_t kMaxUnprivilegedStack =
+    9 * kUnprivilegedStackAlignment;  // wherever it begins
 
 // Alignment and guard, what the core stacks with FPU registers, and what switch.S adds.
 inline constexpr std::size_t kFrame = 104;
@@ -83,7 +84,7 @@ public:
   [[noreturn, gnu::cold]] void run();
   [[gnu::cold]] static std::span<std::byte> usable(const kernel::ThreadSpec& spec);
   [[gnu::cold]] static bool can_run(const kernel::ThreadSpec& spec);
-  static void open(const Areas& areas);
+  static void grant(const Areas& areas);
   static std::span<std::byte> prepare_idle(Context& context);
 };
 

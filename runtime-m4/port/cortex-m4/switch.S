@@ -33,9 +33,9 @@
 
     .section .text.PendSV_Handler, "ax"
     .global PendSV_Handler, robosync_saving_core, robosync_saving_fpu, robosync_saved
-    .global robosync_save_open, robosync_saving_open_fpu, robosync_saved_open, robosync_no_room
+    .global robosync_save_unprivileged, robosync_saving_unprivileged_fpu, robosync_saved_unprivileged, robosync_no_room
     .type   PendSV_Handler, %function
-    .type   robosync_save_open, %function
+    .type   robosync_save_unprivileged, %function
     .type   robosync_no_room, %function
     .thumb_func
 PendSV_Handler:
@@ -86,7 +86,7 @@ robosync_saving_fpu:
     pkhbt   r1, r2, r12
     pkhtb   r12, r12, r2, asr #16
     stmia   r0, {r1, r3, r12}
-    ldr     r1, =robosync_open_vectors
+    ldr     r1, =robosync_unprivileged_vectors
     str     r1, [r0, #VTOR - MPU_RASR]
     movs    r1, #1
     msr     control, r1
@@ -95,14 +95,14 @@ robosync_saving_fpu:
     orr     lr, lr, #0x60
     b       5b
 
-/* Out of one: (psp), when there is room on its stack (PendSV_Open_Handler). */
+/* Out of one: (psp), when there is room on its stack (PendSV_Unprivileged_Handler). */
     .thumb_func
-robosync_save_open:
+robosync_save_unprivileged:
     tst     lr, #0x10
     bic     lr, lr, #0x30
     beq     7f
 8:  stmdb   r0!, {r4-r11, lr}
-robosync_saved_open:
+robosync_saved_unprivileged:
     ldr     r1, =VTOR
     ldr     r2, =robosync_vectors
     str     r2, [r1]
@@ -110,7 +110,7 @@ robosync_saved_open:
     msr     control, r2
     b       robosync_saved
 7:
-robosync_saving_open_fpu:
+robosync_saving_unprivileged_fpu:
     vstmdb  r0!, {s16-s31}
     bic     lr, lr, #0x40
     b       8b

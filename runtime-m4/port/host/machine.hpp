@@ -24,9 +24,9 @@ namespace robosync::port {
 
 inline constexpr bool kTimeFlows = false;
 inline constexpr std::size_t kStackAlignment = 8;
-inline constexpr std::size_t kMinStack = 0;             // a fiber has a host-sized stack of its own
-inline constexpr std::size_t kOpenStackAlignment = 64;  // as on the board
-inline constexpr std::size_t kMaxOpenStack = 576;
+inline constexpr std::size_t kMinStack = 0;  // a fiber has a host-sized stack of its own
+inline constexpr std::size_t kUnprivilegedStackAlignment = 64;  // as on the board
+inline constexpr std::size_t kMaxUnprivilegedStack = 576;
 
 // Nothing is closed here.
 struct Areas {
@@ -68,7 +68,7 @@ public:
   void run();
   static std::span<std::byte> usable(const kernel::ThreadSpec& spec);
   static bool can_run(const kernel::ThreadSpec&) { return true; }
-  static void open(const Areas&) {}
+  static void grant(const Areas&) {}
   static std::span<std::byte> prepare_idle(Context&) { return {}; }  // it is the caller
 
   // Runs threads until all are blocked and the next deadline lies after `until` (kernel::Time); then now() is

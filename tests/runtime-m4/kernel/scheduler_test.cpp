@@ -26,17 +26,17 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
     const unsigned rank = operation % kRanks;
     switch (operation / kRanks % 3) {
       case 0:
-        Ready::insert(ready.place(rank));
+        Ready::insert(ready.position(rank));
         model.insert(rank);
         break;
       case 1:
-        Ready::erase(ready.place(rank));
+        Ready::erase(ready.position(rank));
         model.erase(rank);
         break;
       default:
         const unsigned next = (rank + 1) % kRanks;
         const bool was_in = model.contains(next);
-        RC_ASSERT(Ready::exchange(ready.place(rank), ready.place(next)) == was_in);
+        RC_ASSERT(Ready::exchange(ready.position(rank), ready.position(next)) == was_in);
         if (model.contains(rank) != was_in) {
           if (model.erase(rank) == 0) model.insert(rank);
           if (model.erase(next) == 0) model.insert(next);
@@ -44,7 +44,7 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
     }
     RC_ASSERT(ready.first() == (model.empty() ? kRanks : *model.begin()));
     for (unsigned r = 0; r < kRanks; ++r) {
-      RC_ASSERT(Ready::contains(ready.place(r)) == model.contains(r));
+      RC_ASSERT(Ready::contains(ready.position(r)) == model.contains(r));
     }
   }
 }

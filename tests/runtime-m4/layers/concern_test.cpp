@@ -4,9 +4,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/loaded_program.hpp"
 #include "tests/runtime-m4/layers/draw.hpp"
 #include "tests/runtime-m4/layers/spread.hpp"
+#include "tests/runtime-m4/peer.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 #include "vm/interpreter.hpp"
@@ -74,7 +75,7 @@ struct DrawnConditions {
   vm::Image image;
 };
 
-std::set<unsigned> readers_of(const layers::Program& program, unsigned input) {
+std::set<unsigned> readers_of(const layers::LoadedProgram& program, unsigned input) {
   std::set<unsigned> rules;
   for (const unsigned rule : program.readers[input])
     rules.insert(rule);
@@ -85,7 +86,7 @@ std::set<unsigned> readers_of(const layers::Program& program, unsigned input) {
 
 TEST_CASE("the index has every rule whose result an input can change, and names what it reads") {
   Draw draw(4);
-  const auto program = std::make_unique<layers::Program>();
+  const auto program = std::make_unique<layers::LoadedProgram>();
   unsigned seen = 0;
   for (unsigned round = 0; round < 400; ++round) {
     const DrawnConditions drawn(draw);
@@ -124,7 +125,7 @@ TEST_CASE("SAFETY rules are in no index: they are evaluated in any case") {
       test::kPlainRobot);
   vm::Image image;
   REQUIRE(vm::view_image(bytes, image));
-  const auto program = std::make_unique<layers::Program>();
+  const auto program = std::make_unique<layers::LoadedProgram>();
   program->load(image);
   CHECK(readers_of(*program, 0) == std::set<unsigned>{1});
 }
@@ -140,12 +141,12 @@ TEST_CASE("a reading costs the evaluation of the rules that read it, however man
       REQUIRE(rig.feed(static_cast<std::uint8_t>(c), 0) == link::FeedError::none);
     rig.run(10);
     for (unsigned r = 0; r < rules; ++r) {
-      const std::uint32_t before = rig.runtime.evaluations();
+      const std::uint32_t before = test::evaluations();
       rig.lines.clear();
       const auto channel = static_cast<std::uint8_t>(spread.channel_of(r));
       REQUIRE(rig.feed(channel, spread.value_of(r)) == link::FeedError::none);
       rig.run(20 + r);
-      CHECK(rig.runtime.evaluations() - before == 1);
+      CHECK(test::evaluations() - before == 1);
       const std::string fire = " fire r" + std::to_string(r) + " DO\n";
       CHECK(rig.only("fire").find(fire) != std::string::npos);
     }
@@ -161,13 +162,13 @@ TEST_CASE("a rule that waits for its time costs the others nothing") {
   rig.run(1);
   REQUIRE(rig.feed(0, 20) == link::FeedError::none);
   rig.run(10);
-  const std::uint32_t before = rig.runtime.evaluations();
+  const std::uint32_t before = test::evaluations();
   for (int i = 0; i < 10; ++i) {
     REQUIRE(rig.feed(1, i) == link::FeedError::none);
     rig.run(11 + static_cast<std::uint64_t>(i));
   }
-  CHECK(rig.runtime.evaluations() - before == 10);
+  CHECK(test::evaluations() - before == 10);
   rig.run(200);
-  CHECK(rig.runtime.evaluations() - before == 11);  // when its time has come
+  CHECK(test::evaluations() - before == 11);  // when its time has come
   CHECK(rig.only("fire") == "101 #12 fire r0 DO\n");
 }

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/layers/draw.hpp"
+#include "tests/runtime-m4/peer.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 
@@ -147,7 +148,8 @@ struct Outcome {
 
 Outcome run(const std::vector<std::byte>& bytes, unsigned seed, bool all) {
   const auto rig = std::make_unique<Rig>();
-  if (all) rig->runtime.evaluate_all();
+  const std::uint32_t before = test::evaluations();
+  rig->concerns_all = all;
   REQUIRE(rig->activate(bytes).ok());
   Draw draw(seed);
   std::uint64_t now = draw.below(3);
@@ -160,7 +162,7 @@ Outcome run(const std::vector<std::byte>& bytes, unsigned seed, bool all) {
     now += draw.one_in(3) ? 0 : draw.one_in(3) ? 1 : draw.below(60);
   }
   rig->run(now + 500);
-  return {rig->lines, rig->runtime.evaluations()};
+  return {rig->lines, test::evaluations() - before};
 }
 
 const char* const kForgetful = R"({

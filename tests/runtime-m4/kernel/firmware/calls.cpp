@@ -21,7 +21,7 @@ enum Word : std::uint8_t { kTaken, kRounds, kSeed };
 // The open area, by an address that is no variable.
 volatile std::uint32_t& open(Word word) {
   std::uint32_t area = 0;
-  asm("movw %0, #:lower16:open_area_of_tests\n\tmovt %0, #:upper16:open_area_of_tests"
+  asm("movw %0, #:lower16:granted_area_of_tests\n\tmovt %0, #:upper16:granted_area_of_tests"
       : "=r"(area));
   return reinterpret_cast<volatile std::uint32_t*>(area)[word];
 }
@@ -37,12 +37,12 @@ void answer(void*) {
 
 void wait_and_report() {
   robosync_kernel.watch(rig::conductor(), 0, kPong);
-  rig::Thread& caller = rig::start_open(kCaller, 40, answer);
+  rig::Thread& caller = rig::start_unprivileged(kCaller, 40, answer);
   for (unsigned round = 1; round <= 100; ++round) {
     robosync_kernel.signal(caller, round % 2 != 0 ? kPing : kOther);
     CHECK(robosync_kernel.wait(kPong, robosync_kernel.now() + 10'000) == kPong);
-    CHECK(rig::open_area()[kRounds] == round);
-    CHECK(rig::open_area()[kTaken] == (round % 2 != 0 ? kPing : kOther));
+    CHECK(rig::granted_area()[kRounds] == round);
+    CHECK(rig::granted_area()[kTaken] == (round % 2 != 0 ? kPing : kOther));
   }
   CHECK(rig::faults() == 0);
 }
@@ -57,22 +57,22 @@ void take_one_by_one(void*) {
 
 void others_stay() {
   robosync_kernel.watch(rig::conductor(), 0, kPong);
-  rig::Thread& caller = rig::start_open(kCaller, 40, take_one_by_one);
+  rig::Thread& caller = rig::start_unprivileged(kCaller, 40, take_one_by_one);
   robosync_kernel.signal(caller, kPing | kOther);
   CHECK(robosync_kernel.wait(kPong, robosync_kernel.now() + 10'000) == kPong);
-  CHECK(rig::open_area()[kTaken] == kPing);
-  CHECK(rig::open_area()[kRounds] == kOther);
+  CHECK(rig::granted_area()[kTaken] == kPing);
+  CHECK(rig::granted_area()[kRounds] == kOther);
 }
 
 // Events that come before the wait, and such that nobody waits for.
 void events_are_kept() {
   robosync_kernel.watch(rig::conductor(), 0, kPong);
-  rig::Thread& caller = rig::start_open(kCaller, 40, answer);
+  rig::Thread& caller = rig::start_unprivileged(kCaller, 40, answer);
   robosync_kernel.signal(caller, kPing | kOther | 8);
   CHECK(robosync_kernel.wait(kPong, robosync_kernel.now() + 10'000) == kPong);
-  CHECK(rig::open_area()[kTaken] == (kPing | kOther));
+  CHECK(rig::granted_area()[kTaken] == (kPing | kOther));
   rig::sleep_ms(2);
-  CHECK(rig::open_area()[kRounds] == 1);
+  CHECK(rig::granted_area()[kRounds] == 1);
   CHECK(robosync_kernel.state(caller) == rig::Thread::State::blocked);
 }
 
@@ -108,15 +108,15 @@ void hostile_calls() {
   rig::watch_safety();
   const robosync::kernel::Time begin = robosync_kernel.now();
   for (unsigned i = 0; i < kThreads; ++i) {
-    rig::open_area()[kRounds] = 0;
-    rig::open_area()[kSeed] = draw(seed);
-    rig::Thread& caller = rig::start_open(kCaller, 60, call_anything);
+    rig::granted_area()[kRounds] = 0;
+    rig::granted_area()[kSeed] = draw(seed);
+    rig::Thread& caller = rig::start_unprivileged(kCaller, 60, call_anything);
     for (unsigned tries = 0; tries < 100; ++tries) {
       if (robosync_kernel.state(caller) != rig::Thread::State::blocked) break;
       ++waits;
       robosync_kernel.signal(caller, 0xFFFF'FFFF);
     }
-    made += rig::open_area()[kRounds];
+    made += rig::granted_area()[kRounds];
     if (robosync_kernel.state(caller) == rig::Thread::State::stopped) {
       CHECK(rig::last_fault().cause == kNoSuchCall);
       CHECK(rig::last_fault().address == rig::last_fault().r[0]);
@@ -144,7 +144,7 @@ void hostile_calls() {
 
 // The call cannot be stacked: one fault, and the call comes after it for a thread that is stopped.
 void call_without_stack() {
-  rig::Thread& caller = rig::start_open(kCaller, 60, calls_with_lost_stack);
+  rig::Thread& caller = rig::start_unprivileged(kCaller, 60, calls_with_lost_stack);
   rig::sleep_ms(2);
   CHECK(rig::faults() == 1);
   CHECK((rig::last_fault().cause & 1U << 4) != 0);

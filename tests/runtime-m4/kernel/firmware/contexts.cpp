@@ -73,7 +73,7 @@ constexpr Call kFromHandler[] = {
     {[] { robosync_kernel.remove(other); }, "remove", kHandler},
     {[] { robosync_kernel.set_priority(other, {}); }, "set_priority", kHandler},
     {[] { robosync_kernel.watch(other, 1, 2); }, "watch", kHandler},
-    {[] { robosync_kernel.open({}); }, "open", kHandler},
+    {[] { robosync_kernel.grant({}); }, "grant", kHandler},
     {[] { robosync_kernel.run(); }, "run", "when threads run already"},
     {[] { robosync_kernel.stop(other); }, "stop", "from a handler, and not the running thread"},
 };

@@ -1,7 +1,7 @@
 // What a thread without privileges cannot do: each attempt stops it, is described, and costs the
 // others nothing.
 //
-// Code of such a thread touches its stack, rig::open_area() and registers only, so the checks are
+// Code of such a thread touches its stack, rig::granted_area() and registers only, so the checks are
 // in the conductor.
 #include <algorithm>
 
@@ -61,15 +61,16 @@ void expect_fault(void (*entry)(void*), std::uint32_t cause, std::uint32_t targe
   late_beats = 0;
   rig::watch_safety();
   rig::start(kHeart, 60, heart);
-  rig::open_area()[kTarget] = target;
-  rig::Thread& victim = rig::start_open(kVictim, 40, entry, rig::Category::behavior, "victim");
-  rig::open_area()[kTarget] = target;
+  rig::granted_area()[kTarget] = target;
+  rig::Thread& victim =
+      rig::start_unprivileged(kVictim, 40, entry, rig::Category::behavior, "victim");
+  rig::granted_area()[kTarget] = target;
   rig::sleep_ms(25);
   CHECK(rig::faults() == 1);
   CHECK((rig::last_fault().cause & cause) == cause);
   CHECK(is_victim(rig::last_fault()));
   CHECK(robosync_kernel.state(victim) == rig::Thread::State::stopped);
-  CHECK(rig::open_area()[kDone] != kMark);
+  CHECK(rig::granted_area()[kDone] != kMark);
   CHECK(beats >= 24);
   CHECK(late_beats == 0);
   CHECK(rig::safety_checks() == 2);
@@ -85,8 +86,8 @@ void expect_pc_in(void (*entry)(void*), std::uint32_t bytes) {
 // r0 is the open area: what it points at is the address.
 [[gnu::naked]] void read_target(void*) {
   asm volatile(
-      "movw r1, #:lower16:open_area_of_tests \n"
-      "movt r1, #:upper16:open_area_of_tests \n"
+      "movw r1, #:lower16:granted_area_of_tests \n"
+      "movt r1, #:upper16:granted_area_of_tests \n"
       "ldr  r2, [r1]                         \n"
       "ldr  r3, [r2]                         \n"
       "b    isolation_survived               \n");
@@ -95,8 +96,8 @@ void expect_pc_in(void (*entry)(void*), std::uint32_t bytes) {
   asm volatile(
       ".global write_to_target               \n"
       "write_to_target:                      \n"
-      "movw r1, #:lower16:open_area_of_tests \n"
-      "movt r1, #:upper16:open_area_of_tests \n"
+      "movw r1, #:lower16:granted_area_of_tests \n"
+      "movt r1, #:upper16:granted_area_of_tests \n"
       "ldr  r2, [r1]                         \n"
       "str  r2, [r2]                         \n"
       ".global isolation_survived            \n"
@@ -108,8 +109,8 @@ void expect_pc_in(void (*entry)(void*), std::uint32_t bytes) {
 }
 [[gnu::naked]] void call_target(void*) {
   asm volatile(
-      "movw r1, #:lower16:open_area_of_tests \n"
-      "movt r1, #:upper16:open_area_of_tests \n"
+      "movw r1, #:lower16:granted_area_of_tests \n"
+      "movt r1, #:upper16:granted_area_of_tests \n"
       "ldr  r2, [r1]                         \n"
       "blx  r2                               \n"
       "b    isolation_survived               \n");
@@ -127,13 +128,13 @@ void expect_no_write(std::uint32_t address, std::uint32_t cause = kDataViolation
   expect_pc_in(write_target, 14);
 }
 
-void open_area_is_open() {
-  rig::start_open(kVictim, 40, write_target);
-  rig::open_area()[kTarget] = address_of(&rig::open_area()[rig::kOpenWords - 1]);
+void granted_area_is_there() {
+  rig::start_unprivileged(kVictim, 40, write_target);
+  rig::granted_area()[kTarget] = address_of(&rig::granted_area()[rig::kGrantedWords - 1]);
   rig::sleep_ms(2);
   CHECK(rig::faults() == 0);
-  CHECK(rig::open_area()[rig::kOpenWords - 1] == rig::open_area()[kTarget]);
-  CHECK(rig::open_area()[kDone] == kMark);
+  CHECK(rig::granted_area()[rig::kGrantedWords - 1] == rig::granted_area()[kTarget]);
+  CHECK(rig::granted_area()[kDone] == kMark);
 }
 
 void wild_read() {
@@ -142,8 +143,8 @@ void wild_read() {
 void wild_write() {
   expect_no_write(0x6000'0000);
 }
-void behind_open_area() {
-  expect_no_write(address_of(rig::open_area().data() + rig::kOpenWords));
+void behind_granted_area() {
+  expect_no_write(address_of(rig::granted_area().data() + rig::kGrantedWords));
 }
 void read_kernel() {
   expect_no_read(address_of(&robosync_kernel));
@@ -160,7 +161,7 @@ void write_foreign_stack() {
   expect_no_write(address_of(rig::stack_of(kHeart).data() + 512));
 }
 void write_above_own_stack() {
-  expect_no_write(address_of(rig::stack_of(kVictim).data() + rig::kOpenStack));
+  expect_no_write(address_of(rig::stack_of(kVictim).data() + rig::kUnprivilegedStack));
 }
 void write_below_own_stack() {
   expect_no_write(address_of(rig::stack_of(kVictim).data() - 4));
@@ -184,9 +185,9 @@ void write_flash() {
 }
 
 void execute_data() {
-  rig::open_area()[8] = 0x4770'4770;  // bx lr
-  expect_fault(call_target, kExecuteViolation, address_of(&rig::open_area()[8]) | 1);
-  CHECK(rig::last_fault().pc == address_of(&rig::open_area()[8]));
+  rig::granted_area()[8] = 0x4770'4770;  // bx lr
+  expect_fault(call_target, kExecuteViolation, address_of(&rig::granted_area()[8]) | 1);
+  CHECK(rig::last_fault().pc == address_of(&rig::granted_area()[8]));
 }
 void execute_stack() {
   const std::uint32_t place = address_of(rig::stack_of(kVictim).data() + 64);
@@ -209,8 +210,8 @@ void stack_overflow() {
 // The stack pointer where the core finds no room for a frame …
 [[gnu::naked]] void stack_pointer_to_target(void*) {
   asm volatile(
-      "movw r1, #:lower16:open_area_of_tests \n"
-      "movt r1, #:upper16:open_area_of_tests \n"
+      "movw r1, #:lower16:granted_area_of_tests \n"
+      "movt r1, #:upper16:granted_area_of_tests \n"
       "ldr  r2, [r1]                         \n"
       "mov  sp, r2                           \n"
       "1: b 1b                               \n");
@@ -225,8 +226,8 @@ void stack_pointer_to_kernel() {
   CHECK(std::equal(before.begin(), before.end(), last));
 }
 // … or finds it, but saving with privileges would write into others' memory.
-void stack_pointer_to_open_area() {
-  const std::uint32_t bottom = address_of(rig::open_area().data());
+void stack_pointer_to_granted_area() {
+  const std::uint32_t bottom = address_of(rig::granted_area().data());
   const auto* const below = reinterpret_cast<const std::uint32_t*>(bottom) - 16;
   std::array<std::uint32_t, 16> before{};
   std::copy(below, below + before.size(), before.begin());
@@ -296,7 +297,7 @@ void endless_loop() {
   late_beats = 0;
   rig::watch_safety();
   rig::start(kHeart, 60, heart);
-  rig::start_open(kVictim, 40, loops, rig::Category::behavior, "victim");
+  rig::start_unprivileged(kVictim, 40, loops, rig::Category::behavior, "victim");
   rig::sleep_ms(105);
   CHECK(rig::faults() == 0);
   CHECK(beats >= 104);
@@ -307,12 +308,12 @@ void endless_loop() {
 
 // Thread 1 and thread 2 take turns, and none sees the other's stack.
 void windows_change() {
-  rig::start_open(kVictim, 40, loops);
-  rig::start_open(2, 41, write_target, rig::Category::behavior, "victim");
-  rig::open_area()[kTarget] = address_of(rig::stack_of(kVictim).data() + 256);
+  rig::start_unprivileged(kVictim, 40, loops);
+  rig::start_unprivileged(2, 41, write_target, rig::Category::behavior, "victim");
+  rig::granted_area()[kTarget] = address_of(rig::stack_of(kVictim).data() + 256);
   rig::sleep_ms(5);
   CHECK(rig::faults() == 1);
-  CHECK(rig::last_fault().address == rig::open_area()[kTarget]);
+  CHECK(rig::last_fault().address == rig::granted_area()[kTarget]);
 }
 
 void bad_stacks_are_refused() {
@@ -327,10 +328,10 @@ void bad_stacks_are_refused() {
 }
 
 constexpr rig::Scenario kScenarios[] = {
-    {"unprivileged: its stack and the open area are open", open_area_is_open},
+    {"unprivileged: its stack and the open area are open", granted_area_is_there},
     {"unprivileged: wild read", wild_read},
     {"unprivileged: wild write", wild_write},
-    {"unprivileged: write behind the open area", behind_open_area},
+    {"unprivileged: write behind the open area", behind_granted_area},
     {"unprivileged: read of the kernel", read_kernel},
     {"unprivileged: write to the kernel", write_kernel},
     {"unprivileged: read of another thread's stack", read_foreign_stack},
@@ -348,7 +349,7 @@ constexpr rig::Scenario kScenarios[] = {
     {"unprivileged: call of null", null_call},
     {"unprivileged: stack overflow", stack_overflow},
     {"unprivileged: stack pointer into the kernel", stack_pointer_to_kernel},
-    {"unprivileged: stack pointer into the open area", stack_pointer_to_open_area},
+    {"unprivileged: stack pointer into the open area", stack_pointer_to_granted_area},
     {"unprivileged: no room to save registers", no_room_to_save},
     {"unprivileged: division by zero", division_by_zero},
     {"unprivileged: unaligned access that traps", unaligned},

@@ -7,7 +7,7 @@
 
 // 256 bytes, as one region of the MPU may be; assembler code refers to it.
 extern "C" {
-alignas(256) std::array<std::uint32_t, rig::kOpenWords> open_area_of_tests;
+alignas(256) std::array<std::uint32_t, rig::kGrantedWords> granted_area_of_tests;
 }
 robosync::kernel::Kernel robosync_kernel;
 
@@ -34,7 +34,8 @@ robosync::link::Fault fault_record;
 struct Worker {
   rig::Thread thread;
   std::array<std::byte, 192> room;  // for the stack overflows that are part of the test
-  alignas(robosync::port::kOpenStackAlignment) std::array<std::byte, rig::kWorkerStack> stack;
+  alignas(
+      robosync::port::kUnprivilegedStackAlignment) std::array<std::byte, rig::kWorkerStack> stack;
 };
 std::array<Worker, rig::kWorkers> workers;
 rig::Thread conductor_thread;
@@ -65,7 +66,7 @@ void print_number(std::uint32_t number) {
 }
 
 void begin() {
-  open_area_of_tests.fill(0);
+  granted_area_of_tests.fill(0);
   scenario_failed = false;
   fault_count = 0;
 }
@@ -188,24 +189,25 @@ Thread& start(unsigned index, std::int16_t priority, void (*entry)(void*), Categ
   return worker.thread;
 }
 
-Thread& start_open(unsigned index, std::int16_t priority, void (*entry)(void*), Category category,
-                   const char* name) {
+Thread& start_unprivileged(unsigned index, std::int16_t priority, void (*entry)(void*),
+                           Category category, const char* name) {
   Worker& worker = workers[index];
-  const std::span area(open_area_of_tests);
-  robosync_kernel.open({.readable = std::as_bytes(area), .writable = std::as_writable_bytes(area)});
+  const std::span area(granted_area_of_tests);
+  robosync_kernel.grant(
+      {.readable = std::as_bytes(area), .writable = std::as_writable_bytes(area)});
   const robosync::kernel::ThreadSpec spec{name,
                                           category,
                                           priority,
                                           entry,
                                           worker.stack.data(),
-                                          std::span(worker.stack).first(kOpenStack),
+                                          std::span(worker.stack).first(kUnprivilegedStack),
                                           false};
   CHECK(robosync_kernel.add(worker.thread, spec));
   return worker.thread;
 }
 
-std::span<std::uint32_t> open_area() {
-  return open_area_of_tests;
+std::span<std::uint32_t> granted_area() {
+  return granted_area_of_tests;
 }
 
 std::span<std::byte> stack_of(unsigned index) {

@@ -44,12 +44,12 @@ inline constexpr unsigned kWorkers = 4;
 inline constexpr std::size_t kWorkerStack = 768;
 Thread& start(unsigned index, std::int16_t priority, void (*entry)(void*),
               Category category = Category::behavior, const char* name = "worker");
-// The same without privileges: it may read and write `open_area()`, and its stack is smaller.
-inline constexpr std::size_t kOpenStack = 512;
-Thread& start_open(unsigned index, std::int16_t priority, void (*entry)(void*),
-                   Category category = Category::behavior, const char* name = "worker");
-std::span<std::uint32_t> open_area();  // kOpenWords
-inline constexpr std::size_t kOpenWords = 64;
+// The same without privileges: it may read and write `granted_area()`, and its stack is smaller.
+inline constexpr std::size_t kUnprivilegedStack = 512;
+Thread& start_unprivileged(unsigned index, std::int16_t priority, void (*entry)(void*),
+                           Category category = Category::behavior, const char* name = "worker");
+std::span<std::uint32_t> granted_area();  // kGrantedWords
+inline constexpr std::size_t kGrantedWords = 64;
 std::span<std::byte> stack_of(unsigned index);  // of a worker, whatever runs on it
 
 Thread& conductor();

@@ -11,15 +11,15 @@
 
 namespace robosync::layers {
 
-class Crew {
+class ProgramThreads {
 public:
   struct Member {
     kernel::Thread thread;
     std::uint8_t index = 0;  // of its sensor, behaviour or actuator in the image
-    bool mourned = false;    // its stop was reported
+    bool reported = false;   // its stop was reported
   };
 
-  explicit Crew(kernel::Kernel& kernel) : kernel_(kernel) {}
+  explicit ProgramThreads(kernel::Kernel& kernel) : kernel_(kernel) {}
 
   // Adds a thread with a stack of `stack_bytes`; spec.stack is set here. Null, and nothing changed,
   // when there is no place; fits() (program.hpp) rules that out for a program as a whole.
@@ -54,11 +54,11 @@ private:
   // Stacks of threads with privileges from the beginning on, of those without from the end down:
   // these must be aligned, and so they are if the arena and their sizes are.
   std::size_t stack_used_ = 0;
-  std::size_t open_stack_used_ = 0;
-  static_assert(kStackArena % port::kOpenStackAlignment == 0);
-  static_assert(kBehaviorStack % port::kOpenStackAlignment == 0);
-  static_assert(kBehaviorStack <= port::kMaxOpenStack);
-  alignas(port::kOpenStackAlignment) std::array<std::byte, kStackArena> stacks_{};
+  std::size_t unprivileged_stack_used_ = 0;
+  static_assert(kStackArena % port::kUnprivilegedStackAlignment == 0);
+  static_assert(kBehaviorStack % port::kUnprivilegedStackAlignment == 0);
+  static_assert(kBehaviorStack <= port::kMaxUnprivilegedStack);
+  alignas(port::kUnprivilegedStackAlignment) std::array<std::byte, kStackArena> stacks_{};
 };
 
 }  // namespace robosync::layers

@@ -1,6 +1,6 @@
 // See program.hpp. May rely on the verifier: behaviours stand from the highest priority down, their
 // rules follow each other without gaps, as the channels of the sensors do.
-#include "runtime-m4/layers/program.hpp"
+#include "runtime-m4/layers/loaded_program.hpp"
 
 #include "runtime-m4/policy/concern.hpp"
 #include "vm/opcode.hpp"
@@ -8,7 +8,7 @@
 
 namespace robosync::layers {
 
-void Program::load(const vm::Image& loaded) {
+void LoadedProgram::load(const vm::Image& loaded) {
   image = loaded;
   readers.fill({});
   safety_cells = 0;
@@ -25,7 +25,7 @@ void Program::load(const vm::Image& loaded) {
 }
 
 // SAFETY rules are evaluated all together, whatever changes: nobody looks them up.
-void Program::load_rules(unsigned b) {
+void LoadedProgram::load_rules(unsigned b) {
   const vm::Behavior& behavior = image.behaviors[b];
   unsigned cell = behavior.input_count + 0U + behavior.locals;
   for (unsigned r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count; ++r) {
@@ -43,7 +43,7 @@ void Program::load_rules(unsigned b) {
 
 // Of a SAFETY rule: its condition has them all. They are numbered as they stand in the code, and
 // the code of the SAFETY rules stands first; so the last one ends what belongs to SAFETY.
-void Program::note_timers(const vm::Rule& rule) {
+void LoadedProgram::note_timers(const vm::Rule& rule) {
   for (const vm::Word word : image.code.subspan(rule.condition_start, rule.condition_length)) {
     const vm::Opcode opcode = vm::opcode_of(word);
     if (opcode < vm::Opcode::held || opcode > vm::Opcode::changed) continue;
@@ -53,7 +53,7 @@ void Program::note_timers(const vm::Rule& rule) {
   }
 }
 
-BehaviorMask Program::needing(kernel::Category category, unsigned index) const {
+BehaviorMask LoadedProgram::needing(kernel::Category category, unsigned index) const {
   const InputMask channels = category == kernel::Category::sensor ? channels_of(index) : 0;
   BehaviorMask needing = 0;
   for (unsigned b = 0; b < image.behaviors.size(); ++b)
@@ -62,7 +62,7 @@ BehaviorMask Program::needing(kernel::Category category, unsigned index) const {
   return needing;
 }
 
-InputMask Program::channels_of(unsigned sensor_thread) const {
+InputMask LoadedProgram::channels_of(unsigned sensor_thread) const {
   InputMask channels = 0;
   for (unsigned s = 0; s < image.sensors.size(); ++s) {
     const vm::Sensor& wiring = image.sensors[s];

@@ -13,7 +13,7 @@
 
 namespace robosync::layers {
 
-struct Program {
+struct LoadedProgram {
   vm::Image image;
   std::array<InputMask, kMaxBehaviors> inputs{};      // that each behaviour reads
   std::array<RuleSet, kMaxInputs> readers{};          // by input: the rules that read or set it

@@ -1,0 +1,25 @@
+// What tests see and change of a Runtime that nobody else can: its peer, a friend.
+#pragma once
+
+#include <cstdint>
+
+#include "runtime-m4/runtime.hpp"
+
+namespace robosync {
+
+struct RuntimePeer {
+  // In the next step all rules of a behaviour are evaluated when one of them is concerned, as in
+  // its first step; which must make no difference.
+  static void concern_all(Runtime& runtime) {
+    runtime.processing_.untouched_ = ~layers::BehaviorMask{0};
+  }
+};
+
+}  // namespace robosync
+
+namespace robosync::test {
+
+// Conditions that the VM has evaluated so far, in this program: vm::run is wrapped by the linker.
+std::uint32_t evaluations();
+
+}  // namespace robosync::test
