@@ -1,8 +1,8 @@
 // A hobby servo: a setpoint every 20 ms, pulses of 500 to 2500 us over the range of the actuator.
 //
 //   MOVE TO x, MOVE BY x    the way there, at AT, or in OVER
-//   MOVE                    a gesture: to the range's end, to its beginning, and back to where it
-//   was
+//   MOVE                    a gesture: to the range's end, to its beginning, and back to where
+//                           it was
 //
 // Nothing tells where a servo stands when a program starts: it is taken to be at rest, which is 0
 // or the end of the range next to it. A servo that is not to move (AT 0) has done so at once. OVER

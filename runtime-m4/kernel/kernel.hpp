@@ -97,7 +97,7 @@ public:
   }
 
   // Takes a mutex, without ever waiting for it, and gives it back (mutex.hpp; MutexGuard does
-  // both). [thread]
+  // both).  [thread]
   [[gnu::always_inline]] void acquire(Mutex& mutex) {
     expect().thread();
     if (held_ != nullptr) [[unlikely]]

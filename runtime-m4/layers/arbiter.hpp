@@ -1,15 +1,15 @@
 // Who gets the actuators. Pure: what is decided depends on the arguments only.
 //
 // Claims of a step are served from the highest priority down, inside a behaviour in file order;
-// that is the order of the rules in the image. Semantics: 10-language.md 3.3, 3.5, 3.6, and what
-// they leave open:
+// that is the order of the rules in the image. What users are told of it: docs/language.md
+// (RESTARTING and WAITING). In detail:
 // * Claims of one step come at the same time, so none is "later": what was won in this step is not
 //   lost in it. Of two rules of one behaviour that trigger together, the earlier in the file wins.
 // * A claim that is tried again takes nothing from its own behaviour: only a trigger does.
 // * Choosing the other side of a WHEN/ELSE ends the running one, even when the new side loses. So
 //   does starting again (RESTARTING).
 // * What safety has halted nobody gets; the claim loses to the behaviour that holds the safety
-// rules.
+//   rules.
 #pragma once
 
 #include <cstdint>

@@ -59,7 +59,7 @@ void ControlLayer::release_all() {
   program_ = nullptr;
 }
 
-// --- staging, cancelling, committing: called from the behaviour and the step thread ---
+// --- staging, cancelling, committing: called from the step thread ---
 
 void ControlLayer::stage(const Command& command) {
   Unit& unit = units_[command.actuator()];

@@ -1,7 +1,7 @@
 // Control layer: one thread per actuator, which has it to itself.
 //
-// The behaviour layer stages the commands of a step; the step thread first cancels what was
-// interrupted and waits until that is done, then commits what was staged, all at once. An actuator
+// The step thread stages the commands of a step as responses end; it cancels what was interrupted
+// and waits until that is done, then commits what was staged, all at once. An actuator
 // does one command at a time and the rest of its queue (kMaxQueued) in order. Words and limits of
 // the robot are applied here, whatever the program says.
 //
@@ -45,10 +45,8 @@ public:
   // what a program does must not depend on the one before it.
   void release_all();
 
-  // --- for the behaviour layer, within a step ---
-  void stage(const Command& command);  // dropped when there is no place
-
   // --- for the step thread ---
+  void stage(const Command& command);  // dropped when there is no room
   ActuatorMask take_staged();   // actuators that commands were staged for since the last call
   ActuatorMask take_dropped();  // … and that a command was dropped for
   void cancel(ActuatorMask actuators);  // begins it; done when cancelling() is false

@@ -1,7 +1,8 @@
 // The messages between the layers, one type for each hop of the paper:
 //
-//   sensor --Reading (M_sp)--> processing --Snapshot (M_pb)--> behaviour --Command (M_bc)-->
-//   control
+//   sensor      --Reading (M_sp)-->   processing
+//   processing  --Snapshot (M_pb)-->  behaviour
+//   behaviour   --Command (M_bc)-->   control
 //
 // Only the layer a message comes from can make one, and only the next layer has a function that
 // takes it, so that a hop that skips a layer does not compile.

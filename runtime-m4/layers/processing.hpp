@@ -28,7 +28,8 @@
 //   fire                 by rule, which is by priority, then by place in the file
 //   interrupt            WHILE whose condition no longer holds, by rule
 //   interrupt, win/lose  claim by claim in the order of the rules: first what it interrupts, by
-//   rule go_on, zero_divide, log, alert, wait, overrun
+//                        rule
+//   go_on, zero_divide, log, alert, wait, overrun
 //                        response by response, by rule; overrun once for an actuator
 //   cancel, command      all cancels before all commands (but a STOP's cancel, which stands before
 //                        the STOP); each in the order of the actuators' ranks

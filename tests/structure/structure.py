@@ -9,7 +9,7 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-MAX_FILE_LINES = 400
+MAX_FILE_LINES = 700
 MAX_FUNCTION_LINES = 40
 CODE = {".hpp", ".cpp", ".h", ".c", ".S", ".def", ".re", ".yy"}
 CPP = {".hpp", ".cpp"}

@@ -168,7 +168,7 @@ class Planted(unittest.TestCase):
                 self.assert_red("head comments", name, text)
 
     def test_long_files_and_functions(self):
-        self.assert_red("file sizes", "vm/a.cpp", HEAD + "int a;\n" * 400)
+        self.assert_red("file sizes", "vm/a.cpp", HEAD + "int a;\n" * 700)
         body = "  x();\n" * 39
         self.assert_red("function sizes", "rsc/a.cpp", f"{HEAD}void f() {{\n{body}}}\n")
         self.assert_red("function sizes", "rsc/b.hpp",

@@ -16,8 +16,8 @@ public:
   explicit constexpr I2c(std::uintptr_t registers) : registers_(registers) {}
 
   // Writes `out`, then, after a repeated start, reads `in`; an empty one is left out. False when
-  // the device does not acknowledge or the bus is stuck. About 100 µs a byte. [one thread at a
-  // time]
+  // the device does not acknowledge or the bus is stuck. About 100 µs a byte.
+  // [one thread at a time]
   [[nodiscard]] bool transfer(std::uint8_t address, std::span<const std::byte> out,
                               std::span<std::byte> in);
 

@@ -186,8 +186,8 @@ void stop_overrun(kernel::Kernel&, kernel::Thread& thread) {
   constexpr std::size_t kFpuWords = 16;
   const std::uint32_t* const saved = kernel::Kernel::context(thread).sp;
   const std::uint32_t exc_return = saved[kExcReturn];
-  const bool open = (exc_return & kMarkUnprivileged) == 0;
-  const bool used_fpu = (exc_return & (open ? kUnprivilegedWithoutFpu : kWithoutFpu)) == 0;
+  const bool privileged = (exc_return & kMarkUnprivileged) != 0;
+  const bool used_fpu = (exc_return & (privileged ? kWithoutFpu : kUnprivilegedWithoutFpu)) == 0;
   link::Fault fault{};
   fault.thread = name_of(thread);
   fault.cause = kCauseOverrun;

@@ -18,7 +18,7 @@
    A thread's run time is what the free-running clock, which counts down, stood at when it began,
    less what it stands at when it ends. Six instructions of each switch are for that.
 
-   A thread without privileges ("open") costs the others nothing. It leaves by a vector table of its
+   A thread without privileges costs the others nothing. It leaves by a vector table of its
    own, and what it saves as EXC_RETURN has bits 4 and 5 cleared, and bit 6 if it used the FPU: they
    are told apart where the FPU is. */
 
