@@ -16,15 +16,15 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
     : kernel_(kernel),
       board_(board),
       monitor_(kernel, board, *this),
-      guard_(kernel,
-             {.trace = trace_,
-              .mailboxes = mailboxes_,
-              .frames = frames_,
-              .variables = variables_,
-              .control = control_,
-              .alarm = alarm_,
-              .processing = processing_},
-             step_thread_, layers::kHalted),
+      safety_rules_(kernel,
+                    {.trace = trace_,
+                     .mailboxes = mailboxes_,
+                     .frames = frames_,
+                     .variables = variables_,
+                     .control = control_,
+                     .alarm = alarm_,
+                     .processing = processing_},
+                    step_thread_, layers::kHalted),
       threads_(kernel),
       mailboxes_(kernel),
       sensors_(kernel, trace_, mailboxes_, alarm_, step_thread_, layers::kNews),
@@ -100,7 +100,7 @@ bool Runtime::start_program() {
       !processing_.start(program_) || !sensors_.start(program_, *sampler_, threads_))
     return false;
   processing_.rank();
-  guard_.start(program_);
+  safety_rules_.start(program_);
   go();
   return true;
 }
@@ -158,8 +158,8 @@ void Runtime::halt(kernel::Duration stuck_for) {
   trace_.emit(EventKind::deadline, trace_.now(), step_thread_.rank(), 0, late);
 }
 
-kernel::Time Runtime::guard() {
-  return running_ ? guard_.look() : kernel::kForever;
+kernel::Time Runtime::look_at_rules() {
+  return running_ ? safety_rules_.look() : kernel::kForever;
 }
 
 }  // namespace robosync

@@ -30,8 +30,8 @@
 #include "runtime-m4/layers/triggers.hpp"
 #include "runtime-m4/layers/variables.hpp"
 #include "runtime-m4/layers/workspace.hpp"
-#include "runtime-m4/safety/guard.hpp"
 #include "runtime-m4/safety/monitor.hpp"
+#include "runtime-m4/safety/safety_rules.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync {
@@ -79,7 +79,7 @@ private:
   std::uint32_t progress() const override { return processing_.passes(); }
   void hold_to_budgets(bool alive) override;
   void halt(kernel::Duration stuck_for) override;
-  kernel::Time guard() override;
+  kernel::Time look_at_rules() override;
 
   bool start_program();
   void go();
@@ -93,7 +93,7 @@ private:
   std::uint16_t activations_ = 0;
   unsigned faults_ = 0;  // of programs that are gone
   safety::Monitor monitor_;
-  safety::Guard guard_;
+  safety::SafetyRules safety_rules_;
   layers::Budget budget_;
   kernel::Thread step_thread_;
   layers::ProgramThreads threads_;
@@ -124,7 +124,7 @@ constexpr Runtime::Layout Runtime::layout() {
   constexpr Layout kLayout{.may_be_readable = offsetof(Runtime, mailboxes_),
                            .readable = offsetof(Runtime, program_)};
   static_assert(offsetof(Runtime, monitor_) < kLayout.may_be_readable);
-  static_assert(offsetof(Runtime, guard_) < kLayout.may_be_readable);
+  static_assert(offsetof(Runtime, safety_rules_) < kLayout.may_be_readable);
   static_assert(offsetof(Runtime, budget_) < kLayout.may_be_readable);
   static_assert(offsetof(Runtime, step_thread_) < kLayout.may_be_readable);
   static_assert(offsetof(Runtime, threads_) < kLayout.may_be_readable);

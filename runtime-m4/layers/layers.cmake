@@ -21,7 +21,7 @@ target_sources(robosync_runtime PRIVATE
   layers/trace.cpp
   layers/triggers.cpp
   layers/variables.cpp
-  safety/guard.cpp
+  safety/safety_rules.cpp
   safety/monitor.cpp
   drivers/i2c_register.cpp
   drivers/max34451.cpp

@@ -17,10 +17,10 @@ bool Monitor::start() {
 void Monitor::run() {
   board_.watchdog_start();
   kernel::Time due = kernel_.now();
-  kernel::Time guard_due = due;
+  kernel::Time rules_due = due;
   while (true) {
-    kernel_.wait(kNews, std::min(due, guard_due));
-    guard_due = supervised_.guard();
+    kernel_.wait(kNews, std::min(due, rules_due));
+    rules_due = supervised_.look_at_rules();
     const kernel::Time now = kernel_.now();
     if (now < due) continue;
     check(now - due);

@@ -30,7 +30,7 @@ public:
   // called again.
   virtual void halt(kernel::Duration stuck_for) = 0;
   // Evaluates the safety rules. Returns when they want to be looked at again, if not for news.
-  virtual kernel::Time guard() = 0;
+  virtual kernel::Time look_at_rules() = 0;
 
 protected:
   ~Supervised() = default;

@@ -118,7 +118,7 @@ class Planted(unittest.TestCase):
         for name, target in [("runtime-m4/limits.hpp", "runtime-m4/kernel/time.hpp"),
                              ("runtime-m4/kernel/k.cpp", "runtime-m4/layers/step.hpp"),
                              ("runtime-m4/drivers/d.cpp", "runtime-m4/layers/order.hpp"),
-                             ("runtime-m4/layers/s.cpp", "runtime-m4/safety/guard.hpp"),
+                             ("runtime-m4/layers/s.cpp", "runtime-m4/safety/safety_rules.hpp"),
                              ("runtime-m4/safety/s.cpp", "runtime-m4/runtime.hpp"),
                              ("runtime-m4/runtime.cpp", "runtime-m4/update/server.hpp"),
                              ("runtime-m4/update/s.cpp", "runtime-m4/sim/simulator.hpp"),

@@ -26,7 +26,7 @@
 
 namespace robosync::safety {
 
-class Guard {
+class SafetyRules {
 public:
   struct Neighbours {
     layers::Trace& trace;
@@ -38,8 +38,8 @@ public:
     const layers::ProcessingLayer& processing;  // for the snapshot of its last step
   };
 
-  Guard(kernel::Kernel& kernel, const Neighbours& neighbours, kernel::Thread& step_thread,
-        kernel::Events acted)
+  SafetyRules(kernel::Kernel& kernel, const Neighbours& neighbours, kernel::Thread& step_thread,
+              kernel::Events acted)
       : kernel_(kernel), layers_(neighbours), step_thread_(step_thread), acted_(acted) {}
 
   // Nothing is tripped. `program` must stay until the next start().

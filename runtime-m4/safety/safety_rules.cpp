@@ -1,6 +1,6 @@
-// See guard.hpp. May rely on the verifier: a resume rule follows its safety rule, bodies are
+// See safety_rules.hpp. May rely on the verifier: a resume rule follows its safety rule, bodies are
 // straight-line code, and on fits() for the room for their output.
-#include "runtime-m4/safety/guard.hpp"
+#include "runtime-m4/safety/safety_rules.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -21,14 +21,14 @@ ActuatorMask actuators_of(const vm::Image& image, std::uint8_t target) {
 
 }  // namespace
 
-void Guard::start(const layers::LoadedProgram& program) {
+void SafetyRules::start(const layers::LoadedProgram& program) {
   program_ = &program;
   tripped_.clear();
   layers_.alarm.watch(program.image.has_safety() ? program.inputs[vm::kSafetyBehavior] : 0);
   if (program.image.has_safety()) machine_ = layers_.frames.machine(program, vm::kSafetyBehavior);
 }
 
-kernel::Time Guard::look() {
+kernel::Time SafetyRules::look() {
   if (!program_->image.has_safety()) return kernel::kForever;
   const vm::Image& image = program_->image;
   const kernel::Time now = kernel_.now();
@@ -44,7 +44,7 @@ kernel::Time Guard::look() {
 }
 
 // The resume condition is evaluated in any case: it may have to remember something.
-void Guard::evaluate(unsigned rule) {
+void SafetyRules::evaluate(unsigned rule) {
   const vm::Image& image = program_->image;
   const vm::Value danger = truth_of(rule);
   const bool can_resume =
@@ -58,7 +58,7 @@ void Guard::evaluate(unsigned rule) {
   }
 }
 
-vm::Value Guard::truth_of(unsigned rule) {
+vm::Value SafetyRules::truth_of(unsigned rule) {
   const vm::Image& image = program_->image;
   const vm::Value truth = vm::evaluate(machine_, &image.code[image.rules[rule].condition_start]);
   if (std::exchange(machine_.divided_by_zero, false))
@@ -66,7 +66,7 @@ vm::Value Guard::truth_of(unsigned rule) {
   return truth;
 }
 
-void Guard::trip(unsigned rule) {
+void SafetyRules::trip(unsigned rule) {
   tripped_.insert(rule);
   layers_.trace.emit(EventKind::trip, layers_.trace.now(), rule);
   const vm::Image& image = program_->image;
@@ -85,7 +85,7 @@ void Guard::trip(unsigned rule) {
   kernel_.signal(step_thread_, acted_);
 }
 
-void Guard::act(const vm::Output& said) {
+void SafetyRules::act(const vm::Output& said) {
   if (said.kind == vm::OutputKind::halt) {
     layers_.control.halt(actuators_of(program_->image, said.target));
   } else if (said.kind != vm::OutputKind::command) {
@@ -93,7 +93,7 @@ void Guard::act(const vm::Output& said) {
   }
 }
 
-void Guard::resume(unsigned rule) {
+void SafetyRules::resume(unsigned rule) {
   tripped_.erase(rule);
   layers_.trace.emit(EventKind::resume, layers_.trace.now(), rule);
   ActuatorMask still = 0;
@@ -103,7 +103,7 @@ void Guard::resume(unsigned rule) {
 }
 
 // What its body halts: it is straight-line code, so all of it was run.
-ActuatorMask Guard::halted_by(unsigned rule) const {
+ActuatorMask SafetyRules::halted_by(unsigned rule) const {
   const vm::Image& image = program_->image;
   const vm::Response& body = image.responses[image.rules[rule].then_response];
   ActuatorMask mask = 0;
@@ -112,7 +112,7 @@ ActuatorMask Guard::halted_by(unsigned rule) const {
   return mask;
 }
 
-kernel::Time Guard::next_look() const {
+kernel::Time SafetyRules::next_look() const {
   const kernel::Time now = layers_.trace.program_time();
   kernel::Duration wait = kPeriod - now % kPeriod;
   if (machine_.wake != vm::Machine::kNever) {
