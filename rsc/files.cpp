@@ -1,12 +1,13 @@
 // May assume POSIX. Promises whole files or a message that names the file and the reason.
 #include "rsc/files.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <system_error>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -18,11 +19,48 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMaxFile = std::size_t{16} * 1024 * 1024;
+constexpr std::size_t kReadBlock = std::size_t{64} * 1024;
 
 [[noreturn]] void fail(const char* what, const fs::path& path, int error) {
   throw Failure(Exit::outside,
                 fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(error)));
 }
+
+// A file that is read from its beginning to its end; may be a pipe.
+class InputFile {
+public:
+  explicit InputFile(const fs::path& path)
+      : path_(path), file_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (file_ < 0) fail("read", path_, errno);
+  }
+  ~InputFile() { close(file_); }
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  // What a whole file needs, no more than may be read; of a pipe and of what grows it says little.
+  std::size_t size_hint() const {
+    struct stat facts {};
+    if (fstat(file_, &facts) != 0 || facts.st_size < 0) return 0;
+    return std::min(static_cast<std::size_t>(facts.st_size), kMaxFile);
+  }
+
+  // Fills `room`, unless the file ends before. Bytes read.
+  std::size_t read_some(std::span<char> room) const {
+    std::size_t done = 0;
+    while (done < room.size()) {
+      const ssize_t count = read(file_, room.data() + done, room.size() - done);
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) fail("read", path_, errno);
+      if (count == 0) break;
+      done += static_cast<std::size_t>(count);
+    }
+    return done;
+  }
+
+private:
+  fs::path path_;
+  int file_;
+};
 
 // A temporary file beside the one to be written. Gone unless it was renamed.
 class Temporary {
@@ -67,17 +105,16 @@ private:
 }  // namespace
 
 std::string read_text(const fs::path& path) {
-  std::error_code error;
-  if (fs::is_directory(path, error)) fail("read", path, EISDIR);
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail("read", path, errno != 0 ? errno : EIO);
-  std::string text(kMaxFile + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) fail("read", path, EIO);
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > kMaxFile) fail("read", path, EFBIG);
-  return text;
+  const InputFile file(path);
+  std::string text;
+  // One byte more than the file has, so that its end is seen without another round.
+  for (std::size_t room = file.size_hint() + 1;; room = kReadBlock) {
+    const std::size_t before = text.size();
+    text.resize(before + room);
+    text.resize(before + file.read_some(std::span(text).subspan(before)));
+    if (text.size() > kMaxFile) fail("read", path, EFBIG);
+    if (text.size() < before + room) return text;
+  }
 }
 
 std::vector<std::byte> read_bytes(const fs::path& path) {
