@@ -35,6 +35,7 @@ struct Response {
 
 // The numbers of a program: what grows often stops at one of them.
 using Thresholds = std::set<vm::Value>;
+const Thresholds kNoThresholds;
 
 void add_numbers(const Expression& expression, Thresholds& thresholds) {
   if (expression.operation == Operation::constant && expression.constant != vm::kUnknown) {
@@ -175,8 +176,8 @@ bool Prover::follow(Response& response, const VariableFacts& anytime) {
     if (before) next = either(*before, next);
     if (before == next) continue;
     const bool last = ++changes > kMaxChanges;
-    if (before && changes > kPatience)
-      next = widened(*before, next, program_.variables[i], last ? Thresholds{} : thresholds_);
+    const Thresholds& stops = last ? kNoThresholds : thresholds_;
+    if (before && changes > kPatience) next = widened(*before, next, program_.variables[i], stops);
     before = next;
     grew = true;
   }
