@@ -106,6 +106,12 @@ std::size_t Diagnostics::warnings() const {
   return count(all_, Level::warning);
 }
 
+bool Diagnostics::may_search(std::size_t names) {
+  if (may_be_searched_ == 0) return false;
+  may_be_searched_ -= std::min(names, may_be_searched_);
+  return true;
+}
+
 void Diagnostics::finish() {
   std::stable_sort(all_.begin(), all_.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return sort_key(a) < sort_key(b);

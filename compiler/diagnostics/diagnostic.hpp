@@ -61,11 +61,16 @@ public:
   std::size_t errors() const;
   std::size_t warnings() const;
   const std::vector<Diagnostic>& all() const { return all_; }
+  // To look for the name that a misspelt one is nearest to takes as long as there are names. True
+  // while all such searches together are short, so that a text full of mistakes is read in a time
+  // that goes with its length; ask before each. `names`: how many it looks at.
+  [[nodiscard]] bool may_search(std::size_t names);
   // Sorted by file and place, exact repetitions dropped. Call once before printing.
   void finish();
 
 private:
   std::vector<Diagnostic> all_;
+  std::size_t may_be_searched_ = 200'000;  // names, more than any program's mistakes need
 };
 
 }  // namespace robosync::compiler

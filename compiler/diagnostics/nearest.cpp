@@ -2,8 +2,8 @@
 #include "compiler/diagnostics/nearest.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
-#include <vector>
 
 namespace robosync::compiler {
 
@@ -21,59 +21,99 @@ bool equal(char a, char b) {
 }
 
 // Three rows of the distance matrix: a swap looks two rows back.
+using Row = std::array<std::size_t, longest_word + 1>;
 struct Rows {
-  std::vector<std::size_t> before, previous, current;
+  std::array<Row, 3> storage;
+  Row* before = &storage[0];
+  Row* previous = &storage[1];
+  Row* current = &storage[2];
+
+  void advance() {
+    std::swap(before, previous);
+    std::swap(previous, current);
+  }
 };
 
-void fill_row(Rows& rows, std::string_view a, std::string_view b, std::size_t i) {
-  rows.current[0] = i;
+void fill_row(const Rows& rows, std::string_view a, std::string_view b, std::size_t i) {
+  const Row& before = *rows.before;
+  const Row& previous = *rows.previous;
+  Row& current = *rows.current;
+  current[0] = i;
   for (std::size_t j = 1; j <= b.size(); ++j) {
-    const std::size_t changed = rows.previous[j - 1] + (equal(a[i - 1], b[j - 1]) ? 0U : 1U);
-    std::size_t best = std::min({rows.previous[j] + 1, rows.current[j - 1] + 1, changed});
+    const std::size_t changed = previous[j - 1] + (equal(a[i - 1], b[j - 1]) ? 0U : 1U);
+    std::size_t best = std::min({previous[j] + 1, current[j - 1] + 1, changed});
     const bool swapped = i > 1 && j > 1 && equal(a[i - 1], b[j - 2]) && equal(a[i - 2], b[j - 1]);
-    if (swapped) best = std::min(best, rows.before[j - 2] + 1);
-    rows.current[j] = best;
+    if (swapped) best = std::min(best, before[j - 2] + 1);
+    current[j] = best;
   }
+}
+
+// Most mistakes in a word of this length that may still be meant.
+std::size_t tolerated(std::size_t longer) {
+  return std::max<std::size_t>(1, longer / 3);
+}
+
+// What both words begin with is no mistake.
+std::size_t common_start(std::string_view a, std::string_view b) {
+  const auto ends = std::mismatch(a.begin(), a.end(), b.begin(), b.end(), equal);
+  return static_cast<std::size_t>(ends.first - a.begin());
+}
+
+// Most words are too long or too short to be meant, which is cheap to see.
+bool lengths_differ_too_much(std::string_view a, std::string_view b) {
+  const auto [shorter, longer] = std::minmax(a.size(), b.size());
+  return longer - shorter > tolerated(longer);
+}
+
+// How many mistakes `word` has if `candidate` may be meant.
+std::optional<std::size_t> mistakes_if_near(std::string_view word, std::string_view candidate) {
+  if (lengths_differ_too_much(word, candidate)) return std::nullopt;
+  const std::size_t longer = std::max(word.size(), candidate.size());
+  const std::size_t wrong = mistakes(word, candidate);
+  if (wrong == 0) return wrong;
+  bool near = false;
+  if (longer > 2) {
+    near = wrong <= tolerated(longer);
+  } else if (longer == 2 && !word.empty()) {
+    const bool swapped = word.size() == 2 && candidate.size() == 2 &&
+                         equal(word[0], candidate[1]) && equal(word[1], candidate[0]);
+    near = swapped || (word.size() == 1 && wrong == 1);
+  }
+  return near && !word.empty() ? std::optional(wrong) : std::nullopt;
 }
 
 }  // namespace
 
 std::size_t mistakes(std::string_view a, std::string_view b) {
   if (a.size() > longest_word || b.size() > longest_word) return std::max(a.size(), b.size());
-  Rows rows{std::vector<std::size_t>(b.size() + 1), std::vector<std::size_t>(b.size() + 1),
-            std::vector<std::size_t>(b.size() + 1)};
+  const std::size_t common = common_start(a, b);
+  a.remove_prefix(common);
+  b.remove_prefix(common);
+  if (a.empty() || b.empty()) return a.size() + b.size();
+  Rows rows;
   for (std::size_t j = 0; j <= b.size(); ++j)
-    rows.previous[j] = j;
+    (*rows.previous)[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
     fill_row(rows, a, b, i);
-    std::swap(rows.before, rows.previous);
-    std::swap(rows.previous, rows.current);
+    rows.advance();
   }
-  return rows.previous[b.size()];
+  return (*rows.previous)[b.size()];
 }
 
 bool is_near(std::string_view word, std::string_view candidate) {
-  const std::size_t longer = std::max(word.size(), candidate.size());
-  const std::size_t wrong = mistakes(word, candidate);
-  if (wrong == 0) return true;
-  if (word.empty() || longer < 2) return false;
-  if (longer > 2) return wrong <= std::max<std::size_t>(1, longer / 3);
-  const bool swapped = word.size() == 2 && candidate.size() == 2 && equal(word[0], candidate[1]) &&
-                       equal(word[1], candidate[0]);
-  return swapped || (word.size() == 1 && wrong == 1);
+  return mistakes_if_near(word, candidate).has_value();
 }
 
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string> candidates) {
-  std::optional<std::string> best;
+  const std::string* best = nullptr;
   std::size_t fewest = 0;
   for (const std::string& candidate : candidates) {
-    if (!is_near(word, candidate)) continue;
-    const std::size_t wrong = mistakes(word, candidate);
-    if (best && wrong >= fewest) continue;
-    best = candidate;
-    fewest = wrong;
+    const auto wrong = mistakes_if_near(word, candidate);
+    if (!wrong || (best != nullptr && *wrong >= fewest)) continue;
+    best = &candidate;
+    fewest = *wrong;
   }
-  return best;
+  return best == nullptr ? std::nullopt : std::optional(*best);
 }
 
 }  // namespace robosync::compiler

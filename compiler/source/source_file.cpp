@@ -2,6 +2,7 @@
 #include "compiler/source/source_file.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "compiler/source/utf8.hpp"
@@ -9,6 +10,9 @@
 namespace robosync::compiler {
 
 namespace {
+
+// Bytes of a line between two milestones: so many are read to find a column.
+constexpr std::size_t kMilestone = 256;
 
 // A line ends with LF, CR LF, or a CR alone.
 bool ends_line(std::string_view text, std::size_t at) {
@@ -21,7 +25,24 @@ bool ends_line(std::string_view text, std::size_t at) {
 SourceFile::SourceFile(std::string name, std::string text)
     : name_(std::move(name)), text_(std::move(text)), line_starts_{0} {
   for (std::size_t i = 0; i < text_.size(); ++i) {
-    if (ends_line(text_, i)) line_starts_.push_back(static_cast<std::uint32_t>(i + 1));
+    if (text_[i] != '\n' && text_[i] != '\r') continue;
+    if (!ends_line(text_, i)) continue;
+    add_milestones(line_starts_.back(), i);
+    line_starts_.push_back(static_cast<std::uint32_t>(i + 1));
+  }
+  add_milestones(line_starts_.back(), text_.size());
+}
+
+void SourceFile::add_milestones(std::size_t begin, std::size_t end) {
+  if (end - begin <= kMilestone) return;
+  std::uint32_t column = 1;
+  std::size_t next = begin + kMilestone;
+  for (std::size_t i = begin; i < end; ++column) {
+    if (i >= next) {
+      milestones_.push_back({static_cast<std::uint32_t>(i), column});
+      next = i + kMilestone;
+    }
+    i += utf8::decode(text_, i).size;
   }
 }
 
@@ -35,11 +56,15 @@ Position SourceFile::position(std::uint32_t offset) const {
   const auto next = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
   const auto line = static_cast<std::uint32_t>(next - line_starts_.begin());
   const std::size_t end = std::min<std::size_t>(offset, text_.size());
-  std::uint32_t column = 1;
-  for (std::size_t i = line_starts_[line - 1]; i < end; ++column) {
+  Milestone from{line_starts_[line - 1], 1};
+  const auto beyond = std::upper_bound(
+      milestones_.begin(), milestones_.end(), offset,
+      [](std::uint32_t place, const Milestone& one) { return place < one.offset; });
+  if (beyond != milestones_.begin() && std::prev(beyond)->offset > from.offset)
+    from = *std::prev(beyond);
+  for (std::size_t i = from.offset; i < end; ++from.column)
     i += utf8::decode(text_, i).size;
-  }
-  return {line, column};
+  return {line, from.column};
 }
 
 std::string_view SourceFile::line(std::uint32_t number) const {

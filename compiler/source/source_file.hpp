@@ -34,9 +34,16 @@ public:
   std::uint32_t line_start(std::uint32_t number) const;
 
 private:
+  // A column that is known: in a long line, so that not all of it is read for each place in it.
+  struct Milestone {
+    std::uint32_t offset, column;
+  };
+  void add_milestones(std::size_t begin, std::size_t end);  // of one line
+
   std::string name_;
   std::string text_;
   std::vector<std::uint32_t> line_starts_;
+  std::vector<Milestone> milestones_;  // in the order of the text
 };
 
 // Every file of one compilation. FileId is the place in this list. References to files and views of

@@ -36,14 +36,14 @@ constexpr std::array<CodePoints, 8> double_width = {{{0x1100, 0x115F},
 constexpr std::array<CodePoints, 5> unprintable = {
     {{0x00, 0x1F}, {0x7F, 0x9F}, {0x200E, 0x200F}, {0x2028, 0x202E}, {0x2066, 0x2069}}};
 
-// Bytes of the sequence that `lead` opens, and the smallest value it may carry; 0: not a lead byte.
+// Bytes of the sequence that `lead` opens, of two or more, and the smallest value it may carry; 0:
+// not a lead byte.
 struct Lead {
   std::uint8_t size;
   char32_t bits, smallest;
 };
 
 Lead classify(unsigned char lead) {
-  if (lead < 0x80) return {1, lead, 0};
   if (lead >= 0xC2 && lead < 0xE0) return {2, lead & 0x1FU, 0x80};
   if (lead >= 0xE0 && lead < 0xF0) return {3, lead & 0x0FU, 0x800};
   if (lead >= 0xF0 && lead < 0xF5) return {4, lead & 0x07U, 0x10000};
@@ -53,7 +53,9 @@ Lead classify(unsigned char lead) {
 }  // namespace
 
 CodePoint decode(std::string_view text, std::size_t offset) {
-  const Lead lead = classify(static_cast<unsigned char>(text[offset]));
+  const auto first = static_cast<unsigned char>(text[offset]);
+  if (first < 0x80) return {first, 1};
+  const Lead lead = classify(first);
   if (lead.size == 0 || text.size() - offset < lead.size) return {};
   char32_t value = lead.bits;
   for (std::size_t i = 1; i < lead.size; ++i) {
@@ -73,19 +75,24 @@ unsigned width(char32_t code_point) {
 }
 
 bool is_printable(char32_t code_point) {
+  if (code_point >= 0x20 && code_point < 0x7F) return true;
   return !contains(unprintable, code_point);
 }
 
-std::string printable(std::string_view text) {
+void append_printable(std::string& result, std::string_view text) {
   constexpr std::string_view mark = "\xEF\xBF\xBD";
-  std::string result;
-  result.reserve(text.size());
   for (std::size_t i = 0; i < text.size();) {
     const CodePoint point = decode(text, i);
     const bool keep = point.value != replacement && is_printable(point.value);
     result += keep ? text.substr(i, point.size) : mark;
     i += point.size;
   }
+}
+
+std::string printable(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  append_printable(result, text);
   return result;
 }
 

@@ -27,5 +27,6 @@ struct CodePoint {
 
 // The text with everything that is not printable replaced.
 [[nodiscard]] std::string printable(std::string_view text);
+void append_printable(std::string& result, std::string_view text);  // likewise
 
 }  // namespace robosync::compiler::utf8

@@ -92,3 +92,15 @@ TEST_CASE("diagnostics are sorted, and said once", "[diagnostics]") {
   CHECK(diagnostics.errors() == 2);
   CHECK(diagnostics.warnings() == 1);
 }
+
+TEST_CASE("so many names are searched, and no more", "[diagnostics]") {
+  Diagnostics diagnostics;
+  std::size_t searches = 0;
+  while (diagnostics.may_search(1000))
+    ++searches;
+  CHECK(searches == 200);
+  CHECK_FALSE(diagnostics.may_search(1));
+  Diagnostics fresh;
+  CHECK(fresh.may_search(10'000'000));  // the first is done, whatever it takes
+  CHECK_FALSE(fresh.may_search(1));
+}

@@ -32,6 +32,25 @@ TEST_CASE("lines and columns", "[source]") {
   CHECK(file.text({0, 5, 2}).empty());
 }
 
+TEST_CASE("columns of long lines", "[source]") {
+  std::string text;
+  const std::string parts[] = {"a", "bc ", "é", "触", "🤖", "\xff", "\t"};
+  for (std::size_t i = 0; i < 9000; ++i)
+    text += i % 4000 == 3999 ? "\n" : parts[i * i % 7];
+  const SourceFile file("f", text);
+  std::uint32_t line = 1, column = 1;
+  for (std::size_t at = 0; at < text.size(); ++column) {
+    const Position position = file.position(static_cast<std::uint32_t>(at));
+    REQUIRE(position.line == line);
+    REQUIRE(position.column == column);
+    if (text[at] == '\n') {
+      ++line;
+      column = 0;
+    }
+    at += utf8::decode(text, at).size;
+  }
+}
+
 TEST_CASE("UTF-8 is checked", "[source]") {
   const auto value = [](std::string_view text) { return utf8::decode(text, 0).value; };
   CHECK(value("A") == U'A');
