@@ -1,13 +1,29 @@
 # Writes every file of a folder of the library into one C++ file, as rows of a name and a text:
 #   cmake -DOUT=FILE -DFOLDER=FOLDER -DSUFFIX=rsl|json -DHEADER=… -DTYPE=… -DFUNCTION=… -P embed_texts.cmake
-# HEADER declares the struct TYPE {name, text} and FUNCTION, which gives all rows.
+# HEADER declares the struct TYPE {name, text} and FUNCTION, which gives all rows. A row of json goes on with
+# what a device is found by: {name, text, is it a sensor?, its type, is it the default of its type?}.
 file(GLOB files ${FOLDER}/*.${SUFFIX})
 list(SORT files)
 set(rows "")
 foreach(file ${files})
   get_filename_component(name ${file} NAME_WE)
   file(READ ${file} text)
-  string(APPEND rows "    {\"${name}\", R\"text(${text})text\"},\n")
+  set(found_by "")
+  if(SUFFIX STREQUAL json)
+    string(JSON kind GET "${text}" kind)
+    string(JSON type GET "${text}" type)
+    string(JSON default ERROR_VARIABLE not_there GET "${text}" default)
+    set(is_sensor false)
+    set(is_default false)
+    if(kind STREQUAL sensor)
+      set(is_sensor true)
+    endif()
+    if(default STREQUAL ON)
+      set(is_default true)
+    endif()
+    set(found_by ", ${is_sensor}, \"${type}\", ${is_default}")
+  endif()
+  string(APPEND rows "    {\"${name}\", R\"text(${text})text\"${found_by}},\n")
 endforeach()
 file(WRITE ${OUT} "// Made from ${FOLDER}/*.${SUFFIX} by compiler/embed_texts.cmake.
 #include \"${HEADER}\"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 
 #include "compiler/config/channels.hpp"
@@ -112,19 +113,16 @@ void read_sensor_device(const Fields& fields, Device& device, Diagnostics& diagn
   }
 }
 
-std::vector<Device> read_all() {
-  std::vector<Device> result;
-  Diagnostics diagnostics;  // the tests hold the built-in descriptors to none
-  for (const DeviceText& text : device_texts())
-    result.push_back(read_device(text, diagnostics));
-  return result;
-}
-
+// Most programs need few: each is read once, when it is needed.
 template <typename Predicate>
 const Device* find_if(Predicate predicate) {
-  const auto& all = devices();
-  const auto found = std::find_if(all.begin(), all.end(), predicate);
-  return found == all.end() ? nullptr : &*found;
+  static std::map<std::string_view, Device> read;
+  const auto all = device_texts();
+  const auto text = std::find_if(all.begin(), all.end(), predicate);
+  if (text == all.end()) return nullptr;
+  if (const auto known = read.find(text->name); known != read.end()) return &known->second;
+  Diagnostics diagnostics;  // the tests hold the built-in descriptors to none
+  return &read.emplace(text->name, read_device(*text, diagnostics)).first->second;
 }
 
 }  // namespace
@@ -158,19 +156,14 @@ Device read_device(const DeviceText& text, Diagnostics& diagnostics) {
   return device;
 }
 
-const std::vector<Device>& devices() {
-  static const std::vector<Device> all = read_all();
-  return all;
-}
-
 const Device* find_device(std::string_view name, bool is_sensor) {
-  return find_if([&](const Device& device) {
+  return find_if([&](const DeviceText& device) {
     return device.is_sensor == is_sensor && same_name(device.name, name);
   });
 }
 
 const Device* default_device(std::string_view type, bool is_sensor) {
-  return find_if([&](const Device& device) {
+  return find_if([&](const DeviceText& device) {
     return device.is_sensor == is_sensor && device.is_default && device.type == type;
   });
 }

@@ -4,7 +4,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "compiler/config/robot.hpp"
 
@@ -22,17 +21,19 @@ struct Device {
   ActuatorConfig actuator;
 };
 
-struct DeviceText {  // one descriptor as built in
+struct DeviceText {  // one descriptor as built in, and what it is found by
   std::string_view name;
   std::string_view json;
+  bool is_sensor = false;
+  std::string_view type{};
+  bool is_default = false;
 };
 [[nodiscard]] std::span<const DeviceText> device_texts();
 
 // Reads one descriptor. Mistakes in it are reported; the tests hold the built-in ones to none.
 [[nodiscard]] Device read_device(const DeviceText& text, Diagnostics& diagnostics);
 
-[[nodiscard]] const std::vector<Device>& devices();
-// Any case; nullptr when there is none of this kind.
+// A descriptor is read when it is asked for. Any case; nullptr when there is none of this kind.
 [[nodiscard]] const Device* find_device(std::string_view name, bool is_sensor);
 [[nodiscard]] const Device* default_device(std::string_view type, bool is_sensor);
 

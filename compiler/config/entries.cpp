@@ -11,8 +11,8 @@ constexpr std::string_view kVirtual = "VIRTUAL";
 
 void report_unknown_device(const json::Value& value, bool is_sensor, Diagnostics& diagnostics) {
   std::vector<std::string> candidates;
-  for (const Device& device : devices())
-    if (device.is_sensor == is_sensor) candidates.push_back(device.name);
+  for (const DeviceText& device : device_texts())
+    if (device.is_sensor == is_sensor) candidates.emplace_back(device.name);
   Diagnostic& d =
       diagnostics.report(Code::E0208, "rsc knows no device `" + value.text + "`").label(value.span);
   if (const auto near = nearest(value.text, candidates))

@@ -75,6 +75,11 @@ TEST_CASE("every descriptor is read without a word") {
       INFO(diagnostic.message);
       CHECK(false);
     }
+    CHECK(text.is_sensor == device.is_sensor);
+    CHECK(text.type == device.type);
+    CHECK(text.is_default == device.is_default);
+    CHECK(find_device(text.name, text.is_sensor) != nullptr);
+    CHECK(find_device(text.name, !text.is_sensor) == nullptr);
     CHECK(text.json ==
           read_file(source_folder() / "stdlib/devices" / (std::string(text.name) + ".json")));
     if (device.is_sensor)
@@ -101,7 +106,9 @@ TEST_CASE("a descriptor's mistakes are found") {
 }
 
 TEST_CASE("a word's parameter is one that some verb of its device takes") {
-  for (const Device& device : devices()) {
+  for (const DeviceText& text : device_texts()) {
+    Diagnostics diagnostics;
+    const Device device = read_device(text, diagnostics);
     unsigned taken = 0;
     for (const VerbConfig& verb : device.actuator.verbs)
       taken |= verb.takes;
@@ -146,8 +153,8 @@ TEST_CASE("the schema lists the reader's types, devices and units") {
   CHECK(list(definitions.at("actuator").at("properties").at("type").at("enum")) == actuator_types);
   std::set<std::string> sensor_devices;
   std::set<std::string> actuator_devices;
-  for (const Device& device : devices())
-    (device.is_sensor ? sensor_devices : actuator_devices).insert(device.name);
+  for (const DeviceText& device : device_texts())
+    (device.is_sensor ? sensor_devices : actuator_devices).emplace(device.name);
   CHECK(list(definitions.at("sensor").at("properties").at("device").at("enum")) == sensor_devices);
   CHECK(list(definitions.at("actuator").at("properties").at("device").at("enum")) ==
         actuator_devices);
