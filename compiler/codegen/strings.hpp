@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,7 +22,14 @@ public:
   [[nodiscard]] const std::vector<std::uint16_t>& labels() const { return labels_; }
 
 private:
+  // A string that one or more others end with.
+  struct Ending {
+    std::size_t end = 0;                     // of the first one of them: where its zero stands
+    std::map<char, std::uint32_t> longer{};  // places in endings_, by the letter in front
+  };
+
   std::string text_;
+  std::vector<Ending> endings_;  // a tree; its root is the empty one
   std::vector<std::uint16_t> labels_;
 };
 

@@ -1,5 +1,9 @@
 // One entry of "actuators".
 #include <algorithm>
+#include <string>
+#include <unordered_set>
+#include <utility>
+#include <vector>
 
 #include "compiler/config/entries.hpp"
 #include "compiler/config/values.hpp"
@@ -31,6 +35,17 @@ void read_position_range(const json::Value& value, ActuatorConfig& actuator,
   actuator.max = range->high;
 }
 
+// Each takes the place of the one of the same name before it.
+void put_words(std::vector<WordConfig> words, ActuatorConfig& actuator) {
+  NameIndex last;
+  for (std::size_t i = words.size(); i > 0; --i)
+    last.add(words[i - 1].name, i - 1);
+  std::erase_if(actuator.words,
+                [&](const WordConfig& word) { return last.find(word.name).has_value(); });
+  for (std::size_t i = 0; i < words.size(); ++i)
+    if (last.find(words[i].name) == i) actuator.words.push_back(words[i]);
+}
+
 // {"SLOWLY": "30deg/s"}: changes the device's words and adds new ones.
 void read_speeds(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
   if (!expect_kind(value, json::Kind::object, diagnostics)) return;
@@ -39,16 +54,16 @@ void read_speeds(const json::Value& value, ActuatorConfig& actuator, Diagnostics
     diagnostics.report(Code::E0205, "this device has no speeds").label(value.span);
     return;
   }
+  std::vector<WordConfig> speeds;
   for (const json::Member& member : value.members) {
     check_name({member.key, member.key_span}, diagnostics);
     const auto speed = read_quantity(member.value, *actuator.at_unit, diagnostics);
     if (!speed) continue;
     if (*speed <= 0)
       diagnostics.report(Code::E0205, "a speed must be above 0").label(member.value.span);
-    std::erase_if(actuator.words,
-                  [&](const WordConfig& word) { return same_name(word.name, member.key); });
-    actuator.words.push_back({member.key, vm::Param::at, *speed, false, {}});
+    speeds.push_back({member.key, vm::Param::at, *speed, false, {}});
   }
+  put_words(std::move(speeds), actuator);
 }
 
 // "greeting.wav" or {"file": "greeting.wav", "duration": "2s"}.
@@ -79,11 +94,12 @@ void read_sounds(const json::Value& value, const Device& device, ActuatorConfig&
     return;
   }
   vm::Value track = 0;
+  std::unordered_set<std::string> known;
   for (const json::Value& item : value.items) {
     track += vm::kScale;
     auto sound = read_sound(item, diagnostics);
     if (!sound) continue;
-    if (actuator.find_text(sound->name) != nullptr)
+    if (!known.insert(sound->name).second)
       diagnostics.report(Code::E0101, "the sound `" + sound->name + "` is given twice")
           .label(item.span);
     sound->value = track;

@@ -43,11 +43,11 @@ void change_unit(const Unit& unit, Span span, ChannelConfig& channel, Diagnostic
 
 constexpr std::size_t kMaxLabels = 255;
 
-void add_label(const json::Value& item, ChannelConfig& channel, Diagnostics& diagnostics) {
+void add_label(const json::Value& item, NameIndex& known, ChannelConfig& channel,
+               Diagnostics& diagnostics) {
   const auto label = read_text(item, diagnostics);
   if (!label) return;
-  const auto same = [&](const std::string& other) { return same_name(other, *label); };
-  if (std::any_of(channel.labels.begin(), channel.labels.end(), same))
+  if (!known.add(item.text, channel.labels.size()))
     diagnostics.report(Code::E0101, "the label `" + *label + "` is given twice").label(item.span);
   else
     channel.labels.push_back(*label);
@@ -58,8 +58,9 @@ void read_labels(const json::Value& value, ChannelConfig& channel, Diagnostics& 
   if (!expect_kind(value, json::Kind::array, diagnostics)) return;
   channel.labels.clear();
   channel.truth = false;
+  NameIndex known;
   for (const json::Value& item : value.items)
-    add_label(item, channel, diagnostics);
+    add_label(item, known, channel, diagnostics);
   if (value.items.size() < 2 || value.items.size() > kMaxLabels)
     diagnostics.report(Code::E0205, "a channel has from 2 to 255 labels").label(value.span);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <unordered_map>
 
 #include "compiler/config/names.hpp"
 #include "compiler/diagnostics/nearest.hpp"
@@ -76,14 +77,13 @@ const json::Value* Fields::require(std::string_view key, std::string_view what) 
 }
 
 void report_repeated_keys(const json::Value& object, Diagnostics& diagnostics) {
-  for (std::size_t i = 0; i < object.members.size(); ++i) {
-    const json::Member& member = object.members[i];
-    const auto first = std::find_if(object.members.begin(), object.members.end(),
-                                    [&](const json::Member& m) { return m.key == member.key; });
-    if (&*first == &member) continue;
+  std::unordered_map<std::string_view, const json::Member*> known;
+  for (const json::Member& member : object.members) {
+    const auto [first, added] = known.emplace(member.key, &member);
+    if (added) continue;
     diagnostics.report(Code::E0203, "the key `" + member.key + "` is given twice")
         .label(member.key_span)
-        .label(first->key_span, "first given here", false);
+        .label(first->second->key_span, "first given here", false);
   }
 }
 

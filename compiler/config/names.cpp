@@ -1,7 +1,7 @@
 #include "compiler/config/names.hpp"
 
 #include <algorithm>
-#include <cctype>
+#include <cstdint>
 
 #include "compiler/syntax/keywords.hpp"
 
@@ -9,6 +9,10 @@ namespace robosync::compiler {
 namespace {
 
 constexpr std::size_t kListed = 12;
+
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
 
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -25,13 +29,30 @@ bool can_be_written(std::string_view name) {
 
 std::string fold_name(std::string_view name) {
   std::string folded;
+  folded.reserve(name.size());
   for (const char c : name)
-    if (c != '_') folded += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (c != '_') folded += lower(c);
   return folded;
 }
 
 bool same_name(std::string_view a, std::string_view b) {
-  return fold_name(a) == fold_name(b);
+  auto at_a = a.begin(), at_b = b.begin();
+  while (true) {
+    while (at_a != a.end() && *at_a == '_')
+      ++at_a;
+    while (at_b != b.end() && *at_b == '_')
+      ++at_b;
+    if (at_a == a.end() || at_b == b.end()) return at_a == a.end() && at_b == b.end();
+    if (lower(*at_a++) != lower(*at_b++)) return false;
+  }
+}
+
+// FNV-1a.
+std::size_t NameIndex::Hash::operator()(std::string_view name) const {
+  std::uint64_t hash = 0xCBF2'9CE4'8422'2325;
+  for (const char c : name)
+    if (c != '_') hash = (hash ^ static_cast<unsigned char>(lower(c))) * 0x100'0000'01B3;
+  return static_cast<std::size_t>(hash);
 }
 
 void check_name(const Spelled& name, Diagnostics& diagnostics) {

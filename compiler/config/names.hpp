@@ -2,8 +2,11 @@
 // touch_level = TOUCH_LEVEL).
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "compiler/diagnostics/diagnostic.hpp"
@@ -12,6 +15,36 @@ namespace robosync::compiler {
 
 [[nodiscard]] std::string fold_name(std::string_view name);  // "touchlevel"
 [[nodiscard]] bool same_name(std::string_view a, std::string_view b);
+
+// Where each name of a list stands in it. The names must outlive this.
+class NameIndex {
+public:
+  // True if the name is new; otherwise its first place stays.
+  bool add(std::string_view name, std::size_t place) { return places_.emplace(name, place).second; }
+  [[nodiscard]] bool empty() const { return places_.empty(); }
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const {
+    const auto found = places_.find(name);
+    return found == places_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+private:
+  struct Hash {
+    std::size_t operator()(std::string_view name) const;
+  };
+  struct Same {
+    bool operator()(std::string_view a, std::string_view b) const { return same_name(a, b); }
+  };
+  std::unordered_map<std::string_view, std::size_t, Hash, Same> places_;
+};
+
+// Of the entries of a list, each of which has a name and its place in robot.json.
+template <typename List>
+NameIndex index_of(const List& list) {
+  NameIndex index;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    index.add(list[i].name.text, i);
+  return index;
+}
 
 // A text and where it stands.
 struct Spelled {

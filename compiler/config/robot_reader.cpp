@@ -14,31 +14,33 @@ namespace {
 using NamedList = std::vector<const Spelled*>;
 
 void check_repeated(const NamedList& names, Diagnostics& diagnostics) {
-  for (auto name = names.begin(); name != names.end(); ++name) {
-    const auto first = std::find_if(names.begin(), name, [&](const Spelled* other) {
-      return same_name(other->text, (*name)->text);
-    });
-    if (first == name) continue;
-    Diagnostic& d =
-        diagnostics.report(Code::E0101, "the name `" + (*name)->text + "` is given twice")
-            .label((*name)->span)
-            .label((*first)->span, "first given here", false);
-    if ((*first)->text != (*name)->text)
-      d.helps("case and `_` make no difference: `" + (*first)->text + "` is the same name");
+  NameIndex known;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (known.add(names[i]->text, i)) continue;
+    const Spelled& name = *names[i];
+    const Spelled& first = *names[*known.find(name.text)];
+    Diagnostic& d = diagnostics.report(Code::E0101, "the name `" + name.text + "` is given twice")
+                        .label(name.span)
+                        .label(first.span, "first given here", false);
+    if (first.text != name.text)
+      d.helps("case and `_` make no difference: `" + first.text + "` is the same name");
   }
 }
 
 // `touch LEVEL` may be written touchLevel: that must not be another sensor's name.
 void check_joined_names(const Robot& robot, Diagnostics& diagnostics) {
+  const NameIndex sensors = index_of(robot.sensors);
   for (const SensorConfig& sensor : robot.sensors)
-    for (const ChannelConfig& channel : sensor.channels)
-      for (const SensorConfig& other : robot.sensors)
-        if (same_name(other.name.text, sensor.name.text + channel.name.text))
-          diagnostics
-              .report(Code::E0101, "`" + other.name.text + "` could also mean `" +
-                                       sensor.name.text + " " + channel.name.text + "`")
-              .label(other.name.span)
-              .label(channel.name.span, "this channel", false);
+    for (const ChannelConfig& channel : sensor.channels) {
+      const auto found = sensors.find(sensor.name.text + channel.name.text);
+      if (!found) continue;
+      const Spelled& other = robot.sensors[*found].name;
+      diagnostics
+          .report(Code::E0101, "`" + other.text + "` could also mean `" + sensor.name.text + " " +
+                                   channel.name.text + "`")
+          .label(other.span)
+          .label(channel.name.span, "this channel", false);
+    }
 }
 
 void check_names(const Robot& robot, Diagnostics& diagnostics) {
@@ -89,9 +91,9 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
     return actuator.has_value();
   });
   if (const auto* groups = fields.find("groups")) read_groups(*groups, robot, diagnostics);
-  for_each_entry(fields, "behaviors", robot, diagnostics, [&](const json::Value& entry) {
-    return read_behavior(entry, robot, diagnostics);
-  });
+  BehaviorReader behaviors(robot, diagnostics);
+  for_each_entry(fields, "behaviors", robot, diagnostics,
+                 [&](const json::Value& entry) { return behaviors.read(entry); });
   for_each_entry(fields, "algorithms", robot, diagnostics, [&](const json::Value& entry) {
     report_algorithm(entry, diagnostics);
     return true;

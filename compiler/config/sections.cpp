@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <set>
 
 #include "compiler/config/entries.hpp"
 #include "compiler/config/fields.hpp"
@@ -15,15 +16,6 @@ namespace {
 // Of α: what a u16 of thousandths holds, in whole numbers.
 constexpr vm::Value kMaxAlpha = 65 * vm::kScale;
 
-template <typename List>
-std::optional<std::size_t> place_of(const List& list, std::string_view name) {
-  const auto found = std::find_if(list.begin(), list.end(), [&](const auto& entry) {
-    return same_name(entry.name.text, name);
-  });
-  if (found == list.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - list.begin());
-}
-
 std::vector<std::string> actuator_names(const Robot& robot, bool groups) {
   std::vector<std::string> names;
   for (const ActuatorConfig& actuator : robot.actuators)
@@ -34,17 +26,20 @@ std::vector<std::string> actuator_names(const Robot& robot, bool groups) {
   return names;
 }
 
-void report_unknown_actuator(const json::Value& value, const std::vector<std::string>& candidates,
+void report_unknown_actuator(const json::Value& value, const Robot& robot, bool groups,
                              Diagnostics& diagnostics) {
   Diagnostic& d = diagnostics.report(Code::E0501, "there is no actuator `" + value.text + "`")
                       .label(value.span);
+  if (!diagnostics.may_search(robot.actuators.size() + robot.groups.size())) return;
+  const std::vector<std::string> candidates = actuator_names(robot, groups);
   if (const auto near = nearest(value.text, candidates))
     d.helps("did you mean `" + *near + "`?").fix(value.span, "\"" + *near + "\"");
   else if (!candidates.empty())
     d.helps("actuators: " + list_names(candidates));
 }
 
-void read_group(const json::Member& member, Robot& robot, Diagnostics& diagnostics) {
+void read_group(const json::Member& member, const NameIndex& actuators, Robot& robot,
+                Diagnostics& diagnostics) {
   GroupConfig group{{member.key, member.key_span}, {}};
   check_name(group.name, diagnostics);
   if (!expect_kind(member.value, json::Kind::array, diagnostics)) {
@@ -53,14 +48,14 @@ void read_group(const json::Member& member, Robot& robot, Diagnostics& diagnosti
   }
   if (member.value.items.empty())
     diagnostics.report(Code::E0205, "a group has at least one member").label(member.value.span);
+  std::set<std::size_t> members;
   for (const json::Value& item : member.value.items) {
     const auto name = read_text(item, diagnostics);
     if (!name) continue;
-    const auto place = place_of(robot.actuators, *name);
+    const auto place = actuators.find(*name);
     if (!place) {
-      report_unknown_actuator(item, actuator_names(robot, false), diagnostics);
-    } else if (std::find(group.members.begin(), group.members.end(), *place) !=
-               group.members.end()) {
+      report_unknown_actuator(item, robot, false, diagnostics);
+    } else if (!members.insert(*place).second) {
       diagnostics.report(Code::E0101, "`" + *name + "` is in this group twice").label(item.span);
     } else {
       group.members.push_back(*place);
@@ -103,33 +98,40 @@ void read_groups(const json::Value& value, Robot& robot, Diagnostics& diagnostic
     return;
   }
   report_repeated_keys(value, diagnostics);
+  const NameIndex actuators = index_of(robot.actuators);
+  std::set<std::string_view> known;
   for (const json::Member& member : value.members) {
-    const bool repeated =
-        std::any_of(robot.groups.begin(), robot.groups.end(),
-                    [&](const GroupConfig& group) { return group.name.text == member.key; });
-    if (!repeated) read_group(member, robot, diagnostics);
+    const bool good = member.value.kind == json::Kind::array;
+    const bool repeated = good ? !known.insert(member.key).second : known.contains(member.key);
+    if (!repeated) read_group(member, actuators, robot, diagnostics);
   }
 }
 
-bool read_behavior(const json::Value& value, Robot& robot, Diagnostics& diagnostics) {
-  Fields fields(value, Object::behavior, diagnostics);
-  const auto name = read_name(fields, "a behaviour", diagnostics);
+BehaviorReader::BehaviorReader(Robot& robot, Diagnostics& diagnostics)
+    : robot_(robot),
+      actuators_(index_of(robot.actuators)),
+      groups_(index_of(robot.groups)),
+      diagnostics_(diagnostics) {}
+
+bool BehaviorReader::read(const json::Value& value) {
+  Fields fields(value, Object::behavior, diagnostics_);
+  const auto name = read_name(fields, "a behaviour", diagnostics_);
   if (!name) return false;
   BehaviorConfig behavior;
   behavior.name = *name;
   if (const auto* priority = fields.find("priority")) {
     behavior.priority_span = priority->span;
-    if (const auto number = read_whole(*priority, 1, vm::kMaxPriority, diagnostics))
+    if (const auto number = read_whole(*priority, 1, vm::kMaxPriority, diagnostics_))
       behavior.priority = static_cast<int>(*number);
   }
-  if (const auto* action = fields.find("action"); action && read_text(*action, diagnostics)) {
+  if (const auto* action = fields.find("action"); action && read_text(*action, diagnostics_)) {
     behavior.action_span = action->span;
-    behavior.action = place_of(robot.actuators, action->text);
-    behavior.action_group = place_of(robot.groups, action->text);
+    behavior.action = actuators_.find(action->text);
+    behavior.action_group = groups_.find(action->text);
     if (!behavior.action && !behavior.action_group)
-      report_unknown_actuator(*action, actuator_names(robot, true), diagnostics);
+      report_unknown_actuator(*action, robot_, true, diagnostics_);
   }
-  robot.behaviors.push_back(std::move(behavior));
+  robot_.behaviors.push_back(std::move(behavior));
   return true;
 }
 

@@ -21,18 +21,16 @@ ChannelConfig pattern_for(const Device& device, const json::Member& member) {
 }
 
 void check_channel_names(const std::vector<ChannelConfig>& channels, Diagnostics& diagnostics) {
-  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
-    check_name(channel->name, diagnostics);
-    const auto first = std::find_if(channels.begin(), channel, [&](const ChannelConfig& other) {
-      return same_name(other.name.text, channel->name.text) &&
-             other.name.text != channel->name.text;
-    });
-    if (first != channel)
+  const NameIndex places = index_of(channels);
+  for (const ChannelConfig& channel : channels) {
+    check_name(channel.name, diagnostics);
+    const Spelled& first = channels[*places.find(channel.name.text)].name;
+    if (first.text != channel.name.text)
       diagnostics
           .report(Code::E0101,
-                  "`" + channel->name.text + "` and `" + first->name.text + "` are the same name")
-          .label(channel->name.span)
-          .label(first->name.span, "first given here", false);
+                  "`" + channel.name.text + "` and `" + first.text + "` are the same name")
+          .label(channel.name.span)
+          .label(first.span, "first given here", false);
   }
 }
 

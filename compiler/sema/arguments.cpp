@@ -173,6 +173,12 @@ bool Commands::add_word(const Place& place, const ast::Word& word, Span span,
 }
 
 void Commands::report_unknown_word(const Place& place, const ast::Word& word) const {
+  Diagnostic& d = place.diagnostics
+                      .report(Code::E0501, "`" + place.actuator.name.text +
+                                               "` does not know the word `" + word.name.text + "`")
+                      .label(word.name.span);
+  const std::size_t targets_known = robot_.actuators.size() + robot_.groups.size();
+  if (!diagnostics_.may_search(place.actuator.words.size() + targets_known)) return;
   std::vector<std::string> words;
   for (const WordConfig& known : place.actuator.words)
     if (!known.text) words.push_back(known.name);
@@ -180,10 +186,6 @@ void Commands::report_unknown_word(const Place& place, const ast::Word& word) co
   const auto targets = names_.target_names();
   candidates.insert(candidates.end(), targets.begin(), targets.end());
   candidates.insert(candidates.end(), keyword_spellings().begin(), keyword_spellings().end());
-  Diagnostic& d = place.diagnostics
-                      .report(Code::E0501, "`" + place.actuator.name.text +
-                                               "` does not know the word `" + word.name.text + "`")
-                      .label(word.name.span);
   suggest(d, word.name.span, word.name.text, candidates);
   if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
 }
@@ -212,13 +214,14 @@ bool Commands::add_text(const Place& place, const std::string& text, Span span,
     put(text, vm::Param::item, 0, result);
     return true;
   }
-  std::vector<std::string> sounds;
-  for (const WordConfig& word : place.actuator.words)
-    if (word.text) sounds.push_back(word.name);
   Diagnostic& d =
       place.diagnostics
           .report(Code::E0502, "`" + place.actuator.name.text + "` has no \"" + text + "\"")
           .label(span);
+  if (!diagnostics_.may_search(place.actuator.words.size())) return false;
+  std::vector<std::string> sounds;
+  for (const WordConfig& word : place.actuator.words)
+    if (word.text) sounds.push_back(word.name);
   if (const auto near = nearest(text, sounds))
     d.helps("did you mean \"" + *near + "\"?").fix(span, "\"" + *near + "\"");
   else

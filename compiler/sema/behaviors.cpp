@@ -12,11 +12,8 @@ constexpr std::size_t kMaxRules = UINT8_MAX;  // of one behaviour
 }  // namespace
 
 const BehaviorConfig* Behaviors::config_of(const ast::Behavior& behavior) const {
-  const auto found = std::find_if(robot_.behaviors.begin(), robot_.behaviors.end(),
-                                  [&](const BehaviorConfig& config) {
-                                    return same_name(config.name.text, behavior.name.text);
-                                  });
-  return found == robot_.behaviors.end() ? nullptr : &*found;
+  const auto place = configs_.find(behavior.name.text);
+  return place ? &robot_.behaviors[*place] : nullptr;
 }
 
 void Behaviors::add(const ast::Behavior& behavior, std::vector<ProgramRule> rules) {

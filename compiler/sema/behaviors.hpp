@@ -13,7 +13,7 @@ namespace robosync::compiler {
 class Behaviors {
 public:
   Behaviors(const Robot& robot, Diagnostics& diagnostics)
-      : robot_(robot), diagnostics_(diagnostics) {}
+      : robot_(robot), configs_(index_of(robot.behaviors)), diagnostics_(diagnostics) {}
 
   void add(const ast::Behavior& behavior, std::vector<ProgramRule> rules);
   // A rule outside a BEHAVIOR: a behaviour of its own, below all others unless it has a PRIORITY.
@@ -38,6 +38,7 @@ private:
   void check_count(Span span);
 
   const Robot& robot_;
+  NameIndex configs_;
   Diagnostics& diagnostics_;
   std::vector<ProgramBehavior> behaviors_;
   std::set<std::string> names_;  // folded names of those added

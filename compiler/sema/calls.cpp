@@ -46,7 +46,8 @@ void Statements::add(const ast::Call& node, Span span, ProgramBlock& result) {
     return run(*define, node.arguments, span, result);
   Diagnostic& d = diagnostics_.report(Code::E0501, "there is no DEFINE `" + node.name.text + "`")
                       .label(node.name.span);
-  suggest(d, node.name.span, node.name.text, names_.define_names());
+  if (diagnostics_.may_search(names_.defines().size()))
+    suggest(d, node.name.span, node.name.text, names_.define_names());
   if (d.help.empty() && names_.is_verb(node.name.text))
     d.helps("`" + node.name.text + "` is a verb: what it does stands behind it without WITH");
 }

@@ -13,7 +13,8 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::uint16_t kFedPeriodMs = 20;  // of a sensor that has none of its own
+constexpr std::size_t kMostBands = UINT8_MAX;  // of an image
+constexpr std::uint16_t kFedPeriodMs = 20;     // of a sensor that has none of its own
 
 void hold_nothing(vm::Band& band) {
   band.stay_low = vm::kValueMax;
@@ -82,10 +83,11 @@ void Variables::declare(const ast::Check& node, VariableName& name, Program& pro
   for (const ast::Band& part : node.bands) {
     auto made = band(part, wanted, margin);
     if (!made) return;
-    give_way(check.bands, *made);
+    // More bands than an image holds are refused: what they leave each other does not matter.
+    if (check.bands.size() < kMostBands) give_way(check.bands, *made);
     check.bands.push_back(*made);
   }
-  lint_bands(node, check, number, diagnostics_);
+  if (check.bands.size() <= kMostBands) lint_bands(node, check, number, diagnostics_);
   program.checks.push_back(std::move(check));
 }
 

@@ -75,30 +75,30 @@ std::optional<Target> Commands::find_target(const ast::Command& command, std::si
 
 // `SAY "hello"`: without a name, the one actuator that knows the verb.
 std::optional<Target> Commands::only_target(const ast::Command& command) {
-  std::vector<std::size_t> able;
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < robot_.actuators.size(); ++i) {
-    if (robot_.actuators[i].find_verb(command.verb.text) == nullptr) continue;
-    able.push_back(i);
-    names.push_back(robot_.actuators[i].name.text);
-  }
-  if (able.size() == 1) return Target{std::nullopt, able, names.front()};
-  report_no_target(command, names);
+  const std::vector<std::size_t>& able = names_.able_to(command.verb.text);
+  if (able.size() == 1) return Target{std::nullopt, able, robot_.actuators[able.front()].name.text};
+  report_no_target(command, able);
   return std::nullopt;
 }
 
-void Commands::report_no_target(const ast::Command& command, const std::vector<std::string>& able) {
+void Commands::report_no_target(const ast::Command& command, const std::vector<std::size_t>& able) {
   const ast::Word* first =
       command.arguments.empty() ? nullptr : plain_word(command.arguments.front());
   if (first == nullptr || is_known_word(first->name.text)) {
-    diagnostics_.report(Code::E0504, "this does not say which actuator to " + command.verb.text)
-        .label(command.verb.span)
-        .helps(list_names(able) + " know `" + command.verb.text + "`");
+    Diagnostic& d =
+        diagnostics_.report(Code::E0504, "this does not say which actuator to " + command.verb.text)
+            .label(command.verb.span);
+    if (!diagnostics_.may_search(able.size())) return;
+    std::vector<std::string> names;
+    for (const std::size_t actuator : able)
+      names.push_back(robot_.actuators[actuator].name.text);
+    d.helps(list_names(names) + " know `" + command.verb.text + "`");
     return;
   }
   Diagnostic& d =
       diagnostics_.report(Code::E0501, "there is no actuator `" + first->name.text + "`")
           .label(first->name.span);
+  if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size())) return;
   const auto candidates = names_.target_names();
   suggest(d, first->name.span, first->name.text, candidates);
   if (d.help.empty()) d.helps("actuators: " + list_names(candidates));
@@ -106,14 +106,15 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
 
 void Commands::report_unknown_verb(const ast::Command& command) {
   const ast::Name& verb = command.verb;
+  const std::string what = command.arguments.empty() ? "DEFINE or verb `" : "verb `";
+  Diagnostic& d =
+      diagnostics_.report(Code::E0501, "there is no " + what + verb.text + "`").label(verb.span);
+  if (!diagnostics_.may_search(robot_.actuators.size() + names_.defines().size())) return;
   auto candidates = names_.verb_names();
   const auto defines = names_.define_names();
   candidates.insert(candidates.end(), defines.begin(), defines.end());
   const auto verbs = candidates;
   candidates.insert(candidates.end(), keyword_spellings().begin(), keyword_spellings().end());
-  const std::string what = command.arguments.empty() ? "DEFINE or verb `" : "verb `";
-  Diagnostic& d =
-      diagnostics_.report(Code::E0501, "there is no " + what + verb.text + "`").label(verb.span);
   suggest(d, verb.span, verb.text, candidates);
   if (d.help.empty() && !verbs.empty()) d.helps("it could be " + list_names(verbs));
 }
@@ -150,9 +151,7 @@ Commands::Given Commands::evaluate(const ast::Argument& argument) {
 }
 
 bool Commands::is_known_word(std::string_view word) const {
-  return std::any_of(
-      robot_.actuators.begin(), robot_.actuators.end(),
-      [&](const ActuatorConfig& actuator) { return actuator.find_word(word) != nullptr; });
+  return names_.is_word(word);
 }
 
 bool Commands::names_a_number(const ast::Name& name) const {

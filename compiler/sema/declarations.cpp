@@ -7,7 +7,12 @@
 namespace robosync::compiler {
 
 Names::Names(const Trees& trees, const Robot& robot, Diagnostics& diagnostics)
-    : robot_(robot), diagnostics_(diagnostics) {
+    : robot_(robot),
+      diagnostics_(diagnostics),
+      sensors_(index_of(robot.sensors)),
+      actuators_(index_of(robot.actuators)),
+      groups_(index_of(robot.groups)) {
+  index_robot();
   for (const ast::Program* tree : trees) {
     in_module_ = tree != trees.front();
     collect(*tree);

@@ -101,7 +101,8 @@ private:
 };
 
 // The place of a label; reports E0501 with the right ones when there is none.
-[[nodiscard]] std::optional<std::size_t> find_label(const std::vector<std::string>& labels,
+[[nodiscard]] std::optional<std::size_t> find_label(Names& names,
+                                                    const std::vector<std::string>& labels,
                                                     const ast::Name& label, std::string_view owner,
                                                     Diagnostics& diagnostics, bool quoted = false);
 [[nodiscard]] vm::Value label_value(std::size_t place);

@@ -1,6 +1,4 @@
 // Conditions on words and truths: IS, IS TRUE, BECOMES.
-#include <algorithm>
-
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/sema/expressions.hpp"
 
@@ -10,17 +8,15 @@ vm::Value label_value(std::size_t place) {
   return static_cast<vm::Value>(place) * vm::kScale;
 }
 
-std::optional<std::size_t> find_label(const std::vector<std::string>& labels,
+std::optional<std::size_t> find_label(Names& names, const std::vector<std::string>& labels,
                                       const ast::Name& label, std::string_view owner,
                                       Diagnostics& diagnostics, bool quoted) {
-  const auto found = std::find_if(labels.begin(), labels.end(), [&](const std::string& other) {
-    return same_name(other, label.text);
-  });
-  if (found != labels.end()) return static_cast<std::size_t>(found - labels.begin());
+  if (const auto place = names.find_label(labels, label.text)) return place;
   if (label.text.empty()) return std::nullopt;  // it was missing, which has been reported
   Diagnostic& d =
       diagnostics.report(Code::E0501, "`" + std::string(owner) + "` is never `" + label.text + "`")
           .label(label.span);
+  if (!diagnostics.may_search(labels.size())) return std::nullopt;
   if (const auto near = nearest(label.text, labels))
     d.helps("did you mean `" + *near + "`?").fix(label.span, quoted ? "\"" + *near + "\"" : *near);
   else
@@ -60,7 +56,7 @@ Typed Expressions::label_test(Operation operation, const ast::Expr& value, const
       d.helps("compare a number with `=`, `<` or `>`");
     return make_nothing(span);
   }
-  const auto place = find_label(*word.labels, label, word.source, diagnostics_, quoted);
+  const auto place = find_label(names_, *word.labels, label, word.source, diagnostics_, quoted);
   if (!place) return make_nothing(span);
   return make_condition(
       make_binary(operation, std::move(word.code), make_constant_code(label_value(*place))), span);

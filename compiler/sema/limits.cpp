@@ -36,18 +36,20 @@ void Limits::report_unknown(const ast::Limit& limit) {
     Diagnostic& d =
         diagnostics_.report(Code::E0501, "there is no actuator `" + limit.actuator.text + "`")
             .label(limit.actuator.span);
-    suggest(d, limit.actuator.span, limit.actuator.text, names_.target_names());
+    if (diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size()))
+      suggest(d, limit.actuator.span, limit.actuator.text, names_.target_names());
     return;
   }
+  Diagnostic& d = diagnostics_
+                      .report(Code::E0501, "`" + limit.actuator.text + "` has no `" +
+                                               limit.channel.text + "` that could be limited")
+                      .label(limit.channel.span);
+  if (!diagnostics_.may_search(sensor ? robot_.sensors[*sensor].channels.size() : 1)) return;
   std::vector<std::string> candidates;
   if (names_.find_target(limit.actuator.text)) candidates.emplace_back(kSpeed);
   if (sensor)
     for (const ChannelConfig& channel : robot_.sensors[*sensor].channels)
       candidates.push_back(channel.name.text);
-  Diagnostic& d = diagnostics_
-                      .report(Code::E0501, "`" + limit.actuator.text + "` has no `" +
-                                               limit.channel.text + "` that could be limited")
-                      .label(limit.channel.span);
   suggest(d, limit.channel.span, limit.channel.text, candidates);
   if (d.help.empty())
     d.helps("it has " + list_names(candidates) +

@@ -35,20 +35,31 @@ bool always_before(const ProgramRule& higher, const ProgramRule& lower) {
          implies(higher.condition, lower.condition);
 }
 
-bool share(const std::set<std::size_t>& a, const std::set<std::size_t>& b) {
-  return std::any_of(a.begin(), a.end(), [&](std::size_t one) { return b.contains(one); });
-}
-
 struct Known {
   const ProgramRule* rule = nullptr;
   std::set<std::size_t> actuators;
 };
 
+// Pairs of rules that are looked at in one program; more than a robot's memory holds rules for.
+constexpr std::size_t kMostPairs = 500'000;
+
+bool share(const std::set<std::size_t>& a, const std::set<std::size_t>& b) {
+  auto at_a = a.begin(), at_b = b.begin();
+  while (at_a != a.end() && at_b != b.end()) {
+    if (*at_a == *at_b) return true;
+    ++(*at_a < *at_b ? at_a : at_b);
+  }
+  return false;
+}
+
 void lint_order(const LintInput& input) {
   std::vector<Known> higher;
+  std::size_t pairs = 0;
   for (const ProgramBehavior& behavior : input.program.behaviors) {
     std::vector<Known> own;
     for (const ProgramRule& rule : behavior.rules) {
+      pairs += higher.size();
+      if (pairs > kMostPairs) return;
       Known known{&rule, actuators_of(rule)};
       const auto first = std::find_if(higher.begin(), higher.end(), [&](const Known& other) {
         return share(other.actuators, known.actuators) && always_before(*other.rule, rule);

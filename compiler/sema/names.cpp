@@ -1,22 +1,13 @@
 #include "compiler/sema/names.hpp"
 
-#include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 #include "compiler/diagnostics/nearest.hpp"
 
 namespace robosync::compiler {
 namespace {
-
-template <typename List>
-std::optional<std::size_t> place_of(const List& list, std::string_view name) {
-  const auto found = std::find_if(list.begin(), list.end(), [&](const auto& entry) {
-    return same_name(entry.name.text, name);
-  });
-  if (found == list.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - list.begin());
-}
 
 std::vector<std::string> channel_names(const SensorConfig& sensor) {
   std::vector<std::string> names;
@@ -28,18 +19,30 @@ std::vector<std::string> channel_names(const SensorConfig& sensor) {
 }  // namespace
 
 bool Names::names_a_channel(std::string_view name) const {
-  return place_of(robot_.sensors, name).has_value() ||
-         joined_channel({{std::string(name), {}}, {}}).has_value();
+  return sensors_.find(name).has_value() || channels_.find(name).has_value();
 }
 
-std::optional<ChannelRef> Names::joined_channel(const ast::Operand& operand) const {
+// What RSL says about the robot is looked up by name for each word of the program.
+void Names::index_robot() {
+  for (const SensorConfig& sensor : robot_.sensors)
+    for (const ChannelConfig& channel : sensor.channels)
+      joined_.push_back(sensor.name.text + channel.name.text);
   for (std::size_t s = 0; s < robot_.sensors.size(); ++s) {
-    const SensorConfig& sensor = robot_.sensors[s];
-    for (std::size_t c = 0; c < sensor.channels.size(); ++c)
-      if (same_name(sensor.name.text + sensor.channels[c].name.text, operand.name.text))
-        return ChannelRef{s, c};
+    own_channels_.push_back(index_of(robot_.sensors[s].channels));
+    for (std::size_t c = 0; c < robot_.sensors[s].channels.size(); ++c) {
+      channels_.add(joined_[channel_refs_.size()], channel_refs_.size());
+      channel_refs_.push_back({s, c});
+    }
   }
-  return std::nullopt;
+  for (const ActuatorConfig& actuator : robot_.actuators)
+    for (const WordConfig& word : actuator.words)
+      if (!word.text) words_.add(word.name, 0);
+  for (std::size_t a = 0; a < robot_.actuators.size(); ++a)
+    for (const VerbConfig& verb : robot_.actuators[a].verbs) {
+      if (verbs_.add(verb.name, able_.size())) able_.emplace_back();
+      std::vector<std::size_t>& able = able_[*verbs_.find(verb.name)];
+      if (able.empty() || able.back() != a) able.push_back(a);
+    }
 }
 
 std::optional<ChannelRef> Names::channel_of_sensor(std::size_t sensor,
@@ -52,14 +55,15 @@ std::optional<ChannelRef> Names::channel_of_sensor(std::size_t sensor,
         .helps("channels: " + list_names(channel_names(config)));
     return std::nullopt;
   }
-  if (const auto channel = place_of(config.channels, operand.channel->text))
+  if (const auto channel = own_channels_[sensor].find(operand.channel->text))
     return ChannelRef{sensor, *channel};
-  const auto candidates = channel_names(config);
   Diagnostic& d = diagnostics_
                       .report(Code::E0501, "the sensor `" + config.name.text +
                                                "` has no channel `" + operand.channel->text + "`")
                       .label(operand.channel->span)
                       .label(config.name.span, "the sensor", false);
+  if (!diagnostics_.may_search(config.channels.size())) return std::nullopt;
+  const auto candidates = channel_names(config);
   suggest(d, operand.channel->span, operand.channel->text, candidates);
   if (d.help.empty()) d.helps("channels: " + list_names(candidates));
   return std::nullopt;
@@ -67,14 +71,20 @@ std::optional<ChannelRef> Names::channel_of_sensor(std::size_t sensor,
 
 std::optional<ChannelRef> Names::find_channel(const ast::Operand& operand) {
   if (operand.name.text.empty()) return std::nullopt;
-  if (const auto sensor = place_of(robot_.sensors, operand.name.text))
+  if (const auto sensor = sensors_.find(operand.name.text))
     return channel_of_sensor(*sensor, operand);
-  if (const auto joined = operand.channel ? std::nullopt : joined_channel(operand)) return joined;
+  if (const auto joined = operand.channel ? std::nullopt : channels_.find(operand.name.text))
+    return channel_refs_[*joined];
   report_unknown(operand);
   return std::nullopt;
 }
 
 void Names::report_unknown(const ast::Operand& operand) {
+  const std::string what = operand.channel ? "sensor `" : "sensor, LET or variable called `";
+  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no " + what + operand.name.text + "`")
+                      .label(operand.name.span);
+  const std::size_t most = joined_.size() + constants_.size() + variables_.size();
+  if (!diagnostics_.may_search(robot_.sensors.size() + (operand.channel ? 0 : most))) return;
   std::vector<std::string> candidates;
   for (const SensorConfig& sensor : robot_.sensors) {
     candidates.push_back(sensor.name.text);
@@ -88,9 +98,6 @@ void Names::report_unknown(const ast::Operand& operand) {
   if (!operand.channel)
     for (std::string& name : variable_names())
       candidates.push_back(std::move(name));
-  const std::string what = operand.channel ? "sensor `" : "sensor, LET or variable called `";
-  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no " + what + operand.name.text + "`")
-                      .label(operand.name.span);
   suggest(d, operand.name.span, operand.name.text, candidates);
   if (!d.help.empty()) return;
   candidates.clear();
@@ -137,21 +144,39 @@ std::string Names::kind_of(std::string_view name) {
 }
 
 std::optional<std::size_t> Names::find_sensor(std::string_view name) const {
-  return place_of(robot_.sensors, name);
+  return sensors_.find(name);
 }
 
 std::optional<Target> Names::find_target(std::string_view name) const {
-  if (const auto actuator = place_of(robot_.actuators, name))
+  if (const auto actuator = actuators_.find(name))
     return Target{std::nullopt, {*actuator}, robot_.actuators[*actuator].name.text};
-  const auto group = place_of(robot_.groups, name);
+  const auto group = groups_.find(name);
   if (!group) return std::nullopt;
   const GroupConfig& config = robot_.groups[*group];
   return Target{group, config.members, config.name.text};
 }
 
 bool Names::is_verb(std::string_view name) const {
-  return std::any_of(robot_.actuators.begin(), robot_.actuators.end(),
-                     [&](const auto& actuator) { return actuator.find_verb(name) != nullptr; });
+  return verbs_.find(name).has_value();
+}
+
+bool Names::is_word(std::string_view name) const {
+  return words_.find(name).has_value();
+}
+
+const std::vector<std::size_t>& Names::able_to(std::string_view verb) const {
+  static const std::vector<std::size_t> nobody;
+  const auto found = verbs_.find(verb);
+  return found ? able_[*found] : nobody;
+}
+
+std::optional<std::size_t> Names::find_label(const std::vector<std::string>& labels,
+                                             std::string_view label) {
+  NameIndex& index = labels_[&labels];
+  if (index.empty())
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      index.add(labels[i], i);
+  return index.find(label);
 }
 
 std::string Names::channel_name(ChannelRef ref) const {
@@ -169,10 +194,10 @@ std::vector<std::string> Names::target_names() const {
 
 std::vector<std::string> Names::verb_names() const {
   std::vector<std::string> names;
+  std::set<std::string_view> seen;
   for (const ActuatorConfig& actuator : robot_.actuators)
     for (const VerbConfig& verb : actuator.verbs)
-      if (std::find(names.begin(), names.end(), verb.name) == names.end())
-        names.push_back(verb.name);
+      if (seen.insert(verb.name).second) names.push_back(verb.name);
   return names;
 }
 

@@ -73,6 +73,12 @@ public:
   [[nodiscard]] std::optional<Target> find_target(std::string_view name) const;
   [[nodiscard]] std::optional<std::size_t> find_sensor(std::string_view name) const;
   [[nodiscard]] bool is_verb(std::string_view name) const;  // of any actuator
+  [[nodiscard]] bool is_word(std::string_view name) const;  // likewise: SLOWLY
+  // The actuators that know a verb: their places, from the first on.
+  [[nodiscard]] const std::vector<std::size_t>& able_to(std::string_view verb) const;
+  // The place of a label in the labels of a channel or a variable, which must outlive this.
+  [[nodiscard]] std::optional<std::size_t> find_label(const std::vector<std::string>& labels,
+                                                      std::string_view label);
   // What a name is, for a message: "a LET", "a CHECK"; empty when nothing has it.
   [[nodiscard]] std::string kind_of(std::string_view name);
 
@@ -120,9 +126,9 @@ private:
   void report_twice(const ast::Name& name, Span first);
   void add_variable(VariableName variable, Places& places);
 
+  void index_robot();
   [[nodiscard]] bool names_a_channel(std::string_view name) const;
   std::optional<ChannelRef> channel_of_sensor(std::size_t sensor, const ast::Operand& operand);
-  std::optional<ChannelRef> joined_channel(const ast::Operand& operand) const;
   void report_unknown(const ast::Operand& operand);
 
   const Robot& robot_;
@@ -135,6 +141,16 @@ private:
   Places globals_;
   std::map<const ast::Behavior*, Places> private_;
   const ast::Behavior* scope_ = nullptr;
+
+  // The robot's names.
+  NameIndex sensors_, actuators_, groups_;
+  std::vector<NameIndex> own_channels_;   // by sensor
+  std::vector<std::string> joined_;       // "touchLEVEL"
+  std::vector<ChannelRef> channel_refs_;  // what each of these means
+  NameIndex channels_;                    // their places
+  NameIndex verbs_, words_;
+  std::vector<std::vector<std::size_t>> able_;  // actuators, by place of the verb
+  std::map<const std::vector<std::string>*, NameIndex> labels_;
 };
 
 // Adds "did you mean" with its fix when a candidate is near.

@@ -40,7 +40,8 @@ VariableName* Statements::settable(const ast::Name& name, bool number) {
     }
     Diagnostic& d = diagnostics_.report(Code::E0501, "there is no variable `" + name.text + "`")
                         .label(name.span);
-    suggest(d, name.span, name.text, names_.variable_names());
+    if (diagnostics_.may_search(names_.variables().size()))
+      suggest(d, name.span, name.text, names_.variable_names());
     if (d.help.empty()) d.helps("declare it at the top: `REMEMBER " + name.text + " = 0`");
     return nullptr;
   }
@@ -95,7 +96,7 @@ void Statements::set_label(const ast::Set& node, const VariableName& variable, S
         .helps("it can be " + list_names(variable.labels, "or"));
     return;
   }
-  const auto place = find_label(variable.labels, *label, node.name.text, diagnostics_);
+  const auto place = find_label(names_, variable.labels, *label, node.name.text, diagnostics_);
   if (place)
     put(ProgramSet{variable.index, make_constant_code(label_value(*place)), false}, span, result);
 }

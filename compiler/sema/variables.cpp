@@ -62,14 +62,13 @@ void Variables::declare(const ast::State& node, VariableName& name, ProgramVaria
 }
 
 void Variables::check_labels(const std::vector<ast::Name>& labels) {
-  for (auto label = labels.begin(); label != labels.end(); ++label) {
-    const auto first = std::find_if(labels.begin(), label, [&](const ast::Name& other) {
-      return same_name(other.text, label->text);
-    });
-    if (first == label || label->text.empty()) continue;
-    diagnostics_.report(Code::E0101, "the label `" + label->text + "` is given twice")
-        .label(label->span)
-        .label(first->span, "first given here", false);
+  NameIndex known;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const ast::Name& label = labels[i];
+    if (known.add(label.text, i) || label.text.empty()) continue;
+    diagnostics_.report(Code::E0101, "the label `" + label.text + "` is given twice")
+        .label(label.span)
+        .label(labels[*known.find(label.text)].span, "first given here", false);
   }
 }
 

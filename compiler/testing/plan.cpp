@@ -132,7 +132,7 @@ private:
           .label(label.span);
       return std::nullopt;
     }
-    const auto place = find_label(channel.labels, label, names_.channel_name(ref), diagnostics_);
+    const auto place = find_label(names_, channel.labels, label, names_.channel_name(ref), diagnostics_);
     return place ? std::optional(label_value(*place)) : std::nullopt;
   }
 
