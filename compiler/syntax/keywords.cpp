@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <iterator>
-#include <unordered_map>
 
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
@@ -58,22 +58,33 @@ char upper(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
 
-std::string in_capitals(std::string_view word) {
-  std::string capitals(word);
-  std::transform(capitals.begin(), capitals.end(), capitals.begin(), upper);
-  return capitals;
+// Places in the table, sorted by the first letter of the keyword. Every word of a program is looked
+// up, and most are found or not after one comparison.
+struct Index {
+  static constexpr std::size_t letters = 26;
+  std::array<std::uint8_t, std::size(table)> places{};
+  std::array<std::uint8_t, letters + 1> begins{};  // where each letter's places begin, and the end
+};
+
+constexpr Index make_index() {
+  Index index;
+  std::size_t filled = 0;
+  for (std::size_t letter = 0; letter < Index::letters; ++letter) {
+    for (std::size_t place = 0; place < std::size(table); ++place)
+      if (static_cast<std::size_t>(table[place].spelling.front() - 'A') == letter)
+        index.places[filled++] = static_cast<std::uint8_t>(place);
+    index.begins[letter + 1] = static_cast<std::uint8_t>(filled);
+  }
+  return index;
 }
 
-using Index = std::unordered_map<std::string_view, const Keyword*>;
+constexpr Index keyword_index = make_index();
+static_assert(keyword_index.begins.back() == std::size(table), "keywords are in capitals");
 
-const Index& index() {
-  static const Index by_spelling = [] {
-    Index entries;
-    for (const Keyword& keyword : table)
-      entries.emplace(keyword.spelling, &keyword);
-    return entries;
-  }();
-  return by_spelling;
+// `word` has as many letters.
+bool is_spelt(std::string_view word, std::string_view spelling) {
+  return std::equal(word.begin(), word.end(), spelling.begin(),
+                    [](char written, char capital) { return upper(written) == capital; });
 }
 
 }  // namespace
@@ -83,10 +94,14 @@ std::span<const Keyword> keywords() {
 }
 
 const Keyword* find_keyword(std::string_view word) {
-  constexpr std::size_t longest = 16;
-  if (word.size() > longest) return nullptr;
-  const auto found = index().find(in_capitals(word));
-  return found == index().end() ? nullptr : found->second;
+  const char first = word.empty() ? '\0' : upper(word.front());
+  if (first < 'A' || first > 'Z') return nullptr;
+  const auto letter = static_cast<std::size_t>(first - 'A');
+  for (std::size_t i = keyword_index.begins[letter]; i < keyword_index.begins[letter + 1]; ++i) {
+    const Keyword& keyword = table[keyword_index.places[i]];
+    if (keyword.spelling.size() == word.size() && is_spelt(word, keyword.spelling)) return &keyword;
+  }
+  return nullptr;
 }
 
 bool is_keyword(std::string_view word) {

@@ -55,9 +55,12 @@ std::size_t word_length(std::string_view text) {
 std::size_t number_length(std::string_view text) {
   std::size_t length = 0;
   while (length < text.size()) {
+    if (!is_high(text[length])) {
+      ++length;
+      continue;
+    }
     const utf8::CodePoint point = utf8::decode(text, length);
-    const bool in_unit = is_letter(point.value) || point.value == degree_sign;
-    if (is_high(text[length]) && !in_unit) break;
+    if (!is_letter(point.value) && point.value != degree_sign) break;
     length += point.size;
   }
   return length;
@@ -103,7 +106,10 @@ void LexerState::token(TokenKind kind) {
 }
 
 void LexerState::word() {
-  const std::size_t length = word_length(text_.substr(start_));
+  // The pattern has taken all ASCII letters; only where others begin or follow there may be more.
+  const bool ascii =
+      !is_high(text_[start_]) && (cursor_ == text_.size() || !is_high(text_[cursor_]));
+  const std::size_t length = ascii ? cursor_ - start_ : word_length(text_.substr(start_));
   if (length == 0) {
     other();
     return;

@@ -15,7 +15,7 @@ namespace robosync::compiler {
 namespace {
 
 // More source than any robot can hold, and few enough messages for one to read.
-constexpr std::size_t largest_source = 1U << 20U;
+constexpr std::size_t largest_source = 16U << 20U;
 constexpr std::size_t most_mistakes = 30;
 
 class Parser {
@@ -25,12 +25,14 @@ public:
 
   ast::Program parse() {
     if (source_.text().size() > largest_source) {
-      diagnostics_.report(Code::E0013, "this file is larger than 1 MiB, the most that rsc reads")
+      diagnostics_.report(Code::E0013, "this file is larger than 16 MiB, the most that rsc reads")
           .label({file_, 0, 0});
       return {};
     }
     const Tokens tokens = lex(source_, file_, diagnostics_);
-    for (const Region& region : split_into_regions(tokens, source_)) {
+    const std::vector<Region> regions = split_into_regions(tokens, source_);
+    program_.items.reserve(regions.size());
+    for (const Region& region : regions) {
       const auto begin = tokens.begin() + static_cast<std::ptrdiff_t>(region.begin);
       const auto end = tokens.begin() + static_cast<std::ptrdiff_t>(region.end);
       if (!parse_region({begin, end})) break;
