@@ -11,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import compile_figures
 import figures
 import growth
 import page
@@ -23,7 +24,7 @@ from rsc import RscError
 BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
 GROUPS = (workloads.workload_figures, figures.opcode_figures, figures.image_figures,
           figures.kernel_figures, figures.size_figures, growth.growth_figures,
-          figures.link_figures, figures.path_figures, figures.compiler_figures,
+          figures.link_figures, figures.path_figures, compile_figures.compile_figures,
           figures.tool_figures)
 
 
@@ -54,7 +55,9 @@ def measure_all(show, comparison):
     found, failed = [], 0
     for figure in measure():
         grew = not comparison.add(figure)
-        failed += grew or page.verdict(figure) == page.MISSED
+        # How fast this machine is today is shown, and judged by people.
+        missed = page.verdict(figure) == page.MISSED and figure["unit"] not in recorded.TIMES
+        failed += grew or missed
         found.append(figure)
         show(figure, grew)
     return found, failed

@@ -275,33 +275,6 @@ def link_figures():
     }
 
 
-LARGE_BEHAVIORS, LARGE_RULES = 60, 20
-
-
-def large_program():
-    lines = []
-    for behavior in range(LARGE_BEHAVIORS):
-        lines.append(f"BEHAVIOR b{behavior} PRIORITY {behavior + 1}")
-        for rule in range(LARGE_RULES):
-            lines += [f"  WHEN touch LEVEL > {rule} AND touch LEVEL < {rule + 2}", "  DO",
-                      "    MOVE arms SLOWLY", '    PLAY sound "greeting.wav"', "  END"]
-        lines.append("END")
-    return lines
-
-
-def compiler_figures():
-    lines = large_program()
-    with tempfile.TemporaryDirectory() as folder:
-        source = Path(folder) / "large.rsl"
-        source.write_text("\n".join(lines) + "\n")
-        times = []
-        for _ in range(5):
-            begin = time.monotonic()
-            rsc.run("check", source, "--config", PAPER.with_name("robot.json"))
-            times.append(time.monotonic() - begin)
-    return {"compile/lines_per_second": (round(len(lines) / min(times)), "lines/s")}
-
-
 # From the mailbox that takes the reading to the driver of the first arm that is told to move.
 READING = "robosync::layers::Mailboxes::post("
 COMMAND = "robosync::drivers::servo::start("

@@ -1,0 +1,104 @@
+"""What compiling costs on the computer: CPU time of `rsc check`, and how time and memory grow.
+
+CPU time is what the process and the system used for it, the least of several runs, so that other work
+on the machine adds little. Growth is that of 2n against n, without what rsc needs for any program.
+"""
+
+import json
+import subprocess
+import tempfile
+from pathlib import Path
+
+import compile_programs
+import rsc
+from compile_programs import RULE_LINES
+from counting import ROOT, BenchError
+
+PAPER = ROOT / "examples/paper/robot.rsl"
+USAGE = ROOT / "build/host/bench/usage"
+LARGE = 100_000  # lines
+RUNS = 5
+MOST_RUNS = 25  # while a ratio is above its bar: other work on the machine may be the reason
+BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
+GROWTH_BAR = BARS["compile/growth_of_memory"]
+LITTLE = 1024  # KiB; of less, nobody can tell how it grows
+
+
+def write(source, folder):
+    """The program as files; gives the path of robot.rsl."""
+    program = Path(folder) / "robot.rsl"
+    program.write_text("\n".join(source.lines) + "\n")
+    robot = compile_programs.the_robot() if source.robot is None else source.robot
+    text = robot if isinstance(robot, str) else json.dumps(robot, indent=1)
+    program.with_suffix(".json").write_text(text)
+    for name, module in source.modules.items():
+        program.with_name(name).write_text(module)
+    return program
+
+
+def check(program):
+    """(seconds of CPU, KiB of memory, exit code) of `rsc check`."""
+    said = subprocess.run([str(USAGE), str(rsc.TOOL), "check", str(program)], check=True, text=True,
+                          timeout=rsc.TIMEOUT, stdout=subprocess.PIPE).stdout
+    microseconds, memory, code = map(int, said.split())
+    if code not in (0, 1):
+        raise BenchError(f"rsc check {program} ended with {code}")
+    return microseconds / 1e6, memory, code
+
+
+def least(program, runs=RUNS):
+    """(seconds, KiB), each the least of some runs."""
+    measured = [check(program)[:2] for _ in range(runs)]
+    return tuple(map(min, zip(*measured)))
+
+
+class Growing:
+    """A program of n and one of 2n, measured until their ratio is fine, or often enough."""
+
+    def __init__(self, make, n, base):
+        self._base = base
+        with tempfile.TemporaryDirectory() as folder:
+            programs = []
+            for times in (1, 2):
+                place = Path(folder) / str(times)
+                place.mkdir()
+                programs.append(write(make(times * n), place))
+            self._few, self._many = (least(program) for program in programs)
+            for _ in range(MOST_RUNS // RUNS - 1):
+                if max(self.ratios()) <= GROWTH_BAR:
+                    break
+                self._few = tuple(map(min, self._few, least(programs[0])))
+                self._many = tuple(map(min, self._many, least(programs[1])))
+
+    def ratios(self):
+        """(of time, of memory)."""
+        (few, few_kib), (many, many_kib) = (
+            [used - base for used, base in zip(each, self._base)] for each in (self._few, self._many))
+        return max(many, 0) / max(few, 1e-9), max(many_kib, 0) / max(few_kib, LITTLE)
+
+
+def lines_per_second(source, without=0):
+    """`without`: seconds that do not count."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = write(source, folder)
+        if check(program)[2] != 0:
+            raise BenchError("rsc check finds errors in the large program")
+        return round(len(source.lines) / (least(program)[0] - without))
+
+
+def compile_figures():
+    base = least(PAPER, 2 * RUNS)
+    large = compile_programs.large_program(LARGE)
+    rules = compile_programs.Source(compile_programs.large_rules(RULE_LINES))
+    figures = {
+        "compile/lines_per_second": (lines_per_second(large), "lines/s"),
+        "compile/rule_lines_per_second": (lines_per_second(rules, base[0]), "lines/s"),
+        "compile/paper": (round(base[0] * 1000, 1), "ms"),
+    }
+    memory = 0
+    for make, n in compile_programs.REPEATED.items():
+        time_ratio, memory_ratio = Growing(make, n, base).ratios()
+        figures[f"compile/growth_{make.__name__}"] = (round(time_ratio, 2), "x")
+        memory = max(memory, memory_ratio)
+    figures["compile/growth_of_memory"] = (round(memory, 2), "x")
+    return figures
