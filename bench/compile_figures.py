@@ -21,7 +21,7 @@ RUNS = 5
 MOST_RUNS = 25  # while a ratio is above its bar: other work on the machine may be the reason
 BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
 GROWTH_BAR = BARS["compile/growth_of_memory"]
-LITTLE = 1024  # KiB; of less, nobody can tell how it grows
+LITTLE = 4096  # KiB; of less, nobody can tell how it grows
 
 
 def write(source, folder):

@@ -352,10 +352,10 @@ def repeated_keys(n):
 # Each with an n for which it takes long enough to be measured.
 REPEATED = {
     misspelt_names: 4000, misspelt_defines: 4000, unknown_verbs: 4000, names_twice: 8000,
-    syntax_errors: 8000, open_blocks: 8000, deep_nesting: 20000, long_line: 4000,
+    syntax_errors: 24000, open_blocks: 16000, deep_nesting: 20000, long_line: 4000,
     state_words: 4000, misspelt_state_words: 4000, check_bands: 4000, variables: 4000, defines: 4000,
-    behaviors: 4000, rules: 1000, different_rules: 4000, commands: 8000, tests: 1000,
-    long_chain_of_modules: 200, modules: 4000, too_many_modules: 1000, missing_modules: 2000,
+    behaviors: 4000, rules: 1000, different_rules: 4000, commands: 8000, tests: 2000,
+    long_chain_of_modules: 1000, modules: 10000, too_many_modules: 4000, missing_modules: 6000,
     unknown_keys: 4000, repeated_keys: 4000, sensors: 4000, misspelt_sensors: 4000, actuators: 4000,
     groups_and_behaviors: 4000,
 }

@@ -15,7 +15,10 @@ namespace robosync::compiler {
 class LexerState {
 public:
   LexerState(std::string_view text, FileId file, Diagnostics& diagnostics)
-      : text_(text), file_(file), diagnostics_(diagnostics) {}
+      : text_(text), file_(file), diagnostics_(diagnostics) {
+    constexpr std::size_t usual = 5;  // bytes of a token, with the blanks behind it
+    tokens_.reserve(text.size() / usual);
+  }
 
   // Reads one token, blank or comment; false at the end. In grammar/rsl.re.
   bool step();

@@ -132,7 +132,8 @@ private:
           .label(label.span);
       return std::nullopt;
     }
-    const auto place = find_label(names_, channel.labels, label, names_.channel_name(ref), diagnostics_);
+    const auto place =
+        find_label(names_, channel.labels, label, names_.channel_name(ref), diagnostics_);
     return place ? std::optional(label_value(*place)) : std::nullopt;
   }
 
@@ -249,7 +250,10 @@ private:
 
 TestPlan plan_tests(const Trees& trees, const Robot& robot, Diagnostics& diagnostics) {
   TestPlan plan;
-  if (trees.empty()) return plan;
+  const auto is_test = [](const ast::Item& item) {
+    return std::holds_alternative<ast::Test>(item.node);
+  };
+  if (trees.empty() || std::ranges::none_of(trees.front()->items, is_test)) return plan;
   Planner planner(trees, robot);
   for (const ast::Item& item : trees.front()->items) {
     if (const auto* test = std::get_if<ast::Test>(&item.node)) planner.plan(*test, item.span, plan);
