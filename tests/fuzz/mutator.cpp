@@ -11,7 +11,7 @@ using vm::ImageHeader;
 
 namespace {
 
-constexpr std::uint32_t kEdges[] = {
+constexpr std::uint32_t kEdgeWords[] = {
     0,   1,   2,   31,   32,     33,     63,         64,         127,        128,
     254, 255, 256, 1000, 0x7FFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0x80000001, 0xFFFFFFFF};
 
@@ -213,7 +213,7 @@ void Mutator::change_field(std::span<std::byte> record, std::span<const std::byt
       value = random_.below(16);
       break;
     case 5:
-      value = kEdges[random_.below(std::size(kEdges))];
+      value = kEdgeWords[random_.below(std::size(kEdgeWords))];
       break;
     default:
       std::memcpy(&value, neighbour.data() + at, width);

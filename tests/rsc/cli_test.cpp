@@ -1,7 +1,10 @@
 // The command line as a whole: help with working examples, did-you-mean, exit codes, streams.
 #include "rsc/cli.hpp"
 
+#include <iterator>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 

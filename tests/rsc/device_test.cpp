@@ -24,8 +24,8 @@
 using namespace robosync;
 using Catch::Contains;
 using nlohmann::json;
-using test::Folder;
 using test::Outcome;
+using test::RobotFolder;
 
 namespace {
 
@@ -89,14 +89,6 @@ int listen_at(const std::string& path) {
   REQUIRE(listen(file, 1) == 0);
   return file;
 }
-
-struct RobotFolder : Folder {
-  RobotFolder() {
-    write("robot.rsl", test::kProgram);
-    write("robot.json", test::kRobot);
-  }
-  std::string program = path("robot.rsl");
-};
 
 struct Device : RobotFolder {
   std::string port = "unix:" + path("line");

@@ -1,4 +1,4 @@
-// A small image for tests that need names to refer to.
+// A small program for tests that need names to refer to: as an image, and in a folder.
 #pragma once
 
 #include <string>
@@ -8,6 +8,7 @@
 #include "compiler/compiler.hpp"
 #include "compiler/diagnostics/render.hpp"
 #include "rsc/program.hpp"
+#include "tests/rsc/process.hpp"
 
 namespace robosync::test {
 
@@ -32,6 +33,15 @@ WHEN proximity DISTANCE < 20cm AND proximity NOISE > 60dB DO
 END
 END
 )";
+
+// It lies there as robot.rsl and robot.json.
+struct RobotFolder : Folder {
+  RobotFolder() {
+    write("robot.rsl", kProgram);
+    write("robot.json", kRobot);
+  }
+  std::string program = path("robot.rsl");
+};
 
 inline tool::Program compile(const std::string& text = kProgram) {
   compiler::Result result = compiler::compile({"robot.rsl", text}, {"robot.json", kRobot});

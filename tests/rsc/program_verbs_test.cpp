@@ -12,16 +12,9 @@ using Catch::Contains;
 using nlohmann::json;
 using test::Folder;
 using test::Outcome;
+using test::RobotFolder;
 
 namespace {
-
-struct RobotFolder : Folder {
-  RobotFolder() {
-    write("robot.rsl", test::kProgram);
-    write("robot.json", test::kRobot);
-  }
-  std::string program = path("robot.rsl");
-};
 
 std::string wrong_program() {
   std::string text = test::kProgram;

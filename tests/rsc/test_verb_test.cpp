@@ -60,8 +60,8 @@ BEHAVIOR feel PRIORITY 50
 END
 )";
 
-struct RobotFolder : Folder {
-  explicit RobotFolder(const std::string& tests) {
+struct TestFolder : Folder {
+  explicit TestFolder(const std::string& tests) {
     write("robot.json", kRobot);
     write("robot.rsl", kProgram + tests);
   }
@@ -122,7 +122,7 @@ TEST_CASE("every kind of expectation, met and not met") {
   std::string tests;
   for (std::size_t i = 0; i < cases.size(); ++i)
     tests += touched(std::to_string(i), cases[i].steps);
-  const RobotFolder robot(tests);
+  const TestFolder robot(tests);
   const Outcome outcome = test::rsc({"test", robot.program, "--format", "json"});
   CAPTURE(outcome.err);
   REQUIRE(outcome.exit == 1);
@@ -138,9 +138,8 @@ TEST_CASE("every kind of expectation, met and not met") {
 }
 
 TEST_CASE("tests that pass are one line each, and exit 0") {
-  const RobotFolder robot(
-      touched("it moves", "EXPECT MOVE arms WITHIN 20ms") +
-      touched("and again, from the start", "EXPECT THAT touches < 2 WITHIN 1s"));
+  const TestFolder robot(touched("it moves", "EXPECT MOVE arms WITHIN 20ms") +
+                         touched("and again, from the start", "EXPECT THAT touches < 2 WITHIN 1s"));
   const Outcome outcome = test::rsc({"test", robot.program});
   CAPTURE(outcome.err);
   CHECK(outcome.exit == 0);
@@ -148,8 +147,8 @@ TEST_CASE("tests that pass are one line each, and exit 0") {
 }
 
 TEST_CASE("a failing step is shown with what happened around it, and exit 1") {
-  const RobotFolder robot(touched("it bows low", "EXPECT MOVE arms TO 80deg WITHIN 1s") +
-                          touched("it moves", "EXPECT MOVE arms WITHIN 20ms"));
+  const TestFolder robot(touched("it bows low", "EXPECT MOVE arms TO 80deg WITHIN 1s") +
+                         touched("it moves", "EXPECT MOVE arms WITHIN 20ms"));
   const Outcome outcome = test::rsc({"test", robot.program});
   CHECK(outcome.exit == 1);
   CHECK_THAT(outcome.out, Contains("FAILED  it bows low\n") &&
@@ -162,13 +161,13 @@ TEST_CASE("a failing step is shown with what happened around it, and exit 1") {
 }
 
 TEST_CASE("what came outside of its window is said with its time") {
-  const RobotFolder robot(touched("late", "WAIT 100ms\n  EXPECT MOVE arms WITHIN 1s"));
+  const TestFolder robot(touched("late", "WAIT 100ms\n  EXPECT MOVE arms WITHIN 1s"));
   CHECK_THAT(test::rsc({"test", robot.program}).out,
              Contains("left_arm was not told to from 1.100 s to 2.100 s; it was at 1.000 s\n"));
 }
 
 TEST_CASE("a failure as JSON has the step, the window and the events") {
-  const RobotFolder robot(touched("it bows low", "EXPECT MOVE arms TO 80deg WITHIN 1s"));
+  const TestFolder robot(touched("it bows low", "EXPECT MOVE arms TO 80deg WITHIN 1s"));
   const Outcome outcome = test::rsc({"test", robot.program, "--format", "json"});
   CHECK(outcome.exit == 1);
   const json failed = json::parse(outcome.out).at("tests").at(0);
@@ -205,7 +204,7 @@ TEST_CASE("mistakes in a TEST are shown with their place, and no test runs") {
            {"EXPECT THAT touch LEVEL WITHIN 1s", "E0302"},
            {"EXPECT THAT mood IS angry", "`mood` is never `angry`"},
            {"EXPECT THAT mood BECOMES scared WITHIN 1s", "looks at one moment at a time"}}) {
-    const RobotFolder robot(touched("wrong", steps));
+    const TestFolder robot(touched("wrong", steps));
     const Outcome outcome = test::rsc({"test", robot.program});
     CAPTURE(steps, outcome.err, outcome.out);
     CHECK(outcome.exit == 1);
@@ -216,7 +215,7 @@ TEST_CASE("mistakes in a TEST are shown with their place, and no test runs") {
 }
 
 TEST_CASE("a program without tests says so") {
-  const RobotFolder robot("");
+  const TestFolder robot("");
   const Outcome outcome = test::rsc({"test", robot.program});
   CHECK(outcome.exit == 0);
   CHECK_THAT(outcome.err, Contains("there is no TEST in it"));
@@ -224,7 +223,7 @@ TEST_CASE("a program without tests says so") {
 }
 
 TEST_CASE("run takes the words of a channel, and shows what safety does in words") {
-  const RobotFolder robot("");
+  const TestFolder robot("");
   const std::string scenario = robot.write("visit.json", R"({"duration": "4s", "stimuli": [
       {"at": "0s", "sensor": "button", "value": "released"},
       {"at": "1s", "sensor": "button", "value": "PRESSED"},
@@ -247,7 +246,7 @@ TEST_CASE("run takes the words of a channel, and shows what safety does in words
 }
 
 TEST_CASE("explain: a program, a code, a wrong program, a code that does not exist") {
-  const RobotFolder robot("");
+  const TestFolder robot("");
   Outcome outcome = test::rsc({"explain", robot.program});
   CHECK(outcome.exit == 0);
   CHECK_THAT(outcome.out, Contains("As soon as touch LEVEL becomes more than 3 (line 13):") &&

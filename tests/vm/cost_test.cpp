@@ -21,8 +21,8 @@ namespace {
 
 // The frame: r0 LEVEL | locals r1 … | watch | register.
 constexpr unsigned kLocals = 60;
-constexpr unsigned kWatch = 1 + kLocals;
-constexpr unsigned kRegister = kWatch + 1;
+constexpr unsigned kWatchCell = 1 + kLocals;
+constexpr unsigned kFirstRegister = kWatchCell + 1;
 constexpr Value kMostRounds = 3;
 
 // Draws the body of a response, blocks inside each other.
@@ -51,7 +51,7 @@ private:
   void statement(unsigned depth) {
     switch (draw(depth > 0 ? 9 : 4)) {
       case 0:
-        return put(encode(Op::add, kRegister, 0, 0));
+        return put(encode(Op::add, kFirstRegister, 0, 0));
       case 1:
         return put(encode(Op::cmd, left_arm, move_verb, slowly));
       case 2:
@@ -73,20 +73,20 @@ private:
     put(encode(Op::poll));
     const std::size_t start = code_.size();
     for (unsigned left = draw(3); left > 0; --left)
-      put(encode(Op::add, kRegister, 0, 0));
-    put(encode_wide(Op::until, kWatch, since(start) + 1));
+      put(encode(Op::add, kFirstRegister, 0, 0));
+    put(encode_wide(Op::until, kWatchCell, since(start) + 1));
   }
   void choice(unsigned depth) {
     const std::size_t begin = code_.size();
     put(0);
     block(depth);
     if (draw(2) == 0) {
-      code_[begin] = encode_wide(Op::unless, kWatch, since(begin) - 1);
+      code_[begin] = encode_wide(Op::unless, kWatchCell, since(begin) - 1);
       return;
     }
     const std::size_t middle = code_.size();
     put(0);
-    code_[begin] = encode_wide(Op::unless, kWatch, since(begin) - 1);
+    code_[begin] = encode_wide(Op::unless, kWatchCell, since(begin) - 1);
     block(depth);
     code_[middle] = encode_wide(Op::jump, 0, since(middle) - 1);
   }
@@ -105,7 +105,7 @@ private:
     put(encode(Op::wait, 0));
     block(depth);
     put(draw(2) == 0 ? encode_wide(Op::around_always, 0, since(start) + 1)
-                     : encode_wide(Op::around, kWatch, since(start) + 1));
+                     : encode_wide(Op::around, kWatchCell, since(start) + 1));
   }
 
   std::mt19937 random_;
@@ -119,7 +119,7 @@ Bytes image_of(const std::vector<Word>& code) {
   for (Value times = 1; times <= kMostRounds; ++times)
     image.constants.push_back(times * kScale);
   image.inputs = {touch_level};
-  const auto truth = {encode(Op::lt_k, kRegister, 0, 0), encode(Op::ret, kRegister)};
+  const auto truth = {encode(Op::lt_k, kFirstRegister, 0, 0), encode(Op::ret, kFirstRegister)};
   image.rule(0, kNoIndex, truth);
   image.rule_of(RuleKind::watch, kNoIndex, truth);
   const bool commands =
@@ -128,7 +128,7 @@ Bytes image_of(const std::vector<Word>& code) {
   image.responses.push_back({static_cast<std::uint16_t>(image.code.size()),
                              static_cast<std::uint16_t>(code.size()), mask});
   image.code.insert(image.code.end(), code.begin(), code.end());
-  image.behaviors.push_back({1, kNoIndex, mask, 0, 1, 2, 0, kLocals, kRegister + 1});
+  image.behaviors.push_back({1, kNoIndex, mask, 0, 1, 2, 0, kLocals, kFirstRegister + 1});
   return image.build();
 }
 

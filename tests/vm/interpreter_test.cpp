@@ -60,15 +60,15 @@ Value with_constant(Opcode op, Value left, Value right) {
   return run(encode(op, kResult, kLeft, 254), left, kUntouched, constants);
 }
 
-const std::vector<Value> kSamples = {
+const std::vector<Value> kOperands = {
     kUnknown, kValueMin, kValueMin + 1, -1500,   -1000,         -1,       0, 1, 500, 1000, 1500,
     2999,     3000,      3001,          1 << 30, kValueMax - 1, kValueMax};
 
 template <typename Model>
 void agrees(Opcode op, Model model) {
   INFO(kOpcodes[static_cast<std::size_t>(op)].name);
-  for (const Value left : kSamples)
-    for (const Value right : kSamples) {
+  for (const Value left : kOperands)
+    for (const Value right : kOperands) {
       CAPTURE(left, right);
       CHECK(binary(op, left, right) == model(left, right));
     }
@@ -86,8 +86,8 @@ auto relation(Relation holds) {
 template <typename Model>
 void agrees_with_constant(Opcode op, Model model) {
   INFO(kOpcodes[static_cast<std::size_t>(op)].name);
-  for (const Value left : kSamples)
-    for (const Value right : kSamples) {
+  for (const Value left : kOperands)
+    for (const Value right : kOperands) {
       if (right == kUnknown) continue;  // not in a verified image
       CAPTURE(left, right);
       CHECK(with_constant(op, left, right) == model(left, right));
@@ -125,7 +125,7 @@ std::vector<Word> words(const Out& output) {
 }  // namespace
 
 TEST_CASE("move and load copy any value, unknown as well") {
-  for (const Value value : kSamples) {
+  for (const Value value : kOperands) {
     CHECK(unary(Op::move, value) == value);
     std::vector<Value> constants(0x1235, kUntouched);
     constants[0x1234] = value;
@@ -139,7 +139,7 @@ TEST_CASE("arithmetic opcodes do what the naive arithmetic says") {
   agrees(Op::mul, oracle::on_values(oracle::multiply));
   agrees(Op::div, oracle::on_values(oracle::divide));
   agrees(Op::mod, oracle::on_values(oracle::modulo));
-  for (const Value value : kSamples)
+  for (const Value value : kOperands)
     CHECK(unary(Op::neg, value) == oracle::value_of(oracle::negate(oracle::number_of(value))));
 }
 

@@ -25,7 +25,7 @@ struct Moment {
 };
 using History = std::vector<Moment>;
 
-constexpr std::uint32_t kGuard = 0x5EED5EED;
+constexpr std::uint32_t kSentinel = 0x5EED5EED;
 
 TimerKind kind_of(Op op) {
   return static_cast<TimerKind>(static_cast<unsigned>(op) - static_cast<unsigned>(Op::held));
@@ -37,7 +37,7 @@ public:
   Subject(Op op, Value duration, unsigned count, std::uint32_t epoch)
       : code_{encode(op, 0, 1, 0), encode(Op::ret_number, 0)}, epoch_(epoch) {
     timer_ = {kind_of(op), static_cast<std::uint8_t>(count), 1, duration};
-    memory_.fill(kGuard);
+    memory_.fill(kSentinel);
     for (unsigned i = 0; i < words(); ++i)
       memory_[1 + i] = 0;
     machine.frame = frame_.data();
@@ -50,8 +50,8 @@ public:
     machine.wake = Machine::kNever;
     machine.event = false;
     const Value result = robosync::vm::evaluate(machine, code_.data());
-    REQUIRE(memory_[0] == kGuard);
-    REQUIRE(memory_[1 + words()] == kGuard);
+    REQUIRE(memory_[0] == kSentinel);
+    REQUIRE(memory_[1 + words()] == kSentinel);
     return result;
   }
   // Milliseconds until it wants to be looked at again.

@@ -8,17 +8,17 @@ using namespace robosync::vm;
 using namespace robosync::vm::test;
 using namespace robosync::vm::test::companion;
 using Op = Opcode;
-using Code = std::initializer_list<Word>;
+using Instructions = std::initializer_list<Word>;
 
 namespace {
 
 // One behaviour with two inputs (r0, r1) and registers r2 … r5; constants 3 (a number) and -0.001
 // (which is also kTrue).
-constexpr std::uint16_t kThree = 0;
+constexpr std::uint16_t kThreeConstant = 0;
 constexpr std::uint16_t kTrueConstant = 1;
 constexpr unsigned kItem = static_cast<unsigned>(Param::item);
 
-ImageBuilder one_rule(std::uint32_t mask, Code response, Code condition) {
+ImageBuilder one_rule(std::uint32_t mask, Instructions response, Instructions condition) {
   ImageBuilder image;
   add_robot(image);
   image.constants = {3 * kScale, kTrue};
@@ -29,21 +29,22 @@ ImageBuilder one_rule(std::uint32_t mask, Code response, Code condition) {
   return image;
 }
 
-const Code kTrivialResponse = {encode(Op::end)};
-const Code kTrivialCondition = {encode(Op::lt_k, 2, 0, kThree), encode(Op::ret, 2)};
+const Instructions kTrivialResponse = {encode(Op::end)};
+const Instructions kTrivialCondition = {encode(Op::lt_k, 2, 0, kThreeConstant), encode(Op::ret, 2)};
 
 // The condition follows the trivial response, so it starts at word 1.
-void condition_refused(Refusal refusal, std::uint16_t word, Code condition) {
+void condition_refused(Refusal refusal, std::uint16_t word, Instructions condition) {
   check_refused(one_rule(0, kTrivialResponse, condition),
                 {refusal, Section::code, static_cast<std::uint16_t>(1 + word)});
 }
-void condition_accepted(Code condition) {
+void condition_accepted(Instructions condition) {
   check_accepted(one_rule(0, kTrivialResponse, condition));
 }
-void response_refused(Refusal refusal, std::uint16_t word, std::uint32_t mask, Code response) {
+void response_refused(Refusal refusal, std::uint16_t word, std::uint32_t mask,
+                      Instructions response) {
   check_refused(one_rule(mask, response, kTrivialCondition), {refusal, Section::code, word});
 }
-void response_accepted(std::uint32_t mask, Code response) {
+void response_accepted(std::uint32_t mask, Instructions response) {
   check_accepted(one_rule(mask, response, kTrivialCondition));
 }
 
@@ -55,9 +56,10 @@ TEST_CASE("opcodes that are none are refused") {
 }
 
 TEST_CASE("objects end with their terminator, and only there") {
-  condition_refused(Refusal::no_end, 0, {encode(Op::lt_k, 2, 0, kThree)});
-  condition_refused(Refusal::wrong_context, 1,
-                    {encode(Op::lt_k, 2, 0, kThree), encode(Op::ret, 2), encode(Op::ret, 2)});
+  condition_refused(Refusal::no_end, 0, {encode(Op::lt_k, 2, 0, kThreeConstant)});
+  condition_refused(
+      Refusal::wrong_context, 1,
+      {encode(Op::lt_k, 2, 0, kThreeConstant), encode(Op::ret, 2), encode(Op::ret, 2)});
   response_refused(Refusal::no_end, 0, 0b001, {encode(Op::cmd, left_arm, move_verb, slowly)});
   response_refused(Refusal::wrong_context, 0, 0, {encode(Op::end), encode(Op::end)});
   response_refused(Refusal::wrong_context, 0, 0b001,
@@ -66,7 +68,7 @@ TEST_CASE("objects end with their terminator, and only there") {
 
 TEST_CASE("opcodes stand in their own context only") {
   for (const Word word :
-       {encode(Op::arg, kTo, 0), encode_wide(Op::arg_k, kTo, kThree),
+       {encode(Op::arg, kTo, 0), encode_wide(Op::arg_k, kTo, kThreeConstant),
         encode(Op::cmd, left_arm, move_verb, slowly),
         encode(Op::cmd_end, left_arm, move_verb, slowly), encode(Op::end), encode(Op::loop),
         encode(Op::wait, 0), encode_wide(Op::log, 0, 0), encode(Op::halt, kAllActuators)}) {
@@ -74,9 +76,10 @@ TEST_CASE("opcodes stand in their own context only") {
     condition_refused(Refusal::wrong_context, 0, {word, encode(Op::ret, 2)});
   }
   response_refused(Refusal::wrong_context, 1, 0,
-                   {encode(Op::lt_k, 2, 0, kThree), encode(Op::ret, 2)});
-  response_refused(Refusal::wrong_context, 1, 0,
-                   {encode(Op::lt_k, 2, 0, kThree), encode(Op::rose, 2, 2, 0), encode(Op::end)});
+                   {encode(Op::lt_k, 2, 0, kThreeConstant), encode(Op::ret, 2)});
+  response_refused(
+      Refusal::wrong_context, 1, 0,
+      {encode(Op::lt_k, 2, 0, kThreeConstant), encode(Op::rose, 2, 2, 0), encode(Op::end)});
   response_refused(Refusal::wrong_context, 0, 0,
                    {encode(Op::halt, kAllActuators), encode(Op::end)});
 }
@@ -84,9 +87,9 @@ TEST_CASE("opcodes stand in their own context only") {
 TEST_CASE("operand bytes without a meaning are zero") {
   condition_refused(Refusal::bad_operand, 0, {encode(Op::move, 2, 0, 1), encode(Op::ret, 2)});
   condition_refused(Refusal::bad_operand, 1,
-                    {encode(Op::lt_k, 2, 0, kThree), encode(Op::ret, 2, 1)});
+                    {encode(Op::lt_k, 2, 0, kThreeConstant), encode(Op::ret, 2, 1)});
   condition_refused(Refusal::bad_operand, 1,
-                    {encode(Op::lt_k, 2, 0, kThree), encode(Op::ret, 2, 0, 1)});
+                    {encode(Op::lt_k, 2, 0, kThreeConstant), encode(Op::ret, 2, 0, 1)});
   response_refused(Refusal::bad_operand, 0, 0, {encode(Op::end, 1)});
   response_refused(Refusal::bad_operand, 0, 0, {encode(Op::end, 0, 1)});
   response_refused(Refusal::bad_operand, 0, 0, {encode(Op::end, 0, 0, 1)});
@@ -96,8 +99,8 @@ TEST_CASE("operand bytes without a meaning are zero") {
 TEST_CASE("cells are written inside the registers only") {
   for (const unsigned cell : {0U, 1U, 6U, 255U})
     condition_refused(Refusal::bad_operand, 0,
-                      {encode(Op::lt_k, cell, 0, kThree), encode(Op::ret, 2)});
-  condition_accepted({encode(Op::lt_k, 5, 0, kThree), encode(Op::ret, 5)});
+                      {encode(Op::lt_k, cell, 0, kThreeConstant), encode(Op::ret, 2)});
+  condition_accepted({encode(Op::lt_k, 5, 0, kThreeConstant), encode(Op::ret, 5)});
 }
 
 TEST_CASE("cells are read inside the frame only") {
@@ -119,8 +122,8 @@ TEST_CASE("a register is written before it is read, in the same object") {
 }
 
 TEST_CASE("a full frame of 255 cells can be used to its last cell") {
-  ImageBuilder image =
-      one_rule(0, kTrivialResponse, {encode(Op::lt_k, 254, 253, kThree), encode(Op::ret, 254)});
+  ImageBuilder image = one_rule(0, kTrivialResponse,
+                                {encode(Op::lt_k, 254, 253, kThreeConstant), encode(Op::ret, 254)});
   image.inputs.assign(254, touch_level);
   image.behaviors[0].input_count = 254;
   image.behaviors[0].cells = 255;
@@ -133,7 +136,7 @@ TEST_CASE("a number is not a truth value") {
   condition_refused(Refusal::not_a_truth, 0, {encode(Op::ret, 0)});  // an input
   condition_refused(Refusal::not_a_truth, 1, {encode(Op::add, 2, 0, 1), encode(Op::ret, 2)});
   condition_refused(Refusal::not_a_truth, 1,
-                    {encode_wide(Op::load, 2, kThree), encode(Op::ret, 2)});
+                    {encode_wide(Op::load, 2, kThreeConstant), encode(Op::ret, 2)});
   condition_refused(Refusal::not_a_truth, 1, {encode(Op::move, 2, 0), encode(Op::ret, 2)});
   condition_refused(Refusal::not_a_truth, 0, {encode(Op::not_, 2, 0), encode(Op::ret, 2)});
   condition_refused(Refusal::not_a_truth, 1,
@@ -163,7 +166,7 @@ TEST_CASE("constants are those of the image") {
 }
 
 TEST_CASE("commands name an actuator or group, a verb and a word that exist") {
-  const Code good = {encode(Op::cmd_end, arms, move_verb, kNoWord)};
+  const Instructions good = {encode(Op::cmd_end, arms, move_verb, kNoWord)};
   response_accepted(0b011, good);
   response_refused(Refusal::bad_operand, 0, 0b001, {encode(Op::cmd_end, 3, move_verb, slowly)});
   response_refused(Refusal::bad_operand, 0, 0b001,
@@ -186,9 +189,9 @@ TEST_CASE("the verb takes the parameters given to it") {
   response_refused(Refusal::bad_operand, 0, 0b001, {encode(Op::arg, 8, 0), encode(Op::end)});
   response_refused(Refusal::wrong_verb, 1, 0b001,
                    {encode(Op::arg, kItem, 0), encode(Op::cmd_end, left_arm, move_verb, slowly)});
-  response_refused(
-      Refusal::wrong_verb, 1, 0b001,
-      {encode_wide(Op::arg_k, kItem, kThree), encode(Op::cmd_end, left_arm, move_verb, kNoWord)});
+  response_refused(Refusal::wrong_verb, 1, 0b001,
+                   {encode_wide(Op::arg_k, kItem, kThreeConstant),
+                    encode(Op::cmd_end, left_arm, move_verb, kNoWord)});
   // The word gives a parameter, too.
   response_refused(Refusal::wrong_verb, 0, 0b001,
                    {encode(Op::cmd_end, left_arm, move_verb, greeting)});
@@ -202,7 +205,7 @@ TEST_CASE("no parameter is left over at the end") {
   response_refused(Refusal::unused_param, 1, 0, {encode(Op::arg, kTo, 0), encode(Op::end)});
   response_refused(Refusal::unused_param, 2, 0b001,
                    {encode(Op::cmd, left_arm, move_verb, slowly),
-                    encode_wide(Op::arg_k, kTo, kThree), encode(Op::end)});
+                    encode_wide(Op::arg_k, kTo, kThreeConstant), encode(Op::end)});
 }
 
 TEST_CASE("a response puts out at most kMaxResponseOutput words") {
@@ -226,8 +229,8 @@ TEST_CASE("a response puts out at most kMaxResponseOutput words") {
 }
 
 TEST_CASE("the actuators a response commands are those it declares") {
-  const Code code = {encode(Op::cmd, speaker, play_verb, greeting),
-                     encode(Op::cmd_end, arms, move_verb, slowly)};
+  const Instructions code = {encode(Op::cmd, speaker, play_verb, greeting),
+                             encode(Op::cmd_end, arms, move_verb, slowly)};
   response_accepted(0b111, code);
   for (const std::uint32_t mask : {0b011U, 0b110U, 0b1111U, 0U})
     check_refused(one_rule(mask, code, kTrivialCondition),
@@ -252,7 +255,7 @@ TEST_CASE("a response shared by behaviours is checked in the frame of each") {
   check_refused(image, {Refusal::unset_cell, Section::code, 0});
   image.inputs = {touch_level, distance, touch_force, touch_force};
   image.rules[1].condition_start =
-      image.object({encode(Op::lt_k, 4, 0, kThree), encode(Op::ret, 4)});
+      image.object({encode(Op::lt_k, 4, 0, kThreeConstant), encode(Op::ret, 4)});
   second.input_count = 4;
   check_refused(image, {Refusal::bad_operand, Section::code, 0});
 }

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/compiler/build.hpp"
+#include "tests/compiler/codegen/moves.hpp"
 #include "vm/verifier.hpp"
 
 using namespace robosync;
@@ -13,8 +14,6 @@ using namespace robosync::compiler::testing;
 namespace {
 
 const E kClose = less(channel(1), number(20));
-const ProgramStatement kLeft = line(20, move(0));
-const ProgramStatement kWait = line(23, ProgramWait{number(0.2)});
 
 std::vector<std::string> labels_of(const vm::Image& image, unsigned first, unsigned count) {
   std::vector<std::string> labels;

@@ -6,16 +6,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/compiler/codegen/moves.hpp"
+
 using namespace robosync;
 using namespace robosync::compiler;
 using namespace robosync::compiler::testing;
 
 namespace {
-
-const ProgramStatement kLeft = line(20, move(0));
-const ProgramStatement kRight = line(21, move(1));
-const ProgramStatement kSound = line(22, move(2));
-const ProgramStatement kWait = line(23, ProgramWait{number(0.2)});
 
 ProgramStatement turn_to(E value) {
   return line(24, move(0, {{vm::Param::to, std::move(value)}}));

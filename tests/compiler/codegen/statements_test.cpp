@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/compiler/build.hpp"
+#include "tests/compiler/codegen/moves.hpp"
 #include "tests/support/golden.hpp"
 
 using namespace robosync;
@@ -22,11 +23,6 @@ void expect_response(const std::string& name, ProgramBlock block,
   expect(name, program_of({when(greater(channel(0), number(3)), std::move(block))},
                           std::move(variables)));
 }
-
-const ProgramStatement kLeft = line(20, move(0));
-const ProgramStatement kRight = line(21, move(1));
-const ProgramStatement kSound = line(22, move(2));
-const ProgramStatement kWait = line(23, ProgramWait{number(0.2)});
 
 }  // namespace
 

@@ -21,14 +21,14 @@ Expression constant(Value value) {
   return made;
 }
 
-Expression variable(std::size_t place) {
+Expression variable_at(std::size_t place) {
   Expression made;
   made.operation = Operation::variable;
   made.index = place;
   return made;
 }
 
-Expression of(Operation operation, std::vector<Expression> operands) {
+Expression make(Operation operation, std::vector<Expression> operands) {
   Expression made;
   made.operation = operation;
   made.operands = std::move(operands);
@@ -74,20 +74,20 @@ public:
   explicit Maker(unsigned seed) : random_(seed) {}
 
   Expression number(unsigned depth) {
-    if (depth == 0 || below(4) == 0) return below(2) == 0 ? variable(below(2)) : some_constant();
-    if (below(6) == 0) return of(Operation::negate, {number(depth - 1)});
+    if (depth == 0 || below(4) == 0) return below(2) == 0 ? variable_at(below(2)) : some_constant();
+    if (below(6) == 0) return make(Operation::negate, {number(depth - 1)});
     const auto operation = static_cast<Operation>(static_cast<unsigned>(Operation::add) + below(5));
-    return of(operation, {number(depth - 1), number(depth - 1)});
+    return make(operation, {number(depth - 1), number(depth - 1)});
   }
 
   Expression truth(unsigned depth) {
-    if (depth > 0 && below(4) == 0) return of(Operation::logical_not, {truth(depth - 1)});
+    if (depth > 0 && below(4) == 0) return make(Operation::logical_not, {truth(depth - 1)});
     if (depth > 0 && below(3) == 0)
-      return of(below(2) == 0 ? Operation::logical_and : Operation::logical_or,
-                {truth(depth - 1), truth(depth - 1)});
+      return make(below(2) == 0 ? Operation::logical_and : Operation::logical_or,
+                  {truth(depth - 1), truth(depth - 1)});
     const auto operation =
         static_cast<Operation>(static_cast<unsigned>(Operation::less) + below(6));
-    return of(operation, {number(3), number(2)});
+    return make(operation, {number(3), number(2)});
   }
 
 private:
@@ -131,27 +131,29 @@ TEST_CASE("simplified expressions give the same values") {
 
 TEST_CASE("a comparison of a computed number becomes one of what it was computed from") {
   // x / 8 < 0.5 is true up to 3.995, for 3.996 / 8 is rounded to 0.5.
-  Expression mean =
-      of(Operation::less, {of(Operation::divide, {variable(0), constant(8000)}), constant(500)});
+  Expression mean = make(
+      Operation::less, {make(Operation::divide, {variable_at(0), constant(8000)}), constant(500)});
   simplify(mean);
-  CHECK(mean == of(Operation::less, {variable(0), constant(3996)}));
+  CHECK(mean == make(Operation::less, {variable_at(0), constant(3996)}));
 
   Expression falling =
-      of(Operation::less, {of(Operation::subtract, {constant(5000), variable(0)}), constant(2000)});
+      make(Operation::less,
+           {make(Operation::subtract, {constant(5000), variable_at(0)}), constant(2000)});
   simplify(falling);
-  CHECK(falling == of(Operation::greater, {variable(0), constant(3000)}));
+  CHECK(falling == make(Operation::greater, {variable_at(0), constant(3000)}));
 
-  Expression never = of(Operation::greater, {of(Operation::divide, {variable(0), constant(8000)}),
-                                             constant(vm::kValueMax)});
+  Expression never =
+      make(Operation::greater,
+           {make(Operation::divide, {variable_at(0), constant(8000)}), constant(vm::kValueMax)});
   simplify(never);
-  CHECK(never == of(Operation::less, {variable(0), constant(vm::kValueMin)}));
+  CHECK(never == make(Operation::less, {variable_at(0), constant(vm::kValueMin)}));
 }
 
 TEST_CASE("what draws, remembers or may divide by zero is not pure") {
-  CHECK(is_pure(of(Operation::divide, {variable(0), constant(1)})));
-  CHECK(!is_pure(of(Operation::divide, {variable(0), variable(1)})));
-  CHECK(!is_pure(of(Operation::modulo, {variable(0), constant(0)})));
-  CHECK(!is_pure(
-      of(Operation::add, {of(Operation::random, {variable(0), variable(1)}), constant(1)})));
-  CHECK(!is_pure(of(Operation::held, {variable(0)})));
+  CHECK(is_pure(make(Operation::divide, {variable_at(0), constant(1)})));
+  CHECK(!is_pure(make(Operation::divide, {variable_at(0), variable_at(1)})));
+  CHECK(!is_pure(make(Operation::modulo, {variable_at(0), constant(0)})));
+  CHECK(!is_pure(make(Operation::add,
+                      {make(Operation::random, {variable_at(0), variable_at(1)}), constant(1)})));
+  CHECK(!is_pure(make(Operation::held, {variable_at(0)})));
 }
