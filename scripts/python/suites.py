@@ -20,7 +20,6 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 OURS = ("compiler", "vm", "link", "runtime-m4", "analysis", "rsc", "tests", "bench")
 CORES = os.cpu_count() or 1
-TIDY_BATCH = 12  # sources that clang-tidy looks at together
 
 
 def close(passed, failed):
@@ -101,34 +100,32 @@ def compiled_together(path):
     return re.findall(r'^#include "(.*)"$', Path(path).read_text(), re.M)
 
 
-def product_sources(preset):
-    """What the preset compiles of the product: {source: the flags it is compiled with}."""
-    database = ROOT / "build" / preset
+def product_batches(preset):
+    """What the preset compiles of the product, as it is compiled together: [(flags, sources)]. What is compiled more
+    than once, for the large profile too, is there once."""
     product = tuple(str(ROOT / folder) + "/" for folder in OURS if folder not in ("tests", "bench"))
-    flags = {}
-    for command in json.loads((database / "compile_commands.json").read_text()):
+    batches, seen = [], set()
+    for command in json.loads((ROOT / "build" / preset / "compile_commands.json").read_text()):
         words = shlex.split(command["command"])
         compiler = next(i for i, word in enumerate(words) if word.endswith(("cc", "c++", "g++")))
-        for source in compiled_together(command["file"]):
-            if source.startswith(product):
-                flags.setdefault(source, tuple(words[compiler + 1:words.index("-o")]))
-    return flags
+        sources = [source for source in compiled_together(command["file"])
+                   if source.startswith(product) and source not in seen]
+        seen.update(sources)
+        if sources:
+            batches.append((words[compiler + 1:words.index("-o")], sources))
+    return batches
 
 
 def run_tidy(preset):
-    """clang-tidy over the product. Most of its time goes into what the headers of the libraries
-    declare, so sources of one folder are put one behind the other, and a file at a time only where
-    that does not compile or something is found: then the answer names the file and its line."""
-    flags = product_sources(preset)
-    batches = {}
-    for source, words in sorted(flags.items()):
-        batches.setdefault((str(Path(source).parent), words), []).append(source)
-    batches = [(words, sources[i:i + TIDY_BATCH]) for (_, words), sources in batches.items()
-               for i in range(0, len(sources), TIDY_BATCH)]
+    """clang-tidy over the product. Much of its time goes into what the headers of the libraries declare, so
+    sources that are compiled together are put one behind the other (included, the analyzer would leave them
+    out), and a file at a time only where something is found: then the answer names the file and its line."""
+    batches = product_batches(preset)
+    count = sum(len(sources) for _, sources in batches)
 
     def tidy(path, words):
         return subprocess.run(["clang-tidy", "--quiet", f"--config-file={ROOT / '.clang-tidy'}", str(path),
-                               "--", *words], cwd=ROOT, check=False, text=True,
+                               "--", *words, "-Wno-unknown-warning-option"], cwd=ROOT, check=False, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
     def run(numbered):
@@ -147,7 +144,7 @@ def run_tidy(preset):
             for source, output in found:
                 failed += 1
                 print(f"  FAIL {Path(source).relative_to(ROOT)}\n{output}")
-    return close(len(flags) - failed, failed)
+    return close(count - failed, failed)
 
 
 def main():
