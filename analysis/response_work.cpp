@@ -9,21 +9,28 @@
 namespace robosync::analysis {
 namespace {
 
+using vm::Effect;
+using vm::Flow;
 using vm::Opcode;
 
-bool pauses(Opcode op) {
-  return op == Opcode::wait || op == Opcode::wait_done || op == Opcode::poll;
+const vm::OpcodeInfo& info_of(vm::Word word) {
+  return vm::info_of(vm::opcode_of(word));
 }
 
+bool pauses(vm::Word word) {
+  return vm::always_pauses(info_of(word).flow);
+}
+
+// Of a loop that may come round within a step.
 bool is_loop_end(vm::Word word) {
-  const Opcode op = vm::opcode_of(word);
-  return op == Opcode::again || op == Opcode::around || op == Opcode::around_always;
+  const Flow flow = info_of(word).flow;
+  return flow == Flow::count_end || flow == Flow::loop_end;
 }
 
 constexpr Instructions kMany = vm::kMaxResponseOutput;
 
 Instructions times_of(const vm::Image& image, vm::Word begin) {
-  if (vm::opcode_of(begin) != Opcode::times) return kMany;
+  if (info_of(begin).operands[1] != vm::Operand::count16) return kMany;
   const vm::Value times = image.constants[vm::operand_wide(begin)] / vm::kScale;
   return static_cast<Instructions>(std::max(times, 1));
 }
@@ -33,11 +40,10 @@ Instructions times_of(const vm::Image& image, vm::Word begin) {
 std::vector<Instructions> turns_of(const vm::Image& image, std::span<const vm::Word> code) {
   std::vector<Instructions> turns(code.size(), 1);
   for (std::size_t i = 0; i < code.size(); ++i) {
-    if (vm::opcode_of(code[i]) != Opcode::again) continue;
+    if (info_of(code[i]).flow != Flow::count_end) continue;
     const std::size_t first = i + 1 - std::min<std::size_t>(vm::operand_wide(code[i]), i + 1);
     const auto body = code.subspan(first, i - first);
-    if (std::ranges::any_of(body, [](vm::Word word) { return pauses(vm::opcode_of(word)); }))
-      continue;
+    if (std::ranges::any_of(body, pauses)) continue;
     const Instructions times = first == 0 ? kMany : times_of(image, code[first - 1]);
     for (std::size_t w = first; w < i; ++w)
       turns[w] = std::min(turns[w] * times, kMany);
@@ -74,7 +80,7 @@ public:
     part_.resize(image_.actuators.size());
     for (std::size_t i = 0; i < code_.size(); ++i) {
       take(i, turns[i]);
-      if (pauses(vm::opcode_of(code_[i]))) end_part();
+      if (pauses(code_[i])) end_part();
       if (work_.pauses && is_loop_end(code_[i])) go_round(i, turns);
     }
     end_part();
@@ -97,7 +103,7 @@ private:
     const Instructions other = part_other_;
     const std::vector<Instructions> part = part_;
     for (std::size_t i = at + 1 - vm::operand_wide(code_[at]); i < at; ++i) {
-      if (pauses(vm::opcode_of(code_[i]))) break;
+      if (pauses(code_[i])) break;
       take(i, turns[i]);
     }
     end_part();
@@ -107,35 +113,41 @@ private:
 
   void take(std::size_t at, Instructions turns) {
     const vm::Word word = code_[at];
-    switch (vm::opcode_of(word)) {
-      case Opcode::cmd:
-      case Opcode::cmd_end:
+    note_flow(at);
+    switch (info_of(word).effect) {
+      case Effect::command:
         return command(word, turns);
-      case Opcode::log:
-      case Opcode::alert:
+      case Effect::log:
+      case Effect::alert:
         part_other_ += turns * costs::kText;
         return;
-      case Opcode::arg:
-      case Opcode::arg_k:
+      case Effect::param:
         part_other_ += turns * costs::kArgument;
         return;
-      case Opcode::set:
-      case Opcode::shift:
-        part_other_ += turns * costs::kSet;
-        work_.sets.set(image_.inputs[behavior_.first_input + vm::operand_a(word)]);
-        if (work_.pauses)
-          work_.later_sets.set(image_.inputs[behavior_.first_input + vm::operand_a(word)]);
-        return;
-      case Opcode::wait:
-        return note_pause(work_, wait_ms(image_, code_, at));
-      case Opcode::poll:
-        work_.polls = true;
-        [[fallthrough]];
-      case Opcode::wait_done:
-        return note_pause(work_, policy::kSetpointPeriodMs);
-      default:
+      case Effect::set:
+        return set(image_.inputs[behavior_.first_input + vm::operand_a(word)], turns);
+      case Effect::none:
+      case Effect::division:
+      case Effect::event:
+      case Effect::halt:
         return;
     }
+  }
+
+  // A pause that reads a duration lasts as long as that; any other may be over when the step thread
+  // looks again.
+  void note_flow(std::size_t at) {
+    const vm::OpcodeInfo& info = info_of(code_[at]);
+    if (!vm::always_pauses(info.flow)) return;
+    if (info.flow == Flow::poll_begin) work_.polls = true;
+    const bool timed = info.operands[0] == vm::Operand::read;
+    note_pause(work_, timed ? wait_ms(image_, code_, at) : policy::kSetpointPeriodMs);
+  }
+
+  void set(std::size_t input, Instructions turns) {
+    part_other_ += turns * costs::kSet;
+    work_.sets.set(input);
+    if (work_.pauses) work_.later_sets.set(input);
   }
 
   void command(vm::Word word, Instructions turns) {

@@ -18,7 +18,7 @@ using vm::RuleKind;
 
 // True for one step only.
 bool is_event(Opcode op) {
-  return op > Opcode::held && op <= Opcode::changed && op != Opcode::latch;
+  return vm::info_of(op).effect == vm::Effect::event;
 }
 
 // Each side of each rule wants one that the other's sides want as well, all of them.
@@ -95,7 +95,7 @@ void StepWork::load_rule(unsigned r, const vm::Behavior& behavior) {
     const Opcode op = vm::opcode_of(word);
     if (is_event(op)) ++events_[r];
     if (op == Opcode::held) note_held(r, image_.timers[vm::operand_c(word)].duration);
-    if (op == Opcode::div || op == Opcode::mod) divides_[r] = true;
+    if (vm::info_of(op).effect == vm::Effect::division) divides_[r] = true;
   }
   dearest_[r] =
       dearer(work_of(behavior, rule.then_response), work_of(behavior, rule.else_response));

@@ -47,9 +47,9 @@ def tool_figures():
 
 def opcode_spans(marks):
     """{opcode: [worst instructions in a condition or response, dispatch included]}."""
-    listed = re.findall(r"^OPCODE\((\w+),.*?,\s*(\d+),\s*\"", (ROOT / "vm/opcodes.def").read_text(),
-                        re.M)
-    counts, index, start = {name: {} for name, _ in listed}, -1, 0
+    listed = re.findall(r"^OPCODE\((\w+),.*?(\w+),\s*\w+,\s*(\d+),\s*\"",
+                        (ROOT / "vm/opcodes.def").read_text(), re.M)
+    counts, index, start = {name: {} for name, *_ in listed}, -1, 0
     for mark, count in marks.all:
         if mark == "mark_next_opcode":
             index += 1
@@ -62,11 +62,11 @@ def opcode_spans(marks):
         raise BenchError("the bench firmware was built from another opcodes.def")
     base = {mark: counts[end][mark]
             for mark, end in (("mark_condition_end", "ret"), ("mark_response_end", "end"))}
-    # Their cost has entering and leaving the code in it.
-    ends = {"ret", "ret_number", "cmd_end", "end", "wait", "wait_done", "poll", "until"}
-    return {name: (max(worst - (0 if name in ends else base[mark])
+    # The cost of what ends or pauses has entering and leaving the code in it.
+    leaves = {"end", "pause", "poll_begin", "poll_end"}
+    return {name: (max(worst - (0 if flow in leaves else base[mark])
                        for mark, worst in counts[name].items()), int(declared))
-            for name, declared in listed}
+            for name, flow, declared in listed}
 
 
 def opcode_figures():
@@ -246,7 +246,7 @@ def size_figures():
     text, data, bss = (int(word) for word in listing.splitlines()[1].split()[:3])
     link_map = FIRMWARE.with_suffix(".map")
     vm = sources_in("vm")
-    verifier = {name for name in vm if name.startswith("verif") or name == "image.cpp"}
+    verifier = {name for name in vm if name.startswith("verif") or name in ("image.cpp", "opcode_traits.cpp")}
     kernel = sources_in("runtime-m4/kernel", "runtime-m4/port/cortex-m4")
     return {
         "vm/flash_interpreter": (flash_of(link_map, vm - verifier), "B"),

@@ -67,9 +67,8 @@ std::vector<Share> memory_of(const vm::Image& image, const std::vector<SectionSi
   constexpr std::size_t kTimerWord = sizeof(std::uint32_t);
   const std::size_t bytes = sum(sections, std::mem_fn(&SectionSize::bytes));
   const std::size_t cells = sum(image.behaviors, std::mem_fn(&vm::Behavior::cells));
-  const std::size_t timer_words = sum(image.timers, [](const vm::Timer& timer) {
-    return vm::timer_words(timer.kind, timer.count);
-  });
+  const std::size_t timer_words =
+      sum(image.timers, [](const vm::Timer& timer) { return vm::timer_words(timer); });
   return {
       {"image", "bytes", bytes, layers::kSlotBytes},
       {"frames", "bytes", cells * sizeof(vm::Value), layers::kMaxFrameCells * sizeof(vm::Value)},

@@ -91,20 +91,13 @@ void put_record(Writer& out, const Image& image, std::span<const Record> records
   out.put_number(static_cast<std::uint32_t>(index));
 }
 
-void put_constant(Writer& out, const Image& image, std::size_t index) {
-  if (index < image.constants.size()) return out.put_value(image.constants[index]);
-  out.put("constant?");
-  out.put_number(static_cast<std::uint32_t>(index));
-}
-
-// Is the opcode's constant the number itself, not thousandths of it?
-bool holds_whole(Opcode opcode) {
-  return opcode == Opcode::div_k || opcode == Opcode::mul_k_fast;
-}
-
-void put_whole(Writer& out, const Image& image, std::size_t index) {
-  if (index >= image.constants.size()) return put_constant(out, image, index);
+void put_constant(Writer& out, const Image& image, Operand kind, std::size_t index) {
+  if (index >= image.constants.size()) {
+    out.put("constant?");
+    return out.put_number(static_cast<std::uint32_t>(index));
+  }
   const Value number = image.constants[index];
+  if (!is_whole(kind)) return out.put_value(number);
   if (number < 0) out.put('-');
   const auto bits = static_cast<std::uint32_t>(number);
   out.put_number(number < 0 ? 0 - bits : bits);
@@ -151,8 +144,8 @@ bool is_empty(Operand operand, std::uint8_t byte) {
   return operand == Operand::none || (operand == Operand::word && byte == kNoWord);
 }
 
-void put_operand(Writer& out, const Image& image, Word word, std::size_t place, Operand operand) {
-  const auto byte = static_cast<std::uint8_t>(word >> 8 * (place + 1));
+void put_operand(Writer& out, const Image& image, Operand operand, std::uint16_t number) {
+  const auto byte = static_cast<std::uint8_t>(number);
   switch (operand) {
     case Operand::write:
     case Operand::write_truth:
@@ -162,30 +155,31 @@ void put_operand(Writer& out, const Image& image, Word word, std::size_t place, 
     case Operand::variable:
     case Operand::read:
     case Operand::read_truth:
-      return put_sign(out, 'r', byte);
+      return put_sign(out, 'r', number);
     case Operand::timer:
-      return put_sign(out, 't', byte);
+      return put_sign(out, 't', number);
     case Operand::ahead:
-      return put_sign(out, '+', operand_wide(word));
     case Operand::ahead8:
-      return put_sign(out, '+', byte);
+      return put_sign(out, '+', number);
     case Operand::back:
-      return put_sign(out, '-', operand_wide(word));
+      return put_sign(out, '-', number);
     case Operand::string:
-      return put_string(out, image, operand_wide(word));
+      return put_string(out, image, number);
     case Operand::const8:
-      return holds_whole(opcode_of(word)) ? put_whole(out, image, byte)
-                                          : put_constant(out, image, byte);
     case Operand::const16:
-      return put_constant(out, image, operand_wide(word));
+    case Operand::positive8:
+    case Operand::whole8:
+    case Operand::divisor8:
+    case Operand::count16:
+      return put_constant(out, image, operand, number);
     case Operand::param:
       return put_param(out, byte);
     case Operand::target:
       return put_target(out, image, byte);
     case Operand::verb:
-      return put_record(out, image, image.verbs, byte, "verb");
+      return put_record(out, image, image.verbs, number, "verb");
     case Operand::word:
-      return put_record(out, image, image.words, byte, "word");
+      return put_record(out, image, image.words, number, "word");
     case Operand::none:
       return;
   }
@@ -207,10 +201,11 @@ std::size_t disassemble(const Image& image, Word word, std::span<char> buffer) {
   bool first = true;
   for (std::size_t place = 0; place < info.operands.size(); ++place) {
     const Operand operand = info.operands[place];
-    if (is_empty(operand, static_cast<std::uint8_t>(word >> 8 * (place + 1)))) continue;
+    const auto byte = static_cast<std::uint8_t>(word >> 8 * (place + 1));
+    if (is_empty(operand, byte)) continue;
     if (first) out.begin_operands();
     out.put(separator(first, operand));
-    put_operand(out, image, word, place, operand);
+    put_operand(out, image, operand, is_wide(operand) ? operand_wide(word) : byte);
     first = false;
   }
   return out.finish();

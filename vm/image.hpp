@@ -100,12 +100,9 @@ enum class VariableKind : std::uint8_t {
 
 // What remembers the past for a time word. Its state is words of the program's timer memory.
 enum class TimerKind : std::uint8_t {
-  held,      // FOR                1 word
-  counted,   // n TIMES WITHIN     n + 1 words
-  sequence,  // THEN … WITHIN      2 words
-  latch,     // MARGIN             1 word
-  rose,      // BECOMES            1 word
-  changed,   // CHANGES [BY]       1 word
+#define TIMER(name, words, counts, doc) name,
+#include "vm/timers.def"
+#undef TIMER
   count_
 };
 

@@ -93,7 +93,7 @@ Value run(Machine& machine, const Word* pc, Progress* progress) {
     ".pushsection .rodata.robosync_dispatch, \"a\"\n"
     ".balign 4\n"
     "robosync_dispatch:\n"
-#define OPCODE(name, a, b, c, contexts, cost, doc) \
+#define OPCODE(name, ...)                         \
     ".ifdef .Ldispatch_" #name "\n"               \
     "  .word .Ldispatch_" #name " + 1\n"          \
     ".else\n"                                     \
@@ -107,7 +107,7 @@ Value run(Machine& machine, const Word* pc, Progress* progress) {
   __builtin_unreachable();
 #else
   static const void* const table[] = {
-#define OPCODE(name, a, b, c, contexts, cost, doc) &&op_##name,
+#define OPCODE(name, ...) &&op_##name,
 #include "vm/opcodes.def"
 #undef OPCODE
   };
@@ -123,8 +123,8 @@ next:
 #if defined(__thumb2__)
 rare:
   switch (opcode_of(word)) {
-#define OPCODE(name, a, b, c, contexts, cost, doc) \
-  case Opcode::name:                               \
+#define OPCODE(name, ...) \
+  case Opcode::name:      \
     goto op_##name;
 #include "vm/opcodes.def"
 #undef OPCODE

@@ -10,70 +10,203 @@
 namespace robosync::vm {
 
 enum class Opcode : std::uint8_t {
-#define OPCODE(name, a, b, c, contexts, cost, doc) name,
+#define OPCODE(name, ...) name,
 #include "vm/opcodes.def"
 #undef OPCODE
   count_
 };
 
-// What a byte of an instruction word means; opcodes.def explains each.
+// What a byte of an instruction word means; opcodes.def explains each. The numbers are in the
+// opcode set's id: a new kind takes the next one.
 enum class Operand : std::uint8_t {
-  none,
-  write,
-  read,
-  const8,
-  const16,
-  param,
-  target,
-  verb,
-  word,
-  write_truth,
-  write_same,
-  read_truth,
-  update_truth,
-  local,
-  variable,
-  ahead,
-  ahead8,
-  back,
-  timer,
-  string
+  none = 0,
+  write = 1,
+  read = 2,
+  const8 = 3,
+  const16 = 4,
+  param = 5,
+  target = 6,
+  verb = 7,
+  word = 8,
+  write_truth = 9,
+  write_same = 10,
+  read_truth = 11,
+  update_truth = 12,
+  local = 13,
+  variable = 14,
+  ahead = 15,
+  ahead8 = 16,
+  back = 17,
+  timer = 18,
+  string = 19,
+  positive8 = 20,
+  divisor8 = 21,
+  count16 = 22,
+  whole8 = 23
 };
 
 // Where an opcode may stand: bits.
 enum class Context : std::uint8_t { condition = 1, response = 2, safety = 4, acting = 6, any = 7 };
 
+// Which instruction runs next.
+enum class Flow : std::uint8_t {
+  next,
+  end,
+  if_begin,
+  if_else,
+  count_begin,
+  loop_begin,
+  poll_begin,
+  count_end,
+  loop_end,
+  poll_end,
+  pause
+};
+
+// What a run leaves behind, besides what it writes into the frame.
+enum class Effect : std::uint8_t { none, division, event, set, param, command, log, alert, halt };
+
 struct OpcodeInfo {
   std::string_view name;
   std::array<Operand, 3> operands;  // A, B, C; wide kinds in B take C too
   Context contexts;
+  Flow flow;
+  Effect effect;
   std::uint16_t cost;  // worst-case Cortex-M4 instructions, dispatch included
   std::string_view doc;
 };
 
+// For the host. The board has no room for names and documentation: it has what opcode_traits.hpp
+// makes of this.
 inline constexpr std::array<OpcodeInfo, static_cast<std::size_t>(Opcode::count_)> kOpcodes = {{
-#define OPCODE(name, a, b, c, contexts, cost, doc) \
-  {#name, {Operand::a, Operand::b, Operand::c}, Context::contexts, cost, doc},
+#define OPCODE(name, a, b, c, contexts, flow, effect, cost, doc) \
+  {                                                              \
+      #name,                                                     \
+      {Operand::a, Operand::b, Operand::c},                      \
+      Context::contexts,                                         \
+      Flow::flow,                                                \
+      Effect::effect,                                            \
+      cost,                                                      \
+      doc},
 #include "vm/opcodes.def"
 #undef OPCODE
 }};
 
-// Does a code object end with this opcode? Every object has exactly one of them, as its last word.
-constexpr bool is_terminator(Opcode op) {
-  return op == Opcode::ret || op == Opcode::ret_number || op == Opcode::cmd_end ||
-         op == Opcode::end;
+constexpr const OpcodeInfo& info_of(Opcode opcode) {
+  return kOpcodes[static_cast<std::size_t>(opcode)];
 }
 
-// Does it begin a block that ends at its target? IF.
-constexpr bool is_unless(Opcode op) {
-  return op >= Opcode::unless && op <= Opcode::unless_ne_k;
-}
+// ---- what kinds of operands have in common
 
-// Does this operand take the bytes of B and C together?
+// Does it take the bytes of B and C together?
 constexpr bool is_wide(Operand kind) {
-  return kind == Operand::const16 || kind == Operand::ahead || kind == Operand::back ||
-         kind == Operand::string;
+  return kind == Operand::const16 || kind == Operand::count16 || kind == Operand::ahead ||
+         kind == Operand::back || kind == Operand::string;
 }
+// Is it a cell that may be an input, which is read or set?
+constexpr bool may_be_input(Operand kind) {
+  return kind == Operand::read || kind == Operand::read_truth || kind == Operand::variable;
+}
+// Is the constant the number itself, not thousandths of it?
+constexpr bool is_whole(Operand kind) {
+  return kind == Operand::whole8 || kind == Operand::divisor8;
+}
+// Must the constant be above 0?
+constexpr bool is_positive(Operand kind) {
+  return kind == Operand::positive8 || kind == Operand::divisor8 || kind == Operand::count16;
+}
+// The kind that this one narrows, if it does: the word looks the same, but less may stand there.
+constexpr Operand widened(Operand kind) {
+  switch (kind) {
+    case Operand::positive8:
+    case Operand::whole8:
+    case Operand::divisor8:
+      return Operand::const8;
+    case Operand::count16:
+      return Operand::const16;
+    default:
+      return kind;
+  }
+}
+
+// ---- what ways to go on have in common
+
+// Does it leave blocks, and what is known inside of them, as they are?
+constexpr bool is_straight(Flow flow) {
+  return flow == Flow::next || flow == Flow::end;
+}
+constexpr bool begins_loop(Flow flow) {
+  return flow == Flow::count_begin || flow == Flow::loop_begin || flow == Flow::poll_begin;
+}
+constexpr bool ends_loop(Flow flow) {
+  return flow == Flow::count_end || flow == Flow::loop_end || flow == Flow::poll_end;
+}
+// How a loop ends that begins like this.
+constexpr Flow end_of(Flow begin) {
+  switch (begin) {
+    case Flow::count_begin:
+      return Flow::count_end;
+    case Flow::loop_begin:
+      return Flow::loop_end;
+    default:
+      return Flow::poll_end;
+  }
+}
+// Does the run always stop here, to go on in a later step?
+constexpr bool always_pauses(Flow flow) {
+  return flow == Flow::pause || flow == Flow::poll_begin;
+}
+// Does it, or may it?
+constexpr bool may_pause(Flow flow) {
+  return always_pauses(flow) || flow == Flow::poll_end;
+}
+
+// Words of output.
+constexpr unsigned output_words(Effect effect) {
+  switch (effect) {
+    case Effect::none:
+    case Effect::division:
+    case Effect::event:
+    case Effect::set:
+      return 0;
+    case Effect::param:
+      return 2;
+    case Effect::command:
+    case Effect::log:
+    case Effect::alert:
+    case Effect::halt:
+      return 1;
+  }
+  return 0;
+}
+
+// By TimerKind: the time word that remembers in timers of this kind.
+inline constexpr std::array<Opcode, static_cast<std::size_t>(TimerKind::count_)> kTimeWords = {
+#define TIMER(name, words, counts, doc) Opcode::name,
+#include "vm/timers.def"
+#undef TIMER
+};
+constexpr Opcode time_word_of(TimerKind kind) {
+  return kTimeWords[static_cast<std::size_t>(kind)];
+}
+// The kind of the timers that it remembers in; count_ of what is no time word.
+constexpr TimerKind timer_kind_of(Opcode time_word) {
+  std::size_t kind = 0;
+  while (kind < kTimeWords.size() && kTimeWords[kind] != time_word)
+    ++kind;
+  return static_cast<TimerKind>(kind);
+}
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kOpcodes.size(); ++i) {
+        const bool remembers = kOpcodes[i].operands[2] == Operand::timer;
+        if (remembers != (timer_kind_of(static_cast<Opcode>(i)) != TimerKind::count_)) return false;
+      }
+      return true;
+    }(),
+    "time words stand in both lists");
+
+// ---- words
 
 constexpr Word encode(Opcode op, unsigned a = 0, unsigned b = 0, unsigned c = 0) {
   return static_cast<Word>(op) | (a << 8) | (b << 16) | (c << 24);
@@ -98,14 +231,15 @@ constexpr std::uint16_t operand_wide(Word word) {
 }
 
 // Changes whenever opcodes.def changes in a way that old images would be misread (names, order,
-// operands): 16 bits of an FNV-1a hash over them. Compared on both ends before an image runs.
+// operands): 16 bits of an FNV-1a hash over them. Compared on both ends before an image runs. What an
+// operand may be is the verifier's matter, so narrowed kinds count as what they narrow.
 constexpr std::uint16_t opcode_set_id() {
   std::uint32_t hash = 2166136261u;
   for (const OpcodeInfo& info : kOpcodes) {
     for (const char c : info.name)
       hash = (hash ^ static_cast<std::uint8_t>(c)) * 16777619u;
     for (const Operand o : info.operands)
-      hash = (hash ^ static_cast<std::uint8_t>(o)) * 16777619u;
+      hash = (hash ^ static_cast<std::uint8_t>(widened(o))) * 16777619u;
   }
   return static_cast<std::uint16_t>(hash ^ (hash >> 16));
 }

@@ -1,30 +1,28 @@
 // Reads a response's output back: commands, texts, halts, each with the parameters given to it.
 #include "vm/output.hpp"
 
-#include "vm/opcode.hpp"
+#include "vm/opcode_traits.hpp"
 
 namespace robosync::vm {
 namespace {
 
-// What a word puts out; false: it is no such word.
-bool decode(Word word, Output& output) {
-  const std::uint8_t a = operand_a(word);
-  switch (opcode_of(word)) {
-    case Opcode::cmd:
-    case Opcode::cmd_end:
+// What a word with this effect puts out; false: it is no such word.
+bool decode(Word word, Effect effect, Output& output) {
+  switch (effect) {
+    case Effect::command:
       output.kind = OutputKind::command;
-      output.target = a;
+      output.target = operand_a(word);
       output.verb = operand_b(word);
       output.word = operand_c(word);
       return true;
-    case Opcode::log:
-    case Opcode::alert:
-      output.kind = opcode_of(word) == Opcode::log ? OutputKind::log : OutputKind::alert;
+    case Effect::log:
+    case Effect::alert:
+      output.kind = effect == Effect::log ? OutputKind::log : OutputKind::alert;
       output.text = operand_wide(word);
       return true;
-    case Opcode::halt:
+    case Effect::halt:
       output.kind = OutputKind::halt;
-      output.target = a;
+      output.target = operand_a(word);
       return true;
     default:
       return false;
@@ -38,14 +36,14 @@ bool OutputReader::next(Output& output) {
   unsigned given = 0;
   while (!words_.empty()) {
     const Word word = words_[0];
-    if (decode(word, output)) {
+    const Effect effect = traits_of(word).effect();
+    if (decode(word, effect, output)) {
       words_ = words_.subspan(1);
       output.given = static_cast<std::uint8_t>(given);
       return true;
     }
     const std::uint8_t param = operand_a(word);
-    const bool is_param = opcode_of(word) == Opcode::arg || opcode_of(word) == Opcode::arg_k;
-    if (!is_param || words_.size() < 2 || param >= output.params.size()) break;
+    if (effect != Effect::param || words_.size() < 2 || param >= output.params.size()) break;
     output.params[param] = static_cast<Value>(words_[1]);
     given |= 1U << param;
     words_ = words_.subspan(2);

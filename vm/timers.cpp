@@ -1,4 +1,4 @@
-// The time words. What each one means: 10-language.md, section 3.4; with an unknown operand the
+// The time words. What each one means to a program: docs/language.md. With an unknown operand the
 // result is unknown and the memory is kept, except where it says otherwise here.
 #include "vm/timers.hpp"
 

@@ -14,10 +14,22 @@ namespace robosync::vm {
 // that may change without new inputs, and sets machine.event where it is true for one step only.
 [[nodiscard]] Value time_word(Machine& machine, Word word);
 
-// Words that a timer of this kind takes up in the timer memory.
-constexpr unsigned timer_words(TimerKind kind, unsigned count) {
-  if (kind == TimerKind::counted) return count + 1;
-  return kind == TimerKind::sequence ? 2 : 1;
+struct TimerInfo {
+  std::uint8_t words;  // of the timer memory; where it counts, one more for each edge
+  bool counts;         // does Timer::count say something? If not, it is 0
+};
+inline constexpr std::array<TimerInfo, static_cast<std::size_t>(TimerKind::count_)> kTimers = {{
+#define TIMER(name, words, counts, doc) {words, counts},
+#include "vm/timers.def"
+#undef TIMER
+}};
+constexpr const TimerInfo& info_of(TimerKind kind) {
+  return kTimers[static_cast<std::size_t>(kind)];
+}
+
+// Words that a timer takes up in the timer memory. It is one the verifier would accept.
+constexpr unsigned timer_words(const Timer& timer) {
+  return info_of(timer.kind).words + 0U + timer.count;
 }
 
 // `now` is `time`, or later.

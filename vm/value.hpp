@@ -2,8 +2,8 @@
 //
 // A Value counts thousandths of the canonical unit of its dimension (dimensions.def), so 0.1 + 0.2
 // is exactly 0.3. The range is ±2,147,483.647; all arithmetic saturates at it, so INT32_MIN is
-// never the result of arithmetic and stands for "unknown". Design: 10-language.md, decision 5 and
-// section 3.2.
+// never the result of arithmetic and stands for "unknown". More of it: docs/bytecode.md, "Values";
+// what programs see of it: docs/language.md.
 #pragma once
 
 #include <cstdint>

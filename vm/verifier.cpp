@@ -1,12 +1,13 @@
-// The verifier's frame: the header and the checksum, then the records, then the code.
+// The verifier: the header and the checksum, then the records, then the code of all rules, and that
+// it does no more than the records declare.
 //
 // Work is linear in the image for everything but code; code is checked once for every rule that
-// uses it, and that is bounded (verify_code.cpp).
+// uses it, and that is bounded (check_code).
 #include "vm/verifier.hpp"
 
 #include <algorithm>
 
-#include "vm/verifier_parts.hpp"
+#include "vm/verify_object.hpp"
 
 namespace robosync::vm {
 namespace {
@@ -57,6 +58,39 @@ constexpr std::string_view kSectionNames[] = {
     "code",       "labels",    "strings",  "source lines"};
 static_assert(std::size(kSectionNames) == static_cast<std::size_t>(Section::source_lines) + 1);
 
+// Finds the response's cost; 0 where there is none.
+bool check_response(Frame& frame, const Rule& rule, std::uint16_t index, std::uint32_t& cost) {
+  cost = 0;
+  if (index == kNoIndex) return true;
+  const Response& response = frame.verification.image.responses[index];
+  const ObjectKind kind = rule.kind == RuleKind::safety ? ObjectKind::safety : ObjectKind::response;
+  std::uint32_t actuators = 0;
+  if (!check_object(frame, kind, {response.start, response.length}, cost, actuators)) return false;
+  if (actuators != response.actuators)
+    return frame.verification.refuse(Refusal::mask_differs, Section::responses, index);
+  frame.actuators |= actuators;
+  return true;
+}
+
+// A response shared by several rules is checked for each: what its words mean depends on the frame
+// of the behaviour that runs it. That cannot be made to take long: the words looked at are at most
+// as many as the instructions that the board allows in one step (check_object).
+bool check_code(Verification& verification) {
+  const Image& image = verification.image;
+  for (std::size_t b = 0; b < image.behaviors.size(); ++b) {
+    const Behavior& behavior = image.behaviors[b];
+    Frame frame(verification, behavior);
+    for (std::size_t r = 0; r < behavior.rule_count; ++r) {
+      RuleCost cost;
+      if (!check_rule(frame, image.rules[behavior.first_rule + r], cost)) return false;
+      verification.step_cost += cost.step();
+    }
+    if (frame.actuators != behavior.actuators)
+      return verification.refuse(Refusal::mask_differs, Section::behaviors, b);
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string_view describe(Refusal refusal) {
@@ -72,6 +106,17 @@ std::string_view describe(Section section) {
 bool Verification::refuse(Refusal refusal, Section section, std::size_t index) {
   verdict = {refusal, section, static_cast<std::uint16_t>(index)};
   return false;
+}
+
+bool check_rule(Frame& frame, const Rule& rule, RuleCost& cost) {
+  if (!check_response(frame, rule, rule.then_response, cost.then_response) ||
+      !check_response(frame, rule, rule.else_response, cost.else_response))
+    return false;
+  if (rule.condition_length == 0) return true;
+  const ObjectKind kind = rule.kind == RuleKind::every ? ObjectKind::period : ObjectKind::condition;
+  std::uint32_t none = 0;
+  return check_object(frame, kind, {rule.condition_start, rule.condition_length}, cost.condition,
+                      none);
 }
 
 Verdict verify(std::span<const std::byte> bytes, const Limits& limits, Image& image) {

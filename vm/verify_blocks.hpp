@@ -14,7 +14,8 @@
 
 #include <array>
 
-#include "vm/verifier_parts.hpp"
+#include "vm/opcode_traits.hpp"
+#include "vm/verification.hpp"
 
 namespace robosync::vm {
 
@@ -23,12 +24,16 @@ public:
   // For the object that ends with the word at `last`.
   Blocks(const Image& image, std::size_t last) : image_(image), last_(last) {}
 
-  // Before the word at `at`: ends the blocks that end there. `changed`: some did.
-  [[nodiscard]] Refusal arrive(std::size_t at, bool& changed);
+  // Does a block end before the word at `at`?
+  [[nodiscard]] bool ends_at(std::size_t at) const {
+    return depth_ > 0 && open_[depth_ - 1].end <= at;
+  }
+  // Ends those that do.
+  [[nodiscard]] Refusal arrive(std::size_t at);
   // The word at `at`, whose operands are good, is run.
   [[nodiscard]] Refusal spend(std::uint32_t cost, std::uint32_t output);
   // Then, if it begins or ends a block, or waits.
-  [[nodiscard]] Refusal flow(std::size_t at, Word word);
+  [[nodiscard]] Refusal flow(std::size_t at, Word word, Traits traits);
 
   // The response owns this input from here on.
   void own(std::uint8_t input) { owned_ |= bit_of(input); }
@@ -45,23 +50,25 @@ private:
     std::uint32_t cost = 0;
     std::uint32_t output = 0;
   };
-  enum class Kind : std::uint8_t {
-    forward,
-    loop,
-    keeping_loop,  // changes a variable that it began with, so it must not wait
-    waiting_loop   // waits in every round
+  enum class Pauses : std::uint8_t {  // of a loop
+    unknown,
+    never,  // it changes a variable that it began with
+    always  // in every round
   };
   struct Block {
-    std::uint32_t cost;  // forward: spent where a jump to its end starts, at most; loop: spent
-                         // at its start. The lead: from there to the first wait
+    [[nodiscard]] bool is_loop() const { return closed_by != Flow::if_else; }
+
+    std::uint32_t cost;  // IF: spent where a jump to its end starts, at most; loop: spent at its
+                         // start. The lead: from there to the first wait
     union {
-      std::uint32_t lead_cost;  // waiting_loop
+      std::uint32_t lead_cost;  // of a loop that always pauses
       std::uint32_t owned;      // of those it began with, the ones that no wait took away
     };
     std::uint16_t start;  // loop: where a jump back goes to
-    std::uint16_t end;    // forward: where it ends; loop: where it must have ended
+    std::uint16_t end;    // IF: where it ends; loop: where it must have ended
     std::uint8_t output, lead_output;
-    Kind kind;
+    Pauses pauses;
+    Flow closed_by;  // which word may end it: the loop's own, or ELSE
   };
   static_assert(sizeof(Block) == 16, "stands kMaxBlocks times on a small stack");
 
@@ -70,11 +77,11 @@ private:
   }
   Block& top() { return open_[depth_ - 1]; }
   [[nodiscard]] std::size_t limit() const { return depth_ > 0 ? open_[depth_ - 1].end : last_; }
-  [[nodiscard]] const Word& opener(const Block& loop) const { return image_.code[loop.start - 1U]; }
+  [[nodiscard]] Word opener(const Block& loop) const { return image_.code[loop.start - 1U]; }
 
-  Refusal open(Kind kind, std::size_t start, std::size_t end);
-  Refusal jump(std::size_t next, std::size_t target);
-  Refusal close_loop(std::size_t target, Word word);
+  Refusal open(Flow closed_by, std::size_t start, std::size_t end);
+  Refusal begin_else(std::size_t next, std::size_t target);
+  Refusal close_loop(std::size_t target, Word word, Flow end);
   Refusal repeat(const Block& loop);
   [[nodiscard]] bool disown();
   void wait();

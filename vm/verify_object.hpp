@@ -3,7 +3,8 @@
 
 #include <array>
 
-#include "vm/verifier_parts.hpp"
+#include "vm/cost.hpp"
+#include "vm/verification.hpp"
 
 namespace robosync::vm {
 
@@ -70,13 +71,24 @@ struct CodeRange {
 
 enum class ObjectKind : std::uint8_t { condition, period, response, safety };
 
-// What an accepted object does.
-struct ObjectFacts {
-  std::uint32_t cost = 0;       // M4 instructions between two waits, at most
-  std::uint32_t actuators = 0;  // every one it commands or halts
+// A behaviour and its frame, which its rules share. They are checked in their order, and of each the
+// responses before the condition: what an object may do depends on those before it.
+struct Frame {
+  Frame(Verification& all, const Behavior& of)
+      : verification(all), behavior(of), cells(of, count_watches(all.image, of)) {}
+
+  Verification& verification;
+  const Behavior& behavior;
+  Cells cells;
+  std::uint32_t actuators = 0;  // every one that a rule so far commands or halts
 };
 
-bool check_object(Verification& verification, const Behavior& behavior, Cells& cells,
-                  ObjectKind kind, CodeRange range, ObjectFacts& facts);
+// Finds, of an accepted object, what it costs between two waits at most, in M4 instructions; and
+// every actuator that it commands or halts.
+bool check_object(Frame& frame, ObjectKind kind, CodeRange range, std::uint32_t& cost,
+                  std::uint32_t& actuators);
+
+// verifier.cpp: all objects of a rule.
+bool check_rule(Frame& frame, const Rule& rule, RuleCost& cost);
 
 }  // namespace robosync::vm

@@ -3,7 +3,7 @@
 // One walk over the sections in their order, one check for each kind of record. A check may rely on
 // the sections before its own.
 #include "vm/timers.hpp"
-#include "vm/verifier_parts.hpp"
+#include "vm/verification.hpp"
 
 namespace robosync::vm {
 namespace {
@@ -192,12 +192,11 @@ Refusal check_modifiers(Walk&, const Modifiers& modifiers, std::size_t) {
 
 // Timers follow each other in the timer memory.
 Refusal check_timer(Walk& walk, const Timer& timer, std::size_t) {
-  const bool counts = timer.kind == TimerKind::counted;
-  const bool good = is_enumerator(timer.kind) && timer.state == walk.timer_words &&
-                    timer.duration >= 0 &&
-                    (counts ? timer.count > 0 && timer.count <= kMaxEdges : timer.count == 0);
+  const bool good =
+      is_enumerator(timer.kind) && timer.state == walk.timer_words && timer.duration >= 0 &&
+      (info_of(timer.kind).counts ? timer.count > 0 && timer.count <= kMaxEdges : timer.count == 0);
   if (!good) return Refusal::bad_value;
-  walk.timer_words += timer_words(timer.kind, timer.count);
+  walk.timer_words += timer_words(timer);
   return good_or(Refusal::too_many, walk.timer_words <= walk.limits.timer_words);
 }
 
@@ -286,7 +285,15 @@ struct SectionInfo {
   std::uint8_t record_size;
   std::uint8_t count_place;  // in the header
   std::uint8_t count_size;
+  bool named;  // the records begin with their name
 };
+
+// A behaviour's name stands elsewhere, and it may have none: check_behavior.
+template <typename Record>
+constexpr bool is_named() {
+  if constexpr (requires { &Record::name; }) return offsetof(Record, name) == 0;
+  return false;
+}
 
 template <typename Record, Refusal (*check)(Walk&, const Record&, std::size_t)>
 Refusal check_at(Walk& walk, const std::byte* record, std::size_t index) {
@@ -295,8 +302,11 @@ Refusal check_at(Walk& walk, const std::byte* record, std::size_t index) {
 
 // In the order of Section, from the section after the header on.
 constexpr SectionInfo kSections[] = {
-#define SECTION(count, Record, check) \
-  { check, sizeof(Record), offsetof(ImageHeader, count), sizeof(ImageHeader::count) }
+#define SECTION(count, Record, check)                                                \
+  {                                                                                  \
+    check, sizeof(Record), offsetof(ImageHeader, count), sizeof(ImageHeader::count), \
+        is_named<Record>()                                                           \
+  }
     SECTION(sensors, Sensor, (check_at<Sensor, check_sensor>)),
     SECTION(channels, Channel, (check_at<Channel, check_channel>)),
     SECTION(actuators, Actuator, (check_at<Actuator, check_actuator>)),
@@ -314,20 +324,13 @@ constexpr SectionInfo kSections[] = {
     SECTION(responses, Response, (check_at<Response, check_response>)),
     SECTION(inputs, std::uint8_t, (check_at<std::uint8_t, check_input>)),
     SECTION(constants, Value, (check_at<Value, check_constant>)),
-    SECTION(code, Word, nullptr),  // verify_code.cpp
+    SECTION(code, Word, nullptr),  // check_code
     SECTION(labels, std::uint16_t, (check_at<std::uint16_t, check_label>)),
     SECTION(string_bytes, char, nullptr),  // check_records
     SECTION(source_lines, SourceLine, (check_at<SourceLine, check_source_line>)),
 #undef SECTION
 };
 static_assert(std::size(kSections) == static_cast<std::size_t>(Section::source_lines));
-
-// The records of the sections up to this one begin with their name.
-constexpr Section kLastNamed = Section::variables;
-static_assert(offsetof(Sensor, name) == 0 && offsetof(Channel, name) == 0 &&
-              offsetof(Actuator, name) == 0 && offsetof(Group, name) == 0 &&
-              offsetof(Verb, name) == 0 && offsetof(WordEntry, name) == 0 &&
-              offsetof(Variable, name) == 0);
 
 std::size_t record_count(const ImageHeader& header, const SectionInfo& section) {
   const auto* const place = reinterpret_cast<const std::uint8_t*>(&header) + section.count_place;
@@ -357,7 +360,7 @@ bool check_records(Verification& verification) {
     if (count == 0) continue;
     for (std::size_t i = 0; i < count && section.check != nullptr; ++i) {
       const std::byte* const record = next + i * section.record_size;
-      if (here <= kLastNamed && !is_string(walk, *reinterpret_cast<const std::uint16_t*>(record)))
+      if (section.named && !is_string(walk, *reinterpret_cast<const std::uint16_t*>(record)))
         return verification.refuse(Refusal::bad_string, here, i);
       const Refusal refusal = section.check(walk, record, i);
       if (refusal != Refusal::none) return verification.refuse(refusal, here, i);

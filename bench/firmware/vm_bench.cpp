@@ -53,8 +53,7 @@ void count_response(vm::Machine& m, const Word* code) {
 // What a time word may remember, in as many ways as there are edges: of each kind all that lead
 // another way through its code. The machine's time is 1000.
 void fill_timer(vm::Opcode opcode, unsigned way) {
-  const unsigned place = static_cast<unsigned>(opcode) - static_cast<unsigned>(vm::Opcode::held);
-  timer = {static_cast<vm::TimerKind>(place), vm::kMaxEdges, 0, 100};
+  timer = {vm::timer_kind_of(opcode), vm::kMaxEdges, 0, 100};
   constexpr std::uint32_t kOld = 800;
   constexpr std::uint32_t kRecent = 950;
   constexpr std::array<std::uint32_t, 4> kDue = {0, 900, 1100, UINT32_MAX};
@@ -79,19 +78,22 @@ void fill_timer(vm::Opcode opcode, unsigned way) {
   }
 }
 
+constexpr bool is_constant(vm::Operand kind) {
+  return vm::widened(kind) == vm::Operand::const8;
+}
 constexpr bool has_constant(const vm::OpcodeInfo& info) {
-  return info.operands[1] == vm::Operand::const8 || info.operands[2] == vm::Operand::const8;
+  return is_constant(info.operands[1]) || is_constant(info.operands[2]);
 }
 
 // Does the verifier allow this constant?
-constexpr bool is_allowed(vm::Opcode opcode, Value constant) {
-  const bool divides = opcode == vm::Opcode::div_k || opcode == vm::Opcode::mod_k;
-  return divides ? constant > 0 : constant != vm::kUnknown;
+constexpr bool is_allowed(const vm::OpcodeInfo& info, Value constant) {
+  const bool positive = vm::is_positive(info.operands[1]) || vm::is_positive(info.operands[2]);
+  return positive ? constant > 0 : constant != vm::kUnknown;
 }
 
 // Operands are in cells 0 and 1 and constant 0, the result goes to cell 2. Jumps skip nothing.
 constexpr Word word_of(vm::Opcode opcode) {
-  const vm::OpcodeInfo& info = vm::kOpcodes[static_cast<std::size_t>(opcode)];
+  const vm::OpcodeInfo& info = vm::info_of(opcode);
   const unsigned right = has_constant(info) || info.operands[2] == vm::Operand::timer ? 0 : 1;
   if (info.operands[2] == vm::Operand::ahead8) return vm::encode(opcode, 0, right, 0);
   const unsigned a = info.operands[0] == vm::Operand::param ? 0 : 2;
@@ -102,7 +104,7 @@ constexpr Word word_of(vm::Opcode opcode) {
 // The opcode before a terminator, or as the terminator. Truth operands only have their three
 // values; more do not hurt.
 void measure_opcode(vm::Opcode opcode) {
-  const vm::OpcodeInfo& info = vm::kOpcodes[static_cast<std::size_t>(opcode)];
+  const vm::OpcodeInfo& info = vm::info_of(opcode);
   const bool in_conditions = (static_cast<unsigned>(info.contexts) & 1) != 0;
   const bool in_responses = (static_cast<unsigned>(info.contexts) & 6) != 0;
   const Word word = word_of(opcode);
@@ -112,7 +114,7 @@ void measure_opcode(vm::Opcode opcode) {
   const unsigned ways = timed ? kEdges.size() : 1;
   for (const Value left : kEdges) {
     for (const Value& right : kEdges) {
-      if (has_constant(info) && !is_allowed(opcode, right)) continue;
+      if (has_constant(info) && !is_allowed(info, right)) continue;
       for (unsigned way = 0; way < ways; ++way) {
         frame[0] = left;
         frame[1] = frame[2] = right;

@@ -204,7 +204,7 @@ Cell ExpressionEmitter::compare(Operation operation, Cell left, vm::Value right,
 
 Cell ExpressionEmitter::time_word(const Expression& expression, std::uint32_t depth) {
   const auto& operands = expression.operands;
-  const vm::Opcode opcode = of_time_word(expression.operation);
+  const vm::Opcode opcode = vm::time_word_of(timer_kind(expression.operation));
   const Cell cell = parts_.frame.temporary(depth);
   Cell source = value(operands[0], depth);
   // The opcodes of two operands have the first one where they put the result.

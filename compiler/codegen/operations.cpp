@@ -1,23 +1,26 @@
 #include "compiler/codegen/operations.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "vm/arithmetic.hpp"
 
 namespace robosync::compiler {
 namespace {
 
-// Comparisons, in the order of the jumps that do them.
-constexpr vm::Opcode kCompared[] = {
-    vm::Opcode::lt,   vm::Opcode::le,   vm::Opcode::eq,   vm::Opcode::ne,   vm::Opcode::lt_k,
-    vm::Opcode::le_k, vm::Opcode::gt_k, vm::Opcode::ge_k, vm::Opcode::eq_k, vm::Opcode::ne_k};
-constexpr auto kFirstCompared = static_cast<std::size_t>(vm::Opcode::unless_lt);
-static_assert(static_cast<std::size_t>(vm::Opcode::unless_ne_k) ==
-              kFirstCompared + std::size(kCompared) - 1);
+// A comparison, and the jump that does it.
+struct Jump {
+  vm::Opcode comparison, unless;
+};
+constexpr Jump kJumps[] = {
+    {vm::Opcode::lt, vm::Opcode::unless_lt},     {vm::Opcode::le, vm::Opcode::unless_le},
+    {vm::Opcode::eq, vm::Opcode::unless_eq},     {vm::Opcode::ne, vm::Opcode::unless_ne},
+    {vm::Opcode::lt_k, vm::Opcode::unless_lt_k}, {vm::Opcode::le_k, vm::Opcode::unless_le_k},
+    {vm::Opcode::gt_k, vm::Opcode::unless_gt_k}, {vm::Opcode::ge_k, vm::Opcode::unless_ge_k},
+    {vm::Opcode::eq_k, vm::Opcode::unless_eq_k}, {vm::Opcode::ne_k, vm::Opcode::unless_ne_k}};
 
 vm::Opcode unless(vm::Opcode comparison) {
-  std::size_t place = 0;
-  while (kCompared[place] != comparison)
-    ++place;
-  return static_cast<vm::Opcode>(kFirstCompared + place);
+  return std::ranges::find(kJumps, comparison, &Jump::comparison)->unless;
 }
 
 WithConstant sum_with(const Expression& left, vm::Value constant) {
@@ -92,23 +95,6 @@ vm::Opcode with_cells(Operation operation) {
   }
 }
 
-vm::Opcode of_time_word(Operation time_word) {
-  switch (time_word) {
-    case Operation::held:
-      return vm::Opcode::held;
-    case Operation::counted:
-      return vm::Opcode::counted;
-    case Operation::sequence:
-      return vm::Opcode::sequence;
-    case Operation::latch:
-      return vm::Opcode::latch;
-    case Operation::rose:
-      return vm::Opcode::rose;
-    default:
-      return vm::Opcode::changed;
-  }
-}
-
 vm::Opcode unless_with_constant(Operation comparison) {
   return unless(with_constant(comparison));
 }
@@ -118,10 +104,9 @@ vm::Opcode unless_with_cells(Operation comparison) {
 }
 
 std::optional<vm::Opcode> compared_by(vm::Opcode jump) {
-  const auto number = static_cast<std::size_t>(jump);
-  if (number < kFirstCompared || number >= kFirstCompared + std::size(kCompared))
-    return std::nullopt;
-  return kCompared[number - kFirstCompared];
+  const auto* const found = std::ranges::find(kJumps, jump, &Jump::unless);
+  if (found == std::end(kJumps)) return std::nullopt;
+  return found->comparison;
 }
 
 std::optional<WithConstant> constant_form(const Expression& expression) {

@@ -16,7 +16,6 @@ namespace robosync::compiler {
 // An operation with two cells. Not greater and greater_equal: they are less and less_equal
 // mirrored.
 [[nodiscard]] vm::Opcode with_cells(Operation operation);
-[[nodiscard]] vm::Opcode of_time_word(Operation time_word);
 // A jump unless the comparison with a constant, or with a cell, is true. Of cells as with_cells().
 [[nodiscard]] vm::Opcode unless_with_constant(Operation comparison);
 [[nodiscard]] vm::Opcode unless_with_cells(Operation comparison);

@@ -3,9 +3,8 @@
 #include "vm/timers.hpp"
 
 namespace robosync::compiler {
-namespace {
 
-vm::TimerKind kind_of(Operation time_word) {
+vm::TimerKind timer_kind(Operation time_word) {
   switch (time_word) {
     case Operation::held:
       return vm::TimerKind::held;
@@ -22,21 +21,18 @@ vm::TimerKind kind_of(Operation time_word) {
   }
 }
 
-}  // namespace
-
 bool is_time_word(Operation operation) {
   return operation >= Operation::held && operation <= Operation::changed;
 }
 
 std::size_t Timers::add(const Expression& time_word) {
   vm::Timer timer{};
-  timer.kind = kind_of(time_word.operation);
-  if (timer.kind == vm::TimerKind::counted)
-    timer.count = static_cast<std::uint8_t>(time_word.index);
+  timer.kind = timer_kind(time_word.operation);
+  if (vm::info_of(timer.kind).counts) timer.count = static_cast<std::uint8_t>(time_word.index);
   timer.state = static_cast<std::uint16_t>(memory_);
   if (timer.kind != vm::TimerKind::latch && timer.kind != vm::TimerKind::rose)
     timer.duration = time_word.constant;
-  memory_ += vm::timer_words(timer.kind, timer.count);
+  memory_ += vm::timer_words(timer);
   records_.push_back(timer);
   return records_.size() - 1;
 }

@@ -11,6 +11,8 @@ namespace robosync::compiler {
 // Is it a time word itself, whatever its operands are?
 [[nodiscard]] bool is_time_word(Operation operation);
 
+[[nodiscard]] vm::TimerKind timer_kind(Operation time_word);
+
 class Timers {
 public:
   // A new timer for the time word; its place.

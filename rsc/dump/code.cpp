@@ -19,39 +19,27 @@ constexpr std::size_t kColumn = 44;  // where the source line stands
 class Nesting {
 public:
   // Before the instruction at `at` is printed.
-  void arrive(std::size_t at, vm::Opcode op) {
+  void arrive(std::size_t at, vm::Flow flow) {
     while (!ends_.empty() && ends_.back() == at)
       ends_.pop_back();
-    if (closes(op) && loops_ > 0) --loops_;
+    if (vm::ends_loop(flow) && loops_ > 0) --loops_;
   }
   // After it was printed.
-  void leave(vm::Opcode op, std::size_t target) {
-    if (vm::is_unless(op)) ends_.push_back(target);
-    if (op == vm::Opcode::jump) {
-      if (!ends_.empty()) ends_.pop_back();  // it is the last word of the block before ELSE
-      ends_.push_back(target);
-    }
-    if (opens(op)) ++loops_;
+  void leave(vm::Flow flow, std::size_t target) {
+    if (flow == vm::Flow::if_else && !ends_.empty()) ends_.pop_back();  // the block before ELSE
+    if (flow == vm::Flow::if_begin || flow == vm::Flow::if_else) ends_.push_back(target);
+    if (vm::begins_loop(flow)) ++loops_;
   }
   std::size_t depth() const { return ends_.size() + loops_; }
 
 private:
-  static bool opens(vm::Opcode op) {
-    return op == vm::Opcode::times || op == vm::Opcode::times_v || op == vm::Opcode::loop ||
-           op == vm::Opcode::poll;
-  }
-  static bool closes(vm::Opcode op) {
-    return op == vm::Opcode::again || op == vm::Opcode::around || op == vm::Opcode::around_always ||
-           op == vm::Opcode::until;
-  }
-
   std::vector<std::size_t> ends_;  // of IF blocks, outermost first
   std::size_t loops_ = 0;
 };
 
 // Where the instruction at `at` may go on, if it is a jump.
 std::optional<std::size_t> target_of(std::size_t at, vm::Word word) {
-  const auto& operands = vm::kOpcodes[static_cast<std::size_t>(vm::opcode_of(word))].operands;
+  const auto& operands = vm::info_of(vm::opcode_of(word)).operands;
   if (operands[1] == vm::Operand::ahead) return at + 1 + vm::operand_wide(word);
   if (operands[1] == vm::Operand::back) return at + 1 - vm::operand_wide(word);
   if (operands[2] == vm::Operand::ahead8) return at + 1 + vm::operand_c(word);
@@ -98,16 +86,16 @@ std::string dump_code(const vm::Image& image, const SourceLines& source, std::si
     if (lines.arrive(at)) text += lines.above();
     std::array<char, 120> buffer{};
     const std::size_t count = vm::disassemble(image, image.code[at], buffer);
-    const vm::Opcode op = vm::opcode_of(image.code[at]);
+    const vm::Flow flow = vm::info_of(vm::opcode_of(image.code[at])).flow;
     const std::optional<std::size_t> target = target_of(at, image.code[at]);
-    nesting.arrive(at, op);
+    nesting.arrive(at, flow);
     const std::string shown = fmt::format("{:{}}{}{}", "", nesting.depth() * kIndent,
                                           std::string_view(buffer.data(), count),
                                           target ? fmt::format("  -> {}", *target) : "");
     const std::string beside = lines.beside();
     text += fmt::format("    {:>4}  {:08x}  {:<{}}{}\n", at, image.code[at], shown,
                         beside.empty() ? 0 : kColumn, beside);
-    nesting.leave(op, target.value_or(0));
+    nesting.leave(flow, target.value_or(0));
   }
   return text;
 }

@@ -13,7 +13,10 @@ namespace {
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::VariableKind::count_)> kKinds =
     {"number", "state", "feeling", "signal", "band"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::TimerKind::count_)> kTimers = {
-    "FOR", "TIMES WITHIN", "THEN WITHIN", "MARGIN", "BECOMES", "CHANGES"};
+#define TIMER(name, words, counts, doc) doc,
+#include "vm/timers.def"
+#undef TIMER
+};
 constexpr std::int64_t kWholeFade = std::int64_t{1} << 31;
 constexpr int kPerMille = 1000;
 
@@ -83,7 +86,7 @@ std::string check_text(const vm::Image& image, const vm::Check& check) {
 
 std::string timer_text(std::size_t index, const vm::Timer& timer) {
   std::string text = fmt::format("  {} {}", index, word_of(kTimers, timer.kind));
-  if (timer.kind == vm::TimerKind::counted) text += fmt::format(" {} times", timer.count);
+  if (timer.count != 0) text += fmt::format(" {} times", timer.count);
   if (timer.kind == vm::TimerKind::changed) {
     text += " by " + format_quantity(timer.duration, vm::Dimension::number);
   } else if (timer.duration != 0) {

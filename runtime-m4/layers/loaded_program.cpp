@@ -3,7 +3,7 @@
 #include "runtime-m4/layers/loaded_program.hpp"
 
 #include "runtime-m4/policy/concern.hpp"
-#include "vm/opcode.hpp"
+#include "vm/opcode_traits.hpp"
 #include "vm/timers.hpp"
 
 namespace robosync::layers {
@@ -45,11 +45,9 @@ void LoadedProgram::load_rules(unsigned b) {
 // the code of the SAFETY rules stands first; so the last one ends what belongs to SAFETY.
 void LoadedProgram::note_timers(const vm::Rule& rule) {
   for (const vm::Word word : image.code.subspan(rule.condition_start, rule.condition_length)) {
-    const vm::Opcode opcode = vm::opcode_of(word);
-    if (opcode < vm::Opcode::held || opcode > vm::Opcode::changed) continue;
+    if (vm::traits_of(word).operand(2) != vm::Operand::timer) continue;
     const vm::Timer& timer = image.timers[vm::operand_c(word)];
-    safety_timer_words =
-        static_cast<std::uint16_t>(timer.state + vm::timer_words(timer.kind, timer.count));
+    safety_timer_words = static_cast<std::uint16_t>(timer.state + vm::timer_words(timer));
   }
 }
 
@@ -78,21 +76,8 @@ namespace {
 std::size_t output_of(const vm::Image& image, std::uint16_t response) {
   const vm::Response& body = image.responses[response];
   std::size_t words = 0;
-  for (const vm::Word word : image.code.subspan(body.start, body.length)) {
-    switch (vm::opcode_of(word)) {
-      case vm::Opcode::arg:
-      case vm::Opcode::arg_k:
-        words += 2;
-        break;
-      case vm::Opcode::log:
-      case vm::Opcode::alert:
-      case vm::Opcode::halt:
-        words += 1;
-        break;
-      default:
-        break;
-    }
-  }
+  for (const vm::Word word : image.code.subspan(body.start, body.length))
+    words += vm::output_words(vm::traits_of(word).effect());
   return words;
 }
 
@@ -116,7 +101,7 @@ vm::Verdict tables_fit(const vm::Image& image) {
   if (fading > kMaxFading) return refuse(Section::variables, kMaxFading);
   std::size_t timer_words = 0;
   for (const vm::Timer& timer : image.timers)
-    timer_words += vm::timer_words(timer.kind, timer.count);
+    timer_words += vm::timer_words(timer);
   if (timer_words > kMaxTimerWords) return refuse(Section::timers, kMaxTimerWords);
   for (const vm::Rule& rule : image.rules)
     if (rule.kind == vm::RuleKind::safety &&

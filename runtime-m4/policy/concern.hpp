@@ -19,12 +19,8 @@ inline constexpr std::array<std::uint8_t, vm::kOpcodes.size()> kInputOperands = 
   std::array<std::uint8_t, vm::kOpcodes.size()> inputs{};
   for (std::size_t op = 0; op < inputs.size(); ++op) {
     unsigned mask = 0;
-    for (unsigned i = 0; i < vm::kOpcodes[op].operands.size(); ++i) {
-      const vm::Operand kind = vm::kOpcodes[op].operands[i];
-      if (kind == vm::Operand::read || kind == vm::Operand::read_truth ||
-          kind == vm::Operand::variable)
-        mask |= 1U << i;
-    }
+    for (unsigned i = 0; i < vm::kOpcodes[op].operands.size(); ++i)
+      if (vm::may_be_input(vm::kOpcodes[op].operands[i])) mask |= 1U << i;
     inputs[op] = static_cast<std::uint8_t>(mask);
   }
   return inputs;

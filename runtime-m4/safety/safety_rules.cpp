@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "runtime-m4/layers/report.hpp"
-#include "vm/opcode.hpp"
+#include "vm/opcode_traits.hpp"
 
 namespace robosync::safety {
 
@@ -108,7 +108,8 @@ ActuatorMask SafetyRules::halted_by(unsigned rule) const {
   const vm::Response& body = image.responses[image.rules[rule].then_response];
   ActuatorMask mask = 0;
   for (const vm::Word word : image.code.subspan(body.start, body.length))
-    if (vm::opcode_of(word) == vm::Opcode::halt) mask |= actuators_of(image, vm::operand_a(word));
+    if (vm::traits_of(word).effect() == vm::Effect::halt)
+      mask |= actuators_of(image, vm::operand_a(word));
   return mask;
 }
 

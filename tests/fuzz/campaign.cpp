@@ -41,7 +41,7 @@ std::uint32_t Campaign::mask_of(std::size_t response) {
     const Word word = draft_.word(w);
     if (!is_opcode(word) || kind_of(word, 0) != Operand::target) continue;
     const std::uint8_t target = vm::operand_a(word);
-    const bool all = vm::opcode_of(word) == Opcode::halt && target == vm::kAllActuators;
+    const bool all = info_of(word).effect == vm::Effect::halt && target == vm::kAllActuators;
     mask |= all ? all_of(draft_.view().actuators.size()) : draft_.view().target_mask(target);
   }
   return mask;

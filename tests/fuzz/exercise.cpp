@@ -32,7 +32,7 @@ public:
       : image_(image), behavior_(behavior), random_(random), engine_(engine), facts_(facts) {
     frame_ = engine.frame(behavior.cells);
     for (const vm::Timer& timer : image.timers)
-      timer_words_ += vm::timer_words(timer.kind, timer.count);
+      timer_words_ += vm::timer_words(timer);
     timer_memory_ = engine.timer_memory(timer_words_);
     const bool garbage = random.one_in(4);  // any content is harmless
     for (std::size_t i = 0; i < timer_words_; ++i)

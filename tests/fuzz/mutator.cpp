@@ -91,9 +91,7 @@ void Mutator::change_opcode(Draft& draft, const Object& object) {
     return;
   }
   const auto opcode = static_cast<Opcode>(random_.below(kOpcodeCount));
-  const bool alike = is_opcode(before) && vm::kOpcodes[static_cast<unsigned>(opcode)].operands ==
-                                              info_of(before).operands;
-  if (alike) {
+  if (is_opcode(before) && look_alike(opcode, vm::opcode_of(before))) {
     draft.word(at) = (before & ~0xFFU) | static_cast<Word>(opcode);
     return;
   }

@@ -24,7 +24,7 @@ constexpr Operand kind_of(Word word, std::size_t place) {
   return info_of(word).operands[place];
 }
 constexpr bool has_context(Opcode opcode, vm::Context context) {
-  const auto contexts = static_cast<unsigned>(vm::kOpcodes[static_cast<unsigned>(opcode)].contexts);
+  const auto contexts = static_cast<unsigned>(vm::info_of(opcode).contexts);
   return (contexts & static_cast<unsigned>(context)) != 0;
 }
 
@@ -45,7 +45,7 @@ struct Distance {
   std::size_t place = 0;
 };
 constexpr Distance distance_of(Opcode opcode) {
-  const auto& kinds = vm::kOpcodes[static_cast<unsigned>(opcode)].operands;
+  const auto& kinds = vm::info_of(opcode).operands;
   for (std::size_t place = 0; place < kPlaces; ++place) {
     if (kinds[place] == Operand::ahead || kinds[place] == Operand::ahead8)
       return {Jump::ahead, place};
@@ -54,13 +54,19 @@ constexpr Distance distance_of(Opcode opcode) {
   return {};
 }
 
-// What begins or ends blocks, or waits, stands together in the list (the verifier asserts that).
-constexpr bool is_flow(Opcode opcode) {
-  return opcode >= Opcode::jump && opcode <= Opcode::until;
+constexpr vm::Flow flow_of(Opcode opcode) {
+  return vm::info_of(opcode).flow;
 }
-// Begins a block that ends at its target: IF.
-constexpr bool begins_if(Opcode opcode) {
-  return distance_of(opcode).jump == Jump::ahead && opcode != Opcode::jump;
+constexpr vm::Effect effect_of(Opcode opcode) {
+  return vm::info_of(opcode).effect;
+}
+// Do words with the one look like words with the other, whatever their constants must be?
+constexpr bool look_alike(Opcode one, Opcode other) {
+  for (std::size_t place = 0; place < kPlaces; ++place)
+    if (vm::widened(vm::info_of(one).operands[place]) !=
+        vm::widened(vm::info_of(other).operands[place]))
+      return false;
+  return true;
 }
 
 }  // namespace robosync::fuzz

@@ -14,17 +14,22 @@ namespace {
 constexpr std::string_view kPath = "docs/bytecode.md";
 
 // As opcodes.def spells them.
-constexpr std::array<std::array<std::string_view, 3>, kOpcodes.size()> kOperandNames = {{
-#define OPCODE(name, a, b, c, contexts, cost, doc) {#a, #b, #c},
+struct Spelled {
+  std::array<std::string_view, 3> operands;
+  std::string_view flow, effect;
+};
+constexpr std::array<Spelled, kOpcodes.size()> kSpelled = {{
+#define OPCODE(name, a, b, c, contexts, flow, effect, cost, doc) {{#a, #b, #c}, #flow, #effect},
 #include "vm/opcodes.def"
 #undef OPCODE
 }};
 
-std::string operand_names(std::size_t opcode) {
-  std::string names;
-  for (const std::string_view name : kOperandNames[opcode])
-    if (name != "none") names += (names.empty() ? "" : ", ") + std::string(name);
-  return names;
+// What there is of them, with commas between.
+std::string listed(std::initializer_list<std::string_view> names) {
+  std::string list;
+  for (const std::string_view name : names)
+    if (name != "none" && name != "next") list += (list.empty() ? "" : ", ") + std::string(name);
+  return list;
 }
 
 std::string_view context_name(Context context) {
@@ -45,11 +50,14 @@ std::string_view context_name(Context context) {
 
 std::string opcode_table() {
   std::string table =
-      "| code | opcode | A, B, C | stands in | cost | |\n|---|---|---|---|---|---|\n";
+      "| code | opcode | A, B, C | stands in | flow, effect | cost | "
+      "|\n|---|---|---|---|---|---|---|\n";
   for (std::size_t i = 0; i < kOpcodes.size(); ++i) {
     const OpcodeInfo& info = kOpcodes[i];
+    const auto& [operands, flow, effect] = kSpelled[i];
     table += "| " + std::to_string(i) + " | `" + std::string(info.name) + "` | " +
-             operand_names(i) + " | " + std::string(context_name(info.contexts)) + " | " +
+             listed({operands[0], operands[1], operands[2]}) + " | " +
+             std::string(context_name(info.contexts)) + " | " + listed({flow, effect}) + " | " +
              std::to_string(info.cost) + " | " + std::string(info.doc) + " |\n";
   }
   return table;

@@ -74,7 +74,7 @@ struct ImageBuilder {
   unsigned timer(TimerKind kind, Value duration, std::uint8_t count = 0) {
     unsigned state = 0;
     for (const Timer& before : timers)
-      state += timer_words(before.kind, before.count);
+      state += timer_words(before);
     timers.push_back({kind, count, static_cast<std::uint16_t>(state), duration});
     return static_cast<unsigned>(timers.size() - 1);
   }

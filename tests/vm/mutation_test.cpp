@@ -77,7 +77,7 @@ public:
       : image_(image), behavior_(behavior), random_(random), frame_(behavior, random) {
     std::size_t words = 0;
     for (const Timer& timer : image.timers)
-      words += timer_words(timer.kind, timer.count);
+      words += timer_words(timer);
     timers_.assign(words + 2, 0);
     timers_.front() = timers_.back() = static_cast<std::uint32_t>(kGuard);
     machine_.frame = frame_.cells();

@@ -27,16 +27,12 @@ using History = std::vector<Moment>;
 
 constexpr std::uint32_t kSentinel = 0x5EED5EED;
 
-TimerKind kind_of(Op op) {
-  return static_cast<TimerKind>(static_cast<unsigned>(op) - static_cast<unsigned>(Op::held));
-}
-
 // One timer in a condition of its own: cells 0 and 1 are its operands, 0 gets the result.
 class Subject {
 public:
   Subject(Op op, Value duration, unsigned count, std::uint32_t epoch)
       : code_{encode(op, 0, 1, 0), encode(Op::ret_number, 0)}, epoch_(epoch) {
-    timer_ = {kind_of(op), static_cast<std::uint8_t>(count), 1, duration};
+    timer_ = {timer_kind_of(op), static_cast<std::uint8_t>(count), 1, duration};
     memory_.fill(kSentinel);
     for (unsigned i = 0; i < words(); ++i)
       memory_[1 + i] = 0;
@@ -62,7 +58,7 @@ public:
   Machine machine;
 
 private:
-  [[nodiscard]] unsigned words() const { return timer_words(timer_.kind, timer_.count); }
+  [[nodiscard]] unsigned words() const { return timer_words(timer_); }
 
   std::array<Word, 2> code_;
   std::uint32_t epoch_;
@@ -138,7 +134,7 @@ void agrees(Op op, unsigned count, bool is_event, std::uint32_t last_epoch = 0xF
     Subject subject(op, static_cast<Value>(duration), count, epoch);
     for (int i = 0; i < 60; ++i) {
       const Moment moment = line.next();
-      const Value expected = model(kind_of(op), line.history(), duration, count);
+      const Value expected = model(timer_kind_of(op), line.history(), duration, count);
       CAPTURE(seed, i, duration, count, epoch, moment.time);
       REQUIRE(subject.evaluate(moment) == expected);
       REQUIRE(subject.machine.event == (is_event && expected == kTrue));
@@ -245,7 +241,7 @@ TEST_CASE("any content of the timer memory is harmless") {
     const auto kind = static_cast<TimerKind>(random() % 6);
     const std::uint8_t count = kind == TimerKind::counted ? 1 + random() % kMaxEdges : 0;
     const Timer timer{kind, count, 0, static_cast<Value>(random() % 1000)};
-    std::vector<std::uint32_t> memory(timer_words(kind, count));  // its end is watched by ASan
+    std::vector<std::uint32_t> memory(timer_words(timer));  // its end is watched by ASan
     for (std::uint32_t& word : memory)
       word = static_cast<std::uint32_t>(random());
     std::array<Value, 2> frame{random() % 2 == 0 ? kTrue : kFalse, random() % 2 == 0 ? kTrue : 0};

@@ -265,9 +265,7 @@ TEST_CASE("each time word has a timer of its kind, and of its own") {
 TEST_CASE("time words keep to truths and numbers") {
   const auto condition = [](Word word) {
     ImageBuilder image = with_response({kEnd});
-    image.timer(static_cast<TimerKind>(static_cast<unsigned>(opcode_of(word)) -
-                                       static_cast<unsigned>(Op::held)),
-                0, opcode_of(word) == Op::counted ? 2 : 0);
+    image.timer(timer_kind_of(opcode_of(word)), 0, opcode_of(word) == Op::counted ? 2 : 0);
     image.rules[1].condition_start =
         image.object({encode(Op::lt_k, kRegister, 1, kThree), word, encode(Op::ret, kRegister)});
     image.rules[1].condition_length = 3;

@@ -43,8 +43,9 @@ void Drawer::forget() {
 void Drawer::learn(Word word) {
   if (!is_opcode(word)) return;
   const Opcode opcode = vm::opcode_of(word);
-  if (opcode >= Opcode::wait && opcode <= Opcode::until && !random_.one_in(4)) owned_ = 0;
-  if (is_flow(opcode) && !begins_if(opcode)) return forget();
+  const vm::Flow flow = flow_of(opcode);
+  if (vm::may_pause(flow) && !random_.one_in(4)) owned_ = 0;
+  if (!vm::is_straight(flow) && flow != vm::Flow::if_begin) return forget();
   const unsigned a = operand(word, 0);
   bool truth = false;
   switch (kind_of(word, 0)) {
@@ -74,18 +75,18 @@ void Drawer::learn(Word word) {
 }
 
 Opcode Drawer::opcode_with(bool (*wanted)(Opcode)) {
-  for (int tries = 0; tries < 200; ++tries) {
-    const auto opcode = static_cast<Opcode>(random_.below(kOpcodeCount));
-    if (has_context(opcode, context_) && wanted(opcode)) return opcode;
+  std::array<Opcode, kOpcodeCount> found{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kOpcodeCount; ++i) {
+    const auto opcode = static_cast<Opcode>(i);
+    if (has_context(opcode, context_) && wanted(opcode)) found[count++] = opcode;
   }
-  return Opcode::move;
+  return count == 0 ? Opcode::move : found[random_.below(count)];
 }
 
 Word Drawer::plain() {
   return instruction(opcode_with([](Opcode opcode) {
-    const auto& kinds = vm::kOpcodes[static_cast<unsigned>(opcode)].operands;
-    return !is_flow(opcode) && !vm::is_terminator(opcode) && kinds[0] != Operand::param &&
-           (kinds[0] != Operand::target || opcode == Opcode::halt || opcode == Opcode::cmd);
+    return flow_of(opcode) == vm::Flow::next && effect_of(opcode) != vm::Effect::param;
   }));
 }
 
@@ -125,9 +126,14 @@ unsigned Drawer::draw_kind(Word word, std::size_t place) {
     case Operand::variable:
       return variable();
     case Operand::const8:
-      return constant(std::min<std::size_t>(image_.constants.size(), 256), opcode);
+    case Operand::positive8:
+    case Operand::whole8:
+    case Operand::divisor8:
+      return random_.below(std::min<std::size_t>(image_.constants.size(), 256));
     case Operand::const16:
-      return constant(image_.constants.size(), opcode);
+      return random_.below(image_.constants.size());
+    case Operand::count16:
+      return count();
     case Operand::timer:
       return timer(opcode);
     case Operand::string:
@@ -196,21 +202,20 @@ unsigned Drawer::variable() {
 }
 
 // A loop's count is whole and above 0, and should not be too much for a step.
-unsigned Drawer::constant(std::size_t below, Opcode opcode) {
-  unsigned index = random_.below(below);
-  if (opcode != Opcode::times) return index;
+unsigned Drawer::count() {
+  unsigned index = random_.below(image_.constants.size());
   for (int tries = 0; tries < kTries && index < image_.constants.size(); ++tries) {
     const Value value = image_.constants[index];
     if (value > 0 && value % vm::kScale == 0 && value < 100 * vm::kScale) break;
-    index = random_.below(below);
+    index = random_.below(image_.constants.size());
   }
   return index;
 }
 
 unsigned Drawer::timer(Opcode opcode) {
-  const auto kind = static_cast<unsigned>(opcode) - static_cast<unsigned>(Opcode::held);
+  const vm::TimerKind kind = vm::timer_kind_of(opcode);
   for (std::size_t i = next_timer_; i < image_.timers.size() && i < 256; ++i) {
-    if (static_cast<unsigned>(image_.timers[i].kind) != kind) continue;
+    if (image_.timers[i].kind != kind) continue;
     next_timer_ = i + 1;
     return static_cast<unsigned>(i);
   }
@@ -218,7 +223,7 @@ unsigned Drawer::timer(Opcode opcode) {
 }
 
 unsigned Drawer::target(Opcode opcode) {
-  if (opcode == Opcode::halt && random_.one_in(4)) return vm::kAllActuators;
+  if (effect_of(opcode) == vm::Effect::halt && random_.one_in(4)) return vm::kAllActuators;
   if (!image_.groups.empty() && random_.one_in(4))
     return vm::kGroupBit | random_.below(image_.groups.size());
   return random_.below(image_.actuators.size());

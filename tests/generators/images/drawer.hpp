@@ -42,7 +42,7 @@ private:
   [[nodiscard]] unsigned cell(const Cells& among, bool with_inputs);
   [[nodiscard]] unsigned written();
   [[nodiscard]] unsigned variable();
-  [[nodiscard]] unsigned constant(std::size_t below, Opcode opcode);
+  [[nodiscard]] unsigned count();
   [[nodiscard]] unsigned timer(Opcode opcode);
   [[nodiscard]] unsigned target(Opcode opcode);
   [[nodiscard]] unsigned verb(unsigned target);

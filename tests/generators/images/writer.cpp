@@ -3,8 +3,9 @@
 namespace robosync::fuzz {
 
 using vm::Context;
+using vm::Effect;
 using vm::encode;
-using vm::encode_wide;
+using vm::Flow;
 
 namespace {
 
@@ -56,19 +57,20 @@ void Writer::statement(unsigned depth) {
   loop(depth - 1);
 }
 
-// Parameters that its verb takes, then it.
+// Parameters that it takes, then it.
 void Writer::command() {
   const Opcode opcode = drawer_.opcode_with([](Opcode op) {
-    return op == Opcode::cmd || op == Opcode::log || op == Opcode::alert || op == Opcode::halt;
+    return flow_of(op) == Flow::next && effect_of(op) != Effect::param &&
+           vm::output_words(effect_of(op)) > 0;
   });
   const Word word = drawer_.instruction(opcode);
-  unsigned takes = opcode == Opcode::log ? 0xFFU : 0;
+  unsigned takes = effect_of(opcode) == Effect::log ? 0xFFU : 0;
   const unsigned verb = vm::operand_b(word);
-  if (opcode == Opcode::cmd && verb < draft_.view().verbs.size())
+  if (effect_of(opcode) == Effect::command && verb < draft_.view().verbs.size())
     takes = draft_.view().verbs[verb].params;
   for (auto left = takes != 0 ? random_.below(3) : 0; left > 0; --left) {
-    const Opcode arg = random_.one_in(2) ? Opcode::arg : Opcode::arg_k;
-    Word given = drawer_.instruction(arg);
+    Word given = drawer_.instruction(
+        drawer_.opcode_with([](Opcode op) { return effect_of(op) == Effect::param; }));
     unsigned param = vm::operand_a(given);
     while (param < 8 && (takes >> param & 1) == 0)
       param = (param + 1) % 8;
@@ -78,66 +80,74 @@ void Writer::command() {
   put(word);
 }
 
+// One of those with this flow.
+template <Flow flow>
+Word Writer::with_flow() {
+  return drawer_.instruction(drawer_.opcode_with([](Opcode op) { return flow_of(op) == flow; }));
+}
+
 void Writer::pause() {
-  put(drawer_.instruction(random_.one_in(2) ? Opcode::wait : Opcode::wait_done));
+  put(with_flow<Flow::pause>());
 }
 
 void Writer::choice(unsigned depth) {
-  const Opcode opcode = drawer_.opcode_with(begins_if);
-  const std::size_t place = distance_of(opcode).place;
+  const Word word = with_flow<Flow::if_begin>();
+  const std::size_t place = distance_of(vm::opcode_of(word)).place;
   const std::size_t begin = code_.size();
-  put(drawer_.instruction(opcode));
+  put(word);
   statements(depth);
   const std::size_t middle = code_.size();
   const bool has_else = random_.one_in(2);
-  if (has_else) put(encode(Opcode::jump));
+  if (has_else) put(with_flow<Flow::if_else>());
   code_[begin] = with_operand(code_[begin], place, since(begin) - 1);
   if (!has_else) return drawer_.forget();
   statements(depth);
-  code_[middle] = with_operand(code_[middle], distance_of(Opcode::jump).place, since(middle) - 1);
+  const Distance distance = distance_of(vm::opcode_of(code_[middle]));
+  code_[middle] = with_operand(code_[middle], distance.place, since(middle) - 1);
   drawer_.forget();
 }
 
 // Back to the word at `start`.
-void Writer::close(Opcode opcode, unsigned a, std::size_t start) {
-  put(encode_wide(opcode, a, since(start) + 1));
+void Writer::close(Word word, std::size_t start) {
+  put(with_operand(word, distance_of(vm::opcode_of(word)).place, since(start) + 1));
 }
 
 void Writer::counted(unsigned depth) {
   if (drawer_.locals() == 0) return put(drawer_.plain());
   if (random_.one_in(3)) put(drawer_.instruction(Opcode::set));  // to be changed in place
-  const bool constant = random_.below(3) != 0;
-  Word begin = drawer_.instruction(constant ? Opcode::times : Opcode::times_v);
-  const unsigned local = vm::operand_a(begin);
+  const Word begin = with_flow<Flow::count_begin>();
+  const bool constant = kind_of(begin, 1) == Operand::count16;
   put(begin);
   const std::size_t start = code_.size();
   statements(depth);
   if (!constant || random_.one_in(3)) pause();
   if (random_.one_in(2)) statements(depth);
-  close(Opcode::again, local, start);
+  close(with_operand(with_flow<Flow::count_end>(), 0, vm::operand_a(begin)), start);
 }
 
 void Writer::loop(unsigned depth) {
-  put(encode(Opcode::loop));
+  put(with_flow<Flow::loop_begin>());
   const std::size_t start = code_.size();
   statements(depth);
   pause();
   if (random_.one_in(2)) statements(depth);
-  put(drawer_.instruction(drawer_.opcode_with(
-      [](Opcode op) { return op == Opcode::lt_k || op == Opcode::not_ || op == Opcode::gt_k; })));
-  if (random_.one_in(2)) return close(Opcode::around_always, 0, start);
-  close(Opcode::around, drawer_.truth(), start);
+  put(a_truth());
+  close(with_flow<Flow::loop_end>(), start);
 }
 
 void Writer::poll() {
-  put(encode(Opcode::poll));
+  put(with_flow<Flow::poll_begin>());
   const std::size_t start = code_.size();
   for (auto left = random_.below(3); left > 0; --left)
     put(drawer_.plain());
-  put(drawer_.instruction(drawer_.opcode_with([](Opcode op) {
-    return vm::kOpcodes[static_cast<unsigned>(op)].operands[0] == Operand::write_truth;
-  })));
-  close(Opcode::until, drawer_.truth(), start);
+  put(a_truth());
+  close(with_flow<Flow::poll_end>(), start);
+}
+
+// Something to end a loop with.
+Word Writer::a_truth() {
+  return drawer_.instruction(drawer_.opcode_with(
+      [](Opcode op) { return vm::info_of(op).operands[0] == Operand::write_truth; }));
 }
 
 }  // namespace robosync::fuzz

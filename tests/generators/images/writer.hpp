@@ -26,7 +26,10 @@ private:
   void counted(unsigned depth);
   void poll();
   void pause();
-  void close(Opcode opcode, unsigned a, std::size_t start);
+  void close(Word word, std::size_t start);
+  template <vm::Flow flow>
+  [[nodiscard]] Word with_flow();
+  [[nodiscard]] Word a_truth();
   [[nodiscard]] unsigned since(std::size_t start) const {
     return static_cast<unsigned>(code_.size() - start);
   }

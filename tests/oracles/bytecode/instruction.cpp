@@ -23,7 +23,8 @@ using vm::Word;
 Value at(const Machine& machine, Word word, std::size_t place) {
   const unsigned index = fuzz::operand(word, place);
   const Operand kind = kind_of(word, place);
-  const bool constant = kind == Operand::const8 || kind == Operand::const16;
+  const bool constant =
+      vm::widened(kind) == Operand::const8 || vm::widened(kind) == Operand::const16;
   return constant ? machine.constants[index] : machine.frame[index];
 }
 Number number_at(const Machine& machine, Word word, std::size_t place) {

@@ -118,12 +118,14 @@ void Stepper::check_operand(std::size_t at, Word word, std::size_t place) {
       return require(value < inputs_ && value < vm::kMaxWritable, "no variable");
     case Operand::const8:
     case Operand::const16:
-      require(value < image_.constants.size(), "no constant");
-      return require(image_.constants[value] != vm::kUnknown, "an unknown constant");
+    case Operand::whole8:
+    case Operand::positive8:
+    case Operand::divisor8:
+    case Operand::count16:
+      return check_constant(kind_of(word, place), value);
     case Operand::timer:
       require(value < image_.timers.size(), "no timer");
-      return require(static_cast<unsigned>(image_.timers[value].kind) ==
-                         static_cast<unsigned>(opcode) - static_cast<unsigned>(Opcode::held),
+      return require(image_.timers[value].kind == vm::timer_kind_of(opcode),
                      "another word's timer");
     case Operand::string:
       return require(value < image_.strings.size(), "no string");
@@ -138,6 +140,14 @@ void Stepper::check_operand(std::size_t at, Word word, std::size_t place) {
     case Operand::word:
       return;  // exercise.cpp: what was put out
   }
+}
+
+void Stepper::check_constant(Operand kind, std::size_t index) {
+  require(index < image_.constants.size(), "no constant");
+  const Value constant = image_.constants[index];
+  require(constant != vm::kUnknown, "an unknown constant");
+  if (vm::is_positive(kind)) require(constant > 0, "a constant that is not above 0");
+  if (kind == Operand::count16) require(constant % vm::kScale == 0, "a count that is not whole");
 }
 
 void Stepper::check_read(unsigned cell, bool truth) {

@@ -29,6 +29,7 @@ private:
   void begin(vm::Machine& machine, const CodeObject& object);
   void check(std::size_t at);
   void check_operand(std::size_t at, Word word, std::size_t place);
+  void check_constant(Operand kind, std::size_t index);
   void check_read(unsigned cell, bool truth);
   void check_write(Word word, unsigned cell);
   void check_distance(std::size_t at, Word word, std::size_t place);

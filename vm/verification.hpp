@@ -26,10 +26,6 @@ bool check_records(Verification& verification);
 // The behaviour's rules that keep a truth in its frame. It has its rules.
 std::size_t count_watches(const Image& image, const Behavior& behavior);
 
-// verify_code.cpp: the code, and that it does no more than the records declare; finds
-// Verification::step_cost. Assumes good records.
-bool check_code(Verification& verification);
-
 constexpr Refusal good_or(Refusal refusal, bool good) {
   return good ? Refusal::none : refusal;
 }
