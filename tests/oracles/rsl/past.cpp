@@ -72,12 +72,12 @@ Truth Past::counted(std::size_t times, Millis within, Moment now) const {
 // became true. Both in the same step do not count."
 Truth Past::sequence(Millis within, Moment now) const {
   const std::vector<Moment> firsts = rises(samples_, &Sample::first);
-  std::int64_t used_to = -1;  // what came up to this step was part of a sequence already
+  std::int64_t used_to = -1;  // what came before this step was part of a sequence already
   bool result = false;
   for (const Moment& second : rises(samples_, &Sample::second)) {
     const Moment* first = nullptr;
     for (const Moment& rise : firsts)
-      if (rise.step < second.step && rise.step > used_to) first = &rise;
+      if (rise.step < second.step && rise.step >= used_to) first = &rise;
     if (first == nullptr || second.at - first->at > within) continue;
     used_to = second.step;
     result = second.step == now.step;
