@@ -66,6 +66,7 @@ public:
   void run(std::uint64_t until_ms);
   // Now, in units of the channel.
   link::FeedError feed(std::uint8_t channel, int units, std::uint64_t at_ms = 0);
+  link::FeedError feed_raw(std::uint8_t channel, vm::Value thousandths, std::uint64_t at_ms = 0);
   kernel::Thread& thread(std::string_view name);
   link::Status status() const;
   std::string only(std::string_view events) const;

@@ -1,9 +1,9 @@
-"""What the trace tests feed: readings at program times, some drawn with fixed seeds."""
+"""What robots are fed: readings at program times, some drawn with fixed seeds."""
 
 import random
 from typing import NamedTuple
 
-# Channels of programs/robot.json, with the values worth drawing: edges of ranges and of the rules.
+# Channels that programs read, with the values worth drawing: edges of ranges and of the rules.
 CHANNELS = {
     "touch.LEVEL": [0, 1, 2, 2.999, 3, 3.001, 4, 7, 10],
     "proximity.DISTANCE": [2, 29.9, 30, 30.1, 45, 99.9, 100, 400],
@@ -11,6 +11,11 @@ CHANNELS = {
     "room.NOISE": [0, 39.9, 40, 40.1, 50, 51, 100],
 }
 UNITS = {"touch.LEVEL": "", "proximity.DISTANCE": "cm", "room.WARMTH": "C", "room.NOISE": "%"}
+# What WideGenerator's robot has besides: a channel that goes stale.
+WIDE_CHANNELS = CHANNELS | {"wind.SPEED": [0, 4.999, 5, 5.001, 20]}
+WIDE_UNITS = UNITS | {"wind.SPEED": ""}
+GAPS_MS = [0, 0, 1, 2, 17, 50, 300, 900]
+WIDE_GAPS_MS = [0, 0, 1, 2, 17, 50, 100, 300, 900]
 
 
 class Reading(NamedTuple):
@@ -33,15 +38,19 @@ PRIORITIES = [
 ]
 
 
-def drawn(seed, program, count=40):
+def drawn(seed, program, count=40, channels=CHANNELS, gaps=GAPS_MS):
     """`count` readings of what `program` reads; some at one time, some a tick apart, some far apart."""
     random_ = random.Random(seed)
     # The image has no channel that the program does not read.
-    channels = [c for c in CHANNELS if c.replace(".", " ") in program]
+    names = [c for c in channels if c.replace(".", " ") in program]
     at, readings = 0, []
     for _ in range(count):
-        channel = random_.choice(channels)
-        readings.append(Reading(at, channel, random_.choice(CHANNELS[channel])))
-        at += random_.choice([0, 0, 1, 2, 17, 50, 300, 900])
+        channel = random_.choice(names)
+        readings.append(Reading(at, channel, random_.choice(channels[channel])))
+        at += random_.choice(gaps)
     return readings
 
+
+def drawn_wide(seed, program, count=40):
+    """The same for what WideGenerator draws."""
+    return drawn(f"readings {seed}", program, count, WIDE_CHANNELS, WIDE_GAPS_MS)
