@@ -43,6 +43,10 @@ target_sources(robosync_compiler PRIVATE
   config/units.cpp
   config/values.cpp
   config/wiring.cpp
+  ir/compute.cpp
+  ir/expression.cpp
+  ir/fact.cpp
+  ir/program.cpp
   sema/amounts.cpp
   sema/analyze.cpp
   sema/arguments.cpp
@@ -51,7 +55,6 @@ target_sources(robosync_compiler PRIVATE
   sema/calls.cpp
   sema/checks.cpp
   sema/commands.cpp
-  sema/compute.cpp
   sema/declarations.cpp
   sema/expressions.cpp
   sema/flow.cpp
@@ -65,7 +68,6 @@ target_sources(robosync_compiler PRIVATE
   sema/lint_rules.cpp
   sema/lint_waits.cpp
   sema/names.cpp
-  sema/program.cpp
   sema/quantities.cpp
   sema/rules.cpp
   sema/settings.cpp
@@ -74,26 +76,26 @@ target_sources(robosync_compiler PRIVATE
   sema/time_words.cpp
   sema/variables.cpp
   optimize/expression_facts.cpp
-  optimize/fact.cpp
   optimize/flow.cpp
   optimize/flow_loops.cpp
   optimize/optimize.cpp
   optimize/prune.cpp
+  optimize/room.cpp
   optimize/share.cpp
   optimize/simplify.cpp
   optimize/variable_facts.cpp
   codegen/code_draft.cpp
   codegen/code_pool.cpp
-  codegen/dearest_rules.cpp
+  codegen/costly_rules.cpp
   codegen/expression_emitter.cpp
   codegen/frame.cpp
-  codegen/image_writer.cpp
+  codegen/emit.cpp
   codegen/operations.cpp
   codegen/records.cpp
-  codegen/response_blocks.cpp
   codegen/response_emitter.cpp
   codegen/rules.cpp
   codegen/strings.cpp
   codegen/tables.cpp
-  codegen/timers.cpp)
+  codegen/timers.cpp
+  codegen/verify_image.cpp)
 target_link_libraries(robosync_compiler PRIVATE PkgConfig::SODIUM nlohmann_json::nlohmann_json)

@@ -6,31 +6,29 @@
 
 #include <sodium.h>
 
-#include "compiler/codegen/image_writer.hpp"
+#include "compiler/codegen/emit.hpp"
+#include "compiler/codegen/verify_image.hpp"
 #include "compiler/config/robot_reader.hpp"
 #include "compiler/modules.hpp"
+#include "compiler/optimize/optimize.hpp"
 #include "compiler/sema/analyze.hpp"
 #include "compiler/syntax/parser.hpp"
 
 namespace robosync::compiler {
 namespace {
 
-// Names the program: the same source, configuration and modules, the same hash.
-ProgramHash hash_of(std::string_view program, std::string_view configuration,
-                    const std::vector<std::string_view>& modules) {
-  const auto add = [](crypto_hash_sha256_state& state, std::string_view text) {
+// Names the program: the same texts in the same order, the same hash.
+ProgramHash hash_of(const SourceMap& files) {
+  constexpr std::string_view kBetween("\0", 1);  // so that text cannot move from one to the other
+  crypto_hash_sha256_state state;
+  crypto_hash_sha256_init(&state);
+  const auto add = [&](std::string_view text) {
     crypto_hash_sha256_update(&state, reinterpret_cast<const unsigned char*>(text.data()),
                               text.size());
   };
-  crypto_hash_sha256_state state;
-  crypto_hash_sha256_init(&state);
-  add(state, program);
-  constexpr std::string_view kBetween("\0", 1);  // so that text cannot move from one to the other
-  add(state, kBetween);
-  add(state, configuration);
-  for (const std::string_view module : modules) {
-    add(state, kBetween);
-    add(state, module);
+  for (std::size_t id = 0; id < files.size(); ++id) {
+    if (id > 0) add(kBetween);
+    add(files.file(static_cast<FileId>(id)).text());
   }
   std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
   crypto_hash_sha256_final(&state, digest.data());
@@ -53,39 +51,56 @@ Diagnostics apply_lints(const Diagnostics& diagnostics, const Robot& robot) {
   return result;
 }
 
+struct Parsed {
+  ast::Tree tree;
+  std::vector<Module> modules;
+  std::optional<Robot> robot;  // nothing: nothing can be said of it
+  bool complete = false;       // nothing had to be left out
+
+  [[nodiscard]] Trees trees() const {
+    Trees trees{&tree};
+    for (const Module& module : modules)
+      trees.push_back(module.tree.get());
+    return trees;
+  }
+};
+
+// What the parsers had to leave out would be missed by name: better one true message than ten.
+Parsed parse_all(Input program, Input configuration, const ModuleReader& read_module,
+                 SourceMap& files, Diagnostics& diagnostics) {
+  const FileId program_file = files.add(std::move(program.name), std::move(program.text));
+  const FileId configuration_file =
+      files.add(std::move(configuration.name), std::move(configuration.text));
+  Parsed parsed;
+  parsed.tree = parse(files, program_file, diagnostics);
+  parsed.modules = load_modules(parsed.tree, files, read_module, diagnostics);
+  const bool whole_trees = diagnostics.errors() == 0;
+  parsed.robot = read_robot(files, configuration_file, diagnostics);
+  parsed.complete = whole_trees && parsed.robot && parsed.robot->complete;
+  return parsed;
+}
+
 }  // namespace
 
 Result compile(Input program, Input configuration, const Options& options) {
   Result result;
-  const FileId program_file = result.sources.add(std::move(program.name), std::move(program.text));
-  const FileId configuration_file =
-      result.sources.add(std::move(configuration.name), std::move(configuration.text));
   Diagnostics& diagnostics = result.diagnostics;
-  const ast::Program tree = parse(result.sources, program_file, diagnostics);
-  const std::vector<Module> modules =
-      load_modules(tree, result.sources, options.read_module, diagnostics);
-  // What the readers had to leave out would be missed by name: better one true message than ten.
-  const bool whole_tree = diagnostics.errors() == 0;
-  const auto robot = read_robot(result.sources, configuration_file, diagnostics);
-  std::optional<Program> resolved;
-  if (robot && robot->complete && whole_tree) {
-    Trees trees{&tree};
-    for (const Module& module : modules)
-      trees.push_back(module.tree.get());
-    resolved = analyze(trees, *robot, result.sources, diagnostics);
-    if (diagnostics.errors() == 0) result.tests = testing::plan_tests(trees, *robot, diagnostics);
+  const Parsed parsed = parse_all(std::move(program), std::move(configuration), options.read_module,
+                                  result.sources, diagnostics);
+  Program written;
+  if (parsed.complete) {
+    written = analyze(parsed.trees(), *parsed.robot, result.sources, diagnostics);
+    if (diagnostics.errors() == 0)
+      result.tests = test_plan::plan_tests(parsed.trees(), *parsed.robot, diagnostics);
   }
-  if (robot) diagnostics = apply_lints(diagnostics, *robot);
-  if (resolved && diagnostics.errors() == 0) {
-    std::vector<std::string_view> texts;
-    texts.reserve(modules.size());
-    for (const Module& module : modules)
-      texts.push_back(result.sources.file(module.file).text());
-    const ProgramHash hash = hash_of(result.sources.file(program_file).text(),
-                                     result.sources.file(configuration_file).text(), texts);
-    result.image = write_image(*resolved, *robot, hash,
-                               {.source_lines = options.source_lines, .optimize = options.optimize},
-                               diagnostics);
+  if (parsed.robot) diagnostics = apply_lints(diagnostics, *parsed.robot);
+  if (parsed.complete && diagnostics.errors() == 0) {
+    const Robot& robot = *parsed.robot;
+    const Program better = options.optimize ? optimize(written, robot) : written;
+    Emitted emitted = emit(better, written, robot, hash_of(result.sources),
+                           {.source_lines = options.source_lines}, diagnostics);
+    if (diagnostics.errors() == 0 && verify_image(emitted, diagnostics))
+      result.image = std::move(emitted.image);
   }
   diagnostics.finish();
   return result;

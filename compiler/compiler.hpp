@@ -9,7 +9,7 @@
 
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
-#include "compiler/testing/plan.hpp"
+#include "compiler/test_plan/plan.hpp"
 
 namespace robosync::compiler {
 
@@ -33,7 +33,7 @@ struct Result {
   SourceMap sources;
   Diagnostics diagnostics;
   std::vector<std::byte> image;  // empty when there are errors
-  testing::TestPlan tests;       // the program's TEST blocks; likewise
+  test_plan::TestPlan tests;     // the program's TEST blocks; likewise
 };
 
 [[nodiscard]] Result compile(Input program, Input configuration, const Options& options = {});

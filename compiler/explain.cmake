@@ -7,6 +7,6 @@ target_sources(robosync_compiler PRIVATE
   explain/program_text.cpp
   explain/rules.cpp
   explain/statements.cpp
-  testing/evaluate.cpp
-  testing/plan.cpp)
+  test_plan/evaluate.cpp
+  test_plan/plan.cpp)
 target_link_libraries(robosync_compiler PRIVATE fmt::fmt)

@@ -17,7 +17,7 @@ public:
   Loader(SourceMap& sources, const ModuleReader& read, Diagnostics& diagnostics)
       : sources_(sources), read_(read), diagnostics_(diagnostics) {}
 
-  std::vector<Module> load(const ast::Program& program) {
+  std::vector<Module> load(const ast::Tree& program) {
     add_uses(program, 0);
     for (std::size_t i = 0; i < modules_.size(); ++i)  // grows while it is walked
       add_uses(*modules_[i].tree, modules_[i].file);
@@ -25,7 +25,7 @@ public:
   }
 
 private:
-  void add_uses(const ast::Program& tree, FileId user) {
+  void add_uses(const ast::Tree& tree, FileId user) {
     for (const ast::Item& item : tree.items)
       if (const auto* use = std::get_if<ast::Use>(&item.node)) add(*use, user);
   }
@@ -41,7 +41,7 @@ private:
     }
     Module module;
     module.file = sources_.add(std::move(input->name), std::move(input->text));
-    module.tree = std::make_unique<const ast::Program>(parse(sources_, module.file, diagnostics_));
+    module.tree = std::make_unique<const ast::Tree>(parse(sources_, module.file, diagnostics_));
     modules_.push_back(std::move(module));
   }
 
@@ -79,7 +79,7 @@ private:
 
 }  // namespace
 
-std::vector<Module> load_modules(const ast::Program& program, SourceMap& sources,
+std::vector<Module> load_modules(const ast::Tree& program, SourceMap& sources,
                                  const ModuleReader& read, Diagnostics& diagnostics) {
   return Loader(sources, read, diagnostics).load(program);
 }

@@ -19,12 +19,12 @@ struct ModuleText {  // one module as built in
 
 struct Module {
   FileId file = 0;
-  std::unique_ptr<const ast::Program> tree;  // stays where it is when the list grows
+  std::unique_ptr<const ast::Tree> tree;  // stays where it is when the list grows
 };
 
 // What `program` uses, and what that uses; each module once. `read` may be empty: then there are no
 // files. What cannot be read is reported where it is used.
-[[nodiscard]] std::vector<Module> load_modules(const ast::Program& program, SourceMap& sources,
+[[nodiscard]] std::vector<Module> load_modules(const ast::Tree& program, SourceMap& sources,
                                                const ModuleReader& read, Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/codegen/dearest_rules.hpp"
+#include "compiler/codegen/costly_rules.hpp"
 #include "rsc/program.hpp"
 #include "runtime-m4/limits.hpp"
 #include "vm/timers.hpp"
@@ -98,7 +98,7 @@ std::string too_costly_text(const vm::Image& image, std::uint32_t budget) {
   std::string text =
       fmt::format("a step costs up to {} instructions, the board allows {}; the dearest rules:",
                   image.header->step_cost, budget);
-  for (const compiler::DearRule& dear : compiler::dearest_rules(image)) {
+  for (const compiler::CostlyRule& dear : compiler::costly_rules(image)) {
     const RuleTiming rule = rule_timing(image, dear.rule, dear.cost);
     text += fmt::format("\n  line {}: {} instructions", rule.line, rule.cost.step());
     if (rule.response_line != 0) {
@@ -106,7 +106,7 @@ std::string too_costly_text(const vm::Image& image, std::uint32_t budget) {
                           rule.else_is_dearer ? "ELSE" : "DO", rule.response_line);
     }
   }
-  return text + fmt::format("\n  {}", compiler::kMendOfCostlyStep);
+  return text + fmt::format("\n  {}", compiler::kHelpForCostlyStep);
 }
 
 std::string refusal_text(const vm::Image& image, const vm::Verdict& verdict) {

@@ -39,7 +39,7 @@ std::uint32_t after(Cell cell, std::uint32_t depth) {
 
 Cell ExpressionEmitter::condition(const Expression& expression) {
   std::vector<const Expression*> seen;
-  if (parts_.program.optimized) share(expression, seen);
+  if (parts_.program.shares) share(expression, seen);
   return value(expression, static_cast<std::uint32_t>(shared_.size()));
 }
 

@@ -19,8 +19,8 @@ public:
   ExpressionEmitter(Parts& parts, CodeDraft& code, TimeWords time_words)
       : parts_(parts), code_(code), time_words_(time_words) {}
 
-  // The whole of a condition, ready for `ret`. When the program is optimised, parts of it that are
-  // equal are worked out once: every part is evaluated whatever the others are.
+  // The whole of a condition, ready for `ret`. When the program shares, parts of it that are equal
+  // are worked out once: every part is evaluated whatever the others are.
   Cell condition(const Expression& expression);
   // Gives the cell where the value is; `depth` registers are in use.
   Cell value(const Expression& expression, std::uint32_t depth = 0);

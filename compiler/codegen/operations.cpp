@@ -30,25 +30,6 @@ WithConstant sum_with(const Expression& left, vm::Value constant) {
 
 }  // namespace
 
-bool is_comparison(Operation operation) {
-  return operation >= Operation::less && operation <= Operation::not_equal;
-}
-
-Operation mirrored(Operation comparison) {
-  switch (comparison) {
-    case Operation::less:
-      return Operation::greater;
-    case Operation::less_equal:
-      return Operation::greater_equal;
-    case Operation::greater:
-      return Operation::less;
-    case Operation::greater_equal:
-      return Operation::less_equal;
-    default:
-      return comparison;
-  }
-}
-
 vm::Opcode with_constant(Operation comparison) {
   switch (comparison) {
     case Operation::less:

@@ -3,14 +3,11 @@
 
 #include <optional>
 
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 #include "vm/opcode.hpp"
 
 namespace robosync::compiler {
 
-[[nodiscard]] bool is_comparison(Operation operation);
-// The same comparison with its sides exchanged.
-[[nodiscard]] Operation mirrored(Operation comparison);
 // A comparison with a constant on its right side.
 [[nodiscard]] vm::Opcode with_constant(Operation comparison);
 // An operation with two cells. Not greater and greater_equal: they are less and less_equal

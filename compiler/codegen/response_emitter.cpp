@@ -1,12 +1,17 @@
-// Responses, part: their statements without blocks.
+// Shapes of blocks are those of opcodes.def and docs/bytecode.md; the verifier accepts no others.
 #include "compiler/codegen/response_emitter.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace robosync::compiler {
+#include "compiler/codegen/expression_emitter.hpp"
+#include "compiler/ir/walk.hpp"
 
+namespace robosync::compiler {
 namespace {
+
+// An AND becomes blocks in blocks as long as so many places for blocks are left.
+constexpr unsigned kSpareBlocks = vm::kMaxBlocks / 2;
 
 // What RAISE and LOWER set.
 Expression sum_of(const ProgramSet& set) {
@@ -25,11 +30,119 @@ bool looks_like_truth(vm::Value constant) {
   return constant == vm::kTrue || constant == vm::kFalse;
 }
 
-}  // namespace
+// ---- how deeply blocks are nested
 
-bool needs_clamping(const ProgramSet& set) {
-  return set.relative || set.value.operation != Operation::constant;
+unsigned blocks_in(const ProgramBlock& block);
+
+// Blocks of the code that a statement opens inside of each other, those of its own blocks included.
+// What holds no blocks opens none, unless it stands below.
+template <typename Node>
+unsigned blocks_of(const Node& node) {
+  for_each_block(node, [](auto& block) {
+    static_assert(std::is_void_v<decltype(block)>, "how many blocks does it open around this one?");
+  });
+  return 0;
 }
+
+unsigned blocks_of(const ProgramWaitUntil&) {
+  return 1;
+}
+
+unsigned blocks_of(const ProgramIf& choice) {
+  const bool asks_if_known = !choice.else_block.empty() && !choice.condition.fact.known;
+  return std::max(blocks_in(choice.then_block) + (asks_if_known ? 2 : 1),
+                  blocks_in(choice.else_block) + 1);
+}
+
+unsigned blocks_of(const ProgramRepeat& repeat) {
+  const std::optional<vm::Value> times = constant_count(repeat);
+  if (times && *times == 0) return 0;
+  const bool once = times || repeat.kind == RepeatKind::forever;
+  return blocks_in(repeat.body) + (once ? 1 : 2);
+}
+
+// The options but the first and the last stand in the ELSE of the one before.
+unsigned blocks_of(const ProgramPick& pick) {
+  if (pick.options.size() == 1) return blocks_in(pick.options.front().body);
+  unsigned most = 0;
+  for (const ProgramOption& option : pick.options) {
+    const bool middle = &option != &pick.options.front() && &option != &pick.options.back();
+    most = std::max(most, blocks_in(option.body) + (middle ? 2 : 1));
+  }
+  return most;
+}
+
+unsigned blocks_in(const ProgramBlock& block) {
+  unsigned most = 0;
+  for (const ProgramStatement& statement : block)
+    most = std::max(most,
+                    std::visit([](const auto& node) { return blocks_of(node); }, statement.node));
+  return most;
+}
+
+// ---- the emitter
+
+class ResponseEmitter {  // of one response
+public:
+  explicit ResponseEmitter(Parts& parts)
+      : parts_(parts), expressions_(parts, response_.code, TimeWords::watched) {}
+  ResponseEmitter(const ResponseEmitter&) = delete;
+  ResponseEmitter& operator=(const ResponseEmitter&) = delete;
+
+  [[nodiscard]] ResponseCode emit(const ProgramBlock& block);
+
+private:
+  using Opcode = vm::Opcode;
+
+  void block(const ProgramBlock& statements);
+  void statement(const ProgramStatement& statement);
+  void emit(const ProgramCommand& command);
+  void emit(const ProgramLocal& local);
+  void emit(const ProgramSet& set);
+  void emit(const ProgramWait& wait);
+  void emit(const ProgramThen& then);
+  void emit(const ProgramLog& log);
+  void emit(const ProgramAlert& alert);
+  void emit(const ProgramHalt& halt);
+  void argument(vm::Param param, const Expression& value);
+  void emit(const ProgramWaitUntil& wait);
+  void emit(const ProgramIf& choice);
+  void emit(const ProgramRepeat& repeat);
+  void emit(const ProgramPick& pick);
+  void write_ahead(const ProgramRepeat& repeat);
+  void repeat_times(const ProgramRepeat& repeat);
+  void repeat_constant_times(const ProgramRepeat& repeat);
+  void repeat_forever(const ProgramRepeat& repeat);
+  void repeat_while(const ProgramRepeat& repeat);
+  void options(const ProgramPick& pick, Cell drawn);
+  // Emits what begins a block; gives its place, for the jump that ends there.
+  std::size_t open(Opcode opcode, Operand a = {}, Operand b = {});
+  // Opens a block that runs if the condition is true.
+  std::size_t open_unless(const Expression& condition);
+  std::size_t open_unless(Operation comparison, Cell left, vm::Value right);
+  // The same, as one block in the other for each part of an AND, as far as there is room for them
+  // around `inside` other blocks; the outermost comes first.
+  std::vector<std::size_t> open_unless_all(const Expression& condition, unsigned inside);
+  // One more block is open.
+  void count_block();
+  // Ends the block that began at `begin`, and begins its ELSE; gives the place of that.
+  std::size_t otherwise(std::size_t begin);
+  // The same where the block around both ends in the same place: it takes the ELSE in.
+  std::size_t otherwise_to_same_end(std::size_t begin);
+  void close(std::size_t begin);  // of a block that ends here
+  // Ends a loop or the evaluation of a wait by `opcode`, which may go back to its start.
+  void close_around(Opcode opcode, Operand a, std::size_t begin);
+
+  CodeDraft& code() { return response_.code; }
+  // What is emitted from now on comes from the current statement.
+  void mark() { code().mark({current_->line, current_->span}); }
+
+  Parts& parts_;
+  ResponseCode response_;
+  ExpressionEmitter expressions_;
+  const ProgramStatement* current_ = nullptr;  // never null while a statement is emitted
+  unsigned open_blocks_ = 0;
+};
 
 ResponseCode ResponseEmitter::emit(const ProgramBlock& statements) {
   block(statements);
@@ -118,6 +231,227 @@ void ResponseEmitter::emit(const ProgramHalt& halt) {
   for (const std::uint8_t target : parts_.tables.targets(halt))
     code().emit(Opcode::halt, target);
   response_.actuators |= parts_.tables.mask_of(halt);
+}
+
+// ---- blocks
+
+void ResponseEmitter::count_block() {
+  ++open_blocks_;
+  if (open_blocks_ == vm::kMaxBlocks + 1)
+    parts_.too_large("blocks are nested too deeply here for the robot", current_->span);
+}
+
+std::size_t ResponseEmitter::open(Opcode opcode, Operand a, Operand b) {
+  count_block();
+  return code().emit(opcode, a, b);
+}
+
+std::size_t ResponseEmitter::open_unless(const Expression& condition) {
+  if (parts_.program.optimized)
+    if (const auto jump = expressions_.jump_unless(condition)) {
+      count_block();
+      return *jump;
+    }
+  return open(Opcode::unless, expressions_.value(condition));
+}
+
+std::size_t ResponseEmitter::open_unless(Operation comparison, Cell left, vm::Value right) {
+  if (parts_.program.optimized)
+    if (const auto jump = expressions_.jump_unless(comparison, left, right)) {
+      count_block();
+      return *jump;
+    }
+  return open(Opcode::unless, expressions_.compare(comparison, left, right, 0));
+}
+
+// The right side is left out when the left one is not true, so nobody may notice that.
+std::vector<std::size_t> ResponseEmitter::open_unless_all(const Expression& condition,
+                                                          unsigned inside) {
+  const bool has_room = open_blocks_ < kSpareBlocks && open_blocks_ + inside + 2 <= vm::kMaxBlocks;
+  const bool splits = parts_.program.optimized && has_room &&
+                      condition.operation == Operation::logical_and &&
+                      is_pure(condition.operands[1]);
+  if (!splits) return {open_unless(condition)};
+  std::vector<std::size_t> begins = open_unless_all(condition.operands[0], inside + 1);
+  for (const std::size_t inner : open_unless_all(condition.operands[1], inside))
+    begins.push_back(inner);
+  return begins;
+}
+
+std::size_t ResponseEmitter::otherwise(std::size_t begin) {
+  code().emit(Opcode::jump);
+  code().land(begin);
+  return code().size() - 1;
+}
+
+std::size_t ResponseEmitter::otherwise_to_same_end(std::size_t begin) {
+  --open_blocks_;
+  return otherwise(begin);
+}
+
+void ResponseEmitter::close(std::size_t begin) {
+  code().land(begin);
+  --open_blocks_;
+}
+
+void ResponseEmitter::close_around(Opcode opcode, Operand a, std::size_t begin) {
+  code().emit(opcode, a, code().back_to(begin + 1));
+  --open_blocks_;
+}
+
+// With the condition unknown neither side runs; without ELSE that comes by itself.
+void ResponseEmitter::emit(const ProgramIf& choice) {
+  if (choice.else_block.empty()) {
+    const std::vector<std::size_t> begins =
+        open_unless_all(choice.condition, blocks_in(choice.then_block));
+    block(choice.then_block);
+    std::for_each(begins.rbegin(), begins.rend(), [this](std::size_t begin) { close(begin); });
+    return;
+  }
+  if (parts_.program.optimized && choice.condition.fact.known) {
+    const std::size_t begin = open_unless(choice.condition);
+    block(choice.then_block);
+    mark();
+    const std::size_t jump = otherwise(begin);
+    block(choice.else_block);
+    return close(jump);
+  }
+  const Cell truth = expressions_.value(choice.condition);
+  const std::size_t known = open(Opcode::unless_known, truth);
+  const std::size_t begin = open(Opcode::unless, truth);
+  block(choice.then_block);
+  mark();
+  const std::size_t jump = otherwise_to_same_end(begin);
+  block(choice.else_block);
+  code().land(jump);
+  close(known);
+}
+
+void ResponseEmitter::emit(const ProgramRepeat& repeat) {
+  switch (repeat.kind) {
+    case RepeatKind::times:
+      if (constant_count(repeat)) return repeat_constant_times(repeat);
+      return repeat_times(repeat);
+    case RepeatKind::while_:
+      return repeat_while(repeat);
+    case RepeatKind::forever:
+      return repeat_forever(repeat);
+  }
+}
+
+void ResponseEmitter::repeat_constant_times(const ProgramRepeat& repeat) {
+  const vm::Value times = constant_count(repeat).value_or(0);
+  if (times == 0) return;
+  write_ahead(repeat);
+  const Cell counter = parts_.frame.add_local();
+  const auto place = parts_.pool.constant(times);
+  const std::size_t begin = open(Opcode::times, counter, static_cast<std::uint32_t>(place));
+  block(repeat.body);
+  mark();
+  close_around(Opcode::again, counter, begin);
+}
+
+// To what they are: the loop certainly writes them, and then need not say so in each round.
+void ResponseEmitter::write_ahead(const ProgramRepeat& repeat) {
+  const auto write = [this](Opcode opcode, std::size_t variable) {
+    const Cell target = parts_.frame.write(parts_.tables.variable(variable));
+    code().emit(opcode, target, target);
+  };
+  for (const std::size_t variable : repeat.assigned)
+    write(Opcode::set, variable);
+  for (const std::size_t variable : repeat.shifted)
+    write(Opcode::shift, variable);
+}
+
+void ResponseEmitter::repeat_times(const ProgramRepeat& repeat) {
+  const Cell counter = parts_.frame.add_local();
+  expressions_.value_into(counter, repeat.control);
+  const std::size_t any = open_unless(Operation::greater, counter, 0);
+  const std::size_t begin = open(Opcode::times_v, counter, counter);
+  block(repeat.body);
+  mark();
+  close_around(Opcode::again, counter, begin);
+  close(any);
+}
+
+void ResponseEmitter::repeat_while(const ProgramRepeat& repeat) {
+  const std::size_t first = open_unless(repeat.control);
+  const std::size_t begin = open(Opcode::loop);
+  block(repeat.body);
+  mark();
+  close_around(Opcode::around, expressions_.value(repeat.control), begin);
+  close(first);
+}
+
+void ResponseEmitter::repeat_forever(const ProgramRepeat& repeat) {
+  const std::size_t begin = open(Opcode::loop);
+  block(repeat.body);
+  mark();
+  close_around(Opcode::around_always, {}, begin);
+}
+
+void ResponseEmitter::emit(const ProgramPick& pick) {
+  if (pick.options.size() == 1) return block(pick.options.front().body);
+  if (pick.options.empty()) return;
+  std::int64_t total = 0;
+  for (const ProgramOption& option : pick.options)
+    total += option.weight;
+  if (total > vm::kValueMax)
+    return parts_.too_large("the shares of the options are too large together", current_->span);
+  const Cell least = expressions_.constant(0, 0);
+  const Cell most = expressions_.constant(static_cast<vm::Value>(total - 1), 1);
+  const Cell drawn = parts_.frame.add_local();
+  code().emit(Opcode::random, drawn, least, most);
+  options(pick, drawn);
+}
+
+// Each option but the last is an IF whose ELSE holds those that follow; all end in the same place.
+void ResponseEmitter::options(const ProgramPick& pick, Cell drawn) {
+  std::vector<std::size_t> jumps;
+  vm::Value share = 0;  // of the options so far
+  for (const ProgramOption& option : pick.options) {
+    share += option.weight;
+    if (&option == &pick.options.back()) {
+      block(option.body);
+      break;
+    }
+    const std::size_t begin = open_unless(Operation::less, drawn, share);
+    block(option.body);
+    mark();
+    jumps.push_back(jumps.empty() ? otherwise(begin) : otherwise_to_same_end(begin));
+  }
+  for (const std::size_t jump : jumps)
+    code().land(jump);
+  --open_blocks_;
+}
+
+void ResponseEmitter::emit(const ProgramWaitUntil& wait) {
+  std::optional<Cell> deadline;
+  if (wait.within) {
+    deadline = parts_.frame.add_local();
+    code().emit(Opcode::deadline, *deadline, expressions_.value(*wait.within));
+  }
+  const std::size_t poll = open(Opcode::poll);
+  Cell truth = expressions_.value(wait.condition);
+  if (deadline) {
+    const std::uint32_t depth = truth.zone == Zone::temporary ? 1 : 0;
+    const Cell late = parts_.frame.temporary(depth);
+    code().emit(Opcode::reached, late, *deadline);
+    const Cell either = parts_.frame.temporary(0);
+    code().emit(Opcode::or_, either, truth, late);
+    truth = either;
+  }
+  close_around(Opcode::until, truth, poll);
+}
+
+}  // namespace
+
+bool needs_clamping(const ProgramSet& set) {
+  return set.relative || set.value.operation != Operation::constant;
+}
+
+ResponseCode emit_response(Parts& parts, const ProgramBlock& response) {
+  return ResponseEmitter(parts).emit(response);
 }
 
 }  // namespace robosync::compiler

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <set>
 
+#include "compiler/codegen/expression_emitter.hpp"
 #include "compiler/codegen/response_emitter.hpp"
-#include "compiler/codegen/walk.hpp"
+#include "compiler/ir/walk.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -20,13 +21,9 @@ struct RuleDraft {
 
 // The variables whose new value has to be clamped on the robot.
 void find_clamped(const ProgramBlock& block, std::set<std::size_t>& clamped) {
-  const PartsOfStatement parts([](const Expression&) {},
-                               [&](const ProgramBlock& inner) { find_clamped(inner, clamped); });
-  for (const ProgramStatement& statement : block) {
-    if (const auto* set = std::get_if<ProgramSet>(&statement.node); set && needs_clamping(*set))
-      clamped.insert(set->variable);
-    std::visit(parts, statement.node);
-  }
+  for_each_of<ProgramSet>(block, [&](const ProgramSet& set) {
+    if (needs_clamping(set)) clamped.insert(set.variable);
+  });
 }
 
 Source source_of(const ProgramRule& rule) {
@@ -77,13 +74,11 @@ private:
       listen(operand);
   }
   void listen(const ProgramBlock& block) {
-    const PartsOfStatement parts([this](const Expression& expression) { listen(expression); },
-                                 [this](const ProgramBlock& inner) { listen(inner); });
-    for (const ProgramStatement& statement : block) {
+    for_each_statement(block, [this](const ProgramStatement& statement) {
       if (const auto* set = std::get_if<ProgramSet>(&statement.node))
         (void)parts_.frame.read(parts_.tables.variable(set->variable));
-      std::visit(parts, statement.node);
-    }
+      for_each_expression(statement, [this](const Expression& expression) { listen(expression); });
+    });
   }
 
   Parts& parts_;
@@ -130,13 +125,9 @@ private:
 // min_k and max_k reach the first constants only: the limits that they need come first.
 void RuleWriter::reserve_limits() {
   std::set<std::size_t> clamped;
-  for (const ProgramRule& rule : program_.safety)
-    find_clamped(rule.then_response, clamped);
-  for (const ProgramBehavior& behavior : program_.behaviors)
-    for (const ProgramRule& rule : behavior.rules) {
-      find_clamped(rule.then_response, clamped);
-      find_clamped(rule.else_response, clamped);
-    }
+  for_each_rule(program_, [&](const ProgramRule& rule) {
+    for_each_response(rule, [&](const ProgramBlock& block) { find_clamped(block, clamped); });
+  });
   for (const std::size_t place : clamped) {
     const ProgramVariable& variable = program_.variables[place];
     if (variable.min > vm::kValueMin) (void)sections_.pool.constant(variable.min);
@@ -189,9 +180,9 @@ RuleDraft RuleWriter::draft(Parts& parts, const ProgramRule& rule) {
   draft.record.modifiers = modifiers(rule);
   if (rule.kind != vm::RuleKind::start)
     draft.condition = make_condition(parts, rule.condition, rule.kind, source_of(rule), {});
-  draft.then_response = ResponseEmitter(parts).emit(rule.then_response);
+  draft.then_response = emit_response(parts, rule.then_response);
   if (rule.kind == vm::RuleKind::when_else)
-    draft.else_response = ResponseEmitter(parts).emit(rule.else_response);
+    draft.else_response = emit_response(parts, rule.else_response);
   return draft;
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "compiler/codegen/walk.hpp"
+#include "compiler/ir/walk.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::compiler {
@@ -30,11 +30,7 @@ void number(Map& map) {
 Tables::Tables(const Program& program, Diagnostics& diagnostics) {
   for (const ProgramCheck& check : program.checks)
     use(check.input);
-  for (const ProgramRule& rule : program.safety)
-    use(rule);
-  for (const ProgramBehavior& behavior : program.behaviors)
-    for (const ProgramRule& rule : behavior.rules)
-      use(rule);
+  for_each_rule(program, [this](const ProgramRule& rule) { use(rule); });
   check_counts(program, diagnostics);
   number(channels_);
   number(actuators_);
@@ -55,13 +51,11 @@ void Tables::use(const Expression& expression) {
 }
 
 void Tables::use(const ProgramBlock& block) {
-  const PartsOfStatement use_parts([this](const Expression& expression) { use(expression); },
-                                   [this](const ProgramBlock& inner) { use(inner); });
-  for (const ProgramStatement& statement : block) {
+  for_each_statement(block, [this](const ProgramStatement& statement) {
     if (const auto* command = std::get_if<ProgramCommand>(&statement.node)) use(*command);
     if (const auto* halt = std::get_if<ProgramHalt>(&statement.node)) use(*halt);
-    std::visit(use_parts, statement.node);
-  }
+    for_each_expression(statement, [this](const Expression& expression) { use(expression); });
+  });
 }
 
 void Tables::use(const ProgramCommand& command) {

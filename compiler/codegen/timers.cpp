@@ -21,9 +21,6 @@ vm::TimerKind timer_kind(Operation time_word) {
   }
 }
 
-bool is_time_word(Operation operation) {
-  return operation >= Operation::held && operation <= Operation::changed;
-}
 
 std::size_t Timers::add(const Expression& time_word) {
   vm::Timer timer{};

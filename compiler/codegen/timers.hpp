@@ -4,12 +4,9 @@
 
 #include <vector>
 
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 
 namespace robosync::compiler {
-
-// Is it a time word itself, whatever its operands are?
-[[nodiscard]] bool is_time_word(Operation operation);
 
 [[nodiscard]] vm::TimerKind timer_kind(Operation time_word);
 

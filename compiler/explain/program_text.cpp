@@ -35,7 +35,7 @@ int to_number(const std::optional<ast::Name>& digits) {
 
 class Teller {
 public:
-  Teller(const ast::Program& program, const SourceMap& sources, const Robot* robot)
+  Teller(const ast::Tree& program, const SourceMap& sources, const Robot* robot)
       : program_(program), sources_(sources), robot_(robot), defines_(defines_of(program)) {}
 
   std::string tell() {
@@ -247,7 +247,7 @@ private:
     text_ += statements(node.body, defines_, kIndent);
   }
 
-  const ast::Program& program_;
+  const ast::Tree& program_;
   const SourceMap& sources_;
   const Robot* robot_;
   Defines defines_;
@@ -258,8 +258,7 @@ private:
 
 }  // namespace
 
-std::string program_text(const ast::Program& program, const SourceMap& sources,
-                         const Robot* robot) {
+std::string program_text(const ast::Tree& program, const SourceMap& sources, const Robot* robot) {
   return Teller(program, sources, robot).tell();
 }
 

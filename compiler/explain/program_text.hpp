@@ -12,7 +12,7 @@ namespace robosync::compiler::explain {
 
 // `program` may have mistakes; what could not be read is not told. `robot` may be null: then groups
 // of actuators are not known, and conflicts are found by name only.
-[[nodiscard]] std::string program_text(const ast::Program& program, const SourceMap& sources,
+[[nodiscard]] std::string program_text(const ast::Tree& program, const SourceMap& sources,
                                        const Robot* robot);
 
 }  // namespace robosync::compiler::explain

@@ -166,7 +166,7 @@ std::string folded(std::string_view name) {
   return text;
 }
 
-Defines defines_of(const ast::Program& program) {
+Defines defines_of(const ast::Tree& program) {
   Defines defines;
   for (const ast::Item& item : program.items) {
     if (const auto* define = std::get_if<ast::Define>(&item.node)) {

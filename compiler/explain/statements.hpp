@@ -10,7 +10,7 @@ namespace robosync::compiler::explain {
 
 // The DEFINEs of a program by name, in the spelling that `folded` makes the same for all cases.
 using Defines = std::map<std::string, const ast::Define*>;
-[[nodiscard]] Defines defines_of(const ast::Program& program);
+[[nodiscard]] Defines defines_of(const ast::Tree& program);
 [[nodiscard]] std::string folded(std::string_view name);
 
 // "move right_arm quickly".

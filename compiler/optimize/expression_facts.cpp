@@ -1,7 +1,5 @@
 #include "compiler/optimize/expression_facts.hpp"
 
-#include <algorithm>
-
 namespace robosync::compiler {
 namespace {
 
@@ -74,13 +72,9 @@ Fact work_out(Expression& expression, const Sight& sight) {
     default:
       break;
   }
-  if (expression.operation >= Operation::held) return annotate_time_word(expression, sight);
+  if (is_time_word(expression.operation)) return annotate_time_word(expression, sight);
   const Fact left = annotate(operands[0], sight);
   return fact_of_operation(expression.operation, left, annotate(operands[1], sight));
-}
-
-bool divides(const Expression& expression) {
-  return expression.operation == Operation::divide || expression.operation == Operation::modulo;
 }
 
 }  // namespace
@@ -88,16 +82,6 @@ bool divides(const Expression& expression) {
 Fact annotate(Expression& expression, const Sight& sight) {
   expression.fact = work_out(expression, sight);
   return expression.fact;
-}
-
-bool is_pure(const Expression& expression) {
-  if (expression.operation == Operation::random || expression.operation >= Operation::held)
-    return false;
-  if (divides(expression)) {
-    const Expression& divisor = expression.operands[1];
-    if (divisor.operation != Operation::constant || divisor.constant == 0) return false;
-  }
-  return std::all_of(expression.operands.begin(), expression.operands.end(), is_pure);
 }
 
 }  // namespace robosync::compiler

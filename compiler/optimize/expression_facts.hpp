@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compiler/config/robot.hpp"
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 
 namespace robosync::compiler {
 
@@ -23,9 +23,5 @@ struct Sight {
 
 // Fills in Expression::fact of all its parts; gives that of the whole.
 Fact annotate(Expression& expression, const Sight& sight);
-
-// Can it be left out, or evaluated once instead of twice? It draws no random number, remembers
-// nothing, and divides by nothing that may be 0, of which the robot tells.
-[[nodiscard]] bool is_pure(const Expression& expression);
 
 }  // namespace robosync::compiler

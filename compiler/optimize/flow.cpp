@@ -1,20 +1,11 @@
 #include "compiler/optimize/flow.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
-#include "compiler/sema/program_walk.hpp"
+#include "compiler/ir/walk.hpp"
 
 namespace robosync::compiler {
-
-bool pauses(const ProgramBlock& block) {
-  bool found = false;
-  for_each_statement(block, [&](const ProgramStatement& statement) {
-    found = found || std::holds_alternative<ProgramWait>(statement.node) ||
-            std::holds_alternative<ProgramWaitUntil>(statement.node) ||
-            std::holds_alternative<ProgramThen>(statement.node);
-  });
-  return found;
-}
 
 WriteFacts Flow::follow(ProgramBlock& response, const VariableFacts& entry, bool in_place) {
   const std::size_t variables = program_.variables.size();
@@ -33,18 +24,19 @@ void Flow::block(ProgramBlock& statements, State& state) {
     std::visit([&](auto& node) { visit(node, state); }, statement.node);
 }
 
-void Flow::visit(ProgramCommand& command, State& state) {
-  for (ProgramArgument& argument : command.arguments)
-    look(argument.value, state);
+// What neither holds blocks nor remembers a value: its expressions are looked at, then it pauses.
+template <typename Node>
+void Flow::visit(Node& node, State& state) {
+  for_each_part(
+      node, [&](Expression& expression) { look(expression, state); },
+      [](auto& block) {
+        static_assert(std::is_void_v<decltype(block)>, "when does its block run? say so below");
+      });
+  if (Node::kPauses) pause(state);
 }
 
 void Flow::visit(ProgramLocal& local, State& state) {
   locals_[local.number] = look(local.value, state);
-}
-
-void Flow::visit(ProgramLog& log, State& state) {
-  for (Expression& value : log.values)
-    look(value, state);
 }
 
 // ---- writes
@@ -87,19 +79,10 @@ void Flow::pause(State& state) const {
   std::fill(state.barred.begin(), state.barred.end(), false);
 }
 
-void Flow::visit(ProgramWait& wait, State& state) {
-  look(wait.duration, state);
-  pause(state);
-}
-
 void Flow::visit(ProgramWaitUntil& wait, State& state) {
   if (wait.within) look(*wait.within, state);
   pause(state);
   look(wait.condition, state);
-}
-
-void Flow::visit(ProgramThen&, State& state) {
-  pause(state);
 }
 
 // ---- choices

@@ -46,18 +46,14 @@ private:
   using Growths = std::vector<Growth>;
 
   void block(ProgramBlock& statements, State& state);
-  void visit(ProgramCommand& command, State& state);
+  template <typename Node>
+  void visit(Node& node, State& state);  // all others
   void visit(ProgramLocal& local, State& state);
   void visit(ProgramSet& set, State& state);
-  void visit(ProgramWait& wait, State& state);
   void visit(ProgramWaitUntil& wait, State& state);
-  void visit(ProgramThen& then, State& state);
   void visit(ProgramIf& choice, State& state);
   void visit(ProgramRepeat& repeat, State& state);
   void visit(ProgramPick& pick, State& state);
-  void visit(ProgramLog& log, State& state);
-  static void visit(ProgramAlert&, State&) {}
-  static void visit(ProgramHalt&, State&) {}
 
   // `may_run`: otherwise the block is only looked at, and counts for nothing.
   void branch(ProgramBlock& statements, State& state, bool may_run);
@@ -88,8 +84,5 @@ private:
   unsigned inner_loops_ = 0;    // in that body
   unsigned dead_ = 0;           // blocks around, that never run
 };
-
-// Does it give up the processor somewhere?
-[[nodiscard]] bool pauses(const ProgramBlock& block);
 
 }  // namespace robosync::compiler

@@ -1,8 +1,8 @@
 // Following a response, part: loops.
 #include <algorithm>
 
+#include "compiler/ir/walk.hpp"
 #include "compiler/optimize/flow.hpp"
-#include "compiler/sema/program_walk.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -42,10 +42,8 @@ void Flow::note_growth(const ProgramSet& set) {
 }
 
 void Flow::forget_written(const ProgramBlock& body, State& state) const {
-  for_each_statement(body, [&](const ProgramStatement& statement) {
-    if (const auto* set = std::get_if<ProgramSet>(&statement.node))
-      state.variables[set->variable] = anytime_[set->variable];
-  });
+  for_each_of<ProgramSet>(
+      body, [&](const ProgramSet& set) { state.variables[set.variable] = anytime_[set.variable]; });
 }
 
 void Flow::visit(ProgramRepeat& repeat, State& state) {

@@ -1,6 +1,6 @@
 #include "compiler/optimize/optimize.hpp"
 
-#include "compiler/codegen/walk.hpp"
+#include "compiler/ir/walk.hpp"
 #include "compiler/optimize/prune.hpp"
 #include "compiler/optimize/share.hpp"
 #include "compiler/optimize/simplify.hpp"
@@ -10,10 +10,9 @@ namespace robosync::compiler {
 namespace {
 
 void simplify(ProgramBlock& block) {
-  const PartsOfStatement parts([](Expression& expression) { simplify(expression); },
-                               [](ProgramBlock& inner) { simplify(inner); });
-  for (ProgramStatement& statement : block)
-    std::visit(parts, statement.node);
+  for_each_statement(block, [](ProgramStatement& statement) {
+    for_each_expression(statement, [](Expression& expression) { simplify(expression); });
+  });
 }
 
 void simplify(ProgramRule& rule) {
@@ -21,15 +20,6 @@ void simplify(ProgramRule& rule) {
   if (rule.resume) simplify(*rule.resume);
   simplify(rule.then_response);
   simplify(rule.else_response);
-}
-
-template <typename OnRule>
-void for_each_rule(Program& program, OnRule on_rule) {
-  for (ProgramRule& rule : program.safety)
-    on_rule(rule);
-  for (ProgramBehavior& behavior : program.behaviors)
-    for (ProgramRule& rule : behavior.rules)
-      on_rule(rule);
 }
 
 // Facts of responses, then those of conditions.
@@ -45,12 +35,14 @@ void prove(Program& program, const Robot& robot) {
 }  // namespace
 
 Program optimize(Program program, const Robot& robot) {
+  const Room room = room_in(program);
   for_each_rule(program, [](ProgramRule& rule) { simplify(rule); });
   prove(program, robot);
   prune(program);
-  share_numbers(program);
+  share_numbers(program, room);
   prove(program, robot);
   program.optimized = true;
+  program.shares = room.in_registers;
   return program;
 }
 

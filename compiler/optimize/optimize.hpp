@@ -3,7 +3,7 @@
 #pragma once
 
 #include "compiler/config/robot.hpp"
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 
 namespace robosync::compiler {
 

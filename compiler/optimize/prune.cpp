@@ -6,11 +6,9 @@
 #include <iterator>
 #include <utility>
 
-#include "compiler/codegen/operations.hpp"
-#include "compiler/codegen/walk.hpp"
+#include "compiler/ir/walk.hpp"
 #include "compiler/optimize/expression_facts.hpp"
 #include "compiler/optimize/simplify.hpp"
-#include "compiler/sema/program_walk.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -36,7 +34,7 @@ bool takes_constant(Operation operation, std::size_t place, vm::Value value) {
 
 // By itself, a cell is as good as a constant, and sometimes better.
 void fold_operands(Expression& expression) {
-  if (expression.operation >= Operation::held) return;  // as simplify() does
+  if (is_time_word(expression.operation)) return;  // as simplify() does
   for (std::size_t place = 0; place < expression.operands.size(); ++place) {
     Expression& operand = expression.operands[place];
     fold_operands(operand);
@@ -68,11 +66,11 @@ void fold(Expression& expression) {
 // robot wakes up for them.
 bool has_time_words(const ProgramBlock& block) {
   bool found = false;
-  const PartsOfStatement parts(
-      [&](const Expression& expression) { found = found || has_time_word(expression); },
-      [&](const ProgramBlock& inner) { found = found || has_time_words(inner); });
-  for (const ProgramStatement& statement : block)
-    std::visit(parts, statement.node);
+  for_each_statement(block, [&](const ProgramStatement& statement) {
+    for_each_expression(statement, [&](const Expression& expression) {
+      found = found || has_time_word(expression);
+    });
+  });
   return found;
 }
 
@@ -93,29 +91,33 @@ public:
 
 private:
   void keep(ProgramStatement statement, ProgramBlock& result);
-  template <class Parts>
-  static void keep_claims(ProgramRepeat& repeat, const Parts& parts);
+  template <typename Node>
+  void prune_parts(Node& node);
+  void keep_claims(ProgramRepeat& repeat);
   static void choose(ProgramStatement statement, ProgramBlock& result);
 };
 
+template <typename Node>
+void Pruner::prune_parts(Node& node) {
+  for_each_part(
+      node, [](Expression& expression) { fold(expression); },
+      [this](ProgramBlock& inner) { block(inner); });
+}
+
 // A loop that is said to run no times has no code. One that is only proved to has, if its body
 // matters without being run.
-template <class Parts>
-void Pruner::keep_claims(ProgramRepeat& repeat, const Parts& parts) {
+void Pruner::keep_claims(ProgramRepeat& repeat) {
   const Expression control = repeat.control;
-  parts(repeat);
+  prune_parts(repeat);
   if (constant_count(repeat) == 0 && has_effect(repeat.body)) repeat.control = control;
 }
 
 // The statement, with its parts pruned; or what is left of it.
 void Pruner::keep(ProgramStatement statement, ProgramBlock& result) {
-  const PartsOfStatement parts([](Expression& expression) { fold(expression); },
-                               [this](ProgramBlock& inner) { block(inner); });
-  if (auto* const repeat = std::get_if<ProgramRepeat>(&statement.node)) {
-    keep_claims(*repeat, parts);
-  } else {
-    std::visit(parts, statement.node);
-  }
+  if (auto* const repeat = std::get_if<ProgramRepeat>(&statement.node))
+    keep_claims(*repeat);
+  else
+    prune_parts(statement);
   if (std::holds_alternative<ProgramIf>(statement.node))
     choose(std::move(statement), result);
   else

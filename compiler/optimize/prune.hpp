@@ -2,7 +2,7 @@
 // those of new parts are not.
 #pragma once
 
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 
 namespace robosync::compiler {
 

@@ -7,17 +7,12 @@
 #include <functional>
 #include <utility>
 
-#include "compiler/codegen/operations.hpp"
-#include "compiler/codegen/walk.hpp"
-#include "compiler/optimize/expression_facts.hpp"
-#include "compiler/optimize/flow.hpp"
-#include "compiler/sema/program_walk.hpp"
+#include "compiler/ir/walk.hpp"
 
 namespace robosync::compiler {
 namespace {
 
-constexpr std::size_t kReach = 32;      // statements to look ahead in a block
-constexpr std::size_t kMaxShared = 32;  // locals for one behaviour
+constexpr std::size_t kReach = 32;  // statements to look ahead in a block
 
 using Visit = std::function<void(Expression&)>;
 
@@ -40,21 +35,13 @@ bool reads_input(const Expression& expression) {
 
 // Does a statement, or one inside of it, make `expression` another number?
 bool spoils(const ProgramStatement& statement, const Expression& expression) {
-  const auto spoils_by_itself = [&](const ProgramStatement& one) {
-    if (const auto* set = std::get_if<ProgramSet>(&one.node))
-      return reads(expression, set->variable);
-    const bool pause = std::holds_alternative<ProgramWait>(one.node) ||
-                       std::holds_alternative<ProgramWaitUntil>(one.node) ||
-                       std::holds_alternative<ProgramThen>(one.node);
-    return pause && reads_input(expression);
-  };
-  bool found = spoils_by_itself(statement);
-  const PartsOfStatement parts([](const Expression&) {},
-                               [&](const ProgramBlock& block) {
-                                 for (const ProgramStatement& inner : block)
-                                   found = found || spoils(inner, expression);
-                               });
-  std::visit(parts, statement.node);
+  if (const auto* set = std::get_if<ProgramSet>(&statement.node))
+    return reads(expression, set->variable);
+  bool found = is_pause(statement) && reads_input(expression);
+  for_each_block(statement, [&](const ProgramBlock& block) {
+    for (const ProgramStatement& inner : block)
+      found = found || spoils(inner, expression);
+  });
   return found;
 }
 
@@ -63,8 +50,7 @@ void for_each_beginning(ProgramStatement& statement, const Visit& visit) {
   if (std::holds_alternative<ProgramWaitUntil>(statement.node)) return;
   const auto* repeat = std::get_if<ProgramRepeat>(&statement.node);
   if (repeat != nullptr && repeat->kind == RepeatKind::while_) return;
-  const PartsOfStatement parts(visit, [](ProgramBlock&) {});
-  std::visit(parts, statement.node);
+  for_each_expression(statement, visit);
 }
 
 // Puts a local in the place of a number, wherever that is worked out again.
@@ -81,7 +67,7 @@ public:
   void replace() { replaces_ = true; }
 
   void in(Expression& expression) {
-    if (expression.operation >= Operation::held) return;  // evaluated in other steps, too
+    if (is_time_word(expression.operation)) return;  // evaluated in other steps, too
     if (expression == number_) {
       ++found_;
       if (replaces_) expression = local_;
@@ -95,15 +81,8 @@ public:
   bool in(ProgramStatement& statement) {
     const bool spoilt = spoils(statement, number_);
     for_each_beginning(statement, [this](Expression& expression) { in(expression); });
-    if (auto* choice = std::get_if<ProgramIf>(&statement.node)) {
-      in(choice->then_block);
-      in(choice->else_block);
-    } else if (auto* pick = std::get_if<ProgramPick>(&statement.node)) {
-      for (ProgramOption& option : pick->options)
-        in(option.body);
-    } else if (auto* repeat = std::get_if<ProgramRepeat>(&statement.node); repeat && !spoilt) {
-      in(repeat->body);
-    }
+    const bool again = std::holds_alternative<ProgramRepeat>(statement.node);
+    if (!again || !spoilt) for_each_block(statement, [this](ProgramBlock& inner) { in(inner); });
     return !spoilt;
   }
 
@@ -122,9 +101,8 @@ class Sharer {
 public:
   // `left`: how many locals may still be made.
   Sharer(ProgramBlock& response, std::size_t& left) : left_(left) {
-    for_each_statement(response, [this](const ProgramStatement& statement) {
-      if (const auto* local = std::get_if<ProgramLocal>(&statement.node))
-        next_local_ = std::max(next_local_, local->number + 1);
+    for_each_of<ProgramLocal>(response, [this](const ProgramLocal& local) {
+      next_local_ = std::max(next_local_, local.number + 1);
     });
     block(response);
   }
@@ -152,13 +130,12 @@ void Sharer::block(ProgramBlock& statements) {
         found = found || share_part(expression, statements, at);
       if (found) ++at;
     }
-    const PartsOfStatement parts([](Expression&) {}, [this](ProgramBlock& inner) { block(inner); });
-    std::visit(parts, statements[at].node);
+    for_each_block(statements[at], [this](ProgramBlock& inner) { block(inner); });
   }
 }
 
 bool Sharer::share_part(Expression& expression, ProgramBlock& statements, std::size_t from) {
-  if (expression.operation >= Operation::held) return false;
+  if (is_time_word(expression.operation)) return false;
   if (is_number(expression) && is_pure(expression)) {
     Replacement replacement(expression, next_local_);
     go_through(replacement, statements, from);
@@ -185,13 +162,11 @@ bool Sharer::go_through(Replacement& replacement, ProgramBlock& statements, std:
 
 }  // namespace
 
-void share_numbers(Program& program) {
-  for (ProgramBehavior& behavior : program.behaviors) {
-    std::size_t left = kMaxShared;
-    for (ProgramRule& rule : behavior.rules) {
-      Sharer(rule.then_response, left);
-      Sharer(rule.else_response, left);
-    }
+void share_numbers(Program& program, const Room& room) {
+  for (std::size_t i = 0; i < program.behaviors.size(); ++i) {
+    std::size_t left = room.locals[i];
+    for (ProgramRule& rule : program.behaviors[i].rules)
+      for_each_response(rule, [&](ProgramBlock& block) { Sharer(block, left); });
   }
 }
 

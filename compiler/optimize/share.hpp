@@ -2,10 +2,11 @@
 // between, are worked out once, into a local.
 #pragma once
 
-#include "compiler/sema/program.hpp"
+#include "compiler/optimize/room.hpp"
 
 namespace robosync::compiler {
 
-void share_numbers(Program& program);
+// As far as there is room for the locals.
+void share_numbers(Program& program, const Room& room);
 
 }  // namespace robosync::compiler

@@ -2,9 +2,7 @@
 
 #include <utility>
 
-#include "compiler/codegen/operations.hpp"
-#include "compiler/optimize/expression_facts.hpp"
-#include "compiler/sema/compute.hpp"
+#include "compiler/ir/compute.hpp"
 #include "vm/arithmetic.hpp"
 
 namespace robosync::compiler {
@@ -192,7 +190,7 @@ void simplify_binary(Expression& expression) {
 }  // namespace
 
 void simplify(Expression& expression) {
-  if (expression.operation >= Operation::held) return;
+  if (is_time_word(expression.operation)) return;
   for (Expression& operand : expression.operands)
     simplify(operand);
   switch (expression.operation) {

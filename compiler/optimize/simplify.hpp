@@ -1,7 +1,7 @@
 // The same expression with fewer operations, whatever its parts turn out to be.
 #pragma once
 
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 
 namespace robosync::compiler {
 

@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <utility>
 
-#include "compiler/codegen/walk.hpp"
+#include "compiler/ir/walk.hpp"
 #include "compiler/optimize/flow.hpp"
-#include "compiler/sema/program_walk.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -47,11 +47,10 @@ void add_numbers(const Expression& expression, Thresholds& thresholds) {
 }
 
 void add_numbers(const ProgramBlock& block, Thresholds& thresholds) {
-  const PartsOfStatement parts(
-      [&](const Expression& expression) { add_numbers(expression, thresholds); },
-      [&](const ProgramBlock& inner) { add_numbers(inner, thresholds); });
-  for (const ProgramStatement& statement : block)
-    std::visit(parts, statement.node);
+  for_each_statement(block, [&](const ProgramStatement& statement) {
+    for_each_expression(statement,
+                        [&](const Expression& expression) { add_numbers(expression, thresholds); });
+  });
 }
 
 // Widens `next` in the directions in which it has grown. That it is whole is not affected: sums
@@ -117,9 +116,8 @@ private:
 void Prover::count_shifts() {
   shifts_.resize(program_.variables.size());
   for (const Response& response : responses_)
-    for_each_statement(*response.block, [&](const ProgramStatement& statement) {
-      const auto* set = std::get_if<ProgramSet>(&statement.node);
-      if (set != nullptr && set->relative) ++shifts_[set->variable];
+    for_each_of<ProgramSet>(std::as_const(*response.block), [&](const ProgramSet& set) {
+      if (set.relative) ++shifts_[set.variable];
     });
 }
 

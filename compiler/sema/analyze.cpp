@@ -35,7 +35,7 @@ public:
     for_each<ast::Safety>([this](const ast::Safety& safety, Span span) {
       program_.safety.push_back(rules_.translate(safety, span));
     });
-    for (const ast::Program* tree : trees_)
+    for (const ast::Tree* tree : trees_)
       for (const ast::Item& item : tree->items)
         add(item);
     statements_.check_unused_defines();
@@ -48,7 +48,7 @@ public:
 private:
   template <typename Node, typename Visit>
   void for_each(const Visit& visit) {
-    for (const ast::Program* tree : trees_)
+    for (const ast::Tree* tree : trees_)
       for (const ast::Item& item : tree->items)
         if (const auto* node = std::get_if<Node>(&item.node)) visit(*node, item.span);
   }

@@ -1,8 +1,8 @@
 // Semantic analysis: the trees and the robot in, a resolved program out.
 #pragma once
 
+#include "compiler/ir/program.hpp"
 #include "compiler/sema/names.hpp"
-#include "compiler/sema/program.hpp"
 
 namespace robosync::compiler {
 

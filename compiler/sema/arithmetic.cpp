@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "compiler/sema/compute.hpp"
+#include "compiler/ir/compute.hpp"
 #include "compiler/sema/expressions.hpp"
 
 namespace robosync::compiler {

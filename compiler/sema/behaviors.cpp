@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "compiler/sema/program_walk.hpp"
+#include "compiler/ir/walk.hpp"
 
 namespace robosync::compiler {
 namespace {

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "compiler/config/robot.hpp"
+#include "compiler/ir/program.hpp"
 #include "compiler/sema/names.hpp"
-#include "compiler/sema/program.hpp"
 
 namespace robosync::compiler {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "compiler/sema/names.hpp"
-#include "compiler/sema/walk.hpp"
+#include "compiler/syntax/walk.hpp"
 
 namespace robosync::compiler {
 
@@ -13,12 +13,12 @@ Names::Names(const Trees& trees, const Robot& robot, Diagnostics& diagnostics)
       actuators_(index_of(robot.actuators)),
       groups_(index_of(robot.groups)) {
   index_robot();
-  for (const ast::Program* tree : trees) {
+  for (const ast::Tree* tree : trees) {
     in_module_ = tree != trees.front();
     collect(*tree);
   }
   // A signal is declared by its use: what is declared in so many words comes first.
-  for (const ast::Program* tree : trees) {
+  for (const ast::Tree* tree : trees) {
     in_module_ = tree != trees.front();
     collect_signals(*tree);
   }
@@ -28,7 +28,7 @@ Names::Names(const Trees& trees, const Robot& robot, Diagnostics& diagnostics)
         report_twice(variables_[place].name, first->second);
 }
 
-void Names::collect(const ast::Program& tree) {
+void Names::collect(const ast::Tree& tree) {
   for (const ast::Item& item : tree.items)
     std::visit([this](const auto& node) { add(node); }, item.node);
 }
@@ -132,7 +132,7 @@ void Names::add(const ast::Check& check) {
 
 // ---- signals
 
-void Names::collect_signals(const ast::Program& tree) {
+void Names::collect_signals(const ast::Tree& tree) {
   const auto add = [this](const ast::Block& block) { add_signals(block); };
   for (const ast::Item& item : tree.items) {
     if (const auto* define = std::get_if<ast::Define>(&item.node)) add(define->body);

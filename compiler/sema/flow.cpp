@@ -6,17 +6,11 @@
 namespace robosync::compiler {
 namespace {
 
-bool waits(const ProgramStatement& statement) {
-  return std::holds_alternative<ProgramWait>(statement.node) ||
-         std::holds_alternative<ProgramWaitUntil>(statement.node) ||
-         std::holds_alternative<ProgramThen>(statement.node);
-}
-
 // Does every turn of the loop end by itself, or give up the processor?
 bool is_bounded(const ProgramRepeat& loop) {
   const bool counted =
       loop.kind == RepeatKind::times && loop.control.operation == Operation::constant;
-  return counted || std::any_of(loop.body.begin(), loop.body.end(), waits);
+  return counted || std::any_of(loop.body.begin(), loop.body.end(), is_pause);
 }
 
 }  // namespace

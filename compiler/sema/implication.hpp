@@ -1,7 +1,7 @@
 // Does one condition follow from another? Says yes only when it surely does.
 #pragma once
 
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 
 namespace robosync::compiler {
 

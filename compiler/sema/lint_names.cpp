@@ -2,8 +2,8 @@
 #include <map>
 #include <set>
 
+#include "compiler/ir/walk.hpp"
 #include "compiler/sema/lints.hpp"
-#include "compiler/sema/program_walk.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -12,19 +12,14 @@ using Entered = std::map<std::size_t, std::set<vm::Value>>;  // labels set, by v
 
 Entered labels_set(const Program& program) {
   Entered result;
-  const auto add = [&](const ProgramStatement& statement) {
-    if (const auto* set = std::get_if<ProgramSet>(&statement.node))
-      if (program.variables[set->variable].kind == vm::VariableKind::state)
-        result[set->variable].insert(set->value.constant);
-  };
-  for (const ProgramRule& rule : program.safety)
-    for_each_statement(rule.then_response, add);
-  for (const ProgramBehavior& behavior : program.behaviors) {
-    for (const ProgramRule& rule : behavior.rules) {
-      for_each_statement(rule.then_response, add);
-      for_each_statement(rule.else_response, add);
-    }
-  }
+  for_each_rule(program, [&](const ProgramRule& rule) {
+    for_each_response(rule, [&](const ProgramBlock& block) {
+      for_each_of<ProgramSet>(block, [&](const ProgramSet& set) {
+        if (program.variables[set.variable].kind == vm::VariableKind::state)
+          result[set.variable].insert(set.value.constant);
+      });
+    });
+  });
   return result;
 }
 

@@ -1,8 +1,8 @@
 // W0208, W0209, W0218: the program against the robot it is for.
 #include <algorithm>
 
+#include "compiler/ir/walk.hpp"
 #include "compiler/sema/lints.hpp"
-#include "compiler/sema/program_walk.hpp"
 
 namespace robosync::compiler {
 namespace {

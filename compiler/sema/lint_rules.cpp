@@ -4,21 +4,20 @@
 #include <set>
 
 #include "compiler/config/units.hpp"
+#include "compiler/ir/walk.hpp"
 #include "compiler/sema/implication.hpp"
 #include "compiler/sema/lints.hpp"
-#include "compiler/sema/program_walk.hpp"
 
 namespace robosync::compiler {
 namespace {
 
 std::set<std::size_t> actuators_of(const ProgramRule& rule) {
   std::set<std::size_t> result;
-  const auto add = [&](const ProgramStatement& statement) {
-    if (const auto* command = std::get_if<ProgramCommand>(&statement.node))
-      result.insert(command->actuators.begin(), command->actuators.end());
-  };
-  for_each_statement(rule.then_response, add);
-  for_each_statement(rule.else_response, add);
+  for_each_response(rule, [&](const ProgramBlock& block) {
+    for_each_of<ProgramCommand>(block, [&](const ProgramCommand& command) {
+      result.insert(command.actuators.begin(), command.actuators.end());
+    });
+  });
   return result;
 }
 

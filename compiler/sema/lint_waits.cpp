@@ -1,6 +1,6 @@
 // W0205: a WAIT UNTIL that may wait for ever, and keeps its actuators all the time.
 #include "compiler/sema/lints.hpp"
-#include "compiler/sema/walk.hpp"
+#include "compiler/syntax/walk.hpp"
 
 namespace robosync::compiler {
 namespace {

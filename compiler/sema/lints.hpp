@@ -21,7 +21,7 @@ void lint_bands(const ast::Check& node, const ProgramCheck& check, const Typed& 
 
 // What can be said only of a whole program, when it has no errors.
 struct LintInput {
-  const ast::Program& tree;  // without its modules: they are not the user's to mend
+  const ast::Tree& tree;  // without its modules: they are not the user's to mend
   const Program& program;
   Names& names;
   Diagnostics& diagnostics;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "compiler/config/robot.hpp"
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 #include "compiler/syntax/ast.hpp"
 
 namespace robosync::compiler {
@@ -57,7 +57,7 @@ struct Target {
 };
 
 // The program first, then the modules that it uses.
-using Trees = std::vector<const ast::Program*>;
+using Trees = std::vector<const ast::Tree*>;
 
 class Names {
 public:
@@ -106,7 +106,7 @@ private:
   using Places = std::map<std::string, std::size_t>;  // of variables, by folded name
 
   // declarations.cpp
-  void collect(const ast::Program& tree);
+  void collect(const ast::Tree& tree);
   void add(const ast::Let& let);
   void add(const ast::Define& define);
   void add(const ast::Behavior& behavior);
@@ -117,7 +117,7 @@ private:
   void add(const ast::Safety& safety) { claim(safety.name); }
   template <typename Other>
   void add(const Other&) {}  // has no name
-  void collect_signals(const ast::Program& tree);
+  void collect_signals(const ast::Tree& tree);
   void add_signals(const ast::Block& block);
   void add_signal(const ast::Name& name);
   void check_parameters(const ast::Define& define);

@@ -8,7 +8,7 @@
 
 #include "compiler/config/units.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 
 namespace robosync::compiler {
 

@@ -2,6 +2,7 @@
 // when a message is printed. Any bytes are a text; places past its end count as its end.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -52,6 +53,7 @@ class SourceMap {
 public:
   FileId add(std::string name, std::string text);
   const SourceFile& file(FileId id) const { return files_[id]; }
+  std::size_t size() const { return files_.size(); }
   std::string_view text(Span span) const { return files_[span.file].text(span); }
 
 private:

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -123,6 +124,7 @@ struct Expr {
 // ---- statements
 // ------------------------------------------------------------------------------------
 
+// Each kind of statement says which blocks it holds: kBlocks, which syntax/walk.hpp goes by.
 struct Stmt;
 using Block = std::vector<Stmt>;
 
@@ -148,55 +150,71 @@ struct Argument {  // of a command
 struct Command {
   Name verb;
   std::vector<Argument> arguments;
+  static constexpr std::tuple<> kBlocks{};
 };
 struct Call {  // name WITH …
   Name name;
   std::vector<Argument> arguments;
+  static constexpr std::tuple<> kBlocks{};
 };
 struct Set {
   Name name;
   Box<Expr> value;
+  static constexpr std::tuple<> kBlocks{};
 };
 struct Raise {  // RAISE, and LOWER with `lower`
   Name name;
   Box<Expr> by;
   bool lower = false;
+  static constexpr std::tuple<> kBlocks{};
 };
 struct Wait {
   Box<Expr> duration;
+  static constexpr std::tuple<> kBlocks{};
 };
 struct WaitUntil {
   Box<Expr> condition;
   Box<Expr> within;  // may be null
+  static constexpr std::tuple<> kBlocks{};
 };
-struct Then {};
+struct Then {
+  static constexpr std::tuple<> kBlocks{};
+};
 struct If {
   Box<Expr> condition;
   Block then_block, else_block;
+  static constexpr std::tuple kBlocks{&If::then_block, &If::else_block};
 };
 struct Repeat {  // exactly one of times, condition is set; neither: FOREVER
   Box<Expr> times, condition;
   Block body;
+  static constexpr std::tuple kBlocks{&Repeat::body};
 };
 struct Option {
   Span span;
   Box<Expr> weight;  // may be null
   Block body;
+  static constexpr std::tuple kBlocks{&Option::body};
 };
 struct PickOne {
   std::vector<Option> options;
+  static constexpr std::tuple kBlocks{&PickOne::options};
 };
 struct Stop {
   std::optional<Name> name;  // nothing: ALL
+  static constexpr std::tuple<> kBlocks{};
 };
 struct Signal {
   Name name;
+  static constexpr std::tuple<> kBlocks{};
 };
 struct Log {
   std::vector<Argument> arguments;
+  static constexpr std::tuple<> kBlocks{};
 };
 struct Alert {
   std::string text;
+  static constexpr std::tuple<> kBlocks{};
 };
 
 struct Stmt {
@@ -331,7 +349,7 @@ struct Item {
       node;
 };
 
-struct Program {
+struct Tree {
   std::vector<Item> items;
 };
 

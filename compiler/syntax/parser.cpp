@@ -23,7 +23,7 @@ public:
   Parser(const SourceFile& source, FileId file, Diagnostics& diagnostics)
       : source_(source), file_(file), diagnostics_(diagnostics), reader_(source) {}
 
-  ast::Program parse() {
+  ast::Tree parse() {
     if (source_.text().size() > largest_source) {
       diagnostics_.report(Code::E0013, "this file is larger than 16 MiB, the most that rsc reads")
           .label({file_, 0, 0});
@@ -74,14 +74,14 @@ private:
   FileId file_;
   Diagnostics& diagnostics_;
   Reader reader_;
-  ast::Program program_;
+  ast::Tree program_;
   Budget budget_;
   std::size_t mistakes_ = 0;
 };
 
 }  // namespace
 
-ast::Program parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
+ast::Tree parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
   return Parser(sources.file(file), file, diagnostics).parse();
 }
 

@@ -8,6 +8,6 @@
 namespace robosync::compiler {
 
 // Always gives a tree; what could not be read is left out of it and reported.
-[[nodiscard]] ast::Program parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics);
+[[nodiscard]] ast::Tree parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

@@ -13,11 +13,11 @@
 namespace robosync::tool {
 namespace {
 
-using compiler::testing::Expectation;
-using compiler::testing::ExpectedCommand;
-using compiler::testing::ExpectedSilence;
-using compiler::testing::ExpectedStop;
-using compiler::testing::ExpectedTruth;
+using compiler::test_plan::Expectation;
+using compiler::test_plan::ExpectedCommand;
+using compiler::test_plan::ExpectedSilence;
+using compiler::test_plan::ExpectedStop;
+using compiler::test_plan::ExpectedTruth;
 using link::EventKind;
 
 class Judge {
@@ -75,10 +75,10 @@ public:
   std::optional<std::string> judge(const ExpectedTruth& expected) const {
     Playback playback(recording_);
     playback.advance(from_us_);
-    vm::Value truth = compiler::testing::evaluate(expected.condition, playback);
+    vm::Value truth = compiler::test_plan::evaluate(expected.condition, playback);
     while (truth != vm::kTrue && playback.next_time() <= until_us_) {
       playback.advance(playback.next_time());
-      truth = compiler::testing::evaluate(expected.condition, playback);
+      truth = compiler::test_plan::evaluate(expected.condition, playback);
     }
     if (truth == vm::kTrue) return std::nullopt;
     return fmt::format("it was {} {}", truth == vm::kUnknown ? "unknown" : "false", window());
@@ -123,7 +123,7 @@ private:
       return false;
     }
     return std::ranges::all_of(expected.arguments, [&](const compiler::ProgramArgument& argument) {
-      const vm::Value wanted = compiler::testing::evaluate(argument.value, playback);
+      const vm::Value wanted = compiler::test_plan::evaluate(argument.value, playback);
       bool found = false;
       reader.for_each_param([&](std::size_t param, vm::Value given) {
         found = found || (param == static_cast<std::size_t>(argument.param) && given == wanted);
@@ -168,8 +168,8 @@ std::optional<std::string> disappointment(const Expectation& expectation,
   return std::visit([&](const auto& expected) { return judge.judge(expected); }, expectation.what);
 }
 
-TestResult run_test(const Program& program, const compiler::testing::TestPlan& plan,
-                    const compiler::testing::PlannedTest& test) {
+TestResult run_test(const Program& program, const compiler::test_plan::TestPlan& plan,
+                    const compiler::test_plan::PlannedTest& test) {
   TestResult result{&test, nullptr, {}, record(program, plan, test)};
   for (const Expectation& expectation : test.expectations) {
     auto reason = disappointment(expectation, result.recording);

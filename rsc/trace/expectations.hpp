@@ -10,15 +10,15 @@ namespace robosync::tool {
 
 // Nothing when it came as expected; else what was different, in one sentence.
 [[nodiscard]] std::optional<std::string> disappointment(
-    const compiler::testing::Expectation& expectation, const Recording& recording);
+    const compiler::test_plan::Expectation& expectation, const Recording& recording);
 
 struct TestResult {
-  const compiler::testing::PlannedTest* test = nullptr;
-  const compiler::testing::Expectation* failed = nullptr;  // the first; null: it passed
+  const compiler::test_plan::PlannedTest* test = nullptr;
+  const compiler::test_plan::Expectation* failed = nullptr;  // the first; null: it passed
   std::string reason;
   Recording recording;
 };
-[[nodiscard]] TestResult run_test(const Program& program, const compiler::testing::TestPlan& plan,
-                                  const compiler::testing::PlannedTest& test);
+[[nodiscard]] TestResult run_test(const Program& program, const compiler::test_plan::TestPlan& plan,
+                                  const compiler::test_plan::PlannedTest& test);
 
 }  // namespace robosync::tool

@@ -15,8 +15,8 @@
 namespace robosync::tool {
 namespace {
 
-using compiler::testing::ChannelName;
-using compiler::testing::PlannedReading;
+using compiler::test_plan::ChannelName;
+using compiler::test_plan::PlannedReading;
 
 // Nothing for a channel that the program does not read: it has no place in the image.
 std::optional<std::uint8_t> channel_of(const vm::Image& image, const ChannelName& name) {
@@ -32,8 +32,8 @@ std::optional<std::uint8_t> channel_of(const vm::Image& image, const ChannelName
 
 }  // namespace
 
-Recording record(const Program& program, const compiler::testing::TestPlan& plan,
-                 const compiler::testing::PlannedTest& test) {
+Recording record(const Program& program, const compiler::test_plan::TestPlan& plan,
+                 const compiler::test_plan::PlannedTest& test) {
   Recording recording{&program.image(), &plan, &test, {}};
   sim::Simulator simulator(program.bytes(), [&recording](const link::Event& event) {
     recording.events.push_back(event);

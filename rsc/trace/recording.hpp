@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "compiler/testing/evaluate.hpp"
-#include "compiler/testing/plan.hpp"
+#include "compiler/test_plan/evaluate.hpp"
+#include "compiler/test_plan/plan.hpp"
 #include "link/events.hpp"
 #include "rsc/program.hpp"
 
@@ -14,18 +14,18 @@ namespace robosync::tool {
 
 struct Recording {
   const vm::Image* image = nullptr;
-  const compiler::testing::TestPlan* plan = nullptr;
-  const compiler::testing::PlannedTest* test = nullptr;
+  const compiler::test_plan::TestPlan* plan = nullptr;
+  const compiler::test_plan::PlannedTest* test = nullptr;
   std::vector<link::Event> events;  // in the order they happened
 };
 
 // `program` and `plan` must outlive the result. Throws Failure (program) when the robot refuses the
 // program.
-[[nodiscard]] Recording record(const Program& program, const compiler::testing::TestPlan& plan,
-                               const compiler::testing::PlannedTest& test);
+[[nodiscard]] Recording record(const Program& program, const compiler::test_plan::TestPlan& plan,
+                               const compiler::test_plan::PlannedTest& test);
 
 // Goes through a recording and knows the values of each moment.
-class Playback final : public compiler::testing::Moment {
+class Playback final : public compiler::test_plan::Moment {
 public:
   explicit Playback(const Recording& recording);
 

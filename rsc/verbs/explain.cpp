@@ -86,7 +86,7 @@ void explain_file(const ExplainOptions& options) {
   compiler::Diagnostics diagnostics;
   const compiler::FileId file = sources.add(options.what, read_text(options.what));
   const std::optional<compiler::Robot> robot = robot_for(options, sources);
-  const compiler::ast::Program program = compiler::parse(sources, file, diagnostics);
+  const compiler::ast::Tree program = compiler::parse(sources, file, diagnostics);
   diagnostics.finish();
   std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr());
   if (diagnostics.errors() > 0) {

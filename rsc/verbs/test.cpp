@@ -125,7 +125,7 @@ void test_file(const std::string& file, const TestOptions& options, Tally& tally
   const Program program(std::move(compiled.image), file);
   if (compiled.tests.tests.empty()) std::cerr << "rsc: " << file << ": there is no TEST in it\n";
   Reporter reporter(options, compiled.sources, tally);
-  for (const compiler::testing::PlannedTest& test : compiled.tests.tests)
+  for (const compiler::test_plan::PlannedTest& test : compiled.tests.tests)
     reporter.report(run_test(program, compiled.tests, test));
 }
 

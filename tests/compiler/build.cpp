@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "compiler/codegen/verify_image.hpp"
+#include "compiler/optimize/optimize.hpp"
 #include "vm/disassembler.hpp"
 
 namespace robosync::compiler::testing {
@@ -182,11 +184,14 @@ ProgramVariable ranged(std::string name, double min, double max) {
   return made;
 }
 
-Built build(const Program& program, ImageOptions options) {
+Built build(const Program& program, BuildOptions options) {
   constexpr ProgramHash kHash = {1, 2, 3, 4, 5, 6, 7, 8};
   const Robot robot = small_robot();
   Built built;
-  built.bytes = write_image(program, robot, kHash, options, built.diagnostics);
+  Emitted emitted = emit(options.optimize ? optimize(program, robot) : program, program, robot,
+                         kHash, {.source_lines = options.source_lines}, built.diagnostics);
+  if (built.diagnostics.errors() == 0 && verify_image(emitted, built.diagnostics))
+    built.bytes = std::move(emitted.image);
   if (!built.bytes.empty()) REQUIRE(vm::view_image(built.bytes, built.image));
   return built;
 }

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/codegen/image_writer.hpp"
+#include "compiler/codegen/emit.hpp"
 
 namespace robosync::compiler::testing {
 
@@ -41,13 +41,17 @@ Program program_of(std::vector<ProgramRule> rules, std::vector<ProgramVariable> 
 ProgramVariable plain(std::string name, double initial = 0);
 ProgramVariable ranged(std::string name, double min, double max);
 
-// ---- images
+// ---- images: optimised or not, emitted, verified
 struct Built {
   std::vector<std::byte> bytes;  // empty when refused
   Diagnostics diagnostics;
   vm::Image image;  // views bytes
 };
-Built build(const Program& program, ImageOptions options = {.source_lines = false});
+struct BuildOptions {
+  bool source_lines = false;
+  bool optimize = false;
+};
+Built build(const Program& program, BuildOptions options = {});
 // The same, with everything accepted.
 Built must_build(const Program& program, bool source_lines = false);
 // Behaviours, rules, timers and instructions of the image.

@@ -34,7 +34,7 @@ inline std::vector<std::filesystem::path> files_in(const std::string& folder,
 struct Parsed {
   SourceMap sources;
   Diagnostics diagnostics;
-  ast::Program program;
+  ast::Tree program;
 };
 
 inline Parsed parse_text(std::string text, const std::string& name = "robot.rsl") {

@@ -50,6 +50,20 @@ TOOL = {
     "trace": set(),
     "dump": set(),
 }
+# Inside compiler/, in the order of the passes: what each folder may include of it, besides itself.
+# What lies in compiler/ itself puts them together and may include all; none may include that.
+COMPILER = {
+    "source": set(),
+    "diagnostics": {"source"},
+    "syntax": {"source", "diagnostics"},
+    "config": {"source", "diagnostics", "syntax"},
+    "ir": {"source"},
+    "sema": {"source", "diagnostics", "syntax", "config", "ir"},
+    "optimize": {"config", "ir"},
+    "codegen": {"source", "diagnostics", "config", "ir"},
+    "explain": {"source", "diagnostics", "syntax", "config"},
+    "test_plan": {"source", "diagnostics", "syntax", "config", "ir", "sema"},
+}
 # Standard headers that allocate or throw, or need an operating system.
 HOSTED_HEADERS = {
     "string", "vector", "map", "set", "unordered_map", "unordered_set", "list", "deque", "memory",
@@ -204,6 +218,22 @@ def check_tool_folders(sources):
             to = target.split("/")
             if to[0] == "rsc" and len(to) > 2 and to[1] not in TOOL.get(own, set()) | {own}:
                 yield Problem(source.path, number, f"{own or 'rsc'}/ may not include {to[1]}/")
+}
+def check_compiler_folders(sources):
+    """Inside compiler/ the arrows follow the passes; a folder that COMPILER does not name is wrong."""
+    for source in sources:
+        parts = source.path.split("/")
+        if parts[0] != "compiler" or len(parts) < 3 or source.suffix not in CODE:
+            continue
+        if parts[1] not in COMPILER:
+            yield Problem(source.path, 1, f"which pass is compiler/{parts[1]}/?")
+            continue
+        for number, _, target in includes(source):
+            to = target.split("/")
+            if to[0] != "compiler":
+                continue
+            if len(to) < 3 or to[1] not in COMPILER[parts[1]] | {parts[1]}:
+                yield Problem(source.path, number, f"{parts[1]}/ may not include {target}")
 
 
 def check_freestanding(sources):
@@ -292,6 +322,7 @@ def check_left_overs(sources):
 
 
 RULES = {
+    "compiler folders": check_compiler_folders,
     "runtime folders": check_runtime_folders,
     "tool folders": check_tool_folders,
     "freestanding": check_freestanding,

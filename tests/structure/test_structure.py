@@ -74,6 +74,7 @@ class Planted(unittest.TestCase):
             "vm/a.cpp": '#include "vm/a.hpp"\n',
             "vm/b.cpp": HEAD + '#include "vm/a.hpp"\n#include "vm/list.def"\n',
             "compiler/c.cpp": HEAD + '#include "vm/a.hpp"\n#include <string>\n',
+            "compiler/sema/s.cpp": HEAD + '#include "compiler/ir/program.hpp"\n',
             "runtime-m4/kernel/k.cpp": HEAD + '#include "runtime-m4/port/port.hpp"\n',
             "runtime-m4/boards/x/b.cpp": HEAD + "volatile int* p = (int*)0x40004000;\n",
             "runtime-m4/policy/p.hpp": HEAD + '#include "vm/a.hpp"\n',
@@ -147,6 +148,15 @@ class Planted(unittest.TestCase):
                              ("runtime-m4/boards/x/b.cpp", "runtime-m4/port/x/core.hpp")]:
             with self.subTest(name=name, target=target):
                 self.assertEqual(self.check({name: f'{HEAD}#include "{target}"\n'}), {})
+
+    def test_wrong_arrows_in_the_compiler(self):
+        for name, target in [("compiler/ir/a.hpp", "compiler/sema/names.hpp"),
+                             ("compiler/optimize/a.cpp", "compiler/codegen/frame.hpp"),
+                             ("compiler/codegen/a.cpp", "compiler/optimize/optimize.hpp"),
+                             ("compiler/sema/a.cpp", "compiler/compiler.hpp"),
+                             ("compiler/passes/a.cpp", "compiler/ir/program.hpp")]:
+            with self.subTest(name=name, target=target):
+                self.assert_red("compiler folders", name, f'{HEAD}#include "{target}"\n')
 
     def test_hosted_headers_on_the_board(self):
         for name in ["vm/a.cpp", "link/a.hpp", "runtime-m4/port/cortex-m4/a.cpp"]:

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "compiler/optimize/room.hpp"
 #include "tests/compiler/codegen/expected.hpp"
 #include "tests/compiler/codegen/generator.hpp"
 #include "tests/support/share.hpp"
@@ -167,4 +168,24 @@ TEST_CASE("random conditions are what they say, optimised or not, in every step"
     }
   }
   CHECK(truths > programs);
+}
+
+TEST_CASE("what fits as it is written fits optimised, in no more cells than the optimiser counts") {
+  const auto programs = robosync::test::share_of<std::uint32_t>(1500);
+  for (std::uint32_t seed = 0; seed < programs; ++seed) {
+    const Program program = Generator(seed, {.chance = false, .time_words = true}).program();
+    const Built plain = build(program, {.source_lines = false});
+    if (plain.bytes.empty()) continue;
+    const Built optimized = build(program, {.source_lines = false, .optimize = true});
+    INFO(seed);
+    REQUIRE(!optimized.bytes.empty());
+    CHECK(optimized.image.header->step_cost <= plain.image.header->step_cost);
+    const Room room = room_in(program);
+    const std::size_t safety = program.safety.empty() ? 0 : 1;
+    for (std::size_t b = 0; b < program.behaviors.size(); ++b) {
+      const std::size_t most = cells_at_most(program.behaviors[b].rules);
+      CHECK(plain.image.behaviors[b + safety].cells <= most);
+      CHECK(optimized.image.behaviors[b + safety].cells <= most + room.locals[b]);
+    }
+  }
 }

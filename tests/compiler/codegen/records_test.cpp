@@ -177,10 +177,10 @@ TEST_CASE("every statement knows its line, and so does what follows a nested one
 TEST_CASE("the seed is of the hash") {
   CHECK(must_build(program_of({when(kClose, {kLeft})})).image.header->seed == 0x05060708);
   Diagnostics diagnostics;
-  const auto bytes = write_image(program_of({when(kClose, {kLeft})}), small_robot(), {},
-                                 {.source_lines = false}, diagnostics);
+  const Program program = program_of({when(kClose, {kLeft})});
+  const Emitted emitted = emit(program, program, small_robot(), {}, {}, diagnostics);
   vm::Image image;
-  REQUIRE(vm::view_image(bytes, image));
+  REQUIRE(vm::view_image(emitted.image, image));
   CHECK(image.header->seed != 0);
 }
 

@@ -24,7 +24,7 @@ const fs::path kTests = fs::path(ROBOSYNC_SOURCE_DIR) / "tests/compiler";
 struct Read {
   SourceMap sources;
   Diagnostics diagnostics;
-  ast::Program program;
+  ast::Tree program;
   std::optional<Robot> robot;
 };
 

@@ -1,5 +1,5 @@
 // Facts about results, against the results of all values that the operands may have.
-#include "compiler/optimize/fact.hpp"
+#include "compiler/ir/fact.hpp"
 
 #include <functional>
 #include <vector>

@@ -18,7 +18,7 @@ Program analyzed(const std::string& text) {
   Diagnostics diagnostics;
   const FileId program_file = sources.add("robot.rsl", text);
   const FileId robot_file = sources.add("robot.json", common_robot());
-  const ast::Program tree = parse(sources, program_file, diagnostics);
+  const ast::Tree tree = parse(sources, program_file, diagnostics);
   const auto robot = read_robot(sources, robot_file, diagnostics);
   REQUIRE(robot.has_value());
   Program program = analyze({&tree}, *robot, sources, diagnostics);

@@ -7,6 +7,6 @@
 
 namespace robosync::compiler::testing {
 
-[[nodiscard]] std::string to_sexpr(const ast::Program& program);  // one item a line
+[[nodiscard]] std::string to_sexpr(const ast::Tree& program);  // one item a line
 
 }  // namespace robosync::compiler::testing

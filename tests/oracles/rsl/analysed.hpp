@@ -8,7 +8,7 @@
 #include "compiler/config/robot.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/modules.hpp"
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 #include "compiler/source/source_file.hpp"
 #include "tests/oracles/rsl/interpreter.hpp"
 
@@ -28,7 +28,7 @@ public:
 private:
   compiler::SourceMap sources_;
   compiler::Diagnostics diagnostics_;
-  compiler::ast::Program tree_;
+  compiler::ast::Tree tree_;
   std::vector<compiler::Module> modules_;
   compiler::Robot robot_;
   compiler::Program program_;

@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 #include "tests/oracles/rsl/past.hpp"
 
 namespace robosync::oracle {

@@ -1,7 +1,7 @@
 // The robot of docs/language.md, read naively: a step in every millisecond, all rules in each step,
 // and one more step when readings have come.
 //
-// It walks the analysed program (compiler/sema/program.hpp), not the syntax tree: the tree would
+// It walks the analysed program (compiler/ir/program.hpp), not the syntax tree: the tree would
 // mean to resolve names, units, USE, DEFINE and robot.json a second time. So what sema makes of a
 // text (a LIMIT that becomes a SAFETY rule, a MARGIN that becomes a second comparison, the borders
 // of bands, the part that is left of a fading FEELING) is believed here; tests/compiler/ is about

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "compiler/sema/program_walk.hpp"
+#include "compiler/ir/walk.hpp"
 
 namespace robosync::oracle {
 

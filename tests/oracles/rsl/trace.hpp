@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compiler/config/robot.hpp"
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 #include "tests/oracles/rsl/past.hpp"
 
 namespace robosync::oracle {

@@ -1,18 +1,10 @@
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 
 #include <algorithm>
 
+#include "compiler/ir/walk.hpp"
+
 namespace robosync::compiler {
-
-bool Expression::operator==(const Expression& other) const {
-  return operation == other.operation && constant == other.constant && index == other.index &&
-         channel == other.channel && operands == other.operands;
-}
-
-bool has_time_word(const Expression& expression) {
-  return expression.operation >= Operation::held ||
-         std::any_of(expression.operands.begin(), expression.operands.end(), has_time_word);
-}
 
 // A part of a time counts as a time, as it does where the robot works out the number.
 std::optional<vm::Value> constant_count(const ProgramRepeat& repeat) {
@@ -21,6 +13,17 @@ std::optional<vm::Value> constant_count(const ProgramRepeat& repeat) {
   constexpr std::int64_t kMost = vm::kValueMax / vm::kScale;
   const std::int64_t times = (std::int64_t{repeat.control.constant} + vm::kScale - 1) / vm::kScale;
   return static_cast<vm::Value>(std::clamp<std::int64_t>(times, 0, kMost) * vm::kScale);
+}
+
+bool is_pause(const ProgramStatement& statement) {
+  return std::visit([](const auto& node) { return node.kPauses; }, statement.node);
+}
+
+bool pauses(const ProgramBlock& block) {
+  bool found = false;
+  for_each_statement(
+      block, [&](const ProgramStatement& statement) { found = found || is_pause(statement); });
+  return found;
 }
 
 }  // namespace robosync::compiler

@@ -1,4 +1,4 @@
-#include "compiler/optimize/fact.hpp"
+#include "compiler/ir/fact.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // A small layer above sema: names, units and commands are its business. May assume a program that
 // sema has found right.
-#include "compiler/testing/plan.hpp"
+#include "compiler/test_plan/plan.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -9,7 +9,7 @@
 #include "compiler/sema/expressions.hpp"
 #include "compiler/sema/variables.hpp"
 
-namespace robosync::compiler::testing {
+namespace robosync::compiler::test_plan {
 namespace {
 
 constexpr std::string_view kStopped = "stopped";  // in the place of a verb
@@ -263,4 +263,4 @@ TestPlan plan_tests(const Trees& trees, const Robot& robot, Diagnostics& diagnos
   return plan;
 }
 
-}  // namespace robosync::compiler::testing
+}  // namespace robosync::compiler::test_plan

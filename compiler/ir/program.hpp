@@ -1,75 +1,27 @@
-// The program with everything resolved: what sema hands to codegen. Values are thousandths of the
-// canonical unit; sensors and actuators are places in the Robot's lists, variables are places in
-// Program::variables. DEFINEs are expanded: what they are given is constant, or a local.
+// The program with everything resolved: what sema makes, the optimiser changes and codegen reads.
+// Values are thousandths of the canonical unit; sensors and actuators are places in the Robot's
+// lists, variables are places in Program::variables. DEFINEs are expanded: what they are given is
+// constant, or a local.
+//
+// Each kind of statement says three things of itself, which all passes go by (ir/walk.hpp):
+//   kParts   the expressions and the blocks that it holds, in the program's order
+//   kPauses  whether it gives up the processor, so that the response goes on in a later step
+//   kCells   how many cells of the frame it keeps at most: locals, counters, deadlines
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
-#include "compiler/optimize/fact.hpp"
+#include "compiler/ir/expression.hpp"
 #include "compiler/source/source_file.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::compiler {
-
-struct ChannelRef {
-  std::size_t sensor = 0;
-  std::size_t channel = 0;  // of the sensor
-  bool operator==(const ChannelRef&) const = default;
-  bool operator<(const ChannelRef& other) const {
-    return sensor != other.sensor ? sensor < other.sensor : channel < other.channel;
-  }
-};
-
-enum class Operation : std::uint8_t {
-  constant,
-  input,     // a channel
-  variable,  // Expression::index: its place in Program::variables
-  local,     // Expression::index: its number in the response (ProgramLocal)
-  negate,
-  add,
-  subtract,
-  multiply,
-  divide,
-  modulo,
-  random,  // from the first operand to the second
-  less,
-  less_equal,
-  greater,
-  greater_equal,
-  equal,
-  not_equal,
-  logical_not,
-  logical_and,
-  logical_or,
-  // Time words. `constant` is the duration, of `changed` the least difference. They remember the
-  // past: each stands for one timer, which is evaluated in every step.
-  held,      // operand FOR
-  counted,   // operand `index` TIMES WITHIN
-  sequence,  // first operand THEN second operand WITHIN
-  latch,     // first operand enters, second operand stays: MARGIN
-  rose,      // operand becomes true
-  changed    // the number CHANGES [BY]
-};
-
-// A number or a truth value. Operands: none, one or two, by its operation.
-struct Expression {
-  Operation operation = Operation::constant;
-  vm::Value constant = 0;
-  std::size_t index = 0;
-  ChannelRef channel;
-  std::vector<Expression> operands;
-  Fact fact{};  // what the optimiser has proved of it, in this place
-  // The same computation, whatever is known of it.
-  bool operator==(const Expression& other) const;
-};
-
-// Does it, or a part of it, remember the past?
-[[nodiscard]] bool has_time_word(const Expression& expression);
 
 // ---- what is remembered
 
@@ -97,6 +49,7 @@ struct ProgramCheck {
 struct ProgramArgument {
   vm::Param param{};
   Expression value;
+  static constexpr std::tuple kParts{&ProgramArgument::value};
   bool operator==(const ProgramArgument&) const = default;
 };
 
@@ -123,6 +76,9 @@ struct ProgramCommand {
   ProgramVerb verb;
   std::optional<ProgramWord> word;
   std::vector<ProgramArgument> arguments;
+  static constexpr bool kPauses = false;
+  static constexpr std::size_t kCells = 0;
+  static constexpr std::tuple kParts{&ProgramCommand::arguments};
 };
 
 struct ProgramStatement;
@@ -131,6 +87,9 @@ using ProgramBlock = std::vector<ProgramStatement>;
 struct ProgramLocal {      // a value that is worked out once: what a DEFINE is given
   std::size_t number = 0;  // distinct in the response
   Expression value;
+  static constexpr bool kPauses = false;
+  static constexpr std::size_t kCells = 1;
+  static constexpr std::tuple kParts{&ProgramLocal::value};
 };
 struct ProgramSet {
   std::size_t variable = 0;
@@ -141,18 +100,35 @@ struct ProgramSet {
   bool in_place = false;
   bool may_be_below = true, may_be_above = true;
   Fact before{};  // what the variable is before
+  static constexpr bool kPauses = false;
+  static constexpr std::size_t kCells = 0;
+  static constexpr std::tuple kParts{&ProgramSet::value};
 };
 struct ProgramWait {
   Expression duration;
+  static constexpr bool kPauses = true;
+  static constexpr std::size_t kCells = 0;
+  static constexpr std::tuple kParts{&ProgramWait::duration};
 };
 struct ProgramWaitUntil {
   Expression condition;
   std::optional<Expression> within;
+  static constexpr bool kPauses = true;
+  static constexpr std::size_t kCells = 1;
+  static constexpr std::tuple kParts{&ProgramWaitUntil::condition, &ProgramWaitUntil::within};
 };
-struct ProgramThen {};
+struct ProgramThen {
+  static constexpr bool kPauses = true;
+  static constexpr std::size_t kCells = 0;
+  static constexpr std::tuple<> kParts{};
+};
 struct ProgramIf {
   Expression condition;
   ProgramBlock then_block, else_block;
+  static constexpr bool kPauses = false;
+  static constexpr std::size_t kCells = 0;
+  static constexpr std::tuple kParts{&ProgramIf::condition, &ProgramIf::then_block,
+                                     &ProgramIf::else_block};
 };
 enum class RepeatKind : std::uint8_t { times, while_, forever };
 struct ProgramRepeat;
@@ -165,25 +141,41 @@ struct ProgramRepeat {
   // Variables that the body certainly writes: the optimiser has them written once before the loop
   // (to what they are), so that the body computes them in place.
   std::vector<std::size_t> assigned{}, shifted{};
+  static constexpr bool kPauses = false;
+  static constexpr std::size_t kCells = 1;
+  static constexpr std::tuple kParts{&ProgramRepeat::control, &ProgramRepeat::body};
 };
 struct ProgramOption {
   vm::Value weight = 0;  // share of the sum of all weights; positive
   ProgramBlock body;
+  static constexpr std::tuple kParts{&ProgramOption::body};
 };
 struct ProgramPick {
   std::vector<ProgramOption> options;
+  static constexpr bool kPauses = false;
+  static constexpr std::size_t kCells = 1;
+  static constexpr std::tuple kParts{&ProgramPick::options};
 };
 struct ProgramLog {
   std::string text;                // with a {} for each value
   std::vector<Expression> values;  // at most as many as there are vm::Params
+  static constexpr bool kPauses = false;
+  static constexpr std::size_t kCells = 0;
+  static constexpr std::tuple kParts{&ProgramLog::values};
 };
 struct ProgramAlert {
   std::string text;
+  static constexpr bool kPauses = false;
+  static constexpr std::size_t kCells = 0;
+  static constexpr std::tuple<> kParts{};
 };
 struct ProgramHalt {  // STOP in a SAFETY rule
   bool all = false;
   std::optional<std::size_t> group;
   std::vector<std::size_t> actuators;
+  static constexpr bool kPauses = false;
+  static constexpr std::size_t kCells = 0;
+  static constexpr std::tuple<> kParts{};
 };
 
 struct ProgramStatement {
@@ -193,6 +185,10 @@ struct ProgramStatement {
   std::uint16_t line = 0;
   Span span;
 };
+
+// Does the statement itself give up the processor? Of a block: does a statement in it, anywhere?
+[[nodiscard]] bool is_pause(const ProgramStatement& statement);
+[[nodiscard]] bool pauses(const ProgramBlock& block);
 
 // ---- when they do it
 
@@ -223,6 +219,7 @@ struct Program {
   // LIMIT … SPEED, by place in Robot::actuators; the stricter of this and the robot's own holds.
   std::vector<std::pair<std::size_t, vm::Value>> speed_limits;
   bool optimized = false;  // facts are filled in, and codegen may make use of them
+  bool shares = false;     // … and work out equal parts of a condition once: frames have room
 };
 
 }  // namespace robosync::compiler

@@ -1,10 +1,10 @@
 // Recursion is bounded by the parser's limit on the depth of expressions.
-#include "compiler/testing/evaluate.hpp"
+#include "compiler/test_plan/evaluate.hpp"
 
-#include "compiler/sema/compute.hpp"
+#include "compiler/ir/compute.hpp"
 #include "vm/arithmetic.hpp"
 
-namespace robosync::compiler::testing {
+namespace robosync::compiler::test_plan {
 
 vm::Value evaluate(const Expression& expression, const Moment& moment) {
   const auto operand = [&](std::size_t place) {
@@ -27,4 +27,4 @@ vm::Value evaluate(const Expression& expression, const Moment& moment) {
   }
 }
 
-}  // namespace robosync::compiler::testing
+}  // namespace robosync::compiler::test_plan

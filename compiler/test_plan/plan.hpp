@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/ir/program.hpp"
 #include "compiler/sema/names.hpp"
-#include "compiler/sema/program.hpp"
 
-namespace robosync::compiler::testing {
+namespace robosync::compiler::test_plan {
 
 using Milliseconds = std::uint32_t;  // of program time; each TEST starts a new robot at 0
 
@@ -70,4 +70,4 @@ struct TestPlan {
 // Tests with mistakes, which are reported, are left out.
 [[nodiscard]] TestPlan plan_tests(const Trees& trees, const Robot& robot, Diagnostics& diagnostics);
 
-}  // namespace robosync::compiler::testing
+}  // namespace robosync::compiler::test_plan

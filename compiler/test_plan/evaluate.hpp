@@ -1,9 +1,9 @@
 // What an expression is worth at one moment, worked out on its tree with the robot's arithmetic.
 #pragma once
 
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/program.hpp"
 
-namespace robosync::compiler::testing {
+namespace robosync::compiler::test_plan {
 
 // What is known at that moment.
 class Moment {
@@ -19,4 +19,4 @@ protected:
 // kUnknown; plan_tests() lets none of them through.
 [[nodiscard]] vm::Value evaluate(const Expression& expression, const Moment& moment);
 
-}  // namespace robosync::compiler::testing
+}  // namespace robosync::compiler::test_plan

@@ -1,4 +1,4 @@
-#include "compiler/sema/compute.hpp"
+#include "compiler/ir/compute.hpp"
 
 #include "vm/arithmetic.hpp"
 

@@ -1,19 +1,19 @@
-#include "compiler/codegen/dearest_rules.hpp"
+#include "compiler/codegen/costly_rules.hpp"
 
 #include <algorithm>
 #include <functional>
 
 namespace robosync::compiler {
 
-std::vector<DearRule> dearest_rules(const vm::Image& image) {
+std::vector<CostlyRule> costly_rules(const vm::Image& image) {
   constexpr std::size_t kShown = 3;
   std::vector<vm::RuleCost> costs(image.rules.size());
-  std::vector<DearRule> rules;
+  std::vector<CostlyRule> rules;
   if (!vm::rule_costs(image, costs)) return rules;
   for (std::size_t r = 0; r < costs.size(); ++r)
     rules.push_back({r, costs[r]});
   std::ranges::stable_sort(rules, std::greater(),
-                           [](const DearRule& rule) { return rule.cost.step(); });
+                           [](const CostlyRule& rule) { return rule.cost.step(); });
   rules.resize(std::min(rules.size(), kShown));
   return rules;
 }

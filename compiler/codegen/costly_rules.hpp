@@ -9,16 +9,16 @@
 
 namespace robosync::compiler {
 
-struct DearRule {
+struct CostlyRule {
   std::size_t rule = 0;  // its number
   vm::RuleCost cost;
 };
 
 // The three that cost most in a step, the dearest first. None when the verifier would refuse the
 // code for anything but its cost. `image` must be a view that vm::view_image() accepted.
-[[nodiscard]] std::vector<DearRule> dearest_rules(const vm::Image& image);
+[[nodiscard]] std::vector<CostlyRule> costly_rules(const vm::Image& image);
 
-inline constexpr std::string_view kMendOfCostlyStep =
+inline constexpr std::string_view kHelpForCostlyStep =
     "what stands in a REPEAT counts as often as it runs: repeat it less often, or WAIT in it, so "
     "that a later step goes on";
 

@@ -2,7 +2,7 @@
 // TEST can differ from what a program does.
 #pragma once
 
-#include "compiler/sema/program.hpp"
+#include "compiler/ir/expression.hpp"
 
 namespace robosync::compiler {
 

@@ -1,0 +1,37 @@
+// Emits a program as an image (vm/image.hpp).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "compiler/codegen/code_pool.hpp"
+#include "compiler/config/robot.hpp"
+#include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/ir/program.hpp"
+
+namespace robosync::compiler {
+
+using ProgramHash = std::array<std::uint8_t, 8>;
+
+struct EmitOptions {
+  bool source_lines = true;  // keep the debug section
+};
+
+struct Emitted {
+  std::vector<std::byte> image;  // empty when the program is too large for the format
+  CodePool code;                 // knows what each word of the image's code comes from
+};
+
+// Same input, same bytes: the seed of the random numbers is a part of the program's hash, so that a
+// program draws the same numbers each time, and another program others. What does not fit is
+// reported (E0407); whether a board would take the image, verify_image() says.
+//
+// `written`: the program as sema made it, which may be `program` itself. What it uses and reads
+// stays in the image, whatever the optimiser has left out: devices keep their numbers, and a
+// behaviour is evaluated in the same steps.
+[[nodiscard]] Emitted emit(const Program& program, const Program& written, const Robot& robot,
+                           const ProgramHash& hash, EmitOptions options, Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler

@@ -1,0 +1,78 @@
+// A number or a truth value as the compiler holds it: names resolved, units converted. Values are
+// thousandths of the canonical unit.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "compiler/ir/fact.hpp"
+
+namespace robosync::compiler {
+
+struct ChannelRef {
+  std::size_t sensor = 0;
+  std::size_t channel = 0;  // of the sensor
+  bool operator==(const ChannelRef&) const = default;
+  bool operator<(const ChannelRef& other) const {
+    return sensor != other.sensor ? sensor < other.sensor : channel < other.channel;
+  }
+};
+
+enum class Operation : std::uint8_t {
+  constant,
+  input,     // a channel
+  variable,  // Expression::index: its place in Program::variables
+  local,     // Expression::index: its number in the response (ProgramLocal)
+  negate,
+  add,
+  subtract,
+  multiply,
+  divide,
+  modulo,
+  random,  // from the first operand to the second
+  less,
+  less_equal,
+  greater,
+  greater_equal,
+  equal,
+  not_equal,
+  logical_not,
+  logical_and,
+  logical_or,
+  // Time words. `constant` is the duration, of `changed` the least difference. They remember the
+  // past: each stands for one timer, which is evaluated in every step.
+  held,      // operand FOR
+  counted,   // operand `index` TIMES WITHIN
+  sequence,  // first operand THEN second operand WITHIN
+  latch,     // first operand enters, second operand stays: MARGIN
+  rose,      // operand becomes true
+  changed    // the number CHANGES [BY]
+};
+
+// A number or a truth value. Operands: none, one or two, by its operation.
+struct Expression {
+  Operation operation = Operation::constant;
+  vm::Value constant = 0;
+  std::size_t index = 0;
+  ChannelRef channel;
+  std::vector<Expression> operands;
+  Fact fact{};  // what the optimiser has proved of it, in this place
+  // The same computation, whatever is known of it.
+  bool operator==(const Expression& other) const;
+};
+
+// Is it a time word itself, whatever its operands are?
+[[nodiscard]] bool is_time_word(Operation operation);
+[[nodiscard]] bool is_comparison(Operation operation);
+// The same comparison with its sides exchanged.
+[[nodiscard]] Operation mirrored(Operation comparison);
+
+// Does it, or a part of it, remember the past?
+[[nodiscard]] bool has_time_word(const Expression& expression);
+
+// Can it be left out, or evaluated once instead of twice? It draws no random number, remembers
+// nothing, and divides by nothing that may be 0, of which the robot tells.
+[[nodiscard]] bool is_pure(const Expression& expression);
+
+}  // namespace robosync::compiler

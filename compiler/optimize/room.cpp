@@ -1,0 +1,118 @@
+#include "compiler/optimize/room.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "compiler/ir/walk.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr std::size_t kMostLocals = 32;           // more for one behaviour
+constexpr std::size_t kRegistersOfStatement = 2;  // beside those of its expressions
+
+// A part leaves its value in one register while the part beside it is worked out.
+std::size_t registers_of(const Expression& expression) {
+  if (expression.operation == Operation::input || expression.operation == Operation::variable ||
+      expression.operation == Operation::local)
+    return 0;
+  std::size_t most = 0;
+  for (const Expression& operand : expression.operands)
+    most = std::max(most, registers_of(operand));
+  return most + 1;
+}
+
+std::size_t operations_in(const Expression& expression) {
+  std::size_t count = expression.operands.empty() ? 0 : 1;
+  for (const Expression& operand : expression.operands)
+    count += operations_in(operand);
+  return count;
+}
+
+// What counts for the frame of one behaviour.
+class Count {
+public:
+  void add(const ProgramRule& rule) {
+    add_condition(rule.condition);
+    if (rule.resume) add_condition(*rule.resume);
+    for_each_response(rule, [this](const ProgramBlock& block) {
+      for_each_statement(block, [this](const ProgramStatement& statement) { add(statement); });
+    });
+  }
+
+  [[nodiscard]] std::size_t cells() const {
+    return channels_.size() + variables_.size() + kept_ + truths_ + registers_;
+  }
+
+private:
+  void add(const ProgramStatement& statement) {
+    kept_ += std::visit([](const auto& node) { return node.kCells; }, statement.node);
+    if (const auto* set = std::get_if<ProgramSet>(&statement.node))
+      variables_.insert(set->variable);
+    for_each_expression(statement, [this](const Expression& expression) {
+      registers_ = std::max(registers_, kRegistersOfStatement + registers_of(expression));
+      add_inputs(expression);
+      add_time_words(expression);
+    });
+    registers_ = std::max(registers_, kRegistersOfStatement);
+  }
+
+  // Each part that is kept stands there twice at least.
+  void add_condition(const Expression& condition) {
+    registers_ = std::max(registers_, registers_of(condition) + operations_in(condition) / 2);
+    add_inputs(condition);
+  }
+
+  void add_inputs(const Expression& expression) {
+    if (expression.operation == Operation::input) channels_.insert(expression.channel);
+    if (expression.operation == Operation::variable) variables_.insert(expression.index);
+    for (const Expression& operand : expression.operands)
+      add_inputs(operand);
+  }
+
+  // In a response each has a rule of its own, whose truth has a cell.
+  void add_time_words(const Expression& expression) {
+    if (is_time_word(expression.operation)) {
+      ++truths_;
+      return add_condition(expression);
+    }
+    for (const Expression& operand : expression.operands)
+      add_time_words(operand);
+  }
+
+  std::set<ChannelRef> channels_;
+  std::set<std::size_t> variables_;
+  std::size_t kept_ = 0, truths_ = 0, registers_ = 0;
+};
+
+}  // namespace
+
+std::size_t cells_at_most(const std::vector<ProgramRule>& rules) {
+  Count count;
+  for (const ProgramRule& rule : rules)
+    count.add(rule);
+  return count.cells();
+}
+
+Room room_in(const Program& program) {
+  constexpr std::size_t kAllCells = vm::Limits{}.frame_cells;
+  std::vector<std::size_t> cells;
+  std::size_t all = cells_at_most(program.safety);
+  std::size_t most = all;
+  for (const ProgramBehavior& behavior : program.behaviors) {
+    cells.push_back(cells_at_most(behavior.rules));
+    all += cells.back();
+    most = std::max(most, cells.back());
+  }
+  Room room{most <= vm::kMaxCells && all <= kAllCells, {}};
+  for (const std::size_t own : cells) {
+    const std::size_t left = std::min(kAllCells - std::min(all, kAllCells),
+                                      vm::kMaxCells - std::min<std::size_t>(own, vm::kMaxCells));
+    room.locals.push_back(std::min(left, kMostLocals));
+    all += room.locals.back();
+  }
+  return room;
+}
+
+}  // namespace robosync::compiler
