@@ -47,55 +47,35 @@ target_sources(robosync_compiler PRIVATE
   ir/expression.cpp
   ir/fact.cpp
   ir/program.cpp
-  sema/amounts.cpp
   sema/analyze.cpp
-  sema/arguments.cpp
-  sema/arithmetic.cpp
   sema/behaviors.cpp
-  sema/calls.cpp
-  sema/checks.cpp
   sema/commands.cpp
-  sema/declarations.cpp
+  sema/conditions.cpp
+  sema/defines.cpp
   sema/expressions.cpp
-  sema/flow.cpp
-  sema/implication.cpp
-  sema/labels.cpp
   sema/limits.cpp
-  sema/lint_bands.cpp
-  sema/lint_conditions.cpp
-  sema/lint_names.cpp
-  sema/lint_robot.cpp
-  sema/lint_rules.cpp
-  sema/lint_waits.cpp
+  sema/lints.cpp
   sema/names.cpp
   sema/quantities.cpp
   sema/rules.cpp
-  sema/settings.cpp
   sema/statements.cpp
-  sema/texts.cpp
-  sema/time_words.cpp
   sema/variables.cpp
   optimize/expression_facts.cpp
   optimize/flow.cpp
-  optimize/flow_loops.cpp
   optimize/optimize.cpp
   optimize/prune.cpp
   optimize/room.cpp
   optimize/share.cpp
   optimize/simplify.cpp
   optimize/variable_facts.cpp
-  codegen/code_draft.cpp
-  codegen/code_pool.cpp
+  codegen/code.cpp
   codegen/costly_rules.cpp
   codegen/expression_emitter.cpp
-  codegen/frame.cpp
   codegen/emit.cpp
   codegen/operations.cpp
   codegen/records.cpp
   codegen/response_emitter.cpp
   codegen/rules.cpp
-  codegen/strings.cpp
   codegen/tables.cpp
-  codegen/timers.cpp
   codegen/verify_image.cpp)
 target_link_libraries(robosync_compiler PRIVATE PkgConfig::SODIUM nlohmann_json::nlohmann_json)

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "compiler/codegen/code_pool.hpp"
+#include "compiler/codegen/code.hpp"
 #include "compiler/config/robot.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/ir/program.hpp"

@@ -5,10 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "compiler/codegen/frame.hpp"
-#include "compiler/codegen/strings.hpp"
+#include "compiler/codegen/code.hpp"
 #include "compiler/codegen/tables.hpp"
-#include "compiler/codegen/timers.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
 
 namespace robosync::compiler {

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "compiler/codegen/strings.hpp"
 #include "compiler/codegen/tables.hpp"
 
 namespace robosync::compiler {

@@ -1,10 +1,8 @@
 // The sections of behaviours, rules, responses, modifiers, inputs, timers and code.
 #pragma once
 
-#include "compiler/codegen/code_pool.hpp"
-#include "compiler/codegen/strings.hpp"
+#include "compiler/codegen/code.hpp"
 #include "compiler/codegen/tables.hpp"
-#include "compiler/codegen/timers.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
 
 namespace robosync::compiler {

@@ -3,9 +3,13 @@
 #include <algorithm>
 
 #include "compiler/ir/walk.hpp"
+#include "vm/timers.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::compiler {
+
+// ---- numbers
+
 namespace {
 
 template <typename Entry>
@@ -136,6 +140,68 @@ std::uint32_t Tables::verbs_of(const ActuatorConfig& actuator) const {
     if (place < verbs_.size()) mask |= std::uint32_t{1} << place;
   }
   return mask;
+}
+
+// ---- texts
+
+std::uint16_t Strings::offset(std::string_view text) {
+  // Of more than an image holds, nobody reads the places.
+  const bool full = text_.size() > UINT16_MAX;
+  if (full) return 0;
+  const std::size_t end = text_.size() + text.size();
+  bool known = !endings_.empty();
+  if (!known) endings_.push_back({end});
+  std::uint32_t at = 0;
+  for (std::size_t i = text.size(); i > 0; --i) {
+    const auto next = static_cast<std::uint32_t>(endings_.size());
+    const auto [longer, added] = endings_[at].longer.emplace(text[i - 1], next);
+    at = longer->second;
+    if (added) endings_.push_back({end});
+    known = known && !added;
+  }
+  if (known) return static_cast<std::uint16_t>(endings_[at].end - text.size());
+  text_ += text;
+  text_ += '\0';
+  return static_cast<std::uint16_t>(end - text.size());
+}
+
+std::uint16_t Strings::row(const std::vector<std::string>& labels) {
+  std::vector<std::uint16_t> row;
+  row.reserve(labels.size());
+  for (const std::string& label : labels)
+    row.push_back(offset(label));
+  return place_row(labels_, row);
+}
+
+// ---- timers
+
+vm::TimerKind timer_kind(Operation time_word) {
+  switch (time_word) {
+    case Operation::held:
+      return vm::TimerKind::held;
+    case Operation::counted:
+      return vm::TimerKind::counted;
+    case Operation::sequence:
+      return vm::TimerKind::sequence;
+    case Operation::latch:
+      return vm::TimerKind::latch;
+    case Operation::rose:
+      return vm::TimerKind::rose;
+    default:
+      return vm::TimerKind::changed;
+  }
+}
+
+std::size_t Timers::add(const Expression& time_word) {
+  vm::Timer timer{};
+  timer.kind = timer_kind(time_word.operation);
+  if (vm::info_of(timer.kind).counts) timer.count = static_cast<std::uint8_t>(time_word.index);
+  timer.state = static_cast<std::uint16_t>(memory_);
+  if (timer.kind != vm::TimerKind::latch && timer.kind != vm::TimerKind::rose)
+    timer.duration = time_word.constant;
+  memory_ += vm::timer_words(timer);
+  records_.push_back(timer);
+  return records_.size() - 1;
 }
 
 }  // namespace robosync::compiler

@@ -1,9 +1,12 @@
-// Numbers for what the program uses: channels, actuators, groups, verbs, words. What it does not
-// use gets none, and does not travel in the image. Variables have the numbers that sema gave them.
+// Tables of the image under construction: the numbers of what the program uses, its texts, its
+// timers.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,6 +14,11 @@
 #include "compiler/ir/program.hpp"
 
 namespace robosync::compiler {
+
+// ---- numbers
+//
+// Numbers for what the program uses: channels, actuators, groups, verbs, words. What it does not
+// use gets none, and does not travel in the image. Variables have the numbers that sema gave them.
 
 class Tables {
 public:
@@ -52,6 +60,59 @@ private:
   std::map<std::size_t, std::uint8_t> groups_;
   std::vector<ProgramVerb> verbs_;  // in the order of first use
   std::vector<ProgramWord> words_;
+};
+
+// ---- texts
+//
+// The string and label sections under construction.
+
+class Strings {
+public:
+  // Equal strings, and strings that end another, share their place.
+  [[nodiscard]] std::uint16_t offset(std::string_view text);
+  // Where the labels' offsets stand, one after another; equal rows share their place.
+  [[nodiscard]] std::uint16_t row(const std::vector<std::string>& labels);
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] const std::vector<std::uint16_t>& labels() const { return labels_; }
+
+private:
+  // A string that one or more others end with.
+  struct Ending {
+    std::size_t end = 0;                     // of the first one of them: where its zero stands
+    std::map<char, std::uint32_t> longer{};  // places in endings_, by the letter in front
+  };
+
+  std::string text_;
+  std::vector<Ending> endings_;  // a tree; its root is the empty one
+  std::vector<std::uint16_t> labels_;
+};
+
+// Where `row` stands in `list`; it is put at the end if it is nowhere yet.
+template <typename Item>
+std::uint16_t place_row(std::vector<Item>& list, const std::vector<Item>& row) {
+  auto place = std::search(list.begin(), list.end(), row.begin(), row.end());
+  if (place == list.end()) place = list.insert(list.end(), row.begin(), row.end());
+  return static_cast<std::uint16_t>(place - list.begin());
+}
+
+// ---- timers
+//
+// The timer section under construction: one timer for each time word of the code, in the order of
+// the code.
+
+[[nodiscard]] vm::TimerKind timer_kind(Operation time_word);
+
+class Timers {
+public:
+  // A new timer for the time word; its place.
+  [[nodiscard]] std::size_t add(const Expression& time_word);
+
+  [[nodiscard]] const std::vector<vm::Timer>& records() const { return records_; }
+
+private:
+  std::vector<vm::Timer> records_;
+  std::uint32_t memory_ = 0;  // words that the timers so far need
 };
 
 }  // namespace robosync::compiler

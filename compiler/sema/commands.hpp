@@ -27,14 +27,14 @@ private:
     bool is_number = false;
     std::optional<std::string> text;  // in quotes, here or where a DEFINE is given it
   };
-  struct Place {  // one command for one actuator
+  struct Recipient {  // one command for one actuator
     const ActuatorConfig& actuator;
     const VerbConfig& verb;
     const ast::Command& command;
     Diagnostics& diagnostics;
   };
 
-  // commands.cpp: which actuator, which arguments
+  // Which actuator, which arguments.
   std::optional<Target> find_target(const ast::Command& command, std::size_t& named_by);
   std::optional<Target> only_target(const ast::Command& command);
   void report_no_target(const ast::Command& command, const std::vector<std::size_t>& able);
@@ -45,16 +45,17 @@ private:
   [[nodiscard]] bool is_known_word(std::string_view word) const;  // of any actuator
   [[nodiscard]] bool names_a_number(const ast::Name& name) const;
 
-  // arguments.cpp: what one actuator makes of them
+  // What one actuator makes of them.
   std::optional<ProgramCommand> for_actuator(std::size_t actuator, const ast::Command& command,
                                              const std::vector<Given>& given,
                                              Diagnostics& diagnostics) const;
-  bool add(const Place& place, const Given& given, ProgramCommand& result) const;
-  bool add_word(const Place& place, const ast::Word& word, Span span, ProgramCommand& result) const;
-  bool add_text(const Place& place, const std::string& text, Span span,
+  bool add(const Recipient& to, const Given& given, ProgramCommand& result) const;
+  bool add_word(const Recipient& to, const ast::Word& word, Span span,
                 ProgramCommand& result) const;
-  bool add_number(const Place& place, const Given& given, ProgramCommand& result) const;
-  void report_unknown_word(const Place& place, const ast::Word& word) const;
+  bool add_text(const Recipient& to, const std::string& text, Span span,
+                ProgramCommand& result) const;
+  bool add_number(const Recipient& to, const Given& given, ProgramCommand& result) const;
+  void report_unknown_word(const Recipient& to, const ast::Word& word) const;
 
   const Robot& robot_;
   Names& names_;

@@ -32,7 +32,7 @@ public:
   // A condition whose comparisons hold on to what they are: MARGIN, which may be null.
   [[nodiscard]] Typed condition(const ast::Expr& expr, const ast::Expr* margin);
 
-  // amounts.cpp. A number of the wanted dimension; a bare one is in the wanted unit.
+  // A number of the wanted dimension; a bare one is in the wanted unit.
   [[nodiscard]] Typed amount(const ast::Expr& expr, const Wanted& wanted);
   // The same, known now (E0305).
   [[nodiscard]] std::optional<Typed> constant_amount(const ast::Expr& expr, const Wanted& wanted);
@@ -61,15 +61,15 @@ private:
   Typed of(const ast::Comparison& node, Span span);
   Typed of(const ast::Not& node, Span span);
   Typed of(const ast::Logic& node, Span span);
-  // arithmetic.cpp
+  // Arithmetic.
   Typed of(const ast::Negate& node, Span span);
   Typed of(const ast::Arithmetic& node, Span span);
   Typed of(const ast::Random& node, Span span);
-  // labels.cpp
+  // conditions.cpp: words and truths
   Typed of(const ast::Is& node, Span span);
   Typed of(const ast::IsTruth& node, Span span);
   Typed of(const ast::Becomes& node, Span span);
-  // time_words.cpp
+  // conditions.cpp: time words
   Typed of(const ast::IsBetween& node, Span span);
   Typed of(const ast::Changes& node, Span span);
   Typed of(const ast::For& node, Span span);

@@ -105,7 +105,7 @@ public:
 private:
   using Places = std::map<std::string, std::size_t>;  // of variables, by folded name
 
-  // declarations.cpp
+  // Collecting.
   void collect(const ast::Tree& tree);
   void add(const ast::Let& let);
   void add(const ast::Define& define);

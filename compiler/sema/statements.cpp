@@ -162,4 +162,298 @@ void Statements::halt(const ast::Stop& node, Span span, ProgramBlock& result) {
   put(std::move(halt), span, result);
 }
 
+// ---- IF, REPEAT and PICK ONE
+
+namespace {
+
+// Does every turn of the loop end by itself, or give up the processor?
+bool is_bounded(const ProgramRepeat& loop) {
+  const bool counted =
+      loop.kind == RepeatKind::times && loop.control.operation == Operation::constant;
+  return counted || std::any_of(loop.body.begin(), loop.body.end(), is_pause);
+}
+
+}  // namespace
+
+void Statements::add(const ast::If& node, Span span, ProgramBlock& result) {
+  ProgramIf choice;
+  Typed condition = node.condition ? expressions_.condition(*node.condition) : Typed{};
+  choice.condition = std::move(condition.code);
+  choice.then_block = block(node.then_block);
+  choice.else_block = block(node.else_block);
+  if (condition.type == Type::condition) put(std::move(choice), span, result);
+}
+
+void Statements::add(const ast::Repeat& node, Span span, ProgramBlock& result) {
+  ProgramRepeat loop;
+  const std::size_t errors = diagnostics_.errors();
+  bool good = true;
+  if (node.times != nullptr) {
+    good = repeat_times(*node.times, loop);
+  } else if (node.condition != nullptr) {
+    loop.kind = RepeatKind::while_;
+    Typed condition = expressions_.condition(*node.condition);
+    good = condition.type == Type::condition;
+    loop.control = std::move(condition.code);
+  } else {
+    loop.kind = RepeatKind::forever;
+  }
+  loop.body = block(node.body);
+  if (!good || diagnostics_.errors() > errors) return;  // a WAIT may be among what is wrong
+  if (!is_bounded(loop)) {
+    diagnostics_.report(Code::E0403, "this loop never waits, so it would hold the robot up")
+        .label({span.file, span.begin, node.body.empty() ? span.end : node.body.front().span.begin})
+        .helps("put a WAIT, a WAIT UNTIL or a THEN into it, not inside of an IF");
+    return;
+  }
+  put(std::move(loop), span, result);
+}
+
+bool Statements::repeat_times(const ast::Expr& times, ProgramRepeat& result) {
+  result.kind = RepeatKind::times;
+  Typed count =
+      expressions_.amount(times, {&canonical_unit(vm::Dimension::number), "TIMES", times.span});
+  if (!count.is_number()) return false;
+  result.control = std::move(count.code);
+  if (result.control.operation != Operation::constant) return true;
+  const vm::Value value = result.control.constant;
+  if (value > 0 && value % vm::kScale == 0) return true;
+  diagnostics_
+      .report(Code::E0509, value > 0 ? "TIMES counts in whole numbers" : "TIMES must be above 0")
+      .label(times.span);
+  return false;
+}
+
+void Statements::add(const ast::PickOne& node, Span span, ProgramBlock& result) {
+  ProgramPick pick;
+  std::int64_t sum = 0;
+  bool good = true;
+  const auto has_weight = [](const ast::Option& option) { return option.weight != nullptr; };
+  const bool weighted = std::any_of(node.options.begin(), node.options.end(), has_weight);
+  for (const ast::Option& option : node.options) {
+    ProgramOption made{vm::kScale, block(option.body)};
+    if (option.weight != nullptr) {
+      const auto value = weight(*option.weight);
+      good = good && value;
+      made.weight = value.value_or(vm::kScale);
+    } else if (weighted) {
+      diagnostics_.report(Code::E0509, "the other options have a weight, and this one has none")
+          .label(option.span)
+          .helps("give all of them one, or none");
+      good = false;
+    }
+    sum += made.weight;
+    pick.options.push_back(std::move(made));
+  }
+  if (good && sum > vm::kValueMax)
+    diagnostics_.report(Code::E0304, "the weights of these options are too large together")
+        .label(span);
+  else if (good && !pick.options.empty())
+    put(std::move(pick), span, result);
+}
+
+// A plain number or a percentage; only the shares count.
+std::optional<vm::Value> Statements::weight(const ast::Expr& expr) {
+  const auto value = expressions_.constant(expr, "the weight of an OPTION");
+  if (!value) return std::nullopt;
+  const vm::Dimension dimension = value->dimension();
+  if (dimension != vm::Dimension::number && dimension != vm::Dimension::percent) {
+    diagnostics_
+        .report(Code::E0301, "the weight of an OPTION is a percentage, and this is " +
+                                 std::string(dimension_phrase(dimension)))
+        .label(expr.span);
+    return std::nullopt;
+  }
+  if (value->code.constant > 0) return value->code.constant;
+  diagnostics_.report(Code::E0509, "the weight of an OPTION must be above 0").label(expr.span);
+  return std::nullopt;
+}
+
+// ---- SET, RAISE, LOWER and SIGNAL
+
+namespace {
+
+// The words of `SET mood TO very happy`, which the grammar reads as a value.
+std::optional<ast::Name> label_of(const ast::Expr& expr) {
+  const auto* operand = std::get_if<ast::Operand>(&expr.node);
+  if (operand == nullptr) return std::nullopt;
+  ast::Name label = operand->name;
+  label.span = expr.span;
+  if (operand->channel) label.text += " " + operand->channel->text;
+  return label;
+}
+
+std::string_view why_not(vm::VariableKind kind) {
+  return kind == vm::VariableKind::band ? "it follows what it is a CHECK of"
+                                        : "a signal is sent with SIGNAL";
+}
+
+}  // namespace
+
+// The variable that a statement may set; with `number`, one that it may calculate with.
+VariableName* Statements::settable(const ast::Name& name, bool number) {
+  if (name.text.empty()) return nullptr;
+  VariableName* variable = names_.find_variable(name.text);
+  if (expressions_.find_binding(name.text) != nullptr) {
+    diagnostics_.report(Code::E0508, "`" + name.text + "` is a parameter, which cannot be set")
+        .label(name.span);
+    return nullptr;
+  }
+  if (variable == nullptr) {
+    const std::string kind = names_.kind_of(name.text);
+    if (!kind.empty()) {
+      diagnostics_.report(Code::E0508, "`" + name.text + "` is " + kind + ", which cannot be set")
+          .label(name.span)
+          .helps("REMEMBER, STATE and FEELING can be set");
+      return nullptr;
+    }
+    Diagnostic& d = diagnostics_.report(Code::E0501, "there is no variable `" + name.text + "`")
+                        .label(name.span);
+    if (diagnostics_.may_search(names_.variables().size()))
+      suggest(d, name.span, name.text, names_.variable_names());
+    if (d.help.empty()) d.helps("declare it at the top: `REMEMBER " + name.text + " = 0`");
+    return nullptr;
+  }
+  const bool fixed =
+      variable->kind == vm::VariableKind::band || variable->kind == vm::VariableKind::signal;
+  if (fixed) {
+    diagnostics_
+        .report(Code::E0508,
+                "`" + name.text + "` is " + names_.kind_of(name.text) + ", which cannot be set")
+        .label(name.span)
+        .helps(std::string(why_not(variable->kind)));
+    return nullptr;
+  }
+  if (!number || variable->kind != vm::VariableKind::state) return variable;
+  diagnostics_
+      .report(Code::E0508, "`" + name.text + "` is a STATE, which does not count up and down")
+      .label(name.span)
+      .helps("write `SET " + name.text + " TO " + variable->labels.front() + "`");
+  return nullptr;
+}
+
+// Only of what is known now; the robot keeps the rest inside.
+bool Statements::in_range(const VariableName& variable, const Typed& value) {
+  if (!value.is_constant()) return true;
+  const vm::Value number = value.code.constant;
+  if (number >= variable.low && number <= variable.high) return true;
+  diagnostics_
+      .report(Code::E0509, "`" + variable.name.text + "` goes from " +
+                               format_value(variable.low, *variable.unit) + " to " +
+                               format_value(variable.high, *variable.unit))
+      .label(value.span, "outside of that")
+      .label(variable.name.span, "its range", false);
+  return false;
+}
+
+void Statements::add(const ast::Set& node, Span span, ProgramBlock& result) {
+  VariableName* variable = settable(node.name, false);
+  if (variable == nullptr || node.value == nullptr || !variable->ready) return;
+  if (variable->kind == vm::VariableKind::state) return set_label(node, *variable, span, result);
+  Typed value =
+      expressions_.amount(*node.value, {variable->unit, node.name.text, variable->unit_span});
+  if (!value.is_number() || !in_range(*variable, value)) return;
+  put(ProgramSet{variable->index, std::move(value.code), false}, span, result);
+}
+
+void Statements::set_label(const ast::Set& node, const VariableName& variable, Span span,
+                           ProgramBlock& result) {
+  const auto label = label_of(*node.value);
+  if (!label) {
+    diagnostics_.report(Code::E0306, "`" + node.name.text + "` is a word, and this is not one")
+        .label(node.value->span)
+        .helps("it can be " + list_names(variable.labels, "or"));
+    return;
+  }
+  const auto place = find_label(names_, variable.labels, *label, node.name.text, diagnostics_);
+  if (place)
+    put(ProgramSet{variable.index, make_constant_code(label_value(*place)), false}, span, result);
+}
+
+void Statements::add(const ast::Raise& node, Span span, ProgramBlock& result) {
+  VariableName* variable = settable(node.name, true);
+  if (variable == nullptr || node.by == nullptr || !variable->ready) return;
+  Typed by = expressions_.amount(
+      *node.by,
+      {variable->unit, node.lower ? "LOWER … BY" : "RAISE … BY", variable->unit_span, true});
+  if (!by.is_number()) return;
+  if (node.lower && by.is_constant())
+    by.code.constant = -by.code.constant;
+  else if (node.lower)
+    by.code = make_unary(Operation::negate, std::move(by.code));
+  put(ProgramSet{variable->index, std::move(by.code), true}, span, result);
+}
+
+void Statements::add(const ast::Signal& node, Span span, ProgramBlock& result) {
+  const VariableName* variable = names_.find_variable(node.name.text);
+  const bool good = variable != nullptr && variable->kind == vm::VariableKind::signal;
+  // Its first thousandth is as good as any: what counts is that it changes.
+  if (good) put(ProgramSet{variable->index, make_constant_code(1), true}, span, result);
+}
+
+// ---- LOG and ALERT
+
+namespace {
+
+constexpr std::string_view kPlace = "{}";  // of a value in a LOG's text
+constexpr std::size_t kMaxValues = static_cast<std::size_t>(vm::Param::count_);
+
+// Parts stand apart, unless the text has a space there already.
+void separate(std::string& text, std::string_view next) {
+  if (!text.empty() && text.back() != ' ' && !next.empty() && next.front() != ' ') text += ' ';
+}
+
+}  // namespace
+
+bool Statements::writable(const std::string& text, Span span) {
+  if (text.find(kPlace) == std::string::npos && text.find('\0') == std::string::npos) return true;
+  diagnostics_.report(Code::E0509, "`{}` cannot stand in a text that is written out").label(span);
+  return false;
+}
+
+void Statements::add(const ast::Log& node, Span span, ProgramBlock& result) {
+  ProgramLog log;
+  bool good = true;
+  for (const ast::Argument& argument : node.arguments)
+    good = add_part(argument, log) && good;
+  if (log.values.size() > kMaxValues) {
+    diagnostics_.report(Code::E0407, "a LOG has at most " + std::to_string(kMaxValues) + " numbers")
+        .label(span);
+    return;
+  }
+  if (good) put(std::move(log), span, result);
+}
+
+bool Statements::add_part(const ast::Argument& argument, ProgramLog& log) {
+  const auto* text = std::get_if<ast::Text>(&argument.value);
+  std::string written;
+  if (text != nullptr) {
+    written = text->text;
+  } else if (const auto* amount = std::get_if<ast::Amount>(&argument.value)) {
+    if (amount->value == nullptr) return false;
+    const auto* operand = std::get_if<ast::Operand>(&amount->value->node);
+    const Binding* binding = operand != nullptr && !operand->channel
+                                 ? expressions_.find_binding(operand->name.text)
+                                 : nullptr;
+    if (binding != nullptr && binding->text) {
+      written = *binding->text;
+    } else {
+      Typed value = expressions_.number(*amount->value);
+      if (!value.is_number()) return false;
+      separate(log.text, kPlace);
+      log.text += std::string(kPlace) + std::string(canonical_unit(value.dimension()).spelling);
+      log.values.push_back(std::move(value.code));
+      return true;
+    }
+  }
+  if (!writable(written, argument.span)) return false;
+  separate(log.text, written);
+  log.text += written;
+  return true;
+}
+
+void Statements::add(const ast::Alert& node, Span span, ProgramBlock& result) {
+  if (writable(node.text, span)) put(ProgramAlert{node.text}, span, result);
+}
+
 }  // namespace robosync::compiler

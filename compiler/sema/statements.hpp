@@ -40,7 +40,6 @@ private:
     result.push_back({std::move(node), line_of(span), span});
   }
 
-  // statements.cpp
   void add(const ast::Command& node, Span span, ProgramBlock& result);
   void add(const ast::Wait& node, Span span, ProgramBlock& result);
   void add(const ast::WaitUntil& node, Span span, ProgramBlock& result);
@@ -48,13 +47,11 @@ private:
   void add(const ast::Stop& node, Span span, ProgramBlock& result);
   void halt(const ast::Stop& node, Span span, ProgramBlock& result);
   void stop_actuator(const ast::Name& name, Span span, ProgramBlock& result);
-  // flow.cpp
   void add(const ast::If& node, Span span, ProgramBlock& result);
   void add(const ast::Repeat& node, Span span, ProgramBlock& result);
   void add(const ast::PickOne& node, Span span, ProgramBlock& result);
   bool repeat_times(const ast::Expr& times, ProgramRepeat& result);
   std::optional<vm::Value> weight(const ast::Expr& expr);
-  // settings.cpp
   void add(const ast::Set& node, Span span, ProgramBlock& result);
   void add(const ast::Raise& node, Span span, ProgramBlock& result);
   void add(const ast::Signal& node, Span span, ProgramBlock& result);
@@ -62,12 +59,11 @@ private:
   void set_label(const ast::Set& node, const VariableName& variable, Span span,
                  ProgramBlock& result);
   bool in_range(const VariableName& variable, const Typed& value);
-  // texts.cpp
   void add(const ast::Log& node, Span span, ProgramBlock& result);
   void add(const ast::Alert& node, Span span, ProgramBlock& result);
   bool add_part(const ast::Argument& argument, ProgramLog& log);
   bool writable(const std::string& text, Span span);
-  // calls.cpp
+  // defines.cpp
   void add(const ast::Call& node, Span span, ProgramBlock& result);
   void run(DefineName& name, const std::vector<ast::Argument>& arguments, Span span,
            ProgramBlock& result);

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/sema/lints.hpp"
+#include "vm/arithmetic.hpp"
+
 namespace robosync::compiler {
 namespace {
 
@@ -123,6 +126,159 @@ std::optional<vm::Value> Variables::inside(const ast::Expr& expr, const Wanted& 
                                format_value(feeling.max, *wanted.unit))
       .label(expr.span, "outside of that");
   return std::nullopt;
+}
+
+// ---- CHECK
+//
+// CHECK: the bands of a number.
+//
+// The first band that has a value is it. A band holds on to a value that is up to MARGIN outside of
+// the limits written for it, but never to one that belongs to a band before it: that one is entered
+// at the number written for it. OTHERWISE has no limits of its own, so it has what the others
+// leave.
+
+namespace {
+
+constexpr std::size_t kMostBands = UINT8_MAX;  // of an image
+constexpr std::uint16_t kFedPeriodMs = 20;     // of a sensor that has none of its own
+
+void hold_nothing(vm::Band& band) {
+  band.stay_low = vm::kValueMax;
+  band.stay_high = vm::kValueMin;
+}
+
+// Takes one end that `other` has off the range. False if it has the middle, or all of it.
+bool cut(const vm::Band& other, vm::Value& low, vm::Value& high) {
+  if (other.high < low || other.low > high) return true;
+  const bool at_bottom = other.low <= low;
+  const bool at_top = other.high >= high;
+  if (at_bottom == at_top) return false;
+  if (at_bottom)
+    low = vm::add(other.high, 1);
+  else
+    high = vm::subtract(other.low, 1);
+  return true;
+}
+
+// Takes out of a band what the bands before it have. Where that leaves no single range, the band
+// can hold on to nothing.
+void give_way(const std::vector<vm::Band>& earlier, vm::Band& band) {
+  for (const vm::Band& other : earlier) {
+    const bool one_range = cut(other, band.low, band.high);
+    const bool holds = band.stay_low <= band.stay_high;
+    if (holds && (!one_range || !cut(other, band.stay_low, band.stay_high))) hold_nothing(band);
+  }
+}
+
+std::uint16_t sample_period(const Typed& input, const Names& names) {
+  if (input.code.operation != Operation::input) return vm::kFadeTickMs;
+  const std::uint16_t period = names.channel(input.code.channel).period_ms;
+  return period == 0 ? kFedPeriodMs : period;
+}
+
+}  // namespace
+
+void Variables::declare(const ast::Check& node, VariableName& name, Program& program) {
+  name.unit = &canonical_unit(vm::Dimension::number);
+  ProgramVariable& variable = program.variables[name.index];
+  variable.initial = vm::kUnknown;
+  variable.min = 0;
+  variable.max = label_value(std::max<std::size_t>(node.bands.size(), 1) - 1);
+  std::vector<ast::Name> labels;
+  for (const ast::Band& band : node.bands)
+    labels.push_back(band.label);
+  check_labels(labels);
+  const Typed number = input(node);
+  if (!number.is_number()) return;
+  Wanted wanted{number.unit, number.source, number.unit_span};
+  vm::Value margin = 0;
+  if (node.margin) {
+    Wanted difference = wanted;
+    difference.difference = true;
+    const auto value = expressions_.constant_amount(*node.margin, difference);
+    if (value && value->code.constant <= 0)
+      diagnostics_.report(Code::E0509, "MARGIN must be above 0").label(node.margin->span);
+    else if (value)
+      margin = value->code.constant;
+  }
+  ProgramCheck check;
+  check.variable = name.index;
+  check.input = number.code;
+  check.sample_ms = sample_period(number, names_);
+  if (node.smooth) smooth(node, number, check);
+  for (const ast::Band& part : node.bands) {
+    auto made = band(part, wanted, margin);
+    if (!made) return;
+    // More bands than an image holds are refused: what they leave each other does not matter.
+    if (check.bands.size() < kMostBands) give_way(check.bands, *made);
+    check.bands.push_back(*made);
+  }
+  if (check.bands.size() <= kMostBands) lint_bands(node, check, number, diagnostics_);
+  program.checks.push_back(std::move(check));
+}
+
+Typed Variables::input(const ast::Check& node) {
+  if (!node.operand) return {};
+  const auto* operand = std::get_if<ast::Operand>(&node.operand->node);
+  const VariableName* variable =
+      operand != nullptr && !operand->channel ? names_.find_variable(operand->name.text) : nullptr;
+  if (variable != nullptr && variable->kind == vm::VariableKind::band) {
+    diagnostics_.report(Code::E0306, "a CHECK cannot look at another CHECK")
+        .label(node.operand->span)
+        .helps("it looks at a sensor, a FEELING or a REMEMBER with numbers");
+    return make_nothing(node.operand->span);
+  }
+  Typed result = expressions_.any(*node.operand);
+  const bool good = result.is_number() && (result.code.operation == Operation::input ||
+                                           result.code.operation == Operation::variable);
+  if (good || result.type == Type::nothing) return result;
+  diagnostics_
+      .report(Code::E0306, "a CHECK looks at a sensor, a FEELING or a REMEMBER with numbers")
+      .label(node.operand->span);
+  return make_nothing(node.operand->span);
+}
+
+std::optional<vm::Band> Variables::band(const ast::Band& node, const Wanted& wanted,
+                                        vm::Value margin) {
+  vm::Band band{vm::kValueMin, vm::kValueMax, vm::kValueMin, vm::kValueMax};
+  if (node.kind == ast::BandKind::otherwise) return band;
+  if (node.low) {
+    const auto low = expressions_.constant_amount(*node.low, wanted);
+    if (!low) return std::nullopt;
+    const bool above = node.kind == ast::BandKind::above;
+    band.low = above ? vm::add(low->code.constant, 1) : low->code.constant;
+    band.stay_low = margin == 0 ? band.low : vm::subtract(low->code.constant, margin);
+  }
+  if (node.high) {
+    const auto high = expressions_.constant_amount(*node.high, wanted);
+    if (!high) return std::nullopt;
+    const bool below = node.kind == ast::BandKind::below;
+    band.high = below ? vm::subtract(high->code.constant, 1) : high->code.constant;
+    band.stay_high = margin == 0 ? band.high : vm::add(high->code.constant, margin);
+  }
+  if (band.low <= band.high) return band;
+  diagnostics_.report(Code::E0509, "BETWEEN goes from the smaller number to the larger one")
+      .label(node.span);
+  return std::nullopt;
+}
+
+void Variables::smooth(const ast::Check& node, const Typed& input, ProgramCheck& result) {
+  const auto over = expressions_.constant_duration(*node.smooth, "SMOOTH OVER");
+  if (!over) return;
+  const std::int64_t period = result.sample_ms;  // a duration counts milliseconds, too
+  const std::int64_t window = std::max<std::int64_t>((*over + period / 2) / period, 1);
+  if (window <= vm::kMaxWindow) {
+    result.window = static_cast<std::uint16_t>(window);
+    return;
+  }
+  const Unit& second = canonical_unit(vm::Dimension::duration);
+  diagnostics_
+      .report(Code::E0509, "SMOOTH can look at " + std::to_string(vm::kMaxWindow) +
+                               " samples, and this is " + std::to_string(window))
+      .label(node.smooth->span)
+      .label(input.span, "a sample every " + format_value(period, second), false)
+      .helps("smooth over at most " + format_value(period * vm::kMaxWindow, second) +
+             ", or give the sensor a lower rate");
 }
 
 }  // namespace robosync::compiler

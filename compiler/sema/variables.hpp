@@ -23,7 +23,7 @@ private:
                                   const ProgramVariable& feeling);
   void check_labels(const std::vector<ast::Name>& labels);
 
-  // checks.cpp
+  // CHECK
   void declare(const ast::Check& node, VariableName& name, Program& program);
   Typed input(const ast::Check& node);
   std::optional<vm::Band> band(const ast::Band& node, const Wanted& wanted, vm::Value margin);

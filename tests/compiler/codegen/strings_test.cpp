@@ -1,5 +1,5 @@
 // Names and texts of an image: where each stands, against a search through all that is there.
-#include "compiler/codegen/strings.hpp"
+#include "compiler/codegen/tables.hpp"
 
 #include <random>
 #include <string>

@@ -1,5 +1,5 @@
-// DEFINEs in the place of their uses. A constant argument stands for its parameter; another one is
-// worked out once, into a local.
+// Statements, part: DEFINEs in the place of their uses. A constant argument stands for its
+// parameter; another one is worked out once, into a local.
 #include <algorithm>
 #include <utility>
 

@@ -1,0 +1,577 @@
+#include "compiler/sema/lints.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "compiler/config/units.hpp"
+#include "compiler/ir/walk.hpp"
+#include "compiler/syntax/walk.hpp"
+
+namespace robosync::compiler {
+
+// ---- does one condition follow from another?
+
+namespace {
+
+// A comparison of something with a constant, as the range of values for which it is true.
+struct Threshold {
+  const Expression* side = nullptr;
+  std::int64_t low = vm::kValueMin, high = vm::kValueMax;
+};
+
+std::optional<Threshold> threshold(const Expression& condition) {
+  if (condition.operands.size() != 2 || condition.operands[1].operation != Operation::constant)
+    return std::nullopt;
+  Threshold result{&condition.operands[0]};
+  const std::int64_t number = condition.operands[1].constant;
+  switch (condition.operation) {
+    case Operation::less:
+      result.high = number - 1;
+      return result;
+    case Operation::less_equal:
+      result.high = number;
+      return result;
+    case Operation::greater:
+      result.low = number + 1;
+      return result;
+    case Operation::greater_equal:
+      result.low = number;
+      return result;
+    case Operation::equal:
+      result.low = number;
+      result.high = number;
+      return result;
+    default:
+      return std::nullopt;
+  }
+}
+
+// Drawn anew each time, it is not even equal to itself.
+bool draws(const Expression& expression) {
+  return expression.operation == Operation::random ||
+         std::any_of(expression.operands.begin(), expression.operands.end(), draws);
+}
+
+}  // namespace
+
+bool implies(const Expression& condition, const Expression& consequence) {
+  if (draws(condition)) return false;
+  if (condition == consequence) return true;
+  const auto each = [&](const Expression& part) { return implies(part, consequence); };
+  if (condition.operation == Operation::logical_and)
+    return std::any_of(condition.operands.begin(), condition.operands.end(), each);
+  // A condition that has held for some time holds now.
+  if (condition.operation == Operation::held) return each(condition.operands[0]);
+  const auto narrow = threshold(condition);
+  const auto wide = threshold(consequence);
+  return narrow && wide && *narrow->side == *wide->side && narrow->low >= wide->low &&
+         narrow->high <= wide->high;
+}
+
+// ---- single conditions, while they are translated
+
+namespace {
+
+// Whether left < right is decided by what the sides can be, and how.
+std::optional<bool> decided_less(const Typed& left, const Typed& right) {
+  if (left.high < right.low) return true;
+  if (left.low >= right.high) return false;
+  return std::nullopt;
+}
+
+std::optional<bool> opposite(std::optional<bool> decided) {
+  if (decided) return !*decided;
+  return std::nullopt;
+}
+
+std::optional<bool> decided_equal(const Typed& left, const Typed& right) {
+  if (left.high < right.low || right.high < left.low) return false;
+  if (left.low == left.high && right.low == right.high) return true;
+  return std::nullopt;
+}
+
+std::optional<bool> decided(ast::Relation relation, const Typed& left, const Typed& right) {
+  switch (relation) {
+    case ast::Relation::less:
+      return decided_less(left, right);
+    case ast::Relation::greater:
+      return decided_less(right, left);
+    case ast::Relation::less_equal:
+      return opposite(decided_less(right, left));
+    case ast::Relation::greater_equal:
+      return opposite(decided_less(left, right));
+    case ast::Relation::equal:
+      return decided_equal(left, right);
+    case ast::Relation::not_equal:
+      return opposite(decided_equal(left, right));
+  }
+  return std::nullopt;
+}
+
+void label_range(Diagnostic& diagnostic, const Typed& side) {
+  if (side.source.empty() || side.is_constant()) return;
+  diagnostic.label(side.span,
+                   "goes from " + format_value(side.low, *side.unit) + " to " +
+                       format_value(side.high, *side.unit),
+                   false);
+}
+
+std::string_view opposite_sign(ast::Relation relation) {
+  switch (relation) {
+    case ast::Relation::less:
+      return ">=";
+    case ast::Relation::less_equal:
+      return ">";
+    case ast::Relation::greater:
+      return "<=";
+    case ast::Relation::greater_equal:
+      return "<";
+    case ast::Relation::equal:
+      return "<>";
+    case ast::Relation::not_equal:
+      return "=";
+  }
+  return "";
+}
+
+std::string text_of(const ast::Block& block, const SourceMap& sources) {
+  if (block.empty()) return "";
+  const Span span{block.front().span.file, block.front().span.begin, block.back().span.end};
+  return std::string(sources.text(span));
+}
+
+// The heads of two rules that wait for a change.
+struct TwoRules {
+  std::string then_head, else_head;
+};
+
+// For `channel < number` with a channel that rests at 0.
+std::optional<TwoRules> rules_without_start(const ast::WhenRule& when, const Names& names,
+                                            const Typed& condition, const SourceMap& sources) {
+  const auto* comparison = std::get_if<ast::Comparison>(&when.condition->node);
+  if (comparison == nullptr || condition.code.operands.size() != 2) return std::nullopt;
+  const Expression& left = condition.code.operands[0];
+  const Expression& right = condition.code.operands[1];
+  const bool below = comparison->relation == ast::Relation::less ||
+                     comparison->relation == ast::Relation::less_equal;
+  if (!below || left.operation != Operation::input || right.operation != Operation::constant ||
+      names.channel(left.channel).min != 0 || right.constant <= 0)
+    return std::nullopt;
+  const std::string channel(sources.text(comparison->left->span));
+  const std::string number(sources.text(comparison->right->span));
+  const std::string whole(sources.text(when.condition->span));
+  return TwoRules{
+      "WHEN " + channel + " > 0 AND " + whole,
+      "WHEN " + channel + " " + std::string(opposite_sign(comparison->relation)) + " " + number};
+}
+
+}  // namespace
+
+void lint_comparison(ast::Relation relation, const Typed& left, const Typed& right, Span span,
+                     Diagnostics& diagnostics) {
+  const auto result = decided(relation, left, right);
+  if (!result) return;
+  Diagnostic& d =
+      diagnostics.report(Code::W0210, *result ? "this is always true" : "this is never true")
+          .label(span);
+  label_range(d, left);
+  label_range(d, right);
+}
+
+void lint_start(const ast::Rule& rule, const ast::WhenRule& when, const Names& names,
+                const Typed& condition, const SourceMap& sources, Diagnostics& diagnostics) {
+  Diagnostic& d =
+      diagnostics.report(Code::W0203, "this rule acts at start: the first reading chooses a side")
+          .label(rule.head_span);
+  const auto rules = rules_without_start(when, names, condition, sources);
+  if (!rules) {
+    d.helps("to wait for a change, write a WHEN without ELSE for each side");
+    return;
+  }
+  d.helps("to wait for a change, write two rules: `" + rules->then_head + "` and `" +
+          rules->else_head + "`")
+      .fix(rule.span, rules->then_head + "\nDO\n" + text_of(when.then_block, sources) +
+                          "\nEND\n\n" + rules->else_head + "\nDO\n" +
+                          text_of(*when.else_block, sources) + "\nEND");
+}
+
+// ---- W0201: the bands of a CHECK against what its sensor can give
+
+namespace {
+
+struct Interval {
+  std::int64_t low = 0, high = 0;  // both included
+};
+
+// What is left of `ranges` without `taken`.
+std::vector<Interval> without(const std::vector<Interval>& ranges, const Interval& taken) {
+  std::vector<Interval> left;
+  for (const Interval& range : ranges) {
+    if (range.low < taken.low) left.push_back({range.low, std::min(range.high, taken.low - 1)});
+    if (range.high > taken.high) left.push_back({std::max(range.low, taken.high + 1), range.high});
+  }
+  return left;
+}
+
+bool overlaps(const std::vector<Interval>& ranges, const Interval& wanted) {
+  return std::any_of(ranges.begin(), ranges.end(), [&](const Interval& range) {
+    return range.low <= wanted.high && wanted.low <= range.high;
+  });
+}
+
+}  // namespace
+
+void lint_bands(const ast::Check& node, const ProgramCheck& check, const Typed& input,
+                Diagnostics& diagnostics) {
+  const Unit& unit = input.unit != nullptr ? *input.unit : canonical_unit(vm::Dimension::number);
+  std::vector<Interval> left{{input.low, input.high}};
+  for (std::size_t i = 0; i < check.bands.size(); ++i) {
+    const Interval band{check.bands[i].low, check.bands[i].high};
+    if (!overlaps(left, band))
+      diagnostics
+          .report(Code::W0201,
+                  "`" + node.name.text + "` is never `" + node.bands[i].label.text + "`")
+          .label(node.bands[i].span, "the bands above it, or the sensor's range, leave it nothing");
+    left = without(left, band);
+  }
+  if (left.empty()) return;
+  diagnostics
+      .report(Code::W0201, "from " + format_value(left.front().low, unit) + " to " +
+                               format_value(left.front().high, unit) + ", `" + node.name.text +
+                               "` is unknown")
+      .label(node.name.span)
+      .helps("give a band OTHERWISE, or let two bands meet");
+}
+
+// ---- W0202, W0204, W0207: rules against each other, and against their own responses
+
+namespace {
+
+std::set<std::size_t> actuators_of(const ProgramRule& rule) {
+  std::set<std::size_t> result;
+  for_each_response(rule, [&](const ProgramBlock& block) {
+    for_each_of<ProgramCommand>(block, [&](const ProgramCommand& command) {
+      result.insert(command.actuators.begin(), command.actuators.end());
+    });
+  });
+  return result;
+}
+
+// ---- W0202
+
+// Does `higher` own its actuators whenever `lower` could begin?
+bool always_before(const ProgramRule& higher, const ProgramRule& lower) {
+  if (higher.cooldown != 0 || lower.waiting != 0) return false;
+  if (lower.kind != vm::RuleKind::when && lower.kind != vm::RuleKind::while_) return false;
+  if (higher.kind == vm::RuleKind::while_) return implies(lower.condition, higher.condition);
+  // Two that begin in the same step; afterwards the lower one's moment is over.
+  return higher.kind == vm::RuleKind::when && lower.kind == vm::RuleKind::when &&
+         lower.cooldown == 0 && implies(lower.condition, higher.condition) &&
+         implies(higher.condition, lower.condition);
+}
+
+struct Known {
+  const ProgramRule* rule = nullptr;
+  std::set<std::size_t> actuators;
+};
+
+// Pairs of rules that are looked at in one program; more than a robot's memory holds rules for.
+constexpr std::size_t kMostPairs = 500'000;
+
+bool share(const std::set<std::size_t>& a, const std::set<std::size_t>& b) {
+  auto at_a = a.begin(), at_b = b.begin();
+  while (at_a != a.end() && at_b != b.end()) {
+    if (*at_a == *at_b) return true;
+    ++(*at_a < *at_b ? at_a : at_b);
+  }
+  return false;
+}
+
+void lint_order(const LintInput& input) {
+  std::vector<Known> higher;
+  std::size_t pairs = 0;
+  for (const ProgramBehavior& behavior : input.program.behaviors) {
+    std::vector<Known> own;
+    for (const ProgramRule& rule : behavior.rules) {
+      pairs += higher.size();
+      if (pairs > kMostPairs) return;
+      Known known{&rule, actuators_of(rule)};
+      const auto first = std::find_if(higher.begin(), higher.end(), [&](const Known& other) {
+        return share(other.actuators, known.actuators) && always_before(*other.rule, rule);
+      });
+      if (first != higher.end())
+        input.diagnostics
+            .report(Code::W0202,
+                    "this rule never runs: a more important one has its actuator "
+                    "whenever it could")
+            .label(rule.span)
+            .label(first->rule->span, "this one", false);
+      own.push_back(std::move(known));
+    }
+    std::move(own.begin(), own.end(), std::back_inserter(higher));
+  }
+}
+
+// ---- W0204
+
+// How long a response takes at least, in milliseconds: what it waits, and what its commands say.
+class Duration {
+public:
+  std::int64_t of(const ProgramBlock& block) {
+    add(block);
+    return std::max(now_, latest());
+  }
+
+private:
+  void add(const ProgramBlock& block) {
+    for (const ProgramStatement& statement : block) {
+      if (const auto* command = std::get_if<ProgramCommand>(&statement.node)) add(*command);
+      if (const auto* wait = std::get_if<ProgramWait>(&statement.node))
+        now_ += std::max<std::int64_t>(constant(wait->duration), 0);
+      if (std::holds_alternative<ProgramThen>(statement.node)) now_ = std::max(now_, latest());
+    }
+  }
+
+  void add(const ProgramCommand& command) {
+    std::int64_t takes = 0;
+    for (const ProgramArgument& argument : command.arguments)
+      if (argument.param == vm::Param::over || argument.param == vm::Param::for_)
+        takes = std::max<std::int64_t>(takes, constant(argument.value));
+    for (const std::size_t actuator : command.actuators)
+      busy_[actuator] = std::max(busy_[actuator], now_) + takes;
+  }
+
+  static std::int64_t constant(const Expression& expression) {
+    return expression.operation == Operation::constant ? expression.constant : 0;
+  }
+
+  [[nodiscard]] std::int64_t latest() const {
+    std::int64_t result = 0;
+    for (const auto& [actuator, until] : busy_)
+      result = std::max(result, until);
+    return result;
+  }
+
+  std::int64_t now_ = 0;
+  std::map<std::size_t, std::int64_t> busy_;
+};
+
+void lint_cooldown(const ProgramRule& rule, Diagnostics& diagnostics) {
+  if (rule.cooldown == 0 || rule.restarting) return;
+  const std::int64_t takes = Duration().of(rule.then_response);
+  if (takes <= rule.cooldown) return;
+  const Unit& second = canonical_unit(vm::Dimension::duration);
+  diagnostics
+      .report(Code::W0204, "the COOLDOWN is over before the response: it takes " +
+                               format_value(takes, second) + ", the COOLDOWN " +
+                               format_value(rule.cooldown, second))
+      .label(rule.span)
+      .helps("a COOLDOWN counts from the start of the response; make it longer than that");
+}
+
+// ---- W0207
+
+bool never_ends(const ProgramRule& rule) {
+  return std::any_of(rule.then_response.begin(), rule.then_response.end(),
+                     [&](const ProgramStatement& statement) {
+                       const auto* loop = std::get_if<ProgramRepeat>(&statement.node);
+                       if (loop == nullptr) return false;
+                       return loop->kind == RepeatKind::forever ||
+                              (loop->kind == RepeatKind::while_ && loop->control == rule.condition);
+                     });
+}
+
+void lint_level(const ProgramRule& rule, Diagnostics& diagnostics) {
+  if (rule.kind != vm::RuleKind::when || !never_ends(rule)) return;
+  diagnostics
+      .report(Code::W0207,
+              "this goes on whether the condition still holds or not: WHEN only starts it")
+      .label(rule.span)
+      .helps("WHILE repeats its response as long as the condition holds, and ends it then");
+}
+
+}  // namespace
+
+void lint_rules(const LintInput& input) {
+  lint_order(input);
+  for (const ProgramBehavior& behavior : input.program.behaviors) {
+    for (const ProgramRule& rule : behavior.rules) {
+      lint_cooldown(rule, input.diagnostics);
+      lint_level(rule, input.diagnostics);
+    }
+  }
+}
+
+// ---- W0205: a WAIT UNTIL that may wait for ever, and keeps its actuators all the time
+
+namespace {
+
+void lint_block(const ast::Block& block, Diagnostics& diagnostics) {
+  for_each_statement(block, [&](const ast::Stmt& stmt) {
+    const auto* wait = std::get_if<ast::WaitUntil>(&stmt.node);
+    if (wait == nullptr || wait->within != nullptr) return;
+    diagnostics
+        .report(Code::W0205, "this may wait for ever, and keeps the actuators of its response")
+        .label(stmt.span)
+        .helps("say how long at most: `WITHIN 10s`")
+        .fix({stmt.span.file, stmt.span.end, stmt.span.end}, " WITHIN 10s");
+  });
+}
+
+}  // namespace
+
+void lint_waits(const LintInput& input) {
+  const auto lint = [&](const ast::Block& block) { lint_block(block, input.diagnostics); };
+  for (const ast::Item& item : input.tree.items) {
+    if (const auto* define = std::get_if<ast::Define>(&item.node)) lint(define->body);
+    if (const auto* rule = std::get_if<ast::Rule>(&item.node)) for_each_block(*rule, lint);
+    if (const auto* behavior = std::get_if<ast::Behavior>(&item.node))
+      for (const ast::Rule& rule : behavior->rules)
+        for_each_block(rule, lint);
+  }
+}
+
+// ---- W0206, W0211: names and labels that play no part
+
+namespace {
+
+using Entered = std::map<std::size_t, std::set<vm::Value>>;  // labels set, by variable
+
+Entered labels_set(const Program& program) {
+  Entered result;
+  for_each_rule(program, [&](const ProgramRule& rule) {
+    for_each_response(rule, [&](const ProgramBlock& block) {
+      for_each_of<ProgramSet>(block, [&](const ProgramSet& set) {
+        if (program.variables[set.variable].kind == vm::VariableKind::state)
+          result[set.variable].insert(set.value.constant);
+      });
+    });
+  });
+  return result;
+}
+
+void lint_state(const ast::State& state, const std::set<vm::Value>& entered,
+                Diagnostics& diagnostics) {
+  if (entered.empty()) {
+    diagnostics.report(Code::W0206, "nothing ever sets `" + state.name.text + "`")
+        .label(state.name.span);
+    return;
+  }
+  for (std::size_t i = 0; i < state.labels.size(); ++i) {
+    const ast::Name& label = state.labels[i];
+    const bool set = entered.contains(static_cast<vm::Value>(i) * vm::kScale);
+    if (!set && i != 0)
+      diagnostics
+          .report(Code::W0206, "`" + state.name.text + "` is never set to `" + label.text + "`")
+          .label(label.span);
+    else if (set && entered.size() == 1)
+      diagnostics
+          .report(Code::W0206, "once `" + state.name.text + "` is `" + label.text +
+                                   "`, nothing sets it to something else")
+          .label(label.span);
+  }
+}
+
+void lint_unused(const LintInput& input) {
+  for (const auto& [folded, define] : input.names.defines())
+    if (!define.used && !define.in_module)
+      input.diagnostics.report(Code::W0211, "nothing runs `" + define.define->name.text + "`")
+          .label(define.span);
+  for (const auto& [folded, constant] : input.names.constants())
+    if (!constant.used && !constant.in_module)
+      input.diagnostics.report(Code::W0211, "nothing uses `" + constant.let->name.text + "`")
+          .label(constant.let->name.span);
+}
+
+}  // namespace
+
+void lint_names(const LintInput& input) {
+  lint_unused(input);
+  const Entered entered = labels_set(input.program);
+  for (const VariableName& variable : input.names.variables()) {
+    const auto* state = std::get_if<const ast::State*>(&variable.declared);
+    if (state == nullptr || variable.in_module) continue;
+    const auto found = entered.find(variable.index);
+    lint_state(**state, found == entered.end() ? std::set<vm::Value>{} : found->second,
+               input.diagnostics);
+  }
+}
+
+// ---- W0208, W0209, W0218: the program against the robot it is for
+
+namespace {
+
+bool is_order(Operation operation) {
+  return operation >= Operation::less && operation <= Operation::greater_equal;
+}
+
+// What is measured in a real unit trembles; "change" in robot.json holds small steps back.
+bool is_noisy(const ChannelConfig& channel) {
+  return channel.unit->dimension != vm::Dimension::number && channel.change == 0;
+}
+
+// The first reading of a noisy sensor that is compared as it is.
+const Expression* raw_threshold(const Expression& condition, const Names& names) {
+  if (condition.operation == Operation::latch || condition.operation == Operation::held)
+    return nullptr;
+  if (is_order(condition.operation)) {
+    const bool fixed =
+        std::any_of(condition.operands.begin(), condition.operands.end(),
+                    [](const Expression& side) { return side.operation == Operation::constant; });
+    for (const Expression& side : condition.operands)
+      if (fixed && side.operation == Operation::input && is_noisy(names.channel(side.channel)))
+        return &side;
+    return nullptr;
+  }
+  for (const Expression& operand : condition.operands)
+    if (const Expression* found = raw_threshold(operand, names)) return found;
+  return nullptr;
+}
+
+void lint_noise(const LintInput& input) {
+  for (const ProgramBehavior& behavior : input.program.behaviors) {
+    for (const ProgramRule& rule : behavior.rules) {
+      if (rule.kind == vm::RuleKind::every || rule.kind == vm::RuleKind::start) continue;
+      const Expression* reading = raw_threshold(rule.condition, input.names);
+      if (reading == nullptr) continue;
+      const std::string name = input.names.channel_name(reading->channel);
+      input.diagnostics
+          .report(Code::W0208, "`" + name + "` may tremble about this number, and the rule with it")
+          .label(rule.span)
+          .helps("give the rule a MARGIN, or make a CHECK with SMOOTH of `" + name + "`");
+    }
+  }
+}
+
+// A few rules without a BEHAVIOR are a first try, which needs no sermon.
+void lint_safety(const LintInput& input) {
+  const Program& program = input.program;
+  if (!program.safety.empty() || !program.speed_limits.empty()) return;
+  const auto moves = [](const ProgramCommand& command) {
+    return command.verb.action == vm::Action::move;
+  };
+  for (const ProgramBehavior& behavior : program.behaviors) {
+    for (const ProgramRule& rule : behavior.rules) {
+      const bool found = !behavior.name.empty() && (any_command(rule.then_response, moves) ||
+                                                    any_command(rule.else_response, moves));
+      if (!found) continue;
+      input.diagnostics.report(Code::W0209, "this robot moves, and no SAFETY rule can stop it")
+          .label(rule.span, "the first rule that moves it")
+          .helps("write a SAFETY rule, or a LIMIT for its speed");
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+void lint_robot(const LintInput& input) {
+  if (input.program.behaviors.empty() && input.program.safety.empty())
+    input.diagnostics.report(Code::W0218, "there is no rule: the robot does nothing").label({});
+  lint_noise(input);
+  lint_safety(input);
+}
+
+}  // namespace robosync::compiler
