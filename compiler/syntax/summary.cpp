@@ -17,16 +17,21 @@ struct Group {
   const char* phrase;  // null: not worth saying
 };
 
+// Every token whose keyword has one of `roles`, and some more.
+std::vector<TokenKind> with_role(unsigned roles, std::vector<TokenKind> more) {
+  for (const Keyword& keyword : keywords())
+    if ((keyword.roles & roles) != 0) more.push_back(keyword.kind);
+  return more;
+}
+
 const std::vector<Group>& groups() {
   using K = Kinds;
   static const std::vector<Group> all = {
       {{K::WHEN, K::DEFINE},
-       {K::USE, K::LET, K::REMEMBER, K::STATE, K::FEELING, K::LIMIT, K::CHECK, K::BEHAVIOR,
-        K::SAFETY, K::TEST, K::WHILE, K::EVERY, K::AT, K::NEWLINE, K::END_OF_FILE},
+       with_role(role::item | role::part, {K::NEWLINE, K::END_OF_FILE}),
        "a word such as `WHEN`, `DEFINE` or `BEHAVIOR`"},
       {{K::NAME, K::SET, K::WAIT},
-       {K::RAISE, K::LOWER, K::THEN, K::IF, K::REPEAT, K::PICK, K::STOP, K::SIGNAL, K::LOG,
-        K::ALERT, K::QUANTITY, K::NEWLINE},
+       with_role(role::statement, {K::QUANTITY, K::NEWLINE}),
        "a statement"},
       {{K::NAME, K::QUANTITY, K::OPEN}, {K::MINUS, K::RANDOM, K::NOT, K::STRING}, "a value"},
       {{K::NAME, K::QUANTITY, K::TO},
