@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "compiler/syntax/walk.hpp"
+
 namespace robosync::compiler::explain {
 namespace {
 
@@ -30,15 +32,6 @@ private:
     add_by_verb(node.verb.text);
   }
   void visit(const ast::Call& node) { run(node.name.text); }
-  void visit(const ast::If& node) {
-    block(node.then_block);
-    block(node.else_block);
-  }
-  void visit(const ast::Repeat& node) { block(node.body); }
-  void visit(const ast::PickOne& node) {
-    for (const ast::Option& option : node.options)
-      block(option.body);
-  }
   void visit(const ast::Stop& node) {
     if (node.name) {
       add(node.name->text);
@@ -48,7 +41,9 @@ private:
     }
   }
   template <typename Other>
-  void visit(const Other&) {}  // commands nothing
+  void visit(const Other& node) {  // commands nothing by itself
+    ast::for_each_block_of(node, [this](const ast::Block& inner) { block(inner); });
+  }
 
   bool run(const std::string& name) {
     const auto found = defines_.find(folded(name));

@@ -7,6 +7,7 @@
 //   kParts   the expressions and the blocks that it holds, in the program's order
 //   kPauses  whether it gives up the processor, so that the response goes on in a later step
 //   kCells   how many cells of the frame it keeps at most: locals, counters, deadlines
+// Only ProgramSet writes variables; only ProgramCommand and ProgramHalt name actuators.
 #pragma once
 
 #include <cstddef>

@@ -140,7 +140,9 @@ void Statements::stop_actuator(const ast::Name& name, Span span, ProgramBlock& r
   if (!commands_.find_stopped(name)) return;
   ast::Command command;
   command.verb = {std::string(kStop), first_word(span, kStop)};
-  command.arguments.push_back({name.span, ast::Preposition::none, ast::Word{name}});
+  ast::Argument& named = command.arguments.emplace_back();
+  named.span = name.span;
+  named.value.emplace<ast::Word>(name);
   const Bindings* outer = expressions_.set_bindings(nullptr);  // a name here is an actuator's
   for (ProgramCommand& stop : commands_.translate(command))
     put(std::move(stop), span, result);
