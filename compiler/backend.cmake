@@ -43,7 +43,6 @@ target_sources(robosync_compiler PRIVATE
   config/units.cpp
   config/values.cpp
   config/wiring.cpp
-  ir/compute.cpp
   ir/expression.cpp
   ir/fact.cpp
   ir/program.cpp

@@ -1,4 +1,4 @@
-// Which rules make a step dear, for whoever has to say that it is too dear.
+// Which rules make a step cost much, for whoever has to say that it costs too much.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ struct CostlyRule {
   vm::RuleCost cost;
 };
 
-// The three that cost most in a step, the dearest first. None when the verifier would refuse the
+// The three that cost most in a step, in that order. None when the verifier would refuse the
 // code for anything but its cost. `image` must be a view that vm::view_image() accepted.
 [[nodiscard]] std::vector<CostlyRule> costly_rules(const vm::Image& image);
 

@@ -1,4 +1,4 @@
-// Prints diagnostics: for people (rustc style, 10-language.md section 5) and as JSON (60-cli.md).
+// Prints diagnostics: for people (as rustc does) and as JSON.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // Conditions and numbers of the tree in plain English. "When" alone is ambiguous to some readers,
-// so a rule says "as soon as … becomes true" or "while … is true" (10-language.md, section 0).
+// so a rule says "as soon as … becomes true" or "while … is true".
 #pragma once
 
 #include <string>

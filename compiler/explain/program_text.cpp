@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kIndent = 2;
 
-// People who are told how rules are evaluated make fewer mistakes (10-language.md, section 0).
+// People who are told how rules are evaluated make fewer mistakes.
 constexpr std::string_view kHowItWorks =
     "How the robot works through its rules:\n"
     "  - \"As soon as\" happens once, at the moment something becomes true, or at start if it is\n"

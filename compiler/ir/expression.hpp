@@ -68,6 +68,10 @@ struct Expression {
 // The same comparison with its sides exchanged.
 [[nodiscard]] Operation mirrored(Operation comparison);
 
+// Of two values, as the robot does it, so that neither folding a constant nor judging a TEST can
+// differ from what a program does. Of arithmetic, comparisons, AND and OR; of others kUnknown.
+[[nodiscard]] vm::Value compute(Operation operation, vm::Value left, vm::Value right);
+
 // Does it, or a part of it, remember the past?
 [[nodiscard]] bool has_time_word(const Expression& expression);
 

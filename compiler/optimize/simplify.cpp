@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "compiler/ir/compute.hpp"
+#include "compiler/ir/expression.hpp"
 #include "vm/arithmetic.hpp"
 
 namespace robosync::compiler {

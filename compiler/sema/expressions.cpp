@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "compiler/config/values.hpp"
-#include "compiler/ir/compute.hpp"
+#include "compiler/ir/expression.hpp"
 #include "compiler/sema/lints.hpp"
 
 namespace robosync::compiler {

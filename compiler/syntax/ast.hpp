@@ -1,5 +1,4 @@
-// The tree of an RSL program, for the whole language (10-language.md section 2). Every node has a
-// span.
+// The tree of an RSL program, for the whole language (docs/language.md). Every node has a span.
 //
 // The parser makes it, sema reads it; nothing is resolved here: names are text, numbers are as
 // written. Bison's variants need values that can be moved and default-constructed, hence `Box`.
@@ -28,7 +27,6 @@ struct Name {
 };
 
 // ---- expressions
-// -----------------------------------------------------------------------------------
 
 struct Expr;
 
@@ -122,7 +120,6 @@ struct Expr {
 };
 
 // ---- statements
-// ------------------------------------------------------------------------------------
 
 // Each kind of statement says which blocks it holds: kBlocks, which syntax/walk.hpp goes by.
 struct Stmt;
@@ -225,7 +222,6 @@ struct Stmt {
 };
 
 // ---- items
-// -----------------------------------------------------------------------------------------
 
 struct Modifiers {
   std::optional<Name> priority;  // the digits

@@ -1,7 +1,7 @@
 // Recursion is bounded by the parser's limit on the depth of expressions.
 #include "compiler/test_plan/evaluate.hpp"
 
-#include "compiler/ir/compute.hpp"
+#include "compiler/ir/expression.hpp"
 #include "vm/arithmetic.hpp"
 
 namespace robosync::compiler::test_plan {
