@@ -218,7 +218,8 @@ def check_tool_folders(sources):
             to = target.split("/")
             if to[0] == "rsc" and len(to) > 2 and to[1] not in TOOL.get(own, set()) | {own}:
                 yield Problem(source.path, number, f"{own or 'rsc'}/ may not include {to[1]}/")
-}
+
+
 def check_compiler_folders(sources):
     """Inside compiler/ the arrows follow the passes; a folder that COMPILER does not name is wrong."""
     for source in sources:
