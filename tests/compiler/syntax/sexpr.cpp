@@ -284,7 +284,7 @@ std::string show(const Test& n) {
 
 }  // namespace
 
-std::string to_sexpr(const Program& program) {
+std::string to_sexpr(const Tree& program) {
   std::string text;
   for (const Item& item : program.items) {
     text += std::visit([](const auto& node) { return show(node); }, item.node) + "\n";
