@@ -1,10 +1,10 @@
 // Names and texts of an image: where each stands, against a search through all that is there.
-#include "compiler/codegen/tables.hpp"
-
 #include <random>
 #include <string>
 
 #include <catch2/catch.hpp>
+
+#include "compiler/codegen/tables.hpp"
 
 using namespace robosync::compiler;
 

@@ -7,8 +7,8 @@
 
 #include "compiler/config/robot.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
-#include "compiler/modules.hpp"
 #include "compiler/ir/program.hpp"
+#include "compiler/modules.hpp"
 #include "compiler/source/source_file.hpp"
 #include "tests/oracles/rsl/interpreter.hpp"
 
