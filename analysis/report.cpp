@@ -3,30 +3,29 @@
 
 #include <algorithm>
 
-#include "analysis/costs.hpp"
 #include "analysis/task_set.hpp"
 
 namespace robosync::analysis {
 namespace {
 
 // What each source and interference takes of a millisecond.
-std::vector<Contributor> loads_of(const TaskSet& set) {
+std::vector<Contributor> loads_of(const TaskSet& set, Instructions per_ms) {
   std::vector<Contributor> loads;
   const auto add = [&](const std::string& name, Instructions cost, Instructions period) {
-    loads.push_back({name, cost * costs::kPerMillisecond / period});
+    loads.push_back({name, cost * per_ms / period});
   };
   for (const Source& source : set.sources)
     add(source.name, source.sample + source.step, source.period);
   for (const Firing& rule : set.firings)
-    loads.push_back(
-        {rule.name, static_cast<Instructions>(utilization(set, rule) * costs::kPerMillisecond)});
+    loads.push_back({rule.name, static_cast<Instructions>(utilization(set, rule) *
+                                                          static_cast<double>(per_ms))});
   for (const Interference& one : set.interferences)
     add(one.name, one.cost, one.period);
   std::ranges::stable_sort(loads, std::ranges::greater{}, &Contributor::cost);
   return loads;
 }
 
-bool keeps_up(const Response& response, Instructions period) {
+bool keeps_up(const ResponseTime& response, Instructions period) {
   return response.bounded && response.time <= period;
 }
 
@@ -40,21 +39,26 @@ bool ResponseReport::schedulable() const {
   return utilization <= 1 && std::ranges::all_of(paths, &PathTiming::in_time);
 }
 
-ResponseReport response_report(const vm::Image& image, int cap) {
-  const TaskSet base = task_set_of(image);
-  const TaskSet adapted = task_set_of(image, cap);
+Instructions ResponseReport::microseconds(Instructions instructions) const {
+  return (instructions * 1000 + instructions_per_ms - 1) / instructions_per_ms;
+}
+
+ResponseReport response_report(const vm::Image& image, const policy::BoardCosts& board, int cap) {
+  const TaskSet base = task_set_of(image, board);
+  const TaskSet adapted = task_set_of(image, board, cap);
   ResponseReport report;
+  report.instructions_per_ms = board.instructions_per_ms();
   report.utilization = utilization(base);
   report.adapts = cap > 0;
-  report.loads = loads_of(base);
+  report.loads = loads_of(base, report.instructions_per_ms);
   for (std::size_t s = 0; s < base.sources.size(); ++s) {
     const Source& source = base.sources[s];
     if (source.actuators.empty()) continue;
     PathTiming path;
     path.sensor = source.name;
     path.period = source.period;
-    path.base = response_of(base, s, Priorities::base);
-    if (cap > 0) path.adapted = response_of(adapted, s, Priorities::adapted);
+    path.base = response_time_of(base, s, Priorities::base);
+    if (cap > 0) path.adapted = response_time_of(adapted, s, Priorities::adapted);
     for (const std::string& actuator : source.actuators) {
       path.actuator = actuator;
       report.paths.push_back(path);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/response_time.hpp"
+#include "runtime-m4/policy/costs.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::analysis {
@@ -12,20 +13,24 @@ namespace robosync::analysis {
 struct PathTiming {
   std::string sensor, actuator;
   Instructions period = 0;  // of the sensor: the reading has to be answered before the next one
-  Response base;
-  Response adapted;  // only where priorities adapt
+  ResponseTime base;
+  ResponseTime adapted;  // only where priorities adapt
   [[nodiscard]] bool in_time() const;
 };
 
 struct ResponseReport {
+  Instructions instructions_per_ms = 0;  // that the board executes
   double utilization = 0;
   bool adapts = false;
   std::vector<PathTiming> paths;
-  std::vector<Contributor> loads;  // for each millisecond, dearest first
+  std::vector<Contributor> loads;  // for each millisecond, the largest first
   [[nodiscard]] bool schedulable() const;
+  // Rounded up.
+  [[nodiscard]] Instructions microseconds(Instructions instructions) const;
 };
 
 // `cap`: as in task_set.hpp. The image must be verified.
-[[nodiscard]] ResponseReport response_report(const vm::Image& image, int cap = 0);
+[[nodiscard]] ResponseReport response_report(const vm::Image& image,
+                                             const policy::BoardCosts& board, int cap = 0);
 
 }  // namespace robosync::analysis

@@ -47,8 +47,8 @@ public:
     blocking_ = (blocking_ + set.longest_lock) * (chain_.length + 1);
   }
 
-  Response solve() const {
-    Response response;
+  ResponseTime solve() const {
+    ResponseTime response;
     const std::optional<Instructions> busy = fixed_point([this](Instructions t) {
       return demand({t, t, own_releases(t)});
     });
@@ -143,7 +143,7 @@ private:
   }
 
   // How often each rule fires, and how often it wins. Of rules among which there is a choice or a
-  // contest, the dearest as often as they may, in different steps.
+  // contest, those that cost most as often as they may, in different steps.
   struct Outcome {
     const Firing* rule;
     Instructions fired, won;
@@ -215,7 +215,7 @@ private:
   }
 
   // The `q`-th release of the busy period. False when its response is unbounded.
-  bool look_at(Instructions q, Response& worst) const {
+  bool look_at(Instructions q, ResponseTime& worst) const {
     // One that outranks a behaviour may even join its own earlier announcement.
     const bool joins = adapted_ ? mine().may_outrank_one : mine().outranks_a_behavior;
     const auto window = [&](Instructions t) {
@@ -233,7 +233,7 @@ private:
     return true;
   }
 
-  static Response unbounded(Response response) {
+  static ResponseTime unbounded(ResponseTime response) {
     response.bounded = false;
     return response;
   }
@@ -254,7 +254,7 @@ Instructions lateness(const TaskSet& set, const Source& follower, Priorities pri
     chain.delays += set.sources[root].delay;
     root = set.sources[root].follows;
   }
-  const Response response = Analysis(set, root, priorities, chain).solve();
+  const ResponseTime response = Analysis(set, root, priorities, chain).solve();
   return response.bounded ? response.time : kForeverLate;
 }
 
@@ -298,7 +298,7 @@ double utilization(const TaskSet& set) {
   return sum;
 }
 
-Response response_of(const TaskSet& set, std::size_t source, Priorities priorities) {
+ResponseTime response_time_of(const TaskSet& set, std::size_t source, Priorities priorities) {
   return Analysis(set, source, priorities).solve();
 }
 

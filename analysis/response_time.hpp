@@ -70,13 +70,13 @@ enum class Priorities : std::uint8_t {
   adapted,  // every other behaviour as high as it can get
 };
 
-// What a share of a response time is for, dearest first.
+// What a share of a response time is for, the largest first.
 struct Contributor {
   std::string name;
   Instructions cost = 0;
 };
 
-struct Response {
+struct ResponseTime {
   Instructions time = 0;  // from the release of the source to the command; when unbounded, so far
   bool bounded = false;   // false: the processor is never done with what outranks it
   std::vector<Contributor> contributors;
@@ -85,7 +85,7 @@ struct Response {
   }
 };
 
-// Works out the jitter of the sources that follow others. Before response_of().
+// Works out the jitter of the sources that follow others. Before response_time_of().
 void settle(TaskSet& set, Priorities priorities);
 
 // Of one rule, the share of the processor.
@@ -94,6 +94,7 @@ void settle(TaskSet& set, Priorities priorities);
 [[nodiscard]] double utilization(const TaskSet& set);
 
 // From the release of a source to the end of the step that has its announcement.
-[[nodiscard]] Response response_of(const TaskSet& set, std::size_t source, Priorities priorities);
+[[nodiscard]] ResponseTime response_time_of(const TaskSet& set, std::size_t source,
+                                            Priorities priorities);
 
 }  // namespace robosync::analysis

@@ -1,10 +1,10 @@
-// What one response puts out, from its code: see step_work.hpp.
+#include "analysis/response_work.hpp"
+
 #include <algorithm>
-#include <array>
 
 #include "analysis/costs.hpp"
-#include "analysis/step_work.hpp"
 #include "runtime-m4/policy/rules.hpp"
+#include "vm/opcode.hpp"
 
 namespace robosync::analysis {
 namespace {
@@ -67,17 +67,25 @@ void note_pause(ResponseWork& work, std::uint32_t ms) {
   work.shortest_wait_ms = work.shortest_wait_ms == 0 ? ms : std::min(work.shortest_wait_ms, ms);
 }
 
+// What stands between two pauses: one step does it.
+struct Part {
+  explicit Part(std::size_t actuators) : commands(actuators), busy(actuators) {}
+  Instructions other = 0;
+  std::vector<Instructions> commands;  // by actuator
+  std::vector<bool> busy;              // … certainly, with a command of this part
+};
+
 class Reader {
 public:
   Reader(const vm::Image& image, const vm::Behavior& behavior, const vm::Response& response)
       : image_(image),
         behavior_(behavior),
-        code_(image.code.subspan(response.start, response.length)) {}
+        code_(image.code.subspan(response.start, response.length)),
+        part_(image.actuators.size()) {}
 
   ResponseWork read() {
     const std::vector<Instructions> turns = turns_of(image_, code_);
     work_.by_actuator.resize(image_.actuators.size());
-    part_.resize(image_.actuators.size());
     for (std::size_t i = 0; i < code_.size(); ++i) {
       take(i, turns[i]);
       if (pauses(code_[i])) end_part();
@@ -89,25 +97,22 @@ public:
   }
 
 private:
-  // What stands between two pauses is over: the dearest of them counts.
+  // The worst of the parts counts.
   void end_part() {
-    work_.other = std::max(work_.other, part_other_);
-    for (std::size_t a = 0; a < part_.size(); ++a)
-      work_.by_actuator[a] = std::max(work_.by_actuator[a], part_[a]);
-    part_other_ = 0;
-    part_.assign(part_.size(), 0);
+    work_.other = std::max(work_.other, part_.other);
+    for (std::size_t a = 0; a < part_.commands.size(); ++a)
+      work_.by_actuator[a] = std::max(work_.by_actuator[a], part_.commands[a]);
+    part_ = Part(image_.actuators.size());
   }
 
   // Round a loop, the end of one part and the beginning of another run in one step.
   void go_round(std::size_t at, const std::vector<Instructions>& turns) {
-    const Instructions other = part_other_;
-    const std::vector<Instructions> part = part_;
+    const Part part = part_;
     for (std::size_t i = at + 1 - vm::operand_wide(code_[at]); i < at; ++i) {
       if (pauses(code_[i])) break;
       take(i, turns[i]);
     }
     end_part();
-    part_other_ = other;
     part_ = part;
   }
 
@@ -119,11 +124,11 @@ private:
         return command(word, turns);
       case Effect::log:
       case Effect::alert:
-        part_other_ += turns * costs::kText;
+        part_.other += turns * costs::kText;
         return;
       case Effect::param:
-        part_other_ += turns * costs::kArgument;
-        return;
+        part_.other += turns * costs::kArgument;
+        return note_parameter(word);
       case Effect::set:
         return set(image_.inputs[behavior_.first_input + vm::operand_a(word)], turns);
       case Effect::none:
@@ -145,49 +150,82 @@ private:
   }
 
   void set(std::size_t input, Instructions turns) {
-    part_other_ += turns * costs::kSet;
+    part_.other += turns * costs::kSet;
     work_.sets.set(input);
     if (work_.pauses) work_.later_sets.set(input);
   }
 
+  // Of the next command. Nobody knows what a computed one comes to: the order may be void.
+  void note_parameter(vm::Word word) {
+    const bool constant = info_of(word).operands[1] == vm::Operand::const16;
+    if (!constant) takes_time_ = false;
+    if (constant)
+      note_parameter(static_cast<vm::Param>(vm::operand_a(word)),
+                     image_.constants[vm::operand_wide(word)]);
+  }
+
+  // No time, or no speed: it is done at once.
+  void note_parameter(vm::Param param, vm::Value value) {
+    const bool moves =
+        param == vm::Param::at || param == vm::Param::over || param == vm::Param::for_;
+    takes_time_ = takes_time_ && !(moves && value <= 0);
+  }
+
   void command(vm::Word word, Instructions turns) {
     const bool stops = image_.verbs[vm::operand_b(word)].action == vm::Action::stop;
-    const std::uint32_t targets = image_.target_mask(vm::operand_a(word));
-    for (std::size_t a = 0; a < image_.actuators.size(); ++a) {
-      if ((targets >> a & 1) == 0) continue;
-      // Those behind the first wait in the queue, but where a command is done as soon as it began.
-      const bool at_once = stops || image_.actuators[a].driver == vm::DriverId::pwm;
-      Instructions& mine = part_[a];
-      const Instructions started = costs::kCommand + (at_once ? costs::kStop : 0);
-      const Instructions first = mine == 0 ? 1 : 0;
-      mine += first * started + (turns - first) * (at_once ? started : costs::kQueued);
+    if (vm::operand_c(word) < image_.words.size()) {
+      const vm::WordEntry& said = image_.words[vm::operand_c(word)];
+      note_parameter(said.param, said.value);
     }
+    const std::uint32_t targets = image_.target_mask(vm::operand_a(word));
+    for (std::size_t a = 0; a < image_.actuators.size(); ++a)
+      if ((targets >> a & 1) != 0) command(a, stops, turns);
+    takes_time_ = true;
+  }
+
+  // One that takes its time leaves the others behind it in the queue. One that is done at once, or
+  // may be, lets the next begin in the same step.
+  void command(std::size_t a, bool stops, Instructions turns) {
+    const vm::Actuator& actuator = image_.actuators[a];
+    const policy::ActuatorCosts driver = policy::actuator_costs(actuator.driver);
+    const bool stands = actuator.speed_limit <= 0 || actuator.min == actuator.max;
+    const Instructions started = Instructions{costs::kCommand} + driver.start;
+    if (stops || driver.at_once || !takes_time_ || stands) {
+      part_.commands[a] += turns * (started + costs::kDone);
+      if (stops) part_.busy[a] = false;
+      return;
+    }
+    const Instructions first = part_.busy[a] ? 0 : 1;
+    part_.commands[a] += first * started + (turns - first) * costs::kQueued;
+    part_.busy[a] = true;
   }
 
   // The verifier allows no more words of output in a step.
   void limit() {
-    constexpr Instructions kMost =
-        Instructions{vm::kMaxResponseOutput} * (costs::kCommand + costs::kStop);
-    for (Instructions& commands : work_.by_actuator)
-      commands = std::min(commands, kMost);
-    work_.other = std::min(work_.other, kMost);
+    constexpr Instructions kMost = vm::kMaxResponseOutput;
+    constexpr Instructions kEach = costs::kCommand + costs::kDone;
+    for (std::size_t a = 0; a < work_.by_actuator.size(); ++a) {
+      const Instructions start = policy::actuator_costs(image_.actuators[a].driver).start;
+      work_.by_actuator[a] = std::min(work_.by_actuator[a], kMost * (kEach + start));
+    }
+    work_.other = std::min(work_.other, kMost * kEach);
   }
 
   const vm::Image& image_;
   const vm::Behavior& behavior_;
   std::span<const vm::Word> code_;
   ResponseWork work_;
-  Instructions part_other_ = 0;
-  std::vector<Instructions> part_;  // by actuator
+  Part part_;
+  bool takes_time_ = true;  // the next command, as far as its parameters say
 };
 
 }  // namespace
 
-ResponseWork StepWork::work_of(const vm::Behavior& behavior, std::uint16_t response) const {
+ResponseWork work_of(const vm::Image& image, const vm::Behavior& behavior, std::uint16_t response) {
   ResponseWork nothing;
-  nothing.by_actuator.resize(image_.actuators.size());
+  nothing.by_actuator.resize(image.actuators.size());
   if (response == vm::kNoIndex) return nothing;
-  return Reader(image_, behavior, image_.responses[response]).read();
+  return Reader(image, behavior, image.responses[response]).read();
 }
 
 }  // namespace robosync::analysis

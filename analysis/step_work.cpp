@@ -45,8 +45,8 @@ unsigned most_wanted(const std::vector<Actuators>& masks) {
   return best;
 }
 
-// Part by part: only one of them runs in a step.
-ResponseWork dearer(const ResponseWork& a, const ResponseWork& b) {
+// Of two responses of which one runs in a step, part by part.
+ResponseWork worst_of(const ResponseWork& a, const ResponseWork& b) {
   ResponseWork both{.other = std::max(a.other, b.other),
                     .by_actuator = a.by_actuator,
                     .sets = a.sets | b.sets,
@@ -69,7 +69,7 @@ StepWork::StepWork(const vm::Image& image) : image_(image), costs_(image.rules.s
   condition_reads_.resize(image.rules.size());
   reads_.resize(image.rules.size());
   sets_.resize(image.rules.size());
-  dearest_.resize(image.rules.size());
+  worst_.resize(image.rules.size());
   held_ms_.resize(image.rules.size());
   events_.resize(image.rules.size());
   divides_.resize(image.rules.size());
@@ -97,9 +97,9 @@ void StepWork::load_rule(unsigned r, const vm::Behavior& behavior) {
     if (op == Opcode::held) note_held(r, image_.timers[vm::operand_c(word)].duration);
     if (vm::info_of(op).effect == vm::Effect::division) divides_[r] = true;
   }
-  dearest_[r] =
-      dearer(work_of(behavior, rule.then_response), work_of(behavior, rule.else_response));
-  sets_[r] = dearest_[r].sets;
+  worst_[r] = worst_of(work_of(image_, behavior, rule.then_response),
+                       work_of(image_, behavior, rule.else_response));
+  sets_[r] = worst_[r].sets;
 }
 
 // Two ends of one FOR are its duration apart; those of several may come together.
@@ -171,7 +171,7 @@ Instructions StepWork::step(const Rules& rules, const Inputs& changed) const {
 Instructions StepWork::evaluation(unsigned rule) const {
   Instructions sum = costs::kRule + costs_[rule].condition;
   if (divides_[rule]) sum += costs::kZeroDivide;
-  if (dearest_[rule].polls) sum += costs::kPoll + costs_[rule].dearer_response();
+  if (worst_[rule].polls) sum += costs::kPoll + costs_[rule].dearer_response();
   return sum;
 }
 
@@ -181,15 +181,15 @@ Instructions StepWork::firing(unsigned rule) const {
 }
 
 Instructions StepWork::by_itself(unsigned rule) const {
-  const Instructions goes_on = dearest_[rule].pauses ? costs::kGoOn + output(rule) : 0;
+  const Instructions goes_on = worst_[rule].pauses ? costs::kGoOn + output(rule) : 0;
   const bool starts = wants_on(rule) || image_.rules[rule].kind == RuleKind::every;
   return std::max(goes_on, starts ? firing(rule) : 0);
 }
 
-// The dearest part of its response.
+// The worst part of its response.
 Instructions StepWork::output(unsigned rule) const {
-  Instructions sum = costs_[rule].dearer_response() + dearest_[rule].other;
-  for (const Instructions commands : dearest_[rule].by_actuator)
+  Instructions sum = costs_[rule].dearer_response() + worst_[rule].other;
+  for (const Instructions commands : worst_[rule].by_actuator)
     sum += commands;
   return sum;
 }
@@ -210,8 +210,10 @@ Instructions StepWork::interruptions(unsigned rule) const {
     cancelled |= held;
   }
   holders = std::min(holders, static_cast<unsigned>(std::popcount(wanted)));
-  return Instructions{costs::kInterrupt} * holders +
-         Instructions{costs::kCancel} * static_cast<unsigned>(std::popcount(cancelled));
+  Instructions sum = Instructions{costs::kInterrupt} * holders;
+  for (unsigned a = 0; a < image_.actuators.size(); ++a)
+    if ((cancelled >> a & 1) != 0) sum += costs::kCancel + driver_costs(a).release;
+  return sum;
 }
 
 // What the condition comes to: the word before its end.
@@ -273,7 +275,7 @@ Instructions StepWork::running() const {
     for (const std::uint16_t side : {image_.rules[r].then_response, image_.rules[r].else_response})
       if (side != vm::kNoIndex && image_.responses[side].actuators != 0)
         left.push_back(image_.responses[side].actuators);
-    if (actuators({r}) == 0 && dearest_[r].pauses) ++count;
+    if (actuators({r}) == 0 && worst_[r].pauses) ++count;
   }
   for (; !left.empty(); ++count) {
     const unsigned most = most_wanted(left);
@@ -309,10 +311,12 @@ Instructions StepWork::look() const {
 Instructions StepWork::trips() const {
   if (!image_.has_safety()) return 0;
   const vm::Behavior& behavior = image_.behaviors[vm::kSafetyBehavior];
-  Instructions sum = image_.actuators.size() * Instructions{costs::kHalt};
+  Instructions sum = 0;
+  for (unsigned a = 0; a < image_.actuators.size(); ++a)
+    sum += costs::kHalt + driver_costs(a).release;
   for (unsigned r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count; ++r)
     if (image_.rules[r].kind == RuleKind::safety)
-      sum += costs::kTrip + costs_[r].dearer_response() + dearest_[r].other;
+      sum += costs::kTrip + costs_[r].dearer_response() + worst_[r].other;
   return sum;
 }
 
@@ -337,8 +341,8 @@ std::uint32_t StepWork::period_ms(unsigned r) const {
   const RuleKind kind = image_.rules[r].kind;
   if (is_safety(r)) return 0;
   if (kind == RuleKind::every)
-    return dearest_[r].pauses ? std::min(every_ms(r), dearest_[r].shortest_wait_ms) : every_ms(r);
-  if (dearest_[r].pauses) return dearest_[r].shortest_wait_ms;
+    return worst_[r].pauses ? std::min(every_ms(r), worst_[r].shortest_wait_ms) : every_ms(r);
+  if (worst_[r].pauses) return worst_[r].shortest_wait_ms;
   if (!wants_on(r)) return 0;
   return kind != RuleKind::while_ || actuators({r}) != 0 ? policy::kSetpointPeriodMs : 1;
 }

@@ -5,32 +5,20 @@
 // code itself (vm/cost.hpp). Images must be verified.
 #pragma once
 
-#include <bitset>
 #include <cstdint>
 #include <set>
 #include <vector>
 
-#include "analysis/response_time.hpp"
+#include "analysis/response_work.hpp"
+#include "runtime-m4/policy/costs.hpp"
 #include "vm/cost.hpp"
 #include "vm/image.hpp"
 #include "vm/opcode.hpp"
 
 namespace robosync::analysis {
 
-using Inputs = std::bitset<std::size_t{2} * vm::kMaxInputs>;  // by number: channels, then variables
 using Actuators = std::uint32_t;
 using Rules = std::set<unsigned>;
-
-// What one response may do in one step, its code aside.
-struct ResponseWork {
-  Instructions other = 0;                 // all but its commands
-  std::vector<Instructions> by_actuator;  // its commands
-  Inputs sets;
-  Inputs later_sets;  // … after a pause
-  bool pauses = false;
-  bool polls = false;                  // WAIT UNTIL: looks again whenever something changes
-  std::uint32_t shortest_wait_ms = 0;  // 0: it does not pause
-};
 
 class StepWork {
 public:
@@ -43,7 +31,7 @@ public:
   // What the rules' responses may set.
   [[nodiscard]] Inputs sets(const Rules& rules) const;
   // … when one of them goes on after a pause.
-  [[nodiscard]] Inputs later_sets(unsigned rule) const { return dearest_[rule].later_sets; }
+  [[nodiscard]] Inputs later_sets(unsigned rule) const { return worst_[rule].later_sets; }
   [[nodiscard]] Actuators actuators(const Rules& rules) const;
   // The rules among them whose conditions read it: they can fire.
   [[nodiscard]] Rules stirred(const Rules& rules, const Inputs& changed) const;
@@ -88,7 +76,6 @@ private:
   [[nodiscard]] vm::Word last_word(unsigned rule) const;
   void note_held(unsigned rule, std::uint32_t duration_ms);
   void load_rule(unsigned rule, const vm::Behavior& behavior);
-  [[nodiscard]] ResponseWork work_of(const vm::Behavior& behavior, std::uint16_t response) const;
   [[nodiscard]] Instructions evaluation(unsigned rule) const;
   [[nodiscard]] Instructions output(unsigned rule) const;
   [[nodiscard]] Instructions interruptions(unsigned rule) const;
@@ -97,6 +84,9 @@ private:
   [[nodiscard]] Instructions running() const;
   [[nodiscard]] std::uint32_t every_ms(unsigned rule) const;
   [[nodiscard]] bool wants_on(unsigned rule) const;
+  [[nodiscard]] policy::ActuatorCosts driver_costs(unsigned actuator) const {
+    return policy::actuator_costs(image_.actuators[actuator].driver);
+  }
   [[nodiscard]] bool may_lose(unsigned rule) const;
 
   const vm::Image& image_;
@@ -105,7 +95,7 @@ private:
   std::vector<Inputs> condition_reads_;  // by rule
   std::vector<Inputs> reads_;            // … and its responses
   std::vector<Inputs> sets_;
-  std::vector<ResponseWork> dearest_;  // by rule: the dearer of its responses, part by part
+  std::vector<ResponseWork> worst_;  // by rule: of its two responses, part by part
   std::vector<bool> divides_;
   std::vector<std::uint32_t> held_ms_;
   std::vector<unsigned> events_;  // by rule: time words that are true for one step

@@ -23,21 +23,6 @@ using policy::Category;
 
 constexpr unsigned kAgeBits = 8;  // of rank_of()
 
-constexpr Instructions instructions_in_ms(Instructions ms) {
-  return ms * costs::kPerMillisecond;
-}
-
-Instructions read_cost(vm::DriverId driver) {
-  switch (driver) {
-    case vm::DriverId::max34451:
-      return costs::kReadMax34451;
-    case vm::DriverId::i2c_register:
-      return costs::kReadI2cWord;
-    default:
-      return 0;
-  }
-}
-
 Rules common(const Rules& a, const Rules& b) {
   Rules rules;
   std::ranges::set_intersection(a, b, std::inserter(rules, rules.end()));
@@ -46,8 +31,8 @@ Rules common(const Rules& a, const Rules& b) {
 
 class Builder {
 public:
-  Builder(const vm::Image& image, int cap)
-      : image_(image), cap_(static_cast<std::int8_t>(cap)), work_(image) {}
+  Builder(const vm::Image& image, const policy::BoardCosts& board, int cap)
+      : image_(image), board_(board), cap_(static_cast<std::int8_t>(cap)), work_(image) {}
 
   TaskSet build() {
     for (unsigned s = 0; s < image_.sensors.size(); ++s)
@@ -66,6 +51,10 @@ public:
   }
 
 private:
+  Instructions instructions_in_ms(Instructions ms) const {
+    return ms * board_.instructions_per_ms();
+  }
+
   // --- ranks ---
 
   static bool reads(const vm::Image& image, unsigned b, const Inputs& channels) {
@@ -127,13 +116,13 @@ private:
     const Rules rules = work_.concerned(changed);
     Source source;
     source.name = image_.string(sensor.name);
-    source.period = instructions_in_ms(policy::is_fed(sensor) ? costs::kFedPeriodMs
-                                                              : std::uint32_t{sensor.period_ms});
+    source.period =
+        instructions_in_ms(policy::is_fed(sensor) ? kFedPeriodMs : std::uint32_t{sensor.period_ms});
     if (!policy::is_fed(sensor))
       source.sample =
-          costs::kWakeByTimer + sensor.channel_count * read_cost(sensor.driver) +
+          board_.wake_by_timer + sensor.channel_count * policy::sample_cost(sensor.driver, board_) +
           (sensor.channel_count - Instructions{1}) * costs::kChannel;  // the first is in the step
-    if ((channels & work_.watched()).any()) source.sample += costs::kWake + looks() + work_.trips();
+    if ((channels & work_.watched()).any()) source.sample += board_.wake + looks() + work_.trips();
     source.step = work_.step(rules, changed);
     place(source, s);
     const Rules fire = work_.stirred(rules, changed);
@@ -161,7 +150,7 @@ private:
     const unsigned rules =
         image_.has_safety() ? image_.behaviors[vm::kSafetyBehavior].rule_count : 0;
     for (unsigned r = 0; r < rules; ++r)
-      if (work_.is_timed(r)) return 2 * work_.look() + costs::kWakeByTimer;
+      if (work_.is_timed(r)) return 2 * work_.look() + board_.wake_by_timer;
     return work_.look();
   }
 
@@ -232,7 +221,7 @@ private:
     put_together(&Firing::choice, [&](std::size_t a, std::size_t b) {
       return exclude_each_other(needs[a], needs[b]);
     });
-    // A choice is part of a contest as a whole or not at all: so "the dearest first" is the worst.
+    // A choice is part of a contest as a whole or not at all: so to count those first that cost most is the worst.
     put_together(&Firing::contest, [&](std::size_t a, std::size_t b) {
       return all_of_choice(a, [&](std::size_t x) {
         return all_of_choice(b, [&](std::size_t y) {
@@ -327,7 +316,8 @@ private:
     Instructions longest = 0;
     unsigned on_bus = 0;
     for (const vm::Sensor& sensor : image_.sensors) {
-      const Instructions transfer = policy::is_fed(sensor) ? 0 : read_cost(sensor.driver);
+      const Instructions transfer =
+          policy::is_fed(sensor) ? 0 : policy::sample_cost(sensor.driver, board_);
       on_bus += transfer != 0 ? 1 : 0;
       longest = std::max(longest, transfer);
     }
@@ -337,15 +327,15 @@ private:
   void add_interferences() {
     const Instructions period = instructions_in_ms(policy::kSafetyPeriodMs);
     set_.interferences.push_back(
-        {"the tick", instructions_in_ms(1), costs::kTick + costs::kSwitch});
+        {"the tick", instructions_in_ms(1), Instructions{board_.tick} + board_.switch_threads});
+    set_.interferences.push_back({"the serial line",
+                                  instructions_in_ms(1000) / board_.line_bytes_per_second,
+                                  Instructions{board_.receive} + board_.send});
     set_.interferences.push_back(
-        {"the serial line", Instructions{costs::kPerMillisecond} * 1000 / costs::kBytesPerSecond,
-         costs::kReceive + costs::kSend});
-    set_.interferences.push_back(
-        {"the safety thread", period, costs::kWakeByTimer + costs::kMonitor + looks()});
+        {"the safety thread", period, board_.wake_by_timer + costs::kMonitor + looks()});
     if (work_.trips() != 0)
       set_.interferences.push_back({"SAFETY rules that trip by time alone",
-                                    instructions_in_ms(costs::kTripPeriodMs), work_.trips()});
+                                    instructions_in_ms(kTripPeriodMs), work_.trips()});
     for (const vm::Adaptation& adaptation : image_.adaptations)
       set_.interferences.push_back(
           {"priorities that adapt", instructions_in_ms(adaptation.window_ms),
@@ -353,14 +343,17 @@ private:
     for (const vm::Behavior& behavior : image_.behaviors.subspan(policy::first_behavior(image_)))
       commanded_ |= behavior.actuators;
     // Its next setpoint; or its command is done, and the next one in its queue begins.
-    for (unsigned a = 0; a < image_.actuators.size(); ++a)
-      if ((commanded_ >> a & 1) != 0)
-        set_.interferences.push_back({std::string(image_.string(image_.actuators[a].name)),
-                                      instructions_in_ms(policy::kSetpointPeriodMs),
-                                      costs::kService});
+    for (unsigned a = 0; a < image_.actuators.size(); ++a) {
+      if ((commanded_ >> a & 1) == 0) continue;
+      const policy::ActuatorCosts driver = policy::actuator_costs(image_.actuators[a].driver);
+      set_.interferences.push_back({std::string(image_.string(image_.actuators[a].name)),
+                                    instructions_in_ms(policy::kSetpointPeriodMs),
+                                    costs::kService + driver.advance + driver.start});
+    }
   }
 
   const vm::Image& image_;
+  const policy::BoardCosts& board_;
   std::int8_t cap_;
   StepWork work_;
   TaskSet set_;
@@ -372,8 +365,8 @@ private:
 
 }  // namespace
 
-TaskSet task_set_of(const vm::Image& image, int cap) {
-  TaskSet set = Builder(image, cap).build();
+TaskSet task_set_of(const vm::Image& image, const policy::BoardCosts& board, int cap) {
+  TaskSet set = Builder(image, board, cap).build();
   settle(set, cap > 0 ? Priorities::adapted : Priorities::base);
   return set;
 }

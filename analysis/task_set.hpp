@@ -3,12 +3,14 @@
 #pragma once
 
 #include "analysis/response_time.hpp"
+#include "runtime-m4/policy/costs.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::analysis {
 
 // Of a verified image. `cap`: the highest priority that an adapted behaviour can reach; 0:
 // priorities stay as they are written.
-[[nodiscard]] TaskSet task_set_of(const vm::Image& image, int cap = 0);
+[[nodiscard]] TaskSet task_set_of(const vm::Image& image, const policy::BoardCosts& board,
+                                  int cap = 0);
 
 }  // namespace robosync::analysis

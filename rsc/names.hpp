@@ -20,8 +20,8 @@ inline bool same_name(std::string_view a, std::string_view b) {
 // As it stands in vm/drivers.def.
 [[nodiscard]] constexpr std::string_view driver_name(vm::DriverId driver) {
   constexpr std::array<std::string_view, static_cast<std::size_t>(vm::DriverId::count_)> kNames = {
-#define SENSOR_DRIVER(name, doc) #name,
-#define ACTUATOR_DRIVER(name, doc) #name,
+#define SENSOR_DRIVER(name, ...) #name,
+#define ACTUATOR_DRIVER(name, ...) #name,
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER
 #undef ACTUATOR_DRIVER

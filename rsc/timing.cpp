@@ -24,9 +24,9 @@ std::vector<vm::RuleCost> costs_of(const vm::Image& image) {
 RuleTiming rule_timing(const vm::Image& image, std::size_t number, const vm::RuleCost& cost) {
   const vm::Rule& rule = image.rules[number];
   RuleTiming timing{number, rule.kind, rule.line, cost, cost.else_response > cost.then_response, 0};
-  const std::uint16_t dearer = timing.else_is_dearer ? rule.else_response : rule.then_response;
-  if (dearer != vm::kNoIndex) {
-    timing.response_line = source_line(image, vm::Section::code, image.responses[dearer].start);
+  const std::uint16_t worst = timing.else_is_worst ? rule.else_response : rule.then_response;
+  if (worst != vm::kNoIndex) {
+    timing.response_line = source_line(image, vm::Section::code, image.responses[worst].start);
   }
   return timing;
 }
@@ -95,15 +95,15 @@ Timing timing_of(const vm::Image& image) {
 }
 
 std::string too_costly_text(const vm::Image& image, std::uint32_t budget) {
-  std::string text =
-      fmt::format("a step costs up to {} instructions, the board allows {}; the dearest rules:",
-                  image.header->step_cost, budget);
-  for (const compiler::CostlyRule& dear : compiler::costly_rules(image)) {
-    const RuleTiming rule = rule_timing(image, dear.rule, dear.cost);
+  std::string text = fmt::format(
+      "a step costs up to {} instructions, the board allows {}; the rules that cost most:",
+      image.header->step_cost, budget);
+  for (const compiler::CostlyRule& costly : compiler::costly_rules(image)) {
+    const RuleTiming rule = rule_timing(image, costly.rule, costly.cost);
     text += fmt::format("\n  line {}: {} instructions", rule.line, rule.cost.step());
     if (rule.response_line != 0) {
       text += fmt::format(", {} of them in its {} (line {})", rule.cost.dearer_response(),
-                          rule.else_is_dearer ? "ELSE" : "DO", rule.response_line);
+                          rule.else_is_worst ? "ELSE" : "DO", rule.response_line);
     }
   }
   return text + fmt::format("\n  {}", compiler::kHelpForCostlyStep);

@@ -26,8 +26,8 @@ struct RuleTiming {
   vm::RuleKind kind{};
   std::uint16_t line = 0;
   vm::RuleCost cost;
-  bool else_is_dearer = false;
-  std::uint16_t response_line = 0;  // of the dearer response; 0: it has none, or not known
+  bool else_is_worst = false;
+  std::uint16_t response_line = 0;  // of the worse response; 0: it has none, or not known
 };
 
 struct BehaviorTiming {
@@ -61,11 +61,11 @@ struct Timing {
 // The response times: a table, whole lines, and the same as JSON.
 [[nodiscard]] std::string response_text(const analysis::ResponseReport& report);
 [[nodiscard]] nlohmann::ordered_json response_json(const analysis::ResponseReport& report);
-// Why the board cannot keep up: which path, by how much, the dearest of it, the mend. Empty when it
+// Why the board cannot keep up: which path, by how much, what costs most in it, the mend. Empty when it
 // can.
 [[nodiscard]] std::string unschedulable_text(const analysis::ResponseReport& report);
 
-// What is wrong with a program whose step is dearer than `budget`: its dearest rules with their
+// What is wrong with a program whose step costs more than `budget`: the rules that cost most with their
 // lines, and what would make them cheaper.
 [[nodiscard]] std::string too_costly_text(const vm::Image& image, std::uint32_t budget);
 // Why the board would refuse the program: that, or the verifier's reason with its place.

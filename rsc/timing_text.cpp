@@ -26,7 +26,7 @@ std::string rule_line(const RuleTiming& rule) {
   std::string response;
   if (rule.response_line != 0) {
     response = fmt::format("{:>8}  {:<4} line {}", rule.cost.dearer_response(),
-                           rule.else_is_dearer ? "ELSE" : "DO", rule.response_line);
+                           rule.else_is_worst ? "ELSE" : "DO", rule.response_line);
   }
   return fmt::format("{:>6}  {:<24}{:>10}  {:<24}{:>8}\n", rule.line,
                      word_of(kRuleKinds, rule.kind), rule.cost.condition, response,
@@ -35,7 +35,7 @@ std::string rule_line(const RuleTiming& rule) {
 
 std::string steps_text(const Timing& timing) {
   std::string text = fmt::format("{:>6}  {:<24}{:>10}  {:<24}{:>8}\n", "line", "rule", "condition",
-                                 "dearer response", "step");
+                                 "worst response", "step");
   for (const BehaviorTiming& behavior : timing.behaviors) {
     text += fmt::format("        {:<60}{:>8}\n", title(behavior), behavior.step);
     for (const RuleTiming& rule : behavior.rules)
@@ -75,10 +75,9 @@ Json rule_json(const RuleTiming& rule) {
               {"do", rule.cost.then_response},
               {"else", rule.cost.else_response},
               {"step", rule.cost.step()},
-              {"dearer", nullptr}};
+              {"worst", nullptr}};
   if (rule.response_line != 0) {
-    object["dearer"] = {{"side", rule.else_is_dearer ? "else" : "do"},
-                        {"line", rule.response_line}};
+    object["worst"] = {{"side", rule.else_is_worst ? "else" : "do"}, {"line", rule.response_line}};
   }
   return object;
 }

@@ -25,8 +25,8 @@ struct Walk {
 enum class DriverKind : std::uint8_t { sensor, actuator };
 
 constexpr DriverKind kDriverKinds[] = {
-#define SENSOR_DRIVER(name, doc) DriverKind::sensor,
-#define ACTUATOR_DRIVER(name, doc) DriverKind::actuator,
+#define SENSOR_DRIVER(name, ...) DriverKind::sensor,
+#define ACTUATOR_DRIVER(name, ...) DriverKind::actuator,
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER
 #undef ACTUATOR_DRIVER

@@ -17,8 +17,8 @@ namespace {
 
 // Enumerators by their names in the .def lists.
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::DriverId::count_)> kDrivers = {
-#define SENSOR_DRIVER(name, doc) #name,
-#define ACTUATOR_DRIVER(name, doc) #name,
+#define SENSOR_DRIVER(name, ...) #name,
+#define ACTUATOR_DRIVER(name, ...) #name,
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER
 #undef ACTUATOR_DRIVER

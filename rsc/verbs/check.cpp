@@ -12,6 +12,7 @@
 
 #include "analysis/report.hpp"
 #include "compiler/diagnostics/render.hpp"
+#include "rsc/board.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/program.hpp"
@@ -48,8 +49,8 @@ bool report_timing(const CheckOptions& options, const std::string& file,
   const Program program(std::move(image), file);
   const Timing timing = timing_of(program.image());
   const auto& adaptations = program.image().adaptations;
-  const analysis::ResponseReport responses =
-      analysis::response_report(program.image(), adaptations.empty() ? 0 : adaptations[0].cap);
+  const analysis::ResponseReport responses = analysis::response_report(
+      program.image(), board_costs(), adaptations.empty() ? 0 : adaptations[0].cap);
   if (options.format == Format::json) {
     auto object = timing_json(timing, file);
     object["responses"] = response_json(responses);

@@ -56,12 +56,12 @@ using StartFunction = kernel::Time (*)(Device device, const Order& order, kernel
 using AdvanceFunction = kernel::Time (*)(Device device, kernel::Time now);
 using ReleaseFunction = void (*)(Device device, vm::Release how, kernel::Time now);
 
-#define SENSOR_DRIVER(name, doc)                                                        \
+#define SENSOR_DRIVER(name, ...)                                                        \
   namespace name {                                                                      \
   bool read(boards::Board& board, const vm::Sensor& sensor, const vm::Channel& channel, \
             std::int32_t& raw);                                                         \
   }
-#define ACTUATOR_DRIVER(name, doc)                                         \
+#define ACTUATOR_DRIVER(name, ...)                                         \
   namespace name {                                                         \
   kernel::Time start(Device device, const Order& order, kernel::Time now); \
   kernel::Time advance(Device device, kernel::Time now);                   \
@@ -79,8 +79,8 @@ struct Driver {
 };
 
 inline constexpr Driver kDrivers[] = {
-#define SENSOR_DRIVER(name, doc) {name::read, nullptr, nullptr, nullptr},
-#define ACTUATOR_DRIVER(name, doc) {nullptr, name::start, name::advance, name::release},
+#define SENSOR_DRIVER(name, ...) {name::read, nullptr, nullptr, nullptr},
+#define ACTUATOR_DRIVER(name, ...) {nullptr, name::start, name::advance, name::release},
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER
 #undef ACTUATOR_DRIVER

@@ -14,9 +14,11 @@ namespace robosync::policy {
 
 // --- sensors ---
 
+inline constexpr vm::DriverId kFedDriver = vm::DriverId::virtual_sensor;
+
 // Its readings come from outside, at any time: it is not sampled.
 constexpr bool is_fed(const vm::Sensor& sensor) {
-  return sensor.period_ms == 0 || sensor.driver == vm::DriverId::virtual_sensor;
+  return sensor.period_ms == 0 || sensor.driver == kFedDriver;
 }
 
 inline bool has_fed_sensors(const vm::Image& image) {

@@ -6,6 +6,7 @@
 
 #include "analysis/report.hpp"
 #include "analysis/task_set.hpp"
+#include "rsc/board.hpp"
 #include "tests/analysis/simulation.hpp"
 #include "tests/rsc/process.hpp"
 #include "tests/timing/programs.hpp"
@@ -47,8 +48,8 @@ TEST_CASE("examples: no simulated release takes longer than is printed") {
     if (!std::filesystem::exists(test::kRoot / file)) continue;
     INFO(file);
     const tool::Program program = test::compile_example(file);
-    const analysis::TaskSet set = analysis::task_set_of(program.image());
-    CHECK(analysis::response_report(program.image()).schedulable());
+    const analysis::TaskSet set = analysis::task_set_of(program.image(), tool::board_costs());
+    CHECK(analysis::response_report(program.image(), tool::board_costs()).schedulable());
     for (unsigned p = 0; p < 100; ++p) {
       test::Pattern pattern;
       for (const analysis::Source& source : set.sources)
@@ -60,7 +61,8 @@ TEST_CASE("examples: no simulated release takes longer than is printed") {
       pattern.follow_delay = 16'000;
       const auto seen = test::simulate(set, pattern, 1'000'000, random);
       for (std::size_t s = 0; s < seen.size(); ++s) {
-        const analysis::Response said = analysis::response_of(set, s, analysis::Priorities::base);
+        const analysis::ResponseTime said =
+            analysis::response_time_of(set, s, analysis::Priorities::base);
         if (said.bounded) CHECK(seen[s] <= said.time);
       }
     }
@@ -69,7 +71,8 @@ TEST_CASE("examples: no simulated release takes longer than is printed") {
 
 TEST_CASE("adapted priorities make nothing shorter") {
   const tool::Program program = test::compile_example("examples/tickle_companion/robot.rsl");
-  const analysis::ResponseReport report = analysis::response_report(program.image(), 99);
+  const analysis::ResponseReport report =
+      analysis::response_report(program.image(), tool::board_costs(), 99);
   REQUIRE_FALSE(report.paths.empty());
   for (const analysis::PathTiming& path : report.paths)
     CHECK((!path.adapted.bounded || path.adapted.time >= path.base.time));

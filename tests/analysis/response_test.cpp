@@ -9,6 +9,7 @@
 
 #include "analysis/report.hpp"
 #include "analysis/task_set.hpp"
+#include "rsc/board.hpp"
 #include "rsc/program.hpp"
 #include "tests/analysis/simulation.hpp"
 #include "tests/timing/programs.hpp"
@@ -136,7 +137,7 @@ Pattern drawn_pattern(const TaskSet& set, Draw& draw) {
 std::vector<Time> bounds_of(const TaskSet& set) {
   std::vector<Time> bounds;
   for (std::size_t s = 0; s < set.sources.size(); ++s) {
-    const analysis::Response response = analysis::response_of(set, s, Priorities::base);
+    const analysis::ResponseTime response = analysis::response_time_of(set, s, Priorities::base);
     bounds.push_back(response.bounded ? response.time : ~Time{0});
   }
   return bounds;
@@ -200,11 +201,11 @@ TEST_CASE("at the critical instant it takes at least 95 % of what was said") {
     const std::size_t last = set.sources.size() - 1;
     if (analysis::utilization(set) > 0.7) continue;
     for (std::size_t s = 0; s < last; ++s) {
-      // The dearest step of those below.
+      // The longest step of those below.
       std::size_t blocker = s + 1;
       for (std::size_t j = s + 1; j <= last; ++j)
         if (set.sources[j].step > set.sources[blocker].step) blocker = j;
-      const analysis::Response bound = analysis::response_of(set, s, Priorities::base);
+      const analysis::ResponseTime bound = analysis::response_time_of(set, s, Priorities::base);
       const auto seen =
           test::simulate(set, critical_instant(set, blocker), 1'000'000, draw.random());
       INFO("set " << number << ", source " << s);
@@ -290,7 +291,7 @@ TEST_CASE("what follows a step comes late, and the next one may come soon after"
   analysis::settle(set, Priorities::base);
   CHECK(set.sources[2].jitter == 1'000 + 1'100 + 5'000 + 2 * 2'000 + 2 * 3'000);
 
-  const analysis::Response response = analysis::response_of(set, 3, Priorities::base);
+  const analysis::ResponseTime response = analysis::response_time_of(set, 3, Priorities::base);
   const auto late =
       std::ranges::find(response.contributors, "follower", &analysis::Contributor::name);
   REQUIRE(late != response.contributors.end());

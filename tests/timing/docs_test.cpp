@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/report.hpp"
+#include "rsc/board.hpp"
 #include "rsc/timing.hpp"
 #include "runtime-m4/limits.hpp"
 #include "tests/timing/programs.hpp"
@@ -46,11 +47,12 @@ TEST_CASE("docs/timing.md: the table of an example") {
 TEST_CASE("docs/timing.md: the response times of an example") {
   const std::string file = "examples/touch_companion/robot.rsl";
   const tool::Program program = test::compile_example(file);
-  expect_printed("rsc check --timing " + file + ", its end",
-                 tool::response_text(analysis::response_report(program.image())));
+  expect_printed(
+      "rsc check --timing " + file + ", its end",
+      tool::response_text(analysis::response_report(program.image(), tool::board_costs())));
 }
 
-TEST_CASE("docs/timing.md: a program that is too dear, and its mend") {
+TEST_CASE("docs/timing.md: a program that costs too much, and its mend") {
   const std::string page = testing::read_file(kPage);
   const Block block = block_after(page, "```rsl\n");
   const std::string text = page.substr(block.begin, block.end - block.begin);

@@ -14,16 +14,38 @@ import counting
 
 RSC = ROOT / "build/host/rsc"
 FIRMWARE = ROOT / "build/m4/bench/path.elf"
-TABLE = ROOT / "analysis/costs.hpp"
+RUNTIME_COSTS = ROOT / "runtime-m4/policy/costs.def"
+DRIVERS = ROOT / "vm/drivers.def"
 DEVICES = ["-device", "max34451,id=touch,address=0x70", "-device", "tmp105,address=0x48"]
 PAUSE = 2**31 - 1  # kPause of path.cpp
 TICK = "SysTick_Handler"
 
 
+def board_costs():
+    """The list of the board that build/m4 was built for."""
+    cache = (ROOT / "build/m4/CMakeCache.txt").read_text()
+    return ROOT / "runtime-m4/boards" / re.search(r"^ROBOSYNC_BOARD:\w+=(.+)$", cache, re.M)[1] / "costs.def"
+
+
 def costs():
-    """{name: instructions} of the table that response times are worked out with."""
-    found = re.findall(r"constexpr std::uint32_t (k\w+) =\s+([\d']+);", TABLE.read_text())
-    return {name: int(value.replace("'", "")) for name, value in found}
+    """{name: figure} of what the runtime and the board declare: response times are worked out with them."""
+    listed = RUNTIME_COSTS.read_text() + board_costs().read_text()
+    return {name: int(value.replace("'", ""))
+            for name, value in re.findall(r"^COST\((\w+),\s*([\d']+),", listed, re.M)}
+
+
+def actuator_drivers():
+    """{driver: {call: instructions}} as vm/drivers.def declares them."""
+    found = re.findall(r"^ACTUATOR_DRIVER\((\w+),\s*(\d+),\s*(\d+),\s*(\d+),", DRIVERS.read_text(), re.M)
+    return {name: dict(zip(("start", "advance", "release"), map(int, calls))) for name, *calls in found}
+
+
+def samples():
+    """{driver: instructions of one sample of one channel}, of the drivers that sample."""
+    declared = costs()
+    return {name: int(transfers) * declared["i2c_transfer"] + int(size) * declared["i2c_byte"] for
+            name, transfers, size in re.findall(r"^SENSOR_DRIVER\((\w+),\s*i2c\((\d+), (\d+)\)",
+                                                DRIVERS.read_text(), re.M)}
 
 
 def robot(actuators=4, sensors=None):
@@ -69,10 +91,10 @@ class Run:
         return min(self.ticks)
 
 
-def run(text, orders, config=None):
+def run(text, orders, config=None, extra=()):
     with tempfile.TemporaryDirectory(prefix="robosync-paths-") as folder:
         source, image = Path(folder) / "p.rsl", Path(folder) / "p.rsb"
         source.write_text(text)
         source.with_suffix(".json").write_text(json.dumps(config or robot()))
         compiled(source, source.with_suffix(".json"), image)
-        return Run(image, orders)
+        return Run(image, orders, extra)

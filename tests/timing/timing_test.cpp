@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include "runtime-m4/limits.hpp"
 #include "tests/rsc/process.hpp"
@@ -71,13 +72,13 @@ TEST_CASE("the costs of the rules are those of their code, and their sum is the 
   CHECK(rule.cost.condition == cost(vm::Opcode::gt_k) + cost(vm::Opcode::ret));
   CHECK(rule.cost.then_response == cost(vm::Opcode::cmd_end));
   CHECK(rule.cost.else_response == cost(vm::Opcode::cmd) + cost(vm::Opcode::cmd_end));
-  CHECK(rule.else_is_dearer);
+  CHECK(rule.else_is_worst);
   CHECK(rule.response_line == 5);
   CHECK(timing.behaviors[0].step == rule.cost.condition + rule.cost.else_response);
 
   const tool::RuleTiming& start = timing.behaviors[1].rules.at(0);
   CHECK(start.cost.condition == 0);
-  CHECK_FALSE(start.else_is_dearer);
+  CHECK_FALSE(start.else_is_worst);
 }
 
 TEST_CASE("every example's rules cost what its header says of a step") {
@@ -120,7 +121,7 @@ TEST_CASE("check --timing: the table and the JSON") {
   const json report = json::parse(outcome.out);
   CHECK(report.at("errors") == 0);
   const json& timing = report.at("timing").at(0);
-  CHECK(timing.at("behaviors").at(0).at("rules").at(0).at("dearer") ==
+  CHECK(timing.at("behaviors").at(0).at("rules").at(0).at("worst") ==
         json({{"side", "else"}, {"line", 5}}));
   std::uint32_t sum = 0;
   for (const json& behavior : timing.at("behaviors"))
@@ -130,7 +131,7 @@ TEST_CASE("check --timing: the table and the JSON") {
   CHECK_THAT(table.out, Contains(std::to_string(sum) + " of 100000 instructions"));
 }
 
-TEST_CASE("a step that is too dear: which rules, and what to do, from every verb") {
+TEST_CASE("a step that costs too much: which rules, and what to do, from every verb") {
   const Robot robot(dear_program("5000"));
   const auto says = [](const std::string& text) {
     CHECK_THAT(text, Contains("line 5: ") && Contains("in its DO (line 6)") &&
@@ -148,7 +149,7 @@ TEST_CASE("a step that is too dear: which rules, and what to do, from every verb
   says(run.err);
 }
 
-TEST_CASE("a step that no board may run is refused at its dearest rules") {
+TEST_CASE("a step that no board may run is refused at the rules that cost most") {
   const Robot robot(dear_program("90000"));
   const test::Outcome outcome = test::rsc({"check", robot.file});
   CHECK(outcome.exit == 1);

@@ -1,0 +1,31 @@
+// What one response (a DO or an ELSE) puts out, from its code: what that costs, what it sets, how it
+// waits. Images must be verified.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <vector>
+
+#include "analysis/response_time.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::analysis {
+
+using Inputs = std::bitset<std::size_t{2} * vm::kMaxInputs>;  // by number: channels, then variables
+
+// What one response may do in one step, its code aside.
+struct ResponseWork {
+  Instructions other = 0;                 // all but its commands
+  std::vector<Instructions> by_actuator;  // its commands
+  Inputs sets;
+  Inputs later_sets;  // … after a pause
+  bool pauses = false;
+  bool polls = false;                  // WAIT UNTIL: looks again whenever something changes
+  std::uint32_t shortest_wait_ms = 0;  // 0: it does not pause
+};
+
+// `response`: its index, or vm::kNoIndex.
+[[nodiscard]] ResponseWork work_of(const vm::Image& image, const vm::Behavior& behavior,
+                                   std::uint16_t response);
+
+}  // namespace robosync::analysis

@@ -1,0 +1,97 @@
+// What things cost on the board, from the lists that declare it: the runtime (costs.def), the board
+// (board_costs.def and boards/NAME/costs.def), the drivers (vm/drivers.def). All are executed
+// Cortex-M4 instructions. What is not declared does not compile.
+#pragma once
+
+#include <cstdint>
+
+#include "runtime-m4/policy/threads.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::policy {
+
+namespace costs {
+#define COST(name, instructions, doc) inline constexpr std::uint32_t name = instructions;
+#include "runtime-m4/policy/costs.def"
+#undef COST
+}  // namespace costs
+
+// A figure that somebody has to declare: there is none by default.
+class Declared {
+public:
+  constexpr Declared(std::uint32_t value) : value_(value) {}  // NOLINT(google-explicit-constructor)
+  constexpr operator std::uint32_t() const {
+    return value_;
+  }  // NOLINT(google-explicit-constructor)
+
+private:
+  std::uint32_t value_;
+};
+
+struct BoardCosts {
+#define BOARD_COST(name, doc) Declared name;
+#include "runtime-m4/policy/board_costs.def"
+#undef BOARD_COST
+
+  [[nodiscard]] constexpr std::uint32_t instructions_per_ms() const {
+    return clock_hz / cycles_per_1000_instructions;
+  }
+};
+
+// What an actuator driver's calls cost.
+struct ActuatorCosts {
+  std::uint32_t start, advance, release;
+  bool at_once;  // a command may be done as soon as it has begun
+};
+
+// One sample of one channel; 0 of an actuator's driver.
+constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board) {
+  const auto fed = [] { return std::uint32_t{0}; };
+  const auto i2c = [&](std::uint32_t transfers, std::uint32_t bytes) {
+    return transfers * board.i2c_transfer + bytes * board.i2c_byte;
+  };
+  switch (driver) {
+#define SENSOR_DRIVER(name, sample, doc) \
+  case vm::DriverId::name:               \
+    return sample;
+#define ACTUATOR_DRIVER(name, ...) case vm::DriverId::name:
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+    case vm::DriverId::count_:
+      break;
+  }
+  return 0;
+}
+
+constexpr ActuatorCosts actuator_costs(vm::DriverId driver) {
+  constexpr bool at_once = true;
+  constexpr bool later = false;
+  switch (driver) {
+#define SENSOR_DRIVER(name, ...) case vm::DriverId::name:
+#define ACTUATOR_DRIVER(name, start, advance, release, ends, doc) \
+  case vm::DriverId::name:                                        \
+    return {start, advance, release, ends};
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+    case vm::DriverId::count_:
+      break;
+  }
+  return {};
+}
+
+// A sensor's driver either is not sampled (threads.hpp: is_fed()), or costs something.
+inline constexpr BoardCosts kOneEach = {
+#define BOARD_COST(name, doc) .name = 1,
+#include "runtime-m4/policy/board_costs.def"
+#undef BOARD_COST
+};
+#define SENSOR_DRIVER(name, ...) \
+  static_assert(vm::DriverId::name == kFedDriver || sample_cost(vm::DriverId::name, kOneEach) > 0);
+#define ACTUATOR_DRIVER(name, ...)
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+
+}  // namespace robosync::policy
