@@ -30,7 +30,7 @@ RUNTIME = {
     "limits": set(),
     "policy": set(),
     "port": set(),
-    "boards": set(),
+    "boards": {"policy"},
     "kernel": {"limits", "policy", "port"},
     "port's sources": {"port", "kernel"},
     "drivers": {"policy", "boards", "kernel"},
@@ -72,6 +72,7 @@ HOSTED_HEADERS = {
 }
 HARDWARE = re.compile(r"\bvolatile\b|\b0x(40|41|E0)0[0-9A-Fa-f]{5}u?\b")
 ASSEMBLER = re.compile(r"\basm\b|\b__asm(__)?\b")
+BOARD_COSTS = re.compile(r"runtime-m4/boards/[\w-]+/costs\.def")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 LEFT_OVER = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
 
@@ -309,8 +310,18 @@ def check_lists(sources):
     """Every .def is included: a list that nobody reads is a second place for its facts."""
     included = {target for source in sources for _, _, target in includes(source)}
     for source in sources:
+        if BOARD_COSTS.fullmatch(source.path):  # boards/costs.hpp includes that of the board in the preset
+            continue
         if source.suffix == ".def" and source.path not in included:
             yield Problem(source.path, 1, "nobody includes this list")
+
+
+def check_boards(sources):
+    """Every board declares its costs: without them, response times cannot be worked out for it."""
+    paths = {source.path for source in sources}
+    for path in sorted(paths):
+        if Path(path).name == "board.cmake" and path.replace("board.cmake", "costs.def") not in paths:
+            yield Problem(path, 1, "the board has no costs.def")
 
 
 def check_left_overs(sources):
@@ -332,6 +343,7 @@ RULES = {
     "file sizes": check_file_sizes,
     "function sizes": check_function_sizes,
     "lists": check_lists,
+    "boards": check_boards,
     "left-overs": check_left_overs,
 }
 

@@ -185,6 +185,11 @@ class Planted(unittest.TestCase):
                         f"{HEAD}class A {{\n  void f() const {{\n  {body.replace('x', '  x')}  }}\n}};\n")
         self.assertEqual(self.check({"rsc/a.cpp": f"{HEAD}void f() {{\n{body[7:]}}}\n"}), {})
 
+    def test_a_board_without_costs(self):
+        self.assert_red("boards", "runtime-m4/boards/x/board.cmake", "# A board.\n")
+        self.assertEqual(self.check({"runtime-m4/boards/x/board.cmake": "# A board.\n",
+                                     "runtime-m4/boards/x/costs.def": HEAD}), {})
+
     def test_a_list_nobody_reads(self):
         self.assert_red("lists", "vm/a.def", HEAD)
 
