@@ -8,19 +8,30 @@ namespace {
 using compiler::Expression;
 using compiler::Operation;
 
-bool is_time_word(Operation operation) {
-  return operation >= Operation::held && operation <= Operation::changed;
-}
-
 bool is_event(Operation operation) {
   return operation == Operation::counted || operation == Operation::sequence ||
          operation == Operation::rose || operation == Operation::changed;
 }
 
+vm::TimerKind kind_of(Operation time_word) {
+  switch (time_word) {
+    case Operation::held:
+      return vm::TimerKind::held;
+    case Operation::counted:
+      return vm::TimerKind::counted;
+    case Operation::sequence:
+      return vm::TimerKind::sequence;
+    case Operation::latch:
+      return vm::TimerKind::latch;
+    case Operation::rose:
+      return vm::TimerKind::rose;
+    default:
+      return vm::TimerKind::changed;
+  }
+}
+
 TimeWord written(const Expression& expression) {
-  const auto kind =
-      static_cast<unsigned>(expression.operation) - static_cast<unsigned>(Operation::held);
-  return {static_cast<vm::TimerKind>(kind), expression.constant, expression.index};
+  return {kind_of(expression.operation), expression.constant, expression.index};
 }
 
 }  // namespace
