@@ -40,7 +40,17 @@ bool Expression::operator==(const Expression& other) const {
 }
 
 bool is_time_word(Operation operation) {
-  return operation >= Operation::held && operation <= Operation::changed;
+  switch (operation) {
+    case Operation::held:
+    case Operation::counted:
+    case Operation::sequence:
+    case Operation::latch:
+    case Operation::rose:
+    case Operation::changed:
+      return true;
+    default:
+      return false;
+  }
 }
 
 bool is_comparison(Operation operation) {
