@@ -54,7 +54,17 @@ bool is_time_word(Operation operation) {
 }
 
 bool is_comparison(Operation operation) {
-  return operation >= Operation::less && operation <= Operation::not_equal;
+  switch (operation) {
+    case Operation::less:
+    case Operation::less_equal:
+    case Operation::greater:
+    case Operation::greater_equal:
+    case Operation::equal:
+    case Operation::not_equal:
+      return true;
+    default:
+      return false;
+  }
 }
 
 Operation mirrored(Operation comparison) {

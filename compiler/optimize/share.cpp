@@ -16,8 +16,18 @@ constexpr std::size_t kReach = 32;  // statements to look ahead in a block
 
 using Visit = std::function<void(Expression&)>;
 
-bool is_number(const Expression& expression) {
-  return expression.operation >= Operation::negate && expression.operation <= Operation::modulo;
+bool is_arithmetic(const Expression& expression) {
+  switch (expression.operation) {
+    case Operation::negate:
+    case Operation::add:
+    case Operation::subtract:
+    case Operation::multiply:
+    case Operation::divide:
+    case Operation::modulo:
+      return true;
+    default:
+      return false;
+  }
 }
 
 bool reads(const Expression& expression, std::size_t variable) {
@@ -136,7 +146,7 @@ void Sharer::block(ProgramBlock& statements) {
 
 bool Sharer::share_part(Expression& expression, ProgramBlock& statements, std::size_t from) {
   if (is_time_word(expression.operation)) return false;
-  if (is_number(expression) && is_pure(expression)) {
+  if (is_arithmetic(expression) && is_pure(expression)) {
     Replacement replacement(expression, next_local_);
     go_through(replacement, statements, from);
     if (replacement.found() > 1) {

@@ -504,7 +504,8 @@ void lint_names(const LintInput& input) {
 namespace {
 
 bool is_order(Operation operation) {
-  return operation >= Operation::less && operation <= Operation::greater_equal;
+  return operation == Operation::less || operation == Operation::less_equal ||
+         operation == Operation::greater || operation == Operation::greater_equal;
 }
 
 // What is measured in a real unit trembles; "change" in robot.json holds small steps back.
