@@ -27,6 +27,22 @@ const char* const kPlainRobot = R"({
   "groups": {"bc": ["b", "c"]}
 })";
 
+std::string high_and_low(const std::string& high, const std::string& low) {
+  return "BEHAVIOR high PRIORITY 20\n" + high + "END\nBEHAVIOR low PRIORITY 10\n" + low + "END\n";
+}
+
+std::string rule(const std::string& head, const std::string& body) {
+  return head + "\nDO\n" + body + "\nEND\n";
+}
+
+std::string when_far(const std::string& body) {
+  return rule("WHEN far Y > 50", body);
+}
+
+std::string when_near(const std::string& body) {
+  return rule("WHEN near X > 10", body);
+}
+
 std::vector<std::byte> compile(const std::string& rsl, const std::string& json) {
   const compiler::Result result = compiler::compile({"test.rsl", rsl}, {"test.json", json});
   INFO(compiler::render_human(result.diagnostics, result.sources, false) << rsl);

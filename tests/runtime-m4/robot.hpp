@@ -22,6 +22,13 @@ std::vector<std::byte> compile(const std::string& rsl, const std::string& json);
 // bc. Nothing but RSL is needed for most tests.
 extern const char* const kPlainRobot;
 
+// What most tests are about: two behaviours, `high` (b0) before `low` (b1), with the rules given.
+std::string high_and_low(const std::string& high, const std::string& low);
+// "HEAD DO body END", and with the conditions that say who begins when: far Y > 50, near X > 10.
+std::string rule(const std::string& head, const std::string& body);
+std::string when_far(const std::string& body);
+std::string when_near(const std::string& body);
+
 // "1020 #3 command left_arm MOVE SLOWLY to=90": program time in ms, step, event. Values in units.
 std::string describe(const link::Event& event, const vm::Image& image);
 

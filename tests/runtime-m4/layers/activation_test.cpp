@@ -42,19 +42,9 @@ TEST_CASE("without a program there is a safety thread and nothing to feed") {
 
 TEST_CASE("a program gets a thread for each part of it, ranked as the paper says") {
   Rig rig;
-  REQUIRE(rig.activate(test::compile(R"(
-BEHAVIOR high PRIORITY 20
-  WHEN far Y > 50
-  DO MOVE a
-  END
-END
-BEHAVIOR low PRIORITY 10
-  WHEN near X > 10
-  DO MOVE b
-  END
-END
-)",
-                                     test::kPlainRobot))
+  REQUIRE(rig.activate(test::compile(
+                           test::high_and_low(test::when_far("MOVE a"), test::when_near("MOVE b")),
+                           test::kPlainRobot))
               .ok());
   std::string order;
   for (const kernel::Thread* thread : rig.kernel.threads())

@@ -3,10 +3,14 @@
 
 #include "tests/runtime-m4/robot.hpp"
 
+using robosync::test::high_and_low;
 using robosync::test::Robot;
+using robosync::test::rule;
+using robosync::test::when_far;
+using robosync::test::when_near;
 
 TEST_CASE("a WHEN that triggers while it runs is ignored") {
-  Robot robot("WHEN near X > 10\nDO MOVE a FOR 1s\nEND\n");
+  Robot robot(when_near("MOVE a FOR 1s"));
   robot.feed(0, "X", 20);
   robot.feed(100, "X", 5);
   robot.feed(200, "X", 20);
@@ -31,21 +35,8 @@ TEST_CASE("the chosen side of a WHEN/ELSE replaces the running one, whatever eac
 }
 
 TEST_CASE("choosing the other side ends the running one even if the new side cannot start") {
-  Robot robot(R"(
-BEHAVIOR high PRIORITY 20
-  WHEN far Y > 50
-  DO MOVE b FOR 10s
-  END
-END
-BEHAVIOR low PRIORITY 10
-  WHEN near X > 10
-  DO MOVE a FOR 10s
-  ELSE
-    MOVE a
-    MOVE b
-  END
-END
-)");
+  Robot robot(high_and_low(when_far("MOVE b FOR 10s"),
+                           rule("WHEN near X > 10", "MOVE a FOR 10s\nELSE\nMOVE a\nMOVE b")));
   robot.feed(0, "Y", 60);
   robot.feed(0, "X", 20);
   robot.feed(100, "X", 5);
@@ -76,23 +67,8 @@ END
 }
 
 TEST_CASE("a response that loses one actuator loses all; others run on") {
-  Robot robot(R"(
-BEHAVIOR high PRIORITY 20
-  WHEN far Y > 50
-  DO MOVE b
-  END
-END
-BEHAVIOR low PRIORITY 10
-  WHEN near X > 10
-  DO
-    MOVE a FOR 5s
-    MOVE b FOR 5s
-  END
-  WHEN near X > 15
-  DO MOVE d FOR 5s
-  END
-END
-)");
+  Robot robot(high_and_low(when_far("MOVE b"), when_near("MOVE a FOR 5s\nMOVE b FOR 5s") +
+                                                   rule("WHEN near X > 15", "MOVE d FOR 5s")));
   robot.feed(0, "X", 20);
   robot.feed(100, "Y", 60);
   robot.run(6000);
@@ -102,20 +78,8 @@ END
 }
 
 TEST_CASE("an interrupted response is not resumed") {
-  Robot robot(R"(
-BEHAVIOR high PRIORITY 20
-  WHEN far Y > 50
-  DO MOVE a FOR 100ms
-  END
-END
-BEHAVIOR low PRIORITY 10
-  WHEN near X > 10
-  DO
-    MOVE a FOR 1s
-    MOVE a SLOWLY
-  END
-END
-)");
+  Robot robot(
+      high_and_low(when_far("MOVE a FOR 100ms"), when_near("MOVE a FOR 1s\nMOVE a SLOWLY")));
   robot.feed(0, "X", 20);
   robot.feed(100, "Y", 60);
   robot.run(5000);
@@ -168,7 +132,7 @@ TEST_CASE("eight commands wait for an actuator, more are dropped, which is said 
 }
 
 TEST_CASE("commands that are done at once, and the queue behind them") {
-  Robot robot("WHEN near X > 10\nDO\nSTOP a\nMOVE a FOR 0ms\nMOVE a FOR 5ms\nEND\n");
+  Robot robot(when_near("STOP a\nMOVE a FOR 0ms\nMOVE a FOR 5ms"));
   robot.feed(0, "X", 20);
   robot.run(200);
   CHECK(robot.only("command done finished") ==
@@ -177,7 +141,7 @@ TEST_CASE("commands that are done at once, and the queue behind them") {
 }
 
 TEST_CASE("a command with an unknown parameter is seen and not carried out") {
-  Robot robot("WHEN near X > 10\nDO\nRUN a TO (far Y)\nMOVE a FOR 5ms\nEND\n");
+  Robot robot(when_near("RUN a TO (far Y)\nMOVE a FOR 5ms"));
   robot.feed(0, "X", 20);
   robot.run(200);
   CHECK(robot.only("command done") ==
@@ -234,8 +198,7 @@ TEST_CASE("what an interrupted response had in its queue takes no place from its
   std::string sweep;
   for (int i = 0; i < 8; ++i)
     sweep += "MOVE a FOR 50ms\n";
-  Robot robot("BEHAVIOR high PRIORITY 20\nWHEN far Y > 50\nDO\n" + sweep +
-              "END\nEND\nBEHAVIOR low PRIORITY 10\nWHEN near X > 10\nDO\n" + sweep + "END\nEND\n");
+  Robot robot(high_and_low(when_far(sweep), when_near(sweep)));
   robot.feed(0, "X", 20);
   robot.feed(10, "Y", 60);
   robot.run(1000);

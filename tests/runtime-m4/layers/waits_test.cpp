@@ -3,10 +3,13 @@
 
 #include "tests/runtime-m4/robot.hpp"
 
+using robosync::test::high_and_low;
 using robosync::test::Robot;
+using robosync::test::when_far;
+using robosync::test::when_near;
 
 TEST_CASE("WAIT goes on when its time is over, in a step of its own") {
-  Robot robot("WHEN near X > 10\nDO\nLOG \"one\"\nWAIT 200ms\nLOG \"two\"\nEND\n");
+  Robot robot(when_near("LOG \"one\"\nWAIT 200ms\nLOG \"two\""));
   robot.feed(50, "X", 20);
   robot.run(1000);
   CHECK(robot.only("win log wait go_on finished") ==
@@ -15,7 +18,7 @@ TEST_CASE("WAIT goes on when its time is over, in a step of its own") {
 }
 
 TEST_CASE("WAIT gives up for a millisecond at least, also when it says none") {
-  Robot robot("WHEN near X > 10\nDO\nWAIT near X * 0ms\nWAIT near X * -5s\nLOG \"end\"\nEND\n");
+  Robot robot(when_near("WAIT near X * 0ms\nWAIT near X * -5s\nLOG \"end\""));
   robot.feed(50, "X", 20);
   robot.run(1000);
   CHECK(robot.only("wait go_on log") ==
@@ -23,8 +26,7 @@ TEST_CASE("WAIT gives up for a millisecond at least, also when it says none") {
 }
 
 TEST_CASE("THEN waits for all commands so far") {
-  Robot robot(
-      "WHEN near X > 10\nDO\nMOVE a FOR 30ms\nMOVE b FOR 80ms\nTHEN\nMOVE a FOR 10ms\nEND\n");
+  Robot robot(when_near("MOVE a FOR 30ms\nMOVE b FOR 80ms\nTHEN\nMOVE a FOR 10ms"));
   robot.feed(0, "X", 20);
   robot.run(1000);
   CHECK(robot.only("command done wait go_on finished") ==
@@ -34,7 +36,7 @@ TEST_CASE("THEN waits for all commands so far") {
 }
 
 TEST_CASE("THEN with nothing to wait for goes on in the next millisecond") {
-  Robot robot("WHEN near X > 10\nDO\nTHEN\nMOVE a FOR 0ms\nTHEN\nLOG \"end\"\nEND\n");
+  Robot robot(when_near("THEN\nMOVE a FOR 0ms\nTHEN\nLOG \"end\""));
   robot.feed(10, "X", 20);
   robot.run(1000);
   CHECK(robot.only("wait go_on log finished") ==
@@ -43,20 +45,7 @@ TEST_CASE("THEN with nothing to wait for goes on in the next millisecond") {
 }
 
 TEST_CASE("a response keeps its actuators while it waits") {
-  Robot robot(R"(
-BEHAVIOR high PRIORITY 20
-  WHEN near X > 10
-  DO
-    WAIT 500ms
-    MOVE a FOR 10ms
-  END
-END
-BEHAVIOR low PRIORITY 10
-  WHEN far Y > 50
-  DO MOVE a FOR 10ms
-  END
-END
-)");
+  Robot robot(high_and_low(when_near("WAIT 500ms\nMOVE a FOR 10ms"), when_far("MOVE a FOR 10ms")));
   robot.feed(0, "X", 20);
   robot.feed(100, "Y", 60);
   robot.run(1000);
@@ -65,21 +54,8 @@ END
 }
 
 TEST_CASE("an interrupted response does not come back from its wait") {
-  Robot robot(R"(
-BEHAVIOR high PRIORITY 20
-  WHEN far Y > 50
-  DO MOVE a FOR 10ms
-  END
-END
-BEHAVIOR low PRIORITY 10
-  WHEN near X > 10
-  DO
-    MOVE a FOR 20ms
-    WAIT 500ms
-    MOVE a FOR 30ms
-  END
-END
-)");
+  Robot robot(high_and_low(when_far("MOVE a FOR 10ms"),
+                           when_near("MOVE a FOR 20ms\nWAIT 500ms\nMOVE a FOR 30ms")));
   robot.feed(0, "X", 20);
   robot.feed(100, "Y", 60);
   robot.run(2000);
@@ -89,7 +65,7 @@ END
 }
 
 TEST_CASE("WAIT UNTIL goes on in the step in which its condition is true") {
-  Robot robot("WHEN near X > 10\nDO\nWAIT UNTIL far Y > 50\nLOG \"end\"\nEND\n");
+  Robot robot(when_near("WAIT UNTIL far Y > 50\nLOG \"end\""));
   robot.feed(0, "X", 20);
   robot.feed(100, "Y", 40);
   robot.feed(200, "Y", 60);
@@ -100,14 +76,14 @@ TEST_CASE("WAIT UNTIL goes on in the step in which its condition is true") {
 }
 
 TEST_CASE("WAIT UNTIL that is true already goes on in the next millisecond") {
-  Robot robot("WHEN near X > 10\nDO\nWAIT UNTIL near X > 5\nLOG \"end\"\nEND\n");
+  Robot robot(when_near("WAIT UNTIL near X > 5\nLOG \"end\""));
   robot.feed(7, "X", 20);
   robot.run(1000);
   CHECK(robot.only("wait go_on log") == "7 #1 wait r0\n8 #2 go_on r0\n8 #2 log \"end\"\n");
 }
 
 TEST_CASE("WITHIN ends a wait for what does not come") {
-  Robot robot("WHEN near X > 10\nDO\nWAIT UNTIL far Y > 50 WITHIN 300ms\nLOG \"end\"\nEND\n");
+  Robot robot(when_near("WAIT UNTIL far Y > 50 WITHIN 300ms\nLOG \"end\""));
   robot.feed(0, "X", 20);
   robot.feed(100, "Y", 40);
   robot.run(1000);
@@ -115,7 +91,7 @@ TEST_CASE("WITHIN ends a wait for what does not come") {
 }
 
 TEST_CASE("WAIT UNTIL with a time word: held long enough while it waits") {
-  Robot robot("WHEN near X > 10\nDO\nWAIT UNTIL far Y > 50 FOR 100ms\nLOG \"end\"\nEND\n");
+  Robot robot(when_near("WAIT UNTIL far Y > 50 FOR 100ms\nLOG \"end\""));
   robot.feed(0, "X", 20);
   robot.feed(50, "Y", 60);
   robot.feed(120, "Y", 10);
@@ -146,7 +122,7 @@ END
 }
 
 TEST_CASE("what a response sends before and after a wait runs one after the other") {
-  Robot robot("WHEN near X > 10\nDO\nMOVE a FOR 100ms\nWAIT 20ms\nMOVE a FOR 30ms\nEND\n");
+  Robot robot(when_near("MOVE a FOR 100ms\nWAIT 20ms\nMOVE a FOR 30ms"));
   robot.feed(0, "X", 20);
   robot.run(1000);
   CHECK(robot.only("command done finished") ==

@@ -3,7 +3,11 @@
 
 #include "tests/runtime-m4/robot.hpp"
 
+using robosync::test::high_and_low;
 using robosync::test::Robot;
+using robosync::test::rule;
+using robosync::test::when_far;
+using robosync::test::when_near;
 
 TEST_CASE("WHILE starts again when it finishes and still holds, and ends with its condition") {
   Robot robot("WHILE near X > 10\nDO MOVE a FOR 100ms\nEND\n");
@@ -41,18 +45,8 @@ TEST_CASE("an unknown condition ends a WHILE, and known again it fires again") {
 }
 
 TEST_CASE("a WHILE that loses says so once, and starts when its actuator is free") {
-  Robot robot(R"(
-BEHAVIOR high PRIORITY 20
-  WHEN far Y > 50
-  DO MOVE a FOR 300ms
-  END
-END
-BEHAVIOR low PRIORITY 10
-  WHILE near X > 10
-  DO MOVE a FOR 1s
-  END
-END
-)");
+  Robot robot(
+      high_and_low(when_far("MOVE a FOR 300ms"), rule("WHILE near X > 10", "MOVE a FOR 1s")));
   robot.feed(0, "Y", 60);
   robot.feed(100, "X", 20);
   robot.feed(150, "X", 25);
@@ -64,18 +58,8 @@ END
 }
 
 TEST_CASE("a WHILE that was interrupted comes back when it can") {
-  Robot robot(R"(
-BEHAVIOR high PRIORITY 20
-  WHEN far Y > 50
-  DO MOVE a FOR 300ms
-  END
-END
-BEHAVIOR low PRIORITY 10
-  WHILE near X > 10
-  DO MOVE a FOR 1s
-  END
-END
-)");
+  Robot robot(
+      high_and_low(when_far("MOVE a FOR 300ms"), rule("WHILE near X > 10", "MOVE a FOR 1s")));
   robot.feed(0, "X", 20);
   robot.feed(100, "Y", 60);
   robot.run(1000);
@@ -104,18 +88,8 @@ END
 }
 
 TEST_CASE("a higher claim takes what a WHILE has given up in the same step") {
-  Robot robot(R"(
-BEHAVIOR high PRIORITY 20
-  WHILE near X < 10
-  DO MOVE a FOR 1s
-  END
-END
-BEHAVIOR low PRIORITY 10
-  WHEN near X > 10
-  DO MOVE a FOR 50ms
-  END
-END
-)");
+  Robot robot(
+      high_and_low(rule("WHILE near X < 10", "MOVE a FOR 1s"), when_near("MOVE a FOR 50ms")));
   robot.feed(0, "X", 5);
   robot.feed(100, "X", 20);
   robot.run(300);
@@ -127,20 +101,8 @@ END
 
 TEST_CASE(
     "a WHILE that ends and starts again takes back at once what a lower one took in between") {
-  Robot robot(R"(
-BEHAVIOR high PRIORITY 20
-  WHILE near X > 10
-  DO
-    MOVE a FOR 10ms
-    WAIT 50ms
-  END
-END
-BEHAVIOR low PRIORITY 10
-  WHILE far Y > 10
-  DO MOVE a FOR 1s
-  END
-END
-)");
+  Robot robot(high_and_low(rule("WHILE near X > 10", "MOVE a FOR 10ms\nWAIT 50ms"),
+                           rule("WHILE far Y > 10", "MOVE a FOR 1s")));
   robot.feed(0, "X", 20);
   robot.feed(0, "Y", 20);
   robot.run(60);
