@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
 #include "rsc/program.hpp"
