@@ -14,9 +14,9 @@ import re
 from typing import NamedTuple
 
 # Predicates by which something is refused when they are true; all others, when they are false.
-REFUSING = {"are_too_many", "is_counter", "is_taken"}
+REFUSING = {"are_too_many", "is_counter", "is_taken", "takes_none"}
 # Decided while compiling, or no check.
-SKIPPED = {"is_flow", "pauses", "gives_truth", "has", "is_terminator"}
+SKIPPED = {"ends_at", "gives_truth", "has", "is_loop", "is_named"}
 
 # What follows an `if` that refuses.
 REFUSES = re.compile(r"\{?\s*return (Refusal::(?!none)|(\w+\.)?verification\.refuse|false)|refusal = |"
