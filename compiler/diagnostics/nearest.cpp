@@ -61,7 +61,7 @@ std::size_t common_start(std::string_view a, std::string_view b) {
 
 // Most words are too long or too short to be meant, which is cheap to see.
 bool lengths_differ_too_much(std::string_view a, std::string_view b) {
-  const auto [shorter, longer] = std::minmax(a.size(), b.size());
+  const auto [shorter, longer] = std::minmax({a.size(), b.size()});  // by value
   return longer - shorter > tolerated(longer);
 }
 
