@@ -11,9 +11,8 @@ import unittest
 from collections import Counter
 from pathlib import Path
 
-import counting
 import paths
-from paths import feed, run, wait
+from paths import counting, feed, run, wait
 from timing import examples
 
 LOOSEST = 1.25  # a cost is at most this many times what was measured, and 60 more
