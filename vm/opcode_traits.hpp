@@ -6,13 +6,18 @@
 
 namespace robosync::vm {
 
+template <typename Enum>
+constexpr std::uint32_t as_bits(Enum value) {
+  return static_cast<std::uint32_t>(value);
+}
+
 class Traits {
 public:
   constexpr Traits() = default;  // of what is no opcode: it may stand nowhere
   constexpr explicit Traits(const OpcodeInfo& info)
-      : bits_(bits(info.operands[0]) | bits(info.operands[1]) << kKindBits |
-              bits(info.operands[2]) << 2 * kKindBits | bits(info.contexts) << kContextShift |
-              bits(info.flow) << kFlowShift | bits(info.effect) << kEffectShift) {}
+      : bits_(as_bits(info.operands[0]) | as_bits(info.operands[1]) << kKindBits |
+              as_bits(info.operands[2]) << 2 * kKindBits | as_bits(info.contexts) << kContextShift |
+              as_bits(info.flow) << kFlowShift | as_bits(info.effect) << kEffectShift) {}
 
   [[nodiscard]] constexpr Operand operand(unsigned place) const {
     return static_cast<Operand>(bits_ >> place * kKindBits & kKindMask);
@@ -24,7 +29,7 @@ public:
     return static_cast<Effect>(bits_ >> kEffectShift);
   }
   [[nodiscard]] constexpr bool stands_in(Context context) const {
-    return (bits_ >> kContextShift & bits(context)) != 0;
+    return (bits_ >> kContextShift & as_bits(context)) != 0;
   }
 
 private:
@@ -34,11 +39,6 @@ private:
   static constexpr unsigned kFlowShift = kContextShift + 3;
   static constexpr std::uint32_t kFlowMask = 0xF;
   static constexpr unsigned kEffectShift = kFlowShift + 4;
-  template <typename Enum>
-  static constexpr std::uint32_t bits(Enum value) {
-    return static_cast<std::uint32_t>(value);
-  }
-
   std::uint32_t bits_ = 0;
 };
 
