@@ -142,7 +142,7 @@ void Statements::stop_actuator(const ast::Name& name, Span span, ProgramBlock& r
   command.verb = {std::string(kStop), first_word(span, kStop)};
   ast::Argument& named = command.arguments.emplace_back();
   named.span = name.span;
-  named.value.emplace<ast::Word>(name);
+  named.value = ast::Word{name};
   const Bindings* outer = expressions_.set_bindings(nullptr);  // a name here is an actuator's
   for (ProgramCommand& stop : commands_.translate(command))
     put(std::move(stop), span, result);
