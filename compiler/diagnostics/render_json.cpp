@@ -1,4 +1,4 @@
-// Diagnostics for programs: the format of 60-cli.md. See render.hpp.
+// Diagnostics for programs: one JSON object for `--format json`. See render.hpp.
 #include <nlohmann/json.hpp>
 
 #include "compiler/diagnostics/render.hpp"

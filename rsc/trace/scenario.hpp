@@ -1,4 +1,4 @@
-// Scenarios: what the sensors measure, when (docs/link.md and 60-cli.md show the format).
+// Scenarios: what the sensors measure, when (docs/link.md shows the format).
 #pragma once
 
 #include <cstdint>

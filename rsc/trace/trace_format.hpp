@@ -16,7 +16,7 @@ struct TraceNames {
   std::vector<std::string> threads;  // by the kernel's index; may be empty
 };
 
-// One JSON object without newline (60-cli.md): t_us, step, event, names, values, source line.
+// One JSON object without newline: t_us, step, event, names, values, source line.
 [[nodiscard]] std::string trace_json(const link::Event& event, const TraceNames& names);
 
 // "touch LEVEL = 2", and the same behind its time: "   0.020 s  touch LEVEL = 2".

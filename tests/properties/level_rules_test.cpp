@@ -1,4 +1,4 @@
-// WHILE and EVERY of 10-language.md section 3.3, read literally.
+// WHILE and EVERY of docs/language.md, read literally.
 #include <catch2/catch.hpp>
 #include <rapidcheck.h>
 

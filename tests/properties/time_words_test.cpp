@@ -1,4 +1,4 @@
-// The time words of 10-language.md section 3.4, each read literally: whatever a rule says about the
+// The time words of docs/language.md, each read literally: whatever a rule says about the
 // past is looked up in the whole past.
 #include <algorithm>
 #include <optional>

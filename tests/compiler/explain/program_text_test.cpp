@@ -1,4 +1,4 @@
-// Programs in plain English: the whole programs of 10-language.md, section 4, and each construct.
+// Programs in plain English: whole programs, and each construct.
 #include "compiler/explain/program_text.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The arbiter against a model written from 10-language.md 3.5 and 3.6: sets and lists in place of
+// The arbiter against a model written from docs/language.md: sets and lists in place of
 // masks, no shared code.
 #include "runtime-m4/layers/arbiter.hpp"
 
