@@ -94,6 +94,7 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
             .label(command.verb.span);
     if (!diagnostics_.may_search(able.size())) return;
     std::vector<std::string> names;
+    names.reserve(able.size());
     for (const std::size_t actuator : able)
       names.push_back(robot_.actuators[actuator].name.text);
     d.helps(list_names(names) + " know `" + command.verb.text + "`");
@@ -226,6 +227,7 @@ void put(const std::string& name, vm::Param param, vm::Value value, ProgramComma
 
 std::vector<std::string> verb_names(const ActuatorConfig& actuator) {
   std::vector<std::string> names;
+  names.reserve(actuator.verbs.size());
   for (const VerbConfig& verb : actuator.verbs)
     names.push_back(verb.name);
   return names;

@@ -7,7 +7,7 @@
 namespace robosync::boards {
 
 inline constexpr policy::BoardCosts kCosts = {
-#define COST(name, value, note) .name = value,
+#define COST(name, value, note) .name = (value),
 #include ROBOSYNC_BOARD_COSTS
 #undef COST
 };
