@@ -14,6 +14,7 @@ from pathlib import Path
 import compile_figures
 import figures
 import growth
+import idle
 import page
 import recorded
 import workloads
@@ -24,7 +25,7 @@ from rsc import RscError
 BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
 GROUPS = (workloads.workload_figures, figures.opcode_figures, figures.image_figures,
           figures.kernel_figures, figures.size_figures, growth.growth_figures,
-          figures.link_figures, figures.path_figures, compile_figures.compile_figures,
+          figures.link_figures, figures.path_figures, idle.idle_figures, compile_figures.compile_figures,
           figures.tool_figures)
 
 

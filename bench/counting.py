@@ -33,13 +33,14 @@ def symbols(elf):
 
 
 class Marks:
-    """What the plugin wrote: [(marker name, instructions executed before it)]; and what the firmware
-    said: [[word, number …]]."""
+    """What the plugin wrote: [(marker name, instructions executed before it)], and for each of them those
+    executed apart; and what the firmware said: [[word, number …]]."""
 
     def __init__(self, names, path, said=""):
         by_address = {address: name for name, address in names.items()}
-        lines = (line.split() for line in path.read_text().splitlines())
-        self.all = [(by_address[int(address, 16)], int(count)) for address, count in lines]
+        lines = [line.split() for line in path.read_text().splitlines()]
+        self.all = [(by_address[int(address, 16)], int(count)) for address, count, _ in lines]
+        self.apart = [int(apart) for *_, apart in lines]
         lines = (line.split() for line in said.splitlines())
         self.said = [[word, *map(int, numbers)] for word, *numbers in lines]
 
@@ -71,11 +72,13 @@ class Marks:
         return [numbers for word, *numbers in self.said if word == what]
 
 
-def plugin_arguments(names, out):
+def plugin_arguments(names, out, apart=()):
+    """`apart`: [(begin, end)] of the code whose instructions are counted by themselves."""
     if not PLUGIN.exists():
         raise BenchError(f"no {PLUGIN}: build the preset host first")
     marks = "".join(f",mark={address:#x}" for address in names.values())
-    return ["-plugin", f"{PLUGIN},out={out}{marks}"]
+    ranges = "".join(f",apart={begin:#x}-{end:#x}" for begin, end in apart)
+    return ["-plugin", f"{PLUGIN},out={out}{marks}{ranges}"]
 
 
 def return_instructions(elf, function):

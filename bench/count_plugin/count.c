@@ -1,9 +1,10 @@
 /* QEMU TCG plugin: counts executed instructions, and writes the count down at each marker.
  *
- *   -plugin libcount.so,out=FILE,mark=0xADDRESS[,mark=…]
+ *   -plugin libcount.so,out=FILE,mark=0xADDRESS[,mark=…][,apart=0xBEGIN-0xEND…]
  *
- * FILE gets one line "ADDRESS COUNT" each time the instruction at a marker is about to run; COUNT
- * is the number of instructions that ran before it. The difference of two lines is therefore exact.
+ * FILE gets one line "ADDRESS COUNT APART" each time the instruction at a marker is about to run;
+ * COUNT is the number of instructions that ran before it, without those that stand between a BEGIN
+ * and its END: these are APART. The difference of two lines is therefore exact.
  * Assumes one CPU. An instruction that an exception breaks off and that starts again counts twice.
  *
  * Debian does not package qemu-plugin.h, so the few functions used are declared here (API version
@@ -35,15 +36,21 @@ void qemu_plugin_register_atexit_cb(plugin_id id, void (*callback)(plugin_id, vo
 #define EXPORT __attribute__((visibility("default")))
 EXPORT int qemu_plugin_version = 1;
 
-enum { MAX_MARKERS = 256 };
+enum { MAX_MARKERS = 256, MAX_RANGES = 32 };
 static uint64_t markers[MAX_MARKERS];
 static size_t marker_count;
+static struct range {
+  uint64_t begin, end;
+} ranges[MAX_RANGES];
+static size_t range_count;
 static uint64_t executed;
+static uint64_t executed_apart;
 static FILE* out;
 
 static void at_marker(unsigned cpu, void* marker) {
   (void)cpu;
-  fprintf(out, "%" PRIx64 " %" PRIu64 "\n", *(uint64_t*)marker, executed);
+  fprintf(out, "%" PRIx64 " %" PRIu64 " %" PRIu64 "\n", *(uint64_t*)marker, executed,
+          executed_apart);
 }
 
 static uint64_t* find_marker(uint64_t address) {
@@ -53,14 +60,22 @@ static uint64_t* find_marker(uint64_t address) {
   return NULL;
 }
 
+static uint64_t* counter_of(uint64_t address) {
+  for (size_t i = 0; i < range_count; i++) {
+    if (ranges[i].begin <= address && address < ranges[i].end) return &executed_apart;
+  }
+  return &executed;
+}
+
 static void translate(plugin_id id, struct qemu_plugin_tb* block) {
   (void)id;
   size_t count = qemu_plugin_tb_n_insns(block);
   for (size_t i = 0; i < count; i++) {
     struct qemu_plugin_insn* insn = qemu_plugin_tb_get_insn(block, i);
-    uint64_t* marker = find_marker(qemu_plugin_insn_vaddr(insn));
+    uint64_t address = qemu_plugin_insn_vaddr(insn);
+    uint64_t* marker = find_marker(address);
     if (marker) qemu_plugin_register_vcpu_insn_exec_cb(insn, at_marker, NO_REGISTERS, marker);
-    qemu_plugin_register_vcpu_insn_exec_inline(insn, ADD_U64, &executed, 1);
+    qemu_plugin_register_vcpu_insn_exec_inline(insn, ADD_U64, counter_of(address), 1);
   }
 }
 
@@ -77,6 +92,13 @@ static int take_argument(const char* argument) {
   }
   if (strncmp(argument, "mark=", 5) == 0 && marker_count < MAX_MARKERS) {
     markers[marker_count++] = strtoull(argument + 5, NULL, 0);
+    return 0;
+  }
+  if (strncmp(argument, "apart=", 6) == 0 && range_count < MAX_RANGES) {
+    char* dash;
+    ranges[range_count].begin = strtoull(argument + 6, &dash, 0);
+    if (*dash != '-') return -1;
+    ranges[range_count++].end = strtoull(dash + 1, NULL, 0);
     return 0;
   }
   return -1;

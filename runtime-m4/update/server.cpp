@@ -54,21 +54,27 @@ std::size_t fill_image_data(std::span<const std::byte> image, std::uint32_t offs
 }  // namespace
 
 bool Server::start() {
-  return kernel_.add(thread_, {.name = "link",
-                               .category = kernel::Category::system,
-                               .priority = 0,
-                               .entry = [](void* self) { static_cast<Server*>(self)->run(); },
-                               .argument = this,
-                               .stack = stack_});
+  if (!kernel_.add(thread_, {.name = "link",
+                             .category = kernel::Category::system,
+                             .priority = 0,
+                             .entry = [](void* self) { static_cast<Server*>(self)->run(); },
+                             .argument = this,
+                             .stack = stack_}))
+    return false;
+  ring_.wake(thread_, kNews);
+  const auto line_ready = [](void* self) {
+    auto& server = *static_cast<Server*>(self);
+    server.kernel_.signal(server.thread_, kLine);
+  };
+  board_.link_start(line_ready, this);
+  return true;
 }
 
 void Server::run() {
   while (true) {
     while (work()) {
     }
-    // With output under way it looks again soon: nothing tells when the line takes more.
-    const kernel::Duration pause = writer_.ready() ? kPollPeriod : kernel::kTick;
-    kernel_.wait(kLineReady, kernel_.now() + pause);
+    kernel_.wait(kLine | kNews);
   }
 }
 
@@ -258,6 +264,7 @@ bool Server::send_next_thread() {
 void Server::report(const link::Fault& fault) {
   const auto lock = kernel_.lock();
   if (fault_count_ < faults_.size()) faults_[fault_count_++] = fault;
+  kernel_.signal(thread_, kNews);
 }
 
 bool Server::send_fault() {

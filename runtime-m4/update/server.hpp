@@ -47,20 +47,18 @@ public:
         slots_(slots.slots),
         writer_(board) {}
 
-  // Creates the link thread. Once, before Kernel::run(). False when the kernel has no place.
+  // Creates the link thread and starts the line. Once, before Kernel::run(). False when the kernel has
+  // no place.
   [[nodiscard]] bool start();
-
-  // The UART's interrupt signals kLineReady of this thread when bytes have come in. On a board
-  // where it does not, the thread looks every 5 ms.
-  static constexpr kernel::Events kLineReady = 1;
-  kernel::Thread& thread() { return thread_; }
 
   // A thread was stopped. The first faults are kept until a host listens; later ones are only
   // counted, since the first is the cause.  [any]
   void report(const link::Fault& fault);
 
 private:
-  static constexpr kernel::Duration kPollPeriod = kernel::milliseconds(5);
+  // What the link thread waits for: the line, and something to tell. Nothing else wakes it.
+  static constexpr kernel::Events kLine = 1;
+  static constexpr kernel::Events kNews = 2;
   static constexpr std::size_t kKeptFaults = 2;
 
   void run();

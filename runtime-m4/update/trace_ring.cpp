@@ -35,6 +35,7 @@ void TraceRing::put(link::MessageType type, std::span<const std::byte> begin,
     ++lost_;
     return;
   }
+  if (put_ == taken_ && reader_ != nullptr) kernel_.signal(*reader_, news_);
   copy_in(head);
   copy_in(begin);
   copy_in(end);

@@ -20,6 +20,13 @@ class TraceRing final : public EventSink {
 public:
   explicit TraceRing(kernel::Kernel& kernel) : kernel_(kernel) {}
 
+  // From now on `news` of `reader` are signalled when a message comes into the empty ring: who has
+  // taken all of them waits for that. Before Kernel::run().
+  void wake(kernel::Thread& reader, kernel::Events news) {
+    reader_ = &reader;
+    news_ = news;
+  }
+
   // Starts or stops keeping messages. Stopping forgets what waits.  [any]
   void listen(bool on);
   bool listening() const { return listening_; }
@@ -51,6 +58,8 @@ private:
   std::size_t taken_ = 0;
   std::uint32_t lost_ = 0;
   bool listening_ = false;
+  kernel::Thread* reader_ = nullptr;
+  kernel::Events news_ = 0;
   static_assert((kCapacity & (kCapacity - 1)) == 0, "positions are taken modulo the capacity");
 };
 

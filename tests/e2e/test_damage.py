@@ -135,6 +135,15 @@ class Damage(RobotTest):
         self.assertGreater(self.line.status().bad_frames, 3)
         self.assert_goes_on()
 
+    def test_a_flood(self):
+        """Bytes without end delay nobody: the link's thread is the lowest, and its interrupts are short."""
+        self.line.send_raw(random.Random(5).randbytes(20_000) + b"\0")
+        status = self.line.status()
+        self.assertLessEqual(status.safety_late_us, 1000)
+        self.assertEqual((status.faults, status.reset_reason), (0, 0))
+        self.assertGreater(status.bad_frames, 20)
+        self.assert_goes_on()
+
     def test_rsc_says_why(self):
         damaged = self.folder / "damaged.rsb"
         damaged.write_bytes(self.image[:-1] + bytes([self.image[-1] ^ 1]))

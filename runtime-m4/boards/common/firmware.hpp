@@ -15,10 +15,6 @@ namespace robosync::boards {
 // Bytes that its line must be able to receive while nobody reads them.
 inline constexpr std::size_t kReceiveBuffer = 512;
 
-// Starts the line of the link. From then on `ready(argument)` is called, from interrupts, when bytes
-// have arrived or there is room for more to be sent.
-void start_line(void (*ready)(void*), void* argument);
-
 // Legal in any state of the machine, fault handlers and NMI included.
 void switch_outputs_off();
 

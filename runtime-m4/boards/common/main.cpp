@@ -50,7 +50,5 @@ int main() {
   const robosync::link::Fault* const last_words = robosync::boards::last_fault();
   if (last_words != nullptr) server.report(*last_words);
   if (!runtime.start() || !server.start()) return 1;
-  robosync::boards::start_line(
-      [](void*) { robosync_kernel.signal(server.thread(), server.kLineReady); }, nullptr);
   robosync_kernel.run();
 }

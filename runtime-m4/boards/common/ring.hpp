@@ -37,6 +37,10 @@ public:
     return count;
   }
 
+  std::size_t used() const {
+    return end_.load(std::memory_order_relaxed) - begin_.load(std::memory_order_relaxed);
+  }
+
 private:
   std::array<std::byte, kSize> bytes_{};
   std::atomic<std::uint32_t> begin_ = 0;  // both count bytes and wrap with 2^32

@@ -60,11 +60,6 @@ void Board::watchdog_kick() {
 
 robosync::boards::Board& robosync_board = robosync::boards::mps2::board;
 
-void robosync::boards::start_line(void (*ready)(void*), void* argument) {
-  mps2::board.uart().notify(ready, argument);
-  mps2::board.uart().start();
-}
-
 void robosync::boards::switch_outputs_off() {
   for (volatile std::uint32_t& pulse : robosync_virtual_pwm)
     pulse = 0;

@@ -19,22 +19,21 @@ UartRegisters& uart() {
 
 }  // namespace
 
-void Uart::start() {
+void Uart::start(void (*ready)(void*), void* argument) {
+  ready_ = ready;
+  ready_argument_ = argument;
   uart().baud_divider = kClockHz / kBaud;
   uart().control = kUartControlOn;
   port::core::enable_interrupt(kUart0ReceiveInterrupt);
   port::core::enable_interrupt(kUart0TransmitInterrupt);
 }
 
-void Uart::notify(void (*ready)(void*), void* argument) {
-  ready_ = ready;
-  ready_argument_ = argument;
-}
-
+// The handler sends while there is room and goes on by itself with each byte that has left. It is
+// called in any case, and behind wants_room_: so it sees that, even when the last byte has just left.
 std::size_t Uart::write(std::span<const std::byte> bytes) {
   const std::size_t count = to_send_.write(bytes);
-  // The handler sends while there is room and goes on by itself with each byte that has left.
-  if (count != 0) port::core::pend_interrupt(kUart0TransmitInterrupt);
+  if (count < bytes.size()) wants_room_.store(true);
+  port::core::pend_interrupt(kUart0TransmitInterrupt);
   return count;
 }
 
@@ -45,6 +44,8 @@ void Uart::on_transmit() {
     if (to_send_.read(next) == 0) break;
     uart().data = std::to_integer<std::uint32_t>(next[0]);
   }
+  if (!wants_room_.load() || to_send_.used() > kSendBuffer / 2) return;
+  wants_room_.store(false);
   ready_(ready_argument_);
 }
 

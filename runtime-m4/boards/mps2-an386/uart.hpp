@@ -1,6 +1,8 @@
-// UART0: the link's serial line. Interrupts move bytes between the line and two rings.
+// UART0: the link's serial line. Interrupts move bytes between the line and two rings, and tell who
+// reads and writes when there is something to do.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -12,11 +14,9 @@ namespace robosync::boards::mps2 {
 
 class Uart {
 public:
-  // Starts the line at 115200 baud. Its interrupts come once the kernel runs.
-  void start();
-  // From now on `ready(argument)` is called, from interrupts, when bytes have arrived or there is
-  // room for more. Before start().
-  void notify(void (*ready)(void*), void* argument);
+  // Starts the line at 115200 baud; boards::Board::link_start() says when `ready(argument)` is called.
+  // Its interrupts come once the kernel runs.
+  void start(void (*ready)(void*), void* argument);
 
   // Both return at once with the number of bytes moved. [one thread each]
   std::size_t write(std::span<const std::byte> bytes);
@@ -27,9 +27,12 @@ public:
   void on_transmit();
 
 private:
+  static constexpr std::size_t kSendBuffer = 256;
+
   Ring<kReceiveBuffer> received_;
-  Ring<kReceiveBuffer> to_send_;
-  void (*ready_)(void*) = [](void*) {};
+  Ring<kSendBuffer> to_send_;
+  std::atomic<bool> wants_room_ = false;  // who writes waits until half of the ring is free
+  void (*ready_)(void*) = nullptr;
   void* ready_argument_ = nullptr;
 };
 

@@ -11,6 +11,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rsc/device/transport.hpp"
@@ -48,6 +49,7 @@ public:
     const std::size_t count = std::min(bytes.size(), kRing - to_host.size());
     to_host.insert(to_host.end(), bytes.begin(),
                    bytes.begin() + static_cast<std::ptrdiff_t>(count));
+    if (count < bytes.size()) wants_room_ = true;
     return count;
   }
   std::size_t link_read(std::span<std::byte> bytes) override {
@@ -57,7 +59,22 @@ public:
     return count;
   }
 
+  void link_start(void (*ready)(void*), void* argument) override {
+    ready_ = ready;
+    argument_ = argument;
+  }
+  // What the UART's interrupts would see after a millisecond.
+  void interrupt() {
+    const bool room = std::exchange(wants_room_, wants_room_ && to_host.size() > kRing / 2);
+    if (!from_host.empty() || (room && !wants_room_)) ready_(argument_);
+  }
+
   std::deque<std::byte> from_host, to_host;
+
+private:
+  bool wants_room_ = false;
+  void (*ready_)(void*) = nullptr;
+  void* argument_ = nullptr;
 };
 
 // One way of the line: cuts the stream into frames and passes each through the damage.
@@ -130,6 +147,7 @@ public:
       }
       to_board.line().pop_front();
     }
+    board.interrupt();
     kernel.machine().run_until(kernel.now() + kernel::kTick);
     for (std::size_t i = 0; host_reads && i < budget && !board.to_host.empty(); ++i) {
       to_host.put(std::array{board.to_host.front()});

@@ -200,6 +200,31 @@ TEST_CASE("replies are kept while the host does not read; events are dropped and
   CHECK(client.status().lost_events == robot.ring.lost());
 }
 
+TEST_CASE("the link thread runs when there is something to do, and then only") {
+  Robot robot;
+  tool::Client client(robot);
+  const kernel::Thread& link = *robot.kernel.threads().back();
+  const auto runs_in = [&](std::uint64_t time_ms) {
+    const std::uint32_t before = link.activations();
+    robot.run(time_ms);
+    return link.activations() - before;
+  };
+  robot.run(10);
+  CHECK(runs_in(10'000) == 0);
+  REQUIRE(upload(client, test::program(3).bytes()).running == 1);
+  CHECK(runs_in(10'000) == 0);
+  robot.runtime.feed({0, 0, 2000});  // nobody listens to what happens
+  CHECK(runs_in(1000) == 0);
+
+  client.set_trace(true);
+  robot.run(10'000);  // until what the reading began is done
+  CHECK(runs_in(10'000) == 0);
+  robot.runtime.feed({0, 0, 5000});
+  const std::uint32_t runs = runs_in(1000);
+  CHECK(runs > 0);
+  CHECK(runs < 10);
+}
+
 TEST_CASE("whatever comes over the line, the program goes on and the next upload works") {
   Robot robot;
   tool::Client client(robot);

@@ -35,6 +35,44 @@ TEST_CASE("nothing is kept while nobody listens") {
   CHECK(take(ring).empty());
 }
 
+TEST_CASE("who reads is called for the first message, and again when all are taken") {
+  kernel::Kernel kernel;
+  update::TraceRing ring(kernel);
+  struct Reader {
+    kernel::Kernel& kernel;
+    kernel::Thread thread;
+    unsigned calls = 0;
+  } reader{kernel, {}};
+  constexpr kernel::Events kNews = 4;
+  const auto count = [](void* self) {
+    auto& mine = *static_cast<Reader*>(self);
+    while (mine.kernel.wait(kNews) != 0)
+      ++mine.calls;
+  };
+  kernel::ThreadSpec spec;
+  spec.entry = count;
+  spec.argument = &reader;
+  REQUIRE(kernel.add(reader.thread, spec));
+  ring.wake(reader.thread, kNews);
+  const auto calls_after = [&](unsigned messages) {
+    for (unsigned i = 0; i < messages; ++i)
+      ring.log("message");
+    kernel.machine().run_until(kernel.now());
+    return reader.calls;
+  };
+  CHECK(calls_after(3) == 0);  // nobody listens
+  ring.listen(true);
+  CHECK(calls_after(3) == 1);
+  CHECK(calls_after(100) == 1);  // it has not taken them yet; the last ones are lost
+  while (!take(ring).empty()) {
+  }
+  CHECK(calls_after(0) == 1);
+  CHECK(calls_after(2) == 2);
+  ring.listen(false);
+  ring.listen(true);
+  CHECK(calls_after(1) == 3);
+}
+
 TEST_CASE("listening again keeps what waits") {
   kernel::Kernel kernel;
   update::TraceRing ring(kernel);

@@ -1,0 +1,79 @@
+"""What the shipped firmware executes in a second in which nothing happens: without a program, and with
+the paper's, whose touch sensor is sampled 50 times a second over I2C. Nobody talks to it.
+
+Seconds are counted by the kicks of the watchdog, which the safety monitor gives every so many milliseconds.
+The I2C bus of this board is bit-banged: waiting for half a bit is executed, too, and costs what it costs
+at 100 kHz whoever waits. So all that the code of the bus (I2c of the board's i2c.cpp) executes is
+counted apart, by its addresses: what interrupts it is not.
+"""
+
+import re
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import rsc
+from board import FAST, FIRMWARE, Board
+from counting import ROOT, BenchError, Marks, plugin_arguments, symbols
+from workloads import PAPER
+
+KICK = "robosync::boards::mps2::Board::watchdog_kick("
+BUS = ("robosync::boards::mps2::I2c::", "robosync::boards::mps2::(anonymous namespace)::half_bit(")
+SECONDS = 10  # measured, at the end of the run
+PATIENCE = 30  # seconds until so many have passed: the core's sleep takes no time
+
+
+def period_ms(source, constant):
+    """A period of the runtime that is written down in milliseconds."""
+    found = re.search(rf"{constant} = (\d+);", (ROOT / source).read_text())
+    if not found:
+        raise BenchError(f"{source} has no {constant}")
+    return int(found[1])
+
+
+def code_of(prefixes):
+    """[(begin, end)] of the firmware's functions whose names begin so."""
+    listing = subprocess.run(["arm-none-eabi-nm", "-S", "-C", str(FIRMWARE)], check=True, text=True,
+                             stdout=subprocess.PIPE).stdout
+    code = []
+    for prefix in prefixes:
+        found = re.findall(rf"^(\w+) (\w+) \w {re.escape(prefix)}", listing, re.M)
+        if not found:
+            raise BenchError(f"the firmware has no {prefix}…")
+        code += [(int(at, 16) & ~1, (int(at, 16) & ~1) + int(size, 16)) for at, size in found]
+    return code
+
+
+def idle_second(period, program=None):
+    """The dearest of some seconds, which have kicks every `period` milliseconds: (instructions, apart)."""
+    kicks = {
+KICK: at for name, at in symbols(FIRMWARE).items() if name.startswith(KICK)}
+    if not kicks:
+        raise BenchError(f"the firmware has no {KICK}")
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "marks"
+        with Board(icount=FAST, extra=plugin_arguments(kicks, out, code_of(BUS))) as board:
+            if program:
+                rsc.run("upload", program, "--port", board.port)
+            deadline = time.monotonic() + PATIENCE
+            while out.stat().st_size < 100_000:  # thousands of kicks
+                if time.monotonic() > deadline:
+                    raise BenchError("the firmware does not kick its watchdog")
+                time.sleep(0.1)
+        marks = Marks(kicks, out)
+    second = 1000 // period
+    last = range(len(marks.all) - SECONDS * second, len(marks.all), second)
+    return max((marks.all[i - 1][1] - marks.all[i - 1 - second][1],
+                marks.apart[i - 1] - marks.apart[i - 1 - second]) for i in last)
+
+
+def idle_figures():
+    alone, _ = idle_second(period_ms("runtime-m4/safety/period.hpp", "kIdlePeriodMs"))
+    paper, transfers = idle_second(period_ms("runtime-m4/policy/rules.hpp", "kSafetyPeriodMs"), PAPER)
+    return {
+  "firmware/idle_second" : (alone, "insn"),
+                           "firmware/idle_second_paper" : (paper, "insn"),
+                                                          "firmware/idle_second_paper_i2c"
+      : (transfers, "insn"),
+    }
