@@ -122,6 +122,7 @@ void Runtime::go() {
   const auto lock = kernel_.lock();
   trace_.restart(kernel_.now() + (port::kTimeFlows ? kernel::kTick : 0));
   running_ = true;
+  kernel_.signal(monitor_.thread(), safety::Monitor::kProgram);
   processing_.go();
   sensors_.go();
 }

@@ -56,7 +56,7 @@ public:
 
   // Everything but what only the link knows: bad_frames and lost_events.
   void fill_status(link::Status& status) const;
-  bool running() const { return running_; }
+  bool running() const override { return running_; }
   const vm::Image& image() const { return program_.image; }  // of the running program
   static const vm::Limits& limits();
 
@@ -80,6 +80,7 @@ private:
   void hold_to_budgets(bool alive) override;
   void halt(kernel::Duration stuck_for) override;
   kernel::Time look_at_rules() override;
+  kernel::Time began() const override { return trace_.activated_at(); }
 
   bool start_program();
   void go();

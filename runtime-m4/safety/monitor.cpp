@@ -17,15 +17,28 @@ bool Monitor::start() {
 void Monitor::run() {
   board_.watchdog_start();
   kernel::Time due = kernel_.now();
-  kernel::Time rules_due = due;
+  kernel::Time rules_due = kernel::kForever;
   while (true) {
-    kernel_.wait(kNews, std::min(due, rules_due));
-    rules_due = supervised_.look_at_rules();
+    const kernel::Events why = kernel_.wait(kNews | kProgram, std::min(due, rules_due));
     const kernel::Time now = kernel_.now();
+    if ((why & kProgram) != 0) {
+      due = supervised_.began();
+      rules_due = kernel::kForever;
+      without_progress_ = 0;
+    }
+    if ((why & kNews) != 0 || now >= std::min(due, rules_due))
+      rules_due = supervised_.look_at_rules();
     if (now < due) continue;
     check(now - due);
-    due += ((now - due) / kPeriod + 1) * kPeriod;
+    due = next_after(due, now);
   }
+}
+
+// Periods that are over already are skipped, never made up for.
+kernel::Time Monitor::next_after(kernel::Time due, kernel::Time now) const {
+  if (!supervised_.running()) return now + kIdlePeriod;
+  const kernel::Time next = due + kPeriod;
+  return now < next ? next : next + ((now - next) / kPeriod + 1) * kPeriod;
 }
 
 void Monitor::check(kernel::Duration late) {

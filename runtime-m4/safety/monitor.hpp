@@ -1,6 +1,11 @@
 // Safety monitor: a thread above all others that looks after the safety rules, checks every 10 ms
 // that the program is alive, and keeps the watchdog from resetting the board as long as it is.
 //
+// Its periods are those of program time, beginning with 0: at each it looks at the rules and at the
+// program's life, once. In between it looks at the rules when one of their inputs has changed or one
+// of their time words is due. So when a rule trips depends on the program and its readings alone, not on
+// when the board was switched on.
+//
 // A program is hung when its step thread has work and has not finished a pass for kChecksUntilHung checks
 // in a row. Then the actuators are halted, again at every check, and the watchdog is left alone: it
 // resets the board. The monitor goes on through uploads and activations.
@@ -29,8 +34,10 @@ public:
   // Puts all actuators into their safe state, and lets no command through from then on. May be
   // called again.
   virtual void halt(kernel::Duration stuck_for) = 0;
-  // Evaluates the safety rules. Returns when they want to be looked at again, if not for news.
+  // Evaluates the safety rules. Returns when a time word of theirs is due.
   virtual kernel::Time look_at_rules() = 0;
+  virtual bool running() const = 0;        // is there a program?
+  virtual kernel::Time began() const = 0;  // its time 0, which may be about to come
 
 protected:
   ~Supervised() = default;
@@ -46,8 +53,10 @@ public:
   // Creates the thread. False when the kernel has no place for it.
   [[nodiscard]] bool start();
 
-  // Signalled (kNews) when an input has changed that a safety rule reads.
+  // Signalled (kNews) when an input has changed that a safety rule reads, and
+  // (kProgram) when there is another program.
   static constexpr kernel::Events kNews = 1;
+  static constexpr kernel::Events kProgram = 2;
   kernel::Thread& thread() { return thread_; }
 
   std::uint32_t checks() const { return checks_.load(std::memory_order_relaxed); }
@@ -55,6 +64,7 @@ public:
 
 private:
   void run();
+  kernel::Time next_after(kernel::Time due, kernel::Time now) const;
   void check(kernel::Duration late);
 
   kernel::Kernel& kernel_;

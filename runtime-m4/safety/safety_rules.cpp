@@ -114,13 +114,9 @@ ActuatorMask SafetyRules::halted_by(unsigned rule) const {
 }
 
 kernel::Time SafetyRules::next_look() const {
-  const kernel::Time now = layers_.trace.program_time();
-  kernel::Duration wait = kPeriod - now % kPeriod;
-  if (machine_.wake != vm::Machine::kNever) {
-    const std::uint32_t delay = std::max<std::uint32_t>(machine_.wake - machine_.now, 1);
-    wait = std::min(wait, kernel::milliseconds(delay));
-  }
-  return kernel_.now() + wait;
+  if (machine_.wake == vm::Machine::kNever) return kernel::kForever;
+  const std::uint32_t delay = std::max<std::uint32_t>(machine_.wake - machine_.now, 1);
+  return kernel_.now() + kernel::milliseconds(delay);
 }
 
 }  // namespace robosync::safety

@@ -2,7 +2,7 @@
 // thread: it does not wait for a step.
 //
 // It reads what the sensors measured last and what the last step knew of the variables: when one of
-// those changes, on a period of its own counted from activation, and when a time word is due. A
+// those changes, at each period of program time, and when a time word is due (monitor.hpp). A
 // rule trips when its condition is true or unknown; but not for being unknown in the first period,
 // before every sensor has measured. It stays tripped until its resume condition is true while its
 // condition is false; without a resume condition, until the next program. Actuators that it has
@@ -45,7 +45,7 @@ public:
   // Nothing is tripped. `program` must stay until the next start().
   void start(const layers::LoadedProgram& program);
 
-  // Evaluates all rules. Returns when to do it again, if nothing changes before.  [safety thread]
+  // Evaluates all rules. Returns when a time word of theirs is due.  [safety thread]
   kernel::Time look();
 
 private:

@@ -111,7 +111,7 @@ TEST_CASE("a hung program is halted into its safe state and the watchdog is left
     REQUIRE(rig.activate(test::compile(kProgram, kRobot)).ok());
     rig.feed(1, 15);
     rig.run(4000);
-    CHECK(rig.board.kicks == kicks + 4 + 100);
+    CHECK(rig.board.kicks == kicks + 4 + 101);
     CHECK(rig.board.pwm_read(3) == 700);
     CHECK(rig.status().faults == 1);
   }

@@ -70,6 +70,29 @@ TEST_CASE("what is unknown trips, but not before every sensor had its time to me
   CHECK(measured.only("trip").empty());
 }
 
+TEST_CASE("when a silent sensor trips does not depend on when the program began") {
+  const auto image = robosync::test::compile(
+      kGuarded,
+      R"({"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}},
+                   {"name": "far", "type": "VIRTUAL",
+                    "channels": {"Y": {"range": [0, 100], "stale_after": "203ms"}}}],
+       "actuators": [{"name": "a", "type": "VIRTUAL"}, {"name": "b", "type": "VIRTUAL"}]})");
+  for (const bool after_another : {false, true}) {
+    for (unsigned phase = 0; phase < 35; ++phase) {
+      INFO("it begins after " << phase << " ms");
+      Rig rig;
+      if (after_another) REQUIRE(rig.activate(image).ok());
+      rig.run(phase);
+      REQUIRE(rig.activate(image).ok());
+      rig.lines.clear();
+      rig.feed(1, 2, 3);
+      rig.feed(0, 1, 208);  // what the rule does not read makes nobody look
+      rig.run(phase + 1000);
+      CHECK(rig.only("trip") == "210 #3 trip r0\n");
+    }
+  }
+}
+
 TEST_CASE("two rules that halt the same: it is let go when both have") {
   Robot robot(R"(
 SAFETY first
