@@ -39,9 +39,7 @@ EXPORT int qemu_plugin_version = 1;
 enum { MAX_MARKERS = 256, MAX_RANGES = 32 };
 static uint64_t markers[MAX_MARKERS];
 static size_t marker_count;
-static struct range {
-  uint64_t begin, end;
-} ranges[MAX_RANGES];
+static struct range { uint64_t begin, end; } ranges[MAX_RANGES];
 static size_t range_count;
 static uint64_t executed;
 static uint64_t executed_apart;
