@@ -60,8 +60,11 @@ def run_ctest(preset):
     return close(passed, failed)
 
 
-def run_unittest(folder):
-    tests = unittest.defaultTestLoader.discover(str(ROOT / folder))
+def run_unittest(place):
+    """`place`: a folder with tests, or one file of it."""
+    path = ROOT / place
+    folder, pattern = (path, "test*.py") if path.is_dir() else (path.parent, path.name)
+    tests = unittest.defaultTestLoader.discover(str(folder), pattern)
     result = unittest.TextTestRunner(stream=sys.stdout, verbosity=2).run(tests)
     failed = len(result.failures) + len(result.errors) + len(result.unexpectedSuccesses)
     return close(result.testsRun - failed - len(result.skipped), failed)
