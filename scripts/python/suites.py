@@ -103,47 +103,68 @@ def compiled_together(path):
     return re.findall(r'^#include "(.*)"$', Path(path).read_text(), re.M)
 
 
+ON_THE_BOARD = ("vm", "link", "runtime-m4")
+TOGETHER = 24  # sources at a time: the headers are looked at once for all of them
+# How many states of a function of the host the analyzer of clang looks at, at most; 225,000 is what it does by itself. A
+# function that uses up its states has, as a rule, a std::find_if or a std::visit in it, of which all ways through the
+# standard library are followed. On the board there is none of that, and all states are looked at.
+STATES_ON_THE_HOST = 50_000
+
+
+def starts_with(source, folders):
+    return source.startswith(tuple(str(ROOT / folder) + "/" for folder in folders))
+
+
 def product_batches(preset):
-    """What the preset compiles of the product, as it is compiled together: [(flags, sources)]. What is compiled more
-    than once, for the large profile too, is there once."""
-    product = tuple(str(ROOT / folder) + "/" for folder in OURS if folder not in ("tests", "bench"))
+    """What the preset compiles of the product, sources with the same flags together: [(flags, sources)], the largest
+    first. What is compiled more than once, for the large profile too, is there once."""
+    product = [folder for folder in OURS if folder not in ("tests", "bench")]
     batches, seen = [], set()
     for command in json.loads((ROOT / "build" / preset / "compile_commands.json").read_text()):
         words = shlex.split(command["command"])
         compiler = next(i for i, word in enumerate(words) if word.endswith(("cc", "c++", "g++")))
+        flags = words[compiler + 1:words.index("-o")]
         sources = [source for source in compiled_together(command["file"])
-                   if source.startswith(product) and source not in seen]
+                   if starts_with(source, product) and source not in seen]
         seen.update(sources)
-        if sources:
-            batches.append((words[compiler + 1:words.index("-o")], sources))
-    return batches
+        if sources and batches and batches[-1][0] == flags and len(batches[-1][1]) + len(sources) <= TOGETHER:
+            batches[-1][1].extend(sources)
+        elif sources:
+            batches.append((flags, sources))
+    return sorted(batches, key=lambda batch: -sum(Path(source).stat().st_size for source in batch[1]))
 
 
-def run_tidy(preset):
-    """clang-tidy over the product. Much of its time goes into what the headers of the libraries declare, so
-    sources that are compiled together are put one behind the other (included, the analyzer would leave them
-    out), and a file at a time only where something is found: then the answer names the file and its line."""
+def run_tidy(preset, deep):
+    """clang-tidy over the product; `deep`: with no limit of ours to what the analyzer looks at. Much of its time goes
+    into what the headers of the libraries declare, so sources are put one behind the other (included, the analyzer
+    would leave them out), and halved where something is found, down to the file: then the answer names its line."""
     batches = product_batches(preset)
     count = sum(len(sources) for _, sources in batches)
 
-    def tidy(path, words):
-        return subprocess.run(["clang-tidy", "--quiet", f"--config-file={ROOT / '.clang-tidy'}", str(path),
-                               "--", *words, "-Wno-unknown-warning-option"], cwd=ROOT, check=False, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-
-    def run(numbered):
-        number, (words, sources) = numbered
+    def findings(flags, sources):
+        path = sources[0]
         if len(sources) > 1:
-            together = Path(folder) / f"{number}.cpp"
-            together.write_text("".join(Path(source).read_text() + "\n" for source in sources))
-            if tidy(together, words).returncode == 0:
-                return []
-        answers = [(source, tidy(source, words)) for source in sources]
-        return [(source, answer.stdout) for source, answer in answers if answer.returncode]
+            path = Path(tempfile.mkdtemp(dir=folder)) / "together.cpp"
+            path.write_text("".join(Path(source).read_text() + "\n" for source in sources))
+        answer = subprocess.run(["clang-tidy", "--quiet", f"--config-file={ROOT / '.clang-tidy'}", str(path), "--",
+                                 *flags, "-Wno-unknown-warning-option"], cwd=ROOT, check=False, text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        if answer.returncode == 0:
+            return []
+        if len(sources) == 1:
+            return [(path, answer.stdout)]
+        half = len(sources) // 2
+        return findings(flags, sources[:half]) + findings(flags, sources[half:])
+
+    def run(batch):
+        flags, sources = batch
+        if not deep and not starts_with(sources[0], ON_THE_BOARD):
+            flags = [*flags, "-Xclang", "-analyzer-config", "-Xclang", f"max-nodes={STATES_ON_THE_HOST}"]
+        return findings(flags, sources)
 
     failed = 0
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(CORES) as pool:
-        for found in pool.map(run, enumerate(batches)):
+        for found in pool.map(run, batches):
             for source, output in found:
                 failed += 1
                 print(f"  FAIL {Path(source).relative_to(ROOT)}\n{output}")
@@ -154,12 +175,13 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("suite", choices=["ctest", "unittest", "format", "tidy"])
     parser.add_argument("argument", nargs="?")
+    parser.add_argument("--deep", action="store_true", help="tidy: the analyzer without a limit of ours")
     wanted = parser.parse_args()
     if wanted.suite == "ctest":
         return run_ctest(wanted.argument)
     if wanted.suite == "unittest":
         return run_unittest(wanted.argument)
-    return run_format() if wanted.suite == "format" else run_tidy(wanted.argument)
+    return run_format() if wanted.suite == "format" else run_tidy(wanted.argument, wanted.deep)
 
 
 if __name__ == "__main__":
