@@ -24,11 +24,10 @@ add_custom_command(
   DEPENDS ${PROJECT_SOURCE_DIR}/grammar/rsl.re
   COMMENT "re2c: grammar/rsl.re"
   VERBATIM)
-# Their style is not ours to mend, and nobody steps through them: without -O2 the tests that read a
-# hundred thousand programs under the sanitizers would take minutes.
+# Their style is not ours to mend.
 set_source_files_properties(
   ${generated}/grammar/rsl_grammar.cpp ${generated}/grammar/rsl_lexer.cpp
-  PROPERTIES COMPILE_OPTIONS "-Wno-conversion;-Wno-sign-conversion;-Wno-shadow;-O2")
+  PROPERTIES COMPILE_OPTIONS "-Wno-conversion;-Wno-sign-conversion;-Wno-shadow")
 
 target_sources(robosync_compiler PRIVATE
   ${generated}/grammar/rsl_grammar.cpp
