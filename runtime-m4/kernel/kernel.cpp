@@ -36,29 +36,33 @@ Events Kernel::wait_for(Events mask) {
   return taken;
 }
 
-// False when the deadline is reached already. To arm and to block are one to the tick, which would
-// else make ready what is about to block, for nothing; an interrupt that signals in between is
-// seen by the look under the lock.
+// True when the deadline will be reached as soon as the timer is not armed any more: it is armed for
+// all of the time, or not at all, because the deadline is reached already. To arm and to block are
+// one to the tick, which would else make ready what is about to block, for nothing; an interrupt
+// that signals in between is seen by the look under the lock.
 inline bool Kernel::block_until(Thread& thread, Events mask, Time deadline) {
   port::SwitchLock still(machine_);
-  if (!arm(thread, deadline)) return false;
+  const Time present = time();
+  if (deadline <= present) return true;
+  const Duration sleep = std::min<Duration>(deadline - present, kLongestSleep);
+  arm(thread, static_cast<std::uint32_t>(sleep));
   port::Lock lock(machine_);
   if ((thread.events_ & mask) == 0) block(thread, mask);
-  return true;
+  return deadline - present <= kLongestSleep;
 }
 
 Events Kernel::wait_until(Events mask, Time deadline) {
   Thread& self = *running_;
-  Events taken = 0;
-  bool reached = false;
-  do {
-    if ((self.events_ & mask) == 0) reached = !block_until(self, mask, deadline);
-    taken = self.take(mask);
+  while (true) {
+    const bool there = (self.events_ & mask) != 0;
+    const bool last = !there && block_until(self, mask, deadline);
+    const Events taken = self.take(mask);
     // The timer is taken back here and not by signal(), whose path it would lengthen. Until then
     // it can do no harm: it would make this thread ready, which it is.
-    disarm(self);
-  } while (taken == 0 && !reached);
-  return taken;
+    const bool struck = !self.armed();
+    if (!struck) disarm(self);
+    if (taken != 0 || (last && struck)) return taken;
+  }
 }
 
 void Kernel::disarm(Thread& thread) {
@@ -66,15 +70,11 @@ void Kernel::disarm(Thread& thread) {
   if (thread.armed()) TimerQueue::disarm(thread);
 }
 
-// Under a SwitchLock. False when the deadline is reached already.
-bool Kernel::arm(Thread& thread, Time deadline) {
-  const Time present = time();
-  if (deadline <= present) return false;
-  const auto sleep = static_cast<std::uint32_t>(std::min<Time>(deadline - present, kLongestSleep));
+// Under a SwitchLock: for so many microseconds, rounded up to a tick.
+void Kernel::arm(Thread& thread, std::uint32_t sleep) {
   constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);
   const std::uint32_t ticks = sleep / kTickLength + (sleep % kTickLength != 0 ? 1 : 0);
   timers_.arm(thread, tick_ + ticks, tick_);
-  return true;
 }
 
 void Kernel::block(Thread& thread, Events mask) {
@@ -130,15 +130,14 @@ void Kernel::report() {
 }
 
 void Kernel::wake_due() {
-  while (timers_.has_work(tick_)) {
+  do {
     Timer* due = timers_.collect();
     while (due != nullptr) {
-      auto& thread = static_cast<Thread&>(*due);
-      due = due->next;
+      auto& thread = static_cast<Thread&>(TimerQueue::take_first(due));
       port::OnlyLock lock(machine_);  // of its own, so that interrupts come in between
       make_ready(thread);
     }
-  }
+  } while (timers_.has_work(tick_));
 }
 
 }  // namespace robosync::kernel

@@ -144,12 +144,8 @@ public:
   // so that an interrupt which asks for the time finds it right; two change under a lock.
   void pass(std::uint32_t ticks) {
     const std::uint32_t next = tick_ + ticks;
-    if (next < ticks) [[unlikely]] {
-      port::OnlyLock lock(machine_);
-      tick_ = next;
-      ++eras_;
-      return;
-    }
+    if (next < ticks) [[unlikely]]
+      return begin_era(next);
     tick_ = next;
   }
   // Ticks until on_tick() may have to wake a thread, at least 1; 0 when no thread sleeps.
@@ -213,14 +209,15 @@ private:
   Events wait_for(Events mask);
   Events wait_until(Events mask, Time deadline);
   [[gnu::always_inline]] bool block_until(Thread& thread, Events mask, Time deadline);
-  bool arm(Thread& thread, Time deadline);
+  void arm(Thread& thread, std::uint32_t sleep);
   void disarm(Thread& thread);
   void block(Thread& thread, Events mask);
   Events take_or_block(Events mask);
   void report();
   void make_ready(Thread& thread);
   [[gnu::cold]] void make_unready(Thread& thread);
-  void wake_due();
+  [[gnu::noinline]] void wake_due();
+  [[gnu::cold]] void begin_era(std::uint32_t tick);
   // Under a SwitchLock. In two multiplications, where one of 64 bits takes three times as long.
   Time time() const {
     constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);

@@ -80,6 +80,12 @@ std::uint32_t Kernel::ticks_to_next_wake() const {
   return ticks_to_next_work();
 }
 
+void Kernel::begin_era(std::uint32_t tick) {
+  port::OnlyLock lock(machine_);
+  tick_ = tick;
+  ++eras_;
+}
+
 std::size_t Thread::stack_used() const {
   const auto all = stack();
   const auto first_used =

@@ -1,3 +1,4 @@
+// What happens seldom: built for size. The rest stands in the header.
 #include "runtime-m4/kernel/timer_queue.hpp"
 
 #include <bit>
@@ -7,81 +8,66 @@ namespace robosync::kernel {
 
 namespace {
 
-void push(Timer*& list, Timer& timer) {
+void insert(Timer*& list, Timer& timer) {
   timer.next = list;
   timer.link = &list;
   if (list != nullptr) list->link = &timer.next;
   list = &timer;
 }
 
-// Ticks of one bucket of a wheel.
-constexpr std::uint32_t width(unsigned wheel, unsigned digit_bits) {
-  return 1U << (wheel * digit_bits);
+// Ticks of one bucket of a wheel; of the one behind the last, how far that reaches.
+constexpr std::uint32_t width(unsigned wheel) {
+  return 1U << (wheel * TimerQueue::kDigitBits);
 }
 
 }  // namespace
 
-void TimerQueue::arm(Timer& timer, std::uint32_t due, std::uint32_t now) {
-  timer.due = due;
-  place(timer, now);
-}
-
 void TimerQueue::place(Timer& timer, std::uint32_t now) {
-  const std::uint32_t differing = timer.due ^ now;
-  for (unsigned wheel = 0; wheel < kWheels; ++wheel) {
-    const std::uint32_t bucket_ticks = width(wheel, kDigitBits);
-    if (differing >= bucket_ticks * kBuckets) continue;
-    const unsigned bucket = (timer.due / bucket_ticks) % kBuckets;
-    push(wheels_[wheel][bucket], timer);
-    occupied_[wheel] |= 1U << bucket;
-    note_work(timer.due & ~(bucket_ticks - 1), now);
-    return;
-  }
-  push(beyond_, timer);
-  note_work((now | (width(kWheels, kDigitBits) - 1)) + 1, now);
+  const std::uint32_t distance = timer.due - now;
+  const std::uint32_t due = timer.due;
+  unsigned wheel = 0;
+  while (wheel < kWheels && distance >= width(wheel + 1))
+    ++wheel;
+  if (wheel == kWheels) return insert(beyond_, timer);
+  const unsigned bucket = (due / width(wheel)) % kBuckets;
+  occupied_[wheel] |= 1U << bucket;
+  const std::uint32_t work = due & ~(width(wheel) - 1);
+  if (wheel != 0 && work - now < next_move_ - now) next_move_ = work;
+  if (work - now < next_work_ - now) next_work_ = work;
+  insert(wheels_[wheel][bucket], timer);
 }
 
-void TimerQueue::note_work(std::uint32_t tick, std::uint32_t now) {
+void TimerQueue::note_move(std::uint32_t tick, std::uint32_t now) {
+  if (tick - now < next_move_ - now) next_move_ = tick;
   if (tick - now < next_work_ - now) next_work_ = tick;
 }
 
-Timer* TimerQueue::collect() {
-  const std::uint32_t now = next_work_;
-  if (now % width(kWheels, kDigitBits) == 0) move_down(beyond_, now);
+// Once in 32 ticks at most; once in 32,768 at least, be it for nothing. What is due at once comes into
+// the bucket that is collected next.
+void TimerQueue::move_down(std::uint32_t now) {
+  next_move_ = (now | (width(kWheels) - 1)) + 1;
+  if (now % width(kWheels) == 0) place_again(beyond_, now);
   for (unsigned wheel = kWheels - 1; wheel > 0; --wheel) {
-    const std::uint32_t bucket_ticks = width(wheel, kDigitBits);
-    if (now % bucket_ticks != 0) continue;
+    const std::uint32_t bucket_ticks = width(wheel);
     const unsigned bucket = (now / bucket_ticks) % kBuckets;
-    occupied_[wheel] &= ~(1U << bucket);
-    move_down(wheels_[wheel][bucket], now);
+    if (now % bucket_ticks == 0) {
+      occupied_[wheel] &= ~(1U << bucket);
+      place_again(wheels_[wheel][bucket], now);
+    }
+    if (occupied_[wheel] == 0) continue;
+    const std::uint32_t behind = std::rotr(occupied_[wheel], static_cast<int>(bucket) + 1);
+    const auto others = static_cast<std::uint32_t>(std::countr_zero(behind));
+    note_move((now / bucket_ticks + 1 + others) * bucket_ticks, now);
   }
-  const unsigned bucket = now % kBuckets;
-  occupied_[0] &= ~(1U << bucket);
-  Timer* const due = std::exchange(wheels_[0][bucket], nullptr);
-  for (Timer* timer = due; timer != nullptr; timer = timer->next)
-    timer->link = nullptr;
-  next_work_ = find_work(now);
-  return due;
 }
 
-void TimerQueue::move_down(Timer*& bucket, std::uint32_t now) {
+void TimerQueue::place_again(Timer*& bucket, std::uint32_t now) {
   Timer* timer = std::exchange(bucket, nullptr);
   while (timer != nullptr) {
     Timer* const next = timer->next;
     place(*timer, now);
     timer = next;
   }
-}
-
-std::uint32_t TimerQueue::find_work(std::uint32_t now) const {
-  for (unsigned wheel = 0; wheel < kWheels; ++wheel) {
-    if (occupied_[wheel] == 0) continue;
-    const std::uint32_t turn = width(wheel + 1, kDigitBits);
-    const auto bucket = static_cast<std::uint32_t>(std::countr_zero(occupied_[wheel]));
-    return (now & ~(turn - 1)) + bucket * width(wheel, kDigitBits);
-  }
-  if (beyond_ != nullptr) return (now | (width(kWheels, kDigitBits) - 1)) + 1;
-  return now + kMaxTicks;
 }
 
 bool TimerQueue::empty() const {

@@ -1,16 +1,20 @@
 // Sleeping threads by the tick at which they are due: a hierarchical timing wheel.
 //
 // Three wheels of 32 buckets (1, 32 and 1024 ticks wide) and one list for what lies beyond. A timer
-// stands in the wheel of the highest base-32 digit in which its due tick differs from the current
-// one, and moves down a wheel when that digit's time has come. Arming and disarming take constant
-// time, and a timer moves at most three times in its life, so the cost of a sleep does not depend
-// on how many others sleep. Most ticks do nothing: next_work() says when collect() is needed.
+// stands in the first wheel whose buckets reach as far as it is away, and moves down a wheel when
+// the time of its bucket begins; what sleeps for less than 32 ticks never moves. Arming and
+// disarming take constant time, and a timer moves at most three times in its life, so the cost of a
+// sleep does not depend on how many others sleep. Most ticks do nothing: next_work() says when
+// collect() is needed.
 //
 // Ticks wrap (32 bits); a timer is at most kMaxTicks away. The caller keeps others out.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <utility>
 
 namespace robosync::kernel {
 
@@ -25,9 +29,15 @@ struct Timer {
 class TimerQueue {
 public:
   static constexpr std::uint32_t kMaxTicks = 0x7FFF'0000;
+  static constexpr unsigned kDigitBits = 5;
+  static constexpr unsigned kBuckets = 1U << kDigitBits;
+  static constexpr unsigned kWheels = 3;
 
   // Arms a timer for `due`, 1 … kMaxTicks ticks after `now`. It must not be armed.
-  void arm(Timer& timer, std::uint32_t due, std::uint32_t now);
+  void arm(Timer& timer, std::uint32_t due, std::uint32_t now) {
+    timer.due = due;
+    place(timer, now);
+  }
 
   // Takes an armed timer out. Its bucket stays marked: at worst one collect() that finds nothing.
   static void disarm(Timer& timer) {
@@ -43,26 +53,47 @@ public:
     return static_cast<std::int32_t>(now - next_work_) >= 0;
   }
 
-  // Does the work of tick next_work(), and returns the timers that are due then, disarmed and
-  // linked by `next`. Call it until has_work() is false.
+  // Does the work of tick next_work(), and returns the first of the timers that are due then, for
+  // take_first() to take one by one. Call it until has_work() is false.
   Timer* collect();
+  // The first of these, disarmed; `due` is then the next one.
+  static Timer& take_first(Timer*& due) {
+    Timer& first = *due;
+    due = first.next;
+    first.link = nullptr;
+    return first;
+  }
 
   bool empty() const;
 
 private:
-  static constexpr unsigned kDigitBits = 5;
-  static constexpr unsigned kBuckets = 1U << kDigitBits;
-  static constexpr unsigned kWheels = 3;
-
   void place(Timer& timer, std::uint32_t now);
-  void note_work(std::uint32_t tick, std::uint32_t now);
-  void move_down(Timer*& bucket, std::uint32_t now);
-  std::uint32_t find_work(std::uint32_t now) const;
+  void note_move(std::uint32_t tick, std::uint32_t now);
+  [[gnu::noinline]] void move_down(std::uint32_t now);
+  void place_again(Timer*& bucket, std::uint32_t now);
 
   std::array<std::array<Timer*, kBuckets>, kWheels> wheels_{};
   std::array<std::uint32_t, kWheels> occupied_{};  // bit b: bucket b may hold a timer
   Timer* beyond_ = nullptr;
-  std::uint32_t next_work_ = kMaxTicks;
+  // When the first of the far timers move, at most when those of `beyond_` do; and next_work().
+  std::uint32_t next_move_ = 1U << (kWheels * kDigitBits);
+  std::uint32_t next_work_ = next_move_;
 };
+
+inline Timer* TimerQueue::collect() {
+  if (next_work_ == next_move_) [[unlikely]]
+    move_down(next_work_);
+  const std::uint32_t now = next_work_;
+  const unsigned bucket = now % kBuckets;
+  const std::uint32_t others = occupied_[0] & ~(1U << bucket);
+  occupied_[0] = others;
+  std::uint32_t wait = next_move_ - now;
+  if (others != 0) {
+    const std::uint32_t behind = std::rotr(others, static_cast<int>(bucket));
+    wait = std::min(wait, static_cast<std::uint32_t>(std::countr_zero(behind)));
+  }
+  next_work_ = now + wait;
+  return std::exchange(wheels_[0][bucket], nullptr);
+}
 
 }  // namespace robosync::kernel

@@ -144,7 +144,12 @@ robosync_idle_masks:
     msr     basepri, r0
     wfi                             /* ends with any interrupt, which then waits for cpsie */
     bl      robosync_count_sleep
+    movs    r0, #0xFF               /* a SwitchLock again */
+    msr     basepri, r0
 robosync_idle_unmasks:
     cpsie   i
+    bl      robosync_end_sleep
+    movs    r0, #0
+    msr     basepri, r0             /* the tick and the switch happen here */
     b       1b
     .size   robosync_become_idle, . - robosync_become_idle

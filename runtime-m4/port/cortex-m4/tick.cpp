@@ -5,8 +5,8 @@
 // While all threads wait there are no ticks: the idle thread (switch.S) stops SysTick, sets the
 // board's alarm for the tick at which the timers have something to do, and sleeps. Whatever wakes
 // it, the ticks that have passed are counted before any interrupt is let in, so no handler and no
-// thread ever sees an old time. SysTick's handler, which runs before any thread does, starts the
-// ticks again where they belong.
+// thread ever sees an old time. Then, before any thread can run, the idle thread starts the ticks
+// again where they belong, and has SysTick's handler wake who is due.
 //
 // SysTick never strikes before the clock says that the tick is over: it is set by kLate too late.
 #include "runtime-m4/port/cortex-m4/tick.hpp"
@@ -29,24 +29,23 @@ constexpr std::uint32_t kSysTickOff = 6, kSysTickOn = 7;  // core clock, with it
 
 std::uint32_t counted_to = 0;  // the clock, at the latest tick that is counted; it counts down
 
-// The ticks that have passed since they were last counted, and the clock's counts after these.
-struct Passed {
-  std::uint32_t ticks, rest;
-};
-Passed count() {
-  const std::uint32_t now = Machine::clock();
-  const std::uint32_t passed = counted_to - now;
-  const std::uint32_t ticks = passed / hooks::kTickCounts;
-  const std::uint32_t rest = passed - ticks * hooks::kTickCounts;
-  counted_to = now + rest;
-  return {ticks, rest};
+// The ticks that have passed since they were last counted.
+[[gnu::noinline]] std::uint32_t count() {
+  const std::uint32_t before = counted_to;
+  const std::uint32_t ticks = (before - Machine::clock()) / hooks::kTickCounts;
+  counted_to = before - ticks * hooks::kTickCounts;
+  return ticks;
 }
 
-// SysTick strikes at every tick. `rest`: how much of the first one is over.
-[[gnu::cold]] void strike_at_ticks(std::uint32_t rest) {
-  core::reg(core::kSystRvr) = hooks::kTickCounts - rest + kLate - 1;
+// SysTick strikes at every tick, where the clock says that it is. In two parts, because the length of
+// all but the first may only be said when that of the first is loaded.
+void begin_to_strike() {
+  const std::uint32_t over = std::min(counted_to - Machine::clock(), hooks::kTickCounts - 1);
+  core::reg(core::kSystRvr) = hooks::kTickCounts - over + kLate - 1;
   core::reg(core::kSystCvr) = 0;
   core::reg(core::kSystCsr) = kSysTickOn;
+}
+void go_on_striking() {
   for (unsigned i = 0; i < kLooks && core::reg(core::kSystCvr) == 0; ++i) {
   }
   core::reg(core::kSystRvr) = hooks::kTickCounts - 1;
@@ -54,17 +53,13 @@ Passed count() {
 
 }  // namespace
 
-void start_tick() {
-  counted_to = Machine::clock();
-  strike_at_ticks(0);
-}
-
 }  // namespace robosync::port
 
 extern "C" {
 
-void robosync_set_alarm();
-void robosync_count_sleep();
+[[gnu::cold]] void robosync_set_alarm();
+[[gnu::cold]] void robosync_count_sleep();
+[[gnu::cold]] void robosync_end_sleep();
 void SysTick_Handler();
 
 // Called by switch.S when the idle thread is about to sleep, under a SwitchLock.
@@ -79,20 +74,28 @@ void robosync_set_alarm() {
   hooks::set_alarm(counts - passed + kLate);
 }
 
-// … and when it was woken, before interrupts are let in.
+// … when it was woken, before interrupts are let in: the tick is due, too …
 void robosync_count_sleep() {
   using namespace robosync::port;
-  robosync_kernel.pass(count().ticks);
-  hooks::clear_alarm();
+  robosync_kernel.pass(count());
   core::reg(core::kIcsr) = core::kIcsrSysTickSet;
 }
 
-void SysTick_Handler() {
+// … and then, under a SwitchLock. What it has to do while SysTick loads is done meanwhile.
+void robosync_end_sleep() {
   using namespace robosync::port;
-  const Passed passed = count();
-  if ((core::reg(core::kSystCsr) & 1U) == 0) [[unlikely]]
-    strike_at_ticks(passed.rest);
-  robosync_kernel.on_tick(passed.ticks);
+  begin_to_strike();
+  hooks::clear_alarm();
+  go_on_striking();
+}
+
+void SysTick_Handler() {
+  robosync_kernel.on_tick(robosync::port::count());
 }
 
 }  // extern "C"
+
+void robosync::port::start_tick() {
+  counted_to = Machine::clock();
+  robosync_end_sleep();
+}

@@ -42,8 +42,8 @@ struct Bench {
     if (!queue.has_work(now)) return;
     auto expected = model_due(now);
     std::vector<const Timer*> collected;
-    for (const Timer* t = queue.collect(); t != nullptr; t = t->next)
-      collected.push_back(t);
+    for (Timer* due = queue.collect(); due != nullptr;)
+      collected.push_back(&TimerQueue::take_first(due));
     std::sort(collected.begin(), collected.end());
     RC_ASSERT(collected == expected);
     RC_ASSERT(!queue.has_work(now));

@@ -210,12 +210,12 @@ inline wait_until(me) {
      if
      :: !there ->
         STEP(me, still = true);
-        STEP(me, reached = struck; struck = false; armed = !reached);
+        STEP(me, there = struck; struck = false; armed = !there; reached = true);
 #ifdef MUTANT_TICK_BETWEEN_ARM_AND_BLOCK
         STEP(me, still = false);
 #endif
         if
-        :: !reached ->
+        :: !there ->
            STEP(me, masked = true);
 #ifndef MUTANT_NO_LOOK_AFTER_ARMING
            STEP(me, there = ((events[me] & (A | B)) != 0));
@@ -234,6 +234,7 @@ inline wait_until(me) {
      fi;
      take(me);
      STEP(me, timed = false);
+     STEP(me, reached = reached && !armed; struck = struck && !reached);
      disarm(me)
   :: else -> break
   od;
