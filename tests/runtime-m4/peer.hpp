@@ -9,9 +9,12 @@ namespace robosync {
 
 struct RuntimePeer {
   // In the next step all rules of a behaviour are evaluated when one of them is concerned, as in
-  // its first step; which must make no difference.
+  // its first step; which must make no difference. SAFETY rules are looked at by the safety thread,
+  // never by a step.
   static void concern_all(Runtime& runtime) {
-    runtime.processing_.untouched_ = ~layers::BehaviorMask{0};
+    auto all = ~layers::BehaviorMask{0};
+    if (runtime.image().has_safety()) all &= ~(layers::BehaviorMask{1} << vm::kSafetyBehavior);
+    runtime.processing_.untouched_ = all;
   }
 };
 

@@ -145,7 +145,7 @@ robosync_idle_masks:
     wfi                             /* ends with any interrupt, which then waits for cpsie */
     bl      robosync_count_sleep
     movs    r0, #0xFF               /* a SwitchLock again */
-    msr     basepri, r0
+    msr     basepri_max, r0
 robosync_idle_unmasks:
     cpsie   i
     bl      robosync_end_sleep
