@@ -93,8 +93,8 @@ TEST_CASE("no program can tell whether all rules are evaluated or only those con
     }
     ++compared;
     tripped += std::ranges::count_if(few->lines, [](const std::string& line) {
-      return line.find(" trip ") != std::string::npos;
-    }) > 0;
+                 return line.find(" trip ") != std::string::npos;
+               }) > 0;
     concerned += few->evaluations;
     all += every->evaluations;
   }
