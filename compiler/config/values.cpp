@@ -222,7 +222,7 @@ const Unit* read_unit(const json::Value& value, Diagnostics& diagnostics) {
   return unit;
 }
 
-void suggest_unit(Diagnostic& diagnostic, const std::string& written) {
+void suggest_unit(Diagnostic& diagnostic, std::string_view written) {
   std::vector<std::string> spellings;
   std::string list;
   for (const Unit& unit : units()) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "compiler/config/json_reader.hpp"
 #include "compiler/config/units.hpp"
@@ -47,6 +48,6 @@ struct Range {
 [[nodiscard]] const Unit* read_unit(const json::Value& value, Diagnostics& diagnostics);
 
 // For E0303: the nearest unit, or the list of all.
-void suggest_unit(Diagnostic& diagnostic, const std::string& written);
+void suggest_unit(Diagnostic& diagnostic, std::string_view written);
 
 }  // namespace robosync::compiler

@@ -186,7 +186,8 @@ std::string no_number(const Expr& expr) {
 }  // namespace
 
 std::string number(const Expr& expr) {
-  if (const auto* node = std::get_if<ast::Quantity>(&expr.node)) return node->digits + node->unit;
+  if (const auto* node = std::get_if<ast::Quantity>(&expr.node))
+    return std::string(node->digits) + std::string(node->unit);
   if (const auto* node = std::get_if<ast::Operand>(&expr.node)) return operand(*node);
   if (const auto* node = std::get_if<ast::Negate>(&expr.node)) return "-" + part(*node->value);
   if (const auto* node = std::get_if<ast::Arithmetic>(&expr.node)) {

@@ -179,8 +179,7 @@ Typed Commands::evaluate_number(const ast::Argument& argument) {
   if (const auto* amount = std::get_if<ast::Amount>(&argument.value))
     return amount->value ? expressions_.number(*amount->value) : Typed{};
   if (const auto* word = std::get_if<ast::Word>(&argument.value))
-    return expressions_.number_of(
-        expressions_.operand({word->name, std::nullopt}, word->name.span));
+    return expressions_.number_of(expressions_.operand({word->name, nullptr}, word->name.span));
   diagnostics_.report(Code::E0505, "a text cannot stand here, a number can").label(argument.span);
   return {};
 }

@@ -37,7 +37,10 @@ Typed Expressions::condition(const ast::Expr& expr) {
 }
 
 Typed Expressions::number(const ast::Expr& expr) {
-  return number_of(any(expr));
+  Typed result = any(expr);
+  if (result.type == Type::word || result.type == Type::condition)
+    result = number_of(std::move(result));
+  return result;
 }
 
 Typed Expressions::number_of(Typed result) {
@@ -54,9 +57,10 @@ Typed Expressions::number_of(Typed result) {
 Typed Expressions::of(const ast::Quantity& node, Span span) {
   const Unit* unit = find_unit(node.unit);
   if (unit == nullptr) {
-    suggest_unit(diagnostics_.report(Code::E0303, "there is no unit `" + node.unit + "`")
-                     .label(node.unit_span),
-                 node.unit);
+    suggest_unit(
+        diagnostics_.report(Code::E0303, "there is no unit `" + std::string(node.unit) + "`")
+            .label(node.unit_span),
+        node.unit);
     return make_nothing(span);
   }
   if (node.digits.empty()) return make_nothing(span);
@@ -406,18 +410,24 @@ void report_amount(const Typed& number, const Wanted& wanted, Diagnostics& diagn
   d.helps("did you mean `" + mended + "`?").fix(number.span, mended);
 }
 
+// Is it what was asked for? Reports when it is something else; a bare number takes the unit.
+bool is_amount(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
+  if (number.is_bare()) take_unit(number, wanted, diagnostics);
+  if (!number.is_number()) return false;
+  if (number.dimension() == wanted.unit->dimension) return true;
+  report_amount(number, wanted, diagnostics);
+  return false;
+}
+
 }  // namespace
 
+// One result, which is not moved on its way: every number of a program comes along here.
 Typed Expressions::amount(const ast::Expr& expr, const Wanted& wanted) {
   Typed result = number(expr);
-  if (!result.is_number()) return make_nothing(expr.span);
-  if (result.is_bare()) take_unit(result, wanted, diagnostics_);
-  if (!result.is_number()) return make_nothing(expr.span);
-  if (result.dimension() != wanted.unit->dimension) {
-    report_amount(result, wanted, diagnostics_);
-    return make_nothing(expr.span);
-  }
-  if (wanted.difference) make_difference(result);
+  if (!is_amount(result, wanted, diagnostics_))
+    result = make_nothing(expr.span);
+  else if (wanted.difference)
+    make_difference(result);
   return result;
 }
 

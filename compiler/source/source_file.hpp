@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,7 +49,7 @@ private:
 };
 
 // Every file of one compilation. FileId is the place in this list. References to files and views of
-// their text hold until the next `add`.
+// their text hold as long as the list.
 class SourceMap {
 public:
   FileId add(std::string name, std::string text);
@@ -57,7 +58,7 @@ public:
   std::string_view text(Span span) const { return files_[span.file].text(span); }
 
 private:
-  std::vector<SourceFile> files_;
+  std::deque<SourceFile> files_;
 };
 
 }  // namespace robosync::compiler

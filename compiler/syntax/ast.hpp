@@ -2,7 +2,8 @@
 //
 // The parser makes it, sema reads it; nothing is resolved here: names are text, numbers are as
 // written. Bison's variants need values that can be moved and default-constructed, hence `Box`.
-// Expressions are at most 100 levels deep and blocks 32, so recursion over a tree is safe.
+// Expressions are at most 100 levels deep and blocks 32, so recursion over a tree is safe. A large program is made of
+// many small nodes: what is seldom there is in a Box, and numbers are views of the source, which outlives its tree.
 // A name, number or text that was missing has an empty text: it has been reported already.
 #pragma once
 
@@ -10,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <variant>
 #include <vector>
@@ -30,15 +32,15 @@ struct Name {
 
 struct Expr;
 
-struct Quantity {      // 15, 0.5, 80cm, 40%
-  std::string digits;  // as written: "0.5"
-  std::string unit;    // as written; empty without one
+struct Quantity {           // 15, 0.5, 80cm, 40%
+  std::string_view digits;  // as written: "0.5"
+  std::string_view unit;    // as written; empty without one
   Span unit_span;
 };
 
 struct Operand {  // touchLevel, touch LEVEL, mood
   Name name;
-  std::optional<Name> channel;
+  Box<Name> channel;  // may be null
 };
 
 struct Negate {
@@ -314,8 +316,8 @@ struct Safety {
 struct TestFeed {
   Box<Expr> at;
   Operand target;
-  Box<Expr> value;  // a number, or an IsTruth without value for TRUE/FALSE
-  std::optional<std::string> text;
+  Box<Expr> value;        // a number, or an IsTruth without value for TRUE/FALSE
+  Box<std::string> text;  // in its place, when not null
 };
 struct ExpectCommand {
   bool no = false;

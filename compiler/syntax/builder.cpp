@@ -83,13 +83,12 @@ ast::Box<ast::Expr> Builder::quantity(Span span) {
       std::find_if(text.begin(), text.end(), [](char c) { return !is_digit(c) && c != '.'; });
   const auto digits = static_cast<std::uint32_t>(unit - text.begin());
   const Span unit_span{span.file, span.begin + digits, span.end};
-  return expr(span, ast::Quantity{std::string(text.begin(), unit), std::string(unit, text.end()),
-                                  unit_span});
+  return expr(span, ast::Quantity{text.substr(0, digits), text.substr(digits), unit_span});
 }
 
 ast::Box<ast::Expr> Builder::operand(Span span, Span first, std::optional<Span> channel) {
-  ast::Operand operand{name(first), std::nullopt};
-  if (channel) operand.channel = name(*channel);
+  ast::Operand operand{name(first), nullptr};
+  if (channel) operand.channel = std::make_unique<ast::Name>(name(*channel));
   return expr(span, std::move(operand));
 }
 
@@ -190,13 +189,12 @@ ast::Block Builder::both(ast::Block first, ast::Block second) const {
 }
 
 ast::TestFeed Builder::feed(Span at, ast::Box<ast::Expr> target, ast::Box<ast::Expr> value) {
-  return {quantity(at), std::move(std::get<ast::Operand>(target->node)), std::move(value),
-          std::nullopt};
+  return {quantity(at), std::move(std::get<ast::Operand>(target->node)), std::move(value), nullptr};
 }
 
 ast::TestFeed Builder::feed_text(Span at, ast::Box<ast::Expr> target, Span text) {
   return {quantity(at), std::move(std::get<ast::Operand>(target->node)), nullptr,
-          quoted(text).text};
+          std::make_unique<std::string>(quoted(text).text)};
 }
 
 }  // namespace robosync::compiler

@@ -39,11 +39,8 @@ public:
   // ---- expressions
   template <typename Node>
   ast::Box<ast::Expr> expr(Span span, Node node) {
-    auto made = std::make_unique<ast::Expr>();
-    made->span = span;
-    made->depth = levels(node);
-    made->node = std::move(node);
-    return shallow(std::move(made));
+    const std::uint16_t depth = levels(node);
+    return shallow(ast::Box<ast::Expr>(new ast::Expr{span, std::move(node), depth}));
   }
   ast::Box<ast::Expr> times_within(Span span, ast::Box<ast::Expr> condition, Span times,
                                    ast::Box<ast::Expr> within);

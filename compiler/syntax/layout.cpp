@@ -1,6 +1,9 @@
 // See layout.hpp.
 #include "compiler/syntax/layout.hpp"
 
+#include <algorithm>
+#include <cstddef>
+
 #include "compiler/syntax/block_walk.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 
@@ -114,6 +117,21 @@ std::vector<Region> split_into_regions(std::span<const Token> tokens, const Sour
 
 namespace {
 
+constexpr std::size_t deepest_block = 32;
+constexpr std::size_t deepest_bracket = 64;
+
+bool is_sign(TokenKind kind) {
+  return kind == Kinds::MINUS || kind == Kinds::NOT || kind == Kinds::OPEN;
+}
+
+// Most pieces have too few tokens that go down for any of them to be too deep.
+bool may_be_deep(std::span<const Token> tokens) {
+  const auto goes_down = [](const Token& token) {
+    return is_sign(token.kind) || (roles_of(token.kind) & role::opens) != 0;
+  };
+  return std::ranges::count_if(tokens, goes_down) > static_cast<std::ptrdiff_t>(deepest_block);
+}
+
 // Counts what makes the grammar's stack grow: open IF, REPEAT and PICK blocks, open brackets, and
 // signs in a row like NOT NOT NOT.
 class Depth {
@@ -123,13 +141,10 @@ public:
   bool too_deep_at(std::size_t at) {
     step_blocks(at);
     step_expression(tokens_[at].kind);
-    return blocks_ > deepest_block || brackets_ > deepest_expression || signs_ > deepest_expression;
+    return blocks_ > deepest_block || brackets_ > deepest_bracket || signs_ > deepest_bracket;
   }
 
 private:
-  static constexpr std::size_t deepest_block = 32;
-  static constexpr std::size_t deepest_expression = 64;
-
   bool is_statement(std::size_t at) const {
     return (roles_of(tokens_[at].kind) & role::statement) != 0;
   }
@@ -148,8 +163,7 @@ private:
     if (kind == Kinds::NEWLINE) brackets_ = 0;
     if (kind == Kinds::OPEN) ++brackets_;
     if (kind == Kinds::CLOSE && brackets_ > 0) --brackets_;
-    const bool sign = kind == Kinds::MINUS || kind == Kinds::NOT || kind == Kinds::OPEN;
-    signs_ = sign ? signs_ + 1 : 0;
+    signs_ = is_sign(kind) ? signs_ + 1 : 0;
   }
 
   std::span<const Token> tokens_;
@@ -161,6 +175,7 @@ private:
 }  // namespace
 
 std::optional<std::size_t> nested_too_deeply(std::span<const Token> tokens) {
+  if (!may_be_deep(tokens)) return std::nullopt;
   Depth depth(tokens);
   for (std::size_t at = 0; at < tokens.size(); ++at) {
     if (depth.too_deep_at(at)) return at;

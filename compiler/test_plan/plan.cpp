@@ -100,8 +100,7 @@ private:
     }
     now_ = *at;
     reach(now_);
-    plan_->channels[*channel] = {names_.sensor(*channel).name.text,
-                                 names_.channel(*channel).name.text};
+    name_channel(*channel);
     test_.readings.push_back({now_, *channel, *value});
   }
 
@@ -219,11 +218,14 @@ private:
         .helps("expect something that can be seen at one moment, WITHIN some time");
   }
 
+  void name_channel(ChannelRef channel) {
+    if (plan_->channels.contains(channel)) return;
+    plan_->channels[channel] = {names_.sensor(channel).name.text,
+                                names_.channel(channel).name.text};
+  }
+
   void name_channels(const Expression& expression) {
-    if (expression.operation == Operation::input) {
-      plan_->channels[expression.channel] = {names_.sensor(expression.channel).name.text,
-                                             names_.channel(expression.channel).name.text};
-    }
+    if (expression.operation == Operation::input) name_channel(expression.channel);
     for (const Expression& operand : expression.operands)
       name_channels(operand);
   }

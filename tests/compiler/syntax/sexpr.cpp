@@ -45,7 +45,7 @@ std::string show(const std::vector<Name>& names) {
 // ---- expressions
 
 std::string show(const Quantity& n) {
-  return n.digits + n.unit;
+  return std::string(n.digits) + std::string(n.unit);
 }
 std::string show(const Operand& n) {
   return n.channel ? n.name.text + "." + n.channel->text : n.name.text;
@@ -263,7 +263,8 @@ std::string show(const Safety& n) {
 }
 
 std::string show(const TestFeed& n) {
-  return list({"feed", show(n.at), show(n.target), n.text ? quoted(*n.text) : show(n.value)});
+  return list(
+      {"feed", show(n.at), show(n.target), n.text ? testing::quoted(*n.text) : show(n.value)});
 }
 std::string show(const ExpectCommand& n) {
   return list({n.no ? "expect-no" : "expect", show(n.command), show(n.within)});
