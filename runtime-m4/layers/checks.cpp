@@ -23,11 +23,7 @@ void Checks::start(const vm::Image& image) {
 bool Checks::update(unsigned check, std::uint32_t now, std::span<vm::Value> values) {
   const vm::Check& wiring = wiring_[check];
   vm::Value value = values[wiring.input];
-  if (wiring.window > 1) {
-    Window& window = windows_[check];
-    const Samples samples = std::span(samples_).subspan(window.first, wiring.window);
-    value = smoothed(window, samples, policy::sample_period_ms(wiring), now, value);
-  }
+  if (wiring.window > 1) value = smoothed(windows_[check], wiring, now, value);
   vm::Value& band = values[channels_ + wiring.variable];
   const vm::Value before = band;
   band = band_of(wiring, value, before);
@@ -46,57 +42,40 @@ std::uint32_t Checks::next(std::uint32_t now) const {
 
 // --- the window ---
 
-vm::Value Checks::smoothed(Window& window, Samples samples, unsigned period_ms, std::uint32_t now,
+vm::Value Checks::smoothed(Window& window, const vm::Check& wiring, std::uint32_t now,
                            vm::Value value) {
   if (value == vm::kUnknown) {
-    window = {.first = window.first};
+    window.held = window.median = value;
+    window.samples = {};
     return value;
   }
+  const unsigned size = wiring.window;
+  MedianWindow samples({&samples_[window.first], size}, {&orders_[window.first], size},
+                       window.samples);
+  const std::uint32_t period_ms = policy::sample_period_ms(wiring);
   const std::uint32_t since = now - window.newest;
-  if (window.count == 0) {
+  if (window.samples.count == 0) {
     window.newest = now;
-    push(window, samples, value);
+    samples.push(value);
   } else if (since == 0) {
-    samples[window.head] = value;
+    samples.replace_newest(value);
+  } else if (since == period_ms) {
+    window.newest = now;
+    samples.push(value);
   } else if (const std::uint32_t instants = since / period_ms; instants > 0) {
-    const bool now_is_one = since % period_ms == 0;
-    const std::size_t passed = std::min<std::size_t>(instants - now_is_one, samples.size());
-    for (std::size_t i = 0; i < passed; ++i)
-      push(window, samples, window.held);
-    if (now_is_one) push(window, samples, value);
-    window.newest += instants * period_ms;
+    const std::uint32_t last = instants * period_ms;
+    const bool now_is_one = since == last;
+    for (std::uint32_t i = std::min<std::uint32_t>(instants - now_is_one, size); i > 0; --i)
+      samples.push(window.held);
+    if (now_is_one) samples.push(value);
+    window.newest += last;
   } else {
     window.held = value;
     return window.median;
   }
   window.held = value;
-  window.median = median(window, samples);
+  window.median = samples.median();
   return window.median;
-}
-
-void Checks::push(Window& window, Samples samples, vm::Value value) {
-  window.head = static_cast<std::uint8_t>((window.head + 1U) % samples.size());
-  samples[window.head] = value;
-  if (window.count < samples.size()) ++window.count;
-}
-
-// By counting, so that no copy is needed: windows are short (vm::kMaxWindow). The samples stand at
-// head and before, around the end.
-vm::Value Checks::median(const Window& window, Samples samples) {
-  const unsigned middle = (window.count - 1U) / 2;
-  const auto sample = [&](unsigned age) {
-    return samples[(window.head + samples.size() - age) % samples.size()];
-  };
-  for (unsigned i = 0; i < window.count; ++i) {
-    unsigned less = 0;
-    unsigned equal = 0;
-    for (unsigned j = 0; j < window.count; ++j) {
-      if (sample(j) < sample(i)) ++less;
-      if (sample(j) == sample(i)) ++equal;
-    }
-    if (less <= middle && middle < less + equal) return sample(i);
-  }
-  return vm::kUnknown;  // of no samples
 }
 
 // --- the bands ---

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime-m4/layers/median.hpp"
 #include "runtime-m4/layers/messages.hpp"
 #include "vm/interpreter.hpp"
 
@@ -32,23 +33,20 @@ private:
     vm::Value held = vm::kUnknown;    // the input since the last step
     vm::Value median = vm::kUnknown;  // of its samples
     std::uint32_t newest = 0;         // when the newest one was taken
-    std::uint8_t count = 0;
-    std::uint8_t head = 0;   // place of the newest one
+    MedianWindow::State samples;
     std::uint8_t first = 0;  // place of its samples among all
   };
-  using Samples = std::span<vm::Value>;
 
-  static vm::Value smoothed(Window& window, Samples samples, unsigned period_ms, std::uint32_t now,
-                            vm::Value value);
-  static void push(Window& window, Samples samples, vm::Value value);
-  static vm::Value median(const Window& window, Samples samples);
+  vm::Value smoothed(Window& window, const vm::Check& wiring, std::uint32_t now, vm::Value value);
   vm::Value band_of(const vm::Check& check, vm::Value value, vm::Value before) const;
 
   std::span<const vm::Check> wiring_;
   std::span<const vm::Band> bands_;
   std::size_t channels_ = 0;
   std::array<Window, kMaxChecks> windows_{};
-  std::array<vm::Value, kMaxSamples> samples_{};  // of the windows, one behind the other
+  // Of the windows, one behind the other.
+  std::array<vm::Value, kMaxSamples> samples_{};
+  std::array<std::uint8_t, kMaxSamples> orders_{};
 };
 
 }  // namespace robosync::layers

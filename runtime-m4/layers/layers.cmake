@@ -12,6 +12,7 @@ target_sources(robosync_runtime PRIVATE
   layers/feed_queue.cpp
   layers/frames.cpp
   layers/mailbox.cpp
+  layers/median.cpp
   layers/order.cpp
   layers/processing.cpp
   layers/loaded_program.cpp
@@ -30,3 +31,5 @@ target_sources(robosync_runtime PRIVATE
   drivers/servo.cpp
   drivers/virtual_actuator.cpp
   drivers/virtual_sensor.cpp)
+set_source_files_properties(layers/median.cpp PROPERTIES
+  COMPILE_OPTIONS "-O2;$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns>")
