@@ -257,7 +257,7 @@ Instructions StepWork::standing() const {
     if (!is_safety(r) && wants_on(r) && may_lose(r)) sum += costs::kWanting;
   for (const vm::Check& check : image_.checks) {
     sum += costs::kCheck;
-    if (check.window > 1) sum += Instructions{costs::kSquare} * check.window * check.window;
+    if (check.window > 1) sum += Instructions{costs::kSample} * check.window;
   }
   for (const vm::Variable& variable : image_.variables)
     if (variable.fade != 0) sum += costs::kFading;
