@@ -108,11 +108,21 @@ def switches(marks, begin, end):
     return found
 
 
+def yields(marks, to):
+    """Instructions from where a thread lets another one run to the first behind the call by which that one
+    had left the processor."""
+    ends = [mark for mark in marks.all if mark[0] in ("mark_yields", "mark_high_runs", "mark_open_runs")]
+    return [last - first for (begin, first), (end, last) in zip(ends, ends[1:])
+            if (begin, end) == ("mark_yields", to)]
+
+
 def kernel_figures_of(marks):
     """What the kernel's steps cost at most, in instructions."""
     return {
         "switch": max(switches(marks, "PendSV_Handler", "return")),
         "switch_isolated": max(switches(marks, "PendSV_Unprivileged_Handler", "return_open")),
+        "yield": max(yields(marks, "mark_high_runs")),
+        "yield_isolated": max(yields(marks, "mark_open_runs")),
         "post_to_run_isolated": max(marks.spans("mark_post_open", "mark_open_runs")),
         "block_isolated": max(marks.spans("mark_open_blocks", "mark_low_runs_again")),
         "irq_to_thread_isolated": max(marks.spans("mark_pend_open", "mark_open_runs")),
