@@ -15,7 +15,7 @@ HEAD = """# Measurements
 Printed by `scripts/bench --markdown`. `insn` are executed Cortex-M4 instructions, counted exactly by a plugin in
 QEMU 7.2 (`bench/count_plugin/`); they are not cycles. Bytes are what the linker kept. Times are wall clock, of
 `compile/…` CPU time, on the machine that printed this page. What each figure means: `bench/figures.py`,
-`bench/workloads.py`, `bench/growth.py` and `bench/compile_figures.py`;
+`bench/workloads.py`, `bench/growth.py`, `bench/idle.py` and `bench/compile_figures.py`;
 bars: `bench/bars.json`.
 
 `scripts/bench` fails when a bar is missed, and when a counted figure is more than 2 % above what `bench/recorded.json`
@@ -27,6 +27,9 @@ CHECKs, SAFETY, and the verification of all of them; then opcodes for hot loops,
 concern. Seven instructions of each switch are the time that threads ran, which no peer's figure includes: by these
 `kernel/post_to_run`, `block` (60), `irq_to_thread` (65), `switch_isolated` (60) and `post_to_run_isolated` (90) are above.
 `kernel/mailbox` (80) compares, keeps times and announces together; `kernel/lock_out_add` (50) is while a program is loaded.
+`kernel/yield_isolated` has the second system call in it, by which the thread that was let run takes its events.
+`path/smooth_sample` is `vm/W3_natural` with the largest window, 32 samples, in the order that moves most of them; its bands
+are in it. `firmware/idle_second_paper` is without what the bit-banged I2C bus executes, `…_i2c` is that alone.
 `vm/bytes_W3` (90): the response takes 88, the period of its EVERY, which the peers' step has not, 8 more.
 `vm/verify_per_word` is of
 the paper's image, most of which is wiring and names; `vm/verify_64k` is of 1,000 rules in 64 behaviours at the format's
