@@ -8,10 +8,11 @@ namespace {
 using kernel::Category;
 using kernel::Thread;
 
-// The thread that would run now but for safety.
+// The highest behaviour that would run now. Who outranks it may be ready, too: the looks are at the
+// ticks at which setpoints and samples are due.
 Thread* first_ready(const kernel::Kernel& kernel) {
   for (Thread* const thread : kernel.threads())
-    if (thread->category() != Category::safety && kernel.state(*thread) == Thread::State::ready)
+    if (thread->category() == Category::behavior && kernel.state(*thread) == Thread::State::ready)
       return thread;
   return nullptr;
 }
@@ -20,7 +21,7 @@ Thread* first_ready(const kernel::Kernel& kernel) {
 
 Thread* Budget::look(const kernel::Kernel& kernel) {
   Thread* const first = first_ready(kernel);
-  if (first == nullptr || first->category() != Category::behavior) {
+  if (first == nullptr) {
     forget();
     return nullptr;
   }

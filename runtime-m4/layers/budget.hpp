@@ -1,8 +1,8 @@
 // Holds the behaviours' threads to their budget. The verifier has bounded what each can take in a
 // step, so one that runs on and on runs something else: it is stopped, and the others go on.
 //
-// Looked at by the safety monitor, and only while the step thread makes no progress: the thread of
-// highest rank that is ready is then the one that holds everything up. What counts is how long it
+// Looked at by the safety monitor, and only while the step thread makes no progress: the behaviour
+// of highest rank that is ready is then the one that holds everything up. What counts is how long it
 // ran by itself (Kernel::run_time()), so nobody pays for those that outrank him. Where time does
 // not flow nothing is ever stopped.
 #pragma once
