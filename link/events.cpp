@@ -19,7 +19,7 @@ struct EventHead {
 };
 #pragma pack(pop)
 
-static_assert(sizeof(EventHead) == kEventHeadBytes);
+static_assert(sizeof(EventHead) == kMaxEncodedEvent - sizeof(Event::values));
 
 }  // namespace
 
@@ -33,22 +33,14 @@ bool known(EventKind kind) {
   return false;
 }
 
-void encode_event_head(const Event& event, std::span<std::byte, kEventHeadBytes> out) {
-  const auto count = static_cast<std::uint8_t>(encoded_values(event).size() / sizeof(std::int32_t));
-  const EventHead head{event.time_us, event.step, event.kind, count, event.subject, event.object};
-  std::memcpy(out.data(), &head, sizeof head);
-}
-
-std::span<const std::byte> encoded_values(const Event& event) {
-  const std::size_t count = std::min<std::size_t>(event.value_count, kMaxEventValues);
-  return std::as_bytes(std::span(event.values).first(count));
-}
-
 std::size_t encode_event(const Event& event, std::span<std::byte, kMaxEncodedEvent> out) {
-  encode_event_head(event, out.first<kEventHeadBytes>());
-  const std::span<const std::byte> values = encoded_values(event);
-  std::ranges::copy(values, out.begin() + kEventHeadBytes);
-  return kEventHeadBytes + values.size();
+  const auto count =
+      static_cast<std::uint8_t>(std::min<std::size_t>(event.value_count, kMaxEventValues));
+  const EventHead head{event.time_us, event.step, event.kind, count, event.subject, event.object};
+  const std::size_t values = count * sizeof event.values[0];
+  std::memcpy(out.data(), &head, sizeof head);
+  std::memcpy(out.data() + sizeof head, event.values.data(), values);
+  return sizeof head + values;
 }
 
 bool decode_event(std::span<const std::byte> payload, Event& event) {

@@ -18,8 +18,9 @@ enum class EventKind : std::uint8_t {
 
 inline constexpr std::size_t kMaxEventValues = 10;
 
-// `values` for `command`: [0] the word or -1, [1] the mask of given parameters, then their values
-// in order.
+// Of `values` the first value_count are there; the others are undefined, since the board makes
+// events in a hurry. For `command`: [0] the word or -1, [1] the mask of given parameters, then their
+// values in order.
 struct Event {
   std::uint64_t time_us = 0;  // program time of the step
   std::uint32_t step = 0;
@@ -27,7 +28,7 @@ struct Event {
   std::uint8_t value_count = 0;
   std::uint16_t subject = 0;
   std::uint16_t object = 0;
-  std::array<std::int32_t, kMaxEventValues> values{};
+  std::array<std::int32_t, kMaxEventValues> values;
 };
 
 // Largest wire form: time, step, kind, count, subject, object, then `count` values.
@@ -36,12 +37,7 @@ static_assert(kMaxEncodedEvent <= kMaxPayload);
 
 [[nodiscard]] bool known(EventKind kind);  // it stands in events.def
 
-// The wire form in two pieces, for who has no room for it as a whole: what stands before the
-// values, and the values as they are in memory. At most kMaxEventValues are sent.
-inline constexpr std::size_t kEventHeadBytes = kMaxEncodedEvent - 4 * kMaxEventValues;
-void encode_event_head(const Event& event, std::span<std::byte, kEventHeadBytes> out);
-[[nodiscard]] std::span<const std::byte> encoded_values(const Event& event);
-// Returns the length of the wire form.
+// Returns the length of the wire form. At most kMaxEventValues are sent.
 std::size_t encode_event(const Event& event, std::span<std::byte, kMaxEncodedEvent> out);
 // False when the payload is not a whole event of a known kind.
 [[nodiscard]] bool decode_event(std::span<const std::byte> payload, Event& event);

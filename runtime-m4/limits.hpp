@@ -72,11 +72,11 @@ inline constexpr unsigned kMaxProgramThreads = limit(16U, 120U);
 inline constexpr std::size_t kSensorStack = 512;
 inline constexpr std::size_t kStepStack = limit<std::size_t>(736, 1536);
 inline constexpr std::size_t kBehaviorStack = limit<std::size_t>(320, 512);  // no guard
-inline constexpr std::size_t kControlStack = 544;
+inline constexpr std::size_t kControlStack = 512;
 inline constexpr std::size_t kSafetyStack = limit<std::size_t>(896, 1536);
 inline constexpr std::size_t kLinkStack =
     limit<std::size_t>(1536, 3072);  // it verifies and loads programs
 // For all threads of a program.
-inline constexpr std::size_t kStackArena = limit<std::size_t>(6080, 73728);
+inline constexpr std::size_t kStackArena = limit<std::size_t>(5760, 73728);
 
 }  // namespace robosync::layers

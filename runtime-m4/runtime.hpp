@@ -113,6 +113,7 @@ private:
   alignas(layers::kReadableAlignment) layers::LoadedProgram program_;
   layers::Frames frames_;
   layers::Triggers triggers_;
+  layers::Arbiter arbiter_;
   layers::BehaviorLayer behaviors_;
   layers::ProcessingLayer processing_;
 };
@@ -131,6 +132,7 @@ constexpr Runtime::Layout Runtime::layout() {
   static_assert(offsetof(Runtime, threads_) < kLayout.may_be_readable);
   static_assert(kLayout.readable < offsetof(Runtime, frames_));
   static_assert(kLayout.readable < offsetof(Runtime, triggers_));
+  static_assert(kLayout.readable < offsetof(Runtime, arbiter_));
   static_assert(kLayout.readable < offsetof(Runtime, behaviors_));
   static_assert(kLayout.readable < offsetof(Runtime, processing_));
   return kLayout;

@@ -32,7 +32,6 @@ bool decode(Word word, Effect effect, Output& output) {
 }  // namespace
 
 bool OutputReader::next(Output& output) {
-  output = {};
   unsigned given = 0;
   while (!words_.empty()) {
     const Word word = words_[0];

@@ -11,6 +11,7 @@ namespace robosync::vm {
 
 enum class OutputKind : std::uint8_t { command, log, alert, halt };
 
+// Nothing is set but what `kind` has, since the board reads these in a hurry.
 struct Output {
   OutputKind kind;
   std::uint16_t text;   // log, alert: offset in the strings

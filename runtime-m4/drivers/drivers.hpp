@@ -23,8 +23,8 @@ using ReadFunction = bool (*)(boards::Board& board, const vm::Sensor& sensor,
 // What an actuator is to do: parameters are known values inside the actuator's range and limits.
 struct Order {
   vm::Action action = vm::Action::stop;
-  std::uint8_t given = 0;  // bit p: params[p] is there
-  std::array<vm::Value, static_cast<std::size_t>(vm::Param::count_)> params{};
+  std::uint8_t given = 0;  // bit p: params[p] is there; the others are undefined
+  std::array<vm::Value, static_cast<std::size_t>(vm::Param::count_)> params;
 
   bool has(vm::Param param) const { return (given >> static_cast<unsigned>(param) & 1) != 0; }
   vm::Value get(vm::Param param, vm::Value otherwise) const {

@@ -22,4 +22,10 @@ inline void report(Kernel& kernel) {
   port::call(kernel, static_cast<std::uint32_t>(Call::report), 0);
 }
 
+// Says that it has done what it was woken for, and waits to be woken again: for a thread that knows
+// by itself what for, and is not signalled before it has said so.  [a thread without privileges]
+inline void rest(Kernel& kernel, Events mask) {
+  port::call(kernel, static_cast<std::uint32_t>(Call::rest), mask);
+}
+
 }  // namespace robosync::kernel::calls

@@ -129,6 +129,13 @@ void Kernel::report() {
   if (watcher_ != nullptr) signal(*watcher_, report_events_);
 }
 
+// Its interrupts are held off.
+void Kernel::rest(Events mask) {
+  running_->events_ &= ~mask;
+  report();
+  block(*running_, mask);
+}
+
 void Kernel::wake_due() {
   do {
     Timer* due = timers_.collect();

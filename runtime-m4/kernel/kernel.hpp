@@ -50,6 +50,14 @@ public:
   }
 
   Time now() const;  // [any]
+  // The same under lock(). In two multiplications, where one of 64 bits takes three times as long.
+  Time time() const {
+    constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);
+    const std::uint32_t upper = eras_ * kTickLength;
+    return Time{tick_} * kTickLength + (Time{upper} << 32U);
+  }
+  // The ticks of it, of which the upper ones are lost: for differences.  [any]
+  std::uint32_t tick() const { return tick_; }
   // Who runs, or was interrupted.  [any]
   Thread& current() { return *running_; }
 
@@ -179,6 +187,9 @@ public:
       case Call::report:
         report();
         return true;
+      case Call::rest:
+        rest(argument);
+        return true;
     }
     return false;
   }
@@ -214,16 +225,11 @@ private:
   void block(Thread& thread, Events mask);
   Events take_or_block(Events mask);
   void report();
+  void rest(Events mask);
   void make_ready(Thread& thread);
   [[gnu::cold]] void make_unready(Thread& thread);
   [[gnu::noinline]] void wake_due();
   [[gnu::cold]] void begin_era(std::uint32_t tick);
-  // Under a SwitchLock. In two multiplications, where one of 64 bits takes three times as long.
-  Time time() const {
-    constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);
-    const std::uint32_t upper = eras_ * kTickLength;
-    return Time{tick_} * kTickLength + (Time{upper} << 32U);
-  }
   void enter(Thread& thread);
   void leave(const Thread& thread);
   void rise(const Thread& thread);

@@ -17,35 +17,44 @@ bool may_take(const Claim& claim, const Holding& from) {
 
 }  // namespace
 
-Decision decide(const Claim& claim, std::span<const Holding> holdings, const RuleSet& running,
-                ActuatorMask halted) {
-  Decision decision{.interrupted = {}, .wins = true, .owner = claim.behavior};
-  const bool runs = running.has(claim.rule);
-  if (runs && holdings[claim.rule].side == claim.side && !claim.restarting) {
-    decision.wins = false;  // already running: the trigger is ignored
-    return decision;
-  }
+void Arbiter::start() {
+  holdings_.fill(Holding{});
+  running_.clear();
+  owned_ = 0;
+  halted_ = 0;
+}
+
+void Arbiter::end_step() {
+  for (const unsigned rule : running_)
+    holdings_[rule].won_now = false;
+}
+
+Decision Arbiter::decide_among_owners(const Claim& claim) const {
   std::uint8_t owner = kNobody;
-  if ((claim.actuators & halted) != 0) {
-    decision.wins = false;
-    owner = vm::kSafetyBehavior;
-  }
-  for (const unsigned rule : running) {
-    const Holding& other = holdings[rule];
+  if ((claim.actuators & halted_) != 0) owner = vm::kSafetyBehavior;
+  for (const unsigned rule : running_) {
+    const Holding& other = holdings_[rule];
     if (rule == claim.rule || (other.actuators & claim.actuators) == 0) continue;
-    if (may_take(claim, other)) {
-      decision.interrupted.insert(rule);
-    } else {
-      decision.wins = false;
-      owner = std::min(owner, other.behavior);
-    }
+    if (!may_take(claim, other)) owner = std::min(owner, other.behavior);
   }
-  if (!decision.wins) {
-    decision.interrupted.clear();
-    decision.owner = owner;
-  }
-  if (runs) decision.interrupted.insert(claim.rule);
-  return decision;
+  if (owner == kNobody) return {};
+  return {.outcome = Outcome::loses, .owner = owner};
+}
+
+bool Arbiter::ends(const Claim& claim, const Decision& decision, unsigned rule) const {
+  if (decision.outcome == Outcome::ignored) return false;
+  if (rule == claim.rule) return true;
+  return decision.wins() && (holdings_[rule].actuators & claim.actuators) != 0;
+}
+
+void Arbiter::give(const Claim& claim) {
+  running_.insert(claim.rule);
+  owned_ |= claim.actuators;
+  holdings_[claim.rule] = Holding{.actuators = static_cast<ActuatorBits>(claim.actuators),
+                                  .pending = 0,
+                                  .behavior = claim.behavior,
+                                  .side = claim.side,
+                                  .won_now = true};
 }
 
 }  // namespace robosync::layers

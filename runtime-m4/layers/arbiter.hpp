@@ -1,4 +1,5 @@
-// Who gets the actuators. Pure: what is decided depends on the arguments only.
+// Who has the actuators, and who gets them. What is decided depends on nothing but what stands here
+// and the claim.
 //
 // Claims of a step are served from the highest priority down, inside a behaviour in file order;
 // that is the order of the rules in the image. What users are told of it: docs/language.md
@@ -12,8 +13,8 @@
 //   rules.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <span>
 
 #include "runtime-m4/layers/messages.hpp"
 #include "runtime-m4/layers/rule_set.hpp"
@@ -32,8 +33,7 @@ struct Claim {
   bool retries = false;     // it did not trigger now, but wants to run since earlier
 };
 
-// What a rule has while its response runs. A table of these, by rule, and the set of those that run
-// are all there is to know of ownership.
+// What a rule has while its response runs.
 struct Holding {
   ActuatorBits actuators = 0;
   ActuatorBits pending = 0;  // of these, the ones with commands not yet done
@@ -42,13 +42,59 @@ struct Holding {
   bool won_now : 1 = false;  // in this step
 };
 
+enum class Outcome : std::uint8_t {
+  wins,
+  loses,
+  ignored,  // it runs already: nothing changes
+};
 struct Decision {
-  RuleSet interrupted;  // running rules that end because of this claim
-  bool wins = false;
+  Outcome outcome = Outcome::wins;
   std::uint8_t owner = 0;  // if it does not win: the behaviour in its way, of the highest priority
+
+  bool wins() const { return outcome == Outcome::wins; }
 };
 
-[[nodiscard]] Decision decide(const Claim& claim, std::span<const Holding> holdings,
-                              const RuleSet& running, ActuatorMask halted = 0);
+class Arbiter {
+public:
+  void start();
+
+  // What safety has halted, from now on.
+  void note_halted(ActuatorMask halted) { halted_ = halted; }
+  // The step is over: what was won in it may be lost in the next one.
+  void end_step();
+
+  // Read by the behaviours' threads as well.
+  [[nodiscard]] Decision decide(const Claim& claim) const {
+    const bool again = running_.has(claim.rule) && holdings_[claim.rule].side == claim.side;
+    if (again && !claim.restarting) return {.outcome = Outcome::ignored, .owner = claim.behavior};
+    if ((claim.actuators & (owned_ | halted_)) == 0) [[likely]]
+      return {};
+    return decide_among_owners(claim);
+  }
+  // Does the response of `rule`, which runs, end by a claim that was decided so?
+  [[nodiscard]] bool ends(const Claim& claim, const Decision& decision, unsigned rule) const;
+
+  // The claim has won, and who ended by it is gone.
+  void give(const Claim& claim);
+  // The response of `rule`, which runs, is over.
+  void end(unsigned rule) {
+    owned_ &= ~ActuatorMask{holdings_[rule].actuators};
+    running_.erase(rule);
+  }
+
+  const RuleSet& running() const { return running_; }
+  bool runs(unsigned rule) const { return running_.has(rule); }
+  Holding& holding(unsigned rule) { return holdings_[rule]; }
+  const Holding& holding(unsigned rule) const { return holdings_[rule]; }
+  ActuatorMask owned() const { return owned_; }  // by all that run; each has one owner
+
+private:
+  Decision decide_among_owners(const Claim& claim) const;
+
+  std::array<Holding, kMaxRules> holdings_{};
+  RuleSet running_;  // their responses run, or wait
+  ActuatorMask owned_ = 0;
+  ActuatorMask halted_ = 0;
+};
 
 }  // namespace robosync::layers

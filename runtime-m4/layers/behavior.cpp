@@ -17,8 +17,9 @@ using link::EventKind;
 bool BehaviorLayer::start(const LoadedProgram& program, ProgramThreads& threads) {
   program_ = &program;
   snapshot_ = nullptr;
-  released_ = 0;
+  is_released_ = false;
   retired_ = 0;
+  has_run_.clear();
   resume_points_.fill({});
   for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b)
     if (!start_unit(b, threads)) return false;
@@ -45,46 +46,56 @@ bool BehaviorLayer::start_unit(unsigned behavior, ProgramThreads& threads) {
 
 // --- called from the step thread ---
 
-void BehaviorLayer::evaluate(const RuleSet& rules, const Snapshot& snapshot) {
+void BehaviorLayer::begin_step(const Snapshot& snapshot) {
   snapshot_ = &snapshot;
+  if (snapshot.milliseconds() != ran_at_) has_run_.clear();
+  ran_at_ = snapshot.milliseconds();
+}
+
+void BehaviorLayer::take_turn(unsigned behavior, const RuleSet& rules) {
   concerned_ = &rules;
-  BehaviorMask behaviors = 0;
-  for (const unsigned rule : rules)
-    behaviors |= bit<BehaviorMask>(program_->behavior_of[rule]);
-  const auto lock = kernel_.lock();  // all of them are ready before the first one runs
-  for (BehaviorMask left = behaviors & ~retired_; left != 0; left &= left - 1)
-    release(static_cast<unsigned>(std::countr_zero(left)), kEvaluate);
+  rule_ = kNobody;
+  release(behavior);
 }
 
 void BehaviorLayer::respond(unsigned rule, Side side) {
   resume_points_[rule] = {};
-  release(rule, program_->image.responses[response_of(rule, side)].start);
+  release_to_run(rule, begin_of(rule, side));
 }
 
 void BehaviorLayer::go_on(unsigned rule) {
-  release(rule, resume_points_[rule].next);
+  release_to_run(rule, resume_points_[rule].next);
 }
 
-void BehaviorLayer::release(unsigned rule, std::uint16_t code) {
+void BehaviorLayer::release_to_run(unsigned rule, unsigned code) {
   rule_ = static_cast<std::uint16_t>(rule);
-  code_ = code;
-  workspace_.result = {};
-  const unsigned behavior = program_->behavior_of[rule];
-  if (!has(retired_, behavior)) release(behavior, kRespond);
+  code_ = static_cast<std::uint16_t>(code);
+  release(program_->behavior_of[rule]);
 }
 
-void BehaviorLayer::release(unsigned behavior, kernel::Events event) {
-  released_ |= bit<BehaviorMask>(behavior);
-  workspace_.finished[behavior] = false;
-  kernel_.signal(*units_[behavior].thread, event);
+// Nothing comes of one that was stopped.
+void BehaviorLayer::release(unsigned behavior) {
+  workspace_.result.there = false;
+  if (has(retired_, behavior)) return;
+  released_ = static_cast<std::uint8_t>(behavior);
+  is_released_ = true;
+  workspace_.finished.store(false, std::memory_order_relaxed);
+  kernel_.signal(*units_[behavior].thread, kReleased);
 }
 
 bool BehaviorLayer::busy() {
-  for (BehaviorMask left = released_; left != 0; left &= left - 1) {
-    const auto behavior = static_cast<unsigned>(std::countr_zero(left));
-    if (workspace_.finished[behavior]) released_ &= ~bit<BehaviorMask>(behavior);
-  }
-  return released_ != 0;
+  if (workspace_.finished.load(std::memory_order_relaxed)) is_released_ = false;
+  return is_released_;
+}
+
+// It could say so of any rule of its own, as it could let it trigger.
+bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
+  const Result& result = workspace_.result;
+  if (!result.there) return false;
+  const RuleRange rules = program_->rules_of(behavior);
+  const unsigned rule = result.rule;
+  bool silent = false;
+  return rule >= rules.first && rule < rules.end && claim_of(rule, claim, silent);
 }
 
 // A place in the code, or none.
@@ -99,35 +110,40 @@ vm::Progress BehaviorLayer::checked_progress() const {
 
 // Nothing comes of a response whose behaviour was stopped meanwhile.
 void BehaviorLayer::conclude(unsigned rule) {
+  Result& result = workspace_.result;
   const unsigned behavior = program_->behavior_of[rule];
-  if (has(retired_, behavior)) workspace_.result = {};
+  if (has(retired_, behavior) || !result.there) result = {};
+  result.there = false;  // it is taken
+  has_run_.insert(rule);
   ResumePoint& point = resume_points_[rule];
   const vm::Progress progress = checked_progress();
   const bool waited = point.pause != vm::Pause::ended;
   const bool moved = progress.pause != vm::Pause::still_polling;
-  const Stamp stamp = layers_.trace.step();
-  if (waited && moved) layers_.trace.emit(EventKind::go_on, stamp, rule);
-  if (layers_.triggers.take_zero_divide(rule))
-    layers_.trace.emit(EventKind::zero_divide, stamp, rule);
-  const std::size_t words =
-      std::min<std::size_t>(workspace_.result.words, workspace_.output.size());
-  put_out(std::span(workspace_.output).first(words));
-  vm::Machine machine = layers_.frames.machine(*program_, behavior);
-  machine.assigned = workspace_.result.assigned;
-  machine.shifted = workspace_.result.shifted;
-  layers_.variables.stage(machine, program_->image.behaviors[behavior], *snapshot_);
+  Trace& trace = layers_.trace;
+  if (waited && moved) trace.emit(EventKind::go_on, trace.step(), rule);
+  if (result.zero_divide) trace.emit(EventKind::zero_divide, trace.step(), rule);
+  put_out(std::span(workspace_.output)
+              .first(std::min<std::size_t>(result.words, workspace_.output.size())));
+  if ((result.assigned | result.shifted) != 0) stage_writes(behavior);
   point = {};
   if (progress.pause == vm::Pause::ended) return;
   const bool for_commands = progress.pause == vm::Pause::until_done;
   point = {.wake = for_commands ? snapshot_->milliseconds() + 1 : progress.wake,
            .next = static_cast<std::uint16_t>(progress.next - program_->image.code.data()),
            .pause = progress.pause};
-  if (moved) layers_.trace.emit(EventKind::wait, stamp, rule);
+  if (moved) trace.emit(EventKind::wait, trace.step(), rule);
+}
+
+void BehaviorLayer::stage_writes(unsigned behavior) {
+  vm::Machine machine = layers_.frames.machine(*program_, behavior);
+  machine.assigned = workspace_.result.assigned;
+  machine.shifted = workspace_.result.shifted;
+  layers_.variables.stage(machine, program_->image.behaviors[behavior], *snapshot_);
 }
 
 void BehaviorLayer::put_out(std::span<const vm::Word> output) {
   vm::OutputReader reader(output);
-  vm::Output said{};
+  vm::Output said;
   while (reader.next(said)) {
     if (said.kind == vm::OutputKind::command) {
       stage(said);
@@ -143,14 +159,22 @@ void BehaviorLayer::stage(const vm::Output& said) {
   if (said.verb >= image.verbs.size()) return;
   if (said.word != vm::kNoWord && said.word >= image.words.size()) return;
   Command command;
+  command.action_ = image.verbs[said.verb].action;
   command.verb_ = said.verb;
   command.word_ = said.word;
   command.given_ = said.given;
-  command.params_ = said.params;
-  for (ActuatorMask left = image.target_mask(said.target); left != 0; left &= left - 1) {
-    command.actuator_ = static_cast<std::uint8_t>(std::countr_zero(left));
-    layers_.control.stage(command);
-  }
+  command.known_ = said.given;
+  each_bit(said.given, [&](unsigned p) { command.params_[p] = said.params[p]; });
+  if (said.word != vm::kNoWord) add_word(image.words[said.word], command);
+  layers_.control.stage(command, image.target_mask(said.target));
+}
+
+// The program's own parameter outweighs its word's.
+void BehaviorLayer::add_word(const vm::WordEntry& word, Command& command) {
+  const auto p = static_cast<unsigned>(word.param);
+  if (has<unsigned>(command.known_, p)) return;
+  command.params_[p] = word.value;
+  command.known_ = static_cast<std::uint8_t>(command.known_ | 1U << p);
 }
 
 void BehaviorLayer::retire(unsigned behavior) {
@@ -158,7 +182,7 @@ void BehaviorLayer::retire(unsigned behavior) {
   for (unsigned r = 0; r < wiring.rule_count; ++r)
     layers_.triggers.retire(wiring.first_rule + r);
   retired_ |= bit<BehaviorMask>(behavior);
-  released_ &= ~bit<BehaviorMask>(behavior);
+  if (behavior == released_) is_released_ = false;
 }
 
 std::uint16_t BehaviorLayer::response_of(unsigned rule, Side side) const {
@@ -166,21 +190,42 @@ std::uint16_t BehaviorLayer::response_of(unsigned rule, Side side) const {
   return side == Side::then ? wiring.then_response : wiring.else_response;
 }
 
+bool BehaviorLayer::claim_of(unsigned rule, Claim& claim, bool& silent) const {
+  Triggers::Wish wish;
+  const bool runs = layers_.arbiter.runs(rule);
+  if (!layers_.triggers.wish(rule, runs, wish)) return false;
+  silent = wish.silent;
+  claim = {.rule = static_cast<std::uint16_t>(rule),
+           .behavior = program_->behavior_of[rule],
+           .side = wish.side,
+           .actuators = program_->image.responses[response_of(rule, wish.side)].actuators,
+           .restarting = runs && layers_.triggers.restarting(rule),
+           .retries = !wish.fresh};
+  return true;
+}
+
 // --- a behaviour's thread: without privileges, behind the MPU ---
 
-// It reads the program, the snapshot and this layer; it writes its stack and the workspace; it asks
-// the kernel by the calls of kernel/calls.def. Anything else would stop it. It may rely on the
-// verifier for responses that give up within the step's budget and kMaxResponseOutput words.
+// It reads the program, the snapshot, this layer, the triggers and the arbiter; it writes its stack
+// and the workspace; it asks the kernel by the calls of kernel/calls.def. Anything else would stop
+// it. It may rely on the verifier for responses that give up within the step's budget and
+// kMaxResponseOutput words.
 
 void BehaviorLayer::run(Unit& unit) {
   vm::Machine machine = layers_.frames.machine(*program_, unit.behavior);
+  (void)kernel::calls::wait(kernel_, kReleased);
   while (true) {
-    const kernel::Events events = kernel::calls::wait(kernel_, kEvaluate | kRespond);
     latch(unit, machine);
-    if ((events & kEvaluate) != 0) evaluate_rules(unit, machine);
-    if ((events & kRespond) != 0) run_response(machine);
-    workspace_.finished[unit.behavior] = true;
-    kernel::calls::report(kernel_);
+    if (rule_ != kNobody) {
+      run_response(machine, rule_, code_);
+    } else {
+      evaluate_rules(unit, machine);
+      Claim claim;
+      if (sole_claim(program_->rules_of(unit.behavior), claim))
+        run_response(machine, claim.rule, begin_of(claim.rule, claim.side));
+    }
+    workspace_.finished.store(true, std::memory_order_relaxed);
+    kernel::calls::rest(kernel_, kReleased);
   }
 }
 
@@ -192,10 +237,8 @@ void BehaviorLayer::latch(const Unit& unit, vm::Machine& machine) {
 }
 
 void BehaviorLayer::evaluate_rules(const Unit& unit, vm::Machine& machine) {
-  const vm::Behavior& behavior = program_->image.behaviors[unit.behavior];
-  const unsigned end = behavior.first_rule + 0U + behavior.rule_count;
-  for (unsigned r = concerned_->from(behavior.first_rule); r < end; r = concerned_->from(r + 1))
-    judge_rule(r, machine);
+  concerned_->each_in(program_->rules_of(unit.behavior),
+                      [&](unsigned rule) { judge_rule(rule, machine); });
 }
 
 void BehaviorLayer::judge_rule(unsigned rule, vm::Machine& machine) {
@@ -228,20 +271,46 @@ void BehaviorLayer::evaluate_period(unsigned rule, vm::Machine& machine) {
   layers_.triggers.draw_period(rule, evaluate_rule(rule, machine), machine.now);
 }
 
-void BehaviorLayer::run_response(vm::Machine& machine) {
+// Of the responses that the behaviour runs in this step there is one, which begins, and it wins. Of
+// several the step thread must see to the order, and to who has what after each.
+bool BehaviorLayer::sole_claim(RuleRange rules, Claim& claim) const {
+  if (waits(rules)) return false;
+  unsigned found = 0;
+  concerned_->each_in_either(layers_.triggers.active(), rules, [&](unsigned rule) {
+    bool silent = false;
+    Claim another;
+    if (must_pause(rule) || !claim_of(rule, another, silent)) return;
+    ++found;
+    claim = another;
+  });
+  return found == 1 && layers_.arbiter.decide(claim).wins();
+}
+
+// A response of its waits, and may go on in this step.
+bool BehaviorLayer::waits(RuleRange rules) const {
+  bool waits = false;
+  layers_.arbiter.running().each_in(
+      rules, [&](unsigned rule) { waits |= resume_points_[rule].pause != vm::Pause::ended; });
+  return waits;
+}
+
+void BehaviorLayer::run_response(vm::Machine& machine, unsigned rule, unsigned code) {
   machine.output = workspace_.output.data();
   machine.output_end = workspace_.output.data() + workspace_.output.size();
   machine.shifted = 0;
   machine.assigned = 0;
-  const vm::Progress progress = vm::respond(machine, &program_->image.code[code_]);
+  machine.wake = kNever;
+  const vm::Progress progress = vm::respond(machine, &program_->image.code[code]);
   workspace_.result = {
-      .pause = progress.pause,
       .next = progress.next,
       .wake = progress.wake,
+      .pause = progress.pause,
+      .zero_divide = std::exchange(machine.divided_by_zero, false),
+      .rule = static_cast<std::uint16_t>(rule),
       .assigned = machine.assigned,
       .shifted = machine.shifted,
-      .words = static_cast<std::uint16_t>(machine.output - workspace_.output.data())};
-  if (std::exchange(machine.divided_by_zero, false)) layers_.triggers.note_zero_divide(rule_);
+      .words = static_cast<std::uint16_t>(machine.output - workspace_.output.data()),
+      .there = true};
 }
 
 }  // namespace robosync::layers

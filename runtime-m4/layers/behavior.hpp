@@ -1,11 +1,13 @@
 // Behaviour layer: one thread per behaviour, ranked by priority, without privileges.
 //
-// Released by the step thread, a behaviour copies its inputs from the snapshot into its frame and
-// evaluates the conditions of those of its rules that the step concerns; what follows from them is
-// up to Triggers and the step thread. It is released again to run a response, from its beginning or
-// from where it waits. What comes of that stays in the workspace, from where the step thread takes
-// it: what was set to the variables, commands to the control layer, texts to the trace. A
-// behaviour's thread writes the workspace and nothing else (behavior_thread.cpp).
+// Released by the step thread, a behaviour takes its turn in the step: it copies its inputs from the
+// snapshot into its frame and evaluates the conditions of those of its rules that the step concerns.
+// Who owns what is known by then, since behaviours take their turns in the order of their priority:
+// so it mostly sees for itself that a response of its wins, and runs it in the same activation.
+// Otherwise it is released again to run one, from its beginning or from where it waits. What comes of
+// that stays in the workspace, from where the step thread takes it: what was set to the variables,
+// commands to the control layer, texts to the trace. A behaviour's thread writes the workspace and
+// nothing else.
 #pragma once
 
 #include <array>
@@ -33,6 +35,7 @@ public:
     Workspace& workspace;
     Frames& frames;
     Triggers& triggers;
+    const Arbiter& arbiter;
     Variables& variables;
     ControlLayer& control;
   };
@@ -49,25 +52,40 @@ public:
   // Starts the threads of `program`, which must stay until they are dismissed.
   [[nodiscard]] bool start(const LoadedProgram& program, ProgramThreads& threads);
 
-  // --- for the step thread; busy() until all released ones have finished. When one has, its thread
-  // makes the call `report` ---
-  // `rules` must stay until then.
-  void evaluate(const RuleSet& rules, const Snapshot& snapshot);
+  // --- for the step thread ---
+  void begin_step(const Snapshot& snapshot);
+  // One behaviour is released at a time: busy() until it has finished. When it has, its thread makes
+  // the call `rest`.
+  // Its turn: it evaluates those of its rules that are in `rules`.
+  void take_turn(unsigned behavior, const RuleSet& rules);
   void respond(unsigned rule, Side side);
   void go_on(unsigned rule);
   bool busy();
+  // In its turn it saw that it has one claim, that this wins, and that no other response of its runs
+  // in this step; so it has run the response.
+  bool sole_claim_of(unsigned behavior, Claim& claim) const;
   // The response has been run: tells what it has put out, stages its commands, and notes where it
   // waits. Not before, so that the behaviours' stacks can be short.
   void conclude(unsigned rule);
   const ResumePoint& resume_point(unsigned rule) const { return resume_points_[rule]; }
   void forget_resume_point(unsigned rule) { resume_points_[rule] = {}; }
   void retire(unsigned behavior);  // its thread was stopped
+  // The rule's response began or went on in this millisecond, and must not again.
+  bool has_run(unsigned rule, std::uint32_t now) const {
+    return now == ran_at_ && has_run_.has(rule);
+  }
 
-  std::uint16_t response_of(unsigned rule, Side side) const;
+  // --- for the step thread and the behaviour itself ---
+  // What `rule` claims now, if anything; silent: that it does was told before.
+  [[nodiscard]] bool claim_of(unsigned rule, Claim& claim, bool& silent) const;
+  // A WHILE whose response has run in this millisecond claims again in the next one.
+  [[nodiscard]] bool must_pause(unsigned rule) const {
+    return program_->image.rules[rule].kind == vm::RuleKind::while_ && has_run(rule, ran_at_);
+  }
 
 private:
-  static constexpr kernel::Events kEvaluate = 1;
-  static constexpr kernel::Events kRespond = 2;
+  static constexpr kernel::Events kReleased = 1;
+  static constexpr unsigned kNobody = 0xFFFF;
 
   struct Unit {
     BehaviorLayer* layer = nullptr;
@@ -76,6 +94,10 @@ private:
   };
 
   [[nodiscard]] bool start_unit(unsigned behavior, ProgramThreads& threads);
+  std::uint16_t response_of(unsigned rule, Side side) const;
+  unsigned begin_of(unsigned rule, Side side) const {
+    return program_->image.responses[response_of(rule, side)].start;
+  }
   // --- the behaviour's thread: without privileges ---
   void run(Unit& unit);
   void latch(const Unit& unit, vm::Machine& machine);
@@ -83,13 +105,17 @@ private:
   void judge_rule(unsigned rule, vm::Machine& machine);
   vm::Value evaluate_rule(unsigned rule, vm::Machine& machine);
   void evaluate_period(unsigned rule, vm::Machine& machine);
-  void run_response(vm::Machine& machine);
+  bool sole_claim(RuleRange rules, Claim& claim) const;
+  bool waits(RuleRange rules) const;
+  void run_response(vm::Machine& machine, unsigned rule, unsigned code);
 
   void put_out(std::span<const vm::Word> output);
   void stage(const vm::Output& said);
+  static void add_word(const vm::WordEntry& word, Command& command);
+  void stage_writes(unsigned behavior);
   vm::Progress checked_progress() const;
-  void release(unsigned rule, std::uint16_t code);
-  void release(unsigned behavior, kernel::Events event);
+  void release(unsigned behavior);
+  void release_to_run(unsigned rule, unsigned code);
 
   kernel::Kernel& kernel_;
   Neighbours layers_;
@@ -97,11 +123,14 @@ private:
   const LoadedProgram* program_ = nullptr;
   const Snapshot* snapshot_ = nullptr;
   const RuleSet* concerned_ = nullptr;
-  BehaviorMask released_ = 0;
   BehaviorMask retired_ = 0;
-  // What the behaviour that is released for it runs: the response of which rule, and from where.
-  std::uint16_t rule_ = 0;
+  // Who is released, and to run the response of which rule, from where; kNobody: for its turn.
+  std::uint8_t released_ = 0;
+  bool is_released_ = false;
+  std::uint16_t rule_ = kNobody;
   std::uint16_t code_ = 0;
+  RuleSet has_run_;           // their responses began or went on in the millisecond …
+  std::uint32_t ran_at_ = 0;  // … of the last step
   std::array<Unit, kMaxBehaviors> units_{};
   std::array<ResumePoint, kMaxRules> resume_points_{};
 };

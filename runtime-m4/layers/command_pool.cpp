@@ -15,7 +15,7 @@ bool CommandPool::push(Queue& queue, const Command& command) {
   const std::uint8_t taken = free_;
   Node& node = nodes_[taken];
   free_ = std::exchange(node.next, kNone);
-  node.command = command;
+  copy(command, node.command);
   if (queue.count == 0) {
     queue.first = taken;
   } else {
@@ -24,6 +24,16 @@ bool CommandPool::push(Queue& queue, const Command& command) {
   queue.last = taken;
   ++queue.count;
   return true;
+}
+
+// What is not given is not there to be copied.
+void CommandPool::copy(const Command& from, Command& to) {
+  to.action_ = from.action_;
+  to.verb_ = from.verb_;
+  to.word_ = from.word_;
+  to.given_ = from.given_;
+  to.known_ = from.known_;
+  each_bit(from.known_, [&](unsigned p) { to.params_[p] = from.params_[p]; });
 }
 
 void CommandPool::pop(Queue& queue) {

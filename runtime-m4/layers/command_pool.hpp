@@ -31,6 +31,7 @@ public:
 
 private:
   static constexpr std::uint8_t kNone = 0xFF;
+  static void copy(const Command& from, Command& to);
   struct Node {
     Command command;
     std::uint8_t next = kNone;

@@ -14,6 +14,7 @@ using link::EventKind;
 bool ControlLayer::start(const LoadedProgram& program, ProgramThreads& threads) {
   program_ = &program;
   staged_ = 0;
+  to_commit_ = 0;
   dropped_ = 0;
   idle_ = 0;
   retired_ = 0;
@@ -61,18 +62,23 @@ void ControlLayer::release_all() {
 
 // --- staging, cancelling, committing: called from the step thread ---
 
-void ControlLayer::stage(const Command& command) {
-  Unit& unit = units_[command.actuator()];
-  const bool stops = program_->image.verbs[command.verb()].action == vm::Action::stop;
-  bool fits = false;
-  {
-    const auto lock = kernel_.lock();
-    if (stops) pool_.clear(unit.staged);
-    unit.staged_stop |= stops;
-    const unsigned waiting = unit.staged_stop ? 0U : unit.queue.count;
-    fits = waiting + unit.staged.count < kMaxQueued && pool_.push(unit.staged, command);
+void ControlLayer::stage(const Command& command, ActuatorMask actuators) {
+  for (ActuatorMask left = actuators; left != 0; left &= left - 1) {
+    const auto actuator = static_cast<unsigned>(std::countr_zero(left));
+    const auto mine = bit<ActuatorMask>(actuator);
+    (stage_one(units_[actuator], command) ? staged_ : dropped_) |= mine;
   }
-  (fits ? staged_ : dropped_) |= bit<ActuatorMask>(command.actuator());
+  to_commit_ |= staged_;
+}
+
+bool ControlLayer::stage_one(Unit& unit, const Command& command) {
+  const auto lock = kernel_.lock();
+  if (command.action() == vm::Action::stop) {
+    pool_.clear(unit.staged);
+    unit.staged_stop = true;
+  }
+  const unsigned waiting = unit.staged_stop ? 0U : unit.queue.count;
+  return waiting + unit.staged.count < kMaxQueued && pool_.push(unit.staged, command);
 }
 
 ActuatorMask ControlLayer::take_staged() {
@@ -92,7 +98,8 @@ void ControlLayer::cancel(ActuatorMask actuators) {
 
 void ControlLayer::commit() {
   const auto lock = kernel_.lock();
-  for (unsigned a = 0; a < program_->image.actuators.size(); ++a) {
+  for (ActuatorMask left = std::exchange(to_commit_, 0); left != 0; left &= left - 1) {
+    const auto a = static_cast<unsigned>(std::countr_zero(left));
     Unit& unit = units_[a];
     if (unit.staged.count == 0) continue;
     if (has(retired_, a)) {
@@ -226,14 +233,15 @@ kernel::Time ControlLayer::work_off(Unit& unit, Stamp stamp) {
 
 // It is told before it is started, and both do not stand on the stack at once.
 void ControlLayer::begin_next(Unit& unit, Stamp stamp, kernel::Time& wake) {
-  report_command(pool_.front(unit.queue), stamp);
+  if (trace_.listening()) [[unlikely]]
+    tell_command(unit, pool_.front(unit.queue), stamp);
   wake = keep_at(unit, start_driver(unit, pool_.front(unit.queue)), stamp);
   const auto lock = kernel_.lock();
   pool_.pop(unit.queue);
 }
 
 [[gnu::noinline]] kernel::Time ControlLayer::start_driver(Unit& unit, const Command& command) {
-  const drivers::Order order = resolve(program_->image, command);
+  const drivers::Order order = resolve(wiring(unit), command);
   if (is_halted(unit) || is_void(order)) return drivers::kDone;
   return drivers::driver(wiring(unit).driver).start(device(unit), order, kernel_.now());
 }
@@ -293,16 +301,17 @@ bool ControlLayer::drop(Unit& unit, unsigned keeps) {
 }
 
 // values: the word or -1, the mask of parameters the program gave, and these, limits applied.
-[[gnu::noinline]] void ControlLayer::report_command(const Command& command, Stamp stamp) {
-  link::Event event = Trace::event(EventKind::command, stamp, command.actuator(), command.verb());
+void ControlLayer::tell_command(const Unit& unit, const Command& command, Stamp stamp) {
+  link::Event event;
+  Trace::begin(event, EventKind::command, stamp, unit.actuator, command.verb());
   event.values[0] = command.word() == vm::kNoWord ? -1 : command.word();
   event.values[1] = command.given();
   event.value_count = 2;
-  const vm::Actuator& actuator = program_->image.actuators[command.actuator()];
-  for (unsigned p = 0; p < kParams; ++p)
-    if ((command.given() >> p & 1) != 0)
-      event.values[event.value_count++] =
-          limited(actuator, static_cast<vm::Param>(p), command.param(p));
+  const vm::Actuator& actuator = wiring(unit);
+  each_bit(command.given(), [&](unsigned p) {
+    event.values[event.value_count++] =
+        limited(actuator, static_cast<vm::Param>(p), command.param(p));
+  });
   trace_.emit(event);
 }
 

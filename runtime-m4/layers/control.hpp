@@ -46,14 +46,17 @@ public:
   void release_all();
 
   // --- for the step thread ---
-  void stage(const Command& command);  // dropped when there is no room
+  // For each of `actuators`; dropped where there is no room.
+  void stage(const Command& command, ActuatorMask actuators);
   ActuatorMask take_staged();   // actuators that commands were staged for since the last call
   ActuatorMask take_dropped();  // … and that a command was dropped for
   void cancel(ActuatorMask actuators);  // begins it; done when cancelling() is false
   bool cancelling() const { return cancelling_.load(std::memory_order_relaxed) != 0; }
   void commit();
   ActuatorMask take_idle();
-  ActuatorMask halted() const { return halted_.load(std::memory_order_relaxed); }
+  [[gnu::always_inline]] ActuatorMask halted() const {
+    return halted_.load(std::memory_order_relaxed);
+  }
   // … and those that were halted since the last call, even if they are let go by now.
   ActuatorMask take_halted();
   void retire(unsigned actuator);  // its thread was stopped: put it into its safe state
@@ -68,7 +71,6 @@ private:
   static constexpr kernel::Events kCommit = 1;
   static constexpr kernel::Events kCancel = 2;
   static constexpr kernel::Events kHalt = 4;
-  static constexpr unsigned kParams = static_cast<unsigned>(vm::Param::count_);
 
   struct Unit {
     ControlLayer* layer = nullptr;
@@ -84,6 +86,7 @@ private:
     std::uint8_t keeps = 0;    // commands at the end of `queue` that were handed over since
   };
 
+  bool stage_one(Unit& unit, const Command& command);
   [[nodiscard]] bool start_unit(unsigned actuator, ProgramThreads& threads);
   void run(Unit& unit);
   kernel::Time work_off(Unit& unit, Stamp stamp);
@@ -95,7 +98,7 @@ private:
   void finish_cancel(Unit& unit);
   void finish_stop(Unit& unit);
   bool drop(Unit& unit, unsigned keeps);
-  void report_command(const Command& command, Stamp stamp);
+  [[gnu::noinline]] void tell_command(const Unit& unit, const Command& command, Stamp stamp);
 
   drivers::Device device(Unit& unit);
   const vm::Actuator& wiring(const Unit& unit) const {
@@ -114,7 +117,8 @@ private:
   std::array<Unit, kMaxActuators> units_{};
   CommandPool pool_;
   std::atomic<ActuatorMask> cancelling_ = 0;
-  ActuatorMask staged_ = 0;
+  ActuatorMask staged_ = 0;       // since take_staged()
+  ActuatorMask to_commit_ = 0;    // since commit()
   ActuatorMask dropped_ = 0;
   ActuatorMask idle_ = 0;
   ActuatorMask retired_ = 0;

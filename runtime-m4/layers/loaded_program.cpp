@@ -10,7 +10,8 @@ namespace robosync::layers {
 
 void LoadedProgram::load(const vm::Image& loaded) {
   image = loaded;
-  readers.fill({});
+  readers_of_channel.fill({});
+  readers_of_variable.fill({});
   safety_cells = 0;
   safety_timer_words = 0;
   if (image.has_safety()) safety_cells = image.behaviors[vm::kSafetyBehavior].cells;
@@ -19,7 +20,7 @@ void LoadedProgram::load(const vm::Image& loaded) {
     inputs[b] = 0;
     for (const std::uint8_t input :
          image.inputs.subspan(behavior.first_input, behavior.input_count))
-      inputs[b] |= bit<InputMask>(input);
+      inputs[b] |= bit_of(input);
     load_rules(b);
   }
 }
@@ -34,11 +35,15 @@ void LoadedProgram::load_rules(unsigned b) {
       truth_cell[r] = static_cast<std::uint8_t>(cell++);
     if (b >= first_behavior()) {
       policy::each_input_of_rule(image, behavior, image.rules[r],
-                                 [&](std::uint8_t input) { readers[input].insert(r); });
+                                 [&](std::uint8_t input) { readers_of(input).insert(r); });
     } else {
       note_timers(image.rules[r]);
     }
   }
+}
+
+RuleBits& LoadedProgram::readers_of(unsigned input) {
+  return is_variable(input) ? readers_of_variable[variable_of(input)] : readers_of_channel[input];
 }
 
 // Of a SAFETY rule: its condition has them all. They are numbered as they stand in the code, and
@@ -52,7 +57,7 @@ void LoadedProgram::note_timers(const vm::Rule& rule) {
 }
 
 BehaviorMask LoadedProgram::needing(kernel::Category category, unsigned index) const {
-  const InputMask channels = category == kernel::Category::sensor ? channels_of(index) : 0;
+  const ChannelMask channels = category == kernel::Category::sensor ? channels_of(index) : 0;
   BehaviorMask needing = 0;
   for (unsigned b = 0; b < image.behaviors.size(); ++b)
     if (policy::needs(image, b, category, index, (inputs[b] & channels) != 0))
@@ -60,12 +65,13 @@ BehaviorMask LoadedProgram::needing(kernel::Category category, unsigned index) c
   return needing;
 }
 
-InputMask LoadedProgram::channels_of(unsigned sensor_thread) const {
-  InputMask channels = 0;
+ChannelMask LoadedProgram::channels_of(unsigned sensor_thread) const {
+  ChannelMask channels = 0;
   for (unsigned s = 0; s < image.sensors.size(); ++s) {
     const vm::Sensor& wiring = image.sensors[s];
     if (policy::thread_of(image, s) == sensor_thread)
-      channels |= ((InputMask{1} << wiring.channel_count) - 1) << wiring.first_channel;
+      for (unsigned i = 0; i < wiring.channel_count; ++i)
+        channels |= bit<ChannelMask>(wiring.first_channel + i);
   }
   return channels;
 }

@@ -31,30 +31,29 @@ bool Mailboxes::post(const Reading& reading, const vm::Channel& channel) {
   return true;
 }
 
-void Mailboxes::announce(InputMask channels) {
+void Mailboxes::announce(ChannelMask channels) {
   const auto lock = kernel_.lock();
   announced_ |= channels;
 }
 
 void Mailboxes::forget(unsigned channel) {
   const auto lock = kernel_.lock();
-  forgotten_ |= bit<InputMask>(channel);
+  forgotten_ |= bit<ChannelMask>(channel);
   next_expiry_ = 0;
 }
 
-InputMask Mailboxes::take_announced() {
+ChannelMask Mailboxes::take_announced() {
   const auto lock = kernel_.lock();
   return std::exchange(announced_, 0);
 }
 
-InputMask Mailboxes::take_expired(std::span<const vm::Channel> channels, InputMask fresh,
-                                  kernel::Time now) {
-  if (now < next_expiry_) return 0;
+ChannelMask Mailboxes::expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,
+                                kernel::Time now) {
   const auto lock = kernel_.lock();
-  InputMask expired = 0;
+  ChannelMask expired = 0;
   next_expiry_ = kernel::kForever;
   for (unsigned c = 0; c < channels.size(); ++c) {
-    if (!has(fresh, c) && expire(c, channels[c], now)) expired |= bit<InputMask>(c);
+    if (!has(fresh, c) && expire(c, channels[c], now)) expired |= bit<ChannelMask>(c);
     next_expiry_ = std::min(next_expiry_, expires_at(c, channels[c]));
   }
   return expired;

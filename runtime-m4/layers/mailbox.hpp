@@ -24,12 +24,13 @@ public:
   // Keeps the reading if it says something new: the channel was unknown, or differs by at least
   // channel.change. Returns whether it did; then announce it. The channel is fresh in any case.
   [[nodiscard]] bool post(const Reading& reading, const vm::Channel& channel);
-  void announce(InputMask channels);
+  void announce(ChannelMask channels);
   // Nobody measures the channel any more.
   void forget(unsigned channel);
 
   // --- for the step thread ---
-  InputMask take_announced();
+  bool has_announced() const { return announced_ != 0; }
+  ChannelMask take_announced();
   vm::Value value(unsigned channel) const { return boxes_[channel].value; }
   // For the safety thread, which does not wait for expire(): unknown as soon as it is too old.
   vm::Value fresh_value(unsigned channel, const vm::Channel& wiring, kernel::Time now) const {
@@ -37,8 +38,10 @@ public:
   }
   // Those, but for `fresh` ones, whose last sample is older than channel.stale_ms, or that were
   // forgotten; each once. They are unknown from now on.
-  [[nodiscard]] InputMask take_expired(std::span<const vm::Channel> channels, InputMask fresh,
-                                       kernel::Time now);
+  [[nodiscard]] ChannelMask take_expired(std::span<const vm::Channel> channels, ChannelMask fresh,
+                                       kernel::Time now) {
+    return now < next_expiry_ ? 0 : expire_old(channels, fresh, now);
+  }
   // Before this none expires; kForever: none ever does. Readings that come in between put it off,
   // so that it may be too early.
   kernel::Time next_expiry() const { return next_expiry_; }
@@ -60,6 +63,8 @@ private:
     std::uint32_t sampled_high_ = 0;
   };
 
+  [[nodiscard]] ChannelMask expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,
+                                     kernel::Time now);
   [[nodiscard]] bool expire(unsigned channel, const vm::Channel& wiring, kernel::Time now);
   // When expire() may be true for the first time; kForever for never.
   kernel::Time expires_at(unsigned channel, const vm::Channel& wiring) const;
@@ -67,8 +72,8 @@ private:
   kernel::Kernel& kernel_;
   kernel::Time next_expiry_ = kernel::kForever;
   std::array<Mailbox, kMaxChannels> boxes_{};
-  InputMask announced_ = 0;
-  InputMask forgotten_ = 0;
+  ChannelMask announced_ = 0;
+  ChannelMask forgotten_ = 0;
 };
 
 }  // namespace robosync::layers

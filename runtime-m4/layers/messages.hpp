@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <type_traits>
 
@@ -18,8 +19,20 @@
 
 namespace robosync::layers {
 
-using InputMask = std::uint64_t;     // bit i: input i, a channel or, behind them, a variable
+using ChannelMask = std::uint32_t;   // bit c: channel c of the image
 using VariableMask = std::uint32_t;  // bit v: variable v of the image
+// Both: channels in the lower half, variables in the upper one, so that a half is had for nothing.
+using InputMask = std::uint64_t;
+static_assert(kMaxChannels <= 32 && kMaxVariables <= 32);
+constexpr InputMask inputs(ChannelMask channels, VariableMask variables) {
+  return InputMask{variables} << 32 | channels;
+}
+constexpr ChannelMask channels_of(InputMask inputs) {
+  return static_cast<ChannelMask>(inputs);
+}
+constexpr VariableMask variables_of(InputMask inputs) {
+  return static_cast<VariableMask>(inputs >> 32);
+}
 using ActuatorMask = std::uint32_t;  // bit a: actuator a
 // … where it is kept for each rule.
 using ActuatorBits = std::conditional_t<kMaxActuators <= 16, std::uint16_t, std::uint32_t>;
@@ -33,6 +46,13 @@ constexpr Mask bit(unsigned index) {
 template <class Mask>
 constexpr bool has(Mask mask, unsigned index) {
   return (mask >> index & 1) != 0;
+}
+
+// Calls take(bit) for each bit of a mask of 32, from the lowest up.
+template <class Take>
+void each_bit(std::uint32_t mask, Take take) {
+  for (; mask != 0; mask &= mask - 1)
+    take(static_cast<unsigned>(std::countr_zero(mask)));
 }
 
 // A place in the program's history: what events are stamped with.
@@ -63,9 +83,7 @@ class Snapshot {
 public:
   Stamp stamp() const { return stamp_; }
   // Of program time, as the VM counts it.
-  std::uint32_t milliseconds() const {
-    return static_cast<std::uint32_t>(stamp_.time / kernel::milliseconds(1));
-  }
+  std::uint32_t milliseconds() const { return milliseconds_; }
   vm::Value value(std::uint8_t input) const { return values_[input]; }
 
 private:
@@ -73,16 +91,18 @@ private:
   Snapshot() = default;
 
   Stamp stamp_;
+  std::uint32_t milliseconds_ = 0;
   std::array<vm::Value, kMaxInputs> values_{};
 };
 
-// What a response wants of one actuator, as the program says it: words and limits come later.
+// What a response wants of actuators. What a word stands for is there; an actuator's limits come later.
 class Command {
 public:
-  std::uint8_t actuator() const { return actuator_; }
+  vm::Action action() const { return action_; }
   std::uint8_t verb() const { return verb_; }    // index in the verb table
   std::uint8_t word() const { return word_; }    // index in the word table, or kNoWord
-  std::uint8_t given() const { return given_; }  // bit p: param(p) was given
+  std::uint8_t given() const { return given_; }  // bit p: the program gave param(p)
+  std::uint8_t known() const { return known_; }  // … or its word did; others are undefined
   vm::Value param(unsigned index) const { return params_[index]; }
 
 private:
@@ -91,11 +111,13 @@ private:
   static constexpr unsigned kParams = static_cast<unsigned>(vm::Param::count_);
   Command() = default;
 
-  std::uint8_t actuator_ = 0;
-  std::uint8_t verb_ = 0;
-  std::uint8_t word_ = vm::kNoWord;
-  std::uint8_t given_ = 0;
-  std::array<vm::Value, kParams> params_{};
+  vm::Action action_;
+  std::uint8_t verb_;
+  std::uint8_t word_;
+  std::uint8_t given_;
+  std::uint8_t known_;
+  std::array<vm::Value, kParams> params_;
 };
+
 
 }  // namespace robosync::layers

@@ -4,29 +4,16 @@
 #include <algorithm>
 
 namespace robosync::layers {
-namespace {
 
 using vm::Param;
 
-constexpr auto kParams = static_cast<unsigned>(Param::count_);
-
-}  // namespace
-
-drivers::Order resolve(const vm::Image& image, const Command& command) {
-  drivers::Order order{.action = image.verbs[command.verb()].action, .given = command.given()};
-  for (unsigned p = 0; p < kParams; ++p)
-    order.params[p] = command.param(p);
-  if (command.word() < image.words.size()) {
-    const vm::WordEntry& word = image.words[command.word()];
-    if (!order.has(word.param)) {
-      order.params[static_cast<std::size_t>(word.param)] = word.value;
-      order.given =
-          static_cast<std::uint8_t>(order.given | 1U << static_cast<unsigned>(word.param));
-    }
-  }
-  const vm::Actuator& actuator = image.actuators[command.actuator()];
-  for (unsigned p = 0; p < kParams; ++p)
-    order.params[p] = limited(actuator, static_cast<Param>(p), order.params[p]);
+drivers::Order resolve(const vm::Actuator& actuator, const Command& command) {
+  drivers::Order order;
+  order.action = command.action();
+  order.given = command.known();
+  each_bit(command.known(), [&](unsigned p) {
+    order.params[p] = limited(actuator, static_cast<Param>(p), command.param(p));
+  });
   return order;
 }
 
@@ -38,9 +25,9 @@ vm::Value limited(const vm::Actuator& actuator, Param param, vm::Value value) {
 }
 
 bool is_void(const drivers::Order& order) {
-  for (unsigned p = 0; p < kParams; ++p)
-    if ((order.given >> p & 1) != 0 && order.params[p] == vm::kUnknown) return true;
-  return false;
+  bool unknown = false;
+  each_bit(order.given, [&](unsigned p) { unknown |= order.params[p] == vm::kUnknown; });
+  return unknown;
 }
 
 }  // namespace robosync::layers

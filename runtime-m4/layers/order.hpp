@@ -7,9 +7,9 @@
 
 namespace robosync::layers {
 
-// The parameters of `command`, its word's parameter where the program did not give it itself,
-// inside the actuator's range (TO) and limits (AT). A parameter may be kUnknown: see is_void().
-[[nodiscard]] drivers::Order resolve(const vm::Image& image, const Command& command);
+// The parameters of `command`, inside the actuator's range (TO) and limits (AT). A parameter may be
+// kUnknown: see is_void().
+[[nodiscard]] drivers::Order resolve(const vm::Actuator& actuator, const Command& command);
 
 // The value of a parameter inside the actuator's range (TO) and limits (AT); kUnknown stays.
 [[nodiscard]] vm::Value limited(const vm::Actuator& actuator, vm::Param param, vm::Value value);

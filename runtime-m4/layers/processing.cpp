@@ -31,15 +31,14 @@ bool starts_at_once(const vm::Image& image, const vm::Behavior& behavior) {
 bool ProcessingLayer::start(const LoadedProgram& program) {
   program_ = &program;
   snapshot_.stamp_ = {};
+  snapshot_.milliseconds_ = 0;
   snapshot_.values_.fill(vm::kUnknown);
   layers_.variables.start(program.image,
                           std::span(snapshot_.values_).subspan(program.image.channels.size()));
   checks_.start(program.image);
   adaptation_.start();
   layers_.triggers.start(program.image);
-  holdings_.fill(Holding{});
-  running_.clear();
-  has_run_.clear();
+  layers_.arbiter.start();
   cancelled_ = 0;
   lost_behaviors_ = 0;
   unstarted_ = 0;
@@ -71,25 +70,29 @@ void ProcessingLayer::run() {
   kernel::Time next = 0;  // the first pass does not wait for news
   while (true) {
     if ((kernel_.wait(kNews | kIdle | kStopped | kHalted, next) & kStopped) != 0) note_stops();
-    in_pass_ = true;
+    in_pass_.store(true, std::memory_order_relaxed);
     pass();
-    passes_ += 1;
-    in_pass_ = false;
+    passes_.store(passes_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    in_pass_.store(false, std::memory_order_relaxed);
     next = lost_behaviors_ != 0 ? 0 : next_time();
   }
 }
 
 void ProcessingLayer::pass() {
-  adaptation_.turn(*program_, layers_.threads, trace_, now_ms());
+  kernel::Time time = 0;
+  const std::uint32_t now = read_clock(time);
+  adaptation_.turn(*program_, layers_.threads, trace_, now);
   finish_done();
   const BehaviorMask lost = std::exchange(lost_behaviors_, 0);
   const BehaviorMask first = std::exchange(unstarted_, 0);
-  const ActuatorMask halted = layers_.control.take_halted() & owned();
-  layers_.triggers.settle(now_ms());
-  const bool due = next_due(now_ms()) == 0;
+  layers_.arbiter.note_halted(layers_.control.halted());
+  const ActuatorMask halted = layers_.control.take_halted() & layers_.arbiter.owned();
+  layers_.triggers.settle(now);
+  const bool anyway = lost != 0 || first != 0 || halted != 0 || is_due(now);
   InputMask changed = 0;
-  if (!latch(lost != 0 || first != 0 || halted != 0 || due, changed)) return;
-  layers_.alarm.ring(changed >> channels() << channels());  // the sensors have rung for theirs
+  if (!latch(time, now, anyway, changed)) return;
+  // The sensors have rung for theirs.
+  if (variables_of(changed) != 0) layers_.alarm.ring(inputs(0, variables_of(changed)));
   cancelled_ = 0;
   interrupt_lost(lost);
   interrupt_halted(halted);
@@ -97,85 +100,85 @@ void ProcessingLayer::pass() {
   step();
 }
 
-std::uint32_t ProcessingLayer::now_ms() const {
-  return static_cast<std::uint32_t>(trace_.program_time() / kernel::kTick);
+// Program time, and the same in milliseconds: of one tick, whatever comes in between.
+std::uint32_t ProcessingLayer::read_clock(kernel::Time& time) const {
+  const auto still = kernel_.lock();
+  time = kernel_.time() - trace_.activated_at();
+  return trace_.milliseconds();
+}
+
+// Where there are readings there is a step: then nobody has to look for what is due.
+bool ProcessingLayer::is_due(std::uint32_t now) const {
+  return !layers_.mailboxes.has_announced() && next_due(now) == 0;
 }
 
 // --- what ended since the last pass ---
 
 void ProcessingLayer::finish_done() {
   const ActuatorMask idle = layers_.control.take_idle();
-  for (const unsigned rule : running_) {
-    Holding& holding = holdings_[rule];
+  for (const unsigned rule : layers_.arbiter.running()) {
+    Holding& holding = layers_.arbiter.holding(rule);
     holding.pending = static_cast<ActuatorBits>(holding.pending & ~idle);
     finish_if_done(rule);
   }
 }
 
 void ProcessingLayer::finish_if_done(unsigned rule) {
-  if (holdings_[rule].pending != 0) return;
+  if (layers_.arbiter.holding(rule).pending != 0) return;
   if (layers_.behaviors.resume_point(rule).pause != vm::Pause::ended) return;
-  running_.erase(rule);
+  layers_.arbiter.end(rule);
   trace_.emit(EventKind::finished, trace_.now(), rule);
-}
-
-ActuatorMask ProcessingLayer::owned() const {
-  ActuatorMask owned = 0;
-  for (const unsigned rule : running_)
-    owned |= holdings_[rule].actuators;
-  return owned;
 }
 
 // --- latch ---
 
 // Takes what is new into the snapshot. A step begins if there is a reading, or `anyway`.
-bool ProcessingLayer::latch(bool anyway, InputMask& changed) {
-  const Stamp stamp{kernel_.now() - trace_.activated_at(), trace_.step().step + 1};
+bool ProcessingLayer::latch(kernel::Time time, std::uint32_t now, bool anyway,
+                            InputMask& changed) {
+  const Stamp stamp{time, trace_.step().step + 1};
   if (anyway) trace_.begin_step(stamp);
-  changed = latch_channels(stamp);
-  if (!anyway && changed == 0) return false;
+  const ChannelMask channels = latch_channels(stamp);
+  if (!anyway && channels == 0) return false;
   snapshot_.stamp_ = stamp;
-  changed |= latch_variables(stamp);
+  snapshot_.milliseconds_ = now;
+  changed = inputs(channels, latch_variables(stamp));
   return true;
 }
 
-InputMask ProcessingLayer::latch_channels(Stamp stamp) {
-  const InputMask announced = layers_.mailboxes.take_announced();
-  const kernel::Time now = stamp.time + trace_.activated_at();
-  const InputMask changed =
-      announced | layers_.mailboxes.take_expired(program_->image.channels, announced, now);
-  for (InputMask left = changed; left != 0; left &= left - 1) {
-    const auto c = static_cast<unsigned>(std::countr_zero(left));
-    const bool fresh = has(announced, c);
-    trace_.begin_step(stamp);
-    const vm::Value value = fresh ? layers_.mailboxes.value(c) : vm::kUnknown;
-    snapshot_.values_[c] = value;
-    if (fresh) {
-      trace_.emit(EventKind::input, stamp, c, 0, value);
-    } else {
+ChannelMask ProcessingLayer::latch_channels(const Stamp& stamp) {
+  const ChannelMask announced = layers_.mailboxes.take_announced();
+  const ChannelMask expired = layers_.mailboxes.take_expired(
+      program_->image.channels, announced, stamp.time + trace_.activated_at());
+  if ((announced | expired) != 0) trace_.begin_step(stamp);
+  each_bit(announced | expired, [&](unsigned c) {
+    if (has(expired, c)) {
+      snapshot_.values_[c] = vm::kUnknown;
       trace_.emit(EventKind::stale, stamp, c);
+    } else {
+      snapshot_.values_[c] = layers_.mailboxes.value(c);
+      trace_.emit(EventKind::input, stamp, c, 0, snapshot_.values_[c]);
     }
+  });
+  return announced | expired;
+}
+
+VariableMask ProcessingLayer::latch_variables(const Stamp& stamp) {
+  const std::span<vm::Value> values = snapshot_.values_;
+  const std::uint32_t now = snapshot_.milliseconds();
+  VariableMask changed = 0;
+  if (layers_.variables.may_change())
+    changed = layers_.variables.enter(now, values.subspan(channels()));
+  each_bit(changed, [&](unsigned variable) { report_set(variable, stamp); });
+  for (unsigned c = 0; c < program_->image.checks.size(); ++c) {
+    if (!checks_.update(c, now, values)) continue;
+    const unsigned band = program_->image.checks[c].variable;
+    changed |= bit<VariableMask>(band);
+    report_set(band, stamp);
   }
   return changed;
 }
 
-InputMask ProcessingLayer::latch_variables(Stamp stamp) {
-  const std::span<vm::Value> values = snapshot_.values_;
-  const std::uint32_t now = snapshot_.milliseconds();
-  const VariableMask set = layers_.variables.enter(now, values.subspan(channels()));
-  for (VariableMask left = set; left != 0; left &= left - 1)
-    report_set(static_cast<unsigned>(std::countr_zero(left)), stamp);
-  VariableMask bands = 0;
-  for (unsigned c = 0; c < program_->image.checks.size(); ++c) {
-    if (!checks_.update(c, now, values)) continue;
-    const unsigned band = program_->image.checks[c].variable;
-    bands |= bit<VariableMask>(band);
-    report_set(band, stamp);
-  }
-  return InputMask{set | bands} << channels();
-}
-
-void ProcessingLayer::report_set(unsigned variable, Stamp stamp) {
+void ProcessingLayer::report_set(unsigned variable, const Stamp& stamp) {
   const vm::Value value = snapshot_.values_[channels() + variable];
   trace_.emit(EventKind::set, stamp, variable, 0, value);
 }
@@ -189,10 +192,10 @@ std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
   due.in(layers_.variables.next_fade(now, std::span(snapshot_.values_).subspan(channels())));
   due.in(checks_.next(now));
   due.at(layers_.triggers.next_wake());
-  for (const unsigned rule : running_)
+  for (const unsigned rule : layers_.arbiter.running())
     add_waiting(rule, due);
   for (const unsigned rule : layers_.triggers.active())
-    if (!running_.has(rule)) add_wanting(rule, due, now);
+    if (!layers_.arbiter.runs(rule)) add_wanting(rule, due, now);
   return due.delay();
 }
 
@@ -200,7 +203,7 @@ std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
 void ProcessingLayer::add_waiting(unsigned rule, Soonest& due) const {
   const BehaviorLayer::ResumePoint& point = layers_.behaviors.resume_point(rule);
   if (point.pause == vm::Pause::ended) return;
-  if (point.pause == vm::Pause::until_done && holdings_[rule].pending != 0) return;
+  if (point.pause == vm::Pause::until_done && layers_.arbiter.holding(rule).pending != 0) return;
   due.at(point.wake);
 }
 
@@ -209,12 +212,13 @@ void ProcessingLayer::add_wanting(unsigned rule, Soonest& due, std::uint32_t now
   due.at(layers_.triggers.cooled_at(rule));
   Claim claim{};
   bool silent = false;
-  if (claim_of(rule, claim, silent) && decide_now(claim).wins)
-    due.at(has_run(rule, now) ? now + 1 : now);
+  if (layers_.behaviors.claim_of(rule, claim, silent) && layers_.arbiter.decide(claim).wins())
+    due.at(layers_.behaviors.has_run(rule, now) ? now + 1 : now);
 }
 
-kernel::Time ProcessingLayer::next_time() const {
-  const std::uint32_t now = now_ms();
+kernel::Time ProcessingLayer::next_time() {
+  const std::uint32_t now = trace_.milliseconds();
+  layers_.arbiter.note_halted(layers_.control.halted());
   Soonest soonest(now);
   soonest.in(next_due(now));
   soonest.at(adaptation_.next());
@@ -272,8 +276,10 @@ void ProcessingLayer::find_concerned(InputMask changed, BehaviorMask begins) {
   layers_.triggers.add_woken(snapshot_.milliseconds(), concerned_);
   for (const unsigned rule : concerned_)
     woken_ |= bit<BehaviorMask>(program_->behavior_of[rule]);
-  for (InputMask left = changed; left != 0; left &= left - 1)
-    concerned_ |= program_->readers[static_cast<unsigned>(std::countr_zero(left))];
+  each_bit(channels_of(changed),
+           [this](unsigned c) { concerned_ |= program_->readers_of_channel[c]; });
+  each_bit(variables_of(changed),
+           [this](unsigned v) { concerned_ |= program_->readers_of_variable[v]; });
   for (const unsigned rule : layers_.triggers.eventful())
     if (stirred(program_->behavior_of[rule])) concerned_.insert(rule);
   for (BehaviorMask left = untouched_; left != 0; left &= left - 1) {
@@ -298,113 +304,115 @@ bool ProcessingLayer::stirred(unsigned behavior) const {
 // --- a step, from the changed inputs to the commands ---
 
 void ProcessingLayer::step() {
-  const std::uint32_t now = snapshot_.milliseconds();
-  if (now != ran_at_) has_run_.clear();
-  ran_at_ = now;
-  layers_.behaviors.evaluate(concerned_, snapshot_);
-  await(kFinished, [this] { return layers_.behaviors.busy(); });
-  layers_.triggers.collect(concerned_);
-  layers_.triggers.settle(now);
-  report_triggers();
-  interrupt_over();
-  arbitrate();
+  layers_.behaviors.begin_step(snapshot_);
   cancel_interrupted();
-  run_responses();
-  set_due_ = now + 1;
-  layers_.control.commit();
-  for (const unsigned rule : running_) {
-    finish_if_done(rule);
-    holdings_[rule].won_now = false;  // what is due next is looked for as if the step were over
+  for (unsigned rule = next_at_work(0); rule < RuleSet::kEnd;) {
+    const RuleRange rules = program_->rules_of(program_->behavior_of[rule]);
+    take_turn(program_->behavior_of[rule], rules);
+    rule = next_at_work(rules.end);
   }
+  set_due_ = snapshot_.milliseconds() + 1;
+  layers_.control.commit();
+  for (const unsigned rule : layers_.arbiter.running())
+    finish_if_done(rule);
+  layers_.arbiter.end_step();
+}
+
+// The first rule that is not below `rule` and is concerned, wants to run, or runs.
+unsigned ProcessingLayer::next_at_work(unsigned rule) const {
+  return std::min({concerned_.from(rule), layers_.triggers.active().from(rule),
+                   layers_.arbiter.running().from(rule)});
+}
+
+void ProcessingLayer::take_turn(unsigned behavior, RuleRange rules) {
+  if (concerned_.has_any(rules)) {
+    layers_.behaviors.take_turn(behavior, concerned_);
+    await(kFinished, [this] { return layers_.behaviors.busy(); });
+    collect(rules);
+    Claim claim;
+    if (layers_.behaviors.sole_claim_of(behavior, claim)) return serve_sole(claim, rules);
+  }
+  arbitrate(rules);
+  cancel_interrupted();
+  run_responses(rules);
+}
+
+// The behaviour has one claim, and has run its response already.
+void ProcessingLayer::serve_sole(const Claim& claim, RuleRange rules) {
+  serve(claim, false);
+  concerned_.each_in(rules, [this](unsigned rule) { layers_.triggers.forget(rule); });
+  cancel_interrupted();
+  if (layers_.arbiter.runs(claim.rule)) conclude(claim.rule);
 }
 
 // --- interruptions that no claim is the cause of ---
 
 void ProcessingLayer::interrupt_lost(BehaviorMask lost) {
   if (lost == 0) return;
-  for (const unsigned rule : running_)
-    if (has(lost, holdings_[rule].behavior)) interrupt(rule, holdings_[rule].behavior);
+  for (const unsigned rule : layers_.arbiter.running())
+    if (const unsigned behavior = program_->behavior_of[rule]; has(lost, behavior))
+      interrupt(rule, behavior);
 }
 
 void ProcessingLayer::interrupt_halted(ActuatorMask halted) {
   if (halted == 0) return;
-  for (const unsigned rule : running_)
-    if ((holdings_[rule].actuators & halted) != 0) interrupt(rule, vm::kSafetyBehavior);
-}
-
-void ProcessingLayer::interrupt_over() {
-  for (const unsigned rule : running_)
-    if (layers_.triggers.is_over(rule)) interrupt(rule, holdings_[rule].behavior);
+  for (const unsigned rule : layers_.arbiter.running())
+    if ((layers_.arbiter.holding(rule).actuators & halted) != 0)
+      interrupt(rule, vm::kSafetyBehavior);
 }
 
 // --- claims ---
 
-void ProcessingLayer::report_triggers() {
-  for (const unsigned rule : concerned_)
+// What the behaviour has found out, rule by rule. A WHILE whose condition no longer holds ends.
+void ProcessingLayer::collect(RuleRange rules) {
+  concerned_.each_in(rules, [this](unsigned rule) {
+    layers_.triggers.collect(rule);
     if (layers_.triggers.take_zero_divide(rule))
       trace_.emit(EventKind::zero_divide, trace_.step(), rule);
-  Side side{};
-  for (const unsigned rule : concerned_)
-    if (layers_.triggers.fired(rule, side)) {
+    if (Side side{}; layers_.triggers.fired(rule, side)) {
       trace_.emit(EventKind::fire, trace_.step(), rule, 0, static_cast<std::int32_t>(side));
       adaptation_.count(*program_, program_->behavior_of[rule], snapshot_.milliseconds());
     }
+    if (layers_.arbiter.runs(rule) && layers_.triggers.is_over(rule))
+      interrupt(rule, program_->behavior_of[rule]);
+  });
 }
 
-// What `rule` claims now; silent: that it does was told before.
-bool ProcessingLayer::claim_of(unsigned rule, Claim& claim, bool& silent) const {
-  Triggers::Wish wish{};
-  if (!layers_.triggers.wish(rule, running_.has(rule), wish)) return false;
-  silent = wish.silent;
-  const std::uint16_t response = layers_.behaviors.response_of(rule, wish.side);
-  claim = {.rule = static_cast<std::uint16_t>(rule),
-           .behavior = program_->behavior_of[rule],
-           .side = wish.side,
-           .actuators = program_->image.responses[response].actuators,
-           .restarting = layers_.triggers.restarting(rule),
-           .retries = !wish.fresh};
-  return true;
-}
-
-void ProcessingLayer::arbitrate() {
-  const std::uint32_t now = snapshot_.milliseconds();
-  Claim claim{};
-  bool silent = false;
-  RuleSet wanting = concerned_;
-  wanting |= layers_.triggers.active();
-  for (const unsigned rule : wanting) {
-    const bool again =
-        program_->image.rules[rule].kind == vm::RuleKind::while_ && has_run(rule, now);
-    if (!again && claim_of(rule, claim, silent)) serve(claim, silent);
-  }
-  layers_.triggers.forget(concerned_);
+void ProcessingLayer::arbitrate(RuleRange rules) {
+  concerned_.each_in_either(layers_.triggers.active(), rules, [this](unsigned rule) {
+    Claim claim;
+    bool silent = false;
+    if (!layers_.behaviors.must_pause(rule) && layers_.behaviors.claim_of(rule, claim, silent))
+      serve(claim, silent);
+    layers_.triggers.forget(rule);
+  });
 }
 
 void ProcessingLayer::serve(const Claim& claim, bool silent) {
-  const Decision decision = decide_now(claim);
-  const bool was_running = running_.has(claim.rule);
-  for (const unsigned rule : decision.interrupted)
-    interrupt(rule, claim.behavior);
-  if (!decision.wins) {
-    if (!silent) report(claim, EventKind::lose, decision.owner);
-    const bool to_itself = was_running && running_.has(claim.rule);
-    layers_.triggers.lost(claim.rule, claim.side, to_itself, snapshot_.milliseconds());
+  const Decision decision = layers_.arbiter.decide(claim);
+  const bool was_running = layers_.arbiter.runs(claim.rule);
+  if (was_running || (claim.actuators & layers_.arbiter.owned()) != 0)
+    interrupt_by(claim, decision);
+  if (decision.wins()) {
+    report(claim, EventKind::win);
+    layers_.triggers.won(claim.rule, snapshot_.milliseconds());
+    layers_.arbiter.give(claim);
     return;
   }
-  report(claim, EventKind::win);
-  layers_.triggers.won(claim.rule, snapshot_.milliseconds());
-  running_.insert(claim.rule);
-  holdings_[claim.rule] = Holding{.actuators = static_cast<ActuatorBits>(claim.actuators),
-                                  .pending = 0,
-                                  .behavior = claim.behavior,
-                                  .side = claim.side,
-                                  .won_now = true};
+  if (!silent) report(claim, EventKind::lose, decision.owner);
+  const bool to_itself = decision.outcome == Outcome::ignored;
+  layers_.triggers.lost(claim.rule, claim.side, to_itself, snapshot_.milliseconds());
+}
+
+void ProcessingLayer::interrupt_by(const Claim& claim, const Decision& decision) {
+  for (const unsigned rule : layers_.arbiter.running())
+    if (layers_.arbiter.ends(claim, decision, rule)) interrupt(rule, claim.behavior);
 }
 
 void ProcessingLayer::interrupt(unsigned rule, unsigned by) {
   trace_.emit(EventKind::interrupt, trace_.step(), rule, by);
-  cancelled_ |= holdings_[rule].actuators;
-  running_.erase(rule);
+  cancelled_ |= layers_.arbiter.holding(rule).actuators;
+  layers_.arbiter.end(rule);
   layers_.behaviors.forget_resume_point(rule);
   layers_.triggers.interrupted(rule);
 }
@@ -416,48 +424,50 @@ void ProcessingLayer::report(const Claim& claim, EventKind kind, unsigned object
 // --- responses ---
 
 bool ProcessingLayer::goes_on(unsigned rule) const {
-  const Holding& holding = holdings_[rule];
   const BehaviorLayer::ResumePoint& point = layers_.behaviors.resume_point(rule);
   const std::uint32_t now = snapshot_.milliseconds();
-  if (point.pause == vm::Pause::ended || has_run(rule, now)) return false;
+  if (point.pause == vm::Pause::ended || layers_.behaviors.has_run(rule, now)) return false;
   const bool due = point.wake != kNever && reached(point.wake, now);
   switch (point.pause) {
     case vm::Pause::until_done:
-      return due && holding.pending == 0;
+      return due && layers_.arbiter.holding(rule).pending == 0;
     case vm::Pause::polling:
     case vm::Pause::still_polling:
-      return due || stirred(holding.behavior);
+      return due || stirred(program_->behavior_of[rule]);
     default:
       return due;
   }
 }
 
-void ProcessingLayer::run_responses() {
-  for (const unsigned rule : running_) {
-    Holding& holding = holdings_[rule];
+void ProcessingLayer::run_responses(RuleRange rules) {
+  layers_.arbiter.running().each_in(rules, [this](unsigned rule) {
+    const Holding& holding = layers_.arbiter.holding(rule);
     if (holding.won_now) {
       layers_.behaviors.respond(rule, holding.side);
     } else if (goes_on(rule)) {
       layers_.behaviors.go_on(rule);
     } else {
-      continue;
+      return;
     }
     await(kFinished, [this] { return layers_.behaviors.busy(); });
-    layers_.behaviors.conclude(rule);
-    has_run_.insert(rule);
-    holding.pending = static_cast<ActuatorBits>(holding.pending | layers_.control.take_staged());
-    for (ActuatorMask dropped = layers_.control.take_dropped(); dropped != 0;
-         dropped &= dropped - 1)
-      trace_.emit(EventKind::overrun, trace_.step(),
-                  static_cast<unsigned>(std::countr_zero(dropped)));
-  }
+    conclude(rule);
+  });
+}
+
+void ProcessingLayer::conclude(unsigned rule) {
+  layers_.behaviors.conclude(rule);
+  Holding& holding = layers_.arbiter.holding(rule);
+  holding.pending = static_cast<ActuatorBits>(holding.pending | layers_.control.take_staged());
+  for (ActuatorMask dropped = layers_.control.take_dropped(); dropped != 0; dropped &= dropped - 1)
+    trace_.emit(EventKind::overrun, trace_.step(),
+                static_cast<unsigned>(std::countr_zero(dropped)));
 }
 
 // The old ones end before the new ones begin, and before those send commands: what the old ones had
 // in their queues takes no place from them.
 void ProcessingLayer::cancel_interrupted() {
   if (cancelled_ == 0) return;
-  layers_.control.cancel(cancelled_);
+  layers_.control.cancel(std::exchange(cancelled_, 0));
   await(kCancelled, [this] { return layers_.control.cancelling(); });
 }
 

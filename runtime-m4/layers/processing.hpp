@@ -5,12 +5,16 @@
 // activation. Reasons are: readings were announced or became too old, a thread was stopped, safety
 // halted something that was at work, or something is due (next_due()). Inside a step:
 //
-//   latch → rules that read a changed input, or are due, are evaluated by their behaviours → claims
-//   are decided → responses run: those that go on and those that won → cancellations, then
-//   commands, are committed
+//   latch -> the behaviours take their turns, from the highest priority down -> commands are committed
 //
-// So a step costs what the rules cost that it concerns, and those that run, wait or want to run;
-// the others cost nothing (find_concerned()).
+// and in a behaviour's turn:
+//
+//   rules that read a changed input, or are due, are evaluated -> claims are decided, in the order of
+//   the rules -> whom they interrupted is cancelled -> responses run: those that go on and those that won
+//
+// So a claim is decided against the more important ones of the same step, and never lost to a less
+// important one. A step costs what the rules cost that it concerns, and those that run, wait or want
+// to run; the others cost nothing (find_concerned()).
 //
 // What a step causes by itself (SET and SIGNAL, a WHILE that starts again, the end of a wait) is
 // due in the next millisecond at the earliest, so the number of steps at one time is bounded by
@@ -24,15 +28,16 @@
 //   set                  variables but bands, by variable; then bands, by CHECK
 //   interrupt            responses of behaviours whose thread was stopped; responses that safety
 //                        halted; each by rule
-//   zero_divide          in conditions, by rule
-//   fire                 by rule, which is by priority, then by place in the file
-//   interrupt            WHILE whose condition no longer holds, by rule
-//   interrupt, win/lose  claim by claim in the order of the rules: first what it interrupts, by
-//                        rule
-//   go_on, zero_divide, log, alert, wait, overrun
+//   cancel               of those, in the order of the actuators' ranks
+//   … turn by turn, a behaviour's:
+//     zero_divide, fire, interrupt
+//                        rule by rule; interrupt of a WHILE whose condition no longer holds
+//     interrupt, win/lose
+//                        claim by claim in the order of the rules: first what it interrupts, by rule
+//     cancel             of those, in the order of the actuators' ranks
+//     go_on, zero_divide, log, alert, wait, overrun
 //                        response by response, by rule; overrun once for an actuator
-//   cancel, command      all cancels before all commands (but a STOP's cancel, which stands before
-//                        the STOP); each in the order of the actuators' ranks
+//   command              in the order of the actuators' ranks (a STOP's cancel stands before the STOP)
 //   finished             of responses that command nothing, by rule
 // command and done of a queued command, and done in general, stand where the actuator's thread
 // reaches them: before anything a lower ranked thread does at the same tick. What safety does
@@ -82,6 +87,7 @@ public:
     SensorLayer& sensors;
     Variables& variables;
     Triggers& triggers;
+    Arbiter& arbiter;
     BehaviorLayer& behaviors;
     ControlLayer& control;
     ProgramThreads& threads;
@@ -113,16 +119,16 @@ private:
   void pass();
   void finish_done();
   void finish_if_done(unsigned rule);
-  ActuatorMask owned() const;
-  bool latch(bool anyway, InputMask& changed);
-  InputMask latch_channels(Stamp stamp);
-  InputMask latch_variables(Stamp stamp);
-  void report_set(unsigned variable, Stamp stamp);
-  std::uint32_t now_ms() const;
+  bool is_due(std::uint32_t now) const;
+  std::uint32_t read_clock(kernel::Time& time) const;
+  bool latch(kernel::Time time, std::uint32_t now, bool anyway, InputMask& changed);
+  ChannelMask latch_channels(const Stamp& stamp);
+  VariableMask latch_variables(const Stamp& stamp);
+  void report_set(unsigned variable, const Stamp& stamp);
   std::uint32_t next_due(std::uint32_t now) const;
   void add_waiting(unsigned rule, Soonest& due) const;
   void add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const;
-  kernel::Time next_time() const;
+  kernel::Time next_time();
   void note_stops();
   void retire(const ProgramThreads::Member& member);
 
@@ -133,27 +139,23 @@ private:
 
   // --- what happens in one ---
   void step();
+  unsigned next_at_work(unsigned rule) const;
+  void take_turn(unsigned behavior, RuleRange rules);
   void interrupt_lost(BehaviorMask lost);
   void interrupt_halted(ActuatorMask halted);
-  void report_triggers();
-  void interrupt_over();
-  void arbitrate();
-  bool claim_of(unsigned rule, Claim& claim, bool& silent) const;
-  Decision decide_now(const Claim& claim) const {
-    return decide(claim, holdings_, running_, layers_.control.halted());
-  }
+  void collect(RuleRange rules);
+  void arbitrate(RuleRange rules);
+  void serve_sole(const Claim& claim, RuleRange rules);
   void serve(const Claim& claim, bool silent);
+  void interrupt_by(const Claim& claim, const Decision& decision);
   void interrupt(unsigned rule, unsigned by);
   bool goes_on(unsigned rule) const;
-  void run_responses();
+  void run_responses(RuleRange rules);
+  void conclude(unsigned rule);
   void cancel_interrupted();
   void report(const Claim& claim, link::EventKind kind, unsigned object = 0);
 
   unsigned channels() const { return static_cast<unsigned>(program_->image.channels.size()); }
-  // It has run in this millisecond, and must not again.
-  bool has_run(unsigned rule, std::uint32_t now) const {
-    return now == ran_at_ && has_run_.has(rule);
-  }
 
   template <class Pending>
   void await(kernel::Events event, Pending pending) {
@@ -169,16 +171,12 @@ private:
   Checks checks_;
   Adaptation adaptation_;
   Snapshot snapshot_;
-  std::array<Holding, kMaxRules> holdings_{};
-  RuleSet running_;                  // their responses run, or wait
-  RuleSet has_run_;                  // … began or went on in the millisecond of the last step
   RuleSet concerned_;                // evaluated in this step
   InputMask changed_ = 0;            // in this step
   BehaviorMask woken_ = 0;           // have a rule whose time has come in this step
   BehaviorMask untouched_ = 0;       // no rule of theirs was ever evaluated
-  std::uint32_t ran_at_ = 0;         // millisecond of the last step
   std::uint32_t set_due_ = 0;        // when what is staged may take effect
-  ActuatorMask cancelled_ = 0;       // in this step
+  ActuatorMask cancelled_ = 0;       // whose responses were interrupted, and are still to be
   BehaviorMask lost_behaviors_ = 0;  // stopped; their responses are still to be interrupted
   BehaviorMask unstarted_ = 0;       // have something to do before the first reading
   std::atomic<std::uint32_t> passes_ = 0;

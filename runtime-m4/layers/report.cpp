@@ -4,9 +4,10 @@
 namespace robosync::layers {
 
 [[gnu::noinline]] void report_text(Trace& trace, const vm::Output& said, Stamp stamp) {
+  if (!trace.listening()) return;
   const bool is_log = said.kind == vm::OutputKind::log;
-  link::Event event =
-      Trace::event(is_log ? link::EventKind::log : link::EventKind::alert, stamp, said.text, 0);
+  link::Event event;
+  Trace::begin(event, is_log ? link::EventKind::log : link::EventKind::alert, stamp, said.text, 0);
   for (unsigned p = 0; is_log && p < said.params.size(); ++p)
     if (has(said.given, p)) event.values[event.value_count++] = said.params[p];
   trace.emit(event);

@@ -1,24 +1,42 @@
-// A set of rules: one bit each, and above many words one word that says which of them are not
-// empty.
+// A set of rules: one bit each, and one word above that says which words of them are not empty.
 //
-// Going through the members costs the members, and next to nothing for the rules in between.
+// Going through the members costs the members, and next to nothing for the rules in between; an empty
+// set, as most are in most steps, costs the look at one word.
 #pragma once
 
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <type_traits>
 
 #include "runtime-m4/limits.hpp"
 
 namespace robosync::layers {
 
+// The rules of a behaviour, which stand one behind the other.
+struct RuleRange {
+  unsigned first;
+  unsigned end;
+};
+
+// The bits alone, for sets that are many and are only added to others.
 template <unsigned kRules>
-class BasicRuleSet {
+struct BasicRuleBits {
   using Word = std::uint32_t;
   static constexpr unsigned kBits = 32;
   static constexpr unsigned kWords = (kRules + kBits - 1) / kBits;
-  static constexpr bool kSummarised = kWords > 2;  // two are looked at as fast as a summary
+
+  void insert(unsigned rule) { words[rule / kBits] |= Word{1} << rule % kBits; }
+  bool has(unsigned rule) const { return (words[rule / kBits] >> rule % kBits & 1) != 0; }
+
+  std::array<Word, kWords> words{};
+};
+
+template <unsigned kRules>
+class BasicRuleSet {
+  using Bits = BasicRuleBits<kRules>;
+  using Word = typename Bits::Word;
+  static constexpr unsigned kBits = Bits::kBits;
+  static constexpr unsigned kWords = Bits::kWords;
   static_assert(kWords <= kBits, "one summary word has one bit for each");
 
 public:
@@ -41,41 +59,49 @@ public:
     unsigned rule_;
   };
 
-  void insert(unsigned rule) {
+  [[gnu::always_inline]] void insert(unsigned rule) {
     words_[rule / kBits] |= bit(rule);
-    if constexpr (kSummarised) summary_ |= bit(rule / kBits);
+    summary_ |= bit(rule / kBits);
   }
-  void erase(unsigned rule) {
+  [[gnu::always_inline]] void erase(unsigned rule) {
     Word& word = words_[rule / kBits];
     word &= ~bit(rule);
-    if constexpr (kSummarised)
-      if (word == 0) summary_ &= ~bit(rule / kBits);
+    if (word == 0) summary_ &= ~bit(rule / kBits);
   }
-  void put(unsigned rule, bool in) { in ? insert(rule) : erase(rule); }
-  bool empty() const { return from(0) == kEnd; }
-  bool has(unsigned rule) const { return (words_[rule / kBits] & bit(rule)) != 0; }
+  [[gnu::always_inline]] void put(unsigned rule, bool in) { in ? insert(rule) : erase(rule); }
+  [[gnu::always_inline]] bool empty() const { return summary_ == 0; }
+  [[gnu::always_inline]] bool has(unsigned rule) const { return (words_[rule / kBits] & bit(rule)) != 0; }
 
   void clear() {
     for_words(*this, [&](unsigned w) { words_[w] = 0; });
-    summary_ = {};
+    summary_ = 0;
   }
-  BasicRuleSet& operator|=(const BasicRuleSet& other) {
-    for_words(other, [&](unsigned w) { words_[w] |= other.words_[w]; });
-    if constexpr (kSummarised) summary_ |= other.summary_;
+  BasicRuleSet& operator|=(const Bits& others) {
+    for (unsigned w = 0; w < kWords; ++w)
+      if (others.words[w] != 0) {
+        words_[w] |= others.words[w];
+        summary_ |= bit(w);
+      }
     return *this;
   }
 
-  // The first member that is not below `rule`; kEnd when there is none.
-  unsigned from(unsigned rule) const {
-    unsigned w = rule / kBits;
-    if (w >= kWords) return kEnd;
-    if (const Word rest = words_[w] & ~Word{0} << rule % kBits; rest != 0) return lowest(w, rest);
-    w = next_word(w);
-    return w == kWords ? kEnd : lowest(w, words_[w]);
+  // Calls take(rule) for each member in `rules`, in order; take may erase it.
+  template <class Take>
+  void each_in(RuleRange rules, Take take) const {
+    each_of(rules, [this](unsigned w) { return words_[w]; }, take);
   }
+  // … for each that is in this set or in `other`.
+  template <class Take>
+  void each_in_either(const BasicRuleSet& other, RuleRange rules, Take take) const {
+    each_of(rules, [&](unsigned w) { return words_[w] | other.words_[w]; }, take);
+  }
+  bool has_any(RuleRange rules) const { return from(rules.first) < rules.end; }
 
-  Iterator begin() const { return {*this, from(0)}; }
-  Iterator end() const { return {*this, kEnd}; }
+  // The first member that is not below `rule`; kEnd when there is none.
+  [[gnu::always_inline]] unsigned from(unsigned rule) const { return empty() ? kEnd : find_from(rule); }
+
+  [[gnu::always_inline]] Iterator begin() const { return {*this, from(0)}; }
+  [[gnu::always_inline]] Iterator end() const { return {*this, kEnd}; }
 
 private:
   static constexpr Word bit(unsigned index) { return Word{1} << index % kBits; }
@@ -83,36 +109,40 @@ private:
     return w * kBits + static_cast<unsigned>(std::countr_zero(word));
   }
 
-  // The first word behind `w` with a member; kWords when there is none.
-  unsigned next_word(unsigned w) const {
-    if constexpr (kSummarised) {
-      const Word later = summary_ & ~Word{1} << w;
-      return later == 0 ? kWords : static_cast<unsigned>(std::countr_zero(later));
-    } else {
-      do
-        ++w;
-      while (w < kWords && words_[w] == 0);
-      return w;
+  template <class WordAt, class Take>
+  static void each_of(RuleRange rules, WordAt word_at, Take take) {
+    unsigned w = rules.first / kBits;
+    Word inside = ~Word{0} << rules.first % kBits;
+    for (; w * kBits < rules.end; ++w, inside = ~Word{0}) {
+      for (Word left = word_at(w) & inside; left != 0; left &= left - 1) {
+        const unsigned rule = lowest(w, left);
+        if (rule >= rules.end) break;
+        take(rule);
+      }
     }
+  }
+
+  [[gnu::noinline]] unsigned find_from(unsigned rule) const {
+    const unsigned w = rule / kBits;
+    if (w >= kWords) return kEnd;
+    if (const Word rest = words_[w] & ~Word{0} << rule % kBits; rest != 0) return lowest(w, rest);
+    const Word later = summary_ & ~Word{1} << w;
+    if (later == 0) return kEnd;
+    const auto next = static_cast<unsigned>(std::countr_zero(later));
+    return lowest(next, words_[next]);
   }
 
   template <class Each>
   static void for_words(const BasicRuleSet& set, Each each) {
-    if constexpr (kSummarised) {
-      for (Word left = set.summary_; left != 0; left &= left - 1)
-        each(static_cast<unsigned>(std::countr_zero(left)));
-    } else {
-      for (unsigned w = 0; w < kWords; ++w)
-        each(w);
-    }
+    for (Word left = set.summary_; left != 0; left &= left - 1)
+      each(static_cast<unsigned>(std::countr_zero(left)));
   }
 
   std::array<Word, kWords> words_{};
-  struct Nothing {};
-  [[no_unique_address]] std::conditional_t<kSummarised, Word, Nothing>
-      summary_{};  // bit w: word w is not 0
+  Word summary_ = 0;  // bit w: word w is not 0
 };
 
+using RuleBits = BasicRuleBits<kMaxRules>;
 using RuleSet = BasicRuleSet<kMaxRules>;
 
 }  // namespace robosync::layers

@@ -77,7 +77,7 @@ kernel::Time SensorLayer::next_sample(unsigned sensor, kernel::Time last) {
 
 void SensorLayer::sample(unsigned sensor) {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
-  InputMask news = 0;
+  ChannelMask news = 0;
   for (unsigned i = 0; i < wiring.channel_count; ++i) {
     const auto channel = static_cast<std::uint8_t>(wiring.first_channel + i);
     vm::Value value = 0;
@@ -101,7 +101,7 @@ void SensorLayer::run_feeds() {
 // One tick's worth: at most as many as the queue holds.
 void SensorLayer::deliver_due() {
   const kernel::Time now = kernel_.now();
-  InputMask news = 0;
+  ChannelMask news = 0;
   for (unsigned i = 0; i < kMaxFeeds; ++i) {
     FeedQueue::Entry entry;
     {
@@ -114,13 +114,13 @@ void SensorLayer::deliver_due() {
 }
 
 // The channel's bit if it is news.
-InputMask SensorLayer::publish(std::uint8_t channel, vm::Value value) {
+ChannelMask SensorLayer::publish(std::uint8_t channel, vm::Value value) {
   const vm::Channel& wiring = program_->image.channels[channel];
   const Reading reading(channel, std::clamp(value, wiring.min, wiring.max), kernel_.now());
-  return mailboxes_.post(reading, wiring) ? bit<InputMask>(channel) : 0;
+  return mailboxes_.post(reading, wiring) ? bit<ChannelMask>(channel) : 0;
 }
 
-void SensorLayer::announce(InputMask channels) {
+void SensorLayer::announce(ChannelMask channels) {
   if (channels == 0) return;
   mailboxes_.announce(channels);
   alarm_.ring(channels);  // safety first; what it does is part of the step with the reading

@@ -62,8 +62,8 @@ private:
   kernel::Time next_sample(unsigned sensor, kernel::Time last);
   void sample(unsigned sensor);
   void deliver_due();
-  InputMask publish(std::uint8_t channel, vm::Value value);
-  void announce(InputMask channels);
+  ChannelMask publish(std::uint8_t channel, vm::Value value);
+  void announce(ChannelMask channels);
   link::FeedError check(const link::Feed& feed) const;
 
   kernel::Kernel& kernel_;

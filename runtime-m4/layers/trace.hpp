@@ -21,6 +21,7 @@ public:
   // A new program: its clock and steps count from 0.
   void restart(kernel::Time activated_at) {
     activated_at_ = activated_at;
+    activated_tick_ = static_cast<std::uint32_t>(activated_at / kernel::kTick);
     step_ = {};
   }
   void begin_step(Stamp step) { step_ = step; }
@@ -31,21 +32,43 @@ public:
     const kernel::Time now = kernel_.now();
     return now < activated_at_ ? 0 : now - activated_at_;
   }
-  Stamp step() const { return step_; }
+  // The same in whole ticks; 49 days later they begin again.
+  std::uint32_t milliseconds() const {
+    const std::uint32_t tick = kernel_.tick();
+    return static_cast<std::int32_t>(tick - activated_tick_) < 0 ? 0 : tick - activated_tick_;
+  }
+  const Stamp& step() const { return step_; }
   Stamp now() const { return {program_time(), step_.step}; }
 
-  void emit(link::EventKind kind, Stamp stamp, unsigned subject, unsigned object = 0);
-  void emit(link::EventKind kind, Stamp stamp, unsigned subject, unsigned object,
-            std::int32_t value);
-  // For events of several values: their number is value_count. Stacks are short, so that whoever
-  // makes such an event fills it in place.
-  static link::Event event(link::EventKind kind, Stamp stamp, unsigned subject, unsigned object);
+  // Is anybody there to see what is emitted? Whoever would have to work for an event asks first.
+  [[gnu::always_inline]] bool listening() const { return sink_.listening(); }
+
+  [[gnu::always_inline]] void emit(link::EventKind kind, const Stamp& stamp, unsigned subject,
+                                   unsigned object = 0) {
+    if (listening()) [[unlikely]]
+      tell(kind, stamp, subject, object);
+  }
+  [[gnu::always_inline]] void emit(link::EventKind kind, const Stamp& stamp, unsigned subject,
+                                   unsigned object, std::int32_t value) {
+    if (listening()) [[unlikely]]
+      tell(kind, stamp, subject, object, value);
+  }
+  // For events of several values, from who has seen that somebody listens: their number is
+  // value_count. Stacks are short, so that whoever makes such an event fills it in place.
+  static void begin(link::Event& event, link::EventKind kind, Stamp stamp, unsigned subject,
+                    unsigned object);
   void emit(const link::Event& event) { sink_.emit(event); }
 
 private:
+  [[gnu::noinline]] void tell(link::EventKind kind, const Stamp& stamp, unsigned subject,
+                              unsigned object);
+  [[gnu::noinline]] void tell(link::EventKind kind, const Stamp& stamp, unsigned subject,
+                              unsigned object, std::int32_t value);
+
   kernel::Kernel& kernel_;
   EventSink& sink_;
   kernel::Time activated_at_ = 0;
+  std::uint32_t activated_tick_ = 0;
   Stamp step_;
 };
 

@@ -29,6 +29,7 @@ void Triggers::start(const vm::Image& image) {
   active_.clear();
   sleeping_.clear();
   first_to_wake_ = kNobody;
+  next_wake_ = kNever;
 }
 
 const vm::Modifiers& Triggers::modifiers(unsigned rule) const {
@@ -82,29 +83,32 @@ void Triggers::note_past(unsigned rule, std::uint32_t wake, bool event) {
 
 // --- what follows from it ---
 
-void Triggers::collect(const RuleSet& evaluated) {
-  const unsigned first = first_to_wake_;
-  bool first_is_gone = false;
-  for (const unsigned rule : evaluated) {
-    eventful_.put(rule, judgement(rule).event);
-    sleeping_.put(rule, due(rule) != kNever);
-    note_active(rule);
-    if (rule == first) first_is_gone = true;
-    if (sooner(due(rule), next_wake())) first_to_wake_ = static_cast<std::uint16_t>(rule);
+void Triggers::collect(unsigned rule) {
+  const bool event = judgement(rule).event;
+  if (event || eventful_.has(rule)) eventful_.put(rule, event);
+  note_active(rule);
+  const std::uint32_t wake = due(rule);
+  if (wake == kNever && !sleeping_.has(rule)) return;
+  sleeping_.put(rule, wake != kNever);
+  if (rule == first_to_wake_) {
+    find_first_to_wake();
+  } else if (sooner(wake, next_wake_)) {
+    wake_first(rule);
   }
-  if (first_is_gone) find_first_to_wake();
 }
 
 // It ends a phase, or a WHILE that holds.
 void Triggers::note_active(unsigned rule) {
   const bool holds = judgement(rule).truth == Truth::yes;
-  active_.put(rule, phases_[rule].phase != Phase::free || (is_while(rule) && holds));
+  const bool active = phases_[rule].phase != Phase::free || (holds && is_while(rule));
+  if (active || active_.has(rule)) active_.put(rule, active);
 }
 
 void Triggers::find_first_to_wake() {
   first_to_wake_ = kNobody;
+  next_wake_ = kNever;
   for (const unsigned rule : sleeping_)
-    if (sooner(due(rule), next_wake())) first_to_wake_ = static_cast<std::uint16_t>(rule);
+    if (sooner(due(rule), next_wake_)) wake_first(rule);
 }
 
 void Triggers::add_woken(std::uint32_t now, RuleSet& rules) const {
@@ -120,7 +124,6 @@ void Triggers::settle(std::uint32_t now) {
     const bool cooling = state.phase == Phase::cooling;
     const bool over = cooling ? reached(until, now) : !reached(now, until);
     if (over) state.phase = Phase::free;
-    if (cooling && !over) judgement(rule).trigger = Trigger::none;
     note_active(rule);
   }
 }
@@ -129,12 +132,6 @@ bool Triggers::take_zero_divide(unsigned rule) {
   const bool divided = judgement(rule).zero_divide;
   judgement(rule).zero_divide = false;
   return divided;
-}
-
-bool Triggers::fired(unsigned rule, Side& side) const {
-  const Trigger trigger = judgement(rule).trigger;
-  side = trigger == Trigger::then ? Side::then : Side::otherwise;
-  return trigger != Trigger::none;
 }
 
 bool Triggers::wish(unsigned rule, bool running, Wish& wish) const {
@@ -177,11 +174,6 @@ void Triggers::lost(unsigned rule, Side side, bool to_itself, std::uint32_t now)
   state.phase = side == Side::then ? Phase::wants_then : Phase::wants_otherwise;
   until_[rule] = now + waiting;
   active_.insert(rule);
-}
-
-void Triggers::forget(const RuleSet& triggers) {
-  for (const unsigned rule : triggers)
-    judgement(rule).trigger = Trigger::none;
 }
 
 void Triggers::retire(unsigned rule) {

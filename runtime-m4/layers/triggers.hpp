@@ -6,10 +6,11 @@
 // so a sensor that drops out and comes back does not trigger by that alone. WHILE is other: unknown
 // ends it, so that it fires again when its condition is known to be true.
 //
-// The behaviours' threads say what they have evaluated, each of its own rules; the step thread
-// collects that and asks what follows from it. What is not free of the past (a wait, a cooldown, a
-// WHILE that holds, a time word) is in a set, so that all other rules cost a step nothing. The sets
-// belong to the step thread. Times are milliseconds of program time.
+// The behaviours' threads say what they have evaluated, each of its own rules, and ask what follows
+// from it; the step thread collects it and asks the same. What is not free of the past (a wait, a
+// cooldown, a WHILE that holds, a time word) is in a set, so that all other rules cost a step nothing.
+// The sets belong to the step thread; the others only read them. Times are milliseconds of program
+// time.
 #pragma once
 
 #include <array>
@@ -43,31 +44,20 @@ public:
   void note_zero_divide(unsigned rule) { judgement(rule).zero_divide = true; }
 
   // --- for the step thread ---
-  // These were evaluated, and no behaviour is at work any more.
-  void collect(const RuleSet& evaluated);
+  // It was evaluated, and its behaviour is not at work any more.
+  void collect(unsigned rule);
   // Those whose last evaluation had an event, or divided by zero, which each step tells that could
   // have found it.
   const RuleSet& eventful() const { return eventful_; }
   // Those that cool down, or may want to run without a new trigger.
   const RuleSet& active() const { return active_; }
   // The first time at which one is to be evaluated again; kNever for never.
-  std::uint32_t next_wake() const {
-    return first_to_wake_ == kNobody ? kNever : due(first_to_wake_);
-  }
+  std::uint32_t next_wake() const { return next_wake_; }
   // Adds those whose time has come.
   void add_woken(std::uint32_t now, RuleSet& rules) const;
-  struct Wish {
-    Side side;
-    bool fresh;   // it triggered in this step
-    bool silent;  // it was told before that the rule wants this
-  };
-  // Drops what comes inside a cooldown; ends cooldowns and waits that are over.
+  // Ends cooldowns and waits that are over.
   void settle(std::uint32_t now);
   bool take_zero_divide(unsigned rule);
-  // It triggered in this step.
-  [[nodiscard]] bool fired(unsigned rule, Side& side) const;
-  // What it wants to run, given whether it runs now. False: nothing.
-  [[nodiscard]] bool wish(unsigned rule, bool running, Wish& wish) const;
   // A WHILE whose condition does not hold.
   bool is_over(unsigned rule) const;
   bool restarting(unsigned rule) const;
@@ -75,11 +65,26 @@ public:
   void won(unsigned rule, std::uint32_t now);
   void lost(unsigned rule, Side side, bool to_itself, std::uint32_t now);
   void interrupted(unsigned rule) { phases_[rule].told = true; }
-  void forget(const RuleSet& triggers);
+  void forget(unsigned rule) { judgement(rule).trigger = Trigger::none; }
   // Its behaviour was stopped: it never triggers again.
   void retire(unsigned rule);
   // When a WHILE that cools down may start again; kNever for never.
   std::uint32_t cooled_at(unsigned rule) const;
+
+  // --- for both ---
+  struct Wish {
+    Side side;
+    bool fresh;   // it triggered in this step
+    bool silent;  // it was told before that the rule wants this
+  };
+  // It triggered in this step, and not inside a cooldown.
+  [[nodiscard]] bool fired(unsigned rule, Side& side) const {
+    const Trigger trigger = judgement(rule).trigger;
+    side = trigger == Trigger::then ? Side::then : Side::otherwise;
+    return trigger != Trigger::none && phases_[rule].phase != Phase::cooling;
+  }
+  // What it wants to run, given whether it runs now. False: nothing.
+  [[nodiscard]] bool wish(unsigned rule, bool running, Wish& wish) const;
 
 private:
   enum class Phase : std::uint8_t { free, cooling, wants_otherwise, wants_then };
@@ -97,6 +102,10 @@ private:
   std::uint32_t due(unsigned rule) const { return workspace_.due[rule]; }
   void note_active(unsigned rule);
   void find_first_to_wake();
+  void wake_first(unsigned rule) {
+    first_to_wake_ = static_cast<std::uint16_t>(rule);
+    next_wake_ = due(rule);
+  }
 
   Workspace& workspace_;
   const vm::Image* image_ = nullptr;
@@ -106,6 +115,9 @@ private:
   RuleSet active_;
   RuleSet sleeping_;  // those that are due at some time
   std::uint16_t first_to_wake_ = kNobody;
+  // When that is. Kept here: while a behaviour's rules are collected one by one, what its thread has
+  // noted of the others is newer already.
+  std::uint32_t next_wake_ = kNever;
 };
 
 }  // namespace robosync::layers

@@ -50,6 +50,8 @@ public:
 
   // --- for the step thread; `now` is milliseconds of program time ---
   bool staged() const { return staged_ != 0; }
+  // enter() has something to do: else it may be left out.
+  bool may_change() const { return (staged_ | fading_) != 0; }
   // Moves `values` on to `now` and lets the staged writes take effect. Returns what changed.
   VariableMask enter(std::uint32_t now, std::span<vm::Value> values);
   // In how many milliseconds the next one fades; kNever when all are where they tend to.

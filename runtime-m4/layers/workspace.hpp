@@ -30,12 +30,15 @@ static_assert(sizeof(Judgement) == 1);
 
 // What came of a response that was run. All zero at first, so that it takes no flash.
 struct Result {
-  vm::Pause pause = vm::Pause::ended;  // vm::Progress
-  const vm::Word* next = nullptr;
+  const vm::Word* next = nullptr;  // vm::Progress
   std::uint32_t wake = 0;
+  vm::Pause pause = vm::Pause::ended;
+  bool zero_divide = false;
+  std::uint16_t rule = 0;      // whose response it was
   std::uint32_t assigned = 0;  // vm::Machine
   std::uint32_t shifted = 0;
   std::uint16_t words = 0;  // of the output
+  bool there = false;       // there is a result, since the behaviour was released
 };
 
 struct alignas(kWorkspaceAlignment) Workspace {
@@ -56,8 +59,8 @@ struct alignas(kWorkspaceAlignment) Workspace {
   // One response runs at a time, so one output is enough.
   std::array<vm::Word, vm::kMaxResponseOutput> output{};
   Result result;
-  // By behaviour: it has done what it was released for.
-  std::array<std::atomic<bool>, kMaxBehaviors> finished{};
+  // The behaviour that was released has done what it was released for.
+  std::atomic<bool> finished = false;
 };
 static_assert(sizeof(Workspace) % kWorkspaceUnit == 0);
 

@@ -41,10 +41,9 @@ private:
 
 class Forwarder final : public EventSink {
 public:
-  explicit Forwarder(Simulator::Sink sink) : sink_(std::move(sink)) {}
-  void emit(const link::Event& event) override {
-    if (sink_) sink_(event);
-  }
+  explicit Forwarder(Simulator::Sink sink)
+      : EventSink(static_cast<bool>(sink)), sink_(std::move(sink)) {}
+  void emit(const link::Event& event) override { sink_(event); }
 
 private:
   Simulator::Sink sink_;

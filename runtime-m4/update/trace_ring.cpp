@@ -1,73 +1,98 @@
 // May assume one reader. Promises that a message is in the ring whole or not at all, and that the
-// kernel is locked only while its bytes are copied.
+// kernel is locked only while its words are copied.
 #include "runtime-m4/update/trace_ring.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace robosync::update {
+namespace {
+
+// The first word of a message: its type, and how many values or bytes it has. Of an event also
+// what it is about.
+constexpr std::uint32_t head(link::MessageType type, std::size_t count, std::uint16_t subject = 0) {
+  return static_cast<std::uint32_t>(type) | static_cast<std::uint32_t>(count) << 8 |
+         std::uint32_t{subject} << 16;
+}
+constexpr std::size_t count_of(std::uint32_t head) {
+  return head >> 8 & 0xFF;
+}
+
+}  // namespace
 
 void TraceRing::listen(bool on) {
   const auto lock = kernel_.lock();
   if (!on) taken_ = put_;
-  listening_ = on;
+  set_listening(on);
+}
+
+// Under the lock. A message that has room comes now; one that has none is lost.
+bool TraceRing::make_room(std::size_t words) {
+  if (!listening()) return false;
+  if (words > kWords - (put_ - taken_)) {
+    ++lost_;
+    return false;
+  }
+  if (put_ == taken_ && reader_ != nullptr) kernel_.signal(*reader_, news_);
+  return true;
 }
 
 void TraceRing::emit(const link::Event& event) {
-  if (!listening_) return;
-  std::array<std::byte, link::kEventHeadBytes> head{};
-  link::encode_event_head(event, head);
-  put(link::MessageType::event, head, link::encoded_values(event));
+  const std::size_t values = std::min<std::size_t>(event.value_count, link::kMaxEventValues);
+  const auto lock = kernel_.lock();
+  if (!make_room(kEventHead + values)) return;
+  put(head(link::MessageType::event, values, event.subject));
+  put(static_cast<Word>(event.kind) | Word{event.object} << 16);
+  put(event.step);
+  put(static_cast<Word>(event.time_us));
+  put(static_cast<Word>(event.time_us >> 32));
+  for (std::size_t v = 0; v < values; ++v)
+    put(static_cast<Word>(event.values[v]));
 }
 
 void TraceRing::log(std::string_view line) {
   if (line.empty()) return;
   const std::string_view cut = line.substr(0, link::kMaxPayload);
-  put(link::MessageType::log, std::as_bytes(std::span(cut.data(), cut.size())), {});
+  const auto lock = kernel_.lock();
+  if (!make_room(1 + (cut.size() + sizeof(Word) - 1) / sizeof(Word))) return;
+  put(head(link::MessageType::log, cut.size()));
+  for (std::size_t at = 0; at < cut.size(); at += sizeof(Word)) {
+    Word word = 0;
+    std::memcpy(&word, cut.data() + at, std::min(sizeof word, cut.size() - at));
+    put(word);
+  }
 }
 
-void TraceRing::put(link::MessageType type, std::span<const std::byte> begin,
-                    std::span<const std::byte> end) {
-  const std::size_t length = begin.size() + end.size();
-  const std::array head{static_cast<std::byte>(type), static_cast<std::byte>(length)};
-  const auto lock = kernel_.lock();
-  if (!listening_) return;
-  if (kHead + length > kCapacity - (put_ - taken_)) {
-    ++lost_;
-    return;
-  }
-  if (put_ == taken_ && reader_ != nullptr) kernel_.signal(*reader_, news_);
-  copy_in(head);
-  copy_in(begin);
-  copy_in(end);
+void TraceRing::take_event(Word head, link::Event& event) {
+  const Word kind = take();
+  event.kind = static_cast<link::EventKind>(kind & 0xFF);
+  event.object = static_cast<std::uint16_t>(kind >> 16);
+  event.subject = static_cast<std::uint16_t>(head >> 16);
+  event.step = take();
+  const Word low = take();
+  event.time_us = std::uint64_t{take()} << 32 | low;
+  event.value_count = static_cast<std::uint8_t>(count_of(head));
+  for (std::size_t v = 0; v < event.value_count; ++v)
+    event.values[v] = static_cast<std::int32_t>(take());
 }
 
 std::size_t TraceRing::take(link::MessageType& type,
                             std::span<std::byte, link::kMaxPayload> payload) {
   const auto lock = kernel_.lock();
   if (put_ == taken_) return 0;
-  std::array<std::byte, kHead> head{};
-  copy_out(head);
-  type = static_cast<link::MessageType>(head[0]);
-  const auto length = std::to_integer<std::size_t>(head[1]);
-  copy_out(payload.first(length));
+  const Word first = take();
+  type = static_cast<link::MessageType>(first & 0xFF);
+  if (type == link::MessageType::event) {
+    link::Event event;
+    take_event(first, event);
+    return link::encode_event(event, payload.first<link::kMaxEncodedEvent>());
+  }
+  const std::size_t length = count_of(first);
+  for (std::size_t at = 0; at < length; at += sizeof(Word)) {
+    const Word word = take();
+    std::memcpy(payload.data() + at, &word, std::min(sizeof word, length - at));
+  }
   return length;
-}
-
-void TraceRing::copy_in(std::span<const std::byte> bytes) {
-  const std::size_t at = put_ % kCapacity;
-  const std::size_t to_end = std::min(bytes.size(), kCapacity - at);
-  std::copy_n(bytes.begin(), to_end, ring_.begin() + static_cast<std::ptrdiff_t>(at));
-  std::copy(bytes.begin() + static_cast<std::ptrdiff_t>(to_end), bytes.end(), ring_.begin());
-  put_ += bytes.size();
-}
-
-void TraceRing::copy_out(std::span<std::byte> bytes) {
-  const std::size_t at = taken_ % kCapacity;
-  const std::size_t to_end = std::min(bytes.size(), kCapacity - at);
-  const auto rest =
-      std::copy_n(ring_.begin() + static_cast<std::ptrdiff_t>(at), to_end, bytes.begin());
-  std::copy_n(ring_.begin(), bytes.size() - to_end, rest);
-  taken_ += bytes.size();
 }
 
 }  // namespace robosync::update

@@ -18,7 +18,7 @@ namespace robosync::update {
 
 class TraceRing final : public EventSink {
 public:
-  explicit TraceRing(kernel::Kernel& kernel) : kernel_(kernel) {}
+  explicit TraceRing(kernel::Kernel& kernel) : EventSink(false), kernel_(kernel) {}
 
   // From now on `news` of `reader` are signalled when a message comes into the empty ring: who has
   // taken all of them waits for that. Before Kernel::run().
@@ -29,7 +29,6 @@ public:
 
   // Starts or stops keeping messages. Stopping forgets what waits.  [any]
   void listen(bool on);
-  bool listening() const { return listening_; }
 
   void emit(const link::Event& event) override;  // [any]
   // One line of text without its end; cut at kMaxPayload.  [any]
@@ -42,25 +41,26 @@ public:
   std::uint32_t lost() const { return lost_; }  // since start-up
 
 private:
-  static constexpr std::size_t kCapacity = 1024;  // about 40 events
-  static constexpr std::size_t kHead = 2;         // type, length
+  using Word = std::uint32_t;
+  static constexpr std::size_t kWords = 256;  // about 40 events
+  static constexpr std::size_t kEventHead = 5;  // words before its values
+  static_assert((kWords & (kWords - 1)) == 0, "positions are taken modulo the capacity");
 
-  // A message of two pieces: nobody has to put it together first, on a short stack.
-  void put(link::MessageType type, std::span<const std::byte> begin,
-           std::span<const std::byte> end);
-  void copy_in(std::span<const std::byte> bytes);
-  void copy_out(std::span<std::byte> bytes);
+  bool make_room(std::size_t words);
+  void put(Word word) { ring_[put_++ % kWords] = word; }
+  Word take() { return ring_[taken_++ % kWords]; }
+  void take_event(Word head, link::Event& event);
 
   kernel::Kernel& kernel_;
-  std::array<std::byte, kCapacity> ring_{};
-  // Bytes ever put and taken; they wrap around together with the ring.
+  // Messages as they are found, in words: an event's numbers, which become bytes when the line is
+  // ready for them, or a line's bytes. The first word says which, and how many.
+  std::array<Word, kWords> ring_{};
+  // Words ever put and taken; they wrap around together with the ring.
   std::size_t put_ = 0;
   std::size_t taken_ = 0;
   std::uint32_t lost_ = 0;
-  bool listening_ = false;
   kernel::Thread* reader_ = nullptr;
   kernel::Events news_ = 0;
-  static_assert((kCapacity & (kCapacity - 1)) == 0, "positions are taken modulo the capacity");
 };
 
 }  // namespace robosync::update

@@ -8,7 +8,7 @@
 
 namespace robosync::test {
 
-Rig::Rig() : runtime(kernel, board, *this, workspace) {
+Rig::Rig() : EventSink(true), runtime(kernel, board, *this, workspace) {
   REQUIRE(runtime.start());
 }
 

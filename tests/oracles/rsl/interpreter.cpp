@@ -120,12 +120,20 @@ void Interpreter::step(bool readings) {
   inputs_.enter(now_.at, readings);
   remember();
   interrupt_halted();
+  for (std::size_t first = 0; first < rules_.size();)
+    first = take_turn(first);
+  run_responses();
+}
+
+// A behaviour looks at all its rules, and then claims what they want. Returns where the next one begins.
+std::size_t Interpreter::take_turn(std::size_t first) {
   std::vector<Claim> claims;
-  for (std::size_t r = 0; r < rules_.size(); ++r)
+  std::size_t r = first;
+  for (; r < rules_.size() && rules_[r].rank == rules_[first].rank; ++r)
     look_at(r, claims);
   for (const Claim& claim : claims)
     serve(claim);
-  run_responses();
+  return r;
 }
 
 void Interpreter::remember() {

@@ -76,6 +76,7 @@ private:
   [[nodiscard]] bool somebody_could_go_on();
   bool feed(const std::vector<Reading>& readings, std::size_t& next);
   void step(bool readings);
+  std::size_t take_turn(std::size_t first);
   void remember();
   void interrupt_halted();
   void look_at(std::size_t rule, std::vector<Claim>& claims);

@@ -26,7 +26,8 @@ std::vector<std::byte> bytes(std::initializer_list<int> values) {
 }
 
 Order order(vm::Action action, std::initializer_list<std::pair<Param, Value>> params = {}) {
-  Order result{.action = action, .given = 0};
+  Order result;
+  result.action = action;
   for (const auto& [param, value] : params) {
     result.given = static_cast<std::uint8_t>(result.given | 1U << static_cast<unsigned>(param));
     result.params[static_cast<std::size_t>(param)] = value;
@@ -229,7 +230,8 @@ TEST_CASE("any order ends, and no pulse leaves the servo's range") {
     Drive servo(vm::DriverId::servo, std::min(one, other), std::max(one, other),
                 std::max(number(), 0));
     for (int i = 0; i < 4; ++i) {
-      Order what{.action = *rc::gen::element(vm::Action::move, vm::Action::stop), .given = 0};
+      Order what;
+      what.action = *rc::gen::element(vm::Action::move, vm::Action::stop);
       what.given = *rc::gen::arbitrary<std::uint8_t>();
       for (Value& param : what.params)
         param = number();

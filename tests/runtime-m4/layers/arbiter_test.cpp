@@ -83,43 +83,37 @@ private:
   }
 };
 
-// What the arbiter is told of the responses that run.
+// What ProcessingLayer does with a decision, and nothing else.
 struct Table {
-  explicit Table(std::size_t rules) : holdings(rules) {}
+  Arbiter arbiter;
 
-  Decision decide(const Claim& claim) const {
-    return robosync::layers::decide(claim, holdings, running);
+  std::set<unsigned> ended_by(const Claim& claim, const Decision& decision) const {
+    std::set<unsigned> ended;
+    for (const unsigned rule : arbiter.running())
+      if (arbiter.ends(claim, decision, rule)) ended.insert(rule);
+    return ended;
   }
-  // What ProcessingLayer does with a decision, and nothing else.
   void apply(const Claim& claim, const Decision& decision) {
-    for (const unsigned rule : decision.interrupted)
-      running.erase(rule);
-    if (!decision.wins) return;
-    running.insert(claim.rule);
-    const auto actuators = static_cast<ActuatorBits>(claim.actuators);
-    holdings[claim.rule] = Holding{.actuators = actuators,
-                                   .pending = actuators,
-                                   .behavior = claim.behavior,
-                                   .side = claim.side,
-                                   .won_now = true};
+    for (const unsigned rule : ended_by(claim, decision))
+      arbiter.end(rule);
+    if (decision.wins()) arbiter.give(claim);
   }
-  bool disjoint() const {
-    ActuatorMask seen = 0;
-    for (const unsigned rule : running) {
-      if ((seen & holdings[rule].actuators) != 0) return false;
-      seen |= holdings[rule].actuators;
-    }
-    return true;
-  }
+  void serve(const Claim& claim) { apply(claim, arbiter.decide(claim)); }
 
-  std::vector<Holding> holdings;
-  RuleSet running;
+  // Each actuator has one owner, and those that are owned are those that somebody holds.
+  bool is_sound() const {
+    ActuatorMask seen = 0;
+    for (const unsigned rule : arbiter.running()) {
+      if ((seen & arbiter.holding(rule).actuators) != 0) return false;
+      seen |= arbiter.holding(rule).actuators;
+    }
+    return seen == arbiter.owned();
+  }
 };
 
 void begin_step(Model& model, Table& table) {
   model.started_now.clear();
-  for (Holding& holding : table.holdings)
-    holding.won_now = false;
+  table.arbiter.end_step();
 }
 
 Claim claim(std::uint8_t rule, std::uint8_t behavior, ActuatorMask actuators,
@@ -139,7 +133,7 @@ TEST_CASE("the arbiter decides as the language says, over many steps") {
       behavior_of[r] = behavior;
     }
     Model model;
-    Table table(kRules);
+    Table table;
     const int steps = *rc::gen::inRange(1, 12);
     for (int step = 0; step < steps; ++step) {
       begin_step(model, table);
@@ -148,19 +142,16 @@ TEST_CASE("the arbiter decides as the language says, over many steps") {
         const auto mask = *rc::gen::inRange<ActuatorMask>(0, 1U << kActuators);
         const Side side = *rc::gen::element(Side::then, Side::otherwise);
         const Claim c = claim(r, behavior_of[r], mask, side);
-        const Decision decision = table.decide(c);
+        const Decision decision = table.arbiter.decide(c);
         const auto expected = model.serve({r, behavior_of[r], side, as_set(mask)});
-        RC_ASSERT(decision.wins == expected.wins);
-        std::set<unsigned> interrupted;
-        for (const unsigned rule : decision.interrupted)
-          interrupted.insert(rule);
-        RC_ASSERT(interrupted == expected.interrupted);
+        RC_ASSERT(decision.wins() == expected.wins);
+        RC_ASSERT(table.ended_by(c, decision) == expected.interrupted);
         table.apply(c, decision);
-        RC_ASSERT(table.disjoint());
+        RC_ASSERT(table.is_sound());
       }
       for (unsigned r = 0; r < kRules; ++r) {  // some responses finish
         if (!*rc::gen::arbitrary<bool>()) continue;
-        table.running.erase(r);
+        if (table.arbiter.runs(r)) table.arbiter.end(r);
         std::erase_if(model.running, [&](const Response& response) { return response.rule == r; });
       }
     }
@@ -169,29 +160,49 @@ TEST_CASE("the arbiter decides as the language says, over many steps") {
 }
 
 TEST_CASE("a loser learns which behaviour is in its way: the one of the highest priority") {
-  Table table(4);
-  table.apply(claim(0, 0, 0b001), {.interrupted = {}, .wins = true});
-  table.apply(claim(1, 1, 0b010), {.interrupted = {}, .wins = true});
-  const Decision decision = table.decide(claim(3, 2, 0b111));
-  CHECK_FALSE(decision.wins);
+  Table table;
+  table.serve(claim(0, 0, 0b001));
+  table.serve(claim(1, 1, 0b010));
+  const Claim late = claim(3, 2, 0b111);
+  const Decision decision = table.arbiter.decide(late);
+  CHECK_FALSE(decision.wins());
   CHECK(decision.owner == 0);
-  CHECK(decision.interrupted.empty());
+  CHECK(table.ended_by(late, decision).empty());
 }
 
-TEST_CASE("a rule that runs already loses to its own behaviour") {
-  Table table(3);
-  table.apply(claim(2, 1, 0b1), {.interrupted = {}, .wins = true});
-  table.holdings[2].won_now = false;
-  const Decision decision = table.decide(claim(2, 1, 0b1));
-  CHECK_FALSE(decision.wins);
+TEST_CASE("a rule that runs already loses to its own behaviour, and runs on") {
+  Table table;
+  table.serve(claim(2, 1, 0b1));
+  table.arbiter.end_step();
+  const Claim again = claim(2, 1, 0b1);
+  const Decision decision = table.arbiter.decide(again);
+  CHECK(decision.outcome == Outcome::ignored);
   CHECK(decision.owner == 1);
-  CHECK(decision.interrupted.empty());
+  CHECK(table.ended_by(again, decision).empty());
+}
+
+TEST_CASE("what was won in this step is not lost in it to the same behaviour") {
+  Table table;
+  table.serve(claim(1, 1, 0b1));
+  CHECK_FALSE(table.arbiter.decide(claim(2, 1, 0b1)).wins());
+  table.arbiter.end_step();
+  CHECK(table.arbiter.decide(claim(2, 1, 0b1)).wins());
+}
+
+TEST_CASE("nobody gets what safety has halted, and the claim loses to safety") {
+  Table table;
+  table.arbiter.note_halted(0b10);
+  const Decision decision = table.arbiter.decide(claim(0, 3, 0b11));
+  CHECK_FALSE(decision.wins());
+  CHECK(decision.owner == robosync::vm::kSafetyBehavior);
+  CHECK(table.arbiter.decide(claim(0, 3, 0b01)).wins());
 }
 
 TEST_CASE("responses without actuators never conflict") {
-  Table table(2);
-  table.apply(claim(0, 0, ~0U), {.interrupted = {}, .wins = true});
-  const Decision decision = table.decide(claim(1, 1, 0));
-  CHECK(decision.wins);
-  CHECK(decision.interrupted.empty());
+  Table table;
+  table.serve(claim(0, 0, ~0U));
+  const Claim other = claim(1, 1, 0);
+  const Decision decision = table.arbiter.decide(other);
+  CHECK(decision.wins());
+  CHECK(table.ended_by(other, decision).empty());
 }

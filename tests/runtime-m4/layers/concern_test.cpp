@@ -45,6 +45,7 @@ struct DrawnConditions {
     }
     image.behaviors = {&behavior, 1};
     image.rules = rules;
+    image.channels = channels;
     image.inputs = inputs;
     image.code = code;
   }
@@ -68,6 +69,7 @@ struct DrawnConditions {
   }
 
   std::vector<vm::Value> constants = {0, 1, 2, 3, 1000, 5000};
+  std::array<vm::Channel, layers::kMaxChannels> channels{};  // the other inputs are variables
   std::vector<std::uint8_t> inputs;
   std::vector<vm::Word> code;
   std::array<vm::Rule, kRules> rules{};
@@ -75,10 +77,10 @@ struct DrawnConditions {
   vm::Image image;
 };
 
-std::set<unsigned> readers_of(const layers::LoadedProgram& program, unsigned input) {
+std::set<unsigned> readers_of(layers::LoadedProgram& program, unsigned input) {
   std::set<unsigned> rules;
-  for (const unsigned rule : program.readers[input])
-    rules.insert(rule);
+  for (unsigned rule = 0; rule < layers::kMaxRules; ++rule)
+    if (program.readers_of(input).has(rule)) rules.insert(rule);
   return rules;
 }
 
@@ -103,7 +105,7 @@ TEST_CASE("the index has every rule whose result an input can change, and names 
             named.insert(drawn.inputs[cell]);
       }
       for (unsigned input = 0; input < layers::kMaxInputs; ++input)
-        REQUIRE(program->readers[input].has(rule) == named.contains(input));
+        REQUIRE(program->readers_of(input).has(rule) == named.contains(input));
       // What a run shows.
       std::vector<vm::Value> frame(DrawnConditions::kInputs + DrawnConditions::kRegisters);
       for (vm::Value& cell : frame)
@@ -113,7 +115,7 @@ TEST_CASE("the index has every rule whose result an input can change, and names 
       frame[cell] = static_cast<vm::Value>(draw.below(6000));
       if (drawn.evaluate(rule, frame) == before) continue;
       ++seen;
-      REQUIRE(program->readers[drawn.inputs[cell]].has(rule));
+      REQUIRE(program->readers_of(drawn.inputs[cell]).has(rule));
     }
   }
   CHECK(seen > 100);

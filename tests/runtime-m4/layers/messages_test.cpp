@@ -21,11 +21,11 @@ concept Posted = requires(Mailboxes& boxes, const Message& message, const vm::Ch
 };
 template <class Message>
 concept Evaluated = requires(BehaviorLayer& layer, const Message& message) {
-  layer.evaluate(RuleSet(), message);
+  layer.begin_step(message);
 };
 template <class Message>
 concept Staged = requires(ControlLayer& layer, const Message& message) {
-  layer.stage(message);
+  layer.stage(message, ActuatorMask{1});
 };
 
 static_assert(Posted<Reading> && !Posted<Snapshot> && !Posted<Command>);

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <rapidcheck.h>
 
+using robosync::layers::BasicRuleBits;
 using robosync::layers::BasicRuleSet;
 
 namespace {
@@ -30,10 +31,30 @@ void check_same(const BasicRuleSet<kRules>& set, const std::set<unsigned>& model
   }
 }
 
+// The rules of a behaviour, in this set, and in this or another one.
+template <unsigned kRules>
+void check_range(const BasicRuleSet<kRules>& set, const BasicRuleSet<kRules>& other, unsigned first,
+                 unsigned end) {
+  std::vector<unsigned> mine;
+  std::vector<unsigned> either;
+  std::vector<unsigned> expected_mine;
+  std::vector<unsigned> expected_either;
+  set.each_in({first, end}, [&](unsigned rule) { mine.push_back(rule); });
+  set.each_in_either(other, {first, end}, [&](unsigned rule) { either.push_back(rule); });
+  for (unsigned rule = first; rule < end; ++rule) {
+    if (set.has(rule)) expected_mine.push_back(rule);
+    if (set.has(rule) || other.has(rule)) expected_either.push_back(rule);
+  }
+  RC_ASSERT(mine == expected_mine);
+  RC_ASSERT(either == expected_either);
+  RC_ASSERT(set.has_any({first, end}) == !expected_mine.empty());
+}
+
 template <unsigned kRules>
 void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
   BasicRuleSet<kRules> set;
   BasicRuleSet<kRules> other;
+  BasicRuleBits<kRules> other_bits;
   std::set<unsigned> model;
   std::set<unsigned> other_model;
   for (const std::uint16_t operation : operations) {
@@ -52,10 +73,11 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
         break;
       case 5:
         other.put(rule, true);
+        other_bits.insert(rule);
         other_model.insert(rule);
         break;
       case 6:
-        set |= other;
+        set |= other_bits;
         model.insert(other_model.begin(), other_model.end());
         break;
       default:
@@ -66,6 +88,8 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
   }
   check_same(set, model);
   check_same(other, other_model);
+  const unsigned first = *rc::gen::inRange(0U, kRules);
+  check_range(set, other, first, *rc::gen::inRange(first, kRules + 1));
 }
 
 }  // namespace
@@ -95,7 +119,8 @@ TEST_CASE("members may come and go while they are gone through") {
   CHECK(seen == std::vector<unsigned>{3, 31, 500, 999});
 }
 
-TEST_CASE("forty rules take two words") {
-  CHECK(sizeof(BasicRuleSet<40>) == 8);
+TEST_CASE("forty rules take two words, and one that sums them up") {
+  CHECK(sizeof(BasicRuleBits<40>) == 2 * 4);
+  CHECK(sizeof(BasicRuleSet<40>) == 3 * 4);
   CHECK(sizeof(BasicRuleSet<1000>) == 33 * 4);
 }

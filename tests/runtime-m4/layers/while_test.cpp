@@ -87,7 +87,7 @@ END
         "250 #4 interrupt r0 by b0\n");
 }
 
-TEST_CASE("a higher claim takes what a WHILE has given up in the same step") {
+TEST_CASE("a claim takes what a WHILE has given up in the same step") {
   Robot robot(
       high_and_low(rule("WHILE near X < 10", "MOVE a FOR 1s"), when_near("MOVE a FOR 50ms")));
   robot.feed(0, "X", 5);
@@ -95,7 +95,7 @@ TEST_CASE("a higher claim takes what a WHILE has given up in the same step") {
   robot.run(300);
   CHECK(robot.only("fire interrupt win lose cancel command") ==
         "0 #1 fire r0 DO\n0 #1 win r0 DO\n0 #1 command a MOVE for_=1\n"
-        "100 #2 fire r1 DO\n100 #2 interrupt r0 by b0\n100 #2 win r1 DO\n100 #2 cancel a\n"
+        "100 #2 interrupt r0 by b0\n100 #2 cancel a\n100 #2 fire r1 DO\n100 #2 win r1 DO\n"
         "100 #2 command a MOVE for_=0.050\n");
 }
 
