@@ -56,7 +56,8 @@ class Table(unittest.TestCase):
         cls.log = run(behavior('LOG "x"'), FIRE)
         two_rules = behavior('LOG "x"').replace("END\nEND\n", "END\n") + behavior('LOG "x"').split("\n", 1)[1]
         condition = 14 + 15  # gt_k, ret
-        cls.rule = run(two_rules, FIRE).feeds[1] - cls.log.feeds[1] - condition
+        two = run(two_rules, FIRE).feeds
+        cls.rule = two[1] - cls.log.feeds[1] - condition
         apart = run(behavior('LOG "x"') + behavior('LOG "x"', priority=80), FIRE).feeds[1]
         cls.behavior = apart - cls.log.feeds[1] - cls.rule - condition
         cls.step = cls.log.feeds[1] - cls.rule - condition - cls.behavior
@@ -65,6 +66,8 @@ class Table(unittest.TestCase):
         cls.one = fired(behavior(move(0)))
         both = behavior(move(0)).replace("END\nEND\n", "END\n") + behavior(move(0)).split("\n", 1)[1]
         cls.claim = fired(both) - cls.one - cls.rule - condition
+        # A response that is not the only one of its behaviour, and so is released for by itself.
+        cls.another = two[-1] - cls.log.feeds[-1] - cls.rule - condition - cls.text
 
     def assert_covers(self, name, measured):
         said = self.costs[name] + VIRTUAL.get(name, 0)
@@ -79,7 +82,7 @@ class Table(unittest.TestCase):
     def test_a_rule_that_fires(self):
         self.assert_covers("kText", self.text)
         self.assert_covers("kClaim", self.claim)
-        self.assert_covers("kRun", self.fire - self.claim)
+        self.assert_covers("kRun", max(self.fire, self.another) - self.claim)
 
     def test_commands(self):
         self.assert_covers("kCommand", fired(behavior(move(0, 1))) - self.one)
