@@ -1,7 +1,6 @@
 """What is measured: each function gives {name: (value, unit)}. The bars stand in bars.json."""
 
 import re
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -283,37 +282,3 @@ def link_figures():
         "link/upload_over_wire_time": (round(seconds / wire, 1), "x"),
         "link/bytes_over_image_bytes": (round(both_ways / wire, 2), "x"),
     }
-
-
-# From the mailbox that takes the reading to the driver of the first arm that is told to move.
-READING = "robosync::layers::Mailboxes::post("
-COMMAND = "robosync::drivers::servo::start("
-START_UPS = 8
-
-
-def path_figures():
-    """In the real firmware: the paper's rule, from the reading stored to the command at the driver.
-
-    The first reading after each upload triggers the rule while the arms are free.
-    """
-    functions = {end: at for name, at in symbols(FIRMWARE).items() for end in (READING, COMMAND)
-                 if name.startswith(end)}
-    if len(functions) != 2:
-        raise BenchError(f"the firmware has no {READING} or {COMMAND}")
-    with tempfile.TemporaryDirectory() as folder:
-        image, out = compile_example(folder), Path(folder) / "marks"
-        with Board(icount=FAST, extra=plugin_arguments(functions, out)) as board:
-            for _ in range(START_UPS):
-                rsc.run("upload", image, "--port", board.port)
-                wait_for_steps(board.port)
-        spans = Marks(functions, out).spans(READING, COMMAND)
-    if len(spans) < START_UPS:
-        raise BenchError(f"{len(spans)} of {START_UPS} readings led to a command")
-    return {"path/reading_to_command": (round(statistics.median(spans)), "insn")}
-
-
-def wait_for_steps(port):
-    for _ in range(1000):
-        if rsc.info(port)["status"]["steps"]:
-            return
-    raise BenchError("the program on the board does not start")

@@ -64,7 +64,8 @@ def compiled(folder, rules, commands=None):
 
 class Steps:
     """Instructions of loading an image, of the dearest step in which a channel has its first reading
-    (the first time, a behaviour evaluates all of its rules), and of the dearest later one."""
+    (the first time, a behaviour evaluates all of its rules), of the dearest later one, and of the dearest that
+    fires nothing."""
 
     def __init__(self, elf, image):
         marks = run_given(elf, image, READINGS)
@@ -74,7 +75,9 @@ class Steps:
                              f"not {wanted}")
         self.load = marks.spans("mark_load_begin", "mark_load_end")[0]
         self.first = max(marks.spans("mark_first_begin", "mark_first_end"))
-        self.later = max(marks.spans("mark_step_begin", "mark_step_end"))
+        later = marks.spans("mark_step_begin", "mark_step_end")
+        self.later = max(later)
+        self.quiet = max(count for count, reading in zip(later, READINGS) if reading == BELOW)
 
 
 def verify_cost(image):
@@ -97,6 +100,8 @@ def growth_figures():
         size, verify = largest.stat().st_size, verify_cost(largest)
     return {
         **{f"path/step_{rules}_rules": (step.later, "insn") for rules, step in steps.items()},
+        "path/step_quiet": (steps[10].quiet, "insn"),
+        "path/growth_10_to_1000_rules": (growth_between(steps, 10, 1000), ""),
         "path/growth_to_40_rules": (growth_between(steps, 10, 40), ""),
         "path/growth_to_1000_rules": (growth_between(steps, 100, 1000), ""),
         "path/first_step_40_rules": (steps[40].first, "insn"),

@@ -55,6 +55,10 @@ class Comparison:
             self.shrunk.append(f"{change}. So that it stays there: scripts/bench --record")
         return True
 
+    def before(self, figure):
+        """What was recorded; while recording, what is there now."""
+        return figure["value"] if self._recorded is None else self._recorded.get(figure["name"])
+
     def missing(self):
         """Recorded figures that nothing measures any more."""
         return sorted((self._recorded or {}).keys() - self._seen)

@@ -117,8 +117,8 @@ private:
   std::array<Unit, kMaxActuators> units_{};
   CommandPool pool_;
   std::atomic<ActuatorMask> cancelling_ = 0;
-  ActuatorMask staged_ = 0;       // since take_staged()
-  ActuatorMask to_commit_ = 0;    // since commit()
+  ActuatorMask staged_ = 0;     // since take_staged()
+  ActuatorMask to_commit_ = 0;  // since commit()
   ActuatorMask dropped_ = 0;
   ActuatorMask idle_ = 0;
   ActuatorMask retired_ = 0;

@@ -15,7 +15,7 @@ namespace robosync::layers {
 
 struct LoadedProgram {
   vm::Image image;
-  std::array<InputMask, kMaxBehaviors> inputs{};      // that each behaviour reads
+  std::array<InputMask, kMaxBehaviors> inputs{};  // that each behaviour reads
   // The rules that read or set each channel, each variable.
   std::array<RuleBits, kMaxChannels> readers_of_channel{};
   std::array<RuleBits, kMaxVariables> readers_of_variable{};

@@ -48,7 +48,7 @@ ChannelMask Mailboxes::take_announced() {
 }
 
 ChannelMask Mailboxes::expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,
-                                kernel::Time now) {
+                                  kernel::Time now) {
   const auto lock = kernel_.lock();
   ChannelMask expired = 0;
   next_expiry_ = kernel::kForever;

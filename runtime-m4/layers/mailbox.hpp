@@ -39,7 +39,7 @@ public:
   // Those, but for `fresh` ones, whose last sample is older than channel.stale_ms, or that were
   // forgotten; each once. They are unknown from now on.
   [[nodiscard]] ChannelMask take_expired(std::span<const vm::Channel> channels, ChannelMask fresh,
-                                       kernel::Time now) {
+                                         kernel::Time now) {
     return now < next_expiry_ ? 0 : expire_old(channels, fresh, now);
   }
   // Before this none expires; kForever: none ever does. Readings that come in between put it off,
@@ -64,7 +64,7 @@ private:
   };
 
   [[nodiscard]] ChannelMask expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,
-                                     kernel::Time now);
+                                       kernel::Time now);
   [[nodiscard]] bool expire(unsigned channel, const vm::Channel& wiring, kernel::Time now);
   // When expire() may be true for the first time; kForever for never.
   kernel::Time expires_at(unsigned channel, const vm::Channel& wiring) const;

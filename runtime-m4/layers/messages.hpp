@@ -119,5 +119,4 @@ private:
   std::array<vm::Value, kParams> params_;
 };
 
-
 }  // namespace robosync::layers

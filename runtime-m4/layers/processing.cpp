@@ -133,8 +133,7 @@ void ProcessingLayer::finish_if_done(unsigned rule) {
 // --- latch ---
 
 // Takes what is new into the snapshot. A step begins if there is a reading, or `anyway`.
-bool ProcessingLayer::latch(kernel::Time time, std::uint32_t now, bool anyway,
-                            InputMask& changed) {
+bool ProcessingLayer::latch(kernel::Time time, std::uint32_t now, bool anyway, InputMask& changed) {
   const Stamp stamp{time, trace_.step().step + 1};
   if (anyway) trace_.begin_step(stamp);
   const ChannelMask channels = latch_channels(stamp);
@@ -147,8 +146,8 @@ bool ProcessingLayer::latch(kernel::Time time, std::uint32_t now, bool anyway,
 
 ChannelMask ProcessingLayer::latch_channels(const Stamp& stamp) {
   const ChannelMask announced = layers_.mailboxes.take_announced();
-  const ChannelMask expired = layers_.mailboxes.take_expired(
-      program_->image.channels, announced, stamp.time + trace_.activated_at());
+  const ChannelMask expired = layers_.mailboxes.take_expired(program_->image.channels, announced,
+                                                             stamp.time + trace_.activated_at());
   if ((announced | expired) != 0) trace_.begin_step(stamp);
   each_bit(announced | expired, [&](unsigned c) {
     if (has(expired, c)) {

@@ -70,7 +70,9 @@ public:
   }
   [[gnu::always_inline]] void put(unsigned rule, bool in) { in ? insert(rule) : erase(rule); }
   [[gnu::always_inline]] bool empty() const { return summary_ == 0; }
-  [[gnu::always_inline]] bool has(unsigned rule) const { return (words_[rule / kBits] & bit(rule)) != 0; }
+  [[gnu::always_inline]] bool has(unsigned rule) const {
+    return (words_[rule / kBits] & bit(rule)) != 0;
+  }
 
   void clear() {
     for_words(*this, [&](unsigned w) { words_[w] = 0; });
@@ -88,17 +90,21 @@ public:
   // Calls take(rule) for each member in `rules`, in order; take may erase it.
   template <class Take>
   void each_in(RuleRange rules, Take take) const {
-    each_of(rules, [this](unsigned w) { return words_[w]; }, take);
+    each_of(
+        rules, [this](unsigned w) { return words_[w]; }, take);
   }
   // … for each that is in this set or in `other`.
   template <class Take>
   void each_in_either(const BasicRuleSet& other, RuleRange rules, Take take) const {
-    each_of(rules, [&](unsigned w) { return words_[w] | other.words_[w]; }, take);
+    each_of(
+        rules, [&](unsigned w) { return words_[w] | other.words_[w]; }, take);
   }
   bool has_any(RuleRange rules) const { return from(rules.first) < rules.end; }
 
   // The first member that is not below `rule`; kEnd when there is none.
-  [[gnu::always_inline]] unsigned from(unsigned rule) const { return empty() ? kEnd : find_from(rule); }
+  [[gnu::always_inline]] unsigned from(unsigned rule) const {
+    return empty() ? kEnd : find_from(rule);
+  }
 
   [[gnu::always_inline]] Iterator begin() const { return {*this, from(0)}; }
   [[gnu::always_inline]] Iterator end() const { return {*this, kEnd}; }

@@ -42,7 +42,7 @@ public:
 
 private:
   using Word = std::uint32_t;
-  static constexpr std::size_t kWords = 256;  // about 40 events
+  static constexpr std::size_t kWords = 256;    // about 40 events
   static constexpr std::size_t kEventHead = 5;  // words before its values
   static_assert((kWords & (kWords - 1)) == 0, "positions are taken modulo the capacity");
 

@@ -47,6 +47,31 @@ void wait_and_report() {
   CHECK(rig::faults() == 0);
 }
 
+// The same with one call: it knows what it is woken for.
+void answer_and_rest(void*) {
+  (void)calls::wait(robosync_kernel, kPing);
+  while (true) {
+    open(kRounds) = open(kRounds) + 1;
+    calls::rest(robosync_kernel, kPing);
+  }
+}
+
+void rest_until_woken() {
+  robosync_kernel.watch(rig::conductor(), 0, kPong);
+  rig::Thread& caller = rig::start_unprivileged(kCaller, 40, answer_and_rest);
+  for (unsigned round = 1; round <= 100; ++round) {
+    robosync_kernel.signal(caller, kPing);
+    CHECK(robosync_kernel.wait(kPong, robosync_kernel.now() + 10'000) == kPong);
+    CHECK(rig::granted_area()[kRounds] == round);
+  }
+  // What it does not rest for does not wake it.
+  robosync_kernel.signal(caller, kOther);
+  rig::sleep_ms(2);
+  CHECK(rig::granted_area()[kRounds] == 100);
+  CHECK(robosync_kernel.state(caller) == rig::Thread::State::blocked);
+  CHECK(rig::faults() == 0);
+}
+
 // Takes one of two events that are there, then the other one.
 void take_one_by_one(void*) {
   open(kTaken) = calls::wait(robosync_kernel, kPing);
@@ -85,7 +110,7 @@ void call_anything(void*) {
   std::uint32_t state = open(kSeed);
   while (true) {
     const std::uint32_t drawn = draw(state);
-    const std::uint32_t number = (drawn & 2) != 0 ? drawn >> 2 & 1 : drawn;
+    const std::uint32_t number = (drawn & 2) != 0 ? (drawn >> 2) % 3 : drawn;
     const std::array<std::uint32_t, 3> others = {draw(state), draw(state), draw(state)};
     open(kSeed) = state;
     open(kRounds) = open(kRounds) + 1;
@@ -155,6 +180,7 @@ constexpr rig::Scenario kScenarios[] = {
     {"system calls: wait and report", wait_and_report},
     {"system calls: events are kept until they are waited for", events_are_kept},
     {"system calls: events that are not waited for stay", others_stay},
+    {"system calls: a thread that rests until it is woken", rest_until_woken},
     {"system calls: thousands with drawn numbers and arguments", hostile_calls},
     {"system calls: without a stack to make them from", call_without_stack},
 };

@@ -1,0 +1,85 @@
+"""The way of a reading in the shipped firmware, isolation on: instructions from the paper's reading in its
+mailbox to the command at the driver of the first arm that is told to move. Everything that comes in between
+counts, interrupts too; the most of several readings is the figure.
+
+Three conditions, as users meet them: the arms are free; they are moving, so that a response is interrupted and
+both are stopped first; and so, while `rsc monitor` listens.
+"""
+
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import rsc
+from board import FIRMWARE, REAL_TIME, Board
+from counting import BenchError, Marks, plugin_arguments, symbols
+from workloads import PAPER
+
+READING = "robosync::layers::Mailboxes::post("
+COMMAND = "robosync::drivers::servo::start("
+RELEASE = "robosync::drivers::servo::release("
+START_UPS = 8
+CHANGES = 8
+LIGHT, FIRM = 1, 9  # touches on either side of the paper's threshold
+BETWEEN = 0.3  # seconds between two touches; the arms move for longer
+
+
+def functions():
+    found = {end: at for name, at in symbols(FIRMWARE).items() for end in (READING, COMMAND, RELEASE)
+             if name.startswith(end)}
+    if len(found) != 3:
+        raise BenchError(f"the firmware has not all of {READING}…, {COMMAND}…, {RELEASE}…")
+    return found
+
+
+def touch_again_and_again(board):
+    for change in range(CHANGES):
+        board.set_touch((FIRM, LIGHT)[change % 2])
+        time.sleep(BETWEEN)
+
+
+def drive(board, image):
+    """Free arms START_UPS times, then moving ones CHANGES times, then the same with a monitor."""
+    board.set_touch(LIGHT)
+    for _ in range(START_UPS):
+        rsc.run("upload", image, "--port", board.port)
+        time.sleep(BETWEEN)
+    touch_again_and_again(board)
+    monitor = subprocess.Popen([rsc.TOOL, "monitor", "--port", board.port], stdin=subprocess.DEVNULL,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        time.sleep(3 * BETWEEN)  # until it listens
+        touch_again_and_again(board)
+    finally:
+        monitor.terminate()
+        monitor.wait()
+
+
+def ways(marks):
+    """[(instructions, whether an arm was stopped on the way)] from the last reading before each first command."""
+    found, start, stopped = [], None, False
+    for name, count in marks.all:
+        if name == READING:
+            start, stopped = count, False
+        elif name == RELEASE:
+            stopped = True
+        elif start is not None:
+            found.append((count - start, stopped))
+            start = None
+    return found
+
+
+def path_figures():
+    known = functions()
+    with tempfile.TemporaryDirectory() as folder:
+        image, out = Path(folder) / "paper.rsb", Path(folder) / "marks"
+        rsc.run("compile", PAPER, "-o", image)
+        with Board(icount=REAL_TIME, extra=plugin_arguments(known, out)) as board:
+            drive(board, image)
+        found = ways(Marks(known, out))
+    free, busy, monitored = found[:START_UPS], found[START_UPS:-CHANGES], found[-CHANGES:]
+    if len(found) != START_UPS + 2 * CHANGES or not all(stopped for _, stopped in busy + monitored):
+        raise BenchError(f"not every touch led to a command, or the arms stood still: {found}")
+    return {f"path/reading_to_command{name}": (max(count for count, _ in way), "insn")
+            for name, way in (("", free), ("_busy", busy), ("_monitored", monitored))}
