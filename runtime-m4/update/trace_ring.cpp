@@ -41,8 +41,6 @@ void TraceRing::emit(const link::Event& event) {
   const std::size_t values = std::min<std::size_t>(event.value_count, link::kMaxEventValues);
   const auto lock = kernel_.lock();
   if (!make_room(kEventHead + values)) return;
-  std::size_t at = put_;  // beside the ring, that each word need not look where it goes
-  const auto put = [&](Word word) { ring_[at++ % kWords] = word; };
   put(head(link::MessageType::event, values, event.subject));
   put(static_cast<Word>(event.kind) | Word{event.object} << 16);
   put(event.step);
@@ -50,7 +48,6 @@ void TraceRing::emit(const link::Event& event) {
   put(static_cast<Word>(event.time_us >> 32));
   for (std::size_t v = 0; v < values; ++v)
     put(static_cast<Word>(event.values[v]));
-  put_ = at;
 }
 
 void TraceRing::log(std::string_view line) {
