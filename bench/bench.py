@@ -16,6 +16,7 @@ import compile_figures
 import figures
 import growth
 import idle
+import memory
 import page
 import path
 import recorded
@@ -26,7 +27,7 @@ from rsc import RscError
 
 BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
 GROUPS = (workloads.workload_figures, figures.opcode_figures, figures.image_figures,
-          figures.kernel_figures, figures.size_figures, growth.growth_figures,
+          figures.kernel_figures, figures.size_figures, memory.memory_figures, growth.growth_figures,
           figures.link_figures, path.path_figures, idle.idle_figures, compile_figures.compile_figures,
           figures.tool_figures)
 

@@ -252,7 +252,7 @@ def size_figures():
         raise BenchError(f"no {FIRMWARE}: build the preset m4 first")
     listing = subprocess.run(["arm-none-eabi-size", str(FIRMWARE)], check=True, text=True,
                              stdout=subprocess.PIPE).stdout
-    text, data, bss = (int(word) for word in listing.splitlines()[1].split()[:3])
+    text, data = (int(word) for word in listing.splitlines()[1].split()[:2])
     link_map = FIRMWARE.with_suffix(".map")
     vm = sources_in("vm")
     verifier = {name for name in vm if name.startswith("verif") or name in ("image.cpp", "opcode_traits.cpp")}
@@ -263,7 +263,6 @@ def size_figures():
         "vm/flash": (flash_of(link_map, vm), "B"),
         "kernel/flash": (flash_of(link_map, kernel), "B"),
         "firmware/flash": (text + data, "B"),
-        "firmware/ram": (data + bss, "B"),
     }
 
 

@@ -11,8 +11,9 @@ from counting import BUILT, BenchError, run_given
 ABOVE, BELOW = 60_000, 40_000  # thousandths: on either side of the threshold of the rule
 READINGS = (ABOVE, BELOW) * 4
 RULES = (10, 20, 40, 100, 300, 1000)
-MOST_RULES = 40  # of the board's firmware; beyond, the large profile, up to the format's limits
+FEW_RULES = 40  # are in 10 behaviours and 8 channels; more in as many as there may be
 ACTUATORS = 2
+FIRMWARE = BUILT / "bench_step.elf"
 COMMANDS_OF_64K = 2540  # of 1,000 rules, so that their image is just below 64 KB
 
 
@@ -45,15 +46,11 @@ def program(rules, behaviors, channels, actuators, commands):
 
 
 def behaviors_of(rules):
-    return 10 if rules <= MOST_RULES else 64
-
-
-def firmware_of(rules):
-    return BUILT / ("bench_step.elf" if rules <= MOST_RULES else "bench_step_large.elf")
+    return 10 if rules <= FEW_RULES else 64
 
 
 def compiled(folder, rules, commands=None):
-    channels = 8 if rules <= MOST_RULES else 32
+    channels = 8 if rules <= FEW_RULES else 32
     source = Path(folder) / f"grown_{rules}.rsl"
     source.write_text(program(rules, behaviors_of(rules), channels, ACTUATORS, commands or rules))
     source.with_suffix(".json").write_text(json.dumps(robot(channels, ACTUATORS)))
@@ -94,9 +91,9 @@ def growth_between(steps, few, many):
 
 def growth_figures():
     with tempfile.TemporaryDirectory() as folder:
-        steps = {rules: Steps(firmware_of(rules), compiled(folder, rules)) for rules in RULES}
+        steps = {rules: Steps(FIRMWARE, compiled(folder, rules)) for rules in RULES}
         largest = compiled(folder, RULES[-1], COMMANDS_OF_64K)
-        load_64k = Steps(firmware_of(RULES[-1]), largest).load
+        load_64k = Steps(FIRMWARE, largest).load
         size, verify = largest.stat().st_size, verify_cost(largest)
     return {
         **{f"path/step_{rules}_rules": (step.later, "insn") for rules, step in steps.items()},

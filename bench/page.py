@@ -51,7 +51,7 @@ GROWTH = """## Rules that have nothing to do
 A reading is fed that concerns one rule among N, which stand evenly in the behaviours; each has a response of its own
 (`bench/growth.py`). Instructions from the reading to the end of the step and of all that came of it, kernel and the
 driver's command included, by the runtime linked as in the firmware (`bench/firmware/step_bench.cpp`). Up to 40 rules stand
-in 10 behaviours, on the firmware; more in 64, on the large profile. Before, each channel had a first reading; a
+in 10 behaviours, more in 64; there is more memory than the board is said to have. Before, each channel had a first reading; a
 behaviour's first step evaluates all of its rules, so these cost more, once: `path/first_step_…`.
 
 | rules | behaviours | instructions of the step |

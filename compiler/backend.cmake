@@ -19,6 +19,9 @@ endfunction()
 set(device_texts ${CMAKE_CURRENT_BINARY_DIR}/device_texts.cpp)
 embed(${PROJECT_SOURCE_DIR}/stdlib/devices json compiler/config/devices.hpp DeviceText device_texts
       ${device_texts})
+set(board_texts ${CMAKE_CURRENT_BINARY_DIR}/board_texts.cpp)
+embed(${PROJECT_SOURCE_DIR}/stdlib/boards json compiler/config/boards.hpp BoardText board_texts
+      ${board_texts})
 set(module_texts ${CMAKE_CURRENT_BINARY_DIR}/module_texts.cpp)
 embed(${PROJECT_SOURCE_DIR}/stdlib rsl compiler/modules.hpp ModuleText module_texts
       ${module_texts})
@@ -26,9 +29,11 @@ embed(${PROJECT_SOURCE_DIR}/stdlib rsl compiler/modules.hpp ModuleText module_te
 target_sources(robosync_compiler PRIVATE
   compiler.cpp
   modules.cpp
+  ${board_texts}
   ${device_texts}
   ${module_texts}
   config/actuators.cpp
+  config/boards.cpp
   config/channels.cpp
   config/devices.cpp
   config/entries.cpp

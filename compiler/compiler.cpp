@@ -87,6 +87,8 @@ Result compile(Input program, Input configuration, const Options& options) {
   Diagnostics& diagnostics = result.diagnostics;
   const Parsed parsed = parse_all(std::move(program), std::move(configuration), options.read_module,
                                   result.sources, diagnostics);
+  const bool named = parsed.robot && parsed.robot->board;
+  result.board = named ? board_at(*parsed.robot->board) : default_board();
   Program written;
   if (parsed.complete) {
     written = analyze(parsed.trees(), *parsed.robot, result.sources, diagnostics);

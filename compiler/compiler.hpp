@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/config/boards.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
 #include "compiler/test_plan/plan.hpp"
@@ -34,6 +35,7 @@ struct Result {
   Diagnostics diagnostics;
   std::vector<std::byte> image;  // empty when there are errors
   test_plan::TestPlan tests;     // the program's TEST blocks; likewise
+  Board board;                   // that robot.json names, or the default one
 };
 
 [[nodiscard]] Result compile(Input program, Input configuration, const Options& options = {});

@@ -1,7 +1,7 @@
 # Writes every file of a folder of the library into one C++ file, as rows of a name and a text:
 #   cmake -DOUT=FILE -DFOLDER=FOLDER -DSUFFIX=rsl|json -DHEADER=… -DTYPE=… -DFUNCTION=… -P embed_texts.cmake
-# HEADER declares the struct TYPE {name, text} and FUNCTION, which gives all rows. A row of json goes on with
-# what a device is found by: {name, text, is it a sensor?, its type, is it the default of its type?}.
+# HEADER declares the struct TYPE {name, text} and FUNCTION, which gives all rows. The row of a device goes on
+# with what it is found by: {name, text, is it a sensor?, its type, is it the default of its type?}.
 file(GLOB files ${FOLDER}/*.${SUFFIX})
 list(SORT files)
 set(rows "")
@@ -9,7 +9,7 @@ foreach(file ${files})
   get_filename_component(name ${file} NAME_WE)
   file(READ ${file} text)
   set(found_by "")
-  if(SUFFIX STREQUAL json)
+  if(TYPE STREQUAL DeviceText)
     string(JSON kind GET "${text}" kind)
     string(JSON type GET "${text}" type)
     string(JSON default ERROR_VARIABLE not_there GET "${text}" default)

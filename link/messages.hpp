@@ -8,7 +8,7 @@
 
 namespace robosync::link {
 
-inline constexpr std::uint8_t kProtocolVersion = 2;
+inline constexpr std::uint8_t kProtocolVersion = 3;
 inline constexpr std::size_t kMaxPayload = 240;
 inline constexpr std::size_t kNameLength = 16;  // NUL-padded
 using Name = std::array<char, kNameLength>;
@@ -25,7 +25,9 @@ struct HelloReply {
   std::uint16_t opcode_set;
   Name board;
   Name firmware;              // version
-  std::uint32_t slot_bytes;   // largest image
+  std::uint32_t arena_begin;  // address of the memory for programs
+  std::uint32_t arena_bytes;
+  std::uint32_t arena_used;   // by the running program, its image included
   std::uint32_t step_budget;  // M4 instructions of VM code in one step
   std::uint32_t drivers;      // bit d: driver d of vm/drivers.def is present
   std::uint32_t image_crc;    // of the running image
@@ -49,7 +51,7 @@ inline constexpr std::size_t kMaxData = kMaxPayload - sizeof(Data);
 enum class TransferState : std::uint8_t { idle, receiving, complete, too_large, no_transfer };
 
 struct TransferStatus {
-  std::uint32_t next_offset;
+  std::uint32_t next_offset;  // too_large: how many bytes could be received
   TransferState state;
   std::array<std::uint8_t, 3> reserved{};
 };
@@ -123,6 +125,10 @@ struct Fault {
 
 struct TraceOn {
   std::uint8_t on;
+};
+
+struct Clear {
+  std::uint32_t image_crc;  // of the program that is to end: a stray frame ends none
 };
 
 struct ReadImage {

@@ -12,7 +12,8 @@ TransferStatus Receiver::begin(const Begin& begin, std::span<std::byte> buffer) 
                        buffer.data() == buffer_.data() && buffer.size() == buffer_.size();
   if (resumes) return status();
   reset();
-  if (begin.size > buffer.size()) return {0, TransferState::too_large};
+  if (begin.size > buffer.size())
+    return {static_cast<std::uint32_t>(buffer.size()), TransferState::too_large};
   buffer_ = buffer;
   size_ = begin.size;
   crc32_ = begin.crc32;

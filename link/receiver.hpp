@@ -16,7 +16,7 @@ namespace robosync::link {
 class Receiver {
 public:
   // Starts a transfer into `buffer`; the same size, CRC and buffer as the one under way resumes it.
-  // too_large when it does not fit: then no transfer is under way.
+  // too_large when it does not fit, with the size of the buffer: then no transfer is under way.
   TransferStatus begin(const Begin& begin, std::span<std::byte> buffer);
   // Takes `bytes` if they are just what is wanted next, else leaves everything as it was.
   TransferStatus data(std::uint32_t offset, std::span<const std::byte> bytes);

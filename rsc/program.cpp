@@ -2,11 +2,14 @@
 #include "rsc/program.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <iostream>
+#include <numeric>
 #include <optional>
 #include <system_error>
 
@@ -53,16 +56,84 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
+// The board's own check, by its own function.
+void check_memory(compiler::Result& result) {
+  vm::Image image;
+  const policy::BoardMemory board = memory_of(result.board);
+  if (result.diagnostics.errors() > 0 || !vm::view_image(result.image, image)) return;
+  const policy::Needs needs = needs_on_board(image, board);
+  const vm::Verdict verdict = policy::judge(needs, board);
+  if (verdict.ok()) return;
+  const bool no_room = verdict.refusal == vm::Refusal::no_room;
+  result.diagnostics
+      .report(compiler::Code::E0407,
+              no_room ? no_room_text(needs, board) : too_many_text(needs, verdict))
+      .label(compiler::Span{})
+      .helps("leave out what takes most, or name a board with more memory in robot.json (`board`)");
+}
+
 compiler::Result compile(const std::string& file, const CompileOptions& options,
                          const compiler::ModuleReader& modules) {
   std::string text = read_text(file);
   const std::filesystem::path path = find_configuration(file, options.config);
-  return compiler::compile(
+  compiler::Result result = compiler::compile(
       {file, std::move(text)}, {path.string(), read_text(path)},
       {.source_lines = options.source_lines, .optimize = options.optimize, .read_module = modules});
+  if (options.for_its_board) check_memory(result);
+  return result;
 }
 
+constexpr std::array<std::string_view, policy::kWhose> kWhose = {
+    "runtime", "sensors", "actuators", "behaviours", "rules", "variables", "image", "borders"};
+
 }  // namespace
+
+std::string_view name_of(policy::Whose whose) {
+  return kWhose[static_cast<std::size_t>(whose)];
+}
+
+policy::Needs needs_on_board(const vm::Image& image, const policy::BoardMemory& board) {
+  vm::ImageHeader header = *image.header;
+  header.total_length -= static_cast<std::uint32_t>(image.source_lines.size_bytes());
+  vm::Image uploaded = image;
+  uploaded.header = &header;
+  return policy::needs_of(uploaded, board);
+}
+
+std::string too_many_text(const policy::Needs& needs, const vm::Verdict& verdict) {
+  using policy::Count;
+  const auto& counts = needs.counts;
+  const auto text = [&](std::uint32_t count, std::string_view what) {
+    return fmt::format("the program has {} {}, a board holds at most {}", count, what,
+                       verdict.index);
+  };
+  switch (verdict.section) {
+    case vm::Section::channels:
+      return text(counts[Count::channels], "channels that it reads");
+    case vm::Section::variables:
+      return text(counts[Count::variables], "variables");
+    case vm::Section::rules:
+      return text(counts[Count::rules], "rules");
+    default:
+      return text(counts.threads(),
+                  "threads (one for each behaviour, actuator and sensor, and three more)");
+  }
+}
+
+std::string no_room_text(const policy::Needs& needs, const policy::BoardMemory& board) {
+  std::array<std::size_t, policy::kWhose> order{};
+  std::iota(order.begin(), order.end(), 0U);
+  const auto shares = policy::shares_of(needs);
+  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t whose) { return shares[whose]; });
+  const auto part = [&](std::size_t place) {
+    return fmt::format("{} ({})", kWhose[order[place]], shares[order[place]]);
+  };
+  return fmt::format(
+      "the program needs {} bytes of memory, the board has {} for programs; most of it is for {}, "
+      "{} "
+      "and {}",
+      needs.total, board.arena_bytes, part(0), part(1), part(2));
+}
 
 compiler::Result compile_file(const std::string& file, const CompileOptions& options) {
   return compile(file, options, read_module);
@@ -76,8 +147,8 @@ std::string summary(const compiler::Diagnostics& diagnostics) {
 }
 
 Program::Program(std::vector<std::byte> bytes, const std::string& name,
-                 std::vector<std::string> source)
-    : bytes_(std::move(bytes)), source_(std::move(source)) {
+                 const policy::BoardMemory& board, std::vector<std::string> source)
+    : bytes_(std::move(bytes)), board_(board), source_(std::move(source)) {
   const vm::Verdict verdict = vm::verify(bytes_, vm::Limits{}, image_);
   if (verdict.ok()) return;
   vm::Image view;  // what is wrong may stand between good source lines
@@ -101,7 +172,7 @@ Program load_program(const std::string& file, const CompileOptions& options) {
   }
   std::vector<std::string> source;
   if (!has_modules) source = lines_of(result.sources.file(0).text());
-  return {std::move(result.image), file, std::move(source)};
+  return {std::move(result.image), file, memory_of(result.board), std::move(source)};
 }
 
 // It is the last section, so the image is cut there and the header told.

@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/compiler.hpp"
+#include "rsc/board.hpp"
+#include "runtime-m4/policy/memory.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::tool {
@@ -16,7 +19,20 @@ struct CompileOptions {
   std::string config;  // empty: the one that belongs to the program
   bool optimize = true;
   bool source_lines = true;
+  bool for_its_board = true;  // a program that its board has no memory for has an error
 };
+
+// What a program needs of the memory of a board: of its image without the debug section, which the
+// board has no use for. `image` is verified.
+[[nodiscard]] policy::Needs needs_on_board(const vm::Image& image,
+                                           const policy::BoardMemory& board);
+// What is wrong with a program of which there is too much for any board (policy::judge()).
+[[nodiscard]] std::string too_many_text(const policy::Needs& needs, const vm::Verdict& verdict);
+// … with one that does not fit: both numbers, and what takes most.
+[[nodiscard]] std::string no_room_text(const policy::Needs& needs,
+                                       const policy::BoardMemory& board);
+// "behaviours", and so on.
+[[nodiscard]] std::string_view name_of(policy::Whose whose);
 
 // Compiles `file` with its configuration. Throws Failure (outside) when one cannot be read.
 [[nodiscard]] compiler::Result compile_file(const std::string& file, const CompileOptions& options);
@@ -29,7 +45,7 @@ class Program {
 public:
   // Throws Failure (program) with the verifier's reason. `name` stands in the message.
   Program(std::vector<std::byte> bytes, const std::string& name,
-          std::vector<std::string> source = {});
+          const policy::BoardMemory& board = board_memory(), std::vector<std::string> source = {});
   Program(Program&&) = default;
   Program& operator=(Program&&) = default;
   Program(const Program&) = delete;
@@ -37,12 +53,15 @@ public:
 
   std::span<const std::byte> bytes() const { return bytes_; }
   const vm::Image& image() const { return image_; }
+  // What the board that it is for has for programs.
+  const policy::BoardMemory& board() const { return board_; }
   // The lines that the image's line numbers mean; none when that is not known.
   const std::vector<std::string>& source() const { return source_; }
 
 private:
   std::vector<std::byte> bytes_;
   vm::Image image_;
+  policy::BoardMemory board_;
   std::vector<std::string> source_;
 };
 

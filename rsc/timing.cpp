@@ -8,8 +8,6 @@
 
 #include "compiler/codegen/costly_rules.hpp"
 #include "rsc/program.hpp"
-#include "runtime-m4/limits.hpp"
-#include "vm/timers.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -37,7 +35,7 @@ BehaviorTiming behavior_timing(const vm::Image& image, const vm::Behavior& behav
   timing.name = image.string(behavior.name);
   timing.priority = behavior.priority;
   timing.frame_bytes = behavior.cells * sizeof(vm::Value);
-  if (behavior.priority != vm::kSafetyPriority) timing.stack_bytes = layers::kBehaviorStack;
+  if (behavior.priority != vm::kSafetyPriority) timing.stack_bytes = policy::kBehaviorStack;
   for (std::size_t r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count;
        ++r) {
     timing.rules.push_back(rule_timing(image, r, costs[r]));
@@ -63,23 +61,20 @@ std::size_t sum(const Record& records, SizeOf size_of) {
   return all;
 }
 
-std::vector<Share> memory_of(const vm::Image& image, const std::vector<SectionSize>& sections) {
-  constexpr std::size_t kTimerWord = sizeof(std::uint32_t);
-  const std::size_t bytes = sum(sections, std::mem_fn(&SectionSize::bytes));
-  const std::size_t cells = sum(image.behaviors, std::mem_fn(&vm::Behavior::cells));
-  const std::size_t timer_words =
-      sum(image.timers, [](const vm::Timer& timer) { return vm::timer_words(timer); });
-  return {
-      {"image", "bytes", bytes, layers::kSlotBytes},
-      {"frames", "bytes", cells * sizeof(vm::Value), layers::kMaxFrameCells * sizeof(vm::Value)},
-      {"timer memory", "bytes", timer_words * kTimerWord, layers::kMaxTimerWords * kTimerWord},
-      {"behaviours", "", image.behaviors.size(), layers::kMaxBehaviors},
-      {"rules", "", image.rules.size(), layers::kMaxRules}};
+// By what takes it, and all together.
+std::vector<Share> memory_of(const policy::Needs& needs, const policy::BoardMemory& board) {
+  std::vector<Share> memory;
+  const auto shares = policy::shares_of(needs);
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    memory.push_back(
+        {name_of(static_cast<policy::Whose>(i)), "bytes", shares[i], board.arena_bytes});
+  memory.push_back({"memory", "bytes", needs.total, board.arena_bytes});
+  return memory;
 }
 
 }  // namespace
 
-Timing timing_of(const vm::Image& image) {
+Timing timing_of(const vm::Image& image, const policy::BoardMemory& board) {
   const std::vector<vm::RuleCost> costs = costs_of(image);
   Timing timing;
   for (const vm::Behavior& behavior : image.behaviors)
@@ -88,9 +83,9 @@ Timing timing_of(const vm::Image& image) {
   std::ranges::stable_sort(timing.behaviors, {},
                            [](const BehaviorTiming& behavior) { return behavior.rules[0].line; });
   timing.step = {"step", "instructions", sum(costs, std::mem_fn(&vm::RuleCost::step)),
-                 layers::kStepBudget};
+                 board.step_budget};
   timing.sections = uploaded_sections(image);
-  timing.memory = memory_of(image, timing.sections);
+  timing.memory = memory_of(needs_on_board(image, board), board);
   return timing;
 }
 
@@ -109,9 +104,11 @@ std::string too_costly_text(const vm::Image& image, std::uint32_t budget) {
   return text + fmt::format("\n  {}", compiler::kHelpForCostlyStep);
 }
 
-std::string refusal_text(const vm::Image& image, const vm::Verdict& verdict) {
-  if (verdict.refusal == vm::Refusal::too_costly)
-    return too_costly_text(image, layers::kStepBudget);
+std::string refusal_text(const vm::Image& image, const vm::Verdict& verdict,
+                         const policy::BoardMemory& board) {
+  if (verdict.refusal == vm::Refusal::too_costly) return too_costly_text(image, board.step_budget);
+  if (verdict.refusal == vm::Refusal::no_room)
+    return no_room_text(needs_on_board(image, board), board);
   return describe_refusal(verdict, source_line(image, verdict.section, verdict.index));
 }
 

@@ -1,8 +1,7 @@
 // What a program costs on the board: instructions of a step, rule by rule, and memory.
 //
 // Instructions are worked out from the image by the verifier's own pass (vm/cost.hpp); they are not
-// cycles. The board is the one whose limits the host shares (runtime-m4/limits.hpp). Images must be
-// verified.
+// cycles. Images must be verified.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +13,9 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "analysis/report.hpp"
+#include "rsc/board.hpp"
 #include "rsc/program.hpp"
+#include "runtime-m4/policy/memory.hpp"
 #include "vm/cost.hpp"
 #include "vm/image.hpp"
 #include "vm/verifier.hpp"
@@ -52,7 +53,8 @@ struct Timing {
   std::vector<Share> memory;
 };
 
-[[nodiscard]] Timing timing_of(const vm::Image& image);
+[[nodiscard]] Timing timing_of(const vm::Image& image,
+                               const policy::BoardMemory& board = board_memory());
 
 // For people, whole lines. `file` names the program.
 [[nodiscard]] std::string timing_text(const Timing& timing, const std::string& file);
@@ -68,7 +70,8 @@ struct Timing {
 // What is wrong with a program whose step costs more than `budget`: the rules that cost most with their
 // lines, and what would make them cheaper.
 [[nodiscard]] std::string too_costly_text(const vm::Image& image, std::uint32_t budget);
-// Why the board would refuse the program: that, or the verifier's reason with its place.
-[[nodiscard]] std::string refusal_text(const vm::Image& image, const vm::Verdict& verdict);
+// Why the board would refuse the program: one of those, or the verifier's reason with its place.
+[[nodiscard]] std::string refusal_text(const vm::Image& image, const vm::Verdict& verdict,
+                                       const policy::BoardMemory& board = board_memory());
 
 }  // namespace robosync::tool

@@ -2,6 +2,8 @@
 #include "runtime-m4/runtime.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <new>
 
 #include "runtime-m4/drivers/drivers.hpp"
 
@@ -9,22 +11,16 @@ namespace robosync {
 
 using link::EventKind;
 
-// A part gets references to others that may not be constructed yet, since the members stand in the
-// order of what is closed: no constructor may use what it is given, only keep it.
 Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events,
-                 layers::Workspace& workspace)
+                 std::span<std::byte> arena, const policy::BoardMemory& memory)
     : kernel_(kernel),
       board_(board),
+      memory_(arena, memory),
+      limits_{.image_bytes = std::min<std::uint32_t>(vm::Limits{}.image_bytes, memory.arena_bytes),
+              .step_cost = memory.step_budget,
+              .drivers = drivers::kPresent},
       monitor_(kernel, board, *this),
-      safety_rules_(kernel,
-                    {.trace = trace_,
-                     .mailboxes = mailboxes_,
-                     .frames = frames_,
-                     .variables = variables_,
-                     .control = control_,
-                     .alarm = alarm_,
-                     .processing = processing_},
-                    step_thread_, layers::kHalted),
+      budget_(memory.step_budget),
       threads_(kernel),
       mailboxes_(kernel),
       sensors_(kernel, trace_, mailboxes_, alarm_, step_thread_, layers::kNews),
@@ -34,89 +30,120 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
       drivers_(kernel, board),
       alarm_(kernel, monitor_.thread(), safety::Monitor::kNews),
       trace_(kernel, events),
-      frames_(workspace),
-      triggers_(workspace),
-      behaviors_(kernel, {.trace = trace_,
-                          .workspace = workspace,
-                          .frames = frames_,
-                          .triggers = triggers_,
-                          .arbiter = arbiter_,
-                          .variables = variables_,
-                          .control = control_}),
-      processing_(kernel, trace_, step_thread_,
-                  {.mailboxes = mailboxes_,
-                   .sensors = sensors_,
-                   .variables = variables_,
-                   .triggers = triggers_,
-                   .arbiter = arbiter_,
-                   .behaviors = behaviors_,
-                   .control = control_,
-                   .threads = threads_,
-                   .alarm = alarm_}) {}
+      shared_(share(arena)),
+      safety_rules_(kernel,
+                    {.trace = trace_,
+                     .mailboxes = mailboxes_,
+                     .frames = shared_.frames,
+                     .variables = variables_,
+                     .control = control_,
+                     .alarm = alarm_,
+                     .processing = shared_.processing},
+                    step_thread_, layers::kHalted) {}
 
-static_assert(Runtime::layout().may_be_readable <= Runtime::layout().readable);
+// A part gets references to others that are not constructed yet: no constructor may use what it is
+// given, only keep it.
+Runtime::Shared& Runtime::share(std::span<std::byte> arena) {
+  static_assert(sizeof(Shared) / port::kArenaScale <= policy::info_of(policy::Part::shared).bytes,
+                "see policy/memory.def");
+  auto& shared = *reinterpret_cast<Shared*>(arena.data());
+  return *new (&shared)
+      Shared{.program = {},
+             .workspace = {},
+             .frames = layers::Frames(shared.workspace),
+             .triggers = layers::Triggers(shared.workspace),
+             .arbiter = {},
+             .behaviors = layers::BehaviorLayer(kernel_, {.trace = trace_,
+                                                          .workspace = shared.workspace,
+                                                          .frames = shared.frames,
+                                                          .triggers = shared.triggers,
+                                                          .arbiter = shared.arbiter,
+                                                          .variables = variables_,
+                                                          .control = control_}),
+             .processing = layers::ProcessingLayer(kernel_, trace_, step_thread_,
+                                                   {.mailboxes = mailboxes_,
+                                                    .sensors = sensors_,
+                                                    .variables = variables_,
+                                                    .triggers = shared.triggers,
+                                                    .arbiter = shared.arbiter,
+                                                    .behaviors = shared.behaviors,
+                                                    .control = control_,
+                                                    .threads = threads_,
+                                                    .alarm = alarm_})};
+}
 
 bool Runtime::start() {
   return monitor_.start();
 }
 
-const vm::Limits& Runtime::limits() {
-  static constexpr vm::Limits kLimits{.image_bytes = layers::kSlotBytes,
-                                      .step_cost = layers::kStepBudget,
-                                      .frame_cells = layers::kMaxFrameCells,
-                                      .behaviors = layers::kMaxBehaviors,
-                                      .sensors = layers::kMaxSensors,
-                                      .actuators = layers::kMaxActuators,
-                                      .drivers = drivers::kPresent};
-  return kLimits;
+// Everything is counted from the verified image, so that no image can say that it needs less. Not
+// inlined, as load(): what one has on the stack is gone before the other.
+vm::Verdict Runtime::check(std::span<const std::byte> bytes) {
+  vm::Image image;
+  const vm::Verdict verdict = vm::verify(bytes, limits_, image);
+  if (!verdict.ok()) return verdict;
+  policy::count_needs(image, memory_.board(), next_);
+  return policy::judge(next_, memory_.board());
 }
 
 vm::Verdict Runtime::activate(std::span<const std::byte> bytes) {
-  vm::Image image;
-  vm::Verdict verdict = vm::verify(bytes, limits(), image);
-  if (verdict.ok()) verdict = layers::fits(image);
+  const vm::Verdict verdict = check(bytes);
   if (!verdict.ok()) return verdict;
-
-  faults_ += threads_.stopped();
-  running_ = false;
-  threads_.dismiss();
-  control_.release_all();
-  halted_ = false;
-  program_.load(image);
-  if (!start_program()) {
-    threads_.dismiss();
+  end_program();
+  if (!load(bytes) || !start_program()) {
+    clear();
     return {vm::Refusal::too_many, vm::Section::header, 0};
   }
   ++activations_;
   return {};
 }
 
-// The threads wait until all of them are there.
-bool Runtime::start_program() {
-  mailboxes_.reset();
-  frames_.start(program_);
-  kernel_.grant(areas());
-  const auto seed = static_cast<std::int32_t>(program_.image.header->seed);
-  trace_.emit(EventKind::activated, {}, 0, 0, seed);
-  if (!control_.start(program_, threads_) || !behaviors_.start(program_, threads_) ||
-      !processing_.start(program_) || !sensors_.start(program_, *sampler_, threads_))
-    return false;
-  processing_.rank();
-  safety_rules_.start(program_);
-  go();
+// The image may stand anywhere in the room, also where the new program's parts will stand: so it
+// is moved first.
+bool Runtime::load(std::span<const std::byte> bytes) {
+  memory_.lay_out(next_);
+  const std::span<std::byte> place = memory_.image().first(bytes.size());
+  std::memmove(place.data(), bytes.data(), bytes.size());
+  vm::Image image;
+  if (!vm::view_image(place, image)) return false;
+  shared_.workspace.start(memory_);
+  shared_.program.load(image, memory_);
   return true;
 }
 
-// To the behaviours' threads. What lies between the object and the image is theirs to read as well,
-// so on the board nothing does.
-port::Areas Runtime::areas() {
-  const auto bytes = [](const void* of) { return static_cast<const std::byte*>(of); };
-  const vm::ImageHeader* const image = program_.image.header;
-  // Addresses compare as numbers on all our machines, those of different objects as well.
-  const std::byte* const begin = std::min(bytes(&program_), bytes(image));
-  const std::byte* const end = std::max(bytes(this + 1), bytes(image) + image->total_length);
-  return {.readable = {begin, static_cast<std::size_t>(end - begin)},
-          .writable = frames_.writable(program_)};
+void Runtime::end_program() {
+  faults_ += threads_.stopped();
+  running_ = false;
+  threads_.dismiss();
+  control_.release_all();
+  halted_ = false;
+}
+
+void Runtime::clear() {
+  end_program();
+  memory_.clear();
+}
+
+// The threads wait until all of them are there.
+bool Runtime::start_program() {
+  const layers::LoadedProgram& program = shared_.program;
+  threads_.prepare(memory_);
+  mailboxes_.start(memory_);
+  shared_.frames.start(memory_);
+  shared_.triggers.start(program.image, memory_);
+  shared_.arbiter.start(memory_);
+  safety_rules_.start(program, memory_);
+  kernel_.grant(memory_.areas());
+  const auto seed = static_cast<std::int32_t>(program.image.header->seed);
+  trace_.emit(EventKind::activated, {}, 0, 0, seed);
+  if (!control_.start(program, memory_, threads_) ||
+      !shared_.behaviors.start(program, memory_, threads_) ||
+      !shared_.processing.start(program, memory_) ||
+      !sensors_.start(program, *sampler_, memory_, threads_))
+    return false;
+  shared_.processing.rank();
+  go();
+  return true;
 }
 
 // The program's clock begins at a tick that none of its threads can have missed.
@@ -125,7 +152,7 @@ void Runtime::go() {
   trace_.restart(kernel_.now() + (port::kTimeFlows ? kernel::kTick : 0));
   running_ = true;
   kernel_.signal(monitor_.thread(), safety::Monitor::kProgram);
-  processing_.go();
+  shared_.processing.go();
   sensors_.go();
 }
 
@@ -137,7 +164,7 @@ link::FeedResult Runtime::feed(const link::Feed& feed) {
 void Runtime::fill_status(link::Status& status) const {
   status.uptime_us = kernel_.now();
   status.program_us = running_ ? trace_.program_time() : 0;
-  status.steps = running_ ? processing_.steps() : 0;
+  status.steps = running_ ? shared_.processing.steps() : 0;
   status.safety_checks = monitor_.checks();
   status.safety_late_us = monitor_.worst_lateness();
   status.activations = activations_;

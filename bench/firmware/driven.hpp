@@ -6,9 +6,18 @@
 // The firmware defines robosync_kernel, the runtime, and start().
 #pragma once
 
+#include <cstddef>
+#include <span>
+
+#include "runtime-m4/boards/memory.hpp"
 #include "runtime-m4/runtime.hpp"
 
 namespace robosync::bench {
+
+// The memory for programs that `board` says, where it says.
+inline std::span<std::byte> arena_at(const policy::BoardMemory& board) {
+  return {reinterpret_cast<std::byte*>(board.arena_begin), board.arena_bytes};
+}
 
 // Called by main(), before the kernel runs: start_driven() with its runtime.
 bool start();

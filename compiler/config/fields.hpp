@@ -10,7 +10,7 @@
 
 namespace robosync::compiler {
 
-// Which object of robot.json or of a device descriptor it is.
+// Which object of robot.json, of a device descriptor or of a board profile it is.
 enum class Object : std::uint8_t {
   robot,
   sensor,
@@ -24,7 +24,9 @@ enum class Object : std::uint8_t {
   device,
   device_to,
   device_at,
-  verb
+  verb,
+  board,
+  arena
 };
 
 enum class KeyUse : std::uint8_t { used, later, editor };

@@ -114,6 +114,7 @@ struct Robot {
   std::vector<GroupConfig> groups;
   std::vector<BehaviorConfig> behaviors;
   std::optional<SchedulerConfig> scheduler;
+  std::optional<std::size_t> board;  // its place in board_names(); nothing: not said
   std::map<Code, LintLevel> lints;
   bool complete = true;  // false: entries are missing, for mistakes that have been reported
 };

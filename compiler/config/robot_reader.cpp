@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <functional>
 
+#include "compiler/config/boards.hpp"
 #include "compiler/config/entries.hpp"
 #include "compiler/config/fields.hpp"
 #include "compiler/config/json_reader.hpp"
 #include "compiler/config/sections.hpp"
+#include "compiler/config/wiring.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -79,6 +81,10 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
   const Fields fields(*tree, Object::robot, diagnostics);
   Robot robot;
   robot.complete = tree->kind == json::Kind::object;
+  if (const auto* board = fields.find("board")) {
+    robot.board = read_choice(*board, board_names(), diagnostics);
+    robot.complete = robot.complete && robot.board.has_value();
+  }
   WiringReader wiring(diagnostics);
   for_each_entry(fields, "sensors", robot, diagnostics, [&](const json::Value& entry) {
     auto sensor = read_sensor(entry, wiring, diagnostics);

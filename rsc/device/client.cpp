@@ -130,6 +130,11 @@ link::Status Client::status() {
   return request<link::Status>(MessageType::get_status, MessageType::status);
 }
 
+link::Status Client::clear(std::uint32_t image_crc) {
+  return request<link::Status>(MessageType::clear, MessageType::status,
+                               link::wire_bytes(link::Clear{image_crc}));
+}
+
 link::Status Client::set_trace(bool on) {
   const link::TraceOn wish{static_cast<std::uint8_t>(on)};
   return request<link::Status>(MessageType::trace_on, MessageType::status, link::wire_bytes(wish));

@@ -32,6 +32,7 @@ public:
   // Each sends its request again until its reply comes. Throw Failure (outside) after the timeout.
   link::HelloReply hello();
   link::Status status();
+  link::Status clear(std::uint32_t image_crc);  // ends the program, if it runs
   link::Status set_trace(bool on);
   link::FeedResult feed(const link::Feed& feed);
   link::ActivateResult activate();

@@ -127,8 +127,10 @@ private:
     if (status.state == link::TransferState::too_large) {
       throw Failure(
           Exit::program,
-          fmt::format("the image ({} bytes) is larger than the board's memory for programs",
-                      image_.size()));
+          fmt::format(
+              "beside the running program the board has {} bytes free, and the image has {}: "
+              "rsc upload --replace ends the running program first",
+              status.next_offset, image_.size()));
     }
     const std::size_t assumed = wanted_;
     note(status);
@@ -191,9 +193,12 @@ std::vector<std::string> obstacles(const link::HelloReply& board, const vm::Imag
                     "({:04x}): compile it again, or flash the firmware of this release",
                     board.opcode_set, header.opcode_set));
   }
-  if (header.total_length > board.slot_bytes) {
-    found.push_back(fmt::format("the image has {} bytes, the board takes at most {}",
-                                header.total_length, board.slot_bytes));
+  const policy::BoardMemory memory{board.arena_begin, board.arena_bytes, board.step_budget};
+  const policy::Needs needs = needs_on_board(image, memory);
+  const vm::Verdict verdict = policy::judge(needs, memory);
+  if (!verdict.ok()) {
+    found.push_back(verdict.refusal == vm::Refusal::no_room ? no_room_text(needs, memory)
+                                                            : too_many_text(needs, verdict));
   }
   if (header.step_cost > board.step_budget) {
     found.push_back(too_costly_text(image, board.step_budget));
@@ -251,6 +256,8 @@ void check_result(const link::ActivateResult& result, const Program& program) {
 UploadResult upload_program(Session& session, const Program& program,
                             const UploadOptions& options) {
   check_board(session, program);
+  if (options.replace && session.board.running != 0)
+    (void)session.client.clear(session.board.image_crc);
   const UploadResult result =
       upload(session.client, session.board, without_source_lines(program), options);
   check_result(result.activation, program);

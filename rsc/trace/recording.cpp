@@ -35,12 +35,13 @@ std::optional<std::uint8_t> channel_of(const vm::Image& image, const ChannelName
 Recording record(const Program& program, const compiler::test_plan::TestPlan& plan,
                  const compiler::test_plan::PlannedTest& test) {
   Recording recording{&program.image(), &plan, &test, {}};
-  sim::Simulator simulator(program.bytes(), [&recording](const link::Event& event) {
-    recording.events.push_back(event);
-  });
+  const std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
+  const auto take = [&recording](const link::Event& event) { recording.events.push_back(event); };
+  sim::Simulator simulator(uploaded, take, program.board());
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
-    throw Failure(Exit::program, fmt::format("the board would refuse the program: {}",
-                                             refusal_text(program.image(), verdict)));
+    throw Failure(Exit::program,
+                  fmt::format("the board would refuse the program: {}",
+                              refusal_text(program.image(), verdict, program.board())));
   }
   for (const PlannedReading& reading : test.readings) {
     const auto channel = channel_of(program.image(), plan.channels.at(reading.channel));

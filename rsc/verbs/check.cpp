@@ -44,10 +44,10 @@ void append(nlohmann::ordered_json& all, const nlohmann::ordered_json& one) {
 
 // What a program without errors costs. False when that is more than the board allows in a step, or
 // when the board cannot keep up with its sensors.
-bool report_timing(const CheckOptions& options, const std::string& file,
-                   std::vector<std::byte> image, nlohmann::ordered_json& report) {
-  const Program program(std::move(image), file);
-  const Timing timing = timing_of(program.image());
+bool report_timing(const CheckOptions& options, const std::string& file, compiler::Result& compiled,
+                   nlohmann::ordered_json& report) {
+  const Program program(std::move(compiled.image), file, memory_of(compiled.board));
+  const Timing timing = timing_of(program.image(), program.board());
   const auto& adaptations = program.image().adaptations;
   const analysis::ResponseReport responses = analysis::response_report(
       program.image(), board_costs(), adaptations.empty() ? 0 : adaptations[0].cap);
@@ -85,7 +85,7 @@ void check(const CheckOptions& options) {
       std::cout << fmt::format("{}: {}", file, summary(result.diagnostics)) << std::endl;
     }
     if (options.timing && result.diagnostics.errors() == 0)
-      affordable = report_timing(options, file, std::move(result.image), report) && affordable;
+      affordable = report_timing(options, file, result, report) && affordable;
   }
   if (options.format == Format::json) std::cout << report.dump() << '\n';
   if (errors > 0 || !affordable) throw Failure(Exit::program, "");

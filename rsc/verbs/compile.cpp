@@ -65,7 +65,7 @@ void compile(const OutputOptions& options) {
     throw Failure(Exit::program, fmt::format("{}: {}; nothing was written", options.file,
                                              summary(result.diagnostics)));
   }
-  const Program program(std::move(result.image), options.file);
+  const Program program(std::move(result.image), options.file, memory_of(result.board));
   write_atomically(output, program.bytes());
   options.format == Format::json ? print_json(output, program) : print_human(output, program);
 }
@@ -81,6 +81,7 @@ void add_compile(Options& options) {
   add_format_option(options, asked->format);
   options.runs([asked] {
     asked->how.source_lines = !asked->strip;
+    asked->how.for_its_board = false;  // an image may go to another
     compile(*asked);
   });
 }

@@ -2,6 +2,8 @@
 #include <array>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "rsc/console.hpp"
 #include "rsc/device/session.hpp"
 #include "rsc/device/threads.hpp"
+#include "rsc/program.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
 
@@ -31,13 +34,42 @@ std::string hash(const link::HelloReply& board) {
   return fmt::format("{:02x}", fmt::join(board.program_hash, ""));
 }
 
-Json board_json(const link::HelloReply& board) {
+// What the running program takes, part by part: worked out from its image, as the board does it.
+using Shares = std::array<std::uint32_t, policy::kWhose>;
+std::optional<Shares> shares_of(const link::HelloReply& board, std::span<const std::byte> bytes) {
+  vm::Image image;
+  const policy::BoardMemory memory{board.arena_begin, board.arena_bytes, board.step_budget};
+  if (!vm::verify(bytes, vm::Limits{}, image).ok()) return std::nullopt;
+  return policy::shares_of(policy::needs_of(image, memory));
+}
+
+Json memory_json(const link::HelloReply& board, std::span<const std::byte> image) {
+  Json object{
+      {"arena_begin", board.arena_begin}, {"bytes", board.arena_bytes}, {"used", board.arena_used}};
+  if (const auto shares = shares_of(board, image))
+    for (std::size_t i = 0; i < shares->size(); ++i)
+      object["by"][std::string(name_of(static_cast<policy::Whose>(i)))] = (*shares)[i];
+  return object;
+}
+
+std::string memory_text(const link::HelloReply& board, std::span<const std::byte> image) {
+  std::string text =
+      fmt::format("memory    {} of {} bytes for programs", board.arena_used, board.arena_bytes);
+  const auto shares = shares_of(board, image);
+  if (!shares) return text + '\n';
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < shares->size(); ++i)
+    parts.push_back(fmt::format("{} {}", name_of(static_cast<policy::Whose>(i)), (*shares)[i]));
+  return text + fmt::format(": {}\n", fmt::join(parts, ", "));
+}
+
+Json board_json(const link::HelloReply& board, std::span<const std::byte> image) {
   Json object{{"name", text_of(board.board)},
               {"firmware", text_of(board.firmware)},
               {"protocol", board.protocol},
               {"image_format", board.image_major},
               {"opcode_set", board.opcode_set},
-              {"slot_bytes", board.slot_bytes},
+              {"memory", memory_json(board, image)},
               {"step_budget", board.step_budget},
               {"drivers", board.drivers},
               {"receive_window", board.receive_window},
@@ -62,19 +94,19 @@ Json status_json(const link::Status& status) {
           {"reset_reason", reset_reason(status)}};
 }
 
-void print_json(const link::HelloReply& board, const link::Status& status,
-                const std::vector<link::ThreadInfo>& threads) {
-  Json report{{"board", board_json(board)}, {"status", status_json(status)}};
+void print_json(const link::HelloReply& board, std::span<const std::byte> image,
+                const link::Status& status, const std::vector<link::ThreadInfo>& threads) {
+  Json report{{"board", board_json(board, image)}, {"status", status_json(status)}};
   report["threads"] = threads_json(threads, {});
   std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
-void print_human(const link::HelloReply& board, const link::Status& status,
-                 const std::vector<link::ThreadInfo>& threads) {
+void print_human(const link::HelloReply& board, std::span<const std::byte> image,
+                 const link::Status& status, const std::vector<link::ThreadInfo>& threads) {
   std::cout << fmt::format("board     {}, firmware {}, protocol {}\n", text_of(board.board),
                            text_of(board.firmware), board.protocol);
-  std::cout << fmt::format("takes     images up to {} bytes, steps up to {} instructions\n",
-                           board.slot_bytes, board.step_budget);
+  std::cout << memory_text(board, image);
+  std::cout << fmt::format("takes     steps up to {} instructions\n", board.step_budget);
   if (board.running != 0) {
     std::cout << fmt::format("program   {} ({} bytes), for {:.3f} s, {} steps\n", hash(board),
                              board.image_bytes, static_cast<double>(status.program_us) / 1e6,
@@ -96,8 +128,9 @@ void info(const std::string& port, Format format) {
   Session session(port);
   const link::Status status = session.client.status();
   const std::vector<link::ThreadInfo> threads = session.client.threads();
-  format == Format::json ? print_json(session.board, status, threads)
-                         : print_human(session.board, status, threads);
+  const std::vector<std::byte> image = session.client.running_image();
+  format == Format::json ? print_json(session.board, image, status, threads)
+                         : print_human(session.board, image, status, threads);
 }
 
 }  // namespace

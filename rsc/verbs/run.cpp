@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -43,14 +44,17 @@ void run(const RunOptions& options) {
 
   const TraceNames names{&program.image(), {}};
   std::string trace;
-  sim::Simulator simulator(program.bytes(), [&](const link::Event& event) {
+  const std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
+  const auto take = [&](const link::Event& event) {
     const std::string json = trace_json(event, names) + "\n";
     if (!options.trace.empty()) trace += json;
     std::cout << (options.format == Format::json ? json : trace_line(event, names) + "\n");
-  });
+  };
+  sim::Simulator simulator(uploaded, take, program.board());
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
-    throw Failure(Exit::program, fmt::format("{}: the board would refuse it: {}", options.file,
-                                             refusal_text(program.image(), verdict)));
+    throw Failure(Exit::program,
+                  fmt::format("{}: the board would refuse it: {}", options.file,
+                              refusal_text(program.image(), verdict, program.board())));
   }
   for (const Stimulus& stimulus : scenario.stimuli)
     simulator.feed(stimulus.at_us, stimulus.channel, stimulus.value);

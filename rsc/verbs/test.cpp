@@ -122,7 +122,7 @@ void test_file(const std::string& file, const TestOptions& options, Tally& tally
     throw Failure(Exit::program,
                   fmt::format("{}: {}; no test was run", file, summary(compiled.diagnostics)));
   }
-  const Program program(std::move(compiled.image), file);
+  const Program program(std::move(compiled.image), file, memory_of(compiled.board));
   if (compiled.tests.tests.empty()) std::cerr << "rsc: " << file << ": there is no TEST in it\n";
   Reporter reporter(options, compiled.sources, tally);
   for (const compiler::test_plan::PlannedTest& test : compiled.tests.tests)

@@ -26,6 +26,7 @@ struct SendOptions {
   std::string file, port;
   CompileOptions how;
   std::optional<milliseconds> timeout;
+  bool replace = false;
   Format format = Format::human;
 };
 
@@ -63,6 +64,7 @@ void upload(const SendOptions& options) {
   const Program program = load_program(options.file, options.how);
   UploadOptions how;
   how.timeout = options.timeout;
+  how.replace = options.replace;
   if (stderr_is_terminal()) how.progress = show_progress;
   constexpr milliseconds kAnswer{2000};
   Session session(options.port, std::min(how.timeout.value_or(kAnswer), kAnswer));
@@ -79,6 +81,8 @@ void add_upload(Options& options) {
   add_compile_options(options, asked->how);
   add_duration_option(options, "--timeout", asked->timeout,
                       "give up after (10s, longer for a large image)");
+  options.flag("--replace", asked->replace,
+               "end the running program first, where the board has no room for both");
   add_format_option(options, asked->format);
   options.runs([asked] { upload(*asked); });
 }

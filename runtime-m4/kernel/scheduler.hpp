@@ -6,12 +6,11 @@
 #include <bit>
 #include <cstdint>
 
-#include "runtime-m4/limits.hpp"
 #include "runtime-m4/policy/standing.hpp"
 
 namespace robosync::kernel {
 
-// kMaxThreads: limits.hpp.
+using policy::kMaxThreads;
 inline constexpr std::uint8_t kIdleRank = kMaxThreads;  // what an empty ready set selects
 
 // Who outranks whom is policy (policy/standing.hpp); here it is kept and obeyed.
@@ -27,9 +26,8 @@ using policy::standing;
 using policy::with_priority;
 
 // The threads that can run: one bit each by rank, the highest rank in the top bit of the first
-// word, so that one thread's bit is one load, one OR, one store. Two words hold 64 threads; where
-// there are more (the large profile), the words are looked at in turn, which costs the selection
-// two instructions a word and nothing else.
+// word, so that one thread's bit is one load, one OR, one store. The words are looked at in turn, which
+// costs the selection two instructions a word and nothing else.
 template <unsigned kWords>
 class BasicReadySet {
 public:

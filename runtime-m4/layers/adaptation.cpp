@@ -9,8 +9,8 @@ namespace robosync::layers {
 
 using kernel::Priority;
 
-void Adaptation::start() {
-  triggers_.fill(0);
+void Adaptation::start(Memory& memory) {
+  triggers_ = memory.take<policy::Part::trigger_counts, policy::TriggerCount>();
   end_ = kNever;
 }
 

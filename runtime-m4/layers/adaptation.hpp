@@ -8,8 +8,8 @@
 // written (arbiter.hpp), whatever was triggered how often.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 
 #include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/layers/loaded_program.hpp"
@@ -21,7 +21,7 @@ namespace robosync::layers {
 
 class Adaptation {
 public:
-  void start();
+  void start(Memory& memory);
   // A rule of `behavior` triggered, at `now`.
   void count(const LoadedProgram& program, unsigned behavior, std::uint32_t now);
   // Ends the window if `now` has reached its end: ranks change, the trace tells of each behaviour
@@ -37,8 +37,8 @@ public:
 private:
   static std::uint32_t end_after(const LoadedProgram& program, std::uint32_t now);
 
-  std::array<policy::TriggerCount, kMaxBehaviors> triggers_{};  // in this window
-  std::uint32_t end_ = kNever;                                  // of this window
+  std::span<policy::TriggerCount> triggers_;  // in this window
+  std::uint32_t end_ = kNever;                // of this window
 };
 
 }  // namespace robosync::layers

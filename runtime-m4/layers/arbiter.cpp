@@ -17,9 +17,9 @@ bool may_take(const Claim& claim, const Holding& from) {
 
 }  // namespace
 
-void Arbiter::start() {
-  holdings_.fill(Holding{});
-  running_.clear();
+void Arbiter::start(Memory& memory) {
+  holdings_ = memory.take<policy::Part::holdings, Holding>();
+  running_.start(memory.take<policy::Part::running, RuleSet::Word>());
   owned_ = 0;
   halted_ = 0;
 }
@@ -50,7 +50,7 @@ bool Arbiter::ends(const Claim& claim, const Decision& decision, unsigned rule) 
 void Arbiter::give(const Claim& claim) {
   running_.insert(claim.rule);
   owned_ |= claim.actuators;
-  holdings_[claim.rule] = Holding{.actuators = static_cast<ActuatorBits>(claim.actuators),
+  holdings_[claim.rule] = Holding{.actuators = claim.actuators,
                                   .pending = 0,
                                   .behavior = claim.behavior,
                                   .side = claim.side,

@@ -13,9 +13,10 @@
 //   rules.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 
+#include "runtime-m4/layers/memory.hpp"
 #include "runtime-m4/layers/messages.hpp"
 #include "runtime-m4/layers/rule_set.hpp"
 
@@ -35,8 +36,8 @@ struct Claim {
 
 // What a rule has while its response runs.
 struct Holding {
-  ActuatorBits actuators = 0;
-  ActuatorBits pending = 0;  // of these, the ones with commands not yet done
+  ActuatorMask actuators = 0;
+  ActuatorMask pending = 0;  // of these, the ones with commands not yet done
   std::uint8_t behavior = 0;
   Side side : 1 = Side::then;
   bool won_now : 1 = false;  // in this step
@@ -56,7 +57,7 @@ struct Decision {
 
 class Arbiter {
 public:
-  void start();
+  void start(Memory& memory);
 
   // What safety has halted, from now on.
   void note_halted(ActuatorMask halted) { halted_ = halted; }
@@ -78,7 +79,7 @@ public:
   void give(const Claim& claim);
   // The response of `rule`, which runs, is over.
   void end(unsigned rule) {
-    owned_ &= ~ActuatorMask{holdings_[rule].actuators};
+    owned_ &= ~holdings_[rule].actuators;
     running_.erase(rule);
   }
 
@@ -91,7 +92,7 @@ public:
 private:
   Decision decide_among_owners(const Claim& claim) const;
 
-  std::array<Holding, kMaxRules> holdings_{};
+  std::span<Holding> holdings_;
   RuleSet running_;  // their responses run, or wait
   ActuatorMask owned_ = 0;
   ActuatorMask halted_ = 0;

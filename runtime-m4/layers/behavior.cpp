@@ -14,13 +14,14 @@ namespace robosync::layers {
 
 using link::EventKind;
 
-bool BehaviorLayer::start(const LoadedProgram& program, ProgramThreads& threads) {
+bool BehaviorLayer::start(const LoadedProgram& program, Memory& memory, ProgramThreads& threads) {
   program_ = &program;
   snapshot_ = nullptr;
   is_released_ = false;
   retired_ = 0;
-  has_run_.clear();
-  resume_points_.fill({});
+  units_ = memory.take_zero<policy::Part::behavior_units, Unit>();
+  resume_points_ = memory.take<policy::Part::resume_points, ResumePoint>();
+  has_run_.start(memory.take<policy::Part::has_run, RuleSet::Word>());
   for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b)
     if (!start_unit(b, threads)) return false;
   return true;
@@ -40,7 +41,7 @@ bool BehaviorLayer::start_unit(unsigned behavior, ProgramThreads& threads) {
     mine.layer->run(mine);
   };
   spec.argument = &unit;
-  unit.thread = threads.start(spec, behavior, kBehaviorStack);
+  unit.thread = threads.start(spec, behavior);
   return unit.thread != nullptr;
 }
 
@@ -75,22 +76,22 @@ void BehaviorLayer::release_to_run(unsigned rule, unsigned code) {
 
 // Nothing comes of one that was stopped.
 void BehaviorLayer::release(unsigned behavior) {
-  workspace_.result.there = false;
+  workspace_.result->there = false;
   if (has(retired_, behavior)) return;
   released_ = static_cast<std::uint8_t>(behavior);
   is_released_ = true;
-  workspace_.finished.store(false, std::memory_order_relaxed);
+  workspace_.finished->store(false, std::memory_order_relaxed);
   kernel_.signal(*units_[behavior].thread, kReleased);
 }
 
 bool BehaviorLayer::busy() {
-  if (workspace_.finished.load(std::memory_order_relaxed)) is_released_ = false;
+  if (workspace_.finished->load(std::memory_order_relaxed)) is_released_ = false;
   return is_released_;
 }
 
 // It could say so of any rule of its own, as it could let it trigger.
 bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
-  const Result& result = workspace_.result;
+  const Result& result = *workspace_.result;
   if (!result.there) return false;
   const RuleRange rules = program_->rules_of(behavior);
   const unsigned rule = result.rule;
@@ -100,7 +101,7 @@ bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
 
 // A place in the code, or none.
 vm::Progress BehaviorLayer::checked_progress() const {
-  const Result& result = workspace_.result;
+  const Result& result = *workspace_.result;
   vm::Progress progress{.pause = result.pause, .next = result.next, .wake = result.wake};
   const std::span<const vm::Word> code = program_->image.code;
   const bool inside = progress.next >= code.data() && progress.next < code.data() + code.size();
@@ -110,7 +111,7 @@ vm::Progress BehaviorLayer::checked_progress() const {
 
 // Nothing comes of a response whose behaviour was stopped meanwhile.
 void BehaviorLayer::conclude(unsigned rule) {
-  Result& result = workspace_.result;
+  Result& result = *workspace_.result;
   const unsigned behavior = program_->behavior_of[rule];
   if (has(retired_, behavior) || !result.there) result = {};
   result.there = false;  // it is taken
@@ -122,8 +123,7 @@ void BehaviorLayer::conclude(unsigned rule) {
   Trace& trace = layers_.trace;
   if (waited && moved) trace.emit(EventKind::go_on, trace.step(), rule);
   if (result.zero_divide) trace.emit(EventKind::zero_divide, trace.step(), rule);
-  put_out(std::span(workspace_.output)
-              .first(std::min<std::size_t>(result.words, workspace_.output.size())));
+  put_out(workspace_.output.first(std::min<std::size_t>(result.words, workspace_.output.size())));
   if ((result.assigned | result.shifted) != 0) stage_writes(behavior);
   point = {};
   if (progress.pause == vm::Pause::ended) return;
@@ -136,8 +136,8 @@ void BehaviorLayer::conclude(unsigned rule) {
 
 void BehaviorLayer::stage_writes(unsigned behavior) {
   vm::Machine machine = layers_.frames.machine(*program_, behavior);
-  machine.assigned = workspace_.result.assigned;
-  machine.shifted = workspace_.result.shifted;
+  machine.assigned = workspace_.result->assigned;
+  machine.shifted = workspace_.result->shifted;
   layers_.variables.stage(machine, program_->image.behaviors[behavior], *snapshot_);
 }
 
@@ -224,7 +224,7 @@ void BehaviorLayer::run(Unit& unit) {
       if (sole_claim(program_->rules_of(unit.behavior), claim))
         run_response(machine, claim.rule, begin_of(claim.rule, claim.side));
     }
-    workspace_.finished.store(true, std::memory_order_relaxed);
+    workspace_.finished->store(true, std::memory_order_relaxed);
     kernel::calls::rest(kernel_, kReleased);
   }
 }
@@ -301,7 +301,7 @@ void BehaviorLayer::run_response(vm::Machine& machine, unsigned rule, unsigned c
   machine.assigned = 0;
   machine.wake = kNever;
   const vm::Progress progress = vm::respond(machine, &program_->image.code[code]);
-  workspace_.result = {
+  *workspace_.result = {
       .next = progress.next,
       .wake = progress.wake,
       .pause = progress.pause,

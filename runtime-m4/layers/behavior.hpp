@@ -10,8 +10,8 @@
 // nothing else.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/arbiter.hpp"
@@ -50,7 +50,7 @@ public:
       : kernel_(kernel), layers_(neighbours), workspace_(neighbours.workspace) {}
 
   // Starts the threads of `program`, which must stay until they are dismissed.
-  [[nodiscard]] bool start(const LoadedProgram& program, ProgramThreads& threads);
+  [[nodiscard]] bool start(const LoadedProgram& program, Memory& memory, ProgramThreads& threads);
 
   // --- for the step thread ---
   void begin_step(const Snapshot& snapshot);
@@ -131,8 +131,8 @@ private:
   std::uint16_t code_ = 0;
   RuleSet has_run_;           // their responses began or went on in the millisecond …
   std::uint32_t ran_at_ = 0;  // … of the last step
-  std::array<Unit, kMaxBehaviors> units_{};
-  std::array<ResumePoint, kMaxRules> resume_points_{};
+  std::span<Unit> units_;
+  std::span<ResumePoint> resume_points_;
 };
 
 }  // namespace robosync::layers

@@ -32,7 +32,7 @@ Thread* Budget::look(const kernel::Kernel& kernel) {
     run_time_ = run_time;
     return nullptr;
   }
-  return run_time - run_time_ > kCounts ? first : nullptr;
+  return run_time - run_time_ > counts_ ? first : nullptr;
 }
 
 }  // namespace robosync::layers

@@ -10,7 +10,6 @@
 #include <cstdint>
 
 #include "runtime-m4/kernel/kernel.hpp"
-#include "runtime-m4/limits.hpp"
 
 namespace robosync::layers {
 
@@ -18,7 +17,7 @@ class Budget {
 public:
   // Of one release of a behaviour, in counts of Kernel::clock(). The verifier's bound for a whole
   // step is in instructions: this gives each of them two cycles.
-  static constexpr std::uint32_t kCounts = 2 * kStepBudget;
+  explicit Budget(std::uint32_t step_budget) : counts_(2 * step_budget) {}
 
   // The behaviour's thread that is over its budget, or null.  [a thread that outranks all
   // behaviours]
@@ -27,6 +26,7 @@ public:
   void forget() { suspect_ = nullptr; }
 
 private:
+  std::uint32_t counts_;
   kernel::Thread* suspect_ = nullptr;
   std::uint32_t activations_ = 0;  // of the suspect, when it became one
   std::uint32_t run_time_ = 0;

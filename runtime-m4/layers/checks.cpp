@@ -1,5 +1,4 @@
-// See checks.hpp. May rely on the verifier for places and windows of at least 1, and on fits() for
-// the room for all windows.
+// See checks.hpp. May rely on the verifier for places and windows of at least 1.
 #include "runtime-m4/layers/checks.hpp"
 
 #include <algorithm>
@@ -8,14 +7,16 @@
 #include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::layers {
-void Checks::start(const vm::Image& image) {
+void Checks::start(const vm::Image& image, Memory& memory) {
   wiring_ = image.checks;
   bands_ = image.bands;
   channels_ = image.channels.size();
-  windows_.fill({});
+  windows_ = memory.take<policy::Part::windows, Window>();
+  samples_ = memory.take<policy::Part::samples, vm::Value>();
+  orders_ = memory.take<policy::Part::orders, std::uint8_t>();
   unsigned used = 0;
   for (unsigned c = 0; c < wiring_.size(); ++c) {
-    windows_[c].first = static_cast<std::uint8_t>(used);
+    windows_[c].first = static_cast<std::uint16_t>(used);
     if (wiring_[c].window > 1) used += wiring_[c].window;
   }
 }

@@ -8,11 +8,11 @@
 // its band is unknown.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
 #include "runtime-m4/layers/median.hpp"
+#include "runtime-m4/layers/memory.hpp"
 #include "runtime-m4/layers/messages.hpp"
 #include "vm/interpreter.hpp"
 
@@ -20,7 +20,7 @@ namespace robosync::layers {
 
 class Checks {
 public:
-  void start(const vm::Image& image);
+  void start(const vm::Image& image, Memory& memory);
 
   // Puts the band of `check` at `now` (milliseconds of program time) into `values`, the values of
   // all inputs. Returns whether it changed. Several calls at one time are one sample.
@@ -34,7 +34,7 @@ private:
     vm::Value median = vm::kUnknown;  // of its samples
     std::uint32_t newest = 0;         // when the newest one was taken
     MedianWindow::State samples;
-    std::uint8_t first = 0;  // place of its samples among all
+    std::uint16_t first = 0;  // place of its samples among all
   };
 
   vm::Value smoothed(Window& window, const vm::Check& wiring, std::uint32_t now, vm::Value value);
@@ -43,10 +43,10 @@ private:
   std::span<const vm::Check> wiring_;
   std::span<const vm::Band> bands_;
   std::size_t channels_ = 0;
-  std::array<Window, kMaxChecks> windows_{};
+  std::span<Window> windows_;
   // Of the windows, one behind the other.
-  std::array<vm::Value, kMaxSamples> samples_{};
-  std::array<std::uint8_t, kMaxSamples> orders_{};
+  std::span<vm::Value> samples_;
+  std::span<std::uint8_t> orders_;
 };
 
 }  // namespace robosync::layers

@@ -1,17 +1,21 @@
-// See command_pool.hpp. Linked lists of indices; none is longer than kMaxCommands.
+// See command_pool.hpp. Linked lists of indices; none is longer than there are places.
 #include "runtime-m4/layers/command_pool.hpp"
 
 #include <utility>
 
 namespace robosync::layers {
 
-CommandPool::CommandPool() {
-  for (unsigned i = 0; i + 1 < kMaxCommands; ++i)
-    nodes_[i].next = static_cast<std::uint8_t>(i + 1);
+void CommandPool::start(Memory& memory) {
+  nodes_ = memory.take_zero<policy::Part::commands, Node>();
+  free_ = kNone;
+  for (std::size_t i = nodes_.size(); i > 0; --i) {
+    nodes_[i - 1].next = free_;
+    free_ = static_cast<std::uint8_t>(i - 1);
+  }
 }
 
 bool CommandPool::push(Queue& queue, const Command& command) {
-  if (queue.count == kMaxQueued || free_ == kNone) return false;
+  if (queue.count == policy::kMaxQueued || free_ == kNone) return false;
   const std::uint8_t taken = free_;
   Node& node = nodes_[taken];
   free_ = std::exchange(node.next, kNone);

@@ -2,11 +2,11 @@
 // queue for each actuator in it.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 
+#include "runtime-m4/layers/memory.hpp"
 #include "runtime-m4/layers/messages.hpp"
-#include "runtime-m4/limits.hpp"
 
 namespace robosync::layers {
 
@@ -18,15 +18,16 @@ public:
     std::uint8_t count = 0;
   };
 
-  CommandPool();
+  // All its places are free, and no queue has any.
+  void start(Memory& memory);
 
-  // False when the queue has kMaxQueued commands or no place is left.
+  // False when the queue has policy::kMaxQueued commands or no place is left.
   [[nodiscard]] bool push(Queue& queue, const Command& command);
   // The first of `queue`, which is not empty; good until pop().
   const Command& front(const Queue& queue) const { return nodes_[queue.first].command; }
   void pop(Queue& queue);
   void clear(Queue& queue);
-  // Moves all of `from` behind `queue`; together they are not longer than kMaxQueued.
+  // Moves all of `from` behind `queue`; together they are not longer than policy::kMaxQueued.
   void append(Queue& queue, Queue& from);
 
 private:
@@ -37,8 +38,8 @@ private:
     std::uint8_t next = kNone;
   };
 
-  std::array<Node, kMaxCommands> nodes_{};
-  std::uint8_t free_ = 0;
+  std::span<Node> nodes_;
+  std::uint8_t free_ = kNone;
 };
 
 }  // namespace robosync::layers

@@ -11,7 +11,7 @@ namespace robosync::layers {
 
 using link::EventKind;
 
-bool ControlLayer::start(const LoadedProgram& program, ProgramThreads& threads) {
+bool ControlLayer::start(const LoadedProgram& program, Memory& memory, ProgramThreads& threads) {
   program_ = &program;
   staged_ = 0;
   to_commit_ = 0;
@@ -21,6 +21,8 @@ bool ControlLayer::start(const LoadedProgram& program, ProgramThreads& threads) 
   cancelling_ = 0;
   halted_ = 0;
   newly_halted_ = 0;
+  units_ = memory.take<policy::Part::control_units, Unit>();
+  pool_.start(memory);
   for (unsigned a = 0; a < program.image.actuators.size(); ++a)
     if (!start_unit(a, threads)) return false;
   return true;
@@ -38,7 +40,7 @@ bool ControlLayer::start_unit(unsigned actuator, ProgramThreads& threads) {
     mine.layer->run(mine);
   };
   spec.argument = &unit;
-  unit.thread = threads.start(spec, actuator, kControlStack);
+  unit.thread = threads.start(spec, actuator);
   return unit.thread != nullptr;
 }
 
@@ -49,13 +51,6 @@ void ControlLayer::release_all() {
     const vm::Actuator& old = wiring(unit);
     if (!is_halted(unit)) release(unit, old.on_release);
     if (unit.busy || unit.queue.count > 0) trace_.emit(EventKind::cancel, trace_.now(), a);
-    pool_.clear(unit.queue);
-    pool_.clear(unit.staged);
-    unit.busy = false;
-    unit.staged_stop = false;
-    unit.stopping = false;
-    unit.keeps = 0;
-    unit.drive = {};
   }
   program_ = nullptr;
 }
@@ -78,7 +73,7 @@ bool ControlLayer::stage_one(Unit& unit, const Command& command) {
     unit.staged_stop = true;
   }
   const unsigned waiting = unit.staged_stop ? 0U : unit.queue.count;
-  return waiting + unit.staged.count < kMaxQueued && pool_.push(unit.staged, command);
+  return waiting + unit.staged.count < policy::kMaxQueued && pool_.push(unit.staged, command);
 }
 
 ActuatorMask ControlLayer::take_staged() {
@@ -152,7 +147,7 @@ void ControlLayer::retire(unsigned actuator) {
 // --- safety ---
 
 ActuatorMask ControlLayer::all() const {
-  return (ActuatorMask{1} << program_->image.actuators.size()) - 1;
+  return static_cast<ActuatorMask>((std::uint64_t{1} << program_->image.actuators.size()) - 1);
 }
 
 // The mask comes first: a driver that is at work now sees it when it is done (keep_at()).
@@ -219,7 +214,7 @@ void ControlLayer::run(Unit& unit) {
 
 // Begins commands until one needs time, or none is left. Returns when to wake.
 kernel::Time ControlLayer::work_off(Unit& unit, Stamp stamp) {
-  for (unsigned i = 0; i < kMaxQueued && unit.queue.count > 0 && !is_halted(unit); ++i) {
+  for (unsigned i = 0; i < policy::kMaxQueued && unit.queue.count > 0 && !is_halted(unit); ++i) {
     kernel::Time wake = 0;
     begin_next(unit, stamp, wake);
     if (unit.busy) return wake;

@@ -12,9 +12,9 @@
 // commands to them from then on, until they are let go or the next program comes.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
+#include <span>
 
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/drivers/drivers.hpp"
@@ -40,7 +40,7 @@ public:
       : kernel_(kernel), board_(board), trace_(trace), step_thread_(step_thread), events_(events) {}
 
   // Starts the threads of `program`, which must stay until they are dismissed.
-  [[nodiscard]] bool start(const LoadedProgram& program, ProgramThreads& threads);
+  [[nodiscard]] bool start(const LoadedProgram& program, Memory& memory, ProgramThreads& threads);
   // Releases all actuators of a program whose threads are dismissed, and forgets where they are:
   // what a program does must not depend on the one before it.
   void release_all();
@@ -114,7 +114,7 @@ private:
   kernel::Thread& step_thread_;
   StepEvents events_;
   const LoadedProgram* program_ = nullptr;
-  std::array<Unit, kMaxActuators> units_{};
+  std::span<Unit> units_;
   CommandPool pool_;
   std::atomic<ActuatorMask> cancelling_ = 0;
   ActuatorMask staged_ = 0;     // since take_staged()

@@ -15,6 +15,11 @@ FeedQueue::Entry::Entry(kernel::Time due, std::uint8_t channel, vm::Value value)
   due_high_ = static_cast<std::uint16_t>(ticks >> 32);
 }
 
+void FeedQueue::start(Memory& memory) {
+  entries_ = memory.take_zero<policy::Part::feeds, Entry>();
+  count_ = 0;
+}
+
 bool FeedQueue::insert(const Entry& entry) {
   const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(count_);
   const auto same = std::find_if(entries_.begin(), end, [&](const Entry& other) {

@@ -2,12 +2,12 @@
 // two, the later to come counts.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "runtime-m4/kernel/time.hpp"
-#include "runtime-m4/limits.hpp"
+#include "runtime-m4/layers/memory.hpp"
 #include "vm/value.hpp"
 
 namespace robosync::layers {
@@ -30,16 +30,17 @@ public:
     std::uint8_t channel_ = 0;
   };
 
-  void clear() { count_ = 0; }
+  void start(Memory& memory);  // nothing waits
   // False when it is full.
   [[nodiscard]] bool insert(const Entry& entry);
   // Takes the earliest entry out if it is due.
   [[nodiscard]] bool take_due(kernel::Time now, Entry& entry);
   kernel::Time next_due() const { return count_ == 0 ? kernel::kForever : entries_[0].due(); }
+  std::size_t places() const { return entries_.size(); }
   std::size_t free_places() const { return entries_.size() - count_; }
 
 private:
-  std::array<Entry, kMaxFeeds> entries_{};
+  std::span<Entry> entries_;
   std::size_t count_ = 0;
 };
 

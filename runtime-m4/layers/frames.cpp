@@ -19,36 +19,27 @@ std::uint32_t seed_of(std::uint32_t program_seed, unsigned behavior) {
 
 }  // namespace
 
-std::size_t Frames::closed_words(const LoadedProgram& program) {
-  constexpr std::size_t kUnit = kWorkspaceUnit / sizeof(std::uint32_t);
-  const std::size_t words = program.safety_cells + std::size_t{program.safety_timer_words};
-  return (words + kUnit - 1) / kUnit * kUnit;
-}
-
-void Frames::start(const LoadedProgram& program) {
-  const std::span memory = workspace_.memory;
-  std::ranges::fill(memory, 0);
+void Frames::start(Memory& memory) {
+  safety_cells_ = memory.take<policy::Part::safety_cells, std::uint32_t>();
+  safety_timers_ = memory.take<policy::Part::safety_timers, std::uint32_t>();
   const auto unknown = static_cast<std::uint32_t>(vm::kUnknown);
-  std::ranges::fill(memory.first(program.safety_cells), unknown);
-  std::ranges::fill(memory.subspan(closed_words(program), kMaxFrameCells - program.safety_cells),
-                    unknown);
+  std::ranges::fill(safety_cells_, unknown);
+  std::ranges::fill(workspace_.cells, unknown);
 }
 
-// The timers of a behaviour are numbered from the first one of the program.
+// The timers are numbered from the first one of the program, which is SAFETY's.
 vm::Machine Frames::machine(const LoadedProgram& program, unsigned behavior) const {
-  std::uint32_t* const memory = workspace_.memory.data();
   const bool safety = behavior < program.first_behavior();
-  std::size_t frame = safety ? 0 : closed_words(program);
-  const std::size_t timers =
-      safety ? program.safety_cells
-             : frame + kMaxFrameCells - program.safety_cells - program.safety_timer_words;
+  std::size_t frame = 0;
   for (unsigned before = program.first_behavior(); before < behavior; ++before)
     frame += program.image.behaviors[before].cells;
+  const std::span<std::uint32_t> cells = safety ? safety_cells_ : workspace_.cells;
   vm::Machine machine;
-  machine.frame = reinterpret_cast<vm::Value*>(memory + frame);
+  machine.frame = reinterpret_cast<vm::Value*>(cells.data() + frame);
   machine.constants = program.image.constants.data();
   machine.timers = program.image.timers.data();
-  machine.timer_memory = memory + timers;
+  machine.timer_memory =
+      safety ? safety_timers_.data() : workspace_.timer_words.data() - safety_timers_.size();
   machine.random = seed_of(program.image.header->seed, behavior);
   return machine;
 }

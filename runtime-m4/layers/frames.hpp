@@ -1,12 +1,10 @@
 // The memory that bytecode works on: the frames of all behaviours, one behind the other, and what
-// their time words remember. It stands in the workspace:
-//
-//   | frame and timers of SAFETY | up to a unit | other frames | other timers
-//   |<-- closed to the behaviours' threads ---->|
+// their time words remember. It stands in the workspace; what SAFETY rules work on is closed to the
+// behaviours' threads.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "runtime-m4/layers/loaded_program.hpp"
 #include "runtime-m4/layers/workspace.hpp"
@@ -18,17 +16,12 @@ class Frames {
 public:
   explicit Frames(Workspace& workspace) : workspace_(workspace) {}
 
-  // Nothing is known, nothing remembered.
-  void start(const LoadedProgram& program);
+  // Nothing is known, nothing remembered. After the workspace.
+  void start(Memory& memory);
 
   // A machine for one behaviour. Its random numbers depend on the program's seed and on the number
   // of the behaviour only.
   vm::Machine machine(const LoadedProgram& program, unsigned behavior) const;
-
-  // What the behaviours' threads may write.
-  std::span<std::byte> writable(const LoadedProgram& program) const {
-    return workspace_.writable_from(closed_words(program));
-  }
 
   // Puts the inputs of `behavior` into its frame: value(input) is what each is.
   template <class ValueOf>
@@ -39,9 +32,9 @@ public:
   }
 
 private:
-  static std::size_t closed_words(const LoadedProgram& program);
-
   Workspace& workspace_;
+  std::span<std::uint32_t> safety_cells_;
+  std::span<std::uint32_t> safety_timers_;
 };
 
 }  // namespace robosync::layers

@@ -12,6 +12,7 @@ target_sources(robosync_runtime PRIVATE
   layers/feed_queue.cpp
   layers/frames.cpp
   layers/mailbox.cpp
+  layers/memory.cpp
   layers/median.cpp
   layers/order.cpp
   layers/processing.cpp
@@ -22,6 +23,7 @@ target_sources(robosync_runtime PRIVATE
   layers/trace.cpp
   layers/triggers.cpp
   layers/variables.cpp
+  layers/workspace.cpp
   safety/safety_rules.cpp
   safety/monitor.cpp
   drivers/i2c_register.cpp

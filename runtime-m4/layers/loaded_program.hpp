@@ -1,10 +1,11 @@
 // The running program: its image, and what is worked out from it once, when it is loaded.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 
 #include "runtime-m4/kernel/scheduler.hpp"
+#include "runtime-m4/layers/memory.hpp"
 #include "runtime-m4/layers/messages.hpp"
 #include "runtime-m4/layers/rule_set.hpp"
 #include "runtime-m4/policy/threads.hpp"
@@ -15,17 +16,17 @@ namespace robosync::layers {
 
 struct LoadedProgram {
   vm::Image image;
-  std::array<InputMask, kMaxBehaviors> inputs{};  // that each behaviour reads
-  // The rules that read or set each channel, each variable.
-  std::array<RuleBits, kMaxChannels> readers_of_channel{};
-  std::array<RuleBits, kMaxVariables> readers_of_variable{};
-  std::array<std::uint8_t, kMaxRules> behavior_of{};  // by rule
-  std::array<std::uint8_t, kMaxRules> truth_cell{};   // of a WATCH: where its truth is kept
-  std::uint16_t safety_cells = 0;                     // of the frame of the SAFETY rules
-  std::uint16_t safety_timer_words = 0;  // … and of their timers, which are the first
+  std::span<InputMask> inputs;          // that each behaviour reads
+  std::span<std::uint8_t> behavior_of;  // by rule
+  std::span<std::uint8_t> truth_cell;   // of a WATCH: where its truth is kept
 
-  // `image` is verified and fits().
-  void load(const vm::Image& image);
+  // `image` is verified, and `memory` laid out for it.
+  void load(const vm::Image& image, Memory& memory);
+
+  // The rules that read or set an input.
+  RuleBits readers_of(unsigned input) const {
+    return RuleBits(reader_words_.data() + input * set_words_);
+  }
 
   unsigned first_behavior() const { return policy::first_behavior(image); }
   RuleRange rules_of(unsigned behavior) const {
@@ -36,7 +37,6 @@ struct LoadedProgram {
   unsigned variable_of(unsigned input) const {
     return input - static_cast<unsigned>(image.channels.size());
   }
-  RuleBits& readers_of(unsigned input);
   InputMask bit_of(unsigned input) const {
     return is_variable(input) ? layers::inputs(0, bit<VariableMask>(variable_of(input)))
                               : bit<ChannelMask>(input);
@@ -51,11 +51,10 @@ struct LoadedProgram {
 
 private:
   void load_rules(unsigned behavior);
-  void note_timers(const vm::Rule& rule);
-};
 
-// What the verifier's limits do not say: channels, variables, rules, threads and their stacks.
-[[nodiscard]] vm::Verdict fits(const vm::Image& image);
+  std::span<RuleSet::Word> reader_words_;
+  unsigned set_words_ = 0;
+};
 
 // The name at `offset` of the strings, for reports; `otherwise` when there is none.
 const char* name_of(const vm::Image& image, std::uint16_t offset, const char* otherwise);

@@ -13,8 +13,8 @@ bool differs(vm::Value a, vm::Value b, vm::Value least) {
 
 }  // namespace
 
-void Mailboxes::reset() {
-  boxes_.fill({});
+void Mailboxes::start(Memory& memory) {
+  boxes_ = memory.take<policy::Part::mailboxes, Mailbox>();
   announced_ = 0;
   forgotten_ = 0;
   next_expiry_ = kernel::kForever;

@@ -4,12 +4,12 @@
 // by one and announced at once, so that the step thread sees all of them or none.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
 
 #include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/memory.hpp"
 #include "runtime-m4/layers/messages.hpp"
 #include "vm/image.hpp"
 
@@ -19,7 +19,7 @@ class Mailboxes {
 public:
   explicit Mailboxes(kernel::Kernel& kernel) : kernel_(kernel) {}
 
-  void reset();  // nothing is known
+  void start(Memory& memory);  // nothing is known
 
   // Keeps the reading if it says something new: the channel was unknown, or differs by at least
   // channel.change. Returns whether it did; then announce it. The channel is fresh in any case.
@@ -71,7 +71,7 @@ private:
 
   kernel::Kernel& kernel_;
   kernel::Time next_expiry_ = kernel::kForever;
-  std::array<Mailbox, kMaxChannels> boxes_{};
+  std::span<Mailbox> boxes_;
   ChannelMask announced_ = 0;
   ChannelMask forgotten_ = 0;
 };

@@ -11,10 +11,9 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <type_traits>
+#include <span>
 
 #include "runtime-m4/kernel/time.hpp"
-#include "runtime-m4/limits.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::layers {
@@ -23,7 +22,6 @@ using ChannelMask = std::uint32_t;   // bit c: channel c of the image
 using VariableMask = std::uint32_t;  // bit v: variable v of the image
 // Both: channels in the lower half, variables in the upper one, so that a half is had for nothing.
 using InputMask = std::uint64_t;
-static_assert(kMaxChannels <= 32 && kMaxVariables <= 32);
 constexpr InputMask inputs(ChannelMask channels, VariableMask variables) {
   return InputMask{variables} << 32 | channels;
 }
@@ -34,10 +32,8 @@ constexpr VariableMask variables_of(InputMask inputs) {
   return static_cast<VariableMask>(inputs >> 32);
 }
 using ActuatorMask = std::uint32_t;  // bit a: actuator a
-// … where it is kept for each rule.
-using ActuatorBits = std::conditional_t<kMaxActuators <= 16, std::uint16_t, std::uint32_t>;
 // Bit b: behaviour b, 0 being the one of the highest priority.
-using BehaviorMask = std::conditional_t<kMaxBehaviors <= 32, std::uint32_t, std::uint64_t>;
+using BehaviorMask = std::uint64_t;
 
 template <class Mask>
 constexpr Mask bit(unsigned index) {
@@ -92,7 +88,7 @@ private:
 
   Stamp stamp_;
   std::uint32_t milliseconds_ = 0;
-  std::array<vm::Value, kMaxInputs> values_{};
+  std::span<vm::Value> values_;
 };
 
 // What a response wants of actuators. What a word stands for is there; an actuator's limits come later.

@@ -28,17 +28,17 @@ bool starts_at_once(const vm::Image& image, const vm::Behavior& behavior) {
 
 }  // namespace
 
-bool ProcessingLayer::start(const LoadedProgram& program) {
+bool ProcessingLayer::start(const LoadedProgram& program, Memory& memory) {
   program_ = &program;
   snapshot_.stamp_ = {};
   snapshot_.milliseconds_ = 0;
-  snapshot_.values_.fill(vm::kUnknown);
-  layers_.variables.start(program.image,
-                          std::span(snapshot_.values_).subspan(program.image.channels.size()));
-  checks_.start(program.image);
-  adaptation_.start();
-  layers_.triggers.start(program.image);
-  layers_.arbiter.start();
+  snapshot_.values_ = memory.take<policy::Part::snapshot, vm::Value>();
+  std::ranges::fill(snapshot_.values_, vm::kUnknown);
+  layers_.variables.start(program.image, snapshot_.values_.subspan(program.image.channels.size()),
+                          memory);
+  checks_.start(program.image, memory);
+  adaptation_.start(memory);
+  concerned_.start(memory.take<policy::Part::concerned, RuleSet::Word>());
   cancelled_ = 0;
   lost_behaviors_ = 0;
   unstarted_ = 0;
@@ -118,7 +118,7 @@ void ProcessingLayer::finish_done() {
   const ActuatorMask idle = layers_.control.take_idle();
   for (const unsigned rule : layers_.arbiter.running()) {
     Holding& holding = layers_.arbiter.holding(rule);
-    holding.pending = static_cast<ActuatorBits>(holding.pending & ~idle);
+    holding.pending = holding.pending & ~idle;
     finish_if_done(rule);
   }
 }
@@ -188,7 +188,7 @@ void ProcessingLayer::report_set(unsigned variable, const Stamp& stamp) {
 std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
   Soonest due(now);
   if (layers_.variables.staged()) due.at(set_due_);
-  due.in(layers_.variables.next_fade(now, std::span(snapshot_.values_).subspan(channels())));
+  due.in(layers_.variables.next_fade(now, snapshot_.values_.subspan(channels())));
   due.in(checks_.next(now));
   due.at(layers_.triggers.next_wake());
   for (const unsigned rule : layers_.arbiter.running())
@@ -275,10 +275,9 @@ void ProcessingLayer::find_concerned(InputMask changed, BehaviorMask begins) {
   layers_.triggers.add_woken(snapshot_.milliseconds(), concerned_);
   for (const unsigned rule : concerned_)
     woken_ |= bit<BehaviorMask>(program_->behavior_of[rule]);
-  each_bit(channels_of(changed),
-           [this](unsigned c) { concerned_ |= program_->readers_of_channel[c]; });
+  each_bit(channels_of(changed), [this](unsigned c) { concerned_ |= program_->readers_of(c); });
   each_bit(variables_of(changed),
-           [this](unsigned v) { concerned_ |= program_->readers_of_variable[v]; });
+           [this](unsigned v) { concerned_ |= program_->readers_of(channels() + v); });
   for (const unsigned rule : layers_.triggers.eventful())
     if (stirred(program_->behavior_of[rule])) concerned_.insert(rule);
   for (BehaviorMask left = untouched_; left != 0; left &= left - 1) {
@@ -456,7 +455,7 @@ void ProcessingLayer::run_responses(RuleRange rules) {
 void ProcessingLayer::conclude(unsigned rule) {
   layers_.behaviors.conclude(rule);
   Holding& holding = layers_.arbiter.holding(rule);
-  holding.pending = static_cast<ActuatorBits>(holding.pending | layers_.control.take_staged());
+  holding.pending = holding.pending | layers_.control.take_staged();
   for (ActuatorMask dropped = layers_.control.take_dropped(); dropped != 0; dropped &= dropped - 1)
     trace_.emit(EventKind::overrun, trace_.step(),
                 static_cast<unsigned>(std::countr_zero(dropped)));

@@ -1,61 +1,85 @@
-// See threads.hpp.
+// See program_threads.hpp.
 #include "runtime-m4/layers/program_threads.hpp"
-
-#include <algorithm>
 
 namespace robosync::layers {
 
-std::span<std::byte> ProgramThreads::take_stack(std::size_t bytes, bool privileged) {
-  const std::size_t free = stacks_.size() - stack_used_ - unprivileged_stack_used_;
-  if (bytes > free) return {};
-  std::size_t& used = privileged ? stack_used_ : unprivileged_stack_used_;
-  used += bytes;
-  return std::span(stacks_).subspan(privileged ? used - bytes : stacks_.size() - used, bytes);
+using kernel::Category;
+using policy::Part;
+
+// Stacks of threads without privileges come first: where the closed parts end they are aligned as
+// those must be.
+void ProgramThreads::prepare(Memory& memory) {
+  static_assert(policy::kStackUnit % port::kUnprivilegedStackAlignment == 0);
+  static_assert(policy::kBehaviorStack % port::kUnprivilegedStackAlignment == 0);
+  static_assert(policy::kBehaviorStack <= port::kMaxUnprivilegedStack);
+  behaviors_.stacks = memory.take_bytes(Part::behavior_stacks);
+  sensors_.stacks = memory.take_bytes(Part::sensor_stacks);
+  controls_.stacks = memory.take_bytes(Part::control_stacks);
+  step_stack_ = memory.take_bytes(Part::step_stack);
+  behaviors_.members = memory.take<Part::behavior_threads, Member>();
+  sensors_.members = memory.take<Part::sensor_threads, Member>();
+  controls_.members = memory.take<Part::control_threads, Member>();
 }
 
-kernel::Thread* ProgramThreads::start(kernel::ThreadSpec spec, unsigned index,
-                                      std::size_t stack_bytes) {
-  if (count_ == members_.size()) return nullptr;
-  spec.stack = take_stack(stack_bytes, spec.privileged);
-  if (spec.stack.empty()) return nullptr;
-  Member& member = members_[count_];
+ProgramThreads::Places& ProgramThreads::places(Category category) {
+  if (category == Category::sensor) return sensors_;
+  return category == Category::behavior ? behaviors_ : controls_;
+}
+
+kernel::Thread* ProgramThreads::start(kernel::ThreadSpec spec, unsigned index) {
+  Places& mine = places(spec.category);
+  if (mine.used == mine.members.size()) return nullptr;
+  const std::size_t bytes = mine.stacks.size() / mine.members.size();
+  spec.stack = mine.stacks.subspan(mine.used * bytes, bytes);
+  Member& member = mine.members[mine.used];
   if (!kernel_.add(member.thread, spec)) return nullptr;
+  ++mine.used;
   member.index = static_cast<std::uint8_t>(index);
-  member.reported = false;
-  ++count_;
+  (last_ != nullptr ? last_->next : first_) = &member;
+  last_ = &member;
   return &member.thread;
 }
 
 bool ProgramThreads::start_step_thread(kernel::Thread& thread, kernel::ThreadSpec spec) {
-  spec.stack = take_stack(kStepStack, spec.privileged);
-  if (spec.stack.empty() || !kernel_.add(thread, spec)) return false;
+  spec.stack = step_stack_;
+  if (!kernel_.add(thread, spec)) return false;
   step_thread_ = &thread;
   return true;
 }
 
 void ProgramThreads::dismiss() {
-  for (Member& member : std::span(members_).first(count_))
-    kernel_.remove(member.thread);
+  for (Member* member = first_; member != nullptr; member = member->next)
+    kernel_.remove(member->thread);
   if (step_thread_ != nullptr) kernel_.remove(*step_thread_);
   step_thread_ = nullptr;
-  count_ = 0;
-  stack_used_ = 0;
-  unprivileged_stack_used_ = 0;
+  forget();
+}
+
+// A control block may own something where the port keeps it elsewhere.
+void ProgramThreads::forget() {
+  for (Places* const places : {&sensors_, &behaviors_, &controls_}) {
+    for (Member& member : places->members)
+      member.~Member();
+    *places = {};
+  }
+  first_ = nullptr;
+  last_ = nullptr;
 }
 
 ProgramThreads::Member* ProgramThreads::next_stopped() {
-  for (Member& member : std::span(members_).first(count_)) {
-    if (member.reported || kernel_.state(member.thread) != kernel::Thread::State::stopped) continue;
-    member.reported = true;
-    return &member;
+  for (Member* member = first_; member != nullptr; member = member->next) {
+    if (member->reported || kernel_.state(member->thread) != kernel::Thread::State::stopped)
+      continue;
+    member->reported = true;
+    return member;
   }
   return nullptr;
 }
 
 unsigned ProgramThreads::stopped() const {
   unsigned count = 0;
-  for (const Member& member : std::span(members_).first(count_))
-    if (kernel_.state(member.thread) == kernel::Thread::State::stopped) ++count;
+  for (const Member* member = first_; member != nullptr; member = member->next)
+    if (kernel_.state(member->thread) == kernel::Thread::State::stopped) ++count;
   if (step_thread_ != nullptr && kernel_.state(*step_thread_) == kernel::Thread::State::stopped)
     ++count;
   return count;

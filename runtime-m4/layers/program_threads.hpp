@@ -1,13 +1,13 @@
-// The threads of the running program: control blocks and stacks from static memory, given out when
-// a program is activated and taken back all at once.
+// The threads of the running program: control blocks and stacks from the arena, given out when a
+// program is activated and taken back all at once.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "runtime-m4/kernel/kernel.hpp"
-#include "runtime-m4/limits.hpp"
+#include "runtime-m4/layers/memory.hpp"
 
 namespace robosync::layers {
 
@@ -17,14 +17,19 @@ public:
     kernel::Thread thread;
     std::uint8_t index = 0;  // of its sensor, behaviour or actuator in the image
     bool reported = false;   // its stop was reported
+    Member* next = nullptr;  // started after it
   };
 
   explicit ProgramThreads(kernel::Kernel& kernel) : kernel_(kernel) {}
+  ~ProgramThreads() { forget(); }
+  ProgramThreads(const ProgramThreads&) = delete;
+  ProgramThreads& operator=(const ProgramThreads&) = delete;
 
-  // Adds a thread with a stack of `stack_bytes`; spec.stack is set here. Null, and nothing changed,
-  // when there is no place; fits() (program.hpp) rules that out for a program as a whole.
-  [[nodiscard]] kernel::Thread* start(kernel::ThreadSpec spec, unsigned index,
-                                      std::size_t stack_bytes);
+  // No thread of a program is there. The places of `memory`'s program are the ones to fill.
+  void prepare(Memory& memory);
+  // Adds a thread in a place of its category; its stack is set here. Null, and nothing changed,
+  // when there is none, which no program can cause that memory is laid out for.
+  [[nodiscard]] kernel::Thread* start(kernel::ThreadSpec spec, unsigned index);
   // Like it, with a control block of the caller's. It is removed by dismiss() as well.
   [[nodiscard]] bool start_step_thread(kernel::Thread& thread, kernel::ThreadSpec spec);
   // Takes all threads out of the kernel. Not from one of them.
@@ -34,8 +39,8 @@ public:
   // started in.
   template <class PriorityOf>
   void rank(PriorityOf priority_of) {
-    for (Member& member : std::span(members_).first(count_))
-      kernel_.set_priority(member.thread, priority_of(member.thread, member.index));
+    for (Member* member = first_; member != nullptr; member = member->next)
+      kernel_.set_priority(member->thread, priority_of(member->thread, member->index));
     kernel_.set_priority(*step_thread_, priority_of(*step_thread_, 0));
   }
 
@@ -45,20 +50,22 @@ public:
   unsigned stopped() const;
 
 private:
-  std::span<std::byte> take_stack(std::size_t bytes, bool privileged);
+  // Of one category: control blocks, their stacks one behind the other, and how many are in use.
+  struct Places {
+    std::span<Member> members;
+    std::span<std::byte> stacks;
+    std::size_t used = 0;
+  };
+
+  Places& places(kernel::Category category);
+  void forget();
 
   kernel::Kernel& kernel_;
-  std::array<Member, kMaxProgramThreads - 1> members_;
+  Places sensors_, behaviors_, controls_;
+  std::span<std::byte> step_stack_;
   kernel::Thread* step_thread_ = nullptr;
-  std::size_t count_ = 0;
-  // Stacks of threads with privileges from the beginning on, of those without from the end down:
-  // these must be aligned, and so they are if the arena and their sizes are.
-  std::size_t stack_used_ = 0;
-  std::size_t unprivileged_stack_used_ = 0;
-  static_assert(kStackArena % port::kUnprivilegedStackAlignment == 0);
-  static_assert(kBehaviorStack % port::kUnprivilegedStackAlignment == 0);
-  static_assert(kBehaviorStack <= port::kMaxUnprivilegedStack);
-  alignas(port::kUnprivilegedStackAlignment) std::array<std::byte, kStackArena> stacks_{};
+  Member* first_ = nullptr;  // of all, in the order they were started in
+  Member* last_ = nullptr;
 };
 
 }  // namespace robosync::layers

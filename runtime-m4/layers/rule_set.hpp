@@ -1,14 +1,15 @@
-// A set of rules: one bit each, and one word above that says which words of them are not empty.
+// A set of rules: one bit each, in words that belong to somebody else, and one word above that says
+// which of them are not empty. So there are at most policy::kMaxRules.
 //
 // Going through the members costs the members, and next to nothing for the rules in between; an empty
 // set, as most are in most steps, costs the look at one word.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
-
-#include "runtime-m4/limits.hpp"
+#include <span>
 
 namespace robosync::layers {
 
@@ -18,35 +19,32 @@ struct RuleRange {
   unsigned end;
 };
 
-// The bits alone, for sets that are many and are only added to others.
-template <unsigned kRules>
-struct BasicRuleBits {
+// The bits alone, for sets that are many and are only added to others. Like a span: who copies it
+// has the same bits.
+class RuleBits {
+public:
   using Word = std::uint32_t;
   static constexpr unsigned kBits = 32;
-  static constexpr unsigned kWords = (kRules + kBits - 1) / kBits;
 
-  void insert(unsigned rule) { words[rule / kBits] |= Word{1} << rule % kBits; }
-  bool has(unsigned rule) const { return (words[rule / kBits] >> rule % kBits & 1) != 0; }
+  explicit RuleBits(Word* words) : words_(words) {}
+  void insert(unsigned rule) { words_[rule / kBits] |= Word{1} << rule % kBits; }
+  bool has(unsigned rule) const { return (words_[rule / kBits] >> rule % kBits & 1) != 0; }
 
-  std::array<Word, kWords> words{};
+private:
+  friend class RuleSet;
+  Word* words_;
 };
 
-template <unsigned kRules>
-class BasicRuleSet {
-  using Bits = BasicRuleBits<kRules>;
-  using Word = typename Bits::Word;
-  static constexpr unsigned kBits = Bits::kBits;
-  static constexpr unsigned kWords = Bits::kWords;
-  static_assert(kWords <= kBits, "one summary word has one bit for each");
-
+class RuleSet {
 public:
-  static constexpr unsigned kEnd = kWords * kBits;  // no rule has this number
+  using Word = RuleBits::Word;
+  static constexpr unsigned kEnd = 0xFFFF'FFFF;  // no rule has this number
 
   // A member, and on to the next. Members may come and go on the way: what counts is whether one is
   // there when its turn comes.
   class Iterator {
   public:
-    Iterator(const BasicRuleSet& set, unsigned rule) : set_(set), rule_(rule) {}
+    Iterator(const RuleSet& set, unsigned rule) : set_(set), rule_(rule) {}
     unsigned operator*() const { return rule_; }
     Iterator& operator++() {
       rule_ = set_.from(rule_ + 1);
@@ -55,9 +53,20 @@ public:
     bool operator!=(const Iterator& other) const { return rule_ != other.rule_; }
 
   private:
-    const BasicRuleSet& set_;
+    const RuleSet& set_;
     unsigned rule_;
   };
+
+  RuleSet() = default;  // of no rules
+  RuleSet(const RuleSet&) = delete;
+  RuleSet& operator=(const RuleSet&) = delete;
+
+  // From now on it stands in `words`, all of which are 0: one bit a rule.
+  void start(std::span<Word> words) {
+    words_ = words.data();
+    count_ = static_cast<std::uint32_t>(words.size());
+    summary_ = 0;
+  }
 
   [[gnu::always_inline]] void insert(unsigned rule) {
     words_[rule / kBits] |= bit(rule);
@@ -75,13 +84,14 @@ public:
   }
 
   void clear() {
-    for_words(*this, [&](unsigned w) { words_[w] = 0; });
-    summary_ = 0;
+    for (; summary_ != 0; summary_ &= summary_ - 1)
+      words_[std::countr_zero(summary_)] = 0;
   }
-  BasicRuleSet& operator|=(const Bits& others) {
-    for (unsigned w = 0; w < kWords; ++w)
-      if (others.words[w] != 0) {
-        words_[w] |= others.words[w];
+  // Both of as many rules.
+  RuleSet& operator|=(RuleBits others) {
+    for (unsigned w = 0; w < count_; ++w)
+      if (others.words_[w] != 0) {
+        words_[w] |= others.words_[w];
         summary_ |= bit(w);
       }
     return *this;
@@ -95,7 +105,7 @@ public:
   }
   // … for each that is in this set or in `other`.
   template <class Take>
-  void each_in_either(const BasicRuleSet& other, RuleRange rules, Take take) const {
+  void each_in_either(const RuleSet& other, RuleRange rules, Take take) const {
     each_of(
         rules, [&](unsigned w) { return words_[w] | other.words_[w]; }, take);
   }
@@ -110,11 +120,11 @@ public:
   [[gnu::always_inline]] Iterator end() const { return {*this, kEnd}; }
 
 private:
+  static constexpr unsigned kBits = RuleBits::kBits;
   static constexpr Word bit(unsigned index) { return Word{1} << index % kBits; }
   static unsigned lowest(unsigned w, Word word) {
     return w * kBits + static_cast<unsigned>(std::countr_zero(word));
   }
-
   template <class WordAt, class Take>
   static void each_of(RuleRange rules, WordAt word_at, Take take) {
     unsigned w = rules.first / kBits;
@@ -130,7 +140,7 @@ private:
 
   [[gnu::noinline]] unsigned find_from(unsigned rule) const {
     const unsigned w = rule / kBits;
-    if (w >= kWords) return kEnd;
+    if (w >= count_) return kEnd;
     if (const Word rest = words_[w] & ~Word{0} << rule % kBits; rest != 0) return lowest(w, rest);
     const Word later = summary_ & ~Word{1} << w;
     if (later == 0) return kEnd;
@@ -138,17 +148,16 @@ private:
     return lowest(next, words_[next]);
   }
 
-  template <class Each>
-  static void for_words(const BasicRuleSet& set, Each each) {
-    for (Word left = set.summary_; left != 0; left &= left - 1)
-      each(static_cast<unsigned>(std::countr_zero(left)));
-  }
-
-  std::array<Word, kWords> words_{};
-  Word summary_ = 0;  // bit w: word w is not 0
+  Word* words_ = nullptr;
+  Word summary_ = 0;         // bit w: word w is not 0
+  std::uint32_t count_ = 0;  // of the words
 };
 
-using RuleBits = BasicRuleBits<kMaxRules>;
-using RuleSet = BasicRuleSet<kMaxRules>;
+// One of `count` pieces of `words` that are equally long, for sets of which there are several.
+inline std::span<RuleSet::Word> part_of(std::span<RuleSet::Word> words, std::size_t count,
+                                        std::size_t place) {
+  const std::size_t each = words.size() / count;
+  return words.subspan(place * each, each);
+}
 
 }  // namespace robosync::layers

@@ -10,12 +10,13 @@ constexpr std::uint64_t kLatestFeed = std::uint64_t{1} << 62;  // so that times 
 
 }  // namespace
 
-bool SensorLayer::start(const LoadedProgram& program, Sampler& sampler, ProgramThreads& threads) {
+bool SensorLayer::start(const LoadedProgram& program, Sampler& sampler, Memory& memory,
+                        ProgramThreads& threads) {
   program_ = &program;
   sampler_ = &sampler;
   feed_thread_ = nullptr;
-  feeds_.clear();
-  units_.fill({});
+  feeds_.start(memory);
+  units_ = memory.take_zero<policy::Part::sensor_units, Unit>();
   for (unsigned s = 0; s < program.image.sensors.size(); ++s)
     if (!policy::is_fed(program.image.sensors[s]) && !start_sensor(s, threads)) return false;
   return !policy::has_fed_sensors(program.image) || start_feeds(threads);
@@ -33,7 +34,7 @@ bool SensorLayer::start_sensor(unsigned sensor, ProgramThreads& threads) {
   spec.category = kernel::Category::sensor;
   spec.entry = entry;
   spec.argument = &unit;
-  unit.thread = threads.start(spec, sensor, kSensorStack);
+  unit.thread = threads.start(spec, sensor);
   return unit.thread != nullptr;
 }
 
@@ -49,7 +50,7 @@ bool SensorLayer::start_feeds(ProgramThreads& threads) {
   spec.category = kernel::Category::sensor;
   spec.entry = [](void* self) { static_cast<SensorLayer*>(self)->run_feeds(); };
   spec.argument = this;
-  feed_thread_ = threads.start(spec, policy::kFedSensors, kSensorStack);
+  feed_thread_ = threads.start(spec, policy::kFedSensors);
   return feed_thread_ != nullptr;
 }
 
@@ -102,7 +103,7 @@ void SensorLayer::run_feeds() {
 void SensorLayer::deliver_due() {
   const kernel::Time now = kernel_.now();
   ChannelMask news = 0;
-  for (unsigned i = 0; i < kMaxFeeds; ++i) {
+  for (unsigned i = 0; i < feeds_.places(); ++i) {
     FeedQueue::Entry entry;
     {
       const auto lock = kernel_.lock();

@@ -7,8 +7,8 @@
 // same step.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 
 #include "link/messages.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
@@ -35,7 +35,8 @@ public:
         news_(news) {}
 
   // Creates the threads of `program`, which must stay until they are dismissed.
-  [[nodiscard]] bool start(const LoadedProgram& program, Sampler& sampler, ProgramThreads& threads);
+  [[nodiscard]] bool start(const LoadedProgram& program, Sampler& sampler, Memory& memory,
+                           ProgramThreads& threads);
   // All threads of the program are there: sampling begins.
   void go();
 
@@ -75,7 +76,7 @@ private:
   const LoadedProgram* program_ = nullptr;
   Sampler* sampler_ = nullptr;
   kernel::Thread* feed_thread_ = nullptr;
-  std::array<Unit, kMaxSensors> units_{};
+  std::span<Unit> units_;
   FeedQueue feeds_;
 };
 

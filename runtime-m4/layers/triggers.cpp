@@ -19,15 +19,15 @@ std::uint32_t as_time(std::uint32_t time) {
 
 }  // namespace
 
-void Triggers::start(const vm::Image& image) {
+void Triggers::start(const vm::Image& image, Memory& memory) {
   image_ = &image;
-  workspace_.judgements.fill(Judgement{});
-  workspace_.due.fill(kNever);
-  phases_.fill(State{});
-  until_.fill(0);
-  eventful_.clear();
-  active_.clear();
-  sleeping_.clear();
+  std::ranges::fill(workspace_.due, kNever);
+  phases_ = memory.take_zero<policy::Part::phases, State>();
+  until_ = memory.take<policy::Part::until, std::uint32_t>();
+  const auto words = memory.take<policy::Part::trigger_sets, RuleSet::Word>();
+  eventful_.start(part_of(words, policy::kTriggerSets, 0));
+  active_.start(part_of(words, policy::kTriggerSets, 1));
+  sleeping_.start(part_of(words, policy::kTriggerSets, 2));
   first_to_wake_ = kNobody;
   next_wake_ = kNever;
 }

@@ -29,7 +29,7 @@ class Triggers {
 public:
   explicit Triggers(Workspace& workspace) : workspace_(workspace) {}
 
-  void start(const vm::Image& image);
+  void start(const vm::Image& image, Memory& memory);
 
   // --- for the behaviour of the rule ---
   void judge(unsigned rule, vm::Value condition, bool event);
@@ -94,7 +94,7 @@ private:
     Phase phase : 2 = Phase::free;
     bool told : 1 = false;  // WHILE: that it wants to run and does not
   };
-  static constexpr unsigned kNobody = kMaxRules;
+  static constexpr std::uint16_t kNobody = 0xFFFF;
 
   bool is_while(unsigned rule) const { return image_->rules[rule].kind == vm::RuleKind::while_; }
   const vm::Modifiers& modifiers(unsigned rule) const;
@@ -109,8 +109,8 @@ private:
 
   Workspace& workspace_;
   const vm::Image* image_ = nullptr;
-  std::array<State, kMaxRules> phases_{};
-  std::array<std::uint32_t, kMaxRules> until_{};  // end of a phase other than `free`
+  std::span<State> phases_;
+  std::span<std::uint32_t> until_;  // end of a phase other than `free`
   RuleSet eventful_;
   RuleSet active_;
   RuleSet sleeping_;  // those that are due at some time

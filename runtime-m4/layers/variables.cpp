@@ -35,8 +35,10 @@ std::int64_t faded(std::int64_t distance, std::uint32_t fade, std::uint32_t tick
   return distance < 0 ? -rest : rest;
 }
 
-void Variables::start(const vm::Image& image, std::span<vm::Value> values) {
+void Variables::start(const vm::Image& image, std::span<vm::Value> values, Memory& memory) {
   image_ = &image;
+  sums_ = memory.take<policy::Part::sums, vm::Value>();
+  fades_ = memory.take_zero<policy::Part::fades, Fade>();
   entered_ = 0;
   staged_ = 0;
   set_ = 0;

@@ -11,11 +11,11 @@
 // the part depends on how many whole ticks ago that was, and on nothing else.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
 #include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/memory.hpp"
 #include "runtime-m4/layers/messages.hpp"
 #include "vm/interpreter.hpp"
 
@@ -32,7 +32,7 @@ public:
   explicit Variables(kernel::Kernel& kernel) : kernel_(kernel) {}
 
   // Writes the initial values into `values`, one for each variable of `image`.
-  void start(const vm::Image& image, std::span<vm::Value> values);
+  void start(const vm::Image& image, std::span<vm::Value> values, Memory& memory);
 
   // Stages what a response has written into the frame of `behavior`, which was latched from
   // `before`: in a step from the most important response down  [step thread]
@@ -74,8 +74,8 @@ private:
   VariableMask fading_ = 0;
   VariableMask staged_ = 0;
   VariableMask set_ = 0;  // of these, the ones of which the sum ends with a SET
-  std::array<vm::Value, kMaxVariables> sums_{};
-  std::array<Fade, kMaxFading> fades_{};  // of the variables that fade, in their order
+  std::span<vm::Value> sums_;
+  std::span<Fade> fades_;  // of the variables that fade, in their order
 };
 
 // What is left of `distance` after `ticks` times kFadeTickMs, of which each leaves fade / 2^31:

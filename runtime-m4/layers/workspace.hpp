@@ -2,17 +2,14 @@
 // their stacks this is the only memory that they may write. Others read what stands here as they would
 // read what comes from outside: numbers, of which none is an index or an address until it is
 // checked.
-//
-// Its beginning may be closed again: there stands what the SAFETY rules remember (frames.hpp).
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-#include "runtime-m4/limits.hpp"
+#include "runtime-m4/layers/memory.hpp"
 #include "vm/interpreter.hpp"
 
 namespace robosync::layers {
@@ -41,27 +38,18 @@ struct Result {
   bool there = false;       // there is a result, since the behaviour was released
 };
 
-struct alignas(kWorkspaceAlignment) Workspace {
-  // Cells of the frames and states of the timers; the last words make up for what closing the
-  // beginning wastes.
-  static constexpr std::size_t kMemoryWords =
-      kMaxFrameCells + kMaxTimerWords + kWorkspaceUnit / sizeof(std::uint32_t) - 1;
+// Where it stands, for a program.
+struct Workspace {
+  void start(Memory& memory);
 
-  // What they may write when the first `words` are closed, which are whole units.
-  std::span<std::byte> writable_from(std::size_t words) {
-    return std::as_writable_bytes(std::span(this, 1)).subspan(words * sizeof(std::uint32_t));
-  }
-
-  std::array<std::uint32_t, kMemoryWords> memory{};
-  std::array<std::uint32_t, kMaxRules>
-      due{};  // when it is to be evaluated again; of EVERY, the end
-  std::array<Judgement, kMaxRules> judgements{};
-  // One response runs at a time, so one output is enough.
-  std::array<vm::Word, vm::kMaxResponseOutput> output{};
-  Result result;
+  std::span<std::uint32_t> cells;        // the behaviours' frames, one behind the other
+  std::span<std::uint32_t> timer_words;  // states of their timers
+  std::span<std::uint32_t> due;          // when it is to be evaluated again; of EVERY, the end
+  std::span<Judgement> judgements;
+  std::span<vm::Word> output;  // one response runs at a time, so one is enough
+  Result* result = nullptr;
   // The behaviour that was released has done what it was released for.
-  std::atomic<bool> finished = false;
+  std::atomic<bool>* finished = nullptr;
 };
-static_assert(sizeof(Workspace) % kWorkspaceUnit == 0);
 
 }  // namespace robosync::layers

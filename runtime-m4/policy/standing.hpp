@@ -7,6 +7,9 @@
 
 namespace robosync::policy {
 
+// Threads that the kernel ranks at most: one bit each in its ready set.
+inline constexpr unsigned kMaxThreads = 128;
+
 // The paper's four categories, and the two kinds of threads around them. Inside one behaviour's
 // priority, a later category of the four ranks higher: a decision reaches the actuator before new
 // data is gathered. `safety` ranks above everything, `system` (the link) below everything.

@@ -5,6 +5,7 @@
 //   kStackAlignment         How stacks should be aligned, so that nothing of them is wasted.
 //   kTimeFlows              Does time pass while threads run? On the host it stands still until all
 //                           wait.
+//   kArenaScale             How many times the bytes of the Cortex-M4 what a program needs may take here.
 //   kMinStack               Least bytes of stack a thread must have.
 //   kUnprivilegedStackAlignment, kMaxUnprivilegedStack   What the stack of a thread without privileges must be.
 //   struct Areas            What threads without privileges may use besides their stacks: what is

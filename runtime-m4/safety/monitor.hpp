@@ -18,7 +18,6 @@
 
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
-#include "runtime-m4/limits.hpp"
 #include "runtime-m4/safety/period.hpp"
 
 namespace robosync::safety {
@@ -63,6 +62,8 @@ public:
   std::uint32_t worst_lateness() const { return late_.load(std::memory_order_relaxed); }  // us
 
 private:
+  static constexpr std::size_t kStack = 896;
+
   void run();
   kernel::Time next_after(kernel::Time due, kernel::Time now) const;
   void check(kernel::Duration late);
@@ -75,7 +76,7 @@ private:
   std::uint32_t last_progress_ = 0;
   unsigned without_progress_ = 0;  // checks in a row
   kernel::Thread thread_;
-  alignas(port::kStackAlignment) std::array<std::byte, layers::kSafetyStack> stack_{};
+  alignas(port::kStackAlignment) std::array<std::byte, kStack> stack_{};
 };
 
 }  // namespace robosync::safety

@@ -1,5 +1,5 @@
-// See safety_rules.hpp. May rely on the verifier: a resume rule follows its safety rule, bodies are
-// straight-line code, and on fits() for the room for their output.
+// See safety_rules.hpp. May rely on the verifier: a resume rule follows its safety rule, and bodies
+// are straight-line code.
 #include "runtime-m4/safety/safety_rules.hpp"
 
 #include <algorithm>
@@ -21,9 +21,10 @@ ActuatorMask actuators_of(const vm::Image& image, std::uint8_t target) {
 
 }  // namespace
 
-void SafetyRules::start(const layers::LoadedProgram& program) {
+void SafetyRules::start(const layers::LoadedProgram& program, layers::Memory& memory) {
   program_ = &program;
-  tripped_.clear();
+  tripped_.start(memory.take<policy::Part::tripped, layers::RuleSet::Word>());
+  output_ = memory.take<policy::Part::safety_output, vm::Word>();
   layers_.alarm.watch(program.image.has_safety() ? program.inputs[vm::kSafetyBehavior] : 0);
   if (program.image.has_safety()) machine_ = layers_.frames.machine(program, vm::kSafetyBehavior);
 }

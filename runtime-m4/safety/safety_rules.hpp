@@ -9,8 +9,8 @@
 // halted take no command meanwhile, nor while another tripped rule halts them.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/alarm.hpp"
@@ -43,7 +43,7 @@ public:
       : kernel_(kernel), layers_(neighbours), step_thread_(step_thread), acted_(acted) {}
 
   // Nothing is tripped. `program` must stay until the next start().
-  void start(const layers::LoadedProgram& program);
+  void start(const layers::LoadedProgram& program, layers::Memory& memory);
 
   // Evaluates all rules. Returns when a time word of theirs is due.  [safety thread]
   kernel::Time look();
@@ -66,7 +66,7 @@ private:
   const layers::LoadedProgram* program_ = nullptr;
   layers::RuleSet tripped_;
   vm::Machine machine_;
-  std::array<vm::Word, layers::kMaxSafetyOutput> output_{};
+  std::span<vm::Word> output_;
 };
 
 }  // namespace robosync::safety

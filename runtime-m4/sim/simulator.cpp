@@ -12,6 +12,7 @@
 
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/runtime.hpp"
+#include "runtime-m4/sim/arena.hpp"
 #include "runtime-m4/sim/host_board.hpp"
 
 namespace robosync::sim {
@@ -55,16 +56,17 @@ constexpr std::uint64_t next_tick(std::uint64_t time_us) {
 
 }  // namespace
 
-// What the board's MPU wants aligned is aligned here as well.
-// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct Simulator::Impl {
-  explicit Impl(Sink sink)
-      : events(std::move(sink)), runtime(kernel, board, events, workspace), held(kernel) {
+  Impl(Sink sink, const policy::BoardMemory& memory)
+      : events(std::move(sink)),
+        arena(memory),
+        runtime(kernel, board, events, arena.bytes(), arena.board()),
+        held(kernel) {
     runtime.measure_with(held);
   }
 
   void load(std::span<const std::byte> bytes) {
-    image.resize((bytes.size() + 3) / 4);
+    std::vector<std::uint32_t> image((bytes.size() + 3) / 4);  // aligned as the VM wants it
     if (!bytes.empty()) std::memcpy(image.data(), bytes.data(), bytes.size());
     runtime.start();
     verdict = runtime.activate(std::as_bytes(std::span(image)).first(bytes.size()));
@@ -76,10 +78,9 @@ struct Simulator::Impl {
   kernel::Kernel kernel;
   HostBoard board;
   Forwarder events;
-  layers::Workspace workspace;
+  Arena arena;
   Runtime runtime;
   HeldValues held;
-  std::vector<std::uint32_t> image;  // aligned as the VM wants it
   vm::Verdict verdict;
   // Feeds not yet handed over: tick, then channel.
   std::map<std::uint64_t, std::map<std::uint8_t, vm::Value>> waiting;
@@ -91,10 +92,9 @@ bool Simulator::Impl::is_fed(std::uint8_t channel) const {
 }
 
 // Hands over whole ticks, as many as the runtime's queue has place for. Returns until when to run
-// before it can take more. One tick always fits: a program has at most kMaxFeeds channels.
+// before it can take more. One tick always fits: there is a place for each channel.
 std::uint64_t Simulator::Impl::hand_over(std::uint64_t until_us) {
-  static_assert(layers::kMaxChannels <= layers::kMaxFeeds);
-  std::size_t places = layers::kMaxFeeds;
+  std::size_t places = runtime.needs().counts[policy::Count::feeds];
   std::uint64_t handed = until_us;
   while (!waiting.empty() && waiting.begin()->first <= until_us) {
     const auto& [tick, feeds] = *waiting.begin();
@@ -108,10 +108,13 @@ std::uint64_t Simulator::Impl::hand_over(std::uint64_t until_us) {
   return until_us;
 }
 
-Simulator::Simulator(std::span<const std::byte> image, Sink sink)
-    : impl_(std::make_unique<Impl>(std::move(sink))) {
+Simulator::Simulator(std::span<const std::byte> image, Sink sink, const policy::BoardMemory& memory)
+    : impl_(std::make_unique<Impl>(std::move(sink), memory)) {
   impl_->load(image);
 }
+
+Simulator::Simulator(std::span<const std::byte> image, Sink sink)
+    : Simulator(image, std::move(sink), boards::kMemory) {}
 
 Simulator::~Simulator() = default;
 

@@ -10,6 +10,7 @@
 
 #include "link/events.hpp"
 #include "link/messages.hpp"
+#include "runtime-m4/policy/memory.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::sim {
@@ -18,7 +19,9 @@ class Simulator {
 public:
   using Sink = std::function<void(const link::Event&)>;
 
-  // Verifies and activates `image`; the program's clock stands at 0.
+  // Verifies and activates `image` on a board with `memory`, or else on the one that the preset
+  // names; the program's clock stands at 0.
+  Simulator(std::span<const std::byte> image, Sink sink, const policy::BoardMemory& memory);
   Simulator(std::span<const std::byte> image, Sink sink);
   ~Simulator();
 

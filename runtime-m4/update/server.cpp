@@ -118,6 +118,8 @@ void Server::handle(const link::Frame& frame) {
       return;
     case MessageType::trace_on:
       return trace_on(frame);
+    case MessageType::clear:
+      return clear(frame);
     case MessageType::read_image:
       return read_image(frame);
     default:
@@ -133,9 +135,12 @@ void Server::hello(std::uint8_t sequence) {
   answer.opcode_set = vm::opcode_set_id();
   answer.board = padded(board_.name());
   answer.firmware = padded(ROBOSYNC_VERSION);
-  answer.slot_bytes = std::min<std::uint32_t>(layers::kSlotBytes, Runtime::limits().image_bytes);
-  answer.step_budget = Runtime::limits().step_cost;
-  answer.drivers = Runtime::limits().drivers;
+  const policy::BoardMemory& memory = runtime_.board_memory();
+  answer.arena_begin = memory.arena_begin;
+  answer.arena_bytes = memory.arena_bytes;
+  answer.arena_used = runtime_.needs().total;
+  answer.step_budget = runtime_.limits().step_cost;
+  answer.drivers = runtime_.limits().drivers;
   answer.receive_window = kReceiveWindow;
   if (runtime_.running()) {
     const vm::ImageHeader& header = *runtime_.image().header;
@@ -154,7 +159,7 @@ void Server::begin(const link::Frame& frame) {
     return;
   }
   have_result_ = false;
-  const link::TransferStatus answer = receiver_.begin(request, free_slot());
+  const link::TransferStatus answer = receiver_.begin(request, runtime_.room());
   send(MessageType::transfer_status, frame.sequence, link::wire_bytes(answer));
 }
 
@@ -193,7 +198,6 @@ link::ActivateResult Server::activate_received() {
   }
   // That the stored CRC is the one of the bytes is the verifier's part.
   if (stored_crc == receiver_.crc32()) verdict = runtime_.activate(bytes);
-  if (verdict.ok()) running_slot_ = static_cast<std::uint8_t>(1 - running_slot_);
   return {.running = static_cast<std::uint8_t>(verdict.ok()),
           .refusal = static_cast<std::uint8_t>(verdict.refusal),
           .section = static_cast<std::uint8_t>(verdict.section),
@@ -219,6 +223,19 @@ void Server::status(std::uint8_t sequence) {
   answer.bad_frames = decoder_.bad_frames() + bad_requests_;
   answer.lost_events = ring_.lost();
   send(MessageType::status, sequence, link::wire_bytes(answer));
+}
+
+void Server::clear(const link::Frame& frame) {
+  link::Clear request{};
+  if (!link::read_payload(frame.payload, request)) {
+    ++bad_requests_;
+    return;
+  }
+  if (runtime_.running() && runtime_.image().header->crc32 == request.image_crc) {
+    runtime_.clear();
+    receiver_.reset();  // the room is another
+  }
+  status(frame.sequence);
 }
 
 void Server::read_image(const link::Frame& frame) {

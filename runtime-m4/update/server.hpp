@@ -2,7 +2,7 @@
 // trace events, log lines and fault records. One thread of category `system`, the lowest rank, so
 // that whatever it does, the running program and the safety thread come first.
 //
-// A program is received into the slot that is not in use and switched to only when it is whole,
+// A program is received into memory that is not in use and switched to only when it is whole,
 // verified and accepted by the runtime; until then, and if anything fails, the old one runs on.
 // The server never waits for the line: a reply stays until it is written, and further requests stay
 // in the UART's receive buffer meanwhile; events that find the ring full are dropped and counted.
@@ -18,7 +18,6 @@
 #include "link/receiver.hpp"
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
-#include "runtime-m4/limits.hpp"
 #include "runtime-m4/runtime.hpp"
 #include "runtime-m4/update/line_writer.hpp"
 #include "runtime-m4/update/trace_ring.hpp"
@@ -29,23 +28,11 @@ namespace robosync::update {
 // board verifies an image it does not read the line.
 inline constexpr std::uint16_t kReceiveWindow = 2 * link::kMaxEncodedFrame;
 
-// One for the running program, one to receive into.
-struct Slots {
-  using Slot = std::array<std::byte, layers::kSlotBytes>;
-  alignas(8) std::array<Slot, 2> slots{};
-};
-
 class Server {
 public:
   // `ring` is the sink that `runtime` was made with.
-  Server(kernel::Kernel& kernel, boards::Board& board, Runtime& runtime, TraceRing& ring,
-         Slots& slots)
-      : kernel_(kernel),
-        board_(board),
-        runtime_(runtime),
-        ring_(ring),
-        slots_(slots.slots),
-        writer_(board) {}
+  Server(kernel::Kernel& kernel, boards::Board& board, Runtime& runtime, TraceRing& ring)
+      : kernel_(kernel), board_(board), runtime_(runtime), ring_(ring), writer_(board) {}
 
   // Creates the link thread and starts the line. Once, before Kernel::run(). False when the kernel has
   // no place.
@@ -60,6 +47,7 @@ private:
   static constexpr kernel::Events kLine = 1;
   static constexpr kernel::Events kNews = 2;
   static constexpr std::size_t kKeptFaults = 2;
+  static constexpr std::size_t kStack = 1664;  // it verifies and loads programs
 
   void run();
   bool work();  // one thing that is due; false when there is nothing, or the line does not take it
@@ -76,10 +64,10 @@ private:
   void feed(const link::Frame& frame);
   void status(std::uint8_t sequence);
   void read_image(const link::Frame& frame);
+  void clear(const link::Frame& frame);
   void trace_on(const link::Frame& frame);
 
   link::ActivateResult activate_received();
-  std::span<std::byte> free_slot() { return slots_[1 - running_slot_]; }
   std::span<const std::byte> running_image() const;
   void send(link::MessageType type, std::uint8_t sequence, std::span<const std::byte> payload) {
     writer_.send(type, sequence, payload);
@@ -89,7 +77,6 @@ private:
   boards::Board& board_;
   Runtime& runtime_;
   TraceRing& ring_;
-  std::array<Slots::Slot, 2>& slots_;
 
   link::FrameDecoder decoder_;
   LineWriter writer_;
@@ -100,7 +87,6 @@ private:
   std::uint8_t unasked_sequence_ = 0;  // of events, logs, faults
 
   link::Receiver receiver_;
-  std::uint8_t running_slot_ = 0;
   link::ActivateResult last_result_{};  // repeated when the host asks again
   bool have_result_ = false;
 
@@ -113,7 +99,7 @@ private:
   std::uint8_t faults_sent_ = 0;
 
   kernel::Thread thread_;
-  alignas(port::kStackAlignment) std::array<std::byte, layers::kLinkStack> stack_{};
+  alignas(port::kStackAlignment) std::array<std::byte, kStack> stack_{};
 };
 
 }  // namespace robosync::update

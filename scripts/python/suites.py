@@ -117,7 +117,7 @@ def starts_with(source, folders):
 
 def product_batches(preset):
     """What the preset compiles of the product, sources with the same flags together: [(flags, sources)], the largest
-    first. What is compiled more than once, for the large profile too, is there once."""
+    first. What is compiled more than once is there once."""
     product = [folder for folder in OURS if folder not in ("tests", "bench")]
     batches, seen = [], set()
     for command in json.loads((ROOT / "build" / preset / "compile_commands.json").read_text()):

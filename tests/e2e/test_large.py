@@ -1,91 +1,109 @@
-"""The large profile on the board: 64 behaviours, 1,000 rules and 64 KB arrive over the link and run."""
+"""Large programs on the one firmware: 32 servos, 40 behaviours, 1,000 rules arrive over the link and react,
+on the board as on the host; and what is too large is refused with the numbers."""
 
 import json
-import subprocess
+import re
 import unittest
 
 import rsc
-from board import ROOT
 from support import LineReader, RobotTest, host_trace
 
-FIRMWARE = ROOT / "build/m4/robosync-large.elf"
-TOOL = ROOT / "build/host/rsc-large"
-RULES, BEHAVIORS, CHANNELS = 1000, 64, 32
 FIRST_VALUE = 10  # 0 means nothing to any rule
+CHANNELS = 8
 
 
-def channel_of(rule):
-    return f"s{rule % CHANNELS // 8}", f"C{rule % CHANNELS}"
+def servos(count):
+    return [{"name": f"arm{i}", "type": "PWM", "pin": str(i % 32), "device": "servo", "range": ["0deg", "120deg"]}
+            for i in range(count)]
 
 
-def value_of(rule):
-    return FIRST_VALUE + rule // CHANNELS
+def config(actuators):
+    return {"sensors": [{"name": "near", "type": "VIRTUAL",
+                         "channels": {f"c{i}": {"range": [0, 1000]} for i in range(CHANNELS)}}],
+            "actuators": servos(actuators), "lints": {"W0209": "allow"}}
 
 
-def program():
-    """Rule r fires when its channel, one of 32, has the value that is its own."""
-    text = ""
-    for b in range(BEHAVIORS):
-        text += f"BEHAVIOR b{b} PRIORITY {90 - b}\n"
-        for r in range(RULES * b // BEHAVIORS, RULES * (b + 1) // BEHAVIORS):
-            sensor, channel = channel_of(r)
-            text += (f"  WHEN {sensor} {channel} = {value_of(r)} DO\n"
-                     f'    LOG "{r} is what fired"\n  END\n')
-        text += "END\n"
-    return text
+def program(rules, behaviors, actuators):
+    """Rule r moves one arm when its channel has the value that is its own."""
+    lines = []
+    for b in range(behaviors):
+        lines.append(f"BEHAVIOR b{b} PRIORITY {90 - b}")
+        for r in range(rules * b // behaviors, rules * (b + 1) // behaviors):
+            lines.append(f"  WHEN near c{r % CHANNELS} = {FIRST_VALUE + r // CHANNELS} DO\n"
+                         f"    MOVE arm{r % actuators} TO {r % 100}deg\n  END")
+        lines.append("END")
+    return "\n".join(lines) + "\n"
 
 
-def config():
-    sensors = [{"name": f"s{s}", "type": "VIRTUAL",
-                "channels": {f"C{c}": {"range": [0, 1000]} for c in range(8 * s, 8 * s + 8)}}
-               for s in range(CHANNELS // 8)]
-    return {"sensors": sensors,
-            "actuators": [{"name": "a", "type": "VIRTUAL", "device": "virtual_actuator"}]}
+def reading(rule):
+    return f"near.c{rule % CHANNELS}", FIRST_VALUE + rule // CHANNELS
 
 
 class Large(RobotTest):
-    elf = FIRMWARE
-
-    def compile_large(self):
+    def write_large(self, rules, behaviors, actuators):
         source, robot = self.folder / "large.rsl", self.folder / "robot.json"
-        source.write_text(program())
-        robot.write_text(json.dumps(config()))
-        return self.compile(source, robot)
+        source.write_text(program(rules, behaviors, actuators))
+        robot.write_text(json.dumps(config(actuators)))
+        return source, robot
 
-    def test_one_reading_fires_one_rule(self):
-        image = self.compile_large()
-        self.assertGreater(image.stat().st_size, 60_000)
-        self.upload(image)
-        everything_known = [f"{s}.{c}=0" for s, c in map(channel_of, range(CHANNELS))]
-        rsc.run("feed", *everything_known, "--port", self.board.port)
-        for rule in (0, 255, 256, 517, 999):
+    def compile_large(self, rules, behaviors, actuators):
+        source, robot = self.write_large(rules, behaviors, actuators)
+        image = self.folder / "large.rsb"
+        rsc.run("compile", source, "--config", robot, "-o", image, "--strip")
+        return image
+
+    def fired_on_the_board(self, rule):
+        channel, value = reading(rule)
+        reader = LineReader("feed", f"{channel}={value}", "--port", self.board.port, "--watch", "20s",
+                            "--format", "json")
+        reader.wait_for(lambda lines: any('"command"' in line for line in lines), 20)
+        errors = reader.stop()
+        events = [json.loads(line) for line in reader.lines]
+        return [e["rule"] for e in events if e["event"] == "fire"], errors
+
+    def check_reacts(self, rules, behaviors, actuators, some):
+        self.upload(self.compile_large(rules, behaviors, actuators))
+        rsc.run("feed", *(f"near.c{c}=0" for c in range(CHANNELS)), "--port", self.board.port)
+        for rule in some:
             with self.subTest(rule=rule):
-                sensor, channel = channel_of(rule)
-                reader = LineReader("feed", f"{sensor}.{channel}={value_of(rule)}", "--port",
-                                    self.board.port, "--watch", "20s", "--format", "json")
-                reader.wait_for(lambda lines: any('"finished"' in line for line in lines), 20)
-                errors = reader.stop()
-                fired = [json.loads(line)["rule"] for line in reader.lines if '"event":"fire"' in line]
+                fired, errors = self.fired_on_the_board(rule)
                 self.assertEqual(len(fired), 1, errors)
-                text = "\n".join(reader.lines)
-                self.assertIn(f"{rule} is what fired", text)
         self.assertEqual(self.status()["faults"], 0)
+        memory = rsc.info(self.board.port)["board"]["memory"]
+        self.assertEqual(sum(memory["by"].values()), memory["used"])  # the host's count, and the board's
         for thread in rsc.info(self.board.port)["threads"]:
             self.assertLess(thread["stack_used"], thread["stack_bytes"], thread)
 
-    def test_the_host_runs_it_with_the_same_limits(self):
-        image = self.compile_large()
+    def test_32_servos_and_40_behaviors(self):
+        self.check_reacts(40, 40, 32, (0, 17, 39))
+
+    def test_1000_rules_in_50_behaviors(self):
+        self.check_reacts(1000, 50, 2, (0, 255, 256, 517, 999))
+
+    def test_the_host_runs_it_as_well(self):
+        image = self.compile_large(1000, 50, 2)
         scenario = self.folder / "scenario.json"
-        sensor, channel = channel_of(517)
+        channel, value = reading(517)
+        sensor, channel = channel.split(".")
         scenario.write_text(json.dumps({"stimuli": [
-            {"at": "10ms", "sensor": sensor, "channel": channel, "value": f"{value_of(517)}"}]}))
-        arguments = ["run", image, "--scenario", scenario, "--duration", "100ms", "--format", "json"]
-        lines = subprocess.run([TOOL, *arguments], check=True, text=True, stdout=subprocess.PIPE,
-                               timeout=rsc.TIMEOUT).stdout
+            {"at": "10ms", "sensor": sensor, "channel": channel, "value": f"{value}"}]}))
+        lines = "\n".join(host_trace(image, scenario, 100))
         self.assertEqual(lines.count('"event":"fire"'), 1)
-        self.assertIn("517 is what fired", lines)
-        with self.assertRaises(rsc.RscError):  # the standard profile is for 40 rules
-            host_trace(image, scenario, 100)
+
+    def test_what_is_too_large_is_refused_with_both_numbers(self):
+        """By rsc before it is sent, and of an image, by the simulator and for the board alike."""
+        source, robot = self.write_large(1000, 60, 32)
+        image = self.compile_large(1000, 60, 32)
+        port = ["--port", self.board.port]
+        told = set()
+        for arguments in (["check", source, "--config", robot], ["upload", source, "--config", robot, *port],
+                          ["run", image], ["upload", image, *port]):
+            with self.subTest(arguments=arguments[:2]):
+                done = rsc.call(*arguments)
+                self.assertEqual(done.returncode, 1)
+                told |= set(re.findall(r"the program needs \d+ bytes of memory, the board has \d+ for programs; "
+                                       r"most of it is for image", done.stderr))
+        self.assertEqual(len(told), 1, told)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime-m4/policy/memory.hpp"
 #include "vm/disassembler.hpp"
 
 namespace robosync::fuzz {
@@ -114,7 +115,26 @@ void Campaign::run(Entry& entry) {
   for (std::size_t i = 0; i < kOpcodeCount; ++i)
     totals_.opcodes[i] += seen[i] ? 1 : 0;
   if (random_.one_in(64)) read_names();
+  lay_out();
   keep();
+}
+
+// What it needs of a board's memory leaves nothing out, keeps apart what must be, and is refused by a
+// board that has less.
+void Campaign::lay_out() {
+  policy::BoardMemory board{.arena_begin = 0x2000'0000U + 0x4000U * random_.below(8),
+                            .arena_bytes = 0x400U << random_.below(12),
+                            .step_budget = 0};
+  const policy::Needs needs = policy::needs_of(accepted_, board);
+  std::uint64_t parts = needs.image;
+  for (std::size_t p = 0; p < policy::kParts.size(); ++p)
+    parts += std::uint64_t{policy::kParts[p].bytes} *
+             policy::count_of(static_cast<policy::Part>(p), needs.counts);
+  const std::uint32_t written = needs.writable_begin + needs.writable;
+  if (needs.total < parts || needs.image < accepted_.header->total_length ||
+      needs.open + needs.image > needs.writable_begin || written + needs.closed > needs.total)
+    engine_.fail("it needs more memory than is counted");
+  if (!needs.fit(board)) ++totals_.verdicts[static_cast<std::size_t>(Refusal::no_room)];
 }
 
 // What a person is shown of an accepted image is inside of it, too.

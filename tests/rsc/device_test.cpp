@@ -33,7 +33,8 @@ namespace {
 class Bridge {
 public:
   // `accepting`: `file` is a listening socket; else the line itself.
-  Bridge(int file, bool accepting) : file_(file), accepting_(accepting) {
+  Bridge(int file, bool accepting, const policy::BoardMemory& memory = boards::kMemory)
+      : file_(file), accepting_(accepting), memory_(memory) {
     thread_ = std::thread([this] { run(); });
   }
   ~Bridge() {
@@ -46,7 +47,7 @@ public:
 
 private:
   void run() {
-    test::Robot robot;
+    test::Robot robot(memory_);
     int line = accepting_ ? -1 : file_;
     const auto start = std::chrono::steady_clock::now();
     while (!stop_) {
@@ -76,6 +77,7 @@ private:
 
   int file_;
   bool accepting_;
+  policy::BoardMemory memory_;
   std::atomic<bool> stop_ = false;
   std::thread thread_;
 };
@@ -91,8 +93,12 @@ int listen_at(const std::string& path) {
 }
 
 struct Device : RobotFolder {
+  explicit Device(std::uint32_t arena_bytes = boards::kMemory.arena_bytes)
+      : bridge(listen_at(path("line")), true,
+               {boards::kMemory.arena_begin, arena_bytes, boards::kMemory.step_budget}) {}
+
   std::string port = "unix:" + path("line");
-  Bridge bridge{listen_at(path("line")), true};
+  Bridge bridge;
 
   Outcome run(std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(), {"--port", port});
@@ -147,7 +153,7 @@ TEST_CASE("upload, info, feed and monitor against a running robot") {
 }
 
 TEST_CASE("a program this board cannot run is refused before it is sent, and the old one goes on") {
-  const Device device;
+  const Device device(12 * 1024);  // less than the board that robot.json is for
   REQUIRE(device.run({"upload", device.program}).exit == 0);
   std::string many = test::kProgram;
   for (int i = 0; i < 20; ++i) {
@@ -159,9 +165,40 @@ TEST_CASE("a program this board cannot run is refused before it is sent, and the
   const Outcome outcome = device.run({"upload", device.path("many.rsl")});
   CAPTURE(outcome.err);
   CHECK(outcome.exit == 1);
-  CHECK_THAT(outcome.err, Contains("the board refused the program") && Contains("goes on"));
+  CHECK_THAT(outcome.err, Contains("cannot run this program") && Contains("the program needs ") &&
+                              Contains("the board has 12288 for programs"));
   const json info = json::parse(device.run({"info", "--format", "json"}).out);
   CHECK(info.at("status").at("activations") == 1);
+}
+
+TEST_CASE("a program for which there is no room beside the running one may replace it") {
+  const std::string tail = " is what it says to whoever reads what is in the log of it";
+  std::string talkative = std::string(test::kProgram) + "BEHAVIOR talks PRIORITY 1\n";
+  for (int i = 0; i < 30; ++i)
+    talkative += "WHEN touch LEVEL = " + std::to_string(i % 10) + " DO\n  LOG \"" +
+                 std::to_string(i) + tail + "\"\nEND\n";
+  talkative += "END\n";
+  const Device device(176 * 64);
+  const std::string file = device.write("talkative.rsl", talkative);
+  const Outcome first = device.run({"upload", file});
+  CAPTURE(first.err);
+  REQUIRE(first.exit == 0);
+  const Outcome beside = device.run({"upload", file});
+  CAPTURE(beside.err);
+  CHECK(beside.exit == 1);
+  CHECK_THAT(beside.err, Contains("bytes free, and the image has ") && Contains("--replace"));
+  CHECK(json::parse(device.run({"info", "--format", "json"}).out).at("status").at("activations") ==
+        1);
+  const Outcome instead = device.run({"upload", file, "--replace"});
+  CAPTURE(instead.err);
+  CHECK(instead.exit == 0);
+  const json info = json::parse(device.run({"info", "--format", "json"}).out);
+  CHECK(info.at("status").at("activations") == 2);
+  const json memory = info.at("board").at("memory");
+  std::uint32_t all = 0;
+  for (const auto& [whose, bytes] : memory.at("by").items())
+    all += bytes.get<std::uint32_t>();
+  CHECK(memory.at("used") == all);
 }
 
 TEST_CASE("a damaged image is not uploaded") {

@@ -14,7 +14,7 @@ struct RuntimePeer {
   static void concern_all(Runtime& runtime) {
     auto all = ~layers::BehaviorMask{0};
     if (runtime.image().has_safety()) all &= ~(layers::BehaviorMask{1} << vm::kSafetyBehavior);
-    runtime.processing_.untouched_ = all;
+    runtime.shared_.processing.untouched_ = all;
   }
 };
 

@@ -8,13 +8,13 @@
 
 namespace robosync::test {
 
-Rig::Rig() : EventSink(true), runtime(kernel, board, *this, workspace) {
+Rig::Rig(const policy::BoardMemory& memory)
+    : EventSink(true), arena(memory), runtime(kernel, board, *this, arena.bytes(), arena.board()) {
   REQUIRE(runtime.start());
 }
 
 vm::Verdict Rig::activate(const std::vector<std::byte>& bytes) {
-  slots_.push_back(bytes);
-  return runtime.activate(slots_.back());
+  return runtime.activate(bytes);
 }
 
 // With concerns_all in single milliseconds: between two steps there is the end of one, or an event.

@@ -14,6 +14,7 @@
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/runtime.hpp"
+#include "runtime-m4/sim/arena.hpp"
 
 namespace robosync::test {
 
@@ -60,9 +61,8 @@ public:
 
 class Rig final : private EventSink {
 public:
-  Rig();
+  explicit Rig(const policy::BoardMemory& memory = boards::kMemory);
 
-  // Keeps the image, as a slot would.
   vm::Verdict activate(const std::vector<std::byte>& bytes);
   void run(std::uint64_t until_ms);
   // Now, in units of the channel.
@@ -74,15 +74,13 @@ public:
 
   kernel::Kernel kernel;
   NotingBoard board;
-  layers::Workspace workspace;
+  sim::Arena arena;
   Runtime runtime;
   std::vector<std::string> lines;
   bool concerns_all = false;  // in every step (RuntimePeer)
 
 private:
   void emit(const link::Event& event) override;
-
-  std::deque<std::vector<std::byte>> slots_;
 };
 
 // The lines of `lines` with one of these events, "fire win command".

@@ -27,18 +27,17 @@ HOST_ONLY = ("runtime-m4/port/host/", "runtime-m4/sim/")
 # interface of the processor (port/port.hpp, and the headers of the processor that it brings) and the sources that
 # implement it by the kernel; the interface of the board (boards/board.hpp) and the boards.
 RUNTIME = {
-    "limits": set(),
     "policy": set(),
-    "port": set(),
+    "port": {"policy"},
     "boards": {"policy"},
-    "kernel": {"limits", "policy", "port"},
+    "kernel": {"policy", "port"},
     "port's sources": {"port", "kernel"},
     "drivers": {"policy", "boards", "kernel"},
-    "layers": {"limits", "policy", "boards", "kernel", "drivers"},
-    "safety": {"limits", "policy", "boards", "kernel", "layers"},
+    "layers": {"policy", "boards", "kernel", "drivers"},
+    "safety": {"policy", "boards", "kernel", "layers"},
     "runtime": {"boards", "kernel", "drivers", "layers", "safety"},
-    "update": {"limits", "boards", "kernel", "layers", "runtime"},
-    "sim": {"boards", "kernel", "layers", "runtime"},
+    "update": {"policy", "boards", "kernel", "layers", "runtime"},
+    "sim": {"policy", "boards", "kernel", "layers", "runtime"},
     "boards/common": {"port", "boards", "kernel", "layers", "runtime", "update"},
     "a board": {"port", "boards", "kernel", "boards/common"},
 }

@@ -4,7 +4,7 @@
 #include "analysis/report.hpp"
 #include "rsc/board.hpp"
 #include "rsc/timing.hpp"
-#include "runtime-m4/limits.hpp"
+#include "runtime-m4/boards/memory.hpp"
 #include "tests/timing/programs.hpp"
 
 using namespace robosync;
@@ -57,10 +57,10 @@ TEST_CASE("docs/timing.md: a program that costs too much, and its mend") {
   const Block block = block_after(page, "```rsl\n");
   const std::string text = page.substr(block.begin, block.end - block.begin);
   const tool::Program program = test::compile_with_docs_robot(text);
-  CHECK(tool::timing_of(program.image()).step.used > layers::kStepBudget);
-  expect_printed(
-      "rsc check --timing",
-      "rsc: robot.rsl: " + tool::too_costly_text(program.image(), layers::kStepBudget) + "\n");
+  CHECK(tool::timing_of(program.image()).step.used > boards::kMemory.step_budget);
+  expect_printed("rsc check --timing",
+                 "rsc: robot.rsl: " +
+                     tool::too_costly_text(program.image(), boards::kMemory.step_budget) + "\n");
 
   std::string mended = text;
   mended.insert(mended.find("    END"), "      WAIT 1ms\n");

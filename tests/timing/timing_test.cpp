@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "runtime-m4/limits.hpp"
+#include "runtime-m4/boards/memory.hpp"
 #include "tests/rsc/process.hpp"
 #include "tests/timing/programs.hpp"
 #include "vm/opcode.hpp"
@@ -62,7 +62,7 @@ TEST_CASE("the costs of the rules are those of their code, and their sum is the 
   const tool::Program program = test::compile_with_docs_robot(kThreeRules);
   const tool::Timing timing = tool::timing_of(program.image());
   CHECK(timing.step.used == program.image().header->step_cost);
-  CHECK(timing.step.limit == layers::kStepBudget);
+  CHECK(timing.step.limit == boards::kMemory.step_budget);
   REQUIRE(timing.behaviors.size() == 2);  // as in the source, not by priority
   CHECK(timing.behaviors[0].name == "first");
   CHECK(timing.behaviors[1].name == "second");

@@ -2,7 +2,6 @@
 #
 #   board_sources   the board's own sources, in boards/NAME/
 #   board_script    its linker script, which includes firmware.ld
-#   board_large     link options that give the large profile its memory; none: there is no such firmware
 #   board_machine   what QEMU calls the board (build/…/machine, for scripts and tests)
 include(boards/${ROBOSYNC_BOARD}/board.cmake)
 list(TRANSFORM board_sources PREPEND boards/${ROBOSYNC_BOARD}/)
@@ -16,15 +15,13 @@ add_library(robosync_board OBJECT
 set_source_files_properties(boards/common/costs.cpp PROPERTIES
   COMPILE_DEFINITIONS ROBOSYNC_BOARD_COSTS="runtime-m4/boards/${ROBOSYNC_BOARD}/costs.def")
 target_link_libraries(robosync_board PUBLIC robosync_runtime)
-robosync_variant(robosync_board large ROBOSYNC_LARGE)
 robosync_variant(robosync_board asserted ROBOSYNC_ASSERTIONS)
-target_link_libraries(robosync_board_large PUBLIC robosync_runtime_large)
 target_link_libraries(robosync_board_asserted PUBLIC robosync_runtime_asserted)
-foreach(board robosync_board robosync_board_large robosync_board_asserted)
-  target_link_options(${board} INTERFACE -L${board_common} -T${board_script})
+foreach(board robosync_board robosync_board_asserted)
+  target_link_options(${board} INTERFACE -L${board_common} -T${board_script}
+    -Wl,--defsym=arena_begin=${arena_begin},--defsym=arena_bytes=${arena_bytes})
   set_property(TARGET ${board} PROPERTY INTERFACE_LINK_DEPENDS ${board_script} ${board_common}/firmware.ld)
 endforeach()
-target_link_options(robosync_board_large INTERFACE ${board_large})
 
 # robosync_elf(TARGET NAME SOURCES…): an ELF for this board, build/…/NAME.elf. When the name of TARGET ends in that of a
 # variant, with the libraries of that one.
@@ -32,7 +29,7 @@ target_link_options(robosync_board_large INTERFACE ${board_large})
 # Linked as C, without the C++ library, and without a heap: newlib's malloc would need _sbrk, which
 # nobody defines, so code that allocates does not link.
 function(robosync_elf target name)
-  string(REGEX MATCH "_(large|asserted)$" variant ${target})
+  string(REGEX MATCH "_(asserted)$" variant ${target})
   add_executable(${target} ${ARGN})
   target_link_libraries(${target} PRIVATE robosync_board${variant} robosync_runtime${variant})
   target_link_options(${target} PRIVATE
@@ -43,6 +40,3 @@ function(robosync_elf target name)
 endfunction()
 
 robosync_elf(robosync_firmware robosync boards/common/main.cpp)
-if(board_large)
-  robosync_elf(robosync_firmware_large robosync-large boards/common/main.cpp)
-endif()

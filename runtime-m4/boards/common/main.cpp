@@ -1,6 +1,7 @@
 // The firmware of any board: kernel, board, runtime and link, joined and started.
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
+#include "runtime-m4/boards/memory.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 #include "runtime-m4/runtime.hpp"
@@ -9,24 +10,15 @@
 
 robosync::kernel::Kernel robosync_kernel;
 
+extern "C" std::byte robosync_arena[];  // where the linker script says
+
 namespace {
 
-// Constructed in this order. The linker script says where they stand, for the MPU.
-[[gnu::section(".bss.writable")]] robosync::layers::Workspace workspace;
+// Constructed in this order.
 robosync::update::TraceRing trace(robosync_kernel);
-[[gnu::section(".bss.readable.0")]] robosync::Runtime runtime(robosync_kernel, robosync_board,
-                                                              trace, workspace);
-[[gnu::section(".bss.readable.1")]] robosync::update::Slots slots;
-robosync::update::Server server(robosync_kernel, robosync_board, runtime, trace, slots);
-
-// Two numbers for the linker script, which knows where `runtime` stands. No code.
-[[gnu::used]] void tell_linker() {
-  constexpr robosync::Runtime::Layout kLayout = robosync::Runtime::layout();
-  asm(".global runtime_may_be_readable, runtime_readable\n"
-      ".set runtime_may_be_readable, %c0\n"
-      ".set runtime_readable, %c1" ::"i"(kLayout.may_be_readable),
-      "i"(kLayout.readable));
-}
+robosync::Runtime runtime(robosync_kernel, robosync_board, trace,
+                          {robosync_arena, ROBOSYNC_ARENA_BYTES}, robosync::boards::kMemory);
+robosync::update::Server server(robosync_kernel, robosync_board, runtime, trace);
 
 static_assert(robosync::boards::kReceiveBuffer >= robosync::update::kReceiveWindow);
 

@@ -1,6 +1,4 @@
 # Sources, linker script and memory of the board, and how QEMU calls it (boards/common/firmware.cmake).
 set(board_sources board.cpp uart.cpp i2c.cpp alarm.cpp vectors.cpp)
 set(board_script mps2_an386.ld)
-# The board has 4 MB of each; the large profile takes this much.
-set(board_large -Wl,--defsym=flash_bytes=64K,--defsym=ram_bytes=512K)
 set(board_machine mps2-an386)

@@ -5,8 +5,7 @@
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 
-[[gnu::section(".bss.low")]] std::array<volatile std::uint32_t, kVirtualPwmPins>
-    robosync_virtual_pwm{};
+std::array<volatile std::uint32_t, kVirtualPwmPins> robosync_virtual_pwm{};
 
 namespace robosync::boards::mps2 {
 

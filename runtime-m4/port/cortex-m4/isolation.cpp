@@ -18,7 +18,7 @@ std::uint32_t word_of(const void* address) {
 }
 
 // Under a Lock: the switch sets regions, too.
-void set(RegionNumber number, regions::Region region, std::uint32_t access) {
+void set(RegionNumber number, policy::regions::Region region, std::uint32_t access) {
   core::reg(core::kMpuRbar) = base_of(number, region.base);
   core::reg(core::kMpuRasr) = region.size_and_eighths == 0 ? 0 : access | region.size_and_eighths;
 }
@@ -26,10 +26,12 @@ void set(RegionNumber number, regions::Region region, std::uint32_t access) {
 }  // namespace
 
 void start_isolation() {
-  set(RegionNumber::code, {0, regions::size_field(kHalfGigabyteBits)}, core::kMpuCode);
-  set(RegionNumber::ram, {kRam, regions::size_field(kHalfGigabyteBits)}, core::kMpuPrivileged);
+  set(RegionNumber::code, {0, policy::regions::size_field(kHalfGigabyteBits)}, core::kMpuCode);
+  set(RegionNumber::ram, {kRam, policy::regions::size_field(kHalfGigabyteBits)},
+      core::kMpuPrivileged);
   set(RegionNumber::guard,
-      {word_of(robosync_kernel.idle().stack().data()) - kGuard, regions::size_field(kGuardBits)},
+      {word_of(robosync_kernel.idle().stack().data()) - kGuard,
+       policy::regions::size_field(kGuardBits)},
       core::kMpuClosed);
   core::reg(core::kMpuCtrl) = core::kMpuOn;
   asm volatile("dsb\n\tisb" ::: "memory");
@@ -38,9 +40,9 @@ void start_isolation() {
 void Machine::grant(const Areas& areas) {
   const std::uint32_t begin = word_of(areas.readable.data());
   set(RegionNumber::readable,
-      regions::cover(begin, begin + static_cast<std::uint32_t>(areas.readable.size())),
+      policy::regions::cover(begin, begin + static_cast<std::uint32_t>(areas.readable.size())),
       core::kMpuOthersRead);
-  const regions::Window window = regions::finest_window(
+  const policy::regions::Window window = policy::regions::finest_window(
       word_of(areas.writable.data()), static_cast<std::uint32_t>(areas.writable.size()));
   set(RegionNumber::writable, window.lower, core::kMpuAllWrite);
   set(RegionNumber::writable_upper, window.upper, core::kMpuAllWrite);

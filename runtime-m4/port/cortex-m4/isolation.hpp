@@ -14,8 +14,8 @@
 
 #include <cstdint>
 
+#include "runtime-m4/policy/regions.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
-#include "runtime-m4/port/cortex-m4/regions.hpp"
 
 namespace robosync::port {
 

@@ -53,7 +53,8 @@ std::uint32_t guard_below(std::span<const std::byte> stack) {
 // The window of a thread without privileges.
 void set_stack_window(Context& context, std::span<const std::byte> stack) {
   const auto bytes = static_cast<std::uint32_t>(stack.size());
-  const regions::Window window = regions::window(word_of(stack.data()), bytes, kStackWindowBits);
+  const policy::regions::Window window =
+      policy::regions::window(word_of(stack.data()), bytes, kStackWindowBits);
   context.region = base_of(RegionNumber::stack, window.lower.base);
   context.windows = window.lower.size_and_eighths | window.upper.size_and_eighths << 16;
 }
@@ -61,9 +62,9 @@ void set_stack_window(Context& context, std::span<const std::byte> stack) {
 }  // namespace
 
 bool Machine::can_run(const kernel::ThreadSpec& spec) {
-  return spec.privileged ||
-         regions::fits_window(word_of(spec.stack.data()),
-                              static_cast<std::uint32_t>(spec.stack.size()), kStackWindowBits);
+  return spec.privileged || policy::regions::fits_window(
+                                word_of(spec.stack.data()),
+                                static_cast<std::uint32_t>(spec.stack.size()), kStackWindowBits);
 }
 
 std::span<std::byte> Machine::usable(const kernel::ThreadSpec& spec) {

@@ -31,6 +31,7 @@ namespace robosync::port {
 // can use of it:
 inline constexpr std::size_t kGuard = 32;
 inline constexpr bool kTimeFlows = true;
+inline constexpr std::size_t kArenaScale = 1;
 inline constexpr std::size_t kStackAlignment = kGuard;  // any other alignment wastes bytes
 
 // The stack of a thread without privileges is all that it can write around there, so it needs no

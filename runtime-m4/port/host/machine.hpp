@@ -24,7 +24,8 @@ namespace robosync::port {
 
 inline constexpr bool kTimeFlows = false;
 inline constexpr std::size_t kStackAlignment = 8;
-inline constexpr std::size_t kMinStack = 0;  // a fiber has a host-sized stack of its own
+inline constexpr std::size_t kMinStack = 0;     // a fiber has a host-sized stack of its own
+inline constexpr std::size_t kArenaScale = 16;  // of pointers, and of what a fiber keeps
 inline constexpr std::size_t kUnprivilegedStackAlignment = 64;  // as on the board
 inline constexpr std::size_t kMaxUnprivilegedStack = 576;
 

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "compiler/config/boards.hpp"
 #include "compiler/config/fields.hpp"
 #include "compiler/config/units.hpp"
 #include "compiler/config/wiring.hpp"
@@ -179,4 +180,29 @@ TEST_CASE("the examples use only what the schema has") {
     for (const auto& actuator : robot.value("actuators", nlohmann::json::array()))
       check_keys(actuator, Object::actuator);
   }
+}
+
+TEST_CASE("the boards are read without a mistake, and robot.schema.json names them") {
+  std::set<std::string> names;
+  for (const BoardText& text : board_texts()) {
+    INFO(text.name);
+    Diagnostics diagnostics;
+    const Board board = read_board(text, diagnostics);
+    CHECK(diagnostics.all().empty());
+    CHECK(nlohmann::json::parse(text.json).at("name") == std::string(text.name));
+    CHECK(board.arena_bytes > 0);
+    CHECK(board.arena_bytes % 64 == 0);  // stacks stand at its end
+    CHECK(board.step_budget > 0);
+    names.emplace(text.name);
+  }
+  CHECK(names.contains(std::string(kDefaultBoard)));
+  const auto& known = schema().at("properties").at("board").at("enum");
+  CHECK(std::set<std::string>(known.begin(), known.end()) == names);
+  CHECK(default_board().name == kDefaultBoard);
+}
+
+TEST_CASE("mistakes in a board's profile are reported") {
+  Diagnostics diagnostics;
+  (void)read_board({"none", R"({"name": "none", "arena": {"begin": 0}, "flash": 1})"}, diagnostics);
+  CHECK(diagnostics.errors() == 3);  // no bytes, no step_budget, and what nobody knows
 }

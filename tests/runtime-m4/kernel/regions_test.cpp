@@ -1,10 +1,10 @@
-// Regions of the MPU (port/cortex-m4/regions.hpp) against what the ARMv7-M manual says they cover,
+// Regions of the MPU (policy/regions.hpp) against what the ARMv7-M manual says they cover,
 // byte by byte.
-#include "runtime-m4/port/cortex-m4/regions.hpp"
+#include "runtime-m4/policy/regions.hpp"
 
 #include <catch2/catch.hpp>
 
-using namespace robosync::port::regions;
+using namespace robosync::policy::regions;
 
 namespace {
 

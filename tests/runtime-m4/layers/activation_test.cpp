@@ -1,6 +1,9 @@
 // Programs that come, go and are refused; what goes on meanwhile.
+#include <cstring>
+
 #include <catch2/catch.hpp>
 
+#include "tests/runtime-m4/layers/draw.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 
@@ -118,11 +121,11 @@ TEST_CASE("feeds that cannot be are refused") {
   CHECK(rig.feed(1, 1, 99) == link::FeedError::in_the_past);
   CHECK(rig.feed(1, 1, 100) == link::FeedError::none);
   rig.run(101);
-  for (unsigned i = 0; i < layers::kMaxFeeds; ++i) {
+  for (unsigned i = 0; i < policy::kFeeds; ++i) {
     const link::FeedResult result =
         rig.runtime.feed({.at_us = (std::uint64_t{1} << 50) + i * 1000, .channel = 1, .value = 0});
     CHECK(result.error == link::FeedError::none);
-    CHECK(result.free_places == layers::kMaxFeeds - 1 - i);
+    CHECK(result.free_places == policy::kFeeds - 1 - i);
   }
   CHECK(rig.feed(1, 1) == link::FeedError::queue_full);
   rig.run(100'000);
@@ -144,23 +147,86 @@ TEST_CASE(
   CHECK(rig.only("input") == "0 #1 input X 8\n200 #2 input X 9\n");
 }
 
-TEST_CASE("a program that is too large for this firmware is refused with the reason") {
+TEST_CASE("a program that needs more memory than the board has is refused, and only then") {
+  const auto bytes = threshold_program(10);
+  vm::Image image;
+  REQUIRE(vm::view_image(bytes, image));
+  const std::uint32_t needs = policy::needs_of(image, boards::kMemory).total;
+  policy::BoardMemory memory = boards::kMemory;
+  memory.arena_bytes = policy::aligned(needs, policy::kStackUnit);
+  Rig large(memory);
+  CHECK(large.activate(bytes).ok());
+  memory.arena_bytes -= policy::kStackUnit;
+  Rig small(memory);
+  CHECK(small.activate(bytes).refusal == vm::Refusal::no_room);
+  CHECK(small.runtime.checked_needs().total == needs);
+  CHECK_FALSE(small.runtime.running());
+  CHECK(small.kernel.threads().size() == 1);
+}
+
+TEST_CASE("a program that is refused for its memory leaves the running one alone") {
+  const auto bytes = threshold_program(10);
+  const auto larger =
+      test::compile("WHEN near X > 10\nDO MOVE a\nMOVE b\nEND\n", test::kPlainRobot);
+  vm::Image image;
+  REQUIRE(vm::view_image(bytes, image));
+  policy::BoardMemory memory = boards::kMemory;
+  memory.arena_bytes =
+      policy::aligned(policy::needs_of(image, boards::kMemory).total, policy::kStackUnit);
+  REQUIRE(vm::view_image(larger, image));
+  REQUIRE_FALSE(policy::needs_of(image, memory).fit(memory));
+  Rig rig(memory);
+  REQUIRE(rig.activate(bytes).ok());
+  rig.feed(0, 8);
+  CHECK(rig.activate(larger).refusal == vm::Refusal::no_room);
+  rig.feed(0, 20, 100);
+  rig.run(500);
+  CHECK(rig.only("fire") == "100 #2 fire r0 DO\n");
+}
+
+// Counts, lengths and offsets, in the header and in records: whatever an image says, its needs are
+// counted from what is there, and what is laid out for them holds all of it.
+TEST_CASE("an image with changed numbers is refused, or runs in the memory it needs") {
+  test::Draw draw(11);
   Rig rig;
-  std::string actuators;
-  std::string commands;
-  for (int i = 0; i < 12; ++i) {
-    const std::string name = "m" + std::to_string(i);
-    actuators +=
-        std::string(i == 0 ? "" : ", ") + R"({"name": ")" + name + R"(", "type": "VIRTUAL"})";
-    commands += "MOVE " + name + "\n";
+  unsigned ran = 0;
+  const auto near = threshold_program(10);
+  const auto servo = servo_program("hold", 100);
+  for (unsigned round = 0; round < 3000; ++round) {
+    std::vector<std::byte> bytes = round % 2 == 0 ? near : servo;
+    const std::size_t end = draw.one_in(2) ? sizeof(vm::ImageHeader) : bytes.size();
+    for (unsigned changes = 1 + draw.below(2); changes > 0; --changes)
+      bytes[8 + draw.below(static_cast<unsigned>(end - 8))] =
+          static_cast<std::byte>(draw.below(256));
+    constexpr std::size_t kAt = offsetof(vm::ImageHeader, crc32);
+    constexpr std::size_t kCovered = offsetof(vm::ImageHeader, total_length);
+    const std::uint32_t crc = vm::crc32(std::span(bytes).subspan(kCovered));
+    std::memcpy(bytes.data() + kAt, &crc, sizeof crc);
+    if (!rig.activate(bytes).ok()) continue;
+    ++ran;
+    CHECK(rig.runtime.needs().total <= boards::kMemory.arena_bytes);
+    for (unsigned c = 0; c < rig.runtime.image().channels.size(); ++c)
+      (void)rig.feed(static_cast<std::uint8_t>(c), 20);
+    rig.run(rig.kernel.now() / 1000 + 20);
   }
-  const auto image = test::compile("WHEN near X > 1\nDO\n" + commands + "END\n", R"({
-    "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
-    "actuators": [)" + actuators + "]}");
-  const vm::Verdict verdict = rig.activate(image);
-  CHECK(verdict.refusal == vm::Refusal::too_many);
+  CHECK(ran > 100);
+}
+
+TEST_CASE("a program that is cleared is gone, and another may come") {
+  Rig rig;
+  REQUIRE(rig.activate(threshold_program(10)).ok());
+  rig.feed(0, 8);
+  rig.run(100);
+  const std::size_t room = rig.runtime.room().size();
+  rig.runtime.clear();
   CHECK_FALSE(rig.runtime.running());
-  CHECK(rig.kernel.threads().size() == 1);
+  CHECK(rig.runtime.room().size() > room);
+  CHECK(rig.feed(0, 20) == link::FeedError::no_program);
+  rig.run(200);
+  REQUIRE(rig.activate(threshold_program(10)).ok());
+  rig.feed(0, 20);
+  rig.run(300);
+  CHECK(rig.only("fire") == "0 #1 fire r0 DO\n");
 }
 
 TEST_CASE("actuators of a program that goes are released as the robot says") {
@@ -195,4 +261,29 @@ TEST_CASE("what a program does never depends on the one before it") {
   }
   CHECK(alone.size() == 7);
   CHECK(rig.lines == alone);
+}
+
+TEST_CASE("when the places for commands are all taken one is dropped, and no other is harmed") {
+  constexpr int kEach = 7;  // of four actuators: more than there are places, and no queue is full
+  const auto moves = [](const std::string& actuator) {
+    std::string commands;
+    for (int i = 0; i < kEach; ++i)
+      commands += "MOVE " + actuator + " FOR 1s\n";
+    return commands;
+  };
+  test::Robot robot("WHEN near X > 10 DO\n" + moves("a") + moves("b") +
+                    "END\nWHEN near X > 20 DO\n" + moves("c") + moves("d") + "END\n");
+  robot.feed(10, "X", 30);
+  robot.run(60'000);
+  const std::uint32_t places =
+      policy::needs_of(robot.image(), boards::kMemory).counts[policy::Count::commands];
+  REQUIRE(places < 4 * kEach);
+  std::size_t commands = 0;
+  for (const std::string& line : robot.lines())
+    if (line.find(" command ") != std::string::npos) {
+      ++commands;
+      CHECK_THAT(line, Catch::EndsWith(" MOVE for_=1"));
+    }
+  CHECK(commands == places);
+  CHECK(robot.only("overrun").find("overrun d") != std::string::npos);
 }

@@ -10,7 +10,10 @@
 #include <catch2/catch.hpp>
 #include <rapidcheck.h>
 
+#include "runtime-m4/sim/arena.hpp"
+
 using namespace robosync::layers;
+using robosync::policy::Count;
 
 namespace {
 
@@ -85,6 +88,16 @@ private:
 
 // What ProcessingLayer does with a decision, and nothing else.
 struct Table {
+  Table() {
+    robosync::policy::Needs needs;
+    needs.counts[Count::rules] = kRules;
+    needs.counts[Count::set_words] = robosync::policy::set_words(kRules);
+    memory.lay_out(needs);
+    arbiter.start(memory);
+  }
+
+  robosync::sim::Arena arena;
+  robosync::layers::Memory memory{arena.bytes(), arena.board()};
   Arbiter arbiter;
 
   std::set<unsigned> ended_by(const Claim& claim, const Decision& decision) const {

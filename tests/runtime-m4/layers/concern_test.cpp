@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "runtime-m4/layers/loaded_program.hpp"
+#include "runtime-m4/sim/arena.hpp"
 #include "tests/runtime-m4/layers/draw.hpp"
 #include "tests/runtime-m4/layers/spread.hpp"
 #include "tests/runtime-m4/peer.hpp"
@@ -22,6 +23,8 @@ namespace {
 
 // --- the index ---
 
+constexpr unsigned kInputsOfAll = policy::kMaxChannels + policy::kMaxVariables;
+
 // A behaviour whose conditions are drawn: straight code over its inputs and three registers.
 struct DrawnConditions {
   static constexpr unsigned kInputs = 6;
@@ -30,7 +33,7 @@ struct DrawnConditions {
 
   explicit DrawnConditions(Draw& draw) {
     for (unsigned i = 0; i < kInputs; ++i)
-      inputs.push_back(static_cast<std::uint8_t>(draw.below(layers::kMaxInputs)));
+      inputs.push_back(static_cast<std::uint8_t>(draw.below(kInputsOfAll)));
     behavior.input_count = kInputs;
     behavior.rule_count = kRules;
     behavior.cells = kInputs + kRegisters;
@@ -43,9 +46,11 @@ struct DrawnConditions {
       rule.condition_length = static_cast<std::uint16_t>(words + 1);
       rule.then_response = rule.else_response = vm::kNoIndex;
     }
+    image.header = &header;
+    image.channels = channels;
+    image.variables = variables;
     image.behaviors = {&behavior, 1};
     image.rules = rules;
-    image.channels = channels;
     image.inputs = inputs;
     image.code = code;
   }
@@ -68,8 +73,10 @@ struct DrawnConditions {
     return vm::evaluate(machine, &code[rules[rule].condition_start]);
   }
 
+  vm::ImageHeader header{};
+  std::array<vm::Channel, policy::kMaxChannels> channels{};
+  std::array<vm::Variable, policy::kMaxVariables> variables{};
   std::vector<vm::Value> constants = {0, 1, 2, 3, 1000, 5000};
-  std::array<vm::Channel, layers::kMaxChannels> channels{};  // the other inputs are variables
   std::vector<std::uint8_t> inputs;
   std::vector<vm::Word> code;
   std::array<vm::Rule, kRules> rules{};
@@ -77,9 +84,25 @@ struct DrawnConditions {
   vm::Image image;
 };
 
-std::set<unsigned> readers_of(layers::LoadedProgram& program, unsigned input) {
+// A program with memory of its own.
+class Loaded {
+public:
+  void load(const vm::Image& image) {
+    memory_.lay_out(policy::needs_of(image, memory_.board()));
+    program_.load(image, memory_);
+  }
+  const layers::LoadedProgram& operator*() const { return program_; }
+  const layers::LoadedProgram* operator->() const { return &program_; }
+
+private:
+  sim::Arena arena_;
+  layers::Memory memory_{arena_.bytes(), arena_.board()};
+  layers::LoadedProgram program_;
+};
+
+std::set<unsigned> readers_of(const layers::LoadedProgram& program, unsigned input) {
   std::set<unsigned> rules;
-  for (unsigned rule = 0; rule < layers::kMaxRules; ++rule)
+  for (unsigned rule = 0; rule < program.image.rules.size(); ++rule)
     if (program.readers_of(input).has(rule)) rules.insert(rule);
   return rules;
 }
@@ -88,11 +111,11 @@ std::set<unsigned> readers_of(layers::LoadedProgram& program, unsigned input) {
 
 TEST_CASE("the index has every rule whose result an input can change, and names what it reads") {
   Draw draw(4);
-  const auto program = std::make_unique<layers::LoadedProgram>();
+  Loaded program;
   unsigned seen = 0;
   for (unsigned round = 0; round < 400; ++round) {
     const DrawnConditions drawn(draw);
-    program->load(drawn.image);
+    program.load(drawn.image);
     for (unsigned rule = 0; rule < DrawnConditions::kRules; ++rule) {
       // What the words say, by the table that the documentation is made of.
       std::set<unsigned> named;
@@ -104,7 +127,7 @@ TEST_CASE("the index has every rule whose result an input can change, and names 
               operands[i] == vm::Operand::read && cell < DrawnConditions::kInputs)
             named.insert(drawn.inputs[cell]);
       }
-      for (unsigned input = 0; input < layers::kMaxInputs; ++input)
+      for (unsigned input = 0; input < kInputsOfAll; ++input)
         REQUIRE(program->readers_of(input).has(rule) == named.contains(input));
       // What a run shows.
       std::vector<vm::Value> frame(DrawnConditions::kInputs + DrawnConditions::kRegisters);
@@ -127,8 +150,8 @@ TEST_CASE("SAFETY rules are in no index: they are evaluated in any case") {
       test::kPlainRobot);
   vm::Image image;
   REQUIRE(vm::view_image(bytes, image));
-  const auto program = std::make_unique<layers::LoadedProgram>();
-  program->load(image);
+  Loaded program;
+  program.load(image);
   CHECK(readers_of(*program, 0) == std::set<unsigned>{1});
 }
 

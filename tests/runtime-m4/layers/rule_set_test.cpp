@@ -1,19 +1,19 @@
-// Sets of rules against std::set, in the sizes of both profiles and at the edges of words.
-#include "runtime-m4/layers/rule_set.hpp"
-
+// Sets of rules against std::set, of as many rules as a program may have, and at the edges of words.
 #include <set>
 #include <vector>
 
 #include <catch2/catch.hpp>
 #include <rapidcheck.h>
 
-using robosync::layers::BasicRuleBits;
-using robosync::layers::BasicRuleSet;
+#include "tests/runtime-m4/layers/owned_rule_set.hpp"
+
+using robosync::layers::RuleBits;
+using robosync::layers::RuleSet;
+using robosync::test::OwnedRuleSet;
 
 namespace {
 
-template <unsigned kRules>
-std::vector<unsigned> members(const BasicRuleSet<kRules>& set) {
+std::vector<unsigned> members(const RuleSet& set) {
   std::vector<unsigned> all;
   for (const unsigned rule : set)
     all.push_back(rule);
@@ -21,20 +21,18 @@ std::vector<unsigned> members(const BasicRuleSet<kRules>& set) {
 }
 
 template <unsigned kRules>
-void check_same(const BasicRuleSet<kRules>& set, const std::set<unsigned>& model) {
+void check_same(const RuleSet& set, const std::set<unsigned>& model) {
   RC_ASSERT(members(set) == std::vector<unsigned>(model.begin(), model.end()));
   RC_ASSERT(set.empty() == model.empty());
   for (unsigned rule = 0; rule <= kRules; ++rule) {
     if (rule < kRules) RC_ASSERT(set.has(rule) == model.contains(rule));
     const auto next = model.lower_bound(rule);
-    RC_ASSERT(set.from(rule) == (next == model.end() ? BasicRuleSet<kRules>::kEnd : *next));
+    RC_ASSERT(set.from(rule) == (next == model.end() ? RuleSet::kEnd : *next));
   }
 }
 
 // The rules of a behaviour, in this set, and in this or another one.
-template <unsigned kRules>
-void check_range(const BasicRuleSet<kRules>& set, const BasicRuleSet<kRules>& other, unsigned first,
-                 unsigned end) {
+void check_range(const RuleSet& set, const RuleSet& other, unsigned first, unsigned end) {
   std::vector<unsigned> mine;
   std::vector<unsigned> either;
   std::vector<unsigned> expected_mine;
@@ -52,9 +50,12 @@ void check_range(const BasicRuleSet<kRules>& set, const BasicRuleSet<kRules>& ot
 
 template <unsigned kRules>
 void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
-  BasicRuleSet<kRules> set;
-  BasicRuleSet<kRules> other;
-  BasicRuleBits<kRules> other_bits;
+  OwnedRuleSet words(kRules);
+  OwnedRuleSet other_words(kRules);
+  std::vector<RuleSet::Word> bits(robosync::policy::set_words(kRules));
+  RuleBits other_bits(bits.data());
+  RuleSet& set = *words;
+  RuleSet& other = *other_words;
   std::set<unsigned> model;
   std::set<unsigned> other_model;
   for (const std::uint16_t operation : operations) {
@@ -86,8 +87,8 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
         model.clear();
     }
   }
-  check_same(set, model);
-  check_same(other, other_model);
+  check_same<kRules>(set, model);
+  check_same<kRules>(other, other_model);
   const unsigned first = *rc::gen::inRange(0U, kRules);
   check_range(set, other, first, *rc::gen::inRange(first, kRules + 1));
 }
@@ -104,7 +105,8 @@ TEST_CASE("a set of rules is a set") {
 }
 
 TEST_CASE("members may come and go while they are gone through") {
-  BasicRuleSet<1000> set;
+  OwnedRuleSet words(1000);
+  RuleSet& set = *words;
   for (const unsigned rule : {3U, 31U, 32U, 500U})
     set.insert(rule);
   std::vector<unsigned> seen;
@@ -119,8 +121,26 @@ TEST_CASE("members may come and go while they are gone through") {
   CHECK(seen == std::vector<unsigned>{3, 31, 500, 999});
 }
 
-TEST_CASE("forty rules take two words, and one that sums them up") {
-  CHECK(sizeof(BasicRuleBits<40>) == 2 * 4);
-  CHECK(sizeof(BasicRuleSet<40>) == 3 * 4);
-  CHECK(sizeof(BasicRuleSet<1000>) == 33 * 4);
+TEST_CASE("a set of no rules is empty") {
+  RuleSet set;
+  set.clear();
+  CHECK(set.empty());
+  CHECK(members(set).empty());
+}
+
+TEST_CASE("sets in one piece of memory do not touch each other") {
+  constexpr unsigned kRules = 100;
+  std::vector<RuleSet::Word> words(3 * robosync::policy::set_words(kRules));
+  RuleSet sets[3];
+  for (unsigned i = 0; i < 3; ++i)
+    sets[i].start(robosync::layers::part_of(words, 3, i));
+  for (unsigned rule = 0; rule < kRules; ++rule)
+    sets[1].insert(rule);
+  CHECK(sets[0].empty());
+  CHECK(sets[2].empty());
+  sets[0].insert(0);
+  sets[2].insert(kRules - 1);
+  sets[1].clear();
+  CHECK(members(sets[0]) == std::vector<unsigned>{0});
+  CHECK(members(sets[2]) == std::vector<unsigned>{kRules - 1});
 }

@@ -18,6 +18,7 @@
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/runtime.hpp"
+#include "runtime-m4/sim/arena.hpp"
 #include "runtime-m4/update/server.hpp"
 #include "runtime-m4/update/trace_ring.hpp"
 
@@ -109,10 +110,11 @@ class Robot final : public tool::Transport {
 public:
   static constexpr unsigned kBytesPerSecond = 11520;  // 115,200 baud, 8N1
 
-  Robot()
+  explicit Robot(const policy::BoardMemory& memory = boards::kMemory)
       : ring(kernel),
-        runtime(kernel, board, ring, workspace),
-        server(kernel, board, runtime, ring, slots) {
+        arena(memory),
+        runtime(kernel, board, ring, arena.bytes(), arena.board()),
+        server(kernel, board, runtime, ring) {
     started = runtime.start() && server.start();
   }
 
@@ -161,9 +163,8 @@ public:
   kernel::Kernel kernel;
   LineBoard board;
   update::TraceRing ring;
-  layers::Workspace workspace;
+  sim::Arena arena;
   Runtime runtime;
-  update::Slots slots;
   update::Server server;
   bool started = false;
 

@@ -58,7 +58,10 @@ TEST_CASE("hello introduces the board, without a program and with one") {
   CHECK(board.protocol == link::kProtocolVersion);
   CHECK(board.opcode_set == vm::opcode_set_id());
   CHECK(tool::text_of(board.board) == "test");
-  CHECK(board.slot_bytes == layers::kSlotBytes);
+  CHECK(board.arena_bytes == boards::kMemory.arena_bytes);
+  CHECK(board.arena_begin == boards::kMemory.arena_begin);
+  const std::uint32_t without = board.arena_used;
+  CHECK(without > 0);
   CHECK(board.receive_window <= test::LineBoard::kRing);
   CHECK(board.running == 0);
   CHECK(client.running_image().empty());
@@ -69,6 +72,15 @@ TEST_CASE("hello introduces the board, without a program and with one") {
   CHECK(board.running == 1);
   CHECK(board.image_crc == program.image().header->crc32);
   CHECK(board.image_bytes == program.bytes().size());
+  CHECK(board.arena_used == policy::needs_of(program.image(), boards::kMemory).total);
+  client.clear(board.image_crc + 1);  // another program
+  CHECK(client.hello().running == 1);
+  client.clear(board.image_crc);
+  board = client.hello();
+  CHECK(board.running == 0);
+  CHECK(board.arena_used == without);
+  REQUIRE(upload(client, program.bytes()).running == 1);
+  board = client.hello();
   CHECK(board.program_hash == program.image().header->program_hash);
 }
 
@@ -162,7 +174,7 @@ TEST_CASE("nothing to activate is said so") {
 TEST_CASE("an image larger than a slot is refused when it is announced") {
   Robot robot;
   tool::Client client(robot);
-  const test::Bytes image(layers::kSlotBytes + 1);
+  const test::Bytes image(vm::Limits{}.image_bytes + 60000);
   CHECK_THROWS_AS(upload(client, image), tool::Failure);
   CHECK_FALSE(robot.runtime.running());
 }

@@ -22,8 +22,7 @@ constexpr std::uint32_t kSettling = 50;  // ticks
 constexpr vm::Value kPause = INT32_MAX;
 
 update::TraceRing ring(robosync_kernel);
-layers::Workspace workspace;
-Runtime runtime(robosync_kernel, robosync_board, ring, workspace);
+Runtime runtime(robosync_kernel, robosync_board, ring, arena_at(boards::kMemory), boards::kMemory);
 
 // Sleeps, and reads the trace all the while: a full ring would make events cheaper. It is read
 // before a tick, so that reading is no part of what the tick does.

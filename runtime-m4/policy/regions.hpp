@@ -7,9 +7,10 @@
 
 #include <cstdint>
 
-namespace robosync::port::regions {
+namespace robosync::policy::regions {
 
-inline constexpr std::uint32_t kEighths = 8;
+inline constexpr unsigned kEighthBits = 3;
+inline constexpr std::uint32_t kEighths = 1U << kEighthBits;
 inline constexpr std::uint32_t kEnabled = 1;
 
 // What goes into the base register, and into the attribute register but for the access.
@@ -35,17 +36,17 @@ constexpr Region region(std::uint32_t base, unsigned bits, std::uint32_t mask) {
 
 // Whether a window of two regions of 2^bits bytes covers exactly that.
 constexpr bool fits_window(std::uint32_t begin, std::uint32_t bytes, unsigned bits) {
-  const std::uint32_t eighth = (1U << bits) / kEighths;
-  return begin % eighth == 0 && bytes % eighth == 0 &&
-         begin % (1U << bits) / eighth + bytes / eighth <= 2 * kEighths;
+  const std::uint32_t within_eighth = (1U << bits) / kEighths - 1;
+  const std::uint32_t within_region = (1U << bits) - 1;
+  return ((begin | bytes) & within_eighth) == 0 && (begin & within_region) + bytes <= 2U << bits;
 }
 
 // It, when it fits.
 constexpr Window window(std::uint32_t begin, std::uint32_t bytes, unsigned bits) {
   const std::uint32_t size = 1U << bits;
   const std::uint32_t base = begin & ~(size - 1);
-  const std::uint32_t eighth = size / kEighths;
-  const std::uint32_t mask = ((1U << bytes / eighth) - 1) << (begin - base) / eighth;
+  const unsigned eighth = bits - kEighthBits;
+  const std::uint32_t mask = ((1U << (bytes >> eighth)) - 1) << ((begin - base) >> eighth);
   return {region(base, bits, mask), region(base + size, bits, mask >> kEighths)};
 }
 
@@ -59,18 +60,24 @@ constexpr Window finest_window(std::uint32_t begin, std::uint32_t bytes) {
   return {};
 }
 
+// The smallest power of two that one region over begin … end - 1 can have.
+constexpr unsigned cover_bits(std::uint32_t begin, std::uint32_t end) {
+  unsigned bits = kSmallest;
+  while (bits < kLargest && begin >> bits != (end - 1) >> bits)
+    ++bits;
+  return bits;
+}
+
 // The one region that covers begin … end - 1 with the least around it. It may need more than there
 // is at both sides: up to an eighth.
 constexpr Region cover(std::uint32_t begin, std::uint32_t end) {
-  for (unsigned bits = kSmallest; bits < kLargest; ++bits) {
-    if (begin >> bits != (end - 1) >> bits) continue;
-    const std::uint32_t base = begin >> bits << bits;
-    const std::uint32_t eighth = (1U << bits) / kEighths;
-    const std::uint32_t first = (begin - base) / eighth;
-    const std::uint32_t last = (end - 1 - base) / eighth;
-    return region(base, bits, (2U << last) - (1U << first));
-  }
-  return {};
+  const unsigned bits = cover_bits(begin, end);
+  if (bits == kLargest) return {};
+  const std::uint32_t base = begin >> bits << bits;
+  const unsigned eighth = bits - kEighthBits;
+  const std::uint32_t first = (begin - base) >> eighth;
+  const std::uint32_t last = (end - 1 - base) >> eighth;
+  return region(base, bits, (2U << last) - (1U << first));
 }
 
-}  // namespace robosync::port::regions
+}  // namespace robosync::policy::regions

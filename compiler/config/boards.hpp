@@ -1,0 +1,38 @@
+// The boards that rsc knows: stdlib/boards/*.json, built into the library. What a board has for
+// programs decides which of them it takes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/diagnostics/diagnostic.hpp"
+
+namespace robosync::compiler {
+
+struct BoardText {  // one profile as built in
+  std::string_view name;
+  std::string_view json;
+};
+[[nodiscard]] std::span<const BoardText> board_texts();
+
+struct Board {
+  std::string name;
+  std::uint32_t arena_begin = 0;  // address of its memory for programs
+  std::uint32_t arena_bytes = 0;
+  std::uint32_t step_budget = 0;  // M4 instructions of VM code in one step
+};
+
+inline constexpr std::string_view kDefaultBoard = "mps2-an386";  // when robot.json names none
+
+// Reads one profile. Mistakes in it are reported; the tests hold the built-in ones to none.
+[[nodiscard]] Board read_board(const BoardText& text, Diagnostics& diagnostics);
+// In their order.
+[[nodiscard]] std::vector<std::string_view> board_names();
+// `place` in board_names().
+[[nodiscard]] Board board_at(std::size_t place);
+[[nodiscard]] Board default_board();
+
+}  // namespace robosync::compiler

@@ -1,0 +1,95 @@
+// The board's memory for programs, its arena: laid out anew for each program by what it needs
+// (policy/memory.hpp), and then given out part by part. Nothing is ever given back by itself.
+//
+// What decides is how large the parts are on the Cortex-M4. There the arena is laid out by those
+// numbers byte for byte; the host's parts are larger, so its arena is, too (port::kArenaScale), in
+// the same order.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <span>
+#include <type_traits>
+
+#include "runtime-m4/kernel/thread.hpp"
+#include "runtime-m4/policy/memory.hpp"
+
+namespace robosync::layers {
+
+class Memory {
+public:
+  // `arena` has board.arena_bytes times port::kArenaScale and is aligned to kArenaAlignment.
+  Memory(std::span<std::byte> arena, const policy::BoardMemory& board)
+      : arena_(arena), board_(board) {
+    clear();
+  }
+  static constexpr std::size_t kArenaAlignment = policy::kStackUnit;
+  // Of every part. The host's have larger ones.
+  static constexpr std::size_t kAlignment = port::kArenaScale == 1 ? policy::kPartUnit : 16;
+
+  const policy::BoardMemory& board() const { return board_; }
+  // Of the program that it is laid out for.
+  const policy::Needs& needs() const { return needs_; }
+
+  // Forgets all parts but the one that is taken before any program is there.
+  void lay_out(const policy::Needs& needs);
+  // … for no program.
+  void clear();
+
+  // The part, once; all of it new. On the board `T` must be what memory.def says.
+  template <policy::Part kPart, class T>
+  std::span<T> take();
+  // … of a type that is new when it is all zero.
+  template <policy::Part kPart, class T>
+  std::span<T> take_zero();
+  // … as it is.
+  std::span<std::byte> take_bytes(policy::Part part) {
+    return take_raw(part, policy::info_of(part).bytes);
+  }
+
+  // Where the program's image stands.
+  std::span<std::byte> image() { return at(needs_.open, needs_.image); }
+  // Where the next one may be received: what the program leaves.
+  std::span<std::byte> room();
+  // What the behaviours' threads may use.
+  port::Areas areas() {
+    return {.readable = {arena_.data(), at(needs_.open, needs_.image).data() + needs_.image},
+            .writable = at(needs_.writable_begin, needs_.writable * port::kArenaScale)};
+  }
+
+private:
+  std::span<std::byte> at(std::uint32_t place, std::size_t bytes) {
+    return arena_.subspan(std::size_t{place} * port::kArenaScale, bytes);
+  }
+  std::span<std::byte> take_raw(policy::Part part, std::size_t element);
+  std::byte* take_zeroed(policy::Part part, std::size_t element);
+
+  std::span<std::byte> arena_;
+  const policy::BoardMemory& board_;
+  policy::Needs needs_;
+  std::byte* open_ = nullptr;  // first free byte …
+  std::byte* writable_ = nullptr;
+  std::byte* closed_ = nullptr;  // … and behind the last one
+};
+
+template <policy::Part kPart, class T>
+std::span<T> Memory::take_zero() {
+  if constexpr (port::kArenaScale == 1)
+    static_assert(sizeof(T) == policy::info_of(kPart).bytes, "see policy/memory.def");
+  static_assert(sizeof(T) <= policy::info_of(kPart).bytes * port::kArenaScale);
+  static_assert(alignof(T) <= kAlignment);
+  auto* const taken = reinterpret_cast<T*>(take_zeroed(kPart, sizeof(T)));
+  return {taken, policy::count_of(kPart, needs_.counts)};
+}
+
+template <policy::Part kPart, class T>
+std::span<T> Memory::take() {
+  const std::span<T> taken = take_zero<kPart, T>();
+  if constexpr (!std::is_trivially_default_constructible_v<T>)
+    for (T& one : taken)
+      new (&one) T();
+  return taken;
+}
+
+}  // namespace robosync::layers

@@ -1,0 +1,332 @@
+// What a program needs of a board's memory, worked out from its image. Pure; the board lays its
+// memory out by it (layers/memory.hpp) and refuses what does not fit, and rsc says the same before.
+//
+// A board has one piece of memory for programs, its arena. From its beginning up, and from its end
+// down:
+//
+//   | open parts | image | writable parts |    room for the next image    | closed parts |
+//
+// Open is what the behaviours' threads read; the image belongs to it. The MPU opens memory in
+// eighths of powers of two (regions.hpp), so that the writable parts begin and end where an eighth
+// does, and the region over what is open may reach into the room, but never into what is closed.
+// What that wastes is counted, as the arena's address is known. Images are verified.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "runtime-m4/policy/regions.hpp"
+#include "runtime-m4/policy/threads.hpp"
+#include "vm/image.hpp"
+#include "vm/opcode_traits.hpp"
+#include "vm/timers.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::policy {
+
+// What a board has for programs: stdlib/boards/NAME.json.
+struct BoardMemory {
+  std::uint32_t arena_begin = 0;  // its address
+  std::uint32_t arena_bytes = 0;
+  std::uint32_t step_budget = 0;  // M4 instructions of VM code in one step
+};
+
+// The safety monitor, the link and the step.
+inline constexpr unsigned kFixedThreads = 3;
+
+// Stacks, in bytes, guard included. High-water marks in QEMU (`rsc info`), plus a fifth, plus what
+// an interrupt puts on them. Who traces needs most: an event is built and encoded on the stack.
+inline constexpr std::uint32_t kSensorStack = 512;
+inline constexpr std::uint32_t kStepStack = 736;
+inline constexpr std::uint32_t kBehaviorStack = 320;  // no guard
+inline constexpr std::uint32_t kControlStack = 512;
+inline constexpr std::uint32_t kStackUnit = 64;  // without privileges
+
+inline constexpr std::uint32_t kMaxQueued = 8;  // commands that wait for one actuator
+// … and for all: so many, and more for each actuator.
+inline constexpr std::uint32_t kCommands = 16;
+inline constexpr std::uint32_t kCommandsEach = 2;
+inline constexpr std::uint32_t kFeeds = 40;  // readings that wait for their time
+// Sets of rules that the triggers keep.
+inline constexpr unsigned kTriggerSets = 3;
+
+// Words of a set of rules (layers/rule_set.hpp): one bit a rule.
+constexpr std::uint32_t set_words(std::uint32_t rules) {
+  return (rules + 31) / 32;
+}
+
+// What the masks and sets of the layers can hold: bits of a word (layers/messages.hpp), and a summary
+// of so many words (layers/rule_set.hpp).
+inline constexpr unsigned kMaxChannels = 32;
+inline constexpr unsigned kMaxVariables = 32;
+inline constexpr unsigned kMaxRules = 32 * 32;
+
+// What memory.def counts in an image.
+enum class Count : std::uint32_t {
+  one,
+  sensors,
+  sensor_threads,
+  channels,
+  feeds,
+  inputs,
+  variables,
+  fading,
+  checks,
+  samples,
+  behaviors,
+  behavior_threads,
+  cells,
+  timer_words,
+  safety_cells,
+  safety_timer_words,
+  safety_output,
+  tripped_words,
+  rules,
+  set_words,
+  reader_words,
+  actuators,
+  commands,
+  count_
+};
+
+class Counts {
+public:
+  constexpr std::uint32_t operator[](Count count) const { return counts_[place(count)]; }
+  constexpr std::uint32_t& operator[](Count count) { return counts_[place(count)]; }
+  constexpr std::uint32_t threads() const {
+    return (*this)[Count::sensor_threads] + (*this)[Count::behavior_threads] +
+           (*this)[Count::actuators] + kFixedThreads;
+  }
+
+private:
+  static constexpr std::size_t place(Count count) { return static_cast<std::size_t>(count); }
+
+  std::array<std::uint32_t, static_cast<std::size_t>(Count::count_)> counts_{1};
+};
+
+// Words of the timer memory that SAFETY rules have: the first ones, as timers are numbered as they
+// stand in the code and SAFETY's code stands first.
+inline unsigned safety_timer_words(const vm::Image& image) {
+  unsigned words = 0;
+  const vm::Behavior& safety = image.behaviors[vm::kSafetyBehavior];
+  for (const vm::Rule& rule : image.rules.subspan(safety.first_rule, safety.rule_count))
+    for (const vm::Word word : image.code.subspan(rule.condition_start, rule.condition_length)) {
+      if (vm::traits_of(word).operand(2) != vm::Operand::timer) continue;
+      const vm::Timer& timer = image.timers[vm::operand_c(word)];
+      words = timer.state + vm::timer_words(timer);
+    }
+  return words;
+}
+
+inline void count_sensors(const vm::Image& image, Counts& counts) {
+  std::uint32_t fed_channels = 0;
+  std::uint32_t fed_sensors = 0;
+  counts[Count::sensors] = static_cast<std::uint32_t>(image.sensors.size());
+  counts[Count::channels] = static_cast<std::uint32_t>(image.channels.size());
+  for (const vm::Sensor& sensor : image.sensors)
+    if (is_fed(sensor)) {
+      fed_channels += sensor.channel_count;
+      ++fed_sensors;
+    } else {
+      ++counts[Count::sensor_threads];
+    }
+  if (fed_sensors == 0) return;
+  ++counts[Count::sensor_threads];  // one for all of them
+  counts[Count::feeds] = std::max(kFeeds, fed_channels);
+}
+
+inline void count_variables(const vm::Image& image, Counts& counts) {
+  counts[Count::variables] = static_cast<std::uint32_t>(image.variables.size());
+  counts[Count::inputs] = counts[Count::channels] + counts[Count::variables];
+  counts[Count::checks] = static_cast<std::uint32_t>(image.checks.size());
+  for (const vm::Variable& variable : image.variables)
+    if (variable.fade != 0) ++counts[Count::fading];
+  for (const vm::Check& check : image.checks)
+    if (check.window > 1) counts[Count::samples] += check.window;
+}
+
+inline void count_behaviors(const vm::Image& image, Counts& counts) {
+  counts[Count::behaviors] = static_cast<std::uint32_t>(image.behaviors.size());
+  counts[Count::behavior_threads] = counts[Count::behaviors];
+  counts[Count::rules] = static_cast<std::uint32_t>(image.rules.size());
+  counts[Count::set_words] = set_words(counts[Count::rules]);
+  for (const vm::Behavior& behavior : image.behaviors)
+    counts[Count::cells] += behavior.cells;
+  for (const vm::Timer& timer : image.timers)
+    counts[Count::timer_words] += vm::timer_words(timer);
+  if (!image.has_safety()) return;
+  counts[Count::behavior_threads] -= 1;
+  counts[Count::safety_cells] = image.behaviors[vm::kSafetyBehavior].cells;
+  counts[Count::safety_timer_words] = safety_timer_words(image);
+  counts[Count::safety_output] = vm::kMaxResponseOutput;
+  counts[Count::tripped_words] = counts[Count::set_words];
+  counts[Count::cells] -= counts[Count::safety_cells];
+  counts[Count::timer_words] -= counts[Count::safety_timer_words];
+}
+
+inline void count(const vm::Image& image, Counts& counts) {
+  count_sensors(image, counts);
+  count_variables(image, counts);
+  count_behaviors(image, counts);
+  counts[Count::reader_words] = counts[Count::inputs] * counts[Count::set_words];
+  counts[Count::actuators] = static_cast<std::uint32_t>(image.actuators.size());
+  counts[Count::commands] = std::min(kMaxQueued * counts[Count::actuators],
+                                     kCommands + kCommandsEach * counts[Count::actuators]);
+}
+
+// --- the parts ---
+
+enum class Region : std::uint32_t { open, writable, closed };
+enum class Whose : std::uint32_t {
+  program,
+  sensors,
+  actuators,
+  behaviors,
+  rules,
+  variables,
+  image,
+  borders,  // what the MPU's eighths waste
+  count_
+};
+inline constexpr std::size_t kWhose = static_cast<std::size_t>(Whose::count_);
+
+enum class Part : std::uint8_t {
+#define PART(name, region, whose, bytes, each, count, doc) name,
+#include "runtime-m4/policy/memory.def"
+#undef PART
+  count_
+};
+
+inline constexpr std::uint32_t kThreadBytes = 72;
+
+// Packed, as the board has the table, too.
+struct PartInfo {
+  Region region : 2;
+  Whose whose : 4;
+  std::uint32_t bytes : 12;  // of one, on the Cortex-M4
+  std::uint32_t each : 8;
+  Count count : 6;
+};
+static_assert(sizeof(PartInfo) == 4);
+inline constexpr std::array<PartInfo, static_cast<std::size_t>(Part::count_)> kParts = {{
+#define PART(name, region, whose, bytes, each, count, doc) \
+  {Region::region, Whose::whose, bytes, each, Count::count},
+#include "runtime-m4/policy/memory.def"
+#undef PART
+}};
+constexpr const PartInfo& info_of(Part part) {
+  return kParts[static_cast<std::size_t>(part)];
+}
+
+constexpr std::uint32_t count_of(Part part, const Counts& counts) {
+  return info_of(part).each * counts[info_of(part).count];
+}
+
+// To a power of two.
+constexpr std::uint32_t aligned(std::uint32_t bytes, std::uint32_t alignment) {
+  return (bytes + alignment - 1) & ~(alignment - 1);
+}
+inline constexpr std::uint32_t kPartUnit = 8;
+constexpr std::uint32_t bytes_of(Part part, const Counts& counts) {
+  return aligned(info_of(part).bytes * count_of(part, counts), kPartUnit);
+}
+
+// --- what a program needs ---
+
+struct Needs {
+  Counts counts;
+  std::uint32_t open = 0, image = 0;               // bytes, from the arena's beginning
+  std::uint32_t writable_begin = 0, writable = 0;  // place in the arena, and bytes
+  std::uint32_t closed = 0;                        // bytes, at the arena's end
+  std::uint32_t total = 0;
+
+  bool fit(const BoardMemory& board) const { return total <= board.arena_bytes; }
+};
+
+// Where the writable parts stand, `from` an address on: at the first window of two regions that
+// covers them, the finest one.
+inline void place_writable(const BoardMemory& board, std::uint32_t bytes, Needs& needs) {
+  const std::uint32_t from = board.arena_begin + needs.open + needs.image;
+  for (unsigned bits = regions::kSmallest; bits < regions::kLargest; ++bits) {
+    const std::uint32_t eighth = (1U << bits) / regions::kEighths;
+    const std::uint32_t begin = aligned(from, eighth);
+    needs.writable_begin = begin - board.arena_begin;
+    needs.writable = aligned(bytes, eighth);
+    if (regions::fits_window(begin, needs.writable, bits)) return;
+  }
+}
+
+// Where the region over what is open ends, in the arena.
+inline std::uint32_t end_of_cover(const BoardMemory& board, const Needs& needs) {
+  const std::uint32_t end = board.arena_begin + needs.open + needs.image;
+  const unsigned bits = regions::cover_bits(board.arena_begin, end);
+  return aligned(end, (1U << bits) / regions::kEighths) - board.arena_begin;
+}
+
+inline void count_needs(const vm::Image& image, const BoardMemory& board, Needs& needs) {
+  needs = {};
+  count(image, needs.counts);
+  std::uint32_t writable = 0;
+  for (std::size_t p = 0; p < kParts.size(); ++p) {
+    const std::uint32_t bytes = bytes_of(static_cast<Part>(p), needs.counts);
+    switch (kParts[p].region) {
+      case Region::open:
+        needs.open += bytes;
+        break;
+      case Region::writable:
+        writable += bytes;
+        break;
+      case Region::closed:
+        needs.closed += bytes;
+        break;
+    }
+  }
+  needs.image = aligned(image.header->total_length, kPartUnit);
+  needs.closed = aligned(needs.closed, kStackUnit);
+  place_writable(board, writable, needs);
+  needs.total =
+      std::max(needs.writable_begin + needs.writable, end_of_cover(board, needs)) + needs.closed;
+}
+
+// Whether the masks and sets, and the kernel, can hold the program that these were counted of; and
+// whether the board has the memory.
+inline vm::Verdict judge(const Needs& needs, const BoardMemory& board) {
+  const auto refuse = [](vm::Section section, std::size_t most) {
+    return vm::Verdict{vm::Refusal::too_many, section, static_cast<std::uint16_t>(most)};
+  };
+  const Counts& counts = needs.counts;
+  if (counts[Count::channels] > kMaxChannels) return refuse(vm::Section::channels, kMaxChannels);
+  if (counts[Count::variables] > kMaxVariables)
+    return refuse(vm::Section::variables, kMaxVariables);
+  if (counts[Count::rules] > kMaxRules) return refuse(vm::Section::rules, kMaxRules);
+  if (counts.threads() > kMaxThreads) return refuse(vm::Section::header, kMaxThreads);
+  if (!needs.fit(board)) return {vm::Refusal::no_room, vm::Section::header, 0};
+  return {};
+}
+
+inline Needs needs_of(const vm::Image& image, const BoardMemory& board) {
+  Needs needs;
+  count_needs(image, board, needs);
+  return needs;
+}
+
+// The same bytes by what takes them, for people.
+inline std::array<std::uint32_t, kWhose> shares_of(const Needs& needs) {
+  std::array<std::uint32_t, kWhose> shares{};
+  const auto share = [&](Whose whose) -> std::uint32_t& {
+    return shares[static_cast<std::size_t>(whose)];
+  };
+  std::uint32_t parts = needs.image;
+  for (std::size_t p = 0; p < kParts.size(); ++p) {
+    const std::uint32_t bytes = bytes_of(static_cast<Part>(p), needs.counts);
+    share(kParts[p].whose) += bytes;
+    parts += bytes;
+  }
+  share(Whose::image) = needs.image;
+  share(Whose::borders) = needs.total - parts;
+  return shares;
+}
+
+}  // namespace robosync::policy
