@@ -131,6 +131,11 @@ TEST_CASE("a layout keeps apart what threads without privileges may use, and the
   const bool holds = rc::check([] {
     const Drawn drawn = draw();
     const Needs needs = drawn.needs();
+    // The borders waste an eighth here and there, and no more.
+    const std::uint32_t parts = sum_of_parts(needs, Region::open) + needs.image +
+                                sum_of_parts(needs, Region::writable) +
+                                sum_of_parts(needs, Region::closed);
+    RC_ASSERT(needs.total <= parts + parts / 2 + 1024);
     if (needs.total > 128 * 1024 - 0x4000) return;  // it does not fit, and is not laid out
     check_layout(needs, kBoard);
     const auto shares = shares_of(needs);
