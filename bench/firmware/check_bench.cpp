@@ -2,6 +2,7 @@
 // reading a sample; after each it says which band the first CHECK is in.
 #include <array>
 
+#include "bench/firmware/driven.hpp"
 #include "bench/firmware/given.hpp"
 #include "bench/firmware/mark.hpp"
 #include "runtime-m4/layers/checks.hpp"
@@ -10,14 +11,19 @@
 namespace robosync::bench {
 namespace {
 
+constexpr policy::BoardMemory kBoard{
+    .arena_begin = 0x2180'0000, .arena_bytes = 64 * 1024, .step_budget = 1'000'000};
+
+layers::Memory memory(arena_at(kBoard), kBoard);
 layers::Checks checks;
-std::array<vm::Value, layers::kMaxInputs> values;
+std::array<vm::Value, policy::kMaxChannels + policy::kMaxVariables> values;
 
 void measure(const vm::Image& image) {
   const vm::Check& check = image.checks[0];
   vm::Value& band = values[image.channels.size() + check.variable];
   values.fill(vm::kUnknown);
-  checks.start(image);
+  memory.lay_out(policy::needs_of(image, kBoard));
+  checks.start(image, memory);
   std::uint32_t now = 0;
   for (const vm::Value reading : given_readings()) {
     now += check.sample_ms;
