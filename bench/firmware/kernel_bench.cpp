@@ -55,6 +55,9 @@ Task* turning = nullptr;
 kernel::Thread* woken = nullptr;  // by the interrupt
 Task* timed = nullptr;
 Task* reader = nullptr;
+constexpr std::size_t kArenaBytes = 4096;
+alignas(layers::Memory::kArenaAlignment) std::array<std::byte, kArenaBytes> arena;
+layers::Memory memory(arena, policy::BoardMemory{.arena_bytes = kArenaBytes});
 layers::Mailboxes mailboxes(robosync_kernel);
 kernel::Mutex mutex{Category::system};
 kernel::Time common_deadline = 0;
@@ -147,6 +150,14 @@ struct RawReading {
   vm::Value value;
   std::uint8_t channel;
 };
+
+// Of one channel.
+void start_mailboxes() {
+  policy::Needs needs;
+  needs.counts[policy::Count::channels] = 1;
+  memory.lay_out(needs);
+  mailboxes.start(memory);
+}
 
 void send_reading(unsigned round) {
   const vm::Channel wiring{};
@@ -314,6 +325,7 @@ int main() {
   record_sizes();
   high = add("high", Category::behavior, 50, run_high);
   timed = add("timed", Category::behavior, 40, run_timed);
+  start_mailboxes();
   reader = add("reader", Category::behavior, 38, run_reader);
   open = add("open", Category::behavior, 35, run_open, false);
   Task* const upper = add("upper", Category::behavior, 31, run_upper, false);

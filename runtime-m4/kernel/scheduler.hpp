@@ -56,17 +56,16 @@ public:
   static constexpr bool contains(Position position) { return (*position.word & position.bit) != 0; }
 
   // Highest rank in the set; the number of ranks when it is empty.
-  constexpr unsigned first() const {
-    for (unsigned w = 0; w + 1 < kWords; ++w)
-      if (words_[w] != 0) [[likely]]
-        return highest(w);
-    return highest(kWords - 1);
-  }
+  [[gnu::always_inline]] constexpr unsigned first() const { return first_from<0>(); }
 
 private:
   static constexpr unsigned kBits = 32;
-  constexpr unsigned highest(unsigned w) const {
-    return w * kBits + static_cast<unsigned>(std::countl_zero(words_[w]));
+  template <unsigned kWord>
+  [[gnu::always_inline]] constexpr unsigned first_from() const {
+    if constexpr (kWord + 1 < kWords)
+      if (words_[kWord] == 0) [[unlikely]]
+        return first_from<kWord + 1>();
+    return kWord * kBits + static_cast<unsigned>(std::countl_zero(words_[kWord]));
   }
 
   std::array<std::uint32_t, kWords> words_{};

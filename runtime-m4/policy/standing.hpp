@@ -8,7 +8,7 @@
 namespace robosync::policy {
 
 // Threads that the kernel ranks at most: one bit each in its ready set.
-inline constexpr unsigned kMaxThreads = 128;
+inline constexpr unsigned kMaxThreads = 96;
 
 // The paper's four categories, and the two kinds of threads around them. Inside one behaviour's
 // priority, a later category of the four ranks higher: a decision reaches the actuator before new
