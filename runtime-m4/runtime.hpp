@@ -6,6 +6,7 @@
 // and what is closed to the behaviours' threads.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -54,8 +55,12 @@ public:
   // Ends the running program; its actuators are released.  [as activate()]
   void clear();
 
-  // Memory that nobody uses until the next activation: an image may be received into it.
-  std::span<std::byte> room() { return memory_.room(); }
+  // Memory that nobody uses until the next activation, as much as an image can have: one may be
+  // received into it.
+  std::span<std::byte> room() {
+    const std::span<std::byte> room = memory_.room();
+    return room.first(std::min<std::size_t>(room.size(), limits_.image_bytes));
+  }
   // Of the running program, and of the last one that activate() has verified.
   const policy::Needs& needs() const { return memory_.needs(); }
   const policy::Needs& checked_needs() const { return next_; }
