@@ -25,7 +25,7 @@ struct LoadedProgram {
 
   // The rules that read or set an input.
   RuleBits readers_of(unsigned input) const {
-    return RuleBits(reader_words_.data() + input * set_words_);
+    return RuleBits(reader_words_.data() + std::size_t{input} * set_words_);
   }
 
   unsigned first_behavior() const { return policy::first_behavior(image); }
