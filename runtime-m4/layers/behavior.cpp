@@ -76,7 +76,7 @@ void BehaviorLayer::release_to_run(unsigned rule, unsigned code) {
 
 // Nothing comes of one that was stopped.
 void BehaviorLayer::release(unsigned behavior) {
-  workspace_.result->there = false;
+  workspace_.result->there = 0;
   if (has(retired_, behavior)) return;
   released_ = static_cast<std::uint8_t>(behavior);
   is_released_ = true;
@@ -92,7 +92,7 @@ bool BehaviorLayer::busy() {
 // It could say so of any rule of its own, as it could let it trigger.
 bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
   const Result& result = *workspace_.result;
-  if (!result.there) return false;
+  if (result.there == 0) return false;
   const RuleRange rules = program_->rules_of(behavior);
   const unsigned rule = result.rule;
   bool silent = false;
@@ -113,8 +113,8 @@ vm::Progress BehaviorLayer::checked_progress() const {
 void BehaviorLayer::conclude(unsigned rule) {
   Result& result = *workspace_.result;
   const unsigned behavior = program_->behavior_of[rule];
-  if (has(retired_, behavior) || !result.there) result = {};
-  result.there = false;  // it is taken
+  if (has(retired_, behavior) || result.there == 0) result = {};
+  result.there = 0;  // it is taken
   has_run_.insert(rule);
   ResumePoint& point = resume_points_[rule];
   const vm::Progress progress = checked_progress();
@@ -122,7 +122,7 @@ void BehaviorLayer::conclude(unsigned rule) {
   const bool moved = progress.pause != vm::Pause::still_polling;
   Trace& trace = layers_.trace;
   if (waited && moved) trace.emit(EventKind::go_on, trace.step(), rule);
-  if (result.zero_divide) trace.emit(EventKind::zero_divide, trace.step(), rule);
+  if (result.zero_divide != 0) trace.emit(EventKind::zero_divide, trace.step(), rule);
   put_out(workspace_.output.first(std::min<std::size_t>(result.words, workspace_.output.size())));
   if ((result.assigned | result.shifted) != 0) stage_writes(behavior);
   point = {};
@@ -194,11 +194,13 @@ bool BehaviorLayer::claim_of(unsigned rule, Claim& claim, bool& silent) const {
   Triggers::Wish wish;
   const bool runs = layers_.arbiter.runs(rule);
   if (!layers_.triggers.wish(rule, runs, wish)) return false;
+  const unsigned response = response_of(rule, wish.side);
+  if (response == vm::kNoIndex) return false;  // a behaviour can say that its rule has an ELSE
   silent = wish.silent;
   claim = {.rule = static_cast<std::uint16_t>(rule),
            .behavior = program_->behavior_of[rule],
            .side = wish.side,
-           .actuators = program_->image.responses[response_of(rule, wish.side)].actuators,
+           .actuators = program_->image.responses[response].actuators,
            .restarting = runs && layers_.triggers.restarting(rule),
            .retries = !wish.fresh};
   return true;
@@ -305,12 +307,12 @@ void BehaviorLayer::run_response(vm::Machine& machine, unsigned rule, unsigned c
       .next = progress.next,
       .wake = progress.wake,
       .pause = progress.pause,
-      .zero_divide = std::exchange(machine.divided_by_zero, false),
+      .zero_divide = static_cast<std::uint8_t>(std::exchange(machine.divided_by_zero, false)),
       .rule = static_cast<std::uint16_t>(rule),
       .assigned = machine.assigned,
       .shifted = machine.shifted,
       .words = static_cast<std::uint16_t>(machine.output - workspace_.output.data()),
-      .there = true};
+      .there = 1};
 }
 
 }  // namespace robosync::layers

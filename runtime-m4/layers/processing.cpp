@@ -15,11 +15,12 @@ namespace {
 
 // It has something to do before the first reading: it reads nothing, or what is known at once, or
 // it has rules that wait for a time only.
-bool starts_at_once(const vm::Image& image, const vm::Behavior& behavior) {
+bool starts_at_once(const LoadedProgram& program, const vm::Behavior& behavior) {
+  const vm::Image& image = program.image;
   if (behavior.input_count == 0) return true;
   for (const std::uint8_t input : image.inputs.subspan(behavior.first_input, behavior.input_count))
-    if (input >= image.channels.size() &&
-        image.variables[input - image.channels.size()].kind != vm::VariableKind::band)
+    if (program.is_variable(input) &&
+        image.variables[program.variable_of(input)].kind != vm::VariableKind::band)
       return true;
   for (const vm::Rule& rule : image.rules.subspan(behavior.first_rule, behavior.rule_count))
     if (rule.kind == vm::RuleKind::start || rule.kind == vm::RuleKind::every) return true;
@@ -46,8 +47,7 @@ bool ProcessingLayer::start(const LoadedProgram& program, Memory& memory) {
   in_pass_ = false;
   for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b) {
     untouched_ |= bit<BehaviorMask>(b);
-    if (starts_at_once(program.image, program.image.behaviors[b]))
-      unstarted_ |= bit<BehaviorMask>(b);
+    if (starts_at_once(program, program.image.behaviors[b])) unstarted_ |= bit<BehaviorMask>(b);
   }
   kernel::ThreadSpec spec;
   spec.name = "step";
@@ -93,7 +93,6 @@ void ProcessingLayer::pass() {
   if (!latch(time, now, anyway, changed)) return;
   // The sensors have rung for theirs.
   if (variables_of(changed) != 0) layers_.alarm.ring(inputs(0, variables_of(changed)));
-  cancelled_ = 0;
   interrupt_lost(lost);
   interrupt_halted(halted);
   find_concerned(changed, first);

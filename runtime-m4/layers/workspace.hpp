@@ -25,17 +25,18 @@ struct Judgement {
 };
 static_assert(sizeof(Judgement) == 1);
 
-// What came of a response that was run. All zero at first, so that it takes no flash.
+// What came of a response that was run. All zero at first, so that it takes no flash. No bools: one
+// that somebody has set to 2 is undefined behaviour where it is read.
 struct Result {
   const vm::Word* next = nullptr;  // vm::Progress
   std::uint32_t wake = 0;
   vm::Pause pause = vm::Pause::ended;
-  bool zero_divide = false;
+  std::uint8_t zero_divide = 0;
   std::uint16_t rule = 0;      // whose response it was
   std::uint32_t assigned = 0;  // vm::Machine
   std::uint32_t shifted = 0;
   std::uint16_t words = 0;  // of the output
-  bool there = false;       // there is a result, since the behaviour was released
+  std::uint8_t there = 0;   // there is a result, since the behaviour was released
 };
 
 // Where it stands, for a program.

@@ -16,6 +16,11 @@ struct RuntimePeer {
     if (runtime.image().has_safety()) all &= ~(layers::BehaviorMask{1} << vm::kSafetyBehavior);
     runtime.shared_.processing.untouched_ = all;
   }
+
+  // As a behaviour could write it: the workspace is open to its thread.
+  static layers::Judgement& judgement(Runtime& runtime, unsigned rule) {
+    return runtime.shared_.workspace.judgements[rule];
+  }
 };
 
 }  // namespace robosync

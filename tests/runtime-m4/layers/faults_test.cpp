@@ -2,6 +2,7 @@
 // monitor does when nothing does.
 #include <catch2/catch.hpp>
 
+#include "tests/runtime-m4/peer.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 
@@ -127,4 +128,17 @@ TEST_CASE("long waiting and much work are not hanging") {
   }
   CHECK(rig.only("deadline").empty());
   CHECK(rig.board.kicks == rig.status().safety_checks);
+}
+
+TEST_CASE("a behaviour that says its rule wants the ELSE that it has not gets nothing") {
+  Rig rig;
+  REQUIRE(rig.activate(test::compile("WHILE near X > 10\nDO WAIT 10s\nEND\n", kRobot)).ok());
+  rig.run(0);
+  rig.feed(0, 15);
+  rig.run(10);
+  RuntimePeer::judgement(rig.runtime, 0).trigger = layers::Trigger::otherwise;
+  rig.feed(0, 18);
+  rig.run(1000);
+  CHECK(rig.only("input win lose interrupt fault") ==
+        "0 #1 input X 15\n0 #1 win r0 DO\n10 #2 input X 18\n");
 }
