@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
+#include <span>
 #include <system_error>
 
 #include <fcntl.h>
@@ -62,46 +62,6 @@ private:
   int file_;
 };
 
-// A temporary file beside the one to be written. Gone unless it was renamed.
-class Temporary {
-public:
-  explicit Temporary(const fs::path& target)
-      : target_(target), name_(target.string() + ".XXXXXX"), file_(mkstemp(name_.data())) {
-    if (file_ < 0) fail("write", target_, errno);
-  }
-  ~Temporary() {
-    if (file_ >= 0) close(file_);
-    if (!renamed_) unlink(name_.c_str());
-  }
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-
-  void write_all(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t count = write(file_, bytes.data(), bytes.size());
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) fail("write", target_, errno);
-      bytes = bytes.subspan(static_cast<std::size_t>(count));
-    }
-  }
-
-  void replace_target() {
-    const mode_t mask = umask(0);
-    umask(mask);
-    if (fchmod(file_, 0666 & ~mask) != 0 || fsync(file_) != 0 ||
-        std::rename(name_.c_str(), target_.c_str()) != 0) {
-      fail("write", target_, errno);
-    }
-    renamed_ = true;
-  }
-
-private:
-  fs::path target_;
-  std::string name_;
-  int file_;
-  bool renamed_ = false;
-};
-
 }  // namespace
 
 std::string read_text(const fs::path& path) {
@@ -121,12 +81,6 @@ std::vector<std::byte> read_bytes(const fs::path& path) {
   const std::string text = read_text(path);
   const auto bytes = std::as_bytes(std::span(text));
   return {bytes.begin(), bytes.end()};
-}
-
-void write_atomically(const fs::path& path, std::span<const std::byte> bytes) {
-  Temporary file(path);
-  file.write_all(bytes);
-  file.replace_target();
 }
 
 fs::path find_configuration(const fs::path& program, const std::string& config) {

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -12,9 +11,6 @@ namespace robosync::tool {
 // Both throw Failure (outside) when the file cannot be read, or is larger than 16 MiB.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 [[nodiscard]] std::vector<std::byte> read_bytes(const std::filesystem::path& path);
-
-// The file has the new content or is as it was, whatever happens. Throws Failure (outside).
-void write_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 // `config` if it is not empty, else STEM.json beside `program`, else robot.json beside it. Throws
 // Failure (outside) when there is none.

@@ -139,6 +139,14 @@ compiler::Result compile_file(const std::string& file, const CompileOptions& opt
   return compile(file, options, read_module);
 }
 
+std::vector<std::string> names_of(const compiler::SourceMap& sources) {
+  std::vector<std::string> names;
+  names.reserve(sources.size());
+  for (std::size_t id = 0; id < sources.size(); ++id)
+    names.push_back(sources.file(static_cast<compiler::FileId>(id)).name());
+  return names;
+}
+
 std::string summary(const compiler::Diagnostics& diagnostics) {
   const std::size_t notes =
       diagnostics.all().size() - diagnostics.errors() - diagnostics.warnings();
@@ -147,8 +155,8 @@ std::string summary(const compiler::Diagnostics& diagnostics) {
 }
 
 Program::Program(std::vector<std::byte> bytes, const std::string& name,
-                 const policy::BoardMemory& board, std::vector<std::string> source)
-    : bytes_(std::move(bytes)), board_(board), source_(std::move(source)) {
+                 const policy::BoardMemory& board, Origin origin)
+    : bytes_(std::move(bytes)), board_(board), origin_(std::move(origin)) {
   const vm::Verdict verdict = vm::verify(bytes_, vm::Limits{}, image_);
   if (verdict.ok()) return;
   vm::Image view;  // what is wrong may stand between good source lines
@@ -159,7 +167,7 @@ Program::Program(std::vector<std::byte> bytes, const std::string& name,
 
 Program load_program(const std::string& file, const CompileOptions& options) {
   std::vector<std::byte> bytes = read_bytes(file);
-  if (is_image(file, bytes)) return {std::move(bytes), file};
+  if (is_image(file, bytes)) return {std::move(bytes), file, board_memory(), {{file}, {}}};
   bool has_modules = false;  // then a line number may be one of another file
   compiler::Result result =
       compile(file, options, [&](const std::string& user, const std::string& name) {
@@ -170,9 +178,9 @@ Program load_program(const std::string& file, const CompileOptions& options) {
   if (result.diagnostics.errors() > 0) {
     throw Failure(Exit::program, fmt::format("{}: {}", file, summary(result.diagnostics)));
   }
-  std::vector<std::string> source;
-  if (!has_modules) source = lines_of(result.sources.file(0).text());
-  return {std::move(result.image), file, memory_of(result.board), std::move(source)};
+  Origin origin{names_of(result.sources), {}};
+  if (!has_modules) origin.lines = lines_of(result.sources.file(0).text());
+  return {std::move(result.image), file, memory_of(result.board), std::move(origin)};
 }
 
 // It is the last section, so the image is cut there and the header told.

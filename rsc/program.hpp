@@ -40,12 +40,21 @@ struct CompileOptions {
 // "0 errors, 1 warning, 2 notes".
 [[nodiscard]] std::string summary(const compiler::Diagnostics& diagnostics);
 
+// What a program was made of, as far as that is known.
+struct Origin {
+  std::vector<std::string> files;  // that were read for it
+  std::vector<std::string>
+      lines;  // that the image's line numbers mean, where these are of one file
+};
+// Every file of a compilation, by its name.
+[[nodiscard]] std::vector<std::string> names_of(const compiler::SourceMap& sources);
+
 // A verified image: the bytes and the view of them. Not copied, because the view points inside.
 class Program {
 public:
   // Throws Failure (program) with the verifier's reason. `name` stands in the message.
   Program(std::vector<std::byte> bytes, const std::string& name,
-          const policy::BoardMemory& board = board_memory(), std::vector<std::string> source = {});
+          const policy::BoardMemory& board = board_memory(), Origin origin = {});
   Program(Program&&) = default;
   Program& operator=(Program&&) = default;
   Program(const Program&) = delete;
@@ -56,13 +65,15 @@ public:
   // What the board that it is for has for programs.
   const policy::BoardMemory& board() const { return board_; }
   // The lines that the image's line numbers mean; none when that is not known.
-  const std::vector<std::string>& source() const { return source_; }
+  const std::vector<std::string>& source() const { return origin_.lines; }
+  // The files that were read for it.
+  const std::vector<std::string>& files() const { return origin_.files; }
 
 private:
   std::vector<std::byte> bytes_;
   vm::Image image_;
   policy::BoardMemory board_;
-  std::vector<std::string> source_;
+  Origin origin_;
 };
 
 // Source or image, whichever `file` is. Diagnostics go to stderr. Throws Failure (program) when it

@@ -10,7 +10,7 @@
 #include "compiler/diagnostics/render.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
-#include "rsc/files.hpp"
+#include "rsc/output.hpp"
 #include "rsc/program.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
@@ -34,16 +34,16 @@ std::string output_name(const OutputOptions& options) {
   return name;
 }
 
-void print_human(const std::string& output, const Program& program) {
-  std::cout << fmt::format("{}: {} bytes, a step costs up to {} instructions\n", output,
-                           program.bytes().size(), program.image().header->step_cost);
+void print_human(std::ostream& out, const std::string& output, const Program& program) {
+  out << fmt::format("{}: {} bytes, a step costs up to {} instructions\n", output,
+                     program.bytes().size(), program.image().header->step_cost);
   for (const SectionSize& size : section_sizes(program.image())) {
-    std::cout << fmt::format("  {:<14}{:>5} x {:>6} bytes\n", vm::describe(size.section),
-                             size.records, size.bytes);
+    out << fmt::format("  {:<14}{:>5} x {:>6} bytes\n", vm::describe(size.section), size.records,
+                       size.bytes);
   }
 }
 
-void print_json(const std::string& output, const Program& program) {
+void print_json(std::ostream& out, const std::string& output, const Program& program) {
   nlohmann::ordered_json report;
   report["file"] = output;
   report["bytes"] = program.bytes().size();
@@ -54,7 +54,7 @@ void print_json(const std::string& output, const Program& program) {
                                   {"records", size.records},
                                   {"bytes", size.bytes}});
   }
-  std::cout << report.dump() << '\n';
+  out << report.dump() << '\n';
 }
 
 void compile(const OutputOptions& options) {
@@ -66,8 +66,12 @@ void compile(const OutputOptions& options) {
                                              summary(result.diagnostics)));
   }
   const Program program(std::move(result.image), options.file, memory_of(result.board));
-  write_atomically(output, program.bytes());
-  options.format == Format::json ? print_json(output, program) : print_human(output, program);
+  check_output(output, names_of(result.sources));
+  // The report would stand in the middle of an image that goes to stdout.
+  std::ostream& out = is_stdout(output) ? std::cerr : std::cout;
+  write_output(output, program.bytes());
+  options.format == Format::json ? print_json(out, output, program)
+                                 : print_human(out, output, program);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
-#include "rsc/files.hpp"
+#include "rsc/output.hpp"
 #include "rsc/program.hpp"
 #include "rsc/timing.hpp"
 #include "rsc/trace/scenario.hpp"
@@ -37,10 +37,18 @@ std::uint64_t duration_us(const RunOptions& options, const Scenario& scenario) {
   return scenario.duration_us.value_or(kDefaultDurationUs);
 }
 
+std::vector<std::string> inputs_of(const RunOptions& options, const Program& program) {
+  std::vector<std::string> inputs = program.files();
+  if (!options.scenario.empty()) inputs.push_back(options.scenario);
+  return inputs;
+}
+
 void run(const RunOptions& options) {
   const Program program = load_program(options.file, options.how);
   Scenario scenario;
   if (!options.scenario.empty()) scenario = read_scenario(options.scenario, program.image());
+
+  if (!options.trace.empty()) check_output(options.trace, inputs_of(options, program));
 
   const TraceNames names{&program.image(), {}};
   std::string trace;
@@ -59,7 +67,7 @@ void run(const RunOptions& options) {
   for (const Stimulus& stimulus : scenario.stimuli)
     simulator.feed(stimulus.at_us, stimulus.channel, stimulus.value);
   simulator.run_until(duration_us(options, scenario));
-  if (!options.trace.empty()) write_atomically(options.trace, std::as_bytes(std::span(trace)));
+  if (!options.trace.empty()) write_output(options.trace, std::as_bytes(std::span(trace)));
 }
 
 }  // namespace

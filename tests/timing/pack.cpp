@@ -16,7 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rsc/failure.hpp"
-#include "rsc/files.hpp"
+#include "rsc/output.hpp"
 #include "rsc/program.hpp"
 #include "rsc/timing.hpp"
 #include "tests/timing/script.hpp"
@@ -106,7 +106,7 @@ void pack(const Arguments& arguments) {
         add(block, program, file, argument.substr(std::min(colon + 1, argument.size()))));
   }
   block.add(0);
-  tool::write_atomically(arguments.block, block.bytes());
+  tool::write_output(arguments.block, block.bytes());
   std::cout << report.dump() << '\n';
 }
 

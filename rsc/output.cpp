@@ -1,0 +1,166 @@
+// May assume POSIX. Promises that what is there already is never left half written.
+#include "rsc/output.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <optional>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "rsc/failure.hpp"
+
+namespace robosync::tool {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr mode_t kPermissions = 0777;
+constexpr mode_t kNewFile = 0666;
+
+[[noreturn]] void fail(const fs::path& path, int error) {
+  throw Failure(Exit::outside,
+                fmt::format("cannot write {}: {}", path.string(), std::strerror(error)));
+}
+
+std::optional<struct stat> facts_of(const fs::path& path) {
+  struct stat facts {};
+  if (stat(path.c_str(), &facts) != 0) return std::nullopt;
+  return facts;
+}
+
+bool same_file(const struct stat& a, const struct stat& b) {
+  return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+void write_all(int file, std::span<const std::byte> bytes, const fs::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t count = write(file, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path, errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+}
+
+// An open file, closed at the end.
+class File {
+public:
+  explicit File(int number) : number_(number) {}
+  ~File() {
+    if (number_ >= 0) close(number_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  int number() const { return number_; }
+
+private:
+  int number_;
+};
+
+// A temporary file beside the one to be written. Gone unless it was renamed.
+class Temporary {
+public:
+  explicit Temporary(const fs::path& target)
+      : target_(target), name_(target.string() + ".XXXXXX"), file_(mkstemp(name_.data())) {
+    if (file_.number() < 0) fail(target_, errno);
+  }
+  ~Temporary() {
+    if (file_.number() >= 0 && !renamed_) unlink(name_.c_str());
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+
+  void write(std::span<const std::byte> bytes) const { write_all(file_.number(), bytes, target_); }
+
+  void replace_target(mode_t mode) {
+    if (fchmod(file_.number(), mode) != 0 || fsync(file_.number()) != 0 ||
+        std::rename(name_.c_str(), target_.c_str()) != 0) {
+      fail(target_, errno);
+    }
+    renamed_ = true;
+  }
+
+private:
+  fs::path target_;
+  std::string name_;
+  File file_;
+  bool renamed_ = false;
+};
+
+// /dev/stdout and its like are links of the system, and may lead to an ordinary file.
+bool is_link_of_system(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_symlink(path, error)) return false;
+  const fs::path folder = fs::weakly_canonical(fs::absolute(path, error).parent_path(), error);
+  const auto top = std::next(folder.begin());
+  return top != folder.end() && (*top == "dev" || *top == "proc");
+}
+
+// What is no ordinary file, or is reached by a link that must stay.
+bool is_written_through(const fs::path& path, const std::optional<struct stat>& facts) {
+  std::error_code error;
+  if (!facts) return fs::is_symlink(path, error);
+  return !S_ISREG(facts->st_mode) || is_link_of_system(path);
+}
+
+void write_through(const fs::path& path, std::span<const std::byte> bytes) {
+  std::cout.flush();
+  if (is_stdout(path)) {  // opened again, an ordinary file would be written from its beginning
+    write_all(STDOUT_FILENO, bytes, path);
+    return;
+  }
+  const File file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFile));
+  if (file.number() < 0) fail(path, errno);
+  write_all(file.number(), bytes, path);
+}
+
+mode_t mode_of_new_file() {
+  const mode_t mask = umask(0);
+  umask(mask);
+  return kNewFile & ~mask;
+}
+
+}  // namespace
+
+void check_output(const fs::path& path, const std::vector<std::string>& inputs) {
+  const auto facts = facts_of(path);
+  if (!facts) return;
+  if (S_ISDIR(facts->st_mode)) fail(path, EISDIR);
+  if (!S_ISREG(facts->st_mode)) return;
+  for (const std::string& input : inputs) {
+    const auto other = facts_of(input);
+    if (!other || !same_file(*facts, *other)) continue;
+    throw Failure(Exit::usage,
+                  path == fs::path(input)
+                      ? fmt::format("{} is an input; nothing was written", input)
+                      : fmt::format("{} is the same file as {}, which is an input; nothing was "
+                                    "written",
+                                    path.string(), input));
+  }
+}
+
+bool is_stdout(const fs::path& path) {
+  const auto facts = facts_of(path);
+  struct stat out {};
+  if (!facts || fstat(STDOUT_FILENO, &out) != 0 || !same_file(*facts, out)) return false;
+  return !S_ISCHR(out.st_mode) || isatty(STDOUT_FILENO) == 1;  // /dev/null shows nothing
+}
+
+void write_output(const fs::path& path, std::span<const std::byte> bytes) {
+  const auto facts = facts_of(path);
+  if (is_written_through(path, facts)) {
+    write_through(path, bytes);
+    return;
+  }
+  if (facts && access(path.c_str(), W_OK) != 0) fail(path, errno);
+  Temporary file(path);
+  file.write(bytes);
+  file.replace_target(facts ? facts->st_mode & kPermissions : mode_of_new_file());
+}
+
+}  // namespace robosync::tool

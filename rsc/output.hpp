@@ -1,0 +1,24 @@
+// What a verb writes for its user, without destroying what is not its own.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace robosync::tool {
+
+// Throws Failure when `path` is one of `inputs` (usage), whatever link it is named by, or a directory
+// (outside). Inputs that are not there are ignored.
+void check_output(const std::filesystem::path& path, const std::vector<std::string>& inputs);
+
+// It goes to this program's stdout, so nothing else should.
+[[nodiscard]] bool is_stdout(const std::filesystem::path& path);
+
+// A file has the new content or is as it was, whatever happens; a link to one is replaced by it, as
+// the C compiler does. Devices, pipes and links that dangle are written through. Throws Failure
+// (outside).
+void write_output(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+}  // namespace robosync::tool
