@@ -222,25 +222,36 @@ private:
       return exclude_each_other(needs[a], needs[b]);
     });
     // A choice is part of a contest as a whole or not at all: so to count those first that cost most is the worst.
-    put_together(&Firing::contest, [&](std::size_t a, std::size_t b) {
-      return all_of_choice(a, [&](std::size_t x) {
-        return all_of_choice(b, [&](std::size_t y) {
-          return same_choice(x, y) || work_.contend(rules[x], rules[y]);
-        });
+    const std::vector<std::vector<std::size_t>> choices = choices_of(rules.size());
+    const auto all_contend = [&](std::size_t a, std::size_t b) {
+      return std::ranges::all_of(choices[a], [&](std::size_t x) {
+        return std::ranges::all_of(
+            choices[b], [&](std::size_t y) { return work_.contend(rules[x], rules[y]); });
       });
+    };
+    std::map<std::pair<std::size_t, std::size_t>, bool>
+        known;  // there are many firings of a choice
+    put_together(&Firing::contest, [&](std::size_t a, std::size_t b) {
+      const std::pair pair(choice_of(a), choice_of(b));
+      if (pair.first == pair.second) return true;
+      const auto found = known.find(pair);
+      if (found != known.end()) return found->second;
+      return known[pair] = all_contend(pair.first, pair.second);
     });
   }
 
-  bool same_choice(std::size_t a, std::size_t b) const {
-    const std::size_t choice = set_.firings[a].choice;
-    return a == b || (choice != Firing::kNone && choice == set_.firings[b].choice);
+  // A firing without a choice is one by itself.
+  std::size_t choice_of(std::size_t firing) const {
+    const std::size_t choice = set_.firings[firing].choice;
+    return choice == Firing::kNone ? firing : choice;
   }
 
-  template <class Test>
-  bool all_of_choice(std::size_t firing, Test test) const {
-    for (std::size_t i = 0; i < set_.firings.size(); ++i)
-      if (same_choice(firing, i) && !test(i)) return false;
-    return true;
+  // The firings of each choice, at its number.
+  std::vector<std::vector<std::size_t>> choices_of(std::size_t firings) const {
+    std::vector<std::vector<std::size_t>> choices(firings);
+    for (std::size_t i = 0; i < firings; ++i)
+      choices[choice_of(i)].push_back(i);
+    return choices;
   }
 
   // Each with the first others that it and all of them go together with.
