@@ -51,27 +51,10 @@ bool view_image(std::span<const std::byte> bytes, Image& image) {
   const ImageHeader& header = *reinterpret_cast<const ImageHeader*>(bytes.data());
   image.header = &header;
   std::uintptr_t next = begin + sizeof(ImageHeader);
-  place(next, header.sensors, image.sensors);
-  place(next, header.channels, image.channels);
-  place(next, header.actuators, image.actuators);
-  place(next, header.groups, image.groups);
-  place(next, header.verbs, image.verbs);
-  place(next, header.words, image.words);
-  place(next, header.variables, image.variables);
-  place(next, header.checks, image.checks);
-  place(next, header.bands, image.bands);
-  place(next, header.behaviors, image.behaviors);
-  place(next, header.modifiers, image.modifiers);
-  place(next, header.adaptations, image.adaptations);
-  place(next, header.timers, image.timers);
-  place(next, header.rules, image.rules);
-  place(next, header.responses, image.responses);
-  place(next, header.inputs, image.inputs);
-  place(next, header.constants, image.constants);
-  place(next, header.code, image.code);
-  place(next, header.labels, image.labels);
-  place(next, header.string_bytes, image.strings);
-  place(next, header.source_lines, image.source_lines);
+#define IMAGE_SECTION(records, Record, Count, check, name) \
+  place(next, header.records, image.records);
+#include "vm/sections.def"
+#undef IMAGE_SECTION
   return header.total_length == bytes.size() && next - begin == bytes.size();
 }
 

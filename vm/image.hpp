@@ -1,7 +1,7 @@
 // The compiled program (.rsb): its layout in memory and on the wire.
 //
 // Little-endian, every record a plain struct read in place. Sections follow the header without gaps
-// in the order of ImageHeader's counts (each padded to 4 bytes), so offsets are derived, never
+// in the order of sections.def (each padded to 4 bytes), so offsets are derived, never
 // stored, and cannot overlap. An image is data from outside: nothing here may be trusted before
 // verify() said yes.
 #pragma once
@@ -116,17 +116,11 @@ struct ImageHeader {
   std::array<std::uint8_t, 8> program_hash;  // first bytes of SHA-256 over source and configuration
   std::uint32_t seed;                        // of RANDOM and PICK ONE
   std::uint32_t step_cost;                   // worst-case M4 instructions of VM code in one step
-  // Records in each section, in the order the sections stand in.
-  std::uint8_t sensors, channels, actuators, groups;
-  std::uint8_t verbs, words, variables, checks;
-  std::uint8_t bands, behaviors, modifiers, adaptations;
-  std::uint16_t timers, rules, responses;
-  std::uint16_t inputs;  // numbers of channels and variables, u8 each
-  std::uint16_t constants;
-  std::uint16_t code;    // instruction words
-  std::uint16_t labels;  // offsets in the strings, u16 each
-  std::uint16_t string_bytes;
-  std::uint16_t source_lines;  // debug, dropped by --strip
+  // Records in each section; of `inputs` and `labels` they are numbers, of `strings` bytes, of `code`
+  // instruction words. Without source_lines (--strip) traces and faults name no lines.
+#define IMAGE_SECTION(records, Record, Count, check, name) Count records;
+#include "vm/sections.def"
+#undef IMAGE_SECTION
   std::uint16_t reserved;
 };
 static_assert(sizeof(ImageHeader) == 64);
@@ -299,27 +293,9 @@ static_assert(sizeof(Adaptation) == 8);
 // Read-only view of an image's sections. `bytes` must be 4-aligned and outlive the view.
 struct Image {
   const ImageHeader* header = nullptr;
-  std::span<const Sensor> sensors;
-  std::span<const Channel> channels;
-  std::span<const Actuator> actuators;
-  std::span<const Group> groups;
-  std::span<const Verb> verbs;
-  std::span<const WordEntry> words;
-  std::span<const Variable> variables;
-  std::span<const Check> checks;
-  std::span<const Band> bands;
-  std::span<const Behavior> behaviors;
-  std::span<const Modifiers> modifiers;
-  std::span<const Adaptation> adaptations;  // one where priorities adapt, else none
-  std::span<const Timer> timers;
-  std::span<const Rule> rules;
-  std::span<const Response> responses;
-  std::span<const std::uint8_t> inputs;
-  std::span<const Value> constants;
-  std::span<const Word> code;
-  std::span<const std::uint16_t> labels;
-  std::span<const char> strings;
-  std::span<const SourceLine> source_lines;
+#define IMAGE_SECTION(records, Record, Count, check, name) std::span<const Record> records;
+#include "vm/sections.def"
+#undef IMAGE_SECTION
 
   // The NUL-terminated string at `offset`; empty when kNoIndex or out of range.
   std::string_view string(std::uint16_t offset) const;
@@ -334,27 +310,10 @@ struct Image {
 // Sections in the order they stand in the image; also names the place in a verifier's refusal.
 enum class Section : std::uint8_t {
   header,
-  sensors,
-  channels,
-  actuators,
-  groups,
-  verbs,
-  words,
-  variables,
-  checks,
-  bands,
-  behaviors,
-  modifiers,
-  adaptations,
-  timers,
-  rules,
-  responses,
-  inputs,
-  constants,
-  code,
-  labels,
-  strings,
-  source_lines
+#define IMAGE_SECTION(records, Record, Count, check, name) records,
+#include "vm/sections.def"
+#undef IMAGE_SECTION
+  count_
 };
 
 // Lays the sections out over `bytes`. False if they do not fill exactly total_length ==

@@ -52,11 +52,11 @@ constexpr std::string_view kRefusalTexts[] = {
 };
 
 constexpr std::string_view kSectionNames[] = {
-    "header",     "sensors",   "channels", "actuators",   "groups",    "verbs",
-    "words",      "variables", "checks",   "bands",       "behaviors", "modifiers",
-    "adaptation", "timers",    "rules",    "responses",   "inputs",    "constants",
-    "code",       "labels",    "strings",  "source lines"};
-static_assert(std::size(kSectionNames) == static_cast<std::size_t>(Section::source_lines) + 1);
+    "header",
+#define IMAGE_SECTION(records, Record, Count, check, name) name,
+#include "vm/sections.def"
+#undef IMAGE_SECTION
+};
 
 // Finds the response's cost; 0 where there is none.
 bool check_response(Frame& frame, const Rule& rule, std::uint16_t index, std::uint32_t& cost) {

@@ -2,6 +2,9 @@
 //
 // One walk over the sections in their order, one check for each kind of record. A check may rely on
 // the sections before its own.
+#include <cstddef>
+#include <type_traits>
+
 #include "vm/timers.hpp"
 #include "vm/verification.hpp"
 
@@ -279,9 +282,11 @@ Refusal check_adaptation(Walk&, const Adaptation& adaptation, std::size_t) {
                                          (reserved[0] | reserved[1] | reserved[2]) == 0);
 }
 
+using RecordCheck = Refusal (*)(Walk&, const std::byte* record, std::size_t index);
+
 // A section as the walk sees it: how many records the header says, how large they are, their check.
 struct SectionInfo {
-  Refusal (*check)(Walk&, const std::byte* record, std::size_t index);  // none: nothing to check
+  RecordCheck check;  // none: nothing to check
   std::uint8_t record_size;
   std::uint8_t count_place;  // in the header
   std::uint8_t count_size;
@@ -295,42 +300,27 @@ constexpr bool is_named() {
   return false;
 }
 
-template <typename Record, Refusal (*check)(Walk&, const Record&, std::size_t)>
-Refusal check_at(Walk& walk, const std::byte* record, std::size_t index) {
-  return check(walk, *reinterpret_cast<const Record*>(record), index);
+// Another part of the verifier looks at it: code (verify_object.cpp), strings (check_records).
+constexpr std::nullptr_t unchecked = nullptr;
+
+template <typename Record, auto check>
+constexpr RecordCheck check_of() {
+  if constexpr (std::is_null_pointer_v<decltype(check)>)
+    return nullptr;
+  else
+    return [](Walk& walk, const std::byte* record, std::size_t index) {
+      return check(walk, *reinterpret_cast<const Record*>(record), index);
+    };
 }
 
 // In the order of Section, from the section after the header on.
 constexpr SectionInfo kSections[] = {
-#define SECTION(count, Record, check)                                                \
-  {                                                                                  \
-    check, sizeof(Record), offsetof(ImageHeader, count), sizeof(ImageHeader::count), \
-        is_named<Record>()                                                           \
-  }
-    SECTION(sensors, Sensor, (check_at<Sensor, check_sensor>)),
-    SECTION(channels, Channel, (check_at<Channel, check_channel>)),
-    SECTION(actuators, Actuator, (check_at<Actuator, check_actuator>)),
-    SECTION(groups, Group, (check_at<Group, check_group>)),
-    SECTION(verbs, Verb, (check_at<Verb, check_verb>)),
-    SECTION(words, WordEntry, (check_at<WordEntry, check_word>)),
-    SECTION(variables, Variable, (check_at<Variable, check_variable>)),
-    SECTION(checks, Check, (check_at<Check, check_check>)),
-    SECTION(bands, Band, (check_at<Band, check_band>)),
-    SECTION(behaviors, Behavior, (check_at<Behavior, check_behavior>)),
-    SECTION(modifiers, Modifiers, (check_at<Modifiers, check_modifiers>)),
-    SECTION(adaptations, Adaptation, (check_at<Adaptation, check_adaptation>)),
-    SECTION(timers, Timer, (check_at<Timer, check_timer>)),
-    SECTION(rules, Rule, (check_at<Rule, check_rule>)),
-    SECTION(responses, Response, (check_at<Response, check_response>)),
-    SECTION(inputs, std::uint8_t, (check_at<std::uint8_t, check_input>)),
-    SECTION(constants, Value, (check_at<Value, check_constant>)),
-    SECTION(code, Word, nullptr),  // check_code
-    SECTION(labels, std::uint16_t, (check_at<std::uint16_t, check_label>)),
-    SECTION(string_bytes, char, nullptr),  // check_records
-    SECTION(source_lines, SourceLine, (check_at<SourceLine, check_source_line>)),
-#undef SECTION
+#define IMAGE_SECTION(records, Record, Count, check, name)                                   \
+  {check_of<Record, check>(), sizeof(Record), offsetof(ImageHeader, records), sizeof(Count), \
+   is_named<Record>()},
+#include "vm/sections.def"
+#undef IMAGE_SECTION
 };
-static_assert(std::size(kSections) == static_cast<std::size_t>(Section::source_lines));
 
 std::size_t record_count(const ImageHeader& header, const SectionInfo& section) {
   const auto* const place = reinterpret_cast<const std::uint8_t*>(&header) + section.count_place;

@@ -34,6 +34,7 @@ public:
     rules_ = make_rules(program, written, tables, strings_, diagnostics_);
     records_ = make_records(written, robot, tables, strings_);
     if (diagnostics_.errors() > 0 || !counts_fit()) return {};
+    if (options_.source_lines) lines_ = rules_.pool.lines();
     lay_out();
     finish_header(hash);
     return {std::move(bytes_), std::move(rules_.pool)};
@@ -42,8 +43,8 @@ public:
 private:
   bool counts_fit();
   void lay_out();
-  template <typename Record>
-  std::uint16_t section(const std::vector<Record>& records);
+  vm::Image sections() const;
+  void append(std::span<const std::byte> section);
   void finish_header(const ProgramHash& hash);
 
   EmitOptions options_;
@@ -51,6 +52,7 @@ private:
   Strings strings_;
   Records records_;
   RuleSections rules_;
+  std::vector<vm::SourceLine> lines_;
   vm::ImageHeader header_{};
   std::vector<std::byte> bytes_;
 };
@@ -76,38 +78,45 @@ bool Emitter::counts_fit() {
          fits(strings_.text().size(), kMost, "names and texts");
 }
 
-template <typename Record>
-std::uint16_t Emitter::section(const std::vector<Record>& records) {
-  const auto raw = std::as_bytes(std::span(records));
-  bytes_.insert(bytes_.end(), raw.begin(), raw.end());
+vm::Image Emitter::sections() const {
+  vm::Image image;
+  image.sensors = records_.sensors;
+  image.channels = records_.channels;
+  image.actuators = records_.actuators;
+  image.groups = records_.groups;
+  image.verbs = records_.verbs;
+  image.words = records_.words;
+  image.variables = records_.variables;
+  image.checks = records_.checks;
+  image.bands = records_.bands;
+  image.behaviors = rules_.behaviors;
+  image.modifiers = rules_.modifiers;
+  image.adaptations = records_.adaptations;
+  image.timers = rules_.timers.records();
+  image.rules = rules_.rules;
+  image.responses = rules_.responses;
+  image.inputs = rules_.inputs;
+  image.constants = rules_.pool.constants();
+  image.code = rules_.pool.code();
+  image.labels = strings_.labels();
+  image.strings = strings_.text();
+  image.source_lines = lines_;
+  return image;
+}
+
+void Emitter::append(std::span<const std::byte> section) {
+  bytes_.insert(bytes_.end(), section.begin(), section.end());
   bytes_.resize((bytes_.size() + 3) / 4 * 4);
-  return static_cast<std::uint16_t>(records.size());
 }
 
 void Emitter::lay_out() {
-  const auto count8 = [](std::uint16_t count) { return static_cast<std::uint8_t>(count); };
+  const vm::Image all = sections();
   bytes_.assign(sizeof header_, std::byte{0});
-  header_.sensors = count8(section(records_.sensors));
-  header_.channels = count8(section(records_.channels));
-  header_.actuators = count8(section(records_.actuators));
-  header_.groups = count8(section(records_.groups));
-  header_.verbs = count8(section(records_.verbs));
-  header_.words = count8(section(records_.words));
-  header_.variables = count8(section(records_.variables));
-  header_.checks = count8(section(records_.checks));
-  header_.bands = count8(section(records_.bands));
-  header_.behaviors = count8(section(rules_.behaviors));
-  header_.modifiers = count8(section(rules_.modifiers));
-  header_.adaptations = count8(section(records_.adaptations));
-  header_.timers = section(rules_.timers.records());
-  header_.rules = section(rules_.rules);
-  header_.responses = section(rules_.responses);
-  header_.inputs = section(rules_.inputs);
-  header_.constants = section(rules_.pool.constants());
-  header_.code = section(rules_.pool.code());
-  header_.labels = section(strings_.labels());
-  header_.string_bytes = section(std::vector<char>(strings_.text().begin(), strings_.text().end()));
-  if (options_.source_lines) header_.source_lines = section(rules_.pool.lines());
+#define IMAGE_SECTION(records, Record, Count, check, name)  \
+  header_.records = static_cast<Count>(all.records.size()); \
+  append(std::as_bytes(all.records));
+#include "vm/sections.def"
+#undef IMAGE_SECTION
 }
 
 void Emitter::finish_header(const ProgramHash& hash) {

@@ -104,27 +104,9 @@ struct ImageBuilder {
 
   [[nodiscard]] Bytes build() const {
     Bytes bytes(sizeof(ImageHeader));
-    append(bytes, sensors);
-    append(bytes, channels);
-    append(bytes, actuators);
-    append(bytes, groups);
-    append(bytes, verbs);
-    append(bytes, words);
-    append(bytes, variables);
-    append(bytes, checks);
-    append(bytes, bands);
-    append(bytes, behaviors);
-    append(bytes, modifiers);
-    append(bytes, adaptations);
-    append(bytes, timers);
-    append(bytes, rules);
-    append(bytes, responses);
-    append(bytes, inputs);
-    append(bytes, constants);
-    append(bytes, code);
-    append(bytes, labels);
-    append(bytes, strings);
-    append(bytes, source_lines);
+#define IMAGE_SECTION(records, Record, Count, check, name) append(bytes, records);
+#include "vm/sections.def"
+#undef IMAGE_SECTION
     ImageHeader header = counts();
     header.total_length = static_cast<std::uint32_t>(bytes.size());
     std::memcpy(bytes.data(), &header, sizeof header);
@@ -150,27 +132,10 @@ private:
     header.format_major = kFormatMajor;
     header.format_minor = kFormatMinor;
     header.opcode_set = opcode_set_id();
-    header.sensors = static_cast<std::uint8_t>(sensors.size());
-    header.channels = static_cast<std::uint8_t>(channels.size());
-    header.actuators = static_cast<std::uint8_t>(actuators.size());
-    header.groups = static_cast<std::uint8_t>(groups.size());
-    header.verbs = static_cast<std::uint8_t>(verbs.size());
-    header.words = static_cast<std::uint8_t>(words.size());
-    header.variables = static_cast<std::uint8_t>(variables.size());
-    header.checks = static_cast<std::uint8_t>(checks.size());
-    header.bands = static_cast<std::uint8_t>(bands.size());
-    header.behaviors = static_cast<std::uint8_t>(behaviors.size());
-    header.modifiers = static_cast<std::uint8_t>(modifiers.size());
-    header.adaptations = static_cast<std::uint8_t>(adaptations.size());
-    header.timers = static_cast<std::uint16_t>(timers.size());
-    header.labels = static_cast<std::uint16_t>(labels.size());
-    header.rules = static_cast<std::uint16_t>(rules.size());
-    header.responses = static_cast<std::uint16_t>(responses.size());
-    header.inputs = static_cast<std::uint16_t>(inputs.size());
-    header.constants = static_cast<std::uint16_t>(constants.size());
-    header.code = static_cast<std::uint16_t>(code.size());
-    header.string_bytes = static_cast<std::uint16_t>(strings.size());
-    header.source_lines = static_cast<std::uint16_t>(source_lines.size());
+#define IMAGE_SECTION(records, Record, Count, check, name) \
+  header.records = static_cast<Count>(records.size());
+#include "vm/sections.def"
+#undef IMAGE_SECTION
     return header;
   }
 };

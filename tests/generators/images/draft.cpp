@@ -7,34 +7,14 @@
 
 namespace robosync::fuzz {
 
-using vm::ImageHeader;
+using namespace vm;  // the names of sections.def
 
 const std::array<SectionInfo, kSectionCount> kSections = {{
-#define SECTION(count, Record) \
-  { sizeof(Record), offsetof(ImageHeader, count), sizeof(ImageHeader::count) }
     {0, 0, 0},
-    SECTION(sensors, vm::Sensor),
-    SECTION(channels, vm::Channel),
-    SECTION(actuators, vm::Actuator),
-    SECTION(groups, vm::Group),
-    SECTION(verbs, vm::Verb),
-    SECTION(words, vm::WordEntry),
-    SECTION(variables, vm::Variable),
-    SECTION(checks, vm::Check),
-    SECTION(bands, vm::Band),
-    SECTION(behaviors, vm::Behavior),
-    SECTION(modifiers, vm::Modifiers),
-    SECTION(adaptations, vm::Adaptation),
-    SECTION(timers, vm::Timer),
-    SECTION(rules, vm::Rule),
-    SECTION(responses, vm::Response),
-    SECTION(inputs, std::uint8_t),
-    SECTION(constants, vm::Value),
-    SECTION(code, vm::Word),
-    SECTION(labels, std::uint16_t),
-    SECTION(string_bytes, char),
-    SECTION(source_lines, vm::SourceLine),
-#undef SECTION
+#define IMAGE_SECTION(records, Record, Count, check, name) \
+  {sizeof(Record), offsetof(ImageHeader, records), sizeof(Count)},
+#include "vm/sections.def"
+#undef IMAGE_SECTION
 }};
 
 namespace {

@@ -24,7 +24,7 @@ struct SectionInfo {
   std::uint8_t count_place;
   std::uint8_t count_size;
 };
-inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::source_lines) + 1;
+inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::count_);
 extern const std::array<SectionInfo, kSectionCount> kSections;  // of the header: none
 
 // A code object as a rule runs it.
