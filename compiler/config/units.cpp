@@ -20,7 +20,20 @@ constexpr int kMaxExponent = 15;
 constexpr std::array kUnits = {
 #define UNIT(spelling, dimension, factor, offset, divisor) \
   Unit{spelling, vm::Dimension::dimension, factor, offset, divisor},
+#define UNIT_NAME(other, spelling)
 #include "compiler/config/units.def"
+#undef UNIT_NAME
+#undef UNIT
+};
+
+struct OtherName {
+  std::string_view name, spelling;
+};
+constexpr std::array kOtherNames = {
+#define UNIT(spelling, dimension, factor, offset, divisor)
+#define UNIT_NAME(other, spelling) OtherName{other, spelling},
+#include "compiler/config/units.def"
+#undef UNIT_NAME
 #undef UNIT
 };
 
@@ -115,10 +128,29 @@ std::span<const Unit> units() {
   return kUnits;
 }
 
+namespace {
+
+// "degrees/second": of both sides by any name.
+const Unit* find_rate(std::string_view spelling) {
+  const std::size_t slash = spelling.find('/');
+  if (slash == std::string_view::npos) return nullptr;
+  const Unit* const way = find_unit(spelling.substr(0, slash));
+  const Unit* const time = find_unit(spelling.substr(slash + 1));
+  if (way == nullptr || time == nullptr) return nullptr;
+  const std::string rate = std::string(way->spelling) + "/" + std::string(time->spelling);
+  for (const Unit& unit : kUnits)
+    if (unit.spelling == rate) return &unit;
+  return nullptr;
+}
+
+}  // namespace
+
 const Unit* find_unit(std::string_view spelling) {
   for (const Unit& unit : kUnits)
     if (equal_ignoring_case(unit.spelling, spelling)) return &unit;
-  return nullptr;
+  for (const OtherName& other : kOtherNames)
+    if (equal_ignoring_case(other.name, spelling)) return find_unit(other.spelling);
+  return find_rate(spelling);
 }
 
 const Unit& canonical_unit(vm::Dimension dimension) {

@@ -19,7 +19,8 @@ struct Unit {
 };
 
 [[nodiscard]] std::span<const Unit> units();
-// Any case is accepted. nullptr when there is no such unit. "" is the plain number.
+// Any case is accepted, and a unit's other names. nullptr when there is no such unit. "" is the
+// plain number.
 [[nodiscard]] const Unit* find_unit(std::string_view spelling);
 [[nodiscard]] const Unit& canonical_unit(vm::Dimension dimension);
 [[nodiscard]] std::string_view dimension_phrase(vm::Dimension dimension);  // "a distance"

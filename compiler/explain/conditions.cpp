@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "compiler/config/units.hpp"
+
 namespace robosync::compiler::explain {
 namespace {
 
@@ -16,6 +18,12 @@ using ast::Expr;
 
 std::string of(const Expr& expr) {
   return number(expr);
+}
+
+// By its short name; as it is written when there is no such unit.
+std::string unit_of(const ast::Quantity& quantity) {
+  const Unit* const unit = find_unit(quantity.unit);
+  return std::string(unit != nullptr ? unit->spelling : quantity.unit);
 }
 
 std::string_view sign(ast::ArithmeticOp op) {
@@ -187,7 +195,7 @@ std::string no_number(const Expr& expr) {
 
 std::string number(const Expr& expr) {
   if (const auto* node = std::get_if<ast::Quantity>(&expr.node))
-    return std::string(node->digits) + std::string(node->unit);
+    return std::string(node->digits) + unit_of(*node);
   if (const auto* node = std::get_if<ast::Operand>(&expr.node)) return operand(*node);
   if (const auto* node = std::get_if<ast::Negate>(&expr.node)) return "-" + part(*node->value);
   if (const auto* node = std::get_if<ast::Arithmetic>(&expr.node)) {

@@ -52,6 +52,12 @@ std::string value_of(const ast::Argument& argument) {
   return count == "1" ? "once" : count + " times";
 }
 
+// The IF that is all of another one's ELSE; null when there is none.
+const ast::If* other_if(const ast::If& node) {
+  return node.else_block.size() == 1 ? std::get_if<ast::If>(&node.else_block.front().node)
+                                     : nullptr;
+}
+
 class StatementWriter {
 public:
   StatementWriter(const Defines& defines, std::size_t indent)
@@ -110,9 +116,14 @@ private:
   void write(const ast::If& node) {
     line(fmt::format("if {}:", is_true(*node.condition)));
     nested(node.then_block);
-    if (node.else_block.empty()) return;
+    const ast::If* last = &node;
+    for (; other_if(*last) != nullptr; last = other_if(*last)) {
+      line(fmt::format("otherwise, if {}:", is_true(*other_if(*last)->condition)));
+      nested(other_if(*last)->then_block);
+    }
+    if (last->else_block.empty()) return;
     line("otherwise:");
-    nested(node.else_block);
+    nested(last->else_block);
   }
 
   void write(const ast::Repeat& node) {

@@ -138,7 +138,8 @@ const Keyword* nearest_keyword(std::string_view word, unsigned roles) {
 
 std::string describe(TokenKind kind) {
   const char* name = Grammar::symbol_name(static_cast<Grammar::symbol_kind_type>(kind));
-  const bool is_phrase = std::string_view(name).find(' ') != std::string_view::npos;
+  const bool is_phrase =
+      std::string_view(name).starts_with("a ") || std::string_view(name).starts_with("the ");
   return is_phrase ? std::string(name) : "`" + std::string(name) + "`";
 }
 

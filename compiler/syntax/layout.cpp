@@ -127,13 +127,14 @@ bool is_sign(TokenKind kind) {
 // Most pieces have too few tokens that go down for any of them to be too deep.
 bool may_be_deep(std::span<const Token> tokens) {
   const auto goes_down = [](const Token& token) {
-    return is_sign(token.kind) || (roles_of(token.kind) & role::opens) != 0;
+    return is_sign(token.kind) || token.kind == Kinds::ELSE_IF ||
+           (roles_of(token.kind) & role::opens) != 0;
   };
   return std::ranges::count_if(tokens, goes_down) > static_cast<std::ptrdiff_t>(deepest_block);
 }
 
-// Counts what makes the grammar's stack grow: open IF, REPEAT and PICK blocks, open brackets, and
-// signs in a row like NOT NOT NOT.
+// Counts what makes the grammar's stack grow: open IF, REPEAT and PICK blocks, each ELSE IF being one
+// in the one before, open brackets, and signs in a row like NOT NOT NOT.
 class Depth {
 public:
   explicit Depth(std::span<const Token> tokens) : tokens_(tokens), walk_(tokens) {}
@@ -152,8 +153,18 @@ private:
   void step_blocks(std::size_t at) {
     const std::size_t open_before = walk_.open().size();
     walk_.step(at);
-    if (walk_.open().size() > open_before && is_statement(at)) ++blocks_;
-    if (walk_.open().size() < open_before && is_statement(walk_.closed())) --blocks_;
+    if (tokens_[at].kind == Kinds::ELSE_IF && !levels_.empty()) {
+      ++levels_.back();
+      ++blocks_;
+    }
+    if (walk_.open().size() > open_before) {
+      levels_.push_back(is_statement(at) ? 1 : 0);
+      blocks_ += levels_.back();
+    }
+    if (walk_.open().size() < open_before) {
+      blocks_ -= levels_.back();
+      levels_.pop_back();
+    }
   }
 
   void step_expression(TokenKind kind) {
@@ -169,6 +180,7 @@ private:
   std::span<const Token> tokens_;
   BlockWalk walk_;
   TokenKind last_ = Kinds::NEWLINE;
+  std::vector<std::size_t> levels_;  // of each block that is open
   std::size_t blocks_ = 0, brackets_ = 0, signs_ = 0;
 };
 

@@ -87,8 +87,15 @@ bool is_curly(char32_t point) {
          std::end(curly_quotes);
 }
 
+// What may stand behind the / of a unit: a second, by any of its names.
+// What may stand behind the / of a unit, in any case.
 bool is_per_second(std::string_view unit_end) {
-  return unit_end == "s" || unit_end == "S";
+  constexpr std::string_view names[] = {"s", "sec", "second"};
+  return std::ranges::any_of(names, [unit_end](std::string_view name) {
+    return std::ranges::equal(name, unit_end, [](char small, char written) {
+      return small == (written >= 'A' && written <= 'Z' ? written - 'A' + 'a' : written);
+    });
+  });
 }
 
 }  // namespace
@@ -117,6 +124,16 @@ void LexerState::word() {
   cursor_ = start_ + length;
   const Keyword* keyword = find_keyword(lexeme());
   token(keyword != nullptr ? keyword->kind : Kinds::NAME);
+  if (keyword != nullptr && keyword->kind == Kinds::IF) join_else_if();
+}
+
+// `ELSE IF` in one line goes on with the IF before; behind an ELSE that ends its line, an IF is one
+// of its own, with its own END.
+void LexerState::join_else_if() {
+  if (tokens_.size() < 2 || tokens_[tokens_.size() - 2].kind != Kinds::ELSE) return;
+  const std::size_t begin = tokens_[tokens_.size() - 2].span.begin;
+  tokens_.resize(tokens_.size() - 2);
+  tokens_.push_back({Kinds::ELSE_IF, span(begin, cursor_)});
 }
 
 // ---- numbers

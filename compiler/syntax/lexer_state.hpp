@@ -28,6 +28,7 @@ private:
   // Each handles the bytes from start_ to cursor_, and may move cursor_ back.
   void token(TokenKind kind);
   void word();
+  void join_else_if();
   void quantity();
   void bad_number();
   void bad_fraction();

@@ -202,6 +202,10 @@ private:
       message.label(tokens_[early->by].span, "this one closed the block already", false);
       message.label(tokens_[early->closed].span, "the block begins here", false);
     }
+    const auto goes_on = [](const Token& token) { return token.kind == Kinds::ELSE_IF; };
+    if (std::any_of(tokens_.begin(), tokens_.begin() + static_cast<std::ptrdiff_t>(edit_.at),
+                    goes_on))
+      message.helps("one END closes an IF with all its ELSE IFs");
   }
 
   void something_else() {

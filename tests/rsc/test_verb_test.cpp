@@ -196,7 +196,7 @@ TEST_CASE("mistakes in a TEST are shown with their place, and no test runs") {
            {"AT 2s button = 1", "gives words, not numbers"},
            {"AT 2s button = \"presed\"", "did you mean `pressed`?"},
            {"AT 500ms touch LEVEL = 1", "this time is over already"},
-           {"WAIT 2h", "E0303"},
+           {"WAIT 2weeks", "E0303"},
            {"WAIT 90min", "a TEST cannot be longer than an hour"},
            {"EXPECT MOVE leg WITHIN 1s", "E0501"},
            {"EXPECT MOVE arms TO 3N WITHIN 1s", "E0301"},

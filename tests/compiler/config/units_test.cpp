@@ -79,6 +79,16 @@ TEST_CASE("what is not a number, or needs more digits than a value has") {
 TEST_CASE("units in any case; every dimension's own unit is one canonical unit") {
   CHECK(find_unit("CM") == find_unit("cm"));
   CHECK(find_unit("parsec") == nullptr);
+  CHECK(find_unit("Seconds") == find_unit("s"));
+  CHECK(find_unit("°") == find_unit("deg"));
+  CHECK(find_unit("°C") == find_unit("C"));
+  CHECK(find_unit("percent") == find_unit("%"));
+  CHECK(find_unit("degrees/second") == find_unit("deg/s"));
+  CHECK(find_unit("centimetres/s") == find_unit("cm/s"));
+  CHECK(find_unit("deg/min") == nullptr);
+  CHECK(find_unit("/s") == nullptr);
+  CHECK(find_unit("deg/") == nullptr);
+  CHECK(value_of("1.5", "h") == 5'400'000);
   for (const Unit& unit : units()) {
     const Unit& own = canonical_unit(unit.dimension);
     CHECK(own.factor == vm::kScale);

@@ -64,6 +64,8 @@ TEST_CASE("keywords in any case, names as they are", "[lexer]") {
   CHECK(tokens("WHEN when WhEn whence BEHAVIOUR behavior") ==
         "WHEN WHEN WHEN N:whence BEHAVIOR BEHAVIOR");
   CHECK(tokens("touch_level _x x2 été 触摸") == "N:touch_level N:_x N:x2 N:été N:触摸");
+  CHECK(tokens("ELSE IF a else  if b ELSE\nIF c IF d") ==
+        "ELSE IF N:a ELSE IF N:b ELSE NL IF N:c IF N:d");
   CHECK(is_keyword("otherwise"));
   CHECK(is_keyword("Behaviour"));
   CHECK_FALSE(is_keyword("MOVE"));
@@ -75,6 +77,8 @@ TEST_CASE("numbers carry their units", "[lexer]") {
   CHECK(tokens("3 0.5 80cm 40% 20deg/s 10cm/x 10cm/2 1.5mA 20°C 5µs 9deg/s2") ==
         "Q:3 Q:0.5 Q:80cm Q:40% Q:20deg/s Q:10cm / N:x Q:10cm / Q:2 Q:1.5mA Q:20°C Q:5µs Q:9deg / "
         "N:s2");
+  CHECK(tokens("20° 2h 3degrees 20°/s 4deg/SEC 5cm/second 6cm/seconds") ==
+        "Q:20° Q:2h Q:3degrees Q:20°/s Q:4deg/SEC Q:5cm/second Q:6cm / N:seconds");
   CHECK(tokens(std::string(5000, '9')) == "Q:" + std::string(5000, '9'));
   CHECK(tokens("10-3") == "Q:10 - Q:3");
 }
@@ -130,6 +134,8 @@ TEST_CASE("characters that RSL does not use are left out", "[lexer]") {
 TEST_CASE("ends of lines count where a statement may end", "[lexer]") {
   CHECK(filtered("a\n\n\nb") == "N:a NL N:b NL");
   CHECK(filtered("a +\nb") == "N:a + N:b NL");
+  CHECK(filtered("WHEN\na\nDO b END") == "WHEN N:a DO N:b END NL");
+  CHECK(filtered("IF\n\na DO b\nELSE IF\nc DO d END") == "IF N:a DO N:b ELSE IF N:c DO N:d END NL");
   CHECK(filtered("a\nAND b\nDO\nc\nEND\nd") == "N:a AND N:b DO N:c END NL N:d NL");
   CHECK(filtered("\n\na\n") == "N:a NL");
   CHECK(filtered("") == "");

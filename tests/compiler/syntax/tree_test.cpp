@@ -83,6 +83,11 @@ TEST_CASE("statements", "[tree]") {
   CHECK(statement("WAIT 2s\nTHEN\nWAIT UNTIL a\nWAIT UNTIL a WITHIN 2s\nWAIT UNTIL a FOR 1s") ==
         "(wait 2s) (then) (wait-until a) (wait-until a (within 2s)) (wait-until (for a 1s))");
   CHECK(statement("IF a DO b ELSE c END") == "(if a (do (b)) (else (c)))");
+  CHECK(statement("IF a DO b ELSE IF c DO d ELSE IF e DO f ELSE g END\nh") ==
+        "(if a (do (b)) (else (if c (do (d)) (else (if e (do (f)) (else (g))))))) (h)");
+  CHECK(statement("IF a DO b\nELSE\nIF c DO d END\ne\nEND") ==
+        "(if a (do (b)) (else (if c (do (d))) (e)))");
+  CHECK(statement("IF\na\nDO b END") == "(if a (do (b)))");
   CHECK(statement("REPEAT 3 TIMES\na\nEND\nREPEAT WHILE b\na\nEND\nREPEAT FOREVER\na\nEND") ==
         "(repeat (times 3) (do (a))) (repeat (while b) (do (a))) (repeat forever (do (a)))");
   CHECK(statement("PICK ONE\nOPTION 60%\na\nOPTION b\nEND") ==
