@@ -1,6 +1,7 @@
 // The response times of a program, path by path, and whether the board can keep up with it.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,12 @@ struct ResponseReport {
   [[nodiscard]] Instructions microseconds(Instructions instructions) const;
 };
 
+// What is known when the processor as a whole cannot do it: that, or every path nevertheless.
+enum class Depth : std::uint8_t { until_refused, all };
+
 // `cap`: as in task_set.hpp. The image must be verified.
 [[nodiscard]] ResponseReport response_report(const vm::Image& image,
-                                             const policy::BoardCosts& board, int cap = 0);
+                                             const policy::BoardCosts& board, int cap = 0,
+                                             Depth depth = Depth::all);
 
 }  // namespace robosync::analysis

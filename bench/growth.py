@@ -55,7 +55,7 @@ def compiled(folder, rules, commands=None):
     source.write_text(program(rules, behaviors_of(rules), channels, ACTUATORS, commands or rules))
     source.with_suffix(".json").write_text(json.dumps(robot(channels, ACTUATORS)))
     image = source.with_suffix(".rsb")
-    rsc.run("compile", source, "-o", image, "--strip")
+    rsc.run("compile", source, "-o", image, "--strip", "--anyway")
     return image
 
 

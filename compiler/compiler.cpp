@@ -101,8 +101,10 @@ Result compile(Input program, Input configuration, const Options& options) {
     const Program better = options.optimize ? optimize(written, robot) : written;
     Emitted emitted = emit(better, written, robot, hash_of(result.sources),
                            {.source_lines = options.source_lines}, diagnostics);
-    if (diagnostics.errors() == 0 && verify_image(emitted, diagnostics))
+    if (diagnostics.errors() == 0 && verify_image(emitted, diagnostics)) {
       result.image = std::move(emitted.image);
+      result.rules = std::move(emitted.rules);
+    }
   }
   diagnostics.finish();
   return result;

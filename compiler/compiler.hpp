@@ -34,6 +34,7 @@ struct Result {
   SourceMap sources;
   Diagnostics diagnostics;
   std::vector<std::byte> image;  // empty when there are errors
+  std::vector<Span> rules;       // where each rule of the image is written
   test_plan::TestPlan tests;     // the program's TEST blocks; likewise
   Board board;                   // that robot.json names, or the default one
 };

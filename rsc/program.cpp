@@ -19,6 +19,7 @@
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
+#include "rsc/judge.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -56,22 +57,6 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
-// The board's own check, by its own function.
-void check_memory(compiler::Result& result) {
-  vm::Image image;
-  const policy::BoardMemory board = memory_of(result.board);
-  if (result.diagnostics.errors() > 0 || !vm::view_image(result.image, image)) return;
-  const policy::Needs needs = needs_on_board(image, board);
-  const vm::Verdict verdict = policy::judge(needs, board);
-  if (verdict.ok()) return;
-  const bool no_room = verdict.refusal == vm::Refusal::no_room;
-  result.diagnostics
-      .report(compiler::Code::E0407,
-              no_room ? no_room_text(needs, board) : too_many_text(needs, verdict))
-      .label(compiler::Span{})
-      .helps("leave out what takes most, or name a board with more memory in robot.json (`board`)");
-}
-
 compiler::Result compile(const std::string& file, const CompileOptions& options,
                          const compiler::ModuleReader& modules) {
   std::string text = read_text(file);
@@ -79,7 +64,7 @@ compiler::Result compile(const std::string& file, const CompileOptions& options,
   compiler::Result result = compiler::compile(
       {file, std::move(text)}, {path.string(), read_text(path)},
       {.source_lines = options.source_lines, .optimize = options.optimize, .read_module = modules});
-  if (options.for_its_board) check_memory(result);
+  judge(result, options.judged);
   return result;
 }
 
@@ -167,7 +152,11 @@ Program::Program(std::vector<std::byte> bytes, const std::string& name,
 
 Program load_program(const std::string& file, const CompileOptions& options) {
   std::vector<std::byte> bytes = read_bytes(file);
-  if (is_image(file, bytes)) return {std::move(bytes), file, board_memory(), {{file}, {}}};
+  if (is_image(file, bytes)) {
+    Program program(std::move(bytes), file, board_memory(), {{file}, {}});
+    if (options.judged == Judged::by_time) judge_time(program, file);  // its board knows its memory
+    return program;
+  }
   bool has_modules = false;  // then a line number may be one of another file
   compiler::Result result =
       compile(file, options, [&](const std::string& user, const std::string& name) {

@@ -15,11 +15,18 @@
 
 namespace robosync::tool {
 
+// What a program must not be for the board that robot.json names; what it is has an error.
+enum class Judged : std::uint8_t {
+  not_at_all,  // the board may be another
+  by_memory,   // too large
+  by_time,     // … or a step of it too long, or all together more than the board can keep up with
+};
+
 struct CompileOptions {
   std::string config;  // empty: the one that belongs to the program
   bool optimize = true;
   bool source_lines = true;
-  bool for_its_board = true;  // a program that its board has no memory for has an error
+  Judged judged = Judged::by_memory;
 };
 
 // What a program needs of the memory of a board: of its image without the debug section, which the

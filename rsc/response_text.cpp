@@ -1,4 +1,6 @@
 // Response times as a table for people, as JSON for programs, and as the reason of a refusal.
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -26,23 +28,21 @@ const ResponseTime& worst_of(const PathTiming& path) {
   return base ? path.base : path.adapted;
 }
 
-std::string first_of(const std::vector<Contributor>& contributors, std::string_view unit) {
+// "33000 of near, 178 of arm": what costs most.
+std::string first_of(const std::vector<Contributor>& contributors) {
   std::string text;
   for (std::size_t i = 0; i < std::min(kShown, contributors.size()); ++i)
-    text += fmt::format("\n    {}: {} instructions{}", contributors[i].name, contributors[i].cost,
-                        unit);
+    text +=
+        fmt::format("{}{} for {}", i == 0 ? "" : ", ", contributors[i].cost, contributors[i].name);
   return text;
 }
 
 std::string late_text(const ResponseReport& report, const PathTiming& path) {
   const ResponseTime& worst = worst_of(path);
   const std::string name = fmt::format("{} -> {}", path.sensor, path.actuator);
-  if (!worst.bounded) return fmt::format("\n  {}: there is no bound for it", name);
-  return fmt::format(
-      "\n  {}: up to {} instructions ({} us), and the next may come after {} us; the "
-      "most of it:{}",
-      name, worst.time, report.microseconds(worst.time), report.microseconds(path.period),
-      first_of(worst.contributors, ""));
+  if (!worst.bounded) return fmt::format("there is no bound for {}", name);
+  return fmt::format("{} takes up to {} us, and the next reading may come after {} us", name,
+                     report.microseconds(worst.time), report.microseconds(path.period));
 }
 
 Json response_object(const ResponseReport& report, const ResponseTime& response) {
@@ -90,19 +90,29 @@ Json response_json(const ResponseReport& report) {
   return object;
 }
 
-std::string unschedulable_text(const ResponseReport& report) {
-  if (report.schedulable()) return "";
-  std::string text = "the board cannot keep up with it";
+// The processor as a whole, or else the first path that is late; a sensor's other paths are as late.
+Overload overload_of(const ResponseReport& report) {
+  if (report.schedulable()) return {};
+  Overload overload;
   if (report.utilization > 1) {
-    text += fmt::format("\n  all of it takes {:.0f} % of the processor; most of a millisecond:{}",
-                        kPercent * report.utilization,
-                        first_of(report.loads, fmt::format(" of {}", report.instructions_per_ms)));
+    overload.what =
+        fmt::format("all of it takes {:.0f} % of the processor", kPercent * report.utilization);
+    overload.why.push_back(fmt::format("of the {} instructions of a millisecond it takes {}",
+                                       report.instructions_per_ms, first_of(report.loads)));
+  } else {
+    const PathTiming& path =
+        *std::ranges::find_if(report.paths, [](const PathTiming& one) { return !one.in_time(); });
+    overload.what = late_text(report, path);
+    const ResponseTime& worst = worst_of(path);
+    if (worst.bounded)
+      overload.why.push_back(
+          fmt::format("most of its {} instructions: {}", worst.time, first_of(worst.contributors)));
   }
-  for (const PathTiming& path : report.paths)
-    if (!path.in_time()) text += late_text(report, path);
-  return text +
-         "\n  give a sensor a lower rate in robot.json, let fewer rules read it, or make "
-         "the rules that cost most cheaper";
+  overload.why.emplace_back(
+      "give a sensor a lower rate in robot.json, let rules run less often or fewer read it, or "
+      "make "
+      "those that cost most cheaper");
+  return overload;
 }
 
 }  // namespace robosync::tool

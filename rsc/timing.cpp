@@ -74,6 +74,10 @@ std::vector<Share> memory_of(const policy::Needs& needs, const policy::BoardMemo
 
 }  // namespace
 
+int cap_of(const vm::Image& image) {
+  return image.adaptations.empty() ? 0 : image.adaptations[0].cap;
+}
+
 Timing timing_of(const vm::Image& image, const policy::BoardMemory& board) {
   const std::vector<vm::RuleCost> costs = costs_of(image);
   Timing timing;

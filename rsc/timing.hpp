@@ -60,12 +60,18 @@ struct Timing {
 [[nodiscard]] std::string timing_text(const Timing& timing, const std::string& file);
 [[nodiscard]] nlohmann::ordered_json timing_json(const Timing& timing, const std::string& file);
 
+// As response_report() takes it: the priority that the program's behaviours may adapt to; 0: none.
+[[nodiscard]] int cap_of(const vm::Image& image);
+
 // The response times: a table, whole lines, and the same as JSON.
 [[nodiscard]] std::string response_text(const analysis::ResponseReport& report);
 [[nodiscard]] nlohmann::ordered_json response_json(const analysis::ResponseReport& report);
-// Why the board cannot keep up: which path, by how much, what costs most in it, the mend. Empty when it
-// can.
-[[nodiscard]] std::string unschedulable_text(const analysis::ResponseReport& report);
+// Why the board cannot keep up with a program: what is too much; then what costs most, and the mend.
+struct Overload {
+  std::string what;  // empty: it can
+  std::vector<std::string> why;
+};
+[[nodiscard]] Overload overload_of(const analysis::ResponseReport& report);
 
 // What is wrong with a program whose step costs more than `budget`: the rules that cost most with their
 // lines, and what would make them cheaper.

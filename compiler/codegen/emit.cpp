@@ -37,7 +37,7 @@ public:
     if (options_.source_lines) lines_ = rules_.pool.lines();
     lay_out();
     finish_header(hash);
-    return {std::move(bytes_), std::move(rules_.pool)};
+    return {std::move(bytes_), std::move(rules_.pool), std::move(rules_.places)};
   }
 
 private:

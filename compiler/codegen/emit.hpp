@@ -22,6 +22,7 @@ struct EmitOptions {
 struct Emitted {
   std::vector<std::byte> image;  // empty when the program is too large for the format
   CodePool code;                 // knows what each word of the image's code comes from
+  std::vector<Span> rules;       // where each rule of the image is written
 };
 
 // Same input, same bytes: the seed of the random numbers is a part of the program's hash, so that a

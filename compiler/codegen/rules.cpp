@@ -15,6 +15,7 @@ namespace {
 // A rule whose code has been made; the record is complete but for where the code stands.
 struct RuleDraft {
   vm::Rule record{};
+  Span span;
   std::optional<CodeDraft> condition;
   std::optional<ResponseCode> then_response, else_response;
 };
@@ -45,6 +46,7 @@ CodeDraft make_condition(Parts& parts, const Expression& expression, vm::RuleKin
 RuleDraft draft_without_response(Parts& parts, const Expression& condition, vm::RuleKind kind,
                                  const Source& source, const LocalCells& locals) {
   RuleDraft draft;
+  draft.span = source.span;
   draft.record.line = source.line;
   draft.record.kind = kind;
   draft.record.modifiers = vm::kNoModifiers;
@@ -175,6 +177,7 @@ std::vector<RuleDraft> RuleWriter::make_drafts(Parts& parts, const ProgramBehavi
 
 RuleDraft RuleWriter::draft(Parts& parts, const ProgramRule& rule) {
   RuleDraft draft;
+  draft.span = rule.span;
   draft.record.line = rule.line;
   draft.record.kind = rule.kind;
   draft.record.modifiers = modifiers(rule);
@@ -238,6 +241,7 @@ void RuleWriter::add(RuleDraft& draft, const Frame& frame, std::uint32_t& actuat
     actuators |= draft.else_response->actuators;
   }
   sections_.rules.push_back(record);
+  sections_.places.push_back(draft.span);
 }
 
 std::uint16_t RuleWriter::add(const ResponseCode& response, const Frame& frame) {

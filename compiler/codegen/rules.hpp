@@ -11,6 +11,7 @@ struct RuleSections {
   std::vector<vm::Behavior> behaviors;
   std::vector<vm::Modifiers> modifiers;
   std::vector<vm::Rule> rules;
+  std::vector<Span> places;  // of each rule, where it is written
   std::vector<vm::Response> responses;
   std::vector<std::uint8_t> inputs;
   Timers timers;

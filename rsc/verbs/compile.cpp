@@ -1,4 +1,4 @@
-// rsc compile FILE [-o X.rsb] [--strip] [--config FILE] [-O0] [--format human|json]
+// rsc compile FILE [-o X.rsb] [--strip] [--anyway] [--config FILE] [-O0] [--format human|json]
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -21,6 +21,7 @@ namespace {
 struct OutputOptions {
   std::string file, output;
   bool strip = false;
+  bool anyway = false;
   CompileOptions how;
   Format format = Format::human;
 };
@@ -81,11 +82,12 @@ void add_compile(Options& options) {
   options.argument("FILE", asked->file, "program (.rsl)", Options::Need::required);
   options.option("-o,--output", "X.rsb", asked->output, "the image; else STEM.rsb");
   options.flag("--strip", asked->strip, "leave the source lines out");
+  options.flag("--anyway", asked->anyway, "also when it is too much for the board of robot.json");
   add_compile_options(options, asked->how);
   add_format_option(options, asked->format);
   options.runs([asked] {
     asked->how.source_lines = !asked->strip;
-    asked->how.for_its_board = false;  // an image may go to another
+    asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;
     compile(*asked);
   });
 }

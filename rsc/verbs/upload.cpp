@@ -1,4 +1,4 @@
-// rsc upload FILE|X.rsb --port P [--config FILE] [--timeout TIME]
+// rsc upload FILE|X.rsb --port P [--config FILE] [--timeout TIME] [--replace] [--anyway]
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -27,6 +27,7 @@ struct SendOptions {
   CompileOptions how;
   std::optional<milliseconds> timeout;
   bool replace = false;
+  bool anyway = false;
   Format format = Format::human;
 };
 
@@ -83,8 +84,13 @@ void add_upload(Options& options) {
                       "give up after (10s, longer for a large image)");
   options.flag("--replace", asked->replace,
                "end the running program first, where the board has no room for both");
+  options.flag("--anyway", asked->anyway,
+               "also when it is too much for the board, which may refuse it");
   add_format_option(options, asked->format);
-  options.runs([asked] { upload(*asked); });
+  options.runs([asked] {
+    asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;
+    upload(*asked);
+  });
 }
 
 }  // namespace robosync::tool

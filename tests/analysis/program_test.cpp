@@ -30,14 +30,16 @@ DO
 END
 )";
 
-test::Outcome check_at(const std::string& rate) {
-  std::string robot = kRobot;
-  robot.replace(robot.find("RATE"), 4, rate);
-  test::Folder folder;
-  folder.write("robot.json", robot);
-  const std::string file = folder.write("robot.rsl", kProgram);
-  return test::rsc({"check", "--timing", file});
-}
+// A robot whose sensor is read at this rate.
+struct Robot : test::Folder {
+  explicit Robot(const std::string& rate, const std::string& program = kProgram)
+      : file(write("robot.rsl", program)) {
+    std::string robot = kRobot;
+    robot.replace(robot.find("RATE"), 4, rate);
+    write("robot.json", robot);
+  }
+  std::string file;
+};
 
 }  // namespace
 
@@ -90,14 +92,61 @@ TEST_CASE("adapted priorities: robot.json says so, and each path is told for bot
   CHECK_THAT(outcome.out, Contains("touch -> arm") && Contains("adapted to P_max"));
 }
 
-TEST_CASE("check --timing: a sensor that is read too often is refused, and why") {
-  const test::Outcome good = check_at("50Hz");
+TEST_CASE("check: a sensor that is read too often is refused, and why") {
+  const Robot slow("50Hz");
+  const test::Outcome good = test::rsc({"check", "--timing", slow.file});
   CHECK(good.exit == 0);
   CHECK_THAT(good.out, Contains("touch -> arm") && Contains("the processor, all of it"));
 
-  const test::Outcome bad = check_at("1000Hz");
+  const Robot fast("1000Hz");
+  const auto check_says = [](const std::string& text) {
+    CHECK_THAT(text, Contains("E0412") && Contains("the board cannot keep up") &&
+                         Contains("of the processor") && Contains("for touch") &&
+                         Contains("robot.rsl:1:1") && Contains("lower rate"));
+  };
+  const test::Outcome bad = test::rsc({"check", fast.file});
   CHECK(bad.exit == 1);
-  CHECK_THAT(bad.err, Contains("the board cannot keep up") && Contains("touch") &&
-                          Contains("of the processor") && Contains("lower rate"));
-  CHECK_FALSE(bad.out.empty());
+  check_says(bad.err);
+  const test::Outcome with_table = test::rsc({"check", "--timing", fast.file});
+  CHECK(with_table.exit == 1);
+  check_says(with_table.err);
+  CHECK_THAT(with_table.out, Contains("the processor, all of it"));
+}
+
+TEST_CASE("a rule that starves the board is refused by check, compile and upload") {
+  const Robot robot("50Hz",
+                    "REMEMBER n = 0\nEVERY 1ms DO\n  REPEAT 1500 TIMES\n    SET n TO n + 1\n  END\n"
+                    "  MOVE arm QUICKLY\nEND\n");
+  const std::string image = robot.path("robot.rsb");
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"check", robot.file},
+        {"compile", robot.file, "-o", image},
+        {"upload", robot.file, "--port", robot.path("none")}}) {
+    const test::Outcome outcome = test::rsc(arguments);
+    CHECK(outcome.exit == 1);
+    CHECK_THAT(outcome.err, Contains("E0412") && Contains("robot.rsl:2:1"));
+  }
+  CHECK_FALSE(robot.has("robot.rsb"));
+
+  REQUIRE(test::rsc({"compile", robot.file, "-o", image, "--anyway"}).exit == 0);
+  test::Outcome upload = test::rsc({"upload", image, "--port", robot.path("none")});
+  CHECK(upload.exit == 1);
+  CHECK_THAT(upload.err, Contains("the board cannot keep up") && Contains("--anyway"));
+  for (const std::string& file : {image, robot.file}) {
+    upload = test::rsc({"upload", file, "--port", robot.path("none"), "--anyway"});
+    CHECK(upload.exit == 3);  // only the port is missing
+  }
+}
+
+TEST_CASE("a program that is late on one path though the processor has time") {
+  // Two steps that take long, seldom: the touch is answered after its next reading.
+  const Robot robot("200Hz",
+                    "REMEMBER n = 0\nEVERY 1s DO\n  REPEAT 3500 TIMES\n    SET n TO n + 1\n  END\n"
+                    "END\n" +
+                        std::string(kProgram));
+  const test::Outcome outcome = test::rsc({"check", robot.file});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("touch -> arm takes up to") &&
+                              Contains("the next reading may come after 5000 us") &&
+                              Contains("the rule at line 2"));
 }

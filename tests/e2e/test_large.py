@@ -49,7 +49,7 @@ class Large(RobotTest):
     def compile_large(self, rules, behaviors, actuators):
         source, robot = self.write_large(rules, behaviors, actuators)
         image = self.folder / "large.rsb"
-        rsc.run("compile", source, "--config", robot, "-o", image, "--strip")
+        rsc.run("compile", source, "--config", robot, "-o", image, "--strip", "--anyway")
         return image
 
     def fired_on_the_board(self, rule):
@@ -62,7 +62,7 @@ class Large(RobotTest):
         return [e["rule"] for e in events if e["event"] == "fire"], errors
 
     def check_reacts(self, rules, behaviors, actuators, some):
-        self.upload(self.compile_large(rules, behaviors, actuators))
+        self.upload(self.compile_large(rules, behaviors, actuators), "--anyway")
         rsc.run("feed", *(f"near.c{c}=0" for c in range(CHANNELS)), "--port", self.board.port)
         for rule in some:
             with self.subTest(rule=rule):
@@ -97,7 +97,7 @@ class Large(RobotTest):
         port = ["--port", self.board.port]
         told = set()
         for arguments in (["check", source, "--config", robot], ["upload", source, "--config", robot, *port],
-                          ["run", image], ["upload", image, *port]):
+                          ["run", image], ["upload", image, "--anyway", *port]):
             with self.subTest(arguments=arguments[:2]):
                 done = rsc.call(*arguments)
                 self.assertEqual(done.returncode, 1)

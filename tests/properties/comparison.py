@@ -10,6 +10,7 @@ of them sees what is a matter of ranks, too, and not of the language. A differen
 ends the comparison of that script, and is counted.
 """
 
+import functools
 import json
 import os
 import subprocess
@@ -52,12 +53,18 @@ def call(*arguments):
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
+@functools.cache
+def anyway(rsc):
+    """A drawn program may be more than a board can keep up with; an older rsc does not ask."""
+    return ["--anyway"] if "--anyway" in call(rsc, "compile", "--help").stdout else []
+
+
 def compile_program(text, folder, *options, rsc=RSC):
     """The program and its image in `folder`."""
     source = Path(folder) / "program.rsl"
     image = Path(folder) / ("program" + "".join(options) + ".rsb")
     source.write_text(text)
-    done = call(rsc, "compile", source, "--config", drawn.CONFIG, "-o", image, *options)
+    done = call(rsc, "compile", source, "--config", drawn.CONFIG, "-o", image, *options, *anyway(rsc))
     if done.returncode:
         raise Refused(done.stderr)
     return source, image

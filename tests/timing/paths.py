@@ -64,7 +64,7 @@ def wait(ticks=10):
 
 
 def compiled(source, config, image):
-    said = subprocess.run([RSC, "compile", source, "--config", config, "-o", image, "--strip"],
+    said = subprocess.run([RSC, "compile", source, "--config", config, "-o", image, "--strip", "--anyway"],
                           check=False, capture_output=True, text=True)
     if said.returncode:
         raise counting.BenchError(f"{source}: {said.stderr}")

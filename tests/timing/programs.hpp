@@ -27,9 +27,12 @@ inline tool::Program compile_example(const std::string& file) {
 }
 
 // On docs/robot.json.
+inline compiler::Result compiled_with_docs_robot(const std::string& text) {
+  return compiler::compile({"robot.rsl", text},
+                           {"robot.json", testing::read_file(kRoot / "docs/robot.json")});
+}
 inline tool::Program compile_with_docs_robot(const std::string& text) {
-  return as_program(compiler::compile(
-      {"robot.rsl", text}, {"robot.json", testing::read_file(kRoot / "docs/robot.json")}));
+  return as_program(compiled_with_docs_robot(text));
 }
 
 }  // namespace robosync::test

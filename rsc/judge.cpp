@@ -1,0 +1,91 @@
+// By the functions that the board itself and `rsc check --timing` use.
+#include "rsc/judge.hpp"
+
+#include <fmt/format.h>
+
+#include "analysis/report.hpp"
+#include "compiler/codegen/costly_rules.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/timing.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using compiler::Code, compiler::Diagnostic;
+
+analysis::ResponseReport responses_of(const vm::Image& image) {
+  return analysis::response_report(image, board_costs(), cap_of(image),
+                                   analysis::Depth::until_refused);
+}
+
+void judge_memory(const vm::Image& image, const policy::BoardMemory& board,
+                  compiler::Diagnostics& diagnostics) {
+  const policy::Needs needs = needs_on_board(image, board);
+  const vm::Verdict verdict = policy::judge(needs, board);
+  if (verdict.ok()) return;
+  const bool no_room = verdict.refusal == vm::Refusal::no_room;
+  diagnostics
+      .report(Code::E0407, no_room ? no_room_text(needs, board) : too_many_text(needs, verdict))
+      .label(compiler::Span{})
+      .helps("leave out what takes most, or name a board with more memory in robot.json (`board`)");
+}
+
+// Shows the rules that cost most in a step, the first one as the place of the mistake.
+void label_rules(Diagnostic& report, const vm::Image& image,
+                 const std::vector<compiler::Span>& places) {
+  bool primary = true;
+  for (const compiler::CostlyRule& costly : compiler::costly_rules(image)) {
+    if (costly.rule >= places.size()) continue;
+    report.label(places[costly.rule],
+                 fmt::format("this rule takes up to {} instructions", costly.cost.step()), primary);
+    primary = false;
+  }
+  if (primary) report.label(compiler::Span{});
+}
+
+void judge_step(const vm::Image& image, const compiler::Result& compiled,
+                compiler::Diagnostics& diagnostics) {
+  if (image.header->step_cost <= compiled.board.step_budget) return;
+  Diagnostic& report = diagnostics.report(
+      Code::E0407, fmt::format("a step of the program costs up to {} instructions, the board "
+                               "allows {}",
+                               image.header->step_cost, compiled.board.step_budget));
+  label_rules(report, image, compiled.rules);
+  report.helps(std::string(compiler::kHelpForCostlyStep));
+}
+
+void judge_time(const vm::Image& image, const compiler::Result& compiled,
+                compiler::Diagnostics& diagnostics) {
+  const Overload overload = overload_of(responses_of(image));
+  if (overload.what.empty()) return;
+  Diagnostic& report = diagnostics.report(
+      Code::E0412, "the board cannot keep up with the program: " + overload.what);
+  label_rules(report, image, compiled.rules);
+  for (const std::string& reason : overload.why)
+    report.helps(reason);
+}
+
+}  // namespace
+
+void judge(compiler::Result& result, Judged judged) {
+  vm::Image image;
+  if (judged == Judged::not_at_all || result.diagnostics.errors() > 0 ||
+      !vm::view_image(result.image, image)) {
+    return;
+  }
+  judge_memory(image, memory_of(result.board), result.diagnostics);
+  if (judged == Judged::by_memory) return;
+  judge_step(image, result, result.diagnostics);
+  if (result.diagnostics.errors() == 0) judge_time(image, result, result.diagnostics);
+}
+
+void judge_time(const Program& program, const std::string& name) {
+  const Overload overload = overload_of(responses_of(program.image()));
+  if (overload.what.empty()) return;
+  throw Failure(Exit::program,
+                fmt::format("{}: the board cannot keep up with the program: {}\n  {}\n  --anyway "
+                            "uploads it nevertheless",
+                            name, overload.what, fmt::join(overload.why, "\n  ")));
+}
+
+}  // namespace robosync::tool
