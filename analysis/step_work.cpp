@@ -343,7 +343,7 @@ std::uint32_t StepWork::period_ms(unsigned r) const {
   if (kind == RuleKind::every)
     return worst_[r].pauses ? std::min(every_ms(r), worst_[r].shortest_wait_ms) : every_ms(r);
   if (worst_[r].pauses) return worst_[r].shortest_wait_ms;
-  if (!wants_on(r)) return 0;
+  if (!wants_on(r) || (kind == RuleKind::when_else && !may_lose(r))) return 0;
   return kind != RuleKind::while_ || actuators({r}) != 0 ? policy::kSetpointPeriodMs : 1;
 }
 

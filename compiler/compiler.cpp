@@ -99,8 +99,9 @@ Result compile(Input program, Input configuration, const Options& options) {
   if (parsed.complete && diagnostics.errors() == 0) {
     const Robot& robot = *parsed.robot;
     const Program better = options.optimize ? optimize(written, robot) : written;
-    Emitted emitted = emit(better, written, robot, hash_of(result.sources),
-                           {.source_lines = options.source_lines}, diagnostics);
+    Emitted emitted =
+        emit(better, written, robot, hash_of(result.sources),
+             {.source_lines = options.source_lines, .seed = options.seed}, diagnostics);
     if (diagnostics.errors() == 0 && verify_image(emitted, diagnostics)) {
       result.image = std::move(emitted.image);
       result.rules = std::move(emitted.rules);

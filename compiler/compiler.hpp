@@ -27,6 +27,7 @@ using ModuleReader =
 struct Options {
   bool source_lines = true;  // keep the debug section
   bool optimize = true;
+  std::uint32_t seed = 0;  // of the random numbers, in the place of the configuration's; 0: none
   ModuleReader read_module{};
 };
 

@@ -61,9 +61,12 @@ compiler::Result compile(const std::string& file, const CompileOptions& options,
                          const compiler::ModuleReader& modules) {
   std::string text = read_text(file);
   const std::filesystem::path path = find_configuration(file, options.config);
-  compiler::Result result = compiler::compile(
-      {file, std::move(text)}, {path.string(), read_text(path)},
-      {.source_lines = options.source_lines, .optimize = options.optimize, .read_module = modules});
+  compiler::Result result =
+      compiler::compile({file, std::move(text)}, {path.string(), read_text(path)},
+                        {.source_lines = options.source_lines,
+                         .optimize = options.optimize,
+                         .seed = options.seed,
+                         .read_module = modules});
   judge(result, options.judged);
   return result;
 }

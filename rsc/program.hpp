@@ -25,6 +25,7 @@ enum class Judged : std::uint8_t {
 struct CompileOptions {
   std::string config;  // empty: the one that belongs to the program
   bool optimize = true;
+  std::uint32_t seed = 0;  // 0: as the configuration says
   bool source_lines = true;
   Judged judged = Judged::by_memory;
 };

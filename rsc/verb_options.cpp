@@ -1,7 +1,12 @@
 #include "rsc/verb_options.hpp"
 
+#include <charconv>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <system_error>
 
+#include "compiler/config/robot.hpp"
 #include "rsc/quantity.hpp"
 
 namespace robosync::tool {
@@ -21,6 +26,19 @@ void add_port_option(Options& options, std::string& port) {
 void add_config_option(Options& options, std::string& config) {
   options.option("--config", "FILE", config,
                  "configuration; else STEM.json, else robot.json beside it");
+}
+
+void add_seed_option(Options& options, std::uint32_t& seed) {
+  options.option(
+      "--seed", "N",
+      [&seed](const std::string& text) {
+        const char* const end = text.data() + text.size();
+        const auto read = std::from_chars(text.data(), end, seed);
+        if (read.ec != std::errc{} || read.ptr != end || seed == 0 || seed > compiler::kMaxSeed)
+          throw std::invalid_argument("a seed is a whole number from 1 to " +
+                                      std::to_string(compiler::kMaxSeed));
+      },
+      "what RANDOM and PICK ONE begin with; else as robot.json says");
 }
 
 void add_compile_options(Options& options, CompileOptions& how) {

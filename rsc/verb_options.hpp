@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -14,6 +15,8 @@ namespace robosync::tool {
 void add_format_option(Options& options, Format& format);
 void add_port_option(Options& options, std::string& port);
 void add_config_option(Options& options, std::string& config);
+// --seed N, of the random numbers; 0 when it is not given.
+void add_seed_option(Options& options, std::uint32_t& seed);
 // --config, and -O0 or -O1.
 void add_compile_options(Options& options, CompileOptions& how);
 void add_duration_option(Options& options, const std::string& name,

@@ -111,6 +111,17 @@ bool Runtime::load(std::span<const std::byte> bytes) {
   return true;
 }
 
+// Nobody can say beforehand at which count of the processor's clock a program comes: the line, its
+// bytes and the oscillators behind them are not in step with it. What few bits differ, the
+// generators spread (layers/frames.cpp).
+std::uint32_t Runtime::choose_seed(std::uint32_t of_image) const {
+  if (given_seed_ != 0) return given_seed_;
+  if (of_image != 0) return of_image;
+  if (simulated()) return 1;
+  const std::uint32_t seed = (kernel_.clock() ^ kernel_.tick() << 16U) & INT32_MAX;
+  return seed != 0 ? seed : 1;
+}
+
 void Runtime::end_program() {
   faults_ += threads_.stopped();
   running_ = false;
@@ -129,31 +140,51 @@ bool Runtime::start_program() {
   const layers::LoadedProgram& program = shared_.program;
   threads_.prepare(memory_);
   mailboxes_.start(memory_);
-  shared_.frames.start(memory_);
+  const std::uint32_t seed = choose_seed(program.image.header->seed);
+  shared_.frames.start(seed, memory_);
   shared_.triggers.start(program.image, memory_);
   shared_.arbiter.start(memory_);
   safety_rules_.start(program, memory_);
   kernel_.grant(memory_.areas());
-  const auto seed = static_cast<std::int32_t>(program.image.header->seed);
-  trace_.emit(EventKind::activated, {}, 0, 0, seed);
+  trace_.emit(EventKind::activated, {}, 0, 0, static_cast<std::int32_t>(seed));
   if (!control_.start(program, memory_, threads_) ||
       !shared_.behaviors.start(program, memory_, threads_) ||
       !shared_.processing.start(program, memory_) ||
-      !sensors_.start(program, *sampler_, memory_, threads_))
+      !sensors_.start(program, *sampler_, simulated(), memory_, threads_))
     return false;
   shared_.processing.rank();
   go();
   return true;
 }
 
-// The program's clock begins at a tick that none of its threads can have missed.
+// Where there are SAFETY rules, nothing moves before they know: the program's clock begins, at the
+// latest at the time that is set here, when they do (look_at_rules()).
 void Runtime::go() {
   const auto lock = kernel_.lock();
-  trace_.restart(kernel_.now() + (port::kTimeFlows ? kernel::kTick : 0));
+  const vm::Image& image = shared_.program.image;
+  const bool waits = image.has_safety() && !simulated();
+  const kernel::Duration at_most =
+      waits ? kernel::milliseconds(image.header->safety_start_ms) : kernel::Duration{0};
+  trace_.restart(kernel_.now() + at_most + (port::kTimeFlows ? kernel::kTick : 0));
+  begun_ = false;
   running_ = true;
-  kernel_.signal(monitor_.thread(), safety::Monitor::kProgram);
-  shared_.processing.go();
+  kernel_.signal(monitor_.thread(), safety::Monitor::kProgram | safety::Monitor::kNews);
   sensors_.go();
+  if (!image.has_safety()) begin();
+}
+
+// … at a tick that none of the program's threads can have missed.
+void Runtime::begin() {
+  const auto lock = kernel_.lock();
+  const kernel::Time meant = trace_.activated_at();
+  const kernel::Time zero = kernel_.now() + (port::kTimeFlows ? kernel::kTick : 0);
+  if (zero != meant) {
+    trace_.restart(zero);
+    kernel_.signal(monitor_.thread(), safety::Monitor::kProgram);
+  }
+  begun_ = true;
+  shared_.processing.go();
+  sensors_.begin(meant);
 }
 
 link::FeedResult Runtime::feed(const link::Feed& feed) {
@@ -188,8 +219,17 @@ void Runtime::halt(kernel::Duration stuck_for) {
   trace_.emit(EventKind::deadline, trace_.now(), step_thread_.rank(), 0, late);
 }
 
+// What is unknown when program time begins trips before the first step: no thread of the program has
+// run since.
 kernel::Time Runtime::look_at_rules() {
-  return running_ ? safety_rules_.look() : kernel::kForever;
+  if (!running_) return kernel::kForever;
+  sensors_.deliver_due();
+  if (!begun_ && !sensors_.knows_enough()) {
+    if (simulated()) return kernel::kForever;
+    if (kernel_.now() < trace_.activated_at()) return trace_.activated_at();
+  }
+  if (!begun_) begin();
+  return safety_rules_.look();
 }
 
 }  // namespace robosync

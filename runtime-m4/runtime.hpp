@@ -77,7 +77,12 @@ public:
   const vm::Limits& limits() const { return limits_; }
 
   // Measures with `sampler` in place of the drivers. Before activate().
+  // That is a simulation: its program does not wait for a first reading.
   void measure_with(layers::Sampler& sampler) { sampler_ = &sampler; }
+
+  // The seed of the random numbers, whatever the next image says; 0: what it says, or, where it says
+  // none, 1 in a simulation and something new on a board.  Before activate().
+  void draw_from(std::uint32_t seed) { given_seed_ = seed; }
 
 private:
   friend struct RuntimePeer;
@@ -105,7 +110,10 @@ private:
   [[gnu::noinline]] bool load(std::span<const std::byte> bytes);
   void end_program();
   bool start_program();
+  std::uint32_t choose_seed(std::uint32_t of_image) const;
   void go();
+  bool simulated() const { return sampler_ != &drivers_; }
+  void begin();
 
   kernel::Kernel& kernel_;
   boards::Board& board_;
@@ -115,7 +123,9 @@ private:
 
   std::atomic<bool> running_ = false;
   bool halted_ = false;  // this program, by safety
+  bool begun_ = false;   // its program time
   std::uint16_t activations_ = 0;
+  std::uint32_t given_seed_ = 0;
   unsigned faults_ = 0;  // of programs that are gone
   safety::Monitor monitor_;
   layers::Budget budget_;

@@ -114,14 +114,15 @@ struct ImageHeader {
   std::uint8_t format_minor;
   std::uint16_t opcode_set;                  // opcode_set_id() of the compiler's opcodes.def
   std::array<std::uint8_t, 8> program_hash;  // first bytes of SHA-256 over source and configuration
-  std::uint32_t seed;                        // of RANDOM and PICK ONE
+  std::uint32_t seed;                        // of RANDOM and PICK ONE; 0: the runtime takes one
   std::uint32_t step_cost;                   // worst-case M4 instructions of VM code in one step
   // Records in each section; of `inputs` and `labels` they are numbers, of `strings` bytes, of `code`
   // instruction words. Without source_lines (--strip) traces and faults name no lines.
 #define IMAGE_SECTION(records, Record, Count, check, name) Count records;
 #include "vm/sections.def"
 #undef IMAGE_SECTION
-  std::uint16_t reserved;
+  // How long a robot waits, before program time begins, for what SAFETY rules read.
+  std::uint16_t safety_start_ms;
 };
 static_assert(sizeof(ImageHeader) == 64);
 

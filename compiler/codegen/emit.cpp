@@ -14,14 +14,6 @@ namespace {
 
 constexpr std::size_t kMaxTimers = 256;  // an operand of one byte
 
-// The last bytes of the hash; never 0, which a generator of random numbers could not leave.
-std::uint32_t seed_of(const ProgramHash& hash) {
-  std::uint32_t seed = 0;
-  for (std::size_t i = hash.size() - sizeof seed; i < hash.size(); ++i)
-    seed = seed << 8 | hash[i];
-  return seed == 0 ? 1 : seed;
-}
-
 class Emitter {
 public:
   Emitter(EmitOptions options, Diagnostics& diagnostics)
@@ -36,7 +28,7 @@ public:
     if (diagnostics_.errors() > 0 || !counts_fit()) return {};
     if (options_.source_lines) lines_ = rules_.pool.lines();
     lay_out();
-    finish_header(hash);
+    finish_header(robot, hash);
     return {std::move(bytes_), std::move(rules_.pool), std::move(rules_.places)};
   }
 
@@ -45,7 +37,7 @@ private:
   void lay_out();
   vm::Image sections() const;
   void append(std::span<const std::byte> section);
-  void finish_header(const ProgramHash& hash);
+  void finish_header(const Robot& robot, const ProgramHash& hash);
 
   EmitOptions options_;
   Diagnostics& diagnostics_;
@@ -119,14 +111,15 @@ void Emitter::lay_out() {
 #undef IMAGE_SECTION
 }
 
-void Emitter::finish_header(const ProgramHash& hash) {
+void Emitter::finish_header(const Robot& robot, const ProgramHash& hash) {
   header_.magic = vm::kMagic;
   header_.total_length = static_cast<std::uint32_t>(bytes_.size());
   header_.format_major = vm::kFormatMajor;
   header_.format_minor = vm::kFormatMinor;
   header_.opcode_set = vm::opcode_set_id();
   header_.program_hash = hash;
-  header_.seed = seed_of(hash);
+  header_.seed = options_.seed != 0 ? options_.seed : robot.seed;
+  header_.safety_start_ms = robot.safety_start_ms;
   std::memcpy(bytes_.data(), &header_, sizeof header_);
   vm::Image view;
   if (vm::view_image(bytes_, view)) header_.step_cost = vm::step_cost(view);

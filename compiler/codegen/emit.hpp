@@ -17,6 +17,7 @@ using ProgramHash = std::array<std::uint8_t, 8>;
 
 struct EmitOptions {
   bool source_lines = true;  // keep the debug section
+  std::uint32_t seed = 0;    // in the place of the robot's; 0: none
 };
 
 struct Emitted {
@@ -25,9 +26,7 @@ struct Emitted {
   std::vector<Span> rules;       // where each rule of the image is written
 };
 
-// Same input, same bytes: the seed of the random numbers is a part of the program's hash, so that a
-// program draws the same numbers each time, and another program others. What does not fit is
-// reported (E0407); whether a board would take the image, verify_image() says.
+// Same input, same bytes. What does not fit is reported (E0407); whether a board would take the image, verify_image() says.
 //
 // `written`: the program as sema made it, which may be `program` itself. What it uses and reads
 // stays in the image, whatever the optimiser has left out: devices keep their numbers, and a

@@ -20,6 +20,7 @@ enum class Object : std::uint8_t {
   limits,
   behavior,
   scheduler,
+  safety,
   algorithm,
   device,
   device_to,

@@ -106,6 +106,11 @@ struct SchedulerConfig {
   std::uint8_t cap = 95;
 };
 
+inline constexpr std::int64_t kMaxSeed = 2'147'483'647;
+
+// How long a robot may wait, before its program begins, for the first reading of what SAFETY rules read.
+inline constexpr std::uint16_t kSafetyStartMs = 100;
+
 enum class LintLevel : std::uint8_t { allow, warn, deny };
 
 struct Robot {
@@ -114,6 +119,8 @@ struct Robot {
   std::vector<GroupConfig> groups;
   std::vector<BehaviorConfig> behaviors;
   std::optional<SchedulerConfig> scheduler;
+  std::uint16_t safety_start_ms = kSafetyStartMs;
+  std::uint32_t seed = 0;            // of the random numbers; 0: not said
   std::optional<std::size_t> board;  // its place in board_names(); nothing: not said
   std::map<Code, LintLevel> lints;
   bool complete = true;  // false: entries are missing, for mistakes that have been reported

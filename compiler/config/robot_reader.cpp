@@ -106,6 +106,10 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
   });
   if (const auto* scheduler = fields.find("scheduler"))
     robot.scheduler = read_scheduler(*scheduler, diagnostics);
+  if (const auto* safety = fields.find("safety")) read_safety(*safety, robot, diagnostics);
+  if (const auto* seed = fields.find("seed"))
+    robot.seed =
+        static_cast<std::uint32_t>(read_whole(*seed, 1, kMaxSeed, diagnostics).value_or(0));
   if (const auto* lints = fields.find("lints")) read_lints(*lints, robot, diagnostics);
   check_names(robot, diagnostics);
   return robot;

@@ -162,6 +162,12 @@ SchedulerConfig read_scheduler(const json::Value& value, Diagnostics& diagnostic
   return scheduler;
 }
 
+void read_safety(const json::Value& value, Robot& robot, Diagnostics& diagnostics) {
+  const Fields fields(value, Object::safety, diagnostics);
+  if (const auto* start = fields.find("start"))
+    robot.safety_start_ms = read_milliseconds(*start, diagnostics).value_or(kSafetyStartMs);
+}
+
 void report_algorithm(const json::Value& value, Diagnostics& diagnostics) {
   Fields fields(value, Object::algorithm, diagnostics);
   const auto name = read_name(fields, "an algorithm", diagnostics);

@@ -23,6 +23,8 @@ private:
 
 // "scheduler": what it does not say is as in the paper's example.
 [[nodiscard]] SchedulerConfig read_scheduler(const json::Value& value, Diagnostics& diagnostics);
+
+void read_safety(const json::Value& value, Robot& robot, Diagnostics& diagnostics);
 void read_lints(const json::Value& value, Robot& robot, Diagnostics& diagnostics);
 // Algorithms cannot be loaded by this version: checks the entry and says so.
 void report_algorithm(const json::Value& value, Diagnostics& diagnostics);

@@ -109,8 +109,7 @@ void Behaviors::report_taken() {
             .label(first, "first used here", false);
     const auto free = next_free(priority.number);
     if (!free) continue;
-    d.helps("`" + std::to_string(*free) + "` is free")
-        .fix(priority.span, std::to_string(*free), Applicability::likely);
+    d.helps("`" + std::to_string(*free) + "` is free").fix(priority.span, std::to_string(*free));
     priorities_.emplace(*free, priority.span);  // not to be offered twice
   }
 }

@@ -192,10 +192,9 @@ void lint_start(const ast::Rule& rule, const ast::WhenRule& when, const Names& n
   }
   d.helps("to wait for a change, write two rules: `" + rules->then_head + "` and `" +
           rules->else_head + "`")
-      .fix(rule.span,
-           rules->then_head + "\nDO\n" + text_of(when.then_block, sources) + "\nEND\n\n" +
-               rules->else_head + "\nDO\n" + text_of(*when.else_block, sources) + "\nEND",
-           Applicability::likely);
+      .fix(rule.span, rules->then_head + "\nDO\n" + text_of(when.then_block, sources) +
+                          "\nEND\n\n" + rules->else_head + "\nDO\n" +
+                          text_of(*when.else_block, sources) + "\nEND");
 }
 
 // ---- W0201: the bands of a CHECK against what its sensor can give
@@ -393,6 +392,39 @@ void lint_level(const ProgramRule& rule, Diagnostics& diagnostics) {
       .helps("WHILE repeats its response as long as the condition holds, and ends it then");
 }
 
+// ---- W0219
+
+// A command takes time, but for STOP and for a level that an output has at once (vm/drivers.def).
+bool takes_time(const ProgramCommand& command, const Names& names) {
+  const bool lasts = std::any_of(
+      command.arguments.begin(), command.arguments.end(), [](const ProgramArgument& argument) {
+        return argument.param == vm::Param::over || argument.param == vm::Param::for_;
+      });
+  const bool at_once = std::all_of(
+      command.actuators.begin(), command.actuators.end(),
+      [&](std::size_t actuator) { return names.actuator(actuator).driver == vm::DriverId::pwm; });
+  return command.verb.action != vm::Action::stop && (lasts || !at_once);
+}
+
+bool takes_time(const ProgramBlock& block, const Names& names) {
+  bool found = false;
+  for_each_statement(block, [&](const ProgramStatement& statement) {
+    const auto* const command = std::get_if<ProgramCommand>(&statement.node);
+    found = found || std::holds_alternative<ProgramWait>(statement.node) ||
+            std::holds_alternative<ProgramWaitUntil>(statement.node) ||
+            (command != nullptr && takes_time(*command, names));
+  });
+  return found;
+}
+
+void lint_length(const ProgramRule& rule, const Names& names, Diagnostics& diagnostics) {
+  if (rule.kind != vm::RuleKind::while_ || rule.cooldown > 0) return;
+  if (takes_time(rule.then_response, names)) return;
+  diagnostics.report(Code::W0219, "this runs 1,000 times a second: its response takes no time")
+      .label(rule.span)
+      .helps("say how often: EVERY with an IF in it, or a WAIT at the end of the response");
+}
+
 }  // namespace
 
 void lint_rules(const LintInput& input) {
@@ -401,6 +433,7 @@ void lint_rules(const LintInput& input) {
     for (const ProgramRule& rule : behavior.rules) {
       lint_cooldown(rule, input.diagnostics);
       lint_level(rule, input.diagnostics);
+      lint_length(rule, input.names, input.diagnostics);
     }
   }
 }
@@ -417,8 +450,7 @@ void lint_block(const ast::Block& block, Diagnostics& diagnostics) {
         .report(Code::W0205, "this may wait for ever, and keeps the actuators of its response")
         .label(stmt.span)
         .helps("say how long at most: `WITHIN 10s`")
-        .fix({stmt.span.file, stmt.span.end, stmt.span.end}, " WITHIN 10s",
-             Applicability::placeholder);
+        .fix({stmt.span.file, stmt.span.end, stmt.span.end}, " WITHIN 10s");
   });
 }
 

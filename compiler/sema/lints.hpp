@@ -26,7 +26,8 @@ struct LintInput {
   Names& names;
   Diagnostics& diagnostics;
 };
-// W0202, W0204, W0207: rules that never run, COOLDOWNs without effect, WHENs that never end.
+// W0202, W0204, W0207, W0219: rules that never run, COOLDOWNs without effect, WHENs that never end,
+// WHILEs that take no time.
 void lint_rules(const LintInput& input);
 // W0205: a WAIT UNTIL without WITHIN.
 void lint_waits(const LintInput& input);

@@ -88,6 +88,9 @@ public:
   [[nodiscard]] const SensorConfig& sensor(ChannelRef ref) const {
     return robot_.sensors[ref.sensor];
   }
+  [[nodiscard]] const ActuatorConfig& actuator(std::size_t place) const {
+    return robot_.actuators[place];
+  }
   [[nodiscard]] const ChannelConfig& channel(ChannelRef ref) const {
     return sensor(ref).channels[ref.channel];
   }

@@ -18,6 +18,9 @@ namespace {
 using compiler::test_plan::ChannelName;
 using compiler::test_plan::PlannedReading;
 
+// Whatever the configuration says: a TEST must not depend on it.
+constexpr std::uint32_t kTestSeed = 1;
+
 // Nothing for a channel that the program does not read: it has no place in the image.
 std::optional<std::uint8_t> channel_of(const vm::Image& image, const ChannelName& name) {
   for (std::size_t i = 0; i < image.channels.size(); ++i) {
@@ -37,7 +40,7 @@ Recording record(const Program& program, const compiler::test_plan::TestPlan& pl
   Recording recording{&program.image(), &plan, &test, {}};
   const std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
   const auto take = [&recording](const link::Event& event) { recording.events.push_back(event); };
-  sim::Simulator simulator(uploaded, take, program.board());
+  sim::Simulator simulator(uploaded, take, program.board(), kTestSeed);
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
     throw Failure(Exit::program,
                   fmt::format("the board would refuse the program: {}",

@@ -104,7 +104,8 @@ std::string priority_words(const EventReader& reader) {
 std::string other_words(const EventReader& reader) {
   switch (reader.event().kind) {
     case EventKind::activated:
-      return "the program starts";
+      return fmt::format("the program starts, seed {}",
+                         static_cast<std::uint32_t>(reader.value(0)));
     case EventKind::input:
       return fmt::format("{} {} = {}", reader.sensor_name(), reader.channel_name(),
                          reader.shown(reader.value(0)));

@@ -84,6 +84,7 @@ void add_compile(Options& options) {
   options.flag("--strip", asked->strip, "leave the source lines out");
   options.flag("--anyway", asked->anyway, "also when it is too much for the board of robot.json");
   add_compile_options(options, asked->how);
+  add_seed_option(options, asked->how.seed);
   add_format_option(options, asked->format);
   options.runs([asked] {
     asked->how.source_lines = !asked->strip;

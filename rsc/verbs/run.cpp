@@ -1,4 +1,4 @@
-// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--config FILE] [-O0]
+// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--config FILE] [-O0] [--seed N]
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -58,7 +58,7 @@ void run(const RunOptions& options) {
     if (!options.trace.empty()) trace += json;
     std::cout << (options.format == Format::json ? json : trace_line(event, names) + "\n");
   };
-  sim::Simulator simulator(uploaded, take, program.board());
+  sim::Simulator simulator(uploaded, take, program.board(), options.how.seed);
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
     throw Failure(Exit::program,
                   fmt::format("{}: the board would refuse it: {}", options.file,
@@ -79,6 +79,7 @@ void add_run(Options& options) {
   add_duration_option(options, "--duration", asked->duration, "else the scenario's, else 10s");
   options.option("--trace", "T.jsonl", asked->trace, "write the trace as JSON lines");
   add_compile_options(options, asked->how);
+  add_seed_option(options, asked->how.seed);
   add_format_option(options, asked->format);
   options.runs([asked] { run(*asked); });
 }

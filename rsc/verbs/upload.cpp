@@ -80,6 +80,7 @@ void add_upload(Options& options) {
   options.argument("FILE", asked->file, "program (.rsl) or image (.rsb)", Options::Need::required);
   add_port_option(options, asked->port);
   add_compile_options(options, asked->how);
+  add_seed_option(options, asked->how.seed);
   add_duration_option(options, "--timeout", asked->timeout,
                       "give up after (10s, longer for a large image)");
   options.flag("--replace", asked->replace,

@@ -43,7 +43,7 @@ Decision Arbiter::decide_among_owners(const Claim& claim) const {
 
 bool Arbiter::ends(const Claim& claim, const Decision& decision, unsigned rule) const {
   if (decision.outcome == Outcome::ignored) return false;
-  if (rule == claim.rule) return true;
+  if (rule == claim.rule) return works(rule);
   return decision.wins() && (holdings_[rule].actuators & claim.actuators) != 0;
 }
 

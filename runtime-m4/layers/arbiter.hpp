@@ -9,6 +9,8 @@
 // * A claim that is tried again takes nothing from its own behaviour: only a trigger does.
 // * Choosing the other side of a WHEN/ELSE ends the running one, even when the new side loses. So
 //   does starting again (RESTARTING).
+// * A WHILE that has done a round keeps what it has until its condition ends: it rests, and its next
+//   claim begins another round.
 // * What safety has halted nobody gets; the claim loses to the behaviour that holds the safety
 //   rules.
 #pragma once
@@ -41,6 +43,7 @@ struct Holding {
   std::uint8_t behavior = 0;
   Side side : 1 = Side::then;
   bool won_now : 1 = false;  // in this step
+  bool rests : 1 = false;    // of a WHILE: between two rounds, of which it keeps the actuators
 };
 
 enum class Outcome : std::uint8_t {
@@ -66,7 +69,7 @@ public:
 
   // Read by the behaviours' threads as well.
   [[nodiscard]] Decision decide(const Claim& claim) const {
-    const bool again = running_.has(claim.rule) && holdings_[claim.rule].side == claim.side;
+    const bool again = works(claim.rule) && holdings_[claim.rule].side == claim.side;
     if (again && !claim.restarting) return {.outcome = Outcome::ignored, .owner = claim.behavior};
     if ((claim.actuators & (owned_ | halted_)) == 0) [[likely]]
       return {};
@@ -83,8 +86,13 @@ public:
     running_.erase(rule);
   }
 
-  const RuleSet& running() const { return running_; }
+  // A round of its is over, and it keeps its actuators for the next one.
+  void rest(unsigned rule) { holdings_[rule].rests = true; }
+
+  const RuleSet& running() const { return running_; }  // resting ones too
   bool runs(unsigned rule) const { return running_.has(rule); }
+  bool rests(unsigned rule) const { return runs(rule) && holdings_[rule].rests; }
+  bool works(unsigned rule) const { return runs(rule) && !holdings_[rule].rests; }
   Holding& holding(unsigned rule) { return holdings_[rule]; }
   const Holding& holding(unsigned rule) const { return holdings_[rule]; }
   ActuatorMask owned() const { return owned_; }  // by all that run; each has one owner

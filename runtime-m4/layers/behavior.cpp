@@ -115,10 +115,10 @@ void BehaviorLayer::conclude(unsigned rule) {
   const unsigned behavior = program_->behavior_of[rule];
   if (has(retired_, behavior) || result.there == 0) result = {};
   result.there = 0;  // it is taken
-  has_run_.insert(rule);
   ResumePoint& point = resume_points_[rule];
   const vm::Progress progress = checked_progress();
   const bool waited = point.pause != vm::Pause::ended;
+  if (!waited || progress.pause != vm::Pause::ended) has_run_.insert(rule);
   const bool moved = progress.pause != vm::Pause::still_polling;
   Trace& trace = layers_.trace;
   if (waited && moved) trace.emit(EventKind::go_on, trace.step(), rule);
@@ -192,7 +192,7 @@ std::uint16_t BehaviorLayer::response_of(unsigned rule, Side side) const {
 
 bool BehaviorLayer::claim_of(unsigned rule, Claim& claim, bool& silent) const {
   Triggers::Wish wish;
-  const bool runs = layers_.arbiter.runs(rule);
+  const bool runs = layers_.arbiter.works(rule);
   if (!layers_.triggers.wish(rule, runs, wish)) return false;
   const unsigned response = response_of(rule, wish.side);
   if (response == vm::kNoIndex) return false;  // a behaviour can say that its rule has an ELSE

@@ -70,7 +70,8 @@ public:
   const ResumePoint& resume_point(unsigned rule) const { return resume_points_[rule]; }
   void forget_resume_point(unsigned rule) { resume_points_[rule] = {}; }
   void retire(unsigned behavior);  // its thread was stopped
-  // The rule's response began or went on in this millisecond, and must not again.
+  // The rule's response began in this millisecond, or went on and waits again: it must not do either
+  // once more. One that went on to its end may begin again.
   bool has_run(unsigned rule, std::uint32_t now) const {
     return now == ran_at_ && has_run_.has(rule);
   }
@@ -78,7 +79,7 @@ public:
   // --- for the step thread and the behaviour itself ---
   // What `rule` claims now, if anything; silent: that it does was told before.
   [[nodiscard]] bool claim_of(unsigned rule, Claim& claim, bool& silent) const;
-  // A WHILE whose response has run in this millisecond claims again in the next one.
+  // A WHILE whose response has begun in this millisecond claims again in the next one.
   [[nodiscard]] bool must_pause(unsigned rule) const {
     return program_->image.rules[rule].kind == vm::RuleKind::while_ && has_run(rule, ran_at_);
   }
@@ -129,7 +130,7 @@ private:
   bool is_released_ = false;
   std::uint16_t rule_ = kNobody;
   std::uint16_t code_ = 0;
-  RuleSet has_run_;           // their responses began or went on in the millisecond …
+  RuleSet has_run_;           // see has_run(): in the millisecond …
   std::uint32_t ran_at_ = 0;  // … of the last step
   std::span<Unit> units_;
   std::span<ResumePoint> resume_points_;

@@ -38,6 +38,11 @@ bool FeedQueue::insert(const Entry& entry) {
   return true;
 }
 
+void FeedQueue::shift(kernel::Time from, kernel::Time to) {
+  for (Entry& entry : entries_.first(count_))
+    if (entry.due() >= from) entry = Entry(entry.due() - from + to, entry.channel(), entry.value());
+}
+
 bool FeedQueue::take_due(kernel::Time now, Entry& entry) {
   if (next_due() > now) return false;
   entry = entries_[0];

@@ -33,6 +33,9 @@ public:
   void start(Memory& memory);  // nothing waits
   // False when it is full.
   [[nodiscard]] bool insert(const Entry& entry);
+  // The time that they are counted from, `from`, was meant to come and comes `to`; what is due before
+  // it stays as it is.
+  void shift(kernel::Time from, kernel::Time to);
   // Takes the earliest entry out if it is due.
   [[nodiscard]] bool take_due(kernel::Time now, Entry& entry);
   kernel::Time next_due() const { return count_ == 0 ? kernel::kForever : entries_[0].due(); }

@@ -19,7 +19,8 @@ std::uint32_t seed_of(std::uint32_t program_seed, unsigned behavior) {
 
 }  // namespace
 
-void Frames::start(Memory& memory) {
+void Frames::start(std::uint32_t seed, Memory& memory) {
+  seed_ = seed;
   safety_cells_ = memory.take<policy::Part::safety_cells, std::uint32_t>();
   safety_timers_ = memory.take<policy::Part::safety_timers, std::uint32_t>();
   const auto unknown = static_cast<std::uint32_t>(vm::kUnknown);
@@ -40,7 +41,7 @@ vm::Machine Frames::machine(const LoadedProgram& program, unsigned behavior) con
   machine.timers = program.image.timers.data();
   machine.timer_memory =
       safety ? safety_timers_.data() : workspace_.timer_words.data() - safety_timers_.size();
-  machine.random = seed_of(program.image.header->seed, behavior);
+  machine.random = seed_of(seed_, behavior);
   return machine;
 }
 

@@ -16,8 +16,8 @@ class Frames {
 public:
   explicit Frames(Workspace& workspace) : workspace_(workspace) {}
 
-  // Nothing is known, nothing remembered. After the workspace.
-  void start(Memory& memory);
+  // Nothing is known, nothing remembered; random numbers begin with `seed`. After the workspace.
+  void start(std::uint32_t seed, Memory& memory);
 
   // A machine for one behaviour. Its random numbers depend on the program's seed and on the number
   // of the behaviour only.
@@ -35,6 +35,7 @@ private:
   Workspace& workspace_;
   std::span<std::uint32_t> safety_cells_;
   std::span<std::uint32_t> safety_timers_;
+  std::uint32_t seed_ = 1;
 };
 
 }  // namespace robosync::layers

@@ -79,6 +79,7 @@ void ProcessingLayer::run() {
 }
 
 void ProcessingLayer::pass() {
+  layers_.sensors.deliver_due();
   kernel::Time time = 0;
   const std::uint32_t now = read_clock(time);
   adaptation_.turn(*program_, layers_.threads, trace_, now);
@@ -122,10 +123,16 @@ void ProcessingLayer::finish_done() {
   }
 }
 
+// A WHILE goes on having its actuators as long as its condition holds.
 void ProcessingLayer::finish_if_done(unsigned rule) {
-  if (layers_.arbiter.holding(rule).pending != 0) return;
+  const Holding& holding = layers_.arbiter.holding(rule);
+  if (holding.pending != 0 || holding.rests) return;
   if (layers_.behaviors.resume_point(rule).pause != vm::Pause::ended) return;
-  layers_.arbiter.end(rule);
+  if (layers_.triggers.goes_round(rule)) {
+    layers_.arbiter.rest(rule);
+  } else {
+    layers_.arbiter.end(rule);
+  }
   trace_.emit(EventKind::finished, trace_.now(), rule);
 }
 
@@ -193,7 +200,7 @@ std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
   for (const unsigned rule : layers_.arbiter.running())
     add_waiting(rule, due);
   for (const unsigned rule : layers_.triggers.active())
-    if (!layers_.arbiter.runs(rule)) add_wanting(rule, due, now);
+    add_wanting(rule, due, now);
   return due.delay();
 }
 
@@ -205,12 +212,15 @@ void ProcessingLayer::add_waiting(unsigned rule, Soonest& due) const {
   due.at(point.wake);
 }
 
-// A rule that wants to run and may.
+// A rule that wants to run and may; or whose other side has to end for it.
 void ProcessingLayer::add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const {
   due.at(layers_.triggers.cooled_at(rule));
   Claim claim{};
   bool silent = false;
-  if (layers_.behaviors.claim_of(rule, claim, silent) && layers_.arbiter.decide(claim).wins())
+  if (!layers_.behaviors.claim_of(rule, claim, silent)) return;
+  const Decision decision = layers_.arbiter.decide(claim);
+  if (decision.outcome == Outcome::ignored) return;
+  if (decision.wins() || layers_.arbiter.works(rule))
     due.at(layers_.behaviors.has_run(rule, now) ? now + 1 : now);
 }
 
@@ -387,18 +397,18 @@ void ProcessingLayer::arbitrate(RuleRange rules) {
 
 void ProcessingLayer::serve(const Claim& claim, bool silent) {
   const Decision decision = layers_.arbiter.decide(claim);
-  const bool was_running = layers_.arbiter.runs(claim.rule);
+  const bool was_running = layers_.arbiter.works(claim.rule);
   if (was_running || (claim.actuators & layers_.arbiter.owned()) != 0)
     interrupt_by(claim, decision);
   if (decision.wins()) {
     report(claim, EventKind::win);
-    layers_.triggers.won(claim.rule, snapshot_.milliseconds());
+    layers_.triggers.won(claim.rule, claim.side, snapshot_.milliseconds());
     layers_.arbiter.give(claim);
     return;
   }
   if (!silent) report(claim, EventKind::lose, decision.owner);
   const bool to_itself = decision.outcome == Outcome::ignored;
-  layers_.triggers.lost(claim.rule, claim.side, to_itself, snapshot_.milliseconds());
+  layers_.triggers.lost(claim.rule, to_itself, snapshot_.milliseconds());
 }
 
 void ProcessingLayer::interrupt_by(const Claim& claim, const Decision& decision) {
@@ -406,11 +416,14 @@ void ProcessingLayer::interrupt_by(const Claim& claim, const Decision& decision)
     if (layers_.arbiter.ends(claim, decision, rule)) interrupt(rule, claim.behavior);
 }
 
+// One that rests between two rounds has nothing under way: it lets go without a word.
 void ProcessingLayer::interrupt(unsigned rule, unsigned by) {
-  trace_.emit(EventKind::interrupt, trace_.step(), rule, by);
-  cancelled_ |= layers_.arbiter.holding(rule).actuators;
+  if (layers_.arbiter.works(rule)) {
+    trace_.emit(EventKind::interrupt, trace_.step(), rule, by);
+    cancelled_ |= layers_.arbiter.holding(rule).actuators;
+    layers_.behaviors.forget_resume_point(rule);
+  }
   layers_.arbiter.end(rule);
-  layers_.behaviors.forget_resume_point(rule);
   layers_.triggers.interrupted(rule);
 }
 

@@ -10,15 +10,23 @@ constexpr std::uint64_t kLatestFeed = std::uint64_t{1} << 62;  // so that times 
 
 }  // namespace
 
-bool SensorLayer::start(const LoadedProgram& program, Sampler& sampler, Memory& memory,
-                        ProgramThreads& threads) {
+bool SensorLayer::start(const LoadedProgram& program, Sampler& sampler, bool simulated,
+                        Memory& memory, ProgramThreads& threads) {
   program_ = &program;
   sampler_ = &sampler;
+  simulated_ = simulated;
+  begun_ = false;
+  awaited_ =
+      program.image.has_safety() ? layers::channels_of(program.inputs[vm::kSafetyBehavior]) : 0;
   feed_thread_ = nullptr;
   feeds_.start(memory);
   units_ = memory.take_zero<policy::Part::sensor_units, Unit>();
   for (unsigned s = 0; s < program.image.sensors.size(); ++s)
-    if (!policy::is_fed(program.image.sensors[s]) && !start_sensor(s, threads)) return false;
+    if (policy::is_fed(program.image.sensors[s])) {
+      if (simulated) awaited_ &= ~channels_of(s);
+    } else if (!start_sensor(s, threads)) {
+      return false;
+    }
   return !policy::has_fed_sensors(program.image) || start_feeds(threads);
 }
 
@@ -38,10 +46,29 @@ bool SensorLayer::start_sensor(unsigned sensor, ProgramThreads& threads) {
   return unit.thread != nullptr;
 }
 
+ChannelMask SensorLayer::channels_of(unsigned sensor) const {
+  const vm::Sensor& wiring = program_->image.sensors[sensor];
+  ChannelMask channels = 0;
+  for (unsigned i = 0; i < wiring.channel_count; ++i)
+    channels |= bit<ChannelMask>(wiring.first_channel + i);
+  return channels;
+}
+
 void SensorLayer::go() {
+  signal_sensors(kGo);
+}
+
+void SensorLayer::begin(kernel::Time zero) {
+  const auto lock = kernel_.lock();
+  feeds_.shift(zero, trace_.activated_at());
+  begun_ = true;
+  signal_sensors(kBegin);
+}
+
+void SensorLayer::signal_sensors(kernel::Events events) {
   const auto lock = kernel_.lock();
   for (const Unit& unit : units_)
-    if (unit.thread != nullptr) kernel_.signal(*unit.thread, kGo);
+    if (unit.thread != nullptr) kernel_.signal(*unit.thread, events);
 }
 
 bool SensorLayer::start_feeds(ProgramThreads& threads) {
@@ -56,12 +83,32 @@ bool SensorLayer::start_feeds(ProgramThreads& threads) {
 
 void SensorLayer::run_sensor(unsigned sensor) {
   kernel_.wait(kGo);
+  await_begin(sensor);
   kernel::Time due = trace_.activated_at();
   while (true) {
     kernel_.sleep_until(due);
     sample(sensor);
     due = next_sample(sensor, due);
   }
+}
+
+// One that SAFETY reads measures already.
+void SensorLayer::await_begin(unsigned sensor) {
+  const kernel::Duration period = kernel::milliseconds(program_->image.sensors[sensor].period_ms);
+  const bool measures = (awaited_ & channels_of(sensor)) != 0;
+  while (!begun_) {
+    if (measures) sample(sensor);
+    if (measures && simulated_) note_tried(channels_of(sensor));
+    kernel_.wait(kBegin, measures ? kernel_.now() + period : kernel::kForever);
+  }
+}
+
+void SensorLayer::note_tried(ChannelMask channels) {
+  {
+    const auto lock = kernel_.lock();
+    awaited_ &= ~channels;
+  }
+  alarm_.ring(channels);
 }
 
 // One period after the last; periods that are over already are skipped, never made up for.
@@ -99,31 +146,42 @@ void SensorLayer::run_feeds() {
   }
 }
 
-// One tick's worth: at most as many as the queue holds.
-void SensorLayer::deliver_due() {
+// One tick's worth: at most as many as the queue holds. Whoever preempts it goes on with the rest, so
+// what is taken out of the queue is announced under the same lock.
+void SensorLayer::deliver() {
   const kernel::Time now = kernel_.now();
   ChannelMask news = 0;
   for (unsigned i = 0; i < feeds_.places(); ++i) {
+    const auto lock = kernel_.lock();
     FeedQueue::Entry entry;
-    {
-      const auto lock = kernel_.lock();
-      if (!feeds_.take_due(now, entry)) break;
-    }
-    if (entry.value() != vm::kUnknown) news |= publish(entry.channel(), entry.value());
+    if (!feeds_.take_due(now, entry)) break;
+    if (entry.value() == vm::kUnknown) continue;
+    const ChannelMask mine = publish(entry.channel(), entry.value());
+    mailboxes_.announce(mine);
+    news |= mine;
   }
-  announce(news);
+  tell(news);
 }
 
 // The channel's bit if it is news.
 ChannelMask SensorLayer::publish(std::uint8_t channel, vm::Value value) {
   const vm::Channel& wiring = program_->image.channels[channel];
   const Reading reading(channel, std::clamp(value, wiring.min, wiring.max), kernel_.now());
+  if (awaited_ != 0) [[unlikely]] {
+    const auto lock = kernel_.lock();
+    awaited_ &= ~bit<ChannelMask>(channel);
+  }
   return mailboxes_.post(reading, wiring) ? bit<ChannelMask>(channel) : 0;
 }
 
 void SensorLayer::announce(ChannelMask channels) {
   if (channels == 0) return;
   mailboxes_.announce(channels);
+  tell(channels);
+}
+
+void SensorLayer::tell(ChannelMask channels) {
+  if (channels == 0) return;
   alarm_.ring(channels);  // safety first; what it does is part of the step with the reading
   kernel_.signal(step_thread_, news_);
 }

@@ -4,9 +4,11 @@
 // A reading is clamped to its channel's range and published only if it is news (mailbox.hpp). A
 // sample that fails publishes nothing; if it goes on failing, the channel becomes unknown by age.
 // All readings that one sensor takes at one time, and all feeds that are due at one tick, enter the
-// same step.
+// same step: that of their tick, before its timers, for who looks at it first delivers what is due
+// (deliver_due()).
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 
@@ -35,13 +37,26 @@ public:
         news_(news) {}
 
   // Creates the threads of `program`, which must stay until they are dismissed.
-  [[nodiscard]] bool start(const LoadedProgram& program, Sampler& sampler, Memory& memory,
-                           ProgramThreads& threads);
-  // All threads of the program are there: sampling begins.
+  // `simulated`: nothing measures but `sampler`, so there is nothing to wait for.
+  [[nodiscard]] bool start(const LoadedProgram& program, Sampler& sampler, bool simulated,
+                           Memory& memory, ProgramThreads& threads);
+  // All threads of the program are there: sensors that SAFETY reads begin to measure.
   void go();
+  // Every channel that SAFETY reads has given its first reading; or, where readings are made up
+  // (`simulated`), had its turn to. Before begin().
+  bool knows_enough() const { return awaited_ == 0; }
+  // Program time begins: at activated_at(), which was meant to be `zero`.
+  void begin(kernel::Time zero);
 
   // A reading for a fed channel, of a program that runs.  [link thread]
   link::FeedResult feed(const link::Feed& feed);
+
+  // Publishes the feeds that are due. The step and the safety thread outrank the one that serves the
+  // feeds: each calls this before it asks what is known, and what is due.  [thread]
+  void deliver_due() {
+    if (feeds_.next_due() <= kernel_.now()) [[unlikely]]
+      deliver();
+  }
 
   // Its thread was stopped: what it measures is no longer known.
   void retire(unsigned member_index);
@@ -49,6 +64,7 @@ public:
 private:
   static constexpr kernel::Events kFeed = 1;
   static constexpr kernel::Events kGo = 2;
+  static constexpr kernel::Events kBegin = 4;
 
   struct Unit {
     SensorLayer* layer = nullptr;
@@ -59,12 +75,17 @@ private:
   [[nodiscard]] bool start_sensor(unsigned sensor, ProgramThreads& threads);
   [[nodiscard]] bool start_feeds(ProgramThreads& threads);
   void run_sensor(unsigned sensor);
+  void await_begin(unsigned sensor);
+  void note_tried(ChannelMask channels);
+  void signal_sensors(kernel::Events events);
+  ChannelMask channels_of(unsigned sensor) const;
   void run_feeds();
   kernel::Time next_sample(unsigned sensor, kernel::Time last);
   void sample(unsigned sensor);
-  void deliver_due();
+  [[gnu::noinline]] void deliver();
   ChannelMask publish(std::uint8_t channel, vm::Value value);
   void announce(ChannelMask channels);
+  void tell(ChannelMask channels);
   link::FeedError check(const link::Feed& feed) const;
 
   kernel::Kernel& kernel_;
@@ -78,6 +99,9 @@ private:
   kernel::Thread* feed_thread_ = nullptr;
   std::span<Unit> units_;
   FeedQueue feeds_;
+  ChannelMask awaited_ = 0;  // SAFETY reads them, and they have not said anything yet
+  bool simulated_ = false;
+  std::atomic<bool> begun_ = false;
 };
 
 }  // namespace robosync::layers

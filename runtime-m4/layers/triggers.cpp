@@ -97,11 +97,19 @@ void Triggers::collect(unsigned rule) {
   }
 }
 
-// It ends a phase, or a WHILE that holds.
+// It cools down or waits, is a WHILE that holds, or wants the side that it has chosen.
 void Triggers::note_active(unsigned rule) {
-  const bool holds = judgement(rule).truth == Truth::yes;
-  const bool active = phases_[rule].phase != Phase::free || (holds && is_while(rule));
+  const State& state = phases_[rule];
+  Side side{};
+  const bool active = state.cooling != 0 || state.waiting || goes_round(rule) ||
+                      (chooses(rule) && is_unsettled(rule, side));
   if (active || active_.has(rule)) active_.put(rule, active);
+}
+
+bool Triggers::is_unsettled(unsigned rule, Side& side) const {
+  const Truth truth = judgement(rule).truth;
+  side = truth == Truth::yes ? Side::then : Side::otherwise;
+  return truth != Truth::unknown && phases_[rule].last != mask_of(side);
 }
 
 void Triggers::find_first_to_wake() {
@@ -120,10 +128,10 @@ void Triggers::add_woken(std::uint32_t now, RuleSet& rules) const {
 void Triggers::settle(std::uint32_t now) {
   for (const unsigned rule : active_) {
     State& state = phases_[rule];
-    const std::uint32_t until = until_[rule];
-    const bool cooling = state.phase == Phase::cooling;
-    const bool over = cooling ? reached(until, now) : !reached(now, until);
-    if (over) state.phase = Phase::free;
+    for (const Side side : {Side::otherwise, Side::then})
+      if (cools(rule, side) && reached(until(rule, side), now))
+        state.cooling = static_cast<std::uint8_t>(state.cooling & ~mask_of(side)) & 3U;
+    if (state.waiting && !reached(now, until(rule, Side::then))) state.waiting = false;
     note_active(rule);
   }
 }
@@ -141,10 +149,14 @@ bool Triggers::wish(unsigned rule, bool running, Wish& wish) const {
     wish = {.side = side, .fresh = true, .silent = false};
     return true;
   }
-  if (is_while(rule))
-    return judgement(rule).truth == Truth::yes && !running && state.phase == Phase::free;
-  if (state.phase == Phase::wants_otherwise) wish.side = Side::otherwise;
-  return state.phase == Phase::wants_then || state.phase == Phase::wants_otherwise;
+  switch (image_->rules[rule].kind) {
+    case vm::RuleKind::while_:
+      return goes_round(rule) && !running && !cools(rule, Side::then);
+    case vm::RuleKind::when_else:
+      return is_unsettled(rule, wish.side) && !cools(rule, wish.side);
+    default:
+      return state.waiting;
+  }
 }
 
 bool Triggers::is_over(unsigned rule) const {
@@ -155,24 +167,28 @@ bool Triggers::restarting(unsigned rule) const {
   return modifiers(rule).restarting != 0;
 }
 
-void Triggers::won(unsigned rule, std::uint32_t now) {
+void Triggers::won(unsigned rule, Side side, std::uint32_t now) {
   State& state = phases_[rule];
   const std::uint32_t cooldown = milliseconds_of(modifiers(rule).cooldown);
   state.told = false;
-  state.phase = cooldown > 0 ? Phase::cooling : Phase::free;
-  until_[rule] = now + cooldown;
+  state.waiting = false;
+  state.last = static_cast<std::uint8_t>(mask_of(side)) & 3U;
+  if (cooldown > 0) {
+    state.cooling = static_cast<std::uint8_t>(state.cooling | mask_of(side)) & 3U;
+    until(rule, side) = now + cooldown;
+  }
   note_active(rule);
 }
 
-// A WHILE goes on wanting anyway; and who runs already does not wait for himself.
-void Triggers::lost(unsigned rule, Side side, bool to_itself, std::uint32_t now) {
+// A WHILE and a WHEN/ELSE go on wanting anyway; and who runs already does not wait for himself.
+void Triggers::lost(unsigned rule, bool to_itself, std::uint32_t now) {
   State& state = phases_[rule];
   state.told = true;
   const std::uint32_t waiting = milliseconds_of(modifiers(rule).waiting);
   const bool triggered = judgement(rule).trigger != Trigger::none;
-  if (!triggered || waiting == 0 || to_itself || is_while(rule)) return;
-  state.phase = side == Side::then ? Phase::wants_then : Phase::wants_otherwise;
-  until_[rule] = now + waiting;
+  if (!triggered || waiting == 0 || to_itself || is_while(rule) || chooses(rule)) return;
+  state.waiting = true;
+  until(rule, Side::then) = now + waiting;
   active_.insert(rule);
 }
 
@@ -180,7 +196,6 @@ void Triggers::retire(unsigned rule) {
   judgement(rule) = Judgement{};
   workspace_.due[rule] = kNever;
   phases_[rule] = State{};
-  until_[rule] = 0;
   eventful_.erase(rule);
   active_.erase(rule);
   sleeping_.erase(rule);
@@ -188,9 +203,9 @@ void Triggers::retire(unsigned rule) {
 }
 
 std::uint32_t Triggers::cooled_at(unsigned rule) const {
-  const bool holds = judgement(rule).truth == Truth::yes;
-  const bool cools = is_while(rule) && holds && phases_[rule].phase == Phase::cooling;
-  return cools ? until_[rule] : kNever;
+  Side side = Side::then;
+  const bool wants = chooses(rule) ? is_unsettled(rule, side) : goes_round(rule);
+  return wants && cools(rule, side) ? until(rule, side) : kNever;
 }
 
 }  // namespace robosync::layers

@@ -2,9 +2,12 @@
 //
 // A rule remembers the last known truth of its condition. WHEN triggers when that becomes true,
 // WHEN/ELSE when it changes; the first known truth counts as a change; a truth that is an event
-// (BECOMES, CHANGES …) triggers each time. An unknown condition does nothing and is not remembered,
+// (BECOMES, CHANGES …) triggers each time. A WHEN/ELSE goes on wanting its chosen side until that
+// was the last to run: when it lost, and when that side cooled down. An unknown condition does nothing and is not remembered,
 // so a sensor that drops out and comes back does not trigger by that alone. WHILE is other: unknown
 // ends it, so that it fires again when its condition is known to be true.
+//
+// Each side of a rule cools down by itself.
 //
 // The behaviours' threads say what they have evaluated, each of its own rules, and ask what follows
 // from it; the step thread collects it and asks the same. What is not free of the past (a wait, a
@@ -62,13 +65,17 @@ public:
   bool is_over(unsigned rule) const;
   bool restarting(unsigned rule) const;
   // What became of its wish, or of its response.
-  void won(unsigned rule, std::uint32_t now);
-  void lost(unsigned rule, Side side, bool to_itself, std::uint32_t now);
+  void won(unsigned rule, Side side, std::uint32_t now);
+  void lost(unsigned rule, bool to_itself, std::uint32_t now);
   void interrupted(unsigned rule) { phases_[rule].told = true; }
   void forget(unsigned rule) { judgement(rule).trigger = Trigger::none; }
   // Its behaviour was stopped: it never triggers again.
   void retire(unsigned rule);
-  // When a WHILE that cools down may start again; kNever for never.
+  // Its condition holds, and it is a WHILE: after a round there is another.
+  bool goes_round(unsigned rule) const {
+    return is_while(rule) && judgement(rule).truth == Truth::yes;
+  }
+  // When one that wants to run has cooled down; kNever for one that does not.
   std::uint32_t cooled_at(unsigned rule) const;
 
   // --- for both ---
@@ -81,21 +88,32 @@ public:
   [[nodiscard]] bool fired(unsigned rule, Side& side) const {
     const Trigger trigger = judgement(rule).trigger;
     side = trigger == Trigger::then ? Side::then : Side::otherwise;
-    return trigger != Trigger::none && phases_[rule].phase != Phase::cooling;
+    return trigger != Trigger::none && !cools(rule, side);
   }
   // What it wants to run, given whether it runs now. False: nothing.
   [[nodiscard]] bool wish(unsigned rule, bool running, Wish& wish) const;
 
 private:
-  enum class Phase : std::uint8_t { free, cooling, wants_otherwise, wants_then };
-
-  // What only the step thread knows of a rule.
+  // What only the step thread knows of a rule. Of a mask of sides, bit s is side s.
   struct State {
-    Phase phase : 2 = Phase::free;
-    bool told : 1 = false;  // WHILE: that it wants to run and does not
+    std::uint8_t cooling : 2 = 0;  // sides that cool down
+    std::uint8_t last : 2 = 0;     // the side that was the last to run; none at first
+    bool waiting : 1 = false;      // WAITING, for its one side
+    bool told : 1 = false;         // that it wants to run and does not
   };
   static constexpr std::uint16_t kNobody = 0xFFFF;
+  static constexpr unsigned mask_of(Side side) { return 1U << static_cast<unsigned>(side); }
 
+  bool cools(unsigned rule, Side side) const {
+    return (phases_[rule].cooling & mask_of(side)) != 0;
+  }
+  // The end of its cooldown, by side; of the waiting as well, which has no other side.
+  std::uint32_t& until(unsigned rule, Side side) const {
+    return until_[policy::kSides * rule + static_cast<unsigned>(side)];
+  }
+  bool chooses(unsigned rule) const { return image_->rules[rule].kind == vm::RuleKind::when_else; }
+  // Of a WHEN/ELSE: the chosen side was not the last to run.
+  bool is_unsettled(unsigned rule, Side& side) const;
   bool is_while(unsigned rule) const { return image_->rules[rule].kind == vm::RuleKind::while_; }
   const vm::Modifiers& modifiers(unsigned rule) const;
   Judgement& judgement(unsigned rule) const { return workspace_.judgements[rule]; }
@@ -110,7 +128,7 @@ private:
   Workspace& workspace_;
   const vm::Image* image_ = nullptr;
   std::span<State> phases_;
-  std::span<std::uint32_t> until_;  // end of a phase other than `free`
+  std::span<std::uint32_t> until_;  // see until()
   RuleSet eventful_;
   RuleSet active_;
   RuleSet sleeping_;  // those that are due at some time

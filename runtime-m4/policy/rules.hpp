@@ -38,7 +38,7 @@ inline const vm::Modifiers& modifiers_of(const vm::Image& image, const vm::Rule&
 
 // Does it claim its actuators again after it has lost them, without a new trigger?
 inline bool claims_again(const vm::Image& image, const vm::Rule& rule) {
-  return rule.kind == vm::RuleKind::while_ ||
+  return rule.kind == vm::RuleKind::while_ || rule.kind == vm::RuleKind::when_else ||
          milliseconds_of(modifiers_of(image, rule).waiting) > 0;
 }
 

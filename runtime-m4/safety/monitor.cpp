@@ -22,7 +22,7 @@ void Monitor::run() {
     const kernel::Events why = kernel_.wait(kNews | kProgram, std::min(due, rules_due));
     const kernel::Time now = kernel_.now();
     if ((why & kProgram) != 0) {
-      due = supervised_.began();
+      due = std::min(supervised_.began(), now + kIdlePeriod);
       rules_due = kernel::kForever;
       without_progress_ = 0;
     }
@@ -37,6 +37,7 @@ void Monitor::run() {
 // Periods that are over already are skipped, never made up for.
 kernel::Time Monitor::next_after(kernel::Time due, kernel::Time now) const {
   if (!supervised_.running()) return now + kIdlePeriod;
+  if (now < supervised_.began()) return std::min(supervised_.began(), now + kIdlePeriod);
   const kernel::Time next = due + kPeriod;
   return now < next ? next : next + ((now - next) / kPeriod + 1) * kPeriod;
 }

@@ -1,7 +1,8 @@
 // Safety monitor: a thread above all others that looks after the safety rules, checks every 10 ms
 // that the program is alive, and keeps the watchdog from resetting the board as long as it is.
 //
-// Its periods are those of program time, beginning with 0: at each it looks at the rules and at the
+// Before program time begins it looks at the rules when one of their inputs has changed, and when the time
+// for that is over. Its periods are those of program time, beginning with 0: at each it looks at the rules and at the
 // program's life, once. In between it looks at the rules when one of their inputs has changed or one
 // of their time words is due. So when a rule trips depends on the program and its readings alone, not on
 // when the board was switched on.
@@ -36,7 +37,7 @@ public:
   // Evaluates the safety rules. Returns when a time word of theirs is due.
   virtual kernel::Time look_at_rules() = 0;
   virtual bool running() const = 0;        // is there a program?
-  virtual kernel::Time began() const = 0;  // its time 0, which may be about to come
+  virtual kernel::Time began() const = 0;  // its time 0, or when that will be there at the latest
 
 protected:
   ~Supervised() = default;

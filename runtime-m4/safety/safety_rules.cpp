@@ -51,9 +51,8 @@ void SafetyRules::evaluate(unsigned rule) {
   const bool can_resume =
       rule + 1 < image.rules.size() && image.rules[rule + 1].kind == vm::RuleKind::resume;
   const vm::Value safe_again = can_resume ? truth_of(rule + 1) : vm::kFalse;
-  const bool measured = layers_.trace.program_time() >= kPeriod;
   if (!tripped_.has(rule)) {
-    if (danger == vm::kTrue || (danger == vm::kUnknown && measured)) trip(rule);
+    if (danger != vm::kFalse) trip(rule);
   } else if (danger == vm::kFalse && safe_again == vm::kTrue) {
     resume(rule);
   }

@@ -3,8 +3,8 @@
 //
 // It reads what the sensors measured last and what the last step knew of the variables: when one of
 // those changes, at each period of program time, and when a time word is due (monitor.hpp). A
-// rule trips when its condition is true or unknown; but not for being unknown in the first period,
-// before every sensor has measured. It stays tripped until its resume condition is true while its
+// rule trips when its condition is true or unknown, from the beginning of program time on: the runtime
+// lets that begin when the sensors had their time to measure. It stays tripped until its resume condition is true while its
 // condition is false; without a resume condition, until the next program. Actuators that it has
 // halted take no command meanwhile, nor while another tripped rule halts them.
 #pragma once

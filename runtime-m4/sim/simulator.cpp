@@ -108,8 +108,10 @@ std::uint64_t Simulator::Impl::hand_over(std::uint64_t until_us) {
   return until_us;
 }
 
-Simulator::Simulator(std::span<const std::byte> image, Sink sink, const policy::BoardMemory& memory)
+Simulator::Simulator(std::span<const std::byte> image, Sink sink, const policy::BoardMemory& memory,
+                     std::uint32_t seed)
     : impl_(std::make_unique<Impl>(std::move(sink), memory)) {
+  impl_->runtime.draw_from(seed);
   impl_->load(image);
 }
 

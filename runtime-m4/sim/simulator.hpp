@@ -20,8 +20,10 @@ public:
   using Sink = std::function<void(const link::Event&)>;
 
   // Verifies and activates `image` on a board with `memory`, or else on the one that the preset
-  // names; the program's clock stands at 0.
-  Simulator(std::span<const std::byte> image, Sink sink, const policy::BoardMemory& memory);
+  // names; the program's clock stands at 0. `seed`: of the random numbers, in the place of the image's;
+  // 0: as the image says, or 1.
+  Simulator(std::span<const std::byte> image, Sink sink, const policy::BoardMemory& memory,
+            std::uint32_t seed = 0);
   Simulator(std::span<const std::byte> image, Sink sink);
   ~Simulator();
 

@@ -6,7 +6,7 @@ import re
 import unittest
 
 import rsc
-from support import LineReader, RobotTest, host_trace
+from support import SEED, LineReader, RobotTest, host_trace
 
 FIRST_VALUE = 10  # 0 means nothing to any rule
 CHANNELS = 8
@@ -49,7 +49,7 @@ class Large(RobotTest):
     def compile_large(self, rules, behaviors, actuators):
         source, robot = self.write_large(rules, behaviors, actuators)
         image = self.folder / "large.rsb"
-        rsc.run("compile", source, "--config", robot, "-o", image, "--strip", "--anyway")
+        rsc.run("compile", source, "--config", robot, "-o", image, "--strip", "--anyway", "--seed", SEED)
         return image
 
     def fired_on_the_board(self, rule):

@@ -174,14 +174,22 @@ TEST_CASE("every statement knows its line, and so does what follows a nested one
   CHECK(must_build(program_of({when(kClose, {kLeft})})).image.source_lines.empty());
 }
 
-TEST_CASE("the seed is of the hash") {
-  CHECK(must_build(program_of({when(kClose, {kLeft})})).image.header->seed == 0x05060708);
+TEST_CASE("the seed is the one that is asked for, or the robot's, or none") {
+  CHECK(must_build(program_of({when(kClose, {kLeft})})).image.header->seed == 0);
   Diagnostics diagnostics;
   const Program program = program_of({when(kClose, {kLeft})});
-  const Emitted emitted = emit(program, program, small_robot(), {}, {}, diagnostics);
-  vm::Image image;
-  REQUIRE(vm::view_image(emitted.image, image));
-  CHECK(image.header->seed != 0);
+  Robot robot = small_robot();
+  robot.seed = 5;
+  robot.safety_start_ms = 30;
+  const auto header_of = [&](EmitOptions options) {
+    const Emitted emitted = emit(program, program, robot, {}, options, diagnostics);
+    vm::Image image;
+    REQUIRE(vm::view_image(emitted.image, image));
+    return *image.header;
+  };
+  CHECK(header_of({}).seed == 5);
+  CHECK(header_of({.seed = 7}).seed == 7);
+  CHECK(header_of({}).safety_start_ms == 30);
 }
 
 TEST_CASE("blocks nest as deeply as the robot allows, and no deeper") {

@@ -43,14 +43,14 @@ bool Inputs::is_stale(const Channel& channel, Millis now) const {
   return channel.config->stale_ms != 0 && now > channel.heard + channel.config->stale_ms;
 }
 
-void Inputs::enter_readings(Millis now, bool news) {
+void Inputs::enter_readings(Millis now) {
   for (auto& [ref, channel] : channels_) {
     Number& seen = snapshot_.channels[ref];
     if (channel.value && is_stale(channel, now)) {
       if (seen) trace_.channel("stale", ref, std::nullopt);
       seen = std::nullopt;
     }
-    if (!channel.news || !news) continue;
+    if (!channel.news) continue;
     channel.news = false;
     if (seen != channel.value) trace_.channel("input", ref, channel.value);
     seen = channel.value;
@@ -169,8 +169,8 @@ void Inputs::check(const compiler::ProgramCheck& check, Smoothing& smoothing, Mi
   put(check.variable, static_cast<std::int64_t>(smoothing.band) * 1000);
 }
 
-void Inputs::enter(Millis now, bool readings) {
-  enter_readings(now, readings);
+void Inputs::enter(Millis now) {
+  enter_readings(now);
   const std::vector<Number> before = snapshot_.variables;
   fade(now);
   enter_variables(now);

@@ -29,8 +29,8 @@ public:
   // What the responses of one step did, the most important first.
   void stage(std::vector<Changes> changes) { staged_.push_back(std::move(changes)); }
 
-  // A step begins: everything new enters the snapshot; readings only if it is their turn.
-  void enter(Millis now, bool readings);
+  // A step begins: everything new enters the snapshot.
+  void enter(Millis now);
   [[nodiscard]] const Snapshot& snapshot() const { return snapshot_; }
   // Readings as they are, which is what SAFETY rules look at.
   [[nodiscard]] Snapshot readings(Millis now) const;
@@ -55,7 +55,7 @@ private:
   [[nodiscard]] bool is_stale(const Channel& channel, Millis now) const;
   void put(std::size_t variable, Number value);
   void begin_fade(std::size_t variable, Millis now);
-  void enter_readings(Millis now, bool news);
+  void enter_readings(Millis now);
   void enter_variables(Millis now);
   void fade(Millis now);
   void check(const compiler::ProgramCheck& check, Smoothing& smoothing, Millis now);

@@ -55,18 +55,18 @@ void Interpreter::run(const std::vector<Reading>& readings, Millis end) {
   std::size_t next = 0;
   for (now_.at = 0; now_.at <= end; ++now_.at) {
     trace_.set_time(now_.at);
+    feed(readings, next);
     guard(now_.at % kGuardEvery == 0);
     advance_actuators(true);
-    const bool news = feed(readings, next);
-    step(false);
-    if (news || somebody_could_start()) step(true);
+    step();
+    if (somebody_could_start()) step();
     advance_actuators(false);
     while (somebody_could_go_on() || somebody_could_start())
-      step(true);
+      step();
   }
 }
 
-bool Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) {
+void Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) {
   // Of several readings of one channel in one millisecond the last one counts.
   std::map<compiler::ChannelRef, std::int64_t> last;
   for (; next < readings.size() && readings[next].at <= now_.at; ++next)
@@ -75,7 +75,6 @@ bool Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) 
   for (const auto& [channel, value] : last)
     if (inputs_.feed(channel, value, now_.at)) news.insert(channel);
   if (!news.empty()) guard(false, news);
-  return !news.empty();
 }
 
 void Interpreter::advance_actuators(bool important) {
@@ -88,10 +87,12 @@ void Interpreter::advance_actuators(bool important) {
 void Interpreter::end_responses() {
   for (std::size_t r = 0; r < rules_.size(); ++r) {
     Rule& rule = rules_[r];
-    if (!rule.running || actuators_.works_for(r)) continue;
+    if (!rule.running || rule.running->rests || actuators_.works_for(r)) continue;
     if (!rule.running->response.ended() || rule.running->response.waits()) continue;
     trace_.rule("finished", *rule.rule, rule.behavior);
-    rule.running.reset();
+    // "A WHILE keeps its actuators between two rounds."
+    rule.running->rests = rule.rule->kind == vm::RuleKind::while_ && rule.last == true;
+    if (!rule.running->rests) rule.running.reset();
   }
 }
 
@@ -113,11 +114,11 @@ bool Interpreter::somebody_could_start() const {
   return false;
 }
 
-void Interpreter::step(bool readings) {
+void Interpreter::step() {
   ++now_.step;
   for (Rule& rule : rules_)
     if (rule.running) rule.running->won_now = false;
-  inputs_.enter(now_.at, readings);
+  inputs_.enter(now_.at);
   remember();
   interrupt_halted();
   for (std::size_t first = 0; first < rules_.size();)
@@ -175,8 +176,8 @@ void Interpreter::run_responses() {
       if (!running->response.waits() || !running->response.may_go_on(here)) continue;
       trace_.rule("go_on", *rules_[r].rule, rules_[r].behavior);
     }
-    rules_[r].ran = now_.at;
     outputs.emplace_back(r, running->response.run(here));
+    if (running->won_now || running->response.waits()) rules_[r].ran = now_.at;
     if (running->response.waits()) trace_.rule("wait", *rules_[r].rule, rules_[r].behavior);
   }
   std::vector<Changes> changes;

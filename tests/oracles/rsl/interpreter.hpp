@@ -1,5 +1,4 @@
-// The robot of docs/language.md, read naively: a step in every millisecond, all rules in each step,
-// and one more step when readings have come.
+// The robot of docs/language.md, read naively: a step in every millisecond, all rules in each step.
 //
 // It walks the analysed program (compiler/ir/program.hpp), not the syntax tree: the tree would
 // mean to resolve names, units, USE, DEFINE and robot.json a second time. So what sema makes of a
@@ -7,11 +6,12 @@
 // of bands, the part that is left of a fading FEELING) is believed here; tests/compiler/ is about
 // that. Nothing of codegen, vm/ (but its names of kinds) or runtime-m4/ is used.
 //
-// What the language leaves open within one millisecond is as docs/kernel.md ranks threads: SAFETY
-// every 10 ms, then actuators of the most important behaviour that is there, what is due, readings,
-// then all other actuators.
+// What the language leaves open within one millisecond is as docs/kernel.md ranks threads: readings and
+// SAFETY, then actuators of the most important behaviour that is there, the step, then all other
+// actuators.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <set>
 #include <vector>
@@ -41,6 +41,7 @@ private:
     bool side = true;
     std::set<std::size_t> actuators;
     bool won_now = false;
+    bool rests = false;  // a WHILE between two rounds: it has its actuators and does nothing
   };
   struct Waiting {
     bool side = true;
@@ -54,9 +55,10 @@ private:
     Truth last;  // known truth
     std::optional<Running> running;
     std::optional<Waiting> waiting;
-    std::optional<Millis> started;  // last
-    Millis ran = -1;                // its response, last
-    std::optional<Millis> due;      // the end of the period
+    std::map<bool, Millis> started;  // last, by side
+    std::optional<bool> ran_side;    // of the two, the last that ran
+    Millis ran = -1;                 // its response began, or went on and waits again
+    std::optional<Millis> due;       // the end of the period
   };
   struct Claim {
     std::size_t rule = 0;
@@ -74,8 +76,8 @@ private:
   void end_responses();
   [[nodiscard]] bool somebody_could_start() const;
   [[nodiscard]] bool somebody_could_go_on();
-  bool feed(const std::vector<Reading>& readings, std::size_t& next);
-  void step(bool readings);
+  void feed(const std::vector<Reading>& readings, std::size_t& next);
+  void step();
   std::size_t take_turn(std::size_t first);
   void remember();
   void interrupt_halted();
@@ -84,7 +86,9 @@ private:
   void look_at_when(std::size_t rule, std::vector<Claim>& claims);
   void look_at_while(std::size_t rule, std::vector<Claim>& claims);
   void look_at_every(std::size_t rule, std::vector<Claim>& claims);
-  // The side that a rule would run, though it did not trigger now: a WHILE, or one that is WAITING.
+  [[nodiscard]] bool cools(const Rule& rule, bool side) const;
+  // The side that a rule would run, though it did not trigger now: a WHILE, one with an ELSE whose
+  // side has not run yet, or one that is WAITING.
   [[nodiscard]] std::optional<bool> wish(std::size_t rule) const;
   void serve(const Claim& claim);
   // Who is in the way of a claim; empty if it wins. Fills those who lose.

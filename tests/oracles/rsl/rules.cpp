@@ -5,11 +5,6 @@
 #include "tests/oracles/rsl/interpreter.hpp"
 
 namespace robosync::oracle {
-namespace {
-
-constexpr Millis kGraceEnds = 10;
-
-}  // namespace
 
 // ---- triggers
 
@@ -40,16 +35,24 @@ void Interpreter::look_at(std::size_t r, std::vector<Claim>& claims) {
 std::optional<bool> Interpreter::wish(std::size_t r) const {
   const Rule& rule = rules_[r];
   if (rule.waiting && now_.at <= rule.waiting->until) return rule.waiting->side;
-  const bool cools = rule.started && now_.at < *rule.started + rule.rule->cooldown;
+  if (rule.rule->kind == vm::RuleKind::when_else && rule.last && rule.ran_side != rule.last)
+    return cools(rule, *rule.last) ? std::nullopt : rule.last;
   const bool wants = rule.rule->kind == vm::RuleKind::while_ && rule.last == true;
-  return wants && !rule.running && !cools && rule.ran < now_.at ? std::optional(true)
-                                                                : std::nullopt;
+  const bool free = !rule.running || rule.running->rests;
+  return wants && free && !cools(rule, true) && rule.ran < now_.at ? std::optional(true)
+                                                                   : std::nullopt;
 }
 
-// "After the response has started, further triggers are dropped until the time is over."
+bool Interpreter::cools(const Rule& rule, bool side) const {
+  const auto started = rule.started.find(side);
+  return started != rule.started.end() && now_.at < started->second + rule.rule->cooldown;
+}
+
+// "After the response has started, further triggers are dropped until the time is over. Each
+// side cools down by itself."
 void Interpreter::trigger(std::size_t r, bool side, std::vector<Claim>& claims) {
   const Rule& rule = rules_[r];
-  if (rule.started && now_.at < *rule.started + rule.rule->cooldown) return;
+  if (cools(rule, side)) return;
   trace_.rule("fire", *rule.rule, rule.behavior, side);
   claims.push_back({r, side, true});
 }
@@ -94,7 +97,7 @@ void Interpreter::look_at_every(std::size_t r, std::vector<Claim>& claims) {
 
 void Interpreter::serve(const Claim& claim) {
   Rule& rule = rules_[claim.rule];
-  if (rule.running) {
+  if (rule.running && !rule.running->rests) {
     if (rule.running->side == claim.side && !rule.rule->restarting) {
       trace_.rule("lose", *rule.rule, rule.behavior, claim.side, name_of(rule));
       return;
@@ -106,7 +109,9 @@ void Interpreter::serve(const Claim& claim) {
   if (!obstacle.empty()) {
     if (!claim.trigger) return;
     trace_.rule("lose", *rule.rule, rule.behavior, claim.side, obstacle);
-    if (rule.rule->waiting > 0) rule.waiting = Waiting{claim.side, now_.at + rule.rule->waiting};
+    const bool chooses = rule.rule->kind == vm::RuleKind::when_else;  // it goes on wanting anyway
+    if (rule.rule->waiting > 0 && !chooses)
+      rule.waiting = Waiting{claim.side, now_.at + rule.rule->waiting};
     return;
   }
   for (const std::size_t loser : losers)
@@ -116,7 +121,8 @@ void Interpreter::serve(const Claim& claim) {
   rule.running =
       Running{Response(block, claim.rule), claim.side, actuators(claim.rule, claim.side), true};
   rule.waiting.reset();
-  rule.started = now_.at;
+  rule.started[claim.side] = now_.at;
+  rule.ran_side = claim.side;
 }
 
 std::string Interpreter::in_the_way(const Claim& claim, std::vector<std::size_t>& losers) const {
@@ -140,9 +146,11 @@ std::string Interpreter::in_the_way(const Claim& claim, std::vector<std::size_t>
 
 void Interpreter::interrupt(std::size_t r, const std::string& by) {
   Rule& rule = rules_[r];
-  trace_.rule("interrupt", *rule.rule, rule.behavior, std::nullopt, by);
-  for (const std::size_t actuator : rule.running->actuators)
-    actuators_.cancel(actuator);
+  if (!rule.running->rests) {
+    trace_.rule("interrupt", *rule.rule, rule.behavior, std::nullopt, by);
+    for (const std::size_t actuator : rule.running->actuators)
+      actuators_.cancel(actuator);
+  }
   rule.running.reset();
 }
 
@@ -165,8 +173,7 @@ void Interpreter::interrupt_halted() {
   }
 }
 
-// "It trips whenever its condition is true. Unknown is danger", but not before every sensor had the
-// time to measure.
+// "It trips whenever its condition is true. Unknown is danger", from the first moment on.
 void Interpreter::guard(bool all, const std::set<compiler::ChannelRef>& channels) {
   ++guard_now_.step;
   guard_now_.at = now_.at;
@@ -185,7 +192,7 @@ void Interpreter::look_at(Guard& guard) {
   evaluator_.remember(guard.rule->condition, sight, guard_now_);
   if (guard.rule->resume) evaluator_.remember(*guard.rule->resume, sight, guard_now_);
   const Truth danger = evaluator_.truth(guard.rule->condition, sight);
-  if (danger == true || (!danger && now_.at >= kGraceEnds)) {
+  if (danger != false) {
     if (!guard.tripped) trip(guard, readings);
     return;
   }

@@ -15,6 +15,16 @@ TEST_CASE("FOR: true all the time, one false sample begins anew, no reading is n
   CHECK(robot.only("log") == "0 #1 log \"not\"\n550 #4 log \"held\"\n700 #5 log \"not\"\n");
 }
 
+TEST_CASE("a reading comes before the time that is over in the same millisecond") {
+  Robot robot("WHEN near X > 10 FOR 300ms\nDO LOG \"held\"\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(300, "X", 5);
+  robot.feed(400, "X", 20);
+  robot.feed(701, "X", 5);
+  robot.run(1000);
+  CHECK(robot.only("log") == "700 #4 log \"held\"\n");
+}
+
 TEST_CASE("TIMES WITHIN: so many rising edges inside a window, then it counts anew") {
   Robot robot("WHEN near X > 10 3 TIMES WITHIN 1s\nDO LOG \"often\"\nEND\n");
   for (const int at : {0, 600, 1200, 1500, 1800, 2000, 2200})
@@ -63,6 +73,37 @@ TEST_CASE("COOLDOWN drops triggers after a response has started, not after one t
   robot.run(3000);
   CHECK(robot.only("fire log") ==
         "0 #1 fire r0 DO\n0 #1 log \"hi\"\n1000 #11 fire r0 DO\n1000 #11 log \"hi\"\n");
+}
+
+TEST_CASE("each side of a WHEN/ELSE cools down by itself, and the rule ends on its side") {
+  Robot robot("WHEN near X > 10\nCOOLDOWN 1s\nDO MOVE a FOR 5s\nELSE\nMOVE a FOR 3s\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(200, "X", 5);
+  robot.feed(300, "X", 20);   // DO cools down until 1000
+  robot.feed(1100, "X", 5);   // ELSE until 1200 …
+  robot.feed(1150, "X", 20);  // … and is not wanted then
+  robot.run(5000);
+  CHECK(robot.only("fire win interrupt") ==
+        "0 #1 fire r0 DO\n0 #1 win r0 DO\n"
+        "200 #2 fire r0 ELSE\n200 #2 interrupt r0 by b0\n200 #2 win r0 ELSE\n"
+        "1000 #4 interrupt r0 by b0\n1000 #4 win r0 DO\n");
+}
+
+TEST_CASE("a side that is denied starts when its actuators are free, if it is still chosen") {
+  Robot robot(robosync::test::high_and_low(
+      robosync::test::when_far("MOVE a FOR 500ms"),
+      robosync::test::rule("WHEN near X > 10", "MOVE a FOR 100ms\nELSE\nMOVE a FOR 50ms")));
+  robot.feed(0, "X", 0);
+  robot.feed(200, "Y", 60);
+  robot.feed(300, "X", 20);
+  robot.feed(1000, "Y", 0);
+  robot.feed(1100, "Y", 60);
+  robot.feed(1200, "X", 0);
+  robot.feed(1300, "X", 20);  // chosen again, and it is the one that ran last
+  robot.run(3000);
+  CHECK(robot.only("win lose") ==
+        "0 #1 win r1 ELSE\n200 #2 win r0 DO\n300 #3 lose r1 DO to b0\n700 #4 win r1 DO\n"
+        "1100 #6 win r0 DO\n1200 #7 lose r1 ELSE to b0\n1300 #8 lose r1 DO to b0\n");
 }
 
 TEST_CASE("a WHILE with COOLDOWN starts again when that is over") {

@@ -26,9 +26,8 @@ TEST_CASE("a WHILE that takes no time starts once a millisecond") {
   robot.feed(10, "X", 20);
   robot.feed(13, "X", 5);
   robot.run(100);
-  // At 13 ms it is due before the reading of the same tick comes.
-  CHECK(robot.only("win") ==
-        "10 #1 win r0 DO\n11 #2 win r0 DO\n12 #3 win r0 DO\n13 #4 win r0 DO\n");
+  CHECK(robot.only("win interrupt cancel") ==
+        "10 #1 win r0 DO\n11 #2 win r0 DO\n12 #3 win r0 DO\n");
 }
 
 TEST_CASE("an unknown condition ends a WHILE, and known again it fires again") {
@@ -99,13 +98,34 @@ TEST_CASE("a claim takes what a WHILE has given up in the same step") {
         "100 #2 command a MOVE for_=0.050\n");
 }
 
-TEST_CASE(
-    "a WHILE that ends and starts again takes back at once what a lower one took in between") {
+TEST_CASE("a WHILE keeps its actuators between rounds, and rounds do not drift") {
   Robot robot(high_and_low(rule("WHILE near X > 10", "MOVE a FOR 10ms\nWAIT 50ms"),
                            rule("WHILE far Y > 10", "MOVE a FOR 1s")));
   robot.feed(0, "X", 20);
   robot.feed(0, "Y", 20);
-  robot.run(60);
-  CHECK(robot.only("win interrupt") ==
-        "0 #1 win r0 DO\n50 #3 win r1 DO\n51 #4 interrupt r1 by b0\n51 #4 win r0 DO\n");
+  robot.feed(120, "X", 0);
+  robot.run(130);
+  CHECK(robot.only("win lose interrupt") ==
+        "0 #1 win r0 DO\n0 #1 lose r1 DO to b0\n50 #3 win r0 DO\n100 #5 win r0 DO\n"
+        "120 #6 interrupt r0 by b0\n120 #6 win r1 DO\n");
+}
+
+TEST_CASE("a WHILE keeps its actuators while it cools down, and lets go of them without a word") {
+  Robot robot(high_and_low(rule("WHILE near X > 10 COOLDOWN 300ms", "MOVE a FOR 50ms"),
+                           rule("EVERY 100ms", "MOVE a FOR 10ms")));
+  robot.feed(0, "X", 20);
+  robot.feed(450, "X", 0);
+  robot.run(550);
+  CHECK(robot.only("win interrupt cancel") ==
+        "0 #1 win r0 DO\n300 #4 win r0 DO\n500 #7 win r1 DO\n");
+}
+
+TEST_CASE("what ranks higher takes a WHILE that rests, and it comes back") {
+  Robot robot(high_and_low(when_far("MOVE a FOR 30ms"),
+                           rule("WHILE near X > 10 COOLDOWN 100ms", "MOVE a FOR 10ms")));
+  robot.feed(0, "X", 20);
+  robot.feed(90, "Y", 60);
+  robot.run(150);
+  CHECK(robot.only("win interrupt cancel lose") ==
+        "0 #1 win r1 DO\n90 #2 win r0 DO\n120 #3 win r1 DO\n");
 }

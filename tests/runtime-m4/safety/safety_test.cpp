@@ -57,17 +57,64 @@ TEST_CASE("claims on a halted actuator lose until the rule lets go, which it doe
         "600 #6 resume r0\n600 #6 release a\n800 #9 win r2 DO\n");
 }
 
-TEST_CASE("what is unknown trips, but not before every sensor had its time to measure") {
+TEST_CASE("what is unknown trips before the first step; a reading at once is in time") {
   Robot robot(kGuarded);
+  robot.feed(0, "X", 20);
   robot.feed(100, "Y", 2);
   robot.run(1000);
-  CHECK(robot.only("trip halt resume release") ==
-        "10 #0 trip r0\n10 #0 halt a\n100 #0 resume r0\n100 #0 release a\n");
+  CHECK(robot.only("trip halt resume release win lose") ==
+        "0 #0 trip r0\n0 #0 halt a\n0 #1 lose r2 DO to b0\n100 #1 resume r0\n100 #1 release a\n");
 
   Robot measured(kGuarded);
-  measured.feed(5, "Y", 2);
+  measured.feed(0, "Y", 2);
+  measured.feed(0, "X", 20);
   measured.run(1000);
-  CHECK(measured.only("trip").empty());
+  CHECK(measured.only("trip win") == "0 #1 win r2 DO\n");
+}
+
+namespace {
+
+// A program with kGuarded's rule, on a sensor that is asked every 20 ms, and what moves at once.
+const char* const kSampled = R"({
+  "sensors": [{"name": "far", "type": "I2C", "device": "i2c_register", "address": "0x10",
+               "channels": {"Y": {"range": [0, 100], "rate": "50Hz", "unit": "%"}}}],
+  "actuators": [{"name": "a", "type": "VIRTUAL"}],
+  "safety": {"start": "70ms"}})";
+const char* const kAtStart =
+    "SAFETY pinch\n  WHEN far Y > 15\n  DO STOP a\n  RESUME WHEN far Y < 5\nEND\n"
+    "AT START DO MOVE a FOR 1s\nEND\n";
+
+}  // namespace
+
+TEST_CASE("on a robot the program begins with the first reading, or when the time for it is over") {
+  const auto image = robosync::test::compile(kAtStart, kSampled);
+  Rig silent;
+  REQUIRE(silent.activate(image).ok());
+  silent.run(69);
+  CHECK(silent.only("trip win lose").empty());
+  CHECK(silent.status().program_us == 0);
+  silent.run(500);
+  CHECK(silent.only("trip win lose") == "0 #0 trip r0\n0 #1 lose r2 DO to b0\n");
+  CHECK(silent.status().program_us == 430'000);
+
+  Rig measured;
+  measured.board.answers.assign(1000, std::byte{0});
+  REQUIRE(measured.activate(image).ok());
+  measured.run(500);
+  CHECK(measured.only("trip win lose") == "0 #1 win r2 DO\n");
+  CHECK(measured.status().program_us == 500'000);
+}
+
+TEST_CASE("a robot begins when what is fed has come, and feeds keep their program times") {
+  const auto image = robosync::test::compile(kGuarded, robosync::test::kPlainRobot);
+  Rig rig;
+  REQUIRE(rig.activate(image).ok());
+  REQUIRE(rig.feed(0, 20, 300) == robosync::link::FeedError::none);
+  rig.run(40);
+  REQUIRE(rig.feed(1, 2) == robosync::link::FeedError::none);
+  rig.run(500);
+  CHECK(rig.only("trip win") == "300 #2 win r2 DO\n");
+  CHECK(rig.status().program_us == 460'000);
 }
 
 TEST_CASE("when a silent sensor trips does not depend on when the program began") {
@@ -88,7 +135,7 @@ TEST_CASE("when a silent sensor trips does not depend on when the program began"
       rig.feed(1, 2, 3);
       rig.feed(0, 1, 208);  // what the rule does not read makes nobody look
       rig.run(phase + 1000);
-      CHECK(rig.only("trip") == "210 #3 trip r0\n");
+      CHECK(rig.only("trip") == "0 #0 trip r0\n210 #3 trip r0\n");
     }
   }
 }
