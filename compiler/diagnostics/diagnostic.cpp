@@ -57,6 +57,18 @@ std::string_view level_name(Level level) {
   return "note";
 }
 
+std::string_view applicability_name(Applicability applicability) {
+  switch (applicability) {
+    case Applicability::certain:
+      return "certain";
+    case Applicability::likely:
+      return "likely";
+    case Applicability::placeholder:
+      break;
+  }
+  return "placeholder";
+}
+
 std::string_view code_name(Code code) {
   return info(code).name;
 }
@@ -77,8 +89,8 @@ Diagnostic& Diagnostic::helps(std::string text) {
   return *this;
 }
 
-Diagnostic& Diagnostic::fix(Span span, std::string replacement) {
-  fixes.push_back({span, std::move(replacement)});
+Diagnostic& Diagnostic::fix(Span span, std::string replacement, Applicability applicability) {
+  fixes.push_back({span, std::move(replacement), applicability});
   return *this;
 }
 

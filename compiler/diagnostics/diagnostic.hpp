@@ -33,9 +33,16 @@ struct Label {
   bool primary = true;
 };
 
+// How sure it is that a fix gives what was meant. What would put in a NOT, a sign or digits, or take
+// one of them or a comma out of a number, is never certain.
+enum class Applicability : std::uint8_t { certain, likely, placeholder };
+
+[[nodiscard]] std::string_view applicability_name(Applicability applicability);  // "certain"
+
 struct Fix {  // replace the span by the text and the message goes away
   Span span;
   std::string replacement;
+  Applicability applicability = Applicability::certain;
 };
 
 struct Diagnostic {
@@ -49,7 +56,8 @@ struct Diagnostic {
   // Chainable builders.
   Diagnostic& label(Span span, std::string text = {}, bool primary = true);
   Diagnostic& helps(std::string text);
-  Diagnostic& fix(Span span, std::string replacement);
+  Diagnostic& fix(Span span, std::string replacement,
+                  Applicability applicability = Applicability::certain);
 };
 
 class Diagnostics {

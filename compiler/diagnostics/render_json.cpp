@@ -32,6 +32,7 @@ Json to_json(const Diagnostic& diagnostic, const SourceMap& sources) {
   for (const Fix& fix : diagnostic.fixes) {
     Json entry = place(fix.span, sources);
     entry["replacement"] = fix.replacement;
+    entry["applicability"] = applicability_name(fix.applicability);
     fixes.push_back(std::move(entry));
   }
   return {{"code", code_name(diagnostic.code)},

@@ -109,7 +109,8 @@ void Behaviors::report_taken() {
             .label(first, "first used here", false);
     const auto free = next_free(priority.number);
     if (!free) continue;
-    d.helps("`" + std::to_string(*free) + "` is free").fix(priority.span, std::to_string(*free));
+    d.helps("`" + std::to_string(*free) + "` is free")
+        .fix(priority.span, std::to_string(*free), Applicability::likely);
     priorities_.emplace(*free, priority.span);  // not to be offered twice
   }
 }

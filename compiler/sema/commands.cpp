@@ -284,7 +284,7 @@ void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Uni
                       .label(actuator.name.span, "the actuator", false);
   if (number.digits.empty()) return;
   const std::string mended = number.digits + std::string(unit.spelling);
-  d.helps("did you mean `" + mended + "`?").fix(number.span, mended);
+  d.helps("did you mean `" + mended + "`?").fix(number.span, mended, Applicability::likely);
 }
 
 }  // namespace

@@ -407,7 +407,7 @@ void report_amount(const Typed& number, const Wanted& wanted, Diagnostics& diagn
           .label(number.digits.empty() ? number.span : number.unit_span);
   if (number.digits.empty()) return;
   const std::string mended = number.digits + std::string(wanted.unit->spelling);
-  d.helps("did you mean `" + mended + "`?").fix(number.span, mended);
+  d.helps("did you mean `" + mended + "`?").fix(number.span, mended, Applicability::likely);
 }
 
 // Is it what was asked for? Reports when it is something else; a bare number takes the unit.

@@ -192,9 +192,10 @@ void lint_start(const ast::Rule& rule, const ast::WhenRule& when, const Names& n
   }
   d.helps("to wait for a change, write two rules: `" + rules->then_head + "` and `" +
           rules->else_head + "`")
-      .fix(rule.span, rules->then_head + "\nDO\n" + text_of(when.then_block, sources) +
-                          "\nEND\n\n" + rules->else_head + "\nDO\n" +
-                          text_of(*when.else_block, sources) + "\nEND");
+      .fix(rule.span,
+           rules->then_head + "\nDO\n" + text_of(when.then_block, sources) + "\nEND\n\n" +
+               rules->else_head + "\nDO\n" + text_of(*when.else_block, sources) + "\nEND",
+           Applicability::likely);
 }
 
 // ---- W0201: the bands of a CHECK against what its sensor can give
@@ -450,7 +451,8 @@ void lint_block(const ast::Block& block, Diagnostics& diagnostics) {
         .report(Code::W0205, "this may wait for ever, and keeps the actuators of its response")
         .label(stmt.span)
         .helps("say how long at most: `WITHIN 10s`")
-        .fix({stmt.span.file, stmt.span.end, stmt.span.end}, " WITHIN 10s");
+        .fix({stmt.span.file, stmt.span.end, stmt.span.end}, " WITHIN 10s",
+             Applicability::placeholder);
   });
 }
 

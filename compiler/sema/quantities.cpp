@@ -37,7 +37,7 @@ void suggest_units(Diagnostic& diagnostic, const Typed& literal, const Typed& ot
   for (const Unit& unit : units())
     if (unit.dimension == other.dimension() && &unit != other.unit)
       list += ", `" + literal.digits + std::string(unit.spelling) + "`";
-  diagnostic.helps("did you mean " + list + "?").fix(literal.span, first);
+  diagnostic.helps("did you mean " + list + "?").fix(literal.span, first, Applicability::likely);
 }
 
 }  // namespace

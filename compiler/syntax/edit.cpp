@@ -176,7 +176,8 @@ private:
 
   void around(std::size_t at, const Expected& expected, int extra) {
     for (const TokenKind kind : *expected) {
-      if (stands_for_others(kind)) continue;
+      // A NOT turns a condition into its opposite: that one is missing is never the best guess.
+      if (stands_for_others(kind) || kind == Kinds::NOT) continue;
       insert(at, kind, insertion_cost(kind, *expected) + extra, expected);
       replace(at, kind, extra, expected);
     }

@@ -179,7 +179,7 @@ void LexerState::bad_number() {
       report(Code::E0004, "`" + text + "` cannot be read as a number").label(here());
   if (text.back() == '.') {
     message.helps("a number does not end with a point")
-        .fix(here(), text.substr(0, text.size() - 1));
+        .fix(here(), text.substr(0, text.size() - 1), Applicability::likely);
   } else {
     message.helps(
         "a number is digits, a decimal point if needed, and a unit: `0.5`, `80cm`, `40%`");
@@ -191,7 +191,7 @@ void LexerState::bad_fraction() {
   const std::string better = "0" + std::string(lexeme());
   report(Code::E0004, "a number begins with a digit")
       .label(here(), "write `" + better + "`")
-      .fix(here(), better);
+      .fix(here(), better, Applicability::likely);
   token(Kinds::QUANTITY);
 }
 
@@ -223,7 +223,7 @@ void LexerState::comment() {
       .label(span(start_, start_ + 1))
       .helps("for the percentage, write `" + std::string(number) + "%` without a space")
       .helps("for a comment, write # in the place of %")
-      .fix(span(last.span.end, start_ + 1), "%");
+      .fix(span(last.span.end, start_ + 1), "%", Applicability::likely);
 }
 
 // ---- characters that RSL does not use

@@ -124,8 +124,11 @@ private:
         Code::E0008, what + " is missing" + (first ? " before " + found(edit_.at) : where));
     message.label(gap(), first ? "" : "here");
     const bool word = kind >= Kinds::USE;
-    if (word && !first) message.fix(gap(), " " + plain(kind));
-    if (word && first) message.fix(gap(), plain(kind) + " ");
+    // With a sign behind it, something else may be meant.
+    const bool sign = edit_.at < tokens_.size() && tokens_[edit_.at].kind == Kinds::MINUS;
+    const auto sure = sign ? Applicability::likely : Applicability::certain;
+    if (word && !first) message.fix(gap(), " " + plain(kind), sure);
+    if (word && first) message.fix(gap(), plain(kind) + " ", sure);
     if (where.empty() && outside_blocks() && word) {
       message.helps("a line outside a block starts with a word such as WHEN, DEFINE or BEHAVIOR");
     }
@@ -172,9 +175,13 @@ private:
           .label(place(edit_.at), "expected " + summarize(failure_.expected));
       return;
     }
-    if (unit_apart()) return;
+    if (unit_apart() || decimal_comma()) return;
     Diagnostic& message = diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here");
-    message.label(token.span, "leave this out").fix(token.span, "");
+    if (belongs_to_number(edit_.at)) {
+      message.label(token.span);  // without it, the number would be another one
+    } else {
+      message.label(token.span, "leave this out").fix(token.span, "");
+    }
     const bool known = edit_.expected != nullptr && !edit_.expected->empty();
     if (known) message.helps("RSL expects " + summarize(*edit_.expected) + after(edit_.at));
   }
@@ -192,6 +199,40 @@ private:
         .label(tokens_[edit_.at].span)
         .helps("if it is a unit, write it without a space: `" + digits + unit + "`")
         .fix(gap, "");
+    return true;
+  }
+
+  bool is_number(std::size_t at) const {
+    return at < tokens_.size() && tokens_[at].kind == Kinds::QUANTITY;
+  }
+
+  bool belongs_to_number(std::size_t at) const {
+    switch (tokens_[at].kind) {
+      case Kinds::QUANTITY:
+      case Kinds::PLUS:
+      case Kinds::MINUS:
+      case Kinds::STAR:
+      case Kinds::SLASH:
+        return true;
+      default:
+        return is_number(at + 1) ||
+               (at > 0 && is_number(at - 1) && tokens_[at].kind == Kinds::COMMA);
+    }
+  }
+
+  // `3,5%`: nothing stands between the comma and the numbers beside it.
+  bool decimal_comma() {
+    if (tokens_[edit_.at].kind != Kinds::COMMA || edit_.at == 0) return false;
+    if (!is_number(edit_.at - 1) || !is_number(edit_.at + 1)) return false;
+    const Span before = tokens_[edit_.at - 1].span;
+    const Span behind = tokens_[edit_.at + 1].span;
+    if (behind.begin != before.end + 1) return false;
+    const Span all{before.file, before.begin, behind.end};
+    const std::string better =
+        std::string(source_.text(before)) + "." + std::string(source_.text(behind));
+    diagnostics_.report(Code::E0004, "a number has a point in front of its decimals, not a comma")
+        .label(all, "write `" + better + "`")
+        .fix(all, better, Applicability::likely);
     return true;
   }
 

@@ -72,6 +72,7 @@ TEST_CASE("labels in two files", "[render]") {
                                                  {"primary", true}}));
   CHECK(entry["help"].at(0) == "did you mean `20mm`, `20cm`?");
   CHECK(entry["fixes"].at(0)["replacement"] == "20mm");
+  CHECK(entry["fixes"].at(0)["applicability"] == "certain");
 }
 
 TEST_CASE("JSON of sources that are not UTF-8", "[render]") {

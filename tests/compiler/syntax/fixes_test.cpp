@@ -1,0 +1,212 @@
+// A fix that rsc offers shall give back what was meant, or at least nothing else: the examples get
+// each of their words changed in turn, all fixes of the mistake are made, and what comes out is
+// compared with the example. Numbers are damaged as fingers do it, too.
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <map>
+
+#include <catch2/catch.hpp>
+
+#include "compiler/compiler.hpp"
+#include "compiler/diagnostics/render.hpp"
+#include "compiler/syntax/lexer.hpp"
+#include "tests/support/golden.hpp"
+#include "vm/image.hpp"
+
+using namespace robosync::compiler;
+using robosync::testing::read_file;
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace vm = robosync::vm;
+
+const fs::path kExamples = fs::path(ROBOSYNC_SOURCE_DIR) / "examples";
+
+struct Example {
+  std::string name, program, robot;
+};
+
+std::vector<Example> examples() {
+  std::vector<Example> found;
+  for (const auto& entry : fs::directory_iterator(kExamples))
+    if (fs::exists(entry.path() / "robot.rsl"))
+      found.push_back({entry.path().filename().string(), read_file(entry.path() / "robot.rsl"),
+                       read_file(entry.path() / "robot.json")});
+  std::ranges::sort(found, {}, &Example::name);
+  return found;
+}
+
+Result compiled(const Example& example, const std::string& program) {
+  return compile({"robot.rsl", program}, {"robot.json", example.robot}, {.source_lines = false});
+}
+
+// What the robot does: the image without the hash of its text, and without lines.
+std::vector<std::byte> meaning(std::vector<std::byte> image) {
+  vm::ImageHeader header{};
+  REQUIRE(image.size() >= sizeof header);
+  vm::Image view;
+  REQUIRE(vm::view_image(image, view));
+  const auto rules = reinterpret_cast<const std::byte*>(view.rules.data()) - image.data();
+  for (std::size_t i = 0; i < view.rules.size(); ++i) {
+    const std::size_t at =
+        static_cast<std::size_t>(rules) + i * sizeof(vm::Rule) + offsetof(vm::Rule, line);
+    std::memset(image.data() + at, 0, sizeof(vm::Rule::line));
+  }
+  std::memcpy(&header, image.data(), sizeof header);
+  header.program_hash = {};
+  header.seed = header.crc32 = 0;
+  std::memcpy(image.data(), &header, sizeof header);
+  return image;
+}
+
+struct Change {
+  std::string kind, text;
+};
+
+std::string replaced(const std::string& text, Span span, std::string_view by) {
+  std::string changed = text;
+  return changed.replace(span.begin, span.end - span.begin, by);
+}
+
+void change_number(std::vector<Change>& changes, const std::string& program, Span span) {
+  const std::string number = program.substr(span.begin, span.end - span.begin);
+  const Span front{span.file, span.begin, span.begin};
+  changes.push_back({"sign", replaced(program, front, "-")});
+  changes.push_back({"point first", replaced(program, front, ".")});
+  if (number.find('.') != std::string::npos) {
+    std::string comma = number;
+    comma[comma.find('.')] = ',';
+    changes.push_back({"comma", replaced(program, span, comma)});
+  }
+  const std::size_t digits = std::min(number.find_first_not_of("0123456789."), number.size());
+  for (const char* const inserted : {",", ",5", " ", ".", "..", "x"}) {
+    std::string other = number;
+    changes.push_back({"in a number", replaced(program, span, other.insert(digits, inserted))});
+    other = number;
+    changes.push_back({"in a number", replaced(program, span, other.insert(1, inserted))});
+  }
+}
+
+std::vector<Change> changes_of(const std::string& program) {
+  Diagnostics ignored;
+  SourceMap sources;
+  const FileId file = sources.add("robot.rsl", program);
+  const std::vector<Token> tokens = lex(sources.file(file), file, ignored);
+  std::vector<Change> changes;
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    const Token& token = tokens[i];
+    const std::string text = program.substr(token.span.begin, token.span.end - token.span.begin);
+    const Span front{file, token.span.begin, token.span.begin};
+    changes.push_back({"left out", replaced(program, token.span, "")});
+    changes.push_back({"twice", replaced(program, front, text + " ")});
+    changes.push_back({"NOT before it", replaced(program, front, "NOT ")});
+    if (token.kind == Kinds::NEWLINE) continue;
+    changes.push_back({"line ended before it", replaced(program, front, "\n")});
+    if (token.kind == Kinds::QUANTITY) change_number(changes, program, token.span);
+    if (text.size() > 3 && token.kind != Kinds::STRING) {
+      std::string slip = text;
+      std::swap(slip[1], slip[2]);
+      changes.push_back({"misspelt", replaced(program, token.span, slip)});
+    }
+    if (i + 1 < tokens.size() && tokens[i + 1].kind != Kinds::NEWLINE) {
+      const Span& next = tokens[i + 1].span;
+      const std::string other = program.substr(next.begin, next.end - next.begin);
+      changes.push_back(
+          {"exchanged", replaced(program, {file, token.span.begin, next.end}, other + " " + text)});
+    }
+  }
+  return changes;
+}
+
+// With all fixes of the errors that are certain, from the last to the first; none that overlaps another.
+std::string fixed(const std::string& program, const Result& result) {
+  std::vector<Fix> fixes;
+  for (const Diagnostic& diagnostic : result.diagnostics.all())
+    for (const Fix& fix : diagnostic.fixes)
+      if (diagnostic.level == Level::error && fix.span.file == 0 &&
+          fix.applicability == Applicability::certain)
+        fixes.push_back(fix);
+  std::ranges::sort(fixes, std::ranges::greater{}, [](const Fix& fix) { return fix.span.begin; });
+  std::string text = program;
+  std::size_t free = text.size();
+  for (const Fix& fix : fixes) {
+    if (fix.span.end > free) continue;
+    text = replaced(text, fix.span, fix.replacement);
+    free = fix.span.begin;
+  }
+  return text;
+}
+
+struct FixTally {
+  std::size_t programs = 0, wrong = 0, with_fix = 0, same = 0, still_wrong = 0, other = 0;
+};
+
+void count_fix(FixTally& tally, const Example& example, const Change& change,
+               const std::vector<std::byte>& meant) {
+  ++tally.programs;
+  const Result result = compiled(example, change.text);
+  if (result.diagnostics.errors() == 0) return;
+  ++tally.wrong;
+  const std::string mended = fixed(change.text, result);
+  if (mended == change.text) return;
+  ++tally.with_fix;
+  Result again = compiled(example, mended);
+  if (again.image.empty()) {
+    ++tally.still_wrong;
+  } else if (meaning(std::move(again.image)) == meant) {
+    ++tally.same;
+  } else {
+    ++tally.other;
+    if (std::getenv("ROBOSYNC_SHOW_FIXES") != nullptr)
+      WARN(example.name << ", " << change.kind << ":\n"
+                        << render_human(result.diagnostics, result.sources, false));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("what a fix gives means what was meant", "[mutation]") {
+  constexpr std::size_t every = 7;  // change that is tried
+  const bool all = std::getenv("ROBOSYNC_ALL_FIXES") != nullptr;
+  std::map<std::string, FixTally> tallies;
+  FixTally total;
+  std::size_t number = 0;
+  for (const Example& example : examples()) {
+    const std::vector<std::byte> meant = meaning(compiled(example, example.program).image);
+    for (const Change& change : changes_of(example.program)) {
+      if (!all && ++number % every != 0) continue;
+      count_fix(tallies[change.kind], example, change, meant);
+      count_fix(total, example, change, meant);
+    }
+  }
+  tallies["all"] = total;
+  for (const auto& [kind, tally] : tallies)
+    WARN(kind << ": " << tally.programs << " changed programs, " << tally.wrong << " wrong, "
+              << tally.with_fix << " with a fix, which gives the example in " << tally.same
+              << ", a program that is wrong in " << tally.still_wrong << ", another one in "
+              << tally.other);
+  CHECK(total.with_fix >= 400);
+  CHECK(total.other * 100 <= total.with_fix);
+}
+
+TEST_CASE("a fix never changes what a number or a condition says") {
+  const Example robot{"", "", read_file(fs::path(ROBOSYNC_SOURCE_DIR) / "docs/robot.json")};
+  for (const char* const program : {
+           "SAFETY\n  WHEN touch IS\n LEVEL > 3 DO\n    STOP left_arm\n  END\nEND\n",
+           "WHEN touch LEVEL > 3 DO\n  MOVE left_arm TO 3,5deg\nEND\n",
+           "WHEN touch LEVEL > 3,5 DO\n  LOG \"x\"\nEND\n",
+           "WHEN touch LEVEL > 3 5 DO\n  LOG \"x\"\nEND\n",
+           "WHEN touch LEVEL > 5. DO\n  LOG \"x\"\nEND\n",
+           "WHEN touch LEVEL > .5 DO\n  LOG \"x\"\nEND\n",
+           "BEHAVIOR b PRIORITY -5\n  WHEN touch LEVEL > 3 DO\n    LOG \"x\"\n  END\nEND\n",
+           "BEHAVIOR b PRIORITY 5 5\n  WHEN touch LEVEL > 3 DO\n    LOG \"x\"\n  END\nEND\n",
+       }) {
+    const Result result = compiled(robot, program);
+    CAPTURE(program, render_human(result.diagnostics, result.sources, false));
+    CHECK(result.diagnostics.errors() > 0);
+    CHECK(fixed(program, result) == program);
+  }
+}
