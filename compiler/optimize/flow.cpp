@@ -125,6 +125,8 @@ void Flow::visit(ProgramIf& choice, State& state) {
   if (!condition.known) after = merged(after, state);
   for (std::size_t i = 0; i < state.owned.size(); ++i)
     after.owned[i] = std::min(after.owned[i], state.owned[i]);
+  pass(choice.then_block, after);  // also of a side that never runs, which the code still has
+  pass(choice.else_block, after);
   state = std::move(after);
 }
 
