@@ -81,4 +81,12 @@ Value divide(Value b, Value c) {
       divisor < kSmall ? divide_by_small(size, divisor) : divide_by_large(size, divisor), negative);
 }
 
+Value round_to(Value b, Value c) {
+  if (b == kUnknown || c == kUnknown) return kUnknown;
+  if (c <= 0) return b;
+  const std::int64_t multiple = std::int64_t{divide_by_whole(b, c)} * c;
+  if (multiple > kValueMax) return kValueMax;
+  return multiple < kValueMin ? kValueMin : static_cast<Value>(multiple);
+}
+
 }  // namespace robosync::vm

@@ -87,6 +87,23 @@ constexpr Value divide_by_whole(Value b, std::int32_t n) {
   return b < 0 ? -quotient : quotient;
 }
 
+// Without its sign; the range is symmetric.
+constexpr Value absolute(Value b) {
+  return b < 0 ? negate(b) : b;
+}
+
+// The lesser and the greater one.
+constexpr Value lesser(Value b, Value c) {
+  return b < c ? b : c;  // an unknown is less than all that is known
+}
+constexpr Value greater(Value b, Value c) {
+  if (b == kUnknown || c == kUnknown) return kUnknown;
+  return b < c ? c : b;
+}
+
+// The multiple of c that is nearest to b, half away from zero; b itself unless c is above 0.
+Value round_to(Value b, Value c);
+
 // Sums and products of what was proved to be known and in range: their lower 32 bits.
 constexpr Value add_unchecked(Value b, Value c) {
   return static_cast<Value>(static_cast<std::uint32_t>(b) + static_cast<std::uint32_t>(c));

@@ -146,6 +146,8 @@ rare:
   SET(mul, multiply(b(), c()));
   SET(random, draw(machine, b(), c()));
   SET(neg, negate(b()));
+  SET(abs, absolute(b()));
+  SET(round, round_to(b(), c()));
   SET(div_k, divide_by_whole(b(), k()));
   SET_HOT(add_fast, add_unchecked(b(), c()));
   SET_HOT(add_k_fast, add_unchecked(b(), k()));
@@ -198,6 +200,17 @@ zero_divide:
   result = 0;
   goto store;
 
+op_min:  // an unknown is less than all that is known
+  result = b();
+  right = c();
+  if (result > right) result = right;
+  goto store;
+op_max:
+  result = c();
+  if (result == kUnknown) goto store;
+  right = b();
+  if (right == kUnknown || result < right) result = right;
+  goto store;
 op_min_k:
   result = b();
   right = k();

@@ -85,6 +85,8 @@ Cell ExpressionEmitter::worked_out(const Expression& expression, std::uint32_t d
       return constant(expression.constant, depth);
     case Operation::negate:
       return unary(vm::Opcode::neg, operands[0], depth);
+    case Operation::absolute:
+      return unary(vm::Opcode::abs, operands[0], depth);
     case Operation::logical_not:
       return unary(vm::Opcode::not_, operands[0], depth);
     default:

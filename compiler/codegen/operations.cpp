@@ -59,6 +59,12 @@ vm::Opcode with_cells(Operation operation) {
       return vm::Opcode::div;
     case Operation::modulo:
       return vm::Opcode::mod;
+    case Operation::minimum:
+      return vm::Opcode::min;
+    case Operation::maximum:
+      return vm::Opcode::max;
+    case Operation::round:
+      return vm::Opcode::round;
     case Operation::random:
       return vm::Opcode::random;
     case Operation::less:

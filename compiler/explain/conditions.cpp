@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/config/units.hpp"
+#include "compiler/explain/statements.hpp"
 
 namespace robosync::compiler::explain {
 namespace {
@@ -46,6 +47,18 @@ std::string_view sign(ast::ArithmeticOp op) {
 std::string part(const Expr& expr) {
   const bool sum = std::holds_alternative<ast::Arithmetic>(expr.node);
   return sum ? fmt::format("({})", number(expr)) : number(expr);
+}
+
+std::string function(const ast::Function& node) {
+  const std::string name = folded(node.name.text);
+  const std::string first = part(*node.first);
+  if (name == "abs") return "the size of " + first;
+  if (name == "round") return first + " rounded";
+  if (!node.second) return name + " of " + first;
+  const std::string both = fmt::format("{} and {}", first, part(*node.second));
+  if (name == "min") return "the smaller one of " + both;
+  if (name == "max") return "the greater one of " + both;
+  return name + " of " + both;
 }
 
 std::string operand(const ast::Operand& node) {
@@ -204,6 +217,7 @@ std::string number(const Expr& expr) {
   if (const auto* node = std::get_if<ast::Random>(&expr.node)) {
     return fmt::format("a random number from {} to {}", of(*node->low), of(*node->high));
   }
+  if (const auto* node = std::get_if<ast::Function>(&expr.node)) return function(*node);
   return no_number(expr);
 }
 

@@ -94,6 +94,12 @@ vm::Value compute(Operation operation, vm::Value left, vm::Value right) {
       return vm::divide(left, right);
     case Operation::modulo:
       return vm::modulo(left, right);
+    case Operation::minimum:
+      return vm::lesser(left, right);
+    case Operation::maximum:
+      return vm::greater(left, right);
+    case Operation::round:
+      return vm::round_to(left, right);
     case Operation::logical_and:  // value.hpp: the three-valued ones are bitwise
       return left & right;
     case Operation::logical_or:

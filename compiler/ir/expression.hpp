@@ -30,6 +30,10 @@ enum class Operation : std::uint8_t {
   multiply,
   divide,
   modulo,
+  absolute,
+  minimum,
+  maximum,
+  round,   // to a multiple of the second operand
   random,  // from the first operand to the second
   less,
   less_equal,

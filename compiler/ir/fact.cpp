@@ -101,6 +101,30 @@ Fact modulo(const Fact& b, const Fact& c) {
   return {known, whole, low, high};
 }
 
+Fact absolute(const Fact& b) {
+  if (b.low >= 0) return b;
+  const Fact other = negate(b);
+  if (b.high <= 0) return other;
+  return {b.known, b.whole, 0, std::max(b.high, other.high)};
+}
+
+Fact minimum(const Fact& b, const Fact& c) {
+  return {b.known && c.known, b.whole && c.whole, std::min(b.low, c.low), std::min(b.high, c.high)};
+}
+
+Fact maximum(const Fact& b, const Fact& c) {
+  return {b.known && c.known, b.whole && c.whole, std::max(b.low, c.low), std::max(b.high, c.high)};
+}
+
+// To a constant step; the end of the range is no multiple of it.
+Fact round_to(const Fact& b, const Fact& c) {
+  if (c.low != c.high || c.low <= 0) return {b.known && c.known};
+  const Value low = vm::round_to(b.low, c.low);
+  const Value high = vm::round_to(b.high, c.low);
+  const bool whole = c.low % kScale == 0 && low > vm::kValueMin && high < vm::kValueMax;
+  return {b.known && c.known, whole, low, high};
+}
+
 Fact random_between(const Fact& b, const Fact& c) {
   Fact result = either(b, c);
   result.whole = result.whole && result.low == result.high;

@@ -34,6 +34,10 @@ struct Fact {
 [[nodiscard]] Fact multiply(const Fact& b, const Fact& c);
 [[nodiscard]] Fact divide(const Fact& b, const Fact& c);
 [[nodiscard]] Fact modulo(const Fact& b, const Fact& c);
+[[nodiscard]] Fact absolute(const Fact& b);
+[[nodiscard]] Fact minimum(const Fact& b, const Fact& c);
+[[nodiscard]] Fact maximum(const Fact& b, const Fact& c);
+[[nodiscard]] Fact round_to(const Fact& b, const Fact& c);
 [[nodiscard]] Fact random_between(const Fact& b, const Fact& c);
 [[nodiscard]] Fact clamp(const Fact& b, vm::Value min, vm::Value max);
 // The sum of `times` values of this fact, or of fewer.

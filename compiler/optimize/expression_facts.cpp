@@ -17,6 +17,12 @@ Fact fact_of_operation(Operation operation, const Fact& b, const Fact& c) {
       return divide(b, c);
     case Operation::modulo:
       return modulo(b, c);
+    case Operation::minimum:
+      return minimum(b, c);
+    case Operation::maximum:
+      return maximum(b, c);
+    case Operation::round:
+      return round_to(b, c);
     case Operation::random:
       return random_between(b, c);
     case Operation::less:
@@ -67,6 +73,8 @@ Fact work_out(Expression& expression, const Sight& sight) {
     }
     case Operation::negate:
       return negate(annotate(operands[0], sight));
+    case Operation::absolute:
+      return absolute(annotate(operands[0], sight));
     case Operation::logical_not:
       return logical_not(annotate(operands[0], sight));
     default:

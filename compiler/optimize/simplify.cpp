@@ -198,6 +198,10 @@ void simplify(Expression& expression) {
       return simplify_not(expression);
     case Operation::negate:
       return simplify_negate(expression);
+    case Operation::absolute:
+      if (is_constant(expression.operands[0]))
+        expression = constant(vm::absolute(expression.operands[0].constant));
+      return;
     default:
       break;
   }

@@ -65,6 +65,10 @@ private:
   Typed of(const ast::Negate& node, Span span);
   Typed of(const ast::Arithmetic& node, Span span);
   Typed of(const ast::Random& node, Span span);
+  // functions.cpp
+  Typed of(const ast::Function& node, Span span);
+  Typed of_one(Operation operation, const ast::Function& node, Span span);
+  Typed of_two(Operation operation, const ast::Function& node, Span span);
   // conditions.cpp: words and truths
   Typed of(const ast::Is& node, Span span);
   Typed of(const ast::IsTruth& node, Span span);

@@ -57,6 +57,11 @@ struct Random {
   Box<Expr> low, high;
 };
 
+struct Function {  // ABS(x), MIN(x, y): what it is called is not a word of the grammar
+  Name name;
+  Box<Expr> first, second;  // second may be null
+};
+
 enum class Relation : std::uint8_t { less, greater, less_equal, greater_equal, equal, not_equal };
 struct Comparison {
   Relation relation{};
@@ -115,8 +120,8 @@ struct TimesWithin {
 
 struct Expr {
   Span span;
-  std::variant<Quantity, Operand, Negate, Arithmetic, Random, Comparison, Is, IsBetween, IsTruth,
-               Becomes, Changes, Not, Logic, For, ThenWithin, TimesWithin>
+  std::variant<Quantity, Operand, Negate, Arithmetic, Random, Function, Comparison, Is, IsBetween,
+               IsTruth, Becomes, Changes, Not, Logic, For, ThenWithin, TimesWithin>
       node;
   std::uint16_t depth = 1;  // levels of expressions from here down; the parser keeps it small
 };

@@ -3,9 +3,25 @@
 
 #include <utility>
 
+#include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/layout.hpp"
 
 namespace robosync::compiler {
+
+namespace {
+
+// Words that could stand here as names only: where one of each sort can, all of that sort are names.
+// No word is looked for in the place of a name, and behind a name no bracket, as of a function.
+void leave_out_names(std::vector<TokenKind>& expected) {
+  if (contains(expected, Kinds::PLUS)) std::erase(expected, Kinds::OPEN);
+  if (!contains(expected, Kinds::NAME)) return;
+  unsigned role = 0;
+  if (contains(expected, Kinds::FOREVER)) role = role::word;
+  if (contains(expected, Kinds::ONE)) role = role::name;
+  std::erase_if(expected, [role](TokenKind kind) { return (roles_of(kind) & role) != 0; });
+}
+
+}  // namespace
 
 Attempt Reader::read(Tokens& tokens, Diagnostics* diagnostics) {
   const std::vector<std::uint32_t> order = significant(tokens);
@@ -18,6 +34,7 @@ Attempt Reader::read(Tokens& tokens, Diagnostics* diagnostics) {
     return attempt;
   }
   attempt.expected = builder_.expected();
+  leave_out_names(attempt.expected);
   // The grammar has taken the token it stopped at, unless that is the end.
   const bool at_end = tokens_.past_end();
   const std::size_t index = at_end ? order.size() : tokens_.taken() - 1;

@@ -20,6 +20,8 @@ enum Role : unsigned {
   begins = 16,
   after = 32,
   before = 64,
+  name = 128,
+  word = 256,
 };
 }  // namespace role
 

@@ -141,6 +141,11 @@ TEST_CASE("arithmetic opcodes do what the naive arithmetic says") {
   agrees(Op::mod, oracle::on_values(oracle::modulo));
   for (const Value value : kOperands)
     CHECK(unary(Op::neg, value) == oracle::value_of(oracle::negate(oracle::number_of(value))));
+  agrees(Op::min, oracle::on_values(oracle::lesser));
+  agrees(Op::max, oracle::on_values(oracle::greater));
+  agrees(Op::round, oracle::on_values(oracle::to_multiple));
+  for (const Value value : kOperands)
+    CHECK(unary(Op::abs, value) == oracle::value_of(oracle::absolute(oracle::number_of(value))));
 }
 
 TEST_CASE("the lesser and the greater, unknown if the operand is") {

@@ -33,14 +33,16 @@ E Generator::number_expression(unsigned depth) {
       return locals_.empty() ? channel(0)
                              : local(locals_[below(static_cast<unsigned>(locals_.size()))]);
     case 4:
-      return of(Operation::negate, {number_expression(depth - 1)});
+      return of(often(50) ? Operation::negate : Operation::absolute,
+                {number_expression(depth - 1)});
     default:
       break;
   }
-  constexpr Operation kOperations[] = {Operation::add,    Operation::subtract, Operation::multiply,
-                                       Operation::divide, Operation::modulo,   Operation::random};
+  constexpr Operation kOperations[] = {Operation::add,     Operation::subtract, Operation::multiply,
+                                       Operation::divide,  Operation::modulo,   Operation::minimum,
+                                       Operation::maximum, Operation::round,    Operation::random};
   const bool draws = taste_.chance && (taste_.surprise || !in_condition_);
-  const Operation operation = kOperations[below(draws ? 6 : 5)];
+  const Operation operation = kOperations[below(draws ? 9 : 8)];
   return of(operation, {number_expression(depth - 1), number_expression(depth - 1)});
 }
 

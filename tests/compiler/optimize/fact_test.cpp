@@ -96,6 +96,15 @@ TEST_CASE("facts about sums, products, quotients and remainders hold") {
   CHECK(check_all("modulo", modulo, oracle::on_values(oracle::modulo)) > 1000);
 }
 
+TEST_CASE("facts about ABS, MIN, MAX and ROUND hold") {
+  CHECK(check_all("minimum", minimum, oracle::on_values(oracle::lesser)) > 1000);
+  CHECK(check_all("maximum", maximum, oracle::on_values(oracle::greater)) > 1000);
+  CHECK(check_all("round", round_to, oracle::on_values(oracle::to_multiple)) > 100);
+  check_all(
+      "absolute", [](const Fact& b, const Fact&) { return absolute(b); },
+      oracle::on_values([](oracle::Number b, oracle::Number) { return oracle::absolute(b); }));
+}
+
 TEST_CASE("facts about comparisons hold, and decide what can be decided") {
   check_all("<", is_less, comparing(std::less<>()));
   check_all("<=", is_not_greater, comparing(std::less_equal<>()));

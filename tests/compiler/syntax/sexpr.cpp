@@ -60,6 +60,9 @@ std::string show(const Arithmetic& n) {
 std::string show(const Random& n) {
   return list({"random", show(n.low), show(n.high)});
 }
+std::string show(const Function& n) {
+  return list({"function", show(n.name), show(n.first), n.second ? show(n.second) : ""});
+}
 std::string show(const Comparison& n) {
   const char* const signs[] = {"<", ">", "<=", ">=", "=", "<>"};
   return list({signs[static_cast<int>(n.relation)], show(n.left), show(n.right)});

@@ -1,6 +1,7 @@
 // Trees of programs: every form of the grammar, and the programs of the language's design.
 #include <catch2/catch.hpp>
 
+#include "compiler/syntax/keyword_roles.hpp"
 #include "tests/compiler/parsed.hpp"
 #include "tests/compiler/syntax/sexpr.hpp"
 
@@ -54,6 +55,8 @@ TEST_CASE("how tightly operators bind", "[tree]") {
   CHECK(condition("-a * -3mm <> --b") == "(<> (* (neg a) (neg 3mm)) (neg (neg b)))");
   CHECK(condition("a IS BETWEEN 1 AND 2 AND b") == "(and (between a 1 2) b)");
   CHECK(condition("RANDOM(1, 6) >= 5") == "(>= (random 1 6) 5)");
+  CHECK(condition("ABS(a - 1) > Min(min, 2cm) * abs") ==
+        "(> (function ABS (- a 1)) (* (function Min min 2cm) abs))");
   CHECK(condition("a == 1 OR b != 2 OR c = 3") == "(or (or (= a 1) (<> b 2)) (= c 3))");
 }
 
@@ -139,4 +142,70 @@ TEST_CASE("a wrong item does not take the others with it", "[tree]") {
   CHECK(all.find("(when (> b") != std::string::npos);
   CHECK(all.find("(define c () (do (y)))") != std::string::npos);
   CHECK(all.find("(define d () (do (z)))") != std::string::npos);
+}
+
+// ---- words that are reserved, and words that may be names
+
+namespace {
+
+bool is_read(const std::string& text) {
+  return parse_text(text).diagnostics.errors() == 0;
+}
+
+// The words in the cell of the table of docs/language.md whose line begins with `head`.
+std::vector<std::string> documented(const std::string& head) {
+  const auto path = std::filesystem::path(ROBOSYNC_SOURCE_DIR) / "docs/language.md";
+  const std::string text = robosync::testing::read_file(path);
+  const std::size_t begin = text.find("\n| " + head + " |");
+  REQUIRE(begin != std::string::npos);
+  const std::string line = text.substr(begin + 1, text.find('\n', begin + 1) - begin - 1);
+  std::vector<std::string> words;
+  for (std::size_t at = line.find('`'); at != std::string::npos; at = line.find('`', at + 1)) {
+    const std::size_t end = line.find('`', at + 1);
+    words.push_back(line.substr(at + 1, end - at - 1));
+    at = end;
+  }
+  return words;
+}
+
+std::vector<std::string> with(unsigned role, bool wanted) {
+  std::vector<std::string> words;
+  for (const Keyword& keyword : keywords())
+    if (((keyword.roles & role) != 0) == wanted &&
+        keyword.spelling.find(' ') == std::string_view::npos)
+      words.emplace_back(keyword.spelling);
+  std::sort(words.begin(), words.end());
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("a word is a name where its row in keywords.def says so, and nowhere else", "[tree]") {
+  for (const Keyword& keyword : keywords()) {
+    const std::string word(keyword.spelling);
+    if (word.find(' ') != std::string::npos) continue;
+    CAPTURE(word);
+    const bool name = (keyword.roles & role::name) != 0;
+    const bool later = (keyword.roles & role::word) != 0;
+    CHECK(is_read("REMEMBER " + word + " = 1\n") == name);
+    CHECK(is_read("WHEN touch > 1\nDO SET x TO " + word + " + 1\nEND\n") == name);
+    CHECK(is_read("STATE s: a, " + word + ", b\n") == name);
+    CHECK(is_read("WHEN touch " + word + " > 1\nDO x\nEND\n") == later);
+    CHECK(is_read("WHEN touch > 1\nDO MOVE it " + word + "\nEND\n") == later);
+  }
+}
+
+TEST_CASE("docs/language.md lists the reserved words, and those that may be names", "[tree]") {
+  CHECK(documented("reserved") == with(role::name, false));
+  CHECK(documented("may be a name") == with(role::name, true));
+  CHECK(documented("and behind another word") == with(role::word, true));
+}
+
+TEST_CASE("words of RSL as names", "[tree]") {
+  CHECK(tree("STATE game: start, waiting, playing, over\n") ==
+        "(state game (start waiting playing over))\n");
+  CHECK(condition("game IS over OR stop > all") == "(or (is game over) (> stop all))");
+  CHECK(condition("game BECOMES over all") == "(becomes game [over all])");
+  CHECK(statement("SET game TO waiting\nRAISE by BY over") == "(set game waiting) (raise by over)");
+  CHECK(statement("STOP ALL\nMOVE arms OVER 2s") == "(stop all) (MOVE arms over:2s)");
 }

@@ -19,7 +19,7 @@ COMMANDS = ["MOVE arms SLOWLY", "MOVE left_arm TO 90deg OVER 300ms", "MOVE right
             'PLAY sound "warning.wav"', "LIGHT lamp ON", "LIGHT lamp TO 40% OVER 250ms",
             "BLINK lamp 3 TIMES", "STOP lamp", "MOVE arms QUICKLY",
             "LIGHT lamp TO (joy) OVER 100ms", "MOVE left_arm TO (count * 3deg) OVER 80ms"]
-DURATIONS = ["1ms", "7ms", "40ms", "150ms", "600ms", "1.5s"]
+DURATIONS = ["1ms", "7ms", "40msec", "150milliseconds", "600ms", "1.5seconds"]
 
 DECLARATIONS = """\
 LET calm = 40%
@@ -169,6 +169,9 @@ class Generator:
         """A plain number that is worked out, of every operator, by zero and out of range included."""
         if depth == 0 or self._random.random() < 0.2:
             return self._one("count", "last", "touch LEVEL", "0", "7", "-3", "2.5")
+        if self._random.random() < 0.2:
+            return self._one(f"ABS({self._number(depth - 1)})", f"ROUND({self._number(depth - 1)})",
+                             f"{self._one('MIN', 'MAX')}({self._number(depth - 1)}, {self._number(0)})")
         operator = self._one("+", "-", "*", "/", "MOD", "+ -")
         return f"({self._number(depth - 1)} {operator} {self._number(depth - 1)})"
 
@@ -189,6 +192,8 @@ class Generator:
     def _blocks(self, depth):
         return [
             f"IF {self._condition(1)} DO\n{self._block(depth)}    ELSE\n{self._block(depth)}    END",
+            f"IF\n{self._condition(1)} DO\n{self._block(depth)}    ELSE IF {self._condition(0)} DO\n"
+            f"{self._block(depth)}    ELSE\n{self._block(depth)}    END",
             f"REPEAT {self._random.randint(1, 3)} TIMES\n{self._block(depth)}    END",
             f"REPEAT count MOD 4 TIMES\n{self._block(depth)}    WAIT {self._pause()}\n    END",
             f"REPEAT WHILE {self._condition(0)}\n{self._block(depth)}    WAIT {self._pause()}\n    END",

@@ -72,6 +72,14 @@ std::optional<Number> exact(Machine& machine, Opcode opcode, Number b, Number c)
       return modulo(b, c);
     case Opcode::neg:
       return negate(b);
+    case Opcode::abs:
+      return absolute(b);
+    case Opcode::min:
+      return lesser(b, c);
+    case Opcode::max:
+      return greater(b, c);
+    case Opcode::round:
+      return to_multiple(b, c);
     case Opcode::min_k:
       return b ? Number(std::min(*b, *c)) : b;
     case Opcode::max_k:

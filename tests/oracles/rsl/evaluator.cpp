@@ -53,6 +53,8 @@ Number Evaluator::number(const Expression& expression, const Sight& sight) {
       return sight.locals->at(expression.index);
     case Operation::negate:
       return negate(number(expression.operands[0], sight));
+    case Operation::absolute:
+      return absolute(number(expression.operands[0], sight));
     default:
       return arithmetic(expression, sight);
   }
@@ -74,6 +76,12 @@ Number Evaluator::arithmetic(const Expression& expression, const Sight& sight) {
       return divide(left, right);
     case Operation::modulo:
       return modulo(left, right);
+    case Operation::minimum:
+      return lesser(left, right);
+    case Operation::maximum:
+      return greater(left, right);
+    case Operation::round:
+      return to_multiple(left, right);
     case Operation::random:
       return sight.chance != nullptr ? sight.chance->draw(left, right) : left;
     default:

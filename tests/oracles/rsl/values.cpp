@@ -73,6 +73,26 @@ Number negate(Number a) {
   return -*a;
 }
 
+Number absolute(Number a) {
+  if (!a) return std::nullopt;
+  return *a < 0 ? -*a : *a;
+}
+
+Number lesser(Number a, Number b) {
+  if (!a || !b) return std::nullopt;
+  return std::min(*a, *b);
+}
+
+Number greater(Number a, Number b) {
+  if (!a || !b) return std::nullopt;
+  return std::max(*a, *b);
+}
+
+Number to_multiple(Number a, Number of) {
+  if (!a || !of) return std::nullopt;
+  return *of > 0 ? kept_inside(rounded(*a, *of) * *of) : *a;
+}
+
 Truth both(Truth a, Truth b) {
   if (a == false || b == false) return false;
   if (!a || !b) return std::nullopt;

@@ -25,6 +25,10 @@ using Truth = std::optional<bool>;
 [[nodiscard]] Number divide(Number a, Number b);  // by 0: 0
 [[nodiscard]] Number modulo(Number a, Number b);  // has the sign of b; by 0: 0
 [[nodiscard]] Number negate(Number a);
+[[nodiscard]] Number absolute(Number a);
+[[nodiscard]] Number lesser(Number a, Number b);
+[[nodiscard]] Number greater(Number a, Number b);
+[[nodiscard]] Number to_multiple(Number a, Number of);  // the nearest; a itself unless above 0
 
 // One of these as an operator on Values.
 [[nodiscard]] inline auto on_values(Number (*operate)(Number, Number)) {

@@ -1,0 +1,121 @@
+// Expressions, part: ABS, ROUND, MIN and MAX. They are no words of the grammar, so their names may
+// also be those of a LET, a REMEMBER or a sensor.
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "compiler/ir/expression.hpp"
+#include "compiler/sema/expressions.hpp"
+#include "vm/arithmetic.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+struct Known {
+  std::string_view name;  // folded
+  std::string_view written;
+  Operation operation;
+  std::size_t arguments;
+};
+constexpr std::array kFunctions = {
+    Known{"abs", "ABS", Operation::absolute, 1}, Known{"round", "ROUND", Operation::round, 1},
+    Known{"min", "MIN", Operation::minimum, 2}, Known{"max", "MAX", Operation::maximum, 2}};
+constexpr unsigned kDecimals = 3;  // of what is worked out here
+
+// What ROUND makes whole: the unit that its number is declared in. Those whose scale begins
+// elsewhere, or is no whole number of thousandths, are rounded in the dimension's own unit.
+vm::Value step_of(const Typed& number) {
+  const Unit& own = canonical_unit(number.dimension());
+  const bool plain =
+      number.unit != nullptr && number.unit->offset == 0 && number.unit->divisor == 1;
+  return static_cast<vm::Value>(plain ? number.unit->factor : own.factor);
+}
+
+void become_constant(Typed& number, vm::Value value) {
+  number.code = make_constant_code(value);
+  number.bare = {value, kDecimals};
+  number.digits.clear();
+  number.low = value;
+  number.high = value;
+}
+
+}  // namespace
+
+Typed Expressions::of(const ast::Function& node, Span span) {
+  const std::string folded = fold_name(node.name.text);
+  const auto* const known = std::ranges::find(kFunctions, folded, &Known::name);
+  if (known == kFunctions.end()) {
+    Diagnostic& d =
+        diagnostics_.report(Code::E0501, "there is no function `" + node.name.text + "`")
+            .label(node.name.span);
+    suggest(d, node.name.span, node.name.text, {"ABS", "ROUND", "MIN", "MAX", "RANDOM"});
+    if (d.help.empty()) d.helps("functions: ABS, ROUND, MIN, MAX and RANDOM");
+    return make_nothing(span);
+  }
+  const std::size_t given = node.second == nullptr ? 1 : 2;
+  if (given != known->arguments) {
+    diagnostics_
+        .report(Code::E0411, "`" + std::string(known->written) + "` wants " +
+                                 (known->arguments == 1 ? "one number" : "two numbers") +
+                                 ", and is given " + (given == 1 ? "one" : "two"))
+        .label(span)
+        .helps("write `" + std::string(known->written) +
+               (known->arguments == 1 ? "(number)`" : "(number, number)`"));
+    return make_nothing(span);
+  }
+  return given == 1 ? of_one(known->operation, node, span) : of_two(known->operation, node, span);
+}
+
+Typed Expressions::of_one(Operation operation, const ast::Function& node, Span span) {
+  Typed inner = number(*node.first);
+  if (!inner.is_number() || report_offset_unit(inner, diagnostics_)) return make_nothing(span);
+  const vm::Value step = step_of(inner);
+  inner.span = span;
+  const bool rounds = operation == Operation::round;
+  if (inner.is_constant()) {
+    const vm::Value value = inner.code.constant;
+    become_constant(inner, rounds ? vm::round_to(value, step) : vm::absolute(value));
+    return inner;
+  }
+  if (rounds) {
+    inner.code = make_binary(operation, std::move(inner.code), make_constant_code(step));
+    inner.low -= step;
+    inner.high += step;
+    return inner;
+  }
+  inner.code = make_unary(operation, std::move(inner.code));
+  const std::int64_t most = std::max(-inner.low, inner.high);
+  inner.low = std::max<std::int64_t>({inner.low, -inner.high, 0});
+  inner.high = most;
+  return inner;
+}
+
+Typed Expressions::of_two(Operation operation, const ast::Function& node, Span span) {
+  const bool least = operation == Operation::minimum;
+  Typed left = number(*node.first);
+  Typed right = number(*node.second);
+  if (!left.is_number() || !right.is_number()) return make_nothing(span);
+  if (!unify(left, right,
+             least ? "this takes the smaller one of {} and {}"
+                   : "this takes the greater one of {} and {}",
+             false, diagnostics_))
+    return make_nothing(span);
+  const auto chosen = [least](std::int64_t one, std::int64_t other) {
+    return least ? std::min(one, other) : std::max(one, other);
+  };
+  Typed result = left;
+  result.span = span;
+  if (left.unit == nullptr) result.unit = right.unit;
+  if (left.is_constant() && right.is_constant()) {
+    become_constant(result, compute(operation, left.code.constant, right.code.constant));
+    return result;
+  }
+  result.digits.clear();
+  result.low = chosen(left.low, right.low);
+  result.high = chosen(left.high, right.high);
+  if (result.unit == nullptr) result.unit = &canonical_unit(vm::Dimension::number);
+  result.code = make_binary(operation, std::move(left.code), std::move(right.code));
+  return result;
+}
+
+}  // namespace robosync::compiler
