@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,6 +12,8 @@
 
 namespace robosync::compiler::explain {
 namespace {
+
+using Given = std::map<std::string, std::string>;  // names, by the parameter that they are given to
 
 class Walk {
 public:
@@ -23,7 +27,7 @@ public:
 
 private:
   void visit(const ast::Command& node) {
-    if (node.arguments.empty() && run(node.verb.text)) return;
+    if (node.arguments.empty() && run(node.verb.text, {})) return;
     for (const ast::Argument& argument : node.arguments) {
       const auto* const word = std::get_if<ast::Word>(&argument.value);
       if (word == nullptr || argument.preposition != ast::Preposition::none) continue;
@@ -31,7 +35,7 @@ private:
     }
     add_by_verb(node.verb.text);
   }
-  void visit(const ast::Call& node) { run(node.name.text); }
+  void visit(const ast::Call& node) { run(node.name.text, node.arguments); }
   void visit(const ast::Stop& node) {
     if (node.name) {
       add(node.name->text);
@@ -45,15 +49,37 @@ private:
     ast::for_each_block_of(node, [this](const ast::Block& inner) { block(inner); });
   }
 
-  bool run(const std::string& name) {
-    const auto found = defines_.find(folded(name));
+  // The name that a parameter is given, in the DEFINE that is walked.
+  std::string meant(const std::string& name) const {
+    const auto found = given_.find(folded(name));
+    return found == given_.end() ? name : found->second;
+  }
+
+  bool run(const std::string& name, const std::vector<ast::Argument>& arguments) {
+    const auto found = defines_.find(folded(meant(name)));
     if (found == defines_.end()) return false;
-    if (seen_.insert(found->second).second) block(found->second->body);
+    const ast::Define& define = *found->second;
+    Given given;
+    for (std::size_t i = 0; i < std::min(define.parameters.size(), arguments.size()); ++i)
+      if (const std::string argument = named_by(arguments[i]); !argument.empty())
+        given[folded(define.parameters[i].text)] = meant(argument);
+    if (!seen_.insert({&define, given}).second) return true;
+    std::swap(given, given_);
+    block(define.body);
+    std::swap(given, given_);
     return true;
   }
 
+  static std::string named_by(const ast::Argument& argument) {
+    const auto* const amount = std::get_if<ast::Amount>(&argument.value);
+    if (amount == nullptr || amount->value == nullptr) return {};
+    const auto* const operand = std::get_if<ast::Operand>(&amount->value->node);
+    return operand == nullptr || operand->channel ? std::string() : operand->name.text;
+  }
+
   // Without a robot, the first word of a command is its actuator.
-  bool add(const std::string& name) {
+  bool add(const std::string& written) {
+    const std::string name = meant(written);
     if (robot_ == nullptr) return names.insert(name), true;
     for (const ActuatorConfig& actuator : robot_->actuators) {
       if (folded(actuator.name.text) == folded(name)) {
@@ -83,7 +109,8 @@ private:
 
   const Defines& defines_;
   const Robot* robot_;
-  std::set<const ast::Define*> seen_;
+  Given given_;
+  std::set<std::pair<const ast::Define*, Given>> seen_;
 };
 
 std::string named(const Party& party) {

@@ -95,8 +95,9 @@ private:
                                           value_of(node.arguments[i]))
                             : value_of(node.arguments[i]));
     }
-    line(fmt::format("do {} with {} (see DEFINE {})", node.name.text, fmt::join(given, ", "),
-                     node.name.text));
+    const std::string see =
+        found == defines_.end() ? "" : fmt::format(" (see DEFINE {})", node.name.text);
+    line(fmt::format("do {} with {}{}", node.name.text, fmt::join(given, ", "), see));
   }
 
   void write(const ast::Set& node) {

@@ -68,7 +68,12 @@ std::vector<ProgramCommand> Commands::translate(const ast::Command& command) {
 std::optional<Target> Commands::find_target(const ast::Command& command, std::size_t& named_by) {
   for (std::size_t i = 0; i < command.arguments.size(); ++i) {
     const ast::Word* word = plain_word(command.arguments[i]);
-    if (word == nullptr || expressions_.find_binding(word->name.text) != nullptr) continue;
+    if (word == nullptr) continue;
+    if (const Binding* binding = expressions_.find_binding(word->name.text)) {
+      if (binding->actuator.empty()) continue;
+      named_by = i;
+      return names_.find_target(binding->actuator);
+    }
     if (auto target = names_.find_target(word->name.text)) {
       named_by = i;
       return target;
@@ -80,9 +85,21 @@ std::optional<Target> Commands::find_target(const ast::Command& command, std::si
 // `SAY "hello"`: without a name, the one actuator that knows the verb.
 std::optional<Target> Commands::only_target(const ast::Command& command) {
   const std::vector<std::size_t>& able = names_.able_to(command.verb.text);
+  if (able.size() != 1 && is_given_another(command)) return std::nullopt;
   if (able.size() == 1) return Target{std::nullopt, able, robot_.actuators[able.front()].name.text};
   report_no_target(command, able);
   return std::nullopt;
+}
+
+// Is there a parameter where the actuator stands, which is given something else? It is reported,
+// unless nobody runs the DEFINE.
+bool Commands::is_given_another(const ast::Command& command) {
+  const ast::Word* first =
+      command.arguments.empty() ? nullptr : plain_word(command.arguments.front());
+  const Binding* binding = first == nullptr ? nullptr : expressions_.find_binding(first->name.text);
+  if (binding == nullptr) return false;
+  if (!is_open(*binding)) expressions_.report_given(*binding, first->name, "an actuator");
+  return true;
 }
 
 void Commands::report_no_target(const ast::Command& command, const std::vector<std::size_t>& able) {
@@ -160,8 +177,9 @@ bool Commands::is_known_word(std::string_view word) const {
 }
 
 bool Commands::names_a_number(const ast::Name& name) const {
-  return expressions_.find_binding(name.text) != nullptr ||
-         names_.find_constant(name.text) != nullptr || names_.find_variable(name.text) != nullptr;
+  const Binding* binding = expressions_.find_binding(name.text);
+  if (binding != nullptr) return binding->is_number;
+  return names_.find_constant(name.text) != nullptr || names_.find_variable(name.text) != nullptr;
 }
 
 std::optional<Target> Commands::find_stopped(const ast::Name& name) {

@@ -37,6 +37,7 @@ private:
   // Which actuator, which arguments.
   std::optional<Target> find_target(const ast::Command& command, std::size_t& named_by);
   std::optional<Target> only_target(const ast::Command& command);
+  bool is_given_another(const ast::Command& command);
   void report_no_target(const ast::Command& command, const std::vector<std::size_t>& able);
   void report_unknown_verb(const ast::Command& command);
   std::optional<std::vector<Given>> evaluate(const ast::Command& command, std::size_t named_by);

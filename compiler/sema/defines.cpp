@@ -1,14 +1,37 @@
-// Statements, part: DEFINEs in the place of their uses. A constant argument stands for its
-// parameter; another one is worked out once, into a local.
+// Statements, part: DEFINEs in the place of their uses. A text, an actuator, another DEFINE and a
+// constant stand for their parameter; another number is worked out once, into a local.
 #include <algorithm>
 #include <utility>
 
 #include "compiler/sema/statements.hpp"
+#include "compiler/syntax/walk.hpp"
 
 namespace robosync::compiler {
 namespace {
 
 constexpr std::size_t kMaxNestedDefines = 64;  // of DEFINEs: the translation recurses
+
+constexpr unsigned kMaxHandedOn = 4;
+
+// The first argument that is a word alone: where an actuator stands.
+const ast::Word* first_word(const ast::Command& command) {
+  for (const ast::Argument& argument : command.arguments)
+    if (argument.preposition == ast::Preposition::none)
+      if (const auto* word = std::get_if<ast::Word>(&argument.value)) return word;
+  return nullptr;
+}
+
+// The place of the argument that is a name of which `is_it` is true; their number when none is.
+template <typename IsIt>
+std::size_t place_of(const ast::Call& call, const IsIt& is_it) {
+  const auto found = std::ranges::find_if(call.arguments, [&](const ast::Argument& argument) {
+    const auto* amount = std::get_if<ast::Amount>(&argument.value);
+    if (amount == nullptr || amount->value == nullptr) return false;
+    const auto* operand = std::get_if<ast::Operand>(&amount->value->node);
+    return operand != nullptr && !operand->channel && is_it(operand->name);
+  });
+  return static_cast<std::size_t>(found - call.arguments.begin());
+}
 
 std::string counted(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " value" : " values");
@@ -42,6 +65,8 @@ void Statements::check_unused_defines() {
 
 void Statements::add(const ast::Call& node, Span span, ProgramBlock& result) {
   if (node.name.text.empty()) return;
+  if (const Binding* binding = expressions_.find_binding(node.name.text))
+    return run(*binding, node.name, node.arguments, span, result);
   if (DefineName* define = names_.find_define(node.name.text))
     return run(*define, node.arguments, span, result);
   Diagnostic& d = diagnostics_.report(Code::E0501, "there is no DEFINE `" + node.name.text + "`")
@@ -50,6 +75,13 @@ void Statements::add(const ast::Call& node, Span span, ProgramBlock& result) {
     suggest(d, node.name.span, node.name.text, names_.define_names());
   if (d.help.empty() && names_.is_verb(node.name.text))
     d.helps("`" + node.name.text + "` is a verb: what it does stands behind it without WITH");
+}
+
+// What a parameter stands for.
+void Statements::run(const Binding& binding, const ast::Name& name,
+                     const std::vector<ast::Argument>& arguments, Span span, ProgramBlock& result) {
+  if (binding.define != nullptr) return run(*binding.define, arguments, span, result);
+  if (!is_open(binding)) expressions_.report_given(binding, name, "a DEFINE");
 }
 
 void Statements::run(DefineName& name, const std::vector<ast::Argument>& arguments, Span span,
@@ -85,15 +117,16 @@ std::optional<Bindings> Statements::bind(const DefineName& name,
   }
   Bindings bindings;
   for (std::size_t i = 0; i < parameters.size(); ++i)
-    bindings.push_back(bind(parameters[i], arguments[i], span, result));
+    bindings.push_back(bind(*name.define, i, arguments[i], span, result));
   return bindings;
 }
 
-Binding Statements::bind(const ast::Name& parameter, const ast::Argument& argument, Span span,
-                         ProgramBlock& result) {
-  Binding binding{fold_name(parameter.text), {}, std::nullopt, argument.span};
+Binding Statements::bind(const ast::Define& define, std::size_t parameter,
+                         const ast::Argument& argument, Span span, ProgramBlock& result) {
+  Binding binding{fold_name(define.parameters[parameter].text), {}, std::nullopt, argument.span};
   if (const auto* text = std::get_if<ast::Text>(&argument.value)) {
     binding.text = text->text;
+    binding.is_number = false;
     return binding;
   }
   const auto* amount = std::get_if<ast::Amount>(&argument.value);
@@ -107,6 +140,7 @@ Binding Statements::bind(const ast::Name& parameter, const ast::Argument& argume
       binding.name = name;
       return binding;
     }
+    if (!operand->channel && bind_name(operand->name.text, define, binding)) return binding;
   }
   binding.value = expressions_.number(*amount->value);
   if (!binding.value.is_number() || binding.value.is_constant()) return binding;
@@ -116,6 +150,46 @@ Binding Statements::bind(const ast::Name& parameter, const ast::Argument& argume
   binding.value.code.operation = Operation::local;
   binding.value.code.index = number;
   return binding;
+}
+
+// An actuator, a group or a DEFINE. Where a sensor has the name too, what the DEFINE does with its
+// parameter tells which of them is meant.
+bool Statements::bind_name(const std::string& name, const ast::Define& define, Binding& binding) {
+  const auto target = names_.find_target(name);
+  if (DefineName* given = names_.find_define(name)) {
+    given->used = true;
+    binding.define = given;
+  } else if (target && (names_.kind_of(name) == "an actuator" ||
+                        commands_parameter(define, binding.name, kMaxHandedOn))) {
+    binding.actuator = target->name;
+  } else {
+    return false;
+  }
+  binding.is_number = false;
+  return true;
+}
+
+// Is the parameter an actuator in a command of the DEFINE, or of one that it is handed on to?
+bool Statements::commands_parameter(const ast::Define& define, std::string_view folded,
+                                    unsigned handed_on) {
+  bool found = false;
+  const auto is_it = [folded](const ast::Name& name) { return fold_name(name.text) == folded; };
+  ast::for_each_statement(define.body, [&](const ast::Stmt& stmt) {
+    if (const auto* command = std::get_if<ast::Command>(&stmt.node)) {
+      const ast::Word* word = first_word(*command);
+      found = found || (word != nullptr && is_it(word->name));
+    } else if (const auto* stop = std::get_if<ast::Stop>(&stmt.node)) {
+      found = found || (stop->name && is_it(*stop->name));
+    } else if (const auto* call = std::get_if<ast::Call>(&stmt.node); call != nullptr) {
+      const DefineName* other = handed_on == 0 ? nullptr : names_.find_define(call->name.text);
+      const std::size_t place = other == nullptr ? call->arguments.size() : place_of(*call, is_it);
+      if (place < call->arguments.size() && place < other->define->parameters.size())
+        found = found ||
+                commands_parameter(*other->define, fold_name(other->define->parameters[place].text),
+                                   handed_on - 1);
+    }
+  });
+  return found;
 }
 
 // In a scope of its own: it sees its parameters and what the whole program sees.

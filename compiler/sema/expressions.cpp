@@ -110,12 +110,28 @@ const Binding* Expressions::find_binding(std::string_view name) const {
   return found == bindings_->end() ? nullptr : &*found;
 }
 
+namespace {
+
+std::string kind_of(const Binding& binding) {
+  if (binding.text) return "a text";
+  if (!binding.actuator.empty()) return "the actuator `" + binding.actuator + "`";
+  return binding.define != nullptr ? "a DEFINE" : "a number";
+}
+
+}  // namespace
+
+void Expressions::report_given(const Binding& binding, const ast::Name& name,
+                               std::string_view wanted) {
+  diagnostics_
+      .report(Code::E0306, "`" + name.text + "` is given " + kind_of(binding) + ", and " +
+                               std::string(wanted) + " is needed")
+      .label(name.span)
+      .label(binding.span, "given here", false);
+}
+
 Typed Expressions::parameter(const Binding& binding, const ast::Operand& operand, Span span) {
-  if (binding.text) {
-    diagnostics_
-        .report(Code::E0306, "`" + operand.name.text + "` is given a text, and a number is needed")
-        .label(span)
-        .label(binding.span, "given here", false);
+  if (!binding.is_number) {
+    report_given(binding, {operand.name.text, span}, "a number");
     return make_nothing(span);
   }
   return binding.value;  // with its place where it is given, which is where a mistake is mended

@@ -14,9 +14,17 @@ struct Binding {
   std::string name;  // folded
   Typed value;       // nothing while a DEFINE is checked that nobody runs
   std::optional<std::string> text;
-  Span span;  // where it is given
+  Span span;               // where it is given
+  std::string actuator{};  // the actuator or group that is given
+  DefineName* define = nullptr;
+  bool is_number = true;  // none of the others
 };
 using Bindings = std::vector<Binding>;
+
+// Of a DEFINE that nobody runs: it could be given anything.
+[[nodiscard]] inline bool is_open(const Binding& binding) {
+  return binding.is_number && binding.value.type == Type::nothing;
+}
 
 class Expressions {
 public:
@@ -48,6 +56,8 @@ public:
   // The parameters that are seen; nullptr: none. Gives what it was before.
   const Bindings* set_bindings(const Bindings* bindings);
   [[nodiscard]] const Binding* find_binding(std::string_view name) const;
+  // "`who` is given a number, and an actuator is needed".
+  void report_given(const Binding& binding, const ast::Name& name, std::string_view wanted);
 
 private:
   // MARGIN while its condition is translated. A bare one takes the unit of what it meets first.

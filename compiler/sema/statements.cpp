@@ -81,7 +81,8 @@ bool Statements::allowed_in_safety(const ast::Stmt& stmt) {
   if (is(static_cast<Allowed*>(nullptr))) return true;
   const auto* command = std::get_if<ast::Command>(&stmt.node);
   if (command != nullptr && command->arguments.empty() &&
-      names_.find_define(command->verb.text) != nullptr)
+      (names_.find_define(command->verb.text) != nullptr ||
+       expressions_.find_binding(command->verb.text) != nullptr))
     return true;
   diagnostics_.report(Code::E0404, "a SAFETY rule cannot do this")
       .label(stmt.span)
@@ -97,6 +98,9 @@ std::uint16_t Statements::line_of(Span span) const {
 }
 
 void Statements::add(const ast::Command& node, Span span, ProgramBlock& result) {
+  if (node.arguments.empty())
+    if (const Binding* binding = expressions_.find_binding(node.verb.text))
+      return run(*binding, node.verb, {}, span, result);
   if (node.arguments.empty())
     if (DefineName* define = names_.find_define(node.verb.text))
       return run(*define, {}, span, result);
@@ -129,10 +133,22 @@ void Statements::add(const ast::Then&, Span span, ProgramBlock& result) {
 }
 
 void Statements::add(const ast::Stop& node, Span span, ProgramBlock& result) {
+  if (node.name)
+    if (const Binding* binding = expressions_.find_binding(node.name->text))
+      return stop_given(*binding, *node.name, span, result);
   if (safety_) return halt(node, span, result);
   if (node.name) return stop_actuator(*node.name, span, result);
   for (const ActuatorConfig& actuator : robot_.actuators)
     stop_actuator({actuator.name.text, first_word(span, kStop)}, span, result);
+}
+
+// STOP of a parameter.
+void Statements::stop_given(const Binding& binding, const ast::Name& name, Span span,
+                            ProgramBlock& result) {
+  const ast::Name actuator{binding.actuator, name.span};
+  if (!actuator.text.empty())
+    return safety_ ? halt({actuator}, span, result) : stop_actuator(actuator, span, result);
+  if (!is_open(binding)) expressions_.report_given(binding, name, "an actuator");
 }
 
 // STOP is a word of the language and, for one actuator, its verb.

@@ -46,6 +46,7 @@ private:
   void add(const ast::Then& node, Span span, ProgramBlock& result);
   void add(const ast::Stop& node, Span span, ProgramBlock& result);
   void halt(const ast::Stop& node, Span span, ProgramBlock& result);
+  void stop_given(const Binding& binding, const ast::Name& name, Span span, ProgramBlock& result);
   void stop_actuator(const ast::Name& name, Span span, ProgramBlock& result);
   void add(const ast::If& node, Span span, ProgramBlock& result);
   void add(const ast::Repeat& node, Span span, ProgramBlock& result);
@@ -67,10 +68,14 @@ private:
   void add(const ast::Call& node, Span span, ProgramBlock& result);
   void run(DefineName& name, const std::vector<ast::Argument>& arguments, Span span,
            ProgramBlock& result);
+  void run(const Binding& binding, const ast::Name& name,
+           const std::vector<ast::Argument>& arguments, Span span, ProgramBlock& result);
+  bool bind_name(const std::string& name, const ast::Define& define, Binding& binding);
+  bool commands_parameter(const ast::Define& define, std::string_view folded, unsigned handed_on);
   std::optional<Bindings> bind(const DefineName& name, const std::vector<ast::Argument>& arguments,
                                Span span, ProgramBlock& result);
-  Binding bind(const ast::Name& parameter, const ast::Argument& argument, Span span,
-               ProgramBlock& result);
+  Binding bind(const ast::Define& define, std::size_t parameter, const ast::Argument& argument,
+               Span span, ProgramBlock& result);
   void expand(DefineName& name, const Bindings& bindings, ProgramBlock& result);
   bool may_run(const DefineName& name, Span use);
   void report_cycle(const DefineName& name, Span use);

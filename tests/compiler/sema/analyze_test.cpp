@@ -232,3 +232,21 @@ TEST_CASE("DEFINEs that grow without end are refused, not expanded") {
   CHECK(result.image.empty());
   CHECK(messages(result).find("E0407") != std::string::npos);
 }
+
+TEST_CASE("actuators, groups, texts and DEFINEs stand for their parameters") {
+  const std::string defines =
+      "DEFINE wave WITH arm, item\nMOVE arm SLOWLY\nPLAY sound item\nSTOP arm\nEND\n"
+      "DEFINE outer WITH action, who\naction WITH who, \"warning.wav\"\nEND\n";
+  const ProgramBlock given = response_of("outer WITH wave, arms", defines);
+  const ProgramBlock written =
+      response_of("MOVE arms SLOWLY\nPLAY sound \"warning.wav\"\nSTOP arms");
+  REQUIRE(given.size() == written.size());
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const auto& one = std::get<ProgramCommand>(given[i].node);
+    const auto& other = std::get<ProgramCommand>(written[i].node);
+    CHECK(one.actuators == other.actuators);
+    CHECK(one.group == other.group);
+    CHECK(one.verb == other.verb);
+    CHECK(one.word == other.word);
+  }
+}

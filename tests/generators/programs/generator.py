@@ -43,6 +43,17 @@ CHECK noise OF room NOISE
   SMOOTH OVER 300ms
 END
 
+DEFINE point WITH arm, angle, item
+  MOVE arm TO angle OVER 80ms
+  PLAY sound item
+END
+
+DEFINE twice WITH action, arm
+  action WITH arm, 20deg, "warning.wav"
+  THEN
+  action WITH arm, 90deg, "greeting.wav"
+END
+
 DEFINE greet_twice WITH pause, level
   LIGHT lamp TO level OVER pause
   WAIT pause
@@ -187,7 +198,10 @@ class Generator:
             return self._random.choice(simple)
         return self._one(*simple, "THEN", f"WAIT {self._duration()}", *self._blocks(depth - 1),
                          f"WAIT UNTIL {self._condition(1)} WITHIN {self._duration()}",
-                         f"greet_twice WITH {self._duration()}, {self._one('10%', 'joy', 'calm')}")
+                         f"greet_twice WITH {self._duration()}, {self._one('10%', 'joy', 'calm')}",
+                         f"point WITH {self._one('arms', 'left_arm')}, {self._one('30deg', 'count * 9deg')},"
+                         " " + self._one('"greeting.wav"', '"warning.wav"'),
+                         f"twice WITH point, {self._one('right_arm', 'arms')}")
 
     def _blocks(self, depth):
         return [
