@@ -76,6 +76,13 @@ enum class Action : std::uint8_t { move, play, set, stop, count_ };
 // What an actuator does when its response ends by interruption, and when safety halts it.
 enum class Release : std::uint8_t { hold, rest, coast, count_ };
 
+// Actuator::bus of a virtual_motion; its pin is the speed that it usually has, in whole units a second
+// (0: what it does takes as long as it is told).
+enum class VirtualMotion : std::uint8_t {
+  goes,    // TO and BY are ways, AT and the limit their speed
+  sweeps,  // … and without a target it goes over its range and back
+};
+
 enum class RuleKind : std::uint8_t {
   when,       // edge: the condition becomes true
   when_else,  // edge: the chosen side changes; the first known value chooses a side

@@ -82,6 +82,28 @@ void RecordMaker::channel(ChannelRef ref) {
   records_.channels.push_back(record);
 }
 
+// AT is the speed of the way that TO says.
+bool moves(const ActuatorConfig& config) {
+  if (config.to_unit == nullptr || config.at_unit == nullptr) return false;
+  using vm::Dimension;
+  const Dimension at = config.at_unit->dimension;
+  switch (config.to_unit->dimension) {
+    case Dimension::angle:
+      return at == Dimension::angular_speed;
+    case Dimension::length:
+      return at == Dimension::speed;
+    case Dimension::percent:
+      return at == Dimension::percent;
+    default:
+      return false;
+  }
+}
+
+// Where it is matters to one that goes at a speed, or that no command may take there faster.
+bool keeps_its_place(const ActuatorConfig& config, vm::Value speed_limit) {
+  return moves(config) && (config.usual_speed > 0 || speed_limit < vm::kValueMax);
+}
+
 void RecordMaker::actuator(std::size_t place) {
   const ActuatorConfig& config = robot_.actuators[place];
   vm::Actuator record{};
@@ -97,6 +119,13 @@ void RecordMaker::actuator(std::size_t place) {
   record.speed_limit = config.speed_limit;
   for (const auto& [limited, speed] : program_.speed_limits)
     if (limited == place) record.speed_limit = std::min(record.speed_limit, speed);
+  if (config.driver == vm::DriverId::virtual_actuator &&
+      keeps_its_place(config, record.speed_limit)) {
+    record.driver = vm::DriverId::virtual_motion;
+    record.bus = static_cast<std::uint8_t>(config.sweeps ? vm::VirtualMotion::sweeps
+                                                         : vm::VirtualMotion::goes);
+    record.pin = config.usual_speed;
+  }
   records_.actuators.push_back(record);
 }
 

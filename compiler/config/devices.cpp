@@ -69,6 +69,18 @@ void read_word(const json::Member& member, ActuatorConfig& actuator, Diagnostics
   }
 }
 
+// How long a virtual one takes, which is what the real one would.
+void read_model(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
+  const Fields fields(value, Object::model, diagnostics);
+  if (const auto* speed = fields.find("speed"))
+    if (actuator.at_unit != nullptr)
+      actuator.usual_speed = static_cast<std::uint16_t>(
+          read_quantity(*speed, *actuator.at_unit, diagnostics).value_or(0) / vm::kScale);
+  if (const auto* sweeps = fields.find("sweeps")) actuator.sweeps = sweeps->truth;
+  if (const auto* word = fields.find("word"))
+    actuator.word_length = read_milliseconds(*word, diagnostics).value_or(0);
+}
+
 void read_actuator_device(const Fields& fields, Device& device, Diagnostics& diagnostics) {
   ActuatorConfig& actuator = device.actuator;
   if (const auto* to = fields.find("to")) {
@@ -90,6 +102,7 @@ void read_actuator_device(const Fields& fields, Device& device, Diagnostics& dia
   if (const auto* safe = fields.find("safe"))
     actuator.safe = read_release(*safe, diagnostics).value_or(actuator.safe);
   if (const auto* sounds = fields.find("sounds")) device.has_sounds = sounds->truth;
+  if (const auto* model = fields.find("model")) read_model(*model, actuator, diagnostics);
   if (const auto* verbs = fields.find("verbs"))
     for (const json::Member& member : verbs->members)
       actuator.verbs.push_back(read_verb(member, diagnostics));

@@ -25,6 +25,7 @@ enum class Object : std::uint8_t {
   device,
   device_to,
   device_at,
+  model,
   verb,
   board,
   arena

@@ -77,6 +77,10 @@ struct ActuatorConfig {
   Span range_span;
   vm::Value speed_limit = vm::kValueMax;
   Span limit_span;
+  std::uint16_t usual_speed =
+      0;                      // of a virtual one, in whole units a second; 0: it is told how long
+  bool sweeps = false;        // … without a target, over its range and back
+  vm::Value word_length = 0;  // of speech, a word in thousandths of a second; 0: it does not speak
   std::vector<VerbConfig> verbs;
   std::vector<WordConfig> words;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <sstream>
 
 #include "compiler/config/wiring.hpp"
 #include "compiler/diagnostics/nearest.hpp"
@@ -242,6 +243,20 @@ void put(const std::string& name, vm::Param param, vm::Value value, ProgramComma
     result.arguments.push_back({param, make_constant_code(value)});
 }
 
+// What is said takes as long as its words, unless FOR says another time.
+bool takes_its_words(const ProgramCommand& command) {
+  return command.word && command.word->param == vm::Param::for_;
+}
+
+vm::Value words_of(const std::string& text) {
+  constexpr std::size_t kMost = 1000;
+  std::istringstream stream(text);
+  std::size_t words = 0;
+  for (std::string word; words < kMost && stream >> word;)
+    ++words;
+  return static_cast<vm::Value>(std::max<std::size_t>(words, 1));
+}
+
 std::vector<std::string> verb_names(const ActuatorConfig& actuator) {
   std::vector<std::string> names;
   names.reserve(actuator.verbs.size());
@@ -393,7 +408,7 @@ bool Commands::add_text(const Recipient& to, const std::string& text, Span span,
     to.diagnostics.report(Code::E0505, "`" + to.verb.name + "` takes no text").label(span);
     return false;
   }
-  if (is_given(result, vm::Param::item)) {
+  if (is_given(result, vm::Param::item) || takes_its_words(result)) {
     report_twice(span, "what to " + to.verb.name, to.diagnostics);
     return false;
   }
@@ -408,7 +423,11 @@ bool Commands::add_text(const Recipient& to, const std::string& text, Span span,
     return true;
   }
   if (to.verb.texts == Texts::any) {
-    put(text, vm::Param::item, 0, result);
+    const bool speaks = to.actuator.word_length > 0 && takes(to.verb, vm::Param::for_);
+    if (speaks && !is_given(result, vm::Param::for_))
+      put(text, vm::Param::for_, to.actuator.word_length * words_of(text), result);
+    else
+      put(text, vm::Param::item, 0, result);
     return true;
   }
   Diagnostic& d =
@@ -437,6 +456,8 @@ bool Commands::add_number(const Recipient& to, const Given& given, ProgramComman
         .helps(taken_by(to.verb));
     return false;
   }
+  if (given.param == vm::Param::for_ && takes_its_words(result))
+    result.word = ProgramWord{result.word->name, vm::Param::item, 0};
   if (is_given(result, given.param)) {
     report_twice(span, "`" + spelling(given.param) + "`", diagnostics);
     return false;

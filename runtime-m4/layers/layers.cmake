@@ -32,6 +32,8 @@ target_sources(robosync_runtime PRIVATE
   drivers/pwm.cpp
   drivers/servo.cpp
   drivers/virtual_actuator.cpp
-  drivers/virtual_sensor.cpp)
+  drivers/virtual_motion.cpp
+  drivers/virtual_sensor.cpp
+  drivers/way.cpp)
 set_source_files_properties(layers/median.cpp PROPERTIES
   COMPILE_OPTIONS "-O2;$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns>")

@@ -22,8 +22,8 @@ std::string when(const std::string& condition) {
   return "WHEN " + condition + "\nDO\nLOG \"now\"\nEND\n";
 }
 
-// When `c FOR d` becomes true, and false. What is due at a millisecond comes before the readings of
-// that millisecond: the duration counts from the reading to the one that ends it.
+// When `c FOR d` becomes true, and false. The readings of a millisecond come before what is due in it: one
+// that ends the condition when its time is over ends it in time.
 struct Changes {
   Times rises, falls;
 };
@@ -32,17 +32,17 @@ Changes held(const std::vector<bool>& c, int duration) {
   std::optional<int> since;
   bool held = false;
   for (int at = 0; at < static_cast<int>(c.size()); ++at) {
+    if (c[static_cast<std::size_t>(at)]) {
+      if (!since) since = at;
+    } else {
+      since.reset();
+      if (held) changes.falls.push_back(at);
+      held = false;
+    }
     if (since && !held && at - *since >= duration) {
       changes.rises.push_back(at);
       held = true;
     }
-    if (c[static_cast<std::size_t>(at)]) {
-      if (!since) since = at;
-      continue;
-    }
-    since.reset();
-    if (held) changes.falls.push_back(at);
-    held = false;
   }
   return changes;
 }

@@ -274,7 +274,8 @@ TEST_CASE("what is fed is neither sampled nor stale") {
   CHECK(image.sensors[0].driver == vm::DriverId::virtual_sensor);
   CHECK(image.sensors[0].period_ms == 0);
   CHECK(image.channels[0].stale_ms == 0);
-  CHECK(image.actuators[0].driver == vm::DriverId::virtual_actuator);
+  CHECK(image.actuators[0].driver == vm::DriverId::virtual_motion);
+  CHECK(image.actuators[0].pin == 90);
 }
 
 TEST_CASE("a bare number added to a Fahrenheit channel is a difference") {

@@ -44,6 +44,8 @@ const nlohmann::json& described(Object object) {
       return definitions.at("behavior");
     case Object::scheduler:
       return definitions.at("scheduler");
+    case Object::safety:
+      return definitions.at("safety");
     default:
       return definitions.at("algorithm");
   }
@@ -130,7 +132,7 @@ TEST_CASE("there is a generic virtual device of both kinds") {
 TEST_CASE("the schema has exactly the reader's keys") {
   for (const Object object :
        {Object::robot, Object::sensor, Object::channel, Object::actuator, Object::sound,
-        Object::limits, Object::behavior, Object::scheduler, Object::algorithm}) {
+        Object::limits, Object::behavior, Object::scheduler, Object::safety, Object::algorithm}) {
     std::set<std::string> keys;
     for (const auto& [key, value] : described(object).at("properties").items())
       keys.insert(key);

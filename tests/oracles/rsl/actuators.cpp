@@ -1,38 +1,140 @@
 #include "tests/oracles/rsl/actuators.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <utility>
 
 namespace robosync::oracle {
 namespace {
 
 constexpr std::size_t kMostWaiting = 8;
 constexpr Millis kUsual = 1000;
+constexpr std::int64_t kFrame = 20'000;  // no movement is shorter, in microseconds
+constexpr std::int64_t kMostGestures = 1000;
 
 Number given(const Order& order, vm::Param param) {
   for (const auto& [key, value] : order.given)
     if (key == param) return value;
-  return std::nullopt;
+  const auto& word = order.command->word;
+  return word && word->param == param ? Number(word->value) : std::nullopt;
 }
 
-// A virtual actuator takes as long as it is told: FOR, else OVER, else a second. STOP and what is
-// unknown take no time.
-Millis duration(const Order& order) {
-  if (order.command->verb.action == vm::Action::stop) return 0;
-  for (const auto& [param, value] : order.given)
-    if (!value) return 0;
+// What has no way to go takes as long as it is told: FOR, else OVER, else a second.
+Millis told(const Order& order) {
   const Number keep = given(order, vm::Param::for_);
   const Number over = given(order, vm::Param::over);
   return std::max<Millis>(keep.value_or(over.value_or(kUsual)), 0);
+}
+
+// In microseconds.
+std::optional<std::int64_t> travel(std::int64_t way, std::int64_t speed) {
+  if (way == 0) return 0;
+  if (speed <= 0) return std::nullopt;
+  return std::abs(way) * 1'000'000 / speed;
+}
+
+bool speed_is_of_way(const compiler::ActuatorConfig& actuator) {
+  if (actuator.to_unit == nullptr || actuator.at_unit == nullptr) return false;
+  using vm::Dimension;
+  const std::pair way{actuator.to_unit->dimension, actuator.at_unit->dimension};
+  return way == std::pair{Dimension::angle, Dimension::angular_speed} ||
+         way == std::pair{Dimension::length, Dimension::speed} ||
+         way == std::pair{Dimension::percent, Dimension::percent};
 }
 
 }  // namespace
 
 Actuators::Actuators(const compiler::Program& program, const compiler::Robot& robot, Trace& trace)
     : trace_(trace), queues_(robot.actuators.size()) {
-  for (const compiler::ActuatorConfig& actuator : robot.actuators)
-    limits_.push_back({actuator.min, actuator.max, actuator.speed_limit});
+  for (const compiler::ActuatorConfig& actuator : robot.actuators) {
+    const bool goes = speed_is_of_way(actuator);
+    limits_.push_back({actuator.min, actuator.max, actuator.speed_limit,
+                       goes ? std::int64_t{actuator.usual_speed} * 1000 : 0, goes,
+                       goes && actuator.sweeps});
+    on_release_.push_back(actuator.on_release);
+    safe_.push_back(actuator.safe);
+  }
   for (const auto& [actuator, speed] : program.speed_limits)
     limits_[actuator].speed = std::min<std::int64_t>(limits_[actuator].speed, speed);
+  for (std::size_t a = 0; a < queues_.size(); ++a)
+    let_go(a, vm::Release::rest, 0);
+}
+
+std::int64_t Actuators::Motion::at(Millis now) const {
+  const Millis passed = now - begin, whole = length / 1000;
+  if (passed * 1000 >= length || whole == 0) return to;
+  return passed <= 0 ? from : from + (to - from) * passed / whole;
+}
+
+// It stays where it is, or goes to rest: 0, or the end of its range next to it.
+void Actuators::let_go(std::size_t actuator, vm::Release how, Millis now) {
+  const Limits& limits = limits_[actuator];
+  Queue& queue = queues_[actuator];
+  const std::int64_t rest = std::clamp<std::int64_t>(0, limits.least, limits.most);
+  const std::int64_t place = how == vm::Release::rest ? rest : queue.motion.at(now);
+  queue.motion = {place, place, now, 0};
+  queue.legs = 0;
+}
+
+void Actuators::go(std::size_t actuator, std::int64_t to, std::int64_t length, Millis now) {
+  Motion& motion = queues_[actuator].motion;
+  motion = {motion.at(now), to, now, std::max(length, kFrame)};
+}
+
+// "To its range's end, to its beginning, and back to where it was."
+void Actuators::next_leg(std::size_t actuator, Millis now) {
+  Queue& queue = queues_[actuator];
+  const Limits& limits = limits_[actuator];
+  const std::int64_t targets[] = {limits.most, queue.home, limits.least};
+  const std::int64_t to = targets[queue.legs-- % 3];
+  go(actuator, to, *travel(to - queue.motion.at(now), queue.speed), now);
+}
+
+// "They take what the real one would", and no command goes faster than the limit. How long, the first leg
+// of a gesture for the whole of it; 0: it is done at once.
+Millis Actuators::begin(std::size_t actuator, const Order& order, Millis now) {
+  const Limits& limits = limits_[actuator];
+  Queue& queue = queues_[actuator];
+  let_go(actuator, vm::Release::hold, now);
+  if (order.command->verb.action == vm::Action::stop) return 0;
+  for (const auto& [param, value] : order.given)
+    if (!value) return 0;
+  const Number to = given(order, vm::Param::to), by = given(order, vm::Param::by);
+  const Number over = given(order, vm::Param::over);
+  const bool moves = order.command->verb.action == vm::Action::move && limits.goes;
+  if (!moves || (!to && !by && !limits.sweeps)) return told(order);
+  const std::int64_t from = queue.motion.at(now);
+  const bool back = given(order, vm::Param::direction).value_or(1) < 0;
+  const std::int64_t target = std::clamp<std::int64_t>(
+      to ? *to : from + (back ? -1 : 1) * by.value_or(0), limits.least, limits.most);
+  const std::int64_t least = *travel(target - from, limits.speed);
+  if (limits.usual == 0) {
+    if (!to && !by) return told(order);
+    const bool limited = limits.speed < vm::kValueMax;
+    const std::int64_t length = std::max(told(order) * 1000, limited ? least : 0);
+    queue.motion = {from, target, now, length};
+    return (length + 999) / 1000;
+  }
+  const std::int64_t speed =
+      std::clamp<std::int64_t>(given(order, vm::Param::at).value_or(limits.usual), 0, limits.speed);
+  if (to || by) {
+    const auto length = over ? std::max(std::max<std::int64_t>(*over, 0) * 1000, least)
+                             : travel(target - from, speed);
+    if (!length) return 0;
+    go(actuator, target, *length, now);
+  } else {
+    if (speed <= 0 || limits.least == limits.most) return 0;
+    const std::int64_t whole = std::max<std::int64_t>(over.value_or(0), 0) * 1000;
+    const std::int64_t way = 2 * (limits.most - limits.least);
+    queue.speed =
+        whole == 0 ? speed : std::clamp<std::int64_t>(way * 1'000'000 / whole, 1, limits.speed);
+    queue.home = from;
+    const std::int64_t times = given(order, vm::Param::times).value_or(1000) / 1000;
+    queue.legs = 3 * static_cast<unsigned>(std::clamp<std::int64_t>(times, 1, kMostGestures));
+    next_leg(actuator, now);
+  }
+  return (queue.motion.length + 999) / 1000;
 }
 
 bool Actuators::submit(std::size_t actuator, Order order) {
@@ -43,7 +145,8 @@ bool Actuators::submit(std::size_t actuator, Order order) {
   }
   Queue& queue = queues_[actuator];
   if (order.command->verb.action == vm::Action::stop) {
-    if (queue.busy) cancel(actuator);
+    if (queue.busy) trace_.actuator("cancel", actuator);
+    queue.busy = false;
     queue.orders = {order};
     return true;
   }
@@ -58,17 +161,21 @@ void Actuators::start(std::size_t actuator, Millis now) {
   while (!queue.busy && !queue.halted && !queue.orders.empty()) {
     trace_.command(actuator, queue.orders.front());
     queue.busy = true;
-    queue.ends = now + duration(queue.orders.front());
+    queue.ends = now + begin(actuator, queue.orders.front(), now);
     if (queue.ends <= now) advance(actuator, now);
   }
 }
 
-void Actuators::cancel(std::size_t actuator) {
+void Actuators::cancel(std::size_t actuator, Millis now) {
+  Queue& queue = queues_[actuator];
   trace_.actuator("cancel", actuator);
-  queues_[actuator] = {};
+  let_go(actuator, queue.halted ? safe_[actuator] : on_release_[actuator], now);
+  queue.orders.clear();
+  queue.busy = false;
 }
 
-void Actuators::halt(std::size_t actuator) {
+void Actuators::halt(std::size_t actuator, Millis now) {
+  let_go(actuator, safe_[actuator], now);
   trace_.actuator("halt", actuator);
   queues_[actuator].busy = false;
   queues_[actuator].halted = true;
@@ -82,6 +189,11 @@ void Actuators::release(std::size_t actuator) {
 bool Actuators::advance(std::size_t actuator, Millis now) {
   Queue& queue = queues_[actuator];
   if (!queue.busy || queue.ends > now) return false;
+  if (queue.legs > 0) {
+    next_leg(actuator, now);
+    queue.ends = now + (queue.motion.length + 999) / 1000;
+    return true;
+  }
   trace_.actuator("done", actuator);
   queue.busy = false;
   queue.orders.pop_front();

@@ -18,8 +18,8 @@ public:
   // moved to its end", and no speed is above the LIMIT.
   bool submit(std::size_t actuator, Order order);
   void start(std::size_t actuator, Millis now);  // if it is idle and has something to do
-  void cancel(std::size_t actuator);
-  void halt(std::size_t actuator);
+  void cancel(std::size_t actuator, Millis now);
+  void halt(std::size_t actuator, Millis now);
   void release(std::size_t actuator);
   // Ends what is over at `now`, and begins what follows. True if something was done.
   bool advance(std::size_t actuator, Millis now);
@@ -28,14 +28,33 @@ public:
 private:
   struct Limits {
     std::int64_t least = 0, most = 0, speed = 0;
+    std::int64_t usual = 0;  // speed, where a command says none; 0: it takes as long as it is told
+    bool goes = false;       // it has a way to go, and AT is the speed of that
+    bool sweeps = false;     // without a target it goes over its range and back
+  };
+  // From a place to another. Where it is in between is worked out in whole milliseconds.
+  struct Motion {
+    std::int64_t from = 0, to = 0;
+    Millis begin = 0;
+    std::int64_t length = 0;  // in microseconds
+    [[nodiscard]] std::int64_t at(Millis now) const;
   };
   struct Queue {
     std::deque<Order> orders;  // the first one is under way if busy
     bool busy = false;
-    bool halted = false;  // what it was doing is neither done nor cancelled yet
+    Motion motion;
+    std::int64_t home = 0, speed = 0;  // of a gesture
+    unsigned legs = 0;                 // still to come
+    bool halted = false;               // what it was doing is neither done nor cancelled yet
     Millis ends = 0;
   };
+  Millis begin(std::size_t actuator, const Order& order, Millis now);
+  void go(std::size_t actuator, std::int64_t to, std::int64_t length, Millis now);
+  void next_leg(std::size_t actuator, Millis now);
+  void let_go(std::size_t actuator, vm::Release how, Millis now);
+
   Trace& trace_;
+  std::vector<vm::Release> on_release_, safe_;
   std::vector<Queue> queues_;
   std::vector<Limits> limits_;
 };

@@ -149,7 +149,7 @@ void Interpreter::interrupt(std::size_t r, const std::string& by) {
   if (!rule.running->rests) {
     trace_.rule("interrupt", *rule.rule, rule.behavior, std::nullopt, by);
     for (const std::size_t actuator : rule.running->actuators)
-      actuators_.cancel(actuator);
+      actuators_.cancel(actuator, now_.at);
   }
   rule.running.reset();
 }
@@ -211,7 +211,7 @@ void Interpreter::trip(Guard& guard, const Snapshot& readings) {
   const std::set<std::size_t> before = halted();
   guard.tripped = true;
   for (const std::size_t actuator : actuators_of(guard.rule->then_response))
-    if (!before.contains(actuator)) actuators_.halt(actuator);
+    if (!before.contains(actuator)) actuators_.halt(actuator, now_.at);
   Response response(guard.rule->then_response, rules_.size());
   const Surroundings here{evaluator_, no_chance_, program_.variables, readings, now_.at, false};
   const Output output = response.run(here);

@@ -296,3 +296,36 @@ TEST_CASE("virtual_actuator and player: FOR, else OVER, else one second; STOP at
     CHECK(length(order(vm::Action::stop)) == 0);
   }
 }
+
+TEST_CASE(
+    "virtual_motion: way / speed, its place kept, and no faster than the limit however it is "
+    "said") {
+  const auto length = [](Drive& drive, const Order& what) {
+    const kernel::Time before = drive.now;
+    drive.begin(what);
+    drive.run();
+    return drive.now - before;
+  };
+  Drive joint(vm::DriverId::virtual_motion, -90'000, 90'000);
+  joint.wiring.bus = static_cast<std::uint8_t>(vm::VirtualMotion::sweeps);
+  joint.wiring.pin = 90;
+  CHECK(length(joint, order(vm::Action::move, {{Param::to, 45'000}})) == 500'000);
+  CHECK(length(joint, order(vm::Action::move, {{Param::to, 90'000}, {Param::at, 30'000}})) ==
+        1'500'000);
+  CHECK(length(joint, order(vm::Action::move, {{Param::to, 0}, {Param::over, 100}})) == 100'000);
+  CHECK(length(joint, order(vm::Action::move, {{Param::at, 180'000}})) == 2'000'000);
+  joint.wiring.speed_limit = 60'000;
+  CHECK(length(joint, order(vm::Action::move, {{Param::to, 60'000}, {Param::over, 100}})) ==
+        1'000'000);
+  CHECK(length(joint, order(vm::Action::move, {{Param::to, 0}})) == 1'000'000);
+  CHECK(length(joint, order(vm::Action::play)) == 1'000'000);
+
+  Drive fan(vm::DriverId::virtual_motion, -100'000, 100'000);
+  fan.wiring.pin = 0;
+  fan.wiring.bus = static_cast<std::uint8_t>(vm::VirtualMotion::goes);
+  fan.wiring.speed_limit = 20'000;
+  CHECK(length(fan, order(vm::Action::move, {{Param::to, 100'000}, {Param::over, 1000}})) ==
+        5'000'000);
+  CHECK(length(fan, order(vm::Action::move, {{Param::to, 90'000}})) == 1'000'000);
+  CHECK(length(fan, order(vm::Action::move)) == 1'000'000);
+}

@@ -1,0 +1,57 @@
+// An actuator that is not there and moves as the real one would: its commands are seen in the trace. It
+// knows where it is, and no command takes it there faster than its speed limit. With a speed of its own
+// (vm::VirtualMotion says where it stands) it takes way / speed; without, and for all that is no movement,
+// as long as FOR or OVER says, one second when neither does.
+#include <algorithm>
+
+#include "runtime-m4/drivers/timed.hpp"
+#include "runtime-m4/drivers/way.hpp"
+
+namespace robosync::drivers::virtual_motion {
+namespace {
+
+bool moves(Device device, const Order& order) {
+  if (order.action != vm::Action::move) return false;
+  const bool sweeps = device.wiring.bus == static_cast<unsigned>(vm::VirtualMotion::sweeps);
+  return way::has_target(order) || sweeps;
+}
+
+// As long as it is told to take, but for the limit.
+kernel::Time move_in_time(Device device, const Order& order, kernel::Time now) {
+  const kernel::Time told = take_time(device, order, now);
+  const vm::Value from = device.state.motion.at(now);
+  const vm::Value to = way::target_of(device, order, now);
+  const kernel::Duration least = travel_time(from, to, device.wiring.speed_limit);
+  const kernel::Time end = std::max(told == kDone ? now : told, now + least);
+  device.state.motion = {.from = from, .to = to, .begin = now, .length = end - now};
+  return end == now ? kDone : end;
+}
+
+}  // namespace
+
+kernel::Time start(Device device, const Order& order, kernel::Time now) {
+  if (!device.state.placed) way::stand_at_rest(device, now);
+  way::stop(device, vm::Release::hold, now);
+  if (!moves(device, order)) return take_time(device, order, now);
+  if (device.wiring.pin == 0) {
+    device.state.until = move_in_time(device, order, now);
+    return device.state.until;
+  }
+  const auto usual = static_cast<vm::Value>(device.wiring.pin) * vm::kScale;
+  if (!way::start(device, order, usual, now)) return kDone;
+  device.state.until = device.state.motion.end();
+  return device.state.until;
+}
+
+kernel::Time advance(Device device, kernel::Time now) {
+  if (now < device.state.until || !way::next_leg(device, now)) return go_on(device, now);
+  device.state.until = device.state.motion.end();
+  return device.state.until;
+}
+
+void release(Device device, vm::Release how, kernel::Time now) {
+  way::stop(device, how, now);
+  device.state.legs = 0;
+}
+
+}  // namespace robosync::drivers::virtual_motion
