@@ -78,7 +78,7 @@ Cell ExpressionEmitter::worked_out(const Expression& expression, std::uint32_t d
     case Operation::input:
       return parts_.frame.read(parts_.tables.input(expression.channel));
     case Operation::variable:
-      return parts_.frame.read(parts_.tables.variable(expression.index));
+      return variable(expression.index, depth);
     case Operation::local:
       return locals_.at(expression.index);
     case Operation::constant:
@@ -227,17 +227,27 @@ Cell ExpressionEmitter::watched(const Expression& expression) {
   return watches.back().truth;
 }
 
+Cell ExpressionEmitter::variable(std::size_t place, std::uint32_t depth) {
+  Cell cell = parts_.frame.read(parts_.tables.variable(place));
+  if (!bounded_.contains(place)) return cell;
+  const ProgramVariable& variable = parts_.program.variables[place];
+  if (variable.min > vm::kValueMin) cell = limited(vm::Opcode::max_k, cell, variable.min, depth);
+  if (variable.max < vm::kValueMax) cell = limited(vm::Opcode::min_k, cell, variable.max, depth);
+  return cell;
+}
+
 Cell ExpressionEmitter::clamped(Cell source, const ProgramVariable& variable,
                                 const ProgramSet& set) {
   if (variable.min > vm::kValueMin && set.may_be_below)
-    source = limited(vm::Opcode::max_k, source, variable.min);
+    source = limited(vm::Opcode::max_k, source, variable.min, 0);
   if (variable.max < vm::kValueMax && set.may_be_above)
-    source = limited(vm::Opcode::min_k, source, variable.max);
+    source = limited(vm::Opcode::min_k, source, variable.max, 0);
   return source;
 }
 
-Cell ExpressionEmitter::limited(vm::Opcode opcode, Cell source, vm::Value limit) {
-  const Cell cell = parts_.frame.temporary(0);
+Cell ExpressionEmitter::limited(vm::Opcode opcode, Cell source, vm::Value limit,
+                                std::uint32_t depth) {
+  const Cell cell = parts_.frame.temporary(depth);
   const auto place = static_cast<std::uint32_t>(parts_.pool.constant(limit));
   code_.emit(opcode, cell, source, place);
   return cell;

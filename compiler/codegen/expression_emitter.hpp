@@ -5,6 +5,11 @@
 // one.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <vector>
+
 #include "compiler/codegen/parts.hpp"
 
 namespace robosync::compiler {
@@ -40,6 +45,10 @@ public:
   // `source`, but not outside min … max of the variable, as far as that has to be looked after.
   Cell clamped(Cell source, const ProgramVariable& variable, const ProgramSet& set);
 
+  // From now on a read of the variable gives what is inside its range: its cell holds the sum of what
+  // was raised and lowered, which the next step bounds once.
+  void bound_reads(std::size_t variable) { bounded_.insert(variable); }
+
   [[nodiscard]] LocalCells& locals() { return locals_; }
 
 private:
@@ -59,13 +68,15 @@ private:
                   std::uint32_t depth);
   Cell time_word(const Expression& expression, std::uint32_t depth);
   Cell watched(const Expression& expression);
-  Cell limited(vm::Opcode opcode, Cell source, vm::Value limit);
+  Cell limited(vm::Opcode opcode, Cell source, vm::Value limit, std::uint32_t depth);
+  Cell variable(std::size_t place, std::uint32_t depth);
 
   Parts& parts_;
   CodeDraft& code_;
   TimeWords time_words_;
   LocalCells locals_;
   std::vector<Shared> shared_;
+  std::set<std::size_t> bounded_;  // variables
 };
 
 }  // namespace robosync::compiler

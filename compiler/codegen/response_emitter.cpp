@@ -13,11 +13,14 @@ namespace {
 // An AND becomes blocks in blocks as long as so many places for blocks are left.
 constexpr unsigned kSpareBlocks = vm::kMaxBlocks / 2;
 
-// What RAISE and LOWER set.
+// The number of a local that stands for the cell of a variable, as it is: no response has so many.
+constexpr std::size_t kItsCell = SIZE_MAX;
+
+// What RAISE and LOWER set: the sum of all of them, which the next step bounds.
 Expression sum_of(const ProgramSet& set) {
   Expression before;
-  before.operation = Operation::variable;
-  before.index = set.variable;
+  before.operation = Operation::local;
+  before.index = kItsCell;
   before.fact = set.before;
   Expression sum;
   sum.operation = Operation::add;
@@ -145,6 +148,10 @@ private:
 };
 
 ResponseCode ResponseEmitter::emit(const ProgramBlock& statements) {
+  for_each_of<ProgramSet>(statements, [this](const ProgramSet& set) {
+    if (set.relative && (set.may_be_below || set.may_be_above))
+      expressions_.bound_reads(set.variable);
+  });
   block(statements);
   if (!statements.empty() && std::holds_alternative<ProgramCommand>(statements.back().node))
     code().end_with_command();
@@ -189,15 +196,17 @@ void ResponseEmitter::emit(const ProgramLocal& local) {
   expressions_.locals()[local.number] = cell;
 }
 
-// What is set is clamped here, so that the response goes on with what all others will see.
+// What is SET is clamped here. What is RAISEd and LOWERed is added up, and bounded where it is read and in
+// the next step.
 void ResponseEmitter::emit(const ProgramSet& set) {
   const ProgramVariable& variable = parts_.program.variables[set.variable];
   const Cell target = parts_.frame.write(parts_.tables.variable(set.variable));
   bool in_place = set.in_place;
   Cell value;
   if (needs_clamping(set)) {
+    if (set.relative) expressions_.locals()[kItsCell] = target;
     value = expressions_.value(set.relative ? sum_of(set) : set.value);
-    value = expressions_.clamped(value, variable, set);
+    if (!set.relative) value = expressions_.clamped(value, variable, set);
   } else {
     const vm::Value constant = std::clamp(set.value.constant, variable.min, variable.max);
     value = expressions_.constant(constant);

@@ -13,10 +13,29 @@ WriteFacts Flow::follow(ProgramBlock& response, const VariableFacts& entry, bool
   writes_ = {std::vector<std::optional<Fact>>(variables),
              std::vector<std::optional<Fact>>(variables)};
   in_place_ = in_place;
+  note_sums(response);
   State state{entry, std::vector<Owned>(variables, Owned::no), std::vector<bool>(variables),
               std::vector<bool>(variables)};
   block(response, state);
   return std::move(writes_);
+}
+
+// Of a variable that is raised or lowered again in the same run, the sum may have left its range before:
+// what it is then, no single statement says. In a loop one statement is as good as two.
+void Flow::note_sums(const ProgramBlock& response) {
+  std::vector<unsigned> count(program_.variables.size());
+  const auto note = [&](const ProgramSet& set) {
+    if (set.relative) ++count[set.variable];
+  };
+  for_each_of<ProgramSet>(response, note);
+  for_each_of<ProgramRepeat>(
+      response, [&](const ProgramRepeat& repeat) { for_each_of<ProgramSet>(repeat.body, note); });
+  sums_.assign(count.size(), false);
+  for (std::size_t i = 0; i < count.size(); ++i) {
+    const ProgramVariable& variable = program_.variables[i];
+    const bool bounded = variable.min > vm::kValueMin || variable.max < vm::kValueMax;
+    sums_[i] = bounded && count[i] > 1;
+  }
 }
 
 void Flow::block(ProgramBlock& statements, State& state) {
@@ -46,11 +65,16 @@ void Flow::visit(ProgramSet& set, State& state) {
   const ProgramVariable& variable = program_.variables[set.variable];
   Fact& cell = state.variables[set.variable];
   const Fact value = look(set.value, state);
-  const Fact wanted = set.relative ? add(cell, value) : value;
+  Fact before = cell;
+  if (set.relative && sums_[set.variable]) {
+    before.low = vm::kValueMin;
+    before.high = vm::kValueMax;
+  }
+  const Fact wanted = set.relative ? add(before, value) : value;
   const Fact result = clamp(wanted, variable.min, variable.max);
   Owned& owned = state.owned[set.variable];
   const Owned needed = set.relative ? Owned::shifted : Owned::assigned;
-  set.before = cell;
+  set.before = before;
   set.may_be_below = wanted.low < variable.min;
   set.may_be_above = wanted.high > variable.max;
   set.in_place = in_place_ && wanted.known && owned >= needed && !state.barred[set.variable];
@@ -175,7 +199,8 @@ void Flow::note_growth(const ProgramSet& set) {
   Growth& growth = (*growths_)[set.variable];
   const std::optional<Fact> step = step_of(set);
   growth.written = true;
-  growth.regular = growth.regular && step && inner_loops_ == 0;
+  const bool sum = set.relative && sums_[set.variable];
+  growth.regular = growth.regular && step && inner_loops_ == 0 && !sum;
   if (!step) return;
   Fact once_at_most = either(*step, fact_of(0));
   once_at_most.known = true;  // what is unknown changes nothing

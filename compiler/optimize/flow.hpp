@@ -68,6 +68,7 @@ private:
               vm::Value times) const;
   Growths measure(ProgramRepeat& repeat, State head);
   void note_growth(const ProgramSet& set);
+  void note_sums(const ProgramBlock& response);
   void record(const ProgramSet& set, const Fact& result);
   static State merged(const State& one, const State& other);
   Fact look(Expression& expression, const State& state) const {
@@ -80,6 +81,7 @@ private:
   LocalFacts locals_;
   WriteFacts writes_;
   bool in_place_ = false;
+  std::vector<bool> sums_;      // variables that a response raises or lowers more than once
   Growths* growths_ = nullptr;  // while a loop's body is only measured
   unsigned inner_loops_ = 0;    // in that body
   unsigned dead_ = 0;           // blocks around, that never run

@@ -75,10 +75,14 @@ void Runner::latch(const World& world) {
   machine.assigned = machine.shifted = 0;
 }
 
+// As the next step does: what was raised and lowered is bounded once.
 void Runner::commit(World& world) {
-  for (unsigned cell = 0; cell < behavior_.input_count; ++cell)
-    if (cell < vm::kMaxWritable && (machine.written() >> cell & 1) != 0)
-      world.variables[input_of(cell) - image_.channels.size()] = frame_[cell];
+  for (unsigned cell = 0; cell < behavior_.input_count; ++cell) {
+    if (cell >= vm::kMaxWritable || (machine.written() >> cell & 1) == 0) continue;
+    const std::size_t variable = input_of(cell) - image_.channels.size();
+    const vm::Variable& wiring = image_.variables[variable];
+    world.variables[variable] = std::clamp(frame_[cell], wiring.min, wiring.max);
+  }
 }
 
 void Runner::evaluate_watches() {

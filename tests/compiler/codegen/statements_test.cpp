@@ -61,7 +61,7 @@ TEST_CASE("WAIT, WAIT UNTIL and THEN give up the processor", "[golden]") {
                            line(13, ProgramWaitUntil{close, number(10)}), kRight});
 }
 
-TEST_CASE("what is set is clamped at once", "[golden]") {
+TEST_CASE("what is set is clamped at once, what is raised where it is read", "[golden]") {
   const E more = of(Operation::add, {variable(0), number(1)});
   expect_response(
       "set",

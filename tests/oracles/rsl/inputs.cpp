@@ -76,19 +76,19 @@ void Inputs::put(std::size_t variable, Number value) {
   trace_.variable(variable, value);
 }
 
-// Of several SETs the most important one counts; a RAISE changes what the less important left.
+// Of several SETs the most important one counts; a RAISE changes what the less important left. "The sum is
+// bounded once."
 void Inputs::enter_variables(Millis now) {
   std::map<std::size_t, std::int64_t> values;
   for (const std::vector<Changes>& step : staged_)
     for (auto response = step.rbegin(); response != step.rend(); ++response)
       for (const auto& [variable, change] : *response) {
         const auto before = values.emplace(variable, *snapshot_.variables[variable]).first->second;
-        values[variable] = clamped(program_.variables[variable],
-                                   change.set ? *change.set : *add(before, change.raise));
+        values[variable] = change.set ? *change.set : *add(before, change.raise);
       }
   staged_.clear();
   for (const auto& [variable, value] : values) {
-    snapshot_.variables[variable] = value;
+    snapshot_.variables[variable] = clamped(program_.variables[variable], value);
     begin_fade(variable, now);
   }
 }

@@ -38,6 +38,7 @@ Output Response::run(const Surroundings& around) {
   around_ = &around;
   pause_ = Pause::none;
   output_ = {};
+  sums_.clear();
   while (!places_.empty() && pause_ == Pause::none) {
     Place& place = places_.back();
     if (place.next == place.block->size()) {
@@ -96,15 +97,14 @@ void Response::run(const compiler::ProgramSet& node) {
   if (!given) return;
   Change& change = output_.changes[node.variable];
   const compiler::ProgramVariable& variable = around_->variables[node.variable];
-  Number& seen =
-      output_.seen.emplace(node.variable, around_->snapshot.variables[node.variable]).first->second;
-  seen = clamped(variable, node.relative ? *add(seen, given) : *given);
-  if (!node.relative)
-    change = {seen, 0};
-  else if (change.set)
-    change.set = seen;
+  const Number before = around_->snapshot.variables[node.variable];
+  Number& sum = sums_.emplace(node.variable, before).first->second;
+  sum = node.relative ? add(sum, given) : Number(clamped(variable, *given));
+  output_.seen[node.variable] = clamped(variable, *sum);
+  if (!node.relative || change.set)
+    change = {sum, 0};
   else  // what counts is the difference that it made
-    change.raise = *subtract(seen, around_->snapshot.variables[node.variable]);
+    change.raise = *subtract(sum, before);
 }
 
 void Response::run(const compiler::ProgramWait& node) {

@@ -97,6 +97,7 @@ private:
   // While it runs.
   const Surroundings* around_ = nullptr;
   Output output_;
+  std::map<std::size_t, Number> sums_;  // of what it SET, RAISEd and LOWERed, bounded by nothing
 };
 
 // Every actuator that a block could ever command or halt.
