@@ -327,7 +327,14 @@ struct TestFeed {
 struct ExpectCommand {
   bool no = false;
   Command command;
-  Box<Expr> within;
+  Box<Expr> within;           // null only for STOPPED: now
+  std::optional<Name> times;  // the digits; nothing: once or more
+};
+struct ExpectText {
+  bool no = false;
+  bool alert = false;  // else LOG
+  std::string text;
+  Box<Expr> within;  // may be null: now
 };
 struct ExpectNothing {
   Box<Expr> duration;
@@ -336,9 +343,12 @@ struct ExpectThat {
   Box<Expr> condition;
   Box<Expr> within;  // may be null
 };
+struct Seed {
+  Name number;  // the digits
+};
 struct TestStep {
   Span span;
-  std::variant<TestFeed, ExpectCommand, ExpectNothing, ExpectThat, Wait> node;
+  std::variant<TestFeed, ExpectCommand, ExpectText, ExpectNothing, ExpectThat, Wait, Seed> node;
 };
 struct Test {
   std::string title;

@@ -3,6 +3,7 @@
 #include "compiler/test_plan/plan.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
 
 #include "compiler/sema/commands.hpp"
@@ -41,7 +42,7 @@ public:
   void plan(const ast::Test& test, Span span, TestPlan& plan) {
     const std::size_t before = diagnostics_.errors();
     plan_ = &plan;
-    test_ = {test.title, span, {}, {}, 0};
+    test_ = {test.title, span, {}, {}, 0, {}};
     now_ = 0;
     for (const ast::TestStep& step : test.steps)
       std::visit([&](const auto& node) { add(node, step.span); }, step.node);
@@ -155,17 +156,50 @@ private:
   }
 
   // ---- EXPECT
+  std::optional<Milliseconds> within(const ast::Box<ast::Expr>& length) {
+    return length ? until(*length, "WITHIN") : std::optional(now_);
+  }
+
+  // A whole number that a step counts with.
+  std::optional<std::uint32_t> whole(const ast::Name& digits, std::uint32_t least) {
+    std::uint32_t number = 0;
+    const char* const last = digits.text.data() + digits.text.size();
+    const auto [end, error] = std::from_chars(digits.text.data(), last, number);
+    if (error == std::errc() && end == last && number >= least) return number;
+    diagnostics_
+        .report(Code::E0509,
+                "this must be a whole number from " + std::to_string(least) + " to 4294967295")
+        .label(digits.span);
+    return std::nullopt;
+  }
+
   void add(const ast::ExpectCommand& node, Span span) {
-    const auto end = until(*node.within, "WITHIN");
-    if (is_stopped(node.command.verb.text)) {
+    const bool stopped = is_stopped(node.command.verb.text);
+    if (node.within == nullptr && !stopped) {
+      diagnostics_.report(Code::E0409, "this `EXPECT` does not say how long it waits")
+          .label(span)
+          .helps("write how long behind it: `WITHIN 1s`");
+      return;
+    }
+    std::optional<std::uint32_t> times;
+    if (node.times && !(times = whole(*node.times, 0))) return;
+    const auto end = within(node.within);
+    if (stopped && times) {
+      diagnostics_.report(Code::E0409, "`STOPPED` is not counted").label(node.times->span);
+      return;
+    }
+    if (stopped) {
       add_stop(node, span, end);
       return;
     }
     // One for a group, or for each of its members.
     for (ProgramCommand& command : commands_.translate(node.command)) {
-      ExpectedCommand expected{node.no, actuator_names(command.actuators), command.verb.name,
+      ExpectedCommand expected{node.no,
+                               actuator_names(command.actuators),
+                               command.verb.name,
                                command.word ? command.word->name : std::string(),
-                               std::move(command.arguments)};
+                               std::move(command.arguments),
+                               times};
       const bool one_moment = std::ranges::none_of(
           expected.arguments,
           [](const ProgramArgument& argument) { return looks_back(argument.value); });
@@ -186,6 +220,18 @@ private:
     if (target && end) expect(span, *end, ExpectedStop{node.no, actuator_names(target->actuators)});
   }
 
+  void add(const ast::ExpectText& node, Span span) {
+    const auto end = within(node.within);
+    if (end) expect(span, *end, ExpectedText{node.no, node.alert, node.text});
+  }
+
+  void add(const ast::Seed& node, Span span) {
+    if (test_.seed)
+      diagnostics_.report(Code::E0011, "this TEST has a `SEED` already").label(span);
+    else
+      test_.seed = whole(node.number, 1);
+  }
+
   void add(const ast::ExpectNothing& node, Span span) {
     const auto end = until(*node.duration, "FOR");
     if (!end) return;
@@ -194,7 +240,7 @@ private:
   }
 
   void add(const ast::ExpectThat& node, Span span) {
-    const auto end = node.within ? until(*node.within, "WITHIN") : std::optional(now_);
+    const auto end = within(node.within);
     Typed condition = expressions_.condition(*node.condition);
     if (condition.type != Type::condition) return;
     if (looks_back(condition.code)) {

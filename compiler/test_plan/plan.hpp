@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -35,6 +36,13 @@ struct ExpectedCommand {
   std::string verb;
   std::string word;                        // empty: any
   std::vector<ProgramArgument> arguments;  // only those that are written are compared
+  std::optional<std::uint32_t> times;      // exactly so often; else once or more
+};
+// What LOG or ALERT wrote. Where it goes on behind these words, that may be anything.
+struct ExpectedText {
+  bool no = false;
+  bool alert = false;
+  std::string text;
 };
 // They were halted by safety, stopped by STOP, or their commands were cancelled.
 struct ExpectedStop {
@@ -50,7 +58,7 @@ struct Expectation {
   Span span;
   Milliseconds from = 0;  // the window, both ends included
   Milliseconds until = 0;
-  std::variant<ExpectedCommand, ExpectedStop, ExpectedSilence, ExpectedTruth> what;
+  std::variant<ExpectedCommand, ExpectedText, ExpectedStop, ExpectedSilence, ExpectedTruth> what;
 };
 
 struct PlannedTest {
@@ -58,7 +66,8 @@ struct PlannedTest {
   Span span;
   std::vector<PlannedReading> readings;
   std::vector<Expectation> expectations;
-  Milliseconds end = 0;  // nothing that is expected lies behind it
+  Milliseconds end = 0;               // nothing that is expected lies behind it
+  std::optional<std::uint32_t> seed;  // of what is drawn by chance; else the program's
 };
 
 struct TestPlan {

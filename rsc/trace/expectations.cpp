@@ -17,6 +17,7 @@ using compiler::test_plan::Expectation;
 using compiler::test_plan::ExpectedCommand;
 using compiler::test_plan::ExpectedSilence;
 using compiler::test_plan::ExpectedStop;
+using compiler::test_plan::ExpectedText;
 using compiler::test_plan::ExpectedTruth;
 using link::EventKind;
 
@@ -33,14 +34,36 @@ public:
       const auto matches = [&](const link::Event& event, const Playback& playback) {
         return is_command(event, playback, actuator, expected);
       };
+      if (expected.times) {
+        if (auto wrong = miscounted(actuator, expected, matches)) return wrong;
+        continue;
+      }
       const link::Event* const found = find(matches);
       if (expected.no && found != nullptr) {
         return fmt::format("{} was told at {}: {}", actuator, seconds_text(found->time_us),
                            trace_words(*found, names_));
       }
       if (!expected.no && found == nullptr) {
-        return fmt::format("{} was not told to {}{}", actuator, window(), elsewhere(matches));
+        const std::string other = elsewhere(matches);
+        return fmt::format("{} was not told to {}{}", actuator, window(),
+                           other.empty() ? nearest(actuator, expected) : other);
       }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<std::string> judge(const ExpectedText& expected) const {
+    const auto matches = [&](const link::Event& event, const Playback&) {
+      return is_text(event, expected) && goes_on(EventReader(event, names_).text(), expected.text);
+    };
+    const link::Event* const found = find(matches);
+    if (expected.no == (found != nullptr)) {
+      if (found != nullptr)
+        return fmt::format("it was written at {}: {}", seconds_text(found->time_us),
+                           EventReader(*found, names_).text());
+      const std::string other = elsewhere(matches);
+      return fmt::format("it was not written {}{}", window(),
+                         other.empty() ? nearest(expected) : other);
     }
     return std::nullopt;
   }
@@ -112,6 +135,56 @@ private:
     const link::Event* const found = find(matches, 0, UINT64_MAX);
     return found == nullptr ? std::string()
                             : fmt::format("; it was at {}", seconds_text(found->time_us));
+  }
+
+  template <typename Matches>
+  std::optional<std::string> miscounted(const std::string& actuator,
+                                        const ExpectedCommand& expected, Matches matches) const {
+    std::uint32_t count = 0;
+    Playback playback(recording_);
+    while (const link::Event* const event = playback.next())
+      if (event->time_us >= from_us_ && event->time_us <= until_us_ && matches(*event, playback))
+        ++count;
+    if (count == *expected.times) return std::nullopt;
+    return fmt::format("{} was told to {} times {}, not {}", actuator, count, window(),
+                       *expected.times);
+  }
+
+  // The command that comes nearest to what was expected: of this verb, in the window if there is one.
+  std::string nearest(const std::string& actuator, const ExpectedCommand& expected) const {
+    const auto similar = [&](const link::Event& event, const Playback&) {
+      if (event.kind != EventKind::command) return false;
+      const EventReader reader(event, names_);
+      return reader.actuator_name() == actuator && same_name(reader.verb_name(), expected.verb);
+    };
+    const link::Event* found = find(similar);
+    if (found == nullptr) found = find(similar, 0, UINT64_MAX);
+    if (found == nullptr) return {};
+    const std::string time = seconds_text(found->time_us);
+    const std::string word = EventReader(*found, names_).word_name();
+    if (!expected.word.empty() && !same_name(word, expected.word))
+      return fmt::format("; {} at {}: {}; expected {}", expected.verb, time, word, expected.word);
+    return fmt::format("; at {} it was {}", time, trace_words(*found, names_));
+  }
+
+  bool is_text(const link::Event& event, const ExpectedText& expected) const {
+    return event.kind == (expected.alert ? EventKind::alert : EventKind::log);
+  }
+
+  static bool goes_on(std::string_view text, std::string_view expected) {
+    if (!text.starts_with(expected)) return false;
+    return text.size() == expected.size() || text[expected.size()] == ' ';
+  }
+
+  std::string nearest(const ExpectedText& expected) const {
+    const auto similar = [&](const link::Event& event, const Playback&) {
+      return is_text(event, expected);
+    };
+    const link::Event* found = find(similar);
+    if (found == nullptr) found = find(similar, 0, UINT64_MAX);
+    if (found == nullptr) return {};
+    return fmt::format("; at {} it was: {}; expected {}", seconds_text(found->time_us),
+                       EventReader(*found, names_).text(), expected.text);
   }
 
   bool is_command(const link::Event& event, const Playback& playback, const std::string& actuator,

@@ -40,7 +40,7 @@ Recording record(const Program& program, const compiler::test_plan::TestPlan& pl
   Recording recording{&program.image(), &plan, &test, {}};
   const std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
   const auto take = [&recording](const link::Event& event) { recording.events.push_back(event); };
-  sim::Simulator simulator(uploaded, take, program.board(), kTestSeed);
+  sim::Simulator simulator(uploaded, take, program.board(), test.seed.value_or(kTestSeed));
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
     throw Failure(Exit::program,
                   fmt::format("the board would refuse the program: {}",

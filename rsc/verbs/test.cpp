@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/diagnostics/render.hpp"
+#include "compiler/diagnostics/snippet.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/program.hpp"
@@ -75,8 +76,7 @@ private:
   }
 
   void print_failure(const TestResult& result) const {
-    std::cout << fmt::format("  {}:{}: {}\n    {}\n", file(result.failed->span),
-                             line(result.failed->span), step(result), result.reason);
+    print_step(result.failed->span, result.reason);
     const std::vector<link::Event> events = around(result);
     const TraceNames names{result.recording.image, {}};
     std::cout << (events.empty() ? "    nothing happened\n" : "    what happened:\n");
@@ -88,6 +88,19 @@ private:
         std::cout << fmt::format("      … {} more\n", events.size() - 2 * kTimelineEnds);
       }
     }
+  }
+
+  // The step in its line, underlined, and what went wrong below.
+  void print_step(compiler::Span span, const std::string& reason) const {
+    const compiler::SourceFile& source = sources_.file(span.file);
+    const compiler::Position at = source.position(span.begin);
+    const std::size_t start = source.line_start(at.line);
+    const compiler::Snippet snippet =
+        compiler::make_snippet(source.line(at.line), span.begin - start, span.end - start, '^');
+    const std::string number = std::to_string(at.line);
+    std::cout << fmt::format("  --> {}:{}:{}\n {} | {}\n {:{}} | {}\n    {}\n", source.name(),
+                             at.line, at.column, number, snippet.source, "", number.size(),
+                             snippet.marker, reason);
   }
 
   void add_json(const TestResult& result) const {

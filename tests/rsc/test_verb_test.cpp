@@ -112,7 +112,28 @@ TEST_CASE("every kind of expectation, met and not met") {
       {false, "WAIT 10ms\n  EXPECT THAT touches = 2"},
       {true, "AT 2s touch PLACE = 7\n  EXPECT THAT touch PLACE * 2 > 13"},
       {false, "EXPECT THAT proximity DISTANCE > 0cm WITHIN 1s"},  // unknown
+      // how often
+      {true, "EXPECT 1 TIMES MOVE arms WITHIN 5s"},
+      {false, "EXPECT 2 TIMES MOVE arms WITHIN 5s"},
+      {true, "EXPECT 0 TIMES MOVE arms TO 80deg WITHIN 5s"},
+      {true,
+       "AT 2s touch LEVEL = 0\n  AT 3s touch LEVEL = 5\n  EXPECT 1 TIMES MOVE arms WITHIN 1s"},
+      // texts: the words, and what may follow them
+      {true, "EXPECT LOG \"touched with\" WITHIN 20ms"},
+      {true, "EXPECT LOG \"touched with 5\" WITHIN 20ms"},
+      {true, "EXPECT LOG \"touched\""},
+      {false, "EXPECT LOG \"touched wi\" WITHIN 1s"},
+      {false, "EXPECT LOG \"touched with 6\" WITHIN 1s"},
+      {false, "EXPECT ALERT \"touched\" WITHIN 1s"},
+      {false, "EXPECT NO LOG \"touched\" WITHIN 1s"},
+      {true, "EXPECT NO ALERT \"Stopped\" WITHIN 1s"},
+      {true, "AT 2s button = \"pressed\"\n  EXPECT ALERT \"Stopped by a person\" WITHIN 20ms"},
+      {false, "AT 2s button = \"pressed\"\n  EXPECT NO ALERT \"Stopped\" WITHIN 20ms"},
+      {true, "SEED 7\n  EXPECT MOVE arms WITHIN 20ms"},
       // stops
+      {true, "AT 2s button = \"pressed\"\n  WAIT 1s\n  EXPECT STOPPED arms"},
+      {false, "EXPECT STOPPED arms"},
+      {true, "EXPECT NO STOPPED arms"},
       {true, "AT 2s button = \"pressed\"\n  EXPECT STOPPED arms WITHIN 5ms"},
       {true, "AT 9s button = \"pressed\"\n  EXPECT NO STOPPED sound WITHIN 1s"},
       {true, "AT 2s button = \"pressed\"\n  WAIT 1s\n  EXPECT STOPPED left_arm WITHIN 1ms"},
@@ -151,19 +172,59 @@ TEST_CASE("a failing step is shown with what happened around it, and exit 1") {
                          touched("it moves", "EXPECT MOVE arms WITHIN 20ms"));
   const Outcome outcome = test::rsc({"test", robot.program});
   CHECK(outcome.exit == 1);
-  CHECK_THAT(outcome.out, Contains("FAILED  it bows low\n") &&
-                              Contains("robot.rsl:29: EXPECT MOVE arms TO 80deg WITHIN 1s\n") &&
-                              Contains("left_arm was not told to from 1.000 s to 2.000 s\n") &&
-                              Contains("1.000 s  touch LEVEL = 5\n") &&
-                              Contains("1.000 s  left_arm MOVE QUICKLY TO 90") &&
-                              Contains("mood becomes scared\n") && Contains("log: touched with") &&
-                              Contains("ok      it moves\n") && Contains("1 passed, 1 failed\n"));
+  CHECK_THAT(outcome.out,
+             Contains("FAILED  it bows low\n") &&
+                 Contains("robot.rsl:29:3\n 29 |   EXPECT MOVE arms TO 80deg WITHIN 1s\n"
+                          "    |   ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\n") &&
+                 Contains("left_arm was not told to from 1.000 s to 2.000 s; at 1.000 s it "
+                          "was left_arm MOVE QUICKLY TO 90") &&
+                 Contains("1.000 s  touch LEVEL = 5\n") &&
+                 Contains("1.000 s  left_arm MOVE QUICKLY TO 90") &&
+                 Contains("mood becomes scared\n") && Contains("log: touched with") &&
+                 Contains("ok      it moves\n") && Contains("1 passed, 1 failed\n"));
 }
 
 TEST_CASE("what came outside of its window is said with its time") {
   const TestFolder robot(touched("late", "WAIT 100ms\n  EXPECT MOVE arms WITHIN 1s"));
   CHECK_THAT(test::rsc({"test", robot.program}).out,
              Contains("left_arm was not told to from 1.100 s to 2.100 s; it was at 1.000 s\n"));
+}
+
+TEST_CASE("the nearest miss is named") {
+  struct Miss {
+    const char *step, *said;
+  };
+  for (const auto& [step, said] : std::vector<Miss>{
+           {"EXPECT PLAY sound \"greeting.wav\" WITHIN 1s",
+            "; PLAY at 1.000 s: warning.wav; expected greeting.wav\n"},
+           {"EXPECT LOG \"touchd with\" WITHIN 1s",
+            "it was not written from 1.000 s to 2.000 s; at 1.000 s it was: touched with 5; "
+            "expected "
+            "touchd with\n"},
+           {"WAIT 1s\n  EXPECT LOG \"touched\"",
+            "it was not written at 2.000 s; it was at 1.000 s\n"},
+           {"EXPECT NO LOG \"touched\" WITHIN 1s", "it was written at 1.000 s: touched with 5\n"},
+           {"EXPECT 2 TIMES MOVE arms WITHIN 1s",
+            "left_arm was told to 1 times from 1.000 s to 2.000 s, not 2\n"}}) {
+    const TestFolder robot(touched("it", step));
+    const Outcome outcome = test::rsc({"test", robot.program});
+    CHECK(outcome.exit == 1);
+    CHECK_THAT(outcome.out, Contains(said));
+  }
+}
+
+TEST_CASE("SEED gives a TEST other random numbers") {
+  const Folder folder;
+  folder.write("robot.json", kRobot);
+  const auto drawn_with = [&](const std::string& seed) {
+    const std::string file = folder.write(
+        "robot.rsl", "AT START DO\n  LOG \"drawn\", RANDOM(1, 1000000)\nEND\nTEST \"it\"\n" + seed +
+                         "  EXPECT LOG \"nothing\" WITHIN 1s\nEND\n");
+    const std::string out = test::rsc({"test", file}).out;
+    return out.substr(out.find("drawn"), 13);
+  };
+  CHECK(drawn_with("  SEED 7\n") == drawn_with("  SEED 7\n"));
+  CHECK(drawn_with("  SEED 7\n") != drawn_with("  SEED 8\n"));
 }
 
 TEST_CASE("a failure as JSON has the step, the window and the events") {
@@ -200,6 +261,15 @@ TEST_CASE("mistakes in a TEST are shown with their place, and no test runs") {
            {"WAIT 90min", "a TEST cannot be longer than an hour"},
            {"EXPECT MOVE leg WITHIN 1s", "E0501"},
            {"EXPECT MOVE arms TO 3N WITHIN 1s", "E0301"},
+           {"EXPECT MOVE arms", "does not say how long it waits"},
+           {"EXPECT NO MOVE arms", "does not say how long it waits"},
+           {"EXPECT 2 TIMES STOPPED arms WITHIN 1s", "is not counted"},
+           {"EXPECT 2s TIMES MOVE arms WITHIN 1s", "a whole number without a unit"},
+           {"EXPECT 99999999999 TIMES MOVE arms WITHIN 1s", "a whole number from 0"},
+           {"EXPECT LOG touched WITHIN 1s", "E0009"},
+           {"SEED 1.5", "a whole number without a unit"},
+           {"SEED 99999999999", "a whole number from 1"},
+           {"SEED 0", "a whole number from 1"},
            {"EXPECT STOPPED WITHIN 1s", "names one actuator or group"},
            {"EXPECT THAT touch LEVEL WITHIN 1s", "E0302"},
            {"EXPECT THAT mood IS angry", "`mood` is never `angry`"},

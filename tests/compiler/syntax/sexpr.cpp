@@ -270,7 +270,15 @@ std::string show(const TestFeed& n) {
       {"feed", show(n.at), show(n.target), n.text ? testing::quoted(*n.text) : show(n.value)});
 }
 std::string show(const ExpectCommand& n) {
-  return list({n.no ? "expect-no" : "expect", show(n.command), show(n.within)});
+  return list({n.no ? "expect-no" : "expect", n.times ? show(*n.times) : "", show(n.command),
+               n.within ? show(n.within) : ""});
+}
+std::string show(const ExpectText& n) {
+  return list({n.no ? "expect-no" : "expect", n.alert ? "alert" : "log", testing::quoted(n.text),
+               optional("within", n.within)});
+}
+std::string show(const Seed& n) {
+  return list({"seed", show(n.number)});
 }
 std::string show(const ExpectNothing& n) {
   return list({"expect-nothing", show(n.duration)});
