@@ -39,6 +39,7 @@ public:
   // Takes the earliest entry out if it is due.
   [[nodiscard]] bool take_due(kernel::Time now, Entry& entry);
   kernel::Time next_due() const { return count_ == 0 ? kernel::kForever : entries_[0].due(); }
+  bool empty() const { return count_ == 0; }
   std::size_t places() const { return entries_.size(); }
   std::size_t free_places() const { return entries_.size() - count_; }
 

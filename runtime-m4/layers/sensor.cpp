@@ -142,7 +142,7 @@ void SensorLayer::run_feeds() {
       next = feeds_.next_due();
     }
     kernel_.wait(kFeed, next);
-    deliver_due();
+    deliver();
   }
 }
 

@@ -54,8 +54,7 @@ public:
   // Publishes the feeds that are due. The step and the safety thread outrank the one that serves the
   // feeds: each calls this before it asks what is known, and what is due.  [thread]
   void deliver_due() {
-    if (feeds_.next_due() <= kernel_.now()) [[unlikely]]
-      deliver();
+    if (!feeds_.empty() && feeds_.next_due() <= kernel_.now()) deliver();
   }
 
   // Its thread was stopped: what it measures is no longer known.

@@ -97,13 +97,14 @@ void Triggers::collect(unsigned rule) {
   }
 }
 
-// It cools down or waits, is a WHILE that holds, or wants the side that it has chosen.
+// It cools down or waits, or is a WHILE that holds. A WHEN/ELSE that is denied its side is put here by
+// lost(), and stays as long as it wants that.
 void Triggers::note_active(unsigned rule) {
   const State& state = phases_[rule];
-  Side side{};
-  const bool active = state.cooling != 0 || state.waiting || goes_round(rule) ||
-                      (chooses(rule) && is_unsettled(rule, side));
-  if (active || active_.has(rule)) active_.put(rule, active);
+  bool active = state.cooling != 0 || state.waiting || goes_round(rule);
+  const bool was_active = active_.has(rule);
+  if (Side side{}; was_active && !active) active = chooses(rule) && is_unsettled(rule, side);
+  if (active || was_active) active_.put(rule, active);
 }
 
 bool Triggers::is_unsettled(unsigned rule, Side& side) const {
@@ -184,9 +185,10 @@ void Triggers::won(unsigned rule, Side side, std::uint32_t now) {
 void Triggers::lost(unsigned rule, bool to_itself, std::uint32_t now) {
   State& state = phases_[rule];
   state.told = true;
+  if (chooses(rule)) return active_.insert(rule);
   const std::uint32_t waiting = milliseconds_of(modifiers(rule).waiting);
   const bool triggered = judgement(rule).trigger != Trigger::none;
-  if (!triggered || waiting == 0 || to_itself || is_while(rule) || chooses(rule)) return;
+  if (!triggered || waiting == 0 || to_itself || is_while(rule)) return;
   state.waiting = true;
   until(rule, Side::then) = now + waiting;
   active_.insert(rule);
