@@ -105,6 +105,9 @@ Result compile(Input program, Input configuration, const Options& options) {
     if (diagnostics.errors() == 0 && verify_image(emitted, diagnostics)) {
       result.image = std::move(emitted.image);
       result.rules = std::move(emitted.rules);
+      result.units = units_of(robot);
+      for (const ProgramVariable& variable : written.variables)
+        result.units.variables[variable.name] = variable.unit;
     }
   }
   diagnostics.finish();

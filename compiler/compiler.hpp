@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/config/boards.hpp"
+#include "compiler/config/written_units.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
 #include "compiler/test_plan/plan.hpp"
@@ -36,6 +37,7 @@ struct Result {
   Diagnostics diagnostics;
   std::vector<std::byte> image;  // empty when there are errors
   std::vector<Span> rules;       // where each rule of the image is written
+  WrittenUnits units;            // of what the image names
   test_plan::TestPlan tests;     // the program's TEST blocks; likewise
   Board board;                   // that robot.json names, or the default one
 };

@@ -135,6 +135,17 @@ std::vector<std::string> names_of(const compiler::SourceMap& sources) {
   return names;
 }
 
+Origin origin_of(const compiler::Result& result) {
+  Origin origin{names_of(result.sources), result.units, {}, {}};
+  for (const compiler::Span& span : result.rules) {
+    const compiler::SourceFile& file = result.sources.file(span.file);
+    origin.rules.push_back(span.file == 0
+                               ? std::string()
+                               : fmt::format("{}:{}", file.name(), file.position(span.begin).line));
+  }
+  return origin;
+}
+
 std::string summary(const compiler::Diagnostics& diagnostics) {
   const std::size_t notes =
       diagnostics.all().size() - diagnostics.errors() - diagnostics.warnings();
@@ -156,7 +167,7 @@ Program::Program(std::vector<std::byte> bytes, const std::string& name,
 Program load_program(const std::string& file, const CompileOptions& options) {
   std::vector<std::byte> bytes = read_bytes(file);
   if (is_image(file, bytes)) {
-    Program program(std::move(bytes), file, board_memory(), {{file}, {}});
+    Program program(std::move(bytes), file, board_memory(), {{file}, {}, {}, {}});
     if (options.judged == Judged::by_time) judge_time(program, file);  // its board knows its memory
     return program;
   }
@@ -170,7 +181,7 @@ Program load_program(const std::string& file, const CompileOptions& options) {
   if (result.diagnostics.errors() > 0) {
     throw Failure(Exit::program, fmt::format("{}: {}", file, summary(result.diagnostics)));
   }
-  Origin origin{names_of(result.sources), {}};
+  Origin origin = origin_of(result);
   if (!has_modules) origin.lines = lines_of(result.sources.file(0).text());
   return {std::move(result.image), file, memory_of(result.board), std::move(origin)};
 }

@@ -51,11 +51,17 @@ struct CompileOptions {
 // What a program was made of, as far as that is known.
 struct Origin {
   std::vector<std::string> files;  // that were read for it
-  std::vector<std::string>
-      lines;  // that the image's line numbers mean, where these are of one file
+  compiler::WrittenUnits units;
+  // "file:line" of each rule of the image that stands in another file than the first; else empty.
+  std::vector<std::string> rules;
+  // That the image's line numbers mean, where these are of one file.
+  std::vector<std::string> lines;
 };
 // Every file of a compilation, by its name.
 [[nodiscard]] std::vector<std::string> names_of(const compiler::SourceMap& sources);
+
+// Of a compilation that has an image.
+[[nodiscard]] Origin origin_of(const compiler::Result& result);
 
 // A verified image: the bytes and the view of them. Not copied, because the view points inside.
 class Program {
@@ -74,6 +80,7 @@ public:
   const policy::BoardMemory& board() const { return board_; }
   // The lines that the image's line numbers mean; none when that is not known.
   const std::vector<std::string>& source() const { return origin_.lines; }
+  const Origin& origin() const { return origin_; }
   // The files that were read for it.
   const std::vector<std::string>& files() const { return origin_.files; }
 

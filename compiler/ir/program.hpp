@@ -24,12 +24,15 @@
 
 namespace robosync::compiler {
 
+struct Unit;  // config/units.hpp
+
 // ---- what is remembered
 
 struct ProgramVariable {
   std::string name;
   vm::VariableKind kind{};
   vm::Dimension dimension{};
+  const Unit* unit = nullptr;       // as it is written; null: it has none
   std::vector<std::string> labels;  // of state and band
   vm::Value initial = 0;            // kUnknown for band
   vm::Value min = vm::kValueMin, max = vm::kValueMax;

@@ -34,6 +34,7 @@ void Variables::declare(Program& program) {
     if (const auto* node = std::get_if<const ast::Feeling*>(&name.declared))
       declare(**node, name, result);
     if (name.unit != nullptr) result.dimension = name.unit->dimension;
+    result.unit = name.unit;
     program.variables.push_back(std::move(result));
   }
   for (VariableName& name : names_.variables())

@@ -87,10 +87,19 @@ bool EventReader::interrupts_itself() const {
 std::string EventReader::rule_name() const {
   const vm::Rule* const found = rule();
   if (found == nullptr) return fmt::format("rule {}", event_.subject);
-  if (is_safety_rule()) return fmt::format("safety rule at line {}", found->line);
+  const std::string place = place_of(event_.subject);
+  if (is_safety_rule()) return fmt::format("safety rule at {}", place);
   const std::string_view behavior = behavior_of_rule();
-  return behavior.empty() ? fmt::format("rule at line {}", found->line)
-                          : fmt::format("{}, rule at line {}", behavior, found->line);
+  return behavior.empty() ? fmt::format("rule at {}", place)
+                          : fmt::format("{}, rule at {}", behavior, place);
+}
+
+std::string EventReader::place_of(std::size_t rule) const {
+  if (names_.origin != nullptr && rule < names_.origin->rules.size() &&
+      !names_.origin->rules[rule].empty()) {
+    return names_.origin->rules[rule];
+  }
+  return fmt::format("line {}", names_.image->rules[rule].line);
 }
 
 // A rule outside a BEHAVIOR is a behaviour without a name; its line says which one it is.
@@ -101,7 +110,7 @@ std::string EventReader::behavior_name(std::uint16_t index) const {
   const std::string_view name = names_.image->string(behavior->name);
   if (!name.empty()) return fmt::format("behaviour {}", name);
   const vm::Rule* const first = at(&vm::Image::rules, behavior->first_rule);
-  return first != nullptr ? fmt::format("the rule at line {}", first->line)
+  return first != nullptr ? fmt::format("the rule at {}", place_of(behavior->first_rule))
                           : fmt::format("behaviour {}", index);
 }
 
@@ -156,15 +165,28 @@ std::string EventReader::text() const {
 // ---- values
 
 Meaning EventReader::meaning() const {
+  Meaning meaning;
   if (shape_.subject == About::channel) {
     const vm::Channel* const channel = at(&vm::Image::channels, event_.subject);
-    if (channel != nullptr) return {channel->dimension, channel->first_label, channel->label_count};
+    if (channel != nullptr)
+      meaning = {channel->dimension, channel->first_label, channel->label_count, nullptr};
   } else if (shape_.subject == About::variable) {
     const vm::Variable* const variable = at(&vm::Image::variables, event_.subject);
     if (variable != nullptr)
-      return {variable->dimension, variable->first_label, variable->label_count};
+      meaning = {variable->dimension, variable->first_label, variable->label_count, nullptr};
   }
-  return {};
+  meaning.unit = written_unit(meaning.dimension);
+  return meaning;
+}
+
+// Of the channel or variable that is the subject, if the source is known and says one of `dimension`.
+const compiler::Unit* EventReader::written_unit(vm::Dimension dimension) const {
+  if (names_.origin == nullptr) return nullptr;
+  const bool channel = shape_.subject == About::channel;
+  const auto& units = channel ? names_.origin->units.channels : names_.origin->units.variables;
+  const auto found = units.find(channel ? sensor_name() + "." + channel_name() : variable_name());
+  const bool good = found != units.end() && found->second != nullptr;
+  return good && found->second->dimension == dimension ? found->second : nullptr;
 }
 
 std::string_view EventReader::label(const Meaning& meaning, vm::Value value) const {
@@ -177,7 +199,25 @@ std::string_view EventReader::label(const Meaning& meaning, vm::Value value) con
 std::string EventReader::shown(vm::Value value) const {
   const Meaning means = meaning();
   const std::string_view word = label(means, value);
-  return word.empty() ? format_quantity(value, means.dimension) : std::string(word);
+  if (!word.empty()) return std::string(word);
+  if (means.unit == nullptr || value == vm::kUnknown)
+    return format_quantity(value, means.dimension);
+  return compiler::format_value(value, *means.unit);
+}
+
+std::string EventReader::shown(std::size_t param, vm::Value value) const {
+  const compiler::Unit* unit = nullptr;
+  if (names_.origin != nullptr) {
+    const auto& actuators = names_.origin->units.actuators;
+    const auto found = actuators.find(actuator_name());
+    const auto which = static_cast<vm::Param>(param);
+    if (found != actuators.end() && (which == vm::Param::to || which == vm::Param::by))
+      unit = found->second.to;
+    if (found != actuators.end() && which == vm::Param::at) unit = found->second.at;
+  }
+  return unit == nullptr || value == vm::kUnknown
+             ? format_quantity(value, dimension_of_param(param))
+             : compiler::format_value(value, *unit);
 }
 
 }  // namespace robosync::tool

@@ -40,6 +40,7 @@ struct Meaning {
   vm::Dimension dimension = vm::Dimension::number;
   std::uint16_t first_label = 0;
   std::uint8_t label_count = 0;
+  const compiler::Unit* unit = nullptr;  // as its author writes it; null: the canonical one
 };
 
 class EventReader {
@@ -78,6 +79,8 @@ public:
   std::string_view label(const Meaning& meaning, vm::Value value) const;
   // The value of the subject: "scared", "20.5mm", "unknown".
   std::string shown(vm::Value value) const;
+  // The value of a parameter of a command: "90deg".
+  std::string shown(std::size_t param, vm::Value value) const;
 
   // Calls use(parameter, value) for each parameter of a command.
   template <typename Use>
@@ -101,6 +104,9 @@ private:
   std::string name_at(std::span<const Record> vm::Image::*section, std::size_t index,
                       std::string_view what) const;
   const vm::Behavior* behavior_with_rule() const;
+  const compiler::Unit* written_unit(vm::Dimension dimension) const;
+  // Where the rule stands: "line 12", or "mood.rsl:12" of another file.
+  std::string place_of(std::size_t rule) const;
 
   const link::Event& event_;
   const TraceNames& names_;

@@ -25,7 +25,7 @@ class Judge {
 public:
   Judge(const Expectation& expectation, const Recording& recording)
       : recording_(recording),
-        names_{recording.image, {}},
+        names_{recording.image, {}, recording.origin},
         from_us_(expectation.from * kMicroseconds),
         until_us_(expectation.until * kMicroseconds) {}
 

@@ -37,7 +37,7 @@ std::optional<std::uint8_t> channel_of(const vm::Image& image, const ChannelName
 
 Recording record(const Program& program, const compiler::test_plan::TestPlan& plan,
                  const compiler::test_plan::PlannedTest& test) {
-  Recording recording{&program.image(), &plan, &test, {}};
+  Recording recording{&program.image(), &program.origin(), &plan, &test, {}};
   const std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
   const auto take = [&recording](const link::Event& event) { recording.events.push_back(event); };
   sim::Simulator simulator(uploaded, take, program.board(), test.seed.value_or(kTestSeed));

@@ -14,6 +14,7 @@ namespace robosync::tool {
 
 struct Recording {
   const vm::Image* image = nullptr;
+  const Origin* origin = nullptr;
   const compiler::test_plan::TestPlan* plan = nullptr;
   const compiler::test_plan::PlannedTest* test = nullptr;
   std::vector<link::Event> events;  // in the order they happened

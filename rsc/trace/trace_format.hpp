@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "link/events.hpp"
+#include "rsc/program.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::tool {
@@ -14,6 +15,7 @@ namespace robosync::tool {
 struct TraceNames {
   const vm::Image* image = nullptr;
   std::vector<std::string> threads;  // by the kernel's index; may be empty
+  const Origin* origin = nullptr;    // what the source says of names, where it is known
 };
 
 // One JSON object without newline: t_us, step, event, names, values, source line.

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "rsc/quantity.hpp"
 #include "rsc/trace/event_reader.hpp"
 #include "rsc/trace/time_units.hpp"
 #include "rsc/trace/trace_format.hpp"
@@ -26,7 +25,7 @@ std::string command_words(const EventReader& reader) {
   reader.for_each_param([&](std::size_t param, vm::Value given) {
     const std::string_view spelling = kParamWords.at(param);
     if (spelling.empty()) return;  // said by its word
-    text += fmt::format(" {} {}", spelling, format_quantity(given, dimension_of_param(param)));
+    text += fmt::format(" {} {}", spelling, reader.shown(param, given));
   });
   return text;
 }

@@ -1,4 +1,4 @@
-// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--config FILE] [-O0] [--seed N]
+// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--all] [--config FILE] [-O0] [--seed N]
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -14,6 +14,7 @@
 #include "rsc/output.hpp"
 #include "rsc/program.hpp"
 #include "rsc/timing.hpp"
+#include "rsc/trace/digest.hpp"
 #include "rsc/trace/scenario.hpp"
 #include "rsc/trace/trace_format.hpp"
 #include "rsc/verb.hpp"
@@ -29,6 +30,7 @@ struct RunOptions {
   std::string file, scenario, trace;
   CompileOptions how;
   std::optional<std::chrono::milliseconds> duration;
+  bool all = false;
   Format format = Format::human;
 };
 
@@ -50,13 +52,17 @@ void run(const RunOptions& options) {
 
   if (!options.trace.empty()) check_output(options.trace, inputs_of(options, program));
 
-  const TraceNames names{&program.image(), {}};
+  const TraceNames names{&program.image(), {}, &program.origin()};
+  Digest digest(program.image());
   std::string trace;
   const std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
   const auto take = [&](const link::Event& event) {
     const std::string json = trace_json(event, names) + "\n";
     if (!options.trace.empty()) trace += json;
-    std::cout << (options.format == Format::json ? json : trace_line(event, names) + "\n");
+    if (options.format == Format::json)
+      std::cout << json;
+    else if (options.all || digest.shows(event))
+      std::cout << trace_line(event, names) << '\n';
   };
   sim::Simulator simulator(uploaded, take, program.board(), options.how.seed);
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
@@ -78,6 +84,7 @@ void add_run(Options& options) {
   options.option("--scenario", "S.json", asked->scenario, "what the sensors measure, when");
   add_duration_option(options, "--duration", asked->duration, "else the scenario's, else 10s");
   options.option("--trace", "T.jsonl", asked->trace, "write the trace as JSON lines");
+  options.flag("--all", asked->all, "show readings and what happens inside as well");
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_format_option(options, asked->format);

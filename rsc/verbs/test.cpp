@@ -78,7 +78,7 @@ private:
   void print_failure(const TestResult& result) const {
     print_step(result.failed->span, result.reason);
     const std::vector<link::Event> events = around(result);
-    const TraceNames names{result.recording.image, {}};
+    const TraceNames names{result.recording.image, {}, result.recording.origin};
     std::cout << (events.empty() ? "    nothing happened\n" : "    what happened:\n");
     for (std::size_t i = 0; i < events.size(); ++i) {
       const bool left_out = i >= kTimelineEnds && i + kTimelineEnds < events.size();
@@ -110,7 +110,7 @@ private:
               {"ok", result.failed == nullptr}};
     if (result.failed != nullptr) {
       Json timeline = Json::array();
-      const TraceNames names{result.recording.image, {}};
+      const TraceNames names{result.recording.image, {}, result.recording.origin};
       for (const link::Event& event : around(result))
         timeline.push_back(Json::parse(trace_json(event, names)));
       test["failure"] = {{"line", line(result.failed->span)},
@@ -135,7 +135,9 @@ void test_file(const std::string& file, const TestOptions& options, Tally& tally
     throw Failure(Exit::program,
                   fmt::format("{}: {}; no test was run", file, summary(compiled.diagnostics)));
   }
-  const Program program(std::move(compiled.image), file, memory_of(compiled.board));
+  Origin origin = origin_of(compiled);
+  const Program program(std::move(compiled.image), file, memory_of(compiled.board),
+                        std::move(origin));
   if (compiled.tests.tests.empty()) std::cerr << "rsc: " << file << ": there is no TEST in it\n";
   Reporter reporter(options, compiled.sources, tally);
   for (const compiler::test_plan::PlannedTest& test : compiled.tests.tests)

@@ -1,4 +1,5 @@
 // check, compile, dump and run on real programs.
+#include <algorithm>
 #include <sstream>
 
 #include <catch2/catch.hpp>
@@ -214,8 +215,8 @@ TEST_CASE("run shows what happened, in words and as a trace") {
   const RobotFolder robot;
   const std::string scenario = robot.write("visit.json", R"({"duration": "3s", "stimuli": [
       {"at": "1s", "sensor": "touch", "channel": "LEVEL", "value": 2}]})");
-  const Outcome outcome = test::rsc(
-      {"run", robot.program, "--scenario", scenario, "--trace", robot.path("visit.jsonl")});
+  const Outcome outcome = test::rsc({"run", robot.program, "--scenario", scenario, "--all",
+                                     "--trace", robot.path("visit.jsonl")});
   CAPTURE(outcome.err);
   REQUIRE(outcome.exit == 0);
   CHECK_THAT(outcome.out, Contains("   1.000 s  touch LEVEL = 2\n") &&
@@ -236,14 +237,42 @@ TEST_CASE("run shows what happened, in words and as a trace") {
   CHECK(as_json.out == robot.read("visit.jsonl"));
 }
 
+TEST_CASE("run shows what a person wants to see, in the units of the files") {
+  const Folder folder;
+  folder.write("robot.json", R"({"sensors": [
+      {"name": "near", "type": "VIRTUAL", "channels": {"DISTANCE": {"unit": "cm", "range": [0, 400]}}}],
+    "actuators": [{"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "90deg"]}]})");
+  folder.write("more.rsl",
+               "BEHAVIOR lower PRIORITY 10\n  WHEN near DISTANCE < 50cm\n  DO MOVE arm TO 5deg\n"
+               "  END\nEND\n");
+  const std::string program = folder.write(
+      "robot.rsl",
+      "USE \"more.rsl\"\nREMEMBER last = 0cm\nFEELING fear FROM 0% TO 100% START 0%\n"
+      "  FADES TO 0% OVER 2s\nBEHAVIOR upper PRIORITY 20\n  WHEN near DISTANCE < 50cm DO\n"
+      "    SET last TO near DISTANCE\n    RAISE fear BY 80%\n    MOVE arm TO 30deg\n  END\nEND\n");
+  const std::string scenario = folder.write("visit.json", R"({"duration": "5s", "stimuli": [
+      {"at": "0s", "sensor": "near", "value": "300cm"}, {"at": "1s", "sensor": "near", "value": "20cm"}]})");
+  const std::string some = test::rsc({"run", program, "--scenario", scenario}).out;
+  CHECK_THAT(some, Contains("arm MOVE TO 30deg\n") && Contains("last becomes 20cm\n") &&
+                       Contains("fear becomes 80%\n") && Contains("more.rsl:2 does not start") &&
+                       Contains("behaviour upper has an"));
+  CHECK_THAT(some, !Contains("DISTANCE =") && !Contains("triggers") && !Contains("is done"));
+  CHECK(std::ranges::count(some, '\n') < 25);
+  const std::string all = test::rsc({"run", program, "--scenario", scenario, "--all"}).out;
+  CHECK_THAT(all, Contains("near DISTANCE = 20cm\n") && Contains("rule at line 6 triggers") &&
+                      Contains("arm is done"));
+  CHECK(std::ranges::count(all, '\n') > 50);
+}
+
 TEST_CASE("run takes an image, and a duration that ends it") {
   const RobotFolder robot;
   REQUIRE(test::rsc({"compile", robot.program}).exit == 0);
   const std::string scenario = robot.write("visit.json", R"({"stimuli": [
       {"at": "1s", "sensor": "touch", "value": 2}]})");
   const std::string image = robot.path("robot.rsb");
-  CHECK_THAT(test::rsc({"run", image, "--scenario", scenario}).out, Contains("touch LEVEL = 2"));
-  CHECK_THAT(test::rsc({"run", image, "--scenario", scenario, "--duration", "900ms"}).out,
+  CHECK_THAT(test::rsc({"run", image, "--scenario", scenario, "--all"}).out,
+             Contains("touch LEVEL = 2"));
+  CHECK_THAT(test::rsc({"run", image, "--scenario", scenario, "--duration", "900ms", "--all"}).out,
              !Contains("touch LEVEL"));
 }
 

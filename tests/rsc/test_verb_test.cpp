@@ -299,7 +299,7 @@ TEST_CASE("run takes the words of a channel, and shows what safety does in words
       {"at": "1s", "sensor": "button", "value": "PRESSED"},
       {"at": "2s", "sensor": "button", "value": "released"},
       {"at": "3s", "sensor": "waved", "value": true}]})");
-  const Outcome outcome = test::rsc({"run", robot.program, "--scenario", scenario});
+  const Outcome outcome = test::rsc({"run", robot.program, "--scenario", scenario, "--all"});
   CAPTURE(outcome.err);
   CHECK(outcome.exit == 0);
   for (const char* const line :
