@@ -60,6 +60,7 @@ target_sources(robosync_compiler PRIVATE
   sema/functions.cpp
   sema/limits.cpp
   sema/lints.cpp
+  sema/lists.cpp
   sema/names.cpp
   sema/quantities.cpp
   sema/rules.cpp

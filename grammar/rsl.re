@@ -52,7 +52,7 @@ bool LexerState::step() {
     "("                             { matched(); token(Kinds::OPEN); return true; }
     ")"                             { matched(); token(Kinds::CLOSE); return true; }
     ","                             { matched(); token(Kinds::COMMA); return true; }
-    ":"                             { matched(); token(Kinds::COLON); return true; }
+    ":"                             { matched(); colon(); return true; }
 
     "=<"                            { matched(); instead(Kinds::LESS_EQUAL, "<="); return true; }
     "=>"                            { matched(); instead(Kinds::GREATER_EQUAL, ">="); return true; }

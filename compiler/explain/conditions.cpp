@@ -217,6 +217,10 @@ std::string number(const Expr& expr) {
   if (const auto* node = std::get_if<ast::Random>(&expr.node)) {
     return fmt::format("a random number from {} to {}", of(*node->low), of(*node->high));
   }
+  if (const auto* node = std::get_if<ast::ItemOf>(&expr.node))
+    return fmt::format("item {} of {}", part(*node->index), node->list.text);
+  if (const auto* node = std::get_if<ast::CountOf>(&expr.node))
+    return fmt::format("how many {} has", node->list.text);
   if (const auto* node = std::get_if<ast::Function>(&expr.node)) return function(*node);
   return no_number(expr);
 }

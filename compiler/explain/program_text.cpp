@@ -88,6 +88,9 @@ private:
     return fmt::format("  {} is always one of {}; {} at first.\n", node.name.text, list(labels),
                        labels.empty() ? "nothing" : labels.front());
   }
+  static std::string remembered(const ast::List& node) {
+    return fmt::format("  {} is a list of {} texts.\n", node.name.text, node.items.size());
+  }
   static std::string remembered(const ast::Feeling& node) {
     std::string text = fmt::format("  {} is a feeling from {} to {}, {} at first.", node.name.text,
                                    number(*node.from), number(*node.to), number(*node.start));

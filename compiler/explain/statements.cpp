@@ -163,7 +163,7 @@ private:
       parts.push_back(value_of(argument));
     line(fmt::format("write to the log: {}", fmt::join(parts, ", ")));
   }
-  void write(const ast::Alert& node) { line(fmt::format("alert a person: \"{}\"", node.text)); }
+  void write(const ast::Alert& node) { line("alert a person: " + value_of(node.text)); }
 
   const Defines& defines_;
   std::size_t indent_;

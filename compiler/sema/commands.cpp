@@ -36,7 +36,9 @@ bool same(const ProgramCommand& a, const ProgramCommand& b) {
 
 }  // namespace
 
-std::vector<ProgramCommand> Commands::translate(const ast::Command& command) {
+std::vector<ProgramCommand> Commands::translate(const ast::Command& command,
+                                                const ChosenText* chosen) {
+  chosen_ = chosen;
   if (command.verb.text.empty()) return {};
   if (!names_.is_verb(command.verb.text)) {
     report_unknown_verb(command);
@@ -68,7 +70,7 @@ std::vector<ProgramCommand> Commands::translate(const ast::Command& command) {
 
 std::optional<Target> Commands::find_target(const ast::Command& command, std::size_t& named_by) {
   for (std::size_t i = 0; i < command.arguments.size(); ++i) {
-    const ast::Word* word = plain_word(command.arguments[i]);
+    const ast::Word* word = is_chosen(i) ? nullptr : plain_word(command.arguments[i]);
     if (word == nullptr) continue;
     if (const Binding* binding = expressions_.find_binding(word->name.text)) {
       if (binding->actuator.empty()) continue;
@@ -83,6 +85,11 @@ std::optional<Target> Commands::find_target(const ast::Command& command, std::si
   return only_target(command);
 }
 
+const ast::Word* Commands::first_word(const ast::Command& command) const {
+  if (command.arguments.empty() || is_chosen(0)) return nullptr;
+  return plain_word(command.arguments.front());
+}
+
 // `SAY "hello"`: without a name, the one actuator that knows the verb.
 std::optional<Target> Commands::only_target(const ast::Command& command) {
   const std::vector<std::size_t>& able = names_.able_to(command.verb.text);
@@ -95,8 +102,7 @@ std::optional<Target> Commands::only_target(const ast::Command& command) {
 // Is there a parameter where the actuator stands, which is given something else? It is reported,
 // unless nobody runs the DEFINE.
 bool Commands::is_given_another(const ast::Command& command) {
-  const ast::Word* first =
-      command.arguments.empty() ? nullptr : plain_word(command.arguments.front());
+  const ast::Word* first = first_word(command);
   const Binding* binding = first == nullptr ? nullptr : expressions_.find_binding(first->name.text);
   if (binding == nullptr) return false;
   if (!is_open(*binding)) expressions_.report_given(*binding, first->name, "an actuator");
@@ -104,8 +110,7 @@ bool Commands::is_given_another(const ast::Command& command) {
 }
 
 void Commands::report_no_target(const ast::Command& command, const std::vector<std::size_t>& able) {
-  const ast::Word* first =
-      command.arguments.empty() ? nullptr : plain_word(command.arguments.front());
+  const ast::Word* first = first_word(command);
   if (first == nullptr || is_known_word(first->name.text)) {
     Diagnostic& d =
         diagnostics_.report(Code::E0504, "this does not say which actuator to " + command.verb.text)
@@ -147,8 +152,10 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Comman
   std::vector<Given> result;
   bool good = true;
   for (std::size_t i = 0; i < command.arguments.size(); ++i) {
-    if (i == named_by) continue;
-    Given given = evaluate(command.arguments[i]);
+    if (i == named_by || (is_chosen(i) && i != chosen_->at)) continue;
+    Given given = is_chosen(i)
+                      ? Given{&command.arguments[i], {}, {}, false, chosen_->text, chosen_->span}
+                      : evaluate(command.arguments[i]);
     good = good && (!given.is_number || given.number.is_number());
     result.push_back(std::move(given));
   }
@@ -158,7 +165,7 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Comman
 
 // A word alone belongs to the actuator, unless no actuator knows it and the program does.
 Commands::Given Commands::evaluate(const ast::Argument& argument) {
-  Given given{&argument, param_of(argument), {}, false, std::nullopt};
+  Given given{&argument, param_of(argument), {}, false, std::nullopt, argument.span};
   if (const auto* text = std::get_if<ast::Text>(&argument.value)) given.text = text->text;
   if (const auto* word = std::get_if<ast::Word>(&argument.value)) {
     const Binding* binding = expressions_.find_binding(word->name.text);
@@ -350,7 +357,7 @@ std::optional<ProgramCommand> Commands::for_actuator(std::size_t actuator,
 bool Commands::add(const Recipient& to, const Given& given, ProgramCommand& result) const {
   const ast::Argument& argument = *given.argument;
   if (given.is_number) return add_number(to, given, result);
-  if (given.text) return add_text(to, *given.text, argument.span, result);
+  if (given.text) return add_text(to, given, result);
   return add_word(to, std::get<ast::Word>(argument.value), argument.span, result);
 }
 
@@ -402,8 +409,29 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
   if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
 }
 
-bool Commands::add_text(const Recipient& to, const std::string& text, Span span,
-                        ProgramCommand& result) const {
+namespace {
+
+void report_unknown_text(const ActuatorConfig& actuator, const std::string& text, Span span,
+                         bool may_search, Diagnostics& diagnostics) {
+  Diagnostic& d =
+      diagnostics.report(Code::E0502, "`" + actuator.name.text + "` has no \"" + text + "\"")
+          .label(span);
+  if (!may_search) return;
+  std::vector<std::string> sounds;
+  for (const WordConfig& word : actuator.words)
+    if (word.text) sounds.push_back(word.name);
+  if (const auto near = nearest(text, sounds))
+    d.helps("did you mean \"" + *near + "\"?").fix(span, "\"" + *near + "\"");
+  else
+    d.helps(sounds.empty() ? "list its files under \"sounds\" in robot.json"
+                           : "it has " + list_names(sounds));
+}
+
+}  // namespace
+
+bool Commands::add_text(const Recipient& to, const Given& given, ProgramCommand& result) const {
+  const std::string& text = *given.text;
+  const Span span = given.argument->span;
   if (to.verb.texts == Texts::none) {
     to.diagnostics.report(Code::E0505, "`" + to.verb.name + "` takes no text").label(span);
     return false;
@@ -430,18 +458,8 @@ bool Commands::add_text(const Recipient& to, const std::string& text, Span span,
       put(text, vm::Param::item, 0, result);
     return true;
   }
-  Diagnostic& d =
-      to.diagnostics.report(Code::E0502, "`" + to.actuator.name.text + "` has no \"" + text + "\"")
-          .label(span);
-  if (!diagnostics_.may_search(to.actuator.words.size())) return false;
-  std::vector<std::string> sounds;
-  for (const WordConfig& word : to.actuator.words)
-    if (word.text) sounds.push_back(word.name);
-  if (const auto near = nearest(text, sounds))
-    d.helps("did you mean \"" + *near + "\"?").fix(span, "\"" + *near + "\"");
-  else
-    d.helps(sounds.empty() ? "list its files under \"sounds\" in robot.json"
-                           : "it has " + list_names(sounds));
+  report_unknown_text(to.actuator, text, given.text_span,
+                      diagnostics_.may_search(to.actuator.words.size()), to.diagnostics);
   return false;
 }
 

@@ -6,6 +6,13 @@
 
 namespace robosync::compiler {
 
+// A text out of a LIST, in the place of the arguments that ask for it.
+struct ChosenText {
+  std::size_t at = 0, count = 0;  // which arguments
+  const std::string& text;
+  Span span;  // of the text in its LIST
+};
+
 class Commands {
 public:
   Commands(const Robot& robot, Names& names, Expressions& expressions, Diagnostics& diagnostics)
@@ -13,7 +20,8 @@ public:
 
   // One command for an actuator, or for a group whose members all understand it alike; otherwise
   // one for each member. Empty after a mistake, which has then been reported.
-  [[nodiscard]] std::vector<ProgramCommand> translate(const ast::Command& command);
+  [[nodiscard]] std::vector<ProgramCommand> translate(const ast::Command& command,
+                                                      const ChosenText* chosen = nullptr);
 
   // What STOP names; reports when nothing has the name.
   [[nodiscard]] std::optional<Target> find_stopped(const ast::Name& name);
@@ -26,6 +34,7 @@ private:
     Typed number;
     bool is_number = false;
     std::optional<std::string> text;  // in quotes, here or where a DEFINE is given it
+    Span text_span{};
   };
   struct Recipient {  // one command for one actuator
     const ActuatorConfig& actuator;
@@ -34,6 +43,11 @@ private:
     Diagnostics& diagnostics;
   };
 
+  // The word that stands where the actuator does; nullptr: none.
+  [[nodiscard]] const ast::Word* first_word(const ast::Command& command) const;
+  [[nodiscard]] bool is_chosen(std::size_t argument) const {
+    return chosen_ != nullptr && argument >= chosen_->at && argument < chosen_->at + chosen_->count;
+  }
   // Which actuator, which arguments.
   std::optional<Target> find_target(const ast::Command& command, std::size_t& named_by);
   std::optional<Target> only_target(const ast::Command& command);
@@ -53,8 +67,7 @@ private:
   bool add(const Recipient& to, const Given& given, ProgramCommand& result) const;
   bool add_word(const Recipient& to, const ast::Word& word, Span span,
                 ProgramCommand& result) const;
-  bool add_text(const Recipient& to, const std::string& text, Span span,
-                ProgramCommand& result) const;
+  bool add_text(const Recipient& to, const Given& given, ProgramCommand& result) const;
   bool add_number(const Recipient& to, const Given& given, ProgramCommand& result) const;
   void report_unknown_word(const Recipient& to, const ast::Word& word) const;
 
@@ -62,6 +75,7 @@ private:
   Names& names_;
   Expressions& expressions_;
   Diagnostics& diagnostics_;
+  const ChosenText* chosen_ = nullptr;
 };
 
 }  // namespace robosync::compiler

@@ -94,6 +94,15 @@ Typed Expressions::operand(const ast::Operand& operand, Span span) {
       return constant(*name, operand, span);
     if (VariableName* name = names_.find_variable(operand.name.text)) return variable(*name, span);
   }
+  const ListName* list =
+      names_.find_list(operand.channel ? operand.channel->text : operand.name.text);
+  if (list != nullptr && !names_.find_sensor(operand.name.text)) {
+    diagnostics_
+        .report(Code::E0306, "`" + list->list->name.text + "` holds texts, and a number is needed")
+        .label(span)
+        .label(list->list->name.span, "the LIST", false);
+    return make_nothing(span);
+  }
   const auto ref = names_.find_channel(operand);
   return ref ? channel(*ref, span) : make_nothing(span);
 }

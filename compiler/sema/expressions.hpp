@@ -56,6 +56,8 @@ public:
   // The parameters that are seen; nullptr: none. Gives what it was before.
   const Bindings* set_bindings(const Bindings* bindings);
   [[nodiscard]] const Binding* find_binding(std::string_view name) const;
+  // The LIST of this name; reports when there is none.
+  const ListName* find_list(const ast::Name& name);
   // "`who` is given a number, and an actuator is needed".
   void report_given(const Binding& binding, const ast::Name& name, std::string_view wanted);
 
@@ -77,6 +79,8 @@ private:
   Typed of(const ast::Random& node, Span span);
   // functions.cpp
   Typed of(const ast::Function& node, Span span);
+  Typed of(const ast::ItemOf& node, Span span);
+  Typed of(const ast::CountOf& node, Span span);
   Typed of_one(Operation operation, const ast::Function& node, Span span);
   Typed of_two(Operation operation, const ast::Function& node, Span span);
   // conditions.cpp: words and truths

@@ -1,4 +1,4 @@
-// Expressions, part: ABS, ROUND, MIN and MAX. They are no words of the grammar, so their names may
+// Expressions, part: ABS, ROUND, MIN and MAX, and what LISTs have of numbers. The four are no words of the grammar, so their names may
 // also be those of a LET, a REMEMBER or a sensor.
 #include <algorithm>
 #include <array>
@@ -116,6 +116,42 @@ Typed Expressions::of_two(Operation operation, const ast::Function& node, Span s
   if (result.unit == nullptr) result.unit = &canonical_unit(vm::Dimension::number);
   result.code = make_binary(operation, std::move(left.code), std::move(right.code));
   return result;
+}
+
+// ---- LISTs
+
+const ListName* Expressions::find_list(const ast::Name& name) {
+  const ListName* list = names_.find_list(name.text);
+  if (list != nullptr || name.text.empty()) return list;
+  const std::string kind = names_.kind_of(name.text);
+  Diagnostic& d =
+      diagnostics_
+          .report(Code::E0501, kind.empty() ? "there is no LIST `" + name.text + "`"
+                                            : "`" + name.text + "` is " + kind + ", not a LIST")
+          .label(name.span);
+  const auto candidates = names_.list_names_given();
+  suggest(d, name.span, name.text, candidates);
+  if (d.help.empty())
+    d.helps(candidates.empty() ? "declare it at the top: `LIST " + name.text + ": \"one\", \"two\"`"
+                               : "LISTs: " + list_names(candidates));
+  return nullptr;
+}
+
+Typed Expressions::of(const ast::ItemOf& node, Span span) {
+  const ListName* list = find_list(node.list);
+  if (list != nullptr)
+    diagnostics_.report(Code::E0306, "`" + node.list.text + "` holds texts, and a number is needed")
+        .label(span)
+        .label(list->list->name.span, "the LIST", false);
+  return make_nothing(span);
+}
+
+Typed Expressions::of(const ast::CountOf& node, Span span) {
+  const ListName* list = find_list(node.list);
+  if (list == nullptr) return make_nothing(span);
+  Typed count = make_constant(static_cast<vm::Value>(list->texts.size()) * vm::kScale,
+                              canonical_unit(vm::Dimension::number), span);
+  return count;
 }
 
 }  // namespace robosync::compiler

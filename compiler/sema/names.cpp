@@ -121,6 +121,18 @@ DefineName* Names::find_define(std::string_view name) {
   return found == defines_.end() ? nullptr : &found->second;
 }
 
+const ListName* Names::find_list(std::string_view name) const {
+  const auto found = lists_.find(fold_name(name));
+  return found == lists_.end() ? nullptr : &found->second;
+}
+
+std::vector<std::string> Names::list_names_given() const {
+  std::vector<std::string> names;
+  for (const auto& [folded, list] : lists_)
+    names.push_back(list.list->name.text);
+  return names;
+}
+
 VariableName* Names::find_variable(std::string_view name) {
   const std::string folded = fold_name(name);
   if (scope_ != nullptr) {
@@ -143,6 +155,7 @@ std::string Names::kind_of(std::string_view name) {
     return std::string(kKinds[static_cast<std::size_t>(variable->kind)]);
   if (find_constant(name) != nullptr) return "a LET";
   if (find_define(name) != nullptr) return "a DEFINE";
+  if (find_list(name) != nullptr) return "a LIST";
   if (names_a_channel(name)) return "a sensor";
   if (find_target(name)) return "an actuator";
   return claimed_.contains(fold_name(name)) ? "the name of a block" : "";
@@ -342,6 +355,20 @@ void Names::add(const ast::State& state) {
   add_variable(std::move(variable), globals_);
 }
 
+void Names::add(const ast::List& list) {
+  if (!claim_operand(list.name)) return;
+  ListName named{&list, {}, in_module_};
+  for (const ast::Argument& item : list.items) {
+    const auto* text = std::get_if<ast::Text>(&item.value);
+    named.texts.push_back(text != nullptr ? text->text : "");
+    if (text == nullptr)
+      diagnostics_.report(Code::E0306, "a LIST holds texts, and this is a number")
+          .label(item.span)
+          .helps("write it in quotes");
+  }
+  lists_.emplace(fold_name(list.name.text), std::move(named));
+}
+
 void Names::add(const ast::Feeling& feeling) {
   if (claim_operand(feeling.name))
     add_variable({feeling.name, 0, &feeling, vm::VariableKind::feeling, {}}, globals_);
@@ -372,6 +399,7 @@ void Names::collect_signals(const ast::Tree& tree) {
 void Names::add_signals(const ast::Block& block) {
   for_each_statement(block, [this](const ast::Stmt& stmt) {
     if (const auto* signal = std::get_if<ast::Signal>(&stmt.node)) add_signal(signal->name);
+    add_turns(stmt);
   });
 }
 
@@ -381,6 +409,46 @@ void Names::add_signal(const ast::Name& name) {
       known != globals_.end() && variables_[known->second].kind == vm::VariableKind::signal;
   if (!again && claim_operand(name))
     add_variable({name, 0, {}, vm::VariableKind::signal, {}}, globals_);
+}
+
+// ---- what ANY and NEXT remember
+
+void Names::add_turns(const ast::Stmt& stmt) {
+  if (lists_.empty()) return;
+  const auto look = [this](const ast::Argument& argument) {
+    const auto* amount = std::get_if<ast::Amount>(&argument.value);
+    if (amount == nullptr || amount->value == nullptr) return;
+    const auto* operand = std::get_if<ast::Operand>(&amount->value->node);
+    if (operand != nullptr && operand->channel) add_turn(operand->name, *operand->channel);
+  };
+  if (const auto* log = std::get_if<ast::Log>(&stmt.node))
+    for (const ast::Argument& argument : log->arguments)
+      look(argument);
+  if (const auto* alert = std::get_if<ast::Alert>(&stmt.node)) look(alert->text);
+  const auto* command = std::get_if<ast::Command>(&stmt.node);
+  for (std::size_t i = 1; command != nullptr && i < command->arguments.size(); ++i) {
+    const auto* how = std::get_if<ast::Word>(&command->arguments[i - 1].value);
+    const auto* list = std::get_if<ast::Word>(&command->arguments[i].value);
+    if (how != nullptr && list != nullptr) add_turn(how->name, list->name);
+  }
+}
+
+void Names::add_turn(const ast::Name& how, const ast::Name& list) {
+  const auto found = lists_.find(fold_name(list.text));
+  const std::string folded = fold_name(how.text);
+  if (found == lists_.end() || (folded != "any" && folded != "next")) return;
+  ListName& named = found->second;
+  std::optional<std::size_t>& place = folded == "any" ? named.any : named.next;
+  if (place || named.texts.size() < 2) return;
+  place = variables_.size();
+  VariableName variable{{(folded == "any" ? "ANY " : "NEXT ") + named.list->name.text, list.span},
+                        *place,
+                        {},
+                        vm::VariableKind::plain,
+                        {}};
+  variable.unit = &canonical_unit(vm::Dimension::number);
+  variable.in_module = in_module_;
+  variables_.push_back(std::move(variable));
 }
 
 }  // namespace robosync::compiler

@@ -49,6 +49,14 @@ struct VariableName {
   std::int64_t high = vm::kValueMax;
 };
 
+struct ListName {
+  const ast::List* list = nullptr;
+  std::vector<std::string> texts;
+  bool in_module = false;
+  // Variables that hold the place of the last text, from 1; 0 before the first. Only where used.
+  std::optional<std::size_t> any{}, next{};
+};
+
 // What a name in the place of an actuator means.
 struct Target {
   std::optional<std::size_t> group;
@@ -69,6 +77,8 @@ public:
   [[nodiscard]] std::optional<ChannelRef> find_channel(const ast::Operand& operand);
   [[nodiscard]] ConstantName* find_constant(std::string_view name);  // nullptr: none
   [[nodiscard]] DefineName* find_define(std::string_view name);
+  [[nodiscard]] const ListName* find_list(std::string_view name) const;
+  [[nodiscard]] std::vector<std::string> list_names_given() const;
   [[nodiscard]] VariableName* find_variable(std::string_view name);
   [[nodiscard]] std::optional<Target> find_target(std::string_view name) const;
   [[nodiscard]] std::optional<std::size_t> find_sensor(std::string_view name) const;
@@ -115,6 +125,7 @@ private:
   void add(const ast::Behavior& behavior);
   void add(const ast::Remember& variable);
   void add(const ast::State& state);
+  void add(const ast::List& list);
   void add(const ast::Feeling& feeling);
   void add(const ast::Check& check);
   void add(const ast::Safety& safety) { claim(safety.name); }
@@ -123,6 +134,8 @@ private:
   void collect_signals(const ast::Tree& tree);
   void add_signals(const ast::Block& block);
   void add_signal(const ast::Name& name);
+  void add_turns(const ast::Stmt& stmt);
+  void add_turn(const ast::Name& how, const ast::Name& list);
   void check_parameters(const ast::Define& define);
   bool claim(const ast::Name& name);
   bool claim_operand(const ast::Name& name);
@@ -140,6 +153,7 @@ private:
   std::map<std::string, Span> claimed_;            // by folded name
   std::map<std::string, ConstantName> constants_;  // likewise
   std::map<std::string, DefineName> defines_;
+  std::map<std::string, ListName> lists_;
   std::vector<VariableName> variables_;
   Places globals_;
   std::map<const ast::Behavior*, Places> private_;

@@ -104,6 +104,13 @@ void Statements::add(const ast::Command& node, Span span, ProgramBlock& result) 
   if (node.arguments.empty())
     if (DefineName* define = names_.find_define(node.verb.text))
       return run(*define, {}, span, result);
+  if (const auto choice = find_choice(node.arguments)) {
+    const auto say = [&](const ChosenText& chosen, ProgramBlock& into) {
+      for (ProgramCommand& command : commands_.translate(node, &chosen))
+        put(std::move(command), span, into);
+    };
+    return choose(*choice, span, say, result);
+  }
   for (ProgramCommand& command : commands_.translate(node))
     put(std::move(command), span, result);
 }
@@ -430,10 +437,27 @@ bool Statements::writable(const std::string& text, Span span) {
 }
 
 void Statements::add(const ast::Log& node, Span span, ProgramBlock& result) {
+  const auto choice = find_choice(node.arguments);
+  if (!choice) return put_log(node, nullptr, span, result);
+  const auto log = [&](const ChosenText& chosen, ProgramBlock& into) {
+    put_log(node, &chosen, span, into);
+  };
+  choose(*choice, span, log, result);
+}
+
+void Statements::put_log(const ast::Log& node, const ChosenText* chosen, Span span,
+                         ProgramBlock& result) {
   ProgramLog log;
   bool good = true;
-  for (const ast::Argument& argument : node.arguments)
-    good = add_part(argument, log) && good;
+  for (std::size_t i = 0; i < node.arguments.size(); ++i) {
+    if (chosen == nullptr || chosen->at != i) {
+      good = add_part(node.arguments[i], log) && good;
+      continue;
+    }
+    good = writable(chosen->text, chosen->span) && good;
+    separate(log.text, chosen->text);
+    log.text += chosen->text;
+  }
   if (log.values.size() > kMaxValues) {
     diagnostics_.report(Code::E0407, "a LOG has at most " + std::to_string(kMaxValues) + " numbers")
         .label(span);
@@ -471,7 +495,30 @@ bool Statements::add_part(const ast::Argument& argument, ProgramLog& log) {
 }
 
 void Statements::add(const ast::Alert& node, Span span, ProgramBlock& result) {
-  if (writable(node.text, span)) put(ProgramAlert{node.text}, span, result);
+  if (const auto* text = std::get_if<ast::Text>(&node.text.value))
+    return put_alert(text->text, span, span, result);
+  const auto* amount = std::get_if<ast::Amount>(&node.text.value);
+  if (amount == nullptr || amount->value == nullptr) return;
+  if (const auto choice = choice_in(*amount->value)) {
+    const auto alert = [&](const ChosenText& chosen, ProgramBlock& into) {
+      put_alert(chosen.text, chosen.span, span, into);
+    };
+    return choose(*choice, span, alert, result);
+  }
+  const auto* operand = std::get_if<ast::Operand>(&amount->value->node);
+  const Binding* binding = operand != nullptr && !operand->channel
+                               ? expressions_.find_binding(operand->name.text)
+                               : nullptr;
+  if (binding != nullptr && binding->text)
+    return put_alert(*binding->text, binding->span, span, result);
+  if (binding != nullptr && is_open(*binding)) return;
+  diagnostics_.report(Code::E0306, "ALERT is given a text, and this is none")
+      .label(node.text.span)
+      .helps("write it in quotes; LOG writes numbers");
+}
+
+void Statements::put_alert(const std::string& text, Span place, Span span, ProgramBlock& result) {
+  if (writable(text, place)) put(ProgramAlert{text}, span, result);
 }
 
 }  // namespace robosync::compiler

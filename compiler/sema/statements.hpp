@@ -4,9 +4,23 @@
 // is bounded, in all and for each response.
 #pragma once
 
+#include <functional>
+#include <optional>
+#include <utility>
+
 #include "compiler/sema/commands.hpp"
 
 namespace robosync::compiler {
+
+// ANY list, NEXT list, ITEM n OF list in the place of a text.
+struct ListChoice {
+  enum class How : std::uint8_t { any, next, item };
+  const ListName* list = nullptr;
+  How how{};
+  const ast::Expr* index = nullptr;  // of item
+  std::size_t at = 0, count = 1;     // which arguments ask for it
+  Span span{};
+};
 
 class Statements {
 public:
@@ -63,6 +77,21 @@ private:
   void add(const ast::Log& node, Span span, ProgramBlock& result);
   void add(const ast::Alert& node, Span span, ProgramBlock& result);
   bool add_part(const ast::Argument& argument, ProgramLog& log);
+  void put_log(const ast::Log& node, const ChosenText* chosen, Span span, ProgramBlock& result);
+  void put_alert(const std::string& text, Span place, Span span, ProgramBlock& result);
+  // lists.cpp
+  using PutText = std::function<void(const ChosenText&, ProgramBlock&)>;
+  std::optional<ListChoice> find_choice(const std::vector<ast::Argument>& arguments);
+  std::optional<ListChoice> choice_in(const ast::Expr& expr);
+  std::optional<ListChoice> in_turn(const ast::Name& how, const ast::Name& list, bool surely);
+  void choose(const ListChoice& choice, Span span, const PutText& put_text, ProgramBlock& result);
+  std::optional<std::size_t> known_item(const ListChoice& choice, Typed& index);
+  Expression item_index(const ListChoice& choice, Typed index, Span span, ProgramBlock& result);
+  Expression next_index(const ListChoice& choice, Span span, ProgramBlock& result);
+  Expression any_index(const ListChoice& choice, Span span, ProgramBlock& result);
+  void put_one_of(const ListChoice& choice, const Expression& index,
+                  std::pair<std::size_t, std::size_t> places, Span span, const PutText& put_text,
+                  ProgramBlock& result);
   bool writable(const std::string& text, Span span);
   // defines.cpp
   void add(const ast::Call& node, Span span, ProgramBlock& result);

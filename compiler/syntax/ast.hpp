@@ -62,6 +62,14 @@ struct Function {  // ABS(x), MIN(x, y): what it is called is not a word of the 
   Box<Expr> first, second;  // second may be null
 };
 
+struct ItemOf {  // ITEM index OF list
+  Box<Expr> index;
+  Name list;
+};
+struct CountOf {  // COUNT OF list
+  Name list;
+};
+
 enum class Relation : std::uint8_t { less, greater, less_equal, greater_equal, equal, not_equal };
 struct Comparison {
   Relation relation{};
@@ -120,8 +128,8 @@ struct TimesWithin {
 
 struct Expr {
   Span span;
-  std::variant<Quantity, Operand, Negate, Arithmetic, Random, Function, Comparison, Is, IsBetween,
-               IsTruth, Becomes, Changes, Not, Logic, For, ThenWithin, TimesWithin>
+  std::variant<Quantity, Operand, Negate, Arithmetic, Random, Function, ItemOf, CountOf, Comparison,
+               Is, IsBetween, IsTruth, Becomes, Changes, Not, Logic, For, ThenWithin, TimesWithin>
       node;
   std::uint16_t depth = 1;  // levels of expressions from here down; the parser keeps it small
 };
@@ -217,7 +225,7 @@ struct Log {
   static constexpr std::tuple<> kBlocks{};
 };
 struct Alert {
-  std::string text;
+  Argument text;
   static constexpr std::tuple<> kBlocks{};
 };
 
@@ -274,6 +282,10 @@ struct Remember {
 struct State {
   Name name;
   std::vector<Name> labels;
+};
+struct List {
+  Name name;
+  std::vector<Argument> items;
 };
 struct Feeling {
   Name name;
@@ -357,8 +369,8 @@ struct Test {
 
 struct Item {
   Span span;
-  std::variant<Use, Let, Remember, State, Feeling, Limit, Check, Define, Behavior, Rule, Safety,
-               Test>
+  std::variant<Use, Let, Remember, State, List, Feeling, Limit, Check, Define, Behavior, Rule,
+               Safety, Test>
       node;
 };
 

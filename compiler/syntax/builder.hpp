@@ -72,6 +72,7 @@ private:
   static std::uint16_t levels(const ast::Arithmetic& n) { return levels_of(n.left, n.right); }
   static std::uint16_t levels(const ast::Random& n) { return levels_of(n.low, n.high); }
   static std::uint16_t levels(const ast::Function& n) { return levels_of(n.first, n.second); }
+  static std::uint16_t levels(const ast::ItemOf& n) { return levels_of(n.index); }
   static std::uint16_t levels(const ast::Comparison& n) { return levels_of(n.left, n.right); }
   static std::uint16_t levels(const ast::Is& n) { return levels_of(n.value); }
   static std::uint16_t levels(const ast::IsBetween& n) { return levels_of(n.value, n.low, n.high); }

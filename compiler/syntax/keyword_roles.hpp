@@ -22,6 +22,7 @@ enum Role : unsigned {
   before = 64,
   name = 128,
   word = 256,
+  context = 512,
 };
 }  // namespace role
 

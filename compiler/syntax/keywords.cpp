@@ -99,7 +99,8 @@ const Keyword* find_keyword(std::string_view word) {
   const auto letter = static_cast<std::size_t>(first - 'A');
   for (std::size_t i = keyword_index.begins[letter]; i < keyword_index.begins[letter + 1]; ++i) {
     const Keyword& keyword = table[keyword_index.places[i]];
-    if (keyword.spelling.size() == word.size() && is_spelt(word, keyword.spelling)) return &keyword;
+    if (keyword.spelling.size() == word.size() && is_spelt(word, keyword.spelling))
+      return (keyword.roles & role::context) == 0 ? &keyword : nullptr;
   }
   return nullptr;
 }

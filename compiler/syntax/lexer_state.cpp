@@ -125,6 +125,49 @@ void LexerState::word() {
   const Keyword* keyword = find_keyword(lexeme());
   token(keyword != nullptr ? keyword->kind : Kinds::NAME);
   if (keyword != nullptr && keyword->kind == Kinds::IF) join_else_if();
+  if (keyword != nullptr && keyword->kind == Kinds::OF) of();
+}
+
+// ---- words that are known by what follows: until then they are names
+
+// Is the token so many places before the last one this name?
+bool LexerState::is_name(std::size_t back, std::string_view word) const {
+  if (back >= tokens_.size()) return false;
+  const Token& token = tokens_[tokens_.size() - 1 - back];
+  const std::string_view text = text_.substr(token.span.begin, token.span.end - token.span.begin);
+  return token.kind == Kinds::NAME &&
+         std::ranges::equal(text, word, [](char written, char capital) {
+           return (written >= 'a' && written <= 'z' ? written - 'a' + 'A' : written) == capital;
+         });
+}
+
+// `LIST name :` at the start of a line.
+void LexerState::colon() {
+  token(Kinds::COLON);
+  constexpr std::size_t list = 2;
+  if (!is_name(list, "LIST")) return;
+  const std::size_t at = tokens_.size() - 1 - list;
+  if (at == 0 || tokens_[at - 1].kind == Kinds::NEWLINE) tokens_[at].kind = Kinds::LIST;
+}
+
+// `COUNT OF`, and the nearest ITEM in the line whose OF this is.
+void LexerState::of() {
+  constexpr std::size_t farthest = 64;
+  const auto is_check = [this](std::size_t back) {
+    return back < tokens_.size() && tokens_[tokens_.size() - 1 - back].kind == Kinds::CHECK;
+  };
+  if (is_check(2)) return;
+  if (is_name(1, "COUNT")) {
+    tokens_[tokens_.size() - 2].kind = Kinds::COUNT;
+    return;
+  }
+  for (std::size_t back = 2; back < std::min(farthest, tokens_.size()); ++back) {
+    Token& token = tokens_[tokens_.size() - 1 - back];
+    if (token.kind == Kinds::NEWLINE || is_check(back)) return;
+    if (!is_name(back, "ITEM")) continue;
+    token.kind = Kinds::ITEM;
+    return;
+  }
 }
 
 // `ELSE IF` in one line goes on with the IF before; behind an ELSE that ends its line, an IF is one

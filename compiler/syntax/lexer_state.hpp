@@ -29,6 +29,9 @@ private:
   void token(TokenKind kind);
   void word();
   void join_else_if();
+  void colon();
+  void of();
+  bool is_name(std::size_t back, std::string_view word) const;
   void quantity();
   void bad_number();
   void bad_fraction();

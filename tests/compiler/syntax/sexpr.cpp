@@ -63,6 +63,12 @@ std::string show(const Random& n) {
 std::string show(const Function& n) {
   return list({"function", show(n.name), show(n.first), n.second ? show(n.second) : ""});
 }
+std::string show(const ItemOf& n) {
+  return list({"item", show(n.index), show(n.list)});
+}
+std::string show(const CountOf& n) {
+  return list({"count", show(n.list)});
+}
 std::string show(const Comparison& n) {
   const char* const signs[] = {"<", ">", "<=", ">=", "=", "<>"};
   return list({signs[static_cast<int>(n.relation)], show(n.left), show(n.right)});
@@ -181,7 +187,7 @@ std::string show(const Log& n) {
   return list({"log", show(n.arguments)});
 }
 std::string show(const Alert& n) {
-  return list({"alert", quoted(n.text)});
+  return list({"alert", show(n.text)});
 }
 std::string show(const Stmt& stmt) {
   return std::visit([](const auto& node) { return show(node); }, stmt.node);
@@ -229,6 +235,9 @@ std::string show(const Remember& n) {
 }
 std::string show(const State& n) {
   return list({"state", show(n.name), show(n.labels)});
+}
+std::string show(const List& n) {
+  return list({"list", show(n.name), show(n.items)});
 }
 std::string show(const Feeling& n) {
   const std::string fades = n.fades_to ? list({"fades", show(n.fades_to), show(n.fades_over)}) : "";

@@ -201,6 +201,16 @@ TEST_CASE("docs/language.md lists the reserved words, and those that may be name
   CHECK(documented("and behind another word") == with(role::word, true));
 }
 
+TEST_CASE("LISTs, and what is taken out of them", "[tree]") {
+  CHECK(tree("LIST jokes: \"a\", 'b'\n") == "(list jokes \"a\" \"b\")\n");
+  CHECK(statement("SAY NEXT jokes FOR 2s\nSAY ITEM a + 1 OF jokes\nALERT ANY jokes") ==
+        "(SAY NEXT jokes for:2s) (SAY (item (+ a 1) jokes)) (alert ANY.jokes)");
+  CHECK(statement("LOG COUNT OF jokes, ITEM COUNT OF jokes OF jokes, item, count") ==
+        "(log (count jokes) (item (count jokes) jokes) item count)");
+  CHECK(statement("SET list TO item + count\nlist") == "(set list (+ item count)) (list)");
+  CHECK(tree("CHECK item OF a b\nx BELOW 1\nEND\nCHECK count OF c\nx BELOW 1\nEND\n").size() > 10);
+}
+
 TEST_CASE("words of RSL as names", "[tree]") {
   CHECK(tree("STATE game: start, waiting, playing, over\n") ==
         "(state game (start waiting playing over))\n");

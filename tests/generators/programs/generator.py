@@ -23,6 +23,8 @@ DURATIONS = ["1ms", "7ms", "40msec", "150milliseconds", "600ms", "1.5seconds"]
 
 DECLARATIONS = """\
 LET calm = 40%
+LIST songs: "greeting.wav", "warning.wav", "greeting.wav"
+LIST words: "one", "two", "three", "four", "five"
 REMEMBER count = 0
 REMEMBER last = 1.5
 STATE mood: calm_down, very happy, wary
@@ -219,7 +221,9 @@ class Generator:
                          f"SET count TO {self._number(3)}", "SET last TO RANDOM(0, 5)", "SIGNAL knock",
                          "RAISE joy BY 15%", "LOWER joy BY 40%", "RAISE fear BY 25%",
                          "SET fear TO 0%", "SET mood TO very happy", "SET mood TO wary",
-                         "SET mood TO calm_down", 'LOG "count", count, "joy", joy',
+                         "SET mood TO calm_down", "PLAY sound ANY songs", "LOG NEXT words, count", "ALERT ITEM count OF words",
+                         "PLAY sound NEXT songs", "SET count TO COUNT OF words - 2", "LOG ANY words",
+                         'LOG "count", count, "joy", joy',
                          'ALERT "look here"', "SET last TO touch LEVEL")
 
 

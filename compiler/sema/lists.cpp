@@ -1,0 +1,210 @@
+// Statements, part: texts out of a LIST. A statement with one becomes a choice between statements with
+// each of its texts, halved again and again, so that a list of 64 takes six questions.
+//
+// ANY and NEXT remember the place of their last text, from 1, in a variable of their own.
+#include <utility>
+
+#include "compiler/sema/statements.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr std::size_t kMaxTexts = 64;  // more are more blocks in each other than a robot has
+
+Expression make_variable(std::size_t index) {
+  Expression result;
+  result.operation = Operation::variable;
+  result.index = index;
+  return result;
+}
+
+vm::Value whole(std::size_t number) {
+  return static_cast<vm::Value>(number) * vm::kScale;
+}
+
+// A whole number from 1 to `most`: thousandths are drawn, and each is taken for a one.
+Expression drawn(std::size_t most) {
+  return make_binary(Operation::multiply,
+                     make_binary(Operation::random, make_constant_code(1),
+                                 make_constant_code(static_cast<vm::Value>(most))),
+                     make_constant_code(vm::kScale * vm::kScale));
+}
+
+// number MOD count + 1
+Expression place_behind(Expression number, std::size_t count) {
+  return make_binary(
+      Operation::add,
+      make_binary(Operation::modulo, std::move(number), make_constant_code(whole(count))),
+      make_constant_code(vm::kScale));
+}
+
+}  // namespace
+
+// ---- where a text is asked for
+
+// `ANY jokes`, `NEXT jokes`. When there is no such list it is reported, if they are `surely` meant.
+std::optional<ListChoice> Statements::in_turn(const ast::Name& how, const ast::Name& list,
+                                              bool surely) {
+  const std::string folded = fold_name(how.text);
+  if ((folded != "any" && folded != "next") || expressions_.find_binding(how.text) != nullptr)
+    return std::nullopt;
+  if (names_.find_list(list.text) == nullptr && !surely) return std::nullopt;
+  ListChoice choice;
+  choice.list = expressions_.find_list(list);
+  choice.how = folded == "any" ? ListChoice::How::any : ListChoice::How::next;
+  choice.span = {how.span.file, how.span.begin, list.span.end};
+  return choice;
+}
+
+std::optional<ListChoice> Statements::choice_in(const ast::Expr& expr) {
+  if (const auto* operand = std::get_if<ast::Operand>(&expr.node)) {
+    if (!operand->channel) return std::nullopt;
+    const bool sensor = names_.find_sensor(operand->name.text).has_value();
+    return in_turn(operand->name, *operand->channel, !sensor);
+  }
+  const auto* item = std::get_if<ast::ItemOf>(&expr.node);
+  if (item == nullptr) return std::nullopt;
+  ListChoice choice;
+  choice.list = expressions_.find_list(item->list);
+  choice.how = ListChoice::How::item;
+  choice.index = item->index.get();
+  choice.span = expr.span;
+  return choice;
+}
+
+// The first one: there is hardly ever another.
+std::optional<ListChoice> Statements::find_choice(const std::vector<ast::Argument>& arguments) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    std::optional<ListChoice> choice;
+    const auto* word = std::get_if<ast::Word>(&arguments[i].value);
+    const auto* behind =
+        i + 1 < arguments.size() ? std::get_if<ast::Word>(&arguments[i + 1].value) : nullptr;
+    if (word != nullptr && behind != nullptr) {
+      const bool known = names_.is_word(word->name.text) || names_.find_target(word->name.text);
+      choice = in_turn(word->name, behind->name, !known);
+      if (choice) choice->count = 2;
+    }
+    const auto* amount = std::get_if<ast::Amount>(&arguments[i].value);
+    if (amount != nullptr && amount->value != nullptr) choice = choice_in(*amount->value);
+    if (!choice) continue;
+    choice->at = i;
+    return choice;
+  }
+  return std::nullopt;
+}
+
+// ---- which text it is
+
+void Statements::choose(const ListChoice& choice, Span span, const PutText& put_text,
+                        ProgramBlock& result) {
+  if (choice.list == nullptr) return;
+  const std::size_t count = choice.list->texts.size();
+  if (safety_ || count > kMaxTexts) {
+    diagnostics_
+        .report(safety_ ? Code::E0404 : Code::E0407,
+                safety_ ? "a SAFETY rule does not choose from a LIST"
+                        : "a LIST that is chosen from has at most 64 texts")
+        .label(choice.span);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+    if (!within_budget(choice.span)) return;
+  std::pair<std::size_t, std::size_t> places{0, count - 1};
+  Expression index;
+  if (choice.how == ListChoice::How::item) {
+    Typed number = expressions_.amount(
+        *choice.index, {&canonical_unit(vm::Dimension::number), "ITEM", choice.index->span});
+    if (!number.is_number()) return;
+    if (number.is_constant()) {
+      const auto item = known_item(choice, number);
+      if (!item) return;
+      places = {*item, *item};
+    } else {
+      index = item_index(choice, std::move(number), span, result);
+    }
+  } else if (count > 1) {
+    index = choice.how == ListChoice::How::next ? next_index(choice, span, result)
+                                                : any_index(choice, span, result);
+  }
+  put_one_of(choice, index, places, span, put_text, result);
+}
+
+std::optional<std::size_t> Statements::known_item(const ListChoice& choice, Typed& index) {
+  const std::size_t count = choice.list->texts.size();
+  const vm::Value value = index.code.constant;
+  if (value % vm::kScale == 0 && value >= vm::kScale && value <= whole(count))
+    return static_cast<std::size_t>(value / vm::kScale - 1);
+  diagnostics_
+      .report(Code::E0509,
+              "`" + choice.list->list->name.text + "` has the texts 1 to " + std::to_string(count))
+      .label(index.span, "outside of that")
+      .label(choice.list->list->name.span, "the LIST", false);
+  return std::nullopt;
+}
+
+// Worked out once. Outside the list the nearest text is taken, and the trace says so.
+Expression Statements::item_index(const ListChoice& choice, Typed index, Span span,
+                                  ProgramBlock& result) {
+  const std::string& name = choice.list->list->name.text;
+  const std::size_t count = choice.list->texts.size();
+  const std::size_t number = locals_++;
+  put(ProgramLocal{number, make_binary(Operation::round, std::move(index.code),
+                                       make_constant_code(vm::kScale))},
+      span, result);
+  Expression local;
+  local.operation = Operation::local;
+  local.index = number;
+  ProgramIf outside;
+  outside.condition = make_binary(
+      Operation::logical_or, make_binary(Operation::less, local, make_constant_code(vm::kScale)),
+      make_binary(Operation::greater, local, make_constant_code(whole(count))));
+  put(ProgramLog{"there is no ITEM {} OF " + name + ", which has " + std::to_string(count),
+                 {local}},
+      span, outside.then_block);
+  put(std::move(outside), span, result);
+  return local;
+}
+
+Expression Statements::next_index(const ListChoice& choice, Span span, ProgramBlock& result) {
+  const std::size_t last = choice.list->next.value_or(0);
+  put(ProgramSet{last, place_behind(make_variable(last), choice.list->texts.size()), false}, span,
+      result);
+  return make_variable(last);
+}
+
+// The first time any of them; then as many further as is drawn, which never is all the way round.
+Expression Statements::any_index(const ListChoice& choice, Span span, ProgramBlock& result) {
+  const std::size_t count = choice.list->texts.size();
+  const std::size_t last = choice.list->any.value_or(0);
+  ProgramIf first;
+  first.condition = make_binary(Operation::equal, make_variable(last), make_constant_code(0));
+  put(ProgramSet{last, drawn(count), false}, span, first.then_block);
+  Expression further = make_binary(
+      Operation::add,
+      make_binary(Operation::subtract, make_variable(last), make_constant_code(vm::kScale)),
+      drawn(count - 1));
+  put(ProgramSet{last, place_behind(std::move(further), count), false}, span, first.else_block);
+  put(std::move(first), span, result);
+  return make_variable(last);
+}
+
+// ---- one statement for each text
+
+void Statements::put_one_of(const ListChoice& choice, const Expression& index,
+                            std::pair<std::size_t, std::size_t> places, Span span,
+                            const PutText& put_text, ProgramBlock& result) {
+  const auto [first, last] = places;
+  if (first == last) {
+    const Span place = choice.list->list->items[first].span;
+    return put_text({choice.at, choice.count, choice.list->texts[first], place}, result);
+  }
+  const std::size_t middle = (first + last) / 2;
+  ProgramIf lower;
+  lower.condition =
+      make_binary(Operation::less_equal, index, make_constant_code(whole(middle + 1)));
+  put_one_of(choice, index, {first, middle}, span, put_text, lower.then_block);
+  put_one_of(choice, index, {middle + 1, last}, span, put_text, lower.else_block);
+  put(std::move(lower), span, result);
+}
+
+}  // namespace robosync::compiler
