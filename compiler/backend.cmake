@@ -59,6 +59,7 @@ target_sources(robosync_compiler PRIVATE
   sema/expressions.cpp
   sema/functions.cpp
   sema/limits.cpp
+  sema/motions.cpp
   sema/lints.cpp
   sema/lists.cpp
   sema/names.cpp

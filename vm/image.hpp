@@ -19,7 +19,7 @@ namespace robosync::vm {
 using Word = std::uint32_t;  // one instruction: op | a << 8 | b << 16 | c << 24
 
 inline constexpr std::uint32_t kMagic = 0x31425352;  // "RSB1"
-inline constexpr std::uint8_t kFormatMajor = 1;      // a board runs images of its own major only
+inline constexpr std::uint8_t kFormatMajor = 2;      // a board runs images of its own major only
 inline constexpr std::uint8_t kFormatMinor = 0;
 
 inline constexpr std::uint16_t kNoIndex = 0xFFFF;    // "none" in any u16 index
@@ -35,6 +35,7 @@ inline constexpr unsigned kMaxWindow = 32;          // samples a median is taken
 inline constexpr unsigned kMaxEdges = 16;           // n TIMES WITHIN
 inline constexpr unsigned kMaxWritable = 32;        // input cells a behaviour can set: one bit each
 inline constexpr unsigned kMaxBlocks = 16;          // blocks open at once in a response
+inline constexpr unsigned kMinKeyGapMs = 20;        // between two keys of a MOTION
 inline constexpr unsigned kMinAdaptationMs = 100;   // shortest window of adaptive priorities
 inline constexpr int kMaxPriority = 99;             // that a behaviour can be given …
 inline constexpr int kMinPriority = -100;           // … and that one without a number can have
@@ -71,7 +72,8 @@ enum class DriverId : std::uint8_t {
 };
 
 // What a verb makes its driver do. The image's verb table joins a name to one of these.
-enum class Action : std::uint8_t { move, play, set, stop, count_ };
+// perform: a MOTION, which no driver knows; the control layer makes moves of it.
+enum class Action : std::uint8_t { move, play, set, stop, perform, count_ };
 
 // What an actuator does when its response ends by interruption, and when safety halts it.
 enum class Release : std::uint8_t { hold, rest, coast, count_ };
@@ -131,7 +133,7 @@ struct ImageHeader {
   // How long a robot waits, before program time begins, for what SAFETY rules read.
   std::uint16_t safety_start_ms;
 };
-static_assert(sizeof(ImageHeader) == 64);
+static_assert(sizeof(ImageHeader) == 68);
 
 struct Sensor {
   std::uint16_t name;  // offset in the strings
@@ -297,6 +299,29 @@ struct Adaptation {
   std::array<std::uint8_t, 3> reserved;
 };
 static_assert(sizeof(Adaptation) == 8);
+
+// A MOTION: a table of key frames. Its tracks follow each other, one for each of its actuators. The
+// command that performs it says which: its `item` is the motion's place, in thousandths.
+struct Motion {
+  std::uint16_t name;
+  std::uint8_t first_track;
+  std::uint8_t track_count;
+  Value length;  // time of its last row, thousandths of a second
+};
+static_assert(sizeof(Motion) == 8);
+
+struct Track {  // its keys follow each other
+  std::uint8_t actuator;
+  std::uint8_t key_count;
+  std::uint16_t first_key;
+};
+static_assert(sizeof(Track) == 4);
+
+struct Key {
+  Value time;  // since the motion began, thousandths of a second; kMinKeyGapMs after the one before
+  Value to;    // where the actuator is then, thousandths of its canonical unit
+};
+static_assert(sizeof(Key) == 8);
 
 // Read-only view of an image's sections. `bytes` must be 4-aligned and outlive the view.
 struct Image {

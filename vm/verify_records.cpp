@@ -22,6 +22,8 @@ struct Walk {
   std::uint32_t safety_rules = 0;  // the first ones
   std::uint32_t samples = 0;       // of all windows
   std::uint32_t timer_words = 0;
+  std::uint32_t next_track = 0;
+  std::uint32_t next_key = 0;
   std::uint32_t last_word = 0;  // of the source lines
 };
 
@@ -280,6 +282,33 @@ Refusal check_adaptation(Walk&, const Adaptation& adaptation, std::size_t) {
                                          adaptation.window_ms >= kMinAdaptationMs &&
                                          adaptation.cap > 0 && adaptation.cap <= kMaxPriority &&
                                          (reserved[0] | reserved[1] | reserved[2]) == 0);
+}
+
+// The tracks of the motions follow each other without gaps, and so do the keys of the tracks. One that
+// nobody has is refused.
+Refusal check_motion(Walk& walk, const Motion& motion, std::size_t) {
+  if (motion.first_track != walk.next_track) return Refusal::bad_index;
+  walk.next_track += motion.track_count;
+  if (walk.next_track > walk.image.tracks.size()) return Refusal::bad_index;
+  return good_or(Refusal::bad_value,
+                 motion.track_count > 0 && motion.length >= static_cast<Value>(kMinKeyGapMs));
+}
+
+Refusal check_track(Walk& walk, const Track& track, std::size_t index) {
+  if (index >= walk.next_track || track.actuator >= walk.image.actuators.size() ||
+      track.first_key != walk.next_key)
+    return Refusal::bad_index;
+  walk.next_key += track.key_count;
+  if (walk.next_key > walk.image.keys.size()) return Refusal::bad_index;
+  const Key* const keys = walk.image.keys.data() + track.first_key;
+  for (std::size_t k = 1; k < track.key_count; ++k)
+    if (std::int64_t{keys[k].time} - keys[k - 1].time < kMinKeyGapMs) return Refusal::bad_value;
+  return good_or(Refusal::bad_value, track.key_count > 0);
+}
+
+Refusal check_key(Walk& walk, const Key& key, std::size_t index) {
+  if (index >= walk.next_key) return Refusal::bad_index;
+  return good_or(Refusal::bad_value, key.time >= 0 && key.to != kUnknown);
 }
 
 using RecordCheck = Refusal (*)(Walk&, const std::byte* record, std::size_t index);

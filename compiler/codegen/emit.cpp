@@ -58,6 +58,9 @@ bool Emitter::counts_fit() {
   constexpr std::size_t kMost = vm::kNoIndex - 1;
   return fits(records_.checks.size(), UINT8_MAX, "CHECKs") &&
          fits(records_.bands.size(), UINT8_MAX, "bands") &&
+         fits(records_.motions.size(), UINT8_MAX, "MOTIONs") &&
+         fits(records_.tracks.size(), UINT8_MAX, "columns of MOTIONs") &&
+         fits(records_.keys.size(), kMost, "values in MOTIONs") &&
          fits(rules_.behaviors.size(), vm::kMaxBehaviors, "behaviours") &&
          fits(rules_.modifiers.size(), vm::kNoModifiers, "different COOLDOWNs and WAITINGs") &&
          fits(rules_.timers.records().size(), kMaxTimers, "time words") &&
@@ -84,6 +87,9 @@ vm::Image Emitter::sections() const {
   image.behaviors = rules_.behaviors;
   image.modifiers = rules_.modifiers;
   image.adaptations = records_.adaptations;
+  image.motions = records_.motions;
+  image.tracks = records_.tracks;
+  image.keys = records_.keys;
   image.timers = rules_.timers.records();
   image.rules = rules_.rules;
   image.responses = rules_.responses;

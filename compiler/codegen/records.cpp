@@ -21,6 +21,10 @@ public:
       records_.groups.push_back(
           {strings_.offset(config.name.text), 0, tables_.mask_of(config.members)});
     }
+    for (const auto& [place, number] : tables_.motion_groups())
+      motion_group(program_.motions[place]);
+    for (const ProgramMotion& one : program_.motions)
+      motion(one);
     for (const ProgramVerb& verb : tables_.verbs())
       records_.verbs.push_back({strings_.offset(verb.name), verb.action, verb.takes});
     for (const ProgramWord& word : tables_.words())
@@ -41,6 +45,8 @@ private:
   void actuator(std::size_t place);
   void variable(const ProgramVariable& variable);
   void check(const ProgramCheck& check);
+  void motion_group(const ProgramMotion& motion);
+  void motion(const ProgramMotion& motion);
 
   const Program& program_;
   const Robot& robot_;
@@ -113,7 +119,7 @@ void RecordMaker::actuator(std::size_t place) {
   record.pin = config.pin;
   record.on_release = config.on_release;
   record.safe = config.safe;
-  record.verbs = tables_.verbs_of(config);
+  record.verbs = tables_.verbs_of(config, place);
   record.min = config.min;
   record.max = config.max;
   record.speed_limit = config.speed_limit;
@@ -155,6 +161,26 @@ void RecordMaker::check(const ProgramCheck& check) {
   record.sample_ms = check.sample_ms;
   records_.checks.push_back(record);
   records_.bands.insert(records_.bands.end(), check.bands.begin(), check.bands.end());
+}
+
+void RecordMaker::motion_group(const ProgramMotion& motion) {
+  std::vector<std::size_t> actuators;
+  for (const ProgramTrack& track : motion.tracks)
+    actuators.push_back(track.actuator);
+  records_.groups.push_back({strings_.offset(motion.name), 0, tables_.mask_of(actuators)});
+}
+
+void RecordMaker::motion(const ProgramMotion& motion) {
+  records_.motions.push_back({strings_.offset(motion.name),
+                              static_cast<std::uint8_t>(records_.tracks.size()),
+                              static_cast<std::uint8_t>(motion.tracks.size()),
+                              std::max(motion.length, static_cast<vm::Value>(vm::kMinKeyGapMs))});
+  for (const ProgramTrack& track : motion.tracks) {
+    records_.tracks.push_back({tables_.number_of(track.actuator),
+                               static_cast<std::uint8_t>(track.keys.size()),
+                               static_cast<std::uint16_t>(records_.keys.size())});
+    records_.keys.insert(records_.keys.end(), track.keys.begin(), track.keys.end());
+  }
 }
 
 }  // namespace

@@ -18,6 +18,9 @@ struct Records {
   std::vector<vm::Check> checks;
   std::vector<vm::Band> bands;
   std::vector<vm::Adaptation> adaptations;
+  std::vector<vm::Motion> motions;
+  std::vector<vm::Track> tracks;
+  std::vector<vm::Key> keys;
 };
 
 // Names and labels go into `strings`.

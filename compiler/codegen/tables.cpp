@@ -39,6 +39,7 @@ Tables::Tables(const Program& program, Diagnostics& diagnostics) {
   number(channels_);
   number(actuators_);
   number(groups_);
+  number(motion_groups_);
 }
 
 void Tables::use(const ProgramRule& rule) {
@@ -66,6 +67,8 @@ void Tables::use(const ProgramCommand& command) {
   for (const std::size_t actuator : command.actuators)
     actuators_.emplace(actuator, 0);
   if (command.group) groups_.emplace(*command.group, 0);
+  if (command.motion) performers_.insert(command.actuators.begin(), command.actuators.end());
+  if (command.motion && command.actuators.size() > 1) motion_groups_.emplace(*command.motion, 0);
   add_once(verbs_, command.verb);
   if (command.word) add_once(words_, *command.word);
 }
@@ -90,14 +93,17 @@ void Tables::check_counts(const Program& program, Diagnostics& diagnostics) cons
   constexpr std::size_t kInputs = std::min<std::size_t>(vm::kMaxInputs, vm::Limits{}.inputs);
   check(channels_.size() + program.variables.size(), kInputs, "channels and variables");
   check(actuators_.size(), vm::kMaxActuators, "actuators");
-  check(groups_.size(), kMaxGroups, "groups");
+  check(groups_.size() + motion_groups_.size(), kMaxGroups, "groups and MOTIONs");
   check(verbs_.size(), vm::kMaxVerbs, "verbs");
   check(words_.size(), vm::kMaxWords, "words and texts");
 }
 
 std::uint8_t Tables::target(const ProgramCommand& command) const {
-  if (!command.group) return actuators_.at(command.actuators.front());
-  return static_cast<std::uint8_t>(vm::kGroupBit | groups_.at(*command.group));
+  if (command.actuators.size() == 1 && !command.group)
+    return actuators_.at(command.actuators.front());
+  const std::size_t group = command.group ? groups_.at(*command.group)
+                                          : groups_.size() + motion_groups_.at(*command.motion);
+  return static_cast<std::uint8_t>(vm::kGroupBit | group);
 }
 
 std::vector<std::uint8_t> Tables::targets(const ProgramHalt& halt) const {
@@ -133,11 +139,14 @@ std::uint8_t Tables::word(const ProgramCommand& command) const {
   return command.word ? place_of(words_, *command.word) : vm::kNoWord;
 }
 
-std::uint32_t Tables::verbs_of(const ActuatorConfig& actuator) const {
+std::uint32_t Tables::verbs_of(const ActuatorConfig& actuator, std::size_t place) const {
   std::uint32_t mask = 0;
+  for (std::size_t v = 0; v < verbs_.size(); ++v)
+    if (verbs_[v].action == vm::Action::perform && performers_.contains(place))
+      mask |= std::uint32_t{1} << v;
   for (const VerbConfig& verb : actuator.verbs) {
-    const auto place = place_of(verbs_, ProgramVerb{verb.name, verb.action, verb.takes});
-    if (place < verbs_.size()) mask |= std::uint32_t{1} << place;
+    const auto number = place_of(verbs_, ProgramVerb{verb.name, verb.action, verb.takes});
+    if (number < verbs_.size()) mask |= std::uint32_t{1} << number;
   }
   return mask;
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,9 @@ public:
   [[nodiscard]] std::vector<std::uint8_t> targets(const ProgramHalt& halt) const;
   [[nodiscard]] std::uint32_t mask_of(const std::vector<std::size_t>& actuators) const;
   [[nodiscard]] std::uint32_t mask_of(const ProgramHalt& halt) const;
+  [[nodiscard]] std::uint8_t number_of(std::size_t actuator) const {
+    return actuators_.at(actuator);
+  }
   [[nodiscard]] std::uint8_t verb(const ProgramCommand& command) const;
   [[nodiscard]] std::uint8_t word(const ProgramCommand& command) const;
 
@@ -42,10 +46,14 @@ public:
   [[nodiscard]] const std::map<ChannelRef, std::uint8_t>& channels() const { return channels_; }
   [[nodiscard]] const std::map<std::size_t, std::uint8_t>& actuators() const { return actuators_; }
   [[nodiscard]] const std::map<std::size_t, std::uint8_t>& groups() const { return groups_; }
+  // Those of several actuators are groups, behind the robot's: places in Program::motions.
+  [[nodiscard]] const std::map<std::size_t, std::uint8_t>& motion_groups() const {
+    return motion_groups_;
+  }
   [[nodiscard]] const std::vector<ProgramVerb>& verbs() const { return verbs_; }
   [[nodiscard]] const std::vector<ProgramWord>& words() const { return words_; }
-  // Bit v: verb v is one of the actuator's.
-  [[nodiscard]] std::uint32_t verbs_of(const ActuatorConfig& actuator) const;
+  // Bit v: verb v is one of the actuator's, which is at `place`.
+  [[nodiscard]] std::uint32_t verbs_of(const ActuatorConfig& actuator, std::size_t place) const;
 
 private:
   void use(const ProgramRule& rule);
@@ -58,7 +66,9 @@ private:
   std::map<ChannelRef, std::uint8_t> channels_;
   std::map<std::size_t, std::uint8_t> actuators_;
   std::map<std::size_t, std::uint8_t> groups_;
-  std::vector<ProgramVerb> verbs_;  // in the order of first use
+  std::map<std::size_t, std::uint8_t> motion_groups_;
+  std::set<std::size_t> performers_;  // actuators that are part of a MOTION
+  std::vector<ProgramVerb> verbs_;    // in the order of first use
   std::vector<ProgramWord> words_;
 };
 

@@ -28,7 +28,8 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Param::count
 #include "vm/params.def"
 #undef PARAM
 };
-constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Action::count_)> kActions = {
+// Those that a device can have.
+constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Action::perform)> kActions = {
     "move", "play", "set", "stop"};
 constexpr std::array<std::string_view, 3> kTexts = {"none", "listed", "any"};
 

@@ -60,7 +60,7 @@ void check_name(const Spelled& name, Diagnostics& diagnostics) {
     diagnostics.report(Code::E0103, "RSL cannot write this name")
         .label(name.span)
         .helps("a name begins with a letter and goes on with letters, digits and `_`");
-  } else if (is_keyword(name.text)) {
+  } else if (!may_name_a_part(name.text)) {
     diagnostics.report(Code::E0102, "`" + name.text + "` is a word of RSL")
         .label(name.span)
         .helps("give it another name, such as `my_" + fold_name(name.text) + "`");

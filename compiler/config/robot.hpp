@@ -53,6 +53,10 @@ struct VerbConfig {
   vm::Action action{};
   std::uint8_t takes = 0;  // bit p: takes vm::Param p
   Texts texts = Texts::none;
+
+  [[nodiscard]] bool has(vm::Param param) const {
+    return (takes >> static_cast<unsigned>(param) & 1u) != 0;
+  }
 };
 
 struct WordConfig {  // SLOWLY, or a sound

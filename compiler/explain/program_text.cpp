@@ -100,6 +100,13 @@ private:
     }
     return text + "\n";
   }
+  static std::string remembered(const ast::Motion& node) {
+    std::vector<std::string> columns;
+    for (const ast::Name& column : node.columns)
+      columns.push_back(column.text);
+    return fmt::format("  {} is a motion of {}, {} long.\n", node.name.text, list(columns),
+                       node.rows.empty() ? "nothing" : number(*node.rows.back().time));
+  }
   template <typename Other>
   static std::string remembered(const Other&) {
     return {};

@@ -48,6 +48,17 @@ struct ProgramCheck {
   std::uint16_t sample_ms = 0;
 };
 
+// A MOTION that something performs: where each of its actuators is when.
+struct ProgramTrack {
+  std::size_t actuator = 0;
+  std::vector<vm::Key> keys;
+};
+struct ProgramMotion {
+  std::string name;
+  vm::Value length = 0;  // time of its last row
+  std::vector<ProgramTrack> tracks;
+};
+
 // ---- what responses do
 
 struct ProgramArgument {
@@ -73,10 +84,11 @@ struct ProgramVerb {
 };
 
 // One or several actuators. STOP in a response is a command with the verb STOP; STOP ALL is one for
-// each actuator.
+// each actuator. PERFORM is one for all actuators of its MOTION.
 struct ProgramCommand {
-  std::optional<std::size_t> group;    // place in Robot::groups: the target is the group …
-  std::vector<std::size_t> actuators;  // … and these are its members; else exactly one
+  std::optional<std::size_t> group;     // place in Robot::groups: the target is the group,
+  std::optional<std::size_t> motion{};  // place in Program::motions: it is all that this moves, …
+  std::vector<std::size_t> actuators;   // … and these are its members; else exactly one
   ProgramVerb verb;
   std::optional<ProgramWord> word;
   std::vector<ProgramArgument> arguments;
@@ -218,6 +230,7 @@ struct ProgramBehavior {
 struct Program {
   std::vector<ProgramVariable> variables;
   std::vector<ProgramCheck> checks;
+  std::vector<ProgramMotion> motions;
   std::vector<ProgramRule> safety;
   std::vector<ProgramBehavior> behaviors;  // priorities descending, distinct
   // LIMIT … SPEED, by place in Robot::actuators; the stricter of this and the robot's own holds.

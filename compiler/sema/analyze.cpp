@@ -20,7 +20,8 @@ public:
         diagnostics_(diagnostics),
         names_(trees, robot_, diagnostics),
         expressions_(names_, diagnostics),
-        commands_(robot_, names_, expressions_, diagnostics),
+        motions_(robot_, names_, expressions_, diagnostics),
+        commands_(robot_, names_, expressions_, motions_, diagnostics),
         statements_(sources, robot_, names_, expressions_, commands_, diagnostics),
         rules_(sources, names_, expressions_, statements_, diagnostics),
         behaviors_(robot_, diagnostics) {}
@@ -38,7 +39,9 @@ public:
     for (const ast::Tree* tree : trees_)
       for (const ast::Item& item : tree->items)
         add(item);
+    program_.motions = motions_.performed();
     statements_.check_unused_defines();
+    motions_.check_unused();
     program_.behaviors = behaviors_.finish();
     // Else uses may be missing.
     if (diagnostics_.errors() == 0) lint();
@@ -82,6 +85,7 @@ private:
   Diagnostics& diagnostics_;
   Names names_;
   Expressions expressions_;
+  Motions motions_;
   Commands commands_;
   Statements statements_;
   Rules rules_;

@@ -29,6 +29,16 @@ vm::Param param_of(const ast::Argument& argument) {
   return kParams[static_cast<std::size_t>(argument.preposition)];
 }
 
+bool is_given(const ProgramCommand& command, vm::Param param) {
+  return (command.word && command.word->param == param) ||
+         std::any_of(command.arguments.begin(), command.arguments.end(),
+                     [&](const ProgramArgument& argument) { return argument.param == param; });
+}
+
+void report_twice(Span span, const std::string& what, Diagnostics& diagnostics) {
+  diagnostics.report(Code::E0505, what + " is given twice").label(span);
+}
+
 // Do two actuators understand the command alike?
 bool same(const ProgramCommand& a, const ProgramCommand& b) {
   return a.verb == b.verb && a.word == b.word && a.arguments == b.arguments;
@@ -41,6 +51,7 @@ std::vector<ProgramCommand> Commands::translate(const ast::Command& command,
   chosen_ = chosen;
   if (command.verb.text.empty()) return {};
   if (!names_.is_verb(command.verb.text)) {
+    if (same_name(command.verb.text, kPerform)) return perform(command);
     report_unknown_verb(command);
     return {};
   }
@@ -210,6 +221,102 @@ Typed Commands::evaluate_number(const ast::Argument& argument) {
   return {};
 }
 
+// ---- PERFORM
+
+namespace {
+
+constexpr std::uint8_t bit_of(vm::Param param) {
+  return static_cast<std::uint8_t>(1u << static_cast<unsigned>(param));
+}
+
+constexpr std::uint8_t kPerformTakes =
+    bit_of(vm::Param::item) | bit_of(vm::Param::at) | bit_of(vm::Param::times);
+
+}  // namespace
+
+std::vector<ProgramCommand> Commands::perform(const ast::Command& command) {
+  const ast::Word* const word =
+      command.arguments.empty() ? nullptr : plain_word(command.arguments.front());
+  if (word == nullptr || names_.find_motion(word->name.text) == nullptr) {
+    report_no_motion(command);
+    return {};
+  }
+  const auto place = motions_.find(word->name);
+  const auto given = evaluate(command, 0);
+  if (!place || !given) return {};
+  const ProgramMotion& motion = motions_.at(*place);
+  ProgramCommand result;
+  result.motion = place;
+  for (const ProgramTrack& track : motion.tracks)
+    result.actuators.push_back(track.actuator);
+  result.verb = {std::string(kPerform), vm::Action::perform, kPerformTakes};
+  result.word =
+      ProgramWord{motion.name, vm::Param::item, static_cast<vm::Value>(*place) * vm::kScale};
+  for (const Given& one : *given)
+    if (!add_to_performance(one, result)) return {};
+  return {std::move(result)};
+}
+
+void Commands::report_no_motion(const ast::Command& command) {
+  const auto candidates = names_.motion_names();
+  if (command.arguments.empty()) {
+    diagnostics_.report(Code::E0505, "this does not say which MOTION to perform")
+        .label(command.verb.span)
+        .helps(candidates.empty() ? "write a MOTION first: a table of times and positions"
+                                  : "there is " + list_names(candidates));
+    return;
+  }
+  const ast::Argument& first = command.arguments.front();
+  const ast::Word* const word = plain_word(first);
+  if (word == nullptr) {
+    diagnostics_.report(Code::E0505, "the name of a MOTION stands here").label(first.span);
+    return;
+  }
+  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no MOTION `" + word->name.text + "`")
+                      .label(word->name.span);
+  suggest(d, word->name.span, word->name.text, candidates);
+  if (d.help.empty() && !candidates.empty()) d.helps("there is " + list_names(candidates));
+}
+
+// AT is how fast, in percent of what the MOTION says; TIMES how often.
+bool Commands::add_to_performance(const Given& given, ProgramCommand& result) {
+  const Span span = given.argument->span;
+  const bool is_speed = given.is_number && given.param == vm::Param::at;
+  if (!is_speed && (!given.is_number || given.param != vm::Param::times)) {
+    diagnostics_.report(Code::E0505, "`PERFORM` does not take this")
+        .label(span)
+        .helps("it takes AT, how fast, and TIMES, how often: `PERFORM wave AT 150% 2 TIMES`");
+    return false;
+  }
+  if (is_given(result, given.param)) {
+    report_twice(span, is_speed ? "`AT`" : "`TIMES`", diagnostics_);
+    return false;
+  }
+  Typed number = given.number;
+  const Unit& unit = canonical_unit(is_speed ? vm::Dimension::percent : vm::Dimension::number);
+  if (number.is_bare()) take_unit(number, {&unit, "AT of PERFORM", span}, diagnostics_);
+  if (!number.is_number()) return false;
+  if (number.dimension() != unit.dimension) {
+    diagnostics_
+        .report(Code::E0301, is_speed ? "the speed of a MOTION is a share of its own"
+                                      : "how often is a number without a unit")
+        .label(number.span)
+        .helps(is_speed ? "write percent: `AT 150%` is half as fast again" : "write `2 TIMES`");
+    return false;
+  }
+  const vm::Value value = number.code.constant;
+  if (number.is_constant() && (value <= 0 || (!is_speed && value % vm::kScale != 0))) {
+    diagnostics_
+        .report(Code::E0506, is_speed     ? "AT must be above 0"
+                             : value <= 0 ? "TIMES must be above 0"
+                                          : "TIMES counts in whole numbers")
+        .label(number.span);
+    return false;
+  }
+  result.arguments.push_back({given.param, std::move(number.code)});
+  return true;
+}
+
 // ---- what one actuator makes of them: its own words, units, ranges and limits
 
 namespace {
@@ -224,22 +331,12 @@ std::string spelling(vm::Param param) {
   return std::string(kSpellings[static_cast<std::size_t>(param)]);
 }
 
-bool takes(const VerbConfig& verb, vm::Param param) {
-  return (verb.takes >> static_cast<unsigned>(param) & 1u) != 0;
-}
-
 std::string taken_by(const VerbConfig& verb) {
   std::vector<std::string> names;
   for (unsigned p = 0; p < kSpellings.size(); ++p)
     if ((verb.takes >> p & 1u) != 0 && !kSpellings[p].empty()) names.emplace_back(kSpellings[p]);
   return names.empty() ? "`" + verb.name + "` takes no numbers"
                        : "`" + verb.name + "` takes " + list_names(names);
-}
-
-bool is_given(const ProgramCommand& command, vm::Param param) {
-  return (command.word && command.word->param == param) ||
-         std::any_of(command.arguments.begin(), command.arguments.end(),
-                     [&](const ProgramArgument& argument) { return argument.param == param; });
 }
 
 // The first word travels in the command itself, others as parameters.
@@ -270,10 +367,6 @@ std::vector<std::string> verb_names(const ActuatorConfig& actuator) {
   for (const VerbConfig& verb : actuator.verbs)
     names.push_back(verb.name);
   return names;
-}
-
-void report_twice(Span span, const std::string& what, Diagnostics& diagnostics) {
-  diagnostics.report(Code::E0505, what + " is given twice").label(span);
 }
 
 // Is a number that is known now one that the actuator can do?
@@ -329,6 +422,20 @@ void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Uni
 
 }  // namespace
 
+bool fit_parameter(const ActuatorConfig& actuator, vm::Param param, Typed& number,
+                   Diagnostics& notes, Diagnostics& diagnostics) {
+  const Unit& unit = param_unit(actuator, param);
+  const std::string source = spelling(param) + " for " + actuator.name.text;
+  if (number.is_bare())
+    take_unit(number, {&unit, source, actuator.name.span, param == vm::Param::by}, notes);
+  if (!number.is_number()) return false;
+  if (number.dimension() != unit.dimension) {
+    report_dimension(actuator, param, unit, number, diagnostics);
+    return false;
+  }
+  return !number.is_constant() || check_value(actuator, param, number, diagnostics);
+}
+
 std::optional<ProgramCommand> Commands::for_actuator(std::size_t actuator,
                                                      const ast::Command& command,
                                                      const std::vector<Given>& given,
@@ -368,7 +475,7 @@ bool Commands::add_word(const Recipient& to, const ast::Word& word, Span span,
     report_unknown_word(to, word);
     return false;
   }
-  if (!takes(to.verb, known->param)) {
+  if (!to.verb.has(known->param)) {
     to.diagnostics
         .report(Code::E0505, "`" + to.verb.name + "` does not go with `" + known->name + "`")
         .label(span);
@@ -446,12 +553,12 @@ bool Commands::add_text(const Recipient& to, const Given& given, ProgramCommand&
     const bool has_length =
         std::any_of(to.command.arguments.begin(), to.command.arguments.end(),
                     [](const ast::Argument& a) { return a.preposition == ast::Preposition::for_; });
-    if (known->duration && !has_length && takes(to.verb, vm::Param::for_))
+    if (known->duration && !has_length && to.verb.has(vm::Param::for_))
       result.arguments.push_back({vm::Param::for_, make_constant_code(*known->duration)});
     return true;
   }
   if (to.verb.texts == Texts::any) {
-    const bool speaks = to.actuator.word_length > 0 && takes(to.verb, vm::Param::for_);
+    const bool speaks = to.actuator.word_length > 0 && to.verb.has(vm::Param::for_);
     if (speaks && !is_given(result, vm::Param::for_))
       put(text, vm::Param::for_, to.actuator.word_length * words_of(text), result);
     else
@@ -467,7 +574,7 @@ bool Commands::add_number(const Recipient& to, const Given& given, ProgramComman
   const ActuatorConfig& actuator = to.actuator;
   Diagnostics& diagnostics = to.diagnostics;
   const Span span = given.argument->span;
-  if (!takes(to.verb, given.param)) {
+  if (!to.verb.has(given.param)) {
     diagnostics
         .report(Code::E0505, "`" + to.verb.name + "` does not take `" + spelling(given.param) + "`")
         .label(span)
@@ -480,19 +587,8 @@ bool Commands::add_number(const Recipient& to, const Given& given, ProgramComman
     report_twice(span, "`" + spelling(given.param) + "`", diagnostics);
     return false;
   }
-  const Unit& unit = param_unit(actuator, given.param);
   Typed number = given.number;
-  const std::string source = spelling(given.param) + " for " + actuator.name.text;
-  if (number.is_bare())
-    take_unit(number, {&unit, source, actuator.name.span, given.param == vm::Param::by},
-              diagnostics);
-  if (!number.is_number()) return false;
-  if (number.dimension() != unit.dimension) {
-    report_dimension(actuator, given.param, unit, number, diagnostics);
-    return false;
-  }
-  if (number.is_constant() && !check_value(actuator, given.param, number, diagnostics))
-    return false;
+  if (!fit_parameter(actuator, given.param, number, diagnostics, diagnostics)) return false;
   result.arguments.push_back({given.param, std::move(number.code)});
   return true;
 }

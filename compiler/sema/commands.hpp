@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compiler/sema/expressions.hpp"
+#include "compiler/sema/motions.hpp"
 #include "compiler/sema/names.hpp"
 
 namespace robosync::compiler {
@@ -15,8 +16,13 @@ struct ChosenText {
 
 class Commands {
 public:
-  Commands(const Robot& robot, Names& names, Expressions& expressions, Diagnostics& diagnostics)
-      : robot_(robot), names_(names), expressions_(expressions), diagnostics_(diagnostics) {}
+  Commands(const Robot& robot, Names& names, Expressions& expressions, Motions& motions,
+           Diagnostics& diagnostics)
+      : robot_(robot),
+        names_(names),
+        expressions_(expressions),
+        motions_(motions),
+        diagnostics_(diagnostics) {}
 
   // One command for an actuator, or for a group whose members all understand it alike; otherwise
   // one for each member. Empty after a mistake, which has then been reported.
@@ -60,6 +66,11 @@ private:
   [[nodiscard]] bool is_known_word(std::string_view word) const;  // of any actuator
   [[nodiscard]] bool names_a_number(const ast::Name& name) const;
 
+  // PERFORM: which MOTION, how fast, how often.
+  std::vector<ProgramCommand> perform(const ast::Command& command);
+  bool add_to_performance(const Given& given, ProgramCommand& result);
+  void report_no_motion(const ast::Command& command);
+
   // What one actuator makes of them.
   std::optional<ProgramCommand> for_actuator(std::size_t actuator, const ast::Command& command,
                                              const std::vector<Given>& given,
@@ -74,6 +85,7 @@ private:
   const Robot& robot_;
   Names& names_;
   Expressions& expressions_;
+  Motions& motions_;
   Diagnostics& diagnostics_;
   const ChosenText* chosen_ = nullptr;
 };

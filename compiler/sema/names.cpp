@@ -133,6 +133,11 @@ std::vector<std::string> Names::list_names_given() const {
   return names;
 }
 
+MotionName* Names::find_motion(std::string_view name) {
+  const auto found = motions_.find(fold_name(name));
+  return found == motions_.end() ? nullptr : &found->second;
+}
+
 VariableName* Names::find_variable(std::string_view name) {
   const std::string folded = fold_name(name);
   if (scope_ != nullptr) {
@@ -216,6 +221,13 @@ std::vector<std::string> Names::verb_names() const {
   for (const ActuatorConfig& actuator : robot_.actuators)
     for (const VerbConfig& verb : actuator.verbs)
       if (seen.insert(verb.name).second) names.push_back(verb.name);
+  return names;
+}
+
+std::vector<std::string> Names::motion_names() const {
+  std::vector<std::string> names;
+  for (const auto& [folded, motion] : motions_)
+    names.push_back(motion.motion->name.text);
   return names;
 }
 
@@ -306,6 +318,11 @@ void Names::add(const ast::Define& define) {
     diagnostics_.report(Code::E0101, "`" + define.name.text + "` is already a verb of the robot")
         .label(define.name.span);
   defines_.emplace(fold_name(define.name.text), DefineName{&define, define.name.span, in_module_});
+}
+
+void Names::add(const ast::Motion& motion) {
+  if (claim(motion.name))
+    motions_.emplace(fold_name(motion.name.text), MotionName{&motion, in_module_});
 }
 
 void Names::check_parameters(const ast::Define& define) {

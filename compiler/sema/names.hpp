@@ -31,6 +31,13 @@ struct DefineName {
   bool expanded = false;  // it has been translated
 };
 
+struct MotionName {
+  const ast::Motion* motion = nullptr;
+  bool in_module = false;
+  bool seen = false;                   // it has been translated (Motions) …
+  std::optional<std::size_t> place{};  // … and is there
+};
+
 struct VariableName {
   ast::Name name;
   std::size_t index = 0;  // its place in Program::variables
@@ -79,6 +86,7 @@ public:
   [[nodiscard]] DefineName* find_define(std::string_view name);
   [[nodiscard]] const ListName* find_list(std::string_view name) const;
   [[nodiscard]] std::vector<std::string> list_names_given() const;
+  [[nodiscard]] MotionName* find_motion(std::string_view name);
   [[nodiscard]] VariableName* find_variable(std::string_view name);
   [[nodiscard]] std::optional<Target> find_target(std::string_view name) const;
   [[nodiscard]] std::optional<std::size_t> find_sensor(std::string_view name) const;
@@ -110,6 +118,8 @@ public:
   [[nodiscard]] std::vector<std::string> verb_names() const;
   [[nodiscard]] std::vector<std::string> define_names() const;
   [[nodiscard]] std::vector<std::string> variable_names() const;  // that are seen here
+  [[nodiscard]] std::vector<std::string> motion_names() const;
+  [[nodiscard]] const std::map<std::string, MotionName>& motions() const { return motions_; }
   [[nodiscard]] const std::map<std::string, DefineName>& defines() const { return defines_; }
   [[nodiscard]] const std::map<std::string, ConstantName>& constants() const { return constants_; }
   // In the order of Program::variables.
@@ -122,6 +132,7 @@ private:
   void collect(const ast::Tree& tree);
   void add(const ast::Let& let);
   void add(const ast::Define& define);
+  void add(const ast::Motion& motion);
   void add(const ast::Behavior& behavior);
   void add(const ast::Remember& variable);
   void add(const ast::State& state);
@@ -154,6 +165,7 @@ private:
   std::map<std::string, ConstantName> constants_;  // likewise
   std::map<std::string, DefineName> defines_;
   std::map<std::string, ListName> lists_;
+  std::map<std::string, MotionName> motions_;
   std::vector<VariableName> variables_;
   Places globals_;
   std::map<const ast::Behavior*, Places> private_;

@@ -316,6 +316,21 @@ struct Define {
   std::vector<Name> parameters;
   Block body;
 };
+// One cell of a MOTION: where an actuator is at that time; nothing ("-"): on its way.
+struct MotionKey {
+  Span span;
+  Box<Expr> value;
+};
+struct MotionRow {
+  Span span;
+  Box<Expr> time;
+  std::vector<MotionKey> keys;
+};
+struct Motion {
+  Name name;
+  std::vector<Name> columns;  // actuators, or groups
+  std::vector<MotionRow> rows;
+};
 struct Behavior {
   Name name;
   std::optional<Name> priority;  // the digits; nothing when robot.json is to give it
@@ -369,8 +384,8 @@ struct Test {
 
 struct Item {
   Span span;
-  std::variant<Use, Let, Remember, State, List, Feeling, Limit, Check, Define, Behavior, Rule,
-               Safety, Test>
+  std::variant<Use, Let, Remember, State, List, Feeling, Limit, Check, Define, Motion, Behavior,
+               Rule, Safety, Test>
       node;
 };
 

@@ -145,6 +145,17 @@ void Builder::once(ast::Box<ast::Expr>& place, ast::Box<ast::Expr> value, Span k
   place = std::move(value);
 }
 
+void Builder::add_key(std::vector<ast::MotionKey>& keys, ast::MotionKey key) {
+  const bool signed_one = !keys.empty() && keys.back().value == nullptr && key.value != nullptr &&
+                          keys.back().span.end == key.span.begin;
+  if (!signed_one) {
+    keys.push_back(std::move(key));
+    return;
+  }
+  const Span span{key.span.file, keys.back().span.begin, key.span.end};
+  keys.back() = {span, expr(span, ast::Negate{std::move(key.value)})};
+}
+
 void Builder::set_priority(ast::Modifiers& modifiers, Span keyword, Span number) {
   if (modifiers.priority) {
     report(Code::E0011, "`PRIORITY` is given twice")

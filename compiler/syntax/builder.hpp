@@ -51,6 +51,8 @@ public:
   ast::Argument amount(Span span, ast::Box<ast::Expr> value, bool times = false) const;
 
   // ---- parts of items
+  // A "-" that touches what follows is its sign; any other one is a key by itself.
+  void add_key(std::vector<ast::MotionKey>& keys, ast::MotionKey key);
   void once(ast::Box<ast::Expr>& place, ast::Box<ast::Expr> value, Span keyword);
   void set_priority(ast::Modifiers& modifiers, Span keyword, Span number);
   void set_restarting(ast::Modifiers& modifiers, Span keyword);

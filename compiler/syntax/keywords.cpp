@@ -109,6 +109,12 @@ bool is_keyword(std::string_view word) {
   return find_keyword(word) != nullptr;
 }
 
+bool may_name_a_part(std::string_view word) {
+  const Keyword* const keyword = find_keyword(word);
+  constexpr unsigned kBegins = role::item | role::word;
+  return keyword == nullptr || (keyword->roles & kBegins) == kBegins;
+}
+
 const std::vector<std::string>& keyword_spellings() {
   static const std::vector<std::string> all = [] {
     std::vector<std::string> spellings;

@@ -27,7 +27,11 @@ std::vector<std::uint32_t> significant(std::vector<Token>& tokens) {
       pending = true;
       continue;
     }
-    const bool goes_on = order.empty() || (roles_of(tokens[order.back()].kind) & role::before) != 0;
+    // A row of a MOTION may end with "-", and the next one begins with AT, as no expression goes on.
+    const bool new_row =
+        kind == Kinds::AT && !order.empty() && tokens[order.back()].kind == Kinds::MINUS;
+    const bool goes_on =
+        !new_row && (order.empty() || (roles_of(tokens[order.back()].kind) & role::before) != 0);
     if (pending && !goes_on && (roles_of(kind) & role::after) == 0) order.push_back(line_end);
     pending = false;
     order.push_back(i);

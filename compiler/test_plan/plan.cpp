@@ -33,7 +33,8 @@ public:
       : robot_(robot),
         names_(trees, robot, diagnostics_),
         expressions_(names_, diagnostics_),
-        commands_(robot, names_, expressions_, diagnostics_) {
+        motions_(robot, names_, expressions_, ignored_),
+        commands_(robot, names_, expressions_, motions_, diagnostics_) {
     Program ignored;
     Variables(names_, expressions_, diagnostics_).declare(ignored);
     diagnostics_ = {};  // whatever this said, sema has said before
@@ -288,6 +289,8 @@ private:
   Diagnostics diagnostics_;
   Names names_;
   Expressions expressions_;
+  Diagnostics ignored_;  // what is said of MOTIONs, sema has said
+  Motions motions_;
   Commands commands_;
   TestPlan* plan_ = nullptr;
   PlannedTest test_;

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::count_)> kReleases = {
     "hold", "rest", "coast"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Action::count_)> kActions = {
-    "move", "play", "set", "stop"};
+    "move", "play", "set", "stop", "perform"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Param::count_)> kParams = {
 #define PARAM(name, spelling, doc) #name,
 #include "vm/params.def"
@@ -101,6 +101,23 @@ std::string verbs(const vm::Image& image) {
   return text;
 }
 
+std::string motions(const vm::Image& image) {
+  std::string text = image.motions.empty() ? "" : "\nmotions\n";
+  for (const vm::Motion& motion : image.motions) {
+    text += fmt::format("  {}: {}\n", image.string(motion.name),
+                        format_quantity(motion.length, vm::Dimension::duration));
+    for (const vm::Track& track : image.tracks.subspan(motion.first_track, motion.track_count)) {
+      std::vector<std::string> keys;
+      for (const vm::Key& key : image.keys.subspan(track.first_key, track.key_count))
+        keys.push_back(fmt::format("{} at {}", number(key.to),
+                                   format_quantity(key.time, vm::Dimension::duration)));
+      text += fmt::format("    {}: {}\n", image.string(image.actuators[track.actuator].name),
+                          fmt::join(keys, ", "));
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string actuator_names(const vm::Image& image, std::uint32_t mask) {
@@ -113,7 +130,7 @@ std::string actuator_names(const vm::Image& image, std::uint32_t mask) {
 }
 
 std::string dump_wiring(const vm::Image& image) {
-  return sensors(image) + actuators(image) + verbs(image);
+  return sensors(image) + actuators(image) + verbs(image) + motions(image);
 }
 
 }  // namespace robosync::tool

@@ -236,6 +236,11 @@ void ControlLayer::begin_next(Unit& unit, Stamp stamp, kernel::Time& wake) {
 }
 
 [[gnu::noinline]] kernel::Time ControlLayer::start_driver(Unit& unit, const Command& command) {
+  if (command.action() == vm::Action::perform) {
+    unit.performance.begin(program_->image, unit.actuator, command, kernel_.now());
+    return is_halted(unit) ? drivers::kDone : next_key(unit, kernel_.now());
+  }
+  unit.performance.end();
   const drivers::Order order = resolve(wiring(unit), command);
   if (is_halted(unit) || is_void(order)) return drivers::kDone;
   return drivers::driver(wiring(unit).driver).start(device(unit), order, kernel_.now());
@@ -243,8 +248,24 @@ void ControlLayer::begin_next(Unit& unit, Stamp stamp, kernel::Time& wake) {
 
 kernel::Time ControlLayer::go_on(Unit& unit) {
   const drivers::Driver& driver = drivers::driver(wiring(unit).driver);
-  const kernel::Time wake = is_halted(unit) ? 0 : driver.advance(device(unit), kernel_.now());
+  kernel::Time wake = is_halted(unit) ? 0 : driver.advance(device(unit), kernel_.now());
+  if (wake == drivers::kDone && unit.performance.is_on()) wake = next_key(unit, kernel_.now());
   return keep_at(unit, wake, trace_.now());
+}
+
+// Goes on with the MOTION that it performs: to its next key, or to its end. A driver that is there
+// already is not asked again before the time of a key is over.
+kernel::Time ControlLayer::next_key(Unit& unit, kernel::Time now) {
+  Performance& performance = unit.performance;
+  drivers::Order order;
+  if (!performance.is_on()) return drivers::kDone;
+  if (performance.next(program_->image, now, order)) {
+    limit(wiring(unit), order);
+    const kernel::Time wake = drivers::driver(wiring(unit).driver).start(device(unit), order, now);
+    return wake == drivers::kDone ? now + kernel::milliseconds(vm::kMinKeyGapMs) : wake;
+  }
+  performance.end();
+  return performance.ends_at() > now ? performance.ends_at() : drivers::kDone;
 }
 
 // After every call of the driver. A halt may have come in its middle: then its last word is undone.
@@ -303,9 +324,11 @@ void ControlLayer::tell_command(const Unit& unit, const Command& command, Stamp 
   event.values[1] = command.given();
   event.value_count = 2;
   const vm::Actuator& actuator = wiring(unit);
+  const bool is_limited = command.action() != vm::Action::perform;
   each_bit(command.given(), [&](unsigned p) {
+    const vm::Value value = command.param(p);
     event.values[event.value_count++] =
-        limited(actuator, static_cast<vm::Param>(p), command.param(p));
+        is_limited ? limited(actuator, static_cast<vm::Param>(p), value) : value;
   });
   trace_.emit(event);
 }

@@ -21,6 +21,7 @@
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/command_pool.hpp"
 #include "runtime-m4/layers/loaded_program.hpp"
+#include "runtime-m4/layers/performance.hpp"
 #include "runtime-m4/layers/program_threads.hpp"
 #include "runtime-m4/layers/trace.hpp"
 
@@ -76,6 +77,7 @@ private:
     ControlLayer* layer = nullptr;
     kernel::Thread* thread = nullptr;
     drivers::ActuatorState drive;
+    Performance performance;
     CommandPool::Queue queue;   // handed over
     CommandPool::Queue staged;  // to be handed over by commit()
     Stamp committed;            // the step that `queue` comes from
@@ -93,6 +95,7 @@ private:
   void begin_next(Unit& unit, Stamp stamp, kernel::Time& wake);
   kernel::Time start_driver(Unit& unit, const Command& command);
   kernel::Time go_on(Unit& unit);
+  kernel::Time next_key(Unit& unit, kernel::Time now);
   kernel::Time keep_at(Unit& unit, kernel::Time wake, Stamp stamp);
   void hand_over(Unit& unit);
   void finish_cancel(Unit& unit);

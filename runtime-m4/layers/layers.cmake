@@ -15,6 +15,7 @@ target_sources(robosync_runtime PRIVATE
   layers/memory.cpp
   layers/median.cpp
   layers/order.cpp
+  layers/performance.cpp
   layers/processing.cpp
   layers/loaded_program.cpp
   layers/report.cpp

@@ -11,10 +11,15 @@ drivers::Order resolve(const vm::Actuator& actuator, const Command& command) {
   drivers::Order order;
   order.action = command.action();
   order.given = command.known();
-  each_bit(command.known(), [&](unsigned p) {
-    order.params[p] = limited(actuator, static_cast<Param>(p), command.param(p));
-  });
+  each_bit(command.known(), [&](unsigned p) { order.params[p] = command.param(p); });
+  limit(actuator, order);
   return order;
+}
+
+void limit(const vm::Actuator& actuator, drivers::Order& order) {
+  each_bit(order.given, [&](unsigned p) {
+    order.params[p] = limited(actuator, static_cast<Param>(p), order.params[p]);
+  });
 }
 
 vm::Value limited(const vm::Actuator& actuator, Param param, vm::Value value) {

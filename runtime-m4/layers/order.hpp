@@ -11,6 +11,9 @@ namespace robosync::layers {
 // kUnknown: see is_void().
 [[nodiscard]] drivers::Order resolve(const vm::Actuator& actuator, const Command& command);
 
+// The order's own parameters inside the actuator's range and limits.
+void limit(const vm::Actuator& actuator, drivers::Order& order);
+
 // The value of a parameter inside the actuator's range (TO) and limits (AT); kUnknown stays.
 [[nodiscard]] vm::Value limited(const vm::Actuator& actuator, vm::Param param, vm::Value value);
 

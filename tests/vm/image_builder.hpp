@@ -49,6 +49,9 @@ struct ImageBuilder {
   std::string strings;
   std::vector<SourceLine> source_lines;
   std::vector<Adaptation> adaptations;
+  std::vector<Motion> motions;
+  std::vector<Track> tracks;
+  std::vector<Key> keys;
   // Applied to the finished header, before the CRC.
   std::function<void(ImageHeader&)> patch_header = [](ImageHeader&) {};
 

@@ -338,6 +338,45 @@ TEST_CASE("adaptation: none or one, in its ranges") {
                 {Refusal::bad_value, Section::header, 0});
 }
 
+TEST_CASE("motions: their tracks and keys follow each other, and keys come in time's order") {
+  const auto with = [](auto change) {
+    ImageBuilder image = robot::make();
+    const std::uint16_t name = image.name("wave");
+    image.motions = {{name, 0, 2, 600}, {name, 2, 1, kMinKeyGapMs}};
+    image.tracks = {{0, 3, 0}, {1, 1, 3}, {1, 1, 4}};
+    image.keys = {{0, 0}, {20, -5000}, {600, 5000}, {600, 0}, {0, 1}};
+    change(image);
+    return image;
+  };
+  check_accepted(with([](auto&) {}));
+  const auto refused = [&](auto wrong, Refusal refusal, Section section, std::uint16_t record) {
+    check_refused([&](auto& image) { image = with(wrong); }, {refusal, section, record});
+  };
+  constexpr auto kIndex = Refusal::bad_index;
+  constexpr auto kValue = Refusal::bad_value;
+  refused([](auto& i) { i.motions[0].name = 0xFFFE; }, Refusal::bad_string, Section::motions, 0);
+  refused([](auto& i) { i.motions[1].first_track = 1; }, kIndex, Section::motions, 1);
+  refused([](auto& i) { i.motions[1].track_count = 2; }, kIndex, Section::motions, 1);
+  refused(
+      [](auto& i) {
+        i.motions[0].track_count = 0;
+        i.motions[1].first_track = 0;
+      },
+      kValue, Section::motions, 0);
+  refused([](auto& i) { i.motions[1].length = kMinKeyGapMs - 1; }, kValue, Section::motions, 1);
+  refused([](auto& i) { i.motions.pop_back(); }, kIndex, Section::tracks, 2);
+  refused([](auto& i) { i.tracks[1].actuator = 200; }, kIndex, Section::tracks, 1);
+  refused([](auto& i) { i.tracks[1].first_key = 2; }, kIndex, Section::tracks, 1);
+  refused([](auto& i) { i.tracks[2].key_count = 2; }, kIndex, Section::tracks, 2);
+  refused([](auto& i) { i.tracks[2].key_count = 0; }, kValue, Section::tracks, 2);
+  refused([](auto& i) { i.keys[1].time = 19; }, kValue, Section::tracks, 0);
+  refused([](auto& i) { i.keys[2].time = 20; }, kValue, Section::tracks, 0);
+  refused([](auto& i) { i.keys[0].time = kUnknown; }, kValue, Section::keys, 0);
+  refused([](auto& i) { i.keys[3].to = kUnknown; }, kValue, Section::keys, 3);
+  refused([](auto& i) { i.keys[4].time = -1; }, kValue, Section::keys, 4);
+  refused([](auto& i) { i.keys.push_back({0, 0}); }, kIndex, Section::keys, 5);
+}
+
 TEST_CASE("inputs, constants, source lines") {
   check_refused([](auto& i) { i.inputs[2] = 8; }, {Refusal::bad_index, Section::inputs, 2});
   check_refused([](auto& i) { i.constants[1] = kUnknown; },

@@ -70,6 +70,9 @@ TEST_CASE("keywords in any case, names as they are", "[lexer]") {
   CHECK(is_keyword("Behaviour"));
   CHECK_FALSE(is_keyword("MOVE"));
   CHECK_FALSE(is_keyword(""));
+  CHECK(may_name_a_part("motion"));
+  CHECK_FALSE(may_name_a_part("test"));
+  CHECK(may_name_a_part("touch"));
   CHECK_FALSE(is_keyword(std::string(1000, 'A')));
 }
 

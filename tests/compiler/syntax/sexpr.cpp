@@ -261,6 +261,16 @@ std::string show(const Check& n) {
 std::string show(const Define& n) {
   return list({"define", show(n.name), show(n.parameters), show("do", n.body)});
 }
+std::string show(const Motion& n) {
+  std::string rows;
+  for (const MotionRow& row : n.rows) {
+    rows += " (" + show(row.time);
+    for (const MotionKey& key : row.keys)
+      rows += " " + show(key.value);
+    rows += ")";
+  }
+  return "(motion " + show(n.name) + " " + show(n.columns) + rows + ")";
+}
 std::string show(const Behavior& n) {
   std::string parts;
   for (const Remember& variable : n.variables)

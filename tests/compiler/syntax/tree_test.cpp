@@ -60,6 +60,11 @@ TEST_CASE("how tightly operators bind", "[tree]") {
   CHECK(condition("a == 1 OR b != 2 OR c = 3") == "(or (or (= a 1) (<> b 2)) (= c 3))");
 }
 
+TEST_CASE("rows of a MOTION: a minus that touches what follows is its sign", "[tree]") {
+  CHECK(tree("MOTION m OF a, b, c\nAT 0s -10deg - -up\nAT 1s - (2 * x) -\nAT 2s 3 - -\nEND\n") ==
+        "(motion m (a b c) (0s (neg 10deg) - (neg up)) (1s - (* 2 x) -) (2s 3 - -))\n");
+}
+
 TEST_CASE("labels and texts", "[tree]") {
   CHECK(condition("space IS very close") == "(is space [very close])");
   CHECK(condition("space IS NOT very close") == "(is-not space [very close])");

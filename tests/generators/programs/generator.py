@@ -18,6 +18,8 @@ COMMANDS = ["MOVE arms SLOWLY", "MOVE left_arm TO 90deg OVER 300ms", "MOVE right
             "MOVE left_arm BY 15deg OVER 50ms", 'PLAY sound "greeting.wav"',
             'PLAY sound "warning.wav"', "LIGHT lamp ON", "LIGHT lamp TO 40% OVER 250ms",
             "BLINK lamp 3 TIMES", "STOP lamp", "MOVE arms QUICKLY",
+            "PERFORM wave", "PERFORM wave AT 150% 2 TIMES", "PERFORM bow AT (joy)",
+            "PERFORM bow (count MOD 3) TIMES",
             "LIGHT lamp TO (joy) OVER 100ms", "MOVE left_arm TO (count * 3deg) OVER 80ms"]
 DURATIONS = ["1ms", "7ms", "40msec", "150milliseconds", "600ms", "1.5seconds"]
 
@@ -54,6 +56,17 @@ DEFINE twice WITH action, arm
   action WITH arm, 20deg, "warning.wav"
   THEN
   action WITH arm, 90deg, "greeting.wav"
+END
+
+MOTION wave OF left_arm, lamp
+  AT 0s    10deg  0%
+  AT 250ms 60deg  -
+  AT 333ms -      80%
+END
+
+MOTION bow OF arms
+  AT 300ms 45deg
+  AT 500ms 0deg
 END
 
 DEFINE greet_twice WITH pause, level

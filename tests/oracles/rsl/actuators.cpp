@@ -5,10 +5,15 @@
 #include <optional>
 #include <utility>
 
+#include "compiler/ir/walk.hpp"
+
 namespace robosync::oracle {
 namespace {
 
 constexpr std::size_t kMostWaiting = 8;
+// For all actuators that the program uses together.
+constexpr std::size_t kPlaces = 16;
+constexpr std::size_t kPlacesEach = 2;
 constexpr Millis kUsual = 1000;
 constexpr std::int64_t kFrame = 20'000;  // no movement is shorter, in microseconds
 constexpr std::int64_t kMostGestures = 1000;
@@ -46,7 +51,7 @@ bool speed_is_of_way(const compiler::ActuatorConfig& actuator) {
 }  // namespace
 
 Actuators::Actuators(const compiler::Program& program, const compiler::Robot& robot, Trace& trace)
-    : trace_(trace), queues_(robot.actuators.size()) {
+    : program_(program), trace_(trace), queues_(robot.actuators.size()) {
   for (const compiler::ActuatorConfig& actuator : robot.actuators) {
     const bool goes = speed_is_of_way(actuator);
     limits_.push_back({actuator.min, actuator.max, actuator.speed_limit,
@@ -55,6 +60,15 @@ Actuators::Actuators(const compiler::Program& program, const compiler::Robot& ro
     on_release_.push_back(actuator.on_release);
     safe_.push_back(actuator.safe);
   }
+  compiler::for_each_rule(program, [this](const compiler::ProgramRule& rule) {
+    for (const auto* block : {&rule.then_response, &rule.else_response})
+      compiler::for_each_statement(*block, [this](const compiler::ProgramStatement& statement) {
+        if (const auto* command = std::get_if<compiler::ProgramCommand>(&statement.node))
+          used_.insert(command->actuators.begin(), command->actuators.end());
+        if (const auto* halt = std::get_if<compiler::ProgramHalt>(&statement.node))
+          used_.insert(halt->actuators.begin(), halt->actuators.end());
+      });
+  });
   for (const auto& [actuator, speed] : program.speed_limits)
     limits_[actuator].speed = std::min<std::int64_t>(limits_[actuator].speed, speed);
   for (std::size_t a = 0; a < queues_.size(); ++a)
@@ -97,9 +111,15 @@ Millis Actuators::begin(std::size_t actuator, const Order& order, Millis now) {
   const Limits& limits = limits_[actuator];
   Queue& queue = queues_[actuator];
   let_go(actuator, vm::Release::hold, now);
+  queue.keys.clear();
+  queue.motion_ends = now;
   if (order.command->verb.action == vm::Action::stop) return 0;
   for (const auto& [param, value] : order.given)
     if (!value) return 0;
+  if (order.command->motion) {
+    begin_motion(actuator, order, now);
+    return go_to_next_key(actuator, now);
+  }
   const Number to = given(order, vm::Param::to), by = given(order, vm::Param::by);
   const Number over = given(order, vm::Param::over);
   const bool moves = order.command->verb.action == vm::Action::move && limits.goes;
@@ -137,9 +157,44 @@ Millis Actuators::begin(std::size_t actuator, const Order& order, Millis now) {
   return (queue.motion.length + 999) / 1000;
 }
 
+// "A key's time counts from the beginning of its round"; AT is how fast, TIMES how often.
+void Actuators::begin_motion(std::size_t actuator, const Order& order, Millis now) {
+  const compiler::ProgramMotion& motion = program_.motions.at(*order.command->motion);
+  Queue& queue = queues_[actuator];
+  const std::int64_t tempo = given(order, vm::Param::at).value_or(100'000);
+  const std::int64_t times = given(order, vm::Param::times).value_or(1000) / 1000;
+  if (tempo <= 0 || times < 1) return;
+  const auto stretched = [&](std::int64_t time) { return time * 100'000 / tempo; };
+  const Millis length = stretched(motion.length);
+  for (std::int64_t round = 0; round < std::min(times, kMostGestures); ++round) {
+    for (const compiler::ProgramTrack& track : motion.tracks)
+      for (const vm::Key& key : track.keys)
+        if (track.actuator == actuator)
+          queue.keys.push_back({now + round * length + stretched(key.time), key.to});
+    queue.motion_ends = now + (round + 1) * length;
+  }
+}
+
+// How long: to the next key, 20 ms at least, and no faster than its limit; then to the motion's end.
+Millis Actuators::go_to_next_key(std::size_t actuator, Millis now) {
+  Queue& queue = queues_[actuator];
+  const Limits& limits = limits_[actuator];
+  if (queue.keys.empty()) return std::max<Millis>(queue.motion_ends - now, 0);
+  const Key key = queue.keys.front();
+  queue.keys.pop_front();
+  const Millis over = std::max<Millis>(key.due - now, 20);
+  if (!limits.goes) return over;
+  const std::int64_t from = queue.motion.at(now);
+  const std::int64_t least =
+      limits.speed < vm::kValueMax ? *travel(key.to - from, limits.speed) : 0;
+  queue.motion = {from, key.to, now, std::max(over * 1000, least)};
+  return (queue.motion.length + 999) / 1000;
+}
+
 bool Actuators::submit(std::size_t actuator, Order order) {
   const Limits& limits = limits_[actuator];
   for (auto& [param, value] : order.given) {
+    if (order.command->motion) break;
     if (value && param == vm::Param::to) value = std::clamp(*value, limits.least, limits.most);
     if (value && param == vm::Param::at) value = std::clamp<std::int64_t>(*value, 0, limits.speed);
   }
@@ -150,8 +205,11 @@ bool Actuators::submit(std::size_t actuator, Order order) {
     queue.orders = {order};
     return true;
   }
-  const std::size_t waiting = queue.orders.size() - (queue.busy ? 1 : 0);
-  if (waiting >= kMostWaiting) return false;
+  if (waiting(queue) >= kMostWaiting) return false;
+  std::size_t all = 0;
+  for (const Queue& each : queues_)
+    all += waiting(each);
+  if (all >= kPlaces + kPlacesEach * used_.size()) return false;
   queue.orders.push_back(order);
   return true;
 }
@@ -194,6 +252,8 @@ bool Actuators::advance(std::size_t actuator, Millis now) {
     queue.ends = now + (queue.motion.length + 999) / 1000;
     return true;
   }
+  queue.ends = now + go_to_next_key(actuator, now);
+  if (queue.ends > now) return true;
   trace_.actuator("done", actuator);
   queue.busy = false;
   queue.orders.pop_front();

@@ -39,6 +39,10 @@ private:
     std::int64_t length = 0;  // in microseconds
     [[nodiscard]] std::int64_t at(Millis now) const;
   };
+  struct Key {  // of a MOTION: when it is to be there
+    Millis due = 0;
+    std::int64_t to = 0;
+  };
   struct Queue {
     std::deque<Order> orders;  // the first one is under way if busy
     bool busy = false;
@@ -47,12 +51,21 @@ private:
     unsigned legs = 0;                 // still to come
     bool halted = false;               // what it was doing is neither done nor cancelled yet
     Millis ends = 0;
+    std::deque<Key> keys;  // of the MOTION under way, those still to come …
+    Millis motion_ends = 0;
   };
   Millis begin(std::size_t actuator, const Order& order, Millis now);
   void go(std::size_t actuator, std::int64_t to, std::int64_t length, Millis now);
   void next_leg(std::size_t actuator, Millis now);
+  void begin_motion(std::size_t actuator, const Order& order, Millis now);
+  Millis go_to_next_key(std::size_t actuator, Millis now);
   void let_go(std::size_t actuator, vm::Release how, Millis now);
+  static std::size_t waiting(const Queue& queue) {
+    return queue.orders.size() - (queue.busy ? 1 : 0);
+  }
 
+  const compiler::Program& program_;
+  std::set<std::size_t> used_;  // actuators that the program commands or halts
   Trace& trace_;
   std::vector<vm::Release> on_release_, safe_;
   std::vector<Queue> queues_;

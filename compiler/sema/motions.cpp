@@ -1,0 +1,177 @@
+#include "compiler/sema/motions.hpp"
+
+#include <algorithm>
+
+#include "compiler/config/wiring.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr std::size_t kMostRows = 255;
+
+// Goes TO a place OVER a time, at the word of a verb that moves or sets it.
+bool follows_keys(const ActuatorConfig& actuator) {
+  return actuator.to_unit != nullptr &&
+         std::ranges::any_of(actuator.verbs, [](const VerbConfig& verb) {
+           return (verb.action == vm::Action::move || verb.action == vm::Action::set) &&
+                  verb.has(vm::Param::to) && verb.has(vm::Param::over);
+         });
+}
+
+}  // namespace
+
+std::optional<std::size_t> Motions::find(const ast::Name& name) {
+  MotionName* const known = names_.find_motion(name.text);
+  if (known == nullptr) return std::nullopt;
+  if (known->seen) return known->place;
+  known->seen = true;
+  if (auto motion = translate(*known->motion)) {
+    known->place = motions_.size();
+    motions_.push_back(std::move(*motion));
+  }
+  return known->place;
+}
+
+void Motions::check_unused() {
+  for (const auto& [folded, known] : names_.motions())
+    if (!known.in_module && !known.seen) (void)translate(*known.motion);
+}
+
+std::optional<ProgramMotion> Motions::translate(const ast::Motion& motion) {
+  ProgramMotion result{motion.name.text, 0, {}};
+  std::vector<std::vector<std::size_t>> columns;  // places in result.tracks
+  if (!add_columns(motion, columns, result)) return std::nullopt;
+  if (motion.rows.size() > kMostRows) {
+    diagnostics_
+        .report(Code::E0407, "a MOTION can have " + std::to_string(kMostRows) + " rows, and `" +
+                                 motion.name.text + "` has " + std::to_string(motion.rows.size()))
+        .label(motion.name.span);
+    return std::nullopt;
+  }
+  for (const ast::MotionRow& row : motion.rows)
+    if (!add_row(motion, row, columns, result)) return std::nullopt;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (!result.tracks[columns[i].front()].keys.empty()) continue;
+    diagnostics_
+        .report(Code::E0511, "nothing is said of `" + motion.columns[i].text + "` in this MOTION")
+        .label(motion.columns[i].span, "its column has no value");
+    return std::nullopt;
+  }
+  return result;
+}
+
+bool Motions::add_columns(const ast::Motion& motion, std::vector<std::vector<std::size_t>>& columns,
+                          ProgramMotion& result) {
+  for (const ast::Name& column : motion.columns) {
+    const auto target = names_.find_target(column.text);
+    if (!target) {
+      Diagnostic& d = diagnostics_.report(Code::E0501, "there is no actuator `" + column.text + "`")
+                          .label(column.span);
+      if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size())) return false;
+      const auto candidates = names_.target_names();
+      suggest(d, column.span, column.text, candidates);
+      if (d.help.empty()) d.helps("actuators: " + list_names(candidates));
+      return false;
+    }
+    if (target->actuators.empty()) return false;
+    columns.emplace_back();
+    for (const std::size_t actuator : target->actuators) {
+      if (!can_move(actuator, column)) return false;
+      if (std::ranges::find(result.tracks, actuator, &ProgramTrack::actuator) !=
+          result.tracks.end()) {
+        diagnostics_
+            .report(Code::E0511, "`" + robot_.actuators[actuator].name.text + "` has two columns")
+            .label(column.span, "here it is again");
+        return false;
+      }
+      columns.back().push_back(result.tracks.size());
+      result.tracks.push_back({actuator, {}});
+    }
+  }
+  return true;
+}
+
+bool Motions::can_move(std::size_t actuator, const ast::Name& column) {
+  const ActuatorConfig& config = robot_.actuators[actuator];
+  if (follows_keys(config)) return true;
+  diagnostics_.report(Code::E0511, "`" + config.name.text + "` cannot be part of a MOTION")
+      .label(column.span)
+      .label(config.name.span, "it knows no verb that takes TO and OVER", false);
+  return false;
+}
+
+// Rows stand in the order of time, and so far apart that actuators can follow.
+std::optional<vm::Value> Motions::time_of(const ast::MotionRow& row, vm::Value after) {
+  const auto time = expressions_.constant_amount(
+      *row.time, {&canonical_unit(vm::Dimension::duration), "AT", row.time->span});
+  if (!time) return std::nullopt;
+  const vm::Value value = time->code.constant;
+  if (after < 0 || value >= after + static_cast<vm::Value>(vm::kMinKeyGapMs)) return value;
+  const std::string least = std::to_string(vm::kMinKeyGapMs) + "ms";
+  diagnostics_
+      .report(Code::E0510, value <= after
+                               ? std::string("this row is not after the one above it")
+                               : "this row is less than " + least + " after the one above it")
+      .label(row.time->span)
+      .helps("times count from the beginning of the MOTION, and rows are at least " + least +
+             " apart");
+  return std::nullopt;
+}
+
+bool Motions::add_row(const ast::Motion& motion, const ast::MotionRow& row,
+                      const std::vector<std::vector<std::size_t>>& columns, ProgramMotion& result) {
+  if (row.keys.size() != columns.size()) {
+    const auto counted = [](std::size_t count, const std::string& what) {
+      return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+    };
+    diagnostics_
+        .report(Code::E0511, "this row has " + counted(row.keys.size(), "value") + " for " +
+                                 counted(columns.size(), "actuator"))
+        .label(row.span)
+        .label(motion.name.span, "the columns are named here", false)
+        .helps("write `-` where an actuator is on its way");
+    return false;
+  }
+  const bool first = &row == &motion.rows.front();
+  const auto time = time_of(row, first ? -1 : result.length);
+  if (!time) return false;
+  result.length = *time;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (row.keys[i].value == nullptr) continue;
+    for (const std::size_t track : columns[i])
+      if (!add_key(row.keys[i], *time, result.tracks[track])) return false;
+  }
+  return true;
+}
+
+bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ProgramTrack& track) {
+  const ActuatorConfig& actuator = robot_.actuators[track.actuator];
+  auto number = expressions_.constant(*key.value, "a value of a MOTION");
+  if (!number) return false;
+  number = expressions_.number_of(std::move(*number));
+  if (!number->is_number()) return false;
+  Diagnostics said_before;  // of which unit bare numbers are, once for a column
+  Diagnostics& notes = track.keys.empty() ? diagnostics_ : said_before;
+  if (!fit_parameter(actuator, vm::Param::to, *number, notes, diagnostics_)) return false;
+  const vm::Key made{time, number->code.constant};
+  if (!track.keys.empty()) report_late(track, made, key.span);
+  track.keys.push_back(made);
+  return true;
+}
+
+// It goes there at its limit, and is there later than the table says.
+void Motions::report_late(const ProgramTrack& track, const vm::Key& key, Span span) {
+  const ActuatorConfig& actuator = robot_.actuators[track.actuator];
+  const vm::Key& before = track.keys.back();
+  const std::int64_t way = std::abs(std::int64_t{key.to} - before.to);
+  const std::int64_t time = key.time - before.time;
+  if (way * vm::kScale <= time * actuator.speed_limit) return;
+  const Unit& unit = param_unit(actuator, vm::Param::at);
+  diagnostics_
+      .report(Code::N0004, "`" + actuator.name.text + "` comes here late: it goes no faster than " +
+                               format_value(actuator.speed_limit, unit))
+      .label(span)
+      .label(actuator.limit_span, "the limit", false);
+}
+
+}  // namespace robosync::compiler

@@ -1,0 +1,49 @@
+// Checks MOTIONs: tables of key frames, a column for each actuator or group, a row for each time.
+#pragma once
+
+#include "compiler/sema/expressions.hpp"
+#include "compiler/sema/names.hpp"
+
+namespace robosync::compiler {
+
+inline constexpr std::string_view kPerform = "PERFORM";  // the verb; a word of RSL, no keyword
+
+// Is a number that stands for a parameter of `actuator` one that it can do? Gives a bare one its unit
+// (the note of that goes to `notes`), reports what is wrong.
+[[nodiscard]] bool fit_parameter(const ActuatorConfig& actuator, vm::Param param, Typed& number,
+                                 Diagnostics& notes, Diagnostics& diagnostics);
+
+class Motions {
+public:
+  Motions(const Robot& robot, Names& names, Expressions& expressions, Diagnostics& diagnostics)
+      : robot_(robot), names_(names), expressions_(expressions), diagnostics_(diagnostics) {}
+
+  // The place of what is performed, in performed(); nothing when no MOTION has the name, or it has a
+  // mistake, which has been reported.
+  [[nodiscard]] std::optional<std::size_t> find(const ast::Name& name);
+  [[nodiscard]] const ProgramMotion& at(std::size_t place) const { return motions_[place]; }
+
+  // Those that find() has found so far, in that order.
+  [[nodiscard]] const std::vector<ProgramMotion>& performed() const { return motions_; }
+  // Checks the others; those of modules need not fit the robot.
+  void check_unused();
+
+private:
+  std::optional<ProgramMotion> translate(const ast::Motion& motion);
+  bool add_columns(const ast::Motion& motion, std::vector<std::vector<std::size_t>>& columns,
+                   ProgramMotion& result);
+  bool can_move(std::size_t actuator, const ast::Name& column);
+  std::optional<vm::Value> time_of(const ast::MotionRow& row, vm::Value after);
+  bool add_row(const ast::Motion& motion, const ast::MotionRow& row,
+               const std::vector<std::vector<std::size_t>>& columns, ProgramMotion& result);
+  bool add_key(const ast::MotionKey& key, vm::Value time, ProgramTrack& track);
+  void report_late(const ProgramTrack& track, const vm::Key& key, Span span);
+
+  const Robot& robot_;
+  Names& names_;
+  Expressions& expressions_;
+  Diagnostics& diagnostics_;
+  std::vector<ProgramMotion> motions_;
+};
+
+}  // namespace robosync::compiler
