@@ -86,12 +86,13 @@ struct ProgramVerb {
 // One or several actuators. STOP in a response is a command with the verb STOP; STOP ALL is one for
 // each actuator. PERFORM is one for all actuators of its MOTION.
 struct ProgramCommand {
-  std::optional<std::size_t> group;     // place in Robot::groups: the target is the group,
-  std::optional<std::size_t> motion{};  // place in Program::motions: it is all that this moves, …
-  std::vector<std::size_t> actuators;   // … and these are its members; else exactly one
+  std::optional<std::size_t> group;    // place in Robot::groups: the target is the group …
+  std::vector<std::size_t> actuators;  // … and these are its members; else exactly one
   ProgramVerb verb;
   std::optional<ProgramWord> word;
   std::vector<ProgramArgument> arguments;
+  // PERFORM: the place in Program::motions of what is performed; `actuators` are all that it moves.
+  std::optional<std::size_t> motion{};
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 0;
   static constexpr std::tuple kParts{&ProgramCommand::arguments};

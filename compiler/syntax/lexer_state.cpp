@@ -87,8 +87,7 @@ bool is_curly(char32_t point) {
          std::end(curly_quotes);
 }
 
-// What may stand behind the / of a unit: a second, by any of its names.
-// What may stand behind the / of a unit, in any case.
+// What may stand behind the / of a unit: a second, by any of its names, in any case.
 bool is_per_second(std::string_view unit_end) {
   constexpr std::string_view names[] = {"s", "sec", "second"};
   return std::ranges::any_of(names, [unit_end](std::string_view name) {
@@ -150,22 +149,25 @@ void LexerState::colon() {
   if (at == 0 || tokens_[at - 1].kind == Kinds::NEWLINE) tokens_[at].kind = Kinds::LIST;
 }
 
-// `COUNT OF`, and the nearest ITEM in the line whose OF this is.
+// `COUNT OF`, and the nearest ITEM in the line whose OF this is. In `ITEM count OF names` the index
+// is a variable that is called count, unless one more OF shows that it was `ITEM COUNT OF …`.
 void LexerState::of() {
+  const auto at = [this](std::size_t back) -> Token& { return tokens_[tokens_.size() - 1 - back]; };
   constexpr std::size_t farthest = 64;
-  const auto is_check = [this](std::size_t back) {
-    return back < tokens_.size() && tokens_[tokens_.size() - 1 - back].kind == Kinds::CHECK;
-  };
-  if (is_check(2)) return;
-  if (is_name(1, "COUNT")) {
-    tokens_[tokens_.size() - 2].kind = Kinds::COUNT;
+  const std::size_t end = std::min(farthest, tokens_.size());
+  if (end > 2 && at(2).kind == Kinds::CHECK) return;
+  if (is_name(1, "COUNT") && !is_name(2, "ITEM")) {
+    at(1).kind = Kinds::COUNT;
     return;
   }
-  for (std::size_t back = 2; back < std::min(farthest, tokens_.size()); ++back) {
-    Token& token = tokens_[tokens_.size() - 1 - back];
-    if (token.kind == Kinds::NEWLINE || is_check(back)) return;
+  for (std::size_t back = 2; back < end; ++back) {
+    if (at(back).kind == Kinds::NEWLINE || at(back).kind == Kinds::CHECK) return;
+    if (at(back).kind == Kinds::ITEM && is_name(back - 1, "COUNT")) {
+      at(back - 1).kind = Kinds::COUNT;
+      return;
+    }
     if (!is_name(back, "ITEM")) continue;
-    token.kind = Kinds::ITEM;
+    at(back).kind = Kinds::ITEM;
     return;
   }
 }

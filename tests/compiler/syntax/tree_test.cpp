@@ -212,6 +212,8 @@ TEST_CASE("LISTs, and what is taken out of them", "[tree]") {
         "(SAY NEXT jokes for:2s) (SAY (item (+ a 1) jokes)) (alert ANY.jokes)");
   CHECK(statement("LOG COUNT OF jokes, ITEM COUNT OF jokes OF jokes, item, count") ==
         "(log (count jokes) (item (count jokes) jokes) item count)");
+  CHECK(statement("ALERT ITEM count OF jokes\nALERT ITEM count + COUNT OF jokes OF jokes") ==
+        "(alert (item count jokes)) (alert (item (+ count (count jokes)) jokes))");
   CHECK(statement("SET list TO item + count\nlist") == "(set list (+ item count)) (list)");
   CHECK(tree("CHECK item OF a b\nx BELOW 1\nEND\nCHECK count OF c\nx BELOW 1\nEND\n").size() > 10);
 }
