@@ -82,6 +82,8 @@ vm::Verdict Runtime::check(std::span<const std::byte> bytes) {
   vm::Image image;
   const vm::Verdict verdict = vm::verify(bytes, limits_, image);
   if (!verdict.ok()) return verdict;
+  const vm::Verdict wired = policy::judge(image, board_.pins());
+  if (!wired.ok()) return wired;
   policy::count_needs(image, memory_.board(), next_);
   return policy::judge(next_, memory_.board());
 }

@@ -64,7 +64,7 @@ enum class Param : std::uint8_t {
 
 enum class DriverId : std::uint8_t {
 #define SENSOR_DRIVER(name, sample, doc) name,
-#define ACTUATOR_DRIVER(name, start, advance, release, ends, doc) name,
+#define ACTUATOR_DRIVER(name, ...) name,
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER
 #undef ACTUATOR_DRIVER

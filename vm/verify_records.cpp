@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "vm/drivers.hpp"
 #include "vm/timers.hpp"
 #include "vm/verification.hpp"
 
@@ -87,7 +88,10 @@ Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t) {
   walk.next_channel += sensor.channel_count;
   if (walk.next_channel > walk.image.channels.size()) return Refusal::bad_index;
   if (sensor.reserved != 0) return Refusal::bad_value;
-  return check_driver(walk, sensor.driver, DriverKind::sensor);
+  const Refusal driver = check_driver(walk, sensor.driver, DriverKind::sensor);
+  if (driver != Refusal::none || !is_on_i2c(sensor.driver)) return driver;
+  return good_or(Refusal::bad_value, sensor.period_ms > 0 && sensor.address >= kFirstAddress &&
+                                         sensor.address <= kLastAddress);
 }
 
 // Each channel names its sensor, and stands in that sensor's range. As the ranges follow each other
@@ -103,12 +107,25 @@ Refusal check_channel(Walk& walk, const Channel& channel, std::size_t index) {
                                          is_range(channel.min, channel.max) && channel.change >= 0);
 }
 
-Refusal check_actuator(Walk& walk, const Actuator& actuator, std::size_t) {
+// One pin has one owner, and whoever has a motor lets it stand still in its safe state.
+Refusal check_pin(const Walk& walk, const Actuator& actuator, std::size_t index) {
+  const PinUse use = pin_use(actuator.driver);
+  if (use == PinUse::nothing) return Refusal::none;
+  for (std::size_t a = 0; a < index; ++a) {
+    const Actuator& before = walk.image.actuators[a];
+    if (before.pin == actuator.pin && pin_use(before.driver) != PinUse::nothing)
+      return Refusal::shared_pin;
+  }
+  return good_or(Refusal::drives_on, use != PinUse::level || actuator.safe != Release::hold);
+}
+
+Refusal check_actuator(Walk& walk, const Actuator& actuator, std::size_t index) {
   if ((actuator.verbs & ~low_bits(walk.image.verbs.size())) != 0) return Refusal::bad_index;
   const bool good = is_enumerator(actuator.on_release) && is_enumerator(actuator.safe) &&
                     is_range(actuator.min, actuator.max) && actuator.speed_limit >= 0;
   if (!good) return Refusal::bad_value;
-  return check_driver(walk, actuator.driver, DriverKind::actuator);
+  const Refusal driver = check_driver(walk, actuator.driver, DriverKind::actuator);
+  return driver == Refusal::none ? check_pin(walk, actuator, index) : driver;
 }
 
 Refusal check_group(Walk& walk, const Group& group, std::size_t) {
@@ -167,6 +184,20 @@ Refusal check_band(Walk&, const Band& band, std::size_t) {
   return good_or(Refusal::bad_value, band.low <= band.high && (holds_nothing || holds_itself));
 }
 
+// What SAFETY knows of a sensor that has fallen silent is nothing, after a while.
+bool grows_stale(const Image& image, std::uint8_t input) {
+  if (input >= image.channels.size()) return true;  // a variable
+  const Channel& channel = image.channels[input];
+  return channel.stale_ms > 0 || !is_on_i2c(image.sensors[channel.sensor].driver);
+}
+
+bool all_grow_stale(const Image& image, const Behavior& safety) {
+  const std::uint8_t* const inputs = image.inputs.data() + safety.first_input;
+  for (std::size_t i = 0; i < safety.input_count; ++i)
+    if (!grows_stale(image, inputs[i])) return false;
+  return true;
+}
+
 // Behaviours stand by strictly falling priority, and their rules follow each other without gaps.
 Refusal check_behavior(Walk& walk, const Behavior& behavior, std::size_t index) {
   if (behavior.name != kNoIndex && !is_string(walk, behavior.name)) return Refusal::bad_string;
@@ -181,6 +212,9 @@ Refusal check_behavior(Walk& walk, const Behavior& behavior, std::size_t index) 
   if (walk.next_rule > walk.image.rules.size() ||
       !is_inside(behavior.first_input, behavior.input_count, walk.image.inputs.size()))
     return Refusal::bad_index;
+
+  if (behavior.priority == kSafetyPriority && !all_grow_stale(walk.image, behavior))
+    return Refusal::never_stale;
 
   if (behavior.cells < behavior.input_count + behavior.locals + count_watches(walk.image, behavior))
     return Refusal::bad_value;

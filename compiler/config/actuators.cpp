@@ -7,6 +7,7 @@
 
 #include "compiler/config/entries.hpp"
 #include "compiler/config/values.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -124,6 +125,17 @@ void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics
     actuator.speed_limit = *limit;
 }
 
+// What moves by power alone must not hold.
+void read_safe(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
+  actuator.safe = read_release(value, diagnostics).value_or(actuator.safe);
+  if (actuator.safe != vm::Release::hold || vm::pin_use(actuator.driver) != vm::PinUse::level)
+    return;
+  diagnostics
+      .report(Code::E0205, "a motor that holds what it does runs on when the robot is halted")
+      .label(value.span)
+      .helps("`safe` can be `coast` here: off; only a servo may `hold`");
+}
+
 }  // namespace
 
 std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringReader& wiring,
@@ -142,6 +154,7 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
     actuator.bus = place.bus;
     actuator.pin = place.place;
     if (type->name == "VIRTUAL") actuator.driver = vm::DriverId::virtual_actuator;
+    if (vm::pin_use(actuator.driver) != vm::PinUse::nothing) wiring.check_output(fields, place);
   }
   if (const auto* range = fields.find("range")) read_position_range(*range, actuator, diagnostics);
   if (const auto* speeds = fields.find("speeds")) read_speeds(*speeds, actuator, diagnostics);
@@ -150,8 +163,7 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
   if (const auto* limits = fields.find("limits")) read_limits(*limits, actuator, diagnostics);
   if (const auto* release = fields.find("on_release"))
     actuator.on_release = read_release(*release, diagnostics).value_or(actuator.on_release);
-  if (const auto* safe = fields.find("safe"))
-    actuator.safe = read_release(*safe, diagnostics).value_or(actuator.safe);
+  if (const auto* safe = fields.find("safe")) read_safe(*safe, actuator, diagnostics);
   return actuator;
 }
 

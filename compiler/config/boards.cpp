@@ -17,7 +17,30 @@ std::uint32_t read_number(Fields& fields, std::string_view key, std::string_view
   return static_cast<std::uint32_t>(read_whole(*value, 0, UINT32_MAX, diagnostics).value_or(0));
 }
 
+// [{"pins": [first, last], …}]: how far a program may go with each is the board's own business.
+std::vector<Board::Pins> read_outputs(const json::Value& list, Diagnostics& diagnostics) {
+  std::vector<Board::Pins> outputs;
+  if (!expect_kind(list, json::Kind::array, diagnostics)) return outputs;
+  outputs.reserve(list.items.size());
+  for (const json::Value& entry : list.items) {
+    Fields fields(entry, Object::outputs, diagnostics);
+    const auto* pins = fields.require("pins", "outputs");
+    if (pins == nullptr || pins->items.size() != 2) continue;
+    const auto read = [&](const json::Value& value) {
+      return static_cast<std::uint16_t>(
+          read_whole(value, 0, UINT16_MAX - 1, diagnostics).value_or(0));
+    };
+    outputs.push_back({read(pins->items[0]), read(pins->items[1])});
+  }
+  return outputs;
+}
+
 }  // namespace
+
+bool Board::has_output(std::uint16_t pin) const {
+  return std::ranges::any_of(
+      outputs, [&](const Pins& pins) { return pin >= pins.first && pin <= pins.last; });
+}
 
 Board read_board(const BoardText& text, Diagnostics& diagnostics) {
   SourceMap sources;
@@ -28,6 +51,9 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
   if (!tree) return board;
   Fields fields(*tree, Object::board, diagnostics);
   board.step_budget = read_number(fields, "step_budget", "a board", diagnostics);
+  board.i2c_buses = read_number(fields, "i2c_buses", "a board", diagnostics);
+  if (const auto* outputs = fields.require("outputs", "a board"))
+    board.outputs = read_outputs(*outputs, diagnostics);
   const auto* arena = fields.require("arena", "a board");
   if (arena == nullptr) return board;
   Fields of_arena(*arena, Object::arena, diagnostics);

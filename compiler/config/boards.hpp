@@ -23,6 +23,13 @@ struct Board {
   std::uint32_t arena_begin = 0;  // address of its memory for programs
   std::uint32_t arena_bytes = 0;
   std::uint32_t step_budget = 0;  // M4 instructions of VM code in one step
+  struct Pins {
+    std::uint16_t first, last;
+  };
+  std::vector<Pins> outputs;    // pins that a program may drive
+  std::uint32_t i2c_buses = 0;  // numbered from 0
+
+  [[nodiscard]] bool has_output(std::uint16_t pin) const;
 };
 
 inline constexpr std::string_view kDefaultBoard = "mps2-an386";  // when robot.json names none

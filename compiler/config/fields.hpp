@@ -28,7 +28,8 @@ enum class Object : std::uint8_t {
   model,
   verb,
   board,
-  arena
+  arena,
+  outputs
 };
 
 enum class KeyUse : std::uint8_t { used, later, editor };

@@ -4,6 +4,7 @@
 #include "compiler/config/channels.hpp"
 #include "compiler/config/entries.hpp"
 #include "compiler/config/values.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -90,6 +91,8 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
     const Wiring place = wiring.read(fields, *type, true);
     sensor.bus = place.bus;
     sensor.address = place.place;
+    if (type->name != "VIRTUAL" && device.has_driver && vm::is_on_i2c(sensor.driver))
+      wiring.check_bus(fields, place);
   }
   if (const auto* number = fields.find("register"))
     for (ChannelConfig& channel : sensor.channels)

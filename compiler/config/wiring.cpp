@@ -6,6 +6,7 @@
 
 #include "compiler/config/values.hpp"
 #include "compiler/diagnostics/nearest.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -20,10 +21,6 @@ constexpr std::array<WiringType, 7> kTypes = {{
     {"UART", true, true, true, false, false},
     {"VIRTUAL", true, true, true, true, true},  // keys of the real thing may stay
 }};
-
-// Other addresses are reserved by the I2C specification.
-constexpr std::int64_t kFirstAddress = 0x08;
-constexpr std::int64_t kLastAddress = 0x77;
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::count_)> kReleases = {
     "hold", "rest", "coast"};
@@ -85,11 +82,37 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, bool is_sensor
   if (type.address) {
     if (const auto* address = fields.require("address", what))
       wiring.place = static_cast<std::uint16_t>(
-          read_whole(*address, kFirstAddress, kLastAddress, diagnostics_).value_or(kFirstAddress));
+          read_whole(*address, vm::kFirstAddress, vm::kLastAddress, diagnostics_)
+              .value_or(vm::kFirstAddress));
   } else if (type.pin) {
     if (const auto* pin = fields.require("pin", what)) wiring.place = read_pin(*pin);
   }
   return wiring;
+}
+
+void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
+  const auto* bus = fields.find("bus");
+  if (bus == nullptr || wiring.bus < board_.i2c_buses) return;
+  diagnostics_
+      .report(Code::E0205,
+              "the board " + board_.name + " has no I2C bus " + std::to_string(wiring.bus))
+      .label(bus->span)
+      .helps(board_.i2c_buses == 1 ? "it has one, bus 0"
+                                   : "its buses are 0 to " + std::to_string(board_.i2c_buses - 1));
+}
+
+void WiringReader::check_output(const Fields& fields, const Wiring& wiring) {
+  const auto* pin = fields.find("pin");
+  if (pin == nullptr || board_.has_output(wiring.place)) return;
+  std::vector<std::string> outputs;
+  for (const auto& [first, last] : board_.outputs)
+    outputs.push_back(first == last ? std::to_string(first)
+                                    : std::to_string(first) + " to " + std::to_string(last));
+  diagnostics_
+      .report(Code::E0205, "on the board " + board_.name + " pin " + std::to_string(wiring.place) +
+                               " is no output")
+      .label(pin->span)
+      .helps("its outputs are the pins " + list_names(outputs, "and"));
 }
 
 std::optional<std::size_t> read_choice(const json::Value& value,

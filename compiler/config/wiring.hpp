@@ -5,7 +5,9 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 
+#include "compiler/config/boards.hpp"
 #include "compiler/config/fields.hpp"
 #include "compiler/config/robot.hpp"
 
@@ -26,16 +28,21 @@ struct Wiring {
   std::uint16_t place = 0;  // I2C address or pin
 };
 
-// Reads buses, addresses and pins of one robot; a pin may be used once.
+// Reads buses, addresses and pins of one robot, which has `board`; a pin may be used once.
 class WiringReader {
 public:
-  explicit WiringReader(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+  WiringReader(Board board, Diagnostics& diagnostics)
+      : board_(std::move(board)), diagnostics_(diagnostics) {}
   [[nodiscard]] Wiring read(Fields& fields, const WiringType& type, bool is_sensor);
+  // For those whose driver uses them: the board must have them.
+  void check_bus(const Fields& fields, const Wiring& wiring);
+  void check_output(const Fields& fields, const Wiring& wiring);
 
 private:
   std::uint16_t read_pin(const json::Value& value);
   void report_foreign(const Fields& fields, const WiringType& type);
 
+  Board board_;
   Diagnostics& diagnostics_;
   std::map<std::uint16_t, Span> pins_;
 };

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "vm/image.hpp"
+#include "runtime-m4/policy/pins.hpp"
 
 namespace robosync::boards {
 
@@ -15,6 +15,8 @@ public:
   virtual const char* name() const = 0;
   virtual std::uint8_t reset_reason() const = 0;  // link::Status::reset_reason
 
+  // What programs may do with the pins. It never changes.
+  virtual const policy::BoardPins& pins() const = 0;
   // One I2C transaction: writes `out`, then (repeated start) reads `in`. False when the device does
   // not acknowledge or there is no such bus. Takes at most a few milliseconds.
   virtual bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,

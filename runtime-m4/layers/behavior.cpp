@@ -123,7 +123,8 @@ void BehaviorLayer::conclude(unsigned rule) {
   Trace& trace = layers_.trace;
   if (waited && moved) trace.emit(EventKind::go_on, trace.step(), rule);
   if (result.zero_divide != 0) trace.emit(EventKind::zero_divide, trace.step(), rule);
-  put_out(workspace_.output.first(std::min<std::size_t>(result.words, workspace_.output.size())));
+  put_out(workspace_.output.first(std::min<std::size_t>(result.words, workspace_.output.size())),
+          layers_.arbiter.holding(rule).actuators);
   if ((result.assigned | result.shifted) != 0) stage_writes(behavior);
   point = {};
   if (progress.pause == vm::Pause::ended) return;
@@ -141,12 +142,13 @@ void BehaviorLayer::stage_writes(unsigned behavior) {
   layers_.variables.stage(machine, program_->image.behaviors[behavior], *snapshot_);
 }
 
-void BehaviorLayer::put_out(std::span<const vm::Word> output) {
+// Commands reach the actuators that the response has declared, whatever its thread says.
+void BehaviorLayer::put_out(std::span<const vm::Word> output, ActuatorMask declared) {
   vm::OutputReader reader(output);
   vm::Output said;
   while (reader.next(said)) {
     if (said.kind == vm::OutputKind::command) {
-      stage(said);
+      stage(said, declared);
     } else {
       report_text(layers_.trace, said, layers_.trace.step());
     }
@@ -154,7 +156,7 @@ void BehaviorLayer::put_out(std::span<const vm::Word> output) {
 }
 
 // A command to a group goes to each member.
-void BehaviorLayer::stage(const vm::Output& said) {
+void BehaviorLayer::stage(const vm::Output& said, ActuatorMask declared) {
   const vm::Image& image = program_->image;
   if (said.verb >= image.verbs.size()) return;
   if (said.word != vm::kNoWord && said.word >= image.words.size()) return;
@@ -166,7 +168,7 @@ void BehaviorLayer::stage(const vm::Output& said) {
   command.known_ = said.given;
   each_bit(said.given, [&](unsigned p) { command.params_[p] = said.params[p]; });
   if (said.word != vm::kNoWord) add_word(image.words[said.word], command);
-  layers_.control.stage(command, image.target_mask(said.target));
+  layers_.control.stage(command, image.target_mask(said.target) & declared);
 }
 
 // The program's own parameter outweighs its word's.

@@ -110,8 +110,8 @@ private:
   bool waits(RuleRange rules) const;
   void run_response(vm::Machine& machine, unsigned rule, unsigned code);
 
-  void put_out(std::span<const vm::Word> output);
-  void stage(const vm::Output& said);
+  void put_out(std::span<const vm::Word> output, ActuatorMask declared);
+  void stage(const vm::Output& said, ActuatorMask declared);
   static void add_word(const vm::WordEntry& word, Command& command);
   void stage_writes(unsigned behavior);
   vm::Progress checked_progress() const;

@@ -61,6 +61,7 @@ void ControlLayer::stage(const Command& command, ActuatorMask actuators) {
   for (ActuatorMask left = actuators; left != 0; left &= left - 1) {
     const auto actuator = static_cast<unsigned>(std::countr_zero(left));
     const auto mine = bit<ActuatorMask>(actuator);
+    if (!has(program_->image.actuators[actuator].verbs, command.verb())) continue;
     (stage_one(units_[actuator], command) ? staged_ : dropped_) |= mine;
   }
   to_commit_ |= staged_;

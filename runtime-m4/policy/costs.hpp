@@ -69,8 +69,8 @@ constexpr ActuatorCosts actuator_costs(vm::DriverId driver) {
   constexpr bool later = false;
   switch (driver) {
 #define SENSOR_DRIVER(name, ...) case vm::DriverId::name:
-#define ACTUATOR_DRIVER(name, start, advance, release, ends, doc) \
-  case vm::DriverId::name:                                        \
+#define ACTUATOR_DRIVER(name, start, advance, release, ends, output, doc) \
+  case vm::DriverId::name:                                                \
     return {start, advance, release, ends};
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/pins.hpp"
 
 namespace robosync::sim {
 
@@ -13,6 +14,7 @@ class HostBoard final : public boards::Board {
 public:
   const char* name() const override { return "host"; }
   std::uint8_t reset_reason() const override { return 0; }
+  const policy::BoardPins& pins() const override { return boards::kPins; }
 
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;

@@ -56,9 +56,9 @@ class Declared(unittest.TestCase):
                  "of nothing": ('SENSOR_DRIVER(lidar, i2c(0, 0), "new")', False),
                  "as if it were fed": ('SENSOR_DRIVER(lidar, fed(), "new")', False),
                  "on a bus that no board declares": ('SENSOR_DRIVER(lidar, radio(3), "new")', False),
-                 "an actuator with its costs": ('ACTUATOR_DRIVER(lamp, 1, 2, 3, at_once, "new")', True),
+                 "an actuator with its costs": ('ACTUATOR_DRIVER(lamp, 1, 2, 3, at_once, level, "new")', True),
                  "an actuator without": ('ACTUATOR_DRIVER(lamp, "new")', False),
-                 "an actuator that does not say when it ends": ('ACTUATOR_DRIVER(lamp, 1, 2, 3, "new")', False)}
+                 "an actuator that does not say when it ends": ('ACTUATOR_DRIVER(lamp, 1, 2, 3, level, "new")', False)}
         for what, (line, good) in added.items():
             with self.subTest(what):
                 self.assertEqual(self.compiles(BOARDS[0], {"vm/drivers.def": f"{drivers}{line}\n"}), good)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/pins.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/runtime.hpp"
@@ -28,6 +29,7 @@ public:
 
   const char* name() const override { return "noting"; }
   std::uint8_t reset_reason() const override { return 1; }
+  const policy::BoardPins& pins() const override { return board_pins; }
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override {
     transfers.push_back({bus, address, {out.begin(), out.end()}, in.size()});
@@ -55,6 +57,7 @@ public:
   std::deque<std::byte> answers;  // bytes the next reads get; none left: no acknowledge
   bool acknowledges = true;
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;  // all, by pin
+  policy::BoardPins board_pins = boards::kPins;
   unsigned kicks = 0;
   bool watching = false;
 };

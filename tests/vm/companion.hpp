@@ -48,8 +48,9 @@ inline void add_sensors(ImageBuilder& image) {
 inline void add_robot(ImageBuilder& image) {
   add_sensors(image);
   const auto actuator = [&](std::string_view name, DriverId driver, std::uint32_t verbs) {
-    image.actuators.push_back({image.name(name), driver, 0, 3, Release::rest, Release::coast, verbs,
-                               -90 * kScale, 90 * kScale, kValueMax});
+    const auto pin = static_cast<std::uint16_t>(3 + image.actuators.size());
+    image.actuators.push_back({image.name(name), driver, 0, pin, Release::rest, Release::coast,
+                               verbs, -90 * kScale, 90 * kScale, kValueMax});
   };
   actuator("left_arm", DriverId::servo, 1 << move_verb);
   actuator("right_arm", DriverId::servo, 1 << move_verb);

@@ -36,6 +36,16 @@ TEST_CASE("sensors") {
   refused(Refusal::bad_index, 1, [](auto& s) { s[0].channel_count = 1; });  // leaves a gap
   refused(Refusal::bad_index, 1, [](auto& s) { s[1].channel_count = 2; });  // one too many
   refused(Refusal::bad_index, 0, [](auto& s) { s[0].channel_count = 255; });
+  // What is measured is measured again and again, at an address that there is.
+  refused(Refusal::bad_value, 0, [](auto& s) { s[0].period_ms = 0; });
+  refused(Refusal::bad_value, 0, [](auto& s) { s[0].address = 0x07; });
+  refused(Refusal::bad_value, 0, [](auto& s) { s[0].address = 0x78; });
+  refused(Refusal::bad_value, 0, [](auto& s) { s[0].address = 0xFFFF; });
+  for (const int address : {0x08, 0x77}) {
+    ImageBuilder image = robot::make();
+    image.sensors[0].address = static_cast<std::uint16_t>(address);
+    check_accepted(image);
+  }
 }
 
 TEST_CASE("a driver that the firmware does not have is named by its record") {
@@ -65,6 +75,14 @@ TEST_CASE("channels") {
   refused(Refusal::bad_value, 1, [](auto& c) { c[1].min = kUnknown; });
   refused(Refusal::bad_value, 1, [](auto& c) { c[1].max = c[1].min - 1; });
   refused(Refusal::bad_value, 1, [](auto& c) { c[1].change = -1; });
+  check_refused([](ImageBuilder& i) { i.channels[1].stale_ms = 0; },
+                {Refusal::never_stale, Section::behaviors, 0});
+  {
+    ImageBuilder image = robot::make();
+    image.channels[0].stale_ms = 0;  // SAFETY does not read it
+    image.channels[2].stale_ms = 0;  // it is fed
+    check_accepted(image);
+  }
   // A channel that no sensor owns.
   check_refused([](ImageBuilder& i) { i.channels.push_back(i.channels[2]); },
                 {Refusal::bad_index, Section::channels, 3});
@@ -113,6 +131,17 @@ TEST_CASE("actuators") {
   refused(Refusal::bad_value, 2, [](auto& a) { a[2].speed_limit = -1; });
   refused(Refusal::bad_value, 2, [](auto& a) { a[2].speed_limit = kUnknown; });
   refused(Refusal::bad_index, 0, [](auto& a) { a[0].verbs |= 1 << 2; });
+  refused(Refusal::shared_pin, 1, [](auto& a) { a[1].pin = a[0].pin; });
+  refused(Refusal::drives_on, 0, [](auto& a) {
+    a[0].driver = DriverId::pwm;
+    a[0].safe = Release::hold;
+  });
+  ImageBuilder image = robot::make();
+  image.actuators[2].pin = image.actuators[0].pin;  // a player has none
+  image.actuators[0].safe = Release::hold;          // a servo may
+  image.actuators[1].driver = DriverId::pwm;
+  image.actuators[1].on_release = Release::hold;
+  check_accepted(image);
 }
 
 TEST_CASE("groups, verbs, words") {

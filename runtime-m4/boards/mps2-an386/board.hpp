@@ -14,8 +14,9 @@
 #include "runtime-m4/boards/mps2-an386/i2c.hpp"
 #include "runtime-m4/boards/mps2-an386/registers.hpp"
 #include "runtime-m4/boards/mps2-an386/uart.hpp"
+#include "runtime-m4/boards/pins.hpp"
 
-inline constexpr std::size_t kVirtualPwmPins = 32;
+inline constexpr std::size_t kVirtualPwmPins = 36;
 extern "C" std::array<volatile std::uint32_t, kVirtualPwmPins> robosync_virtual_pwm;  // pulse, µs
 
 namespace robosync::boards::mps2 {
@@ -27,6 +28,7 @@ public:
 
   const char* name() const override { return "mps2-an386"; }
   std::uint8_t reset_reason() const override { return static_cast<std::uint8_t>(last_reset()); }
+  const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;

@@ -234,7 +234,7 @@ TEST_CASE("a sound's own length travels with the command, unless the program say
 
 TEST_CASE("wiring travels as robot.json has it") {
   const std::string robot = R"({
-    "sensors": [{"name": "oven", "type": "I2C", "address": "0x48", "bus": 2, "register": 7,
+    "sensors": [{"name": "oven", "type": "I2C", "address": "0x48", "bus": 0, "register": 7,
       "channels": {"HEAT": {"input": 9, "unit": "F", "range": ["32F", "212F"], "rate": "4Hz",
                             "change": "9F", "scale": "0.18F", "stale_after": "3s"}}}],
     "actuators": [{"name": "fan", "type": "PWM", "pin": 6, "limits": {"SPEED": "70%"},
@@ -244,7 +244,7 @@ TEST_CASE("wiring travels as robot.json has it") {
   const vm::Image image = view(result);
   const vm::Sensor& sensor = image.sensors[0];
   CHECK(sensor.driver == vm::DriverId::i2c_register);
-  CHECK(sensor.bus == 2);
+  CHECK(sensor.bus == 0);
   CHECK(sensor.address == 0x48);
   CHECK(sensor.period_ms == 250);
   const vm::Channel& channel = image.channels[0];

@@ -195,6 +195,8 @@ TEST_CASE("the boards are read without a mistake, and robot.schema.json names th
     CHECK(board.arena_bytes > 0);
     CHECK(board.arena_bytes % 64 == 0);  // stacks stand at its end
     CHECK(board.step_budget > 0);
+    CHECK(board.i2c_buses > 0);
+    CHECK_FALSE(board.outputs.empty());
     names.emplace(text.name);
   }
   CHECK(names.contains(std::string(kDefaultBoard)));
@@ -206,5 +208,5 @@ TEST_CASE("the boards are read without a mistake, and robot.schema.json names th
 TEST_CASE("mistakes in a board's profile are reported") {
   Diagnostics diagnostics;
   (void)read_board({"none", R"({"name": "none", "arena": {"begin": 0}, "flash": 1})"}, diagnostics);
-  CHECK(diagnostics.errors() == 3);  // no bytes, no step_budget, and what nobody knows
+  CHECK(diagnostics.errors() == 5);  // no bytes, step_budget, buses, outputs, and what nobody knows
 }

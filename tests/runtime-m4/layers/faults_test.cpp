@@ -13,7 +13,7 @@ namespace {
 
 const char* const kRobot = R"({
   "sensors": [
-    {"name": "touch", "type": "I2C", "bus": 1, "address": "0x70", "device": "max34451",
+    {"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
      "channels": {"LEVEL": {"input": 2, "range": [0, 100], "rate": "50Hz"}}},
     {"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
   "actuators": [

@@ -16,6 +16,7 @@
 
 #include "rsc/device/transport.hpp"
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/pins.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/runtime.hpp"
 #include "runtime-m4/sim/arena.hpp"
@@ -37,6 +38,7 @@ public:
 
   const char* name() const override { return "test"; }
   std::uint8_t reset_reason() const override { return 2; }
+  const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t, std::uint8_t, std::span<const std::byte>,
                     std::span<std::byte>) override {
     return false;

@@ -1,0 +1,146 @@
+// What an image cannot do, however it was made: reach a pin that is not its own or not an output, blind the SAFETY
+// rules, or command what its rules have not declared.
+#include <functional>
+
+#include <catch2/catch.hpp>
+
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
+#include "tests/vm/image_builder.hpp"
+#include "vm/opcode_traits.hpp"
+
+using namespace robosync;
+using robosync::test::Rig;
+using vm::Refusal;
+using vm::Section;
+
+namespace {
+
+const char* const kRobot = R"({
+  "sensors": [
+    {"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}},
+    {"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
+     "channels": {"LEVEL": {"input": 2, "range": [0, 100], "rate": "50Hz"}}}],
+  "actuators": [
+    {"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "100deg"]},
+    {"name": "motor", "type": "PWM", "pin": 4, "device": "pwm", "on_release": "hold"}]
+})";
+
+const char* const kProgram = R"(
+SAFETY near_wall
+  WHEN touch LEVEL > 50
+  DO STOP ALL
+END
+WHEN near X > 10
+DO
+  RUN motor TO 70%
+  MOVE arm TO 100deg AT 500deg/s
+END
+)";
+
+std::vector<std::byte> program() {
+  return test::compile(kProgram, kRobot);
+}
+
+// The program with one thing changed in its tables, and a right checksum.
+using Change =
+    std::function<void(vm::Sensor&, vm::Channel&, vm::Actuator& arm, vm::Actuator& motor)>;
+std::vector<std::byte> patched(const Change& change) {
+  std::vector<std::byte> bytes = program();
+  vm::Image image;
+  REQUIRE(vm::view_image(bytes, image));
+  const auto named = [&](const auto& records, std::string_view name) -> auto& {
+    using Record = std::remove_cvref_t<decltype(records[0])>;
+    for (const Record& record : records)
+      if (image.string(record.name) == name) return const_cast<Record&>(record);
+    FAIL("no " << name);
+    return const_cast<Record&>(records[0]);
+  };
+  change(named(image.sensors, "touch"), named(image.channels, "LEVEL"),
+         named(image.actuators, "arm"), named(image.actuators, "motor"));
+  vm::test::repair_crc(bytes);
+  return bytes;
+}
+
+// The first command of a response, in memory.
+vm::Word& command_of(const vm::Image& image, unsigned response) {
+  const vm::Response& code = image.responses[response];
+  for (const vm::Word& word : image.code.subspan(code.start, code.length))
+    if (vm::traits_of(word).effect() == vm::Effect::command) return const_cast<vm::Word&>(word);
+  FAIL("no command");
+  return const_cast<vm::Word&>(image.code[0]);
+}
+
+void refused(const Change& change) {
+  Rig rig;
+  REQUIRE(rig.activate(program()).ok());
+  const vm::Verdict verdict = rig.activate(patched(change));
+  CHECK_FALSE(verdict.ok());
+  CHECK(rig.status().activations == 1);
+}
+
+}  // namespace
+
+TEST_CASE("two actuators on one pin are refused") {
+  refused([](auto&, auto&, auto& arm, auto& motor) { motor.pin = arm.pin; });
+}
+
+TEST_CASE("a pin that the board does not have is refused") {
+  refused([](auto&, auto&, auto&, auto& motor) { motor.pin = 65535; });
+  refused([](auto&, auto&, auto& arm, auto&) { arm.pin = 200; });
+}
+
+TEST_CASE("an I2C bus and an address that cannot be are refused") {
+  refused([](auto& touch, auto&, auto&, auto&) { touch.bus = 5; });
+  for (const int address : {0, 7, 0x78, 0xFFFF})
+    refused([&](auto& touch, auto&, auto&, auto&) {
+      touch.address = static_cast<std::uint16_t>(address);
+    });
+}
+
+TEST_CASE("a sensor that measures cannot be made one that is fed") {
+  refused([](auto& touch, auto&, auto&, auto&) { touch.period_ms = 0; });
+}
+
+TEST_CASE("a sensor that SAFETY reads grows stale") {
+  refused([](auto&, auto& level, auto&, auto&) { level.stale_ms = 0; });
+}
+
+TEST_CASE("a motor that would drive on in its safe state is refused") {
+  refused([](auto&, auto&, auto&, auto& motor) { motor.safe = vm::Release::hold; });
+  Rig rig;
+  CHECK(rig.activate(patched([](auto&, auto&, auto& arm, auto&) { arm.safe = vm::Release::hold; }))
+            .ok());
+}
+
+// What a behaviour's thread puts out is not believed: its rule has declared what it commands. Here its code is
+// damaged after it was verified.
+TEST_CASE("a command to an actuator that the rule does not have goes nowhere") {
+  Rig rig;
+  REQUIRE(rig.activate(test::compile("WHEN near X > 10\nDO MOVE arm TO 50deg\nEND\n"
+                                     "WHEN near X > 50\nDO RUN motor TO 70%\nEND\n",
+                                     kRobot))
+              .ok());
+  vm::Word& first = command_of(rig.runtime.image(), 0);
+  const vm::Word second = command_of(rig.runtime.image(), 1);
+  REQUIRE(vm::operand_a(first) != vm::operand_a(second));
+  first = second;
+  rig.feed(0, 20);
+  rig.run(500);
+  CHECK(rig.board.pwm_read(3) == 0);
+  CHECK(rig.board.pwm_read(4) == 0);
+}
+
+TEST_CASE("a verb that the actuator does not know goes nowhere") {
+  Rig rig;
+  REQUIRE(rig.activate(test::compile("WHEN near X > 10\nDO MOVE arm TO 50deg\nEND\n"
+                                     "WHEN near X > 50\nDO RUN motor TO 70%\nEND\n",
+                                     kRobot))
+              .ok());
+  vm::Word& first = command_of(rig.runtime.image(), 0);
+  const vm::Word second = command_of(rig.runtime.image(), 1);
+  first = vm::encode(vm::Opcode::cmd, vm::operand_a(first), vm::operand_b(second), vm::kNoWord);
+  rig.feed(0, 20);
+  rig.run(500);
+  CHECK(rig.board.pwm_read(3) == 0);
+}

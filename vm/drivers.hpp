@@ -1,0 +1,51 @@
+// What the verifier, the board and rsc must know of a driver, from vm/drivers.def.
+#pragma once
+
+#include <cstdint>
+
+#include "vm/image.hpp"
+
+namespace robosync::vm {
+
+// What an actuator's driver puts out on its pin. Pulses say where to go: while they stay as they are, so does the
+// actuator. A level is power: as long as it is there, a motor runs.
+enum class PinUse : std::uint8_t { nothing, pulses, level };
+
+constexpr PinUse pin_use(DriverId driver) {
+  switch (driver) {
+#define SENSOR_DRIVER(name, ...) case DriverId::name:
+#define ACTUATOR_DRIVER(name, start, advance, release, ends, output, doc) \
+  case DriverId::name:                                                    \
+    return PinUse::output;
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+    case DriverId::count_:
+      break;
+  }
+  return PinUse::nothing;
+}
+
+// Are its sensors measured over an I2C bus? Others are fed.
+constexpr bool is_on_i2c(DriverId driver) {
+  const auto fed = [] { return false; };
+  const auto i2c = [](unsigned, unsigned) { return true; };
+  switch (driver) {
+#define SENSOR_DRIVER(name, sample, doc) \
+  case DriverId::name:                   \
+    return sample;
+#define ACTUATOR_DRIVER(name, ...) case DriverId::name:
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+    case DriverId::count_:
+      break;
+  }
+  return false;
+}
+
+// Others are reserved by the I2C specification.
+inline constexpr std::uint16_t kFirstAddress = 0x08;
+inline constexpr std::uint16_t kLastAddress = 0x77;
+
+}  // namespace robosync::vm
