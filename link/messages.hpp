@@ -35,7 +35,7 @@ struct HelloReply {
   std::array<std::uint8_t, 8> program_hash;
   std::uint16_t receive_window;  // bytes of data the board can take before it must reply
   std::uint8_t running;          // 1: a program runs
-  std::uint8_t reserved;
+  std::uint8_t stopped;          // 1: a person has stopped it
 };
 
 struct Begin {

@@ -24,7 +24,8 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
       threads_(kernel),
       mailboxes_(kernel),
       sensors_(kernel, trace_, mailboxes_, alarm_, step_thread_, layers::kNews),
-      control_(kernel, board, trace_, step_thread_,
+      outputs_(kernel, board),
+      control_(kernel, outputs_, trace_, step_thread_,
                {.idle = layers::kIdle, .cancelled = layers::kCancelled, .halted = layers::kHalted}),
       variables_(kernel),
       drivers_(kernel, board),
@@ -134,6 +135,7 @@ void Runtime::end_program() {
 
 void Runtime::clear() {
   end_program();
+  control_.switch_off();
   memory_.clear();
 }
 
@@ -187,6 +189,16 @@ void Runtime::begin() {
   begun_ = true;
   shared_.processing.go();
   sensors_.begin(meant);
+}
+
+// Done in the safety thread, which outranks everybody: at once.
+void Runtime::say(bool stopped) {
+  stopped_ = stopped;
+  kernel_.signal(monitor_.thread(), safety::Monitor::kPerson);
+}
+
+void Runtime::obey() {
+  stopped_ ? control_.stop() : control_.resume();
 }
 
 link::FeedResult Runtime::feed(const link::Feed& feed) {

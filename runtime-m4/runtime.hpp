@@ -14,6 +14,7 @@
 
 #include "link/messages.hpp"
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/guard/output_guard.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/alarm.hpp"
 #include "runtime-m4/layers/behavior.hpp"
@@ -66,6 +67,12 @@ public:
   const policy::Needs& checked_needs() const { return next_; }
   const policy::BoardMemory& board_memory() const { return memory_.board(); }
 
+  // A person's word: all outputs go to their safe state at once and stay there, whatever program runs or comes,
+  // until resume(); of that, what the running program's SAFETY rules halt stays halted.  [thread]
+  void stop() { say(true); }
+  void resume() { say(false); }
+  bool stopped() const { return stopped_; }
+
   // A reading for a fed channel: now (at_us 0) or at a program time. Sensors are fed whose driver
   // is virtual_sensor, and those with period 0. The unknown value is a reading that failed.
   link::FeedResult feed(const link::Feed& feed);
@@ -103,12 +110,15 @@ private:
   void hold_to_budgets(bool alive) override;
   void halt(kernel::Duration stuck_for) override;
   kernel::Time look_at_rules() override;
+  void tend_outputs() override { outputs_.go_on(kernel_.now()); }
+  void obey() override;
   kernel::Time began() const override { return trace_.activated_at(); }
 
   Shared& share(std::span<std::byte> arena);
   [[gnu::noinline]] vm::Verdict check(std::span<const std::byte> bytes);
   [[gnu::noinline]] bool load(std::span<const std::byte> bytes);
   void end_program();
+  void say(bool stopped);
   bool start_program();
   std::uint32_t choose_seed(std::uint32_t of_image) const;
   void go();
@@ -122,8 +132,9 @@ private:
   policy::Needs next_;  // of the last image that was checked
 
   std::atomic<bool> running_ = false;
-  bool halted_ = false;  // this program, by safety
-  bool begun_ = false;   // its program time
+  std::atomic<bool> stopped_ = false;  // what the person has said last
+  bool halted_ = false;                // this program, by safety
+  bool begun_ = false;                 // its program time
   std::uint16_t activations_ = 0;
   std::uint32_t given_seed_ = 0;
   unsigned faults_ = 0;  // of programs that are gone
@@ -134,6 +145,7 @@ private:
 
   layers::Mailboxes mailboxes_;
   layers::SensorLayer sensors_;
+  guard::OutputGuard outputs_;
   layers::ControlLayer control_;
   layers::Variables variables_;
   layers::DriverSampler drivers_;

@@ -135,6 +135,14 @@ link::Status Client::clear(std::uint32_t image_crc) {
                                link::wire_bytes(link::Clear{image_crc}));
 }
 
+link::Status Client::stop() {
+  return request<link::Status>(MessageType::stop, MessageType::status);
+}
+
+link::Status Client::resume() {
+  return request<link::Status>(MessageType::resume, MessageType::status);
+}
+
 link::Status Client::set_trace(bool on) {
   const link::TraceOn wish{static_cast<std::uint8_t>(on)};
   return request<link::Status>(MessageType::trace_on, MessageType::status, link::wire_bytes(wish));

@@ -34,6 +34,8 @@ public:
   link::Status status();
   link::Status clear(std::uint32_t image_crc);  // ends the program, if it runs
   link::Status set_trace(bool on);
+  link::Status stop();  // all outputs to their safe state, until resume()
+  link::Status resume();
   link::FeedResult feed(const link::Feed& feed);
   link::ActivateResult activate();
   std::vector<link::ThreadInfo> threads();

@@ -73,6 +73,7 @@ Json board_json(const link::HelloReply& board, std::span<const std::byte> image)
               {"step_budget", board.step_budget},
               {"drivers", board.drivers},
               {"receive_window", board.receive_window},
+              {"stopped", board.stopped != 0},
               {"program", nullptr}};
   if (board.running != 0) {
     object["program"] = {
@@ -114,6 +115,8 @@ void print_human(const link::HelloReply& board, std::span<const std::byte> image
   } else {
     std::cout << "program   none\n";
   }
+  if (board.stopped != 0)
+    std::cout << "stopped   all outputs are in their safe state until `rsc resume`\n";
   std::cout << fmt::format("up        {:.3f} s (reset: {}), {} activations, {} faults\n",
                            static_cast<double>(status.uptime_us) / 1e6, reset_reason(status),
                            status.activations, status.faults);

@@ -7,6 +7,7 @@
 
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/drivers/motion.hpp"
+#include "runtime-m4/guard/output_guard.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "vm/image.hpp"
 
@@ -40,12 +41,17 @@ struct ActuatorState {
   kernel::Time until = 0;  // when the command is done
   std::uint16_t legs = 0;  // movements of the gesture still to come
   bool placed = false;     // `motion` says where it is
+  std::uint8_t actuator = 0;
 };
 
 struct Device {
-  boards::Board& board;
+  guard::OutputGuard& outputs;
   const vm::Actuator& wiring;
   ActuatorState& state;
+
+  void drive(std::uint32_t pulse_us, kernel::Time now) const {
+    outputs.drive(state.actuator, pulse_us, now);
+  }
 };
 
 inline constexpr kernel::Time kDone = 0;

@@ -12,15 +12,14 @@ constexpr vm::Value kFull = 100 * vm::kScale;
 constexpr std::uint32_t kFrame = 20'000;  // microseconds
 constexpr kernel::Duration kSetpointPeriod = kernel::milliseconds(policy::kSetpointPeriodMs);
 
-void output(Device device, vm::Value percent) {
+void output(Device device, vm::Value percent, kernel::Time now) {
   const auto duty = static_cast<std::uint64_t>(std::clamp(percent, vm::Value{0}, kFull));
-  device.board.pwm_write(device.wiring.pin,
-                         static_cast<std::uint32_t>(duty * kFrame / std::uint64_t{kFull}));
+  device.drive(static_cast<std::uint32_t>(duty * kFrame / std::uint64_t{kFull}), now);
 }
 
 void jump(Device device, vm::Value percent, kernel::Time now) {
   device.state.motion = {.from = percent, .to = percent, .begin = now, .length = 0};
-  output(device, percent);
+  output(device, percent, now);
 }
 
 }  // namespace
@@ -43,7 +42,7 @@ kernel::Time start(Device device, const Order& order, kernel::Time now) {
 
 kernel::Time advance(Device device, kernel::Time now) {
   const Motion& motion = device.state.motion;
-  output(device, motion.at(now));
+  output(device, motion.at(now), now);
   if (now < motion.end()) return std::min(motion.end(), now + kSetpointPeriod);
   if (now < device.state.until) return device.state.until;
   if (device.state.until != 0) jump(device, 0, now);

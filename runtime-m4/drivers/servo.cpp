@@ -17,7 +17,7 @@ void output(Device device, kernel::Time now) {
       std::clamp(device.state.motion.at(now), device.wiring.min, device.wiring.max);
   const std::int64_t way = std::int64_t{position} - device.wiring.min;
   const std::int64_t pulse = span == 0 ? kPulseSpan / 2 : way * kPulseSpan / span;
-  device.board.pwm_write(device.wiring.pin, kShortestPulse + static_cast<std::uint32_t>(pulse));
+  device.drive(kShortestPulse + static_cast<std::uint32_t>(pulse), now);
 }
 
 kernel::Time follow(Device device, kernel::Time now) {
@@ -44,7 +44,7 @@ kernel::Time advance(Device device, kernel::Time now) {
 
 void release(Device device, vm::Release how, kernel::Time now) {
   way::stop(device, how, now);
-  if (how == vm::Release::coast) return device.board.pwm_write(device.wiring.pin, 0);
+  if (how == vm::Release::coast) return device.drive(0, now);
   if (device.state.placed) output(device, now);  // else it was never driven: nothing to hold
 }
 

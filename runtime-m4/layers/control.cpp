@@ -19,8 +19,11 @@ bool ControlLayer::start(const LoadedProgram& program, Memory& memory, ProgramTh
   idle_ = 0;
   retired_ = 0;
   cancelling_ = 0;
-  halted_ = 0;
+  by_rules_ = 0;
+  halted_ = stopped_ ? all() : 0;
   newly_halted_ = 0;
+  outputs_.own(program.image);
+  if (stopped_) outputs_.halt(halted());
   units_ = memory.take<policy::Part::control_units, Unit>();
   pool_.start(memory);
   for (unsigned a = 0; a < program.image.actuators.size(); ++a)
@@ -32,6 +35,7 @@ bool ControlLayer::start_unit(unsigned actuator, ProgramThreads& threads) {
   Unit& unit = units_[actuator];
   unit.layer = this;
   unit.actuator = static_cast<std::uint8_t>(actuator);
+  unit.drive.actuator = unit.actuator;
   kernel::ThreadSpec spec;
   spec.name = name_of(program_->image, wiring(unit).name, "actuator");
   spec.category = kernel::Category::control;
@@ -53,6 +57,10 @@ void ControlLayer::release_all() {
     if (unit.busy || unit.queue.count > 0) trace_.emit(EventKind::cancel, trace_.now(), a);
   }
   program_ = nullptr;
+}
+
+void ControlLayer::switch_off() {
+  outputs_.disown();
 }
 
 // --- staging, cancelling, committing: called from the step thread ---
@@ -136,6 +144,7 @@ ActuatorMask ControlLayer::take_halted() {
 void ControlLayer::retire(unsigned actuator) {
   Unit& unit = units_[actuator];
   release(unit, wiring(unit).safe);
+  outputs_.halt(bit<ActuatorMask>(actuator));
   const auto lock = kernel_.lock();
   pool_.clear(unit.queue);
   unit.busy = false;
@@ -151,9 +160,29 @@ ActuatorMask ControlLayer::all() const {
   return static_cast<ActuatorMask>((std::uint64_t{1} << program_->image.actuators.size()) - 1);
 }
 
-// The mask comes first: a driver that is at work now sees it when it is done (keep_at()).
 void ControlLayer::halt(ActuatorMask actuators) {
-  const ActuatorMask fresh = actuators & all() & ~halted();
+  by_rules_ |= actuators & all();
+  hold_back(actuators & all() & ~halted());
+}
+
+void ControlLayer::let_go(ActuatorMask actuators) {
+  by_rules_ &= ~actuators;
+  if (!stopped_) set_free(actuators & halted());
+}
+
+void ControlLayer::stop() {
+  stopped_ = true;
+  if (program_ != nullptr) hold_back(all() & ~halted());
+}
+
+void ControlLayer::resume() {
+  stopped_ = false;
+  if (program_ != nullptr) set_free(halted() & ~by_rules_);
+}
+
+// All of them have come to rest before the guard shuts their pins; no other thread runs meanwhile. The mask comes
+// first: a driver that is at work now sees it when it is done (keep_at()).
+void ControlLayer::hold_back(ActuatorMask fresh) {
   if (fresh == 0) return;
   {
     const auto lock = kernel_.lock();
@@ -166,12 +195,13 @@ void ControlLayer::halt(ActuatorMask actuators) {
     trace_.emit(EventKind::halt, trace_.now(), unit.actuator);
     kernel_.signal(*unit.thread, kHalt);
   }
+  outputs_.halt(fresh);
   kernel_.signal(step_thread_, events_.halted);
 }
 
-void ControlLayer::let_go(ActuatorMask actuators) {
-  const ActuatorMask freed = actuators & halted();
+void ControlLayer::set_free(ActuatorMask freed) {
   if (freed == 0) return;
+  outputs_.let_go(freed & ~retired_);
   {
     const auto lock = kernel_.lock();
     halted_ &= ~freed;
@@ -182,10 +212,7 @@ void ControlLayer::let_go(ActuatorMask actuators) {
 }
 
 void ControlLayer::halt_for_good() {
-  if (program_ == nullptr) return;
-  halt(all());
-  for (unsigned a = 0; a < program_->image.actuators.size(); ++a)
-    release(units_[a], wiring(units_[a]).safe);
+  if (program_ != nullptr) halt(all());
 }
 
 // --- the actuator's thread ---
@@ -335,7 +362,7 @@ void ControlLayer::tell_command(const Unit& unit, const Command& command, Stamp 
 }
 
 drivers::Device ControlLayer::device(Unit& unit) {
-  return {board_, wiring(unit), unit.drive};
+  return {outputs_, wiring(unit), unit.drive};
 }
 
 void ControlLayer::release(Unit& unit, vm::Release how) {

@@ -9,15 +9,17 @@
 // actuator is doing ends.
 //
 // Halting (safety) puts actuators into their `safe` state from the caller's thread and refuses all
-// commands to them from then on, until they are let go or the next program comes.
+// commands to them from then on, until they are let go or the next program comes. A person's stop halts
+// all, whatever program runs or comes, until the person lets them go. The output guard is told of both, so
+// that nothing a driver still does reaches a pin.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <span>
 
-#include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/drivers/drivers.hpp"
+#include "runtime-m4/guard/output_guard.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/command_pool.hpp"
 #include "runtime-m4/layers/loaded_program.hpp"
@@ -36,15 +38,21 @@ public:
     kernel::Events halted;     // actuators were halted, or let go
   };
 
-  ControlLayer(kernel::Kernel& kernel, boards::Board& board, Trace& trace,
+  ControlLayer(kernel::Kernel& kernel, guard::OutputGuard& outputs, Trace& trace,
                kernel::Thread& step_thread, StepEvents events)
-      : kernel_(kernel), board_(board), trace_(trace), step_thread_(step_thread), events_(events) {}
+      : kernel_(kernel),
+        outputs_(outputs),
+        trace_(trace),
+        step_thread_(step_thread),
+        events_(events) {}
 
   // Starts the threads of `program`, which must stay until they are dismissed.
   [[nodiscard]] bool start(const LoadedProgram& program, Memory& memory, ProgramThreads& threads);
   // Releases all actuators of a program whose threads are dismissed, and forgets where they are:
   // what a program does must not depend on the one before it.
   void release_all();
+  // No program comes after it: all its outputs go off.
+  void switch_off();
 
   // --- for the step thread ---
   // For each of `actuators`; dropped where there is no room.
@@ -65,8 +73,11 @@ public:
   // [safety thread] Those that are halted, or not, already stay as they are.
   void halt(ActuatorMask actuators);
   void let_go(ActuatorMask actuators);
-  // All of them, again and again, until the next program.
+  // All of them, until the next program.
   void halt_for_good();
+  // … and until resume(), also those of the programs that come.
+  void stop();
+  void resume();
 
 private:
   static constexpr kernel::Events kCommit = 1;
@@ -110,9 +121,11 @@ private:
   bool is_halted(const Unit& unit) const { return has(halted(), unit.actuator); }
   ActuatorMask all() const;
   void release(Unit& unit, vm::Release how);
+  void hold_back(ActuatorMask fresh);
+  void set_free(ActuatorMask freed);
 
   kernel::Kernel& kernel_;
-  boards::Board& board_;
+  guard::OutputGuard& outputs_;
   Trace& trace_;
   kernel::Thread& step_thread_;
   StepEvents events_;
@@ -127,6 +140,8 @@ private:
   ActuatorMask retired_ = 0;
   std::atomic<ActuatorMask> halted_ = 0;
   std::atomic<ActuatorMask> newly_halted_ = 0;
+  ActuatorMask by_rules_ = 0;  // halted by the program's own rules, or because it hangs
+  bool stopped_ = false;       // by a person
 };
 
 }  // namespace robosync::layers

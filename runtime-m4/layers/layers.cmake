@@ -25,6 +25,7 @@ target_sources(robosync_runtime PRIVATE
   layers/triggers.cpp
   layers/variables.cpp
   layers/workspace.cpp
+  guard/output_guard.cpp
   safety/safety_rules.cpp
   safety/monitor.cpp
   drivers/i2c_register.cpp

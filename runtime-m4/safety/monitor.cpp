@@ -19,7 +19,8 @@ void Monitor::run() {
   kernel::Time due = kernel_.now();
   kernel::Time rules_due = kernel::kForever;
   while (true) {
-    const kernel::Events why = kernel_.wait(kNews | kProgram, std::min(due, rules_due));
+    const kernel::Events why = kernel_.wait(kNews | kProgram | kPerson, std::min(due, rules_due));
+    if ((why & kPerson) != 0) supervised_.obey();
     const kernel::Time now = kernel_.now();
     if ((why & kProgram) != 0) {
       due = std::min(supervised_.began(), now + kIdlePeriod);
@@ -50,6 +51,7 @@ void Monitor::check(kernel::Duration late) {
   const bool alive = supervised_.resting() || progress != last_progress_;
   last_progress_ = progress;
   supervised_.hold_to_budgets(alive);
+  supervised_.tend_outputs();
   without_progress_ = alive ? 0 : std::min(without_progress_ + 1, kChecksUntilHung);
   if (without_progress_ < kChecksUntilHung) {
     board_.watchdog_kick();

@@ -34,6 +34,10 @@ public:
   // Puts all actuators into their safe state, and lets no command through from then on. May be
   // called again.
   virtual void halt(kernel::Duration stuck_for) = 0;
+  // Called at each check: outputs that may not change at once go on.
+  virtual void tend_outputs() = 0;
+  // A person has said stop, or resume.
+  virtual void obey() = 0;
   // Evaluates the safety rules. Returns when a time word of theirs is due.
   virtual kernel::Time look_at_rules() = 0;
   virtual bool running() const = 0;        // is there a program?
@@ -54,9 +58,10 @@ public:
   [[nodiscard]] bool start();
 
   // Signalled (kNews) when an input has changed that a safety rule reads, and
-  // (kProgram) when there is another program.
+  // (kProgram) when there is another program, and (kPerson) when a person has said stop or resume.
   static constexpr kernel::Events kNews = 1;
   static constexpr kernel::Events kProgram = 2;
+  static constexpr kernel::Events kPerson = 4;
   kernel::Thread& thread() { return thread_; }
 
   std::uint32_t checks() const { return checks_.load(std::memory_order_relaxed); }

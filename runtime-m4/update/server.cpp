@@ -111,6 +111,12 @@ void Server::handle(const link::Frame& frame) {
       return feed(frame);
     case MessageType::get_status:
       return status(frame.sequence);
+    case MessageType::stop:
+      runtime_.stop();
+      return status(frame.sequence);
+    case MessageType::resume:
+      runtime_.resume();
+      return status(frame.sequence);
     case MessageType::get_threads:
       listing_threads_ = true;
       next_thread_ = 0;
@@ -142,6 +148,7 @@ void Server::hello(std::uint8_t sequence) {
   answer.step_budget = runtime_.limits().step_cost;
   answer.drivers = runtime_.limits().drivers;
   answer.receive_window = kReceiveWindow;
+  answer.stopped = runtime_.stopped() ? 1 : 0;
   if (runtime_.running()) {
     const vm::ImageHeader& header = *runtime_.image().header;
     answer.running = 1;

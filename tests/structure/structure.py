@@ -32,10 +32,11 @@ RUNTIME = {
     "boards": {"policy"},
     "kernel": {"policy", "port"},
     "port's sources": {"port", "kernel"},
-    "drivers": {"policy", "boards", "kernel"},
-    "layers": {"policy", "boards", "kernel", "drivers"},
+    "guard": {"policy", "boards", "kernel"},
+    "drivers": {"policy", "boards", "kernel", "guard"},
+    "layers": {"policy", "boards", "kernel", "drivers", "guard"},
     "safety": {"policy", "boards", "kernel", "layers"},
-    "runtime": {"boards", "kernel", "drivers", "layers", "safety"},
+    "runtime": {"boards", "kernel", "guard", "drivers", "layers", "safety"},
     "update": {"policy", "boards", "kernel", "layers", "runtime"},
     "sim": {"policy", "boards", "kernel", "layers", "runtime"},
     "boards/common": {"port", "boards", "kernel", "layers", "runtime", "update"},
@@ -70,6 +71,9 @@ HOSTED_HEADERS = {
     "mutex", "future", "condition_variable", "regex", "filesystem", "any", "queue", "stack",
 }
 HARDWARE = re.compile(r"\bvolatile\b|\b0x(40|41|E0)0[0-9A-Fa-f]{5}u?\b")
+# Calls of what drives an output; a board implements it.
+OUTPUT = re.compile(r"(\.|->)\s*pwm_write\s*\(")
+GUARD = "runtime-m4/guard/"
 ASSEMBLER = re.compile(r"\basm\b|\b__asm(__)?\b")
 BOARD_COSTS = re.compile(r"runtime-m4/boards/[\w-]+/costs\.def")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -261,6 +265,16 @@ def check_hardware(sources):
                 yield Problem(source.path, number, "hardware is touched only in boards/ and port/")
 
 
+def check_outputs(sources):
+    """Nobody drives an output but the output guard."""
+    for source in sources:
+        if source.suffix not in CODE or source.top == "tests" or source.path.startswith(GUARD):
+            continue
+        for number, line in enumerate(source.lines, 1):
+            if OUTPUT.search(line):
+                yield Problem(source.path, number, f"only {GUARD} drives outputs")
+
+
 def check_head_comments(sources):
     """Each file opens with a comment that says what it is for; a .cpp may leave that to its .hpp."""
     for source in sources:
@@ -338,6 +352,7 @@ RULES = {
     "tool folders": check_tool_folders,
     "freestanding": check_freestanding,
     "hardware": check_hardware,
+    "outputs": check_outputs,
     "head comments": check_head_comments,
     "file sizes": check_file_sizes,
     "function sizes": check_function_sizes,

@@ -168,6 +168,14 @@ class Planted(unittest.TestCase):
             with self.subTest(line=line):
                 self.assert_red("hardware", "runtime-m4/layers/a.cpp", f"{HEAD}{line}\n")
 
+    def test_outputs_driven_past_the_guard(self):
+        for name in ["runtime-m4/drivers/a.cpp", "runtime-m4/layers/a.cpp", "runtime-m4/boards/x/a.cpp",
+                     "runtime-m4/update/a.hpp", "bench/firmware/a.cpp"]:
+            for line in ["board_.pwm_write(3, 1500);", "device->pwm_write (pin, pulse);"]:
+                with self.subTest(name=name, line=line):
+                    self.assert_red("outputs", name, f"{HEAD}{line}\n")
+        self.assertEqual(self.check({"runtime-m4/guard/a.cpp": f"{HEAD}board_.pwm_write(3, 1500);\n"}), {})
+
     def test_missing_head_comments(self):
         for name, text in [("vm/a.hpp", "#pragma once\n"), ("rsc/a.cpp", "int a;\n"),
                            ("scripts/go", "#!/bin/sh\nset -e\n"),

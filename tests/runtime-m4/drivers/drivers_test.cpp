@@ -39,13 +39,17 @@ Order order(vm::Action action, std::initializer_list<std::pair<Param, Value>> pa
 struct Drive {
   explicit Drive(vm::DriverId id, Value min, Value max, Value speed_limit = vm::kValueMax)
       : driver(drivers::driver(id)) {
+    wiring.driver = id;
     wiring.pin = 7;
     wiring.min = min;
     wiring.max = max;
     wiring.speed_limit = speed_limit;
+    vm::Image image;
+    image.actuators = std::span(&wiring, 1);
+    outputs.own(image);
   }
 
-  Device device() { return {board, wiring, state}; }
+  Device device() { return {outputs, wiring, state}; }
   void begin(const Order& what) { wake = driver.start(device(), what, now); }
   // Until the command is done, or `until`.
   void run(kernel::Time until = kernel::kForever) {
@@ -62,7 +66,9 @@ struct Drive {
   }
 
   const drivers::Driver& driver;
+  kernel::Kernel kernel;
   test::NotingBoard board;
+  guard::OutputGuard outputs{kernel, board};
   vm::Actuator wiring{};
   ActuatorState state;
   kernel::Time now = 1'000'000;

@@ -1,5 +1,5 @@
 // What an image cannot do, however it was made: reach a pin that is not its own or not an output, blind the SAFETY
-// rules, or command what its rules have not declared.
+// rules, command what its rules have not declared, or leave a motor running when it goes.
 #include <functional>
 
 #include <catch2/catch.hpp>
@@ -35,6 +35,12 @@ WHEN near X > 10
 DO
   RUN motor TO 70%
   MOVE arm TO 100deg AT 500deg/s
+END
+)";
+
+const char* const kWithoutMotor = R"(
+WHEN near X > 10
+DO MOVE arm TO 50deg
 END
 )";
 
@@ -111,6 +117,28 @@ TEST_CASE("a motor that would drive on in its safe state is refused") {
   Rig rig;
   CHECK(rig.activate(patched([](auto&, auto&, auto& arm, auto&) { arm.safe = vm::Release::hold; }))
             .ok());
+}
+
+TEST_CASE("a motor that the next program does not have stands still") {
+  Rig rig;
+  rig.board.answers.assign(10000, std::byte{0});
+  REQUIRE(rig.activate(program()).ok());
+  rig.feed(0, 20);
+  rig.run(500);
+  REQUIRE(rig.board.pwm_read(4) == 14'000);
+  REQUIRE(rig.activate(test::compile(kWithoutMotor, kRobot)).ok());
+  CHECK(rig.board.pwm_read(4) == 0);
+}
+
+TEST_CASE("nothing is driven when no program runs") {
+  Rig rig;
+  rig.board.answers.assign(10000, std::byte{0});
+  REQUIRE(rig.activate(program()).ok());
+  rig.feed(0, 20);
+  rig.run(500);
+  rig.runtime.clear();
+  CHECK(rig.board.pwm_read(3) == 0);
+  CHECK(rig.board.pwm_read(4) == 0);
 }
 
 // What a behaviour's thread puts out is not believed: its rule has declared what it commands. Here its code is

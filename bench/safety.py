@@ -1,0 +1,114 @@
+"""How fast the shipped firmware comes to rest, isolation on, and what the output guard costs.
+
+safety/reading_to_safe     from the reading that trips a SAFETY rule in its mailbox, until all actuators are in their safe
+                           state and the guard has shut their pins
+safety/stop_frame_to_safe  from the interrupt with the last byte of rsc's `stop` to the same
+safety/guard_per_command   instructions in the guard, and in what drives the pin, for one order of a driver
+
+The arms are moving; everything that comes in between counts, interrupts too. The most of several times is the figure.
+"""
+
+import tempfile
+import time
+from pathlib import Path
+
+import rsc
+from board import FIRMWARE, REAL_TIME, Board
+from counting import BenchError, Marks, plugin_arguments, symbols
+from idle import code_of
+
+READING = "robosync::layers::Mailboxes::post("
+BYTE = "Uart0Receive_Handler"
+ORDER = "robosync::guard::OutputGuard::drive("
+SHUT = "robosync::guard::OutputGuard::halt("
+PIN = "robosync::boards::mps2::Board::pwm_write("
+TIMES = 6
+LIGHT, FIRM, TOO_FIRM = 1, 5, 9
+BETWEEN = 0.3  # seconds
+CONFIG = """{
+  "sensors": [{"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
+               "channels": {"LEVEL": {"input": 0, "range": [0, 10], "rate": "50Hz"}}}],
+  "actuators": [
+    {"name": "left_arm", "type": "PWM", "pin": 10, "device": "servo", "range": ["0deg", "120deg"]},
+    {"name": "right_arm", "type": "PWM", "pin": 11, "device": "servo", "range": ["0deg", "120deg"]}]
+}"""
+PROGRAM = """
+SAFETY pinch
+  WHEN touch LEVEL > 7
+  DO STOP ALL
+  RESUME WHEN touch LEVEL < 2
+END
+WHEN touch LEVEL > 3
+DO
+  MOVE left_arm TO 100deg AT 10deg/s
+  MOVE right_arm TO 100deg AT 10deg/s
+END
+"""
+
+
+def functions(*wanted):
+    found = {end: at for name, at in symbols(FIRMWARE).items() for end in wanted if name.startswith(end)}
+    if len(found) != len(wanted):
+        raise BenchError(f"the firmware has not all of {wanted}")
+    return found
+
+
+def touch(board, raw):
+    board.set_touch(raw)
+    time.sleep(BETWEEN)
+
+
+def drive(board, image):
+    """Trips TIMES times with moving arms, then is stopped by a person as often."""
+    touch(board, LIGHT)
+    rsc.run("upload", image, "--port", board.port)
+    time.sleep(BETWEEN)
+    for _ in range(TIMES):
+        for raw in (FIRM, TOO_FIRM, LIGHT):
+            touch(board, raw)
+    time.sleep(3 * BETWEEN)  # until the rule has let go, on a busy machine too
+    for _ in range(TIMES):
+        touch(board, FIRM)
+        rsc.run("stop", "--port", board.port)
+        touch(board, LIGHT)
+        rsc.run("resume", "--port", board.port)
+        time.sleep(BETWEEN)
+
+
+def shuts(marks):
+    """Of each time that the pins were shut: {mark: instructions since the last one of it}."""
+    last, found = {}, []
+    for name, count in marks.all:
+        if name == SHUT:
+            found.append({before: count - at for before, at in last.items()})
+        last[name] = count
+    if len(found) != 2 * TIMES:
+        raise BenchError(f"the robot came to rest {len(found)} times, not {2 * TIMES}")
+    return found
+
+
+def most_in_the_guard(marks):
+    """Of the orders: what the code that was counted apart has executed until the next mark."""
+    orders = [after - before for (name, _), before, after in zip(marks.all, marks.apart, marks.apart[1:])
+              if name == ORDER]
+    if not orders:
+        raise BenchError("no driver ever gave an order")
+    return max(orders)
+
+
+def safety_figures():
+    known = functions(READING, BYTE, ORDER, SHUT)
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        (folder / "robot.json").write_text(CONFIG)
+        (folder / "robot.rsl").write_text(PROGRAM)
+        image, out = folder / "robot.rsb", folder / "marks"
+        rsc.run("compile", folder / "robot.rsl", "-o", image)
+        arguments = plugin_arguments(known, out, code_of([ORDER, PIN]))
+        with Board(icount=REAL_TIME, extra=arguments) as board:
+            drive(board, image)
+        marks = Marks(known, out)
+    found = shuts(marks)
+    return {"safety/reading_to_safe": (max(shut[READING] for shut in found[:TIMES]), "insn"),
+            "safety/stop_frame_to_safe": (max(shut[BYTE] for shut in found[TIMES:]), "insn"),
+            "safety/guard_per_command": (most_in_the_guard(marks), "insn")}

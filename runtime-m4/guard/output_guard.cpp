@@ -1,0 +1,123 @@
+// See output_guard.hpp.
+#include "runtime-m4/guard/output_guard.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "vm/drivers.hpp"
+
+namespace robosync::guard {
+namespace {
+
+constexpr unsigned kLongestStep = 20;  // milliseconds that one change may make up for
+
+constexpr OutputGuard::Mask bit(unsigned actuator) {
+  return OutputGuard::Mask{1} << actuator;
+}
+
+bool drives(const vm::Image& image, std::uint16_t pin, vm::DriverId driver) {
+  return std::ranges::any_of(image.actuators, [&](const vm::Actuator& actuator) {
+    return actuator.pin == pin && actuator.driver == driver;
+  });
+}
+
+}  // namespace
+
+// Pins that `next` does not drive in the same way. Nobody drives any of them meanwhile.
+void OutputGuard::switch_off(const vm::Image* next) {
+  {
+    const auto lock = kernel_.lock();
+    halted_ = free_ = lagging_ = 0;
+  }
+  for (Mask left = owned_; left != 0; left &= left - 1) {
+    const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
+    if (next == nullptr || !drives(*next, slot.pin, slot.driver)) board_.pwm_write(slot.pin, 0);
+  }
+  owned_ = 0;
+}
+
+void OutputGuard::disown() {
+  switch_off(nullptr);
+}
+
+void OutputGuard::own(const vm::Image& image) {
+  switch_off(&image);
+  const policy::BoardPins& pins = board_.pins();
+  limits_ = pins.outputs.data();
+  Mask owned = 0;
+  for (unsigned a = 0; a < image.actuators.size(); ++a) {
+    const vm::Actuator& actuator = image.actuators[a];
+    const policy::PinLimit* const limit = policy::limit_of(pins, actuator.pin);
+    if (vm::pin_use(actuator.driver) == vm::PinUse::nothing || limit == nullptr) continue;
+    const auto pulse = static_cast<std::uint16_t>(board_.pwm_read(actuator.pin));
+    slots_[a] = {.pin = actuator.pin,
+                 .pulse = pulse,
+                 .target = pulse,
+                 .changed = 0,
+                 .limit = static_cast<std::uint8_t>(limit - limits_),
+                 .driver = actuator.driver};
+    owned |= bit(a);
+  }
+  const auto lock = kernel_.lock();
+  owned_ = free_ = owned;
+}
+
+[[gnu::noinline]] void OutputGuard::drive(unsigned actuator, std::uint32_t pulse_us,
+                                          kernel::Time now) {
+  const auto lock = kernel_.lock();
+  if ((free_ & bit(actuator)) == 0) return;
+  Slot& slot = slots_[actuator];
+  const policy::PinLimit& limit = limits_[slot.limit];
+  std::uint32_t target = pulse_us;
+  if (target != 0) target = std::clamp<std::uint32_t>(target, limit.shortest, limit.longest);
+  slot.target = static_cast<std::uint16_t>(target);
+  if (limit.rise != 0) [[unlikely]]
+    return put(actuator, now);
+  slot.pulse = slot.target;
+  board_.pwm_write(slot.pin, target);
+}
+
+void OutputGuard::go_on(kernel::Time now) {
+  for (Mask left = lagging_; left != 0; left &= left - 1) {
+    const auto lock = kernel_.lock();
+    put(static_cast<unsigned>(std::countr_zero(left)), now);
+  }
+}
+
+// As far towards the target as the pin may change by now.
+[[gnu::noinline]] void OutputGuard::put(unsigned actuator, kernel::Time now) {
+  Slot& slot = slots_[actuator];
+  const policy::PinLimit& limit = limits_[slot.limit];
+  slot.pulse = next_pulse(slot, limit.rise, limit.shortest != 0, now);
+  slot.pulse == slot.target ? lagging_ &= ~bit(actuator) : lagging_ |= bit(actuator);
+  board_.pwm_write(slot.pin, slot.pulse);
+}
+
+// Power may fall at once, and what gives pulses may begin anywhere: nobody knows where the thing stands.
+std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulses,
+                                      kernel::Time now) const {
+  const auto at = static_cast<std::uint16_t>(now / 1000);
+  const unsigned passed = static_cast<std::uint16_t>(at - slot.changed);
+  const unsigned most = rise * std::min(passed, kLongestStep);
+  slot.changed = at;
+  const unsigned pulse = slot.pulse;
+  const unsigned target = slot.target;
+  const bool at_once = pulses ? target == 0 || pulse == 0 : target <= pulse;
+  if (at_once) return slot.target;
+  if (target > pulse) return static_cast<std::uint16_t>(std::min(target, pulse + most));
+  return static_cast<std::uint16_t>(std::max(target, pulse - std::min(pulse, most)));
+}
+
+[[gnu::noinline]] void OutputGuard::halt(Mask actuators) {
+  const auto lock = kernel_.lock();
+  halted_ |= actuators;
+  free_ = owned_ & ~halted_;
+}
+
+void OutputGuard::let_go(Mask actuators) {
+  const auto lock = kernel_.lock();
+  halted_ &= ~actuators;
+  free_ = owned_ & ~halted_;
+}
+
+}  // namespace robosync::guard

@@ -1,0 +1,66 @@
+// The output guard: the only code that drives an output of the board (tests/structure holds everybody to that). It
+// stands between the drivers and the pins, with privileges, and believes neither image nor driver:
+//
+// * A pin is driven only for an actuator of the running program. All others are off.
+// * No pulse leaves the range that the board gives its pin, nor changes faster (Board::pins()); 0, which is off,
+//   always may.
+// * An actuator that is halted stays as it is until it is let go.
+//
+// A check and its write are one under the kernel's lock: who is interrupted in between writes nothing old later.
+// docs/safety.md says what follows from that.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::guard {
+
+class OutputGuard {
+public:
+  using Mask = std::uint32_t;  // one bit for each actuator
+
+  OutputGuard(kernel::Kernel& kernel, boards::Board& board) : kernel_(kernel), board_(board) {}
+
+  // The actuators of `image`, which is verified and fits the board, own their pins from now on, and none is halted.
+  // A pin that was driven in another way before, or that none of them has, goes off.
+  void own(const vm::Image& image);
+  // There is no program: all pins go off.
+  void disown();
+
+  // Pulse on the actuator's pin, in microseconds of the 20 ms frame; 0: off.
+  void drive(unsigned actuator, std::uint32_t pulse_us, kernel::Time now);
+  // Pins whose pulse may not yet be where it shall go on. Called at each check of the safety monitor.
+  void go_on(kernel::Time now);
+
+  void halt(Mask actuators);
+  void let_go(Mask actuators);
+
+private:
+  struct Slot {
+    std::uint16_t pin;
+    std::uint16_t pulse;    // what is on the pin
+    std::uint16_t target;   // where it goes, as far as it may
+    std::uint16_t changed;  // when it was written last, in ms; of pins with a limited rise
+    std::uint8_t limit;     // in the board's list
+    vm::DriverId driver;
+  };
+
+  void put(unsigned actuator, kernel::Time now);
+  std::uint16_t next_pulse(Slot& slot, std::uint16_t rise, bool pulses, kernel::Time now) const;
+  void switch_off(const vm::Image* next);
+
+  kernel::Kernel& kernel_;
+  boards::Board& board_;
+  const policy::PinLimit* limits_ = nullptr;
+  Mask owned_ = 0;
+  Mask halted_ = 0;
+  Mask free_ = 0;     // owned, and not halted
+  Mask lagging_ = 0;  // whose pulse is not yet where it shall be
+  std::array<Slot, vm::kMaxActuators> slots_{};
+};
+
+}  // namespace robosync::guard

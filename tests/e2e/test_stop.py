@@ -1,0 +1,117 @@
+"""rsc stop and rsc resume on the shipped firmware, and images that the board refuses for its pins."""
+
+import struct
+import sys
+import tempfile
+import time
+import unittest
+import zlib
+from pathlib import Path
+
+import rsc
+from board import FAST, FIRMWARE, Board
+from debugger import Debugger
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
+from counting import symbols  # noqa: E402
+
+PATIENCE = 20
+PINS = 36
+ARM, MOTOR = 3, 4
+SEVENTY_PERCENT = 14_000  # us
+CRC_FROM = 8  # everything behind the checksum
+PWM_DRIVER = 5  # in vm/drivers.def
+CONFIG = """{
+  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+  "actuators": [
+    {"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "100deg"]},
+    {"name": "motor", "type": "PWM", "pin": 4, "device": "pwm", "on_release": "hold"}]
+}"""
+PROGRAM = """
+WHEN near X > 10
+DO
+  RUN motor TO 70%
+  MOVE arm TO 100deg AT 20deg/s
+END
+"""
+WITHOUT_MOTOR = """
+WHEN near X > 10
+DO MOVE arm TO 50deg
+END
+"""
+
+
+class Stop(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="robosync-stop-")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.gdb = self.folder / "gdb"
+        (self.folder / "robot.json").write_text(CONFIG)
+        self.board = Board(icount=FAST, extra=["-gdb", f"unix:{self.gdb},server=on,wait=off"])
+        self.addCleanup(self.board.stop)
+        self.pulses_at = symbols(FIRMWARE)["robosync_virtual_pwm"]
+
+    def pulses(self):
+        with Debugger(self.gdb) as debugger:
+            return debugger.read_words(self.pulses_at, PINS)
+
+    def compiled(self, program):
+        source, image = self.folder / "robot.rsl", self.folder / "robot.rsb"
+        source.write_text(program)
+        rsc.run("compile", source, "-o", image)
+        return image
+
+    def say(self, verb, *arguments):
+        return rsc.run(verb, *arguments, "--port", self.board.port)
+
+    def feed(self, *values):
+        for value in values:
+            self.say("feed", f"near.X={value}")
+
+    def await_motor(self, pulse):
+        give_up = time.monotonic() + PATIENCE
+        while self.pulses()[MOTOR] != pulse:
+            self.assertLess(time.monotonic(), give_up, f"the motor never came to {pulse} us")
+
+    def test_stop_holds_until_resume_whatever_comes(self):
+        image = self.compiled(PROGRAM)
+        self.say("upload", image)
+        self.feed(20)
+        self.await_motor(SEVENTY_PERCENT)
+        self.say("stop")
+        self.assertEqual(self.pulses(), [0] * PINS)
+        self.feed(5, 20)
+        self.say("upload", image)
+        self.feed(20)
+        self.assertEqual(self.pulses(), [0] * PINS)
+        self.assertTrue(rsc.info(self.board.port)["board"]["stopped"])
+        self.say("resume")
+        self.assertFalse(rsc.info(self.board.port)["board"]["stopped"])
+        self.feed(5, 20)
+        self.await_motor(SEVENTY_PERCENT)
+
+    def test_a_motor_that_the_next_program_does_not_have_stands_still(self):
+        self.say("upload", self.compiled(PROGRAM))
+        self.feed(20)
+        self.await_motor(SEVENTY_PERCENT)
+        self.say("upload", self.compiled(WITHOUT_MOTOR))
+        pulses = self.pulses()
+        self.assertEqual(pulses[MOTOR], 0)
+        self.assertEqual([pulse for pin, pulse in enumerate(pulses) if pin not in (ARM, MOTOR)], [0] * (PINS - 2))
+
+    def test_an_image_for_a_pin_that_is_no_output_is_refused(self):
+        image = self.compiled(PROGRAM)
+        self.say("upload", image)
+        damaged = bytearray(image.read_bytes())
+        motor = damaged.index(struct.pack("<BBH", PWM_DRIVER, 0, MOTOR))
+        struct.pack_into("<H", damaged, motor + 2, 65535)
+        struct.pack_into("<I", damaged, 4, zlib.crc32(damaged[CRC_FROM:]))
+        image.write_bytes(damaged)
+        done = rsc.call("upload", image, "--port", self.board.port)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("does not let programs drive this pin", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,211 @@
+// The output guard by itself, and under the whole runtime: drawn sequences of whatever can happen, against what it
+// promises. The board notes every pulse that leaves it, so nothing that was wrong for a moment is missed.
+#include <algorithm>
+#include <optional>
+
+#include <catch2/catch.hpp>
+
+#include "runtime-m4/guard/output_guard.hpp"
+#include "tests/runtime-m4/layers/draw.hpp"
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
+#include "tests/vm/image_builder.hpp"
+
+using namespace robosync;
+
+namespace {
+
+constexpr policy::PinLimit kLimits[] = {
+    {.first = 0, .last = 3, .shortest = 0, .longest = 20'000, .rise = 0},
+    {.first = 4, .last = 5, .shortest = 1'000, .longest = 2'000, .rise = 2},
+    {.first = 6, .last = 6, .shortest = 0, .longest = 10'000, .rise = 50}};
+constexpr policy::BoardPins kPins = {.outputs = kLimits, .i2c_buses = 1};
+constexpr std::uint16_t kOutputs = 7;
+constexpr unsigned kLongestStep = 20;  // ms that one change may make up for
+
+bool is_allowed(std::uint16_t pin, std::uint32_t pulse) {
+  const policy::PinLimit* const limit = policy::limit_of(kPins, pin);
+  return pulse == 0 || (limit != nullptr && pulse >= limit->shortest && pulse <= limit->longest);
+}
+
+// How far may the pulse of the pin have come, `passed` milliseconds after it was `before`?
+bool is_slow_enough(std::uint16_t pin, std::uint32_t before, std::uint32_t after, unsigned passed) {
+  const policy::PinLimit& limit = *policy::limit_of(kPins, pin);
+  if (limit.rise == 0 || after == 0 || after == before) return true;
+  const bool pulses = limit.shortest != 0;
+  if (pulses ? before == 0 : after < before) return true;
+  const std::uint32_t way = after > before ? after - before : before - after;
+  return way <= limit.rise * std::min(passed, kLongestStep);
+}
+
+vm::Actuator on_pin(std::uint16_t pin, vm::DriverId driver = vm::DriverId::servo) {
+  vm::Actuator actuator{};
+  actuator.driver = driver;
+  actuator.pin = pin;
+  actuator.max = 180 * vm::kScale;
+  return actuator;
+}
+
+// A guard on a board with kPins, its programs, and what was seen on the pins so far.
+struct Bench {
+  Bench() { board.board_pins = kPins; }
+
+  void own(std::vector<vm::Actuator> next) {
+    actuators = std::move(next);
+    vm::Image image;
+    image.actuators = actuators;
+    guard.own(image);
+  }
+  std::uint32_t pulse(std::uint16_t pin) const { return board.pwm_read(pin); }
+
+  kernel::Kernel kernel;
+  test::NotingBoard board;
+  guard::OutputGuard guard{kernel, board};
+  std::vector<vm::Actuator> actuators;
+};
+
+}  // namespace
+
+TEST_CASE("a pin is driven only for an actuator of the program") {
+  Bench bench;
+  bench.guard.drive(0, 1500, 0);
+  CHECK(bench.board.pulses.empty());
+  bench.own({on_pin(3)});
+  bench.guard.drive(0, 1500, 0);
+  CHECK(bench.pulse(3) == 1500);
+  bench.guard.drive(1, 1500, 0);
+  CHECK(bench.board.pulses.size() == 1);
+  bench.guard.disown();
+  CHECK(bench.pulse(3) == 0);
+  bench.guard.drive(0, 1500, 0);
+  CHECK(bench.pulse(3) == 0);
+}
+
+TEST_CASE("what the next program drives in the same way stays as it is, all else goes off") {
+  Bench bench;
+  bench.own({on_pin(0), on_pin(1), on_pin(2)});
+  for (unsigned a = 0; a < 3; ++a)
+    bench.guard.drive(a, 1500, 0);
+  bench.own({on_pin(2), on_pin(1, vm::DriverId::pwm)});
+  CHECK(bench.pulse(0) == 0);
+  CHECK(bench.pulse(1) == 0);  // pulses for a servo are power for a motor
+  CHECK(bench.pulse(2) == 1500);
+}
+
+TEST_CASE("an actuator that is halted stays as it is until it is let go") {
+  Bench bench;
+  bench.own({on_pin(0), on_pin(1)});
+  bench.guard.drive(0, 1500, 0);
+  bench.guard.halt(0b01);
+  bench.guard.drive(0, 600, 0);
+  bench.guard.drive(1, 600, 0);
+  CHECK(bench.pulse(0) == 1500);
+  CHECK(bench.pulse(1) == 600);
+  bench.guard.let_go(0b01);
+  bench.guard.drive(0, 700, 0);
+  CHECK(bench.pulse(0) == 700);
+}
+
+TEST_CASE("pulses stay inside the range of their pin, and off is always allowed") {
+  Bench bench;
+  bench.own({on_pin(4), on_pin(6, vm::DriverId::pwm)});
+  bench.guard.drive(0, 2'500, 0);
+  CHECK(bench.pulse(4) == 2'000);
+  bench.guard.drive(0, 0, 0);
+  CHECK(bench.pulse(4) == 0);
+  bench.guard.drive(0, 500, 1'000'000);
+  CHECK(bench.pulse(4) == 1'000);
+  bench.guard.drive(1, UINT32_MAX, 1'000'000);
+  CHECK(bench.pulse(6) <= 10'000);
+}
+
+TEST_CASE("a pulse that may not change at once goes on by itself, up to where it was told to go") {
+  Bench bench;
+  bench.own({on_pin(4)});
+  bench.guard.drive(0, 1'000, 0);
+  kernel::Time now = 1'000'000;
+  bench.guard.drive(0, 1'100, now);
+  CHECK(bench.pulse(4) == 1'040);
+  for (const std::uint32_t expected : {1'060, 1'080, 1'100, 1'100}) {
+    now += 10'000;
+    bench.guard.go_on(now);
+    CHECK(bench.pulse(4) == expected);
+  }
+}
+
+// Random actuators on random pins, and random words of drivers that know no limit.
+TEST_CASE("no sequence widens a limit, nor drives a pin that no running program owns") {
+  test::Draw draw(13);
+  for (unsigned round = 0; round < 300; ++round) {
+    std::optional<Bench> bench(std::in_place);
+    kernel::Time now = 1'000'000;
+    std::uint32_t halted = 0;
+    std::array<kernel::Time, kOutputs> changed{};
+    for (unsigned event = 0; event < 60; ++event) {
+      now += draw.below(30) * 1'000U;
+      std::array<std::uint32_t, kOutputs> before{};
+      for (std::uint16_t pin = 0; pin < kOutputs; ++pin)
+        before[pin] = bench->pulse(pin);
+      bench->board.pulses.clear();
+      for (std::uint16_t pin = 0; pin < kOutputs; ++pin)
+        if (before[pin] != 0) bench->board.pulses[pin] = {before[pin]};
+      const unsigned actuator = draw.below(8);
+      bool held = true;  // halted actuators must not have moved
+      switch (draw.below(10)) {
+        case 0: {
+          std::vector<vm::Actuator> next;
+          for (std::uint16_t pin = 0; pin < 9; ++pin)  // two of them are no outputs
+            if (draw.one_in(2))
+              next.push_back(on_pin(pin, draw.one_in(2) ? vm::DriverId::servo : vm::DriverId::pwm));
+          bench->own(std::move(next));
+          halted = 0;
+          changed.fill(0);  // a new program may begin with one step
+          held = false;
+          break;
+        }
+        case 1:
+          bench->guard.disown();
+          bench->actuators.clear();
+          held = false;
+          break;
+        case 2:
+          halted |= 1U << actuator;
+          bench->guard.halt(1U << actuator);
+          break;
+        case 3:
+          halted &= ~(1U << actuator);
+          bench->guard.let_go(1U << actuator);
+          break;
+        case 4:
+          bench->guard.go_on(now);
+          held = false;
+          break;
+        case 5:
+          if (draw.one_in(4)) {  // a reset: the pins go off, and nothing is known of before
+            bench.emplace();
+            before = {};
+            halted = 0;
+          }
+          break;
+        default:
+          bench->guard.drive(actuator, draw.one_in(3) ? draw.below(UINT32_MAX) : draw.below(25'000),
+                             now);
+      }
+      for (const auto& [pin, pulses] : bench->board.pulses) {
+        REQUIRE(pin < kOutputs);
+        for (const std::uint32_t pulse : pulses)
+          REQUIRE(is_allowed(pin, pulse));
+        const std::uint32_t after = pulses.back();
+        REQUIRE(is_slow_enough(pin, before[pin], after,
+                               static_cast<unsigned>((now - changed[pin]) / 1000)));
+        if (after != before[pin]) changed[pin] = now;
+        const auto owner = std::ranges::find(bench->actuators, pin, &vm::Actuator::pin);
+        if (owner == bench->actuators.end()) {
+          REQUIRE(after == 0);
+        } else if (held && (halted >> (owner - bench->actuators.begin()) & 1) != 0) {
+          REQUIRE(after == before[pin]);
+        }
+      }
+    }
+  }
+}

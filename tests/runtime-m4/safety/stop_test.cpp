@@ -1,0 +1,202 @@
+// A person's stop: at any time, whatever runs or comes, until the person's resume.
+#include <catch2/catch.hpp>
+
+#include "tests/runtime-m4/layers/draw.hpp"
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
+#include "tests/vm/image_builder.hpp"
+
+using namespace robosync;
+using robosync::test::Rig;
+
+namespace {
+
+const char* const kFourOutputs = R"({
+  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+  "actuators": [
+    {"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "100deg"]},
+    {"name": "motor", "type": "PWM", "pin": 4, "device": "pwm", "on_release": "hold"},
+    {"name": "slow_motor", "type": "PWM", "pin": 34, "device": "pwm"},
+    {"name": "small_arm", "type": "PWM", "pin": 32, "device": "servo", "range": ["0deg", "100deg"]}]
+})";
+
+const char* const kMoving = R"(
+SAFETY too_near
+  WHEN near X > 90
+  DO STOP motor
+  RESUME WHEN near X < 80
+END
+WHEN near X > 10
+DO
+  RUN motor TO 70%
+  RUN slow_motor TO 100%
+  MOVE arm TO 100deg AT 20deg/s
+  MOVE small_arm TO 100deg AT 500deg/s
+END
+)";
+
+std::vector<std::byte> moving_program() {
+  return test::compile(kMoving, kFourOutputs);
+}
+
+bool all_off(const Rig& rig) {
+  return rig.board.pwm_read(3) == 0 && rig.board.pwm_read(4) == 0 && rig.board.pwm_read(32) == 0 &&
+         rig.board.pwm_read(34) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("stop puts all outputs into their safe state at once, and they stay there until resume") {
+  Rig rig;
+  REQUIRE(rig.activate(moving_program()).ok());
+  rig.feed(0, 20);
+  rig.run(500);
+  REQUIRE(rig.board.pwm_read(4) == 14'000);
+  rig.runtime.stop();
+  rig.run(500);
+  CHECK(all_off(rig));
+  CHECK(rig.runtime.stopped());
+  rig.feed(0, 5);
+  rig.run(600);
+  rig.feed(0, 20);
+  rig.run(2000);
+  CHECK(all_off(rig));
+  rig.runtime.resume();
+  rig.feed(0, 5);
+  rig.run(2100);
+  CHECK(all_off(rig));  // what was interrupted does not go on by itself
+  rig.feed(0, 20);
+  rig.run(2500);
+  CHECK(rig.board.pwm_read(4) == 14'000);
+}
+
+TEST_CASE("a stop outlasts programs that come and go") {
+  Rig rig;
+  rig.runtime.stop();
+  rig.run(10);
+  for (unsigned round = 0; round < 2; ++round) {
+    REQUIRE(rig.activate(moving_program()).ok());
+    rig.feed(0, 20);
+    rig.run(rig.kernel.now() / 1000 + 500);
+    CHECK(all_off(rig));
+    rig.runtime.clear();
+  }
+  REQUIRE(rig.activate(moving_program()).ok());
+  rig.runtime.resume();
+  rig.feed(0, 20);
+  rig.run(rig.kernel.now() / 1000 + 500);
+  CHECK(rig.board.pwm_read(4) == 14'000);
+}
+
+TEST_CASE(
+    "resume leaves halted what a SAFETY rule halts, and the rule's own end leaves stopped what "
+    "is") {
+  Rig rig;
+  REQUIRE(rig.activate(moving_program()).ok());
+  rig.feed(0, 95);  // trips
+  rig.run(100);
+  rig.runtime.stop();
+  rig.run(200);
+  rig.runtime.resume();
+  rig.feed(0, 91);
+  rig.run(300);
+  CHECK(rig.board.pwm_read(4) == 0);
+  rig.runtime.stop();
+  rig.run(400);
+  rig.feed(0, 5);  // the rule lets the motor go
+  rig.run(500);
+  rig.feed(0, 20);
+  rig.run(700);
+  CHECK(all_off(rig));
+  rig.runtime.resume();
+  rig.feed(0, 5);
+  rig.run(800);
+  rig.feed(0, 20);
+  rig.run(1000);
+  CHECK(rig.board.pwm_read(4) == 14'000);
+}
+
+TEST_CASE("the board's limits hold whatever the robot's file says") {
+  Rig rig;
+  REQUIRE(rig.activate(moving_program()).ok());
+  rig.feed(0, 20);
+  rig.run(3000);
+  for (const std::uint32_t pulse : rig.board.pulses[32])
+    CHECK((pulse == 0 || (pulse >= 1000 && pulse <= 2000)));
+  CHECK(rig.board.pwm_read(32) == 2000);  // 2,500 were wanted
+  const auto& slow = rig.board.pulses[34];
+  for (std::size_t i = 1; i < slow.size(); ++i)
+    CHECK(slow[i] <= slow[i - 1] + 50 * 20);
+  CHECK(rig.board.pwm_read(34) == 10'000);
+}
+
+// Uploads of images with damaged tables, readings, stops, resumes and cleared programs, in any order.
+TEST_CASE("no image, reading or stop drives what it must not") {
+  test::Draw draw(17);
+  const std::vector<std::byte> good = moving_program();
+  Rig rig;
+  bool stopped = false;
+  unsigned ran = 0;
+  for (unsigned event = 0; event < 1500; ++event) {
+    switch (draw.below(8)) {
+      case 0: {
+        std::vector<std::byte> bytes = good;
+        vm::Image image;
+        REQUIRE(vm::view_image(bytes, image));
+        auto& actuator = const_cast<vm::Actuator&>(image.actuators[draw.below(4)]);
+        const auto any = static_cast<vm::Value>(draw.below(UINT32_MAX));
+        switch (draw.below(6)) {
+          case 0:
+            actuator.pin = static_cast<std::uint16_t>(draw.below(40));
+            break;
+          case 1:
+            actuator.max = any;
+            break;
+          case 2:
+            actuator.min = any;
+            break;
+          case 3:
+            actuator.speed_limit = any;
+            break;
+          case 4:
+            actuator.driver = draw.one_in(2) ? vm::DriverId::pwm : vm::DriverId::servo;
+            break;
+          default:
+            actuator.safe = static_cast<vm::Release>(draw.below(3));
+        }
+        vm::test::repair_crc(bytes);
+        if (rig.activate(bytes).ok()) ++ran;
+        break;
+      }
+      case 1:
+        stopped = !stopped;
+        stopped ? rig.runtime.stop() : rig.runtime.resume();
+        break;
+      case 2:
+        if (draw.one_in(4)) rig.runtime.clear();
+        break;
+      default:
+        rig.feed(0, static_cast<int>(draw.below(100)));
+    }
+    rig.run(rig.kernel.now() / 1000 + draw.below(40));
+    for (auto& [pin, pulses] : rig.board.pulses) {
+      const policy::PinLimit* const limit = policy::limit_of(boards::kPins, pin);
+      REQUIRE(limit != nullptr);
+      for (const std::uint32_t pulse : pulses)
+        REQUIRE((pulse == 0 || (pulse >= limit->shortest && pulse <= limit->longest)));
+      const std::uint32_t now = pulses.back();
+      const bool owned =
+          rig.runtime.running() &&
+          std::ranges::any_of(rig.runtime.image().actuators,
+                              [&](const vm::Actuator& actuator) { return actuator.pin == pin; });
+      REQUIRE((owned || now == 0));
+      if (stopped && now != 0) {  // a servo that holds, and nothing else
+        const auto& actuators = rig.runtime.image().actuators;
+        const auto owner = std::ranges::find(actuators, pin, &vm::Actuator::pin);
+        REQUIRE(owner->driver == vm::DriverId::servo);
+      }
+      pulses = {now};
+    }
+  }
+  CHECK(ran > 50);
+}
