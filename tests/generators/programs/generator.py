@@ -208,25 +208,28 @@ class Generator:
         return "".join(f"    {line}\n" for line in lines)
 
     def _statement(self, depth):
-        simple = [self._random.choice(COMMANDS), self._random.choice(COMMANDS), self._set()]
+        simple = [lambda: self._random.choice(COMMANDS), lambda: self._random.choice(COMMANDS), self._set]
         if depth == 0:
-            return self._random.choice(simple)
-        return self._one(*simple, "THEN", f"WAIT {self._duration()}", *self._blocks(depth - 1),
-                         f"WAIT UNTIL {self._condition(1)} WITHIN {self._duration()}",
-                         f"greet_twice WITH {self._duration()}, {self._one('10%', 'joy', 'calm')}",
-                         f"point WITH {self._one('arms', 'left_arm')}, {self._one('30deg', 'count * 9deg')},"
+            return self._one(*simple)()
+        return self._one(*simple, lambda: "THEN", lambda: f"WAIT {self._duration()}", *self._blocks(depth - 1),
+                         lambda: f"WAIT UNTIL {self._condition(1)} WITHIN {self._duration()}",
+                         lambda: f"greet_twice WITH {self._duration()}, {self._one('10%', 'joy', 'calm')}",
+                         lambda: f"point WITH {self._one('arms', 'left_arm')}, {self._one('30deg', 'count * 9deg')},"
                          " " + self._one('"greeting.wav"', '"warning.wav"'),
-                         f"twice WITH point, {self._one('right_arm', 'arms')}")
+                         lambda: f"twice WITH point, {self._one('right_arm', 'arms')}")()
 
     def _blocks(self, depth):
+        """Functions: the blocks that are not drawn would hold many others."""
+        def block():
+            return self._block(depth)
         return [
-            f"IF {self._condition(1)} DO\n{self._block(depth)}    ELSE\n{self._block(depth)}    END",
-            f"IF\n{self._condition(1)} DO\n{self._block(depth)}    ELSE IF {self._condition(0)} DO\n"
-            f"{self._block(depth)}    ELSE\n{self._block(depth)}    END",
-            f"REPEAT {self._random.randint(1, 3)} TIMES\n{self._block(depth)}    END",
-            f"REPEAT count MOD 4 TIMES\n{self._block(depth)}    WAIT {self._pause()}\n    END",
-            f"REPEAT WHILE {self._condition(0)}\n{self._block(depth)}    WAIT {self._pause()}\n    END",
-            f"PICK ONE\n    OPTION 30%\n{self._block(depth)}    OPTION 70%\n{self._block(depth)}    END",
+            lambda: f"IF {self._condition(1)} DO\n{block()}    ELSE\n{block()}    END",
+            lambda: f"IF\n{self._condition(1)} DO\n{block()}    ELSE IF {self._condition(0)} DO\n"
+            f"{block()}    ELSE\n{block()}    END",
+            lambda: f"REPEAT {self._random.randint(1, 3)} TIMES\n{block()}    END",
+            lambda: f"REPEAT count MOD 4 TIMES\n{block()}    WAIT {self._pause()}\n    END",
+            lambda: f"REPEAT WHILE {self._condition(0)}\n{block()}    WAIT {self._pause()}\n    END",
+            lambda: f"PICK ONE\n    OPTION 30%\n{block()}    OPTION 70%\n{block()}    END",
         ]
 
     def _set(self):
@@ -326,14 +329,15 @@ class WideGenerator(Generator):
         return self._one(super()._set, lambda: self._random.choice(more))()
 
     def _blocks(self, depth):
+        def block():
+            return self._block(depth)
         return super()._blocks(depth) + [
-            f"IF {self._condition(0)} FOR 40ms DO\n{self._block(depth)}    END",
-            f"REPEAT count MOD 4 TIMES\n{self._block(depth)}    WAIT {self._pause()}\n    END",
-            f"REPEAT (last) TIMES\n{self._block(depth)}    THEN\n    END",
-            "WAIT count * 10ms", "WAIT RANDOM(0s, 0.1s)",
-            f"WAIT UNTIL ({self._condition(0)} FOR 40ms) WITHIN 600ms",
-            f"PICK ONE\n    OPTION\n{self._block(depth)}    OPTION\n{self._block(depth)}"
-            f"    OPTION\n{self._block(depth)}    END"]
+            lambda: f"IF {self._condition(0)} FOR 40ms DO\n{block()}    END",
+            lambda: f"REPEAT count MOD 4 TIMES\n{block()}    WAIT {self._pause()}\n    END",
+            lambda: f"REPEAT (last) TIMES\n{block()}    THEN\n    END",
+            lambda: "WAIT count * 10ms", lambda: "WAIT RANDOM(0s, 0.1s)",
+            lambda: f"WAIT UNTIL ({self._condition(0)} FOR 40ms) WITHIN 600ms",
+            lambda: f"PICK ONE\n    OPTION\n{block()}    OPTION\n{block()}    OPTION\n{block()}    END"]
 
 
 def main():
