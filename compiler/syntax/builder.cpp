@@ -152,8 +152,9 @@ void Builder::add_key(std::vector<ast::MotionKey>& keys, ast::MotionKey key) {
     keys.push_back(std::move(key));
     return;
   }
-  const Span span{key.span.file, keys.back().span.begin, key.span.end};
-  keys.back() = {span, expr(span, ast::Negate{std::move(key.value)})};
+  ast::MotionKey& sign = keys.back();
+  sign.span.end = key.span.end;
+  sign.value = expr(sign.span, ast::Negate{std::move(key.value)});
 }
 
 void Builder::set_priority(ast::Modifiers& modifiers, Span keyword, Span number) {

@@ -1,6 +1,7 @@
 // Promises a channel of the image or a message that names the nearest one.
 #include "rsc/trace/channels.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -38,6 +39,23 @@ std::uint8_t channel_of(const vm::Image& image, const vm::Sensor& sensor, std::s
   no_such(fmt::format("channel of {}", image.string(sensor.name)), name, known);
 }
 
+// Is `name`, "touch.LEVEL", the channel that is meant, or may it be where none is named?
+bool is_channel(std::string_view name, std::string_view sensor, std::string_view channel) {
+  const std::size_t dot = name.find('.');
+  return same_name(name.substr(0, dot), sensor) &&
+         (channel.empty() || same_name(name.substr(dot + 1), channel));
+}
+
+struct ChannelName {
+  std::string_view sensor, channel;
+};
+
+ChannelName split(std::string_view name) {
+  const std::size_t at = name.find_first_of(". ");
+  if (at == std::string_view::npos) return {name, ""};
+  return {name.substr(0, at), name.substr(at + 1)};
+}
+
 }  // namespace
 
 std::uint8_t find_channel(const vm::Image& image, std::string_view sensor,
@@ -52,9 +70,34 @@ std::uint8_t find_channel(const vm::Image& image, std::string_view sensor,
 }
 
 std::uint8_t find_channel(const vm::Image& image, std::string_view name) {
-  const std::size_t split = name.find_first_of(". ");
-  if (split == std::string_view::npos) return find_channel(image, name, "");
-  return find_channel(image, name.substr(0, split), name.substr(split + 1));
+  const ChannelName parts = split(name);
+  return find_channel(image, parts.sensor, parts.channel);
+}
+
+std::optional<std::uint8_t> find_read_channel(const Program& program, std::string_view sensor,
+                                              std::string_view channel) {
+  const ChannelName name = channel.empty() ? split(sensor) : ChannelName{sensor, channel};
+  const auto meant = [&](const auto& entry) {
+    return is_channel(entry.first, name.sensor, name.channel);
+  };
+  const vm::Image& image = program.image();
+  const bool read = std::ranges::any_of(image.channels, [&](const vm::Channel& candidate) {
+    return same_name(image.string(image.sensors[candidate.sensor].name), name.sensor) &&
+           (name.channel.empty() || same_name(image.string(candidate.name), name.channel));
+  });
+  if (!read && std::ranges::any_of(program.origin().units.channels, meant)) return std::nullopt;
+  return find_channel(image, name.sensor, name.channel);
+}
+
+std::string_view unit_of(const Program& program, std::uint8_t channel) {
+  const vm::Image& image = program.image();
+  const vm::Channel& record = image.channels[channel];
+  const std::string name = fmt::format("{}.{}", image.string(image.sensors[record.sensor].name),
+                                       image.string(record.name));
+  const auto& units = program.origin().units.channels;
+  const auto found = units.find(name);
+  if (found == units.end() || found->second == nullptr) return {};
+  return found->second->spelling;
 }
 
 vm::Value parse_reading(const vm::Image& image, std::uint8_t channel, std::string_view text) {

@@ -36,6 +36,8 @@ bool Digest::shows(const link::Event& event) {
 bool Digest::shows_value(const link::Event& event) {
   if (event.subject >= image_.variables.size() || event.value_count == 0) return true;
   const vm::Variable& variable = image_.variables[event.subject];
+  // What NEXT and ANY remember: no name in a program has a space.
+  if (image_.string(variable.name).find(' ') != std::string_view::npos) return false;
   const vm::Value value = event.values[0];
   vm::Value& last = shown_[event.subject];
   if (last == vm::kUnknown) last = variable.initial;

@@ -131,6 +131,10 @@ std::string EventReader::channel_name() const {
 std::string EventReader::variable_name() const {
   return name_at(&vm::Image::variables, event_.subject, "variable");
 }
+bool EventReader::is_signal() const {
+  const vm::Variable* const variable = at(&vm::Image::variables, event_.subject);
+  return variable != nullptr && variable->kind == vm::VariableKind::signal;
+}
 std::string EventReader::actuator_name() const {
   return name_at(&vm::Image::actuators, event_.subject, "actuator");
 }

@@ -66,6 +66,7 @@ public:
   std::string sensor_name() const;   // of the channel that is the subject
   std::string channel_name() const;  // without its sensor
   std::string variable_name() const;
+  bool is_signal() const;  // of a variable
   std::string actuator_name() const;
   std::string verb_name() const;
   std::string word_name() const;  // of a command; empty without one

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <iostream>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 
@@ -14,8 +17,10 @@
 #include "compiler/diagnostics/nearest.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
+#include "rsc/names.hpp"
 #include "rsc/quantity.hpp"
 #include "rsc/trace/channels.hpp"
+#include "rsc/trace/csv.hpp"
 #include "rsc/trace/json_lines.hpp"
 
 namespace robosync::tool {
@@ -34,8 +39,8 @@ std::uint64_t microseconds(std::string_view text) {
 
 class ScenarioReader {
 public:
-  ScenarioReader(const std::string& file, const vm::Image& image)
-      : file_(file), text_(read_text(file)), image_(image) {}
+  ScenarioReader(const std::string& file, const Program& program)
+      : file_(file), text_(read_text(file)), program_(program), image_(program.image()) {}
 
   Scenario read();
 
@@ -106,12 +111,24 @@ private:
     return json_string_value(value);
   }
 
-  std::uint8_t channel_of(json_t* stimulus) const {
+  // Nothing, and a note: the program does not read it.
+  std::optional<std::uint8_t> channel_of(json_t* stimulus) {
     const std::string_view sensor = need_string(stimulus, "sensor");
     const bool named = json_object_get(stimulus, "channel") != nullptr;
     const std::string_view channel = named ? need_string(stimulus, "channel") : "";
-    return at_key(named ? "channel" : "sensor",
-                  [&] { return find_channel(image_, sensor, channel); });
+    const char* const key = named ? "channel" : "sensor";
+    const auto found = at_key(key, [&] { return find_read_channel(program_, sensor, channel); });
+    if (!found)
+      note(file_, line_of_key(key), fmt::format("{}{}{}", sensor, named ? " " : "", channel));
+    return found;
+  }
+
+  // Once for each channel.
+  void note(std::string_view file, std::size_t line, const std::string& channel) {
+    if (!unread_.insert(channel).second) return;
+    scenario_.notes.push_back(fmt::format(
+        "{}:{}: note: the program does not read {}, so what the scenario says of it does nothing",
+        file, line, channel));
   }
 
   void read_stimuli(json_t* stimuli) {
@@ -131,24 +148,27 @@ private:
 
   void read_stimulus(json_t* stimulus) {
     if (json_object_get(stimulus, "csv") != nullptr) {
-      fail(line_of_key("csv"), "csv recordings are not in this version of rsc yet");
-    }
-    const bool ramp = json_object_get(stimulus, "ramp") != nullptr;
-    if (ramp) {
+      check_keys(stimulus, {"csv", "at", "sensor"});
+      read_recording(stimulus);
+    } else if (json_object_get(stimulus, "ramp") != nullptr) {
       check_keys(stimulus, {"from", "to", "sensor", "channel", "ramp"});
       read_ramp(stimulus);
     } else {
       check_keys(stimulus, {"at", "sensor", "channel", "value"});
-      const std::uint8_t channel = channel_of(stimulus);
-      json_t* const at = need(stimulus, "at");
-      json_t* const value = need(stimulus, "value");
-      const std::uint64_t at_us = at_key("at", [&] { return time(at); });
-      add(at_us, channel, at_key("value", [&] { return reading(value, channel); }));
+      read_reading(stimulus);
     }
   }
 
+  void read_reading(json_t* stimulus) {
+    const auto channel = channel_of(stimulus);
+    json_t* const at = need(stimulus, "at");
+    json_t* const value = need(stimulus, "value");
+    const std::uint64_t at_us = at_key("at", [&] { return time(at); });
+    if (channel) add(at_us, *channel, at_key("value", [&] { return reading(value, *channel); }));
+  }
+
   void read_ramp(json_t* stimulus) {
-    const std::uint8_t channel = channel_of(stimulus);
+    const auto channel = channel_of(stimulus);
     json_t* const from_value = need(stimulus, "from");
     json_t* const to_value = need(stimulus, "to");
     json_t* const ramp = need(stimulus, "ramp");
@@ -158,11 +178,109 @@ private:
     if (json_array_size(ramp) != 2) {
       fail(line_of_key("ramp"), "`ramp` is [first reading, last reading]");
     }
+    if (!channel) return;
     const auto end = [&](std::size_t which) {
-      return at_key("ramp", [&] { return reading(json_array_get(ramp, which), channel); });
+      return at_key("ramp", [&] { return reading(json_array_get(ramp, which), *channel); });
     };
-    add_ramp(from, to, channel, end(0), end(1));
+    add_ramp(from, to, *channel, end(0), end(1));
   }
+
+  // ---- recordings in CSV
+
+  struct Column {
+    std::optional<std::uint8_t> channel;  // none: the times, or what the program does not read
+    std::string unit;                     // of bare numbers
+  };
+
+  void read_recording(json_t* stimulus) {
+    const std::string_view name = need_string(stimulus, "csv");
+    const bool has_sensor = json_object_get(stimulus, "sensor") != nullptr;
+    const std::string_view sensor = has_sensor ? need_string(stimulus, "sensor") : "";
+    json_t* const at = json_object_get(stimulus, "at");
+    const std::uint64_t begin = at == nullptr ? 0 : at_key("at", [&] { return time(at); });
+    const std::string file = (std::filesystem::path(file_).parent_path() / name).string();
+    const CsvTable table = read_csv(file);
+    std::size_t time_column = table.columns.cells.size();
+    const std::vector<Column> columns = read_columns(file, table, sensor, time_column);
+    for (const CsvRow& row : table.rows)
+      add_row({file, row, columns, time_column}, begin);
+  }
+
+  [[noreturn]] static void fail_in(const std::string& file, std::size_t line,
+                                   std::string_view message) {
+    throw Failure(Exit::program, fmt::format("{}:{}: {}", file, line, message));
+  }
+
+  // `DISTANCE (cm)`: a name, and in brackets the unit of its numbers.
+  static std::pair<std::string, std::string> name_and_unit(const std::string& cell) {
+    const std::size_t open = cell.find('(');
+    if (open == std::string::npos || cell.back() != ')') return {cell, ""};
+    const std::size_t end = cell.find_last_not_of(' ', open == 0 ? 0 : open - 1);
+    return {cell.substr(0, end + 1), cell.substr(open + 1, cell.size() - open - 2)};
+  }
+
+  std::vector<Column> read_columns(const std::string& file, const CsvTable& table,
+                                   std::string_view sensor, std::size_t& time_column) {
+    std::vector<Column> columns;
+    columns.reserve(table.columns.cells.size());
+    for (const std::string& cell : table.columns.cells) {
+      auto [name, unit] = name_and_unit(cell);
+      if (same_name(name, "time")) time_column = columns.size();
+      columns.push_back(same_name(name, "time")
+                            ? Column{{}, unit}
+                            : read_column(file, table.columns.line, sensor, name, unit));
+    }
+    if (time_column == columns.size())
+      fail_in(file, table.columns.line, "no column is called `time`, as in `time (s)`");
+    return columns;
+  }
+
+  Column read_column(const std::string& file, std::size_t line, std::string_view sensor,
+                     const std::string& name, const std::string& unit) {
+    try {
+      const auto channel = sensor.empty() ? find_read_channel(program_, name, "")
+                                          : find_read_channel(program_, sensor, name);
+      if (!channel) note(file, line, sensor.empty() ? name : fmt::format("{} {}", sensor, name));
+      const bool own = unit.empty() && channel;
+      return {channel, own ? std::string(unit_of(program_, *channel)) : unit};
+    } catch (const std::invalid_argument& error) {
+      fail_in(file, line, error.what());
+    }
+  }
+
+  struct Row {
+    const std::string& file;
+    const CsvRow& cells;
+    const std::vector<Column>& columns;
+    std::size_t time_column;
+  };
+
+  // A number without a unit has the one of its column.
+  static std::string with_unit(const std::string& cell, const std::string& unit) {
+    const bool bare = cell.find_first_not_of("0123456789.-+eE") == std::string::npos;
+    return bare ? cell + unit : cell;
+  }
+
+  // A cell with nothing in it is no reading.
+  void add_row(const Row& row, std::uint64_t begin) {
+    const std::vector<std::string>& cells = row.cells.cells;
+    try {
+      const std::string& unit = row.columns[row.time_column].unit;
+      const std::uint64_t at_us = begin + microseconds(with_unit(cells[row.time_column], unit));
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        const auto channel = row.columns[i].channel;
+        if (!channel || cells[i].empty()) continue;
+        const bool words = image_.channels[*channel].label_count > 0;
+        add(at_us, *channel,
+            parse_reading(image_, *channel,
+                          words ? cells[i] : with_unit(cells[i], row.columns[i].unit)));
+      }
+    } catch (const std::invalid_argument& error) {
+      fail_in(row.file, row.cells.line, error.what());
+    }
+  }
+
+  // ---- readings one by one
 
   // A reading in each period of the sensor, and the last one.
   void add_ramp(std::uint64_t from, std::uint64_t to, std::uint8_t channel, std::int64_t first,
@@ -187,8 +305,10 @@ private:
 
   const std::string& file_;
   std::string text_;
+  const Program& program_;
   const vm::Image& image_;
-  TextRange element_;  // the stimulus at hand
+  TextRange element_;             // the stimulus at hand
+  std::set<std::string> unread_;  // channels with a note
   Scenario scenario_;
 };
 
@@ -199,7 +319,7 @@ Scenario ScenarioReader::read() {
   if (!root) fail(static_cast<std::size_t>(std::max(error.line, 1)), error.text);
   element_ = {0, text_.size()};
   if (!json_is_object(root.get())) fail(1, "a scenario is an object: {\"stimuli\": […]}");
-  check_keys(root.get(), {"duration", "stimuli"});
+  check_keys(root.get(), {"$schema", "duration", "stimuli"});
   if (json_t* const duration = json_object_get(root.get(), "duration")) {
     scenario_.duration_us = at_key("duration", [&] { return time(duration); });
   }
@@ -210,8 +330,13 @@ Scenario ScenarioReader::read() {
 
 }  // namespace
 
-Scenario read_scenario(const std::string& file, const vm::Image& image) {
-  return ScenarioReader(file, image).read();
+Scenario read_scenario(const std::string& file, const Program& program) {
+  return ScenarioReader(file, program).read();
+}
+
+void show_notes(const Scenario& scenario) {
+  for (const std::string& note : scenario.notes)
+    std::cerr << note << '\n';
 }
 
 }  // namespace robosync::tool

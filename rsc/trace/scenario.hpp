@@ -1,4 +1,4 @@
-// Scenarios: what the sensors measure, when (docs/link.md shows the format).
+// Scenarios: what the sensors measure, when (docs/scenario.md; grammar/scenario.schema.json).
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vm/image.hpp"
+#include "rsc/program.hpp"
 
 namespace robosync::tool {
 
@@ -18,11 +18,15 @@ struct Stimulus {
 
 struct Scenario {
   std::optional<std::uint64_t> duration_us;
-  std::vector<Stimulus> stimuli;  // by time; ramps are resolved into single readings
+  std::vector<Stimulus> stimuli;   // by time; ramps are resolved into single readings
+  std::vector<std::string> notes;  // with file and line: readings that nobody reads
 };
 
-// Throws Failure: outside when the file cannot be read; program when it is wrong, with file and
-// line.
-[[nodiscard]] Scenario read_scenario(const std::string& file, const vm::Image& image);
+// CSV files that it names are found beside it. Throws Failure: outside when a file cannot be read;
+// program when one is wrong, with file and line.
+[[nodiscard]] Scenario read_scenario(const std::string& file, const Program& program);
+
+// Its notes, for a person, on stderr.
+void show_notes(const Scenario& scenario);
 
 }  // namespace robosync::tool

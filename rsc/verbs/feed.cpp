@@ -89,13 +89,15 @@ void send(Session& session, const vm::Image& image, const Stimulus& stimulus) {
   }
 }
 
-std::vector<Stimulus> wanted(const FeedOptions& options, const vm::Image& image) {
-  std::vector<Stimulus> stimuli;
-  if (!options.scenario.empty()) stimuli = read_scenario(options.scenario, image).stimuli;
+std::vector<Stimulus> wanted(const FeedOptions& options, const Program& program) {
+  Scenario scenario;
+  if (!options.scenario.empty()) scenario = read_scenario(options.scenario, program);
+  show_notes(scenario);
+  std::vector<Stimulus> stimuli = std::move(scenario.stimuli);
   const auto at_us =
       static_cast<std::uint64_t>(options.at.value_or(milliseconds(0)).count()) * 1000;
   for (const std::string& text : options.readings)
-    stimuli.push_back(parse_stimulus(text, at_us, image));
+    stimuli.push_back(parse_stimulus(text, at_us, program.image()));
   return stimuli;
 }
 
@@ -124,7 +126,7 @@ void feed(const FeedOptions& options) {
     program = running_program(session);
   }
   const vm::Image& image = program->image();
-  const std::vector<Stimulus> stimuli = wanted(options, image);
+  const std::vector<Stimulus> stimuli = wanted(options, *program);
   for (const Stimulus& stimulus : stimuli)
     send(session, image, stimulus);
   if (watch) {

@@ -48,7 +48,8 @@ std::vector<std::string> inputs_of(const RunOptions& options, const Program& pro
 void run(const RunOptions& options) {
   const Program program = load_program(options.file, options.how);
   Scenario scenario;
-  if (!options.scenario.empty()) scenario = read_scenario(options.scenario, program.image());
+  if (!options.scenario.empty()) scenario = read_scenario(options.scenario, program);
+  show_notes(scenario);
 
   if (!options.trace.empty()) check_output(options.trace, inputs_of(options, program));
 

@@ -55,14 +55,11 @@ vm::Value Checks::smoothed(Window& window, const vm::Check& wiring, std::uint32_
                        window.samples);
   const std::uint32_t period_ms = policy::sample_period_ms(wiring);
   const std::uint32_t since = now - window.newest;
-  if (window.samples.count == 0) {
+  if (window.samples.count == 0 || since == period_ms) {
     window.newest = now;
     samples.push(value);
   } else if (since == 0) {
     samples.replace_newest(value);
-  } else if (since == period_ms) {
-    window.newest = now;
-    samples.push(value);
   } else if (const std::uint32_t instants = since / period_ms; instants > 0) {
     const std::uint32_t last = instants * period_ms;
     const bool now_is_one = since == last;

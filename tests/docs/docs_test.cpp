@@ -91,6 +91,33 @@ TEST_CASE("the scenarios of docs/tutorial.md do what it says") {
   CHECK_THAT(run(5, 2), Catch::Contains("6.501 s  joy becomes 80%"));
 }
 
+TEST_CASE("the scenarios and the recording of docs/scenario.md are played") {
+  const auto scenarios = blocks(kRoot / "docs/scenario.md", "json");
+  const auto recordings = blocks(kRoot / "docs/scenario.md", "csv");
+  REQUIRE(scenarios.size() == 2);
+  REQUIRE(recordings.size() == 1);
+  const Folder folder;
+  folder.write("robot.json", read_file(kRoot / "docs/robot.json"));
+  folder.write("visit.csv", recordings[0]);
+  const std::string program =
+      folder.write("robot.rsl",
+                   "WHEN touch LEVEL CHANGES\nDO LOG \"touch\", touch LEVEL\nEND\n"
+                   "WHEN proximity DISTANCE < 1190mm\nMARGIN 5mm\nDO SHOW face happy\nEND\n");
+  const auto run = [&](std::size_t scenario) {
+    const Outcome outcome =
+        rsc({"run", program, "--scenario", folder.write("scenario.json", scenarios[scenario])});
+    check_runs(outcome);
+    return outcome;
+  };
+  const Outcome first = run(0);
+  CHECK_THAT(first.out, Catch::Contains("1.000 s") && Catch::Contains("touch 5"));
+  CHECK_THAT(first.err,
+             Catch::Contains("scenario.json:8: note: the program does not read voice WORD"));
+  const Outcome second = run(1);
+  CHECK_THAT(second.out, Catch::Contains("0.050 s  face SHOW happy") && Catch::Contains("0.100 s"));
+  CHECK_THAT(second.err, !Catch::Contains("note: the program does not read"));
+}
+
 TEST_CASE("every program in docs/stdlib.md works on stdlib/robot.json") {
   check_page("docs/stdlib.md", read_file(kRoot / "stdlib/robot.json"), 8);
 }

@@ -47,7 +47,8 @@ inline tool::Program compile(const std::string& text = kProgram) {
   compiler::Result result = compiler::compile({"robot.rsl", text}, {"robot.json", kRobot});
   INFO(compiler::render_human(result.diagnostics, result.sources, false));
   REQUIRE(!result.image.empty());
-  return {std::move(result.image), "robot.rsl"};
+  tool::Origin origin = tool::origin_of(result);
+  return {std::move(result.image), "robot.rsl", tool::board_memory(), std::move(origin)};
 }
 
 }  // namespace robosync::test

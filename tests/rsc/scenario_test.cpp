@@ -14,18 +14,38 @@ namespace {
 tool::Scenario read(const std::string& text) {
   static const tool::Program program = test::compile();
   const test::Folder folder;
-  return tool::read_scenario(folder.write("visit.json", text), program.image());
+  return tool::read_scenario(folder.write("visit.json", text), program);
 }
 
-std::string mistake(const std::string& text) {
+// Of the file called `name`.
+template <typename Body>
+std::string mistake_in(const std::string& name, Body body) {
   try {
-    read(text);
+    body();
   } catch (const tool::Failure& failure) {
     CHECK(failure.exit() == tool::Exit::program);
     const std::string message = failure.what();
-    return message.substr(message.find("visit.json"));
+    return message.substr(std::min(message.size(), message.find(name)));
   }
   return "none";
+}
+
+std::string mistake(const std::string& text) {
+  return mistake_in("visit.json", [&] { read(text); });
+}
+
+// With a recording beside it.
+tool::Scenario read_recording(const std::string& csv,
+                              const std::string& stimulus = R"({"csv": "desk.csv"})") {
+  static const tool::Program program = test::compile();
+  const test::Folder folder;
+  folder.write("desk.csv", csv);
+  return tool::read_scenario(folder.write("visit.json", "{\"stimuli\": [\n" + stimulus + "]}"),
+                             program);
+}
+
+std::string recording_mistake(const std::string& csv) {
+  return mistake_in("desk.csv", [&] { read_recording(csv); });
 }
 
 }  // namespace
@@ -111,8 +131,6 @@ TEST_CASE("a wrong scenario gets one message with its line") {
       Contains("ends before it starts"));
   CHECK_THAT(stimulus("{\"from\": \"1s\", \"to\": \"2s\", \"sensor\": \"touch\", \"ramp\": [1]}"),
              Contains("`ramp` is"));
-  CHECK_THAT(stimulus("{\"csv\": \"a.csv\", \"sensor\": \"touch\"}"),
-             Contains("csv recordings are not in this version of rsc yet"));
   CHECK_THAT(stimulus("{\"at\": \"1s\", \"sensor\": \"touch\", \"valeu\": 1}"),
              Contains("did you mean `value`?"));
 }
@@ -121,4 +139,72 @@ TEST_CASE("braces, commas and quotes in strings do not confuse the lines") {
   CHECK(mistake("{\"stimuli\": [\n{\"at\": \"1s\", \"sensor\": \"}],\\\"{\", \"value\": 1},\n"
                 "{\"at\": 1}]}")
             .starts_with("visit.json:2: there is no sensor"));
+}
+
+TEST_CASE("a recording in CSV: a column of times, and one for each channel") {
+  const tool::Scenario scenario = read_recording(
+      "time (s),touch.LEVEL,\"proximity DISTANCE\",proximity.NOISE (dB)\r\n"
+      "0,3,120,40\r\n"
+      "0.5,,1.1m,41.5\r\n"
+      "\r\n"
+      "1500ms,4,,\r\n");
+  REQUIRE(scenario.stimuli.size() == 6);
+  CHECK(scenario.stimuli[0].at_us == 0);
+  CHECK(scenario.stimuli[0].value == 3'000);
+  CHECK(scenario.stimuli[1].value == 1'200'000);  // robot.json says cm
+  CHECK(scenario.stimuli[2].value == 40'000);
+  CHECK(scenario.stimuli[3].at_us == 500'000);
+  CHECK(scenario.stimuli[3].value == 1'100'000);
+  CHECK(scenario.stimuli[4].value == 41'500);
+  CHECK(scenario.stimuli[5].at_us == 1'500'000);
+  CHECK(scenario.stimuli[5].channel == scenario.stimuli[0].channel);
+  CHECK(scenario.notes.empty());
+}
+
+TEST_CASE("a recording of one sensor, that begins later, from a German spreadsheet") {
+  const tool::Scenario scenario =
+      read_recording("\xEF\xBB\xBFtime;DISTANCE (mm)\n0ms;200\n50ms;210\n",
+                     R"({"csv": "desk.csv", "sensor": "proximity", "at": "2s"})");
+  REQUIRE(scenario.stimuli.size() == 2);
+  CHECK(scenario.stimuli[1].at_us == 2'050'000);
+  CHECK(scenario.stimuli[1].value == 210'000);
+}
+
+TEST_CASE("a wrong recording gets one message with its line") {
+  using Catch::StartsWith;
+  CHECK(recording_mistake("").starts_with("desk.csv:1: the file is empty"));
+  CHECK(
+      recording_mistake("touch.LEVEL\n3\n").starts_with("desk.csv:1: no column is called `time`"));
+  CHECK(recording_mistake("time (s),touhc.LEVEL\n0,3\n")
+            .starts_with("desk.csv:1: there is no sensor `touhc`; did you mean `touch`?"));
+  CHECK(recording_mistake("time (s),touch.LEVEL\n0,3\n1,3,4\n")
+            .starts_with("desk.csv:3: this row has 3 cells, and the first row names 2 columns"));
+  CHECK(recording_mistake("time,touch.LEVEL\n0,3\n")
+            .starts_with("desk.csv:2: `0` is a plain number"));
+  CHECK(recording_mistake("time (s),touch.LEVEL\n0,3\n1,high\n")
+            .starts_with("desk.csv:3: `high` is not a number"));
+  CHECK(recording_mistake("time (s),touch.LEVEL\n0,3\n-1,3\n")
+            .starts_with("desk.csv:3: `-1s` is negative"));
+  CHECK(recording_mistake("time (s),touch.LEVEL (cm)\n0,3\n")
+            .starts_with("desk.csv:2: `3cm` is a distance"));
+  CHECK(recording_mistake("time (s),touch.LEVEL\n0,\"3\n1,4\n").starts_with("desk.csv:3: a quote"));
+  CHECK_THROWS_AS(read_recording("", R"({"csv": "none.csv"})"), tool::Failure);
+}
+
+TEST_CASE("what the robot has and the program does not read is a note") {
+  const test::Folder folder;
+  const tool::Program program =
+      test::compile("WHEN proximity NOISE > 60dB\nDO MOVE left_arm TO 9deg\nEND\n");
+  const tool::Scenario scenario = tool::read_scenario(folder.write("visit.json", R"({"stimuli": [
+    {"at": "1s", "sensor": "touch", "value": 3},
+    {"at": "2s", "sensor": "touch", "value": 4},
+    {"at": "2s", "sensor": "proximity", "channel": "DISTANCE", "value": "9cm"},
+    {"at": "3s", "sensor": "proximity", "channel": "NOISE", "value": "70dB"}]})"),
+                                                      program);
+  REQUIRE(scenario.stimuli.size() == 1);
+  REQUIRE(scenario.notes.size() == 2);
+  CHECK_THAT(scenario.notes[0],
+             Catch::Contains("visit.json:2: note: the program does not read touch,"));
+  CHECK_THAT(scenario.notes[1],
+             Catch::Contains("visit.json:4: note: the program does not read proximity DISTANCE,"));
 }

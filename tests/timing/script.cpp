@@ -75,7 +75,7 @@ private:
 }  // namespace
 
 std::vector<std::uint32_t> script_of(const tool::Program& program, const std::string& scenario) {
-  const tool::Scenario stimuli = tool::read_scenario(scenario, program.image());
+  const tool::Scenario stimuli = tool::read_scenario(scenario, program);
   Steps steps(program.image());
   sim::Simulator simulator(program.bytes(), [&](const link::Event& event) { steps.take(event); });
   if (!simulator.verdict().ok())
