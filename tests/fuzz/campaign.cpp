@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime-m4/policy/memory.hpp"
+#include "runtime-m4/policy/pins.hpp"
 #include "vm/disassembler.hpp"
 
 namespace robosync::fuzz {
@@ -135,6 +136,16 @@ void Campaign::lay_out() {
       needs.open + needs.image > needs.writable_begin || written + needs.closed > needs.total)
     engine_.fail("it needs more memory than is counted");
   if (!needs.fit(board)) ++totals_.verdicts[static_cast<std::size_t>(Refusal::no_room)];
+  wire();
+}
+
+// A board drawn for it may not have its pins or its bus; what it drives there is inside the limits.
+void Campaign::wire() {
+  const auto first = static_cast<std::uint16_t>(random_.below(16));
+  const policy::PinLimit outputs[] = {{first, 40, 500, 2500, 0}};
+  const policy::BoardPins board{outputs, static_cast<std::uint8_t>(random_.below(3))};
+  const vm::Verdict verdict = policy::judge(accepted_, board);
+  if (!verdict.ok()) ++totals_.verdicts[static_cast<std::size_t>(verdict.refusal)];
 }
 
 // What a person is shown of an accepted image is inside of it, too.

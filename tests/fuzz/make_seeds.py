@@ -16,6 +16,22 @@ sys.path.insert(0, str(ROOT / "tests/generators/programs"))
 from generator import Generator  # noqa: E402  (found by the line before)
 
 DRAWN = 16
+# SAFETY over a sensor that the board measures.
+ROVER = """\
+SAFETY near
+  WHEN range DISTANCE < 8cm
+  DO STOP ALL
+  RESUME WHEN range DISTANCE > 12cm FOR 1s
+END
+
+WHEN range DISTANCE > 50cm
+DO RUN wheel AT 40% FOR 2s
+END
+"""
+ROVER_ROBOT = {
+    "sensors": [{"name": "range", "type": "I2C", "bus": 0, "address": "0x29", "device": "i2c_register", "channels": {
+        "DISTANCE": {"input": 0, "unit": "cm", "range": [2, 200], "rate": "50Hz", "stale_after": "100ms"}}}],
+    "actuators": [{"name": "wheel", "type": "PWM", "pin": "12", "device": "pwm"}]}
 
 
 def compile_program(rsc, source, image, *options):
@@ -35,6 +51,10 @@ def make(rsc, folder):
         source.write_text(Generator(seed).program())
         compile_program(rsc, source, source.with_suffix(".rsb"), "--config",
                         adapting if seed % 4 == 0 else plain)
+    rover = folder / "rover.rsl"
+    rover.write_text(ROVER)
+    rover.with_suffix(".json").write_text(json.dumps(ROVER_ROBOT))
+    compile_program(rsc, rover, rover.with_suffix(".rsb"))
     (folder / "made").touch()
 
 

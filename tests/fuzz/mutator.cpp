@@ -35,7 +35,8 @@ void Mutator::change(Draft& draft) {
   if (draw < 121) return splice_section(draft);
   if (draw < 124) return change_header(draft);
   if (draw < 126) return change_bytes(draft);
-  if (draw < 127) change_size(draft);
+  if (draw < 127) return change_size(draft);
+  never_grow_stale(draft);
 }
 
 void Mutator::change_code(Draft& draft, const Object& object) {
@@ -184,6 +185,14 @@ void Mutator::change_record(Draft& draft) {
   if (count == 0) return;
   const std::size_t index = random_.below(count);
   change_field(draft.record(section, index), draft.record(section, random_.below(count)));
+}
+
+// Too rare to be hit by chance: a sensor that SAFETY may read.
+void Mutator::never_grow_stale(Draft& draft) {
+  const std::size_t count = draft.count(Section::channels);
+  if (count == 0) return;
+  const std::span<std::byte> record = draft.record(Section::channels, random_.below(count));
+  std::memset(record.data() + offsetof(vm::Channel, stale_ms), 0, sizeof(vm::Channel::stale_ms));
 }
 
 // One number of 1, 2 or 4 bytes at a place where one may stand.

@@ -29,6 +29,7 @@ private:
   void splice_object(Draft& draft, const Object& object);
 
   void change_record(Draft& draft);
+  void never_grow_stale(Draft& draft);
   void change_field(std::span<std::byte> record, std::span<const std::byte> neighbour);
   void change_records(Draft& draft);
   void splice_section(Draft& draft);
