@@ -88,30 +88,33 @@ TEST_CASE("a stop outlasts programs that come and go") {
   CHECK(rig.board.pwm_read(4) == 14'000);
 }
 
+// Its motor is commanded by itself, and again and again: it runs as soon as it may.
 TEST_CASE(
     "resume leaves halted what a SAFETY rule halts, and the rule's own end leaves stopped what "
     "is") {
   Rig rig;
-  REQUIRE(rig.activate(moving_program()).ok());
-  rig.feed(0, 95);  // trips
+  REQUIRE(rig.activate(test::compile("SAFETY too_near\n  WHEN near X > 90\n  DO STOP motor\n"
+                                     "  RESUME WHEN near X < 80\nEND\n"
+                                     "EVERY 50ms\nDO RUN motor TO 70%\nEND\n",
+                                     kFourOutputs))
+              .ok());
+  rig.feed(0, 20);
   rig.run(100);
-  rig.runtime.stop();
+  REQUIRE(rig.board.pwm_read(4) == 14'000);
+  rig.feed(0, 95);  // trips
   rig.run(200);
-  rig.runtime.resume();
-  rig.feed(0, 91);
-  rig.run(300);
   CHECK(rig.board.pwm_read(4) == 0);
   rig.runtime.stop();
-  rig.run(400);
-  rig.feed(0, 5);  // the rule lets the motor go
-  rig.run(500);
-  rig.feed(0, 20);
-  rig.run(700);
-  CHECK(all_off(rig));
+  rig.run(300);
   rig.runtime.resume();
-  rig.feed(0, 5);
+  rig.run(500);
+  CHECK(rig.board.pwm_read(4) == 0);
+  rig.runtime.stop();
+  rig.run(600);
+  rig.feed(0, 5);  // the rule lets the motor go
   rig.run(800);
-  rig.feed(0, 20);
+  CHECK(rig.board.pwm_read(4) == 0);
+  rig.runtime.resume();
   rig.run(1000);
   CHECK(rig.board.pwm_read(4) == 14'000);
 }
