@@ -19,6 +19,7 @@ import idle
 import memory
 import page
 import path
+import profiled
 import recorded
 import safety
 import workloads
@@ -87,6 +88,7 @@ def arguments():
     style = parser.add_mutually_exclusive_group()
     style.add_argument("--json", action="store_true")
     style.add_argument("--markdown", action="store_true")
+    style.add_argument("--profile", metavar="NAME")
     return parser.parse_args()
 
 
@@ -101,6 +103,9 @@ def main():
 
     comparison = recorded.Comparison(None if wanted.record else recorded.load())
     try:
+        if wanted.profile:
+            profiled.show(wanted.profile)
+            return 0
         found, failed = measure_all(show, comparison)
     except (BenchError, BoardError, RscError, OSError, subprocess.SubprocessError) as error:
         print(f"bench: {error}", file=sys.stderr)

@@ -32,6 +32,23 @@ def symbols(elf):
     return found
 
 
+class Count(int):
+    """A number of executed instructions, which knows which they were when the plugin profiles: at a mark, or between two.
+    What is chosen of several by max() and its like still does; what is figured out of them is a number."""
+
+    def __new__(cls, value, places, line=None):
+        count = super().__new__(cls, value)
+        count.places = places  # of each line of the plugin's: [(address, how often it ran)]
+        count.line = line  # of a mark
+        return count
+
+    def __sub__(self, other):
+        difference = int(self) - int(other)
+        if self.line is None or not isinstance(other, Count):
+            return difference
+        return Count(difference, self.places[other.line + 1:self.line + 1])
+
+
 class Marks:
     """What the plugin wrote: [(marker name, instructions executed before it)], and for each of them those
     executed apart; and what the firmware said: [[word, number …]]."""
@@ -39,8 +56,10 @@ class Marks:
     def __init__(self, names, path, said=""):
         by_address = {address: name for name, address in names.items()}
         lines = [line.split() for line in path.read_text().splitlines()]
-        self.all = [(by_address[int(address, 16)], int(count)) for address, count, _ in lines]
-        self.apart = [int(apart) for *_, apart in lines]
+        places = [[(int(address, 16), int(count)) for address, count in (word.split(":") for word in line[3:])]
+                  for line in lines]
+        self.all = [(by_address[int(line[0], 16)], Count(line[1], places, i)) for i, line in enumerate(lines)]
+        self.apart = [int(line[2]) for line in lines]
         lines = (line.split() for line in said.splitlines())
         self.said = [[word, *map(int, numbers)] for word, *numbers in lines]
 
@@ -72,13 +91,16 @@ class Marks:
         return [numbers for word, *numbers in self.said if word == what]
 
 
+profiling = False  # does the plugin say what ran (profile.py)?
+
+
 def plugin_arguments(names, out, apart=()):
     """`apart`: [(begin, end)] of the code whose instructions are counted by themselves."""
     if not PLUGIN.exists():
         raise BenchError(f"no {PLUGIN}: build the preset host first")
     marks = "".join(f",mark={address:#x}" for address in names.values())
     ranges = "".join(f",apart={begin:#x}-{end:#x}" for begin, end in apart)
-    return ["-plugin", f"{PLUGIN},out={out}{marks}{ranges}"]
+    return ["-plugin", f"{PLUGIN},out={out}{marks}{ranges}{',profile=on' if profiling else ''}"]
 
 
 def return_instructions(elf, function):

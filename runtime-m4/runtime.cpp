@@ -147,7 +147,7 @@ bool Runtime::start_program() {
   const std::uint32_t seed = choose_seed(program.image.header->seed);
   shared_.frames.start(seed, memory_);
   shared_.triggers.start(program.image, memory_);
-  shared_.arbiter.start(memory_);
+  shared_.arbiter.start(program.behavior_of, memory_);
   safety_rules_.start(program, memory_);
   kernel_.grant(memory_.areas());
   trace_.emit(EventKind::activated, {}, 0, 0, static_cast<std::int32_t>(seed));

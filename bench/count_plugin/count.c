@@ -1,16 +1,18 @@
 /* QEMU TCG plugin: counts executed instructions, and writes the count down at each marker.
  *
- *   -plugin libcount.so,out=FILE,mark=0xADDRESS[,mark=…][,apart=0xBEGIN-0xEND…]
+ *   -plugin libcount.so,out=FILE,mark=0xADDRESS[,mark=…][,apart=0xBEGIN-0xEND…][,profile=on]
  *
  * FILE gets one line "ADDRESS COUNT APART" each time the instruction at a marker is about to run;
  * COUNT is the number of instructions that ran before it, without those that stand between a BEGIN
- * and its END: these are APART. The difference of two lines is therefore exact.
+ * and its END: these are APART. The difference of two lines is therefore exact. With profile=on the line goes on with
+ * " ADDRESS:COUNT" for each instruction that ran since the line before: where it stands, and how often it did.
  * Assumes one CPU. An instruction that an exception breaks off and that starts again counts twice.
  *
  * Debian does not package qemu-plugin.h, so the few functions used are declared here (API version
  * 1, QEMU 7.2).
  */
 #include <inttypes.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +38,7 @@ void qemu_plugin_register_atexit_cb(plugin_id id, void (*callback)(plugin_id, vo
 #define EXPORT __attribute__((visibility("default")))
 EXPORT int qemu_plugin_version = 1;
 
-enum { MAX_MARKERS = 256, MAX_RANGES = 32 };
+enum { MAX_MARKERS = 256, MAX_RANGES = 32, MAX_PLACES = 1 << 18 };
 static uint64_t markers[MAX_MARKERS];
 static size_t marker_count;
 static struct range { uint64_t begin, end; } ranges[MAX_RANGES];
@@ -44,11 +46,30 @@ static size_t range_count;
 static uint64_t executed;
 static uint64_t executed_apart;
 static FILE* out;
+static bool profiles;
+static struct place { uint64_t address, executed; } places[MAX_PLACES];
+static size_t place_count;
+
+static void write_profile(void) {
+  for (size_t i = 0; i < place_count; i++) {
+    if (places[i].executed == 0) continue;
+    fprintf(out, " %" PRIx64 ":%" PRIu64, places[i].address, places[i].executed);
+    places[i].executed = 0;
+  }
+}
 
 static void at_marker(unsigned cpu, void* marker) {
   (void)cpu;
-  fprintf(out, "%" PRIx64 " %" PRIu64 " %" PRIu64 "\n", *(uint64_t*)marker, executed,
-          executed_apart);
+  fprintf(out, "%" PRIx64 " %" PRIu64 " %" PRIu64, *(uint64_t*)marker, executed, executed_apart);
+  write_profile();
+  fputc('\n', out);
+}
+
+/* An instruction may be translated more than once: each time it has another place. */
+static uint64_t* new_place(uint64_t address) {
+  if (!profiles || place_count == MAX_PLACES) return NULL;
+  places[place_count] = (struct place){address, 0};
+  return &places[place_count++].executed;
 }
 
 static uint64_t* find_marker(uint64_t address) {
@@ -74,6 +95,8 @@ static void translate(plugin_id id, struct qemu_plugin_tb* block) {
     uint64_t* marker = find_marker(address);
     if (marker) qemu_plugin_register_vcpu_insn_exec_cb(insn, at_marker, NO_REGISTERS, marker);
     qemu_plugin_register_vcpu_insn_exec_inline(insn, ADD_U64, counter_of(address), 1);
+    uint64_t* place = new_place(address);
+    if (place) qemu_plugin_register_vcpu_insn_exec_inline(insn, ADD_U64, place, 1);
   }
 }
 
@@ -97,6 +120,10 @@ static int take_argument(const char* argument) {
     ranges[range_count].begin = strtoull(argument + 6, &dash, 0);
     if (*dash != '-') return -1;
     ranges[range_count++].end = strtoull(dash + 1, NULL, 0);
+    return 0;
+  }
+  if (strcmp(argument, "profile=on") == 0) {
+    profiles = true;
     return 0;
   }
   return -1;

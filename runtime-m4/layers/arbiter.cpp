@@ -10,33 +10,31 @@ namespace {
 
 constexpr std::uint8_t kNobody = 0xFF;
 
-bool may_take(const Claim& claim, const Holding& from) {
-  if (from.won_now) return false;
-  return policy::may_take(claim.behavior, from.behavior, claim.retries);
-}
-
 }  // namespace
 
-void Arbiter::start(Memory& memory) {
+void Arbiter::start(std::span<const std::uint8_t> behavior_of, Memory& memory) {
+  behavior_of_ = behavior_of;
   holdings_ = memory.take<policy::Part::holdings, Holding>();
-  running_.start(memory.take<policy::Part::running, RuleSet::Word>());
+  const auto words = memory.take<policy::Part::running, RuleSet::Word>();
+  running_.start(part_of(words, policy::kRunningSets, 0));
+  resting_.start(part_of(words, policy::kRunningSets, 1));
+  won_.start(part_of(words, policy::kRunningSets, 2));
+  thens_.start(part_of(words, policy::kRunningSets, 3));
   owned_ = 0;
   halted_ = 0;
 }
 
-void Arbiter::end_step() {
-  for (const unsigned rule : running_)
-    holdings_[rule].won_now = false;
+bool Arbiter::may_take(const Claim& claim, unsigned from) const {
+  return !won_now(from) && policy::may_take(claim.behavior, behavior_of_[from], claim.retries);
 }
 
 Decision Arbiter::decide_among_owners(const Claim& claim) const {
   std::uint8_t owner = kNobody;
   if ((claim.actuators & halted_) != 0) owner = vm::kSafetyBehavior;
-  for (const unsigned rule : running_) {
-    const Holding& other = holdings_[rule];
-    if (rule == claim.rule || (other.actuators & claim.actuators) == 0) continue;
-    if (!may_take(claim, other)) owner = std::min(owner, other.behavior);
-  }
+  running_.each([&](unsigned rule) {
+    if (rule == claim.rule || (holdings_[rule].actuators & claim.actuators) == 0) return;
+    if (!may_take(claim, rule)) owner = std::min(owner, behavior_of_[rule]);
+  });
   if (owner == kNobody) return {};
   return {.outcome = Outcome::loses, .owner = owner};
 }
@@ -49,12 +47,11 @@ bool Arbiter::ends(const Claim& claim, const Decision& decision, unsigned rule) 
 
 void Arbiter::give(const Claim& claim) {
   running_.insert(claim.rule);
+  resting_.erase(claim.rule);
+  won_.insert(claim.rule);
+  thens_.put(claim.rule, claim.side == Side::then);
   owned_ |= claim.actuators;
-  holdings_[claim.rule] = Holding{.actuators = claim.actuators,
-                                  .pending = 0,
-                                  .behavior = claim.behavior,
-                                  .side = claim.side,
-                                  .won_now = true};
+  holdings_[claim.rule] = Holding{.actuators = claim.actuators, .pending = 0};
 }
 
 }  // namespace robosync::layers

@@ -40,10 +40,6 @@ struct Claim {
 struct Holding {
   ActuatorMask actuators = 0;
   ActuatorMask pending = 0;  // of these, the ones with commands not yet done
-  std::uint8_t behavior = 0;
-  Side side : 1 = Side::then;
-  bool won_now : 1 = false;  // in this step
-  bool rests : 1 = false;    // of a WHILE: between two rounds, of which it keeps the actuators
 };
 
 enum class Outcome : std::uint8_t {
@@ -60,16 +56,17 @@ struct Decision {
 
 class Arbiter {
 public:
-  void start(Memory& memory);
+  // behavior_of: by rule.
+  void start(std::span<const std::uint8_t> behavior_of, Memory& memory);
 
   // What safety has halted, from now on.
   void note_halted(ActuatorMask halted) { halted_ = halted; }
   // The step is over: what was won in it may be lost in the next one.
-  void end_step();
+  void end_step() { won_.clear(); }
 
   // Read by the behaviours' threads as well.
   [[nodiscard]] Decision decide(const Claim& claim) const {
-    const bool again = works(claim.rule) && holdings_[claim.rule].side == claim.side;
+    const bool again = works(claim.rule) && side(claim.rule) == claim.side;
     if (again && !claim.restarting) return {.outcome = Outcome::ignored, .owner = claim.behavior};
     if ((claim.actuators & (owned_ | halted_)) == 0) [[likely]]
       return {};
@@ -87,21 +84,32 @@ public:
   }
 
   // A round of its is over, and it keeps its actuators for the next one.
-  void rest(unsigned rule) { holdings_[rule].rests = true; }
+  void rest(unsigned rule) { resting_.insert(rule); }
 
   const RuleSet& running() const { return running_; }  // resting ones too
-  bool runs(unsigned rule) const { return running_.has(rule); }
-  bool rests(unsigned rule) const { return runs(rule) && holdings_[rule].rests; }
-  bool works(unsigned rule) const { return runs(rule) && !holdings_[rule].rests; }
+  [[gnu::always_inline]] bool runs(unsigned rule) const { return running_.has(rule); }
+  bool rests(unsigned rule) const { return runs(rule) && resting_.has(rule); }
+  [[gnu::always_inline]] bool works(unsigned rule) const {
+    return runs(rule) && !resting_.has(rule);
+  }
+  // Of one that runs: did it win in this step, and which side?
+  bool won_now(unsigned rule) const { return won_.has(rule); }
+  Side side(unsigned rule) const { return thens_.has(rule) ? Side::then : Side::otherwise; }
   Holding& holding(unsigned rule) { return holdings_[rule]; }
   const Holding& holding(unsigned rule) const { return holdings_[rule]; }
   ActuatorMask owned() const { return owned_; }  // by all that run; each has one owner
 
 private:
   Decision decide_among_owners(const Claim& claim) const;
+  bool may_take(const Claim& claim, unsigned from) const;
 
+  std::span<const std::uint8_t> behavior_of_;
   std::span<Holding> holdings_;
   RuleSet running_;  // their responses run, or wait
+  // Of these, the others may be in as well:
+  RuleSet resting_;  // a WHILE between two rounds, of which it keeps the actuators
+  RuleSet won_;      // in this step
+  RuleSet thens_;    // their DO runs, and not their ELSE
   ActuatorMask owned_ = 0;
   ActuatorMask halted_ = 0;
 };

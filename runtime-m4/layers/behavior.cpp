@@ -89,14 +89,16 @@ bool BehaviorLayer::busy() {
   return is_released_;
 }
 
-// It could say so of any rule of its own, as it could let it trigger.
+// It could say so of any rule of its own that does not cool down, as it could let it trigger.
 bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
   const Result& result = *workspace_.result;
   if (result.there == 0) return false;
   const RuleRange rules = program_->rules_of(behavior);
   const unsigned rule = result.rule;
-  bool silent = false;
-  return rule >= rules.first && rule < rules.end && claim_of(rule, claim, silent);
+  if (rule < rules.first || rule >= rules.end) return false;
+  const Side side = result.side != 0 ? Side::then : Side::otherwise;
+  return !layers_.triggers.cools(rule, side) &&
+         claim_for(rule, side, !layers_.triggers.has_triggered(rule), claim);
 }
 
 // A place in the code, or none.
@@ -194,17 +196,20 @@ std::uint16_t BehaviorLayer::response_of(unsigned rule, Side side) const {
 
 bool BehaviorLayer::claim_of(unsigned rule, Claim& claim, bool& silent) const {
   Triggers::Wish wish;
-  const bool runs = layers_.arbiter.works(rule);
-  if (!layers_.triggers.wish(rule, runs, wish)) return false;
-  const unsigned response = response_of(rule, wish.side);
-  if (response == vm::kNoIndex) return false;  // a behaviour can say that its rule has an ELSE
+  if (!layers_.triggers.wish(rule, layers_.arbiter.works(rule), wish)) return false;
   silent = wish.silent;
+  return claim_for(rule, wish.side, !wish.fresh, claim);
+}
+
+bool BehaviorLayer::claim_for(unsigned rule, Side side, bool retries, Claim& claim) const {
+  const unsigned response = response_of(rule, side);
+  if (response == vm::kNoIndex) return false;  // a behaviour can say that its rule has an ELSE
   claim = {.rule = static_cast<std::uint16_t>(rule),
            .behavior = program_->behavior_of[rule],
-           .side = wish.side,
+           .side = side,
            .actuators = program_->image.responses[response].actuators,
-           .restarting = runs && layers_.triggers.restarting(rule),
-           .retries = !wish.fresh};
+           .restarting = layers_.arbiter.works(rule) && layers_.triggers.restarting(rule),
+           .retries = retries};
   return true;
 }
 
@@ -221,12 +226,12 @@ void BehaviorLayer::run(Unit& unit) {
   while (true) {
     latch(unit, machine);
     if (rule_ != kNobody) {
-      run_response(machine, rule_, code_);
+      run_response(machine, rule_, Side::then, code_);
     } else {
       evaluate_rules(unit, machine);
       Claim claim;
       if (sole_claim(program_->rules_of(unit.behavior), claim))
-        run_response(machine, claim.rule, begin_of(claim.rule, claim.side));
+        run_response(machine, claim.rule, claim.side, begin_of(claim.rule, claim.side));
     }
     workspace_.finished->store(true, std::memory_order_relaxed);
     kernel::calls::rest(kernel_, kReleased);
@@ -241,13 +246,15 @@ void BehaviorLayer::latch(const Unit& unit, vm::Machine& machine) {
 }
 
 void BehaviorLayer::evaluate_rules(const Unit& unit, vm::Machine& machine) {
-  concerned_->each_in(program_->rules_of(unit.behavior),
-                      [&](unsigned rule) { judge_rule(rule, machine); });
+  const RuleRange rules = program_->rules_of(unit.behavior);
+  layers_.triggers.begin_turn(rules);
+  concerned_->each_in(rules, [&](unsigned rule) { judge_rule(rule, machine); });
 }
 
 void BehaviorLayer::judge_rule(unsigned rule, vm::Machine& machine) {
   switch (program_->image.rules[rule].kind) {
     case vm::RuleKind::start:
+      layers_.triggers.note(rule);
       return layers_.triggers.begin(rule);
     case vm::RuleKind::every:
       return evaluate_period(rule, machine);
@@ -272,6 +279,7 @@ vm::Value BehaviorLayer::evaluate_rule(unsigned rule, vm::Machine& machine) {
 
 void BehaviorLayer::evaluate_period(unsigned rule, vm::Machine& machine) {
   if (!layers_.triggers.begin_period(rule, machine.now)) return;
+  layers_.triggers.note(rule);
   layers_.triggers.draw_period(rule, evaluate_rule(rule, machine), machine.now);
 }
 
@@ -280,7 +288,7 @@ void BehaviorLayer::evaluate_period(unsigned rule, vm::Machine& machine) {
 bool BehaviorLayer::sole_claim(RuleRange rules, Claim& claim) const {
   if (waits(rules)) return false;
   unsigned found = 0;
-  concerned_->each_in_either(layers_.triggers.active(), rules, [&](unsigned rule) {
+  layers_.triggers.each_wanting(rules, [&](unsigned rule) {
     bool silent = false;
     Claim another;
     if (must_pause(rule) || !claim_of(rule, another, silent)) return;
@@ -298,7 +306,7 @@ bool BehaviorLayer::waits(RuleRange rules) const {
   return waits;
 }
 
-void BehaviorLayer::run_response(vm::Machine& machine, unsigned rule, unsigned code) {
+void BehaviorLayer::run_response(vm::Machine& machine, unsigned rule, Side side, unsigned code) {
   machine.output = workspace_.output.data();
   machine.output_end = workspace_.output.data() + workspace_.output.size();
   machine.shifted = 0;
@@ -314,7 +322,8 @@ void BehaviorLayer::run_response(vm::Machine& machine, unsigned rule, unsigned c
       .assigned = machine.assigned,
       .shifted = machine.shifted,
       .words = static_cast<std::uint16_t>(machine.output - workspace_.output.data()),
-      .there = 1};
+      .there = 1,
+      .side = static_cast<std::uint8_t>(side)};
 }
 
 }  // namespace robosync::layers

@@ -50,7 +50,8 @@ public:
       : kernel_(kernel), layers_(neighbours), workspace_(neighbours.workspace) {}
 
   // Starts the threads of `program`, which must stay until they are dismissed.
-  [[nodiscard]] bool start(const LoadedProgram& program, Memory& memory, ProgramThreads& threads);
+  [[nodiscard, gnu::cold]] bool start(const LoadedProgram& program, Memory& memory,
+                                      ProgramThreads& threads);
 
   // --- for the step thread ---
   void begin_step(const Snapshot& snapshot);
@@ -69,7 +70,7 @@ public:
   void conclude(unsigned rule);
   const ResumePoint& resume_point(unsigned rule) const { return resume_points_[rule]; }
   void forget_resume_point(unsigned rule) { resume_points_[rule] = {}; }
-  void retire(unsigned behavior);  // its thread was stopped
+  [[gnu::cold]] void retire(unsigned behavior);  // its thread was stopped
   // The rule's response began in this millisecond, or went on and waits again: it must not do either
   // once more. One that went on to its end may begin again.
   bool has_run(unsigned rule, std::uint32_t now) const {
@@ -79,6 +80,7 @@ public:
   // --- for the step thread and the behaviour itself ---
   // What `rule` claims now, if anything; silent: that it does was told before.
   [[nodiscard]] bool claim_of(unsigned rule, Claim& claim, bool& silent) const;
+  [[nodiscard]] bool claim_for(unsigned rule, Side side, bool retries, Claim& claim) const;
   // A WHILE whose response has begun in this millisecond claims again in the next one.
   [[nodiscard]] bool must_pause(unsigned rule) const {
     return program_->image.rules[rule].kind == vm::RuleKind::while_ && has_run(rule, ran_at_);
@@ -94,7 +96,7 @@ private:
     std::uint8_t behavior = 0;
   };
 
-  [[nodiscard]] bool start_unit(unsigned behavior, ProgramThreads& threads);
+  [[nodiscard, gnu::cold]] bool start_unit(unsigned behavior, ProgramThreads& threads);
   std::uint16_t response_of(unsigned rule, Side side) const;
   unsigned begin_of(unsigned rule, Side side) const {
     return program_->image.responses[response_of(rule, side)].start;
@@ -108,7 +110,7 @@ private:
   void evaluate_period(unsigned rule, vm::Machine& machine);
   bool sole_claim(RuleRange rules, Claim& claim) const;
   bool waits(RuleRange rules) const;
-  void run_response(vm::Machine& machine, unsigned rule, unsigned code);
+  void run_response(vm::Machine& machine, unsigned rule, Side side, unsigned code);
 
   void put_out(std::span<const vm::Word> output, ActuatorMask declared);
   void stage(const vm::Output& said, ActuatorMask declared);

@@ -83,7 +83,7 @@ void ProcessingLayer::pass() {
   kernel::Time time = 0;
   const std::uint32_t now = read_clock(time);
   adaptation_.turn(*program_, layers_.threads, trace_, now);
-  finish_done();
+  finish_done(layers_.control.take_idle());
   const BehaviorMask lost = std::exchange(lost_behaviors_, 0);
   const BehaviorMask first = std::exchange(unstarted_, 0);
   layers_.arbiter.note_halted(layers_.control.halted());
@@ -94,8 +94,8 @@ void ProcessingLayer::pass() {
   if (!latch(time, now, anyway, changed)) return;
   // The sensors have rung for theirs.
   if (variables_of(changed) != 0) layers_.alarm.ring(inputs(0, variables_of(changed)));
-  interrupt_lost(lost);
-  interrupt_halted(halted);
+  if (lost != 0) interrupt_lost(lost);
+  if (halted != 0) interrupt_halted(halted);
   find_concerned(changed, first);
   step();
 }
@@ -114,19 +114,16 @@ bool ProcessingLayer::is_due(std::uint32_t now) const {
 
 // --- what ended since the last pass ---
 
-void ProcessingLayer::finish_done() {
-  const ActuatorMask idle = layers_.control.take_idle();
-  for (const unsigned rule : layers_.arbiter.running()) {
-    Holding& holding = layers_.arbiter.holding(rule);
-    holding.pending = holding.pending & ~idle;
+void ProcessingLayer::finish_done(ActuatorMask idle) {
+  layers_.arbiter.running().each([&](unsigned rule) {
+    layers_.arbiter.holding(rule).pending &= ~idle;
     finish_if_done(rule);
-  }
+  });
 }
 
 // A WHILE goes on having its actuators as long as its condition holds.
 void ProcessingLayer::finish_if_done(unsigned rule) {
-  const Holding& holding = layers_.arbiter.holding(rule);
-  if (holding.pending != 0 || holding.rests) return;
+  if (layers_.arbiter.holding(rule).pending != 0 || layers_.arbiter.rests(rule)) return;
   if (layers_.behaviors.resume_point(rule).pause != vm::Pause::ended) return;
   if (layers_.triggers.goes_round(rule)) {
     layers_.arbiter.rest(rule);
@@ -197,10 +194,8 @@ std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
   due.in(layers_.variables.next_fade(now, snapshot_.values_.subspan(channels())));
   due.in(checks_.next(now));
   due.at(layers_.triggers.next_wake());
-  for (const unsigned rule : layers_.arbiter.running())
-    add_waiting(rule, due);
-  for (const unsigned rule : layers_.triggers.active())
-    add_wanting(rule, due, now);
+  layers_.arbiter.running().each([&](unsigned rule) { add_waiting(rule, due); });
+  layers_.triggers.active().each([&](unsigned rule) { add_wanting(rule, due, now); });
   return due.delay();
 }
 
@@ -282,13 +277,14 @@ void ProcessingLayer::find_concerned(InputMask changed, BehaviorMask begins) {
   changed_ = changed;
   woken_ = begins;
   layers_.triggers.add_woken(snapshot_.milliseconds(), concerned_);
-  for (const unsigned rule : concerned_)
-    woken_ |= bit<BehaviorMask>(program_->behavior_of[rule]);
+  concerned_.each(
+      [this](unsigned rule) { woken_ |= bit<BehaviorMask>(program_->behavior_of[rule]); });
   each_bit(channels_of(changed), [this](unsigned c) { concerned_ |= program_->readers_of(c); });
   each_bit(variables_of(changed),
            [this](unsigned v) { concerned_ |= program_->readers_of(channels() + v); });
-  for (const unsigned rule : layers_.triggers.eventful())
+  layers_.triggers.eventful().each([this](unsigned rule) {
     if (stirred(program_->behavior_of[rule])) concerned_.insert(rule);
+  });
   for (BehaviorMask left = untouched_; left != 0; left &= left - 1) {
     const auto behavior = static_cast<unsigned>(std::countr_zero(left));
     if (behavior >= program_->image.behaviors.size()) break;
@@ -320,15 +316,13 @@ void ProcessingLayer::step() {
   }
   set_due_ = snapshot_.milliseconds() + 1;
   layers_.control.commit();
-  for (const unsigned rule : layers_.arbiter.running())
-    finish_if_done(rule);
+  finish_done(0);
   layers_.arbiter.end_step();
 }
 
 // The first rule that is not below `rule` and is concerned, wants to run, or runs.
 unsigned ProcessingLayer::next_at_work(unsigned rule) const {
-  return std::min({concerned_.from(rule), layers_.triggers.active().from(rule),
-                   layers_.arbiter.running().from(rule)});
+  return RuleSet::first_of(rule, concerned_, layers_.triggers.active(), layers_.arbiter.running());
 }
 
 void ProcessingLayer::take_turn(unsigned behavior, RuleRange rules) {
@@ -355,23 +349,24 @@ void ProcessingLayer::serve_sole(const Claim& claim, RuleRange rules) {
 // --- interruptions that no claim is the cause of ---
 
 void ProcessingLayer::interrupt_lost(BehaviorMask lost) {
-  if (lost == 0) return;
-  for (const unsigned rule : layers_.arbiter.running())
+  layers_.arbiter.running().each([&](unsigned rule) {
     if (const unsigned behavior = program_->behavior_of[rule]; has(lost, behavior))
       interrupt(rule, behavior);
+  });
 }
 
 void ProcessingLayer::interrupt_halted(ActuatorMask halted) {
-  if (halted == 0) return;
-  for (const unsigned rule : layers_.arbiter.running())
+  layers_.arbiter.running().each([&](unsigned rule) {
     if ((layers_.arbiter.holding(rule).actuators & halted) != 0)
       interrupt(rule, vm::kSafetyBehavior);
+  });
 }
 
 // --- claims ---
 
 // What the behaviour has found out, rule by rule. A WHILE whose condition no longer holds ends.
 void ProcessingLayer::collect(RuleRange rules) {
+  layers_.triggers.keep_concerned(concerned_, rules);
   concerned_.each_in(rules, [this](unsigned rule) {
     layers_.triggers.collect(rule);
     if (layers_.triggers.take_zero_divide(rule))
@@ -386,7 +381,7 @@ void ProcessingLayer::collect(RuleRange rules) {
 }
 
 void ProcessingLayer::arbitrate(RuleRange rules) {
-  concerned_.each_in_either(layers_.triggers.active(), rules, [this](unsigned rule) {
+  concerned_.each_in_either(layers_.triggers.active().bits(), rules, [this](unsigned rule) {
     Claim claim;
     bool silent = false;
     if (!layers_.behaviors.must_pause(rule) && layers_.behaviors.claim_of(rule, claim, silent))
@@ -412,8 +407,9 @@ void ProcessingLayer::serve(const Claim& claim, bool silent) {
 }
 
 void ProcessingLayer::interrupt_by(const Claim& claim, const Decision& decision) {
-  for (const unsigned rule : layers_.arbiter.running())
+  layers_.arbiter.running().each([&](unsigned rule) {
     if (layers_.arbiter.ends(claim, decision, rule)) interrupt(rule, claim.behavior);
+  });
 }
 
 // One that rests between two rounds has nothing under way: it lets go without a word.
@@ -451,9 +447,8 @@ bool ProcessingLayer::goes_on(unsigned rule) const {
 
 void ProcessingLayer::run_responses(RuleRange rules) {
   layers_.arbiter.running().each_in(rules, [this](unsigned rule) {
-    const Holding& holding = layers_.arbiter.holding(rule);
-    if (holding.won_now) {
-      layers_.behaviors.respond(rule, holding.side);
+    if (layers_.arbiter.won_now(rule)) {
+      layers_.behaviors.respond(rule, layers_.arbiter.side(rule));
     } else if (goes_on(rule)) {
       layers_.behaviors.go_on(rule);
     } else {

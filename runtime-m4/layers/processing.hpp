@@ -99,7 +99,7 @@ public:
       : kernel_(kernel), trace_(trace), thread_(thread), layers_(neighbours) {}
 
   // Starts the step thread of `program`, which must stay until it is dismissed.
-  [[nodiscard]] bool start(const LoadedProgram& program, Memory& memory);
+  [[nodiscard, gnu::cold]] bool start(const LoadedProgram& program, Memory& memory);
   // All threads of the program are there: they get their ranks.
   void rank() { adaptation_.rank(*program_, layers_.threads, trace_); }
   // … and the first step comes when its clock begins.
@@ -117,7 +117,7 @@ private:
   // --- passes, and what makes a step ---
   void run();
   void pass();
-  void finish_done();
+  [[gnu::noinline]] void finish_done(ActuatorMask idle);
   void finish_if_done(unsigned rule);
   bool is_due(std::uint32_t now) const;
   std::uint32_t read_clock(kernel::Time& time) const;
@@ -129,20 +129,20 @@ private:
   void add_waiting(unsigned rule, Soonest& due) const;
   void add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const;
   kernel::Time next_time();
-  void note_stops();
-  void retire(const ProgramThreads::Member& member);
+  [[gnu::cold]] void note_stops();
+  [[gnu::cold]] void retire(const ProgramThreads::Member& member);
 
   // --- what a step concerns ---
   void find_concerned(InputMask changed, BehaviorMask begins);
-  void concern_all(unsigned behavior);
+  [[gnu::cold]] void concern_all(unsigned behavior);
   bool stirred(unsigned behavior) const;
 
   // --- what happens in one ---
   void step();
   unsigned next_at_work(unsigned rule) const;
   void take_turn(unsigned behavior, RuleRange rules);
-  void interrupt_lost(BehaviorMask lost);
-  void interrupt_halted(ActuatorMask halted);
+  [[gnu::cold]] void interrupt_lost(BehaviorMask lost);
+  [[gnu::cold]] void interrupt_halted(ActuatorMask halted);
   void collect(RuleRange rules);
   void arbitrate(RuleRange rules);
   void serve_sole(const Claim& claim, RuleRange rules);

@@ -29,6 +29,11 @@ public:
   explicit RuleBits(Word* words) : words_(words) {}
   void insert(unsigned rule) { words_[rule / kBits] |= Word{1} << rule % kBits; }
   bool has(unsigned rule) const { return (words_[rule / kBits] >> rule % kBits & 1) != 0; }
+  // Empties the words in which `rules` stand: of their neighbours' bits nobody needs any then.
+  void clear_around(RuleRange rules) {
+    for (unsigned w = rules.first / kBits; w * kBits < rules.end; ++w)
+      words_[w] = 0;
+  }
 
 private:
   friend class RuleSet;
@@ -39,23 +44,6 @@ class RuleSet {
 public:
   using Word = RuleBits::Word;
   static constexpr unsigned kEnd = 0xFFFF'FFFF;  // no rule has this number
-
-  // A member, and on to the next. Members may come and go on the way: what counts is whether one is
-  // there when its turn comes.
-  class Iterator {
-  public:
-    Iterator(const RuleSet& set, unsigned rule) : set_(set), rule_(rule) {}
-    unsigned operator*() const { return rule_; }
-    Iterator& operator++() {
-      rule_ = set_.from(rule_ + 1);
-      return *this;
-    }
-    bool operator!=(const Iterator& other) const { return rule_ != other.rule_; }
-
-  private:
-    const RuleSet& set_;
-    unsigned rule_;
-  };
 
   RuleSet() = default;  // of no rules
   RuleSet(const RuleSet&) = delete;
@@ -97,55 +85,78 @@ public:
     return *this;
   }
 
-  // Calls take(rule) for each member in `rules`, in order; take may erase it.
+  // Calls take(rule) for each member, in order. Members may come and go on the way: what counts is
+  // whether one is there when its turn comes.
+  template <class Take>
+  void each(Take take) const {
+    for (Word left = summary_; left != 0;) {
+      const auto w = static_cast<unsigned>(std::countr_zero(left));
+      for (Word word = words_[w]; word != 0;) {
+        const auto place = static_cast<unsigned>(std::countr_zero(word));
+        take(w * kBits + place);
+        word = words_[w] & ~Word{1} << place;
+      }
+      left = summary_ & ~Word{1} << w;
+    }
+  }
+  // … for each in `rules`; take may erase it.
   template <class Take>
   void each_in(RuleRange rules, Take take) const {
     each_of(
         rules, [this](unsigned w) { return words_[w]; }, take);
   }
-  // … for each that is in this set or in `other`.
+  // … for each in `rules` that is in this set or among the others.
   template <class Take>
-  void each_in_either(const RuleSet& other, RuleRange rules, Take take) const {
+  void each_in_either(RuleBits others, RuleRange rules, Take take) const {
     each_of(
-        rules, [&](unsigned w) { return words_[w] | other.words_[w]; }, take);
+        rules, [&](unsigned w) { return words_[w] | others.words_[w]; }, take);
   }
-  bool has_any(RuleRange rules) const { return from(rules.first) < rules.end; }
-
-  // The first member that is not below `rule`; kEnd when there is none.
-  [[gnu::always_inline]] unsigned from(unsigned rule) const {
-    return empty() ? kEnd : find_from(rule);
+  bool has_any(RuleRange rules) const { return first_of(rules.first, *this) < rules.end; }
+  // Of the members in `rules` only those stay that are in one of the others.
+  template <class... Others>
+  void keep_in(RuleRange rules, const Others&... others) {
+    for (unsigned w = rules.first / kBits; w * kBits < rules.end; ++w) {
+      words_[w] &= (others.words_[w] | ...) | ~inside(rules, w);
+      if (words_[w] == 0) summary_ &= ~bit(w);
+    }
   }
+  RuleBits bits() const { return RuleBits(words_); }
 
-  [[gnu::always_inline]] Iterator begin() const { return {*this, from(0)}; }
-  [[gnu::always_inline]] Iterator end() const { return {*this, kEnd}; }
+  // The first member of any of the sets, all of as many rules, that is not below `rule`; kEnd when there is none.
+  template <class... Others>
+  static unsigned first_of(unsigned rule, const RuleSet& set, const Others&... others) {
+    unsigned w = rule / kBits;
+    if (w >= set.count_) return kEnd;
+    const Word rest = (set.words_[w] | ... | others.words_[w]) & ~Word{0} << rule % kBits;
+    if (rest != 0) return lowest(w, rest);
+    const Word later = (set.summary_ | ... | others.summary_) & ~Word{1} << w;
+    if (later == 0) return kEnd;
+    w = static_cast<unsigned>(std::countr_zero(later));
+    return lowest(w, (set.words_[w] | ... | others.words_[w]));
+  }
 
 private:
   static constexpr unsigned kBits = RuleBits::kBits;
   static constexpr Word bit(unsigned index) { return Word{1} << index % kBits; }
-  static unsigned lowest(unsigned w, Word word) {
+  [[gnu::always_inline]] static unsigned lowest(unsigned w, Word word) {
     return w * kBits + static_cast<unsigned>(std::countr_zero(word));
+  }
+  // The bits of word `w` that are in `rules`, of which one at least is.
+  static Word inside(RuleRange rules, unsigned w) {
+    const unsigned first = w * kBits;
+    const Word from = first < rules.first ? ~Word{0} << rules.first % kBits : ~Word{0};
+    return rules.end - first < kBits ? from & (bit(rules.end) - 1) : from;
   }
   template <class WordAt, class Take>
   static void each_of(RuleRange rules, WordAt word_at, Take take) {
-    unsigned w = rules.first / kBits;
-    Word inside = ~Word{0} << rules.first % kBits;
-    for (; w * kBits < rules.end; ++w, inside = ~Word{0}) {
-      for (Word left = word_at(w) & inside; left != 0; left &= left - 1) {
+    Word from = ~Word{0} << rules.first % kBits;
+    for (unsigned w = rules.first / kBits; w * kBits < rules.end; ++w, from = ~Word{0}) {
+      for (Word left = word_at(w) & from; left != 0; left &= left - 1) {
         const unsigned rule = lowest(w, left);
         if (rule >= rules.end) break;
         take(rule);
       }
     }
-  }
-
-  [[gnu::noinline]] unsigned find_from(unsigned rule) const {
-    const unsigned w = rule / kBits;
-    if (w >= count_) return kEnd;
-    if (const Word rest = words_[w] & ~Word{0} << rule % kBits; rest != 0) return lowest(w, rest);
-    const Word later = summary_ & ~Word{1} << w;
-    if (later == 0) return kEnd;
-    const auto next = static_cast<unsigned>(std::countr_zero(later));
-    return lowest(next, words_[next]);
   }
 
   Word* words_ = nullptr;

@@ -77,8 +77,10 @@ void Triggers::draw_period(unsigned rule, vm::Value thousandths, std::uint32_t n
 }
 
 void Triggers::note_past(unsigned rule, std::uint32_t wake, bool event) {
+  Judgement& state = judgement(rule);
   workspace_.due[rule] = wake;
-  judgement(rule).event = event || judgement(rule).zero_divide;
+  state.event = event || state.zero_divide;
+  if (state.event || state.trigger != Trigger::none || wake != kNever) note(rule);
 }
 
 // --- what follows from it ---
@@ -116,25 +118,27 @@ bool Triggers::is_unsettled(unsigned rule, Side& side) const {
 void Triggers::find_first_to_wake() {
   first_to_wake_ = kNobody;
   next_wake_ = kNever;
-  for (const unsigned rule : sleeping_)
+  sleeping_.each([this](unsigned rule) {
     if (sooner(due(rule), next_wake_)) wake_first(rule);
+  });
 }
 
 void Triggers::add_woken(std::uint32_t now, RuleSet& rules) const {
   if (next_wake() == kNever || !reached(next_wake(), now)) return;
-  for (const unsigned rule : sleeping_)
+  sleeping_.each([&](unsigned rule) {
     if (reached(due(rule), now)) rules.insert(rule);
+  });
 }
 
 void Triggers::settle(std::uint32_t now) {
-  for (const unsigned rule : active_) {
+  active_.each([&](unsigned rule) {
     State& state = phases_[rule];
     for (const Side side : {Side::otherwise, Side::then})
       if (cools(rule, side) && reached(until(rule, side), now))
         state.cooling = static_cast<std::uint8_t>(state.cooling & ~mask_of(side)) & 3U;
     if (state.waiting && !reached(now, until(rule, Side::then))) state.waiting = false;
     note_active(rule);
-  }
+  });
 }
 
 bool Triggers::take_zero_divide(unsigned rule) {

@@ -32,7 +32,7 @@ class Triggers {
 public:
   explicit Triggers(Workspace& workspace) : workspace_(workspace) {}
 
-  void start(const vm::Image& image, Memory& memory);
+  [[gnu::cold]] void start(const vm::Image& image, Memory& memory);
 
   // --- for the behaviour of the rule ---
   void judge(unsigned rule, vm::Value condition, bool event);
@@ -41,12 +41,21 @@ public:
   // EVERY: it triggers if its time has come. True when its next period is to be drawn.
   [[nodiscard]] bool begin_period(unsigned rule, std::uint32_t now);
   void draw_period(unsigned rule, vm::Value thousandths, std::uint32_t now);
-  // Its condition may change at `wake` (kNever: not by itself); it had an event, which is over in
+  // A turn begins: nothing follows yet.
+  void begin_turn(RuleRange rules) { noted().clear_around(rules); }
+  // It was evaluated: its condition may change at `wake` (kNever: not by itself); it had an event, which is over in
   // the next evaluation.
   void note_past(unsigned rule, std::uint32_t wake, bool event);
+  // Something follows from its evaluation.
+  void note(unsigned rule) { noted().insert(rule); }
   void note_zero_divide(unsigned rule) { judgement(rule).zero_divide = true; }
 
   // --- for the step thread ---
+  // Of those that were evaluated, only these stay: something follows from that now, or it may end what is remembered
+  // of them.
+  void keep_concerned(RuleSet& evaluated, RuleRange rules) const {
+    evaluated.keep_in(rules, noted(), eventful_.bits(), active_.bits(), sleeping_.bits());
+  }
   // It was evaluated, and its behaviour is not at work any more.
   void collect(unsigned rule);
   // Those whose last evaluation had an event, or divided by zero, which each step tells that could
@@ -70,7 +79,7 @@ public:
   void interrupted(unsigned rule) { phases_[rule].told = true; }
   void forget(unsigned rule) { judgement(rule).trigger = Trigger::none; }
   // Its behaviour was stopped: it never triggers again.
-  void retire(unsigned rule);
+  [[gnu::cold]] void retire(unsigned rule);
   // Its condition holds, and it is a WHILE: after a round there is another.
   bool goes_round(unsigned rule) const {
     return is_while(rule) && judgement(rule).truth == Truth::yes;
@@ -90,8 +99,18 @@ public:
     side = trigger == Trigger::then ? Side::then : Side::otherwise;
     return trigger != Trigger::none && !cools(rule, side);
   }
+  // Those that may want something: they were found to follow in this turn, or did before.
+  template <class Take>
+  void each_wanting(RuleRange rules, Take take) const {
+    active_.each_in_either(noted(), rules, take);
+  }
+  bool has_triggered(unsigned rule) const { return judgement(rule).trigger != Trigger::none; }
   // What it wants to run, given whether it runs now. False: nothing.
   [[nodiscard]] bool wish(unsigned rule, bool running, Wish& wish) const;
+
+  bool cools(unsigned rule, Side side) const {
+    return (phases_[rule].cooling & mask_of(side)) != 0;
+  }
 
 private:
   // What only the step thread knows of a rule. Of a mask of sides, bit s is side s.
@@ -104,9 +123,7 @@ private:
   static constexpr std::uint16_t kNobody = 0xFFFF;
   static constexpr unsigned mask_of(Side side) { return 1U << static_cast<unsigned>(side); }
 
-  bool cools(unsigned rule, Side side) const {
-    return (phases_[rule].cooling & mask_of(side)) != 0;
-  }
+  RuleBits noted() const { return RuleBits(workspace_.noted.data()); }
   // The end of its cooldown, by side; of the waiting as well, which has no other side.
   std::uint32_t& until(unsigned rule, Side side) const {
     return until_[policy::kSides * rule + static_cast<unsigned>(side)];

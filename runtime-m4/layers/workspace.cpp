@@ -8,6 +8,7 @@ void Workspace::start(Memory& memory) {
   cells = memory.take<Part::cells, std::uint32_t>();
   timer_words = memory.take<Part::timer_words, std::uint32_t>();
   due = memory.take<Part::due, std::uint32_t>();
+  noted = memory.take<Part::noted, RuleBits::Word>();
   judgements = memory.take_zero<Part::judgements, Judgement>();
   output = memory.take<Part::output, vm::Word>();
   result = memory.take_zero<Part::result, Result>().data();

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "runtime-m4/layers/memory.hpp"
+#include "runtime-m4/layers/rule_set.hpp"
 #include "vm/interpreter.hpp"
 
 namespace robosync::layers {
@@ -37,6 +38,7 @@ struct Result {
   std::uint32_t shifted = 0;
   std::uint16_t words = 0;  // of the output
   std::uint8_t there = 0;   // there is a result, since the behaviour was released
+  std::uint8_t side = 0;    // … of which side of the rule
 };
 
 // Where it stands, for a program.
@@ -47,7 +49,8 @@ struct Workspace {
   std::span<std::uint32_t> timer_words;  // states of their timers
   std::span<std::uint32_t> due;          // when it is to be evaluated again; of EVERY, the end
   std::span<Judgement> judgements;
-  std::span<vm::Word> output;  // one response runs at a time, so one is enough
+  std::span<RuleBits::Word> noted;  // rules from whose evaluation in this turn something follows
+  std::span<vm::Word> output;       // one response runs at a time, so one is enough
   Result* result = nullptr;
   // The behaviour that was released has done what it was released for.
   std::atomic<bool>* finished = nullptr;

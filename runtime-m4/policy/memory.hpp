@@ -51,6 +51,7 @@ inline constexpr std::uint32_t kCommandsEach = 2;
 inline constexpr std::uint32_t kFeeds = 40;  // readings that wait for their time
 // Sets of rules that the triggers keep.
 inline constexpr unsigned kTriggerSets = 3;
+inline constexpr unsigned kRunningSets = 4;
 inline constexpr unsigned kSides = 2;  // of a rule: DO and ELSE
 
 // Words of a set of rules (layers/rule_set.hpp): one bit a rule.

@@ -97,8 +97,7 @@ void SafetyRules::resume(unsigned rule) {
   tripped_.erase(rule);
   layers_.trace.emit(EventKind::resume, layers_.trace.now(), rule);
   ActuatorMask still = 0;
-  for (const unsigned tripped : tripped_)
-    still |= halted_by(tripped);
+  tripped_.each([&](unsigned tripped) { still |= halted_by(tripped); });
   layers_.control.let_go(halted_by(rule) & ~still);
 }
 

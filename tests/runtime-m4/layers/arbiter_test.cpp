@@ -3,6 +3,7 @@
 #include "runtime-m4/layers/arbiter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <vector>
@@ -93,22 +94,25 @@ struct Table {
     needs.counts[Count::rules] = kRules;
     needs.counts[Count::set_words] = robosync::policy::set_words(kRules);
     memory.lay_out(needs);
-    arbiter.start(memory);
+    arbiter.start(behavior_of, memory);
   }
 
   robosync::sim::Arena arena;
   robosync::layers::Memory memory{arena.bytes(), arena.board()};
+  std::array<std::uint8_t, kRules> behavior_of{};
   Arbiter arbiter;
 
   std::set<unsigned> ended_by(const Claim& claim, const Decision& decision) const {
     std::set<unsigned> ended;
-    for (const unsigned rule : arbiter.running())
+    arbiter.running().each([&](unsigned rule) {
       if (arbiter.ends(claim, decision, rule)) ended.insert(rule);
+    });
     return ended;
   }
   void apply(const Claim& claim, const Decision& decision) {
     for (const unsigned rule : ended_by(claim, decision))
       arbiter.end(rule);
+    behavior_of[claim.rule] = claim.behavior;
     if (decision.wins()) arbiter.give(claim);
   }
   void serve(const Claim& claim) { apply(claim, arbiter.decide(claim)); }
@@ -116,11 +120,12 @@ struct Table {
   // Each actuator has one owner, and those that are owned are those that somebody holds.
   bool is_sound() const {
     ActuatorMask seen = 0;
-    for (const unsigned rule : arbiter.running()) {
-      if ((seen & arbiter.holding(rule).actuators) != 0) return false;
+    bool sound = true;
+    arbiter.running().each([&](unsigned rule) {
+      sound = sound && (seen & arbiter.holding(rule).actuators) == 0;
       seen |= arbiter.holding(rule).actuators;
-    }
-    return seen == arbiter.owned();
+    });
+    return sound && seen == arbiter.owned();
   }
 };
 

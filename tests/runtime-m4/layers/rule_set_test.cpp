@@ -15,8 +15,7 @@ namespace {
 
 std::vector<unsigned> members(const RuleSet& set) {
   std::vector<unsigned> all;
-  for (const unsigned rule : set)
-    all.push_back(rule);
+  set.each([&](unsigned rule) { all.push_back(rule); });
   return all;
 }
 
@@ -27,18 +26,19 @@ void check_same(const RuleSet& set, const std::set<unsigned>& model) {
   for (unsigned rule = 0; rule <= kRules; ++rule) {
     if (rule < kRules) RC_ASSERT(set.has(rule) == model.contains(rule));
     const auto next = model.lower_bound(rule);
-    RC_ASSERT(set.from(rule) == (next == model.end() ? RuleSet::kEnd : *next));
+    RC_ASSERT(RuleSet::first_of(rule, set) == (next == model.end() ? RuleSet::kEnd : *next));
   }
 }
 
-// The rules of a behaviour, in this set, and in this or another one.
-void check_range(const RuleSet& set, const RuleSet& other, unsigned first, unsigned end) {
+// The rules of a behaviour, in this set, and in this or another one; then only those of them that are in the other.
+template <unsigned kRules>
+void check_range(RuleSet& set, const RuleSet& other, unsigned first, unsigned end) {
   std::vector<unsigned> mine;
   std::vector<unsigned> either;
   std::vector<unsigned> expected_mine;
   std::vector<unsigned> expected_either;
   set.each_in({first, end}, [&](unsigned rule) { mine.push_back(rule); });
-  set.each_in_either(other, {first, end}, [&](unsigned rule) { either.push_back(rule); });
+  set.each_in_either(other.bits(), {first, end}, [&](unsigned rule) { either.push_back(rule); });
   for (unsigned rule = first; rule < end; ++rule) {
     if (set.has(rule)) expected_mine.push_back(rule);
     if (set.has(rule) || other.has(rule)) expected_either.push_back(rule);
@@ -46,6 +46,15 @@ void check_range(const RuleSet& set, const RuleSet& other, unsigned first, unsig
   RC_ASSERT(mine == expected_mine);
   RC_ASSERT(either == expected_either);
   RC_ASSERT(set.has_any({first, end}) == !expected_mine.empty());
+  const unsigned next = either.empty() ? RuleSet::kEnd : either.front();
+  const unsigned found = RuleSet::first_of(first, set, other);
+  RC_ASSERT((found < end ? found : RuleSet::kEnd) == next);
+
+  std::set<unsigned> kept;
+  for (const unsigned rule : members(set))
+    if (rule < first || rule >= end || other.has(rule)) kept.insert(rule);
+  set.keep_in({first, end}, other.bits());
+  check_same<kRules>(set, kept);
 }
 
 template <unsigned kRules>
@@ -90,7 +99,7 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
   check_same<kRules>(set, model);
   check_same<kRules>(other, other_model);
   const unsigned first = *rc::gen::inRange(0U, kRules);
-  check_range(set, other, first, *rc::gen::inRange(first, kRules + 1));
+  check_range<kRules>(set, other, first, *rc::gen::inRange(first, kRules + 1));
 }
 
 }  // namespace
@@ -110,14 +119,14 @@ TEST_CASE("members may come and go while they are gone through") {
   for (const unsigned rule : {3U, 31U, 32U, 500U})
     set.insert(rule);
   std::vector<unsigned> seen;
-  for (const unsigned rule : set) {
+  set.each([&](unsigned rule) {
     seen.push_back(rule);
     if (rule == 31) {
       set.erase(3);
       set.erase(32);
       set.insert(999);
     }
-  }
+  });
   CHECK(seen == std::vector<unsigned>{3, 31, 500, 999});
 }
 
