@@ -121,6 +121,7 @@ private:
     note_flow(at);
     switch (info_of(word).effect) {
       case Effect::command:
+        work_.follows = work_.follows || follows(word);
         return command(word, turns);
       case Effect::log:
       case Effect::alert:
@@ -171,7 +172,12 @@ private:
     takes_time_ = takes_time_ && !(moves && value <= 0);
   }
 
+  bool follows(vm::Word word) const {
+    return image_.verbs[vm::operand_b(word)].action == vm::Action::follow;
+  }
+
   void command(vm::Word word, Instructions turns) {
+    if (follows(word)) takes_time_ = false;  // what has no speed has its new value at once
     const bool stops = image_.verbs[vm::operand_b(word)].action == vm::Action::stop;
     if (vm::operand_c(word) < image_.words.size()) {
       const vm::WordEntry& said = image_.words[vm::operand_c(word)];

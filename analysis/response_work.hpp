@@ -20,6 +20,7 @@ struct ResponseWork {
   Inputs sets;
   Inputs later_sets;  // … after a pause
   bool pauses = false;
+  bool follows = false;                // FOLLOW: may command whenever it looks
   bool polls = false;                  // WAIT UNTIL: looks again whenever something changes
   std::uint32_t shortest_wait_ms = 0;  // 0: it does not pause
 };

@@ -52,6 +52,7 @@ ResponseWork worst_of(const ResponseWork& a, const ResponseWork& b) {
                     .sets = a.sets | b.sets,
                     .later_sets = a.later_sets | b.later_sets,
                     .pauses = a.pauses || b.pauses,
+                    .follows = a.follows || b.follows,
                     .polls = a.polls || b.polls,
                     .shortest_wait_ms = std::min(a.shortest_wait_ms, b.shortest_wait_ms)};
   for (std::size_t i = 0; i < both.by_actuator.size(); ++i)
@@ -171,7 +172,8 @@ Instructions StepWork::step(const Rules& rules, const Inputs& changed) const {
 Instructions StepWork::evaluation(unsigned rule) const {
   Instructions sum = costs::kRule + costs_[rule].condition;
   if (divides_[rule]) sum += costs::kZeroDivide;
-  if (worst_[rule].polls) sum += costs::kPoll + costs_[rule].dearer_response();
+  if (worst_[rule].polls)
+    sum += costs::kPoll + (worst_[rule].follows ? output(rule) : costs_[rule].dearer_response());
   return sum;
 }
 

@@ -2,6 +2,8 @@
 mailbox to the command at the driver of the first arm that is told to move. Everything that comes in between
 counts, interrupts too; the most of several readings is the figure.
 
+An arm that follows the touch goes the same way, from the reading to its new target.
+
 Three conditions, as users meet them: the arms are free; they are moving, so that a response is interrupted and
 both are stopped first; and so, while `rsc monitor` listens.
 """
@@ -21,6 +23,7 @@ COMMAND = "robosync::drivers::servo::start("
 RELEASE = "robosync::drivers::servo::release("
 START_UPS = 8
 CHANGES = 8
+FOLLOWING = "WHILE touch LEVEL >= 0\nDO FOLLOW left_arm TO (touch LEVEL * 10deg)\nEND\n"
 LIGHT, FIRM = 1, 9  # touches on either side of the paper's threshold
 BETWEEN = 0.3  # seconds between two touches; the arms move for longer
 
@@ -70,6 +73,23 @@ def ways(marks):
     return found
 
 
+def follow_update(known):
+    """The most of several new targets of an arm that follows."""
+    with tempfile.TemporaryDirectory() as folder:
+        program, image, out = (Path(folder) / name for name in ("follow.rsl", "follow.rsb", "marks"))
+        program.write_text(FOLLOWING)
+        rsc.run("compile", program, "--config", PAPER.with_name("robot.json"), "-o", image)
+        with Board(icount=REAL_TIME, extra=plugin_arguments(known, out)) as board:
+            board.set_touch(LIGHT)
+            rsc.run("upload", image, "--port", board.port)
+            time.sleep(BETWEEN)
+            touch_again_and_again(board)
+        found = ways(Marks(known, out))
+    if len(found) < CHANGES or any(stopped for _, stopped in found[-CHANGES:]):
+        raise BenchError(f"not every touch led to a new target, or the arm was stopped: {found}")
+    return {"path/follow_update": (max(count for count, _ in found[-CHANGES:]), "insn")}
+
+
 def path_figures():
     known = functions()
     with tempfile.TemporaryDirectory() as folder:
@@ -81,5 +101,6 @@ def path_figures():
     free, busy, monitored = found[:START_UPS], found[START_UPS:-CHANGES], found[-CHANGES:]
     if len(found) != START_UPS + 2 * CHANGES or not all(stopped for _, stopped in busy + monitored):
         raise BenchError(f"not every touch led to a command, or the arms stood still: {found}")
-    return {f"path/reading_to_command{name}": (max(count for count, _ in way), "insn")
-            for name, way in (("", free), ("_busy", busy), ("_monitored", monitored))}
+    return follow_update(known) | {
+        f"path/reading_to_command{name}": (max(count for count, _ in way), "insn")
+        for name, way in (("", free), ("_busy", busy), ("_monitored", monitored))}

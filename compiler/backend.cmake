@@ -57,6 +57,7 @@ target_sources(robosync_compiler PRIVATE
   sema/conditions.cpp
   sema/defines.cpp
   sema/expressions.cpp
+  sema/follow.cpp
   sema/functions.cpp
   sema/limits.cpp
   sema/motions.cpp

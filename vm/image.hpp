@@ -73,7 +73,8 @@ enum class DriverId : std::uint8_t {
 
 // What a verb makes its driver do. The image's verb table joins a name to one of these.
 // perform: a MOTION, which no driver knows; the control layer makes moves of it.
-enum class Action : std::uint8_t { move, play, set, stop, perform, count_ };
+// follow: goes TO a place as move does, and takes the place of the follow before it.
+enum class Action : std::uint8_t { move, play, set, stop, perform, follow, count_ };
 
 // What an actuator does when its response ends by interruption, and when safety halts it.
 enum class Release : std::uint8_t { hold, rest, coast, count_ };

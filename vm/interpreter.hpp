@@ -40,7 +40,7 @@ enum class Pause : std::uint8_t {
   until_time,    // at Progress::wake
   until_done,    // when all commands it has put out are done
   polling,       // in every step that evaluates its behaviour, or at Progress::wake
-  still_polling  // as polling: `until` was not true, and nothing else was done
+  still_polling  // as polling: `until` was not true, so it goes on as it was
 };
 struct Progress {
   Pause pause = Pause::ended;

@@ -51,6 +51,10 @@ unsigned blocks_of(const ProgramWaitUntil&) {
   return 1;
 }
 
+unsigned blocks_of(const ProgramFollow& follow) {
+  return blocks_in(follow.body) + 1;
+}
+
 unsigned blocks_of(const ProgramIf& choice) {
   const bool asks_if_known = !choice.else_block.empty() && !choice.condition.fact.known;
   return std::max(blocks_in(choice.then_block) + (asks_if_known ? 2 : 1),
@@ -109,6 +113,7 @@ private:
   void emit(const ProgramHalt& halt);
   void argument(vm::Param param, const Expression& value);
   void emit(const ProgramWaitUntil& wait);
+  void emit(const ProgramFollow& follow);
   void emit(const ProgramIf& choice);
   void emit(const ProgramRepeat& repeat);
   void emit(const ProgramPick& pick);
@@ -191,7 +196,8 @@ void ResponseEmitter::argument(vm::Param param, const Expression& value) {
 }
 
 void ResponseEmitter::emit(const ProgramLocal& local) {
-  const Cell cell = parts_.frame.add_local();
+  const auto known = expressions_.locals().find(local.number);
+  const Cell cell = known != expressions_.locals().end() ? known->second : parts_.frame.add_local();
   expressions_.value_into(cell, local.value);
   expressions_.locals()[local.number] = cell;
 }
@@ -451,6 +457,21 @@ void ResponseEmitter::emit(const ProgramWaitUntil& wait) {
     truth = either;
   }
   close_around(Opcode::until, truth, poll);
+}
+
+// A poll that commands: what is looked at in every step is the body, and it ends with its time only.
+void ResponseEmitter::emit(const ProgramFollow& follow) {
+  std::optional<Cell> deadline;
+  if (follow.lasts) {
+    deadline = parts_.frame.add_local();
+    code().emit(Opcode::deadline, *deadline, expressions_.value(*follow.lasts));
+  }
+  const std::size_t poll = open(Opcode::poll);
+  block(follow.body);
+  mark();
+  const Cell over = deadline ? parts_.frame.temporary(0) : expressions_.constant(vm::kFalse);
+  if (deadline) code().emit(Opcode::reached, over, *deadline);
+  close_around(Opcode::until, over, poll);
 }
 
 }  // namespace

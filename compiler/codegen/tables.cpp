@@ -68,6 +68,8 @@ void Tables::use(const ProgramCommand& command) {
     actuators_.emplace(actuator, 0);
   if (command.group) groups_.emplace(*command.group, 0);
   if (command.motion) performers_.insert(command.actuators.begin(), command.actuators.end());
+  if (command.verb.action == vm::Action::follow)
+    followers_.insert(command.actuators.begin(), command.actuators.end());
   if (command.motion && command.actuators.size() > 1) motion_groups_.emplace(*command.motion, 0);
   add_once(verbs_, command.verb);
   if (command.word) add_once(words_, *command.word);
@@ -141,9 +143,11 @@ std::uint8_t Tables::word(const ProgramCommand& command) const {
 
 std::uint32_t Tables::verbs_of(const ActuatorConfig& actuator, std::size_t place) const {
   std::uint32_t mask = 0;
-  for (std::size_t v = 0; v < verbs_.size(); ++v)
-    if (verbs_[v].action == vm::Action::perform && performers_.contains(place))
-      mask |= std::uint32_t{1} << v;
+  for (std::size_t v = 0; v < verbs_.size(); ++v) {
+    const bool performs = verbs_[v].action == vm::Action::perform && performers_.contains(place);
+    const bool follows = verbs_[v].action == vm::Action::follow && followers_.contains(place);
+    if (performs || follows) mask |= std::uint32_t{1} << v;
+  }
   for (const VerbConfig& verb : actuator.verbs) {
     const auto number = place_of(verbs_, ProgramVerb{verb.name, verb.action, verb.takes});
     if (number < verbs_.size()) mask |= std::uint32_t{1} << number;

@@ -67,7 +67,8 @@ private:
   std::map<std::size_t, std::uint8_t> actuators_;
   std::map<std::size_t, std::uint8_t> groups_;
   std::map<std::size_t, std::uint8_t> motion_groups_;
-  std::set<std::size_t> performers_;  // actuators that are part of a MOTION
+  std::set<std::size_t> performers_;  // actuators that are part of a MOTION …
+  std::set<std::size_t> followers_;   // … that FOLLOW
   std::vector<ProgramVerb> verbs_;    // in the order of first use
   std::vector<ProgramWord> words_;
 };

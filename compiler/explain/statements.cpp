@@ -37,6 +37,8 @@ std::string_view preposition(ast::Preposition preposition) {
       return "at ";
     case ast::Preposition::for_:
       return "for ";
+    case ast::Preposition::margin:
+      return "whenever that changes by ";
   }
   return "";
 }

@@ -101,8 +101,8 @@ struct ProgramCommand {
 struct ProgramStatement;
 using ProgramBlock = std::vector<ProgramStatement>;
 
-struct ProgramLocal {      // a value that is worked out once: what a DEFINE is given
-  std::size_t number = 0;  // distinct in the response
+struct ProgramLocal {      // a value that is worked out here: what a DEFINE is given
+  std::size_t number = 0;  // distinct in the response, but for one that a FOLLOW writes again
   Expression value;
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 1;
@@ -133,6 +133,16 @@ struct ProgramWaitUntil {
   static constexpr bool kPauses = true;
   static constexpr std::size_t kCells = 1;
   static constexpr std::tuple kParts{&ProgramWaitUntil::condition, &ProgramWaitUntil::within};
+};
+// FOLLOW: the body runs in each step that may change what it reads, beginning with the next, until the
+// time is over; without one, as long as the response runs. What it remembers from one run of the body to
+// the next is a local that stands before it.
+struct ProgramFollow {
+  std::optional<Expression> lasts;
+  ProgramBlock body;  // it does not pause
+  static constexpr bool kPauses = true;
+  static constexpr std::size_t kCells = 1;
+  static constexpr std::tuple kParts{&ProgramFollow::lasts, &ProgramFollow::body};
 };
 struct ProgramThen {
   static constexpr bool kPauses = true;
@@ -196,8 +206,9 @@ struct ProgramHalt {  // STOP in a SAFETY rule
 };
 
 struct ProgramStatement {
-  std::variant<ProgramCommand, ProgramLocal, ProgramSet, ProgramWait, ProgramWaitUntil, ProgramThen,
-               ProgramIf, ProgramRepeat, ProgramPick, ProgramLog, ProgramAlert, ProgramHalt>
+  std::variant<ProgramCommand, ProgramLocal, ProgramSet, ProgramWait, ProgramWaitUntil,
+               ProgramFollow, ProgramThen, ProgramIf, ProgramRepeat, ProgramPick, ProgramLog,
+               ProgramAlert, ProgramHalt>
       node;
   std::uint16_t line = 0;
   Span span;

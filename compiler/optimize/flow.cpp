@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <type_traits>
+#include <utility>
 
 #include "compiler/ir/walk.hpp"
 
@@ -107,6 +108,15 @@ void Flow::visit(ProgramWaitUntil& wait, State& state) {
   if (wait.within) look(*wait.within, state);
   pause(state);
   look(wait.condition, state);
+}
+
+// Its body runs again and again: what it writes into a local, it finds there the next time.
+void Flow::visit(ProgramFollow& follow, State& state) {
+  if (follow.lasts) look(*follow.lasts, state);
+  pause(state);
+  for_each_of<ProgramLocal>(std::as_const(follow.body),
+                            [this](const ProgramLocal& local) { locals_[local.number] = {}; });
+  block(follow.body, state);
 }
 
 // ---- choices

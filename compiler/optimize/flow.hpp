@@ -51,6 +51,7 @@ private:
   void visit(ProgramLocal& local, State& state);
   void visit(ProgramSet& set, State& state);
   void visit(ProgramWaitUntil& wait, State& state);
+  void visit(ProgramFollow& follow, State& state);
   void visit(ProgramIf& choice, State& state);
   void visit(ProgramRepeat& repeat, State& state);
   void visit(ProgramPick& pick, State& state);

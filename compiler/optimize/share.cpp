@@ -91,7 +91,8 @@ public:
   bool in(ProgramStatement& statement) {
     const bool spoilt = spoils(statement, number_);
     for_each_beginning(statement, [this](Expression& expression) { in(expression); });
-    const bool again = std::holds_alternative<ProgramRepeat>(statement.node);
+    const bool again = std::holds_alternative<ProgramRepeat>(statement.node) ||
+                       std::holds_alternative<ProgramFollow>(statement.node);
     if (!again || !spoilt) for_each_block(statement, [this](ProgramBlock& inner) { in(inner); });
     return !spoilt;
   }

@@ -15,6 +15,8 @@ namespace robosync::compiler {
 namespace {
 
 constexpr std::size_t kNotNamed = static_cast<std::size_t>(-1);
+// What MARGIN gives, which no verb of an actuator takes.
+constexpr vm::Param kMargin = vm::Param::count_;
 
 const ast::Word* plain_word(const ast::Argument& argument) {
   return argument.preposition == ast::Preposition::none ? std::get_if<ast::Word>(&argument.value)
@@ -22,8 +24,8 @@ const ast::Word* plain_word(const ast::Argument& argument) {
 }
 
 vm::Param param_of(const ast::Argument& argument) {
-  constexpr std::array kParams = {vm::Param::by,   vm::Param::to, vm::Param::by,
-                                  vm::Param::over, vm::Param::at, vm::Param::for_};
+  constexpr std::array kParams = {vm::Param::by, vm::Param::to,   vm::Param::by, vm::Param::over,
+                                  vm::Param::at, vm::Param::for_, kMargin};
   const auto* amount = std::get_if<ast::Amount>(&argument.value);
   if (amount != nullptr && amount->times) return vm::Param::times;
   return kParams[static_cast<std::size_t>(argument.preposition)];
@@ -52,6 +54,7 @@ std::vector<ProgramCommand> Commands::translate(const ast::Command& command,
   if (command.verb.text.empty()) return {};
   if (!names_.is_verb(command.verb.text)) {
     if (same_name(command.verb.text, kPerform)) return perform(command);
+    if (is_follow(command)) return expected_follow(command);
     report_unknown_verb(command);
     return {};
   }
@@ -328,7 +331,7 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Param::count
 };
 
 std::string spelling(vm::Param param) {
-  return std::string(kSpellings[static_cast<std::size_t>(param)]);
+  return std::string(param == kMargin ? "MARGIN" : kSpellings[static_cast<std::size_t>(param)]);
 }
 
 std::string taken_by(const VerbConfig& verb) {

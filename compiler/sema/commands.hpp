@@ -14,6 +14,16 @@ struct ChosenText {
   Span span;  // of the text in its LIST
 };
 
+// FOLLOW of one actuator, or of a group whose members all do it alike.
+struct Followed {
+  ProgramCommand command;  // TO is the value
+  vm::Value margin = 0;    // how far the value has to change
+};
+struct Follow {
+  std::vector<Followed> all;
+  std::optional<Expression> lasts;  // FOR
+};
+
 class Commands {
 public:
   Commands(const Robot& robot, Names& names, Expressions& expressions, Motions& motions,
@@ -28,6 +38,11 @@ public:
   // one for each member. Empty after a mistake, which has then been reported.
   [[nodiscard]] std::vector<ProgramCommand> translate(const ast::Command& command,
                                                       const ChosenText* chosen = nullptr);
+
+  // Is it FOLLOW, which no robot has a verb of?
+  [[nodiscard]] bool is_follow(const ast::Command& command) const;
+  // Nothing after a mistake, which has then been reported.
+  [[nodiscard]] std::optional<Follow> follow(const ast::Command& command);
 
   // What STOP names; reports when nothing has the name.
   [[nodiscard]] std::optional<Target> find_stopped(const ast::Name& name);
@@ -70,6 +85,15 @@ private:
   std::vector<ProgramCommand> perform(const ast::Command& command);
   bool add_to_performance(const Given& given, ProgramCommand& result);
   void report_no_motion(const ast::Command& command);
+
+  // FOLLOW (follow.cpp).
+  std::vector<ProgramCommand> expected_follow(const ast::Command& command);
+  std::optional<Follow> follow(const ast::Command& command, bool expected);
+  std::optional<Followed> follow_by(std::size_t actuator, const std::vector<Given>& given,
+                                    const ast::Name& verb, Diagnostics& diagnostics) const;
+  static bool add_to_follow(const ActuatorConfig& actuator, const Given& given, Followed& result,
+                            Diagnostics& diagnostics);
+  bool lasts(const Given& given, Follow& result);
 
   // What one actuator makes of them.
   std::optional<ProgramCommand> for_actuator(std::size_t actuator, const ast::Command& command,

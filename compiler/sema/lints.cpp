@@ -331,6 +331,9 @@ private:
       if (const auto* command = std::get_if<ProgramCommand>(&statement.node)) add(*command);
       if (const auto* wait = std::get_if<ProgramWait>(&statement.node))
         now_ += std::max<std::int64_t>(constant(wait->duration), 0);
+      const auto* follow = std::get_if<ProgramFollow>(&statement.node);
+      if (follow != nullptr && follow->lasts)
+        now_ += std::max<std::int64_t>(constant(*follow->lasts), 0);
       if (std::holds_alternative<ProgramThen>(statement.node)) now_ = std::max(now_, latest());
     }
   }
@@ -377,6 +380,8 @@ void lint_cooldown(const ProgramRule& rule, Diagnostics& diagnostics) {
 bool never_ends(const ProgramRule& rule) {
   return std::any_of(rule.then_response.begin(), rule.then_response.end(),
                      [&](const ProgramStatement& statement) {
+                       const auto* follow = std::get_if<ProgramFollow>(&statement.node);
+                       if (follow != nullptr) return !follow->lasts;
                        const auto* loop = std::get_if<ProgramRepeat>(&statement.node);
                        if (loop == nullptr) return false;
                        return loop->kind == RepeatKind::forever ||
@@ -413,6 +418,7 @@ bool takes_time(const ProgramBlock& block, const Names& names) {
     const auto* const command = std::get_if<ProgramCommand>(&statement.node);
     found = found || std::holds_alternative<ProgramWait>(statement.node) ||
             std::holds_alternative<ProgramWaitUntil>(statement.node) ||
+            std::holds_alternative<ProgramFollow>(statement.node) ||
             (command != nullptr && takes_time(*command, names));
   });
   return found;

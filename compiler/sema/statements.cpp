@@ -104,6 +104,7 @@ void Statements::add(const ast::Command& node, Span span, ProgramBlock& result) 
   if (node.arguments.empty())
     if (DefineName* define = names_.find_define(node.verb.text))
       return run(*define, {}, span, result);
+  if (commands_.is_follow(node)) return follow(node, span, result);
   if (const auto choice = find_choice(node.arguments)) {
     const auto say = [&](const ChosenText& chosen, ProgramBlock& into) {
       for (ProgramCommand& command : commands_.translate(node, &chosen))

@@ -51,6 +51,7 @@ private:
   bool allowed_in_safety(const ast::Stmt& stmt);
   template <typename Node>
   void put(Node node, Span span, ProgramBlock& result) {
+    if (endless_follow(result) != nullptr) report_never(result, span);
     result.push_back({std::move(node), line_of(span), span});
   }
 
@@ -79,6 +80,12 @@ private:
   bool add_part(const ast::Argument& argument, ProgramLog& log);
   void put_log(const ast::Log& node, const ChosenText* chosen, Span span, ProgramBlock& result);
   void put_alert(const std::string& text, Span place, Span span, ProgramBlock& result);
+  // follow.cpp
+  void follow(const ast::Command& node, Span span, ProgramBlock& result);
+  void add_followed(Followed followed, Span span, ProgramBlock& before, ProgramBlock& body);
+  // The FOLLOW that the block ends with, if it has no FOR.
+  static ProgramFollow* endless_follow(ProgramBlock& block);
+  void report_never(const ProgramBlock& block, Span span);
   // lists.cpp
   using PutText = std::function<void(const ChosenText&, ProgramBlock&)>;
   std::optional<ListChoice> find_choice(const std::vector<ast::Argument>& arguments);

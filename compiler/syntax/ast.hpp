@@ -140,7 +140,7 @@ struct Expr {
 struct Stmt;
 using Block = std::vector<Stmt>;
 
-enum class Preposition : std::uint8_t { none, to, by, over, at, for_ };
+enum class Preposition : std::uint8_t { none, to, by, over, at, for_, margin };
 
 struct Word {  // SLOWLY
   Name name;

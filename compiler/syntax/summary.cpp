@@ -34,7 +34,7 @@ const std::vector<Group>& groups() {
        with_role(role::statement, {K::QUANTITY, K::NEWLINE}),
        "a statement"},
       {{K::NAME, K::QUANTITY, K::TO},
-       {K::STRING, K::BY, K::OVER, K::AT, K::FOR, K::WITH, K::TIMES, K::OPEN},
+       {K::STRING, K::BY, K::OVER, K::AT, K::FOR, K::MARGIN, K::WITH, K::TIMES, K::OPEN},
        "a word of the command"},
       {{K::NAME, K::QUANTITY, K::OPEN}, {K::MINUS, K::RANDOM, K::NOT, K::STRING}, "a value"},
       {{K::LESS, K::IS}, {K::BECOMES, K::CHANGES}, "a comparison such as `<` or `IS`"},

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::count_)> kReleases = {
     "hold", "rest", "coast"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Action::count_)> kActions = {
-    "move", "play", "set", "stop", "perform"};
+    "move", "play", "set", "stop", "perform", "follow"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Param::count_)> kParams = {
 #define PARAM(name, spelling, doc) #name,
 #include "vm/params.def"

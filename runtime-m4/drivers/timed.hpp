@@ -9,9 +9,9 @@ namespace robosync::drivers {
 
 inline constexpr kernel::Duration kDefaultDuration = kernel::milliseconds(1000);
 
-// Is done after FOR, else OVER, else kDefaultDuration. STOP is done at once.
+// Is done after FOR, else OVER, else kDefaultDuration. STOP is done at once, and so is following.
 inline kernel::Time take_time(Device device, const Order& order, kernel::Time now) {
-  if (order.action == vm::Action::stop) return kDone;
+  if (order.action == vm::Action::stop || order.action == vm::Action::follow) return kDone;
   kernel::Duration length = kDefaultDuration;
   if (order.has(vm::Param::over)) length = duration_of(order.get(vm::Param::over, 0));
   if (order.has(vm::Param::for_)) length = duration_of(order.get(vm::Param::for_, 0));

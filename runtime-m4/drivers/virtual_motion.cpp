@@ -11,7 +11,7 @@ namespace robosync::drivers::virtual_motion {
 namespace {
 
 bool moves(Device device, const Order& order) {
-  if (order.action != vm::Action::move) return false;
+  if (order.action != vm::Action::move && order.action != vm::Action::follow) return false;
   const bool sweeps = device.wiring.bus == static_cast<unsigned>(vm::VirtualMotion::sweeps);
   return way::has_target(order) || sweeps;
 }

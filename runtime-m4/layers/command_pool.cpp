@@ -15,6 +15,10 @@ void CommandPool::start(Memory& memory) {
 }
 
 bool CommandPool::push(Queue& queue, const Command& command) {
+  if (command.action() == vm::Action::follow && follows(queue)) {
+    copy(command, nodes_[queue.last].command);
+    return true;
+  }
   if (queue.count == policy::kMaxQueued || free_ == kNone) return false;
   const std::uint8_t taken = free_;
   Node& node = nodes_[taken];
@@ -51,6 +55,10 @@ void CommandPool::append(Queue& queue, Queue& from) {
   if (queue.count == 0) {
     queue = std::exchange(from, {});
     return;
+  }
+  if (from.count > 0 && follows(queue) && front(from).action() == vm::Action::follow) {
+    copy(front(from), nodes_[queue.last].command);
+    pop(from);
   }
   if (from.count == 0) return;
   nodes_[queue.last].next = from.first;

@@ -21,8 +21,13 @@ public:
   // All its places are free, and no queue has any.
   void start(Memory& memory);
 
-  // False when the queue has policy::kMaxQueued commands or no place is left.
+  // Of two follows, one behind the other, the second takes the place of the first. False when the
+  // queue has policy::kMaxQueued commands or no place is left.
   [[nodiscard]] bool push(Queue& queue, const Command& command);
+  // Is the last command of `queue` a follow?
+  bool follows(const Queue& queue) const {
+    return queue.count > 0 && nodes_[queue.last].command.action() == vm::Action::follow;
+  }
   // The first of `queue`, which is not empty; good until pop().
   const Command& front(const Queue& queue) const { return nodes_[queue.first].command; }
   void pop(Queue& queue);

@@ -81,7 +81,8 @@ bool ControlLayer::stage_one(Unit& unit, const Command& command) {
     pool_.clear(unit.staged);
     unit.staged_stop = true;
   }
-  const unsigned waiting = unit.staged_stop ? 0U : unit.queue.count;
+  const bool renews = command.action() == vm::Action::follow && pool_.follows(unit.queue);
+  const unsigned waiting = unit.staged_stop || renews ? 0U : unit.queue.count;
   return waiting + unit.staged.count < policy::kMaxQueued && pool_.push(unit.staged, command);
 }
 
@@ -232,12 +233,22 @@ void ControlLayer::run(Unit& unit) {
       wake = kernel::kForever;
       continue;
     }
-    if ((events & kCommit) != 0) finish_stop(unit);
+    if ((events & kCommit) != 0) {
+      finish_stop(unit);
+      if (goes_elsewhere(unit)) unit.busy = false;
+    }
     if (unit.busy && kernel_.now() >= wake) wake = go_on(unit);
     // A command that finds its actuator free belongs to the step that sent it.
     const Stamp stamp = (events & kCommit) != 0 ? unit.committed : trace_.now();
     if (!unit.busy) wake = work_off(unit, stamp);
   }
+}
+
+// It follows, and has a new target.
+bool ControlLayer::goes_elsewhere(const Unit& unit) const {
+  const auto lock = kernel_.lock();
+  return unit.follows && unit.queue.count > 0 &&
+         pool_.front(unit.queue).action() == vm::Action::follow;
 }
 
 // Begins commands until one needs time, or none is left. Returns when to wake.
@@ -258,6 +269,7 @@ kernel::Time ControlLayer::work_off(Unit& unit, Stamp stamp) {
 void ControlLayer::begin_next(Unit& unit, Stamp stamp, kernel::Time& wake) {
   if (trace_.listening()) [[unlikely]]
     tell_command(unit, pool_.front(unit.queue), stamp);
+  unit.follows = pool_.front(unit.queue).action() == vm::Action::follow;
   wake = keep_at(unit, start_driver(unit, pool_.front(unit.queue)), stamp);
   const auto lock = kernel_.lock();
   pool_.pop(unit.queue);

@@ -6,7 +6,8 @@
 // the robot are applied here, whatever the program says.
 //
 // STOP is a command that does not wait: what stands before it in the queue is dropped, and what the
-// actuator is doing ends.
+// actuator is doing ends. A follow does not wait for a follow: it takes its place, in the queue or under
+// way, and nothing is done or cancelled by that.
 //
 // Halting (safety) puts actuators into their `safe` state from the caller's thread and refuses all
 // commands to them from then on, until they are let go or the next program comes. A person's stop halts
@@ -94,6 +95,7 @@ private:
     Stamp committed;            // the step that `queue` comes from
     std::uint8_t actuator = 0;
     bool busy = false;
+    bool follows = false;      // what it is doing is a follow
     bool staged_stop = false;  // `staged` begins with a STOP
     bool stopping = false;     // it was handed over
     std::uint8_t keeps = 0;    // commands at the end of `queue` that were handed over since
@@ -102,6 +104,7 @@ private:
   bool stage_one(Unit& unit, const Command& command);
   [[nodiscard]] bool start_unit(unsigned actuator, ProgramThreads& threads);
   void run(Unit& unit);
+  bool goes_elsewhere(const Unit& unit) const;
   kernel::Time work_off(Unit& unit, Stamp stamp);
   void begin_next(Unit& unit, Stamp stamp, kernel::Time& wake);
   kernel::Time start_driver(Unit& unit, const Command& command);

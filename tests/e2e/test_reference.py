@@ -38,7 +38,7 @@ class Reference(TraceTest):
         self.check_drawn(19)
 
     def test_safety(self):
-        self.check_drawn(20)
+        self.check_drawn(21)
 
 
 if __name__ == "__main__":

@@ -121,7 +121,7 @@ std::string show(const char* key, const Block& block) {
 }
 
 std::string show(const Argument& argument) {
-  const char* const prepositions[] = {"", "to:", "by:", "over:", "at:", "for:"};
+  const char* const prepositions[] = {"", "to:", "by:", "over:", "at:", "for:", "margin:"};
   std::string value;
   if (const auto* word = std::get_if<Word>(&argument.value)) value = show(word->name);
   if (const auto* text = std::get_if<Text>(&argument.value)) value = quoted(text->text);

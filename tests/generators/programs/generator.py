@@ -21,6 +21,10 @@ COMMANDS = ["MOVE arms SLOWLY", "MOVE left_arm TO 90deg OVER 300ms", "MOVE right
             "PERFORM wave", "PERFORM wave AT 150% 2 TIMES", "PERFORM bow AT (joy)",
             "PERFORM bow (count MOD 3) TIMES",
             "LIGHT lamp TO (joy) OVER 100ms", "MOVE left_arm TO (count * 3deg) OVER 80ms"]
+FOLLOWS = ["FOLLOW left_arm TO (touch LEVEL * 12deg)", "FOLLOW arms TO (count * 3deg) AT 50deg/s MARGIN 2deg",
+           "FOLLOW lamp TO (joy)", "FOLLOW lamp TO (room NOISE) MARGIN 10%",
+           "FOLLOW right_arm TO (touch LEVEL * 30deg - 20deg) MARGIN 15deg",
+           "FOLLOW left_arm TO 35deg AT (last * 20deg/s)"]
 DURATIONS = ["1ms", "7ms", "40msec", "150milliseconds", "600ms", "1.5seconds"]
 
 DECLARATIONS = """\
@@ -138,7 +142,13 @@ class Generator:
         return f"WHEN {self._timed()}{modifiers}\n  DO\n{self._block(2)}{other}"
 
     def _while(self):
-        return f"WHILE {self._condition(1)}\n  DO\n{self._block(2)}    WAIT {self._pause()}\n"
+        end = f"    WAIT {self._pause()}\n" if self._random.random() < 0.7 else self._following()
+        return f"WHILE {self._condition(1)}\n  DO\n{self._block(2)}{end}"
+
+    def _following(self):
+        """FOLLOWs that go on together until something else ends them."""
+        lines = self._random.sample(FOLLOWS, self._random.randint(1, 2))
+        return "".join(f"    {line}\n" for line in lines)
 
     def _every(self):
         to = f" TO {self._one('700ms', '2s')}" if self._random.random() < 0.5 else ""
@@ -213,6 +223,8 @@ class Generator:
             return self._one(*simple)()
         return self._one(*simple, lambda: "THEN", lambda: f"WAIT {self._duration()}", *self._blocks(depth - 1),
                          lambda: f"WAIT UNTIL {self._condition(1)} WITHIN {self._duration()}",
+                         lambda: f"{self._following()}    {self._one(*FOLLOWS)} FOR {self._duration()}",
+                         lambda: f"{self._one(*FOLLOWS)} FOR {self._duration()}",
                          lambda: f"greet_twice WITH {self._duration()}, {self._one('10%', 'joy', 'calm')}",
                          lambda: f"point WITH {self._one('arms', 'left_arm')}, {self._one('30deg', 'count * 9deg')},"
                          " " + self._one('"greeting.wav"', '"warning.wav"'),

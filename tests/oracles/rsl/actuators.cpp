@@ -122,7 +122,9 @@ Millis Actuators::begin(std::size_t actuator, const Order& order, Millis now) {
   }
   const Number to = given(order, vm::Param::to), by = given(order, vm::Param::by);
   const Number over = given(order, vm::Param::over);
-  const bool moves = order.command->verb.action == vm::Action::move && limits.goes;
+  const bool follows = order.command->verb.action == vm::Action::follow;
+  if (follows && (!limits.goes || limits.usual == 0)) return follow_at_once(actuator, *to, now);
+  const bool moves = (follows || order.command->verb.action == vm::Action::move) && limits.goes;
   if (!moves || (!to && !by && !limits.sweeps)) return told(order);
   const std::int64_t from = queue.motion.at(now);
   const bool back = given(order, vm::Param::direction).value_or(1) < 0;
@@ -155,6 +157,18 @@ Millis Actuators::begin(std::size_t actuator, const Order& order, Millis now) {
     next_leg(actuator, now);
   }
   return (queue.motion.length + 999) / 1000;
+}
+
+// Without a speed of its own it is there at once, but for its limit.
+Millis Actuators::follow_at_once(std::size_t actuator, std::int64_t to, Millis now) {
+  const Limits& limits = limits_[actuator];
+  Motion& motion = queues_[actuator].motion;
+  if (!limits.goes || limits.speed == vm::kValueMax) {
+    motion = {to, to, now, 0};
+    return 0;
+  }
+  motion = {motion.from, to, now, *travel(to - motion.from, limits.speed)};
+  return (motion.length + 999) / 1000;
 }
 
 // "A key's time counts from the beginning of its round"; AT is how fast, TIMES how often.
@@ -191,6 +205,14 @@ Millis Actuators::go_to_next_key(std::size_t actuator, Millis now) {
   return (queue.motion.length + 999) / 1000;
 }
 
+namespace {
+
+bool follows(const Order& order) {
+  return order.command->verb.action == vm::Action::follow;
+}
+
+}  // namespace
+
 bool Actuators::submit(std::size_t actuator, Order order) {
   const Limits& limits = limits_[actuator];
   for (auto& [param, value] : order.given) {
@@ -201,6 +223,16 @@ bool Actuators::submit(std::size_t actuator, Order order) {
   Queue& queue = queues_[actuator];
   if (order.command->verb.action == vm::Action::stop) {
     if (queue.busy) trace_.actuator("cancel", actuator);
+    queue.busy = false;
+    queue.orders = {order};
+    return true;
+  }
+  // "No queue": it takes the place of the FOLLOW before it.
+  if (follows(order) && waiting(queue) > 0 && follows(queue.orders.back())) {
+    queue.orders.back() = order;
+    return true;
+  }
+  if (follows(order) && queue.busy && queue.orders.size() == 1 && follows(queue.orders.front())) {
     queue.busy = false;
     queue.orders = {order};
     return true;

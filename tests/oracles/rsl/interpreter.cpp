@@ -172,11 +172,11 @@ void Interpreter::run_responses() {
     std::optional<Running>& running = rules_[r].running;
     if (!running) continue;
     const Surroundings here = around(r);
-    if (!running->won_now) {
-      if (!running->response.waits() || !running->response.may_go_on(here)) continue;
-      trace_.rule("go_on", *rules_[r].rule, rules_[r].behavior);
-    }
+    if (!running->won_now && (!running->response.waits() || !running->response.may_go_on(here)))
+      continue;
     outputs.emplace_back(r, running->response.run(here));
+    if (running->response.follows_on()) continue;
+    if (!running->won_now) trace_.rule("go_on", *rules_[r].rule, rules_[r].behavior);
     if (running->won_now || running->response.waits()) rules_[r].ran = now_.at;
     if (running->response.waits()) trace_.rule("wait", *rules_[r].rule, rules_[r].behavior);
   }

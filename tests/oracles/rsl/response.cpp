@@ -24,6 +24,7 @@ Truth Response::truth(const compiler::Expression& expression) const {
 
 bool Response::may_go_on(const Surroundings& around) const {
   if (around.now <= paused_at_) return false;  // "Every wait takes at least until the next step."
+  if (pause_ == Pause::follow) return true;    // "in each step"
   if (pause_ == Pause::commands) return around.commands_done;
   const bool over = until_ && around.now >= *until_;
   if (pause_ == Pause::time || over) return over;
@@ -36,6 +37,8 @@ std::optional<Millis> Response::wait_ends() const {
 
 Output Response::run(const Surroundings& around) {
   around_ = &around;
+  follows_on_ = false;
+  if (pause_ == Pause::follow) places_.push_back({&follow_->body, 0, nullptr, 0, true});
   pause_ = Pause::none;
   output_ = {};
   sums_.clear();
@@ -55,6 +58,11 @@ Output Response::run(const Surroundings& around) {
 void Response::leave_block() {
   Place& place = places_.back();
   bool again = false;
+  if (place.follow && !(until_ && around_->now >= *until_)) {
+    pause_ = Pause::follow;
+    paused_at_ = around_->now;
+    follows_on_ = true;
+  }
   if (place.loop != nullptr) switch (place.loop->kind) {
       case compiler::RepeatKind::times:
         again = --place.rounds > 0;
@@ -118,6 +126,14 @@ void Response::run(const compiler::ProgramWaitUntil& node) {
   if (node.within) until_ = around_->now + std::max<Millis>(within.value_or(0), 0);
 }
 
+// "Brought up to date in each step", from the next one on, "until FOR is over".
+void Response::run(const compiler::ProgramFollow& node) {
+  const Number lasts = node.lasts ? number(*node.lasts) : std::nullopt;
+  pause(Pause::follow, std::nullopt);
+  follow_ = &node;
+  if (node.lasts) until_ = around_->now + std::max<Millis>(lasts.value_or(0), 0);
+}
+
 void Response::run(const compiler::ProgramThen&) {
   pause(Pause::commands, std::nullopt);
 }
@@ -134,7 +150,7 @@ void Response::run(const compiler::ProgramRepeat& node) {
     if (rounds < 1) return;
   }
   if (node.kind == compiler::RepeatKind::while_ && truth(node.control) != true) return;
-  places_.push_back({&node.body, 0, &node, rounds});
+  places_.push_back({&node.body, 0, &node, rounds, false});
 }
 
 void Response::run(const compiler::ProgramPick& node) {

@@ -45,7 +45,7 @@ struct Surroundings {
 class Response {
 public:
   Response(const compiler::ProgramBlock& block, std::size_t rule) : rule_(rule) {
-    places_.push_back({&block, 0, nullptr, 0});
+    places_.push_back({&block, 0, nullptr, 0, false});
   }
 
   [[nodiscard]] bool ended() const { return places_.empty(); }
@@ -54,22 +54,27 @@ public:
   [[nodiscard]] std::optional<Millis> wait_ends() const;
   // Is what it waits for there?
   [[nodiscard]] bool may_go_on(const Surroundings& around) const;
+  // A FOLLOW has looked once more, and goes on following.
+  [[nodiscard]] bool follows_on() const { return follows_on_; }
   // To the next pause, or the end.
   Output run(const Surroundings& around);
 
 private:
-  enum class Pause { none, time, commands, condition };
+  enum class Pause { none, time, commands, condition, follow };
   struct Place {
     const compiler::ProgramBlock* block = nullptr;
     std::size_t next = 0;
     const compiler::ProgramRepeat* loop = nullptr;
     std::int64_t rounds = 0;  // that are left, of a loop that counts
+    bool follow = false;      // it is the body of a FOLLOW
   };
 
   [[nodiscard]] Sight sight(const Surroundings& around) const;
   [[nodiscard]] Number number(const compiler::Expression& expression) const;
   [[nodiscard]] Truth truth(const compiler::Expression& expression) const;
-  void enter(const compiler::ProgramBlock& block) { places_.push_back({&block, 0, nullptr, 0}); }
+  void enter(const compiler::ProgramBlock& block) {
+    places_.push_back({&block, 0, nullptr, 0, false});
+  }
   void leave_block();
   void pause(Pause why, Number duration);
 
@@ -78,6 +83,7 @@ private:
   void run(const compiler::ProgramSet& node);
   void run(const compiler::ProgramWait& node);
   void run(const compiler::ProgramWaitUntil& node);
+  void run(const compiler::ProgramFollow& node);
   void run(const compiler::ProgramThen& node);
   void run(const compiler::ProgramIf& node);
   void run(const compiler::ProgramRepeat& node);
@@ -93,6 +99,8 @@ private:
   Millis paused_at_ = 0;
   std::optional<Millis> until_;
   const compiler::Expression* condition_ = nullptr;
+  const compiler::ProgramFollow* follow_ = nullptr;
+  bool follows_on_ = false;
 
   // While it runs.
   const Surroundings* around_ = nullptr;
