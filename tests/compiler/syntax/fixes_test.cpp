@@ -43,7 +43,20 @@ Result compiled(const Example& example, const std::string& program) {
   return compile({"robot.rsl", program}, {"robot.json", example.robot}, {.source_lines = false});
 }
 
-// What the robot does: the image without the hash of its text, and without lines.
+// A robot with other names for its variables and their words does the same.
+void leave_out_names(std::vector<std::byte>& image, const vm::Image& view) {
+  const auto leave_out = [&](std::uint16_t name) {
+    const std::string_view text = view.string(name);
+    const auto at = reinterpret_cast<const std::byte*>(text.data()) - image.data();
+    std::memset(image.data() + at, 'x', text.size());
+  };
+  for (const vm::Variable& variable : view.variables)
+    leave_out(variable.name);
+  for (const std::uint16_t label : view.labels)
+    leave_out(label);
+}
+
+// What the robot does: the image without the hash of its text, without lines and names.
 std::vector<std::byte> meaning(std::vector<std::byte> image) {
   vm::ImageHeader header{};
   REQUIRE(image.size() >= sizeof header);
@@ -55,6 +68,7 @@ std::vector<std::byte> meaning(std::vector<std::byte> image) {
         static_cast<std::size_t>(rules) + i * sizeof(vm::Rule) + offsetof(vm::Rule, line);
     std::memset(image.data() + at, 0, sizeof(vm::Rule::line));
   }
+  leave_out_names(image, view);
   std::memcpy(&header, image.data(), sizeof header);
   header.program_hash = {};
   header.seed = header.crc32 = 0;

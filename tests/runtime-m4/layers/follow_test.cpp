@@ -55,8 +55,8 @@ TEST_CASE("an actuator that follows turns round on its way: nothing is queued, d
   CHECK(follower.arm(710) == 30);
   CHECK(follower.arm(1000) == 20);
   CHECK(follower.rig().only("command done cancel finished") ==
-        "10 #3 command arm FOLLOW TO 90deg AT 100deg/s\n"
-        "510 #4 command arm FOLLOW TO 20deg AT 100deg/s\n810 #4 done arm\n");
+        "10 #3 command arm FOLLOW to=90 at=100\n"
+        "510 #4 command arm FOLLOW to=20 at=100\n810 #4 done arm\n");
 }
 
 TEST_CASE("what changes by less than MARGIN is no new target, and many such changes add up") {
@@ -66,7 +66,7 @@ TEST_CASE("what changes by less than MARGIN is no new target, and many such chan
     follower.hear(2000 + 10 * static_cast<unsigned>(i), 90 + i);
   (void)follower.arm(3000);
   CHECK(follower.rig().only("command") ==
-        "10 #3 command arm FOLLOW TO 90deg\n2050 #8 command arm FOLLOW TO 95deg\n");
+        "10 #3 command arm FOLLOW to=90\n2050 #8 command arm FOLLOW to=95\n");
 }
 
 TEST_CASE("out of its range it goes to the end of it, and LIMIT holds") {
@@ -75,7 +75,7 @@ TEST_CASE("out of its range it goes to the end of it, and LIMIT holds") {
   CHECK(follower.arm(1010) == 60);
   CHECK(follower.arm(4000) == 180);
   follower.hear(4000, 199);
-  CHECK(follower.rig().only("command") == "10 #3 command arm FOLLOW TO 180deg\n");
+  CHECK(follower.rig().only("command") == "10 #3 command arm FOLLOW to=180\n");
 }
 
 TEST_CASE("several go on together, and end with the WHILE") {
@@ -93,7 +93,7 @@ TEST_CASE("FOR ends it; then the response goes on") {
   follower.hear(10, 45);
   (void)follower.arm(1500);
   CHECK(follower.rig().only("command") ==
-        "10 #3 command arm FOLLOW TO 45deg\n1000 #4 command arm MOVE TO 0deg\n");
+        "10 #3 command arm FOLLOW to=45\n1000 #4 command arm MOVE to=0\n");
 }
 
 TEST_CASE(
@@ -104,7 +104,7 @@ TEST_CASE(
     follower.hear(10 * i, static_cast<int>(i));
   (void)follower.arm(1200);
   CHECK(follower.rig().only("command overrun") ==
-        "0 #1 command arm MOVE TO 180deg OVER 1s\n1000 #22 command arm FOLLOW TO 20deg\n");
+        "0 #1 command arm MOVE to=180 over=1\n1000 #22 command arm FOLLOW to=20\n");
 }
 
 TEST_CASE("an unknown value is no target") {

@@ -187,3 +187,12 @@ TEST_CASE("a division by zero is told, of conditions and of responses") {
   CHECK(robot.only("zero_divide fire log") ==
         "0 #1 zero_divide r0\n0 #1 fire r0 ELSE\n0 #1 zero_divide r0\n0 #1 log \"v {}\" 0\n");
 }
+
+TEST_CASE("a division by zero is told of a condition from which nothing else follows") {
+  Robot robot("WHEN 10 / near X > 1\nDO LOG \"v\"\nEND\n");
+  robot.feed(0, "X", 0);
+  robot.feed(40, "X", 50);
+  robot.feed(80, "X", 0);
+  robot.run(200);
+  CHECK(robot.only("zero_divide fire log") == "0 #1 zero_divide r0\n80 #3 zero_divide r0\n");
+}
