@@ -32,7 +32,7 @@ class Reference(TraceTest):
         self.check_drawn(2)
 
     def test_repeats_and_chance(self):
-        self.check_drawn(6)
+        self.check_drawn(9)
 
     def test_stale_sensors(self):
         self.check_drawn(19)
