@@ -1,5 +1,7 @@
 """bench/recorded.py: which change of a figure fails scripts/bench, and what it says then."""
 
+import json
+import re
 import sys
 import tempfile
 import unittest
@@ -17,6 +19,20 @@ def figure(name, value, unit="insn"):
 def compared(before, *figures):
     comparison = recorded.Comparison(before)
     return comparison, [comparison.add(one) for one in figures]
+
+
+class Readme(unittest.TestCase):
+    def test_its_figures_are_those_recorded(self):
+        """Within the 2 % that a figure may grow unnoticed; a row of several figures names only their group."""
+        root = Path(__file__).resolve().parents[2]
+        known = json.loads((root / "bench/recorded.json").read_text())
+        rows = re.findall(r"^\| .* \| ([\d,.]+) [^|]* \| [^|]* \| `([a-z0-9_]+/\w+)` \|$",
+                          (root / "README.md").read_text(), re.MULTILINE)
+        said = {name: float(value.replace(",", "")) for value, name in rows if name in known}
+        self.assertGreater(len(said), 12)
+        for name, value in said.items():
+            with self.subTest(name):
+                self.assertAlmostEqual(value, known[name], delta=0.02 * known[name])
 
 
 class Growth(unittest.TestCase):
