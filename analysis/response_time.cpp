@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace robosync::analysis {
 namespace {
@@ -131,42 +132,68 @@ private:
       sum += releases_of(j, window);
       may_block = may_block || (j != mine_ && place_of(j) == Place::below);
     }
-    return sum + (may_block ? 1 : 0);
+    return sum + (may_block ? chain_.length + 1 : 0);
   }
 
   // How often a rule fires: not more than it is evaluated.
   Instructions fires(const Firing& rule, const Window& window) const {
     Instructions most = evaluations(rule.sources, window);
     if (rule.alternates) most = ceil_div(most, 2);
-    if (rule.gap == 0) return most;
-    return std::min(most, window.until / rule.gap + 1);
+    return std::min(most, once_in(rule.gap, window));
   }
 
-  // How often each rule fires, and how often it wins. Of rules among which there is a choice or a
-  // contest, those that cost most as often as they may, in different steps.
+  static Instructions once_in(Instructions time, const Window& window) {
+    return time == 0 ? kForeverLate : window.until / time + 1;
+  }
+
+  // How often each rule wins, and how often it fires and loses, which takes at most as long: so of
+  // rules among which there is a choice or a contest, those win that cost most, in different steps.
   struct Outcome {
     const Firing* rule;
-    Instructions fired, won;
+    Instructions won, lost;
   };
 
   std::vector<Outcome> outcomes(const Window& window) const {
     std::vector<Outcome> all;
     for (const Firing& rule : set_.firings) {
       const Instructions fired = fires(rule, window);
-      all.push_back({&rule, fired, fired});
+      const Instructions won = std::min(fired, once_in(rule.cooldown, window));
+      all.push_back({&rule, won, fired - won});
     }
     std::ranges::stable_sort(all, std::ranges::greater{},
                              [](const Outcome& one) { return one.rule->cost; });
-    limit(all, &Firing::choice, &Outcome::fired, window);
-    for (Outcome& one : all)
-      one.won = std::min(one.won, one.fired);
-    limit(all, &Firing::contest, &Outcome::won, window);
+    const auto win = [](Outcome& one, Instructions& left) {
+      const Instructions won = std::min(one.won, left);
+      one.lost += one.won - won;
+      one.won = won;
+      left -= won;
+    };
+    limit(all, &Firing::choice, window, win);
+    limit(all, &Firing::contest, window, win);
+    leave_out_losers(all, window);
     return all;
   }
 
-  // All firings of one choice, or of one contest, together: as often as there are steps for them.
-  void limit(std::vector<Outcome>& all, std::size_t Firing::*which, Instructions Outcome::*count,
-             const Window& window) const {
+  // Who contends with nobody loses against nobody; and of a choice one at most fires in a step.
+  void leave_out_losers(std::vector<Outcome>& all, const Window& window) const {
+    for (Outcome& one : all)
+      if (one.rule->contest == Firing::kNone) one.lost = 0;
+    std::map<std::size_t, Instructions> winners;
+    for (const Outcome& one : all)
+      winners[one.rule->choice] += one.won;
+    limit(all, &Firing::choice, window, [&](Outcome& one, Instructions& left) {
+      Instructions& others = winners[one.rule->choice];
+      left -= std::exchange(others, 0);
+      one.lost = std::min(one.lost, left);
+      left -= one.lost;
+    });
+  }
+
+  // Calls take(outcome, left) for all of one choice, or of one contest: `left` are the steps that
+  // there are for them together.
+  template <class Take>
+  void limit(std::vector<Outcome>& all, std::size_t Firing::*which, const Window& window,
+             Take take) const {
     std::map<std::size_t, std::vector<std::size_t>> sources;
     for (const Firing& rule : set_.firings)
       if (rule.*which != Firing::kNone) {
@@ -178,10 +205,7 @@ private:
       its.erase(std::unique(its.begin(), its.end()), its.end());
       Instructions left = evaluations(its, window);
       for (Outcome& one : all)
-        if (one.rule->*which == number) {
-          one.*count = std::min(one.*count, left);
-          left -= one.*count;
-        }
+        if (one.rule->*which == number) take(one, left);
     }
   }
 
@@ -193,7 +217,7 @@ private:
       take(source.name, releases_of(j, window) * (source.sample + source.step));
     }
     for (const Outcome& one : outcomes(window))
-      take(one.rule->name, one.won * one.rule->cost + (one.fired - one.won) * set_.lost);
+      take(one.rule->name, one.won * one.rule->cost + one.lost * set_.lost);
     for (const Interference& one : set_.interferences)
       take(one.name, ceil_div(window.until, one.period) * one.cost);
   }

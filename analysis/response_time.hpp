@@ -41,7 +41,8 @@ struct Firing {
   Instructions cost = 0;
   bool alternates = false;  // it fires on an edge: not in two evaluations that follow each other
   std::vector<std::size_t> sources;
-  Instructions gap = 0;  // in this time it fires once at most; 0: not known
+  Instructions gap = 0;       // in this time it fires once at most; 0: not known
+  Instructions cooldown = 0;  // in this time it wins once at most, and does not fire after that
   // In one step, one at most of those with the same `choice` fires, and of those with the same
   // `contest` that fire, one at most wins; another one takes TaskSet::lost. A choice is in a
   // contest as a whole or not at all.

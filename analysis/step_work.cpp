@@ -237,12 +237,15 @@ bool StepWork::alternates(unsigned rule) const {
 }
 
 std::uint32_t StepWork::gap_ms(unsigned r) const {
+  if (image_.rules[r].kind != RuleKind::when) return 0;
+  if (vm::opcode_of(last_word(r)) != Opcode::held) return 0;
+  return policy::milliseconds_of(image_.timers[vm::operand_c(last_word(r))].duration);
+}
+
+std::uint32_t StepWork::cooldown_ms(unsigned r) const {
   const vm::Rule& rule = image_.rules[r];
   if (rule.kind != RuleKind::when) return 0;
-  vm::Value gap = policy::modifiers_of(image_, rule).cooldown;
-  if (vm::opcode_of(last_word(r)) == Opcode::held)
-    gap = std::max(gap, image_.timers[vm::operand_c(last_word(r))].duration);
-  return policy::milliseconds_of(gap);
+  return policy::milliseconds_of(policy::modifiers_of(image_, rule).cooldown);
 }
 
 // Channels stand before variables.

@@ -45,9 +45,10 @@ public:
   // It fires when its condition becomes true, and for nothing else: never twice without being
   // evaluated as false between. A WHILE also starts again, which period_ms() is about.
   [[nodiscard]] bool alternates(unsigned rule) const;
-  // It fires once, and then not before this is over: COOLDOWN, or FOR as its last word; 0: not
-  // known.
+  // It fires once, and then not before this is over: FOR as its last word; 0: not known.
   [[nodiscard]] std::uint32_t gap_ms(unsigned rule) const;
+  // Its response starts once, and then not before this is over; who loses does not cool down.
+  [[nodiscard]] std::uint32_t cooldown_ms(unsigned rule) const;
   // Two rules of which one response at most runs in a step: they want the same actuator.
   [[nodiscard]] bool contend(unsigned a, unsigned b) const;
   // One look of the safety thread at its rules; and when all of them trip.

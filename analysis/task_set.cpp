@@ -202,7 +202,8 @@ private:
       if (sources.empty() || work_.firing(rule) == 0) continue;
       rules.push_back(rule);
       set_.firings.push_back({name_of(rule), work_.firing(rule), work_.alternates(rule), sources,
-                              instructions_in_ms(work_.gap_ms(rule))});
+                              instructions_in_ms(work_.gap_ms(rule)),
+                              instructions_in_ms(work_.cooldown_ms(rule))});
     }
     group(rules);
     for (const auto& [rule, sources] : goes_on_)

@@ -44,7 +44,7 @@ struct Robot : test::Folder {
 }  // namespace
 
 TEST_CASE("examples: no simulated release takes longer than is printed") {
-  std::mt19937 random(1);
+  std::mt19937 random(5);  // one of the seeds with which a rule that cools down would fire again
   for (const auto& entry : std::filesystem::directory_iterator(test::kRoot / "examples")) {
     const std::string file = "examples/" + entry.path().filename().string() + "/robot.rsl";
     if (!std::filesystem::exists(test::kRoot / file)) continue;

@@ -89,16 +89,19 @@ TaskSet drawn_set(Draw& draw, bool sneaky) {
   for (std::size_t j = 0; sneaky && j < sampled; ++j)
     if (draw.chance(0.4)) add_timed(set, j, draw);
   const std::size_t rules = draw.number(0, 6);
-  set.lost = draw.number(0, 10);                // none costs less
+  set.lost = draw.number(0, 500);               // none costs less
   const std::size_t apart = draw.number(1, 3);  // of every so many, the last fires as it likes
   for (std::size_t r = 0; r < rules; ++r) {
-    analysis::Firing rule{"r" + std::to_string(r), draw.number(10, 2'000), draw.chance(0.5), {}};
+    analysis::Firing rule{
+        "r" + std::to_string(r), draw.number(set.lost, 2'000), draw.chance(0.5), {}};
     for (std::size_t j = 0; j < set.sources.size(); ++j)
       if (draw.chance(0.5)) rule.sources.push_back(j);
     if (sneaky && r % (apart + 1) != 0) {  // choices 1 and 2, both in one contest
       rule.choice = 1 + r % 2;
       if (apart > 1) rule.contest = 0;
     }
+    if (sneaky && draw.chance(0.3)) rule.gap = draw.number(1'000, 200'000);
+    if (sneaky && draw.chance(0.3)) rule.cooldown = draw.number(1'000, 200'000);
     set.firings.push_back(rule);
   }
   for (unsigned i = 0; i < draw.number(0, 4); ++i) {
@@ -265,6 +268,36 @@ TEST_CASE("each term is needed: without it, the simulation takes longer than was
 
 // By hand: the root 1,100 and what joins it 5,000, two of what follows 2,000 each, 1,000 between;
 // and the step of the path, 3,000, blocks each of the two steps.
+TEST_CASE("a rule that cools down wins once, and may lose in every step") {
+  TaskSet set;
+  set.lost = 100;
+  analysis::Source often;
+  often.period = 2'000;
+  often.step = 50;
+  often.rank = 1;
+  often.outranks_a_behavior = true;
+  analysis::Source seldom;
+  seldom.period = 100'000;
+  seldom.step = 6'000;
+  seldom.rank = 2;
+  set.sources = {often, seldom};
+  analysis::Firing other;
+  other.cost = 200;
+  other.sources = {0};
+  other.contest = 0;
+  analysis::Firing it = other;
+  it.cost = 300;
+  set.firings = {other};
+  const auto bound = [&] { return analysis::response_time_of(set, 1, Priorities::base).time; };
+  const Time alone = bound();
+  set.firings.push_back(it);
+  const Time always = bound();
+  set.firings.back().cooldown = 1'000'000;
+  const Time steps = 4;  // of `often` in this time
+  CHECK(always == alone + steps * (300 - 200) + steps * set.lost);
+  CHECK(bound() == alone + (300 - 200) + steps * set.lost);
+}
+
 TEST_CASE("what follows a step comes late, and the next one may come soon after") {
   constexpr Time kPeriod = 20'000;
   TaskSet set;

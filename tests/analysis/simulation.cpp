@@ -27,6 +27,8 @@ public:
         next_(pattern.first),
         interference_next_(pattern.interference_first),
         was_true_(set.firings.size()),
+        may_fire_(set.firings.size()),
+        may_win_(set.firings.size()),
         worst_(set.sources.size()) {}
 
   std::vector<Time> run() {
@@ -166,7 +168,10 @@ private:
     for (const auto& [contest, rules] : contests)
       for (std::size_t i = 0; i < rules.size(); ++i) {
         const analysis::Firing& rule = set_.firings[rules[i]];
-        step_left_ += i == favorite % rules.size() ? rule.cost : set_.lost;
+        const bool wins = i == favorite % rules.size();
+        step_left_ += wins ? rule.cost : set_.lost;
+        may_fire_[rules[i]] = now_ + rule.gap;
+        if (wins) may_win_[rules[i]] = now_ + rule.cooldown;
       }
   }
 
@@ -177,7 +182,12 @@ private:
     });
   }
 
+  // Who cools down, or has not held for long enough, does not fire.
   bool fires(std::size_t r, bool may) {
+    return is_triggered(r, may) && now_ >= may_fire_[r] && now_ >= may_win_[r];
+  }
+
+  bool is_triggered(std::size_t r, bool may) {
     const bool is = may && std::uniform_real_distribution<double>(0, 1)(random_) < pattern_.truth;
     if (!set_.firings[r].alternates) return is;
     const bool was = was_true_[r];
@@ -205,6 +215,7 @@ private:
   bool in_step_ = false;
   Time step_left_ = 0, step_done_ = 0;
   std::vector<bool> was_true_;
+  std::vector<Time> may_fire_, may_win_;  // from when on
   std::vector<Time> worst_;
 };
 
