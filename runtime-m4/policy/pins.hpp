@@ -2,6 +2,7 @@
 // activation. Pure. Images are verified.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -32,14 +33,14 @@ constexpr const PinLimit* limit_of(const BoardPins& board, std::uint16_t pin) {
 }
 
 inline vm::Verdict judge(const vm::Image& image, const BoardPins& board) {
-  for (std::uint16_t s = 0; s < image.sensors.size(); ++s)
+  for (std::size_t s = 0; s < image.sensors.size(); ++s)
     if (vm::is_on_i2c(image.sensors[s].driver) && image.sensors[s].bus >= board.i2c_buses)
-      return {vm::Refusal::no_bus, vm::Section::sensors, s};
-  for (std::uint16_t a = 0; a < image.actuators.size(); ++a) {
+      return {vm::Refusal::no_bus, vm::Section::sensors, static_cast<std::uint16_t>(s)};
+  for (std::size_t a = 0; a < image.actuators.size(); ++a) {
     const vm::Actuator& actuator = image.actuators[a];
     if (vm::pin_use(actuator.driver) != vm::PinUse::nothing &&
         limit_of(board, actuator.pin) == nullptr)
-      return {vm::Refusal::no_pin, vm::Section::actuators, a};
+      return {vm::Refusal::no_pin, vm::Section::actuators, static_cast<std::uint16_t>(a)};
   }
   return {};
 }

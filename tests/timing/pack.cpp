@@ -101,7 +101,9 @@ void pack(const Arguments& arguments) {
       report.push_back({{"file", file}, {"errors", errors_of(result.diagnostics)}});
       continue;
     }
-    const tool::Program program(std::move(result.image), file);
+    tool::Origin origin = tool::origin_of(result);
+    const tool::Program program(std::move(result.image), file, tool::board_memory(),
+                                std::move(origin));
     report.push_back(
         add(block, program, file, argument.substr(std::min(colon + 1, argument.size()))));
   }
