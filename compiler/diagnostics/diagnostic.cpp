@@ -124,6 +124,17 @@ bool Diagnostics::may_search(std::size_t names) {
   return true;
 }
 
+void Diagnostics::found_from(Span use, const std::string& why, std::size_t before) {
+  for (std::size_t i = before; i < all_.size(); ++i) {
+    Diagnostic& d = all_[i];
+    const auto is_there = [&](const Label& label) { return label.span.file == use.file; };
+    if (d.level != Level::error || std::ranges::any_of(d.labels, is_there)) continue;
+    for (Label& label : d.labels)
+      label.primary = false;
+    d.labels.insert(d.labels.begin(), {use, why, true});
+  }
+}
+
 void Diagnostics::finish() {
   std::stable_sort(all_.begin(), all_.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return sort_key(a) < sort_key(b);

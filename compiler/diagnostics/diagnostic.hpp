@@ -69,6 +69,9 @@ public:
   std::size_t errors() const;
   std::size_t warnings() const;
   const std::vector<Diagnostic>& all() const { return all_; }
+  // `use`, in another file, is where somebody asked for what has the errors that were reported since
+  // there were `before`: so that is where they are shown first. What they say of that file stays.
+  void found_from(Span use, const std::string& why, std::size_t before);
   // To look for the name that a misspelt one is nearest to takes as long as there are names. True
   // while all such searches together are short, so that a text full of mistakes is read in a time
   // that goes with its length; ask before each. `names`: how many it looks at.

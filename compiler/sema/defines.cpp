@@ -88,7 +88,12 @@ void Statements::run(DefineName& name, const std::vector<ast::Argument>& argumen
                      ProgramBlock& result) {
   name.used = true;
   if (!may_run(name, span)) return;
-  if (const auto bindings = bind(name, arguments, span, result)) expand(name, *bindings, result);
+  const auto bindings = bind(name, arguments, span, result);
+  if (!bindings) return;
+  const std::size_t reported = diagnostics_.all().size();
+  expand(name, *bindings, result);
+  if (name.in_module)
+    diagnostics_.found_from(span, "`" + name.define->name.text + "` needs it", reported);
 }
 
 bool Statements::may_run(const DefineName& name, Span use) {

@@ -25,9 +25,12 @@ std::optional<std::size_t> Motions::find(const ast::Name& name) {
   if (known == nullptr) return std::nullopt;
   if (known->seen) return known->place;
   known->seen = true;
+  const std::size_t reported = diagnostics_.all().size();
   if (auto motion = translate(*known->motion)) {
     known->place = motions_.size();
     motions_.push_back(std::move(*motion));
+  } else if (known->in_module) {
+    diagnostics_.found_from(name.span, "`" + name.text + "` needs it", reported);
   }
   return known->place;
 }

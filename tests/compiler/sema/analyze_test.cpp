@@ -221,6 +221,25 @@ TEST_CASE("a module gives its names; what nobody runs of it need not fit the rob
   CHECK(view(good).header->program_hash != view(changed).header->program_hash);
 }
 
+TEST_CASE("a MOTION of a module needs the actuators that it moves when somebody performs it") {
+  const std::string module =
+      "MOTION wave OF left_arm\n AT 300ms 60deg\n AT 600ms 0deg\nEND\n"
+      "MOTION flap OF wings\n AT 300ms 60deg\nEND\n";
+  const auto with = [&](const std::string& motion) {
+    return with_module("USE \"own.rsl\"\n" + rule("touch LEVEL > 3", "PERFORM " + motion), module);
+  };
+  const Result good = with("wave 2 TIMES");
+  INFO(messages(good));
+  CHECK(good.diagnostics.all().empty());
+  CHECK(!good.image.empty());
+  const Result bad = with("flap");
+  CHECK(bad.image.empty());
+  REQUIRE(bad.diagnostics.errors() == 1);
+  CHECK(messages(bad).find("there is no actuator `wings`\n  --> robot.rsl:4:9") !=
+        std::string::npos);
+  CHECK(messages(bad).find("--> own.rsl:5:16") != std::string::npos);
+}
+
 TEST_CASE("DEFINEs that grow without end are refused, not expanded") {
   std::string program = rule("touch LEVEL > 3", "d0 WITH 1deg");
   for (int i = 0; i < 60; ++i) {
