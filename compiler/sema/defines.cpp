@@ -13,6 +13,15 @@ constexpr std::size_t kMaxNestedDefines = 64;  // of DEFINEs: the translation re
 
 constexpr unsigned kMaxHandedOn = 4;
 
+constexpr std::size_t kMostFollowed = 100;  // parts of an expression
+
+std::size_t parts_of(const Expression& expression) {
+  std::size_t count = 1;
+  for (const Expression& operand : expression.operands)
+    count += parts_of(operand);
+  return count;
+}
+
 // The first argument that is a word alone: where an actuator stands.
 const ast::Word* first_word(const ast::Command& command) {
   for (const ast::Argument& argument : command.arguments)
@@ -147,14 +156,25 @@ Binding Statements::bind(const ast::Define& define, std::size_t parameter,
     }
     if (!operand->channel && bind_name(operand->name.text, define, binding)) return binding;
   }
+  binding.followed = followed(*amount->value);
   binding.value = expressions_.number(*amount->value);
   if (!binding.value.is_number() || binding.value.is_constant()) return binding;
   const std::size_t number = locals_++;
-  put(ProgramLocal{number, std::move(binding.value.code)}, span, result);
+  put_first(ProgramLocal{number, std::move(binding.value.code)}, span, result);
   binding.value.code = {};
   binding.value.code.operation = Operation::local;
   binding.value.code.index = number;
   return binding;
+}
+
+// As a FOLLOW has it. DEFINEs that hand it on could double it each time, so there is an end to that.
+Typed Statements::followed(const ast::Expr& value) {
+  const bool before = expressions_.set_following(true);
+  Typed number = expressions_.number(value);
+  const bool lost = expressions_.has_lost();
+  expressions_.set_following(before);
+  if (lost || parts_of(number.code) > kMostFollowed) return {};
+  return number;
 }
 
 // An actuator, a group or a DEFINE. Where a sensor has the name too, what the DEFINE does with its

@@ -111,6 +111,11 @@ const Bindings* Expressions::set_bindings(const Bindings* bindings) {
   return std::exchange(bindings_, bindings);
 }
 
+bool Expressions::set_following(bool following) {
+  lost_ = false;
+  return std::exchange(following_, following);
+}
+
 const Binding* Expressions::find_binding(std::string_view name) const {
   if (bindings_ == nullptr) return nullptr;
   const std::string folded = fold_name(name);
@@ -143,7 +148,11 @@ Typed Expressions::parameter(const Binding& binding, const ast::Operand& operand
     report_given(binding, {operand.name.text, span}, "a number");
     return make_nothing(span);
   }
-  return binding.value;  // with its place where it is given, which is where a mistake is mended
+  // With its place where it is given, which is where a mistake is mended.
+  if (!following_ || binding.value.is_constant()) return binding.value;
+  if (binding.followed.is_number()) return binding.followed;
+  lost_ = lost_ || binding.value.is_number();
+  return binding.value;
 }
 
 Typed Expressions::channel(ChannelRef ref, Span span) {

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string_view>
+#include <utility>
 
 #include "compiler/sema/names.hpp"
 #include "compiler/sema/quantities.hpp"
@@ -18,6 +19,7 @@ struct Binding {
   std::string actuator{};  // the actuator or group that is given
   DefineName* define = nullptr;
   bool is_number = true;  // none of the others
+  Typed followed{};       // the same as a FOLLOW has it, worked out each time; nothing: too long
 };
 using Bindings = std::vector<Binding>;
 
@@ -56,6 +58,11 @@ public:
   // The parameters that are seen; nullptr: none. Gives what it was before.
   const Bindings* set_bindings(const Bindings* bindings);
   [[nodiscard]] const Binding* find_binding(std::string_view name) const;
+  // Is it for a FOLLOW what is worked out now? Its parameters are worked out with it, not beforehand.
+  // Gives what it was before.
+  bool set_following(bool following);
+  // Since then: was there one that has no such value, as it would be too long?
+  [[nodiscard]] bool has_lost() const { return lost_; }
   // The LIST of this name; reports when there is none.
   const ListName* find_list(const ast::Name& name);
   // "`who` is given a number, and an actuator is needed".
@@ -115,6 +122,8 @@ private:
   std::map<const ast::Let*, Typed> constants_;
   std::vector<const ast::Let*> open_;  // being worked out, to find one that needs itself
   const Bindings* bindings_ = nullptr;
+  bool following_ = false;
+  bool lost_ = false;
   Margin* margin_ = nullptr;
 };
 

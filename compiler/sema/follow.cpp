@@ -112,7 +112,16 @@ std::optional<Follow> Commands::follow(const ast::Command& command, bool expecte
   }
   std::size_t named_by = 0;
   const auto target = find_target(command, named_by);
+  const bool before = expressions_.set_following(true);
   const auto given = evaluate(command, named_by);
+  const bool lost = expressions_.has_lost();
+  expressions_.set_following(before);
+  if (lost) {
+    diagnostics_
+        .report(Code::E0407, "what this FOLLOW follows becomes too long with all its DEFINEs")
+        .label(command.verb.span);
+    return std::nullopt;
+  }
   if (!target || !given || target->actuators.empty()) return std::nullopt;
   const auto is_target = [](const Given& one) {
     return one.is_number && one.param == vm::Param::to;
@@ -233,6 +242,14 @@ void Statements::report_never(const ProgramBlock& block, Span span) {
       .label(span)
       .label(block.back().span, "it goes on as long as its response runs", false)
       .helps("put it in front of the FOLLOW, or say with FOR how long that goes on");
+}
+
+void Statements::put_first(ProgramLocal local, Span span, ProgramBlock& result) {
+  if (endless_follow(result) == nullptr) return put(std::move(local), span, result);
+  ProgramStatement follow = std::move(result.back());
+  result.pop_back();
+  put(std::move(local), span, result);
+  result.push_back(std::move(follow));
 }
 
 // Those that stand one behind the other go on together; the FOR of the last one ends them all.

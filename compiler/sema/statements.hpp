@@ -86,6 +86,8 @@ private:
   // The FOLLOW that the block ends with, if it has no FOR.
   static ProgramFollow* endless_follow(ProgramBlock& block);
   void report_never(const ProgramBlock& block, Span span);
+  // In front of such a FOLLOW, for what is to go on with it.
+  void put_first(ProgramLocal local, Span span, ProgramBlock& result);
   // lists.cpp
   using PutText = std::function<void(const ChosenText&, ProgramBlock&)>;
   std::optional<ListChoice> find_choice(const std::vector<ast::Argument>& arguments);
@@ -106,6 +108,7 @@ private:
            ProgramBlock& result);
   void run(const Binding& binding, const ast::Name& name,
            const std::vector<ast::Argument>& arguments, Span span, ProgramBlock& result);
+  Typed followed(const ast::Expr& value);
   bool bind_name(const std::string& name, const ast::Define& define, Binding& binding);
   bool commands_parameter(const ast::Define& define, std::string_view folded, unsigned handed_on);
   std::optional<Bindings> bind(const DefineName& name, const std::vector<ast::Argument>& arguments,

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "compiler/config/robot_reader.hpp"
+#include "compiler/ir/walk.hpp"
 #include "compiler/syntax/parser.hpp"
 #include "tests/compiler/compiled.hpp"
 
@@ -131,6 +132,55 @@ TEST_CASE("a constant stands for its parameter, another value is worked out once
   CHECK(use.operation == Operation::local);
   CHECK(use.index == 0);
   CHECK(std::get<ProgramLocal>(worked_out[3].node).number == 1);
+}
+
+namespace {
+
+std::size_t readings(const Expression& expression) {
+  std::size_t count = expression.operation == Operation::input ? 1 : 0;
+  for (const Expression& operand : expression.operands)
+    count += readings(operand);
+  return count;
+}
+
+std::size_t readings(const ProgramBlock& block) {
+  std::size_t count = 0;
+  for_each_statement(block, [&](const ProgramStatement& statement) {
+    for_each_expression(statement,
+                        [&](const Expression& expression) { count += readings(expression); });
+  });
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("what a FOLLOW follows is worked out anew, though it is a parameter") {
+  const std::string defines =
+      "DEFINE track WITH arm, goal\n FOLLOW arm TO (goal / 2) AT 30deg/s\nEND\n"
+      "DEFINE both WITH goal\n track WITH left_arm, goal + 1deg\n track WITH right_arm, "
+      "goal\nEND\n";
+  const ProgramBlock block = response_of("both WITH touch LEVEL * 2deg", defines);
+  const auto* const follow = std::get_if<ProgramFollow>(&block.back().node);
+  REQUIRE(follow != nullptr);
+  CHECK(readings(follow->body) == 2);  // both go on together, each reads for itself
+  const ProgramBlock once =
+      response_of("look WITH touch LEVEL * 2deg",
+                  "DEFINE look WITH goal\n MOVE left_arm TO goal\n MOVE right_arm TO goal\nEND\n");
+  CHECK(readings(once) == 1);
+}
+
+TEST_CASE("what is followed may be handed on, but not grow without end") {
+  const auto program = [](const std::string& last) {
+    std::string text = rule("touch LEVEL > 3", "d0 WITH touch LEVEL * 1deg");
+    for (int i = 0; i < 30; ++i)
+      text += "DEFINE d" + std::to_string(i) + " WITH angle\n d" + std::to_string(i + 1) +
+              " WITH angle + angle\nEND\n";
+    return text + "DEFINE d30 WITH angle\n " + last + " left_arm TO angle\nEND\n";
+  };
+  CHECK(!compile_text(program("MOVE"), common_robot()).image.empty());
+  const Result result = compile_text(program("FOLLOW"), common_robot());
+  CHECK(result.image.empty());
+  CHECK(messages(result).find("becomes too long with all its DEFINEs") != std::string::npos);
 }
 
 TEST_CASE("SET, RAISE, LOWER and SIGNAL") {

@@ -25,6 +25,8 @@ FOLLOWS = ["FOLLOW left_arm TO (touch LEVEL * 12deg)", "FOLLOW arms TO (count * 
            "FOLLOW lamp TO (joy)", "FOLLOW lamp TO (room NOISE) MARGIN 10%",
            "FOLLOW right_arm TO (touch LEVEL * 30deg - 20deg) MARGIN 15deg",
            "FOLLOW left_arm TO 35deg AT (last * 20deg/s)"]
+# … of a parameter.
+TRACKS = ["track WITH left_arm, touch LEVEL * 12deg", "track WITH lamp, joy", "track WITH arms, count * 3deg"]
 DURATIONS = ["1ms", "7ms", "40msec", "150milliseconds", "600ms", "1.5seconds"]
 
 DECLARATIONS = """\
@@ -54,6 +56,10 @@ END
 DEFINE point WITH arm, angle, item
   MOVE arm TO angle OVER 80ms
   PLAY sound item
+END
+
+DEFINE track WITH follower, to
+  FOLLOW follower TO to
 END
 
 DEFINE twice WITH action, arm
@@ -147,7 +153,7 @@ class Generator:
 
     def _following(self):
         """FOLLOWs that go on together until something else ends them."""
-        lines = self._random.sample(FOLLOWS, self._random.randint(1, 2))
+        lines = self._random.sample(FOLLOWS + TRACKS, self._random.randint(1, 2))
         return "".join(f"    {line}\n" for line in lines)
 
     def _every(self):
