@@ -41,11 +41,12 @@ Enum read_enum(const json::Value& value, const std::array<std::string_view, size
 
 VerbConfig read_verb(const json::Member& member, Diagnostics& diagnostics) {
   Fields fields(member.value, Object::verb, diagnostics);
-  VerbConfig verb{member.key, {}, 0, Texts::none};
+  VerbConfig verb{member.key, {}, 0, Texts::none, nullptr};
   if (const auto* action = fields.require("action", "a verb"))
     verb.action = read_enum<vm::Action>(*action, kActions, diagnostics);
   if (const auto* texts = fields.find("texts"))
     verb.texts = read_enum<Texts>(*texts, kTexts, diagnostics);
+  if (const auto* by = fields.find("by")) verb.by_unit = read_unit(*by, diagnostics);
   if (const auto* takes = fields.find("takes"))
     for (const json::Value& item : takes->items)
       verb.takes =

@@ -53,6 +53,7 @@ struct VerbConfig {
   vm::Action action{};
   std::uint8_t takes = 0;  // bit p: takes vm::Param p
   Texts texts = Texts::none;
+  const Unit* by_unit = nullptr;  // of BY, where it is not the actuator's own
 
   [[nodiscard]] bool has(vm::Param param) const {
     return (takes >> static_cast<unsigned>(param) & 1u) != 0;

@@ -138,7 +138,8 @@ std::optional<vm::Release> read_release(const json::Value& value, Diagnostics& d
   return static_cast<vm::Release>(*choice);
 }
 
-const Unit& param_unit(const ActuatorConfig& actuator, vm::Param param) {
+const Unit& param_unit(const ActuatorConfig& actuator, vm::Param param, const VerbConfig* verb) {
+  if (verb != nullptr && verb->by_unit != nullptr && param == vm::Param::by) return *verb->by_unit;
   const Unit& number = canonical_unit(vm::Dimension::number);
   switch (param) {
     case vm::Param::to:

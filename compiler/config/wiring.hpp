@@ -54,7 +54,8 @@ private:
 [[nodiscard]] std::optional<vm::Release> read_release(const json::Value& value,
                                                       Diagnostics& diagnostics);
 
-// The unit in which an actuator understands a parameter.
-[[nodiscard]] const Unit& param_unit(const ActuatorConfig& actuator, vm::Param param);
+// The unit in which an actuator understands a parameter, of `verb` if it has one of its own.
+[[nodiscard]] const Unit& param_unit(const ActuatorConfig& actuator, vm::Param param,
+                                     const VerbConfig* verb = nullptr);
 
 }  // namespace robosync::compiler

@@ -409,6 +409,15 @@ bool check_value(const ActuatorConfig& actuator, vm::Param param, const Typed& n
   return false;
 }
 
+// The verb whose BY is of this dimension; empty when none is.
+std::string verb_by(const ActuatorConfig& actuator, vm::Dimension dimension) {
+  const auto verb = std::ranges::find_if(actuator.verbs, [&](const VerbConfig& one) {
+    return one.has(vm::Param::by) &&
+           param_unit(actuator, vm::Param::by, &one).dimension == dimension;
+  });
+  return verb == actuator.verbs.end() ? std::string() : "`" + verb->name + "`";
+}
+
 void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Unit& unit,
                       const Typed& number, Diagnostics& diagnostics) {
   Diagnostic& d = diagnostics
@@ -418,7 +427,10 @@ void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Uni
                                   std::string(dimension_phrase(number.dimension())))
                       .label(number.digits.empty() ? number.span : number.unit_span)
                       .label(actuator.name.span, "the actuator", false);
-  if (number.digits.empty()) return;
+  const std::string verbs = param == vm::Param::by ? verb_by(actuator, number.dimension()) : "";
+  if (!verbs.empty())
+    d.helps(verbs + " takes " + std::string(dimension_phrase(number.dimension())));
+  if (number.digits.empty() || !verbs.empty()) return;
   const std::string mended = number.digits + std::string(unit.spelling);
   d.helps("did you mean `" + mended + "`?").fix(number.span, mended, Applicability::likely);
 }
@@ -426,8 +438,8 @@ void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Uni
 }  // namespace
 
 bool fit_parameter(const ActuatorConfig& actuator, vm::Param param, Typed& number,
-                   Diagnostics& notes, Diagnostics& diagnostics) {
-  const Unit& unit = param_unit(actuator, param);
+                   Diagnostics& notes, Diagnostics& diagnostics, const VerbConfig* verb) {
+  const Unit& unit = param_unit(actuator, param, verb);
   const std::string source = spelling(param) + " for " + actuator.name.text;
   if (number.is_bare())
     take_unit(number, {&unit, source, actuator.name.span, param == vm::Param::by}, notes);
@@ -591,7 +603,8 @@ bool Commands::add_number(const Recipient& to, const Given& given, ProgramComman
     return false;
   }
   Typed number = given.number;
-  if (!fit_parameter(actuator, given.param, number, diagnostics, diagnostics)) return false;
+  if (!fit_parameter(actuator, given.param, number, diagnostics, diagnostics, &to.verb))
+    return false;
   result.arguments.push_back({given.param, std::move(number.code)});
   return true;
 }

@@ -9,9 +9,10 @@ namespace robosync::compiler {
 inline constexpr std::string_view kPerform = "PERFORM";  // the verb; a word of RSL, no keyword
 
 // Is a number that stands for a parameter of `actuator` one that it can do? Gives a bare one its unit
-// (the note of that goes to `notes`), reports what is wrong.
+// (the note of that goes to `notes`), reports what is wrong. `verb`: for which one, if that matters.
 [[nodiscard]] bool fit_parameter(const ActuatorConfig& actuator, vm::Param param, Typed& number,
-                                 Diagnostics& notes, Diagnostics& diagnostics);
+                                 Diagnostics& notes, Diagnostics& diagnostics,
+                                 const VerbConfig* verb = nullptr);
 
 class Motions {
 public:

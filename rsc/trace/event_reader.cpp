@@ -209,16 +209,20 @@ std::string EventReader::shown(vm::Value value) const {
   return compiler::format_value(value, *means.unit);
 }
 
+const compiler::Unit* EventReader::unit_of(vm::Param param) const {
+  if (names_.origin == nullptr) return nullptr;
+  const auto& actuators = names_.origin->units.actuators;
+  const auto found = actuators.find(actuator_name());
+  if (found == actuators.end()) return nullptr;
+  if (param == vm::Param::at) return found->second.at;
+  if (param != vm::Param::to && param != vm::Param::by) return nullptr;
+  const auto own = found->second.by.find(verb_name());
+  const bool is_own = param == vm::Param::by && own != found->second.by.end();
+  return is_own ? own->second : found->second.to;
+}
+
 std::string EventReader::shown(std::size_t param, vm::Value value) const {
-  const compiler::Unit* unit = nullptr;
-  if (names_.origin != nullptr) {
-    const auto& actuators = names_.origin->units.actuators;
-    const auto found = actuators.find(actuator_name());
-    const auto which = static_cast<vm::Param>(param);
-    if (found != actuators.end() && (which == vm::Param::to || which == vm::Param::by))
-      unit = found->second.to;
-    if (found != actuators.end() && which == vm::Param::at) unit = found->second.at;
-  }
+  const compiler::Unit* const unit = unit_of(static_cast<vm::Param>(param));
   return unit == nullptr || value == vm::kUnknown
              ? format_quantity(value, dimension_of_param(param))
              : compiler::format_value(value, *unit);

@@ -82,6 +82,8 @@ public:
   std::string shown(vm::Value value) const;
   // The value of a parameter of a command: "90deg".
   std::string shown(std::size_t param, vm::Value value) const;
+  // The unit in which robot.json gives it; null when that is not known.
+  const compiler::Unit* unit_of(vm::Param param) const;
 
   // Calls use(parameter, value) for each parameter of a command.
   template <typename Use>

@@ -122,6 +122,26 @@ TEST_CASE("a word's parameter is one that some verb of its device takes") {
   }
 }
 
+// BY of another kind than TO is no way that could be gone from where the actuator is.
+TEST_CASE("a verb whose BY has a unit of its own moves nothing TO a place") {
+  std::size_t found = 0;
+  for (const DeviceText& text : device_texts()) {
+    Diagnostics diagnostics;
+    const Device device = read_device(text, diagnostics);
+    for (const VerbConfig& verb : device.actuator.verbs) {
+      if (verb.by_unit == nullptr) continue;
+      ++found;
+      INFO(device.name << " " << verb.name);
+      CHECK(verb.has(vm::Param::by));
+      CHECK_FALSE(verb.has(vm::Param::to));
+      CHECK(verb.action == vm::Action::play);
+      CHECK(&param_unit(device.actuator, vm::Param::by, &verb) == verb.by_unit);
+      CHECK(&param_unit(device.actuator, vm::Param::by) == device.actuator.to_unit);
+    }
+  }
+  CHECK(found == 2);
+}
+
 TEST_CASE("there is a generic virtual device of both kinds") {
   REQUIRE(default_device("VIRTUAL", true) != nullptr);
   REQUIRE(default_device("VIRTUAL", false) != nullptr);
