@@ -115,6 +115,7 @@ private:
     const TokenKind kind = edit_.inserted.front().kind;
     if (kind == Kinds::END) return not_closed(1);
     if (kind == Kinds::NEWLINE) return line_goes_on();
+    if (kind == Kinds::TIMES && bare_brackets()) return;
     const bool value = kind == Kinds::NAME || kind == Kinds::QUANTITY || kind == Kinds::STRING;
     std::string what = value || kind == Kinds::LESS ? summarize(*edit_.expected) : describe(kind);
     if (kind == Kinds::PLUS) what = "an operator";
@@ -132,6 +133,25 @@ private:
     if (where.empty() && outside_blocks() && word) {
       message.helps("a line outside a block starts with a word such as WHEN, DEFINE or BEHAVIOR");
     }
+  }
+
+  // `MOVE base FORWARD (touch LEVEL * 1cm)`: TIMES behind it would be another command.
+  bool bare_brackets() {
+    const std::size_t last = before(edit_.at);
+    if (last >= tokens_.size() || tokens_[last].kind != Kinds::CLOSE) return false;
+    std::size_t first = last;
+    for (std::size_t open = 1; open > 0 && first > 0;) {
+      --first;
+      if (tokens_[first].kind == Kinds::CLOSE) ++open;
+      if (tokens_[first].kind == Kinds::OPEN) --open;
+    }
+    Span span = tokens_[first].span;
+    span.end = tokens_[last].span.end;
+    diagnostics_.report(Code::E0008, "this does not say what the number in brackets is")
+        .label(span)
+        .helps(
+            "write TO, BY, AT, OVER or FOR in front of it, such as `BY (…)`, or TIMES behind it");
+    return true;
   }
 
   static std::string plain(TokenKind kind) {
