@@ -2,6 +2,7 @@
 // the robot takes them and runs, and their TESTs pass.
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,35 @@ std::vector<std::string> blocks(const std::filesystem::path& path, const std::st
     at = std::min(end, text.size());
   }
   return found;
+}
+
+// What a page says that a command prints, below its comment <!-- printed: COMMAND -->.
+// ROBOSYNC_UPDATE_GOLDEN=1 rewrites it.
+void check_printed(const std::filesystem::path& path, const std::string& command,
+                   const std::string& printed) {
+  std::string page = read_file(path);
+  const std::string opening = "<!-- printed: " + command + " -->\n```\n";
+  const std::size_t at = page.find(opening);
+  REQUIRE(at != std::string::npos);
+  const std::size_t begin = at + opening.size();
+  const std::size_t length = page.find("```", begin) - begin;
+  if (robosync::testing::updating_golden())
+    std::ofstream(path, std::ios::binary) << page.replace(begin, length, printed);
+  else
+    CHECK(page.substr(begin, length) == printed);
+}
+
+// The quoted beginnings of the first table's rows; what is left out behind "…" is not there.
+std::vector<std::string> quoted_rows(const std::string& text) {
+  std::vector<std::string> rows;
+  const std::string opening = "\n| `";
+  const std::size_t end = text.find("\n\n", text.find(opening));
+  for (auto at = text.find(opening); at < end; at = text.find(opening, at)) {
+    at += opening.size();
+    const std::string row = text.substr(at, text.find('`', at) - at);
+    rows.push_back(row.substr(0, row.find("…")));
+  }
+  return rows;
 }
 
 void check_runs(const Outcome& outcome) {
@@ -70,15 +100,15 @@ TEST_CASE("every program in docs/language.md works on docs/robot.json") {
 
 TEST_CASE("every program in docs/tutorial.md works on the robot.json it begins with") {
   const auto files = blocks(kRoot / "docs/tutorial.md", "json");
-  REQUIRE(files.size() == 3);  // robot.json, visit.json, touches.json
-  check_page("docs/tutorial.md", files.front(), 7);
+  REQUIRE(files.size() == 4);  // robot.json, visit.json, visitors.json, touches.json
+  check_page("docs/tutorial.md", files.front(), 9);
 }
 
 TEST_CASE("the scenarios of docs/tutorial.md do what it says") {
   const auto files = blocks(kRoot / "docs/tutorial.md", "json");
-  REQUIRE(files.size() == 3);
+  REQUIRE(files.size() == 4);
   const auto programs = blocks(kRoot / "docs/tutorial.md", "rsl");
-  REQUIRE(programs.size() == 7);
+  REQUIRE(programs.size() == 9);
   const Folder folder;
   folder.write("robot.json", files[0]);
   const auto run = [&](std::size_t program, std::size_t scenario) {
@@ -88,7 +118,14 @@ TEST_CASE("the scenarios of docs/tutorial.md do what it says") {
     return outcome.out;
   };
   CHECK_THAT(run(0, 1), Catch::Contains("SAY Hello!"));
-  CHECK_THAT(run(5, 2), Catch::Contains("6.501 s  joy becomes 80%"));
+  CHECK_THAT(run(7, 3), Catch::Contains("6.501 s  joy becomes 80%"));
+  const std::string shown = run(4, 2);
+  check_printed(kRoot / "docs/tutorial.md", "rsc run robot.rsl --scenario visitors.json", shown);
+  const std::string page = read_file(kRoot / "docs/tutorial.md");
+  const auto explained = quoted_rows(page.substr(page.find("Line by line, from the top:")));
+  CHECK(explained.size() == 6);
+  for (const std::string& line : explained)
+    CHECK_THAT(shown, Catch::Contains(line));
 }
 
 TEST_CASE("the scenarios and the recording of docs/scenario.md are played") {
