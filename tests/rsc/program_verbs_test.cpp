@@ -241,7 +241,8 @@ TEST_CASE("run shows what a person wants to see, in the units of the files") {
   const Folder folder;
   folder.write("robot.json", R"({"sensors": [
       {"name": "near", "type": "VIRTUAL", "channels": {"DISTANCE": {"unit": "cm", "range": [0, 400]}}}],
-    "actuators": [{"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "90deg"]}]})");
+    "actuators": [{"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "90deg"]},
+      {"name": "base", "type": "VIRTUAL", "device": "drive"}]})");
   folder.write("more.rsl",
                "BEHAVIOR lower PRIORITY 10\n  WHEN near DISTANCE < 50cm\n  DO MOVE arm TO 5deg\n"
                "  END\nEND\n");
@@ -249,13 +250,16 @@ TEST_CASE("run shows what a person wants to see, in the units of the files") {
       "robot.rsl",
       "USE \"more.rsl\"\nREMEMBER last = 0cm\nFEELING fear FROM 0% TO 100% START 0%\n"
       "  FADES TO 0% OVER 2s\nBEHAVIOR upper PRIORITY 20\n  WHEN near DISTANCE < 50cm DO\n"
-      "    SET last TO near DISTANCE\n    RAISE fear BY 80%\n    MOVE arm TO 30deg\n  END\nEND\n");
+      "    SET last TO near DISTANCE\n    RAISE fear BY 80%\n    MOVE arm TO 30deg\n"
+      "    DRIVE base FORWARD 20cm\n    TURN base LEFT 90deg\n  END\nEND\n");
   const std::string scenario = folder.write("visit.json", R"({"duration": "5s", "stimuli": [
       {"at": "0s", "sensor": "near", "value": "300cm"}, {"at": "1s", "sensor": "near", "value": "20cm"}]})");
   const std::string some = test::rsc({"run", program, "--scenario", scenario}).out;
   CHECK_THAT(some, Contains("arm MOVE TO 30deg\n") && Contains("last becomes 20cm\n") &&
                        Contains("fear becomes 80%\n") && Contains("more.rsl:2 does not start") &&
                        Contains("behaviour upper has an"));
+  CHECK_THAT(some,
+             Contains("base DRIVE FORWARD BY 20cm\n") && Contains("base TURN LEFT BY 90deg\n"));
   CHECK_THAT(some, !Contains("DISTANCE =") && !Contains("triggers") && !Contains("is done"));
   CHECK(std::ranges::count(some, '\n') < 25);
   const std::string all = test::rsc({"run", program, "--scenario", scenario, "--all"}).out;
