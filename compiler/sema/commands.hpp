@@ -89,6 +89,9 @@ private:
   // FOLLOW (follow.cpp).
   std::vector<ProgramCommand> expected_follow(const ast::Command& command);
   std::optional<Follow> follow(const ast::Command& command, bool expected);
+  // What stands for parameters of a DEFINE is worked out with it.
+  std::optional<std::vector<Given>> evaluate_followed(const ast::Command& command,
+                                                      std::size_t named_by);
   std::optional<Followed> follow_by(std::size_t actuator, const std::vector<Given>& given,
                                     const ast::Name& verb, Diagnostics& diagnostics) const;
   static bool add_to_follow(const ActuatorConfig& actuator, const Given& given, Followed& result,

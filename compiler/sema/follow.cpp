@@ -102,6 +102,18 @@ std::vector<ProgramCommand> Commands::expected_follow(const ast::Command& comman
   return commands;
 }
 
+std::optional<std::vector<Commands::Given>> Commands::evaluate_followed(const ast::Command& command,
+                                                                        std::size_t named_by) {
+  const bool before = expressions_.set_following(true);
+  auto given = evaluate(command, named_by);
+  const bool lost = expressions_.has_lost();
+  expressions_.set_following(before);
+  if (!lost) return given;
+  diagnostics_.report(Code::E0407, "what this FOLLOW follows becomes too long with all its DEFINEs")
+      .label(command.verb.span);
+  return std::nullopt;
+}
+
 std::optional<Follow> Commands::follow(const ast::Command& command, bool expected) {
   chosen_ = nullptr;
   if (first_word(command) == nullptr) {
@@ -112,16 +124,7 @@ std::optional<Follow> Commands::follow(const ast::Command& command, bool expecte
   }
   std::size_t named_by = 0;
   const auto target = find_target(command, named_by);
-  const bool before = expressions_.set_following(true);
-  const auto given = evaluate(command, named_by);
-  const bool lost = expressions_.has_lost();
-  expressions_.set_following(before);
-  if (lost) {
-    diagnostics_
-        .report(Code::E0407, "what this FOLLOW follows becomes too long with all its DEFINEs")
-        .label(command.verb.span);
-    return std::nullopt;
-  }
+  const auto given = evaluate_followed(command, named_by);
   if (!target || !given || target->actuators.empty()) return std::nullopt;
   const auto is_target = [](const Given& one) {
     return one.is_number && one.param == vm::Param::to;

@@ -171,11 +171,12 @@ TEST_CASE("what a FOLLOW follows is worked out anew, though it is a parameter") 
 
 TEST_CASE("what is followed may be handed on, but not grow without end") {
   const auto program = [](const std::string& last) {
-    std::string text = rule("touch LEVEL > 3", "d0 WITH touch LEVEL * 1deg");
+    std::string text = "DEFINE d30 WITH angle\n " + last + " left_arm TO angle\nEND\n" +
+                       rule("touch LEVEL > 3", "d0 WITH touch LEVEL * 1deg");
     for (int i = 0; i < 30; ++i)
       text += "DEFINE d" + std::to_string(i) + " WITH angle\n d" + std::to_string(i + 1) +
               " WITH angle + angle\nEND\n";
-    return text + "DEFINE d30 WITH angle\n " + last + " left_arm TO angle\nEND\n";
+    return text;
   };
   CHECK(!compile_text(program("MOVE"), common_robot()).image.empty());
   const Result result = compile_text(program("FOLLOW"), common_robot());

@@ -25,8 +25,9 @@ FOLLOWS = ["FOLLOW left_arm TO (touch LEVEL * 12deg)", "FOLLOW arms TO (count * 
            "FOLLOW lamp TO (joy)", "FOLLOW lamp TO (room NOISE) MARGIN 10%",
            "FOLLOW right_arm TO (touch LEVEL * 30deg - 20deg) MARGIN 15deg",
            "FOLLOW left_arm TO 35deg AT (last * 20deg/s)"]
-# … of a parameter.
-TRACKS = ["track WITH left_arm, touch LEVEL * 12deg", "track WITH lamp, joy", "track WITH arms, count * 3deg"]
+# The same by way of a parameter, where no FOR stands behind it.
+TRACKS = {"FOLLOW left_arm TO (touch LEVEL * 12deg)": "track WITH left_arm, touch LEVEL * 12deg",
+          "FOLLOW lamp TO (joy)": "track WITH lamp, joy"}
 DURATIONS = ["1ms", "7ms", "40msec", "150milliseconds", "600ms", "1.5seconds"]
 
 DECLARATIONS = """\
@@ -58,8 +59,8 @@ DEFINE point WITH arm, angle, item
   PLAY sound item
 END
 
-DEFINE track WITH follower, to
-  FOLLOW follower TO to
+DEFINE track WITH follower, goal
+  FOLLOW follower TO goal
 END
 
 DEFINE twice WITH action, arm
@@ -153,8 +154,8 @@ class Generator:
 
     def _following(self):
         """FOLLOWs that go on together until something else ends them."""
-        lines = self._random.sample(FOLLOWS + TRACKS, self._random.randint(1, 2))
-        return "".join(f"    {line}\n" for line in lines)
+        lines = self._random.sample(FOLLOWS, self._random.randint(1, 2))
+        return "".join(f"    {TRACKS.get(line, line)}\n" for line in lines)
 
     def _every(self):
         to = f" TO {self._one('700ms', '2s')}" if self._random.random() < 0.5 else ""
