@@ -92,8 +92,11 @@ void StepWork::load_rule(unsigned r, const vm::Behavior& behavior) {
   policy::each_input_of_condition(image_, behavior, rule,
                                   [&](unsigned input) { condition_reads_[r].set(input); });
   policy::each_input_of_rule(image_, behavior, rule, [&](unsigned input) { reads_[r].set(input); });
-  for (const vm::Word word : image_.code.subspan(rule.condition_start, rule.condition_length)) {
+  const auto code = image_.code.subspan(rule.condition_start, rule.condition_length);
+  for (std::size_t i = 0; i < code.size(); ++i) {
+    const vm::Word word = code[i];
     const Opcode op = vm::opcode_of(word);
+    if (op == Opcode::lasted) note_held(r, lasts_ms(code.first(i), vm::operand_c(word)));
     if (is_event(op)) ++events_[r];
     if (op == Opcode::held) note_held(r, image_.timers[vm::operand_c(word)].duration);
     if (vm::info_of(op).effect == vm::Effect::division) divides_[r] = true;
@@ -107,6 +110,18 @@ void StepWork::load_rule(unsigned r, const vm::Behavior& behavior) {
 void StepWork::note_held(unsigned rule, std::uint32_t duration_ms) {
   const std::uint32_t before = held_ms_[rule];
   held_ms_[rule] = std::max(before == 0 ? duration_ms : std::min(before, duration_ms) / 2, 1U);
+}
+
+// How long it takes at least until a TIMER has come so far again: there is a RESTART in between. The
+// constant that the cell was loaded with last; one that is worked out may be as short as a millisecond.
+std::uint32_t StepWork::lasts_ms(std::span<const vm::Word> before, std::uint8_t cell) const {
+  for (std::size_t i = before.size(); i > 0; --i) {
+    const vm::Word word = before[i - 1];
+    if (vm::operand_a(word) != cell) continue;
+    if (vm::opcode_of(word) != Opcode::load) break;
+    return std::max(policy::milliseconds_of(image_.constants[vm::operand_wide(word)]), 1U);
+  }
+  return 1;
 }
 
 bool StepWork::is_safety(unsigned rule) const {

@@ -75,6 +75,7 @@ public:
 
 private:
   [[nodiscard]] vm::Word last_word(unsigned rule) const;
+  [[nodiscard]] std::uint32_t lasts_ms(std::span<const vm::Word> before, std::uint8_t cell) const;
   void note_held(unsigned rule, std::uint32_t duration_ms);
   void load_rule(unsigned rule, const vm::Behavior& behavior);
   [[nodiscard]] Instructions evaluation(unsigned rule) const;

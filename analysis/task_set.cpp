@@ -278,10 +278,10 @@ private:
     return fmt::format("rule {} of the module's {}", rule, name);
   }
 
-  // A FOR of its is over.
+  // A FOR of its is over, or a TIMER has come as far as it asks.
   void add_held(unsigned r) {
     const bool fires = image_.rules[r].then_response != vm::kNoIndex;
-    add_timed(fmt::format("{}, FOR", name_of(r)), work_.held_ms(r), {r}, {},
+    add_timed(fmt::format("{}, FOR or TIMER", name_of(r)), work_.held_ms(r), {r}, {},
               fires ? Rules{r} : Rules{}, work_.sets({r}));
   }
 

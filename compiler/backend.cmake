@@ -67,6 +67,7 @@ target_sources(robosync_compiler PRIVATE
   sema/quantities.cpp
   sema/rules.cpp
   sema/statements.cpp
+  sema/timers.cpp
   sema/variables.cpp
   optimize/expression_facts.cpp
   optimize/flow.cpp

@@ -105,6 +105,7 @@ enum class VariableKind : std::uint8_t {
   feeling,  // FEELING
   signal,   // counts the SIGNALs
   band,     // of a CHECK: the place of a band's label, in thousandths; set by the check only
+  timer,    // TIMER: program time of its last RESTART
   count_
 };
 

@@ -66,6 +66,27 @@ std::uint32_t milliseconds(Value duration) {
   return kFalse;
 }
 
+// The time of the step as a value, which no unknown looks like: 1 ms early, once in 49 days.
+Value time_of(const Machine& machine) {
+  const auto now = static_cast<Value>(machine.now);
+  return now == kUnknown ? kValueMax : now;
+}
+
+// The time since `begin`; it saturates, after 24 days.
+Value since(const Machine& machine, Value begin) {
+  const std::uint32_t gone = machine.now - static_cast<std::uint32_t>(begin);
+  return static_cast<Value>(std::min(gone, static_cast<std::uint32_t>(kValueMax)));
+}
+
+// Has `length` gone by since `begin`? If not, it wakes the machine then.
+[[gnu::noinline]] Value has_gone_by(Machine& machine, Value begin, Value length) {
+  if (length == kUnknown) return kUnknown;
+  const Value gone = since(machine, begin);
+  if (gone >= length) return kTrue;
+  wake_at(machine, machine.now + static_cast<std::uint32_t>(length - gone));
+  return kFalse;
+}
+
 }  // namespace
 
 // NOLINTNEXTLINE(readability-function-size): the loop's state lives in registers
@@ -148,6 +169,9 @@ rare:
   SET(neg, negate(b()));
   SET(abs, absolute(b()));
   SET(round, round_to(b(), c()));
+  SET(now, time_of(machine));
+  SET(elapsed, since(machine, b()));
+  SET(lasted, has_gone_by(machine, b(), c()));
   SET(div_k, divide_by_whole(b(), k()));
   SET_HOT(add_fast, add_unchecked(b(), c()));
   SET_HOT(add_k_fast, add_unchecked(b(), k()));

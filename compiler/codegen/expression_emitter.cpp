@@ -83,6 +83,10 @@ Cell ExpressionEmitter::worked_out(const Expression& expression, std::uint32_t d
       return locals_.at(expression.index);
     case Operation::constant:
       return constant(expression.constant, depth);
+    case Operation::now:
+      return now(depth);
+    case Operation::elapsed:
+      return unary(vm::Opcode::elapsed, operands[0], depth);
     case Operation::negate:
       return unary(vm::Opcode::neg, operands[0], depth);
     case Operation::absolute:
@@ -110,6 +114,12 @@ void ExpressionEmitter::put_into(Cell target, Cell cell) {
 Cell ExpressionEmitter::constant(vm::Value value, std::uint32_t depth) {
   const Cell cell = parts_.frame.temporary(depth);
   code_.emit(vm::Opcode::load, cell, static_cast<std::uint32_t>(parts_.pool.constant(value)));
+  return cell;
+}
+
+Cell ExpressionEmitter::now(std::uint32_t depth) {
+  const Cell cell = parts_.frame.temporary(depth);
+  code_.emit(vm::Opcode::now, cell);
   return cell;
 }
 

@@ -60,6 +60,7 @@ private:
 
   void share(const Expression& expression, std::vector<const Expression*>& seen);
   Cell worked_out(const Expression& expression, std::uint32_t depth);
+  Cell now(std::uint32_t depth);
   Cell unary(vm::Opcode opcode, const Expression& operand, std::uint32_t depth);
   Cell binary(vm::Opcode opcode, const Expression& left, const Expression& right,
               std::uint32_t depth, bool exchanged = false);

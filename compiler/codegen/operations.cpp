@@ -67,6 +67,8 @@ vm::Opcode with_cells(Operation operation) {
       return vm::Opcode::round;
     case Operation::random:
       return vm::Opcode::random;
+    case Operation::lasted:
+      return vm::Opcode::lasted;
     case Operation::less:
       return vm::Opcode::lt;
     case Operation::less_equal:

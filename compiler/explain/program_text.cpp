@@ -88,6 +88,10 @@ private:
     return fmt::format("  {} is always one of {}; {} at first.\n", node.name.text, list(labels),
                        labels.empty() ? "nothing" : labels.front());
   }
+  static std::string remembered(const ast::Timer& node) {
+    return fmt::format("  {} is the time since its last RESTART; at first, since the start.\n",
+                       node.name.text);
+  }
   static std::string remembered(const ast::List& node) {
     return fmt::format("  {} is a list of {} texts.\n", node.name.text, node.items.size());
   }

@@ -83,6 +83,8 @@ private:
   void write(const ast::Command& node) {
     if (node.arguments.empty() && defines_.contains(folded(node.verb.text))) {
       line(fmt::format("do {} (see DEFINE {})", node.verb.text, node.verb.text));
+    } else if (folded(node.verb.text) == "restart" && node.arguments.size() == 1) {
+      line(fmt::format("let {} begin at 0 again", value_of(node.arguments.front())));
     } else {
       line(command(node));
     }

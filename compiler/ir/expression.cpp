@@ -114,6 +114,13 @@ bool has_time_word(const Expression& expression) {
          std::any_of(expression.operands.begin(), expression.operands.end(), has_time_word);
 }
 
+bool reads_time(const Expression& expression) {
+  const Operation operation = expression.operation;
+  return operation == Operation::now || operation == Operation::elapsed ||
+         operation == Operation::lasted ||
+         std::any_of(expression.operands.begin(), expression.operands.end(), reads_time);
+}
+
 bool is_pure(const Expression& expression) {
   if (expression.operation == Operation::random || is_time_word(expression.operation)) return false;
   if (divides(expression)) {

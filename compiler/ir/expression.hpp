@@ -35,6 +35,10 @@ enum class Operation : std::uint8_t {
   maximum,
   round,   // to a multiple of the second operand
   random,  // from the first operand to the second
+  // A TIMER is a variable: the time of its last RESTART.
+  now,      // that time, in a RESTART
+  elapsed,  // the time since the first operand, a TIMER
+  lasted,   // a truth: since the first operand, a TIMER, the second has gone by
   less,
   less_equal,
   greater,
@@ -75,6 +79,9 @@ struct Expression {
 // Of two values, as the robot does it, so that neither folding a constant nor judging a TEST can
 // differ from what a program does. Of arithmetic, comparisons, AND and OR; of others kUnknown.
 [[nodiscard]] vm::Value compute(Operation operation, vm::Value left, vm::Value right);
+
+// Does it, or a part of it, change with time alone?
+[[nodiscard]] bool reads_time(const Expression& expression);
 
 // Does it, or a part of it, remember the past?
 [[nodiscard]] bool has_time_word(const Expression& expression);

@@ -71,6 +71,15 @@ Fact work_out(Expression& expression, const Sight& sight) {
       const auto local = sight.locals.find(expression.index);
       return local == sight.locals.end() ? Fact{} : local->second;
     }
+    case Operation::now:
+      return {true, false, vm::kValueMin, vm::kValueMax};
+    case Operation::elapsed:
+      annotate(operands[0], sight);
+      return {true, false, 0, vm::kValueMax};
+    case Operation::lasted:
+      annotate(operands[0], sight);
+      annotate(operands[1], sight);
+      return kSomeTruth;
     case Operation::negate:
       return negate(annotate(operands[0], sight));
     case Operation::absolute:

@@ -38,7 +38,8 @@ bool reads(const Expression& expression, std::size_t variable) {
 
 // Does it read what is latched again in each step?
 bool reads_input(const Expression& expression) {
-  if (expression.operation == Operation::variable || expression.operation == Operation::input)
+  if (expression.operation == Operation::variable || expression.operation == Operation::input ||
+      reads_time(expression))
     return true;
   return std::any_of(expression.operands.begin(), expression.operands.end(), reads_input);
 }

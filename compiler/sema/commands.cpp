@@ -157,6 +157,8 @@ void Commands::report_unknown_verb(const ast::Command& command) {
   candidates.insert(candidates.end(), defines.begin(), defines.end());
   const auto verbs = candidates;
   candidates.insert(candidates.end(), keyword_spellings().begin(), keyword_spellings().end());
+  for (const std::string_view word : {kPerform, kFollow, kRestart})
+    candidates.emplace_back(word);
   suggest(d, verb.span, verb.text, candidates);
   if (d.help.empty() && !verbs.empty()) d.helps("it could be " + list_names(verbs));
 }

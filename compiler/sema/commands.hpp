@@ -7,6 +7,10 @@
 
 namespace robosync::compiler {
 
+// What stands in the place of a verb, like kPerform: words of RSL, no keywords.
+inline constexpr std::string_view kFollow = "FOLLOW";
+inline constexpr std::string_view kRestart = "RESTART";
+
 // A text out of a LIST, in the place of the arguments that ask for it.
 struct ChosenText {
   std::size_t at = 0, count = 0;  // which arguments

@@ -143,7 +143,9 @@ Typed Expressions::condition(const ast::Expr& expr, const ast::Expr* margin) {
     diagnostics_
         .report(Code::E0409, "this condition has no comparison that the MARGIN could belong to")
         .label(margin->span)
-        .helps("a MARGIN goes with `<`, `>`, `<=`, `>=` or IS BETWEEN, in the same kind of unit");
+        .helps(reads_time(result.code) ? "a TIMER does not tremble, so it needs none"
+                                       : "a MARGIN goes with `<`, `>`, `<=`, `>=` or IS BETWEEN, "
+                                         "in the same kind of unit");
   return result;
 }
 
@@ -184,6 +186,8 @@ Typed Expressions::of(const ast::IsBetween& node, Span span) {
   }
   lint_comparison(ast::Relation::greater_equal, value, low, span, diagnostics_);
   lint_comparison(ast::Relation::less_equal, same, high, span, diagnostics_);
+  if (reads_time(value.code) || reads_time(low.code) || reads_time(high.code))
+    return time_between(std::move(value), std::move(low), std::move(high), span);
   Expression above = compare(ast::Relation::greater_equal, std::move(value), std::move(low));
   Expression below = compare(ast::Relation::less_equal, std::move(same), std::move(high));
   return make_condition(make_binary(Operation::logical_and, std::move(above), std::move(below)),
@@ -194,6 +198,7 @@ Typed Expressions::of(const ast::Changes& node, Span span) {
   Typed value = any(*node.value);
   if (value.type == Type::condition) value = number(*node.value);  // which says what is wrong
   if (value.type == Type::nothing) return value;
+  if (!stands_still(value.code, value.span, "CHANGES")) return make_nothing(span);
   vm::Value least = 0;
   if (node.by != nullptr) {
     if (value.type == Type::word) {

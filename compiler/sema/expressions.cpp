@@ -189,7 +189,9 @@ Typed Expressions::variable(VariableName& name, Span span) {
   }
   Typed result;
   result.type = name.labels.empty() ? Type::number : Type::word;
-  result.code = std::move(code);
+  result.code = name.kind == vm::VariableKind::timer
+                    ? make_unary(Operation::elapsed, std::move(code))
+                    : std::move(code);
   result.span = span;
   result.unit = name.unit;
   result.unit_span = name.unit_span;
@@ -251,6 +253,8 @@ Typed Expressions::of(const ast::Comparison& node, Span span) {
   if (!unify(left, right, "this compares {} with {}", false, diagnostics_))
     return make_nothing(span);
   lint_comparison(node.relation, left, right, span, diagnostics_);
+  if (reads_time(left.code) || reads_time(right.code))
+    return time_comparison(node.relation, std::move(left), std::move(right), span);
   return make_condition(compare(node.relation, std::move(left), std::move(right)), span);
 }
 

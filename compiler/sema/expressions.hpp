@@ -65,6 +65,8 @@ public:
   [[nodiscard]] bool has_lost() const { return lost_; }
   // The LIST of this name; reports when there is none.
   const ListName* find_list(const ast::Name& name);
+  // Reports a TIMER in a value that is looked at only when something else changes. False if there is one.
+  bool stands_still(const Expression& value, Span span, std::string_view where);
   // "`who` is given a number, and an actuator is needed".
   void report_given(const Binding& binding, const ast::Name& name, std::string_view wanted);
 
@@ -114,6 +116,9 @@ private:
   void report_word_comparison(const ast::Comparison& node, const Typed& word);
   Typed label_test(Operation operation, const ast::Expr& value, const ast::Name& label, Span span,
                    bool quoted = false);
+  // timers.cpp
+  Typed time_between(Typed value, Typed low, Typed high, Span span);
+  Typed time_comparison(ast::Relation relation, Typed left, Typed right, Span span);
   Expression compare(ast::Relation relation, Typed left, Typed right);
   bool takes_margin(const Typed& left, const Typed& right);
 

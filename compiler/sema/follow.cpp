@@ -10,9 +10,8 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::string_view kFollow = "FOLLOW";  // a word of RSL, no keyword
-constexpr vm::Value kStepsOfRange = 2000;       // the smallest step of a servo is one of so many
-constexpr vm::Value kNowhere = vm::kValueMin;   // further from anything than a MARGIN is
+constexpr vm::Value kStepsOfRange = 2000;      // the smallest step of a servo is one of so many
+constexpr vm::Value kNowhere = vm::kValueMin;  // further from anything than a MARGIN is
 
 constexpr std::uint8_t kTakes =
     1u << static_cast<unsigned>(vm::Param::to) | 1u << static_cast<unsigned>(vm::Param::at);
@@ -259,6 +258,8 @@ void Statements::put_first(ProgramLocal local, Span span, ProgramBlock& result) 
 void Statements::follow(const ast::Command& node, Span span, ProgramBlock& result) {
   auto follow = commands_.follow(node);
   if (!follow) return;
+  for (Followed& one : follow->all)
+    if (!expressions_.stands_still(target_of(one.command), span, "what a FOLLOW goes to")) return;
   if (endless_follow(result) == nullptr) put(ProgramFollow{}, span, result);
   ProgramStatement together = std::move(result.back());
   result.pop_back();

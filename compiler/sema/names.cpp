@@ -155,7 +155,7 @@ const ast::Behavior* Names::set_scope(const ast::Behavior* behavior) {
 
 std::string Names::kind_of(std::string_view name) {
   constexpr std::array<std::string_view, static_cast<std::size_t>(vm::VariableKind::count_)>
-      kKinds = {"a REMEMBER", "a STATE", "a FEELING", "a signal", "a CHECK"};
+      kKinds = {"a REMEMBER", "a STATE", "a FEELING", "a signal", "a CHECK", "a TIMER"};
   if (const VariableName* variable = find_variable(name))
     return std::string(kKinds[static_cast<std::size_t>(variable->kind)]);
   if (find_constant(name) != nullptr) return "a LET";
@@ -370,6 +370,11 @@ void Names::add(const ast::State& state) {
   for (const ast::Name& label : state.labels)
     variable.labels.push_back(label.text);
   add_variable(std::move(variable), globals_);
+}
+
+void Names::add(const ast::Timer& timer) {
+  if (claim_operand(timer.name))
+    add_variable({timer.name, 0, &timer, vm::VariableKind::timer, {}}, globals_);
 }
 
 void Names::add(const ast::List& list) {

@@ -42,8 +42,8 @@ struct VariableName {
   ast::Name name;
   std::size_t index = 0;  // its place in Program::variables
   // Nothing: a signal.
-  std::variant<std::monostate, const ast::Remember*, const ast::State*, const ast::Feeling*,
-               const ast::Check*>
+  std::variant<std::monostate, const ast::Remember*, const ast::State*, const ast::Timer*,
+               const ast::Feeling*, const ast::Check*>
       declared;
   vm::VariableKind kind = vm::VariableKind::signal;
   std::vector<std::string> labels;  // of state and band
@@ -136,6 +136,7 @@ private:
   void add(const ast::Behavior& behavior);
   void add(const ast::Remember& variable);
   void add(const ast::State& state);
+  void add(const ast::Timer& timer);
   void add(const ast::List& list);
   void add(const ast::Feeling& feeling);
   void add(const ast::Check& check);

@@ -80,13 +80,14 @@ bool Statements::allowed_in_safety(const ast::Stmt& stmt) {
   using Allowed = std::variant<ast::Stop, ast::Alert, ast::Log, ast::Set, ast::Signal, ast::Call>;
   if (is(static_cast<Allowed*>(nullptr))) return true;
   const auto* command = std::get_if<ast::Command>(&stmt.node);
+  if (command != nullptr && is_restart(*command)) return true;
   if (command != nullptr && command->arguments.empty() &&
       (names_.find_define(command->verb.text) != nullptr ||
        expressions_.find_binding(command->verb.text) != nullptr))
     return true;
   diagnostics_.report(Code::E0404, "a SAFETY rule cannot do this")
       .label(stmt.span)
-      .helps("it can STOP, ALERT, LOG, SET and SIGNAL; let a BEHAVIOR do the rest");
+      .helps("it can STOP, ALERT, LOG, SET, SIGNAL and RESTART; let a BEHAVIOR do the rest");
   return false;
 }
 
@@ -104,6 +105,7 @@ void Statements::add(const ast::Command& node, Span span, ProgramBlock& result) 
   if (node.arguments.empty())
     if (DefineName* define = names_.find_define(node.verb.text))
       return run(*define, {}, span, result);
+  if (is_restart(node)) return restart(node, span, result);
   if (commands_.is_follow(node)) return follow(node, span, result);
   if (const auto choice = find_choice(node.arguments)) {
     const auto say = [&](const ChosenText& chosen, ProgramBlock& into) {
@@ -309,9 +311,18 @@ std::optional<ast::Name> label_of(const ast::Expr& expr) {
   return label;
 }
 
+// Why it cannot be set; empty: it can.
 std::string_view why_not(vm::VariableKind kind) {
-  return kind == vm::VariableKind::band ? "it follows what it is a CHECK of"
-                                        : "a signal is sent with SIGNAL";
+  switch (kind) {
+    case vm::VariableKind::band:
+      return "it follows what it is a CHECK of";
+    case vm::VariableKind::signal:
+      return "a signal is sent with SIGNAL";
+    case vm::VariableKind::timer:
+      return "RESTART sets it back to 0";
+    default:
+      return "";
+  }
 }
 
 }  // namespace
@@ -340,14 +351,12 @@ VariableName* Statements::settable(const ast::Name& name, bool number) {
     if (d.help.empty()) d.helps("declare it at the top: `REMEMBER " + name.text + " = 0`");
     return nullptr;
   }
-  const bool fixed =
-      variable->kind == vm::VariableKind::band || variable->kind == vm::VariableKind::signal;
-  if (fixed) {
+  if (const std::string_view why = why_not(variable->kind); !why.empty()) {
     diagnostics_
         .report(Code::E0508,
                 "`" + name.text + "` is " + names_.kind_of(name.text) + ", which cannot be set")
         .label(name.span)
-        .helps(std::string(why_not(variable->kind)));
+        .helps(std::string(why));
     return nullptr;
   }
   if (!number || variable->kind != vm::VariableKind::state) return variable;
@@ -415,6 +424,34 @@ void Statements::add(const ast::Signal& node, Span span, ProgramBlock& result) {
   const bool good = variable != nullptr && variable->kind == vm::VariableKind::signal;
   // Its first thousandth is as good as any: what counts is that it changes.
   if (good) put(ProgramSet{variable->index, make_constant_code(1), true}, span, result);
+}
+
+// ---- RESTART
+
+bool Statements::is_restart(const ast::Command& node) const {
+  return same_name(node.verb.text, kRestart) && !names_.is_verb(kRestart);
+}
+
+void Statements::restart(const ast::Command& node, Span span, ProgramBlock& result) {
+  const auto* const word =
+      node.arguments.size() == 1 ? std::get_if<ast::Word>(&node.arguments.front().value) : nullptr;
+  const VariableName* const timer =
+      word != nullptr ? names_.find_variable(word->name.text) : nullptr;
+  if (timer != nullptr && timer->kind == vm::VariableKind::timer) {
+    Expression now;
+    now.operation = Operation::now;
+    return put(ProgramSet{timer->index, std::move(now), false}, span, result);
+  }
+  Diagnostic& d =
+      diagnostics_.report(Code::E0513, "RESTART sets a TIMER back to 0, and this is none")
+          .label(word != nullptr ? word->name.span : span);
+  std::vector<std::string> timers;
+  for (const VariableName& one : names_.variables())
+    if (one.kind == vm::VariableKind::timer) timers.push_back(one.name.text);
+  if (word != nullptr) suggest(d, word->name.span, word->name.text, timers);
+  if (d.help.empty())
+    d.helps(timers.empty() ? "declare it at the top: `TIMER idle`"
+                           : "TIMERs: " + list_names(timers));
 }
 
 // ---- LOG and ALERT

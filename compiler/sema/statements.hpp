@@ -74,6 +74,8 @@ private:
   VariableName* settable(const ast::Name& name, bool number);
   void set_label(const ast::Set& node, const VariableName& variable, Span span,
                  ProgramBlock& result);
+  [[nodiscard]] bool is_restart(const ast::Command& node) const;
+  void restart(const ast::Command& node, Span span, ProgramBlock& result);
   bool in_range(const VariableName& variable, const Typed& value);
   void add(const ast::Log& node, Span span, ProgramBlock& result);
   void add(const ast::Alert& node, Span span, ProgramBlock& result);

@@ -31,6 +31,7 @@ void Variables::declare(Program& program) {
       declare(**node, name, result);
     if (const auto* node = std::get_if<const ast::State*>(&name.declared))
       declare(**node, name, result);
+    if (std::holds_alternative<const ast::Timer*>(name.declared)) declare_timer(name);
     if (const auto* node = std::get_if<const ast::Feeling*>(&name.declared))
       declare(**node, name, result);
     if (name.unit != nullptr) result.dimension = name.unit->dimension;
@@ -63,6 +64,12 @@ void Variables::declare(const ast::State& node, VariableName& name, ProgramVaria
   name.unit = &canonical_unit(vm::Dimension::number);
   result.min = 0;
   result.max = label_value(std::max<std::size_t>(node.labels.size(), 1) - 1);
+}
+
+void Variables::declare_timer(VariableName& name) {
+  name.unit = &canonical_unit(vm::Dimension::duration);
+  name.unit_span = name.name.span;
+  name.low = 0;
 }
 
 void Variables::check_labels(const std::vector<ast::Name>& labels) {
@@ -230,6 +237,8 @@ Typed Variables::input(const ast::Check& node) {
     return make_nothing(node.operand->span);
   }
   Typed result = expressions_.any(*node.operand);
+  if (!expressions_.stands_still(result.code, node.operand->span, "a CHECK"))
+    return make_nothing(node.operand->span);
   const bool good = result.is_number() && (result.code.operation == Operation::input ||
                                            result.code.operation == Operation::variable);
   if (good || result.type == Type::nothing) return result;

@@ -16,6 +16,7 @@ public:
 
 private:
   void declare(const ast::Remember& node, VariableName& name, ProgramVariable& result);
+  static void declare_timer(VariableName& name);
   void declare(const ast::State& node, VariableName& name, ProgramVariable& result);
   void declare(const ast::Feeling& node, VariableName& name, ProgramVariable& result);
   void fade(const ast::Feeling& node, const Wanted& wanted, ProgramVariable& result);

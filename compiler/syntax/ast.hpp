@@ -283,6 +283,9 @@ struct State {
   Name name;
   std::vector<Name> labels;
 };
+struct Timer {
+  Name name;
+};
 struct List {
   Name name;
   std::vector<Argument> items;
@@ -384,8 +387,8 @@ struct Test {
 
 struct Item {
   Span span;
-  std::variant<Use, Let, Remember, State, List, Feeling, Limit, Check, Define, Motion, Behavior,
-               Rule, Safety, Test>
+  std::variant<Use, Let, Remember, State, Timer, List, Feeling, Limit, Check, Define, Motion,
+               Behavior, Rule, Safety, Test>
       node;
 };
 

@@ -17,6 +17,10 @@ vm::Value evaluate(const Expression& expression, const Moment& moment) {
       return moment.channel(expression.channel);
     case Operation::variable:
       return moment.variable(expression.index);
+    case Operation::elapsed:
+      return vm::subtract(moment.time(), operand(0));
+    case Operation::lasted:
+      return compute(Operation::greater_equal, vm::subtract(moment.time(), operand(0)), operand(1));
     case Operation::negate:
       return vm::negate(operand(0));
     case Operation::logical_not:

@@ -135,6 +135,10 @@ bool EventReader::is_signal() const {
   const vm::Variable* const variable = at(&vm::Image::variables, event_.subject);
   return variable != nullptr && variable->kind == vm::VariableKind::signal;
 }
+bool EventReader::is_timer() const {
+  const vm::Variable* const variable = at(&vm::Image::variables, event_.subject);
+  return variable != nullptr && variable->kind == vm::VariableKind::timer;
+}
 std::string EventReader::actuator_name() const {
   return name_at(&vm::Image::actuators, event_.subject, "actuator");
 }

@@ -66,7 +66,8 @@ public:
   std::string sensor_name() const;   // of the channel that is the subject
   std::string channel_name() const;  // without its sensor
   std::string variable_name() const;
-  bool is_signal() const;  // of a variable
+  bool is_signal() const;  // the variable is one
+  bool is_timer() const;
   std::string actuator_name() const;
   std::string verb_name() const;
   std::string word_name() const;  // of a command; empty without one

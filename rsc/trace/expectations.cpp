@@ -99,8 +99,12 @@ public:
     Playback playback(recording_);
     playback.advance(from_us_);
     vm::Value truth = compiler::test_plan::evaluate(expected.condition, playback);
-    while (truth != vm::kTrue && playback.next_time() <= until_us_) {
-      playback.advance(playback.next_time());
+    // With a TIMER in it, every millisecond may change it.
+    const bool always = compiler::reads_time(expected.condition);
+    for (std::uint64_t at = from_us_; truth != vm::kTrue;) {
+      at = always ? at + kMicroseconds : playback.next_time();
+      if (at > until_us_) break;
+      playback.advance(at);
       truth = compiler::test_plan::evaluate(expected.condition, playback);
     }
     if (truth == vm::kTrue) return std::nullopt;

@@ -105,4 +105,9 @@ vm::Value Playback::variable(std::size_t index) const {
   return index < variables_.size() ? variables_[index] : vm::kUnknown;
 }
 
+// A duration counts milliseconds, too.
+vm::Value Playback::time() const {
+  return static_cast<vm::Value>(now_us_ / kMicroseconds);
+}
+
 }  // namespace robosync::tool

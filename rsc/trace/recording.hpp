@@ -39,6 +39,7 @@ public:
 
   vm::Value channel(compiler::ChannelRef channel) const override;
   vm::Value variable(std::size_t index) const override;
+  vm::Value time() const override;
 
 private:
   const Recording& recording_;

@@ -113,6 +113,7 @@ std::string other_words(const EventReader& reader) {
                          reader.channel_name());
     case EventKind::set:
       if (reader.is_signal()) return fmt::format("signal {}", reader.variable_name());
+      if (reader.is_timer()) return fmt::format("{} is restarted", reader.variable_name());
       return fmt::format("{} becomes {}", reader.variable_name(), reader.shown(reader.value(0)));
     case EventKind::log:
       return fmt::format("log: {}", reader.text());

@@ -150,3 +150,24 @@ TEST_CASE("a program that is late on one path though the processor has time") {
                               Contains("the next reading may come after 5000 us") &&
                               Contains("the rule at line 2"));
 }
+
+TEST_CASE(
+    "a TIMER comes round as seldom as it is asked for; each millisecond where that is worked out") {
+  const auto period_ms = [](const std::string& condition) {
+    const tool::Program program =
+        test::compile_with_docs_robot("TIMER idle\nREMEMBER n = 5s\nWHEN " + condition +
+                                      " DO\n  RESTART idle\n  SET n TO idle\nEND\n");
+    const policy::BoardCosts& board = tool::board_costs();
+    const analysis::TaskSet set = analysis::task_set_of(program.image(), board);
+    const auto timer = std::ranges::find_if(set.sources, [](const analysis::Source& source) {
+      return source.name == "the rule at line 3, FOR or TIMER";
+    });
+    REQUIRE(timer != set.sources.end());
+    return timer->period / board.instructions_per_ms();
+  };
+  CHECK(period_ms("idle >= 2s") == 2000);
+  CHECK(period_ms("idle > 30s") == 30'001);
+  CHECK(period_ms("idle < 3s") == 3000);
+  CHECK(period_ms("idle IS BETWEEN 4s AND 10s") == 2000);  // both may come together
+  CHECK(period_ms("idle > n") == 1);
+}

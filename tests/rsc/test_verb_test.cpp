@@ -158,6 +158,36 @@ TEST_CASE("every kind of expectation, met and not met") {
   CHECK(report.at("failed") == static_cast<std::ptrdiff_t>(cases.size()) - met);
 }
 
+TEST_CASE("a TIMER is looked at in every millisecond") {
+  // 1 s at first, since the start; back to 0 in the step behind the touch.
+  const std::vector<std::pair<bool, const char*>> cases = {
+      {true, "EXPECT THAT quiet = 1s"},
+      {false, "EXPECT THAT quiet < 1s"},
+      {true, "EXPECT THAT quiet < 10ms WITHIN 5ms"},
+      {true, "EXPECT THAT quiet >= 2s WITHIN 2s"},
+      {false, "EXPECT THAT quiet > 2s WITHIN 2s"},
+      {true, "EXPECT THAT quiet > 2s WITHIN 2001ms"},
+      {true, "WAIT 3s\n  EXPECT THAT quiet IS BETWEEN 2s AND touches * 3s"},
+      {true, "WAIT 2s\n  EXPECT THAT quiet = 2s AND NOT quiet <> 2s"},
+      {true, "EXPECT MOVE right_arm TO (quiet / 1s * 20deg) WITHIN 6s"},
+      {false, "EXPECT MOVE right_arm TO (quiet / 1s * 21deg) WITHIN 6s"},
+  };
+  std::string tests =
+      "TIMER quiet\nWHEN touch LEVEL > 3 DO\n  RESTART quiet\nEND\n"
+      "WHEN quiet > 5s DO\n  MOVE right_arm TO (quiet / 1s * 20deg)\nEND\n";
+  for (const auto& [met, steps] : cases)
+    tests += touched("a TIMER", steps);
+  const TestFolder robot(tests);
+  const Outcome outcome = test::rsc({"test", robot.program, "--format", "json"});
+  CAPTURE(outcome.err);
+  const json report = json::parse(outcome.out);
+  REQUIRE(report.at("tests").size() == cases.size());
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    INFO(cases[i].second);
+    CHECK(report.at("tests").at(i).at("ok") == cases[i].first);
+  }
+}
+
 TEST_CASE("tests that pass are one line each, and exit 0") {
   const TestFolder robot(touched("it moves", "EXPECT MOVE arms WITHIN 20ms") +
                          touched("and again, from the start", "EXPECT THAT touches < 2 WITHIN 1s"));

@@ -305,3 +305,73 @@ TEST_CASE("the output reader gives texts and halts, each with what was given to 
   CHECK(said.target == kAllActuators);
   CHECK_FALSE(reader.next(said));
 }
+
+// ---- what a TIMER is made of
+
+namespace {
+
+struct Asked {
+  Value result;
+  std::uint32_t wake;
+};
+
+Asked at_time(std::uint32_t now, Word instruction, Value begin, Value length) {
+  std::array<Value, kMaxCells> frame{};
+  frame[kLeft] = begin;
+  frame[kRight] = length;
+  const std::array<Word, 2> code{instruction, encode(Op::ret_number, kResult)};
+  Machine machine = machine_of(frame.data(), nullptr);
+  machine.now = now;
+  const Value result = evaluate(machine, code.data());
+  return {result, machine.wake};
+}
+
+Value begun(std::uint32_t now) {
+  return at_time(now, encode(Op::now, kResult), 0, 0).result;
+}
+Value elapsed(std::uint32_t now, Value begin) {
+  return at_time(now, encode(Op::elapsed, kResult, kLeft), begin, 0).result;
+}
+Asked lasted(std::uint32_t now, Value begin, Value length) {
+  return at_time(now, encode(Op::lasted, kResult, kLeft, kRight), begin, length);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "the time since a moment counts milliseconds, over the wrap as well, and stays at its end") {
+  for (const std::uint32_t begin : {0U, 1U, 5000U, 0x7FFFFFFFU, 0x80000000U, 0xFFFFFFF0U}) {
+    CAPTURE(begin);
+    const Value moment = begun(begin);
+    CHECK(moment != kUnknown);  // which SET would not take
+    const Value early = begin == 0x80000000U ? 1 : 0;
+    for (const Value later : {0, 1, 30'000, kValueMax - 1})
+      CHECK(elapsed(begin + static_cast<std::uint32_t>(later), moment) == later + early);
+    CHECK(elapsed(begin + 0x80000000U, moment) == kValueMax);
+    CHECK(elapsed(begin + 0xFFFFFFFEU, moment) == kValueMax);
+  }
+}
+
+TEST_CASE("a time has lasted from its last millisecond on, and until then it wakes the machine") {
+  for (const std::uint32_t begin : {0U, 5000U, 0xFFFFFFF0U}) {
+    CAPTURE(begin);
+    const Value moment = begun(begin);
+    for (const std::uint32_t later : {0U, 1U, 29U}) {
+      const Asked asked = lasted(begin + later, moment, 30);
+      CHECK(asked.result == kFalse);
+      CHECK(asked.wake == begin + 30);
+    }
+    for (const std::uint32_t later : {30U, 31U, 0x7FFFFFFFU, 0xFFFFFFFEU}) {
+      const Asked asked = lasted(begin + later, moment, 30);
+      CHECK(asked.result == kTrue);
+      CHECK(asked.wake == Machine::kNever);
+    }
+  }
+  CHECK(lasted(7, 0, 0).result == kTrue);
+  CHECK(lasted(7, 0, kValueMin).result == kTrue);
+  CHECK(lasted(7, 0, kUnknown).result == kUnknown);
+  CHECK(lasted(7, 0, kUnknown).wake == Machine::kNever);
+  CHECK(lasted(7, 0, kValueMax).wake == kValueMax);
+  CHECK(lasted(7, kUnknown, 5).result ==
+        kTrue);  // no TIMER holds that; it is a time like any other
+}

@@ -34,6 +34,7 @@ std::string told(const oracle::Deed& deed) {
 oracle::Snapshot snapshot_of(const World& world) {
   constexpr std::array<ChannelRef, 4> kChannels = {{{0, 0}, {1, 0}, {1, 1}, {2, 0}}};
   oracle::Snapshot snapshot;
+  snapshot.now = world.now;
   for (std::size_t i = 0; i < kChannels.size(); ++i)
     snapshot.channels[kChannels[i]] = oracle::number_of(world.channels[i]);
   for (const vm::Value value : world.variables)

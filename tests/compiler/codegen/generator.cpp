@@ -5,7 +5,7 @@
 namespace robosync::compiler::testing {
 namespace {
 
-constexpr std::size_t kPlain = 0, kRanged = 1, kSignal = 2;
+constexpr std::size_t kPlain = 0, kRanged = 1, kSignal = 2, kTimer = 3;
 
 template <typename Node>
 ProgramStatement made(Node node) {
@@ -17,11 +17,14 @@ ProgramStatement made(Node node) {
 std::vector<ProgramVariable> Generator::variables() {
   ProgramVariable signal = plain("signal");
   signal.kind = vm::VariableKind::signal;
-  return {plain("plain", 1), ranged("ranged", -5, 5), signal};
+  ProgramVariable timer = plain("timer");
+  timer.kind = vm::VariableKind::timer;
+  timer.dimension = vm::Dimension::duration;
+  return {plain("plain", 1), ranged("ranged", -5, 5), signal, timer};
 }
 
 E Generator::number_expression(unsigned depth) {
-  const unsigned leaf = below(depth == 0 ? 4 : 10);
+  const unsigned leaf = below(depth == 0 ? 4 : 11);
   switch (leaf) {
     case 0:
       return number(static_cast<int>(below(9)) - 2.5);
@@ -35,6 +38,8 @@ E Generator::number_expression(unsigned depth) {
     case 4:
       return of(often(50) ? Operation::negate : Operation::absolute,
                 {number_expression(depth - 1)});
+    case 5:
+      return of(Operation::elapsed, {variable(kTimer)});
     default:
       break;
   }
@@ -60,7 +65,8 @@ E Generator::condition(unsigned depth) {
   }
   const auto operation = static_cast<Operation>(static_cast<unsigned>(Operation::less) + below(6));
   const bool outer = std::exchange(in_condition_, true);
-  E made = of(operation, {number_expression(2), number_expression(2)});
+  E made = often(10) ? of(Operation::lasted, {variable(kTimer), number_expression(1)})
+                     : of(operation, {number_expression(2), number_expression(2)});
   in_condition_ = outer;
   return made;
 }
@@ -92,7 +98,7 @@ std::vector<ProgramArgument> Generator::arguments() {
 }
 
 ProgramStatement Generator::simple() {
-  switch (below(9)) {
+  switch (below(10)) {
     case 0:
       return made(ProgramSet{kPlain, number_expression(2), often(50)});
     case 1:
@@ -112,6 +118,8 @@ ProgramStatement Generator::simple() {
     }
     case 7:
       return made(ProgramAlert{"alert"});
+    case 8:
+      return made(ProgramSet{kTimer, of(Operation::now, {}), false});
     default:
       return often(30) ? made(move_arms(arguments())) : made(move(below(3), arguments()));
   }

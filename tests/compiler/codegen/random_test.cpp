@@ -179,8 +179,9 @@ TEST_CASE("what fits as it is written fits optimised, in no more cells than the 
     const Built optimized = build(program, {.source_lines = false, .optimize = true});
     INFO(seed);
     REQUIRE(!optimized.bytes.empty());
-    // A number that is worked out once has to be kept, which can cost a little where it is not used.
-    CHECK(optimized.image.header->step_cost * 0.98 <= plain.image.header->step_cost);
+    // A number that is worked out once has to be kept, and one that a variable always is may have to be
+    // loaded, which can cost a little where it is not used.
+    CHECK(optimized.image.header->step_cost * 0.97 <= plain.image.header->step_cost);
     const Room room = room_in(program);
     const std::size_t safety = program.safety.empty() ? 0 : 1;
     for (std::size_t b = 0; b < program.behaviors.size(); ++b) {

@@ -261,6 +261,9 @@ std::string show(const Check& n) {
 std::string show(const Define& n) {
   return list({"define", show(n.name), show(n.parameters), show("do", n.body)});
 }
+std::string show(const Timer& n) {
+  return "(timer " + n.name.text + ")";
+}
 std::string show(const Motion& n) {
   std::string rows;
   for (const MotionRow& row : n.rows) {

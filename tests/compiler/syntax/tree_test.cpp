@@ -214,6 +214,8 @@ TEST_CASE("LISTs, and what is taken out of them", "[tree]") {
         "(log (count jokes) (item (count jokes) jokes) item count)");
   CHECK(statement("ALERT ITEM count OF jokes\nALERT ITEM count + COUNT OF jokes OF jokes") ==
         "(alert (item count jokes)) (alert (item (+ count (count jokes)) jokes))");
+  CHECK(tree("TIMER idle\nTIMER timer\n") == "(timer idle)\n(timer timer)\n");
+  CHECK(statement("RESTART timer") == "(RESTART timer)");
   CHECK(statement("SET list TO item + count\nlist") == "(set list (+ item count)) (list)");
   CHECK(tree("CHECK item OF a b\nx BELOW 1\nEND\nCHECK count OF c\nx BELOW 1\nEND\n").size() > 10);
 }

@@ -36,6 +36,8 @@ LIST songs: "greeting.wav", "warning.wav", "greeting.wav"
 LIST words: "one", "two", "three", "four", "five"
 REMEMBER count = 0
 REMEMBER last = 1.5
+TIMER idle
+TIMER busy
 STATE mood: calm_down, very happy, wary
 FEELING joy FROM 0% TO 100% START 50% FADES TO 30% OVER 2s
 FEELING fear FROM -10% TO 100% START 0%
@@ -182,6 +184,8 @@ class Generator:
             f"({condition}) THEN ({self._condition(1)}) WITHIN {self._duration()}",
             f"space BECOMES {self._one('very close', 'near', 'far')}",
             f"mood BECOMES {self._one('calm_down', 'very happy', 'wary')}",
+            f"idle > {self._duration()}", f"busy >= {self._duration()} AND ({condition})",
+            "idle IS BETWEEN 40ms AND last * 100ms", f"busy < count * 100ms OR ({condition})",
             "touch LEVEL CHANGES BY 2", "count CHANGES", "knock", "noise IS NOT normal")
 
     def _condition(self, depth):
@@ -257,6 +261,7 @@ class Generator:
                          "RAISE joy BY 15%", "LOWER joy BY 40%", "RAISE fear BY 25%",
                          "SET fear TO 0%", "SET mood TO very happy", "SET mood TO wary",
                          "SET mood TO calm_down", "PLAY sound ANY songs", "LOG NEXT words, count", "ALERT ITEM count OF words",
+                         "RESTART idle", "RESTART busy", 'LOG "idle", idle', "SET last TO idle / 1s",
                          "PLAY sound NEXT songs", "SET count TO COUNT OF words - 2", "LOG ANY words",
                          'LOG "count", count, "joy", joy',
                          'ALERT "look here"', "SET last TO touch LEVEL")

@@ -160,6 +160,21 @@ Truth has_come(Machine& machine, std::uint32_t time) {
   return false;
 }
 
+// How long ago it was; no more than a value can say.
+Value elapsed(const Machine& machine, Value begin) {
+  const std::uint32_t gone = machine.now - static_cast<std::uint32_t>(begin);
+  return gone > 0x7FFF'FFFF ? vm::kValueMax : static_cast<Value>(gone);
+}
+
+Truth lasted(Machine& machine, Value begin, Value length) {
+  if (length == vm::kUnknown) return std::nullopt;
+  const Value gone = elapsed(machine, begin);
+  if (length <= gone) return true;
+  wakes_at(machine,
+           machine.now + static_cast<std::uint32_t>(length) - static_cast<std::uint32_t>(gone));
+  return false;
+}
+
 std::optional<Truth> logic(Machine& machine, Word word) {
   switch (vm::opcode_of(word)) {
     case Opcode::and_:
@@ -168,6 +183,8 @@ std::optional<Truth> logic(Machine& machine, Word word) {
       return either(truth_at(machine, word, 1), truth_at(machine, word, 2));
     case Opcode::not_:
       return opposite(truth_at(machine, word, 1));
+    case Opcode::lasted:
+      return lasted(machine, at(machine, word, 1), at(machine, word, 2));
     case Opcode::reached:
       return has_come(machine, static_cast<std::uint32_t>(at(machine, word, 1)));
     default:
@@ -182,6 +199,9 @@ std::optional<Value> computed(Machine& machine, Word word) {
   if (is_time_word(opcode)) return vm::time_word(machine, word);
   const Value b = at(machine, word, 1);
   const Value c = at(machine, word, 2);
+  if (opcode == Opcode::now)  // an unknown is no time: then it is the millisecond before
+    return static_cast<Value>(machine.now == 0x8000'0000 ? machine.now - 1 : machine.now);
+  if (opcode == Opcode::elapsed) return elapsed(machine, b);
   if (const auto value = unchecked(opcode, b, c)) return value;
   if (const auto number = exact(machine, opcode, number_of(b), number_of(c)))
     return value_of(*number);

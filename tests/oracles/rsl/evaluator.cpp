@@ -51,6 +51,10 @@ Number Evaluator::number(const Expression& expression, const Sight& sight) {
       return sight.snapshot.variables[expression.index];
     case Operation::local:
       return sight.locals->at(expression.index);
+    case Operation::now:
+      return sight.snapshot.now;
+    case Operation::elapsed:  // "the time since its last RESTART"
+      return sight.snapshot.now - number(expression.operands[0], sight).value_or(0);
     case Operation::negate:
       return negate(number(expression.operands[0], sight));
     case Operation::absolute:
@@ -114,6 +118,7 @@ Truth Evaluator::comparison(const Expression& expression, const Sight& sight) {
   const Number left = number(expression.operands[0], sight);
   const Number right = number(expression.operands[1], sight);
   if (!left || !right) return std::nullopt;
+  if (expression.operation == Operation::lasted) return sight.snapshot.now - *left >= *right;
   switch (expression.operation) {
     case Operation::less:
       return *left < *right;

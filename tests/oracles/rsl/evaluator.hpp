@@ -13,6 +13,7 @@ namespace robosync::oracle {
 struct Snapshot {
   std::map<compiler::ChannelRef, Number> channels;  // one that is not there is unknown
   std::vector<Number> variables;
+  Millis now = 0;
 };
 
 // What one expression sees: the snapshot and, in a response, what that has set and worked out.

@@ -57,10 +57,11 @@ void Inputs::enter_readings(Millis now) {
   }
 }
 
-Snapshot Inputs::readings(Millis now) const {
+Snapshot Inputs::readings(Millis heard, Millis now) const {
   Snapshot result = snapshot_;
+  result.now = now;
   for (const auto& [ref, channel] : channels_)
-    result.channels[ref] = is_stale(channel, now) ? std::nullopt : channel.value;
+    result.channels[ref] = is_stale(channel, heard) ? std::nullopt : channel.value;
   return result;
 }
 
@@ -170,6 +171,7 @@ void Inputs::check(const compiler::ProgramCheck& check, Smoothing& smoothing, Mi
 }
 
 void Inputs::enter(Millis now) {
+  snapshot_.now = now;
   enter_readings(now);
   const std::vector<Number> before = snapshot_.variables;
   fade(now);

@@ -33,7 +33,7 @@ public:
   void enter(Millis now);
   [[nodiscard]] const Snapshot& snapshot() const { return snapshot_; }
   // Readings as they are, which is what SAFETY rules look at.
-  [[nodiscard]] Snapshot readings(Millis now) const;
+  [[nodiscard]] Snapshot readings(Millis heard, Millis now) const;
 
 private:
   struct Channel {

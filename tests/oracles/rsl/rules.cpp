@@ -187,7 +187,7 @@ void Interpreter::guard(bool all, const std::set<compiler::ChannelRef>& channels
 }
 
 void Interpreter::look_at(Guard& guard) {
-  const Snapshot readings = inputs_.readings(guard.looked_at);
+  const Snapshot readings = inputs_.readings(guard.looked_at, now_.at);
   const Sight sight{readings};
   evaluator_.remember(guard.rule->condition, sight, guard_now_);
   if (guard.rule->resume) evaluator_.remember(*guard.rule->resume, sight, guard_now_);
