@@ -51,6 +51,22 @@ Diagnostics apply_lints(const Diagnostics& diagnostics, const Robot& robot) {
   return result;
 }
 
+// What is not there may be in a module that is not used.
+Diagnostics offer_modules(const Diagnostics& diagnostics) {
+  Diagnostics result;
+  for (Diagnostic diagnostic : diagnostics.all()) {
+    const std::string_view module =
+        diagnostic.unknown.empty() ? std::string_view() : module_with(diagnostic.unknown);
+    if (!module.empty()) {
+      diagnostic.fixes.clear();
+      diagnostic.help = {"the module `" + std::string(module) + "` has it: write `USE " +
+                         std::string(module) + "` at the beginning"};
+    }
+    result.add(std::move(diagnostic));
+  }
+  return result;
+}
+
 struct Parsed {
   ast::Tree tree;
   std::vector<Module> modules;
@@ -92,6 +108,7 @@ Result compile(Input program, Input configuration, const Options& options) {
   Program written;
   if (parsed.complete) {
     written = analyze(parsed.trees(), *parsed.robot, result.sources, diagnostics);
+    if (diagnostics.errors() > 0) diagnostics = offer_modules(diagnostics);
     if (diagnostics.errors() == 0)
       result.tests = test_plan::plan_tests(parsed.trees(), *parsed.robot, diagnostics);
   }

@@ -79,6 +79,21 @@ private:
 
 }  // namespace
 
+std::string_view module_with(std::string_view name) {
+  for (const ModuleText& module : module_texts()) {
+    for (std::string_view rest = module.text; !rest.empty();) {
+      const std::string_view line = rest.substr(0, rest.find('\n'));
+      rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+      for (const std::string_view gives : {"DEFINE ", "MOTION "}) {
+        if (!line.starts_with(gives)) continue;
+        const std::string_view given = line.substr(gives.size());
+        if (same_name(given.substr(0, given.find(' ')), name)) return module.name;
+      }
+    }
+  }
+  return {};
+}
+
 std::vector<Module> load_modules(const ast::Tree& program, SourceMap& sources,
                                  const ModuleReader& read, Diagnostics& diagnostics) {
   return Loader(sources, read, diagnostics).load(program);

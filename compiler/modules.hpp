@@ -17,6 +17,9 @@ struct ModuleText {  // one module as built in
 };
 [[nodiscard]] std::span<const ModuleText> module_texts();
 
+// The module that gives a DEFINE or a MOTION of this name; empty when none does.
+[[nodiscard]] std::string_view module_with(std::string_view name);
+
 struct Module {
   FileId file = 0;
   std::unique_ptr<const ast::Tree> tree;  // stays where it is when the list grows

@@ -46,6 +46,13 @@ std::string_view too_large(vm::Refusal refusal) {
   }
 }
 
+void report_too_large(vm::Refusal refusal, std::string_view what, Span span,
+                      Diagnostics& diagnostics) {
+  Diagnostic& d = diagnostics.report(Code::E0407, std::string(what)).label(span);
+  if (refusal == vm::Refusal::too_much_output)
+    d.helps("write THEN or a WAIT between them, so that they come one step after the other");
+}
+
 void report_refused(const vm::Verdict& verdict, Span span, Diagnostics& diagnostics) {
   diagnostics
       .report(Code::E0499, "rsc made an image that the robot refuses: " +
@@ -68,7 +75,7 @@ bool verify_image(const Emitted& emitted, Diagnostics& diagnostics) {
   if (verdict.refusal == vm::Refusal::too_costly)
     report_costly_step(emitted, span, diagnostics);
   else if (!what.empty())
-    diagnostics.report(Code::E0407, std::string(what)).label(span);
+    report_too_large(verdict.refusal, what, span, diagnostics);
   else
     report_refused(verdict, span, diagnostics);
   return false;

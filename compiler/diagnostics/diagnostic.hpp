@@ -52,6 +52,7 @@ struct Diagnostic {
   std::vector<Label> labels;
   std::vector<std::string> help;  // how to mend it
   std::vector<Fix> fixes;
+  std::string unknown;  // what nothing here is called; a module that is not used may have it
 
   // Chainable builders.
   Diagnostic& label(Span span, std::string text = {}, bool primary = true);

@@ -146,11 +146,19 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
   if (d.help.empty()) d.helps("actuators: " + list_names(candidates));
 }
 
+void suggest_perform(Diagnostic& diagnostic, const ast::Name& motion) {
+  const std::string better = std::string(kPerform) + " " + motion.text;
+  diagnostic.helps("`" + motion.text + "` is a MOTION: write `" + better + "`")
+      .fix(motion.span, better, Applicability::likely);
+}
+
 void Commands::report_unknown_verb(const ast::Command& command) {
   const ast::Name& verb = command.verb;
   const std::string what = command.arguments.empty() ? "DEFINE or verb `" : "verb `";
   Diagnostic& d =
       diagnostics_.report(Code::E0501, "there is no " + what + verb.text + "`").label(verb.span);
+  if (command.arguments.empty()) d.unknown = verb.text;
+  if (names_.find_motion(verb.text) != nullptr) return suggest_perform(d, verb);
   if (!diagnostics_.may_search(robot_.actuators.size() + names_.defines().size())) return;
   auto candidates = names_.verb_names();
   const auto defines = names_.define_names();
@@ -163,12 +171,37 @@ void Commands::report_unknown_verb(const ast::Command& command) {
   if (d.help.empty() && !verbs.empty()) d.helps("it could be " + list_names(verbs));
 }
 
+// `TO person DIRECTION`: the second word would be one of the actuator's. It is reported.
+bool Commands::lacks_brackets(const ast::Command& command, std::size_t place) {
+  const ast::Argument& first = command.arguments[place];
+  const auto* const word = std::get_if<ast::Word>(&first.value);
+  const ast::Word* const second =
+      place + 1 < command.arguments.size() ? plain_word(command.arguments[place + 1]) : nullptr;
+  if (first.preposition == ast::Preposition::none || word == nullptr || second == nullptr)
+    return false;
+  const auto sensor = names_.find_sensor(word->name.text);
+  if (!sensor ||
+      std::ranges::none_of(robot_.sensors[*sensor].channels, [&](const ChannelConfig& channel) {
+        return same_name(channel.name.text, second->name.text);
+      }))
+    return false;
+  Span both = word->name.span;
+  both.end = second->name.span.end;
+  const std::string better = "(" + word->name.text + " " + second->name.text + ")";
+  diagnostics_.report(Code::E0505, "a value of two words stands in brackets here")
+      .label(both)
+      .helps("write `" + better + "`")
+      .fix(both, better);
+  return true;
+}
+
 std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Command& command,
                                                                std::size_t named_by) {
   std::vector<Given> result;
   bool good = true;
   for (std::size_t i = 0; i < command.arguments.size(); ++i) {
     if (i == named_by || (is_chosen(i) && i != chosen_->at)) continue;
+    if (lacks_brackets(command, i)) return std::nullopt;
     Given given = is_chosen(i)
                       ? Given{&command.arguments[i], {}, {}, false, chosen_->text, chosen_->span}
                       : evaluate(command.arguments[i]);
@@ -279,6 +312,11 @@ void Commands::report_no_motion(const ast::Command& command) {
   }
   Diagnostic& d = diagnostics_.report(Code::E0501, "there is no MOTION `" + word->name.text + "`")
                       .label(word->name.span);
+  d.unknown = word->name.text;
+  if (names_.find_define(word->name.text) != nullptr) {
+    d.helps("`" + word->name.text + "` is a DEFINE: write it without PERFORM");
+    return;
+  }
   suggest(d, word->name.span, word->name.text, candidates);
   if (d.help.empty() && !candidates.empty()) d.helps("there is " + list_names(candidates));
 }

@@ -89,6 +89,7 @@ private:
   std::vector<ProgramCommand> perform(const ast::Command& command);
   bool add_to_performance(const Given& given, ProgramCommand& result);
   void report_no_motion(const ast::Command& command);
+  bool lacks_brackets(const ast::Command& command, std::size_t place);
 
   // FOLLOW (follow.cpp).
   std::vector<ProgramCommand> expected_follow(const ast::Command& command);

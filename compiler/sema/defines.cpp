@@ -80,6 +80,13 @@ void Statements::add(const ast::Call& node, Span span, ProgramBlock& result) {
     return run(*define, node.arguments, span, result);
   Diagnostic& d = diagnostics_.report(Code::E0501, "there is no DEFINE `" + node.name.text + "`")
                       .label(node.name.span);
+  d.unknown = node.name.text;
+  if (names_.find_motion(node.name.text) != nullptr) {
+    d.helps("`" + node.name.text + "` is a MOTION: write `" + std::string(kPerform) + " " +
+            node.name.text + "`, or `" + std::string(kPerform) + " " + node.name.text +
+            " 2 TIMES`");
+    return;
+  }
   if (diagnostics_.may_search(names_.defines().size()))
     suggest(d, node.name.span, node.name.text, names_.define_names());
   if (d.help.empty() && names_.is_verb(node.name.text))

@@ -14,6 +14,9 @@ inline constexpr std::string_view kPerform = "PERFORM";  // the verb; a word of 
                                  Diagnostics& notes, Diagnostics& diagnostics,
                                  const VerbConfig* verb = nullptr);
 
+// Somebody has used the name of a MOTION where that of a DEFINE or a verb stands.
+void suggest_perform(Diagnostic& diagnostic, const ast::Name& motion);
+
 class Motions {
 public:
   Motions(const Robot& robot, Names& names, Expressions& expressions, Diagnostics& diagnostics)

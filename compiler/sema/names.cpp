@@ -284,9 +284,18 @@ void Names::collect(const ast::Tree& tree) {
 }
 
 void Names::report_twice(const ast::Name& name, Span first) {
-  diagnostics_.report(Code::E0101, "the name `" + name.text + "` is given twice")
-      .label(name.span)
-      .label(first, "first given here", false);
+  constexpr FileId kProgram = 0;
+  Diagnostic& d = diagnostics_.report(Code::E0101, "the name `" + name.text + "` is given twice");
+  const bool yours = name.span.file == kProgram;
+  if (yours == (first.file == kProgram)) {
+    d.label(name.span).label(first, "first given here", false);
+    if (name.span.file != first.file)
+      d.helps("use one of the two modules, or a copy of one with another name in it");
+    return;
+  }
+  d.label(yours ? name.span : first)
+      .label(yours ? first : name.span, "a module that you use has it too", false)
+      .helps("choose another name for yours");
 }
 
 // True if the name is new. An empty one was missing, which has been reported.
