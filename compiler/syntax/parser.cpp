@@ -18,6 +18,31 @@ namespace {
 constexpr std::size_t largest_source = 16U << 20U;
 constexpr std::size_t most_mistakes = 30;
 
+// A block with a right head and nothing in it: the search for a mend would find none.
+struct EmptyBlock {
+  Span head_end;  // the last word of its head
+  std::string_view missing, help;
+};
+
+std::optional<EmptyBlock> empty_block(const Tokens& tokens) {
+  constexpr std::size_t longest = 5;  // words of an empty block
+  std::vector<TokenKind> kinds;
+  Span head_end;
+  for (const Token& token : tokens) {
+    if (token.kind == Kinds::NEWLINE) continue;
+    kinds.push_back(token.kind);
+    if (token.kind != Kinds::END) head_end = token.span;
+    if (kinds.size() > longest) return std::nullopt;
+  }
+  using Head = std::vector<TokenKind>;
+  if (kinds == Head{Kinds::TEST, Kinds::STRING, Kinds::END})
+    return EmptyBlock{head_end, "a step", "a step begins with `AT`, `EXPECT` or `WAIT`"};
+  if (kinds == Head{Kinds::BEHAVIOR, Kinds::NAME, Kinds::PRIORITY, Kinds::QUANTITY, Kinds::END})
+    return EmptyBlock{head_end, "a rule",
+                      "a rule begins with `WHEN`, `WHILE`, `EVERY` or `AT START`"};
+  return std::nullopt;
+}
+
 class Parser {
 public:
   Parser(const SourceFile& source, FileId file, Diagnostics& diagnostics)
@@ -48,6 +73,15 @@ private:
           .label(tokens[*deep].span)
           .helps("put the inner part into a DEFINE of its own");
       return false;
+    }
+    if (const auto empty = empty_block(tokens)) {
+      const Span end = empty->head_end;
+      diagnostics_
+          .report(Code::E0008, std::string(empty->missing) + " is missing after `" +
+                                   std::string(source_.text(end)) + "`")
+          .label({end.file, end.end, end.end}, "here")
+          .helps(std::string(empty->help));
+      return true;
     }
     for (;;) {
       // What the actions say counts only when the piece was read to its end.

@@ -25,6 +25,7 @@ public:
         diagnostics_(diagnostics) {}
 
   void explain() {
+    if (for_behind_modifier()) return;
     switch (edit_.what) {
       case Edit::What::respell:
         return misspelt();
@@ -93,6 +94,36 @@ private:
 
   bool outside_blocks() const {
     return expects(failure_.expected, Kinds::DEFINE) && expects(failure_.expected, Kinds::WHEN);
+  }
+
+  // `WHEN x < 3 MARGIN 1 FOR 2s`
+  bool for_behind_modifier() {
+    std::size_t at = failure_.stopped_at;
+    while (at < tokens_.size() && tokens_[at].kind == Kinds::NEWLINE)
+      ++at;
+    if (at >= tokens_.size() || tokens_[at].kind != Kinds::FOR) return false;
+    std::size_t modifier = at;
+    std::size_t back = at;
+    while (back > 0 && !ends_search(tokens_[back].kind))
+      if (is_modifier(tokens_[--back].kind)) modifier = back;
+    const bool in_head = tokens_[back].kind == Kinds::WHEN || tokens_[back].kind == Kinds::WHILE;
+    if (modifier == at || !in_head) return false;
+    const std::string word = quote(modifier);
+    diagnostics_
+        .report(Code::E0001, "`FOR` belongs to the condition: it stands in front of " + word)
+        .label(tokens_[at].span)
+        .label(tokens_[modifier].span, "this goes behind it", false)
+        .helps("first `FOR` and its time, then " + word);
+    return true;
+  }
+
+  static bool is_modifier(TokenKind kind) {
+    return kind == Kinds::PRIORITY || kind == Kinds::COOLDOWN || kind == Kinds::MARGIN ||
+           kind == Kinds::WAITING || kind == Kinds::RESTARTING;
+  }
+  // The head of the rule begins here, or is over.
+  static bool ends_search(TokenKind kind) {
+    return kind == Kinds::WHEN || kind == Kinds::WHILE || kind == Kinds::DO;
   }
 
   // ---- one for each way to mend
