@@ -203,6 +203,21 @@ std::string format_value(std::int64_t value, const Unit& unit) {
   return text + std::string(unit.spelling);
 }
 
+std::optional<ValuePlace> find_place(std::string_view text) {
+  for (std::size_t begin = text.find('{'); begin != std::string_view::npos;
+       begin = text.find('{', begin + 1)) {
+    const std::size_t end = text.find('}', begin);
+    if (end == std::string_view::npos) break;
+    if (const Unit* const unit = find_unit(text.substr(begin + 1, end - begin - 1)))
+      return ValuePlace{begin, end + 1 - begin, unit};
+  }
+  return std::nullopt;
+}
+
+std::string place_for(const Unit& unit) {
+  return "{" + std::string(unit.spelling) + "}";
+}
+
 std::optional<Scale> to_scale(Decimal number, const Unit& unit) {
   Wide numerator = Wide{number.mantissa} * unit.factor;
   Wide denominator = power_of_ten(number.decimals) * unit.divisor;

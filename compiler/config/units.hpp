@@ -41,6 +41,15 @@ struct Decimal {
 // The value in `unit`, with as few decimals as say it to a thousandth: "2.5cm".
 [[nodiscard]] std::string format_value(std::int64_t value, const Unit& unit);
 
+// A place for a value in a text that is written out: "{cm}" for a number of centimetres, "{}" for a plain
+// one. The board sends the text and the values; whoever shows them puts them together.
+struct ValuePlace {
+  std::size_t begin = 0, size = 0;  // in the text
+  const Unit* unit = nullptr;       // never null
+};
+[[nodiscard]] std::optional<ValuePlace> find_place(std::string_view text);
+[[nodiscard]] std::string place_for(const Unit& unit);
+
 // The smallest fraction numerator / denominator = thousandths of the canonical unit for one count
 // of a sensor. Offsets of units (F) do not apply: it is a difference.
 struct Scale {

@@ -458,7 +458,6 @@ void Statements::restart(const ast::Command& node, Span span, ProgramBlock& resu
 
 namespace {
 
-constexpr std::string_view kPlace = "{}";  // of a value in a LOG's text
 constexpr std::size_t kMaxValues = static_cast<std::size_t>(vm::Param::count_);
 
 // Parts stand apart, unless the text has a space there already.
@@ -469,8 +468,11 @@ void separate(std::string& text, std::string_view next) {
 }  // namespace
 
 bool Statements::writable(const std::string& text, Span span) {
-  if (text.find(kPlace) == std::string::npos && text.find('\0') == std::string::npos) return true;
-  diagnostics_.report(Code::E0509, "`{}` cannot stand in a text that is written out").label(span);
+  const auto place = find_place(text);
+  if (!place && text.find('\0') == std::string::npos) return true;
+  const std::string what = place ? text.substr(place->begin, place->size) : "{}";
+  diagnostics_.report(Code::E0509, "`" + what + "` cannot stand in a text that is written out")
+      .label(span);
   return false;
 }
 
@@ -520,8 +522,10 @@ bool Statements::add_part(const ast::Argument& argument, ProgramLog& log) {
     } else {
       Typed value = expressions_.number(*amount->value);
       if (!value.is_number()) return false;
-      separate(log.text, kPlace);
-      log.text += std::string(kPlace) + std::string(canonical_unit(value.dimension()).spelling);
+      const std::string place =
+          place_for(value.unit != nullptr ? *value.unit : canonical_unit(vm::Dimension::number));
+      separate(log.text, place);
+      log.text += place;
       log.values.push_back(std::move(value.code));
       return true;
     }

@@ -161,11 +161,12 @@ std::string EventReader::text() const {
   std::string text;
   std::size_t next = 0;
   while (next < values().size()) {
-    const std::size_t place = rest.find("{}");
-    if (place == std::string_view::npos) break;
-    text += rest.substr(0, place);
-    text += format_quantity(values()[next++], vm::Dimension::number);
-    rest.remove_prefix(place + 2);
+    const auto place = compiler::find_place(rest);
+    if (!place) break;
+    const vm::Value value = values()[next++];
+    text += rest.substr(0, place->begin);
+    text += value == vm::kUnknown ? "unknown" : compiler::format_value(value, *place->unit);
+    rest.remove_prefix(place->begin + place->size);
   }
   return text += rest;
 }

@@ -119,3 +119,20 @@ TEST_CASE("scales are exact fractions") {
   CHECK(!scale("0.00000001", ""));  // 1 / 100000 thousandths
   CHECK(!scale("9999999", ""));
 }
+
+TEST_CASE("the place of a value in a text is a unit in curly brackets") {
+  const auto found = [](std::string_view text) {
+    const auto place = find_place(text);
+    return place ? std::string(text.substr(place->begin, place->size)) + ">" +
+                       std::string(place->unit->spelling)
+                 : std::string();
+  };
+  CHECK(found("at {cm} now {}") == "{cm}>cm");
+  CHECK(found("{}") == "{}>");
+  CHECK(found("{ {x} } {{deg/s}") == "{deg/s}>deg/s");
+  CHECK(found("{seconds}") == "{seconds}>s");
+  for (const char* none : {"", "{", "}", "{x}", "cm", "{cm", "cm}", "} {", "{ cm}"})
+    CHECK(found(none).empty());
+  for (const Unit& unit : units())
+    CHECK(found(place_for(unit)) == place_for(unit) + ">" + std::string(unit.spelling));
+}

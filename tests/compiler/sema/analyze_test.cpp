@@ -212,8 +212,13 @@ TEST_CASE("PICK ONE: shares as given, or equal ones") {
 TEST_CASE("LOG joins its parts into one text") {
   const ProgramBlock block = response_of("LOG \"at\", proximity DISTANCE, \"now\"");
   const auto& log = std::get<ProgramLog>(block[0].node);
-  CHECK(log.text == "at {}mm now");
+  CHECK(log.text == "at {cm} now");
   CHECK(log.values.size() == 1);
+  const auto text = [](const std::string& line) {
+    return std::get<ProgramLog>(response_of(line)[0].node).text;
+  };
+  CHECK(text("LOG 90s, 1m + proximity DISTANCE, touch LEVEL, 3, \"{x} }{ {\"") ==
+        "{s} {m} {} {} {x} }{ {");
 }
 
 TEST_CASE("LIMIT: a speed, or a SAFETY rule for what a sensor measures") {

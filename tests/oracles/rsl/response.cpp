@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <utility>
 
 #include "compiler/ir/walk.hpp"
@@ -202,21 +203,38 @@ void for_each_condition(const compiler::ProgramBlock& block,
   });
 }
 
+namespace {
+
+// Thousandths of the dimension's own unit in one of these; what no drawn program writes is left out.
+const std::map<std::string, std::int64_t> kUnits = {
+    {"", 1000},  {"mm", 1000},  {"cm", 10'000}, {"m", 1'000'000}, {"ms", 1},
+    {"s", 1000}, {"deg", 1000}, {"%", 1000},    {"C", 1000},      {"min", 60'000}};
+
+// "Without needless zeros", rounded to a thousandth of the unit.
+std::string shown(const Number& value, const std::string& unit) {
+  if (!value) return "unknown";
+  const std::int64_t size = std::abs(*value) * 1000;
+  const std::int64_t rounded = (size + kUnits.at(unit) / 2) / kUnits.at(unit);
+  std::string text = (*value < 0 ? "-" : "") + std::to_string(rounded / 1000) + "." +
+                     std::to_string(1000 + rounded % 1000).substr(1);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text + unit;
+}
+
+}  // namespace
+
+// A place is a unit in curly brackets.
 std::string filled_in(const std::string& text, const std::vector<Number>& values) {
   std::string result = text;
   std::size_t from = 0;
   for (const Number& value : values) {
-    const std::size_t place = result.find("{}", from);
-    if (place == std::string::npos) break;
-    std::string shown = "unknown";
-    if (value) {
-      const std::string digits = std::to_string(1000 + std::abs(*value) % 1000).substr(1);
-      shown = (*value < 0 ? "-" : "") + std::to_string(std::abs(*value) / 1000) + "." + digits;
-      shown.erase(shown.find_last_not_of('0') + 1);
-      if (shown.back() == '.') shown.pop_back();
-    }
-    result.replace(place, 2, shown);
-    from = place + shown.size();
+    const std::size_t begin = result.find('{', from);
+    const std::size_t end = result.find('}', from);
+    if (begin == std::string::npos || end == std::string::npos) break;
+    const std::string written = shown(value, result.substr(begin + 1, end - begin - 1));
+    result.replace(begin, end + 1 - begin, written);
+    from = begin + written.size();
   }
   return result;
 }

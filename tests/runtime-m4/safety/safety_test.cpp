@@ -212,7 +212,7 @@ END
   robot.feed(600, "Y", 40);
   robot.run(2000);
   CHECK(robot.only("trip log resume") ==
-        "100 #1 trip r0\n100 #1 log \"hot at {}%\" 70\n900 #5 resume r0\n");
+        "100 #1 trip r0\n100 #1 log \"hot at {%}\" 70\n900 #5 resume r0\n");
 }
 
 TEST_CASE("a WHILE that was halted comes back when it may") {
