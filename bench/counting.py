@@ -42,6 +42,10 @@ class Count(int):
         count.line = line  # of a mark
         return count
 
+    def __add__(self, other):
+        """What ran later, of which nobody knows what it was."""
+        return Count(int(self) + int(other), self.places)
+
     def __sub__(self, other):
         difference = int(self) - int(other)
         if self.line is None or not isinstance(other, Count):

@@ -60,8 +60,8 @@ def compiled(folder, rules, commands=None):
 
 
 class Steps:
-    """Instructions of loading an image, of the dearest step in which a channel has its first reading
-    (the first time, a behaviour evaluates all of its rules), of the dearest later one, and of the dearest that
+    """Instructions of loading an image, of the costliest step in which a channel has its first reading
+    (the first time, a behaviour evaluates all of its rules), of the costliest later one, and of the costliest that
     fires nothing."""
 
     def __init__(self, elf, image):

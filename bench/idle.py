@@ -46,7 +46,7 @@ def code_of(prefixes):
 
 
 def idle_second(period, program=None):
-    """The dearest of some seconds, which have kicks every `period` milliseconds: (instructions, apart)."""
+    """The costliest of some seconds, which have kicks every `period` milliseconds: (instructions, apart)."""
     kicks = {
 KICK: at for name, at in symbols(FIRMWARE).items() if name.startswith(KICK)}
     if not kicks:

@@ -11,11 +11,12 @@ import subprocess
 import counting
 import growth
 import path
+import safety
 import workloads
 from board import FIRMWARE
 
 # Whose figures are counted between marks, and the ELF that runs then.
-GROUPS = ((growth.growth_figures, growth.FIRMWARE), (path.path_figures, FIRMWARE),
+GROUPS = ((growth.growth_figures, growth.FIRMWARE), (path.path_figures, FIRMWARE), (safety.safety_figures, FIRMWARE),
           (workloads.workload_figures, counting.BUILT / "bench_workload"))
 
 

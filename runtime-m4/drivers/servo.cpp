@@ -3,21 +3,17 @@
 #include <algorithm>
 
 #include "runtime-m4/drivers/way.hpp"
+#include "runtime-m4/policy/pulses.hpp"
 
 namespace robosync::drivers::servo {
 namespace {
 
-constexpr std::uint32_t kShortestPulse = 500;  // microseconds
-constexpr std::uint32_t kPulseSpan = 2000;
 constexpr vm::Value kDefaultSpeed = 90 * vm::kScale;  // thousandths of a degree a second
 
 void output(Device device, kernel::Time now) {
-  const std::int64_t span = std::int64_t{device.wiring.max} - device.wiring.min;
   const vm::Value position =
       std::clamp(device.state.motion.at(now), device.wiring.min, device.wiring.max);
-  const std::int64_t way = std::int64_t{position} - device.wiring.min;
-  const std::int64_t pulse = span == 0 ? kPulseSpan / 2 : way * kPulseSpan / span;
-  device.drive(kShortestPulse + static_cast<std::uint32_t>(pulse), now);
+  device.drive(policy::pulse_at(device.wiring, position), now);
 }
 
 kernel::Time follow(Device device, kernel::Time now) {

@@ -3,15 +3,13 @@
 
 #include <algorithm>
 
+#include "runtime-m4/policy/pulses.hpp"
+
 namespace robosync::drivers::way {
 namespace {
 
 constexpr std::uint16_t kLegsOfGesture = 3;
 constexpr vm::Value kMostGestures = 1000;
-
-vm::Value rest_position(const vm::Actuator& wiring) {
-  return std::clamp(vm::Value{0}, wiring.min, wiring.max);
-}
 
 void begin_leg(Device device, vm::Value to, kernel::Duration length, kernel::Time now) {
   const vm::Value from = device.state.motion.at(now);
@@ -73,7 +71,7 @@ void stand(Device device, vm::Value position, kernel::Time now) {
 }
 
 void stand_at_rest(Device device, kernel::Time now) {
-  stand(device, rest_position(device.wiring), now);
+  stand(device, policy::rest_position(device.wiring), now);
 }
 
 void stop(Device device, vm::Release how, kernel::Time now) {

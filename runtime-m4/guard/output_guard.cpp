@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "runtime-m4/policy/pulses.hpp"
 #include "vm/drivers.hpp"
 
 namespace robosync::guard {
@@ -40,7 +41,7 @@ void OutputGuard::disown() {
   switch_off(nullptr);
 }
 
-void OutputGuard::own(const vm::Image& image) {
+void OutputGuard::own(const vm::Image& image, Mask halted) {
   switch_off(&image);
   const policy::BoardPins& pins = board_.pins();
   limits_ = pins.outputs.data();
@@ -50,22 +51,30 @@ void OutputGuard::own(const vm::Image& image) {
     const policy::PinLimit* const limit = policy::limit_of(pins, actuator.pin);
     if (vm::pin_use(actuator.driver) == vm::PinUse::nothing || limit == nullptr) continue;
     const auto pulse = static_cast<std::uint16_t>(board_.pwm_read(actuator.pin));
+    const auto safe = policy::safe_pulse(actuator);
     slots_[a] = {.pin = actuator.pin,
                  .pulse = pulse,
                  .target = pulse,
                  .changed = 0,
+                 .safe = safe ? static_cast<std::uint16_t>(*safe) : kStays,
                  .limit = static_cast<std::uint8_t>(limit - limits_),
                  .driver = actuator.driver};
     owned |= bit(a);
   }
   const auto lock = kernel_.lock();
-  owned_ = free_ = owned;
+  owned_ = owned;
+  halted_ = halted;
+  free_ = owned & ~halted;
 }
 
 [[gnu::noinline]] void OutputGuard::drive(unsigned actuator, std::uint32_t pulse_us,
                                           kernel::Time now) {
   const auto lock = kernel_.lock();
-  if ((free_ & bit(actuator)) == 0) return;
+  if ((free_ & bit(actuator)) != 0) aim(actuator, pulse_us, now);
+}
+
+[[gnu::always_inline]] inline void OutputGuard::aim(unsigned actuator, std::uint32_t pulse_us,
+                                                    kernel::Time now) {
   Slot& slot = slots_[actuator];
   const policy::PinLimit& limit = limits_[slot.limit];
   std::uint32_t target = pulse_us;
@@ -108,10 +117,24 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
   return static_cast<std::uint16_t>(std::max(target, pulse - std::min(pulse, most)));
 }
 
-[[gnu::noinline]] void OutputGuard::halt(Mask actuators) {
+// The mask comes first: from then on no driver can undo what follows.
+[[gnu::noinline]] void OutputGuard::halt(Mask actuators, kernel::Time now) {
+  const Mask fresh = actuators & owned_ & ~halted_;
+  {
+    const auto lock = kernel_.lock();
+    halted_ |= actuators;
+    free_ = owned_ & ~halted_;
+  }
+  for (Mask left = fresh; left != 0; left &= left - 1)
+    make_safe(static_cast<unsigned>(std::countr_zero(left)), now);
+}
+
+void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
   const auto lock = kernel_.lock();
-  halted_ |= actuators;
-  free_ = owned_ & ~halted_;
+  Slot& slot = slots_[actuator];
+  if (slot.safe != kStays && slot.pulse != 0) return aim(actuator, slot.safe, now);
+  slot.target = slot.pulse;
+  lagging_ &= ~bit(actuator);
 }
 
 void OutputGuard::let_go(Mask actuators) {

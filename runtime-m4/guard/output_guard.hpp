@@ -4,7 +4,8 @@
 // * A pin is driven only for an actuator of the running program. All others are off.
 // * No pulse leaves the range that the board gives its pin, nor changes faster (Board::pins()); 0, which is off,
 //   always may.
-// * An actuator that is halted stays as it is until it is let go.
+// * An actuator that is halted goes to its safe state at once, without its driver, and takes no order until it is let
+//   go. A pin that is off stays off: nothing begins to move because something is wrong.
 //
 // A check and its write are one under the kernel's lock: who is interrupted in between writes nothing old later.
 // docs/safety.md says what follows from that.
@@ -25,9 +26,9 @@ public:
 
   OutputGuard(kernel::Kernel& kernel, boards::Board& board) : kernel_(kernel), board_(board) {}
 
-  // The actuators of `image`, which is verified and fits the board, own their pins from now on, and none is halted.
-  // A pin that was driven in another way before, or that none of them has, goes off.
-  void own(const vm::Image& image);
+  // The actuators of `image`, which is verified and fits the board, own their pins from now on; those that are halted
+  // stay as they are. A pin that was driven in another way before, or that none of them has, goes off.
+  void own(const vm::Image& image, Mask halted);
   // There is no program: all pins go off.
   void disown();
 
@@ -36,7 +37,7 @@ public:
   // Pins whose pulse may not yet be where it shall go on. Called at each check of the safety monitor.
   void go_on(kernel::Time now);
 
-  void halt(Mask actuators);
+  void halt(Mask actuators, kernel::Time now);
   void let_go(Mask actuators);
 
 private:
@@ -45,11 +46,16 @@ private:
     std::uint16_t pulse;    // what is on the pin
     std::uint16_t target;   // where it goes, as far as it may
     std::uint16_t changed;  // when it was written last, in ms; of pins with a limited rise
+    std::uint16_t safe;     // the pulse of the safe state, or kStays
     std::uint8_t limit;     // in the board's list
     vm::DriverId driver;
   };
 
+  static constexpr std::uint16_t kStays = UINT16_MAX;
+
+  void aim(unsigned actuator, std::uint32_t pulse_us, kernel::Time now);
   void put(unsigned actuator, kernel::Time now);
+  void make_safe(unsigned actuator, kernel::Time now);
   std::uint16_t next_pulse(Slot& slot, std::uint16_t rise, bool pulses, kernel::Time now) const;
   void switch_off(const vm::Image* next);
 

@@ -22,8 +22,7 @@ bool ControlLayer::start(const LoadedProgram& program, Memory& memory, ProgramTh
   by_rules_ = 0;
   halted_ = stopped_ ? all() : 0;
   newly_halted_ = 0;
-  outputs_.own(program.image);
-  if (stopped_) outputs_.halt(halted());
+  outputs_.own(program.image, halted());
   units_ = memory.take<policy::Part::control_units, Unit>();
   pool_.start(memory);
   for (unsigned a = 0; a < program.image.actuators.size(); ++a)
@@ -144,8 +143,8 @@ ActuatorMask ControlLayer::take_halted() {
 
 void ControlLayer::retire(unsigned actuator) {
   Unit& unit = units_[actuator];
+  outputs_.halt(bit<ActuatorMask>(actuator), kernel_.now());
   release(unit, wiring(unit).safe);
-  outputs_.halt(bit<ActuatorMask>(actuator));
   const auto lock = kernel_.lock();
   pool_.clear(unit.queue);
   unit.busy = false;
@@ -181,10 +180,19 @@ void ControlLayer::resume() {
   if (program_ != nullptr) set_free(halted() & ~by_rules_);
 }
 
-// All of them have come to rest before the guard shuts their pins; no other thread runs meanwhile. The mask comes
-// first: a driver that is at work now sees it when it is done (keep_at()).
+void ControlLayer::make_safe(ActuatorMask actuators, kernel::Time now) {
+  outputs_.halt(actuators, now);
+}
+
+// The pins come first. A driver that is at work now sees the mask when it is done (keep_at()).
 void ControlLayer::hold_back(ActuatorMask fresh) {
   if (fresh == 0) return;
+  outputs_.halt(fresh, kernel_.now());
+  note_halt(fresh);
+}
+
+// What the drivers know and the trace tells of it.
+void ControlLayer::note_halt(ActuatorMask fresh) {
   {
     const auto lock = kernel_.lock();
     halted_ |= fresh;
@@ -196,7 +204,6 @@ void ControlLayer::hold_back(ActuatorMask fresh) {
     trace_.emit(EventKind::halt, trace_.now(), unit.actuator);
     kernel_.signal(*unit.thread, kHalt);
   }
-  outputs_.halt(fresh);
   kernel_.signal(step_thread_, events_.halted);
 }
 

@@ -73,6 +73,8 @@ public:
 
   // [safety thread] Those that are halted, or not, already stay as they are.
   void halt(ActuatorMask actuators);
+  // The pins alone, ahead of halt(), which must follow.
+  void make_safe(ActuatorMask actuators, kernel::Time now);
   void let_go(ActuatorMask actuators);
   // All of them, until the next program.
   void halt_for_good();
@@ -125,6 +127,7 @@ private:
   ActuatorMask all() const;
   void release(Unit& unit, vm::Release how);
   void hold_back(ActuatorMask fresh);
+  void note_halt(ActuatorMask fresh);
   void set_free(ActuatorMask freed);
 
   kernel::Kernel& kernel_;

@@ -37,25 +37,26 @@ kernel::Time SafetyRules::look() {
     if (program_->is_variable(input)) return snapshot().value(input);
     return layers_.mailboxes.fresh_value(input, image.channels[input], now);
   });
-  machine_.now = static_cast<std::uint32_t>(layers_.trace.program_time() / kernel::kTick);
+  machine_.now = layers_.trace.milliseconds();
   machine_.wake = vm::Machine::kNever;
   for (unsigned r = rules().first_rule; r < rules().first_rule + 0U + rules().rule_count; ++r)
-    if (image.rules[r].kind == vm::RuleKind::safety) evaluate(r);
+    if (image.rules[r].kind == vm::RuleKind::safety) evaluate(r, now);
   return next_look();
 }
 
-// The resume condition is evaluated in any case: it may have to remember something.
-void SafetyRules::evaluate(unsigned rule) {
+// Where it trips, the pins come first and all else behind them. The resume condition is evaluated in any case: it may
+// have to remember something.
+void SafetyRules::evaluate(unsigned rule, kernel::Time now) {
   const vm::Image& image = program_->image;
   const vm::Value danger = truth_of(rule);
+  const bool was_tripped = tripped_.has(rule);
+  const bool trips = !was_tripped && danger != vm::kFalse;
+  if (trips) layers_.control.make_safe(halted_by(rule), now);
   const bool can_resume =
       rule + 1 < image.rules.size() && image.rules[rule + 1].kind == vm::RuleKind::resume;
   const vm::Value safe_again = can_resume ? truth_of(rule + 1) : vm::kFalse;
-  if (!tripped_.has(rule)) {
-    if (danger != vm::kFalse) trip(rule);
-  } else if (danger == vm::kFalse && safe_again == vm::kTrue) {
-    resume(rule);
-  }
+  if (trips) trip(rule);
+  if (was_tripped && danger == vm::kFalse && safe_again == vm::kTrue) resume(rule);
 }
 
 vm::Value SafetyRules::truth_of(unsigned rule) {

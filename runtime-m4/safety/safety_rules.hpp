@@ -49,7 +49,7 @@ public:
   kernel::Time look();
 
 private:
-  void evaluate(unsigned rule);
+  void evaluate(unsigned rule, kernel::Time now);
   vm::Value truth_of(unsigned rule);
   void trip(unsigned rule);
   void resume(unsigned rule);

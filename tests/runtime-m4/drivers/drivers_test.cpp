@@ -46,7 +46,7 @@ struct Drive {
     wiring.speed_limit = speed_limit;
     vm::Image image;
     image.actuators = std::span(&wiring, 1);
-    outputs.own(image);
+    outputs.own(image, 0);
   }
 
   Device device() { return {outputs, wiring, state}; }

@@ -46,15 +46,32 @@ vm::Actuator on_pin(std::uint16_t pin, vm::DriverId driver = vm::DriverId::servo
   return actuator;
 }
 
+vm::Actuator drawn(std::uint16_t pin, test::Draw& draw) {
+  constexpr vm::Release kSafe[] = {vm::Release::hold, vm::Release::rest, vm::Release::coast};
+  vm::Actuator actuator = on_pin(pin, draw.one_in(2) ? vm::DriverId::servo : vm::DriverId::pwm);
+  actuator.safe = kSafe[draw.below(3)];
+  return actuator;
+}
+
+// Is `after` what halting the actuator makes of the pulse `before`? A servo rests at the least pulse, and may need
+// time to get there.
+bool is_safe(const vm::Actuator& actuator, std::uint32_t before, std::uint32_t after) {
+  if (actuator.driver == vm::DriverId::pwm || actuator.safe == vm::Release::coast)
+    return after == 0;
+  if (actuator.safe == vm::Release::hold || before == 0) return after == before;
+  const policy::PinLimit& limit = *policy::limit_of(kPins, actuator.pin);
+  return limit.rise != 0 ? after <= before : after == std::max<std::uint32_t>(500, limit.shortest);
+}
+
 // A guard on a board with kPins, its programs, and what was seen on the pins so far.
 struct Bench {
   Bench() { board.board_pins = kPins; }
 
-  void own(std::vector<vm::Actuator> next) {
+  void own(std::vector<vm::Actuator> next, std::uint32_t halted = 0) {
     actuators = std::move(next);
     vm::Image image;
     image.actuators = actuators;
-    guard.own(image);
+    guard.own(image, halted);
   }
   std::uint32_t pulse(std::uint16_t pin) const { return board.pwm_read(pin); }
 
@@ -92,11 +109,11 @@ TEST_CASE("what the next program drives in the same way stays as it is, all else
   CHECK(bench.pulse(2) == 1500);
 }
 
-TEST_CASE("an actuator that is halted stays as it is until it is let go") {
+TEST_CASE("an actuator that is halted takes no order until it is let go") {
   Bench bench;
   bench.own({on_pin(0), on_pin(1)});
   bench.guard.drive(0, 1500, 0);
-  bench.guard.halt(0b01);
+  bench.guard.halt(0b01, 0);
   bench.guard.drive(0, 600, 0);
   bench.guard.drive(1, 600, 0);
   CHECK(bench.pulse(0) == 1500);
@@ -104,6 +121,52 @@ TEST_CASE("an actuator that is halted stays as it is until it is let go") {
   bench.guard.let_go(0b01);
   bench.guard.drive(0, 700, 0);
   CHECK(bench.pulse(0) == 700);
+}
+
+TEST_CASE("an actuator that is halted is in its safe state at once, without its driver") {
+  constexpr std::uint32_t kAtRest = 500;  // of a range that begins with 0
+  vm::Actuator rests = on_pin(0);
+  rests.safe = vm::Release::rest;
+  vm::Actuator coasts = on_pin(1);
+  coasts.safe = vm::Release::coast;
+  vm::Actuator begins_elsewhere = on_pin(2);
+  begins_elsewhere.min = -90 * vm::kScale;
+  begins_elsewhere.max = 90 * vm::kScale;
+  begins_elsewhere.safe = vm::Release::rest;
+  Bench bench;
+  bench.own({rests, coasts, begins_elsewhere, on_pin(3, vm::DriverId::pwm)});
+  for (unsigned a = 0; a < 4; ++a)
+    bench.guard.drive(a, 1800, 0);
+  bench.guard.halt(0b1111, 0);
+  CHECK(bench.pulse(0) == kAtRest);
+  CHECK(bench.pulse(1) == 0);
+  CHECK(bench.pulse(2) == 1500);
+  CHECK(bench.pulse(3) == 0);  // a motor, whatever its image says
+}
+
+TEST_CASE("nothing begins to move because it is halted") {
+  vm::Actuator rests = on_pin(0);
+  rests.safe = vm::Release::rest;
+  Bench bench;
+  bench.own({rests});
+  bench.guard.halt(0b1, 0);
+  CHECK(bench.pulse(0) == 0);  // it was never driven
+  bench.guard.let_go(0b1);
+  bench.guard.drive(0, 1800, 0);
+  bench.own({rests}, 0b1);  // a program that comes while all is stopped
+  CHECK(bench.pulse(0) == 1800);
+  bench.guard.drive(0, 600, 0);
+  CHECK(bench.pulse(0) == 1800);
+}
+
+TEST_CASE("what is on its way stays where it is when it is halted") {
+  Bench bench;
+  bench.own({on_pin(4)});
+  bench.guard.drive(0, 1'000, 0);
+  bench.guard.drive(0, 1'100, 1'000'000);
+  bench.guard.halt(0b1, 1'000'000);
+  bench.guard.go_on(2'000'000);
+  CHECK(bench.pulse(4) == 1'040);
 }
 
 TEST_CASE("pulses stay inside the range of their pin, and off is always allowed") {
@@ -150,16 +213,17 @@ TEST_CASE("no sequence widens a limit, nor drives a pin that no running program 
       for (std::uint16_t pin = 0; pin < kOutputs; ++pin)
         if (before[pin] != 0) bench->board.pulses[pin] = {before[pin]};
       const unsigned actuator = draw.below(8);
-      bool held = true;  // halted actuators must not have moved
+      bool held = true;         // halted actuators must not have moved
+      bool begins = false;      // a new program, which may begin with one step
+      std::uint32_t fresh = 0;  // … but those that are now
       switch (draw.below(10)) {
         case 0: {
           std::vector<vm::Actuator> next;
           for (std::uint16_t pin = 0; pin < 9; ++pin)  // two of them are no outputs
-            if (draw.one_in(2))
-              next.push_back(on_pin(pin, draw.one_in(2) ? vm::DriverId::servo : vm::DriverId::pwm));
+            if (draw.one_in(2)) next.push_back(drawn(pin, draw));
           bench->own(std::move(next));
           halted = 0;
-          changed.fill(0);  // a new program may begin with one step
+          begins = true;
           held = false;
           break;
         }
@@ -169,8 +233,9 @@ TEST_CASE("no sequence widens a limit, nor drives a pin that no running program 
           held = false;
           break;
         case 2:
+          fresh = 1U << actuator & ~halted;
           halted |= 1U << actuator;
-          bench->guard.halt(1U << actuator);
+          bench->guard.halt(1U << actuator, now);
           break;
         case 3:
           halted &= ~(1U << actuator);
@@ -202,10 +267,13 @@ TEST_CASE("no sequence widens a limit, nor drives a pin that no running program 
         const auto owner = std::ranges::find(bench->actuators, pin, &vm::Actuator::pin);
         if (owner == bench->actuators.end()) {
           REQUIRE(after == 0);
-        } else if (held && (halted >> (owner - bench->actuators.begin()) & 1) != 0) {
+        } else if (const auto a = owner - bench->actuators.begin(); (fresh >> a & 1) != 0) {
+          REQUIRE(is_safe(*owner, before[pin], after));
+        } else if (held && (halted >> a & 1) != 0) {
           REQUIRE(after == before[pin]);
         }
       }
+      if (begins) changed.fill(0);
     }
   }
 }

@@ -1,0 +1,38 @@
+// What stands on the pin of an actuator when it rests. Pure. Actuators are of verified images.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "vm/drivers.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::policy {
+
+inline constexpr std::uint32_t kShortestPulse = 500;  // microseconds; a hobby servo's, at the least
+inline constexpr std::uint32_t kPulseSpan = 2000;     // position, and how much more at the greatest
+
+// Where an actuator rests: at 0, or as near to it as its range lets it.
+constexpr vm::Value rest_position(const vm::Actuator& actuator) {
+  return std::clamp(vm::Value{0}, actuator.min, actuator.max);
+}
+
+// The pulse of a servo at `position`, which is inside its range, in microseconds.
+constexpr std::uint32_t pulse_at(const vm::Actuator& servo, vm::Value position) {
+  const std::int64_t span = std::int64_t{servo.max} - servo.min;
+  const std::int64_t way = std::int64_t{position} - servo.min;
+  const std::int64_t pulse = span == 0 ? kPulseSpan / 2 : way * kPulseSpan / span;
+  return kShortestPulse + static_cast<std::uint32_t>(pulse);
+}
+
+// The pulse that puts an actuator on a pin into its safe state, 0 for off. None: the one that is there, with
+// which it stays where it is.
+constexpr std::optional<std::uint32_t> safe_pulse(const vm::Actuator& actuator) {
+  if (vm::pin_use(actuator.driver) != vm::PinUse::pulses || actuator.safe == vm::Release::coast)
+    return 0;
+  if (actuator.safe == vm::Release::hold) return std::nullopt;
+  return pulse_at(actuator, rest_position(actuator));
+}
+
+}  // namespace robosync::policy
