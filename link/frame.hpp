@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "link/messages.hpp"
 
@@ -47,6 +48,27 @@ private:
   bool overflow_ = false;
   std::uint32_t bad_frames_ = 0;
   Frame frame_;
+};
+
+// The frame that stops the robot is always these bytes: encode_frame(stop, kStopSequence, {}). So who takes bytes from
+// the line, an interrupt handler as a rule, knows it without decoding, before anybody else gets the processor.
+inline constexpr std::uint8_t kStopSequence = 0xFF;
+inline constexpr std::array<std::byte, 6> kStopFrame{std::byte{0x05}, std::byte{0x15},
+                                                     std::byte{0xFF}, std::byte{0x79},
+                                                     std::byte{0xFF}, std::byte{0}};
+
+class StopWatch {
+public:
+  // Takes one byte from the line. True when it ended a stop frame.
+  [[nodiscard]] bool push(std::byte byte) {
+    if (byte == kStopFrame.back()) return std::exchange(place_, 0U) == kStopFrame.size() - 1;
+    const bool goes_on = place_ < kStopFrame.size() - 1 && byte == kStopFrame[place_];
+    place_ = goes_on ? place_ + 1 : kStopFrame.size();
+    return false;
+  }
+
+private:
+  std::size_t place_ = 0;  // in the frame; behind its end: the line has another one
 };
 
 // CRC-16/CCITT-FALSE (poly 0x1021, init 0xFFFF).

@@ -69,7 +69,7 @@ public:
 
   // A person's word: all outputs go to their safe state at once and stay there, whatever program runs or comes,
   // until resume(); of that, what the running program's SAFETY rules halt stays halted.  [thread]
-  void stop() { say(true); }
+  void stop() { say(true); }  // or from an interrupt of the kernel's level
   void resume() { say(false); }
   bool stopped() const { return stopped_; }
 

@@ -39,7 +39,7 @@ Client::Client(Transport& transport, milliseconds timeout)
 
 std::uint8_t Client::send(MessageType type, std::span<const std::byte> payload) {
   std::array<std::byte, link::kMaxEncodedFrame> frame{};
-  const std::uint8_t sequence = sequence_++;
+  const std::uint8_t sequence = type == MessageType::stop ? link::kStopSequence : sequence_++;
   const std::size_t length = link::encode_frame(type, sequence, payload, frame);
   transport_.write(std::span(frame).first(length));
   return sequence;

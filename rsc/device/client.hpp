@@ -34,7 +34,9 @@ public:
   link::Status status();
   link::Status clear(std::uint32_t image_crc);  // ends the program, if it runs
   link::Status set_trace(bool on);
-  link::Status stop();  // all outputs to their safe state, until resume()
+  // All outputs to their safe state, until resume(). The board does it when the frame has come, and replies when it
+  // finds the time: no reply does not mean that it has not stopped.
+  link::Status stop();
   link::Status resume();
   link::FeedResult feed(const link::Feed& feed);
   link::ActivateResult activate();

@@ -3,18 +3,36 @@
 #include <memory>
 #include <string>
 
-#include "rsc/device/session.hpp"
+#include "rsc/device/client.hpp"
+#include "rsc/device/transport.hpp"
+#include "rsc/failure.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 
+namespace {
+
+// Without a hello first: a board with much to do may need some time for that.
+void stop_board(const std::string& port) {
+  const std::unique_ptr<Transport> transport = open_port(port);
+  try {
+    Client(*transport).stop();
+  } catch (const Failure& failure) {
+    throw Failure(failure.exit(),
+                  std::string(failure.what()) +
+                      " It may have stopped all the same: a board with much to do stops first, and "
+                      "answers when it finds the time");
+  }
+}
+
+}  // namespace
+
 void add_stop(Options& options) {
   auto port = std::make_shared<std::string>();
   add_port_option(options, *port);
   options.runs([port] {
-    Session session(*port);
-    session.client.stop();
+    stop_board(*port);
     std::cout << "stopped: all outputs are in their safe state until `rsc resume`\n";
   });
 }

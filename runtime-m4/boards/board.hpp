@@ -10,6 +10,16 @@
 
 namespace robosync::boards {
 
+// What the link's line tells, from interrupts of the kernel's level.
+struct LineEvents {
+  // Bytes have come; or, after a link_write() that took less than it was given, there is room again. At worst
+  // for nothing.
+  void (*ready)(void* argument) = nullptr;
+  // A stop frame has come (link::StopWatch), though nobody may have read it yet, nor had room for it.
+  void (*stop)(void* argument) = nullptr;
+  void* argument = nullptr;
+};
+
 class Board {
 public:
   virtual const char* name() const = 0;
@@ -28,10 +38,8 @@ public:
   // The link's serial line. Both return at once with the number of bytes moved.
   virtual std::size_t link_write(std::span<const std::byte> bytes) = 0;
   virtual std::size_t link_read(std::span<std::byte> bytes) = 0;
-  // Starts the line, so that nobody ever has to look: `ready(argument)` is called when bytes have
-  // come, and, after a link_write() that took less than it was given, when there is room again. From
-  // interrupts of the kernel's level; at worst for nothing.
-  virtual void link_start(void (*ready)(void*), void* argument) = 0;
+  // Starts the line, so that nobody ever has to look.
+  virtual void link_start(const LineEvents& events) = 0;
 
   // Starts the watchdog, and keeps it from resetting the board for another period (100 ms).
   virtual void watchdog_start() = 0;

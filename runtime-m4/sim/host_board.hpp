@@ -23,7 +23,7 @@ public:
 
   std::size_t link_write(std::span<const std::byte> bytes) override { return bytes.size(); }
   std::size_t link_read(std::span<std::byte>) override { return 0; }
-  void link_start(void (*)(void*), void*) override {}
+  void link_start(const boards::LineEvents&) override {}
 
   void watchdog_start() override {}
   void watchdog_kick() override { ++kicks_; }

@@ -66,7 +66,8 @@ bool Server::start() {
     auto& server = *static_cast<Server*>(self);
     server.kernel_.signal(server.thread_, kLine);
   };
-  board_.link_start(line_ready, this);
+  const auto stop = [](void* self) { static_cast<Server*>(self)->runtime_.stop(); };
+  board_.link_start({.ready = line_ready, .stop = stop, .argument = this});
   return true;
 }
 
@@ -112,7 +113,7 @@ void Server::handle(const link::Frame& frame) {
     case MessageType::get_status:
       return status(frame.sequence);
     case MessageType::stop:
-      runtime_.stop();
+      runtime_.stop();  // again, as a rule: the board has seen the frame before
       return status(frame.sequence);
     case MessageType::resume:
       runtime_.resume();

@@ -45,7 +45,11 @@ class Debugger:
         self._expect_ok(f"P{number:x}={value.to_bytes(4, 'little').hex()}")
 
     def read_words(self, address, count):
-        raw = bytes.fromhex(self._ask(f"m{address:x},{4 * count:x}"))
+        """None while a thread runs that may not read them: QEMU asks the MPU."""
+        answer = self._ask(f"m{address:x},{4 * count:x}")
+        if answer.startswith("E"):
+            return None
+        raw = bytes.fromhex(answer)
         return [int.from_bytes(raw[i:i + 4], "little") for i in range(0, len(raw), 4)]
 
     def _expect_ok(self, request):

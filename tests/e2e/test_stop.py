@@ -53,8 +53,12 @@ class Stop(unittest.TestCase):
         self.pulses_at = symbols(FIRMWARE)["robosync_virtual_pwm"]
 
     def pulses(self):
-        with Debugger(self.gdb) as debugger:
-            return debugger.read_words(self.pulses_at, PINS)
+        give_up = time.monotonic() + PATIENCE
+        while time.monotonic() < give_up:
+            with Debugger(self.gdb) as debugger:
+                if (pulses := debugger.read_words(self.pulses_at, PINS)) is not None:
+                    return pulses
+        return self.fail("the pulses could not be read")
 
     def compiled(self, program):
         source, image = self.folder / "robot.rsl", self.folder / "robot.rsb"

@@ -1,6 +1,7 @@
 // Frames on a clean line: known answers, every length, every byte value.
 #include "link/frame.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 #include <catch2/catch.hpp>
@@ -23,6 +24,34 @@ TEST_CASE("CRC-16/CCITT-FALSE gives the known answers") {
   CHECK(link::crc16(text("123456789")) == 0x29B1);  // the check value of the catalogue
   CHECK(link::crc16(text("")) == 0xFFFF);
   CHECK(link::crc16(text("A")) == 0xB915);
+}
+
+TEST_CASE("the frame that stops is always the same, and known by its bytes") {
+  const Bytes wire = test::encode({link::MessageType::stop, link::kStopSequence, {}});
+  CHECK(std::ranges::equal(wire, link::kStopFrame));
+  const auto times = [](const Bytes& line) {
+    link::StopWatch watch;
+    return std::ranges::count_if(line, [&](std::byte byte) { return watch.push(byte); });
+  };
+  CHECK(times(wire) == 1);
+  const Bytes other = test::encode({link::MessageType::stop, 7, {}});
+  CHECK(times(other) == 0);
+  Bytes line = other;
+  for (const Bytes& next : {wire, other, Bytes{std::byte{0}}, wire, wire})
+    line.insert(line.end(), next.begin(), next.end());
+  CHECK(times(line) == 3);
+}
+
+// Whatever carries its bytes in the midst of other ones is another frame.
+TEST_CASE("no piece of another frame stops the robot") {
+  Bytes line = {std::byte{1}};
+  line.insert(line.end(), link::kStopFrame.begin(), link::kStopFrame.end());
+  link::StopWatch watch;
+  for (const std::byte byte : line)
+    CHECK_FALSE(watch.push(byte));
+  for (std::size_t lost = 0; lost < link::kStopFrame.size(); ++lost)
+    for (std::size_t i = 0; i < link::kStopFrame.size(); ++i)
+      if (i != lost) CHECK_FALSE(watch.push(link::kStopFrame[i]));
 }
 
 TEST_CASE("a frame on the wire is what link.md says") {

@@ -35,7 +35,7 @@ public:
   std::uint32_t pwm_read(std::uint16_t pin) const override;
   std::size_t link_write(std::span<const std::byte> bytes) override { return uart_.write(bytes); }
   std::size_t link_read(std::span<std::byte> bytes) override { return uart_.read(bytes); }
-  void link_start(void (*ready)(void*), void* argument) override { uart_.start(ready, argument); }
+  void link_start(const LineEvents& events) override { uart_.start(events); }
   void watchdog_start() override;
   void watchdog_kick() override;
 

@@ -19,9 +19,8 @@ UartRegisters& uart() {
 
 }  // namespace
 
-void Uart::start(void (*ready)(void*), void* argument) {
-  ready_ = ready;
-  ready_argument_ = argument;
+void Uart::start(const LineEvents& events) {
+  events_ = events;
   uart().baud_divider = kClockHz / kBaud;
   uart().control = kUartControlOn;
   port::core::enable_interrupt(kUart0ReceiveInterrupt);
@@ -46,18 +45,19 @@ void Uart::on_transmit() {
   }
   if (!wants_room_.load() || to_send_.used() > kSendBuffer / 2) return;
   wants_room_.store(false);
-  ready_(ready_argument_);
+  events_.ready(events_.argument);
 }
 
-// Bytes that find the ring full are lost; the link's frames are checked and asked for again.
+// Bytes that find the ring full are lost; the link's frames are checked and asked for again. A stop is not.
 void Uart::on_receive() {
   uart().interrupt = kUartReceived;
   std::array<std::byte, 1> next{};
   for (unsigned i = 0; i < kBurst && (uart().state & kUartStateReceiveFull) != 0; ++i) {
     next[0] = static_cast<std::byte>(uart().data);
     received_.write(next);
+    if (stops_.push(next[0])) events_.stop(events_.argument);
   }
-  ready_(ready_argument_);
+  events_.ready(events_.argument);
 }
 
 }  // namespace robosync::boards::mps2

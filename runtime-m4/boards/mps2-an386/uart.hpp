@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <span>
 
+#include "link/frame.hpp"
+#include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/ring.hpp"
 
@@ -14,9 +16,8 @@ namespace robosync::boards::mps2 {
 
 class Uart {
 public:
-  // Starts the line at 115200 baud; boards::Board::link_start() says when `ready(argument)` is called.
-  // Its interrupts come once the kernel runs.
-  void start(void (*ready)(void*), void* argument);
+  // Starts the line at 115200 baud. Its interrupts come once the kernel runs.
+  void start(const LineEvents& events);
 
   // Both return at once with the number of bytes moved. [one thread each]
   std::size_t write(std::span<const std::byte> bytes);
@@ -32,8 +33,8 @@ private:
   Ring<kReceiveBuffer> received_;
   Ring<kSendBuffer> to_send_;
   std::atomic<bool> wants_room_ = false;  // who writes waits until half of the ring is free
-  void (*ready_)(void*) = nullptr;
-  void* ready_argument_ = nullptr;
+  link::StopWatch stops_;
+  LineEvents events_;
 };
 
 }  // namespace robosync::boards::mps2

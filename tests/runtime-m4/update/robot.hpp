@@ -59,25 +59,26 @@ public:
     const std::size_t count = std::min(bytes.size(), from_host.size());
     std::copy_n(from_host.begin(), count, bytes.begin());
     from_host.erase(from_host.begin(), from_host.begin() + static_cast<std::ptrdiff_t>(count));
+    watched_ -= std::min(watched_, count);
     return count;
   }
 
-  void link_start(void (*ready)(void*), void* argument) override {
-    ready_ = ready;
-    argument_ = argument;
-  }
+  void link_start(const boards::LineEvents& events) override { events_ = events; }
   // What the UART's interrupts would see after a millisecond.
   void interrupt() {
     const bool room = std::exchange(wants_room_, wants_room_ && to_host.size() > kRing / 2);
-    if (!from_host.empty() || (room && !wants_room_)) ready_(argument_);
+    for (; watched_ < from_host.size(); ++watched_)
+      if (stops_.push(from_host[watched_])) events_.stop(events_.argument);
+    if (!from_host.empty() || (room && !wants_room_)) events_.ready(events_.argument);
   }
 
   std::deque<std::byte> from_host, to_host;
 
 private:
   bool wants_room_ = false;
-  void (*ready_)(void*) = nullptr;
-  void* argument_ = nullptr;
+  std::size_t watched_ = 0;  // bytes of from_host that the interrupt has seen
+  link::StopWatch stops_;
+  boards::LineEvents events_;
 };
 
 // One way of the line: cuts the stream into frames and passes each through the damage.

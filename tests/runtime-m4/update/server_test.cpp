@@ -131,6 +131,21 @@ TEST_CASE("a reading that is fed leads to a command, and the trace shows it") {
   CHECK(client.feed({0, 9, 0}).error == link::FeedError::no_channel);
 }
 
+TEST_CASE("a stop does not wait until somebody reads the line") {
+  Robot robot;
+  robot.run(10);
+  robot.board.from_host.assign(link::kStopFrame.begin(), link::kStopFrame.end());
+  robot.board.interrupt();
+  CHECK(robot.runtime.stopped());  // no thread has run yet
+  robot.runtime.resume();
+  robot.board.from_host.clear();
+  std::array<std::byte, link::kMaxEncodedFrame> other{};
+  const std::size_t length = link::encode_frame(link::MessageType::get_status, 7, {}, other);
+  robot.board.from_host.assign(other.data(), other.data() + length);
+  robot.board.interrupt();
+  CHECK_FALSE(robot.runtime.stopped());
+}
+
 TEST_CASE("hello stops the trace of an earlier host") {
   Robot robot;
   tool::Client client(robot);
