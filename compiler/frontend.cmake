@@ -39,15 +39,14 @@ target_sources(robosync_compiler PRIVATE
   diagnostics/render_human.cpp
   diagnostics/render_json.cpp
   diagnostics/snippet.cpp
-  syntax/attempt.cpp
-  syntax/block_blame.cpp
-  syntax/block_walk.cpp
+  syntax/blocks.cpp
   syntax/builder.cpp
   syntax/edit.cpp
   syntax/keywords.cpp
   syntax/layout.cpp
   syntax/lexer_state.cpp
   syntax/parser.cpp
+  syntax/reader.cpp
   syntax/repair.cpp
   syntax/summary.cpp
   syntax/wording.cpp)

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "compiler/diagnostics/nearest.hpp"
-#include "compiler/syntax/block_walk.hpp"
+#include "compiler/syntax/blocks.hpp"
 
 namespace robosync::compiler {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "compiler/source/source_file.hpp"
-#include "compiler/syntax/attempt.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
+#include "compiler/syntax/reader.hpp"
 
 namespace robosync::compiler {
 

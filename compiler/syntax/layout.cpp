@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "compiler/syntax/block_walk.hpp"
+#include "compiler/syntax/blocks.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 
 namespace robosync::compiler {

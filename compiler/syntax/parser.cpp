@@ -5,9 +5,9 @@
 #include <iterator>
 #include <utility>
 
-#include "compiler/syntax/attempt.hpp"
 #include "compiler/syntax/layout.hpp"
 #include "compiler/syntax/lexer.hpp"
+#include "compiler/syntax/reader.hpp"
 #include "compiler/syntax/repair.hpp"
 
 namespace robosync::compiler {

@@ -8,7 +8,7 @@
 
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
-#include "compiler/syntax/attempt.hpp"
+#include "compiler/syntax/reader.hpp"
 
 namespace robosync::compiler {
 

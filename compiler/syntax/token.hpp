@@ -21,6 +21,9 @@ struct Token {
   Span span;
 };
 
+// A piece of the program; its last token is the end of a line.
+using Tokens = std::vector<Token>;
+
 // "`WHEN`", "a name", "`<`": the kind as messages show it.
 [[nodiscard]] std::string describe(TokenKind kind);
 

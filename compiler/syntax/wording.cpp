@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "compiler/source/utf8.hpp"
-#include "compiler/syntax/block_blame.hpp"
-#include "compiler/syntax/block_walk.hpp"
+#include "compiler/syntax/blocks.hpp"
 
 namespace robosync::compiler {
 

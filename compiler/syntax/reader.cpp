@@ -1,5 +1,5 @@
-// See attempt.hpp.
-#include "compiler/syntax/attempt.hpp"
+// See reader.hpp.
+#include "compiler/syntax/reader.hpp"
 
 #include <utility>
 

@@ -13,9 +13,6 @@
 
 namespace robosync::compiler {
 
-// A piece of the program; its last token is the end of a line.
-using Tokens = std::vector<Token>;
-
 struct Attempt {
   bool complete = false;
   std::vector<ast::Item> items;  // when complete

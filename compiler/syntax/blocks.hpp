@@ -1,8 +1,10 @@
-// Walks over tokens and follows which blocks are open, by their keywords alone, whatever the
-// grammar would say. Used to split a text into items and to find out which block lost its END.
+// Blocks as their keywords tell them, whatever the grammar would say: which are open (used to split a text into items),
+// and which one lost its END or has one too many. Keywords alone cannot tell that: indentation can, in a program that has
+// some.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,5 +45,24 @@ private:
 
 // Bytes between the start of the token's line and the token.
 [[nodiscard]] std::size_t indentation(const Token& token, const SourceFile& source);
+
+struct OpenBlock {
+  std::size_t opener = 0;  // place of its first keyword
+  std::size_t missed =
+      0;  // the token before which END should stand; the number of tokens: at the end
+};
+
+// The innermost `count` blocks that lack an END when none may be open before the token `at`.
+[[nodiscard]] std::vector<OpenBlock> open_blocks(const Tokens& tokens, std::size_t at,
+                                                 std::size_t count, const SourceFile& source);
+
+struct IdleEnd {
+  std::size_t closed = 0;  // the opener that an earlier END, at `by`, closed too soon
+  std::size_t by = 0;
+};
+
+// An END before the idle one at `at` that stands farther right than the block it closed.
+[[nodiscard]] std::optional<IdleEnd> early_end(const Tokens& tokens, std::size_t at,
+                                               const SourceFile& source);
 
 }  // namespace robosync::compiler
