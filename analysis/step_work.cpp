@@ -188,7 +188,7 @@ Instructions StepWork::evaluation(unsigned rule) const {
   Instructions sum = costs::kRule + costs_[rule].condition;
   if (divides_[rule]) sum += costs::kZeroDivide;
   if (worst_[rule].polls)
-    sum += costs::kPoll + (worst_[rule].follows ? output(rule) : costs_[rule].dearer_response());
+    sum += costs::kPoll + (worst_[rule].follows ? output(rule) : costs_[rule].worst_response());
   return sum;
 }
 
@@ -205,7 +205,7 @@ Instructions StepWork::by_itself(unsigned rule) const {
 
 // The worst part of its response.
 Instructions StepWork::output(unsigned rule) const {
-  Instructions sum = costs_[rule].dearer_response() + worst_[rule].other;
+  Instructions sum = costs_[rule].worst_response() + worst_[rule].other;
   for (const Instructions commands : worst_[rule].by_actuator)
     sum += commands;
   return sum;
@@ -336,7 +336,7 @@ Instructions StepWork::trips() const {
     sum += costs::kHalt + driver_costs(a).release;
   for (unsigned r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count; ++r)
     if (image_.rules[r].kind == RuleKind::safety)
-      sum += costs::kTrip + costs_[r].dearer_response() + worst_[r].other;
+      sum += costs::kTrip + costs_[r].worst_response() + worst_[r].other;
   return sum;
 }
 

@@ -101,7 +101,7 @@ std::string too_costly_text(const vm::Image& image, std::uint32_t budget) {
     const RuleTiming rule = rule_timing(image, costly.rule, costly.cost);
     text += fmt::format("\n  line {}: {} instructions", rule.line, rule.cost.step());
     if (rule.response_line != 0) {
-      text += fmt::format(", {} of them in its {} (line {})", rule.cost.dearer_response(),
+      text += fmt::format(", {} of them in its {} (line {})", rule.cost.worst_response(),
                           rule.else_is_worst ? "ELSE" : "DO", rule.response_line);
     }
   }

@@ -25,7 +25,7 @@ std::string title(const BehaviorTiming& behavior) {
 std::string rule_line(const RuleTiming& rule) {
   std::string response;
   if (rule.response_line != 0) {
-    response = fmt::format("{:>8}  {:<4} line {}", rule.cost.dearer_response(),
+    response = fmt::format("{:>8}  {:<4} line {}", rule.cost.worst_response(),
                            rule.else_is_worst ? "ELSE" : "DO", rule.response_line);
   }
   return fmt::format("{:>6}  {:<24}{:>10}  {:<24}{:>8}\n", rule.line,

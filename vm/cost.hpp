@@ -15,17 +15,17 @@
 
 namespace robosync::vm {
 
-// In worst-case M4 instructions; of a response the dearest part between two waits.
+// In worst-case M4 instructions; of a response the costliest part between two waits.
 struct RuleCost {
   std::uint32_t condition = 0;  // 0 of a rule without one
   std::uint32_t then_response = 0;
   std::uint32_t else_response = 0;
 
   // In one step a rule runs one of them.
-  [[nodiscard]] constexpr std::uint32_t dearer_response() const {
+  [[nodiscard]] constexpr std::uint32_t worst_response() const {
     return std::max(then_response, else_response);
   }
-  [[nodiscard]] constexpr std::uint32_t step() const { return condition + dearer_response(); }
+  [[nodiscard]] constexpr std::uint32_t step() const { return condition + worst_response(); }
 };
 
 // One for each of the image's rules; `costs` has as many places. False for an image whose code

@@ -37,10 +37,11 @@ struct Machine {
 // Why a response gave up the processor, and where it goes on.
 enum class Pause : std::uint8_t {
   ended,
-  until_time,    // at Progress::wake
-  until_done,    // when all commands it has put out are done
-  polling,       // in every step that evaluates its behaviour, or at Progress::wake
-  still_polling  // as polling: `until` was not true, so it goes on as it was
+  until_time,     // at Progress::wake
+  until_done,     // when all commands it has put out are done
+  polling,        // in every step that evaluates its behaviour, or at Progress::wake
+  still_polling,  // as polling: `until` was not true, so it goes on as it was
+  count_
 };
 struct Progress {
   Pause pause = Pause::ended;

@@ -50,8 +50,8 @@ struct Verdict {
 // `bytes` must be 4-aligned. On success `image` views them; otherwise it is empty.
 [[nodiscard]] Verdict verify(std::span<const std::byte> bytes, const Limits& limits, Image& image);
 
-// Worst-case M4 instructions of VM code in one step: every condition, and of every rule the dearer
-// response, of which the dearest part between two waits counts. Found by the same pass as verify();
+// Worst-case M4 instructions of VM code in one step: every condition, and of every rule the costlier
+// response, of which the costliest part between two waits counts. Found by the same pass as verify();
 // what the header declares, and the board's limits, do not matter. 0 for an image that would be
 // refused for anything else. `image` must be a view that view_image() accepted.
 [[nodiscard]] std::uint32_t step_cost(const Image& image);

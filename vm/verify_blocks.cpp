@@ -66,8 +66,8 @@ bool Blocks::is_counter(std::uint8_t cell) const {
   return false;
 }
 
-std::uint32_t Blocks::dearest() const {
-  return std::max(dearest_, spent_.cost);
+std::uint32_t Blocks::worst() const {
+  return std::max(worst_, spent_.cost);
 }
 
 Refusal Blocks::open(Flow closed_by, std::size_t start, std::size_t end) {
@@ -85,7 +85,7 @@ Refusal Blocks::open(Flow closed_by, std::size_t start, std::size_t end) {
 }
 
 // Remembers in a forward block what has been spent at a jump to its end.
-void Blocks::take_dearer(Block& block) const {
+void Blocks::take_worse(Block& block) const {
   block.cost = std::max(block.cost, spent_.cost);
   block.output = static_cast<std::uint8_t>(std::max<std::uint32_t>(block.output, spent_.output));
 }
@@ -99,7 +99,7 @@ Refusal Blocks::begin_else(std::size_t next, std::size_t target) {
   --depth_;
   Refusal refusal = Refusal::none;
   if (depth_ > 0 && !top().is_loop() && top().end == target)
-    take_dearer(top());
+    take_worse(top());
   else
     refusal = open(Flow::if_else, next, target);
   spent_ = before;
@@ -119,7 +119,7 @@ Refusal Blocks::close_loop(std::size_t target, Word word, Flow end) {
 // Takes into account that the loop, whose end is reached, runs more than once.
 Refusal Blocks::repeat(const Block& loop) {
   if (loop.pauses == Pauses::always) {  // a run can come from the last wait around to the first one
-    dearest_ = std::max(dearest_, spent_.cost + loop.lead_cost);
+    worst_ = std::max(worst_, spent_.cost + loop.lead_cost);
     return good_or(Refusal::too_much_output,
                    spent_.output + loop.lead_output <= kMaxResponseOutput);
   }
@@ -165,7 +165,7 @@ void Blocks::wait() {
   }
   for (; block > 0; --block)  // one further out: the wait may be left out in a round of it
     if (open_[block - 1].is_loop()) return;
-  dearest_ = std::max(dearest_, spent_.cost);
+  worst_ = std::max(worst_, spent_.cost);
   spent_ = {};
 }
 

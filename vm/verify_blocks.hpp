@@ -1,7 +1,7 @@
 // Verifier, part: how the blocks of a code object nest, and what a run of it costs and puts out.
 //
 // One pass, without looking back: jumps go only to the ends of blocks and the starts of loops, so
-// what was spent on the dearest way to an instruction is known when the pass comes there. A wait
+// what was spent on the costliest way to an instruction is known when the pass comes there. A wait
 // ends a run, and the count starts again. A loop either runs a constant number of times, and its
 // body counts as often; or it waits in every round, and a run sees at most what stands behind its
 // last wait and, around the loop's end, what stands before its first one. A wait that may be jumped
@@ -42,8 +42,8 @@ public:
 
   // Is it the cell of an open loop?
   [[nodiscard]] bool is_counter(std::uint8_t cell) const;
-  // Cost of the dearest run.
-  [[nodiscard]] std::uint32_t dearest() const;
+  // Cost of the costliest run.
+  [[nodiscard]] std::uint32_t worst() const;
 
 private:
   struct Spent {
@@ -85,12 +85,12 @@ private:
   Refusal repeat(const Block& loop);
   [[nodiscard]] bool disown();
   void wait();
-  void take_dearer(Block& block) const;
+  void take_worse(Block& block) const;
 
   const Image& image_;
   std::size_t last_;
-  Spent spent_;  // since the last wait, on the dearest way
-  std::uint32_t dearest_ = 0;
+  Spent spent_;  // since the last wait, on the costliest way
+  std::uint32_t worst_ = 0;
   std::uint32_t owned_ = 0;  // bit i: input i
   unsigned depth_ = 0;
   std::array<Block, kMaxBlocks> open_;  // initialized: the first depth_

@@ -270,7 +270,7 @@ bool check_object(Frame& frame, ObjectKind kind, CodeRange range, std::uint32_t&
     const Refusal refusal = check_instruction(pass, at, pass.image.code[at], at == last);
     if (refusal != Refusal::none) return verification.refuse(refusal, Section::code, at);
   }
-  cost = pass.blocks.dearest();
+  cost = pass.blocks.worst();
   actuators = pass.actuators;
   return true;
 }

@@ -20,7 +20,7 @@ void report_costly_step(const Emitted& emitted, Span span, Diagnostics& diagnost
     const vm::Rule& rule = image.rules[costly.rule];
     const bool in_else = costly.cost.else_response > costly.cost.then_response;
     const std::uint16_t response = in_else ? rule.else_response : rule.then_response;
-    const bool in_response = costly.cost.dearer_response() > costly.cost.condition;
+    const bool in_response = costly.cost.worst_response() > costly.cost.condition;
     const std::size_t word = in_response ? image.responses[response].start : rule.condition_start;
     report.label(emitted.code.span_of(word),
                  "its rule takes up to " + std::to_string(costly.cost.step()) + " instructions",

@@ -107,7 +107,7 @@ vm::Progress BehaviorLayer::checked_progress() const {
   vm::Progress progress{.pause = result.pause, .next = result.next, .wake = result.wake};
   const std::span<const vm::Word> code = program_->image.code;
   const bool inside = progress.next >= code.data() && progress.next < code.data() + code.size();
-  if (progress.pause > vm::Pause::still_polling || !inside) progress.pause = vm::Pause::ended;
+  if (progress.pause >= vm::Pause::count_ || !inside) progress.pause = vm::Pause::ended;
   return progress;
 }
 

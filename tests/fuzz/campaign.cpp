@@ -104,12 +104,12 @@ void Campaign::run(Entry& entry) {
   const Facts facts = exercise(accepted_, entry.seed, engine_);
   entry.hash = facts.hash;
   const std::uint32_t declared = accepted_.header->step_cost;
-  if (facts.dearest > declared) engine_.fail("a step costs more than declared");
+  if (facts.worst > declared) engine_.fail("a step costs more than declared");
   totals_.runs += facts.runs;
   totals_.pauses += facts.pauses;
-  totals_.exact += facts.dearest == declared ? 1 : 0;
+  totals_.exact += facts.worst == declared ? 1 : 0;
   if (declared > 0)
-    totals_.worst_ratio = std::max(totals_.worst_ratio, double{1} * facts.dearest / declared);
+    totals_.worst_ratio = std::max(totals_.worst_ratio, double{1} * facts.worst / declared);
   std::bitset<kOpcodeCount> seen;
   for (const Word word : accepted_.code)
     if (is_opcode(word)) seen.set(word & 0xFF);

@@ -65,7 +65,7 @@ public:
         response = std::max(response, respond(rule, rule.else_response));
       }
       watch += rule.kind == vm::RuleKind::watch ? 1 : 0;
-      facts_.dearest += condition + response;
+      facts_.worst += condition + response;
     }
     for (std::size_t i = 0; i < timer_words_; ++i)
       note(timer_memory_[i]);
@@ -120,13 +120,13 @@ private:
     return cost;
   }
 
-  // From its start, and then some times on from where it paused. The cost of its dearest run.
+  // From its start, and then some times on from where it paused. The cost of its costliest run.
   std::uint32_t respond(const vm::Rule& rule, std::uint16_t index) {
     if (index == vm::kNoIndex) return 0;
     const vm::Response& response = image_.responses[index];
     const CodeObject object{&behavior_, response.start, response.length, false,
                             rule.kind == vm::RuleKind::safety};
-    std::uint32_t dearest = 0;
+    std::uint32_t worst = 0;
     std::size_t from = 0;
     for (int runs = 0; runs < kMostRuns; ++runs) {
       Word* const output = engine_.output(kOutputRoom);
@@ -136,7 +136,7 @@ private:
       machine_.assigned = machine_.shifted = 0;
       const Run run = engine_.respond(machine_, object, from);
       ++facts_.runs;
-      dearest = std::max(dearest, run.cost);
+      worst = std::max(worst, run.cost);
       check_run(run, {output, machine_.output}, response);
       std::copy_n(latched_.begin(), behavior_.input_count, frame_);
       if (run.pause == vm::Pause::ended) break;
@@ -144,7 +144,7 @@ private:
       from = run.next;
       latch();
     }
-    return dearest;
+    return worst;
   }
 
   void check_run(const Run& run, std::span<const Word> output, const vm::Response& response) {

@@ -52,9 +52,9 @@ protected:
 
 struct Facts {
   std::uint32_t hash = 2166136261U;
-  std::uint32_t runs = 0;     // of conditions and responses
-  std::uint32_t pauses = 0;   // from which a response went on
-  std::uint32_t dearest = 0;  // of every rule the dearest condition and run of a response seen
+  std::uint32_t runs = 0;    // of conditions and responses
+  std::uint32_t pauses = 0;  // from which a response went on
+  std::uint32_t worst = 0;   // of every rule the costliest condition and run of a response seen
 };
 
 // `image` is accepted. The same seed, the same inputs.

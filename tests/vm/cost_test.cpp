@@ -136,29 +136,29 @@ std::uint32_t cost_of(Op op) {
   return kOpcodes[static_cast<std::size_t>(op)].cost;
 }
 
-struct Dearest {
+struct Worst {
   std::uint32_t cost = 0;
   std::uint32_t output = 0;
 };
 
-// Follows the code on a drawn way, as the interpreter would; what its dearest run takes.
+// Follows the code on a drawn way, as the interpreter would; what its costliest run takes.
 class Walk {
 public:
   Walk(const std::vector<Word>& code, std::mt19937& random) : code_(code), random_(random) {}
 
-  Dearest go() {
+  Worst go() {
     constexpr int kEnough = 3000;
     for (int words = 0; words < kEnough && at_ < code_.size(); ++words)
       step(code_[at_]);
     pause();
-    return dearest_;
+    return worst_;
   }
 
 private:
   bool draw_truth() { return random_() % 2 == 0; }
   void pause() {
-    dearest_.cost = std::max(dearest_.cost, run_.cost);
-    dearest_.output = std::max(dearest_.output, run_.output);
+    worst_.cost = std::max(worst_.cost, run_.cost);
+    worst_.output = std::max(worst_.output, run_.output);
     run_ = {};
   }
   void step(Word word) {
@@ -208,13 +208,13 @@ private:
   const std::vector<Word>& code_;
   std::mt19937& random_;
   std::size_t at_ = 0;
-  Dearest run_, dearest_;
+  Worst run_, worst_;
   std::map<unsigned, unsigned> rounds_;
 };
 
 }  // namespace
 
-TEST_CASE("no way through a drawn response is dearer than what the verifier has found") {
+TEST_CASE("no way through a drawn response is costlier than what the verifier has found") {
   const std::uint32_t conditions = 2 * (cost_of(Op::lt_k) + cost_of(Op::ret));
   const auto programs = robosync::test::share_of<std::uint32_t>(1500);
   unsigned accepted = 0;
@@ -231,14 +231,14 @@ TEST_CASE("no way through a drawn response is dearer than what the verifier has 
     ++accepted;
     const std::uint32_t found = image.header->step_cost - conditions;
     std::mt19937 random(seed);
-    std::uint32_t dearest = 0;
+    std::uint32_t worst = 0;
     for (int way = 0; way < 200; ++way) {
-      const Dearest walked = Walk(code, random).go();
+      const Worst walked = Walk(code, random).go();
       REQUIRE(walked.cost <= found);
       REQUIRE(walked.output <= kMaxResponseOutput);
-      dearest = std::max(dearest, walked.cost);
+      worst = std::max(worst, walked.cost);
     }
-    exact += dearest == found ? 1 : 0;
+    exact += worst == found ? 1 : 0;
   }
   CHECK(accepted > programs * 9 / 10);
   CAPTURE(accepted, exact);

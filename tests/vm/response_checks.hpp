@@ -81,7 +81,7 @@ inline std::uint32_t cost(const Code& code) {
     return sum + kOpcodes[static_cast<std::size_t>(opcode_of(word))].cost;
   });
 }
-// The dearest run of the response.
+// The costliest run of the response.
 inline std::uint32_t found_cost(const Code& code) {
   const Bytes bytes = with_response(code).build();
   Image image;

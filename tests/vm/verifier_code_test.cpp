@@ -260,7 +260,7 @@ TEST_CASE("a response shared by behaviours is checked in the frame of each") {
   check_refused(image, {Refusal::bad_operand, Section::code, 0});
 }
 
-TEST_CASE("the dearer response of a rule counts, and every condition") {
+TEST_CASE("the costlier response of a rule counts, and every condition") {
   const auto cost = [](Op op) { return kOpcodes[static_cast<std::size_t>(op)].cost; };
   ImageBuilder image =
       one_rule(0b001, {encode(Op::cmd_end, left_arm, move_verb, slowly)}, kTrivialCondition);

@@ -8,7 +8,7 @@ using namespace robosync::vm::test;
 using namespace robosync::vm::test::response;
 using namespace robosync::vm::test::companion;
 
-TEST_CASE("the dearer way through an IF counts") {
+TEST_CASE("the costlier way through an IF counts") {
   const Code dear = repeat(3, kCommand);
   CHECK(found_cost(Code{unless(3)} + dear + Code{kEnd}) == cost(Code{kUnless, kEnd} + dear));
   CHECK(found_cost(Code{unless(2), kCommand, jump(3)} + dear + Code{kEnd}) ==
@@ -29,7 +29,7 @@ TEST_CASE("a loop with a constant counts as often as it runs") {
         cost({times(0), kEnd}) + 3 * cost({kUnless, kWait, again(0)}));
 }
 
-TEST_CASE("a wait begins a new run, and the dearest run counts") {
+TEST_CASE("a wait begins a new run, and the costliest run counts") {
   const Code few = repeat(2, kCommand);
   const Code many = repeat(9, kCommand);
   CHECK(found_cost(few + Code{kWait} + many + Code{kEnd}) == cost(many + Code{kEnd}));
