@@ -13,10 +13,17 @@
     .type   __aeabi_uldivmod, %function
     .type   __aeabi_ldivmod, %function
 
-/* By a divisor of 16 bits: in digits of 16 bits, so that a remainder and the next digit fit a word. */
+/* What fits a word, as most does, needs one division. By a divisor of 16 bits: in digits of 16 bits, so that a
+   remainder and the next digit fit a word. */
     .thumb_func
 __aeabi_uldivmod:
     cbnz    r3, by_bits
+    cbnz    r1, 1f
+    udiv    ip, r0, r2
+    mls     r2, ip, r2, r0
+    mov     r0, ip
+    bx      lr
+1:
     lsrs    ip, r2, #16
     bne     by_bits
     udiv    ip, r1, r2
