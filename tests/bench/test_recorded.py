@@ -44,6 +44,12 @@ class Growth(unittest.TestCase):
         for now, passes in ((101.9, True), (102, True), (102.1, False)):
             self.assertEqual(compared({"vm/W2": 100}, figure("vm/W2", now))[1], [passes], now)
 
+    def test_what_interrupts_come_between_may_differ_by_half(self):
+        before = {"safety/stop_frame_to_safe_loaded": 400, "safety/guard_per_command": 400}
+        self.assertEqual(compared(before, figure("safety/stop_frame_to_safe_loaded", 600),
+                                  figure("safety/guard_per_command", 600))[1], [True, False])
+        self.assertEqual(compared(before, figure("safety/stop_frame_to_safe_loaded", 601))[1], [False])
+
     def test_the_message_says_which_figure_recorded_now_and_what_to_do(self):
         comparison, _ = compared({"vm/W2": 100}, figure("vm/W2", 110))
         self.assertEqual(comparison.grown,
