@@ -42,7 +42,8 @@ World some_world(std::uint32_t seed) {
 
 TEST_CASE("a random program is refused as too large, or can be verified") {
   const bool optimize = GENERATE(false, true);
-  const auto programs = robosync::test::share_of<std::uint32_t>(4000);
+  constexpr std::uint32_t kPrograms = 4000;
+  const auto programs = robosync::test::share_of<std::uint32_t>(kPrograms);
   unsigned accepted = 0;
   for (std::uint32_t seed = 0; seed < programs; ++seed) {
     INFO("seed " << seed);
@@ -63,7 +64,8 @@ TEST_CASE("a random program is refused as too large, or can be verified") {
     ++accepted;
   }
   CHECK(accepted > programs / 2);
-  CHECK(accepted < programs);
+  if (programs == kPrograms)
+    CHECK(accepted < programs);  // a share of them may have none that is too large
 }
 
 TEST_CASE("a random response does what its program says, whatever happens while it waits") {
