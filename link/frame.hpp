@@ -57,7 +57,7 @@ inline constexpr std::array<std::byte, 6> kStopFrame{std::byte{0x05}, std::byte{
                                                      std::byte{0xFF}, std::byte{0x79},
                                                      std::byte{0xFF}, std::byte{0}};
 
-class StopWatch {
+class StopDetector {
 public:
   // Takes one byte from the line. True when it ended a stop frame.
   [[nodiscard]] bool push(std::byte byte) {

@@ -15,7 +15,7 @@ struct LineEvents {
   // Bytes have come; or, after a link_write() that took less than it was given, there is room again. At worst
   // for nothing.
   void (*ready)(void* argument) = nullptr;
-  // A stop frame has come (link::StopWatch), though nobody may have read it yet, nor had room for it.
+  // A stop frame has come (link::StopDetector), though nobody may have read it yet, nor had room for it.
   void (*stop)(void* argument) = nullptr;
   void* argument = nullptr;
 };

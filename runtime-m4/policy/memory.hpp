@@ -38,7 +38,7 @@ inline constexpr unsigned kFixedThreads = 3;
 
 // Stacks, in bytes, guard included. High-water marks in QEMU (`rsc info`), plus a fifth, plus what
 // an interrupt puts on them. Who traces needs most: an event is built and encoded on the stack. A
-// sensor on I2C is deepest while it waits for half a bit: 416 bytes, and 68 where it is interrupted there.
+// sensor on I2C is deepest while it waits for half a bit (tests/e2e/test_stacks.py).
 inline constexpr std::uint32_t kSensorStack = 576;
 inline constexpr std::uint32_t kStepStack = 736;
 inline constexpr std::uint32_t kBehaviorStack = 320;  // no guard

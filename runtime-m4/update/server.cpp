@@ -66,8 +66,12 @@ bool Server::start() {
     auto& server = *static_cast<Server*>(self);
     server.kernel_.signal(server.thread_, kLine);
   };
-  const auto stop = [](void* self) { static_cast<Server*>(self)->runtime_.stop(); };
-  board_.link_start({.ready = line_ready, .stop = stop, .argument = this});
+  const auto line_stop = [](void* self) {
+    auto& server = *static_cast<Server*>(self);
+    server.stops_seen_.fetch_add(1, std::memory_order_relaxed);
+    server.runtime_.stop();
+  };
+  board_.link_start({.ready = line_ready, .stop = line_stop, .argument = this});
   return true;
 }
 
@@ -86,9 +90,13 @@ bool Server::work() {
 // Decodes until a request was handled. What follows it waits until its reply is written.
 bool Server::read_line() {
   if (input_begin_ == input_end_) {
+    const std::uint32_t seen = stops_seen_.load(std::memory_order_relaxed);
     input_begin_ = 0;
     input_end_ = static_cast<std::uint8_t>(board_.link_read(input_));
-    if (input_end_ == 0) return false;
+    if (input_end_ == 0) {
+      stops_read_ = seen;  // some of them may have found no room in the line
+      return false;
+    }
   }
   while (input_begin_ < input_end_) {
     if (!decoder_.push(input_[input_begin_++])) continue;
@@ -113,11 +121,9 @@ void Server::handle(const link::Frame& frame) {
     case MessageType::get_status:
       return status(frame.sequence);
     case MessageType::stop:
-      runtime_.stop();  // again, as a rule: the board has seen the frame before
-      return status(frame.sequence);
+      return stop(frame.sequence);
     case MessageType::resume:
-      runtime_.resume();
-      return status(frame.sequence);
+      return resume(frame.sequence);
     case MessageType::get_threads:
       listing_threads_ = true;
       next_thread_ = 0;
@@ -158,6 +164,20 @@ void Server::hello(std::uint8_t sequence) {
     answer.image_bytes = header.total_length;
   }
   send(MessageType::hello_reply, sequence, link::wire_bytes(answer));
+}
+
+// Not before the board has done so at the sight of the frame; but another host may number its frames otherwise.
+void Server::stop(std::uint8_t sequence) {
+  if (sequence == link::kStopSequence) ++stops_read_;
+  runtime_.stop();
+  status(sequence);
+}
+
+// One that was sent before the last stop must not undo it. It has no reply, so that a host that means it asks again.
+void Server::resume(std::uint8_t sequence) {
+  if (stops_read_ != stops_seen_.load(std::memory_order_relaxed)) return;
+  runtime_.resume();
+  status(sequence);
 }
 
 void Server::begin(const link::Frame& frame) {

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -47,8 +48,7 @@ private:
   static constexpr kernel::Events kLine = 1;
   static constexpr kernel::Events kNews = 2;
   static constexpr std::size_t kKeptFaults = 2;
-  // It verifies and loads programs: 1,556 bytes, and 68 where it is interrupted.
-  static constexpr std::size_t kStack = 1728;
+  static constexpr std::size_t kStack = 1728;  // it verifies and loads programs
 
   void run();
   bool work();  // one thing that is due; false when there is nothing, or the line does not take it
@@ -63,6 +63,8 @@ private:
   void data(const link::Frame& frame);
   void activate(const link::Frame& frame);
   void feed(const link::Frame& frame);
+  void stop(std::uint8_t sequence);
+  void resume(std::uint8_t sequence);
   void status(std::uint8_t sequence);
   void read_image(const link::Frame& frame);
   void clear(const link::Frame& frame);
@@ -84,8 +86,10 @@ private:
   std::array<std::byte, 32> input_{};  // read from the line, not yet decoded
   std::uint8_t input_begin_ = 0;
   std::uint8_t input_end_ = 0;
-  std::uint32_t bad_requests_ = 0;     // good frames with a payload of the wrong length
-  std::uint8_t unasked_sequence_ = 0;  // of events, logs, faults
+  std::atomic<std::uint32_t> stops_seen_ = 0;  // by the line's interrupt
+  std::uint32_t stops_read_ = 0;               // … and of these, by the link thread
+  std::uint32_t bad_requests_ = 0;             // good frames with a payload of the wrong length
+  std::uint8_t unasked_sequence_ = 0;          // of events, logs, faults
 
   link::Receiver receiver_;
   link::ActivateResult last_result_{};  // repeated when the host asks again

@@ -41,6 +41,15 @@ class Debugger:
             raise AssertionError(f"the board stopped for another reason: {stopped}")
         self._expect_ok(f"z0,{address:x},2")
 
+    def register_at(self, address, number, times):
+        """What the register holds each time that the board comes to `address`."""
+        found = []
+        for _ in range(times):
+            self.run_to(address, lambda: None)
+            found.append(int.from_bytes(bytes.fromhex(self._ask(f"p{number:x}")), "little"))
+            self._ask("s")  # off the place, or the board would never leave it
+        return found
+
     def set_register(self, number, value):
         self._expect_ok(f"P{number:x}={value.to_bytes(4, 'little').hex()}")
 

@@ -9,9 +9,7 @@ from traces import CONFIG, TraceTest
 
 import rsc
 import stimuli
-from generator import Generator
-
-TOO_LARGE = "E0407"
+from generator import TOO_LARGE, Generator
 
 
 class Traces(TraceTest):

@@ -14,10 +14,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = ROOT / "tests/e2e/programs/robot.json"
 sys.path.insert(0, str(ROOT / "tests/generators/programs"))
-from generator import Generator  # noqa: E402  (found by the line before)
+from generator import TOO_LARGE, Generator  # noqa: E402  (found by the line before)
 
 DRAWN = 16
-TOO_LARGE = b"E0407"
 # SAFETY over a sensor that the board measures.
 ROVER = """\
 SAFETY near
@@ -57,7 +56,7 @@ def make(rsc, folder):
             compile_program(rsc, source, source.with_suffix(".rsb"), "--config",
                             adapting if seed % 4 == 0 else plain)
         except subprocess.CalledProcessError as error:
-            if TOO_LARGE not in error.stderr:
+            if TOO_LARGE.encode() not in error.stderr:
                 raise
     rover = folder / "rover.rsl"
     rover.write_text(ROVER)

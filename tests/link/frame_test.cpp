@@ -30,7 +30,7 @@ TEST_CASE("the frame that stops is always the same, and known by its bytes") {
   const Bytes wire = test::encode({link::MessageType::stop, link::kStopSequence, {}});
   CHECK(std::ranges::equal(wire, link::kStopFrame));
   const auto times = [](const Bytes& line) {
-    link::StopWatch watch;
+    link::StopDetector watch;
     return std::ranges::count_if(line, [&](std::byte byte) { return watch.push(byte); });
   };
   CHECK(times(wire) == 1);
@@ -46,7 +46,7 @@ TEST_CASE("the frame that stops is always the same, and known by its bytes") {
 TEST_CASE("no piece of another frame stops the robot") {
   Bytes line = {std::byte{1}};
   line.insert(line.end(), link::kStopFrame.begin(), link::kStopFrame.end());
-  link::StopWatch watch;
+  link::StopDetector watch;
   for (const std::byte byte : line)
     CHECK_FALSE(watch.push(byte));
   for (std::size_t lost = 0; lost < link::kStopFrame.size(); ++lost)

@@ -18,14 +18,13 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path += [str(ROOT / "bench"), str(ROOT / "tests/generators/programs")]
 
 import counting  # noqa: E402
-from generator import Generator  # noqa: E402
+from generator import TOO_LARGE, Generator  # noqa: E402
 
 PACK = ROOT / "build/host/tests/timing/timing_pack"
 FIRMWARE = ROOT / "build/m4/bench/timing"
 CONFIG = ROOT / "tests/e2e/programs/robot.json"
 BLOCK_ADDRESS = 0x21000000  # kBlockAddress of firmware/block.hpp
 BATCH = 250  # programs a boot
-TOO_LARGE = "E0407"
 STEPS = 40  # random ones, for each program
 
 

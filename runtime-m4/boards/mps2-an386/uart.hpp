@@ -33,7 +33,7 @@ private:
   Ring<kReceiveBuffer> received_;
   Ring<kSendBuffer> to_send_;
   std::atomic<bool> wants_room_ = false;  // who writes waits until half of the ring is free
-  link::StopWatch stops_;
+  link::StopDetector stops_;
   LineEvents events_;
 };
 

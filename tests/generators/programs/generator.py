@@ -13,6 +13,8 @@ from pathlib import Path
 
 from stimuli import CHANNELS, UNITS
 
+TOO_LARGE = "E0407"  # what rsc calls a program that no robot has room for: some that are drawn are
+
 RELATIONS = ["<", ">", "<=", ">=", "=", "<>"]
 COMMANDS = ["MOVE arms SLOWLY", "MOVE left_arm TO 90deg OVER 300ms", "MOVE right_arm TO 20deg",
             "MOVE left_arm BY 15deg OVER 50ms", 'PLAY sound "greeting.wav"',

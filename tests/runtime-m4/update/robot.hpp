@@ -77,7 +77,7 @@ public:
 private:
   bool wants_room_ = false;
   std::size_t watched_ = 0;  // bytes of from_host that the interrupt has seen
-  link::StopWatch stops_;
+  link::StopDetector stops_;
   boards::LineEvents events_;
 };
 

@@ -146,6 +146,39 @@ TEST_CASE("a stop does not wait until somebody reads the line") {
   CHECK_FALSE(robot.runtime.stopped());
 }
 
+TEST_CASE("a resume that is older than a stop does not undo it") {
+  Robot robot;
+  robot.run(10);
+  std::array<std::byte, link::kMaxEncodedFrame> resume{};
+  const std::size_t length = link::encode_frame(link::MessageType::resume, 7, {}, resume);
+  std::deque<std::byte>& line = robot.board.from_host;
+  line.assign(resume.data(), resume.data() + length);
+  line.insert(line.end(), link::kStopFrame.begin(), link::kStopFrame.end());
+  robot.run(20);
+  CHECK(robot.runtime.stopped());
+  tool::Client client(robot);
+  const auto answers = [&](std::uint8_t sequence) {
+    const auto reply = client.next_reply(std::chrono::milliseconds(50));
+    return reply && reply->sequence == sequence;
+  };
+  line.insert(line.end(), resume.data(), resume.data() + length);
+  CHECK(answers(link::kStopSequence));  // the first resume has no reply
+  CHECK(answers(7));
+  CHECK_FALSE(robot.runtime.stopped());
+}
+
+TEST_CASE("a stop that found no room in the line does not keep the robot stopped for ever") {
+  Robot robot;
+  robot.run(10);
+  robot.board.from_host.assign(link::kStopFrame.begin(), link::kStopFrame.end());
+  robot.board.interrupt();
+  robot.board.from_host.clear();
+  robot.run(10);
+  tool::Client client(robot);
+  client.resume();
+  CHECK_FALSE(robot.runtime.stopped());
+}
+
 TEST_CASE("hello stops the trace of an earlier host") {
   Robot robot;
   tool::Client client(robot);

@@ -1,0 +1,72 @@
+"""A sensor that is interrupted where its driver is deepest has room for that.
+
+How often it is interrupted just there is chance, so a board that runs well for minutes shows nothing. Here its stack is
+measured at that place with the debugger, and what the core and the switch put on it is added.
+Where there is far too little, the sensor's thread is stopped while the debugger waits for it, which times out.
+"""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import rsc
+from board import FAST, FIRMWARE, Board
+from debugger import Debugger
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
+from counting import symbols  # noqa: E402
+
+SP = 13
+HALF_BIT = "robosync::boards::mps2::(anonymous namespace)::half_bit()"
+TIMES = 1500  # some samples' worth
+FRAME, SAVED = 32, 36  # what the core stacks, and PendSV_Handler: no thread has FPU registers to save
+PAINT = 0xA5A5A5A5
+UNTOUCHED = 3  # so many painted words in a row were never used
+CONFIG = """{
+  "sensors": [{"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
+               "channels": {"LEVEL": {"input": 0, "range": [0, 10], "rate": "50Hz"}}}],
+  "actuators": [{"name": "lamp", "type": "VIRTUAL"}]
+}"""
+PROGRAM = """
+WHEN touch LEVEL > 3
+DO LOG "touched"
+END
+"""
+
+
+class Stacks(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="robosync-stacks-")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.gdb = self.folder / "gdb"
+        self.board = Board(icount=FAST, extra=["-gdb", f"unix:{self.gdb},server=on,wait=off"])
+        self.addCleanup(self.board.stop)
+        (self.folder / "robot.json").write_text(CONFIG)
+        (self.folder / "robot.rsl").write_text(PROGRAM)
+        rsc.run("upload", self.folder / "robot.rsl", "--port", self.board.port)
+
+    def sensor(self):
+        return next(thread for thread in rsc.info(self.board.port)["threads"] if thread["name"] == "touch")
+
+    def lowest_used(self, deepest, size):
+        """The lowest word of the stack that was ever written."""
+        with Debugger(self.gdb) as debugger:
+            words = debugger.read_words(deepest - size, size // 4)
+        for i in range(len(words), UNTOUCHED - 1, -1):
+            if words[i - UNTOUCHED:i] == [PAINT] * UNTOUCHED:
+                return deepest - size + 4 * i
+        return self.fail("nothing of the stack is left")
+
+    def test_a_sensor_may_be_interrupted_anywhere(self):
+        with Debugger(self.gdb) as debugger:
+            deepest = min(debugger.register_at(symbols(FIRMWARE)[HALF_BIT], SP, TIMES))
+        thread = self.sensor()
+        bottom = self.lowest_used(deepest, thread["stack_bytes"]) + thread["stack_used"] - thread["stack_bytes"]
+        self.assertEqual(thread["stack_used"], self.sensor()["stack_used"], "it grew meanwhile")
+        self.assertGreaterEqual(deepest - FRAME - SAVED, bottom)
+
+
+if __name__ == "__main__":
+    unittest.main()
