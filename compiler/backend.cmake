@@ -65,8 +65,10 @@ target_sources(robosync_compiler PRIVATE
   sema/lists.cpp
   sema/names.cpp
   sema/quantities.cpp
+  sema/perform.cpp
   sema/rules.cpp
   sema/statements.cpp
+  sema/texts.cpp
   sema/timers.cpp
   sema/variables.cpp
   optimize/expression_facts.cpp

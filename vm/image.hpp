@@ -62,6 +62,9 @@ enum class Param : std::uint8_t {
   count_
 };
 
+// What carries the values for the {} places of a text that a command says: of no use to what plays and says.
+inline constexpr std::array kTextParams = {Param::by, Param::times, Param::direction};
+
 enum class DriverId : std::uint8_t {
 #define SENSOR_DRIVER(name, sample, doc) name,
 #define ACTUATOR_DRIVER(name, ...) name,

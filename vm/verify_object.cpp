@@ -188,7 +188,7 @@ Refusal perform(Pass& pass, Traits traits, Word word) {
     case Operand::target:
       return traits.effect() == Effect::halt ? halt(pass, a) : command(pass, word);
     default:
-      if (traits.effect() == Effect::log) pass.params = 0;
+      if (traits.effect() == Effect::log || traits.effect() == Effect::alert) pass.params = 0;
       return check_operand(pass, kind, opcode_of(word), a);
   }
   if (refusal == Refusal::none) refusal = check_write(pass, a, truth);
@@ -234,11 +234,6 @@ Refusal check_place(const Pass& pass, Traits traits, bool last) {
   return good_or(Refusal::wrong_context, !other_end);
 }
 
-// Does it put out something that has no parameters?
-constexpr bool takes_none(Effect effect) {
-  return effect == Effect::alert || effect == Effect::halt;
-}
-
 Refusal check_instruction(Pass& pass, std::size_t at, Word word, bool last) {
   const std::size_t number = word & 0xFF;
   if (number >= kTraits.size()) return Refusal::bad_opcode;
@@ -250,7 +245,7 @@ Refusal check_instruction(Pass& pass, std::size_t at, Word word, bool last) {
     refusal = pass.blocks.spend(kCosts[number], output_words(traits.effect()));
   if (refusal == Refusal::none && !is_straight(traits.flow()))
     refusal = flow(pass, traits, at, word);
-  if (refusal == Refusal::none && pass.params != 0 && (last || takes_none(traits.effect())))
+  if (refusal == Refusal::none && pass.params != 0 && (last || traits.effect() == Effect::halt))
     refusal = Refusal::unused_param;
   return refusal;
 }

@@ -109,7 +109,6 @@ private:
   void emit(const ProgramWait& wait);
   void emit(const ProgramThen& then);
   void emit(const ProgramLog& log);
-  void emit(const ProgramAlert& alert);
   void emit(const ProgramHalt& halt);
   void argument(vm::Param param, const Expression& value);
   void emit(const ProgramWaitUntil& wait);
@@ -235,11 +234,7 @@ void ResponseEmitter::emit(const ProgramThen&) {
 void ResponseEmitter::emit(const ProgramLog& log) {
   for (std::size_t i = 0; i < log.values.size(); ++i)
     argument(static_cast<vm::Param>(i), log.values[i]);
-  code().emit(Opcode::log, {}, parts_.strings.offset(log.text));
-}
-
-void ResponseEmitter::emit(const ProgramAlert& alert) {
-  code().emit(Opcode::alert, {}, parts_.strings.offset(alert.text));
+  code().emit(log.alert ? Opcode::alert : Opcode::log, {}, parts_.strings.offset(log.text));
 }
 
 void ResponseEmitter::emit(const ProgramHalt& halt) {

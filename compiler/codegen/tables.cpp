@@ -149,7 +149,7 @@ std::uint32_t Tables::verbs_of(const ActuatorConfig& actuator, std::size_t place
     if (performs || follows) mask |= std::uint32_t{1} << v;
   }
   for (const VerbConfig& verb : actuator.verbs) {
-    const auto number = place_of(verbs_, ProgramVerb{verb.name, verb.action, verb.takes});
+    const auto number = place_of(verbs_, ProgramVerb{verb.name, verb.action, verb.carries()});
     if (number < verbs_.size()) mask |= std::uint32_t{1} << number;
   }
   return mask;

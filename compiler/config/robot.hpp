@@ -58,6 +58,14 @@ struct VerbConfig {
   [[nodiscard]] bool has(vm::Param param) const {
     return (takes >> static_cast<unsigned>(param) & 1u) != 0;
   }
+  // As in the image: what it takes, and what carries the values of a text.
+  [[nodiscard]] std::uint8_t carries() const {
+    std::uint8_t params = takes;
+    for (const vm::Param param : vm::kTextParams)
+      if (texts == Texts::any)
+        params |= static_cast<std::uint8_t>(1u << static_cast<unsigned>(param));
+    return params;
+  }
 };
 
 struct WordConfig {  // SLOWLY, or a sound

@@ -165,9 +165,9 @@ private:
     std::vector<std::string> parts;
     for (const ast::Argument& argument : node.arguments)
       parts.push_back(value_of(argument));
-    line(fmt::format("write to the log: {}", fmt::join(parts, ", ")));
+    line(fmt::format("{}: {}", node.alert ? "alert a person" : "write to the log",
+                     fmt::join(parts, ", ")));
   }
-  void write(const ast::Alert& node) { line("alert a person: " + value_of(node.text)); }
 
   const Defines& defines_;
   std::size_t indent_;
@@ -194,8 +194,12 @@ Defines defines_of(const ast::Tree& program) {
 
 std::string command(const ast::Command& command) {
   std::string text = softly(command.verb.text);
-  for (const ast::Argument& argument : command.arguments)
-    text += fmt::format(" {}{}", preposition(argument.preposition), value_of(argument));
+  const std::size_t first_part = command.arguments.size() - command.parts;
+  for (std::size_t i = 0; i < command.arguments.size(); ++i) {
+    const ast::Argument& argument = command.arguments[i];
+    text += fmt::format("{} {}{}", i > first_part ? "," : "", preposition(argument.preposition),
+                        value_of(argument));
+  }
   return text;
 }
 

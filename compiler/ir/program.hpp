@@ -183,18 +183,13 @@ struct ProgramPick {
   static constexpr std::size_t kCells = 1;
   static constexpr std::tuple kParts{&ProgramPick::options};
 };
-struct ProgramLog {
-  std::string text;                // with a {} for each value
+struct ProgramLog {  // LOG, and ALERT with `alert`
+  bool alert = false;
+  std::string text;                // with a {} place for each value
   std::vector<Expression> values;  // at most as many as there are vm::Params
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 0;
   static constexpr std::tuple kParts{&ProgramLog::values};
-};
-struct ProgramAlert {
-  std::string text;
-  static constexpr bool kPauses = false;
-  static constexpr std::size_t kCells = 0;
-  static constexpr std::tuple<> kParts{};
 };
 struct ProgramHalt {  // STOP in a SAFETY rule
   bool all = false;
@@ -208,7 +203,7 @@ struct ProgramHalt {  // STOP in a SAFETY rule
 struct ProgramStatement {
   std::variant<ProgramCommand, ProgramLocal, ProgramSet, ProgramWait, ProgramWaitUntil,
                ProgramFollow, ProgramThen, ProgramIf, ProgramRepeat, ProgramPick, ProgramLog,
-               ProgramAlert, ProgramHalt>
+               ProgramHalt>
       node;
   std::uint16_t line = 0;
   Span span;

@@ -18,17 +18,24 @@ constexpr std::size_t kNotNamed = static_cast<std::size_t>(-1);
 // What MARGIN gives, which no verb of an actuator takes.
 constexpr vm::Param kMargin = vm::Param::count_;
 
-const ast::Word* plain_word(const ast::Argument& argument) {
-  return argument.preposition == ast::Preposition::none ? std::get_if<ast::Word>(&argument.value)
-                                                        : nullptr;
-}
-
 vm::Param param_of(const ast::Argument& argument) {
   constexpr std::array kParams = {vm::Param::by, vm::Param::to,   vm::Param::by, vm::Param::over,
                                   vm::Param::at, vm::Param::for_, kMargin};
   const auto* amount = std::get_if<ast::Amount>(&argument.value);
   if (amount != nullptr && amount->times) return vm::Param::times;
   return kParams[static_cast<std::size_t>(argument.preposition)];
+}
+
+// Do two actuators understand the command alike?
+bool same(const ProgramCommand& a, const ProgramCommand& b) {
+  return a.verb == b.verb && a.word == b.word && a.arguments == b.arguments;
+}
+
+}  // namespace
+
+const ast::Word* plain_word(const ast::Argument& argument) {
+  return argument.preposition == ast::Preposition::none ? std::get_if<ast::Word>(&argument.value)
+                                                        : nullptr;
 }
 
 bool is_given(const ProgramCommand& command, vm::Param param) {
@@ -41,17 +48,18 @@ void report_twice(Span span, const std::string& what, Diagnostics& diagnostics) 
   diagnostics.report(Code::E0505, what + " is given twice").label(span);
 }
 
-// Do two actuators understand the command alike?
-bool same(const ProgramCommand& a, const ProgramCommand& b) {
-  return a.verb == b.verb && a.word == b.word && a.arguments == b.arguments;
-}
-
-}  // namespace
-
 std::vector<ProgramCommand> Commands::translate(const ast::Command& command,
                                                 const ChosenText* chosen) {
   chosen_ = chosen;
   if (command.verb.text.empty()) return {};
+  if (command.with) {
+    diagnostics_
+        .report(Code::E0505,
+                "`WITH` gives values to a DEFINE, and `" + command.verb.text + "` is none")
+        .label(*command.with)
+        .helps("say it with `TO`, `BY`, `AT`, `OVER`, `FOR` or `TIMES`");
+    return {};
+  }
   if (!names_.is_verb(command.verb.text)) {
     if (same_name(command.verb.text, kPerform)) return perform(command);
     if (is_follow(command)) return expected_follow(command);
@@ -199,9 +207,20 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Comman
                                                                std::size_t named_by) {
   std::vector<Given> result;
   bool good = true;
+  const std::size_t first_part = command.arguments.size() - command.parts;
+  if (named_by == first_part) {
+    diagnostics_.report(Code::E0505, "no comma stands behind the actuator")
+        .label(command.arguments[named_by].span);
+    return std::nullopt;
+  }
   for (std::size_t i = 0; i < command.arguments.size(); ++i) {
     if (i == named_by || (is_chosen(i) && i != chosen_->at)) continue;
     if (lacks_brackets(command, i)) return std::nullopt;
+    if (i >= first_part || (is_chosen(i) && chosen_->at + chosen_->count > first_part)) {
+      result.push_back(put_together(command, i));
+      if (!result.back().text) return std::nullopt;
+      break;
+    }
     Given given = is_chosen(i)
                       ? Given{&command.arguments[i], {}, {}, false, chosen_->text, chosen_->span}
                       : evaluate(command.arguments[i]);
@@ -210,6 +229,31 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Comman
   }
   if (!good) return std::nullopt;
   return result;
+}
+
+Commands::Given Commands::put_together(const ast::Command& command, std::size_t first) {
+  TextBuilder text(expressions_, diagnostics_);
+  const ast::Argument& begin = command.arguments[first];
+  Given given{&begin, {}, {}, false, std::nullopt, begin.span};
+  given.text_span.end = command.arguments.back().span.end;
+  bool good = true;
+  for (std::size_t i = first; i < command.arguments.size(); ++i) {
+    const ast::Argument& part = command.arguments[i];
+    if (is_chosen(i)) {
+      if (i == chosen_->at) good = text.add(chosen_->text, chosen_->span) && good;
+    } else if (part.preposition != ast::Preposition::none) {
+      diagnostics_.report(Code::E0505, "a comma stands between the parts of a text")
+          .label(part.span, "this is none")
+          .helps("a text with its parts stands last: `FOR 2s \"You have\", points`");
+      return given;
+    } else {
+      good = text.add(part) && good;
+    }
+  }
+  if (!good) return given;
+  given.text = text.text();
+  given.values = std::move(text.values());
+  return given;
 }
 
 // A word alone belongs to the actuator, unless no actuator knows it and the program does.
@@ -257,107 +301,6 @@ Typed Commands::evaluate_number(const ast::Argument& argument) {
     return expressions_.number_of(expressions_.operand({word->name, nullptr}, word->name.span));
   diagnostics_.report(Code::E0505, "a text cannot stand here, a number can").label(argument.span);
   return {};
-}
-
-// ---- PERFORM
-
-namespace {
-
-constexpr std::uint8_t bit_of(vm::Param param) {
-  return static_cast<std::uint8_t>(1u << static_cast<unsigned>(param));
-}
-
-constexpr std::uint8_t kPerformTakes =
-    bit_of(vm::Param::item) | bit_of(vm::Param::at) | bit_of(vm::Param::times);
-
-}  // namespace
-
-std::vector<ProgramCommand> Commands::perform(const ast::Command& command) {
-  const ast::Word* const word =
-      command.arguments.empty() ? nullptr : plain_word(command.arguments.front());
-  if (word == nullptr || names_.find_motion(word->name.text) == nullptr) {
-    report_no_motion(command);
-    return {};
-  }
-  const auto place = motions_.find(word->name);
-  const auto given = evaluate(command, 0);
-  if (!place || !given) return {};
-  const ProgramMotion& motion = motions_.at(*place);
-  ProgramCommand result;
-  result.motion = place;
-  for (const ProgramTrack& track : motion.tracks)
-    result.actuators.push_back(track.actuator);
-  result.verb = {std::string(kPerform), vm::Action::perform, kPerformTakes};
-  result.word =
-      ProgramWord{motion.name, vm::Param::item, static_cast<vm::Value>(*place) * vm::kScale};
-  for (const Given& one : *given)
-    if (!add_to_performance(one, result)) return {};
-  return {std::move(result)};
-}
-
-void Commands::report_no_motion(const ast::Command& command) {
-  const auto candidates = names_.motion_names();
-  if (command.arguments.empty()) {
-    diagnostics_.report(Code::E0505, "this does not say which MOTION to perform")
-        .label(command.verb.span)
-        .helps(candidates.empty() ? "write a MOTION first: a table of times and positions"
-                                  : "there is " + list_names(candidates));
-    return;
-  }
-  const ast::Argument& first = command.arguments.front();
-  const ast::Word* const word = plain_word(first);
-  if (word == nullptr) {
-    diagnostics_.report(Code::E0505, "the name of a MOTION stands here").label(first.span);
-    return;
-  }
-  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no MOTION `" + word->name.text + "`")
-                      .label(word->name.span);
-  d.unknown = word->name.text;
-  if (names_.find_define(word->name.text) != nullptr) {
-    d.helps("`" + word->name.text + "` is a DEFINE: write it without PERFORM");
-    return;
-  }
-  suggest(d, word->name.span, word->name.text, candidates);
-  if (d.help.empty() && !candidates.empty()) d.helps("there is " + list_names(candidates));
-}
-
-// AT is how fast, in percent of what the MOTION says; TIMES how often.
-bool Commands::add_to_performance(const Given& given, ProgramCommand& result) {
-  const Span span = given.argument->span;
-  const bool is_speed = given.is_number && given.param == vm::Param::at;
-  if (!is_speed && (!given.is_number || given.param != vm::Param::times)) {
-    diagnostics_.report(Code::E0505, "`PERFORM` does not take this")
-        .label(span)
-        .helps("it takes AT, how fast, and TIMES, how often: `PERFORM wave AT 150% 2 TIMES`");
-    return false;
-  }
-  if (is_given(result, given.param)) {
-    report_twice(span, is_speed ? "`AT`" : "`TIMES`", diagnostics_);
-    return false;
-  }
-  Typed number = given.number;
-  const Unit& unit = canonical_unit(is_speed ? vm::Dimension::percent : vm::Dimension::number);
-  if (number.is_bare()) take_unit(number, {&unit, "AT of PERFORM", span}, diagnostics_);
-  if (!number.is_number()) return false;
-  if (number.dimension() != unit.dimension) {
-    diagnostics_
-        .report(Code::E0301, is_speed ? "the speed of a MOTION is a share of its own"
-                                      : "how often is a number without a unit")
-        .label(number.span)
-        .helps(is_speed ? "write percent: `AT 150%` is half as fast again" : "write `2 TIMES`");
-    return false;
-  }
-  const vm::Value value = number.code.constant;
-  if (number.is_constant() && (value <= 0 || (!is_speed && value % vm::kScale != 0))) {
-    diagnostics_
-        .report(Code::E0506, is_speed     ? "AT must be above 0"
-                             : value <= 0 ? "TIMES must be above 0"
-                                          : "TIMES counts in whole numbers")
-        .label(number.span);
-    return false;
-  }
-  result.arguments.push_back({given.param, std::move(number.code)});
-  return true;
 }
 
 // ---- what one actuator makes of them: its own words, units, ranges and limits
@@ -507,7 +450,7 @@ std::optional<ProgramCommand> Commands::for_actuator(std::size_t actuator,
   }
   ProgramCommand result;
   result.actuators = {actuator};
-  result.verb = {verb->name, verb->action, verb->takes};
+  result.verb = {verb->name, verb->action, verb->carries()};
   const Recipient to{config, *verb, command, diagnostics};
   bool good = true;
   for (const Given& one : given)
@@ -518,6 +461,14 @@ std::optional<ProgramCommand> Commands::for_actuator(std::size_t actuator,
 
 bool Commands::add(const Recipient& to, const Given& given, ProgramCommand& result) const {
   const ast::Argument& argument = *given.argument;
+  const bool alone = argument.preposition == ast::Preposition::none && given.param == vm::Param::by;
+  if (given.is_number && alone && to.verb.texts == Texts::any && !to.verb.has(vm::Param::by)) {
+    TextBuilder number(expressions_, to.diagnostics);
+    number.add(given.number);
+    return add_text(
+        to, {&argument, {}, {}, false, number.text(), argument.span, std::move(number.values())},
+        result);
+  }
   if (given.is_number) return add_number(to, given, result);
   if (given.text) return add_text(to, given, result);
   return add_word(to, std::get<ast::Word>(argument.value), argument.span, result);
@@ -612,6 +563,7 @@ bool Commands::add_text(const Recipient& to, const Given& given, ProgramCommand&
       result.arguments.push_back({vm::Param::for_, make_constant_code(*known->duration)});
     return true;
   }
+  if (!say_values(to, given, result)) return false;
   if (to.verb.texts == Texts::any) {
     const bool speaks = to.actuator.word_length > 0 && to.verb.has(vm::Param::for_);
     if (speaks && !is_given(result, vm::Param::for_))
@@ -623,6 +575,35 @@ bool Commands::add_text(const Recipient& to, const Given& given, ProgramCommand&
   report_unknown_text(to.actuator, text, given.text_span,
                       diagnostics_.may_search(to.actuator.words.size()), to.diagnostics);
   return false;
+}
+
+bool Commands::say_values(const Recipient& to, const Given& given, ProgramCommand& result) const {
+  if (given.values.empty()) return true;
+  const std::string& verb = to.verb.name;
+  if (to.verb.texts != Texts::any) {
+    to.diagnostics
+        .report(Code::E0505, "`" + to.actuator.name.text + "` says no numbers: it plays files")
+        .label(given.text_span)
+        .helps("a device that says any text can: \"speaker\"");
+    return false;
+  }
+  if (given.values.size() > vm::kTextParams.size()) {
+    to.diagnostics
+        .report(Code::E0407, "a text that is said has at most " +
+                                 std::to_string(vm::kTextParams.size()) + " numbers")
+        .label(given.text_span)
+        .helps("say the rest with another `" + verb + "`");
+    return false;
+  }
+  for (std::size_t i = 0; i < given.values.size(); ++i) {
+    const vm::Param param = vm::kTextParams.at(i);
+    if (to.verb.has(param) || is_given(result, param)) {
+      report_twice(given.text_span, "`" + spelling(param) + "`", to.diagnostics);
+      return false;
+    }
+    result.arguments.push_back({param, given.values[i]});
+  }
+  return true;
 }
 
 bool Commands::add_number(const Recipient& to, const Given& given, ProgramCommand& result) const {

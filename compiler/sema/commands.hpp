@@ -4,6 +4,7 @@
 #include "compiler/sema/expressions.hpp"
 #include "compiler/sema/motions.hpp"
 #include "compiler/sema/names.hpp"
+#include "compiler/sema/texts.hpp"
 
 namespace robosync::compiler {
 
@@ -17,6 +18,11 @@ struct ChosenText {
   const std::string& text;
   Span span;  // of the text in its LIST
 };
+
+// What its parts share. The word that an argument is, without a preposition; nullptr: none.
+[[nodiscard]] const ast::Word* plain_word(const ast::Argument& argument);
+[[nodiscard]] bool is_given(const ProgramCommand& command, vm::Param param);
+void report_twice(Span span, const std::string& what, Diagnostics& diagnostics);
 
 // FOLLOW of one actuator, or of a group whose members all do it alike.
 struct Followed {
@@ -60,6 +66,7 @@ private:
     bool is_number = false;
     std::optional<std::string> text;  // in quotes, here or where a DEFINE is given it
     Span text_span{};
+    std::vector<Expression> values{};  // for the {} places of `text`
   };
   struct Recipient {  // one command for one actuator
     const ActuatorConfig& actuator;
@@ -81,15 +88,17 @@ private:
   void report_unknown_verb(const ast::Command& command);
   std::optional<std::vector<Given>> evaluate(const ast::Command& command, std::size_t named_by);
   Given evaluate(const ast::Argument& argument);
+  // The text whose parts begin at `first`; its text is nothing after a mistake.
+  Given put_together(const ast::Command& command, std::size_t first);
+  bool lacks_brackets(const ast::Command& command, std::size_t place);
   Typed evaluate_number(const ast::Argument& argument);
   [[nodiscard]] bool is_known_word(std::string_view word) const;  // of any actuator
   [[nodiscard]] bool names_a_number(const ast::Name& name) const;
 
-  // PERFORM: which MOTION, how fast, how often.
+  // PERFORM (perform.cpp).
   std::vector<ProgramCommand> perform(const ast::Command& command);
   bool add_to_performance(const Given& given, ProgramCommand& result);
   void report_no_motion(const ast::Command& command);
-  bool lacks_brackets(const ast::Command& command, std::size_t place);
 
   // FOLLOW (follow.cpp).
   std::vector<ProgramCommand> expected_follow(const ast::Command& command);
@@ -111,6 +120,7 @@ private:
   bool add_word(const Recipient& to, const ast::Word& word, Span span,
                 ProgramCommand& result) const;
   bool add_text(const Recipient& to, const Given& given, ProgramCommand& result) const;
+  bool say_values(const Recipient& to, const Given& given, ProgramCommand& result) const;
   bool add_number(const Recipient& to, const Given& given, ProgramCommand& result) const;
   void report_unknown_word(const Recipient& to, const ast::Word& word) const;
 

@@ -158,7 +158,8 @@ Expression Statements::item_index(const ListChoice& choice, Typed index, Span sp
   outside.condition = make_binary(
       Operation::logical_or, make_binary(Operation::less, local, make_constant_code(vm::kScale)),
       make_binary(Operation::greater, local, make_constant_code(whole(count))));
-  put(ProgramLog{"there is no ITEM {} OF " + name + ", which has " + std::to_string(count),
+  put(ProgramLog{false,
+                 "there is no ITEM {} OF " + name + ", which has " + std::to_string(count),
                  {local}},
       span, outside.then_block);
   put(std::move(outside), span, result);

@@ -455,9 +455,10 @@ void Names::add_turns(const ast::Stmt& stmt) {
   if (const auto* log = std::get_if<ast::Log>(&stmt.node))
     for (const ast::Argument& argument : log->arguments)
       look(argument);
-  if (const auto* alert = std::get_if<ast::Alert>(&stmt.node)) look(alert->text);
   const auto* command = std::get_if<ast::Command>(&stmt.node);
-  for (std::size_t i = 1; command != nullptr && i < command->arguments.size(); ++i) {
+  for (std::size_t i = 0; command != nullptr && i < command->arguments.size(); ++i) {
+    look(command->arguments[i]);
+    if (i == 0) continue;
     const auto* how = std::get_if<ast::Word>(&command->arguments[i - 1].value);
     const auto* list = std::get_if<ast::Word>(&command->arguments[i].value);
     if (how != nullptr && list != nullptr) add_turn(how->name, list->name);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/sema/texts.hpp"
+
 namespace robosync::compiler {
 namespace {
 
@@ -77,7 +79,7 @@ bool Statements::allowed_in_safety(const ast::Stmt& stmt) {
   const auto is = [&]<typename... Nodes>(std::variant<Nodes...>*) {
     return (std::holds_alternative<Nodes>(stmt.node) || ...);
   };
-  using Allowed = std::variant<ast::Stop, ast::Alert, ast::Log, ast::Set, ast::Signal, ast::Call>;
+  using Allowed = std::variant<ast::Stop, ast::Log, ast::Set, ast::Signal, ast::Call>;
   if (is(static_cast<Allowed*>(nullptr))) return true;
   const auto* command = std::get_if<ast::Command>(&stmt.node);
   if (command != nullptr && is_restart(*command)) return true;
@@ -456,26 +458,6 @@ void Statements::restart(const ast::Command& node, Span span, ProgramBlock& resu
 
 // ---- LOG and ALERT
 
-namespace {
-
-constexpr std::size_t kMaxValues = static_cast<std::size_t>(vm::Param::count_);
-
-// Parts stand apart, unless the text has a space there already.
-void separate(std::string& text, std::string_view next) {
-  if (!text.empty() && text.back() != ' ' && !next.empty() && next.front() != ' ') text += ' ';
-}
-
-}  // namespace
-
-bool Statements::writable(const std::string& text, Span span) {
-  const auto place = find_place(text);
-  if (!place && text.find('\0') == std::string::npos) return true;
-  const std::string what = place ? text.substr(place->begin, place->size) : "{}";
-  diagnostics_.report(Code::E0509, "`" + what + "` cannot stand in a text that is written out")
-      .label(span);
-  return false;
-}
-
 void Statements::add(const ast::Log& node, Span span, ProgramBlock& result) {
   const auto choice = find_choice(node.arguments);
   if (!choice) return put_log(node, nullptr, span, result);
@@ -487,80 +469,21 @@ void Statements::add(const ast::Log& node, Span span, ProgramBlock& result) {
 
 void Statements::put_log(const ast::Log& node, const ChosenText* chosen, Span span,
                          ProgramBlock& result) {
-  ProgramLog log;
+  constexpr auto kMaxValues = static_cast<std::size_t>(vm::Param::count_);
+  TextBuilder text(expressions_, diagnostics_);
   bool good = true;
-  for (std::size_t i = 0; i < node.arguments.size(); ++i) {
-    if (chosen == nullptr || chosen->at != i) {
-      good = add_part(node.arguments[i], log) && good;
-      continue;
-    }
-    good = writable(chosen->text, chosen->span) && good;
-    separate(log.text, chosen->text);
-    log.text += chosen->text;
-  }
-  if (log.values.size() > kMaxValues) {
-    diagnostics_.report(Code::E0407, "a LOG has at most " + std::to_string(kMaxValues) + " numbers")
+  for (std::size_t i = 0; i < node.arguments.size(); ++i)
+    good = (chosen != nullptr && chosen->at == i ? text.add(chosen->text, chosen->span)
+                                                 : text.add(node.arguments[i])) &&
+           good;
+  if (text.values().size() > kMaxValues) {
+    diagnostics_
+        .report(Code::E0407, std::string(node.alert ? "an ALERT" : "a LOG") + " has at most " +
+                                 std::to_string(kMaxValues) + " numbers")
         .label(span);
     return;
   }
-  if (good) put(std::move(log), span, result);
-}
-
-bool Statements::add_part(const ast::Argument& argument, ProgramLog& log) {
-  const auto* text = std::get_if<ast::Text>(&argument.value);
-  std::string written;
-  if (text != nullptr) {
-    written = text->text;
-  } else if (const auto* amount = std::get_if<ast::Amount>(&argument.value)) {
-    if (amount->value == nullptr) return false;
-    const auto* operand = std::get_if<ast::Operand>(&amount->value->node);
-    const Binding* binding = operand != nullptr && !operand->channel
-                                 ? expressions_.find_binding(operand->name.text)
-                                 : nullptr;
-    if (binding != nullptr && binding->text) {
-      written = *binding->text;
-    } else {
-      Typed value = expressions_.number(*amount->value);
-      if (!value.is_number()) return false;
-      const std::string place =
-          place_for(value.unit != nullptr ? *value.unit : canonical_unit(vm::Dimension::number));
-      separate(log.text, place);
-      log.text += place;
-      log.values.push_back(std::move(value.code));
-      return true;
-    }
-  }
-  if (!writable(written, argument.span)) return false;
-  separate(log.text, written);
-  log.text += written;
-  return true;
-}
-
-void Statements::add(const ast::Alert& node, Span span, ProgramBlock& result) {
-  if (const auto* text = std::get_if<ast::Text>(&node.text.value))
-    return put_alert(text->text, span, span, result);
-  const auto* amount = std::get_if<ast::Amount>(&node.text.value);
-  if (amount == nullptr || amount->value == nullptr) return;
-  if (const auto choice = choice_in(*amount->value)) {
-    const auto alert = [&](const ChosenText& chosen, ProgramBlock& into) {
-      put_alert(chosen.text, chosen.span, span, into);
-    };
-    return choose(*choice, span, alert, result);
-  }
-  const auto* operand = std::get_if<ast::Operand>(&amount->value->node);
-  const Binding* binding = operand != nullptr && !operand->channel
-                               ? expressions_.find_binding(operand->name.text)
-                               : nullptr;
-  if (binding != nullptr && binding->text)
-    return put_alert(*binding->text, binding->span, span, result);
-  if (binding != nullptr && is_open(*binding)) return;
-  diagnostics_.report(Code::E0306, "ALERT is given a text, and this is none")
-      .label(node.text.span)
-      .helps("write it in quotes; LOG writes numbers");
-}
-
-void Statements::put_alert(const std::string& text, Span place, Span span, ProgramBlock& result) {
-  if (writable(text, place)) put(ProgramAlert{text}, span, result);
+  if (good) put(ProgramLog{node.alert, text.text(), std::move(text.values())}, span, result);
 }
 
 }  // namespace robosync::compiler

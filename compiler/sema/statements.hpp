@@ -78,10 +78,7 @@ private:
   void restart(const ast::Command& node, Span span, ProgramBlock& result);
   bool in_range(const VariableName& variable, const Typed& value);
   void add(const ast::Log& node, Span span, ProgramBlock& result);
-  void add(const ast::Alert& node, Span span, ProgramBlock& result);
-  bool add_part(const ast::Argument& argument, ProgramLog& log);
   void put_log(const ast::Log& node, const ChosenText* chosen, Span span, ProgramBlock& result);
-  void put_alert(const std::string& text, Span place, Span span, ProgramBlock& result);
   // follow.cpp
   void follow(const ast::Command& node, Span span, ProgramBlock& result);
   void add_followed(Followed followed, Span span, ProgramBlock& before, ProgramBlock& body);
@@ -103,7 +100,6 @@ private:
   void put_one_of(const ListChoice& choice, const Expression& index,
                   std::pair<std::size_t, std::size_t> places, Span span, const PutText& put_text,
                   ProgramBlock& result);
-  bool writable(const std::string& text, Span span);
   // defines.cpp
   void add(const ast::Call& node, Span span, ProgramBlock& result);
   void run(DefineName& name, const std::vector<ast::Argument>& arguments, Span span,

@@ -162,6 +162,9 @@ struct Argument {  // of a command
 struct Command {
   Name verb;
   std::vector<Argument> arguments;
+  std::size_t parts =
+      0;  // the last so many are one text, with commas between them; 0: there is no comma
+  std::optional<Span> with{};  // WITH, which no command takes: sema says so
   static constexpr std::tuple<> kBlocks{};
 };
 struct Call {  // name WITH …
@@ -220,19 +223,16 @@ struct Signal {
   Name name;
   static constexpr std::tuple<> kBlocks{};
 };
-struct Log {
+struct Log {  // LOG, and ALERT with `alert`
+  bool alert = false;
   std::vector<Argument> arguments;
-  static constexpr std::tuple<> kBlocks{};
-};
-struct Alert {
-  Argument text;
   static constexpr std::tuple<> kBlocks{};
 };
 
 struct Stmt {
   Span span;
   std::variant<Command, Call, Set, Raise, Wait, WaitUntil, Then, If, Repeat, PickOne, Stop, Signal,
-               Log, Alert>
+               Log>
       node;
 };
 

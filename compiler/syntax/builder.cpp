@@ -134,6 +134,13 @@ ast::Argument Builder::amount(Span span, ast::Box<ast::Expr> value, bool times) 
   return {span, ast::Preposition::none, ast::Amount{std::move(value), times}};
 }
 
+ast::Command Builder::command(Span verb, std::vector<ast::Argument> arguments,
+                              std::vector<ast::Argument> further) const {
+  const std::size_t parts = 1 + further.size();
+  std::move(further.begin(), further.end(), std::back_inserter(arguments));
+  return {name(verb), std::move(arguments), parts};
+}
+
 // ---- parts of items
 
 void Builder::once(ast::Box<ast::Expr>& place, ast::Box<ast::Expr> value, Span keyword) {

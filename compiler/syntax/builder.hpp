@@ -49,6 +49,9 @@ public:
   ast::Argument word(Span span) const;
   ast::Argument text(Span span) const;
   ast::Argument amount(Span span, ast::Box<ast::Expr> value, bool times = false) const;
+  // With a text that goes on behind a comma.
+  ast::Command command(Span verb, std::vector<ast::Argument> arguments,
+                       std::vector<ast::Argument> further) const;
 
   // ---- parts of items
   // A "-" that touches what follows is its sign; any other one is a key by itself.

@@ -195,6 +195,12 @@ private:
     }
     // One for a group, or for each of its members.
     for (ProgramCommand& command : commands_.translate(node.command)) {
+      if (command.word && find_place(command.word->name)) {
+        diagnostics_.report(Code::E0409, "a TEST compares texts as they are said")
+            .label(span)
+            .helps("write the whole text in quotes, as it is then: `\"You have 3 points\"`");
+        return;
+      }
       ExpectedCommand expected{node.no,
                                actuator_names(command.actuators),
                                command.verb.name,

@@ -22,6 +22,19 @@ const EventShape& shape_of(link::EventKind kind) {
   return *std::ranges::find(kShapes, kind, &EventShape::kind);  // decode_event() knows the kind
 }
 
+// The values in the {} places of a text; where there are too few, places are left.
+std::string filled_in(std::string_view text, std::span<const vm::Value> values) {
+  std::string result;
+  for (const vm::Value value : values) {
+    const auto place = compiler::find_place(text);
+    if (!place) break;
+    result += text.substr(0, place->begin);
+    result += value == vm::kUnknown ? "unknown" : compiler::format_value(value, *place->unit);
+    text.remove_prefix(place->begin + place->size);
+  }
+  return result += text;
+}
+
 }  // namespace
 
 vm::Dimension dimension_of_param(std::size_t param) {
@@ -145,10 +158,22 @@ std::string EventReader::actuator_name() const {
 std::string EventReader::verb_name() const {
   return name_at(&vm::Image::verbs, event_.object, "verb");
 }
-std::string EventReader::word_name() const {
+std::string EventReader::written_word() const {
   const vm::Value word = value(0);
   if (word < 0) return {};
   return name_at(&vm::Image::words, static_cast<std::size_t>(word), "word");
+}
+bool EventReader::is_said(std::size_t param) const {
+  return std::ranges::find(vm::kTextParams, static_cast<vm::Param>(param)) !=
+             vm::kTextParams.end() &&
+         compiler::find_place(written_word()).has_value();
+}
+std::string EventReader::word_name() const {
+  std::vector<vm::Value> values;
+  for_each_param([&](std::size_t param, vm::Value given) {
+    if (is_said(param)) values.push_back(given);
+  });
+  return filled_in(written_word(), values);
 }
 std::string EventReader::thread_name() const {
   return event_.subject < names_.threads.size() ? names_.threads[event_.subject]
@@ -157,18 +182,7 @@ std::string EventReader::thread_name() const {
 
 std::string EventReader::text() const {
   if (names_.image == nullptr) return fmt::format("text {}", event_.subject);
-  std::string_view rest = names_.image->string(event_.subject);
-  std::string text;
-  std::size_t next = 0;
-  while (next < values().size()) {
-    const auto place = compiler::find_place(rest);
-    if (!place) break;
-    const vm::Value value = values()[next++];
-    text += rest.substr(0, place->begin);
-    text += value == vm::kUnknown ? "unknown" : compiler::format_value(value, *place->unit);
-    rest.remove_prefix(place->begin + place->size);
-  }
-  return text += rest;
+  return filled_in(names_.image->string(event_.subject), values());
 }
 
 // ---- values

@@ -70,7 +70,11 @@ public:
   bool is_timer() const;
   std::string actuator_name() const;
   std::string verb_name() const;
-  std::string word_name() const;  // of a command; empty without one
+  // Of a command; empty without one. `word_name` has the values in the {} places of what is said.
+  std::string word_name() const;
+  std::string written_word() const;
+  // Is the parameter of a command a value for such a place?
+  bool is_said(std::size_t param) const;
   std::string thread_name() const;
   // The text of LOG and ALERT, with the values in its {} places.
   std::string text() const;

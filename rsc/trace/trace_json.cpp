@@ -98,7 +98,10 @@ void add_value(Json& object, const EventReader& reader) {
 void add_command(Json& object, const EventReader& reader) {
   if (const std::string word = reader.word_name(); !word.empty()) object["word"] = word;
   reader.for_each_param([&](std::size_t param, vm::Value given) {
-    object[key_of_param(param)] = json_number(given);
+    if (reader.is_said(param))
+      object["values"].push_back(json_number(given));
+    else
+      object[key_of_param(param)] = json_number(given);
   });
 }
 

@@ -24,7 +24,7 @@ std::string command_words(const EventReader& reader) {
   if (const std::string word = reader.word_name(); !word.empty()) text += " " + word;
   reader.for_each_param([&](std::size_t param, vm::Value given) {
     const std::string_view spelling = kParamWords.at(param);
-    if (spelling.empty()) return;  // said by its word
+    if (spelling.empty() || reader.is_said(param)) return;  // its word says it
     text += fmt::format(" {} {}", spelling, reader.shown(param, given));
   });
   return text;

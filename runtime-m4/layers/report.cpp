@@ -8,8 +8,7 @@ namespace robosync::layers {
   const bool is_log = said.kind == vm::OutputKind::log;
   link::Event event;
   Trace::begin(event, is_log ? link::EventKind::log : link::EventKind::alert, stamp, said.text, 0);
-  for (unsigned p = 0; is_log && p < said.params.size(); ++p)
-    if (has(said.given, p)) event.values[event.value_count++] = said.params[p];
+  each_bit(said.given, [&](unsigned p) { event.values[event.value_count++] = said.params[p]; });
   trace.emit(event);
 }
 

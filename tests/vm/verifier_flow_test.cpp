@@ -216,7 +216,7 @@ TEST_CASE("only the first kMaxWritable inputs can be set") {
   check_refused(image, {Refusal::bad_operand, Section::code, kFirst});
 }
 
-TEST_CASE("texts are in the string pool; LOG takes up parameters, nothing else does") {
+TEST_CASE("texts are in the string pool; LOG and ALERT take up parameters") {
   const ImageBuilder image = with_response({kEnd});
   const auto last = static_cast<unsigned>(image.strings.size() - 1);
   for (const Op op : {Op::log, Op::alert}) {
@@ -224,8 +224,8 @@ TEST_CASE("texts are in the string pool; LOG takes up parameters, nothing else d
     refused(Refusal::bad_operand, 0, {encode_wide(op, 0, last + 1), kEnd});
   }
   const Word param = encode(Op::arg, kTo, 0);
-  accepted({param, encode(Op::arg, 7, 0), encode_wide(Op::log, 0, 0), kEnd});
-  refused(Refusal::unused_param, 1, {param, encode_wide(Op::alert, 0, 0), kEnd});
+  for (const Op op : {Op::log, Op::alert})
+    accepted({param, encode(Op::arg, 7, 0), encode_wide(op, 0, 0), kEnd});
   refused(Refusal::unused_param, 1, {param, kWait, kCommand, kEnd});
   refused(Refusal::unused_param, 1, {param, unless(1), kCommand, kEnd});
   refused(Refusal::unused_param, 2, {unless(1), param, kCommand, kEnd});

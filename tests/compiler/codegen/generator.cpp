@@ -110,14 +110,14 @@ ProgramStatement Generator::simple() {
     case 4:
       return made(ProgramThen{});
     case 5:
-      return made(ProgramLog{"log {} {}", {number_expression(1), number_expression(1)}});
+      return made(ProgramLog{false, "log {} {}", {number_expression(1), number_expression(1)}});
     case 6: {
       const E value = number_expression(2);
       locals_.push_back(next_local_);
       return made(ProgramLocal{next_local_++, value});
     }
     case 7:
-      return made(ProgramAlert{"alert"});
+      return made(ProgramLog{true, "alert", {}});
     case 8:
       return made(ProgramSet{kTimer, of(Operation::now, {}), false});
     default:
@@ -215,7 +215,7 @@ ProgramRule Generator::safety_rule() {
   rule.then_response.push_back(
       made(often(30) ? ProgramHalt{true, {}, {}} : ProgramHalt{false, {}, {below(3)}}));
   if (often(50)) rule.then_response.push_back(made(ProgramHalt{false, 0, {0, 1}}));
-  if (often(50)) rule.then_response.push_back(made(ProgramAlert{"stopped"}));
+  if (often(50)) rule.then_response.push_back(made(ProgramLog{true, "stopped", {}}));
   if (often(50))
     rule.then_response.push_back(made(ProgramSet{kRanged, number_expression(2), false}));
   if (often(60)) rule.resume = condition(3);

@@ -95,8 +95,8 @@ TEST_CASE("a time word inside a response is watched by a rule of its own", "[gol
 }
 
 TEST_CASE("LOG and ALERT carry their texts", "[golden]") {
-  expect_response("texts", {line(10, ProgramLog{"at {} and {}", {channel(0), number(2)}}),
-                            line(11, ProgramAlert{"too close"})});
+  expect_response("texts", {line(10, ProgramLog{false, "at {} and {}", {channel(0), number(2)}}),
+                            line(11, ProgramLog{true, "too close", {}})});
 }
 
 TEST_CASE("every time word has a timer, in the order of the code", "[golden]") {
@@ -127,7 +127,7 @@ TEST_CASE("rules of every kind", "[golden]") {
   period.kind = vm::RuleKind::every;
   ProgramRule guard =
       when(close, {line(30, ProgramHalt{false, 0, {0, 1}}), line(31, ProgramHalt{false, {}, {2}}),
-                   line(32, ProgramAlert{"guarded"})});
+                   line(32, ProgramLog{true, "guarded", {}})});
   guard.kind = vm::RuleKind::safety;
   guard.resume = held(greater(channel(1), number(40)), 2);
   ProgramRule all = when(close, {line(33, ProgramHalt{true, {}, {}})});

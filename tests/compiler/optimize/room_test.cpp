@@ -22,7 +22,7 @@ ProgramRule shares_numbers() {
   ProgramBlock block;
   for (unsigned i = 1; i <= vm::kMaxResponseOutput / kWords; ++i) {
     const E number_of_its_own = of(Operation::add, {dear(), number(i)});
-    block.push_back(line(2, ProgramLog{"{} {}", {number_of_its_own, number_of_its_own}}));
+    block.push_back(line(2, ProgramLog{false, "{} {}", {number_of_its_own, number_of_its_own}}));
   }
   return at_start(block);
 }

@@ -139,7 +139,8 @@ std::string show(const std::vector<Argument>& arguments) {
 }
 
 std::string show(const Command& n) {
-  return list({show(n.verb), show(n.arguments)});
+  return list(
+      {show(n.verb), show(n.arguments), n.parts > 0 ? "text-of " + std::to_string(n.parts) : ""});
 }
 std::string show(const Call& n) {
   return list({"call", show(n.name), show(n.arguments)});
@@ -184,10 +185,7 @@ std::string show(const Signal& n) {
   return list({"signal", show(n.name)});
 }
 std::string show(const Log& n) {
-  return list({"log", show(n.arguments)});
-}
-std::string show(const Alert& n) {
-  return list({"alert", show(n.text)});
+  return list({n.alert ? "alert" : "log", show(n.arguments)});
 }
 std::string show(const Stmt& stmt) {
   return std::visit([](const auto& node) { return show(node); }, stmt.node);

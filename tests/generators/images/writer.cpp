@@ -64,7 +64,8 @@ void Writer::command() {
            vm::output_words(effect_of(op)) > 0;
   });
   const Word word = drawer_.instruction(opcode);
-  unsigned takes = effect_of(opcode) == Effect::log ? 0xFFU : 0;
+  const bool text = effect_of(opcode) == Effect::log || effect_of(opcode) == Effect::alert;
+  unsigned takes = text ? 0xFFU : 0;
   const unsigned verb = vm::operand_b(word);
   if (effect_of(opcode) == Effect::command && verb < draft_.view().verbs.size())
     takes = draft_.view().verbs[verb].params;

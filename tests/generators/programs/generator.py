@@ -266,12 +266,13 @@ class Generator:
                          "RESTART idle", "RESTART busy", 'LOG "idle", idle', "SET last TO idle / 1s",
                          "PLAY sound NEXT songs", "SET count TO COUNT OF words - 2", "LOG ANY words",
                          'LOG "count", count, "joy", joy',
-                         'ALERT "look here"', "SET last TO touch LEVEL")
+                         'ALERT "look here"', 'ALERT "joy", joy', "SET last TO touch LEVEL")
 
 
 MORE_COMMANDS = ["MOVE left_arm TO (RANDOM(-20deg, 150deg)) OVER 40ms", "STOP ALL", "STOP arms",
                  "MOVE right_arm TO 30deg AT (last * 50deg/s)", "LIGHT lamp TO (wind SPEED * 1%)",
-                 "LIGHT lamp OFF", 'SAY "well"', 'PLAY sound "greeting.wav" FOR 50ms']
+                 "LIGHT lamp OFF", 'SAY "well"', 'SAY "count", count, "wind", wind SPEED', "SAY NEXT words, last", "SAY idle",
+                 'PLAY sound "greeting.wav" FOR 50ms']
 
 MORE_SAFETY = """\
 LIMIT left_arm SPEED TO 60deg/s
@@ -283,6 +284,7 @@ SAFETY gale
     SET mood TO wary
     SIGNAL knock
     LOG "gale", wind SPEED
+    RESTART busy
   RESUME WHEN wind SPEED < 5
 END
 

@@ -190,10 +190,7 @@ void Interpreter::run_responses() {
 }
 
 void Interpreter::say(const Said& said) {
-  if (said.alert)
-    trace_.alert(said.text);
-  else
-    trace_.log(filled_in(said.text, said.values), said.values);
+  trace_.text(said.alert ? "alert" : "log", filled_in(said.text, said.values), said.values);
 }
 
 void Interpreter::carry_out(const Output& output) {

@@ -169,11 +169,7 @@ void Response::run(const compiler::ProgramLog& node) {
   std::vector<Number> values;
   for (const compiler::Expression& value : node.values)
     values.push_back(number(value));
-  output_.deeds.emplace_back(Said{false, node.text, std::move(values)});
-}
-
-void Response::run(const compiler::ProgramAlert& node) {
-  output_.deeds.emplace_back(Said{true, node.text, {}});
+  output_.deeds.emplace_back(Said{node.alert, node.text, std::move(values)});
 }
 
 void Response::run(const compiler::ProgramHalt&) {}  // of SAFETY rules, which have no responses

@@ -89,7 +89,6 @@ private:
   void run(const compiler::ProgramRepeat& node);
   void run(const compiler::ProgramPick& node);
   void run(const compiler::ProgramLog& node);
-  void run(const compiler::ProgramAlert& node);
   void run(const compiler::ProgramHalt& node);
 
   std::size_t rule_;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/config/units.hpp"
+#include "tests/oracles/rsl/response.hpp"
 
 namespace robosync::oracle {
 namespace {
@@ -23,6 +24,11 @@ Json number(Number value) {
 
 Json line(Millis now, const char* event) {
   return {{"t_us", now * 1000}, {"event", event}};
+}
+
+// Does the parameter say a value of a text, when the text has places for some?
+bool is_said(vm::Param param) {
+  return param == vm::Param::by || param == vm::Param::times || param == vm::Param::direction;
 }
 
 // A number with a word is that word.
@@ -80,24 +86,27 @@ void Trace::command(std::size_t actuator, const Order& order) {
   Json object = line(now_, "command");
   object["actuator"] = robot_.actuators[actuator].name.text;
   object["verb"] = order.command->verb.name;
-  if (order.command->word) object["word"] = order.command->word->name;
+  const std::string word = order.command->word ? order.command->word->name : "";
+  const bool has_places =
+      word.find('{') != std::string::npos && word.find('}') != std::string::npos;
+  std::vector<Number> said;
   for (const auto& [param, value] : order.given)
-    object[kParamKeys.at(static_cast<std::size_t>(param))] = number(value);
+    if (has_places && is_said(param)) said.push_back(value);
+  if (!word.empty()) object["word"] = filled_in(word, said);
+  for (const auto& [param, value] : order.given)
+    if (has_places && is_said(param))
+      object["values"].push_back(number(value));
+    else
+      object[kParamKeys.at(static_cast<std::size_t>(param))] = number(value);
   out_ << object << "\n";
 }
 
-void Trace::log(const std::string& text, const std::vector<Number>& values) {
-  Json object = line(now_, "log");
+void Trace::text(const char* event, const std::string& text, const std::vector<Number>& values) {
+  Json object = line(now_, event);
   object["text"] = text;
   object["values"] = Json::array();
   for (const Number& value : values)
     object["values"].push_back(number(value));
-  out_ << object << "\n";
-}
-
-void Trace::alert(const std::string& text) {
-  Json object = line(now_, "alert");
-  object["text"] = text;
   out_ << object << "\n";
 }
 

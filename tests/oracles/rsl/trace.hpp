@@ -35,8 +35,8 @@ public:
             const std::string& by = "");
   void actuator(const char* event, std::size_t actuator);
   void command(std::size_t actuator, const Order& order);
-  void log(const std::string& text, const std::vector<Number>& values);
-  void alert(const std::string& text);
+  // LOG and ALERT.
+  void text(const char* event, const std::string& text, const std::vector<Number>& values);
 
 private:
   std::ostream& out_;

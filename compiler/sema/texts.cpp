@@ -1,0 +1,53 @@
+#include "compiler/sema/texts.hpp"
+
+#include "compiler/config/units.hpp"
+
+namespace robosync::compiler {
+
+// Words stand apart, unless there is a space already; what ends a sentence stands close.
+void TextBuilder::append(std::string_view part) {
+  constexpr std::string_view kClose = " .,;:!?)";
+  const bool first = text_.empty() || text_.back() == ' ' || text_.back() == '(';
+  if (!first && !part.empty() && kClose.find(part.front()) == std::string_view::npos) text_ += ' ';
+  text_ += part;
+}
+
+bool TextBuilder::add(const std::string& text, Span span) {
+  const auto place = find_place(text);
+  if (place || text.find('\0') != std::string::npos) {
+    const std::string what = place ? text.substr(place->begin, place->size) : "{}";
+    diagnostics_.report(Code::E0509, "`" + what + "` cannot stand in a text that is written out")
+        .label(span);
+    return false;
+  }
+  append(text);
+  return true;
+}
+
+bool TextBuilder::add(const ast::Argument& part) {
+  if (const auto* text = std::get_if<ast::Text>(&part.value)) return add(text->text, part.span);
+  Typed value;
+  if (const auto* amount = std::get_if<ast::Amount>(&part.value)) {
+    if (amount->value == nullptr) return false;
+    const auto* operand = std::get_if<ast::Operand>(&amount->value->node);
+    const Binding* binding = operand != nullptr && !operand->channel
+                                 ? expressions_.find_binding(operand->name.text)
+                                 : nullptr;
+    if (binding != nullptr && binding->text) return add(*binding->text, part.span);
+    value = expressions_.number(*amount->value);
+  } else if (const auto* word = std::get_if<ast::Word>(&part.value)) {
+    const Binding* binding = expressions_.find_binding(word->name.text);
+    if (binding != nullptr && binding->text) return add(*binding->text, part.span);
+    value = expressions_.number_of(expressions_.operand({word->name, nullptr}, word->name.span));
+  }
+  if (!value.is_number()) return false;
+  add(std::move(value));
+  return true;
+}
+
+void TextBuilder::add(Typed number) {
+  append(place_for(number.unit != nullptr ? *number.unit : canonical_unit(vm::Dimension::number)));
+  values_.push_back(std::move(number.code));
+}
+
+}  // namespace robosync::compiler

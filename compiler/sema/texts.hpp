@@ -1,0 +1,35 @@
+// Texts that are put together of parts: `"You have", points, "points"`, wherever a text is written out or said.
+// Each value gets a {} place in the text, with the unit that it is written in; whoever shows the text fills it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/sema/expressions.hpp"
+
+namespace robosync::compiler {
+
+class TextBuilder {
+public:
+  TextBuilder(Expressions& expressions, Diagnostics& diagnostics)
+      : expressions_(expressions), diagnostics_(diagnostics) {}
+
+  // False after a mistake, which has then been reported, and in a DEFINE that nobody runs.
+  bool add(const ast::Argument& part);
+  bool add(const std::string& text, Span span);
+
+  void add(Typed number);
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] std::vector<Expression>& values() { return values_; }
+
+private:
+  void append(std::string_view part);
+
+  Expressions& expressions_;
+  Diagnostics& diagnostics_;
+  std::string text_;
+  std::vector<Expression> values_;
+};
+
+}  // namespace robosync::compiler
