@@ -117,7 +117,7 @@ Result compile(Input program, Input configuration, const Options& options) {
     const Robot& robot = *parsed.robot;
     const Program better = options.optimize ? optimize(written, robot) : written;
     Emitted emitted =
-        emit(better, written, robot, hash_of(result.sources),
+        emit(better, written, robot, options.hash ? hash_of(result.sources) : ProgramHash{},
              {.source_lines = options.source_lines, .seed = options.seed}, diagnostics);
     if (diagnostics.errors() == 0 && verify_image(emitted, diagnostics)) {
       result.image = std::move(emitted.image);

@@ -27,7 +27,7 @@ add_custom_command(
 # Their style is not ours to mend.
 set_source_files_properties(
   ${generated}/grammar/rsl_grammar.cpp ${generated}/grammar/rsl_lexer.cpp
-  PROPERTIES COMPILE_OPTIONS "-Wno-conversion;-Wno-sign-conversion;-Wno-shadow")
+  PROPERTIES COMPILE_OPTIONS "-O3;-Wno-conversion;-Wno-sign-conversion;-Wno-shadow")
 
 target_sources(robosync_compiler PRIVATE
   ${generated}/grammar/rsl_grammar.cpp

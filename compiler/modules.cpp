@@ -52,19 +52,21 @@ private:
         return Input{"<" + std::string(module.name) + ">", std::string(module.text)};
       names.emplace_back(module.name);
     }
-    Diagnostic& d = diagnostics_.report(Code::E0501, "there is no module `" + use.module.text + "`")
+    Diagnostic& d = diagnostics_.report(Code::E0501, "there is no module " + use.module.shown())
                         .label(use.module.span);
     if (const auto near = nearest(use.module.text, names))
       d.helps("did you mean `" + *near + "`?").fix(use.module.span, *near);
     else
-      d.helps("a file of your own stands in quotes: `USE \"" + use.module.text + ".rsl\"`");
+      d.helps("a file of your own stands in quotes: `USE \"" + std::string(use.module.text) +
+              ".rsl\"`");
     return std::nullopt;
   }
 
   std::optional<Input> find_file(const ast::Use& use, FileId user) {
-    auto input = read_ ? read_(sources_.file(user).name(), use.module.text) : std::nullopt;
+    const std::string name(use.module.text);
+    auto input = read_ ? read_(sources_.file(user).name(), name) : std::nullopt;
     if (input) return input;
-    diagnostics_.report(Code::E0410, "the module \"" + use.module.text + "\" cannot be read")
+    diagnostics_.report(Code::E0410, "the module \"" + name + "\" cannot be read")
         .label(use.module.span)
         .helps("its path begins where this file is");
     return std::nullopt;

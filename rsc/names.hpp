@@ -1,21 +1,13 @@
-// Names: of what an image only numbers, and how those that a person gives are compared.
+// Names of what an image only numbers.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstddef>
 #include <string_view>
 
 #include "vm/image.hpp"
 
 namespace robosync::tool {
-
-// In any case.
-inline bool same_name(std::string_view a, std::string_view b) {
-  return std::ranges::equal(
-      a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
 
 // As it stands in vm/drivers.def.
 [[nodiscard]] constexpr std::string_view driver_name(vm::DriverId driver) {

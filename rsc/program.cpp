@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "compiler/diagnostics/render.hpp"
+#include "compiler/source/ascii.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
@@ -30,12 +30,10 @@ std::string counted(std::size_t count, const char* what) {
 
 // By name or by content, so that a damaged image is refused as an image and not read as a program.
 bool is_image(const std::string& file, std::span<const std::byte> bytes) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = std::filesystem::path(file).extension().string();
   std::uint32_t magic = 0;
   if (bytes.size() >= sizeof magic) std::memcpy(&magic, bytes.data(), sizeof magic);
-  return extension == ".rsb" || magic == vm::kMagic;
+  return compiler::ascii::same(extension, ".rsb") || magic == vm::kMagic;
 }
 
 // Relative to the file that uses it. Two ways to write one path give one name.
@@ -66,6 +64,7 @@ compiler::Result compile(const std::string& file, const CompileOptions& options,
                         {.source_lines = options.source_lines,
                          .optimize = options.optimize,
                          .seed = options.seed,
+                         .hash = options.hash,
                          .read_module = modules});
   judge(result, options.judged);
   return result;

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "compiler/source/ascii.hpp"
 #include "compiler/syntax/keywords.hpp"
 
 namespace robosync::compiler {
 namespace {
 
 constexpr std::size_t kListed = 12;
-
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
 
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -31,7 +28,7 @@ std::string fold_name(std::string_view name) {
   std::string folded;
   folded.reserve(name.size());
   for (const char c : name)
-    if (c != '_') folded += lower(c);
+    if (c != '_') folded += ascii::lower(c);
   return folded;
 }
 
@@ -43,7 +40,7 @@ bool same_name(std::string_view a, std::string_view b) {
     while (at_b != b.end() && *at_b == '_')
       ++at_b;
     if (at_a == a.end() || at_b == b.end()) return at_a == a.end() && at_b == b.end();
-    if (lower(*at_a++) != lower(*at_b++)) return false;
+    if (!ascii::same(*at_a++, *at_b++)) return false;
   }
 }
 
@@ -51,7 +48,7 @@ bool same_name(std::string_view a, std::string_view b) {
 std::size_t NameIndex::Hash::operator()(std::string_view name) const {
   std::uint64_t hash = 0xCBF2'9CE4'8422'2325;
   for (const char c : name)
-    if (c != '_') hash = (hash ^ static_cast<unsigned char>(lower(c))) * 0x100'0000'01B3;
+    if (c != '_') hash = (hash ^ static_cast<unsigned char>(ascii::lower(c))) * 0x100'0000'01B3;
   return static_cast<std::size_t>(hash);
 }
 

@@ -50,6 +50,9 @@ NameIndex index_of(const List& list) {
 struct Spelled {
   std::string text;
   Span span;
+
+  // As messages show it: "`wave`".
+  [[nodiscard]] std::string shown() const { return "`" + text + "`"; }
 };
 
 // Reports a name that RSL cannot write (E0103) or that is one of its words (E0102).

@@ -28,8 +28,7 @@ void check_channel_names(const std::vector<ChannelConfig>& channels, Diagnostics
     const Spelled& first = channels[*places.find(channel.name.text)].name;
     if (first.text != channel.name.text)
       diagnostics
-          .report(Code::E0101,
-                  "`" + channel.name.text + "` and `" + first.text + "` are the same name")
+          .report(Code::E0101, channel.name.shown() + " and `" + first.text + "` are the same name")
           .label(channel.name.span)
           .label(first.span, "first given here", false);
   }

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdlib>
 #include <numeric>
+
+#include "compiler/source/ascii.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -47,12 +48,14 @@ constexpr std::array kDimensions = {
 #undef DIMENSION
 };
 
-bool equal_ignoring_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
-    return std::tolower(static_cast<unsigned char>(x)) ==
-           std::tolower(static_cast<unsigned char>(y));
-  });
-}
+// Of each dimension the place of its canonical unit in kUnits.
+constexpr auto kCanonical = [] {
+  std::array<std::size_t, kDimensions.size()> places{};
+  for (std::size_t i = 0; i < places.size(); ++i)
+    while (kUnits.at(places.at(i)).spelling != kDimensions.at(i).canonical_unit)
+      ++places.at(i);
+  return places;
+}();
 
 constexpr Wide power_of_ten(unsigned exponent) {
   Wide power = 1;
@@ -147,14 +150,14 @@ const Unit* find_rate(std::string_view spelling) {
 
 const Unit* find_unit(std::string_view spelling) {
   for (const Unit& unit : kUnits)
-    if (equal_ignoring_case(unit.spelling, spelling)) return &unit;
+    if (ascii::same(unit.spelling, spelling)) return &unit;
   for (const OtherName& other : kOtherNames)
-    if (equal_ignoring_case(other.name, spelling)) return find_unit(other.spelling);
+    if (ascii::same(other.name, spelling)) return find_unit(other.spelling);
   return find_rate(spelling);
 }
 
 const Unit& canonical_unit(vm::Dimension dimension) {
-  return *find_unit(kDimensions[static_cast<std::size_t>(dimension)].canonical_unit);
+  return kUnits[kCanonical[static_cast<std::size_t>(dimension)]];
 }
 
 std::string_view dimension_phrase(vm::Dimension dimension) {

@@ -5,20 +5,14 @@
 #include <array>
 #include <utility>
 
+#include "compiler/source/ascii.hpp"
+
 namespace robosync::compiler {
 
 namespace {
 
 // Words come from outside. Nobody misspells a longer one, and the work is quadratic.
 constexpr std::size_t longest_word = 64;
-
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-bool equal(char a, char b) {
-  return lower(a) == lower(b);
-}
 
 // Three rows of the distance matrix: a swap looks two rows back.
 using Row = std::array<std::size_t, longest_word + 1>;
@@ -40,9 +34,10 @@ void fill_row(const Rows& rows, std::string_view a, std::string_view b, std::siz
   Row& current = *rows.current;
   current[0] = i;
   for (std::size_t j = 1; j <= b.size(); ++j) {
-    const std::size_t changed = previous[j - 1] + (equal(a[i - 1], b[j - 1]) ? 0U : 1U);
+    const std::size_t changed = previous[j - 1] + (ascii::same(a[i - 1], b[j - 1]) ? 0U : 1U);
     std::size_t best = std::min({previous[j] + 1, current[j - 1] + 1, changed});
-    const bool swapped = i > 1 && j > 1 && equal(a[i - 1], b[j - 2]) && equal(a[i - 2], b[j - 1]);
+    const bool swapped =
+        i > 1 && j > 1 && ascii::same(a[i - 1], b[j - 2]) && ascii::same(a[i - 2], b[j - 1]);
     if (swapped) best = std::min(best, before[j - 2] + 1);
     current[j] = best;
   }
@@ -55,7 +50,8 @@ std::size_t tolerated(std::size_t longer) {
 
 // What both words begin with is no mistake.
 std::size_t common_start(std::string_view a, std::string_view b) {
-  const auto ends = std::mismatch(a.begin(), a.end(), b.begin(), b.end(), equal);
+  const auto ends = std::mismatch(a.begin(), a.end(), b.begin(), b.end(),
+                                  [](char x, char y) { return ascii::same(x, y); });
   return static_cast<std::size_t>(ends.first - a.begin());
 }
 
@@ -76,7 +72,7 @@ std::optional<std::size_t> mistakes_if_near(std::string_view word, std::string_v
     near = wrong <= tolerated(longer);
   } else if (longer == 2 && !word.empty()) {
     const bool swapped = word.size() == 2 && candidate.size() == 2 &&
-                         equal(word[0], candidate[1]) && equal(word[1], candidate[0]);
+                         ascii::same(word[0], candidate[1]) && ascii::same(word[1], candidate[0]);
     near = swapped || (word.size() == 1 && wrong == 1);
   }
   return near && !word.empty() ? std::optional(wrong) : std::nullopt;

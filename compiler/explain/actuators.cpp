@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/source/ascii.hpp"
 #include "compiler/syntax/walk.hpp"
 
 namespace robosync::compiler::explain {
@@ -50,18 +51,18 @@ private:
   }
 
   // The name that a parameter is given, in the DEFINE that is walked.
-  std::string meant(const std::string& name) const {
+  std::string meant(std::string_view name) const {
     const auto found = given_.find(folded(name));
-    return found == given_.end() ? name : found->second;
+    return found == given_.end() ? std::string(name) : found->second;
   }
 
-  bool run(const std::string& name, const std::vector<ast::Argument>& arguments) {
+  bool run(std::string_view name, const std::vector<ast::Argument>& arguments) {
     const auto found = defines_.find(folded(meant(name)));
     if (found == defines_.end()) return false;
     const ast::Define& define = *found->second;
     Given given;
     for (std::size_t i = 0; i < std::min(define.parameters.size(), arguments.size()); ++i)
-      if (const std::string argument = named_by(arguments[i]); !argument.empty())
+      if (const std::string_view argument = named_by(arguments[i]); !argument.empty())
         given[folded(define.parameters[i].text)] = meant(argument);
     if (!seen_.insert({&define, given}).second) return true;
     std::swap(given, given_);
@@ -70,24 +71,24 @@ private:
     return true;
   }
 
-  static std::string named_by(const ast::Argument& argument) {
+  static std::string_view named_by(const ast::Argument& argument) {
     const auto* const amount = std::get_if<ast::Amount>(&argument.value);
     if (amount == nullptr || amount->value == nullptr) return {};
     const auto* const operand = std::get_if<ast::Operand>(&amount->value->node);
-    return operand == nullptr || operand->channel ? std::string() : operand->name.text;
+    return operand == nullptr || operand->channel ? std::string_view() : operand->name.text;
   }
 
   // Without a robot, the first word of a command is its actuator.
-  bool add(const std::string& written) {
+  bool add(std::string_view written) {
     const std::string name = meant(written);
     if (robot_ == nullptr) return names.insert(name), true;
     for (const ActuatorConfig& actuator : robot_->actuators) {
-      if (folded(actuator.name.text) == folded(name)) {
+      if (ascii::same(actuator.name.text, name)) {
         return names.insert(actuator.name.text), true;
       }
     }
     for (const GroupConfig& group : robot_->groups) {
-      if (folded(group.name.text) != folded(name)) continue;
+      if (!ascii::same(group.name.text, name)) continue;
       for (const std::size_t member : group.members)
         names.insert(robot_->actuators[member].name.text);
       return true;
@@ -96,11 +97,11 @@ private:
   }
 
   // SAY "…" names none: it is the one that knows the verb.
-  void add_by_verb(const std::string& verb) {
+  void add_by_verb(std::string_view verb) {
     if (robot_ == nullptr) return;
     for (const ActuatorConfig& actuator : robot_->actuators) {
       if (std::ranges::any_of(actuator.verbs, [&](const VerbConfig& known) {
-            return folded(known.name) == folded(verb);
+            return ascii::same(known.name, verb);
           })) {
         names.insert(actuator.name.text);
       }

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include <fmt/format.h>
+
+#include "compiler/source/ascii.hpp"
 
 namespace robosync::compiler::explain {
 namespace {
@@ -39,11 +40,7 @@ std::span<const CodeText> code_texts() {
 }
 
 std::optional<Code> find_code(std::string_view name) {
-  const auto same = [name](Code code) {
-    return std::ranges::equal(code_name(code), name, [](unsigned char a, unsigned char b) {
-      return std::toupper(a) == std::toupper(b);
-    });
-  };
+  const auto same = [name](Code code) { return ascii::same(code_name(code), name); };
   const auto* const found = std::ranges::find_if(kCodes, same);
   return found == kCodes.end() ? std::nullopt : std::optional(*found);
 }

@@ -62,7 +62,8 @@ std::string function(const ast::Function& node) {
 }
 
 std::string operand(const ast::Operand& node) {
-  return node.channel ? node.name.text + " " + node.channel->text : node.name.text;
+  const std::string name(node.name.text);
+  return node.channel ? fmt::format("{} {}", name, node.channel->text) : name;
 }
 
 // ---- conditions that say one thing of one subject
@@ -98,8 +99,8 @@ std::optional<Claim> claim(const Expr& expr) {
                  fmt::format("{} {}", relation_words(node->relation), of(*node->right))};
   }
   if (const auto* node = std::get_if<ast::Is>(&expr.node)) {
-    const std::string label =
-        node->is_string ? fmt::format("\"{}\"", node->label.text) : node->label.text;
+    const std::string_view quote = node->is_string ? "\"" : "";
+    const std::string label = fmt::format("{0}{1}{0}", quote, node->label.text);
     return Claim{of(*node->value), (node->negated ? "anything but " : "") + label};
   }
   if (const auto* node = std::get_if<ast::IsBetween>(&expr.node)) {

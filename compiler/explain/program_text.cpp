@@ -84,7 +84,7 @@ private:
   static std::string remembered(const ast::State& node) {
     std::vector<std::string> labels;
     for (const ast::Name& label : node.labels)
-      labels.push_back(label.text);
+      labels.emplace_back(label.text);
     return fmt::format("  {} is always one of {}; {} at first.\n", node.name.text, list(labels),
                        labels.empty() ? "nothing" : labels.front());
   }
@@ -107,7 +107,7 @@ private:
   static std::string remembered(const ast::Motion& node) {
     std::vector<std::string> columns;
     for (const ast::Name& column : node.columns)
-      columns.push_back(column.text);
+      columns.emplace_back(column.text);
     return fmt::format("  {} is a motion of {}, {} long.\n", node.name.text, list(columns),
                        node.rows.empty() ? "nothing" : number(*node.rows.back().time));
   }
@@ -198,7 +198,7 @@ private:
     int unnumbered = 0;
     for (const ast::Item& item : program_.items) {
       if (const auto* node = std::get_if<ast::Behavior>(&item.node)) {
-        Party party{node->name.text, priority_of(*node), {}};
+        Party party{std::string(node->name.text), priority_of(*node), {}};
         for (const ast::Rule& rule : node->rules)
           add(party.actuators, rule);
         parties_.push_back(std::move(party));
@@ -255,7 +255,7 @@ private:
   void tell(const ast::Define& node, Span span) {
     std::vector<std::string> parameters;
     for (const ast::Name& parameter : node.parameters)
-      parameters.push_back(parameter.text);
+      parameters.emplace_back(parameter.text);
     say(0, fmt::format("\nDEFINE {}{} (line {}) means:", node.name.text,
                        parameters.empty() ? "" : " with " + list(parameters), line_of(span)));
     text_ += statements(node.body, defines_, kIndent);

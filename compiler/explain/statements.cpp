@@ -2,12 +2,12 @@
 #include "compiler/explain/statements.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "compiler/explain/conditions.hpp"
+#include "compiler/source/ascii.hpp"
 
 namespace robosync::compiler::explain {
 namespace {
@@ -156,7 +156,7 @@ private:
   }
 
   void write(const ast::Stop& node) {
-    line(node.name ? "stop " + node.name->text : "stop all actuators");
+    line(node.name ? fmt::format("stop {}", node.name->text) : "stop all actuators");
   }
   void write(const ast::Signal& node) {
     line(fmt::format("send the signal {} to the other rules", node.name.text));
@@ -177,8 +177,7 @@ private:
 
 std::string folded(std::string_view name) {
   std::string text(name);
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(text, text.begin(), ascii::lower);
   return text;
 }
 

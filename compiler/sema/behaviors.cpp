@@ -70,7 +70,7 @@ std::optional<Behaviors::Numbered> Behaviors::priority_of(const ast::Behavior& b
   const bool in_json = config != nullptr && config->priority;
   if (!behavior.priority) {
     if (in_json) return Numbered{*config->priority, config->priority_span, false};
-    diagnostics_.report(Code::E0405, "the behaviour `" + behavior.name.text + "` has no priority")
+    diagnostics_.report(Code::E0405, "the behaviour " + behavior.name.shown() + " has no priority")
         .label(behavior.name.span)
         .helps("write `PRIORITY` and a number from 1 to 99 behind its name");
     return std::nullopt;
@@ -78,7 +78,7 @@ std::optional<Behaviors::Numbered> Behaviors::priority_of(const ast::Behavior& b
   const auto written = written_priority(*behavior.priority);
   if (written && in_json && written->number != *config->priority)
     diagnostics_
-        .report(Code::E0408, "`" + behavior.name.text + "` has priority " +
+        .report(Code::E0408, behavior.name.shown() + " has priority " +
                                  std::to_string(written->number) + " here and " +
                                  std::to_string(*config->priority) + " in robot.json")
         .label(written->span)
@@ -141,7 +141,7 @@ std::vector<ProgramBehavior> Behaviors::finish() {
   report_taken();
   for (const BehaviorConfig& config : robot_.behaviors)
     if (!names_.contains(fold_name(config.name.text)))
-      diagnostics_.report(Code::W0216, "the program has no behaviour `" + config.name.text + "`")
+      diagnostics_.report(Code::W0216, "the program has no behaviour " + config.name.shown())
           .label(config.name.span);
   std::stable_sort(
       behaviors_.begin(), behaviors_.end(),

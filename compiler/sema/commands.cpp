@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 
 #include "compiler/config/wiring.hpp"
 #include "compiler/diagnostics/nearest.hpp"
@@ -55,7 +54,7 @@ std::vector<ProgramCommand> Commands::translate(const ast::Command& command,
   if (command.with) {
     diagnostics_
         .report(Code::E0505,
-                "`WITH` gives values to a DEFINE, and `" + command.verb.text + "` is none")
+                "`WITH` gives values to a DEFINE, and " + command.verb.shown() + " is none")
         .label(*command.with)
         .helps("say it with `TO`, `BY`, `AT`, `OVER`, `FOR` or `TIMES`");
     return {};
@@ -134,20 +133,20 @@ bool Commands::is_given_another(const ast::Command& command) {
 void Commands::report_no_target(const ast::Command& command, const std::vector<std::size_t>& able) {
   const ast::Word* first = first_word(command);
   if (first == nullptr || is_known_word(first->name.text)) {
-    Diagnostic& d =
-        diagnostics_.report(Code::E0504, "this does not say which actuator to " + command.verb.text)
-            .label(command.verb.span);
+    Diagnostic& d = diagnostics_
+                        .report(Code::E0504, "this does not say which actuator to " +
+                                                 std::string(command.verb.text))
+                        .label(command.verb.span);
     if (!diagnostics_.may_search(able.size())) return;
     std::vector<std::string> names;
     names.reserve(able.size());
     for (const std::size_t actuator : able)
       names.push_back(robot_.actuators[actuator].name.text);
-    d.helps(list_names(names) + " know `" + command.verb.text + "`");
+    d.helps(list_names(names) + " know " + command.verb.shown());
     return;
   }
-  Diagnostic& d =
-      diagnostics_.report(Code::E0501, "there is no actuator `" + first->name.text + "`")
-          .label(first->name.span);
+  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no actuator " + first->name.shown())
+                      .label(first->name.span);
   if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size())) return;
   const auto candidates = names_.target_names();
   suggest(d, first->name.span, first->name.text, candidates);
@@ -155,16 +154,16 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
 }
 
 void suggest_perform(Diagnostic& diagnostic, const ast::Name& motion) {
-  const std::string better = std::string(kPerform) + " " + motion.text;
-  diagnostic.helps("`" + motion.text + "` is a MOTION: write `" + better + "`")
+  const std::string better = std::string(kPerform) + " " + std::string(motion.text);
+  diagnostic.helps(motion.shown() + " is a MOTION: write `" + better + "`")
       .fix(motion.span, better, Applicability::likely);
 }
 
 void Commands::report_unknown_verb(const ast::Command& command) {
   const ast::Name& verb = command.verb;
-  const std::string what = command.arguments.empty() ? "DEFINE or verb `" : "verb `";
+  const std::string what = command.arguments.empty() ? "DEFINE or verb " : "verb ";
   Diagnostic& d =
-      diagnostics_.report(Code::E0501, "there is no " + what + verb.text + "`").label(verb.span);
+      diagnostics_.report(Code::E0501, "there is no " + what + verb.shown()).label(verb.span);
   if (command.arguments.empty()) d.unknown = verb.text;
   if (names_.find_motion(verb.text) != nullptr) return suggest_perform(d, verb);
   if (!diagnostics_.may_search(robot_.actuators.size() + names_.defines().size())) return;
@@ -195,7 +194,8 @@ bool Commands::lacks_brackets(const ast::Command& command, std::size_t place) {
     return false;
   Span both = word->name.span;
   both.end = second->name.span.end;
-  const std::string better = "(" + word->name.text + " " + second->name.text + ")";
+  const std::string better =
+      "(" + std::string(word->name.text) + " " + std::string(second->name.text) + ")";
   diagnostics_.report(Code::E0505, "a value of two words stands in brackets here")
       .label(both)
       .helps("write `" + better + "`")
@@ -287,7 +287,7 @@ std::optional<Target> Commands::find_stopped(const ast::Name& name) {
   auto target = names_.find_target(name.text);
   if (target || name.text.empty()) return target;
   Diagnostic& d =
-      diagnostics_.report(Code::E0501, "there is no actuator `" + name.text + "`").label(name.span);
+      diagnostics_.report(Code::E0501, "there is no actuator " + name.shown()).label(name.span);
   const auto candidates = names_.target_names();
   suggest(d, name.span, name.text, candidates);
   if (d.help.empty() && !candidates.empty()) d.helps("actuators: " + list_names(candidates));
@@ -338,12 +338,13 @@ bool takes_its_words(const ProgramCommand& command) {
   return command.word && command.word->param == vm::Param::for_;
 }
 
-vm::Value words_of(const std::string& text) {
+vm::Value words_of(std::string_view text) {
   constexpr std::size_t kMost = 1000;
-  std::istringstream stream(text);
+  constexpr std::string_view kBlanks = " \t\n\v\f\r";
   std::size_t words = 0;
-  for (std::string word; words < kMost && stream >> word;)
-    ++words;
+  for (std::size_t at = text.find_first_not_of(kBlanks);
+       at != std::string_view::npos && words < kMost; ++words)
+    at = text.find_first_not_of(kBlanks, text.find_first_of(kBlanks, at));
   return static_cast<vm::Value>(std::max<std::size_t>(words, 1));
 }
 
@@ -362,8 +363,7 @@ bool check_value(const ActuatorConfig& actuator, vm::Param param, const Typed& n
   const Unit& unit = *number.unit;
   if (param == vm::Param::to && (value < actuator.min || value > actuator.max)) {
     diagnostics
-        .report(Code::E0506,
-                "`" + actuator.name.text + "` cannot reach " + format_value(value, unit))
+        .report(Code::E0506, actuator.name.shown() + " cannot reach " + format_value(value, unit))
         .label(number.span)
         .label(actuator.range_span,
                "it goes from " + format_value(actuator.min, unit) + " to " +
@@ -372,7 +372,7 @@ bool check_value(const ActuatorConfig& actuator, vm::Param param, const Typed& n
     return false;
   }
   if (param == vm::Param::at && value > actuator.speed_limit) {
-    diagnostics.report(Code::E0507, "this is faster than `" + actuator.name.text + "` may go")
+    diagnostics.report(Code::E0507, "this is faster than " + actuator.name.shown() + " may go")
         .label(number.span)
         .label(actuator.limit_span, "the limit", false);
     return false;
@@ -405,7 +405,7 @@ void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Uni
                       const Typed& number, Diagnostics& diagnostics) {
   Diagnostic& d = diagnostics
                       .report(Code::E0301,
-                              "`" + spelling(param) + "` of `" + actuator.name.text + "` is " +
+                              "`" + spelling(param) + "` of " + actuator.name.shown() + " is " +
                                   std::string(dimension_phrase(unit.dimension)) + ", and this is " +
                                   std::string(dimension_phrase(number.dimension())))
                       .label(number.digits.empty() ? number.span : number.unit_span)
@@ -443,7 +443,7 @@ std::optional<ProgramCommand> Commands::for_actuator(std::size_t actuator,
   if (verb == nullptr) {
     diagnostics
         .report(Code::E0503,
-                "`" + config.name.text + "` does not know the verb `" + command.verb.text + "`")
+                config.name.shown() + " does not know the verb " + command.verb.shown())
         .label(command.verb.span)
         .helps("it knows " + list_names(verb_names(config)));
     return std::nullopt;
@@ -495,7 +495,7 @@ bool Commands::add_word(const Recipient& to, const ast::Word& word, Span span,
     const Unit& unit = param_unit(to.actuator, vm::Param::at);
     to.diagnostics
         .report(Code::N0003, "`" + known->name + "` is " + format_value(known->value, unit) +
-                                 ", but `" + to.actuator.name.text + "` goes no faster than " +
+                                 ", but " + to.actuator.name.shown() + " goes no faster than " +
                                  format_value(to.actuator.speed_limit, unit))
         .label(span)
         .label(to.actuator.limit_span, "the limit", false);
@@ -506,8 +506,8 @@ bool Commands::add_word(const Recipient& to, const ast::Word& word, Span span,
 
 void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) const {
   Diagnostic& d = to.diagnostics
-                      .report(Code::E0501, "`" + to.actuator.name.text +
-                                               "` does not know the word `" + word.name.text + "`")
+                      .report(Code::E0501, to.actuator.name.shown() + " does not know the word " +
+                                               word.name.shown())
                       .label(word.name.span);
   const std::size_t targets_known = robot_.actuators.size() + robot_.groups.size();
   if (!diagnostics_.may_search(to.actuator.words.size() + targets_known)) return;
@@ -527,7 +527,7 @@ namespace {
 void report_unknown_text(const ActuatorConfig& actuator, const std::string& text, Span span,
                          bool may_search, Diagnostics& diagnostics) {
   Diagnostic& d =
-      diagnostics.report(Code::E0502, "`" + actuator.name.text + "` has no \"" + text + "\"")
+      diagnostics.report(Code::E0502, actuator.name.shown() + " has no \"" + text + "\"")
           .label(span);
   if (!may_search) return;
   std::vector<std::string> sounds;
@@ -582,7 +582,7 @@ bool Commands::say_values(const Recipient& to, const Given& given, ProgramComman
   const std::string& verb = to.verb.name;
   if (to.verb.texts != Texts::any) {
     to.diagnostics
-        .report(Code::E0505, "`" + to.actuator.name.text + "` says no numbers: it plays files")
+        .report(Code::E0505, to.actuator.name.shown() + " says no numbers: it plays files")
         .label(given.text_span)
         .helps("a device that says any text can: \"speaker\"");
     return false;

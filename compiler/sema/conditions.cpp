@@ -20,7 +20,7 @@ std::optional<std::size_t> find_label(Names& names, const std::vector<std::strin
   if (const auto place = names.find_label(labels, label.text)) return place;
   if (label.text.empty()) return std::nullopt;  // it was missing, which has been reported
   Diagnostic& d =
-      diagnostics.report(Code::E0501, "`" + std::string(owner) + "` is never `" + label.text + "`")
+      diagnostics.report(Code::E0501, "`" + std::string(owner) + "` is never " + label.shown())
           .label(label.span);
   if (!diagnostics.may_search(labels.size())) return std::nullopt;
   if (const auto near = nearest(label.text, labels))
@@ -52,8 +52,8 @@ Typed Expressions::label_test(Operation operation, const ast::Expr& value, const
     Diagnostic& d =
         diagnostics_
             .report(Code::E0306, word.is_number()
-                                     ? "this is a number, and `" + label.text + "` is a word"
-                                     : "this is a condition, and `" + label.text + "` is a word")
+                                     ? "this is a number, and " + label.shown() + " is a word"
+                                     : "this is a condition, and " + label.shown() + " is a word")
             .label(value.span)
             .label(label.span, "the word", false);
     if (word.code.operation == Operation::input)

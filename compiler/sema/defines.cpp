@@ -50,7 +50,7 @@ std::vector<std::string> texts_of(const std::vector<ast::Name>& names) {
   std::vector<std::string> result;
   result.reserve(names.size());
   for (const ast::Name& name : names)
-    result.push_back(name.text);
+    result.emplace_back(name.text);
   return result;
 }
 
@@ -78,19 +78,19 @@ void Statements::add(const ast::Call& node, Span span, ProgramBlock& result) {
     return run(*binding, node.name, node.arguments, span, result);
   if (DefineName* define = names_.find_define(node.name.text))
     return run(*define, node.arguments, span, result);
-  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no DEFINE `" + node.name.text + "`")
+  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no DEFINE " + node.name.shown())
                       .label(node.name.span);
   d.unknown = node.name.text;
   if (names_.find_motion(node.name.text) != nullptr) {
-    d.helps("`" + node.name.text + "` is a MOTION: write `" + std::string(kPerform) + " " +
-            node.name.text + "`, or `" + std::string(kPerform) + " " + node.name.text +
+    const std::string better = std::string(kPerform) + " " + std::string(node.name.text);
+    d.helps(node.name.shown() + " is a MOTION: write `" + better + "`, or `" + better +
             " 2 TIMES`");
     return;
   }
   if (diagnostics_.may_search(names_.defines().size()))
     suggest(d, node.name.span, node.name.text, names_.define_names());
   if (d.help.empty() && names_.is_verb(node.name.text))
-    d.helps("`" + node.name.text + "` is a verb: what it does stands behind it without WITH");
+    d.helps(node.name.shown() + " is a verb: what it does stands behind it without WITH");
 }
 
 // What a parameter stands for.
@@ -109,7 +109,7 @@ void Statements::run(DefineName& name, const std::vector<ast::Argument>& argumen
   const std::size_t reported = diagnostics_.all().size();
   expand(name, *bindings, result);
   if (name.in_module)
-    diagnostics_.found_from(span, "`" + name.define->name.text + "` needs it", reported);
+    diagnostics_.found_from(span, name.define->name.shown() + " needs it", reported);
 }
 
 bool Statements::may_run(const DefineName& name, Span use) {
@@ -128,11 +128,11 @@ std::optional<Bindings> Statements::bind(const DefineName& name,
   const auto& parameters = name.define->parameters;
   if (parameters.size() != arguments.size()) {
     Diagnostic& d = diagnostics_.report(
-        Code::E0411, "`" + name.define->name.text + "` wants " + counted(parameters.size()) +
+        Code::E0411, name.define->name.shown() + " wants " + counted(parameters.size()) +
                          ", and is given " + std::to_string(arguments.size()));
     d.label(span).label(name.span, "defined here", false);
     if (!parameters.empty())
-      d.helps("write `" + name.define->name.text + " WITH` and a value for " +
+      d.helps("write `" + std::string(name.define->name.text) + " WITH` and a value for " +
               list_names(texts_of(parameters)));
     return std::nullopt;
   }
@@ -186,7 +186,7 @@ Typed Statements::followed(const ast::Expr& value) {
 
 // An actuator, a group or a DEFINE. Where a sensor has the name too, what the DEFINE does with its
 // parameter tells which of them is meant.
-bool Statements::bind_name(const std::string& name, const ast::Define& define, Binding& binding) {
+bool Statements::bind_name(std::string_view name, const ast::Define& define, Binding& binding) {
   const auto target = names_.find_target(name);
   if (DefineName* given = names_.find_define(name)) {
     given->used = true;
@@ -240,10 +240,9 @@ void Statements::expand(DefineName& name, const Bindings& bindings, ProgramBlock
 void Statements::report_cycle(const DefineName& name, Span use) {
   std::string chain;
   for (auto at = std::find(open_.begin(), open_.end(), name.define); at != open_.end(); ++at)
-    chain += (*at)->name.text + " → ";
-  diagnostics_
-      .report(Code::E0402,
-              "`" + name.define->name.text + "` runs itself: " + chain + name.define->name.text)
+    chain.append((*at)->name.text).append(" → ");
+  chain += name.define->name.text;
+  diagnostics_.report(Code::E0402, name.define->name.shown() + " runs itself: " + chain)
       .label(use)
       .label(name.span, "defined here", false);
 }

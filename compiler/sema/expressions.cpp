@@ -98,7 +98,7 @@ Typed Expressions::operand(const ast::Operand& operand, Span span) {
       names_.find_list(operand.channel ? operand.channel->text : operand.name.text);
   if (list != nullptr && !names_.find_sensor(operand.name.text)) {
     diagnostics_
-        .report(Code::E0306, "`" + list->list->name.text + "` holds texts, and a number is needed")
+        .report(Code::E0306, list->list->name.shown() + " holds texts, and a number is needed")
         .label(span)
         .label(list->list->name.span, "the LIST", false);
     return make_nothing(span);
@@ -137,7 +137,7 @@ std::string kind_of(const Binding& binding) {
 void Expressions::report_given(const Binding& binding, const ast::Name& name,
                                std::string_view wanted) {
   diagnostics_
-      .report(Code::E0306, "`" + name.text + "` is given " + kind_of(binding) + ", and " +
+      .report(Code::E0306, name.shown() + " is given " + kind_of(binding) + ", and " +
                                std::string(wanted) + " is needed")
       .label(name.span)
       .label(binding.span, "given here", false);
@@ -182,7 +182,7 @@ Typed Expressions::variable(VariableName& name, Span span) {
     return make_condition(make_unary(Operation::changed, std::move(code)), span);
   if (!name.ready) {
     diagnostics_
-        .report(Code::E0305, "`" + name.name.text + "` changes while the program runs, and this " +
+        .report(Code::E0305, name.name.shown() + " changes while the program runs, and this " +
                                  "must be known before")
         .label(span);
     return make_nothing(span);
@@ -204,7 +204,7 @@ Typed Expressions::variable(VariableName& name, Span span) {
 
 Typed Expressions::constant(ConstantName& name, const ast::Operand& operand, Span span) {
   if (std::find(open_.begin(), open_.end(), name.let) != open_.end()) {
-    diagnostics_.report(Code::E0402, "the value of `" + operand.name.text + "` depends on itself")
+    diagnostics_.report(Code::E0402, "the value of " + operand.name.shown() + " depends on itself")
         .label(span);
     return make_nothing(span);
   }

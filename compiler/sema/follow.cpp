@@ -181,7 +181,7 @@ std::optional<Followed> Commands::follow_by(std::size_t actuator, const std::vec
                                             const ast::Name& verb, Diagnostics& diagnostics) const {
   const ActuatorConfig& config = robot_.actuators[actuator];
   if (config.to_unit == nullptr || !knows(config, vm::Param::to, false)) {
-    diagnostics.report(Code::E0512, "`" + config.name.text + "` cannot follow")
+    diagnostics.report(Code::E0512, config.name.shown() + " cannot follow")
         .label(verb.span)
         .label(config.name.span, "it knows no verb that takes it TO a place", false);
     return std::nullopt;
@@ -203,7 +203,7 @@ bool Commands::add_to_follow(const ActuatorConfig& actuator, const Given& given,
   if (said == Preposition::for_ && given.is_number) return true;  // lasts()
   const bool speeds = said == Preposition::at && knows(actuator, vm::Param::at, true);
   if (!given.is_number || (said != Preposition::to && said != Preposition::margin && !speeds)) {
-    diagnostics.report(Code::E0505, "`FOLLOW` of `" + actuator.name.text + "` does not take this")
+    diagnostics.report(Code::E0505, "`FOLLOW` of " + actuator.name.shown() + " does not take this")
         .label(span)
         .helps(knows(actuator, vm::Param::at, true) ? "it takes TO, AT, how fast, MARGIN and FOR"
                                                     : "it takes TO, MARGIN and FOR");

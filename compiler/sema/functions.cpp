@@ -45,9 +45,8 @@ Typed Expressions::of(const ast::Function& node, Span span) {
   const std::string folded = fold_name(node.name.text);
   const auto* const known = std::ranges::find(kFunctions, folded, &Known::name);
   if (known == kFunctions.end()) {
-    Diagnostic& d =
-        diagnostics_.report(Code::E0501, "there is no function `" + node.name.text + "`")
-            .label(node.name.span);
+    Diagnostic& d = diagnostics_.report(Code::E0501, "there is no function " + node.name.shown())
+                        .label(node.name.span);
     suggest(d, node.name.span, node.name.text, {"ABS", "ROUND", "MIN", "MAX", "RANDOM"});
     if (d.help.empty()) d.helps("functions: ABS, ROUND, MIN, MAX and RANDOM");
     return make_nothing(span);
@@ -126,21 +125,22 @@ const ListName* Expressions::find_list(const ast::Name& name) {
   const std::string kind = names_.kind_of(name.text);
   Diagnostic& d =
       diagnostics_
-          .report(Code::E0501, kind.empty() ? "there is no LIST `" + name.text + "`"
-                                            : "`" + name.text + "` is " + kind + ", not a LIST")
+          .report(Code::E0501, kind.empty() ? "there is no LIST " + name.shown()
+                                            : name.shown() + " is " + kind + ", not a LIST")
           .label(name.span);
   const auto candidates = names_.list_names_given();
   suggest(d, name.span, name.text, candidates);
   if (d.help.empty())
-    d.helps(candidates.empty() ? "declare it at the top: `LIST " + name.text + ": \"one\", \"two\"`"
-                               : "LISTs: " + list_names(candidates));
+    d.helps(candidates.empty()
+                ? "declare it at the top: `LIST " + std::string(name.text) + ": \"one\", \"two\"`"
+                : "LISTs: " + list_names(candidates));
   return nullptr;
 }
 
 Typed Expressions::of(const ast::ItemOf& node, Span span) {
   const ListName* list = find_list(node.list);
   if (list != nullptr)
-    diagnostics_.report(Code::E0306, "`" + node.list.text + "` holds texts, and a number is needed")
+    diagnostics_.report(Code::E0306, node.list.shown() + " holds texts, and a number is needed")
         .label(span)
         .label(list->list->name.span, "the LIST", false);
   return make_nothing(span);

@@ -34,15 +34,15 @@ void Limits::report_unknown(const ast::Limit& limit) {
   const auto sensor = names_.find_sensor(limit.actuator.text);
   if (!sensor && !names_.find_target(limit.actuator.text)) {
     Diagnostic& d =
-        diagnostics_.report(Code::E0501, "there is no actuator `" + limit.actuator.text + "`")
+        diagnostics_.report(Code::E0501, "there is no actuator " + limit.actuator.shown())
             .label(limit.actuator.span);
     if (diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size()))
       suggest(d, limit.actuator.span, limit.actuator.text, names_.target_names());
     return;
   }
   Diagnostic& d = diagnostics_
-                      .report(Code::E0501, "`" + limit.actuator.text + "` has no `" +
-                                               limit.channel.text + "` that could be limited")
+                      .report(Code::E0501, limit.actuator.shown() + " has no " +
+                                               limit.channel.shown() + " that could be limited")
                       .label(limit.channel.span);
   if (!diagnostics_.may_search(sensor ? robot_.sensors[*sensor].channels.size() : 1)) return;
   std::vector<std::string> candidates;
@@ -53,7 +53,7 @@ void Limits::report_unknown(const ast::Limit& limit) {
   suggest(d, limit.channel.span, limit.channel.text, candidates);
   if (d.help.empty())
     d.helps("it has " + list_names(candidates) +
-            (sensor ? "" : "; for more, a sensor `" + limit.actuator.text + "` must measure it"));
+            (sensor ? "" : "; for more, a sensor " + limit.actuator.shown() + " must measure it"));
 }
 
 void Limits::limit_speed(const ast::Limit& limit, const Target& target, Program& program) {
@@ -61,7 +61,7 @@ void Limits::limit_speed(const ast::Limit& limit, const Target& target, Program&
     ActuatorConfig& actuator = robot_.actuators[place];
     if (actuator.at_unit == nullptr) {
       diagnostics_
-          .report(Code::E0505, "`" + actuator.name.text + "` has no speed that could be limited")
+          .report(Code::E0505, actuator.name.shown() + " has no speed that could be limited")
           .label(limit.actuator.span);
       return;
     }
@@ -86,7 +86,7 @@ void Limits::limit_reading(const ast::Limit& limit, ChannelRef channel, std::uin
   const auto target = names_.find_target(limit.actuator.text);
   if (!target) {
     diagnostics_
-        .report(Code::E0501, "there is no actuator `" + limit.actuator.text + "` to be stopped")
+        .report(Code::E0501, "there is no actuator " + limit.actuator.shown() + " to be stopped")
         .label(limit.actuator.span)
         .helps("a group in robot.json can have the name of the sensor");
     return;

@@ -232,16 +232,15 @@ void lint_bands(const ast::Check& node, const ProgramCheck& check, const Typed& 
     const Interval band{check.bands[i].low, check.bands[i].high};
     if (!overlaps(left, band))
       diagnostics
-          .report(Code::W0201,
-                  "`" + node.name.text + "` is never `" + node.bands[i].label.text + "`")
+          .report(Code::W0201, node.name.shown() + " is never " + node.bands[i].label.shown())
           .label(node.bands[i].span, "the bands above it, or the sensor's range, leave it nothing");
     left = without(left, band);
   }
   if (left.empty()) return;
   diagnostics
       .report(Code::W0201, "from " + format_value(left.front().low, unit) + " to " +
-                               format_value(left.front().high, unit) + ", `" + node.name.text +
-                               "` is unknown")
+                               format_value(left.front().high, unit) + ", " + node.name.shown() +
+                               " is unknown")
       .label(node.name.span)
       .helps("give a band OTHERWISE, or let two bands meet");
 }
@@ -497,7 +496,7 @@ Entered labels_set(const Program& program) {
 void lint_state(const ast::State& state, const std::set<vm::Value>& entered,
                 Diagnostics& diagnostics) {
   if (entered.empty()) {
-    diagnostics.report(Code::W0206, "nothing ever sets `" + state.name.text + "`")
+    diagnostics.report(Code::W0206, "nothing ever sets " + state.name.shown())
         .label(state.name.span);
     return;
   }
@@ -505,13 +504,12 @@ void lint_state(const ast::State& state, const std::set<vm::Value>& entered,
     const ast::Name& label = state.labels[i];
     const bool set = entered.contains(static_cast<vm::Value>(i) * vm::kScale);
     if (!set && i != 0)
-      diagnostics
-          .report(Code::W0206, "`" + state.name.text + "` is never set to `" + label.text + "`")
+      diagnostics.report(Code::W0206, state.name.shown() + " is never set to " + label.shown())
           .label(label.span);
     else if (set && entered.size() == 1)
       diagnostics
-          .report(Code::W0206, "once `" + state.name.text + "` is `" + label.text +
-                                   "`, nothing sets it to something else")
+          .report(Code::W0206, "once " + state.name.shown() + " is " + label.shown() +
+                                   ", nothing sets it to something else")
           .label(label.span);
   }
 }
@@ -519,11 +517,11 @@ void lint_state(const ast::State& state, const std::set<vm::Value>& entered,
 void lint_unused(const LintInput& input) {
   for (const auto& [folded, define] : input.names.defines())
     if (!define.used && !define.in_module)
-      input.diagnostics.report(Code::W0211, "nothing runs `" + define.define->name.text + "`")
+      input.diagnostics.report(Code::W0211, "nothing runs " + define.define->name.shown())
           .label(define.span);
   for (const auto& [folded, constant] : input.names.constants())
     if (!constant.used && !constant.in_module)
-      input.diagnostics.report(Code::W0211, "nothing uses `" + constant.let->name.text + "`")
+      input.diagnostics.report(Code::W0211, "nothing uses " + constant.let->name.shown())
           .label(constant.let->name.span);
 }
 

@@ -136,7 +136,7 @@ std::optional<std::size_t> Statements::known_item(const ListChoice& choice, Type
     return static_cast<std::size_t>(value / vm::kScale - 1);
   diagnostics_
       .report(Code::E0509,
-              "`" + choice.list->list->name.text + "` has the texts 1 to " + std::to_string(count))
+              choice.list->list->name.shown() + " has the texts 1 to " + std::to_string(count))
       .label(index.span, "outside of that")
       .label(choice.list->list->name.span, "the LIST", false);
   return std::nullopt;
@@ -145,7 +145,7 @@ std::optional<std::size_t> Statements::known_item(const ListChoice& choice, Type
 // Worked out once. Outside the list the nearest text is taken, and the trace says so.
 Expression Statements::item_index(const ListChoice& choice, Typed index, Span span,
                                   ProgramBlock& result) {
-  const std::string& name = choice.list->list->name.text;
+  const std::string name(choice.list->list->name.text);
   const std::size_t count = choice.list->texts.size();
   const std::size_t number = locals_++;
   put(ProgramLocal{number, make_binary(Operation::round, std::move(index.code),

@@ -30,7 +30,7 @@ std::optional<std::size_t> Motions::find(const ast::Name& name) {
     known->place = motions_.size();
     motions_.push_back(std::move(*motion));
   } else if (known->in_module) {
-    diagnostics_.found_from(name.span, "`" + name.text + "` needs it", reported);
+    diagnostics_.found_from(name.span, name.shown() + " needs it", reported);
   }
   return known->place;
 }
@@ -41,13 +41,13 @@ void Motions::check_unused() {
 }
 
 std::optional<ProgramMotion> Motions::translate(const ast::Motion& motion) {
-  ProgramMotion result{motion.name.text, 0, {}};
+  ProgramMotion result{std::string(motion.name.text), 0, {}};
   std::vector<std::vector<std::size_t>> columns;  // places in result.tracks
   if (!add_columns(motion, columns, result)) return std::nullopt;
   if (motion.rows.size() > kMostRows) {
     diagnostics_
-        .report(Code::E0407, "a MOTION can have " + std::to_string(kMostRows) + " rows, and `" +
-                                 motion.name.text + "` has " + std::to_string(motion.rows.size()))
+        .report(Code::E0407, "a MOTION can have " + std::to_string(kMostRows) + " rows, and " +
+                                 motion.name.shown() + " has " + std::to_string(motion.rows.size()))
         .label(motion.name.span);
     return std::nullopt;
   }
@@ -56,7 +56,7 @@ std::optional<ProgramMotion> Motions::translate(const ast::Motion& motion) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (!result.tracks[columns[i].front()].keys.empty()) continue;
     diagnostics_
-        .report(Code::E0511, "nothing is said of `" + motion.columns[i].text + "` in this MOTION")
+        .report(Code::E0511, "nothing is said of " + motion.columns[i].shown() + " in this MOTION")
         .label(motion.columns[i].span, "its column has no value");
     return std::nullopt;
   }
@@ -68,7 +68,7 @@ bool Motions::add_columns(const ast::Motion& motion, std::vector<std::vector<std
   for (const ast::Name& column : motion.columns) {
     const auto target = names_.find_target(column.text);
     if (!target) {
-      Diagnostic& d = diagnostics_.report(Code::E0501, "there is no actuator `" + column.text + "`")
+      Diagnostic& d = diagnostics_.report(Code::E0501, "there is no actuator " + column.shown())
                           .label(column.span);
       if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size())) return false;
       const auto candidates = names_.target_names();
@@ -83,7 +83,7 @@ bool Motions::add_columns(const ast::Motion& motion, std::vector<std::vector<std
       if (std::ranges::find(result.tracks, actuator, &ProgramTrack::actuator) !=
           result.tracks.end()) {
         diagnostics_
-            .report(Code::E0511, "`" + robot_.actuators[actuator].name.text + "` has two columns")
+            .report(Code::E0511, robot_.actuators[actuator].name.shown() + " has two columns")
             .label(column.span, "here it is again");
         return false;
       }
@@ -97,7 +97,7 @@ bool Motions::add_columns(const ast::Motion& motion, std::vector<std::vector<std
 bool Motions::can_move(std::size_t actuator, const ast::Name& column) {
   const ActuatorConfig& config = robot_.actuators[actuator];
   if (follows_keys(config)) return true;
-  diagnostics_.report(Code::E0511, "`" + config.name.text + "` cannot be part of a MOTION")
+  diagnostics_.report(Code::E0511, config.name.shown() + " cannot be part of a MOTION")
       .label(column.span)
       .label(config.name.span, "it knows no verb that takes TO and OVER", false);
   return false;
@@ -171,7 +171,7 @@ void Motions::report_late(const ProgramTrack& track, const vm::Key& key, Span sp
   if (way * vm::kScale <= time * actuator.speed_limit) return;
   const Unit& unit = param_unit(actuator, vm::Param::at);
   diagnostics_
-      .report(Code::N0004, "`" + actuator.name.text + "` comes here late: it goes no faster than " +
+      .report(Code::N0004, actuator.name.shown() + " comes here late: it goes no faster than " +
                                format_value(actuator.speed_limit, unit))
       .label(span)
       .label(actuator.limit_span, "the limit", false);

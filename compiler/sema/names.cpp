@@ -55,7 +55,7 @@ std::optional<ChannelRef> Names::channel_of_sensor(std::size_t sensor,
   const SensorConfig& config = robot_.sensors[sensor];
   if (!operand.channel) {
     if (config.channels.size() == 1) return ChannelRef{sensor, 0};
-    diagnostics_.report(Code::E0501, "`" + config.name.text + "` has several channels: say which")
+    diagnostics_.report(Code::E0501, config.name.shown() + " has several channels: say which")
         .label(operand.name.span)
         .helps("channels: " + list_names(channel_names(config)));
     return std::nullopt;
@@ -63,8 +63,8 @@ std::optional<ChannelRef> Names::channel_of_sensor(std::size_t sensor,
   if (const auto channel = own_channels_[sensor].find(operand.channel->text))
     return ChannelRef{sensor, *channel};
   Diagnostic& d = diagnostics_
-                      .report(Code::E0501, "the sensor `" + config.name.text +
-                                               "` has no channel `" + operand.channel->text + "`")
+                      .report(Code::E0501, "the sensor " + config.name.shown() +
+                                               " has no channel " + operand.channel->shown())
                       .label(operand.channel->span)
                       .label(config.name.span, "the sensor", false);
   if (!diagnostics_.may_search(config.channels.size())) return std::nullopt;
@@ -85,8 +85,8 @@ std::optional<ChannelRef> Names::find_channel(const ast::Operand& operand) {
 }
 
 void Names::report_unknown(const ast::Operand& operand) {
-  const std::string what = operand.channel ? "sensor `" : "sensor, LET or variable called `";
-  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no " + what + operand.name.text + "`")
+  const std::string what = operand.channel ? "sensor " : "sensor, LET or variable called ";
+  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no " + what + operand.name.shown())
                       .label(operand.name.span);
   const std::size_t most = joined_.size() + constants_.size() + variables_.size();
   if (!diagnostics_.may_search(robot_.sensors.size() + (operand.channel ? 0 : most))) return;
@@ -99,7 +99,7 @@ void Names::report_unknown(const ast::Operand& operand) {
   }
   if (!operand.channel)
     for (const auto& [folded, constant] : constants_)
-      candidates.push_back(constant.let->name.text);
+      candidates.emplace_back(constant.let->name.text);
   if (!operand.channel)
     for (std::string& name : variable_names())
       candidates.push_back(std::move(name));
@@ -129,7 +129,7 @@ const ListName* Names::find_list(std::string_view name) const {
 std::vector<std::string> Names::list_names_given() const {
   std::vector<std::string> names;
   for (const auto& [folded, list] : lists_)
-    names.push_back(list.list->name.text);
+    names.emplace_back(list.list->name.text);
   return names;
 }
 
@@ -227,24 +227,24 @@ std::vector<std::string> Names::verb_names() const {
 std::vector<std::string> Names::motion_names() const {
   std::vector<std::string> names;
   for (const auto& [folded, motion] : motions_)
-    names.push_back(motion.motion->name.text);
+    names.emplace_back(motion.motion->name.text);
   return names;
 }
 
 std::vector<std::string> Names::define_names() const {
   std::vector<std::string> names;
   for (const auto& [folded, define] : defines_)
-    names.push_back(define.define->name.text);
+    names.emplace_back(define.define->name.text);
   return names;
 }
 
 std::vector<std::string> Names::variable_names() const {
   std::vector<std::string> names;
   for (const auto& [folded, place] : globals_)
-    names.push_back(variables_[place].name.text);
+    names.emplace_back(variables_[place].name.text);
   if (const auto own = private_.find(scope_); own != private_.end())
     for (const auto& [folded, place] : own->second)
-      names.push_back(variables_[place].name.text);
+      names.emplace_back(variables_[place].name.text);
   return names;
 }
 
@@ -285,7 +285,7 @@ void Names::collect(const ast::Tree& tree) {
 
 void Names::report_twice(const ast::Name& name, Span first) {
   constexpr FileId kProgram = 0;
-  Diagnostic& d = diagnostics_.report(Code::E0101, "the name `" + name.text + "` is given twice");
+  Diagnostic& d = diagnostics_.report(Code::E0101, "the name " + name.shown() + " is given twice");
   const bool yours = name.span.file == kProgram;
   if (yours == (first.file == kProgram)) {
     d.label(name.span).label(first, "first given here", false);
@@ -310,7 +310,7 @@ bool Names::claim(const ast::Name& name) {
 bool Names::claim_operand(const ast::Name& name) {
   if (!claim(name)) return false;
   if (names_a_channel(name.text))
-    diagnostics_.report(Code::E0101, "`" + name.text + "` is already a sensor of the robot")
+    diagnostics_.report(Code::E0101, name.shown() + " is already a sensor of the robot")
         .label(name.span);
   return true;
 }
@@ -324,7 +324,7 @@ void Names::add(const ast::Define& define) {
   check_parameters(define);
   if (!claim(define.name)) return;
   if (is_verb(define.name.text))
-    diagnostics_.report(Code::E0101, "`" + define.name.text + "` is already a verb of the robot")
+    diagnostics_.report(Code::E0101, define.name.shown() + " is already a verb of the robot")
         .label(define.name.span);
   defines_.emplace(fold_name(define.name.text), DefineName{&define, define.name.span, in_module_});
 }
@@ -353,8 +353,7 @@ void Names::add(const ast::Behavior& behavior) {
       continue;
     }
     if (names_a_channel(variable.name.text))
-      diagnostics_
-          .report(Code::E0101, "`" + variable.name.text + "` is already a sensor of the robot")
+      diagnostics_.report(Code::E0101, variable.name.shown() + " is already a sensor of the robot")
           .label(variable.name.span);
     VariableName named{variable.name, 0, &variable, vm::VariableKind::plain, {}};
     add_variable(std::move(named), places);
@@ -377,7 +376,7 @@ void Names::add(const ast::State& state) {
   if (!claim_operand(state.name)) return;
   VariableName variable{state.name, 0, &state, vm::VariableKind::state, {}};
   for (const ast::Name& label : state.labels)
-    variable.labels.push_back(label.text);
+    variable.labels.emplace_back(label.text);
   add_variable(std::move(variable), globals_);
 }
 
@@ -391,7 +390,7 @@ void Names::add(const ast::List& list) {
   ListName named{&list, {}, in_module_};
   for (const ast::Argument& item : list.items) {
     const auto* text = std::get_if<ast::Text>(&item.value);
-    named.texts.push_back(text != nullptr ? text->text : "");
+    named.texts.emplace_back(text != nullptr ? text->text : std::string_view());
     if (text == nullptr)
       diagnostics_.report(Code::E0306, "a LIST holds texts, and this is a number")
           .label(item.span)
@@ -409,7 +408,7 @@ void Names::add(const ast::Check& check) {
   if (!claim_operand(check.name)) return;
   VariableName variable{check.name, 0, &check, vm::VariableKind::band, {}};
   for (const ast::Band& band : check.bands)
-    variable.labels.push_back(band.label.text);
+    variable.labels.emplace_back(band.label.text);
   add_variable(std::move(variable), globals_);
 }
 
@@ -473,11 +472,8 @@ void Names::add_turn(const ast::Name& how, const ast::Name& list) {
   std::optional<std::size_t>& place = folded == "any" ? named.any : named.next;
   if (place || named.texts.size() < 2) return;
   place = variables_.size();
-  VariableName variable{{(folded == "any" ? "ANY " : "NEXT ") + named.list->name.text, list.span},
-                        *place,
-                        {},
-                        vm::VariableKind::plain,
-                        {}};
+  made_names_.push_front((folded == "any" ? "ANY " : "NEXT ") + std::string(named.list->name.text));
+  VariableName variable{{made_names_.front(), list.span}, *place, {}, vm::VariableKind::plain, {}};
   variable.unit = &canonical_unit(vm::Dimension::number);
   variable.in_module = in_module_;
   variables_.push_back(std::move(variable));

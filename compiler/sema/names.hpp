@@ -4,6 +4,7 @@
 // which the sensors' names may not reach into. A REMEMBER in a BEHAVIOR is seen there only.
 #pragma once
 
+#include <forward_list>
 #include <map>
 #include <optional>
 #include <string>
@@ -168,6 +169,7 @@ private:
   std::map<std::string, ListName> lists_;
   std::map<std::string, MotionName> motions_;
   std::vector<VariableName> variables_;
+  std::forward_list<std::string> made_names_;  // of variables that no source names
   Places globals_;
   std::map<const ast::Behavior*, Places> private_;
   const ast::Behavior* scope_ = nullptr;

@@ -52,11 +52,11 @@ void Commands::report_no_motion(const ast::Command& command) {
     diagnostics_.report(Code::E0505, "the name of a MOTION stands here").label(first.span);
     return;
   }
-  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no MOTION `" + word->name.text + "`")
+  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no MOTION " + word->name.shown())
                       .label(word->name.span);
   d.unknown = word->name.text;
   if (names_.find_define(word->name.text) != nullptr) {
-    d.helps("`" + word->name.text + "` is a DEFINE: write it without PERFORM");
+    d.helps(word->name.shown() + " is a DEFINE: write it without PERFORM");
     return;
   }
   suggest(d, word->name.span, word->name.text, candidates);

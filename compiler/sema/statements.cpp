@@ -304,12 +304,11 @@ std::optional<vm::Value> Statements::weight(const ast::Expr& expr) {
 namespace {
 
 // The words of `SET mood TO very happy`, which the grammar reads as a value.
-std::optional<ast::Name> label_of(const ast::Expr& expr) {
+std::optional<std::string> label_of(const ast::Expr& expr) {
   const auto* operand = std::get_if<ast::Operand>(&expr.node);
   if (operand == nullptr) return std::nullopt;
-  ast::Name label = operand->name;
-  label.span = expr.span;
-  if (operand->channel) label.text += " " + operand->channel->text;
+  std::string label(operand->name.text);
+  if (operand->channel) label.append(" ").append(operand->channel->text);
   return label;
 }
 
@@ -334,38 +333,38 @@ VariableName* Statements::settable(const ast::Name& name, bool number) {
   if (name.text.empty()) return nullptr;
   VariableName* variable = names_.find_variable(name.text);
   if (expressions_.find_binding(name.text) != nullptr) {
-    diagnostics_.report(Code::E0508, "`" + name.text + "` is a parameter, which cannot be set")
+    diagnostics_.report(Code::E0508, name.shown() + " is a parameter, which cannot be set")
         .label(name.span);
     return nullptr;
   }
   if (variable == nullptr) {
     const std::string kind = names_.kind_of(name.text);
     if (!kind.empty()) {
-      diagnostics_.report(Code::E0508, "`" + name.text + "` is " + kind + ", which cannot be set")
+      diagnostics_.report(Code::E0508, name.shown() + " is " + kind + ", which cannot be set")
           .label(name.span)
           .helps("REMEMBER, STATE and FEELING can be set");
       return nullptr;
     }
-    Diagnostic& d = diagnostics_.report(Code::E0501, "there is no variable `" + name.text + "`")
-                        .label(name.span);
+    Diagnostic& d =
+        diagnostics_.report(Code::E0501, "there is no variable " + name.shown()).label(name.span);
     if (diagnostics_.may_search(names_.variables().size()))
       suggest(d, name.span, name.text, names_.variable_names());
-    if (d.help.empty()) d.helps("declare it at the top: `REMEMBER " + name.text + " = 0`");
+    if (d.help.empty())
+      d.helps("declare it at the top: `REMEMBER " + std::string(name.text) + " = 0`");
     return nullptr;
   }
   if (const std::string_view why = why_not(variable->kind); !why.empty()) {
     diagnostics_
         .report(Code::E0508,
-                "`" + name.text + "` is " + names_.kind_of(name.text) + ", which cannot be set")
+                name.shown() + " is " + names_.kind_of(name.text) + ", which cannot be set")
         .label(name.span)
         .helps(std::string(why));
     return nullptr;
   }
   if (!number || variable->kind != vm::VariableKind::state) return variable;
-  diagnostics_
-      .report(Code::E0508, "`" + name.text + "` is a STATE, which does not count up and down")
+  diagnostics_.report(Code::E0508, name.shown() + " is a STATE, which does not count up and down")
       .label(name.span)
-      .helps("write `SET " + name.text + " TO " + variable->labels.front() + "`");
+      .helps("write `SET " + std::string(name.text) + " TO " + variable->labels.front() + "`");
   return nullptr;
 }
 
@@ -375,7 +374,7 @@ bool Statements::in_range(const VariableName& variable, const Typed& value) {
   const vm::Value number = value.code.constant;
   if (number >= variable.low && number <= variable.high) return true;
   diagnostics_
-      .report(Code::E0509, "`" + variable.name.text + "` goes from " +
+      .report(Code::E0509, variable.name.shown() + " goes from " +
                                format_value(variable.low, *variable.unit) + " to " +
                                format_value(variable.high, *variable.unit))
       .label(value.span, "outside of that")
@@ -387,8 +386,8 @@ void Statements::add(const ast::Set& node, Span span, ProgramBlock& result) {
   VariableName* variable = settable(node.name, false);
   if (variable == nullptr || node.value == nullptr || !variable->ready) return;
   if (variable->kind == vm::VariableKind::state) return set_label(node, *variable, span, result);
-  Typed value =
-      expressions_.amount(*node.value, {variable->unit, node.name.text, variable->unit_span});
+  Typed value = expressions_.amount(
+      *node.value, {variable->unit, std::string(node.name.text), variable->unit_span});
   if (!value.is_number() || !in_range(*variable, value)) return;
   put(ProgramSet{variable->index, std::move(value.code), false}, span, result);
 }
@@ -397,12 +396,13 @@ void Statements::set_label(const ast::Set& node, const VariableName& variable, S
                            ProgramBlock& result) {
   const auto label = label_of(*node.value);
   if (!label) {
-    diagnostics_.report(Code::E0306, "`" + node.name.text + "` is a word, and this is not one")
+    diagnostics_.report(Code::E0306, node.name.shown() + " is a word, and this is not one")
         .label(node.value->span)
         .helps("it can be " + list_names(variable.labels, "or"));
     return;
   }
-  const auto place = find_label(names_, variable.labels, *label, node.name.text, diagnostics_);
+  const auto place =
+      find_label(names_, variable.labels, {*label, node.value->span}, node.name.text, diagnostics_);
   if (place)
     put(ProgramSet{variable.index, make_constant_code(label_value(*place)), false}, span, result);
 }
@@ -449,7 +449,7 @@ void Statements::restart(const ast::Command& node, Span span, ProgramBlock& resu
           .label(word != nullptr ? word->name.span : span);
   std::vector<std::string> timers;
   for (const VariableName& one : names_.variables())
-    if (one.kind == vm::VariableKind::timer) timers.push_back(one.name.text);
+    if (one.kind == vm::VariableKind::timer) timers.emplace_back(one.name.text);
   if (word != nullptr) suggest(d, word->name.span, word->name.text, timers);
   if (d.help.empty())
     d.helps(timers.empty() ? "declare it at the top: `TIMER idle`"

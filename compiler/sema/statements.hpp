@@ -107,7 +107,7 @@ private:
   void run(const Binding& binding, const ast::Name& name,
            const std::vector<ast::Argument>& arguments, Span span, ProgramBlock& result);
   Typed followed(const ast::Expr& value);
-  bool bind_name(const std::string& name, const ast::Define& define, Binding& binding);
+  bool bind_name(std::string_view name, const ast::Define& define, Binding& binding);
   bool commands_parameter(const ast::Define& define, std::string_view folded, unsigned handed_on);
   std::optional<Bindings> bind(const DefineName& name, const std::vector<ast::Argument>& arguments,
                                Span span, ProgramBlock& result);

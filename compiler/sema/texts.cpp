@@ -12,10 +12,10 @@ void TextBuilder::append(std::string_view part) {
   text_ += part;
 }
 
-bool TextBuilder::add(const std::string& text, Span span) {
+bool TextBuilder::add(std::string_view text, Span span) {
   const auto place = find_place(text);
   if (place || text.find('\0') != std::string::npos) {
-    const std::string what = place ? text.substr(place->begin, place->size) : "{}";
+    const std::string what(place ? text.substr(place->begin, place->size) : "{}");
     diagnostics_.report(Code::E0509, "`" + what + "` cannot stand in a text that is written out")
         .label(span);
     return false;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/sema/expressions.hpp"
@@ -16,7 +17,7 @@ public:
 
   // False after a mistake, which has then been reported, and in a DEFINE that nobody runs.
   bool add(const ast::Argument& part);
-  bool add(const std::string& text, Span span);
+  bool add(std::string_view text, Span span);
 
   void add(Typed number);
 

@@ -77,7 +77,7 @@ void Variables::check_labels(const std::vector<ast::Name>& labels) {
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const ast::Name& label = labels[i];
     if (known.add(label.text, i) || label.text.empty()) continue;
-    diagnostics_.report(Code::E0101, "the label `" + label.text + "` is given twice")
+    diagnostics_.report(Code::E0101, "the label " + label.shown() + " is given twice")
         .label(label.span)
         .label(labels[*known.find(label.text)].span, "first given here", false);
   }
@@ -96,7 +96,7 @@ void Variables::declare(const ast::Feeling& node, VariableName& name, ProgramVar
     name.unit_span = value->unit_span;
     break;
   }
-  const Wanted wanted{name.unit, node.name.text, name.unit_span};
+  const Wanted wanted{name.unit, std::string(node.name.text), name.unit_span};
   const auto from = expressions_.constant_amount(*node.from, wanted);
   const auto to = expressions_.constant_amount(*node.to, wanted);
   if (!from || !to) return;

@@ -14,21 +14,18 @@ namespace {
 // Bytes of a line between two milestones: so many are read to find a column.
 constexpr std::size_t kMilestone = 256;
 
-// A line ends with LF, CR LF, or a CR alone.
-bool ends_line(std::string_view text, std::size_t at) {
-  if (text[at] == '\n') return true;
-  return text[at] == '\r' && (at + 1 == text.size() || text[at + 1] != '\n');
-}
-
 }  // namespace
 
 SourceFile::SourceFile(std::string name, std::string text)
     : name_(std::move(name)), text_(std::move(text)), line_starts_{0} {
-  for (std::size_t i = 0; i < text_.size(); ++i) {
-    if (text_[i] != '\n' && text_[i] != '\r') continue;
-    if (!ends_line(text_, i)) continue;
-    add_milestones(line_starts_.back(), i);
-    line_starts_.push_back(static_cast<std::uint32_t>(i + 1));
+  // A line ends with LF, CR LF, or a CR alone. Each of the two is looked for once over the whole text.
+  std::size_t lf = text_.find('\n'), cr = text_.find('\r');
+  while (std::min(lf, cr) != std::string::npos) {
+    const std::size_t end = cr + 1 == lf ? lf : std::min(lf, cr);
+    add_milestones(line_starts_.back(), end);
+    line_starts_.push_back(static_cast<std::uint32_t>(end + 1));
+    if (lf <= end) lf = text_.find('\n', end + 1);
+    if (cr <= end) cr = text_.find('\r', end + 1);
   }
   add_milestones(line_starts_.back(), text_.size());
 }

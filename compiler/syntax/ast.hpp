@@ -3,11 +3,12 @@
 // The parser makes it, sema reads it; nothing is resolved here: names are text, numbers are as
 // written. Bison's variants need values that can be moved and default-constructed, hence `Box`.
 // Expressions are at most 100 levels deep and blocks 32, so recursion over a tree is safe. A large program is made of
-// many small nodes: what is seldom there is in a Box, and numbers are views of the source, which outlives its tree.
+// many small nodes: what is seldom there is in a Box, and names, texts and numbers are views of the source, which outlives its tree.
 // A name, number or text that was missing has an empty text: it has been reported already.
 #pragma once
 
 #include <cstdint>
+#include <forward_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,8 +25,11 @@ template <typename T>
 using Box = std::unique_ptr<T>;
 
 struct Name {
-  std::string text;
+  std::string_view text;
   Span span;
+
+  // As messages show it: "`wave`".
+  [[nodiscard]] std::string shown() const { return "`" + std::string(text) + "`"; }
 };
 
 // ---- expressions
@@ -146,7 +150,7 @@ struct Word {  // SLOWLY
   Name name;
 };
 struct Text {  // "greeting.wav", without its quotes
-  std::string text;
+  std::string_view text;
 };
 struct Amount {  // 15cm, 1 TIMES, what follows a preposition when it is a number, what follows WITH
   Box<Expr> value;
@@ -351,19 +355,19 @@ struct Safety {
 struct TestFeed {
   Box<Expr> at;
   Operand target;
-  Box<Expr> value;        // a number, or an IsTruth without value for TRUE/FALSE
-  Box<std::string> text;  // in its place, when not null
+  Box<Expr> value;                       // a number, or an IsTruth without value for TRUE/FALSE
+  std::optional<std::string_view> text;  // in its place
 };
 struct ExpectCommand {
   bool no = false;
   Command command;
-  Box<Expr> within;           // null only for STOPPED: now
-  std::optional<Name> times;  // the digits; nothing: once or more
+  Box<Expr> within;  // null only for STOPPED: now
+  Box<Name> times;   // the digits; null: once or more
 };
 struct ExpectText {
   bool no = false;
   bool alert = false;  // else LOG
-  std::string text;
+  std::string_view text;
   Box<Expr> within;  // may be null: now
 };
 struct ExpectNothing {
@@ -381,7 +385,7 @@ struct TestStep {
   std::variant<TestFeed, ExpectCommand, ExpectText, ExpectNothing, ExpectThat, Wait, Seed> node;
 };
 struct Test {
-  std::string title;
+  std::string_view title;
   std::vector<TestStep> steps;
 };
 
@@ -394,6 +398,7 @@ struct Item {
 
 struct Tree {
   std::vector<Item> items;
+  std::forward_list<std::string> labels;  // that are not written as they are called: `very   close`
 };
 
 }  // namespace robosync::compiler::ast

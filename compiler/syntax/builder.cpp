@@ -48,7 +48,7 @@ void Builder::finish(std::vector<ast::Item> items) {
 // ---- leaves
 
 ast::Name Builder::name(Span span) const {
-  return {std::string(text_of(span)), span};
+  return {text_of(span), span};
 }
 
 ast::Name Builder::quoted(Span span) const {
@@ -58,14 +58,15 @@ ast::Name Builder::quoted(Span span) const {
     text.remove_prefix(1);
     if (!text.empty() && text.back() == quote) text.remove_suffix(1);
   }
-  return {std::string(text), span};
+  return {text, span};
 }
 
-ast::Name Builder::longer_label(ast::Name label, Span next) const {
-  label.text += ' ';
-  label.text += text_of(next);
-  label.span = between(label.span, next);
-  return label;
+ast::Name Builder::longer_label(const ast::Name& label, Span next) {
+  const Span whole = between(label.span, next);
+  std::string text = std::string(label.text) + " " + std::string(text_of(next));
+  if (text_of(whole) == text) return {text_of(whole), whole};
+  labels_.push_front(std::move(text));
+  return {labels_.front(), whole};
 }
 
 ast::Name Builder::whole_number(Span span) {
@@ -111,7 +112,7 @@ ast::Box<ast::Expr> Builder::shallow(ast::Box<ast::Expr> made) {
 
 ast::Box<ast::Expr> Builder::times_within(Span span, ast::Box<ast::Expr> condition, Span times,
                                           ast::Box<ast::Expr> within) {
-  const std::string digits = whole_number(times).text;
+  const std::string_view digits = whole_number(times).text;
   std::uint32_t count = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
   if (error == std::errc::result_out_of_range) {
@@ -210,12 +211,13 @@ ast::Block Builder::both(ast::Block first, ast::Block second) const {
 // The analyzer loses the owner of a pointer that goes into an aggregate which is returned.
 // NOLINTBEGIN(clang-analyzer-cplusplus.NewDeleteLeaks)
 ast::TestFeed Builder::feed(Span at, ast::Box<ast::Expr> target, ast::Box<ast::Expr> value) {
-  return {quantity(at), std::move(std::get<ast::Operand>(target->node)), std::move(value), nullptr};
+  return {quantity(at), std::move(std::get<ast::Operand>(target->node)), std::move(value),
+          std::nullopt};
 }
 
 ast::TestFeed Builder::feed_text(Span at, ast::Box<ast::Expr> target, Span text) {
   return {quantity(at), std::move(std::get<ast::Operand>(target->node)), nullptr,
-          std::make_unique<std::string>(quoted(text).text)};
+          quoted(text).text};
 }
 // NOLINTEND(clang-analyzer-cplusplus.NewDeleteLeaks)
 

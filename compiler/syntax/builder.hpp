@@ -2,6 +2,7 @@
 // Without diagnostics it is silent: repair.cpp tries out changes that way.
 #pragma once
 
+#include <forward_list>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,11 +27,13 @@ public:
   void stopped(std::vector<TokenKind> expected) { expected_ = std::move(expected); }
   std::vector<ast::Item>& items() { return items_; }
   const std::vector<TokenKind>& expected() const { return expected_; }
+  // Of all that it has made; the tree keeps them.
+  std::forward_list<std::string> take_labels() { return std::move(labels_); }
 
   // ---- leaves
   ast::Name name(Span span) const;
   ast::Name quoted(Span span) const;  // without its quotes
-  ast::Name longer_label(ast::Name label, Span next) const;
+  ast::Name longer_label(const ast::Name& label, Span next);
   ast::Name whole_number(Span span);
   ast::Box<ast::Expr> quantity(Span span);
   ast::Box<ast::Expr> operand(Span span, Span name, std::optional<Span> channel);
@@ -109,6 +112,7 @@ private:
   std::vector<ast::Item> items_;
   std::vector<ast::Item> moved_out_;  // of a BEHAVIOR, where they may not stand
   std::vector<TokenKind> expected_;
+  std::forward_list<std::string> labels_;  // ast::Tree::labels
 };
 
 }  // namespace robosync::compiler

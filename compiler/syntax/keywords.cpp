@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/source/ascii.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 
 namespace robosync::compiler {
@@ -54,10 +55,6 @@ constexpr bool every_token_has_its_row() {
 }
 static_assert(every_token_has_its_row(), "a keyword of grammar/rsl.yy is not in keywords.def");
 
-char upper(char c) {
-  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-}
-
 // Places in the table, sorted by the first letter of the keyword. Every word of a program is looked
 // up, and most are found or not after one comparison.
 struct Index {
@@ -81,12 +78,6 @@ constexpr Index make_index() {
 constexpr Index keyword_index = make_index();
 static_assert(keyword_index.begins.back() == std::size(table), "keywords are in capitals");
 
-// `word` has as many letters.
-bool is_spelt(std::string_view word, std::string_view spelling) {
-  return std::equal(word.begin(), word.end(), spelling.begin(),
-                    [](char written, char capital) { return upper(written) == capital; });
-}
-
 }  // namespace
 
 std::span<const Keyword> keywords() {
@@ -94,12 +85,12 @@ std::span<const Keyword> keywords() {
 }
 
 const Keyword* find_keyword(std::string_view word) {
-  const char first = word.empty() ? '\0' : upper(word.front());
-  if (first < 'A' || first > 'Z') return nullptr;
-  const auto letter = static_cast<std::size_t>(first - 'A');
+  const char first = word.empty() ? '\0' : ascii::lower(word.front());
+  if (first < 'a' || first > 'z') return nullptr;
+  const auto letter = static_cast<std::size_t>(first - 'a');
   for (std::size_t i = keyword_index.begins[letter]; i < keyword_index.begins[letter + 1]; ++i) {
     const Keyword& keyword = table[keyword_index.places[i]];
-    if (keyword.spelling.size() == word.size() && is_spelt(word, keyword.spelling))
+    if (ascii::same(word, keyword.spelling))
       return (keyword.roles & role::context) == 0 ? &keyword : nullptr;
   }
   return nullptr;

@@ -11,12 +11,12 @@ namespace robosync::compiler {
 
 // ---- ends of lines
 
-std::vector<std::uint32_t> significant(std::vector<Token>& tokens) {
+void significant(std::vector<Token>& tokens, std::vector<std::uint32_t>& order) {
   if (!tokens.empty() && tokens.back().kind != Kinds::NEWLINE) {
     const Span last = tokens.back().span;
     tokens.push_back({Kinds::NEWLINE, {last.file, last.end, last.end}});
   }
-  std::vector<std::uint32_t> order;
+  order.clear();
   order.reserve(tokens.size());
   bool pending = false;  // a line's end that may count
   std::uint32_t line_end = 0;
@@ -37,7 +37,6 @@ std::vector<std::uint32_t> significant(std::vector<Token>& tokens) {
     order.push_back(i);
   }
   if (!order.empty()) order.push_back(line_end);
-  return order;
 }
 
 // ---- regions

@@ -13,10 +13,10 @@
 
 namespace robosync::compiler {
 
-// The tokens that the grammar shall see, as places in `tokens`: an end of a line is left out after
-// a token that cannot end a statement and before one that cannot start one. The last one always
+// Puts the tokens that the grammar shall see into `order`, as places in `tokens`: an end of a line is left
+// out after a token that cannot end a statement and before one that cannot start one. The last one always
 // counts; when the text does not end with a line's end, it is added to `tokens`.
-[[nodiscard]] std::vector<std::uint32_t> significant(std::vector<Token>& tokens);
+void significant(std::vector<Token>& tokens, std::vector<std::uint32_t>& order);
 
 struct Region {
   std::size_t begin = 0, end = 0;  // places in the tokens

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "compiler/source/ascii.hpp"
 #include "compiler/source/utf8.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/lexer.hpp"
@@ -90,11 +91,8 @@ bool is_curly(char32_t point) {
 // What may stand behind the / of a unit: a second, by any of its names, in any case.
 bool is_per_second(std::string_view unit_end) {
   constexpr std::string_view names[] = {"s", "sec", "second"};
-  return std::ranges::any_of(names, [unit_end](std::string_view name) {
-    return std::ranges::equal(name, unit_end, [](char small, char written) {
-      return small == (written >= 'A' && written <= 'Z' ? written - 'A' + 'a' : written);
-    });
-  });
+  return std::ranges::any_of(
+      names, [unit_end](std::string_view name) { return ascii::same(name, unit_end); });
 }
 
 }  // namespace
@@ -134,10 +132,7 @@ bool LexerState::is_name(std::size_t back, std::string_view word) const {
   if (back >= tokens_.size()) return false;
   const Token& token = tokens_[tokens_.size() - 1 - back];
   const std::string_view text = text_.substr(token.span.begin, token.span.end - token.span.begin);
-  return token.kind == Kinds::NAME &&
-         std::ranges::equal(text, word, [](char written, char capital) {
-           return (written >= 'a' && written <= 'z' ? written - 'a' + 'A' : written) == capital;
-         });
+  return token.kind == Kinds::NAME && ascii::same(text, word);
 }
 
 // `LIST name :` at the start of a line.

@@ -16,8 +16,8 @@ class LexerState {
 public:
   LexerState(std::string_view text, FileId file, Diagnostics& diagnostics)
       : text_(text), file_(file), diagnostics_(diagnostics) {
-    constexpr std::size_t usual = 5;  // bytes of a token, with the blanks behind it
-    tokens_.reserve(text.size() / usual);
+    constexpr std::size_t least = 3;  // bytes of a token in usual text, with the blanks behind it
+    tokens_.reserve(text.size() / least);
   }
 
   // Reads one token, blank or comment; false at the end. In grammar/rsl.re.

@@ -60,14 +60,16 @@ public:
     for (const Region& region : regions) {
       const auto begin = tokens.begin() + static_cast<std::ptrdiff_t>(region.begin);
       const auto end = tokens.begin() + static_cast<std::ptrdiff_t>(region.end);
-      if (!parse_region({begin, end})) break;
+      piece_.assign(begin, end);
+      if (!parse_piece(piece_)) break;
     }
+    program_.labels = reader_.take_labels();
     return std::move(program_);
   }
 
 private:
   // False when nothing more should be read.
-  bool parse_region(Tokens tokens) {
+  bool parse_piece(Tokens& tokens) {
     if (const auto deep = nested_too_deeply(tokens)) {
       diagnostics_.report(Code::E0012, "this is nested too deeply")
           .label(tokens[*deep].span)
@@ -108,6 +110,7 @@ private:
   FileId file_;
   Diagnostics& diagnostics_;
   Reader reader_;
+  Tokens piece_;  // what is read now; one for all, so that its memory is
   ast::Tree program_;
   Budget budget_;
   std::size_t mistakes_ = 0;

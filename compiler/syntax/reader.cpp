@@ -24,8 +24,8 @@ void leave_out_names(std::vector<TokenKind>& expected) {
 }  // namespace
 
 Attempt Reader::read(Tokens& tokens, Diagnostics* diagnostics) {
-  const std::vector<std::uint32_t> order = significant(tokens);
-  tokens_ = TokenReader(tokens, order);
+  significant(tokens, order_);
+  tokens_ = TokenReader(tokens, order_);
   builder_.restart(diagnostics);
   Attempt attempt;
   attempt.complete = grammar_.parse() == 0;
@@ -37,9 +37,9 @@ Attempt Reader::read(Tokens& tokens, Diagnostics* diagnostics) {
   leave_out_names(attempt.expected);
   // The grammar has taken the token it stopped at, unless that is the end.
   const bool at_end = tokens_.past_end();
-  const std::size_t index = at_end ? order.size() : tokens_.taken() - 1;
-  attempt.stopped_at = at_end ? tokens.size() : order[index];
-  attempt.before = index == 0 ? 0 : order[index - 1];
+  const std::size_t index = at_end ? order_.size() : tokens_.taken() - 1;
+  attempt.stopped_at = at_end ? tokens.size() : order_[index];
+  attempt.before = index == 0 ? 0 : order_[index - 1];
   return attempt;
 }
 

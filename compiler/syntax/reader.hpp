@@ -33,9 +33,11 @@ public:
   [[nodiscard]] Attempt read(Tokens& tokens, Diagnostics* diagnostics);
 
   const SourceFile& source() const { return source_; }
+  std::forward_list<std::string> take_labels() { return builder_.take_labels(); }
 
 private:
   const SourceFile& source_;
+  std::vector<std::uint32_t> order_;  // of the tokens that the grammar sees
   TokenReader tokens_;
   Builder builder_;
   grammar::Grammar grammar_{tokens_, builder_};

@@ -9,17 +9,12 @@
 #include "compiler/sema/commands.hpp"
 #include "compiler/sema/expressions.hpp"
 #include "compiler/sema/variables.hpp"
+#include "compiler/source/ascii.hpp"
 
 namespace robosync::compiler::test_plan {
 namespace {
 
 constexpr std::string_view kStopped = "stopped";  // in the place of a verb
-
-bool is_stopped(std::string_view verb) {
-  return std::ranges::equal(verb, kStopped, [](unsigned char a, unsigned char b) {
-    return std::tolower(a) == static_cast<int>(b);
-  });
-}
 
 // What an expectation must not ask of one moment.
 bool looks_back(const Expression& expression) {
@@ -43,7 +38,7 @@ public:
   void plan(const ast::Test& test, Span span, TestPlan& plan) {
     const std::size_t before = diagnostics_.errors();
     plan_ = &plan;
-    test_ = {test.title, span, {}, {}, 0, {}};
+    test_ = {std::string(test.title), span, {}, {}, 0, {}};
     now_ = 0;
     for (const ast::TestStep& step : test.steps)
       std::visit([&](const auto& node) { add(node, step.span); }, step.node);
@@ -175,7 +170,7 @@ private:
   }
 
   void add(const ast::ExpectCommand& node, Span span) {
-    const bool stopped = is_stopped(node.command.verb.text);
+    const bool stopped = ascii::same(node.command.verb.text, kStopped);
     if (node.within == nullptr && !stopped) {
       diagnostics_.report(Code::E0409, "this `EXPECT` does not say how long it waits")
           .label(span)
@@ -229,7 +224,7 @@ private:
 
   void add(const ast::ExpectText& node, Span span) {
     const auto end = within(node.within);
-    if (end) expect(span, *end, ExpectedText{node.no, node.alert, node.text});
+    if (end) expect(span, *end, ExpectedText{node.no, node.alert, std::string(node.text)});
   }
 
   void add(const ast::Seed& node, Span span) {

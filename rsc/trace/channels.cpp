@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "compiler/diagnostics/nearest.hpp"
-#include "rsc/names.hpp"
+#include "compiler/source/ascii.hpp"
 #include "rsc/quantity.hpp"
 
 namespace robosync::tool {
@@ -29,7 +29,8 @@ std::uint8_t channel_of(const vm::Image& image, const vm::Sensor& sensor, std::s
   std::vector<std::string> known;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const std::string_view candidate = image.string(channels[i].name);
-    if (same_name(candidate, name)) return static_cast<std::uint8_t>(sensor.first_channel + i);
+    if (compiler::ascii::same(candidate, name))
+      return static_cast<std::uint8_t>(sensor.first_channel + i);
     known.emplace_back(candidate);
   }
   if (name.empty()) {
@@ -42,8 +43,8 @@ std::uint8_t channel_of(const vm::Image& image, const vm::Sensor& sensor, std::s
 // Is `name`, "touch.LEVEL", the channel that is meant, or may it be where none is named?
 bool is_channel(std::string_view name, std::string_view sensor, std::string_view channel) {
   const std::size_t dot = name.find('.');
-  return same_name(name.substr(0, dot), sensor) &&
-         (channel.empty() || same_name(name.substr(dot + 1), channel));
+  return compiler::ascii::same(name.substr(0, dot), sensor) &&
+         (channel.empty() || compiler::ascii::same(name.substr(dot + 1), channel));
 }
 
 struct ChannelName {
@@ -63,7 +64,7 @@ std::uint8_t find_channel(const vm::Image& image, std::string_view sensor,
   std::vector<std::string> known;
   for (const vm::Sensor& candidate : image.sensors) {
     const std::string_view name = image.string(candidate.name);
-    if (same_name(name, sensor)) return channel_of(image, candidate, channel);
+    if (compiler::ascii::same(name, sensor)) return channel_of(image, candidate, channel);
     known.emplace_back(name);
   }
   no_such("sensor", sensor, known);
@@ -82,8 +83,9 @@ std::optional<std::uint8_t> find_read_channel(const Program& program, std::strin
   };
   const vm::Image& image = program.image();
   const bool read = std::ranges::any_of(image.channels, [&](const vm::Channel& candidate) {
-    return same_name(image.string(image.sensors[candidate.sensor].name), name.sensor) &&
-           (name.channel.empty() || same_name(image.string(candidate.name), name.channel));
+    return compiler::ascii::same(image.string(image.sensors[candidate.sensor].name), name.sensor) &&
+           (name.channel.empty() ||
+            compiler::ascii::same(image.string(candidate.name), name.channel));
   });
   if (!read && std::ranges::any_of(program.origin().units.channels, meant)) return std::nullopt;
   return find_channel(image, name.sensor, name.channel);
@@ -106,10 +108,10 @@ vm::Value parse_reading(const vm::Image& image, std::uint8_t channel, std::strin
   std::vector<std::string> labels;
   for (std::size_t i = 0; i < record.label_count; ++i) {
     labels.emplace_back(image.string(image.labels[record.first_label + i]));
-    if (same_name(labels.back(), text)) return static_cast<vm::Value>(i) * vm::kScale;
+    if (compiler::ascii::same(labels.back(), text)) return static_cast<vm::Value>(i) * vm::kScale;
   }
-  if (labels.size() == 2 && same_name(text, "false")) return 0;
-  if (labels.size() == 2 && same_name(text, "true")) return vm::kScale;
+  if (labels.size() == 2 && compiler::ascii::same(text, "false")) return 0;
+  if (labels.size() == 2 && compiler::ascii::same(text, "true")) return vm::kScale;
   no_such(fmt::format("reading of {}", image.string(record.name)), text, labels);
 }
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "rsc/names.hpp"
+#include "compiler/source/ascii.hpp"
 #include "rsc/trace/event_reader.hpp"
 #include "rsc/trace/time_units.hpp"
 #include "rsc/trace/trace_format.hpp"
@@ -159,14 +159,15 @@ private:
     const auto similar = [&](const link::Event& event, const Playback&) {
       if (event.kind != EventKind::command) return false;
       const EventReader reader(event, names_);
-      return reader.actuator_name() == actuator && same_name(reader.verb_name(), expected.verb);
+      return reader.actuator_name() == actuator &&
+             compiler::ascii::same(reader.verb_name(), expected.verb);
     };
     const link::Event* found = find(similar);
     if (found == nullptr) found = find(similar, 0, UINT64_MAX);
     if (found == nullptr) return {};
     const std::string time = seconds_text(found->time_us);
     const std::string word = EventReader(*found, names_).word_name();
-    if (!expected.word.empty() && !same_name(word, expected.word))
+    if (!expected.word.empty() && !compiler::ascii::same(word, expected.word))
       return fmt::format("; {} at {}: {}; expected {}", expected.verb, time, word, expected.word);
     return fmt::format("; at {} it was {}", time, trace_words(*found, names_));
   }
@@ -195,8 +196,9 @@ private:
                   const ExpectedCommand& expected) const {
     if (event.kind != EventKind::command) return false;
     const EventReader reader(event, names_);
-    if (reader.actuator_name() != actuator || !same_name(reader.verb_name(), expected.verb) ||
-        (!expected.word.empty() && !same_name(reader.word_name(), expected.word))) {
+    if (reader.actuator_name() != actuator ||
+        !compiler::ascii::same(reader.verb_name(), expected.verb) ||
+        (!expected.word.empty() && !compiler::ascii::same(reader.word_name(), expected.word))) {
       return false;
     }
     return std::ranges::all_of(expected.arguments, [&](const compiler::ProgramArgument& argument) {
@@ -215,7 +217,7 @@ private:
       return false;
     }
     return event.kind == EventKind::halt || event.kind == EventKind::cancel ||
-           (event.kind == EventKind::command && same_name(reader.verb_name(), "STOP"));
+           (event.kind == EventKind::command && compiler::ascii::same(reader.verb_name(), "STOP"));
   }
 
   // At the beginning of the window.

@@ -15,9 +15,9 @@
 #include <jansson.h>
 
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/source/ascii.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
-#include "rsc/names.hpp"
 #include "rsc/quantity.hpp"
 #include "rsc/trace/channels.hpp"
 #include "rsc/trace/csv.hpp"
@@ -225,8 +225,8 @@ private:
     columns.reserve(table.columns.cells.size());
     for (const std::string& cell : table.columns.cells) {
       auto [name, unit] = name_and_unit(cell);
-      if (same_name(name, "time")) time_column = columns.size();
-      columns.push_back(same_name(name, "time")
+      if (compiler::ascii::same(name, "time")) time_column = columns.size();
+      columns.push_back(compiler::ascii::same(name, "time")
                             ? Column{{}, unit}
                             : read_column(file, table.columns.line, sensor, name, unit));
     }

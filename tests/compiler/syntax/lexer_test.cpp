@@ -51,8 +51,10 @@ std::string filtered(const std::string& text) {
   const SourceFile source("robot.rsl", text);
   Diagnostics diagnostics;
   std::vector<Token> all = lex(source, 0, diagnostics);
+  std::vector<std::uint32_t> order;
+  significant(all, order);
   std::string result;
-  for (const std::uint32_t place : significant(all)) {
+  for (const std::uint32_t place : order) {
     result += (result.empty() ? "" : " ") + show(source, all[place]);
   }
   return result;

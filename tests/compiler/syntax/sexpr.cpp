@@ -19,8 +19,8 @@ std::string list(std::initializer_list<std::string> parts) {
   return text + ")";
 }
 
-std::string quoted(const std::string& text) {
-  return "\"" + text + "\"";
+std::string in_quotes(std::string_view text) {
+  return "\"" + std::string(text) + "\"";
 }
 
 std::string show(const Box<Expr>& expr);
@@ -31,8 +31,9 @@ std::string optional(const char* key, const Box<Expr>& value) {
 }
 
 std::string show(const Name& name) {
-  const bool words = name.text.find(' ') != std::string::npos;
-  return words ? "[" + name.text + "]" : name.text;
+  const std::string text(name.text);
+  const bool words = text.find(' ') != std::string::npos;
+  return words ? "[" + text + "]" : text;
 }
 
 std::string show(const std::vector<Name>& names) {
@@ -48,7 +49,8 @@ std::string show(const Quantity& n) {
   return std::string(n.digits) + std::string(n.unit);
 }
 std::string show(const Operand& n) {
-  return n.channel ? n.name.text + "." + n.channel->text : n.name.text;
+  const std::string name(n.name.text);
+  return n.channel ? name + "." + std::string(n.channel->text) : name;
 }
 std::string show(const Negate& n) {
   return list({"neg", show(n.value)});
@@ -74,7 +76,7 @@ std::string show(const Comparison& n) {
   return list({signs[static_cast<int>(n.relation)], show(n.left), show(n.right)});
 }
 std::string show(const Is& n) {
-  const std::string label = n.is_string ? quoted(n.label.text) : show(n.label);
+  const std::string label = n.is_string ? in_quotes(n.label.text) : show(n.label);
   return list({n.negated ? "is-not" : "is", show(n.value), label});
 }
 std::string show(const IsBetween& n) {
@@ -124,7 +126,7 @@ std::string show(const Argument& argument) {
   const char* const prepositions[] = {"", "to:", "by:", "over:", "at:", "for:", "margin:"};
   std::string value;
   if (const auto* word = std::get_if<Word>(&argument.value)) value = show(word->name);
-  if (const auto* text = std::get_if<Text>(&argument.value)) value = quoted(text->text);
+  if (const auto* text = std::get_if<Text>(&argument.value)) value = in_quotes(text->text);
   if (const auto* amount = std::get_if<Amount>(&argument.value)) {
     value = amount->times ? list({"times", show(amount->value)}) : show(amount->value);
   }
@@ -223,7 +225,7 @@ std::string show(const Rule& n) {
 }
 
 std::string show(const Use& n) {
-  return list({"use", n.is_string ? quoted(n.module.text) : show(n.module)});
+  return list({"use", n.is_string ? in_quotes(n.module.text) : show(n.module)});
 }
 std::string show(const Let& n) {
   return list({"let", show(n.name), show(n.value)});
@@ -260,7 +262,7 @@ std::string show(const Define& n) {
   return list({"define", show(n.name), show(n.parameters), show("do", n.body)});
 }
 std::string show(const Timer& n) {
-  return "(timer " + n.name.text + ")";
+  return list({"timer", std::string(n.name.text)});
 }
 std::string show(const Motion& n) {
   std::string rows;
@@ -286,15 +288,14 @@ std::string show(const Safety& n) {
 }
 
 std::string show(const TestFeed& n) {
-  return list(
-      {"feed", show(n.at), show(n.target), n.text ? testing::quoted(*n.text) : show(n.value)});
+  return list({"feed", show(n.at), show(n.target), n.text ? in_quotes(*n.text) : show(n.value)});
 }
 std::string show(const ExpectCommand& n) {
   return list({n.no ? "expect-no" : "expect", n.times ? show(*n.times) : "", show(n.command),
                n.within ? show(n.within) : ""});
 }
 std::string show(const ExpectText& n) {
-  return list({n.no ? "expect-no" : "expect", n.alert ? "alert" : "log", testing::quoted(n.text),
+  return list({n.no ? "expect-no" : "expect", n.alert ? "alert" : "log", in_quotes(n.text),
                optional("within", n.within)});
 }
 std::string show(const Seed& n) {
@@ -311,7 +312,7 @@ std::string show(const Test& n) {
   for (const TestStep& step : n.steps) {
     steps += " " + std::visit([](const auto& node) { return show(node); }, step.node);
   }
-  return "(test " + quoted(n.title) + steps + ")";
+  return "(test " + in_quotes(n.title) + steps + ")";
 }
 
 }  // namespace

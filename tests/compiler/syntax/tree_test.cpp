@@ -67,6 +67,7 @@ TEST_CASE("rows of a MOTION: a minus that touches what follows is its sign", "[t
 
 TEST_CASE("labels and texts", "[tree]") {
   CHECK(condition("space IS very close") == "(is space [very close])");
+  CHECK(condition("space IS  very \t close  now") == "(is space [very close now])");
   CHECK(condition("space IS NOT very close") == "(is-not space [very close])");
   CHECK(condition("voice WORD IS \"stop\"") == "(is voice.WORD \"stop\")");
   CHECK(condition("button IS TRUE OR button IS FALSE") == "(or (true button) (false button))");
