@@ -56,7 +56,8 @@ void Flow::visit(Node& node, State& state) {
 }
 
 void Flow::visit(ProgramLocal& local, State& state) {
-  locals_[local.number] = look(local.value, state);
+  const Fact value = look(local.value, state);
+  locals_[local.number] = local.is_chosen ? Fact{} : value;
 }
 
 // ---- writes

@@ -28,6 +28,7 @@ public:
 
   Program run() {
     expressions_.check_constants();
+    expressions_.check_lists();
     Variables(names_, expressions_, diagnostics_).declare(program_);
     for_each<ast::Limit>([this](const ast::Limit& limit, Span span) {
       Limits(robot_, names_, expressions_, diagnostics_)

@@ -163,15 +163,25 @@ Binding Statements::bind(const ast::Define& define, std::size_t parameter,
     }
     if (!operand->channel && bind_name(operand->name.text, define, binding)) return binding;
   }
+  if (const auto choice = choice_in(*amount->value)) {
+    binding.chosen = chosen_item(*choice, span, result);
+    binding.is_number = !binding.chosen;  // after a mistake it could be anything
+    if (binding.chosen && binding.chosen->index.operation == Operation::variable)
+      binding.chosen->index = in_local(std::move(binding.chosen->index), span, result);
+    return binding;
+  }
   binding.followed = followed(*amount->value);
   binding.value = expressions_.number(*amount->value);
   if (!binding.value.is_number() || binding.value.is_constant()) return binding;
-  const std::size_t number = locals_++;
-  put_first(ProgramLocal{number, std::move(binding.value.code)}, span, result);
-  binding.value.code = {};
-  binding.value.code.operation = Operation::local;
-  binding.value.code.index = number;
+  binding.value.code = in_local(std::move(binding.value.code), span, result);
   return binding;
+}
+
+// Worked out here, once.
+Expression Statements::in_local(Expression value, Span span, ProgramBlock& result) {
+  const std::size_t number = locals_++;
+  put_first(ProgramLocal{number, std::move(value)}, span, result);
+  return make_local(number);
 }
 
 // As a FOLLOW has it. DEFINEs that hand it on could double it each time, so there is an end to that.

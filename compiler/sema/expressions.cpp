@@ -98,9 +98,13 @@ Typed Expressions::operand(const ast::Operand& operand, Span span) {
       names_.find_list(operand.channel ? operand.channel->text : operand.name.text);
   if (list != nullptr && !names_.find_sensor(operand.name.text)) {
     diagnostics_
-        .report(Code::E0306, list->list->name.shown() + " holds texts, and a number is needed")
+        .report(Code::E0306, list->list->name.shown() + " is a LIST, and a number is needed")
         .label(span)
-        .label(list->list->name.span, "the LIST", false);
+        .label(list->list->name.span, "the LIST", false)
+        .helps(list->numbers
+                   ? "write which one: `ITEM 1 OF " + std::string(list->list->name.text) + "`"
+                   : "it holds texts; `COUNT OF " + std::string(list->list->name.text) +
+                         "` is a number");
     return make_nothing(span);
   }
   const auto ref = names_.find_channel(operand);
@@ -127,7 +131,7 @@ const Binding* Expressions::find_binding(std::string_view name) const {
 namespace {
 
 std::string kind_of(const Binding& binding) {
-  if (binding.text) return "a text";
+  if (binding.text || binding.chosen) return "a text";
   if (!binding.actuator.empty()) return "the actuator `" + binding.actuator + "`";
   return binding.define != nullptr ? "a DEFINE" : "a number";
 }

@@ -1,6 +1,7 @@
 // Checks expressions and translates them: names resolved, units converted, constants folded.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -9,6 +10,13 @@
 #include "compiler/sema/quantities.hpp"
 
 namespace robosync::compiler {
+
+// A text of a LIST, chosen when the program runs.
+struct ChosenItem {
+  const ListName* list = nullptr;
+  Expression index;                              // from 1
+  std::pair<std::size_t, std::size_t> places{};  // from 0: it is one of these
+};
 
 // What a parameter of the DEFINE that is being translated stands for.
 struct Binding {
@@ -19,9 +27,19 @@ struct Binding {
   std::string actuator{};  // the actuator or group that is given
   DefineName* define = nullptr;
   bool is_number = true;  // none of the others
-  Typed followed{};       // the same as a FOLLOW has it, worked out each time; nothing: too long
+  std::optional<ChosenItem> chosen{};
+  Typed followed{};  // the same as a FOLLOW has it, worked out each time; nothing: too long
 };
 using Bindings = std::vector<Binding>;
+
+// A LIST of numbers, which have one unit.
+struct NumberList {
+  const ListName* list = nullptr;
+  std::vector<vm::Value> values;  // empty after a mistake
+  const Unit* unit = nullptr;
+};
+// Puts what chooses from a list in front of the statement that is being translated. Gives the local that holds the number.
+using ChooseNumber = std::function<Expression(const NumberList& list, Typed index)>;
 
 // Of a DEFINE that nobody runs: it could be given anything.
 [[nodiscard]] inline bool is_open(const Binding& binding) {
@@ -65,6 +83,12 @@ public:
   [[nodiscard]] bool has_lost() const { return lost_; }
   // The LIST of this name; reports when there is none.
   const ListName* find_list(const ast::Name& name);
+  // Reports what is wrong in LISTs of numbers.
+  void check_lists();
+  // The place of a number that is known now in a list with `count` items, from 0; reports when there is none.
+  std::optional<std::size_t> known_item(const ListName& list, const Typed& index);
+  // How a statement chooses from one; null, as it is in conditions: it cannot. Gives what it was before.
+  const ChooseNumber* set_choice(const ChooseNumber* choose);
   // Reports a TIMER in a value that is looked at only when something else changes. False if there is one.
   bool stands_still(const Expression& value, Span span, std::string_view where);
   // "`who` is given a number, and an actuator is needed".
@@ -90,6 +114,7 @@ private:
   Typed of(const ast::Function& node, Span span);
   Typed of(const ast::ItemOf& node, Span span);
   Typed of(const ast::CountOf& node, Span span);
+  const NumberList& numbers_of(const ListName& list);
   Typed of_one(Operation operation, const ast::Function& node, Span span);
   Typed of_two(Operation operation, const ast::Function& node, Span span);
   // conditions.cpp: words and truths
@@ -127,6 +152,9 @@ private:
   std::map<const ast::Let*, Typed> constants_;
   std::vector<const ast::Let*> open_;  // being worked out, to find one that needs itself
   const Bindings* bindings_ = nullptr;
+  std::map<const ListName*, NumberList> lists_;
+  bool in_list_ = false;  // its numbers are being worked out
+  const ChooseNumber* choose_ = nullptr;
   bool following_ = false;
   bool lost_ = false;
   Margin* margin_ = nullptr;

@@ -34,13 +34,6 @@ bool same(const Followed& a, const Followed& b) {
          a.command.arguments == b.command.arguments;
 }
 
-Expression local(std::size_t number) {
-  Expression result;
-  result.operation = Operation::local;
-  result.index = number;
-  return result;
-}
-
 // What can be out of the actuator's range is moved to its end.
 Expression in_range(Typed number, const ActuatorConfig& actuator) {
   Expression value = std::move(number.code);
@@ -104,12 +97,15 @@ std::vector<ProgramCommand> Commands::expected_follow(const ast::Command& comman
 std::optional<std::vector<Commands::Given>> Commands::evaluate_followed(const ast::Command& command,
                                                                         std::size_t named_by) {
   const bool before = expressions_.set_following(true);
+  const ChooseNumber* const choice = expressions_.set_choice(nullptr);
   auto given = evaluate(command, named_by);
   const bool lost = expressions_.has_lost();
+  expressions_.set_choice(choice);
   expressions_.set_following(before);
   if (!lost) return given;
-  diagnostics_.report(Code::E0407, "what this FOLLOW follows becomes too long with all its DEFINEs")
-      .label(command.verb.span);
+  diagnostics_.report(Code::E0407, "what this FOLLOW follows cannot be worked out again and again")
+      .label(command.verb.span)
+      .helps("what a DEFINE is given for it is too long, or a number out of a LIST");
   return std::nullopt;
 }
 
@@ -275,15 +271,15 @@ void Statements::add_followed(Followed followed, Span span, ProgramBlock& before
   const std::size_t target = locals_++, given = locals_++;
   Expression& to = target_of(followed.command);
   put(ProgramLocal{given, make_constant_code(kNowhere)}, span, before);
-  put(ProgramLocal{target, std::exchange(to, local(target))}, span, body);
-  Expression change = make_unary(Operation::absolute,
-                                 make_binary(Operation::subtract, local(target), local(given)));
+  put(ProgramLocal{target, std::exchange(to, make_local(target))}, span, body);
+  Expression change = make_unary(
+      Operation::absolute, make_binary(Operation::subtract, make_local(target), make_local(given)));
   ProgramIf changed{
       make_binary(Operation::greater_equal, std::move(change), make_constant_code(followed.margin)),
       {},
       {}};
   put(std::move(followed.command), span, changed.then_block);
-  put(ProgramLocal{given, local(target)}, span, changed.then_block);
+  put(ProgramLocal{given, make_local(target)}, span, changed.then_block);
   put(std::move(changed), span, body);
 }
 

@@ -51,19 +51,40 @@ std::optional<ListChoice> Statements::in_turn(const ast::Name& how, const ast::N
   if (names_.find_list(list.text) == nullptr && !surely) return std::nullopt;
   ListChoice choice;
   choice.list = expressions_.find_list(list);
+  if (choice.list != nullptr && choice.list->numbers) {
+    diagnostics_.report(Code::E0306, list.shown() + " holds numbers, and a text is needed")
+        .label(list.span)
+        .label(choice.list->list->name.span, "the LIST", false)
+        .helps("a number is taken by its place: `ITEM 1 OF " + std::string(list.text) + "`");
+    choice.list = nullptr;
+  }
   choice.how = folded == "any" ? ListChoice::How::any : ListChoice::How::next;
   choice.span = {how.span.file, how.span.begin, list.span.end};
   return choice;
 }
 
+// A parameter of a DEFINE that stands for a text of a LIST.
+std::optional<ListChoice> Statements::choice_given(const ast::Name& name) {
+  const Binding* const binding = expressions_.find_binding(name.text);
+  if (binding == nullptr || !binding->chosen) return std::nullopt;
+  ListChoice choice;
+  choice.list = binding->chosen->list;
+  choice.how = ListChoice::How::given;
+  choice.chosen = &*binding->chosen;
+  choice.span = name.span;
+  return choice;
+}
+
 std::optional<ListChoice> Statements::choice_in(const ast::Expr& expr) {
   if (const auto* operand = std::get_if<ast::Operand>(&expr.node)) {
-    if (!operand->channel) return std::nullopt;
+    if (!operand->channel) return choice_given(operand->name);
     const bool sensor = names_.find_sensor(operand->name.text).has_value();
     return in_turn(operand->name, *operand->channel, !sensor);
   }
   const auto* item = std::get_if<ast::ItemOf>(&expr.node);
   if (item == nullptr) return std::nullopt;
+  const ListName* const named = names_.find_list(item->list.text);
+  if (named != nullptr && named->numbers) return std::nullopt;
   ListChoice choice;
   choice.list = expressions_.find_list(item->list);
   choice.how = ListChoice::How::item;
@@ -79,7 +100,8 @@ std::optional<ListChoice> Statements::find_choice(const std::vector<ast::Argumen
     const auto* word = std::get_if<ast::Word>(&arguments[i].value);
     const auto* behind =
         i + 1 < arguments.size() ? std::get_if<ast::Word>(&arguments[i + 1].value) : nullptr;
-    if (word != nullptr && behind != nullptr) {
+    if (word != nullptr) choice = choice_given(word->name);
+    if (word != nullptr && behind != nullptr && !choice) {
       const bool known = names_.is_word(word->name.text) || names_.find_target(word->name.text);
       choice = in_turn(word->name, behind->name, !known);
       if (choice) choice->count = 2;
@@ -97,7 +119,21 @@ std::optional<ListChoice> Statements::find_choice(const std::vector<ast::Argumen
 
 void Statements::choose(const ListChoice& choice, Span span, const PutText& put_text,
                         ProgramBlock& result) {
-  if (choice.list == nullptr) return;
+  const auto chosen = chosen_item(choice, span, result);
+  if (!chosen) return;
+  for (std::size_t i = chosen->places.first; i <= chosen->places.second; ++i)
+    if (!within_budget(choice.span)) return;
+  const auto put_item = [&](std::size_t item, ProgramBlock& into) {
+    const Span place = choice.list->list->items[item].span;
+    put_text({choice.at, choice.count, choice.list->texts[item], place}, into);
+  };
+  put_one_of(chosen->index, chosen->places, span, put_item, result);
+}
+
+// Nothing after a mistake, which has then been reported.
+std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span span,
+                                                  ProgramBlock& result) {
+  if (choice.list == nullptr) return std::nullopt;
   const std::size_t count = choice.list->texts.size();
   if (safety_ || count > kMaxTexts) {
     diagnostics_
@@ -105,55 +141,36 @@ void Statements::choose(const ListChoice& choice, Span span, const PutText& put_
                 safety_ ? "a SAFETY rule does not choose from a LIST"
                         : "a LIST that is chosen from has at most 64 texts")
         .label(choice.span);
-    return;
+    return std::nullopt;
   }
-  for (std::size_t i = 0; i < count; ++i)
-    if (!within_budget(choice.span)) return;
-  std::pair<std::size_t, std::size_t> places{0, count - 1};
-  Expression index;
+  if (choice.chosen != nullptr) return *choice.chosen;
+  ChosenItem chosen{choice.list, {}, {0, count - 1}};
   if (choice.how == ListChoice::How::item) {
     Typed number = expressions_.amount(
         *choice.index, {&canonical_unit(vm::Dimension::number), "ITEM", choice.index->span});
-    if (!number.is_number()) return;
+    if (!number.is_number()) return std::nullopt;
     if (number.is_constant()) {
-      const auto item = known_item(choice, number);
-      if (!item) return;
-      places = {*item, *item};
+      const auto item = expressions_.known_item(*choice.list, number);
+      if (!item) return std::nullopt;
+      chosen.places = {*item, *item};
     } else {
-      index = item_index(choice, std::move(number), span, result);
+      chosen.index = item_index(*choice.list, std::move(number), span, result);
     }
   } else if (count > 1) {
-    index = choice.how == ListChoice::How::next ? next_index(choice, span, result)
-                                                : any_index(choice, span, result);
+    chosen.index = choice.how == ListChoice::How::next ? next_index(choice, span, result)
+                                                       : any_index(choice, span, result);
   }
-  put_one_of(choice, index, places, span, put_text, result);
+  return chosen;
 }
 
-std::optional<std::size_t> Statements::known_item(const ListChoice& choice, Typed& index) {
-  const std::size_t count = choice.list->texts.size();
-  const vm::Value value = index.code.constant;
-  if (value % vm::kScale == 0 && value >= vm::kScale && value <= whole(count))
-    return static_cast<std::size_t>(value / vm::kScale - 1);
-  diagnostics_
-      .report(Code::E0509,
-              choice.list->list->name.shown() + " has the texts 1 to " + std::to_string(count))
-      .label(index.span, "outside of that")
-      .label(choice.list->list->name.span, "the LIST", false);
-  return std::nullopt;
-}
-
-// Worked out once. Outside the list the nearest text is taken, and the trace says so.
-Expression Statements::item_index(const ListChoice& choice, Typed index, Span span,
+// Worked out once. Outside the list the nearest item is taken, and the trace says so.
+Expression Statements::item_index(const ListName& list, Typed index, Span span,
                                   ProgramBlock& result) {
-  const std::string name(choice.list->list->name.text);
-  const std::size_t count = choice.list->texts.size();
-  const std::size_t number = locals_++;
-  put(ProgramLocal{number, make_binary(Operation::round, std::move(index.code),
-                                       make_constant_code(vm::kScale))},
-      span, result);
-  Expression local;
-  local.operation = Operation::local;
-  local.index = number;
+  const std::string name(list.list->name.text);
+  const std::size_t count = list.texts.size();
+  const Expression local =
+      in_local(make_binary(Operation::round, std::move(index.code), make_constant_code(vm::kScale)),
+               span, result);
   ProgramIf outside;
   outside.condition = make_binary(
       Operation::logical_or, make_binary(Operation::less, local, make_constant_code(vm::kScale)),
@@ -189,23 +206,34 @@ Expression Statements::any_index(const ListChoice& choice, Span span, ProgramBlo
   return make_variable(last);
 }
 
-// ---- one statement for each text
+// ---- one block for each item
 
-void Statements::put_one_of(const ListChoice& choice, const Expression& index,
-                            std::pair<std::size_t, std::size_t> places, Span span,
-                            const PutText& put_text, ProgramBlock& result) {
+void Statements::put_one_of(const Expression& index, std::pair<std::size_t, std::size_t> places,
+                            Span span, const PutItem& put_item, ProgramBlock& result) {
   const auto [first, last] = places;
-  if (first == last) {
-    const Span place = choice.list->list->items[first].span;
-    return put_text({choice.at, choice.count, choice.list->texts[first], place}, result);
-  }
+  if (first == last) return put_item(first, result);
   const std::size_t middle = (first + last) / 2;
   ProgramIf lower;
   lower.condition =
       make_binary(Operation::less_equal, index, make_constant_code(whole(middle + 1)));
-  put_one_of(choice, index, {first, middle}, span, put_text, lower.then_block);
-  put_one_of(choice, index, {middle + 1, last}, span, put_text, lower.else_block);
+  put_one_of(index, {first, middle}, span, put_item, lower.then_block);
+  put_one_of(index, {middle + 1, last}, span, put_item, lower.else_block);
   put(std::move(lower), span, result);
+}
+
+// ---- numbers
+
+// Of an unknown place an unknown number: it is neither in one half nor in the other.
+Expression Statements::choose_number(const NumberList& list, Typed index, Span span,
+                                     ProgramBlock& result) {
+  const std::size_t local = locals_++;
+  const Expression place = item_index(*list.list, std::move(index), span, result);
+  put(ProgramLocal{local, place, true}, span, result);
+  const auto put_number = [&](std::size_t item, ProgramBlock& into) {
+    put(ProgramLocal{local, make_constant_code(list.values[item]), true}, span, into);
+  };
+  put_one_of(place, {0, list.values.size() - 1}, span, put_number, result);
+  return make_local(local);
 }
 
 }  // namespace robosync::compiler

@@ -388,13 +388,14 @@ void Names::add(const ast::Timer& timer) {
 void Names::add(const ast::List& list) {
   if (!claim_operand(list.name)) return;
   ListName named{&list, {}, in_module_};
+  named.numbers = !std::holds_alternative<ast::Text>(list.items.front().value);
   for (const ast::Argument& item : list.items) {
     const auto* text = std::get_if<ast::Text>(&item.value);
     named.texts.emplace_back(text != nullptr ? text->text : std::string_view());
-    if (text == nullptr)
-      diagnostics_.report(Code::E0306, "a LIST holds texts, and this is a number")
+    if (named.numbers != (text == nullptr))
+      diagnostics_.report(Code::E0306, "a LIST holds texts or numbers, not both")
           .label(item.span)
-          .helps("write it in quotes");
+          .label(list.items.front().span, named.numbers ? "a number" : "a text", false);
   }
   lists_.emplace(fold_name(list.name.text), std::move(named));
 }
@@ -454,6 +455,9 @@ void Names::add_turns(const ast::Stmt& stmt) {
   if (const auto* log = std::get_if<ast::Log>(&stmt.node))
     for (const ast::Argument& argument : log->arguments)
       look(argument);
+  if (const auto* call = std::get_if<ast::Call>(&stmt.node))
+    for (const ast::Argument& argument : call->arguments)
+      look(argument);
   const auto* command = std::get_if<ast::Command>(&stmt.node);
   for (std::size_t i = 0; command != nullptr && i < command->arguments.size(); ++i) {
     look(command->arguments[i]);
@@ -470,7 +474,7 @@ void Names::add_turn(const ast::Name& how, const ast::Name& list) {
   if (found == lists_.end() || (folded != "any" && folded != "next")) return;
   ListName& named = found->second;
   std::optional<std::size_t>& place = folded == "any" ? named.any : named.next;
-  if (place || named.texts.size() < 2) return;
+  if (place || named.numbers || named.texts.size() < 2) return;
   place = variables_.size();
   made_names_.push_front((folded == "any" ? "ANY " : "NEXT ") + std::string(named.list->name.text));
   VariableName variable{{made_names_.front(), list.span}, *place, {}, vm::VariableKind::plain, {}};

@@ -61,6 +61,7 @@ struct ListName {
   const ast::List* list = nullptr;
   std::vector<std::string> texts;
   bool in_module = false;
+  bool numbers = false;  // it holds these: Expressions works them out, `texts` are empty
   // Variables that hold the place of the last text, from 1; 0 before the first. Only where used.
   std::optional<std::size_t> any{}, next{};
 };
@@ -123,6 +124,7 @@ public:
   [[nodiscard]] const std::map<std::string, MotionName>& motions() const { return motions_; }
   [[nodiscard]] const std::map<std::string, DefineName>& defines() const { return defines_; }
   [[nodiscard]] const std::map<std::string, ConstantName>& constants() const { return constants_; }
+  [[nodiscard]] const std::map<std::string, ListName>& lists() const { return lists_; }
   // In the order of Program::variables.
   [[nodiscard]] std::vector<VariableName>& variables() { return variables_; }
 

@@ -74,6 +74,13 @@ Expression make_constant_code(vm::Value value) {
   return result;
 }
 
+Expression make_local(std::size_t number) {
+  Expression result;
+  result.operation = Operation::local;
+  result.index = number;
+  return result;
+}
+
 Expression make_unary(Operation operation, Expression operand) {
   Expression result;
   result.operation = operation;

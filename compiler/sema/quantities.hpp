@@ -47,6 +47,7 @@ struct Typed {
 [[nodiscard]] Typed make_nothing(Span span);
 [[nodiscard]] Typed make_condition(Expression code, Span span);
 [[nodiscard]] Expression make_constant_code(vm::Value value);
+[[nodiscard]] Expression make_local(std::size_t number);
 [[nodiscard]] Expression make_unary(Operation operation, Expression operand);
 [[nodiscard]] Expression make_binary(Operation operation, Expression left, Expression right);
 

@@ -57,7 +57,12 @@ ProgramBlock Statements::block(const ast::Block& block) {
 
 void Statements::add(const ast::Stmt& stmt, ProgramBlock& result) {
   if (!within_budget(stmt.span) || (safety_ && !allowed_in_safety(stmt))) return;
+  const ChooseNumber choose = [&](const NumberList& list, Typed index) {
+    return choose_number(list, std::move(index), stmt.span, result);
+  };
+  const ChooseNumber* const outer = expressions_.set_choice(safety_ ? nullptr : &choose);
   std::visit([&](const auto& node) { add(node, stmt.span, result); }, stmt.node);
+  expressions_.set_choice(outer);
 }
 
 bool Statements::within_budget(Span span) {
@@ -126,10 +131,18 @@ void Statements::add(const ast::Wait& node, Span span, ProgramBlock& result) {
   if (duration.is_number()) put(ProgramWait{std::move(duration.code)}, span, result);
 }
 
+// A condition that is worked out more than once: what stands in front of the statement would not be.
+Typed Statements::asked_again(const ast::Expr& condition) {
+  const ChooseNumber* const choice = expressions_.set_choice(nullptr);
+  Typed result = expressions_.condition(condition);
+  expressions_.set_choice(choice);
+  return result;
+}
+
 void Statements::add(const ast::WaitUntil& node, Span span, ProgramBlock& result) {
   if (node.condition == nullptr) return;
   ProgramWaitUntil wait;
-  Typed condition = expressions_.condition(*node.condition);
+  Typed condition = asked_again(*node.condition);
   bool good = condition.type == Type::condition;
   wait.condition = std::move(condition.code);
   if (node.within != nullptr) {
@@ -222,7 +235,7 @@ void Statements::add(const ast::Repeat& node, Span span, ProgramBlock& result) {
     good = repeat_times(*node.times, loop);
   } else if (node.condition != nullptr) {
     loop.kind = RepeatKind::while_;
-    Typed condition = expressions_.condition(*node.condition);
+    Typed condition = asked_again(*node.condition);
     good = condition.type == Type::condition;
     loop.control = std::move(condition.code);
   } else {

@@ -14,11 +14,12 @@ namespace robosync::compiler {
 
 // ANY list, NEXT list, ITEM n OF list in the place of a text.
 struct ListChoice {
-  enum class How : std::uint8_t { any, next, item };
+  enum class How : std::uint8_t { any, next, item, given };
   const ListName* list = nullptr;
   How how{};
-  const ast::Expr* index = nullptr;  // of item
-  std::size_t at = 0, count = 1;     // which arguments ask for it
+  const ast::Expr* index = nullptr;    // of item
+  const ChosenItem* chosen = nullptr;  // of given, to a DEFINE
+  std::size_t at = 0, count = 1;       // which arguments ask for it
   Span span{};
 };
 
@@ -57,6 +58,7 @@ private:
 
   void add(const ast::Command& node, Span span, ProgramBlock& result);
   void add(const ast::Wait& node, Span span, ProgramBlock& result);
+  Typed asked_again(const ast::Expr& condition);
   void add(const ast::WaitUntil& node, Span span, ProgramBlock& result);
   void add(const ast::Then& node, Span span, ProgramBlock& result);
   void add(const ast::Stop& node, Span span, ProgramBlock& result);
@@ -91,15 +93,17 @@ private:
   using PutText = std::function<void(const ChosenText&, ProgramBlock&)>;
   std::optional<ListChoice> find_choice(const std::vector<ast::Argument>& arguments);
   std::optional<ListChoice> choice_in(const ast::Expr& expr);
+  std::optional<ListChoice> choice_given(const ast::Name& name);
+  std::optional<ChosenItem> chosen_item(const ListChoice& choice, Span span, ProgramBlock& result);
   std::optional<ListChoice> in_turn(const ast::Name& how, const ast::Name& list, bool surely);
   void choose(const ListChoice& choice, Span span, const PutText& put_text, ProgramBlock& result);
-  std::optional<std::size_t> known_item(const ListChoice& choice, Typed& index);
-  Expression item_index(const ListChoice& choice, Typed index, Span span, ProgramBlock& result);
+  Expression item_index(const ListName& list, Typed index, Span span, ProgramBlock& result);
   Expression next_index(const ListChoice& choice, Span span, ProgramBlock& result);
   Expression any_index(const ListChoice& choice, Span span, ProgramBlock& result);
-  void put_one_of(const ListChoice& choice, const Expression& index,
-                  std::pair<std::size_t, std::size_t> places, Span span, const PutText& put_text,
-                  ProgramBlock& result);
+  using PutItem = std::function<void(std::size_t, ProgramBlock&)>;
+  void put_one_of(const Expression& index, std::pair<std::size_t, std::size_t> places, Span span,
+                  const PutItem& put_item, ProgramBlock& result);
+  Expression choose_number(const NumberList& list, Typed index, Span span, ProgramBlock& result);
   // defines.cpp
   void add(const ast::Call& node, Span span, ProgramBlock& result);
   void run(DefineName& name, const std::vector<ast::Argument>& arguments, Span span,
@@ -107,6 +111,7 @@ private:
   void run(const Binding& binding, const ast::Name& name,
            const std::vector<ast::Argument>& arguments, Span span, ProgramBlock& result);
   Typed followed(const ast::Expr& value);
+  Expression in_local(Expression value, Span span, ProgramBlock& result);
   bool bind_name(std::string_view name, const ast::Define& define, Binding& binding);
   bool commands_parameter(const ast::Define& define, std::string_view folded, unsigned handed_on);
   std::optional<Bindings> bind(const DefineName& name, const std::vector<ast::Argument>& arguments,

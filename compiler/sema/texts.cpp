@@ -33,16 +33,25 @@ bool TextBuilder::add(const ast::Argument& part) {
     const Binding* binding = operand != nullptr && !operand->channel
                                  ? expressions_.find_binding(operand->name.text)
                                  : nullptr;
+    if (binding != nullptr && binding->chosen) return report_second(part.span);
     if (binding != nullptr && binding->text) return add(*binding->text, part.span);
     value = expressions_.number(*amount->value);
   } else if (const auto* word = std::get_if<ast::Word>(&part.value)) {
     const Binding* binding = expressions_.find_binding(word->name.text);
+    if (binding != nullptr && binding->chosen) return report_second(part.span);
     if (binding != nullptr && binding->text) return add(*binding->text, part.span);
     value = expressions_.number_of(expressions_.operand({word->name, nullptr}, word->name.span));
   }
   if (!value.is_number()) return false;
   add(std::move(value));
   return true;
+}
+
+// Statements have replaced the first one.
+bool TextBuilder::report_second(Span span) {
+  diagnostics_.report(Code::E0505, "a statement says one text out of a LIST")
+      .label(span, "this is the second");
+  return false;
 }
 
 void TextBuilder::add(Typed number) {

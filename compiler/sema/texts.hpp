@@ -26,6 +26,7 @@ public:
 
 private:
   void append(std::string_view part);
+  bool report_second(Span span);
 
   Expressions& expressions_;
   Diagnostics& diagnostics_;

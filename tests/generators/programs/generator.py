@@ -36,6 +36,8 @@ DECLARATIONS = """\
 LET calm = 40%
 LIST songs: "greeting.wav", "warning.wav", "greeting.wav"
 LIST words: "one", "two", "three", "four", "five"
+LIST numbers: 3, -1, 0.5, 4, 2
+LIST places: 10deg, 45deg, 90deg
 REMEMBER count = 0
 REMEMBER last = 1.5
 TIMER idle
@@ -264,7 +266,8 @@ class Generator:
                          "SET fear TO 0%", "SET mood TO very happy", "SET mood TO wary",
                          "SET mood TO calm_down", "PLAY sound ANY songs", "LOG NEXT words, count", "ALERT ITEM count OF words",
                          "RESTART idle", "RESTART busy", 'LOG "idle", idle', "SET last TO idle / 1s",
-                         "PLAY sound NEXT songs", "SET count TO COUNT OF words - 2", "LOG ANY words",
+                         "PLAY sound NEXT songs", "SET count TO COUNT OF words - 2", "SET last TO ITEM count OF numbers",
+                         "MOVE left_arm TO (ITEM last OF places)", "LOG ITEM (count + 1) OF numbers", "LOG ANY words",
                          'LOG "count", count, "joy", joy',
                          'ALERT "look here"', 'ALERT "joy", joy', "SET last TO touch LEVEL")
 
