@@ -1,6 +1,8 @@
 """rsc's exit codes: 1 the program is wrong, 2 wrong usage, 3 something outside is missing."""
 
+import socket
 import tempfile
+import threading
 import unittest
 from pathlib import Path
 
@@ -8,6 +10,8 @@ import rsc
 from support import CONFIG, PROGRAMS
 
 PAPER = PROGRAMS / "paper.rsl"
+# A 0, which ends what was on the line before, and the frame.
+STOP_FRAME = bytes([0, 5, 0x15, 0xFF, 0x79, 0xFF, 0])
 
 
 class ExitCodes(unittest.TestCase):
@@ -80,6 +84,26 @@ class ExitCodes(unittest.TestCase):
             for verb in (["upload", PAPER], ["info"], ["monitor"], ["feed", "touch.LEVEL=1"]):
                 with self.subTest(verb=verb[0], port=port):
                     self.assert_ends(3, *verb, "--port", port, says="nowhere")
+
+    def test_nobody_answers(self):
+        heard = []
+        server = socket.socket(socket.AF_UNIX)
+        self.addCleanup(server.close)
+        server.bind(str(self.folder / "port"))
+        server.listen()
+
+        def listen():
+            line, _ = server.accept()
+            with line:
+                while some := line.recv(100):
+                    heard.append(some)
+
+        listener = threading.Thread(target=listen, daemon=True)
+        listener.start()
+        self.assert_ends(3, "stop", "--port", f"unix:{self.folder}/port",
+                         says="It may have stopped all the same")
+        listener.join(10)
+        self.assertTrue(b"".join(heard).startswith(STOP_FRAME), heard)
 
 
 if __name__ == "__main__":
