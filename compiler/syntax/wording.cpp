@@ -225,7 +225,7 @@ private:
           .label(place(edit_.at), "expected " + summarize(failure_.expected));
       return;
     }
-    if (unit_apart() || decimal_comma()) return;
+    if (unit_apart() || decimal_comma() || texts_added(edit_.at)) return;
     Diagnostic& message = diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here");
     if (belongs_to_number(edit_.at)) {
       message.label(token.span);  // without it, the number would be another one
@@ -249,6 +249,21 @@ private:
         .label(tokens_[edit_.at].span)
         .helps("if it is a unit, write it without a space: `" + digits + unit + "`")
         .fix(gap, "");
+    return true;
+  }
+
+  // `"You have" + points`, as other languages join texts.
+  bool texts_added(std::size_t at) {
+    const auto is_text = [this](std::size_t place) {
+      return place < tokens_.size() && tokens_[place].kind == Kinds::STRING;
+    };
+    if (at > 0 && is_text(at)) --at;
+    if (at >= tokens_.size() || source_.text(tokens_[at].span) != "+") return false;
+    if (!is_text(at + 1) && (at == 0 || !is_text(at - 1))) return false;
+    diagnostics_.report(Code::E0009, "`+` does not join texts")
+        .label(tokens_[at].span)
+        .helps("write a comma between the parts: `\"You have\", points`")
+        .fix(tokens_[at].span, ",", Applicability::likely);
     return true;
   }
 
@@ -355,6 +370,7 @@ private:
           .helps("compare twice: `0 < x AND x < 3`, or write `x IS BETWEEN 0 AND 3`");
       return;
     }
+    if (texts_added(at)) return;
     const std::string first = at < tokens_.size() ? after(at) : "";
     Diagnostic& message = diagnostics_.report(
         Code::E0001, "expected " + summarize(failure_.expected) + first + ", found " + found(at));
