@@ -34,16 +34,13 @@ target_sources(robosync_compiler PRIVATE
   ${module_texts}
   config/actuators.cpp
   config/boards.cpp
-  config/channels.cpp
   config/devices.cpp
   config/entries.cpp
   config/fields.cpp
-  config/json_mistake.cpp
   config/json_reader.cpp
   config/names.cpp
   config/robot.cpp
   config/robot_reader.cpp
-  config/sections.cpp
   config/sensors.cpp
   config/units.cpp
   config/values.cpp

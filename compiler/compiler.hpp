@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compiler/config/boards.hpp"
-#include "compiler/config/written_units.hpp"
+#include "compiler/config/robot.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
 #include "compiler/test_plan/plan.hpp"

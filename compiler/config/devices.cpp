@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "compiler/config/channels.hpp"
+#include "compiler/config/entries.hpp"
 #include "compiler/config/fields.hpp"
 #include "compiler/config/json_reader.hpp"
 #include "compiler/config/values.hpp"

@@ -1,4 +1,4 @@
-// Entries of "sensors" and "actuators" in robot.json.
+// Entries of "sensors" and "actuators" in robot.json (sensors.cpp, actuators.cpp), and what they have in common.
 #pragma once
 
 #include "compiler/config/devices.hpp"
@@ -16,6 +16,11 @@ namespace robosync::compiler {
 [[nodiscard]] std::optional<ActuatorConfig> read_actuator(const json::Value& value,
                                                           WiringReader& wiring,
                                                           Diagnostics& diagnostics);
+
+// One channel of a sensor. Overwrites in `channel` what `value` says; the rest stays as the device's descriptor has it.
+// `inputs`: how many inputs the device has.
+void read_channel(const json::Value& value, unsigned inputs, ChannelConfig& channel,
+                  Diagnostics& diagnostics);
 
 // The "name" of an entry, checked.
 [[nodiscard]] std::optional<Spelled> read_name(Fields& fields, std::string_view what,

@@ -1,3 +1,4 @@
+// See robot.hpp.
 #include "compiler/config/robot.hpp"
 
 #include <algorithm>
@@ -23,6 +24,20 @@ const WordConfig* ActuatorConfig::find_word(std::string_view word) const {
 
 const WordConfig* ActuatorConfig::find_text(std::string_view text) const {
   return find_in(words, [&](const WordConfig& w) { return w.text && w.name == text; });
+}
+
+WrittenUnits units_of(const Robot& robot) {
+  WrittenUnits units;
+  for (const SensorConfig& sensor : robot.sensors)
+    for (const ChannelConfig& channel : sensor.channels)
+      units.channels[sensor.name.text + "." + channel.name.text] = channel.unit;
+  for (const ActuatorConfig& actuator : robot.actuators) {
+    ActuatorUnits& own = units.actuators[actuator.name.text];
+    own = {actuator.to_unit, actuator.at_unit};
+    for (const VerbConfig& verb : actuator.verbs)
+      if (verb.by_unit != nullptr) own.by[verb.name] = verb.by_unit;
+  }
+  return units;
 }
 
 }  // namespace robosync::compiler

@@ -143,4 +143,22 @@ struct Robot {
   bool complete = true;  // false: entries are missing, for mistakes that have been reported
 };
 
+// ---- the units that a program's author writes, by the names that its image has
+
+struct ActuatorUnits {
+  const Unit* to = nullptr;                 // of TO and BY; null: it has no position
+  const Unit* at = nullptr;                 // of AT; null: it has no speed
+  std::map<std::string, const Unit*> by{};  // of BY of the verbs that have one of their own
+};
+
+// What is not in it is shown in its canonical unit.
+struct WrittenUnits {
+  std::map<std::string, const Unit*> channels;  // "sensor.CHANNEL"
+  std::map<std::string, const Unit*> variables;
+  std::map<std::string, ActuatorUnits> actuators;
+};
+
+// Those that robot.json says.
+[[nodiscard]] WrittenUnits units_of(const Robot& robot);
+
 }  // namespace robosync::compiler

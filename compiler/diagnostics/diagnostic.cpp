@@ -22,6 +22,12 @@ constexpr CodeInfo codes[] = {
 #undef DIAGNOSTIC
 };
 
+constexpr Code in_order[] = {
+#define DIAGNOSTIC(code, level, title) Code::code,
+#include "compiler/diagnostics/diagnostics.def"
+#undef DIAGNOSTIC
+};
+
 const CodeInfo& info(Code code) {
   return codes[static_cast<std::size_t>(code)];
 }
@@ -69,6 +75,9 @@ std::string_view applicability_name(Applicability applicability) {
   return "placeholder";
 }
 
+std::span<const Code> all_codes() {
+  return in_order;
+}
 std::string_view code_name(Code code) {
   return info(code).name;
 }

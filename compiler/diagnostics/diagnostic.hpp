@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +24,7 @@ enum class Code : std::uint16_t {
 #undef DIAGNOSTIC
 };
 
+[[nodiscard]] std::span<const Code> all_codes();
 [[nodiscard]] std::string_view code_name(Code code);  // "E0501"
 [[nodiscard]] std::string_view code_title(Code code);
 [[nodiscard]] Level default_level(Code code);

@@ -17,12 +17,6 @@ constexpr std::array kTexts = {
 #undef EXPLAIN
 };
 
-constexpr std::array kCodes = {
-#define DIAGNOSTIC(code, level, title) Code::code,
-#include "compiler/diagnostics/diagnostics.def"
-#undef DIAGNOSTIC
-};
-
 std::string indented(std::string_view text) {
   std::string result;
   while (!text.empty()) {
@@ -41,8 +35,9 @@ std::span<const CodeText> code_texts() {
 
 std::optional<Code> find_code(std::string_view name) {
   const auto same = [name](Code code) { return ascii::same(code_name(code), name); };
-  const auto* const found = std::ranges::find_if(kCodes, same);
-  return found == kCodes.end() ? std::nullopt : std::optional(*found);
+  const std::span<const Code> codes = all_codes();
+  const auto found = std::ranges::find_if(codes, same);
+  return found == codes.end() ? std::nullopt : std::optional(*found);
 }
 
 std::string code_text(Code code) {

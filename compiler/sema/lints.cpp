@@ -272,7 +272,7 @@ bool always_before(const ProgramRule& higher, const ProgramRule& lower) {
          implies(higher.condition, lower.condition);
 }
 
-struct Known {
+struct KnownRule {
   const ProgramRule* rule = nullptr;
   std::set<std::size_t> actuators;
 };
@@ -290,15 +290,15 @@ bool share(const std::set<std::size_t>& a, const std::set<std::size_t>& b) {
 }
 
 void lint_order(const LintInput& input) {
-  std::vector<Known> higher;
+  std::vector<KnownRule> higher;
   std::size_t pairs = 0;
   for (const ProgramBehavior& behavior : input.program.behaviors) {
-    std::vector<Known> own;
+    std::vector<KnownRule> own;
     for (const ProgramRule& rule : behavior.rules) {
       pairs += higher.size();
       if (pairs > kMostPairs) return;
-      Known known{&rule, actuators_of(rule)};
-      const auto first = std::find_if(higher.begin(), higher.end(), [&](const Known& other) {
+      KnownRule known{&rule, actuators_of(rule)};
+      const auto first = std::find_if(higher.begin(), higher.end(), [&](const KnownRule& other) {
         return share(other.actuators, known.actuators) && always_before(*other.rule, rule);
       });
       if (first != higher.end())
