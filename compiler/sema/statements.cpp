@@ -180,7 +180,7 @@ void Statements::stop_given(const Binding& binding, const ast::Name& name, Span 
 void Statements::stop_actuator(const ast::Name& name, Span span, ProgramBlock& result) {
   if (!commands_.find_stopped(name)) return;
   ast::Command command;
-  command.verb = {std::string(kStop), first_word(span, kStop)};
+  command.verb = {kStop, first_word(span, kStop)};
   ast::Argument& named = command.arguments.emplace_back();
   named.span = name.span;
   named.value = ast::Word{name};
