@@ -138,6 +138,7 @@ def kernel_figures_of(marks):
 
 
 KERNEL_LEVEL = 0x40  # core::kKernelPriority: what a Lock holds off; a SwitchLock, nothing but the switch
+SWITCH_LEVEL = 0xC0
 
 
 def lock_out(raised, marks):
@@ -192,7 +193,7 @@ def raised_levels(elf):
             moved[move[1]] = int(move[2])
         elif raises := re.match(r"\s*([0-9a-f]+):.*\tmsr\tBASEPRI_MAX, (\w+)", line):
             levels[f"basepri {raises[1]}"] = moved[raises[2]]
-    if not set(levels.values()) <= {KERNEL_LEVEL, 0xFF}:
+    if not set(levels.values()) <= {KERNEL_LEVEL, SWITCH_LEVEL}:
         raise BenchError(f"BASEPRI is raised to levels that are none: {levels}")
     return levels
 

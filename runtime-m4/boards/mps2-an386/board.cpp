@@ -83,10 +83,12 @@ void NMI_Handler() {
 }
 
 void Uart0Receive_Handler() {
+  robosync::boards::mps2::Uart0::clear_received();
   robosync::boards::mps2::board.uart().on_receive();
 }
 
 void Uart0Transmit_Handler() {
+  robosync::boards::mps2::Uart0::clear_transmitted();
   robosync::boards::mps2::board.uart().on_transmit();
 }
 

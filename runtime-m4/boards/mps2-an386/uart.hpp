@@ -1,40 +1,37 @@
-// UART0: the link's serial line. Interrupts move bytes between the line and two rings, and tell who
-// reads and writes when there is something to do.
+// UART0: the link's serial line.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
-#include <cstdint>
-#include <span>
 
-#include "link/frame.hpp"
-#include "runtime-m4/boards/board.hpp"
-#include "runtime-m4/boards/common/firmware.hpp"
-#include "runtime-m4/boards/common/ring.hpp"
+#include "runtime-m4/boards/common/serial_line.hpp"
+#include "runtime-m4/boards/mps2-an386/registers.hpp"
+#include "runtime-m4/port/cortex-m4/core.hpp"
 
 namespace robosync::boards::mps2 {
 
-class Uart {
-public:
-  // Starts the line at 115200 baud. Its interrupts come once the kernel runs.
-  void start(const LineEvents& events);
+struct Uart0 {  // for SerialLine
+  static UartRegisters& registers() { return at<UartRegisters>(kUart0); }
 
-  // Both return at once with the number of bytes moved. [one thread each]
-  std::size_t write(std::span<const std::byte> bytes);
-  std::size_t read(std::span<std::byte> bytes) { return received_.read(bytes); }
+  static void start() {
+    registers().baud_divider = kClockHz / kBaud;
+    registers().control = kUartControlOn;
+    port::core::enable_interrupt(kUart0ReceiveInterrupt);
+    port::core::enable_interrupt(kUart0TransmitInterrupt);
+  }
 
-  // [interrupt]
-  void on_receive();
-  void on_transmit();
+  static bool can_send() { return (registers().state & kUartStateTransmitFull) == 0; }
+  static void send(std::byte byte) { registers().data = std::to_integer<std::uint32_t>(byte); }
+  static bool has_received() { return (registers().state & kUartStateReceiveFull) != 0; }
+  static std::byte receive() { return static_cast<std::byte>(registers().data); }
 
-private:
-  static constexpr std::size_t kSendBuffer = 256;
+  // It interrupts when a byte has left, and not before.
+  static void begin_to_send() { port::core::pend_interrupt(kUart0TransmitInterrupt); }
+  static void nothing_to_send() {}
 
-  Ring<kReceiveBuffer> received_;
-  Ring<kSendBuffer> to_send_;
-  std::atomic<bool> wants_room_ = false;  // who writes waits until half of the ring is free
-  link::StopDetector stops_;
-  LineEvents events_;
+  // The interrupts were seen.
+  static void clear_received() { registers().interrupt = kUartReceived; }
+  static void clear_transmitted() { registers().interrupt = kUartTransmitted; }
 };
+using Uart = SerialLine<Uart0>;
 
 }  // namespace robosync::boards::mps2

@@ -1,4 +1,4 @@
-// The registers of the Cortex-M4's core that the port and the boards touch, and nothing else.
+// The registers of the Cortex-M4's core that the port and the boards touch, and nothing else; SysTick's: systick.hpp.
 // Names as in the ARMv7-M manual.
 #pragma once
 
@@ -10,9 +10,6 @@ inline volatile std::uint32_t& reg(std::uintptr_t address) {
   return *reinterpret_cast<volatile std::uint32_t*>(address);
 }
 
-inline constexpr std::uintptr_t kSystCsr = 0xE000'E010;   // SysTick control
-inline constexpr std::uintptr_t kSystRvr = 0xE000'E014;   // SysTick reload
-inline constexpr std::uintptr_t kSystCvr = 0xE000'E018;   // SysTick current value
 inline constexpr std::uintptr_t kNvicIser = 0xE000'E100;  // interrupt set-enable
 inline constexpr std::uintptr_t kNvicIspr = 0xE000'E200;  // interrupt set-pending
 inline constexpr std::uintptr_t kNvicIcpr = 0xE000'E280;  // interrupt clear-pending
@@ -60,9 +57,10 @@ inline constexpr std::uint32_t kMpuCode = 6U << 24 | kMpuNormal;  // read and ex
 // held off by the kernel's critical sections and may call the kernel; what is more urgent is never
 // held off and must not call it. All interrupts of the kernel's level have the same priority, so
 // they do not nest. The switch and the tick have the lowest there is: neither preempts the other,
-// and neither delays an interrupt.
+// and neither delays an interrupt. A processor has the upper bits of these bytes only, two at the least: those that are used
+// here. (To BASEPRI some emulators give all eight, and 0xFF would then hold off nobody who has four.)
 inline constexpr std::uint32_t kKernelPriority = 0x40;
-inline constexpr std::uint32_t kSwitchPriority = 0xFF;
+inline constexpr std::uint32_t kSwitchPriority = 0xC0;
 
 // For the reset handler: turns the FPU on, and holds the kernel's interrupts off until
 // Machine::run().

@@ -19,7 +19,7 @@ namespace robosync::port::hooks {
 // Counts of the core's clock, which SysTick and robosync_clock count, in a tick (kernel::kTick).
 extern const std::uint32_t kTickCounts;
 
-// All threads wait: after so many counts an interrupt of the lowest priority is to end the core's
+// Only where the clock is not SysTick (clock.hpp). All threads wait: after so many counts an interrupt of the lowest priority is to end the core's
 // sleep, unless another did before. It is pending then, and never taken: clear_alarm() takes it
 // back. The alarm does not repeat itself.
 void set_alarm(std::uint32_t counts);

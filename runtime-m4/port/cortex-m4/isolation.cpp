@@ -8,8 +8,8 @@ namespace robosync::port {
 
 namespace {
 
-constexpr unsigned kHalfGigabyteBits = 29;
-constexpr std::uint32_t kRam = 0x2000'0000;
+constexpr unsigned kMemoryBits = 30;
+constexpr unsigned kCodeBits = 28;
 constexpr unsigned kGuardBits = 5;
 static_assert(1U << kGuardBits == kGuard);
 
@@ -26,9 +26,8 @@ void set(RegionNumber number, policy::regions::Region region, std::uint32_t acce
 }  // namespace
 
 void start_isolation() {
-  set(RegionNumber::code, {0, policy::regions::size_field(kHalfGigabyteBits)}, core::kMpuCode);
-  set(RegionNumber::ram, {kRam, policy::regions::size_field(kHalfGigabyteBits)},
-      core::kMpuPrivileged);
+  set(RegionNumber::memory, {0, policy::regions::size_field(kMemoryBits)}, core::kMpuPrivileged);
+  set(RegionNumber::code, {0, policy::regions::size_field(kCodeBits)}, core::kMpuCode);
   set(RegionNumber::guard,
       {word_of(robosync_kernel.idle().stack().data()) - kGuard,
        policy::regions::size_field(kGuardBits)},

@@ -1,7 +1,7 @@
 // The MPU's eight regions. Where two overlap, the higher number counts.
 //
-//   0     code, 0 … 512 MB                  all read and execute, nobody writes
-//   1     RAM, 512 MB … 1 GB                privileged only, never executed
+//   0     memory, 0 … 1 GB                  privileged only, never executed
+//   1     code, 0 … 256 MB                  all read and execute, nobody writes; RAM may begin behind it
 //   2     Areas::readable                   … and read by others
 //   3, 4  Areas::writable                   … and written by others
 //   5, 6  stack of a thread without privileges, while it runs (later ones leave it as it was, which
@@ -20,8 +20,8 @@
 namespace robosync::port {
 
 enum class RegionNumber : std::uint8_t {
+  memory,
   code,
-  ram,
   readable,
   writable,
   writable_upper,

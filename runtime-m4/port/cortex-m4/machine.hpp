@@ -12,11 +12,8 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime-m4/port/cortex-m4/clock.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
-
-// A free-running counter of the core's clock that counts down; the board's linker script says where
-// it is, and the board starts it.
-extern "C" const volatile std::uint32_t robosync_clock;
 
 namespace robosync::kernel {
 class Kernel;
@@ -77,7 +74,7 @@ public:
   [[gnu::cold]] static bool may_call();
   [[gnu::cold]] void prepare(Context& context, const kernel::ThreadSpec& spec,
                              std::span<std::byte> stack);
-  static std::uint32_t clock() { return robosync_clock; }
+  static std::uint32_t clock() { return read_clock(); }
   static std::uint32_t run_time(const Context& context, bool runs) {
     return context.run_time - (runs ? clock() : 0);
   }

@@ -16,7 +16,8 @@
    first where it put that off. Which thread comes next is decided in C++: robosync_switch.
 
    A thread's run time is what the free-running clock, which counts down, stood at when it began,
-   less what it stands at when it ends. Six instructions of each switch are for that.
+   less what it stands at when it ends. Six instructions of each switch are for that, and a call where the clock is
+   SysTick (clock.hpp).
 
    A thread without privileges costs the others nothing. It leaves by a vector table of its
    own, and what it saves as EXC_RETURN has bits 4 and 5 cleared, and bit 6 if it used the FPU: they
@@ -46,10 +47,19 @@ robosync_saving_core:
     stmdb   r0!, {r4-r11, lr}
 
 robosync_saved:
+#if defined(ROBOSYNC_CLOCK_IS_SYSTICK)
+    mov     r5, r0
+    bl      robosync_read_clock
+    mov     r4, r0
+    mov     r0, r5
+    ldr     r1, =robosync_kernel
+    ldr     r3, [r1]
+#else
     ldr     r1, =robosync_kernel
     ldr     r4, =robosync_clock
     ldr     r3, [r1]                /* Kernel::running_: its Context */
     ldr     r4, [r4]
+#endif
     ldr     r2, [r3, #4]
     subs    r2, r4
     strd    r0, r2, [r3]            /* Context::sp, ::run_time */
@@ -135,7 +145,7 @@ robosync_become_idle:
     isb
     movs    r0, #0
     msr     basepri, r0             /* the switch that waits happens here */
-1:  movs    r0, #0xFF               /* a SwitchLock */
+1:  movs    r0, #0xC0               /* a SwitchLock */
     msr     basepri_max, r0
     bl      robosync_set_alarm
 robosync_idle_masks:
@@ -144,7 +154,7 @@ robosync_idle_masks:
     msr     basepri, r0
     wfi                             /* ends with any interrupt, which then waits for cpsie */
     bl      robosync_count_sleep
-    movs    r0, #0xFF               /* a SwitchLock again */
+    movs    r0, #0xC0               /* a SwitchLock again */
     msr     basepri_max, r0
 robosync_idle_unmasks:
     cpsie   i

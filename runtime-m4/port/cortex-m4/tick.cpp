@@ -2,8 +2,8 @@
 // only says when to look. So ticks that were late, or left out, are counted all the same, and
 // nothing drifts.
 //
-// While all threads wait there are no ticks: the idle thread (switch.S) stops SysTick, sets the
-// board's alarm for the tick at which the timers have something to do, and sleeps. Whatever wakes
+// While all threads wait there are no ticks: the idle thread (switch.S) stops SysTick, sets an
+// alarm for the tick at which the timers have something to do, and sleeps. Whatever wakes
 // it, the ticks that have passed are counted before any interrupt is let in, so no handler and no
 // thread ever sees an old time. Then, before any thread can run, the idle thread starts the ticks
 // again where they belong, and has SysTick's handler wake who is due.
@@ -17,15 +17,17 @@
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 #include "runtime-m4/port/cortex-m4/machine.hpp"
+#if defined(ROBOSYNC_CLOCK_IS_SYSTICK)
+#include "runtime-m4/port/cortex-m4/strikes_systick.hpp"
+#else
+#include "runtime-m4/port/cortex-m4/strikes_counter.hpp"
+#endif
 
 namespace robosync::port {
 
 namespace {
 
-constexpr std::uint32_t kLate = 4;                    // counts of the clock
-constexpr std::uint32_t kLongestSleep = 0x4000'0000;  // … of which 32 bits must hold all that pass
-constexpr unsigned kLooks = 64;                       // SysTick is loaded within one count
-constexpr std::uint32_t kSysTickOff = 6, kSysTickOn = 7;  // core clock, with its interrupt
+constexpr std::uint32_t kLate = 4;  // counts of the clock
 
 std::uint32_t counted_to = 0;  // the clock, at the latest tick that is counted; it counts down
 
@@ -37,18 +39,10 @@ std::uint32_t counted_to = 0;  // the clock, at the latest tick that is counted;
   return ticks;
 }
 
-// SysTick strikes at every tick, where the clock says that it is. In two parts, because the length of
-// all but the first may only be said when that of the first is loaded.
+// SysTick strikes at every tick, where the clock says that it is.
 void begin_to_strike() {
   const std::uint32_t over = std::min(counted_to - Machine::clock(), hooks::kTickCounts - 1);
-  core::reg(core::kSystRvr) = hooks::kTickCounts - over + kLate - 1;
-  core::reg(core::kSystCvr) = 0;
-  core::reg(core::kSystCsr) = kSysTickOn;
-}
-void go_on_striking() {
-  for (unsigned i = 0; i < kLooks && core::reg(core::kSystCvr) == 0; ++i) {
-  }
-  core::reg(core::kSystRvr) = hooks::kTickCounts - 1;
+  strikes::begin(hooks::kTickCounts - over + kLate);
 }
 
 }  // namespace
@@ -65,13 +59,12 @@ void SysTick_Handler();
 // Called by switch.S when the idle thread is about to sleep, under a SwitchLock.
 void robosync_set_alarm() {
   using namespace robosync::port;
-  const std::uint32_t longest = kLongestSleep / hooks::kTickCounts;
+  const std::uint32_t longest = strikes::kLongestSleep / hooks::kTickCounts;
   const std::uint32_t ticks = std::min(robosync_kernel.ticks_to_next_work(), longest);
   const std::uint32_t passed = counted_to - Machine::clock();
   const std::uint32_t counts = ticks * hooks::kTickCounts;
   if (passed >= counts) return;  // SysTick strikes now
-  core::reg(core::kSystCsr) = kSysTickOff;
-  hooks::set_alarm(counts - passed + kLate);
+  strikes::sleep_for(counts - passed + kLate);
 }
 
 // … when it was woken, before interrupts are let in: the tick is due, too …
@@ -85,8 +78,8 @@ void robosync_count_sleep() {
 void robosync_end_sleep() {
   using namespace robosync::port;
   begin_to_strike();
-  hooks::clear_alarm();
-  go_on_striking();
+  strikes::wake();
+  strikes::go_on();
 }
 
 void SysTick_Handler() {
