@@ -9,6 +9,12 @@ const policy::BoardCosts& board_costs() {
   return boards::kCosts;
 }
 
+const policy::BoardCosts& costs_of(const compiler::Board& board) {
+  for (const NamedCosts& named : all_board_costs())
+    if (named.board == board.name) return named.costs;
+  return board_costs();
+}
+
 const policy::BoardMemory& board_memory() {
   return boards::kMemory;
 }

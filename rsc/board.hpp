@@ -1,5 +1,9 @@
-// The board that rsc was built for, as far as programs are judged by it.
+// Boards, as far as programs are judged by them: the one that robot.json names; for an image, which names none, the one
+// that rsc was built for.
 #pragma once
+
+#include <span>
+#include <string_view>
 
 #include "compiler/config/boards.hpp"
 #include "runtime-m4/policy/costs.hpp"
@@ -8,6 +12,13 @@
 namespace robosync::tool {
 
 [[nodiscard]] const policy::BoardCosts& board_costs();
+
+struct NamedCosts {
+  std::string_view board;
+  policy::BoardCosts costs;
+};
+[[nodiscard]] std::span<const NamedCosts> all_board_costs();  // as rsc/CMakeLists.txt writes them
+[[nodiscard]] const policy::BoardCosts& costs_of(const compiler::Board& board);
 [[nodiscard]] const policy::BoardMemory& board_memory();
 
 // Of a board that robot.json names.

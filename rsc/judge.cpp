@@ -13,8 +13,8 @@ namespace {
 
 using compiler::Code, compiler::Diagnostic;
 
-analysis::ResponseReport responses_of(const vm::Image& image) {
-  return analysis::response_report(image, board_costs(), cap_of(image),
+analysis::ResponseReport responses_of(const vm::Image& image, const policy::BoardCosts& board) {
+  return analysis::response_report(image, board, cap_of(image),
                                    analysis::Depth::until_refused);
 }
 
@@ -56,7 +56,7 @@ void judge_step(const vm::Image& image, const compiler::Result& compiled,
 
 void judge_time(const vm::Image& image, const compiler::Result& compiled,
                 compiler::Diagnostics& diagnostics) {
-  const Overload overload = overload_of(responses_of(image));
+  const Overload overload = overload_of(responses_of(image, costs_of(compiled.board)));
   if (overload.what.empty()) return;
   Diagnostic& report = diagnostics.report(
       Code::E0412, "the board cannot keep up with the program: " + overload.what);
@@ -80,7 +80,7 @@ void judge(compiler::Result& result, Judged judged) {
 }
 
 void judge_time(const Program& program, const std::string& name) {
-  const Overload overload = overload_of(responses_of(program.image()));
+  const Overload overload = overload_of(responses_of(program.image(), board_costs()));
   if (overload.what.empty()) return;
   throw Failure(Exit::program,
                 fmt::format("{}: the board cannot keep up with the program: {}\n  {}\n  --anyway "

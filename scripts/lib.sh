@@ -72,3 +72,44 @@ build_tool() {
   build host rsc
   configuring=()
 }
+
+# preset_of BOARD: `preset` is then the preset that builds its firmware.
+preset=
+preset_of() {
+  case "$1" in
+    mps2-an386) preset=m4 ;;
+    *) preset=$1 ;;
+  esac
+  [ -f "stdlib/boards/$1.json" ] || die "no board '$1'; there are: $(cd stdlib/boards && echo *.json | sed 's/\.json//g')" 2
+}
+
+# unpack_emulator: the first part of what scripts/emulator says; `emulator` is then the program. Package and sum are those of
+# https://deb.debian.org/debian/dists/bookworm-backports/main/binary-amd64/Packages.xz; it uses the libraries of the
+# installed qemu-system-arm.
+emulator=
+unpack_emulator() {
+  local version archive=build/qemu.deb
+  local pool=pool/main/q/qemu/qemu-system-arm_10.0.2+ds-2+deb13u1~bpo12+1_amd64.deb
+  local sum=edebbab09db3882c48ef9c00049c7c6a2d76d195cb88d830baadd1fb705bbc66
+  version=$(qemu-system-arm --version | sed -n 's/.*version \([0-9.]*\).*/\1/p')
+  if dpkg --compare-versions "$version" ge 9.2; then
+    emulator=$(command -v qemu-system-arm)
+    return
+  fi
+  emulator=$PWD/build/qemu/usr/bin/qemu-system-arm
+  [ ! -x "$emulator" ] || return 0
+  [ "$(dpkg --print-architecture)" = amd64 ] || die "needs QEMU 9.2 or newer; the one for Debian 12 is for amd64 only"
+  say "Getting QEMU 10.0.2, beside the installed $version"
+  mkdir -p build
+  local mirror
+  for mirror in $(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 2>/dev/null | sort -u) \
+    http://deb.debian.org/debian/; do
+    if /usr/lib/apt/apt-helper download-file "${mirror%/}/$pool" "$archive" "SHA256:$sum" >build/qemu.log 2>&1; then
+      dpkg-deb -x "$archive" build/qemu.new && rm -rf build/qemu && mv build/qemu.new build/qemu && rm "$archive"
+      "$emulator" --version >/dev/null || die "QEMU 10.0.2 does not run here"
+      return
+    fi
+  done
+  cat build/qemu.log >&2
+  die "QEMU 10.0.2 could not be had: no mirror has ${pool##*/}"
+}

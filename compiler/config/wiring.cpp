@@ -93,12 +93,14 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, bool is_sensor
 void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
   const auto* bus = fields.find("bus");
   if (bus == nullptr || wiring.bus < board_.i2c_buses) return;
+  std::string buses = "its buses are 0 to " + std::to_string(board_.i2c_buses - 1);
+  if (board_.i2c_buses == 0) buses = "its firmware drives no I2C bus yet";
+  if (board_.i2c_buses == 1) buses = "it has one, bus 0";
   diagnostics_
       .report(Code::E0205,
               "the board " + board_.name + " has no I2C bus " + std::to_string(wiring.bus))
       .label(bus->span)
-      .helps(board_.i2c_buses == 1 ? "it has one, bus 0"
-                                   : "its buses are 0 to " + std::to_string(board_.i2c_buses - 1));
+      .helps(buses);
 }
 
 void WiringReader::check_output(const Fields& fields, const Wiring& wiring) {

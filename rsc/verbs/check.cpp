@@ -47,9 +47,10 @@ void append(nlohmann::ordered_json& all, const nlohmann::ordered_json& one) {
 void report_timing(const CheckOptions& options, const std::string& file, compiler::Result& compiled,
                    nlohmann::ordered_json& report) {
   const Program program(std::move(compiled.image), file, memory_of(compiled.board));
+  const policy::BoardCosts& costs = costs_of(compiled.board);
   const Timing timing = timing_of(program.image(), program.board());
   const analysis::ResponseReport responses =
-      analysis::response_report(program.image(), board_costs(), cap_of(program.image()));
+      analysis::response_report(program.image(), costs, cap_of(program.image()));
   if (options.format == Format::json) {
     auto object = timing_json(timing, file);
     object["responses"] = response_json(responses);

@@ -1,10 +1,14 @@
 """The robot's board in QEMU: boots the firmware, gives its serial line and its touch sensor.
 
-Used by scripts/robot, scripts/demo and tests/e2e. Assumes build/m4 has been built. Promises that
-QEMU ends with the `with` block or the process, and that what it leaves behind is deleted.
+Used by scripts/robot, scripts/demo and tests/e2e. Which board it is says ROBOSYNC_BOARD in the environment; the
+preset with its firmware must have been built. Promises that QEMU ends with the `with` block or the process, and that
+what it leaves behind is deleted.
 """
 
+import functools
 import json
+import os
+import re
 import shutil
 import signal
 import socket
@@ -14,8 +18,15 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FIRMWARE = ROOT / "build/m4/robosync.elf"
-MACHINE = ROOT / "build/m4/machine"
+REFERENCE = "mps2-an386"
+NAME = os.environ.get("ROBOSYNC_BOARD", REFERENCE)
+BUILT = ROOT / "build" / ("m4" if NAME == REFERENCE else NAME)
+FIRMWARE = BUILT / "robosync.elf"
+MACHINE = BUILT / "machine"
+# What is on its buses in QEMU, and the first QEMU that has the board.
+DEVICES = {REFERENCE: ["-device", "max34451,id=touch,address=0x70"]}
+SINCE = {"b-l475e-iot01a": (9, 2)}
+UNPACKED = ROOT / "build/qemu/usr"  # by scripts/emulator
 TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
 BOOT_SECONDS = 20  # on a busy machine
 # How virtual time passes: it counts instructions, so that a firmware that is held up by a busy host
@@ -29,15 +40,31 @@ class BoardError(RuntimeError):
 
 
 def machine():
-    """What QEMU calls the board that build/m4 was built for."""
+    """What QEMU calls the board."""
     if not MACHINE.is_file():
-        raise BoardError(f"no {MACHINE}: build the preset m4 first")
+        raise BoardError(f"no {MACHINE}: build the preset {BUILT.name} first")
     return MACHINE.read_text("utf-8").strip()
+
+
+@functools.cache
+def emulator():
+    """The installed QEMU when it has the board, else the one that scripts/emulator has unpacked."""
+    installed = shutil.which("qemu-system-arm")
+    if installed is None:
+        raise BoardError("qemu-system-arm is not installed (Debian package qemu-system-arm)")
+    since = SINCE.get(NAME, (0, 0))
+    said = subprocess.run([installed, "--version"], check=True, text=True, stdout=subprocess.PIPE).stdout
+    if tuple(map(int, re.search(r"version (\d+)\.(\d+)", said).groups())) >= since:
+        return [installed]
+    unpacked = UNPACKED / "bin/qemu-system-arm"
+    if not unpacked.is_file():
+        raise BoardError(f"{NAME} needs QEMU {since[0]}.{since[1]} or newer: run scripts/emulator first")
+    return [str(unpacked), "-L", str(UNPACKED / "share/qemu")]
 
 
 def qemu():
     """How QEMU is started for that board."""
-    return ["qemu-system-arm", "-M", machine(), "-display", "none", "-monitor", "none"]
+    return [*emulator(), "-M", machine(), "-display", "none", "-monitor", "none"]
 
 
 class Qmp:
@@ -75,10 +102,8 @@ class Board:
     """One running board. `port` is what rsc takes as --port."""
 
     def __init__(self, elf=FIRMWARE, pty=False, serial_path=None, icount=REAL_TIME, extra=()):
-        if shutil.which("qemu-system-arm") is None:
-            raise BoardError("qemu-system-arm is not installed (Debian package qemu-system-arm)")
         if not Path(elf).is_file():
-            raise BoardError(f"no firmware at {elf}: build the preset m4 first")
+            raise BoardError(f"no firmware at {elf}: build the preset {BUILT.name} first")
         self._folder = tempfile.TemporaryDirectory(prefix="robosync-")
         self.qmp_path = Path(self._folder.name) / "qmp"
         self.serial_path = Path(serial_path or Path(self._folder.name) / "serial").resolve()
@@ -97,11 +122,13 @@ class Board:
         line = "pty" if self._pty else f"socket,path={self.serial_path},server=on,wait=off"
         command = [*qemu(), "-kernel", str(elf),
                    "-chardev", f"{line},id=line", "-serial", "chardev:line",
-                   "-device", "max34451,id=touch,address=0x70",
+                   *DEVICES.get(NAME, []),
                    "-qmp", f"unix:{self.qmp_path},server=on,wait=off",
                    "-icount", icount, *extra]
         with open(self._log, "wb") as log:
-            return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+            modules = {"QEMU_MODULE_DIR": str(UNPACKED / "lib/x86_64-linux-gnu/qemu")}  # those of its own build
+            environment = {**os.environ, **(modules if str(UNPACKED) in command[0] else {})}
+            return subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                     start_new_session=True)
 
     def _connect(self):

@@ -171,3 +171,17 @@ TEST_CASE(
   CHECK(period_ms("idle IS BETWEEN 4s AND 10s") == 2000);  // both may come together
   CHECK(period_ms("idle > n") == 1);
 }
+
+TEST_CASE(
+    "each board that robot.json may name has costs of its own, by which its programs are judged") {
+  REQUIRE(tool::all_board_costs().size() == compiler::board_names().size());
+  for (std::size_t i = 0; i < compiler::board_names().size(); ++i) {
+    const compiler::Board board = compiler::board_at(i);
+    const policy::BoardCosts& costs = tool::costs_of(board);
+    CHECK(&costs != &tool::board_costs());
+    CHECK(costs.instructions_per_ms() > 0);
+    if (board.name == compiler::kDefaultBoard)
+      CHECK(costs.clock_hz == tool::board_costs().clock_hz);
+    if (board.name == "b-l475e-iot01a") CHECK(costs.clock_hz == 80'000'000);
+  }
+}

@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, Board
+from board import FAST, FIRMWARE, NAME, Board
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "generators/programs"))
@@ -23,7 +23,7 @@ SEED = 20_250_711
 
 
 class RobotTest(unittest.TestCase):
-    """One board for each test, and a folder that is deleted after it."""
+    """One board for each test, and a folder that is deleted after it. Which board: ROBOSYNC_BOARD in the environment."""
 
     elf = FIRMWARE
     units = UNITS  # of the channels that scenarios feed
@@ -37,9 +37,17 @@ class RobotTest(unittest.TestCase):
 
     def compile(self, program, config=CONFIG):
         image = self.folder / f"{Path(program).stem}.rsb"
+        config = self.for_board(config)
         # With a seed: the board, and nobody else, would take another one at each start.
         rsc.run("compile", program, "--config", config, "--seed", SEED, "-o", image, "--anyway")
         return image
+
+    def for_board(self, config):
+        """A robot.json, for the board that runs."""
+        robot = json.loads(Path(config).read_text())
+        path = self.folder / "robot.json"
+        path.write_text(json.dumps({**robot, "board": NAME}))
+        return path
 
     def upload(self, program, *arguments):
         return rsc.run("upload", program, "--port", self.board.port, *arguments)

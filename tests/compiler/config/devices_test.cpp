@@ -215,7 +215,6 @@ TEST_CASE("the boards are read without a mistake, and robot.schema.json names th
     CHECK(board.arena_bytes > 0);
     CHECK(board.arena_bytes % 64 == 0);  // stacks stand at its end
     CHECK(board.step_budget > 0);
-    CHECK(board.i2c_buses > 0);
     CHECK_FALSE(board.outputs.empty());
     names.emplace(text.name);
   }

@@ -1,0 +1,88 @@
+#include "runtime-m4/boards/b-l475e-iot01a/board.hpp"
+
+#include "runtime-m4/boards/b-l475e-iot01a/clock.hpp"
+#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
+#include "runtime-m4/boards/common/firmware.hpp"
+#include "runtime-m4/boards/common/reset.hpp"
+#include "runtime-m4/kernel/time.hpp"
+#include "runtime-m4/port/cortex-m4/core.hpp"
+#include "runtime-m4/port/cortex-m4/hooks.hpp"
+
+namespace robosync::boards::l475 {
+
+namespace {
+
+constexpr std::uint32_t kWatchdogCounts = iwdg::kHz / 10;  // 100 ms
+
+Board board;
+
+}  // namespace
+
+// Why the chip was reset is noted, and forgotten there: the next reset adds to it.
+Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
+  rcc::kStatus.set(rcc::kForgetReset);
+  if (!start_clock()) port::core::reset();
+  rcc::kAhb2.set(rcc::kPortsABD);
+  pins::start();
+}
+
+// A reset by the watchdog comes without warning, so nobody could note it in memory.
+std::uint8_t Board::reset_reason() const {
+  return static_cast<std::uint8_t>(watchdog_reset_ ? ResetReason::watchdog : last_reset());
+}
+
+bool Board::i2c_transfer(std::uint8_t /*bus*/, std::uint8_t /*address*/,
+                         std::span<const std::byte> /*out*/, std::span<std::byte> /*in*/) {
+  return false;
+}
+
+void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {
+  pins::write(pin, pulse_us);
+}
+
+std::uint32_t Board::pwm_read(std::uint16_t pin) const {
+  return pins::read(pin);
+}
+
+// The watchdog has no interrupt: it resets the chip, and that lets all pins go. Its first period is longer, as
+// the chip takes over what is said here a few of its counts later.
+void Board::watchdog_start() {
+  iwdg::kKey.write(iwdg::kStart);
+  iwdg::kKey.write(iwdg::kUnlock);
+  iwdg::kPrescaler.write(iwdg::kByFour);
+  iwdg::kReload.write(kWatchdogCounts - 1);
+}
+
+void Board::watchdog_kick() {
+  iwdg::kKey.write(iwdg::kKick);
+}
+
+}  // namespace robosync::boards::l475
+
+robosync::boards::Board& robosync_board = robosync::boards::l475::board;
+
+void robosync::boards::switch_outputs_off() {
+  l475::pins::switch_off();
+}
+
+const std::uint32_t robosync::port::hooks::kTickCounts =
+    robosync::boards::l475::kClockHz / 1'000'000 * robosync::kernel::kTick;
+
+extern "C" {
+
+void NMI_Handler();
+void Usart1_Handler();
+
+// The flash is damaged where it cannot be corrected: what runs is not what was written.
+void NMI_Handler() {
+  robosync::boards::reset_after({});
+}
+
+void Usart1_Handler() {
+  using robosync::boards::l475::Usart1;
+  auto& line = robosync::boards::l475::board.line();
+  if (Usart1::has_received()) line.on_receive();
+  if (Usart1::wants_to_send() && Usart1::can_send()) line.on_transmit();
+}
+
+}  // extern "C"

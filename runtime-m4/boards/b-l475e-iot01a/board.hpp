@@ -1,0 +1,40 @@
+// ST's B-L475E-IOT01A: an STM32L475 (Cortex-M4F, 80 MHz, 1 MB of flash, 96 + 32 KB of RAM). QEMU has it as b-l475e-iot01a,
+// without timers and without watchdog.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "runtime-m4/boards/b-l475e-iot01a/usart.hpp"
+#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/pins.hpp"
+
+namespace robosync::boards::l475 {
+
+class Board final : public boards::Board {
+public:
+  // Starts the clock of the core.
+  Board();
+
+  const char* name() const override { return "b-l475e-iot01a"; }
+  std::uint8_t reset_reason() const override;
+  const policy::BoardPins& pins() const override { return boards::kPins; }
+  bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
+                    std::span<std::byte> in) override;
+  void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
+  std::uint32_t pwm_read(std::uint16_t pin) const override;
+  std::size_t link_write(std::span<const std::byte> bytes) override { return line_.write(bytes); }
+  std::size_t link_read(std::span<std::byte> bytes) override { return line_.read(bytes); }
+  void link_start(const LineEvents& events) override { line_.start(events); }
+  void watchdog_start() override;
+  void watchdog_kick() override;
+
+  Line& line() { return line_; }
+
+private:
+  bool watchdog_reset_ = false;  // why the chip was reset
+  Line line_;
+};
+
+}  // namespace robosync::boards::l475

@@ -1,0 +1,31 @@
+// See clock.hpp. The 4 MHz are those of MSI, the oscillator inside the chip, which is right to about 1 %: near enough for the
+// serial line and for servos. So no crystal has to be there.
+#include "runtime-m4/boards/b-l475e-iot01a/clock.hpp"
+
+#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
+
+namespace robosync::boards::l475 {
+
+namespace {
+
+constexpr unsigned kLooks = 10'000;  // at 4 MHz far longer than the PLL takes
+
+bool becomes(Register status, std::uint32_t bits) {
+  for (unsigned i = 0; i < kLooks; ++i)
+    if ((status.read() & bits) == bits) return true;
+  return false;
+}
+
+}  // namespace
+
+// The flash must wait before the core is faster, not after.
+bool start_clock() {
+  flash::kAccess.write(flash::kFourWaits | flash::kPrefetchAndCaches);
+  rcc::kPll.write(rcc::kPllOf80MHz);
+  rcc::kControl.set(rcc::kPllOn);
+  if (!becomes(rcc::kControl, rcc::kPllReady)) return false;
+  rcc::kConfiguration.set(rcc::kSwitchToPll);
+  return becomes(rcc::kConfiguration, rcc::kRunsOnPll);
+}
+
+}  // namespace robosync::boards::l475

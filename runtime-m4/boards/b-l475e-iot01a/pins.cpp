@@ -1,0 +1,90 @@
+// See pins.hpp.
+#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
+
+#include <array>
+
+#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
+
+namespace robosync::boards::l475::pins {
+
+namespace {
+
+struct Output {
+  std::uint16_t pin;  // of the header
+  Port port;
+  unsigned bit;
+  std::uint32_t function;
+  Timer timer;
+  unsigned channel;
+};
+
+constexpr std::array kOutputs{
+    Output{0, kPortA, 1, 2, kTimer5, 1},  Output{1, kPortA, 0, 2, kTimer5, 0},
+    Output{2, kPortD, 14, 2, kTimer4, 2}, Output{3, kPortB, 0, 2, kTimer3, 2},
+    Output{4, kPortA, 3, 2, kTimer5, 3},  Output{5, kPortB, 4, 2, kTimer3, 0},
+    Output{6, kPortB, 1, 2, kTimer3, 3},  Output{10, kPortA, 2, 2, kTimer5, 2},
+    Output{11, kPortA, 7, 2, kTimer3, 1}, Output{13, kPortA, 5, 1, kTimer2, 0}};
+constexpr std::array kTimers{kTimer2, kTimer3, kTimer4, kTimer5};
+
+constexpr std::uint32_t kFrame = 20'000;  // microseconds
+constexpr std::uint32_t kPerMicrosecond = kClockHz / 1'000'000;
+
+const Output* find(std::uint16_t pin) {
+  for (const Output& output : kOutputs)
+    if (output.pin == pin) return &output;
+  return nullptr;
+}
+
+void start(const Timer& timer) {
+  timer.prescaler().write(kPerMicrosecond - 1);
+  timer.last().write(kFrame - 1);
+  for (unsigned channel = 0; channel < Timer::kChannels; ++channel) {
+    timer.compare(channel).write(0);
+    timer.mode(channel).set_field(channel % 2, 8, Timer::kPulseFromNextPeriod);
+    timer.enable().set_field(channel, 4, Timer::kOutput);
+  }
+  timer.event().write(Timer::kUpdate);  // it takes over what it has been told
+  timer.control().write(Timer::kOn);
+}
+
+// One channel at a time: what the others will give stays as it is.
+void low_at_once(const Timer& timer, unsigned channel) {
+  timer.mode(channel).set_field(channel % 2, 8, Timer::kPulse);
+  timer.compare(channel).write(0);
+}
+
+}  // namespace
+
+// The timers first: when they get their pins, these are low.
+void start() {
+  rcc::kApb1.set(rcc::kTimers2To5);
+  for (const Timer& timer : kTimers)
+    start(timer);
+  for (const Output& output : kOutputs) {
+    output.port.function(output.bit).set_field(output.bit % 8, 4, output.function);
+    output.port.mode().set_field(output.bit, 2, kModeOfFunction);
+    output.port.pulls().set_field(output.bit, 2, 0);
+  }
+}
+
+void write(std::uint16_t pin, std::uint32_t pulse_us) {
+  const Output* const output = find(pin);
+  if (output == nullptr) return;
+  const Timer& timer = output->timer;
+  if (pulse_us == 0) return low_at_once(timer, output->channel);
+  timer.mode(output->channel).set_field(output->channel % 2, 8, Timer::kPulseFromNextPeriod);
+  timer.compare(output->channel).write(pulse_us);
+}
+
+std::uint32_t read(std::uint16_t pin) {
+  const Output* const output = find(pin);
+  return output == nullptr ? 0 : output->timer.compare(output->channel).read();
+}
+
+void switch_off() {
+  for (const Timer& timer : kTimers)
+    for (unsigned channel = 0; channel < Timer::kChannels; ++channel)
+      low_at_once(timer, channel);
+}
+
+}  // namespace robosync::boards::l475::pins

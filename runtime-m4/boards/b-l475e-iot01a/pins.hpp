@@ -1,0 +1,23 @@
+// The pins that give pulses: those of the board's Arduino header, numbered as printed there (3 is D3), by the
+// timers 2 to 5. A frame is 20 ms. 13 is also the board's green LED.
+//
+// From reset until start() they are not driven. 5 alone is pulled up then, by the chip, as it belongs to the debugger: so
+// the board's profile lets it have servo pulses only.
+#pragma once
+
+#include <cstdint>
+
+namespace robosync::boards::l475::pins {
+
+// All pins low. Their ports have their clock.
+void start();
+
+// The pulse in microseconds, from the next frame on: no frame has part of one. 0 is off, at once. A pin that gives no
+// pulses is left alone. [under a lock: pins of a timer share its registers]
+void write(std::uint16_t pin, std::uint32_t pulse_us);
+std::uint32_t read(std::uint16_t pin);
+
+// All of them, at once. Any state of the machine.
+void switch_off();
+
+}  // namespace robosync::boards::l475::pins

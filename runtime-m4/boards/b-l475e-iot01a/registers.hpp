@@ -1,0 +1,122 @@
+// The peripherals of the STM32L475 that the firmware uses, and how the board B-L475E-IOT01A wires them. Facts of ST's
+// RM0351 (the chip's registers), DS10969 (its pins and interrupts) and UM2153 (the board).
+#pragma once
+
+#include <cstdint>
+
+#include "runtime-m4/port/cortex-m4/register.hpp"
+
+namespace robosync::boards::l475 {
+
+using port::Register;
+
+inline constexpr std::uint32_t kClockHz = 80'000'000;  // of the core, and of both peripheral buses
+
+namespace rcc {  // reset and clock control
+inline constexpr Register kControl{0x4002'1000};
+inline constexpr std::uint32_t kPllOn = 1U << 24;
+inline constexpr std::uint32_t kPllReady = 1U << 25;
+inline constexpr Register kConfiguration{0x4002'1008};
+inline constexpr std::uint32_t kSwitchToPll = 0b11;
+inline constexpr std::uint32_t kRunsOnPll = 0b11 << 2;
+inline constexpr Register kPll{0x4002'100C};
+// From MSI, which comes out of reset with 4 MHz: times 40, and half of that comes out.
+inline constexpr std::uint32_t kPllOf80MHz = 0b01U | 40U << 8 | 1U << 24;
+inline constexpr Register kAhb2{0x4002'104C};
+inline constexpr std::uint32_t kPortsABD = 0b1011;
+inline constexpr Register kApb1{0x4002'1058};
+inline constexpr std::uint32_t kTimers2To5 = 0b1111;
+inline constexpr Register kApb2{0x4002'1060};
+inline constexpr std::uint32_t kUsart1 = 1U << 14;
+inline constexpr Register kStatus{0x4002'1094};
+inline constexpr std::uint32_t kWatchdogReset = 1U << 29;
+inline constexpr std::uint32_t kSoftwareReset = 1U << 28;
+inline constexpr std::uint32_t kForgetReset = 1U << 23;
+}  // namespace rcc
+
+namespace flash {
+inline constexpr Register kAccess{0x4002'2000};
+inline constexpr std::uint32_t kFourWaits = 4;  // what 80 MHz need
+inline constexpr std::uint32_t kPrefetchAndCaches = 0b111U << 8;
+}  // namespace flash
+
+struct Port {  // of pins
+  std::uintptr_t base;
+  constexpr Register mode() const { return {base}; }  // 2 bits a pin
+  constexpr Register speed() const { return {base + 0x08}; }
+  constexpr Register pulls() const { return {base + 0x0C}; }
+  // 4 bits a pin, of eight pins.
+  constexpr Register function(unsigned pin) const {
+    return {base + 0x20 + std::uintptr_t{4} * (pin / 8)};
+  }
+};
+inline constexpr Port kPortA{0x4800'0000};
+inline constexpr Port kPortB{0x4800'0400};
+inline constexpr Port kPortD{0x4800'0C00};
+inline constexpr std::uint32_t kModeOfFunction = 0b10;
+inline constexpr std::uint32_t kPullUp = 0b01;
+
+// A timer of the general ones, 2 to 5, with four channels.
+struct Timer {
+  std::uintptr_t base;
+  constexpr Register control() const { return {base}; }
+  constexpr Register event() const { return {base + 0x14}; }
+  // A byte a channel, of two channels.
+  constexpr Register mode(unsigned channel) const {
+    return {base + 0x18 + std::uintptr_t{4} * (channel / 2)};
+  }
+  constexpr Register enable() const { return {base + 0x20}; }  // 4 bits a channel
+  constexpr Register prescaler() const { return {base + 0x28}; }
+  constexpr Register last() const { return {base + 0x2C}; }  // count of a period
+  constexpr Register compare(unsigned channel) const {
+    return {base + 0x34 + std::uintptr_t{4} * channel};
+  }
+
+  static constexpr unsigned kChannels = 4;  // numbered from 0; ST numbers them from 1
+  static constexpr std::uint32_t kOn =
+      1U << 0 | 1U << 7;  // and a new `last` waits for the next period
+  static constexpr std::uint32_t kUpdate = 1U << 0;
+  static constexpr std::uint32_t kOutput = 1U << 0;
+  // High while the count is below `compare`.
+  static constexpr std::uint32_t kPulse = 0b110U << 4;
+  // … and a new `compare` waits for the next period.
+  static constexpr std::uint32_t kPulseFromNextPeriod = kPulse | 1U << 3;
+};
+inline constexpr Timer kTimer2{0x4000'0000};
+inline constexpr Timer kTimer3{0x4000'0400};
+inline constexpr Timer kTimer4{0x4000'0800};
+inline constexpr Timer kTimer5{0x4000'0C00};
+
+namespace usart1 {  // to the ST-Link, which is a serial port of USB
+inline constexpr unsigned kInterrupt = 37;
+inline constexpr Port kPort = kPortB;
+inline constexpr unsigned kTransmitPin = 6;
+inline constexpr unsigned kReceivePin = 7;
+inline constexpr std::uint32_t kFunction = 7;
+inline constexpr Register kControl{0x4001'3800};
+inline constexpr std::uint32_t kOn =
+    1U << 0 | 1U << 2 | 1U << 3 | 1U << 5;  // both ways; a byte that comes interrupts
+inline constexpr std::uint32_t kInterruptWhenEmpty = 1U << 7;
+inline constexpr Register kControl3{0x4001'3808};
+// A byte that comes too early takes the place of the one before, and nothing has to be cleared.
+inline constexpr std::uint32_t kNoOverrun = 1U << 12;
+inline constexpr Register kBaudDivider{0x4001'380C};
+inline constexpr Register kState{0x4001'381C};
+inline constexpr std::uint32_t kReceived = 1U << 5;
+inline constexpr std::uint32_t kEmpty = 1U << 7;
+inline constexpr Register kReceive{0x4001'3824};
+inline constexpr Register kTransmit{0x4001'3828};
+}  // namespace usart1
+
+namespace iwdg {  // the independent watchdog, on an oscillator of its own of 32 kHz
+inline constexpr Register kKey{0x4000'3000};
+inline constexpr std::uint32_t kStart = 0xCCCC;
+inline constexpr std::uint32_t kUnlock = 0x5555;
+inline constexpr std::uint32_t kKick = 0xAAAA;  // locks, too
+inline constexpr Register kPrescaler{0x4000'3004};
+inline constexpr std::uint32_t kByFour = 0;
+inline constexpr Register kReload{0x4000'3008};
+inline constexpr std::uint32_t kHz = 32'000 / 4;
+}  // namespace iwdg
+
+}  // namespace robosync::boards::l475

@@ -1,0 +1,19 @@
+// Registers that a model behaves like: what the code under test reads and writes goes to the model that is there.
+#pragma once
+
+#include <cstdint>
+
+namespace robosync::tests {
+
+class RegisterModel {
+public:
+  RegisterModel();
+  virtual ~RegisterModel();
+  RegisterModel(const RegisterModel&) = delete;
+  RegisterModel& operator=(const RegisterModel&) = delete;
+
+  virtual std::uint32_t read(std::uintptr_t address) = 0;
+  virtual void write(std::uintptr_t address, std::uint32_t value) = 0;
+};
+
+}  // namespace robosync::tests

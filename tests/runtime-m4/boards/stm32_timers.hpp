@@ -1,0 +1,63 @@
+// A model of what the pulses of an STM32L475 come from, after RM0351: the clocks of ports and timers (RCC), the functions of
+// pins (GPIO), the timers 2 to 5 counting up in PWM mode 1, with what waits for the next period. Nothing of it knows
+// the driver: addresses, fields and the wiring of the pins stand here once more.
+//
+// Left out: everything else these peripherals can do. Who uses it gets an exception.
+#pragma once
+
+#include <array>
+#include <map>
+#include <utility>
+
+#include "tests/runtime-m4/boards/registers.hpp"
+
+namespace robosync::tests {
+
+class Stm32Timers : public RegisterModel {
+public:
+  using Pin = std::pair<char, unsigned>;  // {'A', 5} is PA5
+
+  enum class Level { floating, low, high };
+
+  std::uint32_t read(std::uintptr_t address) override;
+  void write(std::uintptr_t address, std::uint32_t value) override;
+
+  Level level(Pin pin) const;
+  // One microsecond passes, for timers whose prescaler makes that one count at 80 MHz. Throws for others.
+  void pass_microsecond();
+
+private:
+  struct Channel {
+    std::uint32_t written = 0;  // compare, as it is read back
+    std::uint32_t counts = 0;   // compare, as it is at work
+    std::uint32_t mode = 0;     // the byte of CCMR
+    bool enabled = false;
+  };
+  struct Timer {
+    bool on = false;
+    std::uint32_t control = 0, prescaler_written = 0, prescaler = 0, last_written = 0xFFFF,
+                  last = 0xFFFF, count = 0;
+    std::array<Channel, 4> channels;
+    void update();
+    std::uint32_t read(std::uintptr_t offset) const;
+    void write(std::uintptr_t offset, std::uint32_t value);
+    void write_modes(unsigned first, std::uint32_t value);
+    bool high(unsigned channel) const;
+  };
+  struct Port {
+    std::uint32_t modes = 0, pulls = 0, speeds = 0;
+    std::array<std::uint32_t, 2> functions{};
+  };
+
+  bool has_clock(unsigned timer) const { return (timer_clocks_ >> timer & 1) != 0; }
+  std::uint32_t* of_port(std::uintptr_t address);
+
+  std::uint32_t port_clocks_ = 0, timer_clocks_ = 0;
+  std::array<Timer, 4> timers_;  // 2 to 5
+  // As they come out of reset: all analog, but for what belongs to the debugger.
+  std::map<char, Port> ports_{{'A', {0xABFF'FFFF, 0x6400'0000, 0x0C00'0000, {}}},
+                              {'B', {0xFFFF'FEBF, 0x0000'0100, 0, {}}},
+                              {'D', {0xFFFF'FFFF, 0, 0, {}}}};
+};
+
+}  // namespace robosync::tests
