@@ -22,7 +22,7 @@ Board board;
 Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
   rcc::kStatus.set(rcc::kForgetReset);
   if (!start_clock()) port::core::reset();
-  rcc::kAhb2.set(rcc::kPortsABD);
+  rcc::give_clock(rcc::kAhb2, rcc::kPortsABD);
   pins::start();
 }
 

@@ -57,7 +57,7 @@ void low_at_once(const Timer& timer, unsigned channel) {
 
 // The timers first: when they get their pins, these are low.
 void start() {
-  rcc::kApb1.set(rcc::kTimers2To5);
+  rcc::give_clock(rcc::kApb1, rcc::kTimers2To5);
   for (const Timer& timer : kTimers)
     start(timer);
   for (const Output& output : kOutputs) {

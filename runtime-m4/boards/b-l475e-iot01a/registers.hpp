@@ -32,6 +32,12 @@ inline constexpr Register kStatus{0x4002'1094};
 inline constexpr std::uint32_t kWatchdogReset = 1U << 29;
 inline constexpr std::uint32_t kSoftwareReset = 1U << 28;
 inline constexpr std::uint32_t kForgetReset = 1U << 23;
+
+// A peripheral hears nothing in the first cycles of its clock: the reading lets them pass.
+inline void give_clock(Register clocks, std::uint32_t peripherals) {
+  clocks.set(peripherals);
+  static_cast<void>(clocks.read());
+}
 }  // namespace rcc
 
 namespace flash {

@@ -11,7 +11,7 @@ namespace robosync::boards::l475 {
 
 struct Usart1 {  // for SerialLine
   static void start() {
-    rcc::kApb2.set(rcc::kUsart1);
+    rcc::give_clock(rcc::kApb2, rcc::kUsart1);
     for (const unsigned pin : {usart1::kTransmitPin, usart1::kReceivePin}) {
       usart1::kPort.function(pin).set_field(pin % 8, 4, usart1::kFunction);
       usart1::kPort.pulls().set_field(pin, 2, kPullUp);  // a line that nobody drives is silent
