@@ -14,8 +14,7 @@ namespace {
 using compiler::Code, compiler::Diagnostic;
 
 analysis::ResponseReport responses_of(const vm::Image& image, const policy::BoardCosts& board) {
-  return analysis::response_report(image, board, cap_of(image),
-                                   analysis::Depth::until_refused);
+  return analysis::response_report(image, board, cap_of(image), analysis::Depth::until_refused);
 }
 
 void judge_memory(const vm::Image& image, const policy::BoardMemory& board,
