@@ -168,7 +168,7 @@ Expression Statements::item_index(const ListName& list, Typed index, Span span,
                                   ProgramBlock& result) {
   const std::string name(list.list->name.text);
   const std::size_t count = list.texts.size();
-  const Expression local =
+  Expression local =
       in_local(make_binary(Operation::round, std::move(index.code), make_constant_code(vm::kScale)),
                span, result);
   ProgramIf outside;
