@@ -61,6 +61,7 @@ target_sources(robosync_compiler PRIVATE
   sema/lints.cpp
   sema/lists.cpp
   sema/names.cpp
+  sema/number_lists.cpp
   sema/quantities.cpp
   sema/perform.cpp
   sema/rules.cpp

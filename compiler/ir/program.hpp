@@ -102,9 +102,9 @@ struct ProgramStatement;
 using ProgramBlock = std::vector<ProgramStatement>;
 
 struct ProgramLocal {      // a value that is worked out here: what a DEFINE is given
-  std::size_t number = 0;  // distinct in the response, but for one that a FOLLOW writes again
+  std::size_t number = 0;
   Expression value;
-  bool is_chosen = false;  // one of several that write it: what it is, depends on the way there
+  bool has_other_writers = false;  // then what it holds depends on the way there
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 1;
   static constexpr std::tuple kParts{&ProgramLocal::value};

@@ -57,7 +57,7 @@ void Flow::visit(Node& node, State& state) {
 
 void Flow::visit(ProgramLocal& local, State& state) {
   const Fact value = look(local.value, state);
-  locals_[local.number] = local.is_chosen ? Fact{} : value;
+  locals_[local.number] = local.has_other_writers ? Fact{} : value;
 }
 
 // ---- writes
@@ -111,12 +111,10 @@ void Flow::visit(ProgramWaitUntil& wait, State& state) {
   look(wait.condition, state);
 }
 
-// Its body runs again and again: what it writes into a local, it finds there the next time.
+// Its body runs again and again.
 void Flow::visit(ProgramFollow& follow, State& state) {
   if (follow.lasts) look(*follow.lasts, state);
   pause(state);
-  for_each_of<ProgramLocal>(std::as_const(follow.body),
-                            [this](const ProgramLocal& local) { locals_[local.number] = {}; });
   block(follow.body, state);
 }
 

@@ -459,10 +459,16 @@ std::optional<ProgramCommand> Commands::for_actuator(std::size_t actuator,
   return result;
 }
 
+// `SAY visitors`: a number alone, where a text may stand and BY means nothing.
+bool Commands::is_to_be_said(const VerbConfig& verb, const Given& given) {
+  return given.is_number && given.param == vm::Param::by &&
+         given.argument->preposition == ast::Preposition::none && verb.texts == Texts::any &&
+         !verb.has(vm::Param::by);
+}
+
 bool Commands::add(const Recipient& to, const Given& given, ProgramCommand& result) const {
   const ast::Argument& argument = *given.argument;
-  const bool alone = argument.preposition == ast::Preposition::none && given.param == vm::Param::by;
-  if (given.is_number && alone && to.verb.texts == Texts::any && !to.verb.has(vm::Param::by)) {
+  if (is_to_be_said(to.verb, given)) {
     TextBuilder number(expressions_, to.diagnostics);
     number.add(given.number);
     return add_text(

@@ -116,6 +116,7 @@ private:
   std::optional<ProgramCommand> for_actuator(std::size_t actuator, const ast::Command& command,
                                              const std::vector<Given>& given,
                                              Diagnostics& diagnostics) const;
+  static bool is_to_be_said(const VerbConfig& verb, const Given& given);
   bool add(const Recipient& to, const Given& given, ProgramCommand& result) const;
   bool add_word(const Recipient& to, const ast::Word& word, Span span,
                 ProgramCommand& result) const;

@@ -85,7 +85,7 @@ public:
   const ListName* find_list(const ast::Name& name);
   // Reports what is wrong in LISTs of numbers.
   void check_lists();
-  // The place of a number that is known now in a list with `count` items, from 0; reports when there is none.
+  // Which item, from 0, an index that is known now means; reports when there is none.
   std::optional<std::size_t> known_item(const ListName& list, const Typed& index);
   // How a statement chooses from one; null, as it is in conditions: it cannot. Gives what it was before.
   const ChooseNumber* set_choice(const ChooseNumber* choose);
@@ -110,7 +110,7 @@ private:
   Typed of(const ast::Negate& node, Span span);
   Typed of(const ast::Arithmetic& node, Span span);
   Typed of(const ast::Random& node, Span span);
-  // functions.cpp
+  // functions.cpp, number_lists.cpp
   Typed of(const ast::Function& node, Span span);
   Typed of(const ast::ItemOf& node, Span span);
   Typed of(const ast::CountOf& node, Span span);

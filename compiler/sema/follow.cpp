@@ -270,7 +270,7 @@ void Statements::add_followed(Followed followed, Span span, ProgramBlock& before
                               ProgramBlock& body) {
   const std::size_t target = locals_++, given = locals_++;
   Expression& to = target_of(followed.command);
-  put(ProgramLocal{given, make_constant_code(kNowhere)}, span, before);
+  put(ProgramLocal{given, make_constant_code(kNowhere), true}, span, before);
   put(ProgramLocal{target, std::exchange(to, make_local(target))}, span, body);
   Expression change = make_unary(
       Operation::absolute, make_binary(Operation::subtract, make_local(target), make_local(given)));
@@ -279,7 +279,7 @@ void Statements::add_followed(Followed followed, Span span, ProgramBlock& before
       {},
       {}};
   put(std::move(followed.command), span, changed.then_block);
-  put(ProgramLocal{given, make_local(target)}, span, changed.then_block);
+  put(ProgramLocal{given, make_local(target), true}, span, changed.then_block);
   put(std::move(changed), span, body);
 }
 

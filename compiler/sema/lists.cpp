@@ -1,5 +1,6 @@
-// Statements, part: texts out of a LIST. A statement with one becomes a choice between statements with
-// each of its texts, halved again and again, so that a list of 64 takes six questions.
+// Statements, part: texts and numbers out of a LIST. A statement with a text becomes a choice between statements
+// with each of its texts, halved again and again, so that a list of 64 takes six questions. A number is chosen in the
+// same way in front of the statement, into a local.
 //
 // ANY and NEXT remember the place of their last text, from 1, in a variable of their own.
 #include <utility>
@@ -134,7 +135,7 @@ void Statements::choose(const ListChoice& choice, Span span, const PutText& put_
 std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span span,
                                                   ProgramBlock& result) {
   if (choice.list == nullptr) return std::nullopt;
-  const std::size_t count = choice.list->texts.size();
+  const std::size_t count = choice.list->count();
   if (safety_ || count > kMaxTexts) {
     diagnostics_
         .report(safety_ ? Code::E0404 : Code::E0407,
@@ -167,7 +168,7 @@ std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span
 Expression Statements::item_index(const ListName& list, Typed index, Span span,
                                   ProgramBlock& result) {
   const std::string name(list.list->name.text);
-  const std::size_t count = list.texts.size();
+  const std::size_t count = list.count();
   Expression local =
       in_local(make_binary(Operation::round, std::move(index.code), make_constant_code(vm::kScale)),
                span, result);
@@ -185,14 +186,14 @@ Expression Statements::item_index(const ListName& list, Typed index, Span span,
 
 Expression Statements::next_index(const ListChoice& choice, Span span, ProgramBlock& result) {
   const std::size_t last = choice.list->next.value_or(0);
-  put(ProgramSet{last, place_behind(make_variable(last), choice.list->texts.size()), false}, span,
+  put(ProgramSet{last, place_behind(make_variable(last), choice.list->count()), false}, span,
       result);
   return make_variable(last);
 }
 
 // The first time any of them; then as many further as is drawn, which never is all the way round.
 Expression Statements::any_index(const ListChoice& choice, Span span, ProgramBlock& result) {
-  const std::size_t count = choice.list->texts.size();
+  const std::size_t count = choice.list->count();
   const std::size_t last = choice.list->any.value_or(0);
   ProgramIf first;
   first.condition = make_binary(Operation::equal, make_variable(last), make_constant_code(0));

@@ -391,7 +391,7 @@ void Names::add(const ast::List& list) {
   named.numbers = !std::holds_alternative<ast::Text>(list.items.front().value);
   for (const ast::Argument& item : list.items) {
     const auto* text = std::get_if<ast::Text>(&item.value);
-    named.texts.emplace_back(text != nullptr ? text->text : std::string_view());
+    if (!named.numbers) named.texts.emplace_back(text != nullptr ? text->text : std::string_view());
     if (named.numbers != (text == nullptr))
       diagnostics_.report(Code::E0306, "a LIST holds texts or numbers, not both")
           .label(item.span)
@@ -474,7 +474,7 @@ void Names::add_turn(const ast::Name& how, const ast::Name& list) {
   if (found == lists_.end() || (folded != "any" && folded != "next")) return;
   ListName& named = found->second;
   std::optional<std::size_t>& place = folded == "any" ? named.any : named.next;
-  if (place || named.numbers || named.texts.size() < 2) return;
+  if (place || named.numbers || named.count() < 2) return;
   place = variables_.size();
   made_names_.push_front((folded == "any" ? "ANY " : "NEXT ") + std::string(named.list->name.text));
   VariableName variable{{made_names_.front(), list.span}, *place, {}, vm::VariableKind::plain, {}};

@@ -61,9 +61,11 @@ struct ListName {
   const ast::List* list = nullptr;
   std::vector<std::string> texts;
   bool in_module = false;
-  bool numbers = false;  // it holds these: Expressions works them out, `texts` are empty
+  bool numbers = false;  // it holds these, which Expressions works out, and no texts
   // Variables that hold the place of the last text, from 1; 0 before the first. Only where used.
   std::optional<std::size_t> any{}, next{};
+
+  [[nodiscard]] std::size_t count() const { return list->items.size(); }
 };
 
 // What a name in the place of an actuator means.
