@@ -137,8 +137,10 @@ def kernel_figures_of(marks):
     }
 
 
-KERNEL_LEVEL = 0x40  # core::kKernelPriority: what a Lock holds off; a SwitchLock, nothing but the switch
-SWITCH_LEVEL = 0xC0
+CORE = (ROOT / "runtime-m4/port/cortex-m4/core.hpp").read_text("utf-8")
+# What a Lock holds off; a SwitchLock, nothing but the switch.
+KERNEL_LEVEL, SWITCH_LEVEL = (int(re.search(rf"{name} = (0x\w+);", CORE)[1], 16)
+                              for name in ("kKernelPriority", "kSwitchPriority"))
 
 
 def lock_out(raised, marks):

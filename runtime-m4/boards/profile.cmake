@@ -22,6 +22,6 @@ foreach(i RANGE ${last})
   endif()
   string(APPEND board_outputs "{${first},${final},${shortest},${longest},${rise}},")
 endforeach()
-set(board_memory
+set(board_definitions
   ROBOSYNC_ARENA_BEGIN=${arena_begin} ROBOSYNC_ARENA_BYTES=${arena_bytes} ROBOSYNC_STEP_BUDGET=${step_budget}
   ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_OUTPUTS=${board_outputs})

@@ -30,7 +30,6 @@ inline constexpr Register kApb2{0x4002'1060};
 inline constexpr std::uint32_t kUsart1 = 1U << 14;
 inline constexpr Register kStatus{0x4002'1094};
 inline constexpr std::uint32_t kWatchdogReset = 1U << 29;
-inline constexpr std::uint32_t kSoftwareReset = 1U << 28;
 inline constexpr std::uint32_t kForgetReset = 1U << 23;
 
 // A peripheral hears nothing in the first cycles of its clock: the reading lets them pass.
@@ -49,7 +48,6 @@ inline constexpr std::uint32_t kPrefetchAndCaches = 0b111U << 8;
 struct Port {  // of pins
   std::uintptr_t base;
   constexpr Register mode() const { return {base}; }  // 2 bits a pin
-  constexpr Register speed() const { return {base + 0x08}; }
   constexpr Register pulls() const { return {base + 0x0C}; }
   // 4 bits a pin, of eight pins.
   constexpr Register function(unsigned pin) const {

@@ -31,6 +31,7 @@
     .equ    VTOR, 0xE000ED08
     .equ    MPU_RASR, 0xE000EDA0
     .equ    ALL_WRITE, 0x1302       /* upper half of core::kMpuAllWrite */
+    .equ    SWITCH_PRIORITY, 0xC0   /* core::kSwitchPriority */
 
     .section .text.PendSV_Handler, "ax"
     .global PendSV_Handler, robosync_saving_core, robosync_saving_fpu, robosync_saved
@@ -52,14 +53,12 @@ robosync_saved:
     bl      robosync_read_clock
     mov     r4, r0
     mov     r0, r5
-    ldr     r1, =robosync_kernel
-    ldr     r3, [r1]
 #else
-    ldr     r1, =robosync_kernel
     ldr     r4, =robosync_clock
-    ldr     r3, [r1]                /* Kernel::running_: its Context */
     ldr     r4, [r4]
 #endif
+    ldr     r1, =robosync_kernel
+    ldr     r3, [r1]                /* Kernel::running_: its Context */
     ldr     r2, [r3, #4]
     subs    r2, r4
     strd    r0, r2, [r3]            /* Context::sp, ::run_time */
@@ -145,7 +144,7 @@ robosync_become_idle:
     isb
     movs    r0, #0
     msr     basepri, r0             /* the switch that waits happens here */
-1:  movs    r0, #0xC0               /* a SwitchLock */
+1:  movs    r0, #SWITCH_PRIORITY    /* a SwitchLock */
     msr     basepri_max, r0
     bl      robosync_set_alarm
 robosync_idle_masks:
@@ -154,7 +153,7 @@ robosync_idle_masks:
     msr     basepri, r0
     wfi                             /* ends with any interrupt, which then waits for cpsie */
     bl      robosync_count_sleep
-    movs    r0, #0xC0               /* a SwitchLock again */
+    movs    r0, #SWITCH_PRIORITY    /* a SwitchLock again */
     msr     basepri_max, r0
 robosync_idle_unmasks:
     cpsie   i
