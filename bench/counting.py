@@ -4,6 +4,7 @@ import copy
 import struct
 import subprocess
 import tempfile
+import time
 from pathlib import Path
 
 from board import qemu
@@ -12,6 +13,7 @@ ROOT = Path(__file__).resolve().parents[1]
 BUILT = ROOT / "build/m4/bench"
 PLUGIN = ROOT / "build/host/bench/libcount_plugin.so"
 TIMEOUT = 120
+PATIENCE = 60  # seconds for what takes one, on a busy machine
 IMAGE_ADDRESS = 0x21000000  # bench/firmware/given.hpp
 READINGS_ADDRESS = 0x21100000
 
@@ -93,6 +95,21 @@ class Marks:
     def heard(self, what):
         """The numbers of each line that began with this word."""
         return [numbers for word, *numbers in self.said if word == what]
+
+
+def wait_for(path, address, times):
+    """Until the plugin has written the marker at this address so often from now on: time as the firmware sees it pass,
+    however slow the host is."""
+    deadline = time.monotonic() + PATIENCE
+    with open(path, encoding="ascii") as lines:
+        lines.seek(0, 2)
+        while times > 0:
+            if time.monotonic() > deadline:
+                raise BenchError(f"nothing ran at {address:#x} for long")
+            line = lines.readline()
+            times -= line.startswith(f"{address:x} ")
+            if not line:
+                time.sleep(0.01)
 
 
 profiling = False  # does the plugin say what ran (profile.py)?

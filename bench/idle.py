@@ -47,8 +47,7 @@ def code_of(prefixes):
 
 def idle_second(period, program=None):
     """The costliest of some seconds, which have kicks every `period` milliseconds: (instructions, apart)."""
-    kicks = {
-KICK: at for name, at in symbols(FIRMWARE).items() if name.startswith(KICK)}
+    kicks = {KICK: at for name, at in symbols(FIRMWARE).items() if name.startswith(KICK)}
     if not kicks:
         raise BenchError(f"the firmware has no {KICK}")
     with tempfile.TemporaryDirectory() as folder:
@@ -71,9 +70,6 @@ KICK: at for name, at in symbols(FIRMWARE).items() if name.startswith(KICK)}
 def idle_figures():
     alone, _ = idle_second(period_ms("runtime-m4/safety/period.hpp", "kIdlePeriodMs"))
     paper, transfers = idle_second(period_ms("runtime-m4/policy/rules.hpp", "kSafetyPeriodMs"), PAPER)
-    return {
-  "firmware/idle_second" : (alone, "insn"),
-                           "firmware/idle_second_paper" : (paper, "insn"),
-                                                          "firmware/idle_second_paper_i2c"
-      : (transfers, "insn"),
-    }
+    return {"firmware/idle_second": (alone, "insn"),
+            "firmware/idle_second_paper": (paper, "insn"),
+            "firmware/idle_second_paper_i2c": (transfers, "insn")}

@@ -8,6 +8,7 @@ Three conditions, as users meet them: the arms are free; they are moving, so tha
 both are stopped first; and so, while `rsc monitor` listens.
 """
 
+import functools
 import subprocess
 import tempfile
 import time
@@ -15,7 +16,7 @@ from pathlib import Path
 
 import rsc
 from board import FIRMWARE, REAL_TIME, Board
-from counting import BenchError, Marks, plugin_arguments, symbols
+from counting import PATIENCE, BenchError, Marks, plugin_arguments, symbols, wait_for
 from workloads import PAPER
 
 READING = "robosync::layers::Mailboxes::post("
@@ -25,7 +26,7 @@ START_UPS = 8
 CHANGES = 8
 FOLLOWING = "WHILE touch LEVEL >= 0\nDO FOLLOW left_arm TO (touch LEVEL * 10deg)\nEND\n"
 LIGHT, FIRM = 1, 9  # touches on either side of the paper's threshold
-BETWEEN = 0.3  # seconds between two touches; the arms move for longer
+BETWEEN = 15  # readings between two touches, 300 ms; the arms move for longer
 
 
 def functions():
@@ -36,27 +37,41 @@ def functions():
     return found
 
 
-def touch_again_and_again(board):
+def touch_again_and_again(board, pause):
     for change in range(CHANGES):
         board.set_touch((FIRM, LIGHT)[change % 2])
-        time.sleep(BETWEEN)
+        pause()
 
 
-def drive(board, image):
-    """Free arms START_UPS times, then moving ones CHANGES times, then the same with a monitor."""
+def touch_until_told(board, pause, told):
+    """Until a monitor has said something, which it does of each touch that it hears of."""
+    deadline = time.monotonic() + PATIENCE
+    while told.stat().st_size == 0:
+        if time.monotonic() > deadline:
+            raise BenchError("rsc monitor says nothing")
+        for raw in (FIRM, LIGHT):
+            board.set_touch(raw)
+            pause()
+
+
+def drive(board, image, pause, told):
+    """Free arms START_UPS times, then moving ones CHANGES times, then the same with a monitor, after some touches more."""
     board.set_touch(LIGHT)
     for _ in range(START_UPS):
         rsc.run("upload", image, "--port", board.port)
-        time.sleep(BETWEEN)
-    touch_again_and_again(board)
-    monitor = subprocess.Popen([rsc.TOOL, "monitor", "--port", board.port], stdin=subprocess.DEVNULL,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    try:
-        time.sleep(3 * BETWEEN)  # until it listens
-        touch_again_and_again(board)
-    finally:
-        monitor.terminate()
-        monitor.wait()
+        pause()
+    touch_again_and_again(board, pause)
+    with open(told, "wb") as output, subprocess.Popen([rsc.TOOL, "monitor", "--port", board.port], stdin=subprocess.DEVNULL,
+                                                      stdout=output, stderr=subprocess.DEVNULL) as monitor:
+        try:
+            touch_until_told(board, pause, told)
+            touch_again_and_again(board, pause)
+        finally:
+            monitor.terminate()
+
+
+def pacer(out, known):
+    return functools.partial(wait_for, out, known[READING], BETWEEN)
 
 
 def ways(marks):
@@ -82,8 +97,9 @@ def follow_update(known):
         with Board(icount=REAL_TIME, extra=plugin_arguments(known, out)) as board:
             board.set_touch(LIGHT)
             rsc.run("upload", image, "--port", board.port)
-            time.sleep(BETWEEN)
-            touch_again_and_again(board)
+            pause = pacer(out, known)
+            pause()
+            touch_again_and_again(board, pause)
         found = ways(Marks(known, out))
     if len(found) < CHANGES or any(stopped for _, stopped in found[-CHANGES:]):
         raise BenchError(f"not every touch led to a new target, or the arm was stopped: {found}")
@@ -93,13 +109,13 @@ def follow_update(known):
 def path_figures():
     known = functions()
     with tempfile.TemporaryDirectory() as folder:
-        image, out = Path(folder) / "paper.rsb", Path(folder) / "marks"
+        image, out, told = (Path(folder) / name for name in ("paper.rsb", "marks", "told"))
         rsc.run("compile", PAPER, "-o", image)
         with Board(icount=REAL_TIME, extra=plugin_arguments(known, out)) as board:
-            drive(board, image)
+            drive(board, image, pacer(out, known), told)
         found = ways(Marks(known, out))
-    free, busy, monitored = found[:START_UPS], found[START_UPS:-CHANGES], found[-CHANGES:]
-    if len(found) != START_UPS + 2 * CHANGES or not all(stopped for _, stopped in busy + monitored):
+    free, busy, monitored = found[:START_UPS], found[START_UPS:][:CHANGES], found[-CHANGES:]
+    if len(found) <= START_UPS + 2 * CHANGES or not all(stopped for _, stopped in busy + monitored):
         raise BenchError(f"not every touch led to a command, or the arms stood still: {found}")
     return follow_update(known) | {
         f"path/reading_to_command{name}": (max(count for count, _ in way), "insn")

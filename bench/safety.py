@@ -10,12 +10,11 @@ The first two are counted once more, as …_loaded, beside a behaviour that comp
 """
 
 import tempfile
-import time
 from pathlib import Path
 
 import rsc
 from board import FIRMWARE, REAL_TIME, Board
-from counting import BenchError, Marks, plugin_arguments, symbols
+from counting import BenchError, Marks, plugin_arguments, symbols, wait_for
 from idle import code_of
 
 READING = "robosync::layers::Mailboxes::post("
@@ -23,9 +22,9 @@ BYTE = "Uart0Receive_Handler"
 ORDER = "robosync::guard::OutputGuard::drive("
 SHUT = "robosync::guard::OutputGuard::halt("
 PIN = "robosync::boards::mps2::Board::pwm_write("
-TIMES = 6
+TIMES = 20
 LIGHT, FIRM, TOO_FIRM = 1, 5, 9
-BETWEEN = 0.3  # seconds
+BETWEEN = 6  # readings, 120 ms
 CONFIG = """{
   "sensors": [{"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
                "channels": {"LEVEL": {"input": 0, "range": [0, 10], "rate": "50Hz"}}}],
@@ -64,26 +63,24 @@ def functions(*wanted):
     return found
 
 
-def touch(board, raw):
-    board.set_touch(raw)
-    time.sleep(BETWEEN)
-
-
-def drive(board, image):
+def drive(board, image, pause):
     """Trips TIMES times with moving arms, then is stopped by a person as often."""
-    touch(board, LIGHT)
+    def touch(raw):
+        board.set_touch(raw)
+        pause()
+
+    board.set_touch(LIGHT)
     rsc.run("upload", image, "--port", board.port)
-    time.sleep(BETWEEN)
+    pause()
     for _ in range(TIMES):
         for raw in (FIRM, TOO_FIRM, LIGHT):
-            touch(board, raw)
-    time.sleep(3 * BETWEEN)  # until the rule has let go, on a busy machine too
+            touch(raw)
     for _ in range(TIMES):
-        touch(board, FIRM)
+        touch(FIRM)
         rsc.run("stop", "--port", board.port)
-        touch(board, LIGHT)
+        touch(LIGHT)
         rsc.run("resume", "--port", board.port)
-        time.sleep(BETWEEN)
+        pause()
 
 
 def shuts(marks):
@@ -118,7 +115,7 @@ def marks_of(program):
         rsc.run("compile", folder / "robot.rsl", "-o", image)
         arguments = plugin_arguments(known, out, code_of([ORDER, PIN, SHUT]))
         with Board(icount=REAL_TIME, extra=arguments) as board:
-            drive(board, image)
+            drive(board, image, lambda: wait_for(out, known[READING], BETWEEN))
         return Marks(known, out)
 
 

@@ -63,6 +63,7 @@ static void at_marker(unsigned cpu, void* marker) {
   fprintf(out, "%" PRIx64 " %" PRIu64 " %" PRIu64, *(uint64_t*)marker, executed, executed_apart);
   write_profile();
   fputc('\n', out);
+  fflush(out);  // the bench waits for what it says
 }
 
 /* An instruction may be translated more than once: each time it has another place. */
