@@ -101,7 +101,7 @@ struct ProgramCommand {
 struct ProgramStatement;
 using ProgramBlock = std::vector<ProgramStatement>;
 
-struct ProgramLocal {      // a value that is worked out here: what a DEFINE is given
+struct ProgramLocal {  // a value that is worked out here: what a DEFINE is given
   std::size_t number = 0;
   Expression value;
   bool has_other_writers = false;  // then what it holds depends on the way there
