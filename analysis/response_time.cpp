@@ -43,7 +43,7 @@ public:
   Analysis(const TaskSet& set, std::size_t mine, Priorities priorities, Chain chain = {})
       : set_(set), mine_(mine), chain_(chain), adapted_(priorities == Priorities::adapted) {
     for (std::size_t j = 0; j < set.sources.size(); ++j)
-      if (j != mine && place_of(j) == Place::below)
+      if (j != mine && preemption_by(j) == Preemption::none)
         blocking_ = std::max(blocking_, set.sources[j].step);
     blocking_ = (blocking_ + set.longest_lock) * (chain_.length + 1);
   }
@@ -62,10 +62,10 @@ public:
   }
 
 private:
-  enum class Place : std::uint8_t {
-    below,   // blocks at most
-    above,   // goes first, until the own step has begun
-    always,  // … and its announcements join in at any time
+  enum class Preemption : std::uint8_t {
+    none,         // it blocks at most
+    before_step,  // it goes first, until the own step has begun
+    any_time,     // … and its announcements join in at any time
   };
 
   // A stretch of a busy period: until when, when its last own step begins, how many own there are.
@@ -75,12 +75,13 @@ private:
 
   const Source& mine() const { return set_.sources[mine_]; }
 
-  Place place_of(std::size_t j) const {
+  Preemption preemption_by(std::size_t j) const {
     const Source& other = set_.sources[j];
-    if (adapted_ ? other.may_outrank_one : other.outranks_a_behavior) return Place::always;
+    if (adapted_ ? other.may_outrank_one : other.outranks_a_behavior) return Preemption::any_time;
     const unsigned rank = adapted_ ? other.raised : other.rank;
-    if (rank > mine().rank) return Place::below;
-    return chain_.length == 0 ? Place::above : Place::always;  // between the steps, it goes first
+    if (rank > mine().rank) return Preemption::none;
+    return chain_.length == 0 ? Preemption::before_step
+                              : Preemption::any_time;  // between the steps, it goes first
   }
 
   // The least t with demand(t) <= t, or none.
@@ -106,10 +107,10 @@ private:
     // the busy period what is late.
     if (chain_.length == 0 && follows_mine(j))
       return window.own - 1 + ceil_div(other.jitter, other.period);
-    switch (place_of(j)) {
-      case Place::always:
+    switch (preemption_by(j)) {
+      case Preemption::any_time:
         return ceil_div(window.until + other.jitter, other.period);
-      case Place::above:
+      case Preemption::before_step:
         return (window.begun + other.jitter) / other.period + 1;
       default:
         return 0;
@@ -130,7 +131,7 @@ private:
     bool may_block = false;
     for (const std::size_t j : sources) {
       sum += releases_of(j, window);
-      may_block = may_block || (j != mine_ && place_of(j) == Place::below);
+      may_block = may_block || (j != mine_ && preemption_by(j) == Preemption::none);
     }
     return sum + (may_block ? chain_.length + 1 : 0);
   }

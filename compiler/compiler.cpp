@@ -105,7 +105,7 @@ Result compile(Input program, Input configuration, const Options& options) {
                                   result.sources, diagnostics);
   const bool named = parsed.robot && parsed.robot->board;
   result.board = named ? board_at(*parsed.robot->board) : default_board();
-  Program written;
+  ir::Program written;
   if (parsed.complete) {
     written = analyze(parsed.trees(), *parsed.robot, result.sources, diagnostics);
     if (diagnostics.errors() > 0) diagnostics = offer_modules(diagnostics);
@@ -115,7 +115,7 @@ Result compile(Input program, Input configuration, const Options& options) {
   if (parsed.robot) diagnostics = apply_lints(diagnostics, *parsed.robot);
   if (parsed.complete && diagnostics.errors() == 0) {
     const Robot& robot = *parsed.robot;
-    const Program better = options.optimize ? optimize(written, robot) : written;
+    const ir::Program better = options.optimize ? optimize(written, robot) : written;
     Emitted emitted =
         emit(better, written, robot, options.hash ? hash_of(result.sources) : ProgramHash{},
              {.source_lines = options.source_lines, .seed = options.seed}, diagnostics);
@@ -123,7 +123,7 @@ Result compile(Input program, Input configuration, const Options& options) {
       result.image = std::move(emitted.image);
       result.rules = std::move(emitted.rules);
       result.units = units_of(robot);
-      for (const ProgramVariable& variable : written.variables)
+      for (const ir::Variable& variable : written.variables)
         result.units.variables[variable.name] = variable.unit;
     }
   }

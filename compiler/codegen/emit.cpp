@@ -19,7 +19,7 @@ public:
   Emitter(EmitOptions options, Diagnostics& diagnostics)
       : options_(options), diagnostics_(diagnostics) {}
 
-  Emitted emit(const Program& program, const Program& written, const Robot& robot,
+  Emitted emit(const ir::Program& program, const ir::Program& written, const Robot& robot,
                const ProgramHash& hash) {
     const Tables tables(written, diagnostics_);
     if (diagnostics_.errors() > 0) return {};
@@ -137,7 +137,7 @@ void Emitter::finish_header(const Robot& robot, const ProgramHash& hash) {
 
 }  // namespace
 
-Emitted emit(const Program& program, const Program& written, const Robot& robot,
+Emitted emit(const ir::Program& program, const ir::Program& written, const Robot& robot,
              const ProgramHash& hash, EmitOptions options, Diagnostics& diagnostics) {
   return Emitter(options, diagnostics).emit(program, written, robot, hash);
 }

@@ -31,7 +31,8 @@ struct Emitted {
 // `written`: the program as sema made it, which may be `program` itself. What it uses and reads
 // stays in the image, whatever the optimiser has left out: devices keep their numbers, and a
 // behaviour is evaluated in the same steps.
-[[nodiscard]] Emitted emit(const Program& program, const Program& written, const Robot& robot,
-                           const ProgramHash& hash, EmitOptions options, Diagnostics& diagnostics);
+[[nodiscard]] Emitted emit(const ir::Program& program, const ir::Program& written,
+                           const Robot& robot, const ProgramHash& hash, EmitOptions options,
+                           Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

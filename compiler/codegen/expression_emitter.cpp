@@ -240,14 +240,13 @@ Cell ExpressionEmitter::watched(const Expression& expression) {
 Cell ExpressionEmitter::variable(std::size_t place, std::uint32_t depth) {
   Cell cell = parts_.frame.read(parts_.tables.variable(place));
   if (!bounded_.contains(place)) return cell;
-  const ProgramVariable& variable = parts_.program.variables[place];
+  const ir::Variable& variable = parts_.program.variables[place];
   if (variable.min > vm::kValueMin) cell = limited(vm::Opcode::max_k, cell, variable.min, depth);
   if (variable.max < vm::kValueMax) cell = limited(vm::Opcode::min_k, cell, variable.max, depth);
   return cell;
 }
 
-Cell ExpressionEmitter::clamped(Cell source, const ProgramVariable& variable,
-                                const ProgramSet& set) {
+Cell ExpressionEmitter::clamped(Cell source, const ir::Variable& variable, const ir::Set& set) {
   if (variable.min > vm::kValueMin && set.may_be_below)
     source = limited(vm::Opcode::max_k, source, variable.min, 0);
   if (variable.max < vm::kValueMax && set.may_be_above)

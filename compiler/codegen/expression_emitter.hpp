@@ -43,7 +43,7 @@ public:
   std::optional<std::size_t> jump_unless(const Expression& comparison);
   std::optional<std::size_t> jump_unless(Operation comparison, Cell left, vm::Value right);
   // `source`, but not outside min … max of the variable, as far as that has to be looked after.
-  Cell clamped(Cell source, const ProgramVariable& variable, const ProgramSet& set);
+  Cell clamped(Cell source, const ir::Variable& variable, const ir::Set& set);
 
   // From now on a read of the variable gives what is inside its range: its cell holds the sum of what
   // was raised and lowered, which the next step bounds once.

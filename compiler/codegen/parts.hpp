@@ -11,7 +11,7 @@
 
 namespace robosync::compiler {
 
-using LocalCells = std::map<std::size_t, Cell>;  // by ProgramLocal::number
+using LocalCells = std::map<std::size_t, Cell>;  // by ir::Local::number
 
 // A time word inside a response: a watch rule has to evaluate it in every step.
 struct Watch {
@@ -22,7 +22,7 @@ struct Watch {
 };
 
 struct Parts {
-  const Program& program;
+  const ir::Program& program;
   const Tables& tables;
   Strings& strings;
   CodePool& pool;

@@ -7,7 +7,8 @@ namespace {
 
 class RecordMaker {
 public:
-  RecordMaker(const Program& program, const Robot& robot, const Tables& tables, Strings& strings)
+  RecordMaker(const ir::Program& program, const Robot& robot, const Tables& tables,
+              Strings& strings)
       : program_(program), robot_(robot), tables_(tables), strings_(strings) {}
 
   Records make() {
@@ -23,15 +24,15 @@ public:
     }
     for (const auto& [place, number] : tables_.motion_groups())
       motion_group(program_.motions[place]);
-    for (const ProgramMotion& one : program_.motions)
+    for (const ir::Motion& one : program_.motions)
       motion(one);
-    for (const ProgramVerb& verb : tables_.verbs())
+    for (const ir::Verb& verb : tables_.verbs())
       records_.verbs.push_back({strings_.offset(verb.name), verb.action, verb.takes});
-    for (const ProgramWord& word : tables_.words())
+    for (const ir::Word& word : tables_.words())
       records_.words.push_back({strings_.offset(word.name), word.param, 0, word.value});
-    for (const ProgramVariable& one : program_.variables)
+    for (const ir::Variable& one : program_.variables)
       variable(one);
-    for (const ProgramCheck& one : program_.checks)
+    for (const ir::Check& one : program_.checks)
       check(one);
     if (robot_.scheduler && robot_.scheduler->alpha > 0)
       records_.adaptations.push_back(
@@ -43,12 +44,12 @@ private:
   void sensors();
   void channel(ChannelRef ref);
   void actuator(std::size_t place);
-  void variable(const ProgramVariable& variable);
-  void check(const ProgramCheck& check);
-  void motion_group(const ProgramMotion& motion);
-  void motion(const ProgramMotion& motion);
+  void variable(const ir::Variable& variable);
+  void check(const ir::Check& check);
+  void motion_group(const ir::Motion& motion);
+  void motion(const ir::Motion& motion);
 
-  const Program& program_;
+  const ir::Program& program_;
   const Robot& robot_;
   const Tables& tables_;
   Strings& strings_;
@@ -135,7 +136,7 @@ void RecordMaker::actuator(std::size_t place) {
   records_.actuators.push_back(record);
 }
 
-void RecordMaker::variable(const ProgramVariable& variable) {
+void RecordMaker::variable(const ir::Variable& variable) {
   vm::Variable record{};
   record.name = strings_.offset(variable.name);
   record.kind = variable.kind;
@@ -150,7 +151,7 @@ void RecordMaker::variable(const ProgramVariable& variable) {
   records_.variables.push_back(record);
 }
 
-void RecordMaker::check(const ProgramCheck& check) {
+void RecordMaker::check(const ir::Check& check) {
   vm::Check record{};
   record.variable = static_cast<std::uint8_t>(check.variable);
   record.input = check.input.operation == Operation::input ? tables_.input(check.input.channel)
@@ -163,19 +164,19 @@ void RecordMaker::check(const ProgramCheck& check) {
   records_.bands.insert(records_.bands.end(), check.bands.begin(), check.bands.end());
 }
 
-void RecordMaker::motion_group(const ProgramMotion& motion) {
+void RecordMaker::motion_group(const ir::Motion& motion) {
   std::vector<std::size_t> actuators;
-  for (const ProgramTrack& track : motion.tracks)
+  for (const ir::Track& track : motion.tracks)
     actuators.push_back(track.actuator);
   records_.groups.push_back({strings_.offset(motion.name), 0, tables_.mask_of(actuators)});
 }
 
-void RecordMaker::motion(const ProgramMotion& motion) {
+void RecordMaker::motion(const ir::Motion& motion) {
   records_.motions.push_back({strings_.offset(motion.name),
                               static_cast<std::uint8_t>(records_.tracks.size()),
                               static_cast<std::uint8_t>(motion.tracks.size()),
                               std::max(motion.length, static_cast<vm::Value>(vm::kMinKeyGapMs))});
-  for (const ProgramTrack& track : motion.tracks) {
+  for (const ir::Track& track : motion.tracks) {
     records_.tracks.push_back({tables_.number_of(track.actuator),
                                static_cast<std::uint8_t>(track.keys.size()),
                                static_cast<std::uint16_t>(records_.keys.size())});
@@ -185,7 +186,7 @@ void RecordMaker::motion(const ProgramMotion& motion) {
 
 }  // namespace
 
-Records make_records(const Program& program, const Robot& robot, const Tables& tables,
+Records make_records(const ir::Program& program, const Robot& robot, const Tables& tables,
                      Strings& strings) {
   return RecordMaker(program, robot, tables, strings).make();
 }

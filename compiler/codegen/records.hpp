@@ -24,7 +24,7 @@ struct Records {
 };
 
 // Names and labels go into `strings`.
-[[nodiscard]] Records make_records(const Program& program, const Robot& robot, const Tables& tables,
-                                   Strings& strings);
+[[nodiscard]] Records make_records(const ir::Program& program, const Robot& robot,
+                                   const Tables& tables, Strings& strings);
 
 }  // namespace robosync::compiler

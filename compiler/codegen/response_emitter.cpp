@@ -17,7 +17,7 @@ constexpr unsigned kSpareBlocks = vm::kMaxBlocks / 2;
 constexpr std::size_t kItsCell = SIZE_MAX;
 
 // What RAISE and LOWER set: the sum of all of them, which the next step bounds.
-Expression sum_of(const ProgramSet& set) {
+Expression sum_of(const ir::Set& set) {
   Expression before;
   before.operation = Operation::local;
   before.index = kItsCell;
@@ -35,7 +35,7 @@ bool looks_like_truth(vm::Value constant) {
 
 // ---- how deeply blocks are nested
 
-unsigned blocks_in(const ProgramBlock& block);
+unsigned blocks_in(const ir::Block& block);
 
 // Blocks of the code that a statement opens inside of each other, those of its own blocks included.
 // What holds no blocks opens none, unless it stands below.
@@ -47,41 +47,41 @@ unsigned blocks_of(const Node& node) {
   return 0;
 }
 
-unsigned blocks_of(const ProgramWaitUntil&) {
+unsigned blocks_of(const ir::WaitUntil&) {
   return 1;
 }
 
-unsigned blocks_of(const ProgramFollow& follow) {
+unsigned blocks_of(const ir::Follow& follow) {
   return blocks_in(follow.body) + 1;
 }
 
-unsigned blocks_of(const ProgramIf& choice) {
+unsigned blocks_of(const ir::If& choice) {
   const bool asks_if_known = !choice.else_block.empty() && !choice.condition.fact.known;
   return std::max(blocks_in(choice.then_block) + (asks_if_known ? 2 : 1),
                   blocks_in(choice.else_block) + 1);
 }
 
-unsigned blocks_of(const ProgramRepeat& repeat) {
+unsigned blocks_of(const ir::Repeat& repeat) {
   const std::optional<vm::Value> times = constant_count(repeat);
   if (times && *times == 0) return 0;
-  const bool once = times || repeat.kind == RepeatKind::forever;
+  const bool once = times || repeat.kind == ir::RepeatKind::forever;
   return blocks_in(repeat.body) + (once ? 1 : 2);
 }
 
 // The options but the first and the last stand in the ELSE of the one before.
-unsigned blocks_of(const ProgramPick& pick) {
+unsigned blocks_of(const ir::Pick& pick) {
   if (pick.options.size() == 1) return blocks_in(pick.options.front().body);
   unsigned most = 0;
-  for (const ProgramOption& option : pick.options) {
+  for (const ir::Option& option : pick.options) {
     const bool middle = &option != &pick.options.front() && &option != &pick.options.back();
     most = std::max(most, blocks_in(option.body) + (middle ? 2 : 1));
   }
   return most;
 }
 
-unsigned blocks_in(const ProgramBlock& block) {
+unsigned blocks_in(const ir::Block& block) {
   unsigned most = 0;
-  for (const ProgramStatement& statement : block)
+  for (const ir::Statement& statement : block)
     most = std::max(most,
                     std::visit([](const auto& node) { return blocks_of(node); }, statement.node));
   return most;
@@ -96,32 +96,32 @@ public:
   ResponseEmitter(const ResponseEmitter&) = delete;
   ResponseEmitter& operator=(const ResponseEmitter&) = delete;
 
-  [[nodiscard]] ResponseCode emit(const ProgramBlock& block);
+  [[nodiscard]] ResponseCode emit(const ir::Block& block);
 
 private:
   using Opcode = vm::Opcode;
 
-  void block(const ProgramBlock& statements);
-  void statement(const ProgramStatement& statement);
-  void emit(const ProgramCommand& command);
-  void emit(const ProgramLocal& local);
-  void emit(const ProgramSet& set);
-  void emit(const ProgramWait& wait);
-  void emit(const ProgramThen& then);
-  void emit(const ProgramLog& log);
-  void emit(const ProgramHalt& halt);
+  void block(const ir::Block& statements);
+  void statement(const ir::Statement& statement);
+  void emit(const ir::Command& command);
+  void emit(const ir::Local& local);
+  void emit(const ir::Set& set);
+  void emit(const ir::Wait& wait);
+  void emit(const ir::Then& then);
+  void emit(const ir::Log& log);
+  void emit(const ir::Halt& halt);
   void argument(vm::Param param, const Expression& value);
-  void emit(const ProgramWaitUntil& wait);
-  void emit(const ProgramFollow& follow);
-  void emit(const ProgramIf& choice);
-  void emit(const ProgramRepeat& repeat);
-  void emit(const ProgramPick& pick);
-  void write_ahead(const ProgramRepeat& repeat);
-  void repeat_times(const ProgramRepeat& repeat);
-  void repeat_constant_times(const ProgramRepeat& repeat);
-  void repeat_forever(const ProgramRepeat& repeat);
-  void repeat_while(const ProgramRepeat& repeat);
-  void options(const ProgramPick& pick, Cell drawn);
+  void emit(const ir::WaitUntil& wait);
+  void emit(const ir::Follow& follow);
+  void emit(const ir::If& choice);
+  void emit(const ir::Repeat& repeat);
+  void emit(const ir::Pick& pick);
+  void write_ahead(const ir::Repeat& repeat);
+  void repeat_times(const ir::Repeat& repeat);
+  void repeat_constant_times(const ir::Repeat& repeat);
+  void repeat_forever(const ir::Repeat& repeat);
+  void repeat_while(const ir::Repeat& repeat);
+  void options(const ir::Pick& pick, Cell drawn);
   // Emits what begins a block; gives its place, for the jump that ends there.
   std::size_t open(Opcode opcode, Operand a = {}, Operand b = {});
   // Opens a block that runs if the condition is true.
@@ -147,38 +147,38 @@ private:
   Parts& parts_;
   ResponseCode response_;
   ExpressionEmitter expressions_;
-  const ProgramStatement* current_ = nullptr;  // never null while a statement is emitted
+  const ir::Statement* current_ = nullptr;  // never null while a statement is emitted
   unsigned open_blocks_ = 0;
 };
 
-ResponseCode ResponseEmitter::emit(const ProgramBlock& statements) {
-  for_each_of<ProgramSet>(statements, [this](const ProgramSet& set) {
+ResponseCode ResponseEmitter::emit(const ir::Block& statements) {
+  for_each_of<ir::Set>(statements, [this](const ir::Set& set) {
     if (set.relative && (set.may_be_below || set.may_be_above))
       expressions_.bound_reads(set.variable);
   });
   block(statements);
-  if (!statements.empty() && std::holds_alternative<ProgramCommand>(statements.back().node))
+  if (!statements.empty() && std::holds_alternative<ir::Command>(statements.back().node))
     code().end_with_command();
   else
     code().emit(Opcode::end);
   return std::move(response_);
 }
 
-void ResponseEmitter::block(const ProgramBlock& statements) {
-  for (const ProgramStatement& one : statements)
+void ResponseEmitter::block(const ir::Block& statements) {
+  for (const ir::Statement& one : statements)
     statement(one);
 }
 
-void ResponseEmitter::statement(const ProgramStatement& statement) {
-  const ProgramStatement* const outer = current_;
+void ResponseEmitter::statement(const ir::Statement& statement) {
+  const ir::Statement* const outer = current_;
   current_ = &statement;
   mark();
   std::visit([this](const auto& node) { emit(node); }, statement.node);
   current_ = outer;
 }
 
-void ResponseEmitter::emit(const ProgramCommand& command) {
-  for (const ProgramArgument& one : command.arguments)
+void ResponseEmitter::emit(const ir::Command& command) {
+  for (const ir::Argument& one : command.arguments)
     argument(one.param, one.value);
   code().emit(Opcode::cmd, parts_.tables.target(command), parts_.tables.verb(command),
               parts_.tables.word(command));
@@ -194,7 +194,7 @@ void ResponseEmitter::argument(vm::Param param, const Expression& value) {
     code().emit(Opcode::arg, number, expressions_.value(value));
 }
 
-void ResponseEmitter::emit(const ProgramLocal& local) {
+void ResponseEmitter::emit(const ir::Local& local) {
   const auto known = expressions_.locals().find(local.number);
   const Cell cell = known != expressions_.locals().end() ? known->second : parts_.frame.add_local();
   expressions_.value_into(cell, local.value);
@@ -203,8 +203,8 @@ void ResponseEmitter::emit(const ProgramLocal& local) {
 
 // What is SET is clamped here. What is RAISEd and LOWERed is added up, and bounded where it is read and in
 // the next step.
-void ResponseEmitter::emit(const ProgramSet& set) {
-  const ProgramVariable& variable = parts_.program.variables[set.variable];
+void ResponseEmitter::emit(const ir::Set& set) {
+  const ir::Variable& variable = parts_.program.variables[set.variable];
   const Cell target = parts_.frame.write(parts_.tables.variable(set.variable));
   bool in_place = set.in_place;
   Cell value;
@@ -223,21 +223,21 @@ void ResponseEmitter::emit(const ProgramSet& set) {
     code().emit(set.relative ? Opcode::shift : Opcode::set, target, value);
 }
 
-void ResponseEmitter::emit(const ProgramWait& wait) {
+void ResponseEmitter::emit(const ir::Wait& wait) {
   code().emit(Opcode::wait, expressions_.value(wait.duration));
 }
 
-void ResponseEmitter::emit(const ProgramThen&) {
+void ResponseEmitter::emit(const ir::Then&) {
   code().emit(Opcode::wait_done);
 }
 
-void ResponseEmitter::emit(const ProgramLog& log) {
+void ResponseEmitter::emit(const ir::Log& log) {
   for (std::size_t i = 0; i < log.values.size(); ++i)
     argument(static_cast<vm::Param>(i), log.values[i]);
   code().emit(log.alert ? Opcode::alert : Opcode::log, {}, parts_.strings.offset(log.text));
 }
 
-void ResponseEmitter::emit(const ProgramHalt& halt) {
+void ResponseEmitter::emit(const ir::Halt& halt) {
   for (const std::uint8_t target : parts_.tables.targets(halt))
     code().emit(Opcode::halt, target);
   response_.actuators |= parts_.tables.mask_of(halt);
@@ -310,7 +310,7 @@ void ResponseEmitter::close_around(Opcode opcode, Operand a, std::size_t begin) 
 }
 
 // With the condition unknown neither side runs; without ELSE that comes by itself.
-void ResponseEmitter::emit(const ProgramIf& choice) {
+void ResponseEmitter::emit(const ir::If& choice) {
   if (choice.else_block.empty()) {
     const std::vector<std::size_t> begins =
         open_unless_all(choice.condition, blocks_in(choice.then_block));
@@ -337,19 +337,19 @@ void ResponseEmitter::emit(const ProgramIf& choice) {
   close(known);
 }
 
-void ResponseEmitter::emit(const ProgramRepeat& repeat) {
+void ResponseEmitter::emit(const ir::Repeat& repeat) {
   switch (repeat.kind) {
-    case RepeatKind::times:
+    case ir::RepeatKind::times:
       if (constant_count(repeat)) return repeat_constant_times(repeat);
       return repeat_times(repeat);
-    case RepeatKind::while_:
+    case ir::RepeatKind::while_:
       return repeat_while(repeat);
-    case RepeatKind::forever:
+    case ir::RepeatKind::forever:
       return repeat_forever(repeat);
   }
 }
 
-void ResponseEmitter::repeat_constant_times(const ProgramRepeat& repeat) {
+void ResponseEmitter::repeat_constant_times(const ir::Repeat& repeat) {
   const vm::Value times = constant_count(repeat).value_or(0);
   if (times == 0) return;
   write_ahead(repeat);
@@ -362,7 +362,7 @@ void ResponseEmitter::repeat_constant_times(const ProgramRepeat& repeat) {
 }
 
 // To what they are: the loop certainly writes them, and then need not say so in each round.
-void ResponseEmitter::write_ahead(const ProgramRepeat& repeat) {
+void ResponseEmitter::write_ahead(const ir::Repeat& repeat) {
   const auto write = [this](Opcode opcode, std::size_t variable) {
     const Cell target = parts_.frame.write(parts_.tables.variable(variable));
     code().emit(opcode, target, target);
@@ -373,7 +373,7 @@ void ResponseEmitter::write_ahead(const ProgramRepeat& repeat) {
     write(Opcode::shift, variable);
 }
 
-void ResponseEmitter::repeat_times(const ProgramRepeat& repeat) {
+void ResponseEmitter::repeat_times(const ir::Repeat& repeat) {
   const Cell counter = parts_.frame.add_local();
   expressions_.value_into(counter, repeat.control);
   const std::size_t any = open_unless(Operation::greater, counter, 0);
@@ -384,7 +384,7 @@ void ResponseEmitter::repeat_times(const ProgramRepeat& repeat) {
   close(any);
 }
 
-void ResponseEmitter::repeat_while(const ProgramRepeat& repeat) {
+void ResponseEmitter::repeat_while(const ir::Repeat& repeat) {
   const std::size_t first = open_unless(repeat.control);
   const std::size_t begin = open(Opcode::loop);
   block(repeat.body);
@@ -393,18 +393,18 @@ void ResponseEmitter::repeat_while(const ProgramRepeat& repeat) {
   close(first);
 }
 
-void ResponseEmitter::repeat_forever(const ProgramRepeat& repeat) {
+void ResponseEmitter::repeat_forever(const ir::Repeat& repeat) {
   const std::size_t begin = open(Opcode::loop);
   block(repeat.body);
   mark();
   close_around(Opcode::around_always, {}, begin);
 }
 
-void ResponseEmitter::emit(const ProgramPick& pick) {
+void ResponseEmitter::emit(const ir::Pick& pick) {
   if (pick.options.size() == 1) return block(pick.options.front().body);
   if (pick.options.empty()) return;
   std::int64_t total = 0;
-  for (const ProgramOption& option : pick.options)
+  for (const ir::Option& option : pick.options)
     total += option.weight;
   if (total > vm::kValueMax)
     return parts_.too_large("the shares of the options are too large together", current_->span);
@@ -416,10 +416,10 @@ void ResponseEmitter::emit(const ProgramPick& pick) {
 }
 
 // Each option but the last is an IF whose ELSE holds those that follow; all end in the same place.
-void ResponseEmitter::options(const ProgramPick& pick, Cell drawn) {
+void ResponseEmitter::options(const ir::Pick& pick, Cell drawn) {
   std::vector<std::size_t> jumps;
   vm::Value share = 0;  // of the options so far
-  for (const ProgramOption& option : pick.options) {
+  for (const ir::Option& option : pick.options) {
     share += option.weight;
     if (&option == &pick.options.back()) {
       block(option.body);
@@ -435,7 +435,7 @@ void ResponseEmitter::options(const ProgramPick& pick, Cell drawn) {
   --open_blocks_;
 }
 
-void ResponseEmitter::emit(const ProgramWaitUntil& wait) {
+void ResponseEmitter::emit(const ir::WaitUntil& wait) {
   std::optional<Cell> deadline;
   if (wait.within) {
     deadline = parts_.frame.add_local();
@@ -455,7 +455,7 @@ void ResponseEmitter::emit(const ProgramWaitUntil& wait) {
 }
 
 // A poll that commands: what is looked at in every step is the body, and it ends with its time only.
-void ResponseEmitter::emit(const ProgramFollow& follow) {
+void ResponseEmitter::emit(const ir::Follow& follow) {
   std::optional<Cell> deadline;
   if (follow.lasts) {
     deadline = parts_.frame.add_local();
@@ -471,11 +471,11 @@ void ResponseEmitter::emit(const ProgramFollow& follow) {
 
 }  // namespace
 
-bool needs_clamping(const ProgramSet& set) {
+bool needs_clamping(const ir::Set& set) {
   return set.relative || set.value.operation != Operation::constant;
 }
 
-ResponseCode emit_response(Parts& parts, const ProgramBlock& response) {
+ResponseCode emit_response(Parts& parts, const ir::Block& response) {
   return ResponseEmitter(parts).emit(response);
 }
 

@@ -12,9 +12,9 @@ struct ResponseCode {
 };
 
 // What does not fit is reported.
-[[nodiscard]] ResponseCode emit_response(Parts& parts, const ProgramBlock& response);
+[[nodiscard]] ResponseCode emit_response(Parts& parts, const ir::Block& response);
 
 // Is it known only on the robot what the variable will be?
-[[nodiscard]] bool needs_clamping(const ProgramSet& set);
+[[nodiscard]] bool needs_clamping(const ir::Set& set);
 
 }  // namespace robosync::compiler

@@ -21,13 +21,13 @@ struct RuleDraft {
 };
 
 // The variables whose new value has to be clamped on the robot.
-void find_clamped(const ProgramBlock& block, std::set<std::size_t>& clamped) {
-  for_each_of<ProgramSet>(block, [&](const ProgramSet& set) {
+void find_clamped(const ir::Block& block, std::set<std::size_t>& clamped) {
+  for_each_of<ir::Set>(block, [&](const ir::Set& set) {
     if (needs_clamping(set)) clamped.insert(set.variable);
   });
 }
 
-Source source_of(const ProgramRule& rule) {
+Source source_of(const ir::Rule& rule) {
   return {rule.line, rule.span};
 }
 
@@ -59,7 +59,7 @@ class Listener {
 public:
   explicit Listener(Parts& parts) : parts_(parts) {}
 
-  void listen(const ProgramRule& rule) {
+  void listen(const ir::Rule& rule) {
     listen(rule.condition);
     if (rule.resume) listen(*rule.resume);
     listen(rule.then_response);
@@ -75,9 +75,9 @@ private:
     for (const Expression& operand : expression.operands)
       listen(operand);
   }
-  void listen(const ProgramBlock& block) {
-    for_each_statement(block, [this](const ProgramStatement& statement) {
-      if (const auto* set = std::get_if<ProgramSet>(&statement.node))
+  void listen(const ir::Block& block) {
+    for_each_statement(block, [this](const ir::Statement& statement) {
+      if (const auto* set = std::get_if<ir::Set>(&statement.node))
         (void)parts_.frame.read(parts_.tables.variable(set->variable));
       for_each_expression(statement, [this](const Expression& expression) { listen(expression); });
     });
@@ -88,8 +88,8 @@ private:
 
 class RuleWriter {
 public:
-  RuleWriter(const Program& program, const Program& written, const Tables& tables, Strings& strings,
-             Diagnostics& diagnostics)
+  RuleWriter(const ir::Program& program, const ir::Program& written, const Tables& tables,
+             Strings& strings, Diagnostics& diagnostics)
       : program_(program),
         written_(written),
         tables_(tables),
@@ -107,17 +107,17 @@ public:
 
 private:
   void reserve_limits();
-  void add(const ProgramBehavior& behavior, const std::vector<ProgramRule>& written);
-  std::vector<RuleDraft> make_drafts(Parts& parts, const ProgramBehavior& behavior);
-  RuleDraft draft(Parts& parts, const ProgramRule& rule);
-  std::uint8_t modifiers(const ProgramRule& rule);
-  static std::string title(const ProgramBehavior& behavior);  // of one that has rules
-  bool fits(const Parts& parts, const ProgramBehavior& behavior, std::size_t rules);
+  void add(const ir::Behavior& behavior, const std::vector<ir::Rule>& written);
+  std::vector<RuleDraft> make_drafts(Parts& parts, const ir::Behavior& behavior);
+  RuleDraft draft(Parts& parts, const ir::Rule& rule);
+  std::uint8_t modifiers(const ir::Rule& rule);
+  static std::string title(const ir::Behavior& behavior);  // of one that has rules
+  bool fits(const Parts& parts, const ir::Behavior& behavior, std::size_t rules);
   void add(RuleDraft& draft, const Frame& frame, std::uint32_t& actuators);
   std::uint16_t add(const ResponseCode& response, const Frame& frame);
 
-  const Program& program_;
-  const Program& written_;
+  const ir::Program& program_;
+  const ir::Program& written_;
   const Tables& tables_;
   Strings& strings_;
   Diagnostics& diagnostics_;
@@ -127,11 +127,11 @@ private:
 // min_k and max_k reach the first constants only: the limits that they need come first.
 void RuleWriter::reserve_limits() {
   std::set<std::size_t> clamped;
-  for_each_rule(program_, [&](const ProgramRule& rule) {
-    for_each_response(rule, [&](const ProgramBlock& block) { find_clamped(block, clamped); });
+  for_each_rule(program_, [&](const ir::Rule& rule) {
+    for_each_response(rule, [&](const ir::Block& block) { find_clamped(block, clamped); });
   });
   for (const std::size_t place : clamped) {
-    const ProgramVariable& variable = program_.variables[place];
+    const ir::Variable& variable = program_.variables[place];
     if (variable.min > vm::kValueMin) (void)sections_.pool.constant(variable.min);
     if (variable.max < vm::kValueMax) (void)sections_.pool.constant(variable.max);
   }
@@ -139,9 +139,9 @@ void RuleWriter::reserve_limits() {
     diagnostics_.report(Code::E0407, "the variables have too many different limits").label({});
 }
 
-void RuleWriter::add(const ProgramBehavior& behavior, const std::vector<ProgramRule>& written) {
+void RuleWriter::add(const ir::Behavior& behavior, const std::vector<ir::Rule>& written) {
   Parts parts{program_, tables_, strings_, sections_.pool, sections_.timers, diagnostics_};
-  for (const ProgramRule& rule : written)
+  for (const ir::Rule& rule : written)
     Listener(parts).listen(rule);
   std::vector<RuleDraft> drafts = make_drafts(parts, behavior);
   if (!fits(parts, behavior, drafts.size())) return;
@@ -161,9 +161,9 @@ void RuleWriter::add(const ProgramBehavior& behavior, const std::vector<ProgramR
 }
 
 // The watch rules stand behind the others.
-std::vector<RuleDraft> RuleWriter::make_drafts(Parts& parts, const ProgramBehavior& behavior) {
+std::vector<RuleDraft> RuleWriter::make_drafts(Parts& parts, const ir::Behavior& behavior) {
   std::vector<RuleDraft> drafts;
-  for (const ProgramRule& rule : behavior.rules) {
+  for (const ir::Rule& rule : behavior.rules) {
     drafts.push_back(draft(parts, rule));
     if (rule.resume)
       drafts.push_back(
@@ -175,7 +175,7 @@ std::vector<RuleDraft> RuleWriter::make_drafts(Parts& parts, const ProgramBehavi
   return drafts;
 }
 
-RuleDraft RuleWriter::draft(Parts& parts, const ProgramRule& rule) {
+RuleDraft RuleWriter::draft(Parts& parts, const ir::Rule& rule) {
   RuleDraft draft;
   draft.span = rule.span;
   draft.record.line = rule.line;
@@ -189,7 +189,7 @@ RuleDraft RuleWriter::draft(Parts& parts, const ProgramRule& rule) {
   return draft;
 }
 
-std::uint8_t RuleWriter::modifiers(const ProgramRule& rule) {
+std::uint8_t RuleWriter::modifiers(const ir::Rule& rule) {
   if (rule.cooldown == 0 && rule.waiting == 0 && !rule.restarting) return vm::kNoModifiers;
   const vm::Modifiers wanted{
       rule.cooldown, rule.waiting, static_cast<std::uint8_t>(rule.restarting ? 1 : 0), {}};
@@ -203,13 +203,13 @@ std::uint8_t RuleWriter::modifiers(const ProgramRule& rule) {
   return place;
 }
 
-std::string RuleWriter::title(const ProgramBehavior& behavior) {
+std::string RuleWriter::title(const ir::Behavior& behavior) {
   if (!behavior.name.empty()) return "the behaviour `" + behavior.name + "`";
   if (behavior.priority == vm::kSafetyPriority) return "all SAFETY rules together";
   return "the rule in line " + std::to_string(behavior.rules.front().line);
 }
 
-bool RuleWriter::fits(const Parts& parts, const ProgramBehavior& behavior, std::size_t rules) {
+bool RuleWriter::fits(const Parts& parts, const ir::Behavior& behavior, std::size_t rules) {
   const auto check = [&](std::size_t count, std::size_t limit, const char* what) {
     if (count <= limit) return true;
     diagnostics_
@@ -261,8 +261,8 @@ std::uint16_t RuleWriter::add(const ResponseCode& response, const Frame& frame) 
 
 }  // namespace
 
-RuleSections make_rules(const Program& program, const Program& written, const Tables& tables,
-                        Strings& strings, Diagnostics& diagnostics) {
+RuleSections make_rules(const ir::Program& program, const ir::Program& written,
+                        const Tables& tables, Strings& strings, Diagnostics& diagnostics) {
   return RuleWriter(program, written, tables, strings, diagnostics).write();
 }
 

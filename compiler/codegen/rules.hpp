@@ -21,7 +21,7 @@ struct RuleSections {
 // Reports E0407 for what does not fit; the sections are not usable then. Names and texts go into
 // `strings`. `written`: the program before it was optimised. What a behaviour reads there stays a
 // reason to evaluate it, so that it is evaluated in the same steps.
-[[nodiscard]] RuleSections make_rules(const Program& program, const Program& written,
+[[nodiscard]] RuleSections make_rules(const ir::Program& program, const ir::Program& written,
                                       const Tables& tables, Strings& strings,
                                       Diagnostics& diagnostics);
 

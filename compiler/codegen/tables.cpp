@@ -31,10 +31,10 @@ void number(Map& map) {
 
 }  // namespace
 
-Tables::Tables(const Program& program, Diagnostics& diagnostics) {
-  for (const ProgramCheck& check : program.checks)
+Tables::Tables(const ir::Program& program, Diagnostics& diagnostics) {
+  for (const ir::Check& check : program.checks)
     use(check.input);
-  for_each_rule(program, [this](const ProgramRule& rule) { use(rule); });
+  for_each_rule(program, [this](const ir::Rule& rule) { use(rule); });
   check_counts(program, diagnostics);
   number(channels_);
   number(actuators_);
@@ -42,7 +42,7 @@ Tables::Tables(const Program& program, Diagnostics& diagnostics) {
   number(motion_groups_);
 }
 
-void Tables::use(const ProgramRule& rule) {
+void Tables::use(const ir::Rule& rule) {
   use(rule.condition);
   use(rule.then_response);
   use(rule.else_response);
@@ -55,15 +55,15 @@ void Tables::use(const Expression& expression) {
     use(operand);
 }
 
-void Tables::use(const ProgramBlock& block) {
-  for_each_statement(block, [this](const ProgramStatement& statement) {
-    if (const auto* command = std::get_if<ProgramCommand>(&statement.node)) use(*command);
-    if (const auto* halt = std::get_if<ProgramHalt>(&statement.node)) use(*halt);
+void Tables::use(const ir::Block& block) {
+  for_each_statement(block, [this](const ir::Statement& statement) {
+    if (const auto* command = std::get_if<ir::Command>(&statement.node)) use(*command);
+    if (const auto* halt = std::get_if<ir::Halt>(&statement.node)) use(*halt);
     for_each_expression(statement, [this](const Expression& expression) { use(expression); });
   });
 }
 
-void Tables::use(const ProgramCommand& command) {
+void Tables::use(const ir::Command& command) {
   for (const std::size_t actuator : command.actuators)
     actuators_.emplace(actuator, 0);
   if (command.group) groups_.emplace(*command.group, 0);
@@ -75,13 +75,13 @@ void Tables::use(const ProgramCommand& command) {
   if (command.word) add_once(words_, *command.word);
 }
 
-void Tables::use(const ProgramHalt& halt) {
+void Tables::use(const ir::Halt& halt) {
   for (const std::size_t actuator : halt.actuators)
     actuators_.emplace(actuator, 0);
   if (halt.group) groups_.emplace(*halt.group, 0);
 }
 
-void Tables::check_counts(const Program& program, Diagnostics& diagnostics) const {
+void Tables::check_counts(const ir::Program& program, Diagnostics& diagnostics) const {
   const auto check = [&](std::size_t count, std::size_t limit, std::string_view what) {
     if (count > limit)
       diagnostics
@@ -100,7 +100,7 @@ void Tables::check_counts(const Program& program, Diagnostics& diagnostics) cons
   check(words_.size(), vm::kMaxWords, "words and texts");
 }
 
-std::uint8_t Tables::target(const ProgramCommand& command) const {
+std::uint8_t Tables::target(const ir::Command& command) const {
   if (command.actuators.size() == 1 && !command.group)
     return actuators_.at(command.actuators.front());
   const std::size_t group = command.group ? groups_.at(*command.group)
@@ -108,7 +108,7 @@ std::uint8_t Tables::target(const ProgramCommand& command) const {
   return static_cast<std::uint8_t>(vm::kGroupBit | group);
 }
 
-std::vector<std::uint8_t> Tables::targets(const ProgramHalt& halt) const {
+std::vector<std::uint8_t> Tables::targets(const ir::Halt& halt) const {
   if (halt.all && actuators_.empty()) return {};
   if (halt.all) return {vm::kAllActuators};
   if (halt.group) return {static_cast<std::uint8_t>(vm::kGroupBit | groups_.at(*halt.group))};
@@ -118,7 +118,7 @@ std::vector<std::uint8_t> Tables::targets(const ProgramHalt& halt) const {
   return targets;
 }
 
-std::uint32_t Tables::mask_of(const ProgramHalt& halt) const {
+std::uint32_t Tables::mask_of(const ir::Halt& halt) const {
   if (!halt.all) return mask_of(halt.actuators);
   std::uint32_t mask = 0;
   for (const auto& [place, number] : actuators_)
@@ -133,11 +133,11 @@ std::uint32_t Tables::mask_of(const std::vector<std::size_t>& actuators) const {
   return mask;
 }
 
-std::uint8_t Tables::verb(const ProgramCommand& command) const {
+std::uint8_t Tables::verb(const ir::Command& command) const {
   return place_of(verbs_, command.verb);
 }
 
-std::uint8_t Tables::word(const ProgramCommand& command) const {
+std::uint8_t Tables::word(const ir::Command& command) const {
   return command.word ? place_of(words_, *command.word) : vm::kNoWord;
 }
 
@@ -149,7 +149,7 @@ std::uint32_t Tables::verbs_of(const ActuatorConfig& actuator, std::size_t place
     if (performs || follows) mask |= std::uint32_t{1} << v;
   }
   for (const VerbConfig& verb : actuator.verbs) {
-    const auto number = place_of(verbs_, ProgramVerb{verb.name, verb.action, verb.carries()});
+    const auto number = place_of(verbs_, ir::Verb{verb.name, verb.action, verb.carries()});
     if (number < verbs_.size()) mask |= std::uint32_t{1} << number;
   }
   return mask;

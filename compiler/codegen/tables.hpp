@@ -24,44 +24,44 @@ namespace robosync::compiler {
 class Tables {
 public:
   // Reports E0407 when there is more than the image format can number.
-  Tables(const Program& program, Diagnostics& diagnostics);
+  Tables(const ir::Program& program, Diagnostics& diagnostics);
 
   // Valid when nothing was reported.
   [[nodiscard]] std::uint8_t input(ChannelRef ref) const { return channels_.at(ref); }
   [[nodiscard]] std::uint8_t variable(std::size_t place) const {
     return static_cast<std::uint8_t>(channels_.size() + place);
   }
-  [[nodiscard]] std::uint8_t target(const ProgramCommand& command) const;
+  [[nodiscard]] std::uint8_t target(const ir::Command& command) const;
   // One for each `halt` instruction.
-  [[nodiscard]] std::vector<std::uint8_t> targets(const ProgramHalt& halt) const;
+  [[nodiscard]] std::vector<std::uint8_t> targets(const ir::Halt& halt) const;
   [[nodiscard]] std::uint32_t mask_of(const std::vector<std::size_t>& actuators) const;
-  [[nodiscard]] std::uint32_t mask_of(const ProgramHalt& halt) const;
+  [[nodiscard]] std::uint32_t mask_of(const ir::Halt& halt) const;
   [[nodiscard]] std::uint8_t number_of(std::size_t actuator) const {
     return actuators_.at(actuator);
   }
-  [[nodiscard]] std::uint8_t verb(const ProgramCommand& command) const;
-  [[nodiscard]] std::uint8_t word(const ProgramCommand& command) const;
+  [[nodiscard]] std::uint8_t verb(const ir::Command& command) const;
+  [[nodiscard]] std::uint8_t word(const ir::Command& command) const;
 
   // What has a number, in the order of the numbers: places in the Robot's lists.
   [[nodiscard]] const std::map<ChannelRef, std::uint8_t>& channels() const { return channels_; }
   [[nodiscard]] const std::map<std::size_t, std::uint8_t>& actuators() const { return actuators_; }
   [[nodiscard]] const std::map<std::size_t, std::uint8_t>& groups() const { return groups_; }
-  // Those of several actuators are groups, behind the robot's: places in Program::motions.
+  // Those of several actuators are groups, behind the robot's: places in ir::Program::motions.
   [[nodiscard]] const std::map<std::size_t, std::uint8_t>& motion_groups() const {
     return motion_groups_;
   }
-  [[nodiscard]] const std::vector<ProgramVerb>& verbs() const { return verbs_; }
-  [[nodiscard]] const std::vector<ProgramWord>& words() const { return words_; }
+  [[nodiscard]] const std::vector<ir::Verb>& verbs() const { return verbs_; }
+  [[nodiscard]] const std::vector<ir::Word>& words() const { return words_; }
   // Bit v: verb v is one of the actuator's, which is at `place`.
   [[nodiscard]] std::uint32_t verbs_of(const ActuatorConfig& actuator, std::size_t place) const;
 
 private:
-  void use(const ProgramRule& rule);
-  void use(const ProgramBlock& block);
+  void use(const ir::Rule& rule);
+  void use(const ir::Block& block);
   void use(const Expression& expression);
-  void use(const ProgramCommand& command);
-  void use(const ProgramHalt& halt);
-  void check_counts(const Program& program, Diagnostics& diagnostics) const;
+  void use(const ir::Command& command);
+  void use(const ir::Halt& halt);
+  void check_counts(const ir::Program& program, Diagnostics& diagnostics) const;
 
   std::map<ChannelRef, std::uint8_t> channels_;
   std::map<std::size_t, std::uint8_t> actuators_;
@@ -69,8 +69,8 @@ private:
   std::map<std::size_t, std::uint8_t> motion_groups_;
   std::set<std::size_t> performers_;  // actuators that are part of a MOTION …
   std::set<std::size_t> followers_;   // … that FOLLOW
-  std::vector<ProgramVerb> verbs_;    // in the order of first use
-  std::vector<ProgramWord> words_;
+  std::vector<ir::Verb> verbs_;       // in the order of first use
+  std::vector<ir::Word> words_;
 };
 
 // ---- texts

@@ -22,8 +22,8 @@ struct ChannelRef {
 enum class Operation : std::uint8_t {
   constant,
   input,     // a channel
-  variable,  // Expression::index: its place in Program::variables
-  local,     // Expression::index: its number in the response (ProgramLocal)
+  variable,  // Expression::index: its place in ir::Program::variables
+  local,     // Expression::index: its number in the response (ir::Local)
   negate,
   add,
   subtract,

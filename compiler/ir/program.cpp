@@ -4,10 +4,10 @@
 
 #include "compiler/ir/walk.hpp"
 
-namespace robosync::compiler {
+namespace robosync::compiler::ir {
 
 // A part of a time counts as a time, as it does where the robot works out the number.
-std::optional<vm::Value> constant_count(const ProgramRepeat& repeat) {
+std::optional<vm::Value> constant_count(const Repeat& repeat) {
   const bool counts = repeat.kind == RepeatKind::times;
   if (!counts || repeat.control.operation != Operation::constant) return std::nullopt;
   constexpr std::int64_t kMost = vm::kValueMax / vm::kScale;
@@ -15,15 +15,15 @@ std::optional<vm::Value> constant_count(const ProgramRepeat& repeat) {
   return static_cast<vm::Value>(std::clamp<std::int64_t>(times, 0, kMost) * vm::kScale);
 }
 
-bool is_pause(const ProgramStatement& statement) {
+bool is_pause(const Statement& statement) {
   return std::visit([](const auto& node) { return node.kPauses; }, statement.node);
 }
 
-bool pauses(const ProgramBlock& block) {
+bool pauses(const Block& block) {
   bool found = false;
-  for_each_statement(
-      block, [&](const ProgramStatement& statement) { found = found || is_pause(statement); });
+  for_each_statement(block,
+                     [&](const Statement& statement) { found = found || is_pause(statement); });
   return found;
 }
 
-}  // namespace robosync::compiler
+}  // namespace robosync::compiler::ir

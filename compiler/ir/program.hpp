@@ -7,7 +7,7 @@
 //   kParts   the expressions and the blocks that it holds, in the program's order
 //   kPauses  whether it gives up the processor, so that the response goes on in a later step
 //   kCells   how many cells of the frame it keeps at most: locals, counters, deadlines
-// Only ProgramSet writes variables; only ProgramCommand and ProgramHalt name actuators.
+// Only Set writes variables; only Command and Halt name actuators.
 #pragma once
 
 #include <cstddef>
@@ -23,12 +23,14 @@
 #include "vm/image.hpp"
 
 namespace robosync::compiler {
-
 struct Unit;  // config/units.hpp
+}
+
+namespace robosync::compiler::ir {
 
 // ---- what is remembered
 
-struct ProgramVariable {
+struct Variable {
   std::string name;
   vm::VariableKind kind{};
   vm::Dimension dimension{};
@@ -40,7 +42,7 @@ struct ProgramVariable {
   std::uint32_t fade = 0;  // vm::Variable::fade
 };
 
-struct ProgramCheck {
+struct Check {
   std::size_t variable = 0;  // of kind band; its labels are those of the bands, in their order
   Expression input;          // a channel or a variable
   std::vector<vm::Band> bands;
@@ -49,67 +51,67 @@ struct ProgramCheck {
 };
 
 // A MOTION that something performs: where each of its actuators is when.
-struct ProgramTrack {
+struct Track {
   std::size_t actuator = 0;
   std::vector<vm::Key> keys;
 };
-struct ProgramMotion {
+struct Motion {
   std::string name;
   vm::Value length = 0;  // time of its last row
-  std::vector<ProgramTrack> tracks;
+  std::vector<Track> tracks;
 };
 
 // ---- what responses do
 
-struct ProgramArgument {
+struct Argument {
   vm::Param param{};
   Expression value;
-  static constexpr std::tuple kParts{&ProgramArgument::value};
-  bool operator==(const ProgramArgument&) const = default;
+  static constexpr std::tuple kParts{&Argument::value};
+  bool operator==(const Argument&) const = default;
 };
 
 // A word or text of the first actuator it is for, which sets one parameter.
-struct ProgramWord {
+struct Word {
   std::string name;
   vm::Param param{};
   vm::Value value = 0;
-  bool operator==(const ProgramWord&) const = default;
+  bool operator==(const Word&) const = default;
 };
 
-struct ProgramVerb {
+struct Verb {
   std::string name;
   vm::Action action{};
   std::uint8_t takes = 0;
-  bool operator==(const ProgramVerb&) const = default;
+  bool operator==(const Verb&) const = default;
 };
 
 // One or several actuators. STOP in a response is a command with the verb STOP; STOP ALL is one for
 // each actuator. PERFORM is one for all actuators of its MOTION.
-struct ProgramCommand {
+struct Command {
   std::optional<std::size_t> group;    // place in Robot::groups: the target is the group …
   std::vector<std::size_t> actuators;  // … and these are its members; else exactly one
-  ProgramVerb verb;
-  std::optional<ProgramWord> word;
-  std::vector<ProgramArgument> arguments;
+  Verb verb;
+  std::optional<Word> word;
+  std::vector<Argument> arguments;
   // PERFORM: the place in Program::motions of what is performed; `actuators` are all that it moves.
   std::optional<std::size_t> motion{};
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 0;
-  static constexpr std::tuple kParts{&ProgramCommand::arguments};
+  static constexpr std::tuple kParts{&Command::arguments};
 };
 
-struct ProgramStatement;
-using ProgramBlock = std::vector<ProgramStatement>;
+struct Statement;
+using Block = std::vector<Statement>;
 
-struct ProgramLocal {  // a value that is worked out here: what a DEFINE is given
+struct Local {  // a value that is worked out here: what a DEFINE is given
   std::size_t number = 0;
   Expression value;
   bool has_other_writers = false;  // then what it holds depends on the way there
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 1;
-  static constexpr std::tuple kParts{&ProgramLocal::value};
+  static constexpr std::tuple kParts{&Local::value};
 };
-struct ProgramSet {
+struct Set {
   std::size_t variable = 0;
   Expression value;
   bool relative = false;  // RAISE, LOWER, SIGNAL: `value` is added
@@ -120,79 +122,78 @@ struct ProgramSet {
   Fact before{};  // what the variable is before
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 0;
-  static constexpr std::tuple kParts{&ProgramSet::value};
+  static constexpr std::tuple kParts{&Set::value};
 };
-struct ProgramWait {
+struct Wait {
   Expression duration;
   static constexpr bool kPauses = true;
   static constexpr std::size_t kCells = 0;
-  static constexpr std::tuple kParts{&ProgramWait::duration};
+  static constexpr std::tuple kParts{&Wait::duration};
 };
-struct ProgramWaitUntil {
+struct WaitUntil {
   Expression condition;
   std::optional<Expression> within;
   static constexpr bool kPauses = true;
   static constexpr std::size_t kCells = 1;
-  static constexpr std::tuple kParts{&ProgramWaitUntil::condition, &ProgramWaitUntil::within};
+  static constexpr std::tuple kParts{&WaitUntil::condition, &WaitUntil::within};
 };
 // FOLLOW: the body runs in each step that may change what it reads, beginning with the next, until the
 // time is over; without one, as long as the response runs. What it remembers from one run of the body to
 // the next is a local that stands before it.
-struct ProgramFollow {
+struct Follow {
   std::optional<Expression> lasts;
-  ProgramBlock body;  // it does not pause
+  Block body;  // it does not pause
   static constexpr bool kPauses = true;
   static constexpr std::size_t kCells = 1;
-  static constexpr std::tuple kParts{&ProgramFollow::lasts, &ProgramFollow::body};
+  static constexpr std::tuple kParts{&Follow::lasts, &Follow::body};
 };
-struct ProgramThen {
+struct Then {
   static constexpr bool kPauses = true;
   static constexpr std::size_t kCells = 0;
   static constexpr std::tuple<> kParts{};
 };
-struct ProgramIf {
+struct If {
   Expression condition;
-  ProgramBlock then_block, else_block;
+  Block then_block, else_block;
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 0;
-  static constexpr std::tuple kParts{&ProgramIf::condition, &ProgramIf::then_block,
-                                     &ProgramIf::else_block};
+  static constexpr std::tuple kParts{&If::condition, &If::then_block, &If::else_block};
 };
 enum class RepeatKind : std::uint8_t { times, while_, forever };
-struct ProgramRepeat;
+struct Repeat;
 // How often it runs, when that is constant: a whole number in thousandths, 0 for never.
-[[nodiscard]] std::optional<vm::Value> constant_count(const ProgramRepeat& repeat);
-struct ProgramRepeat {
+[[nodiscard]] std::optional<vm::Value> constant_count(const Repeat& repeat);
+struct Repeat {
   RepeatKind kind{};
   Expression control;  // times: the number; while_: the condition
-  ProgramBlock body;
+  Block body;
   // Variables that the body certainly writes: the optimiser has them written once before the loop
   // (to what they are), so that the body computes them in place.
   std::vector<std::size_t> assigned{}, shifted{};
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 1;
-  static constexpr std::tuple kParts{&ProgramRepeat::control, &ProgramRepeat::body};
+  static constexpr std::tuple kParts{&Repeat::control, &Repeat::body};
 };
-struct ProgramOption {
+struct Option {
   vm::Value weight = 0;  // share of the sum of all weights; positive
-  ProgramBlock body;
-  static constexpr std::tuple kParts{&ProgramOption::body};
+  Block body;
+  static constexpr std::tuple kParts{&Option::body};
 };
-struct ProgramPick {
-  std::vector<ProgramOption> options;
+struct Pick {
+  std::vector<Option> options;
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 1;
-  static constexpr std::tuple kParts{&ProgramPick::options};
+  static constexpr std::tuple kParts{&Pick::options};
 };
-struct ProgramLog {  // LOG, and ALERT with `alert`
+struct Log {  // LOG, and ALERT with `alert`
   bool alert = false;
   std::string text;                // with a {} place for each value
   std::vector<Expression> values;  // at most as many as there are vm::Params
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 0;
-  static constexpr std::tuple kParts{&ProgramLog::values};
+  static constexpr std::tuple kParts{&Log::values};
 };
-struct ProgramHalt {  // STOP in a SAFETY rule
+struct Halt {  // STOP in a SAFETY rule
   bool all = false;
   std::optional<std::size_t> group;
   std::vector<std::size_t> actuators;
@@ -201,26 +202,24 @@ struct ProgramHalt {  // STOP in a SAFETY rule
   static constexpr std::tuple<> kParts{};
 };
 
-struct ProgramStatement {
-  std::variant<ProgramCommand, ProgramLocal, ProgramSet, ProgramWait, ProgramWaitUntil,
-               ProgramFollow, ProgramThen, ProgramIf, ProgramRepeat, ProgramPick, ProgramLog,
-               ProgramHalt>
+struct Statement {
+  std::variant<Command, Local, Set, Wait, WaitUntil, Follow, Then, If, Repeat, Pick, Log, Halt>
       node;
   std::uint16_t line = 0;
   Span span;
 };
 
 // Does the statement itself give up the processor? Of a block: does a statement in it, anywhere?
-[[nodiscard]] bool is_pause(const ProgramStatement& statement);
-[[nodiscard]] bool pauses(const ProgramBlock& block);
+[[nodiscard]] bool is_pause(const Statement& statement);
+[[nodiscard]] bool pauses(const Block& block);
 
 // ---- when they do it
 
-struct ProgramRule {
+struct Rule {
   vm::RuleKind kind = vm::RuleKind::when;  // when … start; safety
   Expression condition;                    // every: the period; start: none
-  ProgramBlock then_response;
-  ProgramBlock else_response;        // only of when_else
+  Block then_response;
+  Block else_response;               // only of when_else
   std::optional<Expression> resume;  // of safety; nothing: only a person resumes
   vm::Value cooldown = 0;            // thousandths of a second; 0: none
   vm::Value waiting = 0;
@@ -229,22 +228,22 @@ struct ProgramRule {
   Span span{};  // its first word
 };
 
-struct ProgramBehavior {
+struct Behavior {
   std::int16_t priority = 0;
   std::string name;  // empty: a rule outside a BEHAVIOR
-  std::vector<ProgramRule> rules;
+  std::vector<Rule> rules;
 };
 
 struct Program {
-  std::vector<ProgramVariable> variables;
-  std::vector<ProgramCheck> checks;
-  std::vector<ProgramMotion> motions;
-  std::vector<ProgramRule> safety;
-  std::vector<ProgramBehavior> behaviors;  // priorities descending, distinct
+  std::vector<Variable> variables;
+  std::vector<Check> checks;
+  std::vector<Motion> motions;
+  std::vector<Rule> safety;
+  std::vector<Behavior> behaviors;  // priorities descending, distinct
   // LIMIT … SPEED, by place in Robot::actuators; the stricter of this and the robot's own holds.
   std::vector<std::pair<std::size_t, vm::Value>> speed_limits;
   bool optimized = false;  // facts are filled in, and codegen may make use of them
   bool shares = false;     // … and work out equal parts of a condition once: frames have room
 };
 
-}  // namespace robosync::compiler
+}  // namespace robosync::compiler::ir

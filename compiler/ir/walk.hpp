@@ -20,7 +20,7 @@ void visit_part(Part& part, const OnExpression& on_expression, const OnBlock& on
   using Kind = std::remove_const_t<Part>;
   if constexpr (std::same_as<Kind, Expression>) {
     on_expression(part);
-  } else if constexpr (std::same_as<Kind, ProgramBlock>) {
+  } else if constexpr (std::same_as<Kind, ir::Block>) {
     on_block(part);
   } else if constexpr (std::same_as<Kind, std::optional<Expression>>) {
     if (part) on_expression(*part);
@@ -34,11 +34,11 @@ void visit_part(Part& part, const OnExpression& on_expression, const OnBlock& on
 }
 
 // The expressions and the blocks of a statement, in the program's order; not what stands in those
-// blocks. `statement`: a ProgramStatement, or the node in it.
+// blocks. `statement`: a ir::Statement, or the node in it.
 template <typename Statement, typename OnExpression, typename OnBlock>
 void for_each_part(Statement& statement, const OnExpression& on_expression,
                    const OnBlock& on_block) {
-  if constexpr (std::same_as<std::remove_const_t<Statement>, ProgramStatement>)
+  if constexpr (std::same_as<std::remove_const_t<Statement>, ir::Statement>)
     std::visit([&](auto& node) { visit_part(node, on_expression, on_block); }, statement.node);
   else
     visit_part(statement, on_expression, on_block);
@@ -57,7 +57,7 @@ void for_each_block(Statement& statement, const OnBlock& on_block) {
 
 // Every statement of a block, inner ones included, outer ones first.
 template <typename Block, typename Visit>
-requires std::same_as<std::remove_const_t<Block>, ProgramBlock>
+requires std::same_as<std::remove_const_t<Block>, ir::Block>
 void for_each_statement(Block& block, const Visit& visit) {
   for (auto& statement : block) {
     visit(statement);
@@ -75,7 +75,7 @@ void for_each_of(Block& block, const Visit& visit) {
 
 // Every rule: SAFETY, then the behaviours' in their order.
 template <typename AnyProgram, typename Visit>
-requires std::same_as<std::remove_const_t<AnyProgram>, Program>
+requires std::same_as<std::remove_const_t<AnyProgram>, ir::Program>
 void for_each_rule(AnyProgram& program, const Visit& visit) {
   for (auto& rule : program.safety)
     visit(rule);
@@ -92,10 +92,10 @@ void for_each_response(Rule& rule, const Visit& visit) {
 }
 
 template <typename Predicate>
-bool any_command(const ProgramBlock& block, const Predicate& predicate) {
+bool any_command(const ir::Block& block, const Predicate& predicate) {
   bool found = false;
-  for_each_of<ProgramCommand>(
-      block, [&](const ProgramCommand& command) { found = found || predicate(command); });
+  for_each_of<ir::Command>(
+      block, [&](const ir::Command& command) { found = found || predicate(command); });
   return found;
 }
 

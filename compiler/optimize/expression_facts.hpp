@@ -9,8 +9,8 @@
 
 namespace robosync::compiler {
 
-using VariableFacts = std::vector<Fact>;         // by place in Program::variables
-using LocalFacts = std::map<std::size_t, Fact>;  // by ProgramLocal::number
+using VariableFacts = std::vector<Fact>;         // by place in ir::Program::variables
+using LocalFacts = std::map<std::size_t, Fact>;  // by ir::Local::number
 
 // What an expression reads, when it is evaluated.
 struct Sight {

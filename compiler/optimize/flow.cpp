@@ -8,7 +8,7 @@
 
 namespace robosync::compiler {
 
-WriteFacts Flow::follow(ProgramBlock& response, const VariableFacts& entry, bool in_place) {
+WriteFacts Flow::follow(ir::Block& response, const VariableFacts& entry, bool in_place) {
   const std::size_t variables = program_.variables.size();
   locals_.clear();
   writes_ = {std::vector<std::optional<Fact>>(variables),
@@ -23,24 +23,24 @@ WriteFacts Flow::follow(ProgramBlock& response, const VariableFacts& entry, bool
 
 // Of a variable that is raised or lowered again in the same run, the sum may have left its range before:
 // what it is then, no single statement says. In a loop one statement is as good as two.
-void Flow::note_sums(const ProgramBlock& response) {
+void Flow::note_sums(const ir::Block& response) {
   std::vector<unsigned> count(program_.variables.size());
-  const auto note = [&](const ProgramSet& set) {
+  const auto note = [&](const ir::Set& set) {
     if (set.relative) ++count[set.variable];
   };
-  for_each_of<ProgramSet>(response, note);
-  for_each_of<ProgramRepeat>(
-      response, [&](const ProgramRepeat& repeat) { for_each_of<ProgramSet>(repeat.body, note); });
+  for_each_of<ir::Set>(response, note);
+  for_each_of<ir::Repeat>(
+      response, [&](const ir::Repeat& repeat) { for_each_of<ir::Set>(repeat.body, note); });
   sums_.assign(count.size(), false);
   for (std::size_t i = 0; i < count.size(); ++i) {
-    const ProgramVariable& variable = program_.variables[i];
+    const ir::Variable& variable = program_.variables[i];
     const bool bounded = variable.min > vm::kValueMin || variable.max < vm::kValueMax;
     sums_[i] = bounded && count[i] > 1;
   }
 }
 
-void Flow::block(ProgramBlock& statements, State& state) {
-  for (ProgramStatement& statement : statements)
+void Flow::block(ir::Block& statements, State& state) {
+  for (ir::Statement& statement : statements)
     std::visit([&](auto& node) { visit(node, state); }, statement.node);
 }
 
@@ -55,7 +55,7 @@ void Flow::visit(Node& node, State& state) {
   if (Node::kPauses) pause(state);
 }
 
-void Flow::visit(ProgramLocal& local, State& state) {
+void Flow::visit(ir::Local& local, State& state) {
   const Fact value = look(local.value, state);
   locals_[local.number] = local.has_other_writers ? Fact{} : value;
 }
@@ -63,8 +63,8 @@ void Flow::visit(ProgramLocal& local, State& state) {
 // ---- writes
 
 // To set something unknown does nothing.
-void Flow::visit(ProgramSet& set, State& state) {
-  const ProgramVariable& variable = program_.variables[set.variable];
+void Flow::visit(ir::Set& set, State& state) {
+  const ir::Variable& variable = program_.variables[set.variable];
   Fact& cell = state.variables[set.variable];
   const Fact value = look(set.value, state);
   Fact before = cell;
@@ -88,7 +88,7 @@ void Flow::visit(ProgramSet& set, State& state) {
   if (growths_ == nullptr && dead_ == 0) record(set, cell);
 }
 
-void Flow::record(const ProgramSet& set, const Fact& result) {
+void Flow::record(const ir::Set& set, const Fact& result) {
   const auto add_to = [](std::optional<Fact>& all, const Fact& one) {
     all = all ? either(*all, one) : one;
   };
@@ -105,14 +105,14 @@ void Flow::pause(State& state) const {
   std::fill(state.barred.begin(), state.barred.end(), false);
 }
 
-void Flow::visit(ProgramWaitUntil& wait, State& state) {
+void Flow::visit(ir::WaitUntil& wait, State& state) {
   if (wait.within) look(*wait.within, state);
   pause(state);
   look(wait.condition, state);
 }
 
 // Its body runs again and again.
-void Flow::visit(ProgramFollow& follow, State& state) {
+void Flow::visit(ir::Follow& follow, State& state) {
   if (follow.lasts) look(*follow.lasts, state);
   pause(state);
   block(follow.body, state);
@@ -131,7 +131,7 @@ Flow::State Flow::merged(const State& one, const State& other) {
   return result;
 }
 
-void Flow::branch(ProgramBlock& statements, State& state, bool may_run) {
+void Flow::branch(ir::Block& statements, State& state, bool may_run) {
   if (!may_run) ++dead_;
   block(statements, state);
   if (!may_run) --dead_;
@@ -139,12 +139,12 @@ void Flow::branch(ProgramBlock& statements, State& state, bool may_run) {
 
 // The verifier reads code once, from its start to its end: a pause on one way takes what the
 // response owns from the ways that stand behind it, too.
-void Flow::pass(const ProgramBlock& before, State& state) {
+void Flow::pass(const ir::Block& before, State& state) {
   if (pauses(before)) std::fill(state.owned.begin(), state.owned.end(), Owned::no);
 }
 
 // What a block writes is owned until that block ends.
-void Flow::visit(ProgramIf& choice, State& state) {
+void Flow::visit(ir::If& choice, State& state) {
   const Fact condition = look(choice.condition, state);
   State then_state = state, else_state = state;
   const bool may_be_true = !condition.never_true();
@@ -163,10 +163,10 @@ void Flow::visit(ProgramIf& choice, State& state) {
   state = std::move(after);
 }
 
-void Flow::visit(ProgramPick& pick, State& state) {
+void Flow::visit(ir::Pick& pick, State& state) {
   if (pick.options.size() == 1) return block(pick.options.front().body, state);
   std::optional<State> after;
-  for (ProgramOption& option : pick.options) {
+  for (ir::Option& option : pick.options) {
     State inner = state;
     block(option.body, inner);
     pass(option.body, state);
@@ -189,7 +189,7 @@ bool is_variable(const Expression& expression, std::size_t place) {
 }
 
 // What `set` adds to its variable, if it does no more than that.
-std::optional<Fact> step_of(const ProgramSet& set) {
+std::optional<Fact> step_of(const ir::Set& set) {
   if (set.relative) return set.value.fact;
   const auto& operands = set.value.operands;
   const Operation operation = set.value.operation;
@@ -204,7 +204,7 @@ std::optional<Fact> step_of(const ProgramSet& set) {
 
 }  // namespace
 
-void Flow::note_growth(const ProgramSet& set) {
+void Flow::note_growth(const ir::Set& set) {
   Growth& growth = (*growths_)[set.variable];
   const std::optional<Fact> step = step_of(set);
   growth.written = true;
@@ -216,15 +216,15 @@ void Flow::note_growth(const ProgramSet& set) {
   growth.step = add(growth.step, once_at_most);
 }
 
-void Flow::forget_written(const ProgramBlock& body, State& state) const {
-  for_each_of<ProgramSet>(
-      body, [&](const ProgramSet& set) { state.variables[set.variable] = anytime_[set.variable]; });
+void Flow::forget_written(const ir::Block& body, State& state) const {
+  for_each_of<ir::Set>(
+      body, [&](const ir::Set& set) { state.variables[set.variable] = anytime_[set.variable]; });
 }
 
-void Flow::visit(ProgramRepeat& repeat, State& state) {
+void Flow::visit(ir::Repeat& repeat, State& state) {
   repeat.assigned.clear();
   repeat.shifted.clear();
-  if (repeat.kind == RepeatKind::times) look(repeat.control, state);
+  if (repeat.kind == ir::RepeatKind::times) look(repeat.control, state);
   const std::optional<vm::Value> times = constant_count(repeat);
   if (times && *times == 0) return;
   const bool rests = pauses(repeat.body);
@@ -233,7 +233,7 @@ void Flow::visit(ProgramRepeat& repeat, State& state) {
     begin_resting(state);
   else
     forget_written(repeat.body, state);
-  if (repeat.kind == RepeatKind::while_) look(repeat.control, state);
+  if (repeat.kind == ir::RepeatKind::while_) look(repeat.control, state);
   State inner = state;
   ++inner_loops_;
   block(repeat.body, inner);
@@ -251,7 +251,7 @@ void Flow::begin_resting(State& state) const {
 }
 
 // The body runs `times`, at least once, and never gives up the processor.
-void Flow::counted(ProgramRepeat& repeat, vm::Value times, State& state) {
+void Flow::counted(ir::Repeat& repeat, vm::Value times, State& state) {
   State head = state;
   forget_written(repeat.body, head);
   if (growths_ == nullptr) {
@@ -266,7 +266,7 @@ void Flow::counted(ProgramRepeat& repeat, vm::Value times, State& state) {
 }
 
 // What one round from `head` on does.
-Flow::Growths Flow::measure(ProgramRepeat& repeat, State head) {
+Flow::Growths Flow::measure(ir::Repeat& repeat, State head) {
   Growths growths(program_.variables.size());
   const unsigned outer = inner_loops_;
   growths_ = &growths;
@@ -278,13 +278,13 @@ Flow::Growths Flow::measure(ProgramRepeat& repeat, State head) {
 }
 
 // The variables at the start of a round, after up to `times` others.
-Flow::State Flow::grown(const ProgramRepeat& repeat, const State& before, const Growths& growths,
+Flow::State Flow::grown(const ir::Repeat& repeat, const State& before, const Growths& growths,
                         vm::Value times) const {
   State head = before;
   forget_written(repeat.body, head);
   for (std::size_t i = 0; i < growths.size(); ++i) {
     if (!growths[i].written || !growths[i].regular) continue;
-    const ProgramVariable& variable = program_.variables[i];
+    const ir::Variable& variable = program_.variables[i];
     const Fact sum = add(before.variables[i], sum_of_up_to(times, growths[i].step));
     head.variables[i] = clamp(sum, variable.min, variable.max);
   }
@@ -293,18 +293,18 @@ Flow::State Flow::grown(const ProgramRepeat& repeat, const State& before, const 
 
 // Has variables written before the loop if a statement that runs in every round then can compute
 // them in place. They are known: unlike a band, a variable that is set always is.
-void Flow::claim(ProgramRepeat& repeat, State& head) {
+void Flow::claim(ir::Repeat& repeat, State& head) {
   const auto owned_before = head.owned;
-  const auto own = [](std::vector<Owned>& owned, const ProgramSet& set) {
+  const auto own = [](std::vector<Owned>& owned, const ir::Set& set) {
     owned[set.variable] =
         std::max(owned[set.variable], set.relative ? Owned::shifted : Owned::assigned);
   };
-  for (const ProgramStatement& statement : repeat.body)
-    if (const auto* set = std::get_if<ProgramSet>(&statement.node)) own(head.owned, *set);
+  for (const ir::Statement& statement : repeat.body)
+    if (const auto* set = std::get_if<ir::Set>(&statement.node)) own(head.owned, *set);
   measure(repeat, head);
   std::vector<Owned> wanted = owned_before;
-  for (const ProgramStatement& statement : repeat.body) {
-    const auto* set = std::get_if<ProgramSet>(&statement.node);
+  for (const ir::Statement& statement : repeat.body) {
+    const auto* set = std::get_if<ir::Set>(&statement.node);
     if (set != nullptr && set->in_place) own(wanted, *set);
   }
   for (std::size_t i = 0; i < wanted.size(); ++i) {

@@ -22,11 +22,11 @@ struct WriteFacts {
 class Flow {
 public:
   // `anytime`: what the variables can be whenever they are read.
-  Flow(const Program& program, const Robot& robot, const VariableFacts& anytime)
+  Flow(const ir::Program& program, const Robot& robot, const VariableFacts& anytime)
       : program_(program), robot_(robot), anytime_(anytime) {}
 
   // `entry`: what the variables can be when it starts.
-  WriteFacts follow(ProgramBlock& response, const VariableFacts& entry, bool in_place);
+  WriteFacts follow(ir::Block& response, const VariableFacts& entry, bool in_place);
 
 private:
   enum class Owned : std::uint8_t { no, shifted, assigned };  // what was written in this run
@@ -45,38 +45,38 @@ private:
   };
   using Growths = std::vector<Growth>;
 
-  void block(ProgramBlock& statements, State& state);
+  void block(ir::Block& statements, State& state);
   template <typename Node>
   void visit(Node& node, State& state);  // all others
-  void visit(ProgramLocal& local, State& state);
-  void visit(ProgramSet& set, State& state);
-  void visit(ProgramWaitUntil& wait, State& state);
-  void visit(ProgramFollow& follow, State& state);
-  void visit(ProgramIf& choice, State& state);
-  void visit(ProgramRepeat& repeat, State& state);
-  void visit(ProgramPick& pick, State& state);
+  void visit(ir::Local& local, State& state);
+  void visit(ir::Set& set, State& state);
+  void visit(ir::WaitUntil& wait, State& state);
+  void visit(ir::Follow& follow, State& state);
+  void visit(ir::If& choice, State& state);
+  void visit(ir::Repeat& repeat, State& state);
+  void visit(ir::Pick& pick, State& state);
 
   // `may_run`: otherwise the block is only looked at, and counts for nothing.
-  void branch(ProgramBlock& statements, State& state, bool may_run);
+  void branch(ir::Block& statements, State& state, bool may_run);
   void pause(State& state) const;
   // The way of `state` stands behind that of `before`.
-  static void pass(const ProgramBlock& before, State& state);
-  void forget_written(const ProgramBlock& body, State& state) const;
+  static void pass(const ir::Block& before, State& state);
+  void forget_written(const ir::Block& body, State& state) const;
   void begin_resting(State& state) const;
-  void counted(ProgramRepeat& repeat, vm::Value times, State& state);
-  void claim(ProgramRepeat& repeat, State& head);
-  State grown(const ProgramRepeat& repeat, const State& before, const Growths& growths,
+  void counted(ir::Repeat& repeat, vm::Value times, State& state);
+  void claim(ir::Repeat& repeat, State& head);
+  State grown(const ir::Repeat& repeat, const State& before, const Growths& growths,
               vm::Value times) const;
-  Growths measure(ProgramRepeat& repeat, State head);
-  void note_growth(const ProgramSet& set);
-  void note_sums(const ProgramBlock& response);
-  void record(const ProgramSet& set, const Fact& result);
+  Growths measure(ir::Repeat& repeat, State head);
+  void note_growth(const ir::Set& set);
+  void note_sums(const ir::Block& response);
+  void record(const ir::Set& set, const Fact& result);
   static State merged(const State& one, const State& other);
   Fact look(Expression& expression, const State& state) const {
     return annotate(expression, {robot_, state.variables, anytime_, locals_});
   }
 
-  const Program& program_;
+  const ir::Program& program_;
   const Robot& robot_;
   const VariableFacts& anytime_;
   LocalFacts locals_;

@@ -9,13 +9,13 @@
 namespace robosync::compiler {
 namespace {
 
-void simplify(ProgramBlock& block) {
-  for_each_statement(block, [](ProgramStatement& statement) {
+void simplify(ir::Block& block) {
+  for_each_statement(block, [](ir::Statement& statement) {
     for_each_expression(statement, [](Expression& expression) { simplify(expression); });
   });
 }
 
-void simplify(ProgramRule& rule) {
+void simplify(ir::Rule& rule) {
   simplify(rule.condition);
   if (rule.resume) simplify(*rule.resume);
   simplify(rule.then_response);
@@ -23,10 +23,10 @@ void simplify(ProgramRule& rule) {
 }
 
 // Facts of responses, then those of conditions.
-void prove(Program& program, const Robot& robot) {
+void prove(ir::Program& program, const Robot& robot) {
   const VariableFacts facts = prove_variables(program, robot);
   const LocalFacts no_locals;
-  for_each_rule(program, [&](ProgramRule& rule) {
+  for_each_rule(program, [&](ir::Rule& rule) {
     annotate(rule.condition, {robot, facts, facts, no_locals});
     if (rule.resume) annotate(*rule.resume, {robot, facts, facts, no_locals});
   });
@@ -34,9 +34,9 @@ void prove(Program& program, const Robot& robot) {
 
 }  // namespace
 
-Program optimize(Program program, const Robot& robot) {
+ir::Program optimize(ir::Program program, const Robot& robot) {
   const Room room = room_in(program);
-  for_each_rule(program, [](ProgramRule& rule) { simplify(rule); });
+  for_each_rule(program, [](ir::Rule& rule) { simplify(rule); });
   prove(program, robot);
   prune(program);
   share_numbers(program, room);

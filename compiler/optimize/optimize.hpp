@@ -9,6 +9,6 @@ namespace robosync::compiler {
 
 // `program` as sema made it. The result has its facts filled in, and the same rules in the same
 // order.
-[[nodiscard]] Program optimize(Program program, const Robot& robot);
+[[nodiscard]] ir::Program optimize(ir::Program program, const Robot& robot);
 
 }  // namespace robosync::compiler

@@ -64,9 +64,9 @@ void fold(Expression& expression) {
 
 // Time words in a response are evaluated in every step, whether the response runs or not; and the
 // robot wakes up for them.
-bool has_time_words(const ProgramBlock& block) {
+bool has_time_words(const ir::Block& block) {
   bool found = false;
-  for_each_statement(block, [&](const ProgramStatement& statement) {
+  for_each_statement(block, [&](const ir::Statement& statement) {
     for_each_expression(statement, [&](const Expression& expression) {
       found = found || has_time_word(expression);
     });
@@ -76,66 +76,66 @@ bool has_time_words(const ProgramBlock& block) {
 
 // A response owns all actuators that it has commands for while it runs, also those of branches; and
 // which behaviours command an actuator ranks its thread.
-bool has_effect(const ProgramBlock& block) {
-  return has_time_words(block) || any_command(block, [](const ProgramCommand&) { return true; });
+bool has_effect(const ir::Block& block) {
+  return has_time_words(block) || any_command(block, [](const ir::Command&) { return true; });
 }
 
 class Pruner {
 public:
-  void block(ProgramBlock& statements) {
-    ProgramBlock result;
-    for (ProgramStatement& statement : statements)
+  void block(ir::Block& statements) {
+    ir::Block result;
+    for (ir::Statement& statement : statements)
       keep(std::move(statement), result);
     statements = std::move(result);
   }
 
 private:
-  void keep(ProgramStatement statement, ProgramBlock& result);
+  void keep(ir::Statement statement, ir::Block& result);
   template <typename Node>
   void prune_parts(Node& node);
-  void keep_claims(ProgramRepeat& repeat);
-  static void choose(ProgramStatement statement, ProgramBlock& result);
+  void keep_claims(ir::Repeat& repeat);
+  static void choose(ir::Statement statement, ir::Block& result);
 };
 
 template <typename Node>
 void Pruner::prune_parts(Node& node) {
   for_each_part(
       node, [](Expression& expression) { fold(expression); },
-      [this](ProgramBlock& inner) { block(inner); });
+      [this](ir::Block& inner) { block(inner); });
 }
 
 // A loop that is said to run no times has no code. One that is only proved to has, if its body
 // matters without being run.
-void Pruner::keep_claims(ProgramRepeat& repeat) {
+void Pruner::keep_claims(ir::Repeat& repeat) {
   const Expression control = repeat.control;
   prune_parts(repeat);
   if (constant_count(repeat) == 0 && has_effect(repeat.body)) repeat.control = control;
 }
 
 // The statement, with its parts pruned; or what is left of it.
-void Pruner::keep(ProgramStatement statement, ProgramBlock& result) {
-  if (auto* const repeat = std::get_if<ProgramRepeat>(&statement.node))
+void Pruner::keep(ir::Statement statement, ir::Block& result) {
+  if (auto* const repeat = std::get_if<ir::Repeat>(&statement.node))
     keep_claims(*repeat);
   else
     prune_parts(statement);
-  if (std::holds_alternative<ProgramIf>(statement.node))
+  if (std::holds_alternative<ir::If>(statement.node))
     choose(std::move(statement), result);
   else
     result.push_back(std::move(statement));
 }
 
 // Also turns an IF with nothing but an ELSE around: with the condition unknown neither runs.
-void Pruner::choose(ProgramStatement statement, ProgramBlock& result) {
-  auto& choice = std::get<ProgramIf>(statement.node);
+void Pruner::choose(ir::Statement statement, ir::Block& result) {
+  auto& choice = std::get<ir::If>(statement.node);
   const Fact& condition = choice.condition.fact;
   if (is_pure(choice.condition)) {
     if (condition.never_true() && !has_effect(choice.then_block)) choice.then_block.clear();
     if (condition.high == vm::kTrue && !has_effect(choice.else_block)) choice.else_block.clear();
     if (choice.then_block.empty() && choice.else_block.empty()) return;
     const bool is_true = condition.low == vm::kTrue;
-    const ProgramBlock& never = is_true ? choice.else_block : choice.then_block;
+    const ir::Block& never = is_true ? choice.else_block : choice.then_block;
     if (condition.is_constant() && never.empty()) {
-      ProgramBlock& always = is_true ? choice.then_block : choice.else_block;
+      ir::Block& always = is_true ? choice.then_block : choice.else_block;
       std::move(always.begin(), always.end(), std::back_inserter(result));
       return;
     }
@@ -151,7 +151,7 @@ void Pruner::choose(ProgramStatement statement, ProgramBlock& result) {
 
 // A condition that is never true starts nothing. The rule stays, so that rules keep their numbers;
 // where there is an ELSE, false and unknown differ.
-void prune(ProgramRule& rule) {
+void prune(ir::Rule& rule) {
   fold(rule.condition);
   const bool only_when_true = rule.kind == vm::RuleKind::when || rule.kind == vm::RuleKind::while_;
   if (only_when_true && rule.condition.fact.never_true() && is_pure(rule.condition)) {
@@ -166,11 +166,11 @@ void prune(ProgramRule& rule) {
 }  // namespace
 
 // Of SAFETY rules only the numbers: what they do is not touched.
-void prune(Program& program) {
-  for (ProgramRule& rule : program.safety)
+void prune(ir::Program& program) {
+  for (ir::Rule& rule : program.safety)
     fold(rule.condition);
-  for (ProgramBehavior& behavior : program.behaviors)
-    for (ProgramRule& rule : behavior.rules)
+  for (ir::Behavior& behavior : program.behaviors)
+    for (ir::Rule& rule : behavior.rules)
       prune(rule);
 }
 

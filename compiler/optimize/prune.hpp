@@ -6,6 +6,6 @@
 
 namespace robosync::compiler {
 
-void prune(Program& program);
+void prune(ir::Program& program);
 
 }  // namespace robosync::compiler

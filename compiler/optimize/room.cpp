@@ -33,11 +33,11 @@ std::size_t operations_in(const Expression& expression) {
 // What counts for the frame of one behaviour.
 class Count {
 public:
-  void add(const ProgramRule& rule) {
+  void add(const ir::Rule& rule) {
     add_condition(rule.condition);
     if (rule.resume) add_condition(*rule.resume);
-    for_each_response(rule, [this](const ProgramBlock& block) {
-      for_each_statement(block, [this](const ProgramStatement& statement) { add(statement); });
+    for_each_response(rule, [this](const ir::Block& block) {
+      for_each_statement(block, [this](const ir::Statement& statement) { add(statement); });
     });
   }
 
@@ -46,10 +46,9 @@ public:
   }
 
 private:
-  void add(const ProgramStatement& statement) {
+  void add(const ir::Statement& statement) {
     kept_ += std::visit([](const auto& node) { return node.kCells; }, statement.node);
-    if (const auto* set = std::get_if<ProgramSet>(&statement.node))
-      variables_.insert(set->variable);
+    if (const auto* set = std::get_if<ir::Set>(&statement.node)) variables_.insert(set->variable);
     for_each_expression(statement, [this](const Expression& expression) {
       registers_ = std::max(registers_, kRegistersOfStatement + registers_of(expression));
       add_inputs(expression);
@@ -88,19 +87,19 @@ private:
 
 }  // namespace
 
-std::size_t cells_at_most(const std::vector<ProgramRule>& rules) {
+std::size_t cells_at_most(const std::vector<ir::Rule>& rules) {
   Count count;
-  for (const ProgramRule& rule : rules)
+  for (const ir::Rule& rule : rules)
     count.add(rule);
   return count.cells();
 }
 
-Room room_in(const Program& program) {
+Room room_in(const ir::Program& program) {
   constexpr std::size_t kAllCells = vm::Limits{}.frame_cells;
   std::vector<std::size_t> cells;
   std::size_t all = cells_at_most(program.safety);
   std::size_t most = all;
-  for (const ProgramBehavior& behavior : program.behaviors) {
+  for (const ir::Behavior& behavior : program.behaviors) {
     cells.push_back(cells_at_most(behavior.rules));
     all += cells.back();
     most = std::max(most, cells.back());

@@ -45,22 +45,22 @@ bool reads_input(const Expression& expression) {
 }
 
 // Does a statement, or one inside of it, make `expression` another number?
-bool spoils(const ProgramStatement& statement, const Expression& expression) {
-  if (const auto* set = std::get_if<ProgramSet>(&statement.node))
+bool spoils(const ir::Statement& statement, const Expression& expression) {
+  if (const auto* set = std::get_if<ir::Set>(&statement.node))
     return reads(expression, set->variable);
   bool found = is_pause(statement) && reads_input(expression);
-  for_each_block(statement, [&](const ProgramBlock& block) {
-    for (const ProgramStatement& inner : block)
+  for_each_block(statement, [&](const ir::Block& block) {
+    for (const ir::Statement& inner : block)
       found = found || spoils(inner, expression);
   });
   return found;
 }
 
 // What is evaluated when the statement begins, and only then.
-void for_each_beginning(ProgramStatement& statement, const Visit& visit) {
-  if (std::holds_alternative<ProgramWaitUntil>(statement.node)) return;
-  const auto* repeat = std::get_if<ProgramRepeat>(&statement.node);
-  if (repeat != nullptr && repeat->kind == RepeatKind::while_) return;
+void for_each_beginning(ir::Statement& statement, const Visit& visit) {
+  if (std::holds_alternative<ir::WaitUntil>(statement.node)) return;
+  const auto* repeat = std::get_if<ir::Repeat>(&statement.node);
+  if (repeat != nullptr && repeat->kind == ir::RepeatKind::while_) return;
   for_each_expression(statement, visit);
 }
 
@@ -89,18 +89,18 @@ public:
   }
 
   // False when the number is another one from there on.
-  bool in(ProgramStatement& statement) {
+  bool in(ir::Statement& statement) {
     const bool spoilt = spoils(statement, number_);
     for_each_beginning(statement, [this](Expression& expression) { in(expression); });
-    const bool again = std::holds_alternative<ProgramRepeat>(statement.node) ||
-                       std::holds_alternative<ProgramFollow>(statement.node);
-    if (!again || !spoilt) for_each_block(statement, [this](ProgramBlock& inner) { in(inner); });
+    const bool again = std::holds_alternative<ir::Repeat>(statement.node) ||
+                       std::holds_alternative<ir::Follow>(statement.node);
+    if (!again || !spoilt) for_each_block(statement, [this](ir::Block& inner) { in(inner); });
     return !spoilt;
   }
 
 private:
-  void in(ProgramBlock& block) {
-    for (ProgramStatement& statement : block)
+  void in(ir::Block& block) {
+    for (ir::Statement& statement : block)
       if (!in(statement)) return;
   }
 
@@ -112,24 +112,24 @@ private:
 class Sharer {
 public:
   // `left`: how many locals may still be made.
-  Sharer(ProgramBlock& response, std::size_t& left) : left_(left) {
-    for_each_of<ProgramLocal>(response, [this](const ProgramLocal& local) {
+  Sharer(ir::Block& response, std::size_t& left) : left_(left) {
+    for_each_of<ir::Local>(response, [this](const ir::Local& local) {
       next_local_ = std::max(next_local_, local.number + 1);
     });
     block(response);
   }
 
 private:
-  void block(ProgramBlock& statements);
+  void block(ir::Block& statements);
   // The first part of `expression` that pays in `statements` from `from` on.
-  bool share_part(Expression& expression, ProgramBlock& statements, std::size_t from);
-  static bool go_through(Replacement& replacement, ProgramBlock& statements, std::size_t from);
+  bool share_part(Expression& expression, ir::Block& statements, std::size_t from);
+  static bool go_through(Replacement& replacement, ir::Block& statements, std::size_t from);
 
   std::size_t next_local_ = 0;
   std::size_t& left_;
 };
 
-void Sharer::block(ProgramBlock& statements) {
+void Sharer::block(ir::Block& statements) {
   for (std::size_t at = 0; at < statements.size(); ++at) {
     bool found = true;
     while (found && left_ > 0) {
@@ -142,11 +142,11 @@ void Sharer::block(ProgramBlock& statements) {
         found = found || share_part(expression, statements, at);
       if (found) ++at;
     }
-    for_each_block(statements[at], [this](ProgramBlock& inner) { block(inner); });
+    for_each_block(statements[at], [this](ir::Block& inner) { block(inner); });
   }
 }
 
-bool Sharer::share_part(Expression& expression, ProgramBlock& statements, std::size_t from) {
+bool Sharer::share_part(Expression& expression, ir::Block& statements, std::size_t from) {
   if (is_time_word(expression.operation)) return false;
   if (is_arithmetic(expression) && is_pure(expression)) {
     Replacement replacement(expression, next_local_);
@@ -154,8 +154,8 @@ bool Sharer::share_part(Expression& expression, ProgramBlock& statements, std::s
     if (replacement.found() > 1) {
       replacement.replace();
       go_through(replacement, statements, from);
-      const ProgramStatement& first = statements[from];
-      ProgramStatement local{ProgramLocal{next_local_++, expression}, first.line, first.span};
+      const ir::Statement& first = statements[from];
+      ir::Statement local{ir::Local{next_local_++, expression}, first.line, first.span};
       statements.insert(statements.begin() + static_cast<std::ptrdiff_t>(from), std::move(local));
       --left_;
       return true;
@@ -165,7 +165,7 @@ bool Sharer::share_part(Expression& expression, ProgramBlock& statements, std::s
                      [&](Expression& part) { return share_part(part, statements, from); });
 }
 
-bool Sharer::go_through(Replacement& replacement, ProgramBlock& statements, std::size_t from) {
+bool Sharer::go_through(Replacement& replacement, ir::Block& statements, std::size_t from) {
   const std::size_t end = std::min(statements.size(), from + kReach);
   for (std::size_t at = from; at < end; ++at)
     if (!replacement.in(statements[at])) return false;
@@ -174,11 +174,11 @@ bool Sharer::go_through(Replacement& replacement, ProgramBlock& statements, std:
 
 }  // namespace
 
-void share_numbers(Program& program, const Room& room) {
+void share_numbers(ir::Program& program, const Room& room) {
   for (std::size_t i = 0; i < program.behaviors.size(); ++i) {
     std::size_t left = room.locals[i];
-    for (ProgramRule& rule : program.behaviors[i].rules)
-      for_each_response(rule, [&](ProgramBlock& block) { Sharer(block, left); });
+    for (ir::Rule& rule : program.behaviors[i].rules)
+      for_each_response(rule, [&](ir::Block& block) { Sharer(block, left); });
   }
 }
 

@@ -7,6 +7,6 @@
 namespace robosync::compiler {
 
 // As far as there is room for the locals.
-void share_numbers(Program& program, const Room& room);
+void share_numbers(ir::Program& program, const Room& room);
 
 }  // namespace robosync::compiler

@@ -26,8 +26,8 @@ struct Written {
   unsigned changes = 0;
 };
 
-struct Response {
-  ProgramBlock* block = nullptr;
+struct Writer {  // a response, as far as variables go
+  ir::Block* block = nullptr;
   bool once = false;
   bool safety = false;
   std::vector<Written> writes{};  // by variable
@@ -46,8 +46,8 @@ void add_numbers(const Expression& expression, Thresholds& thresholds) {
     add_numbers(operand, thresholds);
 }
 
-void add_numbers(const ProgramBlock& block, Thresholds& thresholds) {
-  for_each_statement(block, [&](const ProgramStatement& statement) {
+void add_numbers(const ir::Block& block, Thresholds& thresholds) {
+  for_each_statement(block, [&](const ir::Statement& statement) {
     for_each_expression(statement,
                         [&](const Expression& expression) { add_numbers(expression, thresholds); });
   });
@@ -55,7 +55,7 @@ void add_numbers(const ProgramBlock& block, Thresholds& thresholds) {
 
 // Widens `next` in the directions in which it has grown. That it is whole is not affected: sums
 // that saturate are not.
-Fact widened(const Fact& before, Fact next, const ProgramVariable& variable,
+Fact widened(const Fact& before, Fact next, const ir::Variable& variable,
              const Thresholds& thresholds) {
   if (next.low < before.low) {
     const auto above = thresholds.upper_bound(next.low);
@@ -71,16 +71,16 @@ Fact widened(const Fact& before, Fact next, const ProgramVariable& variable,
 
 class Prover {
 public:
-  Prover(Program& program, const Robot& robot) : program_(program), robot_(robot) {
-    for (ProgramRule& rule : program.safety)
+  Prover(ir::Program& program, const Robot& robot) : program_(program), robot_(robot) {
+    for (ir::Rule& rule : program.safety)
       add(rule.then_response, false, true);
-    for (ProgramBehavior& behavior : program.behaviors)
-      for (ProgramRule& rule : behavior.rules) {
+    for (ir::Behavior& behavior : program.behaviors)
+      for (ir::Rule& rule : behavior.rules) {
         add(rule.then_response, rule.kind == vm::RuleKind::start, false);
         add(rule.else_response, false, false);
       }
     count_shifts();
-    for (const Response& response : responses_)
+    for (const Writer& response : responses_)
       add_numbers(*response.block, thresholds_);
   }
 
@@ -88,42 +88,42 @@ public:
     while (true) {
       VariableFacts anytime = without(nullptr);
       bool grew = false;
-      for (Response& response : responses_)
+      for (Writer& response : responses_)
         if (follow(response, anytime)) grew = true;
       if (!grew) return anytime;
     }
   }
 
 private:
-  void add(ProgramBlock& block, bool start, bool safety) {
+  void add(ir::Block& block, bool start, bool safety) {
     if (block.empty()) return;
     responses_.push_back(
         {&block, start && !pauses(block), safety, std::vector<Written>(program_.variables.size())});
   }
   void count_shifts();
-  bool follow(Response& response, const VariableFacts& anytime);
-  [[nodiscard]] VariableFacts without(const Response* response) const;
+  bool follow(Writer& response, const VariableFacts& anytime);
+  [[nodiscard]] VariableFacts without(const Writer* response) const;
   [[nodiscard]] Fact initial(std::size_t place) const;
   [[nodiscard]] Fact shifted(std::size_t place, const Fact& result, const Fact& difference) const;
 
-  Program& program_;
+  ir::Program& program_;
   const Robot& robot_;
-  std::vector<Response> responses_;
+  std::vector<Writer> responses_;
   Thresholds thresholds_;
   std::vector<std::int64_t> shifts_;  // statements that RAISE or LOWER each variable
 };
 
 void Prover::count_shifts() {
   shifts_.resize(program_.variables.size());
-  for (const Response& response : responses_)
-    for_each_of<ProgramSet>(std::as_const(*response.block), [&](const ProgramSet& set) {
+  for (const Writer& response : responses_)
+    for_each_of<ir::Set>(std::as_const(*response.block), [&](const ir::Set& set) {
       if (set.relative) ++shifts_[set.variable];
     });
 }
 
 // A band is unknown when its input is, or between bands.
 Fact Prover::initial(std::size_t place) const {
-  const ProgramVariable& variable = program_.variables[place];
+  const ir::Variable& variable = program_.variables[place];
   if (variable.kind == vm::VariableKind::band) return {false, true, 0, vm::kValueMax};
   const Fact start = fact_of(variable.initial);
   if (variable.fade == 0) return start;
@@ -134,7 +134,7 @@ Fact Prover::initial(std::size_t place) const {
 
 // Differences of several responses come together in one step, whatever each of them has seen.
 Fact Prover::shifted(std::size_t place, const Fact& result, const Fact& difference) const {
-  const ProgramVariable& variable = program_.variables[place];
+  const ir::Variable& variable = program_.variables[place];
   Fact sum = result;
   if (difference.low < 0) sum.low = variable.min;
   if (difference.high > 0) sum.high = variable.max;
@@ -146,11 +146,11 @@ Fact Prover::shifted(std::size_t place, const Fact& result, const Fact& differen
 }
 
 // The variables as all responses leave them, but this one if it runs once only.
-VariableFacts Prover::without(const Response* response) const {
+VariableFacts Prover::without(const Writer* response) const {
   VariableFacts facts;
   for (std::size_t i = 0; i < program_.variables.size(); ++i) {
     Fact fact = initial(i);
-    for (const Response& other : responses_) {
+    for (const Writer& other : responses_) {
       const bool counts = &other != response || shifts_[i] > 0;
       if (counts && other.writes[i].fact) fact = either(fact, *other.writes[i].fact);
     }
@@ -161,7 +161,7 @@ VariableFacts Prover::without(const Response* response) const {
 }
 
 // Did it write more than before?
-bool Prover::follow(Response& response, const VariableFacts& anytime) {
+bool Prover::follow(Writer& response, const VariableFacts& anytime) {
   Flow flow(program_, robot_, anytime);
   const VariableFacts entry = response.once ? without(&response) : anytime;
   const WriteFacts found = flow.follow(*response.block, entry, !response.safety);
@@ -184,7 +184,7 @@ bool Prover::follow(Response& response, const VariableFacts& anytime) {
 
 }  // namespace
 
-VariableFacts prove_variables(Program& program, const Robot& robot) {
+VariableFacts prove_variables(ir::Program& program, const Robot& robot) {
   return Prover(program, robot).prove();
 }
 

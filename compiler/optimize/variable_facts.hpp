@@ -6,6 +6,6 @@
 namespace robosync::compiler {
 
 // Fills in what is proved of the responses on the way (flow.hpp).
-[[nodiscard]] VariableFacts prove_variables(Program& program, const Robot& robot);
+[[nodiscard]] VariableFacts prove_variables(ir::Program& program, const Robot& robot);
 
 }  // namespace robosync::compiler

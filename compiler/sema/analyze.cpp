@@ -26,7 +26,7 @@ public:
         rules_(sources, names_, expressions_, statements_, diagnostics),
         behaviors_(robot_, diagnostics) {}
 
-  Program run() {
+  ir::Program run() {
     expressions_.check_constants();
     expressions_.check_lists();
     Variables(names_, expressions_, diagnostics_).declare(program_);
@@ -73,7 +73,7 @@ private:
   }
 
   void add(const ast::Behavior& behavior) {
-    std::vector<ProgramRule> rules;
+    std::vector<ir::Rule> rules;
     names_.set_scope(&behavior);
     for (const ast::Rule& rule : behavior.rules)
       rules.push_back(rules_.translate(rule, true));
@@ -91,13 +91,13 @@ private:
   Statements statements_;
   Rules rules_;
   Behaviors behaviors_;
-  Program program_;
+  ir::Program program_;
 };
 
 }  // namespace
 
-Program analyze(const Trees& trees, const Robot& robot, const SourceMap& sources,
-                Diagnostics& diagnostics) {
+ir::Program analyze(const Trees& trees, const Robot& robot, const SourceMap& sources,
+                    Diagnostics& diagnostics) {
   return Analyzer(trees, robot, sources, diagnostics).run();
 }
 

@@ -8,7 +8,7 @@ namespace robosync::compiler {
 
 // The result is fit for codegen only if `diagnostics` has no errors afterwards. TEST blocks are
 // left out: they are not for the robot.
-[[nodiscard]] Program analyze(const Trees& trees, const Robot& robot, const SourceMap& sources,
-                              Diagnostics& diagnostics);
+[[nodiscard]] ir::Program analyze(const Trees& trees, const Robot& robot, const SourceMap& sources,
+                                  Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

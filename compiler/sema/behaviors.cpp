@@ -16,7 +16,7 @@ const BehaviorConfig* Behaviors::config_of(const ast::Behavior& behavior) const 
   return place ? &robot_.behaviors[*place] : nullptr;
 }
 
-void Behaviors::add(const ast::Behavior& behavior, std::vector<ProgramRule> rules) {
+void Behaviors::add(const ast::Behavior& behavior, std::vector<ir::Rule> rules) {
   names_.insert(fold_name(behavior.name.text));
   const BehaviorConfig* config = config_of(behavior);
   const auto priority = priority_of(behavior, config);
@@ -24,7 +24,7 @@ void Behaviors::add(const ast::Behavior& behavior, std::vector<ProgramRule> rule
   if (rules.size() > kMaxRules)
     diagnostics_.report(Code::E0407, "a behaviour can have at most 255 rules")
         .label(behavior.name.span);
-  ProgramBehavior result;
+  ir::Behavior result;
   result.priority = static_cast<std::int16_t>(priority ? priority->number : 0);
   result.name = behavior.name.text;
   result.rules = std::move(rules);
@@ -34,10 +34,10 @@ void Behaviors::add(const ast::Behavior& behavior, std::vector<ProgramRule> rule
   check_count(behavior.name.span);
 }
 
-void Behaviors::add_rule(ProgramRule rule, const std::optional<ast::Name>& priority, Span span) {
+void Behaviors::add_rule(ir::Rule rule, const std::optional<ast::Name>& priority, Span span) {
   const auto written = priority ? written_priority(*priority) : std::nullopt;
   if (written) claim(*written);
-  ProgramBehavior behavior;
+  ir::Behavior behavior;
   behavior.priority = written ? static_cast<std::int16_t>(written->number) : next_unnumbered_--;
   behavior.rules.push_back(std::move(rule));
   behaviors_.push_back(std::move(behavior));
@@ -115,7 +115,7 @@ void Behaviors::report_taken() {
   }
 }
 
-void Behaviors::check_action(const BehaviorConfig& config, const ProgramBehavior& behavior,
+void Behaviors::check_action(const BehaviorConfig& config, const ir::Behavior& behavior,
                              Span name) {
   std::set<std::size_t> wanted;
   if (config.action) wanted.insert(*config.action);
@@ -123,21 +123,21 @@ void Behaviors::check_action(const BehaviorConfig& config, const ProgramBehavior
     wanted.insert(robot_.groups[*config.action_group].members.begin(),
                   robot_.groups[*config.action_group].members.end());
   if (wanted.empty()) return;
-  const auto is_wanted = [&](const ProgramCommand& command) {
+  const auto is_wanted = [&](const ir::Command& command) {
     return std::any_of(command.actuators.begin(), command.actuators.end(),
                        [&](std::size_t actuator) { return wanted.contains(actuator); });
   };
-  const auto commands_it = [&](const ProgramBlock& response) {
+  const auto commands_it = [&](const ir::Block& response) {
     return any_command(response, is_wanted);
   };
-  for (const ProgramRule& rule : behavior.rules)
+  for (const ir::Rule& rule : behavior.rules)
     if (commands_it(rule.then_response) || commands_it(rule.else_response)) return;
   diagnostics_.report(Code::W0215, "`" + behavior.name + "` never commands the actuator it is for")
       .label(name)
       .label(config.action_span, "its actuator", false);
 }
 
-std::vector<ProgramBehavior> Behaviors::finish() {
+std::vector<ir::Behavior> Behaviors::finish() {
   report_taken();
   for (const BehaviorConfig& config : robot_.behaviors)
     if (!names_.contains(fold_name(config.name.text)))
@@ -145,7 +145,7 @@ std::vector<ProgramBehavior> Behaviors::finish() {
           .label(config.name.span);
   std::stable_sort(
       behaviors_.begin(), behaviors_.end(),
-      [](const ProgramBehavior& a, const ProgramBehavior& b) { return a.priority > b.priority; });
+      [](const ir::Behavior& a, const ir::Behavior& b) { return a.priority > b.priority; });
   return std::move(behaviors_);
 }
 

@@ -15,11 +15,11 @@ public:
   Behaviors(const Robot& robot, Diagnostics& diagnostics)
       : robot_(robot), configs_(index_of(robot.behaviors)), diagnostics_(diagnostics) {}
 
-  void add(const ast::Behavior& behavior, std::vector<ProgramRule> rules);
+  void add(const ast::Behavior& behavior, std::vector<ir::Rule> rules);
   // A rule outside a BEHAVIOR: a behaviour of its own, below all others unless it has a PRIORITY.
-  void add_rule(ProgramRule rule, const std::optional<ast::Name>& priority, Span span);
+  void add_rule(ir::Rule rule, const std::optional<ast::Name>& priority, Span span);
   // What can be said only when all are known; then the behaviours, highest priority first.
-  [[nodiscard]] std::vector<ProgramBehavior> finish();
+  [[nodiscard]] std::vector<ir::Behavior> finish();
 
 private:
   struct Numbered {
@@ -34,13 +34,13 @@ private:
   void claim(const Numbered& priority);
   void report_taken();
   [[nodiscard]] std::optional<int> next_free(int number) const;
-  void check_action(const BehaviorConfig& config, const ProgramBehavior& behavior, Span name);
+  void check_action(const BehaviorConfig& config, const ir::Behavior& behavior, Span name);
   void check_count(Span span);
 
   const Robot& robot_;
   NameIndex configs_;
   Diagnostics& diagnostics_;
-  std::vector<ProgramBehavior> behaviors_;
+  std::vector<ir::Behavior> behaviors_;
   std::set<std::string> names_;  // folded names of those added
   std::map<int, Span> priorities_;
   std::vector<std::pair<Numbered, Span>> taken_;  // a second use of a priority, and the first

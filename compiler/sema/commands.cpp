@@ -26,7 +26,7 @@ vm::Param param_of(const ast::Argument& argument) {
 }
 
 // Do two actuators understand the command alike?
-bool same(const ProgramCommand& a, const ProgramCommand& b) {
+bool same(const ir::Command& a, const ir::Command& b) {
   return a.verb == b.verb && a.word == b.word && a.arguments == b.arguments;
 }
 
@@ -37,18 +37,18 @@ const ast::Word* plain_word(const ast::Argument& argument) {
                                                         : nullptr;
 }
 
-bool is_given(const ProgramCommand& command, vm::Param param) {
+bool is_given(const ir::Command& command, vm::Param param) {
   return (command.word && command.word->param == param) ||
          std::any_of(command.arguments.begin(), command.arguments.end(),
-                     [&](const ProgramArgument& argument) { return argument.param == param; });
+                     [&](const ir::Argument& argument) { return argument.param == param; });
 }
 
 void report_twice(Span span, const std::string& what, Diagnostics& diagnostics) {
   diagnostics.report(Code::E0505, what + " is given twice").label(span);
 }
 
-std::vector<ProgramCommand> Commands::translate(const ast::Command& command,
-                                                const ChosenText* chosen) {
+std::vector<ir::Command> Commands::translate(const ast::Command& command,
+                                             const ChosenText* chosen) {
   chosen_ = chosen;
   if (command.verb.text.empty()) return {};
   if (command.with) {
@@ -69,7 +69,7 @@ std::vector<ProgramCommand> Commands::translate(const ast::Command& command,
   const auto target = find_target(command, named_by);
   const auto given = evaluate(command, named_by);
   if (!target || !given || target->actuators.empty()) return {};
-  std::vector<ProgramCommand> each;
+  std::vector<ir::Command> each;
   for (const std::size_t actuator : target->actuators) {
     // What is wrong or worth a note for one member need not be said for the others.
     Diagnostics repeated;
@@ -81,7 +81,7 @@ std::vector<ProgramCommand> Commands::translate(const ast::Command& command,
     each.push_back(std::move(*result));
   }
   const bool alike = std::all_of(each.begin(), each.end(),
-                                 [&](const ProgramCommand& other) { return same(each[0], other); });
+                                 [&](const ir::Command& other) { return same(each[0], other); });
   if (!target->group || !alike) return each;
   each.front().group = target->group;
   each.front().actuators = target->actuators;
@@ -326,15 +326,15 @@ std::string taken_by(const VerbConfig& verb) {
 }
 
 // The first word travels in the command itself, others as parameters.
-void put(const std::string& name, vm::Param param, vm::Value value, ProgramCommand& result) {
+void put(const std::string& name, vm::Param param, vm::Value value, ir::Command& result) {
   if (!result.word)
-    result.word = ProgramWord{name, param, value};
+    result.word = ir::Word{name, param, value};
   else
     result.arguments.push_back({param, make_constant_code(value)});
 }
 
 // What is said takes as long as its words, unless FOR says another time.
-bool takes_its_words(const ProgramCommand& command) {
+bool takes_its_words(const ir::Command& command) {
   return command.word && command.word->param == vm::Param::for_;
 }
 
@@ -434,10 +434,9 @@ bool fit_parameter(const ActuatorConfig& actuator, vm::Param param, Typed& numbe
   return !number.is_constant() || check_value(actuator, param, number, diagnostics);
 }
 
-std::optional<ProgramCommand> Commands::for_actuator(std::size_t actuator,
-                                                     const ast::Command& command,
-                                                     const std::vector<Given>& given,
-                                                     Diagnostics& diagnostics) const {
+std::optional<ir::Command> Commands::for_actuator(std::size_t actuator, const ast::Command& command,
+                                                  const std::vector<Given>& given,
+                                                  Diagnostics& diagnostics) const {
   const ActuatorConfig& config = robot_.actuators[actuator];
   const VerbConfig* verb = config.find_verb(command.verb.text);
   if (verb == nullptr) {
@@ -448,7 +447,7 @@ std::optional<ProgramCommand> Commands::for_actuator(std::size_t actuator,
         .helps("it knows " + list_names(verb_names(config)));
     return std::nullopt;
   }
-  ProgramCommand result;
+  ir::Command result;
   result.actuators = {actuator};
   result.verb = {verb->name, verb->action, verb->carries()};
   const Recipient to{config, *verb, command, diagnostics};
@@ -466,7 +465,7 @@ bool Commands::is_to_be_said(const VerbConfig& verb, const Given& given) {
          !verb.has(vm::Param::by);
 }
 
-bool Commands::add(const Recipient& to, const Given& given, ProgramCommand& result) const {
+bool Commands::add(const Recipient& to, const Given& given, ir::Command& result) const {
   const ast::Argument& argument = *given.argument;
   if (is_to_be_said(to.verb, given)) {
     TextBuilder number(expressions_, to.diagnostics);
@@ -481,7 +480,7 @@ bool Commands::add(const Recipient& to, const Given& given, ProgramCommand& resu
 }
 
 bool Commands::add_word(const Recipient& to, const ast::Word& word, Span span,
-                        ProgramCommand& result) const {
+                        ir::Command& result) const {
   const WordConfig* known = to.actuator.find_word(word.name.text);
   if (known == nullptr) {
     report_unknown_word(to, word);
@@ -548,7 +547,7 @@ void report_unknown_text(const ActuatorConfig& actuator, const std::string& text
 
 }  // namespace
 
-bool Commands::add_text(const Recipient& to, const Given& given, ProgramCommand& result) const {
+bool Commands::add_text(const Recipient& to, const Given& given, ir::Command& result) const {
   const std::string& text = *given.text;
   const Span span = given.argument->span;
   if (to.verb.texts == Texts::none) {
@@ -583,7 +582,7 @@ bool Commands::add_text(const Recipient& to, const Given& given, ProgramCommand&
   return false;
 }
 
-bool Commands::say_values(const Recipient& to, const Given& given, ProgramCommand& result) const {
+bool Commands::say_values(const Recipient& to, const Given& given, ir::Command& result) const {
   if (given.values.empty()) return true;
   const std::string& verb = to.verb.name;
   if (to.verb.texts != Texts::any) {
@@ -612,7 +611,7 @@ bool Commands::say_values(const Recipient& to, const Given& given, ProgramComman
   return true;
 }
 
-bool Commands::add_number(const Recipient& to, const Given& given, ProgramCommand& result) const {
+bool Commands::add_number(const Recipient& to, const Given& given, ir::Command& result) const {
   const ActuatorConfig& actuator = to.actuator;
   Diagnostics& diagnostics = to.diagnostics;
   const Span span = given.argument->span;
@@ -624,7 +623,7 @@ bool Commands::add_number(const Recipient& to, const Given& given, ProgramComman
     return false;
   }
   if (given.param == vm::Param::for_ && takes_its_words(result))
-    result.word = ProgramWord{result.word->name, vm::Param::item, 0};
+    result.word = ir::Word{result.word->name, vm::Param::item, 0};
   if (is_given(result, given.param)) {
     report_twice(span, "`" + spelling(given.param) + "`", diagnostics);
     return false;

@@ -21,13 +21,13 @@ struct ChosenText {
 
 // What its parts share. The word that an argument is, without a preposition; nullptr: none.
 [[nodiscard]] const ast::Word* plain_word(const ast::Argument& argument);
-[[nodiscard]] bool is_given(const ProgramCommand& command, vm::Param param);
+[[nodiscard]] bool is_given(const ir::Command& command, vm::Param param);
 void report_twice(Span span, const std::string& what, Diagnostics& diagnostics);
 
 // FOLLOW of one actuator, or of a group whose members all do it alike.
 struct Followed {
-  ProgramCommand command;  // TO is the value
-  vm::Value margin = 0;    // how far the value has to change
+  ir::Command command;   // TO is the value
+  vm::Value margin = 0;  // how far the value has to change
 };
 struct Follow {
   std::vector<Followed> all;
@@ -46,8 +46,8 @@ public:
 
   // One command for an actuator, or for a group whose members all understand it alike; otherwise
   // one for each member. Empty after a mistake, which has then been reported.
-  [[nodiscard]] std::vector<ProgramCommand> translate(const ast::Command& command,
-                                                      const ChosenText* chosen = nullptr);
+  [[nodiscard]] std::vector<ir::Command> translate(const ast::Command& command,
+                                                   const ChosenText* chosen = nullptr);
 
   // Is it FOLLOW, which no robot has a verb of?
   [[nodiscard]] bool is_follow(const ast::Command& command) const;
@@ -96,12 +96,12 @@ private:
   [[nodiscard]] bool names_a_number(const ast::Name& name) const;
 
   // PERFORM (perform.cpp).
-  std::vector<ProgramCommand> perform(const ast::Command& command);
-  bool add_to_performance(const Given& given, ProgramCommand& result);
+  std::vector<ir::Command> perform(const ast::Command& command);
+  bool add_to_performance(const Given& given, ir::Command& result);
   void report_no_motion(const ast::Command& command);
 
   // FOLLOW (follow.cpp).
-  std::vector<ProgramCommand> expected_follow(const ast::Command& command);
+  std::vector<ir::Command> expected_follow(const ast::Command& command);
   std::optional<Follow> follow(const ast::Command& command, bool expected);
   // What stands for parameters of a DEFINE is worked out with it.
   std::optional<std::vector<Given>> evaluate_followed(const ast::Command& command,
@@ -113,16 +113,15 @@ private:
   bool lasts(const Given& given, Follow& result);
 
   // What one actuator makes of them.
-  std::optional<ProgramCommand> for_actuator(std::size_t actuator, const ast::Command& command,
-                                             const std::vector<Given>& given,
-                                             Diagnostics& diagnostics) const;
+  std::optional<ir::Command> for_actuator(std::size_t actuator, const ast::Command& command,
+                                          const std::vector<Given>& given,
+                                          Diagnostics& diagnostics) const;
   static bool is_to_be_said(const VerbConfig& verb, const Given& given);
-  bool add(const Recipient& to, const Given& given, ProgramCommand& result) const;
-  bool add_word(const Recipient& to, const ast::Word& word, Span span,
-                ProgramCommand& result) const;
-  bool add_text(const Recipient& to, const Given& given, ProgramCommand& result) const;
-  bool say_values(const Recipient& to, const Given& given, ProgramCommand& result) const;
-  bool add_number(const Recipient& to, const Given& given, ProgramCommand& result) const;
+  bool add(const Recipient& to, const Given& given, ir::Command& result) const;
+  bool add_word(const Recipient& to, const ast::Word& word, Span span, ir::Command& result) const;
+  bool add_text(const Recipient& to, const Given& given, ir::Command& result) const;
+  bool say_values(const Recipient& to, const Given& given, ir::Command& result) const;
+  bool add_number(const Recipient& to, const Given& given, ir::Command& result) const;
   void report_unknown_word(const Recipient& to, const ast::Word& word) const;
 
   const Robot& robot_;

@@ -66,13 +66,13 @@ void Statements::check_unused_defines() {
     for (const ast::Name& parameter : name.define->parameters)
       unknown.push_back({fold_name(parameter.text), {}, std::nullopt, parameter.span});
     begin_response();
-    ProgramBlock unused;
+    ir::Block unused;
     if (may_run(name, name.span)) expand(name, unknown, unused);
     name.used = used;
   }
 }
 
-void Statements::add(const ast::Call& node, Span span, ProgramBlock& result) {
+void Statements::add(const ast::Call& node, Span span, ir::Block& result) {
   if (node.name.text.empty()) return;
   if (const Binding* binding = expressions_.find_binding(node.name.text))
     return run(*binding, node.name, node.arguments, span, result);
@@ -95,13 +95,13 @@ void Statements::add(const ast::Call& node, Span span, ProgramBlock& result) {
 
 // What a parameter stands for.
 void Statements::run(const Binding& binding, const ast::Name& name,
-                     const std::vector<ast::Argument>& arguments, Span span, ProgramBlock& result) {
+                     const std::vector<ast::Argument>& arguments, Span span, ir::Block& result) {
   if (binding.define != nullptr) return run(*binding.define, arguments, span, result);
   if (!is_open(binding)) expressions_.report_given(binding, name, "a DEFINE");
 }
 
 void Statements::run(DefineName& name, const std::vector<ast::Argument>& arguments, Span span,
-                     ProgramBlock& result) {
+                     ir::Block& result) {
   name.used = true;
   if (!may_run(name, span)) return;
   const auto bindings = bind(name, arguments, span, result);
@@ -124,7 +124,7 @@ bool Statements::may_run(const DefineName& name, Span use) {
 
 std::optional<Bindings> Statements::bind(const DefineName& name,
                                          const std::vector<ast::Argument>& arguments, Span span,
-                                         ProgramBlock& result) {
+                                         ir::Block& result) {
   const auto& parameters = name.define->parameters;
   if (parameters.size() != arguments.size()) {
     Diagnostic& d = diagnostics_.report(
@@ -143,7 +143,7 @@ std::optional<Bindings> Statements::bind(const DefineName& name,
 }
 
 Binding Statements::bind(const ast::Define& define, std::size_t parameter,
-                         const ast::Argument& argument, Span span, ProgramBlock& result) {
+                         const ast::Argument& argument, Span span, ir::Block& result) {
   Binding binding{fold_name(define.parameters[parameter].text), {}, std::nullopt, argument.span};
   if (const auto* text = std::get_if<ast::Text>(&argument.value)) {
     binding.text = text->text;
@@ -178,9 +178,9 @@ Binding Statements::bind(const ast::Define& define, std::size_t parameter,
 }
 
 // Worked out here, once.
-Expression Statements::in_local(Expression value, Span span, ProgramBlock& result) {
+Expression Statements::in_local(Expression value, Span span, ir::Block& result) {
   const std::size_t number = locals_++;
-  put_first(ProgramLocal{number, std::move(value)}, span, result);
+  put_first(ir::Local{number, std::move(value)}, span, result);
   return make_local(number);
 }
 
@@ -235,7 +235,7 @@ bool Statements::commands_parameter(const ast::Define& define, std::string_view 
 }
 
 // In a scope of its own: it sees its parameters and what the whole program sees.
-void Statements::expand(DefineName& name, const Bindings& bindings, ProgramBlock& result) {
+void Statements::expand(DefineName& name, const Bindings& bindings, ir::Block& result) {
   name.expanded = true;
   const Bindings* outer = expressions_.set_bindings(&bindings);
   const ast::Behavior* scope = names_.set_scope(nullptr);

@@ -69,8 +69,8 @@ bool fit_margin(const ActuatorConfig& actuator, Typed& number, Diagnostics& diag
   return false;
 }
 
-Expression& target_of(ProgramCommand& command) {
-  return std::ranges::find(command.arguments, vm::Param::to, &ProgramArgument::param)->value;
+Expression& target_of(ir::Command& command) {
+  return std::ranges::find(command.arguments, vm::Param::to, &ir::Argument::param)->value;
 }
 
 }  // namespace
@@ -86,8 +86,8 @@ std::optional<Follow> Commands::follow(const ast::Command& command) {
 }
 
 // In a TEST: what was given, without MARGIN and FOR.
-std::vector<ProgramCommand> Commands::expected_follow(const ast::Command& command) {
-  std::vector<ProgramCommand> commands;
+std::vector<ir::Command> Commands::expected_follow(const ast::Command& command) {
+  std::vector<ir::Command> commands;
   if (auto follow = this->follow(command, true))
     for (Followed& one : follow->all)
       commands.push_back(std::move(one.command));
@@ -209,7 +209,7 @@ bool Commands::add_to_follow(const ActuatorConfig& actuator, const Given& given,
   const bool is_margin = said == Preposition::margin;
   const bool twice =
       is_margin ? result.margin != 0
-                : std::ranges::count(result.command.arguments, param, &ProgramArgument::param) != 0;
+                : std::ranges::count(result.command.arguments, param, &ir::Argument::param) != 0;
   if (twice) {
     diagnostics.report(Code::E0505, "this is given twice").label(span);
     return false;
@@ -229,57 +229,56 @@ bool Commands::add_to_follow(const ActuatorConfig& actuator, const Given& given,
 
 // ---- what it does
 
-ProgramFollow* Statements::endless_follow(ProgramBlock& block) {
+ir::Follow* Statements::endless_follow(ir::Block& block) {
   if (block.empty()) return nullptr;
-  auto* const follow = std::get_if<ProgramFollow>(&block.back().node);
+  auto* const follow = std::get_if<ir::Follow>(&block.back().node);
   return follow != nullptr && !follow->lasts ? follow : nullptr;
 }
 
-void Statements::report_never(const ProgramBlock& block, Span span) {
+void Statements::report_never(const ir::Block& block, Span span) {
   diagnostics_.report(Code::E0512, "this is never reached: the FOLLOW in front of it has no end")
       .label(span)
       .label(block.back().span, "it goes on as long as its response runs", false)
       .helps("put it in front of the FOLLOW, or say with FOR how long that goes on");
 }
 
-void Statements::put_first(ProgramLocal local, Span span, ProgramBlock& result) {
+void Statements::put_first(ir::Local local, Span span, ir::Block& result) {
   if (endless_follow(result) == nullptr) return put(std::move(local), span, result);
-  ProgramStatement follow = std::move(result.back());
+  ir::Statement follow = std::move(result.back());
   result.pop_back();
   put(std::move(local), span, result);
   result.push_back(std::move(follow));
 }
 
 // Those that stand one behind the other go on together; the FOR of the last one ends them all.
-void Statements::follow(const ast::Command& node, Span span, ProgramBlock& result) {
+void Statements::follow(const ast::Command& node, Span span, ir::Block& result) {
   auto follow = commands_.follow(node);
   if (!follow) return;
   for (Followed& one : follow->all)
     if (!expressions_.stands_still(target_of(one.command), span, "what a FOLLOW goes to")) return;
-  if (endless_follow(result) == nullptr) put(ProgramFollow{}, span, result);
-  ProgramStatement together = std::move(result.back());
+  if (endless_follow(result) == nullptr) put(ir::Follow{}, span, result);
+  ir::Statement together = std::move(result.back());
   result.pop_back();
-  auto& made = std::get<ProgramFollow>(together.node);
+  auto& made = std::get<ir::Follow>(together.node);
   made.lasts = std::move(follow->lasts);
   for (Followed& one : follow->all)
     add_followed(std::move(one), span, result, made.body);
   result.push_back(std::move(together));
 }
 
-void Statements::add_followed(Followed followed, Span span, ProgramBlock& before,
-                              ProgramBlock& body) {
+void Statements::add_followed(Followed followed, Span span, ir::Block& before, ir::Block& body) {
   const std::size_t target = locals_++, given = locals_++;
   Expression& to = target_of(followed.command);
-  put(ProgramLocal{given, make_constant_code(kNowhere), true}, span, before);
-  put(ProgramLocal{target, std::exchange(to, make_local(target))}, span, body);
+  put(ir::Local{given, make_constant_code(kNowhere), true}, span, before);
+  put(ir::Local{target, std::exchange(to, make_local(target))}, span, body);
   Expression change = make_unary(
       Operation::absolute, make_binary(Operation::subtract, make_local(target), make_local(given)));
-  ProgramIf changed{
+  ir::If changed{
       make_binary(Operation::greater_equal, std::move(change), make_constant_code(followed.margin)),
       {},
       {}};
   put(std::move(followed.command), span, changed.then_block);
-  put(ProgramLocal{given, make_local(target), true}, span, changed.then_block);
+  put(ir::Local{given, make_local(target), true}, span, changed.then_block);
   put(std::move(changed), span, body);
 }
 

@@ -9,7 +9,7 @@ constexpr std::string_view kSpeed = "SPEED";
 
 }  // namespace
 
-void Limits::add(const ast::Limit& limit, std::uint16_t line, Program& program) {
+void Limits::add(const ast::Limit& limit, std::uint16_t line, ir::Program& program) {
   if (limit.value == nullptr || limit.actuator.text.empty() || limit.channel.text.empty()) return;
   const auto target = names_.find_target(limit.actuator.text);
   if (target && same_name(limit.channel.text, kSpeed)) return limit_speed(limit, *target, program);
@@ -56,7 +56,7 @@ void Limits::report_unknown(const ast::Limit& limit) {
             (sensor ? "" : "; for more, a sensor " + limit.actuator.shown() + " must measure it"));
 }
 
-void Limits::limit_speed(const ast::Limit& limit, const Target& target, Program& program) {
+void Limits::limit_speed(const ast::Limit& limit, const Target& target, ir::Program& program) {
   for (const std::size_t place : target.actuators) {
     ActuatorConfig& actuator = robot_.actuators[place];
     if (actuator.at_unit == nullptr) {
@@ -82,7 +82,7 @@ void Limits::limit_speed(const ast::Limit& limit, const Target& target, Program&
 
 // WHEN x CH > limit DO STOP x RESUME WHEN x CH <= limit
 void Limits::limit_reading(const ast::Limit& limit, ChannelRef channel, std::uint16_t line,
-                           Program& program) {
+                           ir::Program& program) {
   const auto target = names_.find_target(limit.actuator.text);
   if (!target) {
     diagnostics_
@@ -105,14 +105,14 @@ void Limits::limit_reading(const ast::Limit& limit, ChannelRef channel, std::uin
   reading.operation = Operation::input;
   reading.channel = channel;
   const Expression number = make_constant_code(most->code.constant);
-  ProgramRule rule;
+  ir::Rule rule;
   rule.kind = vm::RuleKind::safety;
   rule.line = line;
   rule.span = limit.actuator.span;
   rule.condition = make_binary(Operation::greater, reading, number);
   rule.resume = make_binary(Operation::less_equal, reading, number);
   rule.then_response.push_back(
-      {ProgramHalt{false, target->group, target->actuators}, line, limit.actuator.span});
+      {ir::Halt{false, target->group, target->actuators}, line, limit.actuator.span});
   program.safety.push_back(std::move(rule));
 }
 

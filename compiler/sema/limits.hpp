@@ -12,12 +12,12 @@ public:
       : robot_(robot), names_(names), expressions_(expressions), diagnostics_(diagnostics) {}
 
   // Adds a speed limit to `program`, or the SAFETY rule that keeps the limit. `line` is its own.
-  void add(const ast::Limit& limit, std::uint16_t line, Program& program);
+  void add(const ast::Limit& limit, std::uint16_t line, ir::Program& program);
 
 private:
-  void limit_speed(const ast::Limit& limit, const Target& target, Program& program);
+  void limit_speed(const ast::Limit& limit, const Target& target, ir::Program& program);
   void limit_reading(const ast::Limit& limit, ChannelRef channel, std::uint16_t line,
-                     Program& program);
+                     ir::Program& program);
   [[nodiscard]] std::optional<ChannelRef> find_channel(const ast::Limit& limit) const;
   void report_unknown(const ast::Limit& limit);
 

@@ -224,7 +224,7 @@ bool overlaps(const std::vector<Interval>& ranges, const Interval& wanted) {
 
 }  // namespace
 
-void lint_bands(const ast::Check& node, const ProgramCheck& check, const Typed& input,
+void lint_bands(const ast::Check& node, const ir::Check& check, const Typed& input,
                 Diagnostics& diagnostics) {
   const Unit& unit = input.unit != nullptr ? *input.unit : canonical_unit(vm::Dimension::number);
   std::vector<Interval> left{{input.low, input.high}};
@@ -249,10 +249,10 @@ void lint_bands(const ast::Check& node, const ProgramCheck& check, const Typed& 
 
 namespace {
 
-std::set<std::size_t> actuators_of(const ProgramRule& rule) {
+std::set<std::size_t> actuators_of(const ir::Rule& rule) {
   std::set<std::size_t> result;
-  for_each_response(rule, [&](const ProgramBlock& block) {
-    for_each_of<ProgramCommand>(block, [&](const ProgramCommand& command) {
+  for_each_response(rule, [&](const ir::Block& block) {
+    for_each_of<ir::Command>(block, [&](const ir::Command& command) {
       result.insert(command.actuators.begin(), command.actuators.end());
     });
   });
@@ -262,7 +262,7 @@ std::set<std::size_t> actuators_of(const ProgramRule& rule) {
 // ---- W0202
 
 // Does `higher` own its actuators whenever `lower` could begin?
-bool always_before(const ProgramRule& higher, const ProgramRule& lower) {
+bool always_before(const ir::Rule& higher, const ir::Rule& lower) {
   if (higher.cooldown != 0 || lower.waiting != 0) return false;
   if (lower.kind != vm::RuleKind::when && lower.kind != vm::RuleKind::while_) return false;
   if (higher.kind == vm::RuleKind::while_) return implies(lower.condition, higher.condition);
@@ -273,7 +273,7 @@ bool always_before(const ProgramRule& higher, const ProgramRule& lower) {
 }
 
 struct KnownRule {
-  const ProgramRule* rule = nullptr;
+  const ir::Rule* rule = nullptr;
   std::set<std::size_t> actuators;
 };
 
@@ -292,9 +292,9 @@ bool share(const std::set<std::size_t>& a, const std::set<std::size_t>& b) {
 void lint_order(const LintInput& input) {
   std::vector<KnownRule> higher;
   std::size_t pairs = 0;
-  for (const ProgramBehavior& behavior : input.program.behaviors) {
+  for (const ir::Behavior& behavior : input.program.behaviors) {
     std::vector<KnownRule> own;
-    for (const ProgramRule& rule : behavior.rules) {
+    for (const ir::Rule& rule : behavior.rules) {
       pairs += higher.size();
       if (pairs > kMostPairs) return;
       KnownRule known{&rule, actuators_of(rule)};
@@ -319,27 +319,27 @@ void lint_order(const LintInput& input) {
 // How long a response takes at least, in milliseconds: what it waits, and what its commands say.
 class Duration {
 public:
-  std::int64_t of(const ProgramBlock& block) {
+  std::int64_t of(const ir::Block& block) {
     add(block);
     return std::max(now_, latest());
   }
 
 private:
-  void add(const ProgramBlock& block) {
-    for (const ProgramStatement& statement : block) {
-      if (const auto* command = std::get_if<ProgramCommand>(&statement.node)) add(*command);
-      if (const auto* wait = std::get_if<ProgramWait>(&statement.node))
+  void add(const ir::Block& block) {
+    for (const ir::Statement& statement : block) {
+      if (const auto* command = std::get_if<ir::Command>(&statement.node)) add(*command);
+      if (const auto* wait = std::get_if<ir::Wait>(&statement.node))
         now_ += std::max<std::int64_t>(constant(wait->duration), 0);
-      const auto* follow = std::get_if<ProgramFollow>(&statement.node);
+      const auto* follow = std::get_if<ir::Follow>(&statement.node);
       if (follow != nullptr && follow->lasts)
         now_ += std::max<std::int64_t>(constant(*follow->lasts), 0);
-      if (std::holds_alternative<ProgramThen>(statement.node)) now_ = std::max(now_, latest());
+      if (std::holds_alternative<ir::Then>(statement.node)) now_ = std::max(now_, latest());
     }
   }
 
-  void add(const ProgramCommand& command) {
+  void add(const ir::Command& command) {
     std::int64_t takes = 0;
-    for (const ProgramArgument& argument : command.arguments)
+    for (const ir::Argument& argument : command.arguments)
       if (argument.param == vm::Param::over || argument.param == vm::Param::for_)
         takes = std::max<std::int64_t>(takes, constant(argument.value));
     for (const std::size_t actuator : command.actuators)
@@ -361,7 +361,7 @@ private:
   std::map<std::size_t, std::int64_t> busy_;
 };
 
-void lint_cooldown(const ProgramRule& rule, Diagnostics& diagnostics) {
+void lint_cooldown(const ir::Rule& rule, Diagnostics& diagnostics) {
   if (rule.cooldown == 0 || rule.restarting) return;
   const std::int64_t takes = Duration().of(rule.then_response);
   if (takes <= rule.cooldown) return;
@@ -376,19 +376,19 @@ void lint_cooldown(const ProgramRule& rule, Diagnostics& diagnostics) {
 
 // ---- W0207
 
-bool never_ends(const ProgramRule& rule) {
-  return std::any_of(rule.then_response.begin(), rule.then_response.end(),
-                     [&](const ProgramStatement& statement) {
-                       const auto* follow = std::get_if<ProgramFollow>(&statement.node);
-                       if (follow != nullptr) return !follow->lasts;
-                       const auto* loop = std::get_if<ProgramRepeat>(&statement.node);
-                       if (loop == nullptr) return false;
-                       return loop->kind == RepeatKind::forever ||
-                              (loop->kind == RepeatKind::while_ && loop->control == rule.condition);
-                     });
+bool never_ends(const ir::Rule& rule) {
+  return std::any_of(
+      rule.then_response.begin(), rule.then_response.end(), [&](const ir::Statement& statement) {
+        const auto* follow = std::get_if<ir::Follow>(&statement.node);
+        if (follow != nullptr) return !follow->lasts;
+        const auto* loop = std::get_if<ir::Repeat>(&statement.node);
+        if (loop == nullptr) return false;
+        return loop->kind == ir::RepeatKind::forever ||
+               (loop->kind == ir::RepeatKind::while_ && loop->control == rule.condition);
+      });
 }
 
-void lint_level(const ProgramRule& rule, Diagnostics& diagnostics) {
+void lint_level(const ir::Rule& rule, Diagnostics& diagnostics) {
   if (rule.kind != vm::RuleKind::when || !never_ends(rule)) return;
   diagnostics
       .report(Code::W0207,
@@ -400,9 +400,9 @@ void lint_level(const ProgramRule& rule, Diagnostics& diagnostics) {
 // ---- W0219
 
 // A command takes time, but for STOP and for a level that an output has at once (vm/drivers.def).
-bool takes_time(const ProgramCommand& command, const Names& names) {
+bool takes_time(const ir::Command& command, const Names& names) {
   const bool lasts = std::any_of(
-      command.arguments.begin(), command.arguments.end(), [](const ProgramArgument& argument) {
+      command.arguments.begin(), command.arguments.end(), [](const ir::Argument& argument) {
         return argument.param == vm::Param::over || argument.param == vm::Param::for_;
       });
   const bool at_once = std::all_of(
@@ -411,19 +411,19 @@ bool takes_time(const ProgramCommand& command, const Names& names) {
   return command.verb.action != vm::Action::stop && (lasts || !at_once);
 }
 
-bool takes_time(const ProgramBlock& block, const Names& names) {
+bool takes_time(const ir::Block& block, const Names& names) {
   bool found = false;
-  for_each_statement(block, [&](const ProgramStatement& statement) {
-    const auto* const command = std::get_if<ProgramCommand>(&statement.node);
-    found = found || std::holds_alternative<ProgramWait>(statement.node) ||
-            std::holds_alternative<ProgramWaitUntil>(statement.node) ||
-            std::holds_alternative<ProgramFollow>(statement.node) ||
+  for_each_statement(block, [&](const ir::Statement& statement) {
+    const auto* const command = std::get_if<ir::Command>(&statement.node);
+    found = found || std::holds_alternative<ir::Wait>(statement.node) ||
+            std::holds_alternative<ir::WaitUntil>(statement.node) ||
+            std::holds_alternative<ir::Follow>(statement.node) ||
             (command != nullptr && takes_time(*command, names));
   });
   return found;
 }
 
-void lint_length(const ProgramRule& rule, const Names& names, Diagnostics& diagnostics) {
+void lint_length(const ir::Rule& rule, const Names& names, Diagnostics& diagnostics) {
   if (rule.kind != vm::RuleKind::while_ || rule.cooldown > 0) return;
   if (takes_time(rule.then_response, names)) return;
   diagnostics.report(Code::W0219, "this runs 1,000 times a second: its response takes no time")
@@ -435,8 +435,8 @@ void lint_length(const ProgramRule& rule, const Names& names, Diagnostics& diagn
 
 void lint_rules(const LintInput& input) {
   lint_order(input);
-  for (const ProgramBehavior& behavior : input.program.behaviors) {
-    for (const ProgramRule& rule : behavior.rules) {
+  for (const ir::Behavior& behavior : input.program.behaviors) {
+    for (const ir::Rule& rule : behavior.rules) {
       lint_cooldown(rule, input.diagnostics);
       lint_level(rule, input.diagnostics);
       lint_length(rule, input.names, input.diagnostics);
@@ -480,11 +480,11 @@ namespace {
 
 using Entered = std::map<std::size_t, std::set<vm::Value>>;  // labels set, by variable
 
-Entered labels_set(const Program& program) {
+Entered labels_set(const ir::Program& program) {
   Entered result;
-  for_each_rule(program, [&](const ProgramRule& rule) {
-    for_each_response(rule, [&](const ProgramBlock& block) {
-      for_each_of<ProgramSet>(block, [&](const ProgramSet& set) {
+  for_each_rule(program, [&](const ir::Rule& rule) {
+    for_each_response(rule, [&](const ir::Block& block) {
+      for_each_of<ir::Set>(block, [&](const ir::Set& set) {
         if (program.variables[set.variable].kind == vm::VariableKind::state)
           result[set.variable].insert(set.value.constant);
       });
@@ -572,8 +572,8 @@ const Expression* raw_threshold(const Expression& condition, const Names& names)
 }
 
 void lint_noise(const LintInput& input) {
-  for (const ProgramBehavior& behavior : input.program.behaviors) {
-    for (const ProgramRule& rule : behavior.rules) {
+  for (const ir::Behavior& behavior : input.program.behaviors) {
+    for (const ir::Rule& rule : behavior.rules) {
       if (rule.kind == vm::RuleKind::every || rule.kind == vm::RuleKind::start) continue;
       const Expression* reading = raw_threshold(rule.condition, input.names);
       if (reading == nullptr) continue;
@@ -588,13 +588,13 @@ void lint_noise(const LintInput& input) {
 
 // A few rules without a BEHAVIOR are a first try, which needs no sermon.
 void lint_safety(const LintInput& input) {
-  const Program& program = input.program;
+  const ir::Program& program = input.program;
   if (!program.safety.empty() || !program.speed_limits.empty()) return;
-  const auto moves = [](const ProgramCommand& command) {
+  const auto moves = [](const ir::Command& command) {
     return command.verb.action == vm::Action::move;
   };
-  for (const ProgramBehavior& behavior : program.behaviors) {
-    for (const ProgramRule& rule : behavior.rules) {
+  for (const ir::Behavior& behavior : program.behaviors) {
+    for (const ir::Rule& rule : behavior.rules) {
       const bool found = !behavior.name.empty() && (any_command(rule.then_response, moves) ||
                                                     any_command(rule.else_response, moves));
       if (!found) continue;

@@ -16,13 +16,13 @@ void lint_start(const ast::Rule& rule, const ast::WhenRule& when, const Names& n
                 const Typed& condition, const SourceMap& sources, Diagnostics& diagnostics);
 
 // W0201: a band that nothing reaches, or values of `input` that no band has.
-void lint_bands(const ast::Check& node, const ProgramCheck& check, const Typed& input,
+void lint_bands(const ast::Check& node, const ir::Check& check, const Typed& input,
                 Diagnostics& diagnostics);
 
 // What can be said only of a whole program, when it has no errors.
 struct LintInput {
   const ast::Tree& tree;  // without its modules: they are not the user's to mend
-  const Program& program;
+  const ir::Program& program;
   Names& names;
   Diagnostics& diagnostics;
 };

@@ -119,12 +119,12 @@ std::optional<ListChoice> Statements::find_choice(const std::vector<ast::Argumen
 // ---- which text it is
 
 void Statements::choose(const ListChoice& choice, Span span, const PutText& put_text,
-                        ProgramBlock& result) {
+                        ir::Block& result) {
   const auto chosen = chosen_item(choice, span, result);
   if (!chosen) return;
   for (std::size_t i = chosen->places.first; i <= chosen->places.second; ++i)
     if (!within_budget(choice.span)) return;
-  const auto put_item = [&](std::size_t item, ProgramBlock& into) {
+  const auto put_item = [&](std::size_t item, ir::Block& into) {
     const Span place = choice.list->list->items[item].span;
     put_text({choice.at, choice.count, choice.list->texts[item], place}, into);
   };
@@ -133,7 +133,7 @@ void Statements::choose(const ListChoice& choice, Span span, const PutText& put_
 
 // Nothing after a mistake, which has then been reported.
 std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span span,
-                                                  ProgramBlock& result) {
+                                                  ir::Block& result) {
   if (choice.list == nullptr) return std::nullopt;
   const std::size_t count = choice.list->count();
   if (safety_ || count > kMaxTexts) {
@@ -165,44 +165,42 @@ std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span
 }
 
 // Worked out once. Outside the list the nearest item is taken, and the trace says so.
-Expression Statements::item_index(const ListName& list, Typed index, Span span,
-                                  ProgramBlock& result) {
+Expression Statements::item_index(const ListName& list, Typed index, Span span, ir::Block& result) {
   const std::string name(list.list->name.text);
   const std::size_t count = list.count();
   Expression local =
       in_local(make_binary(Operation::round, std::move(index.code), make_constant_code(vm::kScale)),
                span, result);
-  ProgramIf outside;
+  ir::If outside;
   outside.condition = make_binary(
       Operation::logical_or, make_binary(Operation::less, local, make_constant_code(vm::kScale)),
       make_binary(Operation::greater, local, make_constant_code(whole(count))));
-  put(ProgramLog{false,
-                 "there is no ITEM {} OF " + name + ", which has " + std::to_string(count),
-                 {local}},
+  put(ir::Log{false,
+              "there is no ITEM {} OF " + name + ", which has " + std::to_string(count),
+              {local}},
       span, outside.then_block);
   put(std::move(outside), span, result);
   return local;
 }
 
-Expression Statements::next_index(const ListChoice& choice, Span span, ProgramBlock& result) {
+Expression Statements::next_index(const ListChoice& choice, Span span, ir::Block& result) {
   const std::size_t last = choice.list->next.value_or(0);
-  put(ProgramSet{last, place_behind(make_variable(last), choice.list->count()), false}, span,
-      result);
+  put(ir::Set{last, place_behind(make_variable(last), choice.list->count()), false}, span, result);
   return make_variable(last);
 }
 
 // The first time any of them; then as many further as is drawn, which never is all the way round.
-Expression Statements::any_index(const ListChoice& choice, Span span, ProgramBlock& result) {
+Expression Statements::any_index(const ListChoice& choice, Span span, ir::Block& result) {
   const std::size_t count = choice.list->count();
   const std::size_t last = choice.list->any.value_or(0);
-  ProgramIf first;
+  ir::If first;
   first.condition = make_binary(Operation::equal, make_variable(last), make_constant_code(0));
-  put(ProgramSet{last, drawn(count), false}, span, first.then_block);
+  put(ir::Set{last, drawn(count), false}, span, first.then_block);
   Expression further = make_binary(
       Operation::add,
       make_binary(Operation::subtract, make_variable(last), make_constant_code(vm::kScale)),
       drawn(count - 1));
-  put(ProgramSet{last, place_behind(std::move(further), count), false}, span, first.else_block);
+  put(ir::Set{last, place_behind(std::move(further), count), false}, span, first.else_block);
   put(std::move(first), span, result);
   return make_variable(last);
 }
@@ -210,11 +208,11 @@ Expression Statements::any_index(const ListChoice& choice, Span span, ProgramBlo
 // ---- one block for each item
 
 void Statements::put_one_of(const Expression& index, std::pair<std::size_t, std::size_t> places,
-                            Span span, const PutItem& put_item, ProgramBlock& result) {
+                            Span span, const PutItem& put_item, ir::Block& result) {
   const auto [first, last] = places;
   if (first == last) return put_item(first, result);
   const std::size_t middle = (first + last) / 2;
-  ProgramIf lower;
+  ir::If lower;
   lower.condition =
       make_binary(Operation::less_equal, index, make_constant_code(whole(middle + 1)));
   put_one_of(index, {first, middle}, span, put_item, lower.then_block);
@@ -226,12 +224,12 @@ void Statements::put_one_of(const Expression& index, std::pair<std::size_t, std:
 
 // Of an unknown place an unknown number: it is neither in one half nor in the other.
 Expression Statements::choose_number(const NumberList& list, Typed index, Span span,
-                                     ProgramBlock& result) {
+                                     ir::Block& result) {
   const std::size_t local = locals_++;
   const Expression place = item_index(*list.list, std::move(index), span, result);
-  put(ProgramLocal{local, place, true}, span, result);
-  const auto put_number = [&](std::size_t item, ProgramBlock& into) {
-    put(ProgramLocal{local, make_constant_code(list.values[item]), true}, span, into);
+  put(ir::Local{local, place, true}, span, result);
+  const auto put_number = [&](std::size_t item, ir::Block& into) {
+    put(ir::Local{local, make_constant_code(list.values[item]), true}, span, into);
   };
   put_one_of(place, {0, list.values.size() - 1}, span, put_number, result);
   return make_local(local);

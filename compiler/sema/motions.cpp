@@ -40,8 +40,8 @@ void Motions::check_unused() {
     if (!known.in_module && !known.seen) (void)translate(*known.motion);
 }
 
-std::optional<ProgramMotion> Motions::translate(const ast::Motion& motion) {
-  ProgramMotion result{std::string(motion.name.text), 0, {}};
+std::optional<ir::Motion> Motions::translate(const ast::Motion& motion) {
+  ir::Motion result{std::string(motion.name.text), 0, {}};
   std::vector<std::vector<std::size_t>> columns;  // places in result.tracks
   if (!add_columns(motion, columns, result)) return std::nullopt;
   if (motion.rows.size() > kMostRows) {
@@ -64,7 +64,7 @@ std::optional<ProgramMotion> Motions::translate(const ast::Motion& motion) {
 }
 
 bool Motions::add_columns(const ast::Motion& motion, std::vector<std::vector<std::size_t>>& columns,
-                          ProgramMotion& result) {
+                          ir::Motion& result) {
   for (const ast::Name& column : motion.columns) {
     const auto target = names_.find_target(column.text);
     if (!target) {
@@ -80,8 +80,7 @@ bool Motions::add_columns(const ast::Motion& motion, std::vector<std::vector<std
     columns.emplace_back();
     for (const std::size_t actuator : target->actuators) {
       if (!can_move(actuator, column)) return false;
-      if (std::ranges::find(result.tracks, actuator, &ProgramTrack::actuator) !=
-          result.tracks.end()) {
+      if (std::ranges::find(result.tracks, actuator, &ir::Track::actuator) != result.tracks.end()) {
         diagnostics_
             .report(Code::E0511, robot_.actuators[actuator].name.shown() + " has two columns")
             .label(column.span, "here it is again");
@@ -122,7 +121,7 @@ std::optional<vm::Value> Motions::time_of(const ast::MotionRow& row, vm::Value a
 }
 
 bool Motions::add_row(const ast::Motion& motion, const ast::MotionRow& row,
-                      const std::vector<std::vector<std::size_t>>& columns, ProgramMotion& result) {
+                      const std::vector<std::vector<std::size_t>>& columns, ir::Motion& result) {
   if (row.keys.size() != columns.size()) {
     const auto counted = [](std::size_t count, const std::string& what) {
       return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
@@ -147,7 +146,7 @@ bool Motions::add_row(const ast::Motion& motion, const ast::MotionRow& row,
   return true;
 }
 
-bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ProgramTrack& track) {
+bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ir::Track& track) {
   const ActuatorConfig& actuator = robot_.actuators[track.actuator];
   auto number = expressions_.constant(*key.value, "a value of a MOTION");
   if (!number) return false;
@@ -163,7 +162,7 @@ bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ProgramTrack& t
 }
 
 // It goes there at its limit, and is there later than the table says.
-void Motions::report_late(const ProgramTrack& track, const vm::Key& key, Span span) {
+void Motions::report_late(const ir::Track& track, const vm::Key& key, Span span) {
   const ActuatorConfig& actuator = robot_.actuators[track.actuator];
   const vm::Key& before = track.keys.back();
   const std::int64_t way = std::abs(std::int64_t{key.to} - before.to);

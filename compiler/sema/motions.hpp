@@ -25,29 +25,29 @@ public:
   // The place of what is performed, in performed(); nothing when no MOTION has the name, or it has a
   // mistake, which has been reported.
   [[nodiscard]] std::optional<std::size_t> find(const ast::Name& name);
-  [[nodiscard]] const ProgramMotion& at(std::size_t place) const { return motions_[place]; }
+  [[nodiscard]] const ir::Motion& at(std::size_t place) const { return motions_[place]; }
 
   // Those that find() has found so far, in that order.
-  [[nodiscard]] const std::vector<ProgramMotion>& performed() const { return motions_; }
+  [[nodiscard]] const std::vector<ir::Motion>& performed() const { return motions_; }
   // Checks the others; those of modules need not fit the robot.
   void check_unused();
 
 private:
-  std::optional<ProgramMotion> translate(const ast::Motion& motion);
+  std::optional<ir::Motion> translate(const ast::Motion& motion);
   bool add_columns(const ast::Motion& motion, std::vector<std::vector<std::size_t>>& columns,
-                   ProgramMotion& result);
+                   ir::Motion& result);
   bool can_move(std::size_t actuator, const ast::Name& column);
   std::optional<vm::Value> time_of(const ast::MotionRow& row, vm::Value after);
   bool add_row(const ast::Motion& motion, const ast::MotionRow& row,
-               const std::vector<std::vector<std::size_t>>& columns, ProgramMotion& result);
-  bool add_key(const ast::MotionKey& key, vm::Value time, ProgramTrack& track);
-  void report_late(const ProgramTrack& track, const vm::Key& key, Span span);
+               const std::vector<std::vector<std::size_t>>& columns, ir::Motion& result);
+  bool add_key(const ast::MotionKey& key, vm::Value time, ir::Track& track);
+  void report_late(const ir::Track& track, const vm::Key& key, Span span);
 
   const Robot& robot_;
   Names& names_;
   Expressions& expressions_;
   Diagnostics& diagnostics_;
-  std::vector<ProgramMotion> motions_;
+  std::vector<ir::Motion> motions_;
 };
 
 }  // namespace robosync::compiler

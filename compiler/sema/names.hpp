@@ -41,7 +41,7 @@ struct MotionName {
 
 struct VariableName {
   ast::Name name;
-  std::size_t index = 0;  // its place in Program::variables
+  std::size_t index = 0;  // its place in ir::Program::variables
   // Nothing: a signal.
   std::variant<std::monostate, const ast::Remember*, const ast::State*, const ast::Timer*,
                const ast::Feeling*, const ast::Check*>
@@ -127,7 +127,7 @@ public:
   [[nodiscard]] const std::map<std::string, DefineName>& defines() const { return defines_; }
   [[nodiscard]] const std::map<std::string, ConstantName>& constants() const { return constants_; }
   [[nodiscard]] const std::map<std::string, ListName>& lists() const { return lists_; }
-  // In the order of Program::variables.
+  // In the order of ir::Program::variables.
   [[nodiscard]] std::vector<VariableName>& variables() { return variables_; }
 
 private:

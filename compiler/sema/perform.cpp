@@ -14,7 +14,7 @@ constexpr std::uint8_t kPerformTakes =
 
 }  // namespace
 
-std::vector<ProgramCommand> Commands::perform(const ast::Command& command) {
+std::vector<ir::Command> Commands::perform(const ast::Command& command) {
   const ast::Word* const word =
       command.arguments.empty() ? nullptr : plain_word(command.arguments.front());
   if (word == nullptr || names_.find_motion(word->name.text) == nullptr) {
@@ -24,14 +24,13 @@ std::vector<ProgramCommand> Commands::perform(const ast::Command& command) {
   const auto place = motions_.find(word->name);
   const auto given = evaluate(command, 0);
   if (!place || !given) return {};
-  const ProgramMotion& motion = motions_.at(*place);
-  ProgramCommand result;
+  const ir::Motion& motion = motions_.at(*place);
+  ir::Command result;
   result.motion = place;
-  for (const ProgramTrack& track : motion.tracks)
+  for (const ir::Track& track : motion.tracks)
     result.actuators.push_back(track.actuator);
   result.verb = {std::string(kPerform), vm::Action::perform, kPerformTakes};
-  result.word =
-      ProgramWord{motion.name, vm::Param::item, static_cast<vm::Value>(*place) * vm::kScale};
+  result.word = ir::Word{motion.name, vm::Param::item, static_cast<vm::Value>(*place) * vm::kScale};
   for (const Given& one : *given)
     if (!add_to_performance(one, result)) return {};
   return {std::move(result)};
@@ -64,7 +63,7 @@ void Commands::report_no_motion(const ast::Command& command) {
 }
 
 // AT is how fast, in percent of what the MOTION says; TIMES how often.
-bool Commands::add_to_performance(const Given& given, ProgramCommand& result) {
+bool Commands::add_to_performance(const Given& given, ir::Command& result) {
   const Span span = given.argument->span;
   const bool is_speed = given.is_number && given.param == vm::Param::at;
   if (!is_speed && (!given.is_number || given.param != vm::Param::times)) {

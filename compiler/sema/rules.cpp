@@ -4,8 +4,8 @@
 
 namespace robosync::compiler {
 
-ProgramRule Rules::translate(const ast::Rule& rule, bool inside) {
-  ProgramRule result;
+ir::Rule Rules::translate(const ast::Rule& rule, bool inside) {
+  ir::Rule result;
   result.line = statements_.line_of(rule.span);
   result.span = rule.head_span;
   modify(rule, inside, result);
@@ -13,7 +13,7 @@ ProgramRule Rules::translate(const ast::Rule& rule, bool inside) {
   return result;
 }
 
-void Rules::translate(const ast::Rule& rule, const ast::WhenRule& node, ProgramRule& result) {
+void Rules::translate(const ast::Rule& rule, const ast::WhenRule& node, ir::Rule& result) {
   if (node.condition) {
     Typed condition = expressions_.condition(*node.condition, rule.modifiers.margin.get());
     if (node.else_block && condition.type == Type::condition)
@@ -26,14 +26,14 @@ void Rules::translate(const ast::Rule& rule, const ast::WhenRule& node, ProgramR
   result.else_response = statements_.response(*node.else_block);
 }
 
-void Rules::translate(const ast::Rule& rule, const ast::WhileRule& node, ProgramRule& result) {
+void Rules::translate(const ast::Rule& rule, const ast::WhileRule& node, ir::Rule& result) {
   result.kind = vm::RuleKind::while_;
   if (node.condition)
     result.condition = expressions_.condition(*node.condition, rule.modifiers.margin.get()).code;
   result.then_response = statements_.response(node.body);
 }
 
-void Rules::translate(const ast::Rule&, const ast::EveryRule& node, ProgramRule& result) {
+void Rules::translate(const ast::Rule&, const ast::EveryRule& node, ir::Rule& result) {
   result.kind = vm::RuleKind::every;
   result.condition = period(node);
   result.then_response = statements_.response(node.body);
@@ -53,7 +53,7 @@ Expression Rules::period(const ast::EveryRule& node) {
   return make_binary(Operation::random, std::move(period.code), std::move(longest.code));
 }
 
-void Rules::translate(const ast::Rule&, const ast::AtStartRule& node, ProgramRule& result) {
+void Rules::translate(const ast::Rule&, const ast::AtStartRule& node, ir::Rule& result) {
   result.kind = vm::RuleKind::start;
   result.then_response = statements_.response(node.body);
 }
@@ -62,7 +62,7 @@ void Rules::refuse(Span span, std::string message, std::string help) {
   diagnostics_.report(Code::E0409, std::move(message)).label(span).helps(std::move(help));
 }
 
-void Rules::modify(const ast::Rule& rule, bool inside, ProgramRule& result) {
+void Rules::modify(const ast::Rule& rule, bool inside, ir::Rule& result) {
   const ast::Modifiers& modifiers = rule.modifiers;
   const bool is_while = std::holds_alternative<ast::WhileRule>(rule.node);
   const bool is_every = std::holds_alternative<ast::EveryRule>(rule.node);
@@ -89,8 +89,8 @@ void Rules::modify(const ast::Rule& rule, bool inside, ProgramRule& result) {
            "a period that comes while the response runs is skipped");
 }
 
-ProgramRule Rules::translate(const ast::Safety& safety, Span span) {
-  ProgramRule result;
+ir::Rule Rules::translate(const ast::Safety& safety, Span span) {
+  ir::Rule result;
   result.kind = vm::RuleKind::safety;
   result.line = statements_.line_of(span);
   result.span = safety.name.span;

@@ -16,16 +16,16 @@ public:
         diagnostics_(diagnostics) {}
 
   // What is wrong is reported. `inside`: of a BEHAVIOR.
-  [[nodiscard]] ProgramRule translate(const ast::Rule& rule, bool inside);
-  [[nodiscard]] ProgramRule translate(const ast::Safety& safety, Span span);
+  [[nodiscard]] ir::Rule translate(const ast::Rule& rule, bool inside);
+  [[nodiscard]] ir::Rule translate(const ast::Safety& safety, Span span);
 
 private:
-  void translate(const ast::Rule& rule, const ast::WhenRule& node, ProgramRule& result);
-  void translate(const ast::Rule& rule, const ast::WhileRule& node, ProgramRule& result);
-  void translate(const ast::Rule& rule, const ast::EveryRule& node, ProgramRule& result);
-  void translate(const ast::Rule& rule, const ast::AtStartRule& node, ProgramRule& result);
+  void translate(const ast::Rule& rule, const ast::WhenRule& node, ir::Rule& result);
+  void translate(const ast::Rule& rule, const ast::WhileRule& node, ir::Rule& result);
+  void translate(const ast::Rule& rule, const ast::EveryRule& node, ir::Rule& result);
+  void translate(const ast::Rule& rule, const ast::AtStartRule& node, ir::Rule& result);
   Expression period(const ast::EveryRule& node);
-  void modify(const ast::Rule& rule, bool inside, ProgramRule& result);
+  void modify(const ast::Rule& rule, bool inside, ir::Rule& result);
   void refuse(Span span, std::string message, std::string help);
 
   const SourceMap& sources_;

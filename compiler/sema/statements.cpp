@@ -26,20 +26,20 @@ void Statements::begin_response() {
   depth_ = 0;
 }
 
-ProgramBlock Statements::response(const ast::Block& block) {
+ir::Block Statements::response(const ast::Block& block) {
   begin_response();
   return this->block(block);
 }
 
-ProgramBlock Statements::safety(const ast::Block& block) {
+ir::Block Statements::safety(const ast::Block& block) {
   safety_ = true;
-  ProgramBlock result = response(block);
+  ir::Block result = response(block);
   safety_ = false;
   return result;
 }
 
-ProgramBlock Statements::block(const ast::Block& block) {
-  ProgramBlock result;
+ir::Block Statements::block(const ast::Block& block) {
+  ir::Block result;
   if (!block.empty() && depth_ == vm::kMaxBlocks) {
     diagnostics_
         .report(Code::E0407, "blocks stand in each other more than " +
@@ -55,7 +55,7 @@ ProgramBlock Statements::block(const ast::Block& block) {
   return result;
 }
 
-void Statements::add(const ast::Stmt& stmt, ProgramBlock& result) {
+void Statements::add(const ast::Stmt& stmt, ir::Block& result) {
   if (!within_budget(stmt.span) || (safety_ && !allowed_in_safety(stmt))) return;
   const ChooseNumber choose = [&](const NumberList& list, Typed index) {
     return choose_number(list, std::move(index), stmt.span, result);
@@ -105,7 +105,7 @@ std::uint16_t Statements::line_of(Span span) const {
   return static_cast<std::uint16_t>(std::min<std::uint32_t>(line, UINT16_MAX));
 }
 
-void Statements::add(const ast::Command& node, Span span, ProgramBlock& result) {
+void Statements::add(const ast::Command& node, Span span, ir::Block& result) {
   if (node.arguments.empty())
     if (const Binding* binding = expressions_.find_binding(node.verb.text))
       return run(*binding, node.verb, {}, span, result);
@@ -115,20 +115,20 @@ void Statements::add(const ast::Command& node, Span span, ProgramBlock& result) 
   if (is_restart(node)) return restart(node, span, result);
   if (commands_.is_follow(node)) return follow(node, span, result);
   if (const auto choice = find_choice(node.arguments)) {
-    const auto say = [&](const ChosenText& chosen, ProgramBlock& into) {
-      for (ProgramCommand& command : commands_.translate(node, &chosen))
+    const auto say = [&](const ChosenText& chosen, ir::Block& into) {
+      for (ir::Command& command : commands_.translate(node, &chosen))
         put(std::move(command), span, into);
     };
     return choose(*choice, span, say, result);
   }
-  for (ProgramCommand& command : commands_.translate(node))
+  for (ir::Command& command : commands_.translate(node))
     put(std::move(command), span, result);
 }
 
-void Statements::add(const ast::Wait& node, Span span, ProgramBlock& result) {
+void Statements::add(const ast::Wait& node, Span span, ir::Block& result) {
   if (node.duration == nullptr) return;
   Typed duration = expressions_.duration(*node.duration, "WAIT");
-  if (duration.is_number()) put(ProgramWait{std::move(duration.code)}, span, result);
+  if (duration.is_number()) put(ir::Wait{std::move(duration.code)}, span, result);
 }
 
 // A condition that is worked out more than once: what stands in front of the statement would not be.
@@ -139,9 +139,9 @@ Typed Statements::asked_again(const ast::Expr& condition) {
   return result;
 }
 
-void Statements::add(const ast::WaitUntil& node, Span span, ProgramBlock& result) {
+void Statements::add(const ast::WaitUntil& node, Span span, ir::Block& result) {
   if (node.condition == nullptr) return;
-  ProgramWaitUntil wait;
+  ir::WaitUntil wait;
   Typed condition = asked_again(*node.condition);
   bool good = condition.type == Type::condition;
   wait.condition = std::move(condition.code);
@@ -153,11 +153,11 @@ void Statements::add(const ast::WaitUntil& node, Span span, ProgramBlock& result
   if (good) put(std::move(wait), span, result);
 }
 
-void Statements::add(const ast::Then&, Span span, ProgramBlock& result) {
-  put(ProgramThen{}, span, result);
+void Statements::add(const ast::Then&, Span span, ir::Block& result) {
+  put(ir::Then{}, span, result);
 }
 
-void Statements::add(const ast::Stop& node, Span span, ProgramBlock& result) {
+void Statements::add(const ast::Stop& node, Span span, ir::Block& result) {
   if (node.name)
     if (const Binding* binding = expressions_.find_binding(node.name->text))
       return stop_given(*binding, *node.name, span, result);
@@ -169,7 +169,7 @@ void Statements::add(const ast::Stop& node, Span span, ProgramBlock& result) {
 
 // STOP of a parameter.
 void Statements::stop_given(const Binding& binding, const ast::Name& name, Span span,
-                            ProgramBlock& result) {
+                            ir::Block& result) {
   const ast::Name actuator{binding.actuator, name.span};
   if (!actuator.text.empty())
     return safety_ ? halt({actuator}, span, result) : stop_actuator(actuator, span, result);
@@ -177,7 +177,7 @@ void Statements::stop_given(const Binding& binding, const ast::Name& name, Span 
 }
 
 // STOP is a word of the language and, for one actuator, its verb.
-void Statements::stop_actuator(const ast::Name& name, Span span, ProgramBlock& result) {
+void Statements::stop_actuator(const ast::Name& name, Span span, ir::Block& result) {
   if (!commands_.find_stopped(name)) return;
   ast::Command command;
   command.verb = {kStop, first_word(span, kStop)};
@@ -185,13 +185,13 @@ void Statements::stop_actuator(const ast::Name& name, Span span, ProgramBlock& r
   named.span = name.span;
   named.value = ast::Word{name};
   const Bindings* outer = expressions_.set_bindings(nullptr);  // a name here is an actuator's
-  for (ProgramCommand& stop : commands_.translate(command))
+  for (ir::Command& stop : commands_.translate(command))
     put(std::move(stop), span, result);
   expressions_.set_bindings(outer);
 }
 
-void Statements::halt(const ast::Stop& node, Span span, ProgramBlock& result) {
-  ProgramHalt halt;
+void Statements::halt(const ast::Stop& node, Span span, ir::Block& result) {
+  ir::Halt halt;
   if (node.name) {
     auto target = commands_.find_stopped(*node.name);
     if (!target) return;
@@ -210,16 +210,16 @@ void Statements::halt(const ast::Stop& node, Span span, ProgramBlock& result) {
 namespace {
 
 // Does every turn of the loop end by itself, or give up the processor?
-bool is_bounded(const ProgramRepeat& loop) {
+bool is_bounded(const ir::Repeat& loop) {
   const bool counted =
-      loop.kind == RepeatKind::times && loop.control.operation == Operation::constant;
-  return counted || std::any_of(loop.body.begin(), loop.body.end(), is_pause);
+      loop.kind == ir::RepeatKind::times && loop.control.operation == Operation::constant;
+  return counted || std::any_of(loop.body.begin(), loop.body.end(), ir::is_pause);
 }
 
 }  // namespace
 
-void Statements::add(const ast::If& node, Span span, ProgramBlock& result) {
-  ProgramIf choice;
+void Statements::add(const ast::If& node, Span span, ir::Block& result) {
+  ir::If choice;
   Typed condition = node.condition ? expressions_.condition(*node.condition) : Typed{};
   choice.condition = std::move(condition.code);
   choice.then_block = block(node.then_block);
@@ -227,19 +227,19 @@ void Statements::add(const ast::If& node, Span span, ProgramBlock& result) {
   if (condition.type == Type::condition) put(std::move(choice), span, result);
 }
 
-void Statements::add(const ast::Repeat& node, Span span, ProgramBlock& result) {
-  ProgramRepeat loop;
+void Statements::add(const ast::Repeat& node, Span span, ir::Block& result) {
+  ir::Repeat loop;
   const std::size_t errors = diagnostics_.errors();
   bool good = true;
   if (node.times != nullptr) {
     good = repeat_times(*node.times, loop);
   } else if (node.condition != nullptr) {
-    loop.kind = RepeatKind::while_;
+    loop.kind = ir::RepeatKind::while_;
     Typed condition = asked_again(*node.condition);
     good = condition.type == Type::condition;
     loop.control = std::move(condition.code);
   } else {
-    loop.kind = RepeatKind::forever;
+    loop.kind = ir::RepeatKind::forever;
   }
   loop.body = block(node.body);
   if (!good || diagnostics_.errors() > errors) return;  // a WAIT may be among what is wrong
@@ -252,8 +252,8 @@ void Statements::add(const ast::Repeat& node, Span span, ProgramBlock& result) {
   put(std::move(loop), span, result);
 }
 
-bool Statements::repeat_times(const ast::Expr& times, ProgramRepeat& result) {
-  result.kind = RepeatKind::times;
+bool Statements::repeat_times(const ast::Expr& times, ir::Repeat& result) {
+  result.kind = ir::RepeatKind::times;
   Typed count =
       expressions_.amount(times, {&canonical_unit(vm::Dimension::number), "TIMES", times.span});
   if (!count.is_number()) return false;
@@ -267,14 +267,14 @@ bool Statements::repeat_times(const ast::Expr& times, ProgramRepeat& result) {
   return false;
 }
 
-void Statements::add(const ast::PickOne& node, Span span, ProgramBlock& result) {
-  ProgramPick pick;
+void Statements::add(const ast::PickOne& node, Span span, ir::Block& result) {
+  ir::Pick pick;
   std::int64_t sum = 0;
   bool good = true;
   const auto has_weight = [](const ast::Option& option) { return option.weight != nullptr; };
   const bool weighted = std::any_of(node.options.begin(), node.options.end(), has_weight);
   for (const ast::Option& option : node.options) {
-    ProgramOption made{vm::kScale, block(option.body)};
+    ir::Option made{vm::kScale, block(option.body)};
     if (option.weight != nullptr) {
       const auto value = weight(*option.weight);
       good = good && value;
@@ -395,18 +395,18 @@ bool Statements::in_range(const VariableName& variable, const Typed& value) {
   return false;
 }
 
-void Statements::add(const ast::Set& node, Span span, ProgramBlock& result) {
+void Statements::add(const ast::Set& node, Span span, ir::Block& result) {
   VariableName* variable = settable(node.name, false);
   if (variable == nullptr || node.value == nullptr || !variable->ready) return;
   if (variable->kind == vm::VariableKind::state) return set_label(node, *variable, span, result);
   Typed value = expressions_.amount(
       *node.value, {variable->unit, std::string(node.name.text), variable->unit_span});
   if (!value.is_number() || !in_range(*variable, value)) return;
-  put(ProgramSet{variable->index, std::move(value.code), false}, span, result);
+  put(ir::Set{variable->index, std::move(value.code), false}, span, result);
 }
 
 void Statements::set_label(const ast::Set& node, const VariableName& variable, Span span,
-                           ProgramBlock& result) {
+                           ir::Block& result) {
   const auto label = label_of(*node.value);
   if (!label) {
     diagnostics_.report(Code::E0306, node.name.shown() + " is a word, and this is not one")
@@ -417,10 +417,10 @@ void Statements::set_label(const ast::Set& node, const VariableName& variable, S
   const auto place =
       find_label(names_, variable.labels, {*label, node.value->span}, node.name.text, diagnostics_);
   if (place)
-    put(ProgramSet{variable.index, make_constant_code(label_value(*place)), false}, span, result);
+    put(ir::Set{variable.index, make_constant_code(label_value(*place)), false}, span, result);
 }
 
-void Statements::add(const ast::Raise& node, Span span, ProgramBlock& result) {
+void Statements::add(const ast::Raise& node, Span span, ir::Block& result) {
   VariableName* variable = settable(node.name, true);
   if (variable == nullptr || node.by == nullptr || !variable->ready) return;
   Typed by = expressions_.amount(
@@ -431,14 +431,14 @@ void Statements::add(const ast::Raise& node, Span span, ProgramBlock& result) {
     by.code.constant = -by.code.constant;
   else if (node.lower)
     by.code = make_unary(Operation::negate, std::move(by.code));
-  put(ProgramSet{variable->index, std::move(by.code), true}, span, result);
+  put(ir::Set{variable->index, std::move(by.code), true}, span, result);
 }
 
-void Statements::add(const ast::Signal& node, Span span, ProgramBlock& result) {
+void Statements::add(const ast::Signal& node, Span span, ir::Block& result) {
   const VariableName* variable = names_.find_variable(node.name.text);
   const bool good = variable != nullptr && variable->kind == vm::VariableKind::signal;
   // Its first thousandth is as good as any: what counts is that it changes.
-  if (good) put(ProgramSet{variable->index, make_constant_code(1), true}, span, result);
+  if (good) put(ir::Set{variable->index, make_constant_code(1), true}, span, result);
 }
 
 // ---- RESTART
@@ -447,7 +447,7 @@ bool Statements::is_restart(const ast::Command& node) const {
   return same_name(node.verb.text, kRestart) && !names_.is_verb(kRestart);
 }
 
-void Statements::restart(const ast::Command& node, Span span, ProgramBlock& result) {
+void Statements::restart(const ast::Command& node, Span span, ir::Block& result) {
   const auto* const word =
       node.arguments.size() == 1 ? std::get_if<ast::Word>(&node.arguments.front().value) : nullptr;
   const VariableName* const timer =
@@ -455,7 +455,7 @@ void Statements::restart(const ast::Command& node, Span span, ProgramBlock& resu
   if (timer != nullptr && timer->kind == vm::VariableKind::timer) {
     Expression now;
     now.operation = Operation::now;
-    return put(ProgramSet{timer->index, std::move(now), false}, span, result);
+    return put(ir::Set{timer->index, std::move(now), false}, span, result);
   }
   Diagnostic& d =
       diagnostics_.report(Code::E0513, "RESTART sets a TIMER back to 0, and this is none")
@@ -471,17 +471,17 @@ void Statements::restart(const ast::Command& node, Span span, ProgramBlock& resu
 
 // ---- LOG and ALERT
 
-void Statements::add(const ast::Log& node, Span span, ProgramBlock& result) {
+void Statements::add(const ast::Log& node, Span span, ir::Block& result) {
   const auto choice = find_choice(node.arguments);
   if (!choice) return put_log(node, nullptr, span, result);
-  const auto log = [&](const ChosenText& chosen, ProgramBlock& into) {
+  const auto log = [&](const ChosenText& chosen, ir::Block& into) {
     put_log(node, &chosen, span, into);
   };
   choose(*choice, span, log, result);
 }
 
 void Statements::put_log(const ast::Log& node, const ChosenText* chosen, Span span,
-                         ProgramBlock& result) {
+                         ir::Block& result) {
   constexpr auto kMaxValues = static_cast<std::size_t>(vm::Param::count_);
   TextBuilder text(expressions_, diagnostics_);
   bool good = true;
@@ -496,7 +496,7 @@ void Statements::put_log(const ast::Log& node, const ChosenText* chosen, Span sp
         .label(span);
     return;
   }
-  if (good) put(ProgramLog{node.alert, text.text(), std::move(text.values())}, span, result);
+  if (good) put(ir::Log{node.alert, text.text(), std::move(text.values())}, span, result);
 }
 
 }  // namespace robosync::compiler

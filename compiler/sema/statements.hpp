@@ -35,9 +35,9 @@ public:
         diagnostics_(diagnostics) {}
 
   // What is wrong is reported and left out.
-  [[nodiscard]] ProgramBlock response(const ast::Block& block);
+  [[nodiscard]] ir::Block response(const ast::Block& block);
   // The body of a SAFETY rule: it stops, sets and warns (E0404).
-  [[nodiscard]] ProgramBlock safety(const ast::Block& block);
+  [[nodiscard]] ir::Block safety(const ast::Block& block);
   // Checks the DEFINEs that nothing has run. Those of modules need not fit the robot.
   void check_unused_defines();
 
@@ -46,79 +46,78 @@ public:
 
 private:
   void begin_response();
-  ProgramBlock block(const ast::Block& block);
-  void add(const ast::Stmt& stmt, ProgramBlock& result);
+  ir::Block block(const ast::Block& block);
+  void add(const ast::Stmt& stmt, ir::Block& result);
   bool within_budget(Span span);
   bool allowed_in_safety(const ast::Stmt& stmt);
   template <typename Node>
-  void put(Node node, Span span, ProgramBlock& result) {
+  void put(Node node, Span span, ir::Block& result) {
     if (endless_follow(result) != nullptr) report_never(result, span);
     result.push_back({std::move(node), line_of(span), span});
   }
 
-  void add(const ast::Command& node, Span span, ProgramBlock& result);
-  void add(const ast::Wait& node, Span span, ProgramBlock& result);
+  void add(const ast::Command& node, Span span, ir::Block& result);
+  void add(const ast::Wait& node, Span span, ir::Block& result);
   Typed asked_again(const ast::Expr& condition);
-  void add(const ast::WaitUntil& node, Span span, ProgramBlock& result);
-  void add(const ast::Then& node, Span span, ProgramBlock& result);
-  void add(const ast::Stop& node, Span span, ProgramBlock& result);
-  void halt(const ast::Stop& node, Span span, ProgramBlock& result);
-  void stop_given(const Binding& binding, const ast::Name& name, Span span, ProgramBlock& result);
-  void stop_actuator(const ast::Name& name, Span span, ProgramBlock& result);
-  void add(const ast::If& node, Span span, ProgramBlock& result);
-  void add(const ast::Repeat& node, Span span, ProgramBlock& result);
-  void add(const ast::PickOne& node, Span span, ProgramBlock& result);
-  bool repeat_times(const ast::Expr& times, ProgramRepeat& result);
+  void add(const ast::WaitUntil& node, Span span, ir::Block& result);
+  void add(const ast::Then& node, Span span, ir::Block& result);
+  void add(const ast::Stop& node, Span span, ir::Block& result);
+  void halt(const ast::Stop& node, Span span, ir::Block& result);
+  void stop_given(const Binding& binding, const ast::Name& name, Span span, ir::Block& result);
+  void stop_actuator(const ast::Name& name, Span span, ir::Block& result);
+  void add(const ast::If& node, Span span, ir::Block& result);
+  void add(const ast::Repeat& node, Span span, ir::Block& result);
+  void add(const ast::PickOne& node, Span span, ir::Block& result);
+  bool repeat_times(const ast::Expr& times, ir::Repeat& result);
   std::optional<vm::Value> weight(const ast::Expr& expr);
-  void add(const ast::Set& node, Span span, ProgramBlock& result);
-  void add(const ast::Raise& node, Span span, ProgramBlock& result);
-  void add(const ast::Signal& node, Span span, ProgramBlock& result);
+  void add(const ast::Set& node, Span span, ir::Block& result);
+  void add(const ast::Raise& node, Span span, ir::Block& result);
+  void add(const ast::Signal& node, Span span, ir::Block& result);
   VariableName* settable(const ast::Name& name, bool number);
-  void set_label(const ast::Set& node, const VariableName& variable, Span span,
-                 ProgramBlock& result);
+  void set_label(const ast::Set& node, const VariableName& variable, Span span, ir::Block& result);
   [[nodiscard]] bool is_restart(const ast::Command& node) const;
-  void restart(const ast::Command& node, Span span, ProgramBlock& result);
+  void restart(const ast::Command& node, Span span, ir::Block& result);
   bool in_range(const VariableName& variable, const Typed& value);
-  void add(const ast::Log& node, Span span, ProgramBlock& result);
-  void put_log(const ast::Log& node, const ChosenText* chosen, Span span, ProgramBlock& result);
+  void add(const ast::Log& node, Span span, ir::Block& result);
+  void put_log(const ast::Log& node, const ChosenText* chosen, Span span, ir::Block& result);
   // follow.cpp
-  void follow(const ast::Command& node, Span span, ProgramBlock& result);
-  void add_followed(Followed followed, Span span, ProgramBlock& before, ProgramBlock& body);
+  void follow(const ast::Command& node, Span span, ir::Block& result);
+  void add_followed(Followed followed, Span span, ir::Block& before, ir::Block& body);
   // The FOLLOW that the block ends with, if it has no FOR.
-  static ProgramFollow* endless_follow(ProgramBlock& block);
-  void report_never(const ProgramBlock& block, Span span);
+  static ir::Follow* endless_follow(ir::Block& block);
+  void report_never(const ir::Block& block, Span span);
   // In front of such a FOLLOW, for what is to go on with it.
-  void put_first(ProgramLocal local, Span span, ProgramBlock& result);
+  void put_first(ir::Local local, Span span, ir::Block& result);
   // lists.cpp
-  using PutText = std::function<void(const ChosenText&, ProgramBlock&)>;
+  using PutText = std::function<void(const ChosenText&, ir::Block&)>;
   std::optional<ListChoice> find_choice(const std::vector<ast::Argument>& arguments);
   std::optional<ListChoice> choice_in(const ast::Expr& expr);
   std::optional<ListChoice> choice_given(const ast::Name& name);
-  std::optional<ChosenItem> chosen_item(const ListChoice& choice, Span span, ProgramBlock& result);
+  std::optional<ChosenItem> chosen_item(const ListChoice& choice, Span span, ir::Block& result);
   std::optional<ListChoice> in_turn(const ast::Name& how, const ast::Name& list, bool surely);
-  void choose(const ListChoice& choice, Span span, const PutText& put_text, ProgramBlock& result);
-  Expression item_index(const ListName& list, Typed index, Span span, ProgramBlock& result);
-  Expression next_index(const ListChoice& choice, Span span, ProgramBlock& result);
-  Expression any_index(const ListChoice& choice, Span span, ProgramBlock& result);
-  using PutItem = std::function<void(std::size_t, ProgramBlock&)>;
+  void choose(const ListChoice& choice, Span span, const PutText& put_text, ir::Block& result);
+  Expression item_index(const ListName& list, Typed index, Span span, ir::Block& result);
+  Expression next_index(const ListChoice& choice, Span span, ir::Block& result);
+  Expression any_index(const ListChoice& choice, Span span, ir::Block& result);
+  using PutItem = std::function<void(std::size_t, ir::Block&)>;
   void put_one_of(const Expression& index, std::pair<std::size_t, std::size_t> places, Span span,
-                  const PutItem& put_item, ProgramBlock& result);
-  Expression choose_number(const NumberList& list, Typed index, Span span, ProgramBlock& result);
+                  const PutItem& put_item, ir::Block& result);
+  Expression choose_number(const NumberList& list, Typed index, Span span, ir::Block& result);
   // defines.cpp
-  void add(const ast::Call& node, Span span, ProgramBlock& result);
+  void add(const ast::Call& node, Span span, ir::Block& result);
   void run(DefineName& name, const std::vector<ast::Argument>& arguments, Span span,
-           ProgramBlock& result);
+           ir::Block& result);
   void run(const Binding& binding, const ast::Name& name,
-           const std::vector<ast::Argument>& arguments, Span span, ProgramBlock& result);
+           const std::vector<ast::Argument>& arguments, Span span, ir::Block& result);
   Typed followed(const ast::Expr& value);
-  Expression in_local(Expression value, Span span, ProgramBlock& result);
+  Expression in_local(Expression value, Span span, ir::Block& result);
   bool bind_name(std::string_view name, const ast::Define& define, Binding& binding);
   bool commands_parameter(const ast::Define& define, std::string_view folded, unsigned handed_on);
   std::optional<Bindings> bind(const DefineName& name, const std::vector<ast::Argument>& arguments,
-                               Span span, ProgramBlock& result);
+                               Span span, ir::Block& result);
   Binding bind(const ast::Define& define, std::size_t parameter, const ast::Argument& argument,
-               Span span, ProgramBlock& result);
-  void expand(DefineName& name, const Bindings& bindings, ProgramBlock& result);
+               Span span, ir::Block& result);
+  void expand(DefineName& name, const Bindings& bindings, ir::Block& result);
   bool may_run(const DefineName& name, Span use);
   void report_cycle(const DefineName& name, Span use);
 

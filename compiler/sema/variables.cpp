@@ -21,9 +21,9 @@ std::uint32_t fade_factor(vm::Value over) {
 
 }  // namespace
 
-void Variables::declare(Program& program) {
+void Variables::declare(ir::Program& program) {
   for (VariableName& name : names_.variables()) {
-    ProgramVariable result;
+    ir::Variable result;
     result.name = name.name.text;
     result.kind = name.kind;
     result.labels = name.labels;
@@ -47,7 +47,7 @@ void Variables::declare(Program& program) {
     name.ready = true;
 }
 
-void Variables::declare(const ast::Remember& node, VariableName& name, ProgramVariable& result) {
+void Variables::declare(const ast::Remember& node, VariableName& name, ir::Variable& result) {
   name.unit = &canonical_unit(vm::Dimension::number);
   name.unit_span = node.name.span;
   if (node.value == nullptr) return;
@@ -59,7 +59,7 @@ void Variables::declare(const ast::Remember& node, VariableName& name, ProgramVa
   name.unit_span = value->unit_span;
 }
 
-void Variables::declare(const ast::State& node, VariableName& name, ProgramVariable& result) {
+void Variables::declare(const ast::State& node, VariableName& name, ir::Variable& result) {
   check_labels(node.labels);
   name.unit = &canonical_unit(vm::Dimension::number);
   result.min = 0;
@@ -84,7 +84,7 @@ void Variables::check_labels(const std::vector<ast::Name>& labels) {
 }
 
 // All its numbers are of one dimension: that of the first with a unit.
-void Variables::declare(const ast::Feeling& node, VariableName& name, ProgramVariable& result) {
+void Variables::declare(const ast::Feeling& node, VariableName& name, ir::Variable& result) {
   name.unit = &canonical_unit(vm::Dimension::number);
   name.unit_span = node.name.span;
   if (!node.from || !node.to || !node.start) return;
@@ -114,7 +114,7 @@ void Variables::declare(const ast::Feeling& node, VariableName& name, ProgramVar
   if (node.fades_to && node.fades_over) fade(node, wanted, result);
 }
 
-void Variables::fade(const ast::Feeling& node, const Wanted& wanted, ProgramVariable& result) {
+void Variables::fade(const ast::Feeling& node, const Wanted& wanted, ir::Variable& result) {
   const auto target = inside(*node.fades_to, wanted, result);
   const auto over = expressions_.constant_duration(*node.fades_over, "OVER");
   if (!target || !over) return;
@@ -123,7 +123,7 @@ void Variables::fade(const ast::Feeling& node, const Wanted& wanted, ProgramVari
 }
 
 std::optional<vm::Value> Variables::inside(const ast::Expr& expr, const Wanted& wanted,
-                                           const ProgramVariable& feeling) {
+                                           const ir::Variable& feeling) {
   const auto value = expressions_.constant_amount(expr, wanted);
   if (!value) return std::nullopt;
   const vm::Value number = value->code.constant;
@@ -186,9 +186,9 @@ std::uint16_t sample_period(const Typed& input, const Names& names) {
 
 }  // namespace
 
-void Variables::declare(const ast::Check& node, VariableName& name, Program& program) {
+void Variables::declare(const ast::Check& node, VariableName& name, ir::Program& program) {
   name.unit = &canonical_unit(vm::Dimension::number);
-  ProgramVariable& variable = program.variables[name.index];
+  ir::Variable& variable = program.variables[name.index];
   variable.initial = vm::kUnknown;
   variable.min = 0;
   variable.max = label_value(std::max<std::size_t>(node.bands.size(), 1) - 1);
@@ -209,7 +209,7 @@ void Variables::declare(const ast::Check& node, VariableName& name, Program& pro
     else if (value)
       margin = value->code.constant;
   }
-  ProgramCheck check;
+  ir::Check check;
   check.variable = name.index;
   check.input = number.code;
   check.sample_ms = sample_period(number, names_);
@@ -272,7 +272,7 @@ std::optional<vm::Band> Variables::band(const ast::Band& node, const Wanted& wan
   return std::nullopt;
 }
 
-void Variables::smooth(const ast::Check& node, const Typed& input, ProgramCheck& result) {
+void Variables::smooth(const ast::Check& node, const Typed& input, ir::Check& result) {
   const auto over = expressions_.constant_duration(*node.smooth, "SMOOTH OVER");
   if (!over) return;
   const std::int64_t period = result.sample_ms;  // a duration counts milliseconds, too

@@ -9,7 +9,7 @@ namespace robosync::compiler::test_plan {
 class Moment {
 public:
   virtual vm::Value channel(ChannelRef channel) const = 0;  // kUnknown: no reading
-  virtual vm::Value variable(std::size_t index) const = 0;  // place in Program::variables
+  virtual vm::Value variable(std::size_t index) const = 0;  // place in ir::Program::variables
   virtual vm::Value time() const = 0;                       // of the program
 
 protected:

@@ -30,7 +30,7 @@ public:
         expressions_(names_, diagnostics_),
         motions_(robot, names_, expressions_, ignored_),
         commands_(robot, names_, expressions_, motions_, diagnostics_) {
-    Program ignored;
+    ir::Program ignored;
     Variables(names_, expressions_, diagnostics_).declare(ignored);
     diagnostics_ = {};  // whatever this said, sema has said before
   }
@@ -189,7 +189,7 @@ private:
       return;
     }
     // One for a group, or for each of its members.
-    for (ProgramCommand& command : commands_.translate(node.command)) {
+    for (ir::Command& command : commands_.translate(node.command)) {
       if (command.word && find_place(command.word->name)) {
         diagnostics_.report(Code::E0409, "a TEST compares texts as they are said")
             .label(span)
@@ -204,7 +204,7 @@ private:
                                times};
       const bool one_moment = std::ranges::none_of(
           expected.arguments,
-          [](const ProgramArgument& argument) { return looks_back(argument.value); });
+          [](const ir::Argument& argument) { return looks_back(argument.value); });
       if (!one_moment) report_moment(span);
       if (end && one_moment) expect(span, *end, std::move(expected));
     }

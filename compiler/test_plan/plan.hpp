@@ -34,9 +34,9 @@ struct ExpectedCommand {
   bool no = false;
   std::vector<std::string> actuators;  // every one of them; of NO, none
   std::string verb;
-  std::string word;                        // empty: any
-  std::vector<ProgramArgument> arguments;  // only those that are written are compared
-  std::optional<std::uint32_t> times;      // exactly so often; else once or more
+  std::string word;                     // empty: any
+  std::vector<ir::Argument> arguments;  // only those that are written are compared
+  std::optional<std::uint32_t> times;   // exactly so often; else once or more
 };
 // What LOG or ALERT wrote. Where it goes on behind these words, that may be anything.
 struct ExpectedText {

@@ -201,7 +201,7 @@ private:
         (!expected.word.empty() && !compiler::ascii::same(reader.word_name(), expected.word))) {
       return false;
     }
-    return std::ranges::all_of(expected.arguments, [&](const compiler::ProgramArgument& argument) {
+    return std::ranges::all_of(expected.arguments, [&](const compiler::ir::Argument& argument) {
       const vm::Value wanted = compiler::test_plan::evaluate(argument.value, playback);
       bool found = false;
       reader.for_each_param([&](std::size_t param, vm::Value given) {

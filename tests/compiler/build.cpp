@@ -12,7 +12,7 @@ namespace robosync::compiler::testing {
 namespace {
 
 constexpr std::uint8_t kAllParams = 0xFF;
-const ProgramVerb kMove{"MOVE", vm::Action::move, kAllParams};
+const ir::Verb kMove{"MOVE", vm::Action::move, kAllParams};
 
 ChannelConfig channel_config(std::string name, vm::Dimension dimension) {
   ChannelConfig config;
@@ -141,50 +141,50 @@ E held(E condition, double seconds) {
   return time_word(Operation::held, seconds, {std::move(condition)});
 }
 
-ProgramCommand move(std::size_t actuator, std::vector<ProgramArgument> arguments) {
+ir::Command move(std::size_t actuator, std::vector<ir::Argument> arguments) {
   return {std::nullopt, {actuator}, kMove, std::nullopt, std::move(arguments)};
 }
 
-ProgramCommand move_arms(std::vector<ProgramArgument> arguments) {
+ir::Command move_arms(std::vector<ir::Argument> arguments) {
   return {0, {0, 1}, kMove, std::nullopt, std::move(arguments)};
 }
 
-ProgramRule when(E condition, ProgramBlock then_response) {
-  ProgramRule rule;
+ir::Rule when(E condition, ir::Block then_response) {
+  ir::Rule rule;
   rule.condition = std::move(condition);
   rule.then_response = std::move(then_response);
   rule.line = 1;
   return rule;
 }
 
-ProgramRule at_start(ProgramBlock then_response) {
-  ProgramRule rule = when({}, std::move(then_response));
+ir::Rule at_start(ir::Block then_response) {
+  ir::Rule rule = when({}, std::move(then_response));
   rule.kind = vm::RuleKind::start;
   return rule;
 }
 
-Program program_of(std::vector<ProgramRule> rules, std::vector<ProgramVariable> variables) {
-  Program program;
+ir::Program program_of(std::vector<ir::Rule> rules, std::vector<ir::Variable> variables) {
+  ir::Program program;
   program.variables = std::move(variables);
   program.behaviors.push_back({50, "tested", std::move(rules)});
   return program;
 }
 
-ProgramVariable plain(std::string name, double initial) {
-  ProgramVariable made;
+ir::Variable plain(std::string name, double initial) {
+  ir::Variable made;
   made.name = std::move(name);
   made.initial = thousandths(initial);
   return made;
 }
 
-ProgramVariable ranged(std::string name, double min, double max) {
-  ProgramVariable made = plain(std::move(name), min);
+ir::Variable ranged(std::string name, double min, double max) {
+  ir::Variable made = plain(std::move(name), min);
   made.min = thousandths(min);
   made.max = thousandths(max);
   return made;
 }
 
-Built build(const Program& program, BuildOptions options) {
+Built build(const ir::Program& program, BuildOptions options) {
   constexpr ProgramHash kHash = {1, 2, 3, 4, 5, 6, 7, 8};
   const Robot robot = small_robot();
   Built built;
@@ -196,7 +196,7 @@ Built build(const Program& program, BuildOptions options) {
   return built;
 }
 
-Built must_build(const Program& program, bool source_lines) {
+Built must_build(const ir::Program& program, bool source_lines) {
   Built built = build(program, {.source_lines = source_lines});
   for (const Diagnostic& diagnostic : built.diagnostics.all())
     UNSCOPED_INFO(code_name(diagnostic.code) << " " << diagnostic.message);

@@ -27,19 +27,19 @@ E held(E condition, double seconds);
 
 // ---- statements
 template <typename Node>
-ProgramStatement line(std::uint16_t line, Node node) {
+ir::Statement line(std::uint16_t line, Node node) {
   return {std::move(node), line, {0, line * 10u, line * 10u + 5u}};
 }
-ProgramCommand move(std::size_t actuator, std::vector<ProgramArgument> arguments = {});
-ProgramCommand move_arms(std::vector<ProgramArgument> arguments = {});
+ir::Command move(std::size_t actuator, std::vector<ir::Argument> arguments = {});
+ir::Command move_arms(std::vector<ir::Argument> arguments = {});
 
 // ---- rules
-ProgramRule when(E condition, ProgramBlock then_response);
-ProgramRule at_start(ProgramBlock then_response);
+ir::Rule when(E condition, ir::Block then_response);
+ir::Rule at_start(ir::Block then_response);
 // The rules in one behaviour `tested` of priority 50.
-Program program_of(std::vector<ProgramRule> rules, std::vector<ProgramVariable> variables = {});
-ProgramVariable plain(std::string name, double initial = 0);
-ProgramVariable ranged(std::string name, double min, double max);
+ir::Program program_of(std::vector<ir::Rule> rules, std::vector<ir::Variable> variables = {});
+ir::Variable plain(std::string name, double initial = 0);
+ir::Variable ranged(std::string name, double min, double max);
 
 // ---- images: optimised or not, emitted, verified
 struct Built {
@@ -51,9 +51,9 @@ struct BuildOptions {
   bool source_lines = false;
   bool optimize = false;
 };
-Built build(const Program& program, BuildOptions options = {});
+Built build(const ir::Program& program, BuildOptions options = {});
 // The same, with everything accepted.
-Built must_build(const Program& program, bool source_lines = false);
+Built must_build(const ir::Program& program, bool source_lines = false);
 // Behaviours, rules, timers and instructions of the image.
 std::string listing(const vm::Image& image);
 

@@ -42,7 +42,7 @@ oracle::Snapshot snapshot_of(const World& world) {
   return snapshot;
 }
 
-Deeds expected_deeds(const ProgramBlock& block, const std::vector<ProgramVariable>& variables,
+Deeds expected_deeds(const ir::Block& block, const std::vector<ir::Variable>& variables,
                      World& world, unsigned pauses, oracle::Chance chance,
                      const std::function<void(World&)>& pass_time) {
   oracle::Evaluator evaluator;

@@ -8,16 +8,16 @@ namespace {
 constexpr std::size_t kPlain = 0, kRanged = 1, kSignal = 2, kTimer = 3;
 
 template <typename Node>
-ProgramStatement made(Node node) {
+ir::Statement made(Node node) {
   return {std::move(node), 0, {}};
 }
 
 }  // namespace
 
-std::vector<ProgramVariable> Generator::variables() {
-  ProgramVariable signal = plain("signal");
+std::vector<ir::Variable> Generator::variables() {
+  ir::Variable signal = plain("signal");
   signal.kind = vm::VariableKind::signal;
-  ProgramVariable timer = plain("timer");
+  ir::Variable timer = plain("timer");
   timer.kind = vm::VariableKind::timer;
   timer.dimension = vm::Dimension::duration;
   return {plain("plain", 1), ranged("ranged", -5, 5), signal, timer};
@@ -90,66 +90,66 @@ E Generator::timed(unsigned depth) {
   }
 }
 
-std::vector<ProgramArgument> Generator::arguments() {
-  std::vector<ProgramArgument> arguments;
+std::vector<ir::Argument> Generator::arguments() {
+  std::vector<ir::Argument> arguments;
   for (const vm::Param param : {vm::Param::to, vm::Param::at, vm::Param::over})
     if (often(30)) arguments.push_back({param, number_expression(2)});
   return arguments;
 }
 
-ProgramStatement Generator::simple() {
+ir::Statement Generator::simple() {
   switch (below(10)) {
     case 0:
-      return made(ProgramSet{kPlain, number_expression(2), often(50)});
+      return made(ir::Set{kPlain, number_expression(2), often(50)});
     case 1:
-      return made(ProgramSet{kRanged, number_expression(2), often(50)});
+      return made(ir::Set{kRanged, number_expression(2), often(50)});
     case 2:
-      return made(ProgramSet{kSignal, number(0.001), true});
+      return made(ir::Set{kSignal, number(0.001), true});
     case 3:
-      return made(ProgramWait{number_expression(1)});
+      return made(ir::Wait{number_expression(1)});
     case 4:
-      return made(ProgramThen{});
+      return made(ir::Then{});
     case 5:
-      return made(ProgramLog{false, "log {} {}", {number_expression(1), number_expression(1)}});
+      return made(ir::Log{false, "log {} {}", {number_expression(1), number_expression(1)}});
     case 6: {
       const E value = number_expression(2);
       locals_.push_back(next_local_);
-      return made(ProgramLocal{next_local_++, value});
+      return made(ir::Local{next_local_++, value});
     }
     case 7:
-      return made(ProgramLog{true, "alert", {}});
+      return made(ir::Log{true, "alert", {}});
     case 8:
-      return made(ProgramSet{kTimer, of(Operation::now, {}), false});
+      return made(ir::Set{kTimer, of(Operation::now, {}), false});
     default:
       return often(30) ? made(move_arms(arguments())) : made(move(below(3), arguments()));
   }
 }
 
-ProgramRepeat Generator::repeat(unsigned depth) {
-  ProgramRepeat repeat;
-  repeat.kind = static_cast<RepeatKind>(below(3));
+ir::Repeat Generator::repeat(unsigned depth) {
+  ir::Repeat repeat;
+  repeat.kind = static_cast<ir::RepeatKind>(below(3));
   const bool constant = often(50);
-  if (repeat.kind == RepeatKind::times)
+  if (repeat.kind == ir::RepeatKind::times)
     repeat.control = constant ? number(below(4) - 0.5) : number_expression(1);
-  if (repeat.kind == RepeatKind::while_) repeat.control = condition(2);
+  if (repeat.kind == ir::RepeatKind::while_) repeat.control = condition(2);
   const bool counts =
-      repeat.kind == RepeatKind::times && repeat.control.operation == Operation::constant;
+      repeat.kind == ir::RepeatKind::times && repeat.control.operation == Operation::constant;
   repeat.body = block(depth - 1);
-  if (!counts) repeat.body.push_back(made(ProgramWait{number(0.01)}));
+  if (!counts) repeat.body.push_back(made(ir::Wait{number(0.01)}));
   return repeat;
 }
 
-ProgramStatement Generator::compound(unsigned depth) {
+ir::Statement Generator::compound(unsigned depth) {
   switch (below(4)) {
     case 0: {
-      ProgramIf choice{condition(2), block(depth - 1), {}};
+      ir::If choice{condition(2), block(depth - 1), {}};
       if (often(60)) choice.else_block = block(depth - 1);
       return made(std::move(choice));
     }
     case 1:
       return made(repeat(depth));
     case 2: {
-      ProgramWaitUntil wait{condition(2), {}};
+      ir::WaitUntil wait{condition(2), {}};
       if (often(60)) wait.within = number_expression(1);
       return made(std::move(wait));
     }
@@ -157,41 +157,41 @@ ProgramStatement Generator::compound(unsigned depth) {
       break;
   }
   if (!taste_.chance) return simple();
-  ProgramPick pick;
+  ir::Pick pick;
   for (unsigned i = 1 + below(4); i > 0; --i)
     pick.options.push_back({static_cast<vm::Value>(1 + below(2000)), block(depth - 1)});
   return made(std::move(pick));
 }
 
-ProgramStatement Generator::statement(unsigned depth) {
+ir::Statement Generator::statement(unsigned depth) {
   const std::uint16_t number = next_line_++;
-  ProgramStatement statement = depth > 0 && often(40) ? compound(depth) : simple();
+  ir::Statement statement = depth > 0 && often(40) ? compound(depth) : simple();
   statement.line = number;
   statement.span = {0, number, number + 1U};
   return statement;
 }
 
-ProgramBlock Generator::block(unsigned depth) {
+ir::Block Generator::block(unsigned depth) {
   const std::size_t scope = locals_.size();
-  ProgramBlock block;
+  ir::Block block;
   for (unsigned i = below(4); i > 0; --i)
     block.push_back(statement(depth));
   locals_.resize(scope);
   return block;
 }
 
-ProgramBlock Generator::response() {
+ir::Block Generator::response() {
   locals_.clear();
   next_local_ = 0;
-  ProgramBlock block;
+  ir::Block block;
   for (unsigned i = 1 + below(5); i > 0; --i)
     block.push_back(statement(taste_.depth));
   locals_.clear();
   return block;
 }
 
-ProgramRule Generator::rule() {
-  ProgramRule rule;
+ir::Rule Generator::rule() {
+  ir::Rule rule;
   rule.kind = static_cast<vm::RuleKind>(below(5));
   if (rule.kind == vm::RuleKind::every)
     rule.condition = number_expression(2);
@@ -208,29 +208,28 @@ ProgramRule Generator::rule() {
   return rule;
 }
 
-ProgramRule Generator::safety_rule() {
-  ProgramRule rule;
+ir::Rule Generator::safety_rule() {
+  ir::Rule rule;
   rule.kind = vm::RuleKind::safety;
   rule.condition = condition(3);
   rule.then_response.push_back(
-      made(often(30) ? ProgramHalt{true, {}, {}} : ProgramHalt{false, {}, {below(3)}}));
-  if (often(50)) rule.then_response.push_back(made(ProgramHalt{false, 0, {0, 1}}));
-  if (often(50)) rule.then_response.push_back(made(ProgramLog{true, "stopped", {}}));
-  if (often(50))
-    rule.then_response.push_back(made(ProgramSet{kRanged, number_expression(2), false}));
+      made(often(30) ? ir::Halt{true, {}, {}} : ir::Halt{false, {}, {below(3)}}));
+  if (often(50)) rule.then_response.push_back(made(ir::Halt{false, 0, {0, 1}}));
+  if (often(50)) rule.then_response.push_back(made(ir::Log{true, "stopped", {}}));
+  if (often(50)) rule.then_response.push_back(made(ir::Set{kRanged, number_expression(2), false}));
   if (often(60)) rule.resume = condition(3);
   rule.line = next_line_++;
   return rule;
 }
 
-Program Generator::program() {
-  Program program;
+ir::Program Generator::program() {
+  ir::Program program;
   program.variables = variables();
   for (unsigned i = below(3); i > 0; --i)
     program.safety.push_back(safety_rule());
   const auto behaviors = static_cast<std::int16_t>(1 + below(3));
   for (std::int16_t b = 0; b < behaviors; ++b) {
-    ProgramBehavior behavior;
+    ir::Behavior behavior;
     behavior.priority = static_cast<std::int16_t>(90 - b);
     if (often(70)) behavior.name = "behaviour" + std::to_string(b);
     for (unsigned i = 1 + below(3); i > 0; --i)

@@ -19,10 +19,10 @@ class Generator {
 public:
   Generator(std::uint32_t seed, Taste taste) : random_(seed), taste_(taste) {}
 
-  Program program();
-  ProgramBlock response();
+  ir::Program program();
+  ir::Block response();
   // Those that the statements use.
-  static std::vector<ProgramVariable> variables();
+  static std::vector<ir::Variable> variables();
 
 private:
   unsigned below(unsigned end) {
@@ -32,15 +32,15 @@ private:
   E number_expression(unsigned depth);
   E condition(unsigned depth);
   E timed(unsigned depth);
-  ProgramRule rule();
-  ProgramRule safety_rule();
-  ProgramBlock block(unsigned depth);
-  ProgramStatement statement(unsigned depth);
-  ProgramStatement simple();
-  ProgramStatement compound(unsigned depth);
-  ProgramRepeat repeat(unsigned depth);
-  ProgramStatement numbered(std::uint16_t number, ProgramStatement statement);
-  std::vector<ProgramArgument> arguments();
+  ir::Rule rule();
+  ir::Rule safety_rule();
+  ir::Block block(unsigned depth);
+  ir::Statement statement(unsigned depth);
+  ir::Statement simple();
+  ir::Statement compound(unsigned depth);
+  ir::Repeat repeat(unsigned depth);
+  ir::Statement numbered(std::uint16_t number, ir::Statement statement);
+  std::vector<ir::Argument> arguments();
 
   std::mt19937 random_;
   Taste taste_;

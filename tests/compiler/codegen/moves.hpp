@@ -5,9 +5,9 @@
 
 namespace robosync::compiler::testing {
 
-inline const ProgramStatement kLeft = line(20, move(0));
-inline const ProgramStatement kRight = line(21, move(1));
-inline const ProgramStatement kSound = line(22, move(2));
-inline const ProgramStatement kWait = line(23, ProgramWait{number(0.2)});
+inline const ir::Statement kLeft = line(20, move(0));
+inline const ir::Statement kRight = line(21, move(1));
+inline const ir::Statement kSound = line(22, move(2));
+inline const ir::Statement kWait = line(23, ir::Wait{number(0.2)});
 
 }  // namespace robosync::compiler::testing

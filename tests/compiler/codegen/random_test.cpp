@@ -33,7 +33,7 @@ void some_readings(std::uint32_t seed, World& world) {
 World some_world(std::uint32_t seed) {
   World world;
   some_readings(seed, world);
-  for (const ProgramVariable& variable : Generator::variables())
+  for (const ir::Variable& variable : Generator::variables())
     world.variables.push_back(variable.initial);
   return world;
 }
@@ -75,7 +75,7 @@ TEST_CASE("a random response does what its program says, whatever happens while 
   constexpr Taste kTaste{.surprise = false, .time_words = false, .depth = 4};
   std::size_t done = 0;
   for (std::uint32_t seed = 0; seed < responses; ++seed) {
-    const ProgramBlock block = Generator(seed, kTaste).response();
+    const ir::Block block = Generator(seed, kTaste).response();
     const Built built = build(program_of({at_start(block)}, Generator::variables()),
                               {.source_lines = false, .optimize = optimize});
     if (built.bytes.empty()) continue;
@@ -98,7 +98,7 @@ TEST_CASE("a random response does what its program says, whatever happens while 
 // The conditions of one behaviour in one program, in step after step.
 class Conditions {
 public:
-  Conditions(const ProgramBehavior& behavior, const vm::Image& image, std::size_t number)
+  Conditions(const ir::Behavior& behavior, const vm::Image& image, std::size_t number)
       : behavior_(behavior), image_(image), runner_(image, number), number_(number) {}
 
   // What the reference interpreter says, in the order of the rules; of EVERY, the period.
@@ -107,7 +107,7 @@ public:
     const oracle::Sight sight{snapshot};
     std::vector<vm::Value> values;
     ++step_;
-    for (const ProgramRule& rule : behavior_.rules) {
+    for (const ir::Rule& rule : behavior_.rules) {
       if (rule.kind == vm::RuleKind::start) continue;
       evaluator_.remember(rule.condition, sight, {step_, world.now});
       const bool is_period = rule.kind == vm::RuleKind::every;
@@ -135,7 +135,7 @@ public:
   }
 
 private:
-  const ProgramBehavior& behavior_;
+  const ir::Behavior& behavior_;
   const vm::Image& image_;
   Runner runner_;
   std::size_t number_;
@@ -149,7 +149,7 @@ TEST_CASE("random conditions are what they say, optimised or not, in every step"
   constexpr std::uint32_t kSteps = 12;
   std::size_t truths = 0;
   for (std::uint32_t seed = 0; seed < programs; ++seed) {
-    const Program program = Generator(seed, {.chance = false, .time_words = true}).program();
+    const ir::Program program = Generator(seed, {.chance = false, .time_words = true}).program();
     const Built built = build(program, {.source_lines = false, .optimize = optimize});
     if (built.bytes.empty()) continue;
     const std::size_t safety = program.safety.empty() ? 0 : 1;
@@ -175,7 +175,7 @@ TEST_CASE("random conditions are what they say, optimised or not, in every step"
 TEST_CASE("what fits as it is written fits optimised, in no more cells than the optimiser counts") {
   const auto programs = robosync::test::share_of<std::uint32_t>(1500);
   for (std::uint32_t seed = 0; seed < programs; ++seed) {
-    const Program program = Generator(seed, {.chance = false, .time_words = true}).program();
+    const ir::Program program = Generator(seed, {.chance = false, .time_words = true}).program();
     const Built plain = build(program, {.source_lines = false});
     if (plain.bytes.empty()) continue;
     const Built optimized = build(program, {.source_lines = false, .optimize = true});

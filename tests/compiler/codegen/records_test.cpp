@@ -23,7 +23,8 @@ std::vector<std::string> labels_of(const vm::Image& image, unsigned first, unsig
 }
 
 // Refused as too large, at the line of a statement if one is to blame.
-void expect_too_large(const Program& program, const std::string& words, std::uint32_t begin = 0) {
+void expect_too_large(const ir::Program& program, const std::string& words,
+                      std::uint32_t begin = 0) {
   const Built built = build(program);
   CHECK(built.bytes.empty());
   REQUIRE(built.diagnostics.errors() == 1);
@@ -34,31 +35,31 @@ void expect_too_large(const Program& program, const std::string& words, std::uin
   CHECK(diagnostic.labels.front().span.begin == begin);
 }
 
-ProgramBlock nested(unsigned depth, const ProgramBlock& inner) {
-  ProgramBlock block = inner;
+ir::Block nested(unsigned depth, const ir::Block& inner) {
+  ir::Block block = inner;
   for (unsigned i = 0; i < depth; ++i)
-    block = {line(static_cast<std::uint16_t>(100 - i), ProgramIf{kClose, block, {}})};
+    block = {line(static_cast<std::uint16_t>(100 - i), ir::If{kClose, block, {}})};
   return block;
 }
 
 }  // namespace
 
 TEST_CASE("variables, checks and bands travel") {
-  Program program = program_of({when(of(Operation::equal, {variable(2), number(1)}), {kLeft})});
-  ProgramVariable joy = ranged("joy", 0, 100);
+  ir::Program program = program_of({when(of(Operation::equal, {variable(2), number(1)}), {kLeft})});
+  ir::Variable joy = ranged("joy", 0, 100);
   joy.kind = vm::VariableKind::feeling;
   joy.dimension = vm::Dimension::percent;
   joy.initial = 40000;
   joy.fades_to = 50000;
   joy.fade = 123456789;
-  ProgramVariable mood = ranged("mood", 0, 1);
+  ir::Variable mood = ranged("mood", 0, 1);
   mood.kind = vm::VariableKind::state;
   mood.labels = {"calm", "wild"};
-  ProgramVariable space = ranged("space", 0, 1);
+  ir::Variable space = ranged("space", 0, 1);
   space.kind = vm::VariableKind::band;
   space.labels = {"close", "far"};
   space.initial = vm::kUnknown;
-  ProgramVariable agitation = space;  // the same words again
+  ir::Variable agitation = space;  // the same words again
   agitation.name = "agitation";
   program.variables = {joy, mood, space, agitation};
   const vm::Band close{vm::kValueMin, 299, vm::kValueMin, 349};
@@ -102,10 +103,10 @@ TEST_CASE("channels of words have their labels") {
 }
 
 TEST_CASE("rules with the same modifiers share them") {
-  ProgramRule rule = when(kClose, {kLeft});
-  ProgramRule cooled = rule;
+  ir::Rule rule = when(kClose, {kLeft});
+  ir::Rule cooled = rule;
   cooled.cooldown = 20000;
-  ProgramRule waiting = rule;
+  ir::Rule waiting = rule;
   waiting.waiting = 20000;
   waiting.restarting = true;
   const Built built = must_build(program_of({rule, cooled, waiting, cooled}));
@@ -121,10 +122,10 @@ TEST_CASE("rules with the same modifiers share them") {
 }
 
 TEST_CASE("code with a timer or a local is not shared, other code is") {
-  const ProgramRule plain_rule = when(kClose, {kLeft});
-  const ProgramRule timed = when(held(kClose, 1), {kLeft});
-  const ProgramRule counting =
-      when(kClose, {line(10, ProgramRepeat{RepeatKind::times, number(2), {kLeft}})});
+  const ir::Rule plain_rule = when(kClose, {kLeft});
+  const ir::Rule timed = when(held(kClose, 1), {kLeft});
+  const ir::Rule counting =
+      when(kClose, {line(10, ir::Repeat{ir::RepeatKind::times, number(2), {kLeft}})});
   CHECK(must_build(program_of({plain_rule, plain_rule})).image.responses.size() == 1);
   const Built built = must_build(program_of({timed, timed, counting, counting}));
   const vm::Image& image = built.image;
@@ -136,8 +137,8 @@ TEST_CASE("code with a timer or a local is not shared, other code is") {
 
 TEST_CASE("equal time words of a behaviour are watched once, unless they read a local") {
   const auto watches = [](const E& time_word) {
-    const ProgramBlock block = {line(10, ProgramLocal{0, channel(0)}),
-                                line(11, ProgramIf{time_word, {kLeft}, {}})};
+    const ir::Block block = {line(10, ir::Local{0, channel(0)}),
+                             line(11, ir::If{time_word, {kLeft}, {}})};
     const Built built = must_build(program_of({at_start(block), at_start(block)}));
     return built.image.timers.size();
   };
@@ -147,8 +148,8 @@ TEST_CASE("equal time words of a behaviour are watched once, unless they read a 
 }
 
 TEST_CASE("SAFETY comes first and stops what nothing else uses") {
-  Program program = program_of({when(kClose, {kLeft})});
-  ProgramRule guard = when(kClose, {line(30, ProgramHalt{false, 0, {0, 1}})});
+  ir::Program program = program_of({when(kClose, {kLeft})});
+  ir::Rule guard = when(kClose, {line(30, ir::Halt{false, 0, {0, 1}})});
   guard.kind = vm::RuleKind::safety;
   program.safety = {guard};
   program.speed_limits = {{0, 30000}, {0, 50000}};
@@ -163,8 +164,8 @@ TEST_CASE("SAFETY comes first and stops what nothing else uses") {
 }
 
 TEST_CASE("every statement knows its line, and so does what follows a nested one") {
-  const ProgramStatement repeat =
-      line(11, ProgramRepeat{RepeatKind::times, number(2), {line(12, move(0)), line(13, move(1))}});
+  const ir::Statement repeat = line(
+      11, ir::Repeat{ir::RepeatKind::times, number(2), {line(12, move(0)), line(13, move(1))}});
   const Built built = must_build(program_of({when(kClose, {line(10, move(2)), repeat})}), true);
   std::vector<std::pair<int, int>> lines;
   for (const vm::SourceLine& one : built.image.source_lines)
@@ -177,7 +178,7 @@ TEST_CASE("every statement knows its line, and so does what follows a nested one
 TEST_CASE("the seed is the one that is asked for, or the robot's, or none") {
   CHECK(must_build(program_of({when(kClose, {kLeft})})).image.header->seed == 0);
   Diagnostics diagnostics;
-  const Program program = program_of({when(kClose, {kLeft})});
+  const ir::Program program = program_of({when(kClose, {kLeft})});
   Robot robot = small_robot();
   robot.seed = 5;
   robot.safety_start_ms = 30;
@@ -197,59 +198,58 @@ TEST_CASE("blocks nest as deeply as the robot allows, and no deeper") {
   expect_too_large(program_of({when(kClose, nested(vm::kMaxBlocks + 1, {kLeft}))}),
                    "nested too deeply", 1000);
   // A chain of IF … ELSE IF takes one block each, and the IF itself another.
-  ProgramBlock chain = {kLeft};
+  ir::Block chain = {kLeft};
   for (unsigned i = 0; i < vm::kMaxBlocks - 1; ++i)
-    chain = {line(static_cast<std::uint16_t>(100 - i), ProgramIf{kClose, {kLeft}, chain})};
+    chain = {line(static_cast<std::uint16_t>(100 - i), ir::If{kClose, {kLeft}, chain})};
   CHECK(!build(program_of({when(kClose, chain)})).bytes.empty());
-  expect_too_large(program_of({when(kClose, {line(5, ProgramIf{kClose, {kLeft}, chain})})}),
+  expect_too_large(program_of({when(kClose, {line(5, ir::If{kClose, {kLeft}, chain})})}),
                    "nested too deeply", 1000);
-  ProgramPick many;
+  ir::Pick many;
   for (unsigned i = 0; i < 40; ++i)
     many.options.push_back({1000, {line(7, move(i % 3))}});
   CHECK(!build(program_of({when(kClose, {line(6, many)})})).bytes.empty());
 }
 
 TEST_CASE("what does not fit is said in words") {
-  std::vector<ProgramVariable> variables;
-  ProgramBlock sets;
+  std::vector<ir::Variable> variables;
+  ir::Block sets;
   for (unsigned i = 0; i <= vm::kMaxWritable; ++i) {
     variables.push_back(plain("v" + std::to_string(i)));
-    sets.push_back(line(5, ProgramSet{i, number(1), false}));
+    sets.push_back(line(5, ir::Set{i, number(1), false}));
   }
   expect_too_large(program_of({at_start(sets)}, variables), "33 variables to set");
   sets.pop_back();
   CHECK(!build(program_of({at_start(sets)}, variables)).bytes.empty());
 
-  ProgramBlock loops;
+  ir::Block loops;
   for (int i = 0; i < 260; ++i)
-    loops.push_back(line(5, ProgramRepeat{RepeatKind::times, channel(0), {kWait}}));
-  ProgramRule wide = at_start(loops);
+    loops.push_back(line(5, ir::Repeat{ir::RepeatKind::times, channel(0), {kWait}}));
+  ir::Rule wide = at_start(loops);
   wide.span = {0, 77, 78};
   expect_too_large(program_of({wide}), "cells", 77);
 
-  std::vector<ProgramRule> timed;
+  std::vector<ir::Rule> timed;
   for (int i = 0; i < 200; ++i)
     timed.push_back(when(held(kClose, 1), {kLeft}));
-  Program two = program_of(timed);
+  ir::Program two = program_of(timed);
   two.behaviors.push_back({40, "more", timed});
   expect_too_large(two, "time words");
 
   timed.assign(300, when(kClose, {kLeft}));
   expect_too_large(program_of(timed), "rules");
 
-  ProgramBlock talk;
+  ir::Block talk;
   for (unsigned i = 0; i < vm::kMaxResponseOutput + 1; ++i)
     talk.push_back(line(static_cast<std::uint16_t>(i), move(0)));
   expect_too_large(program_of({at_start(talk)}), "more commands", 640);
   expect_too_large(
       program_of(
-          {at_start({line(
-              8, ProgramRepeat{RepeatKind::times,
-                               number(2000000),
-                               {kWait, line(9, ProgramRepeat{RepeatKind::times,
-                                                             number(2000000),
-                                                             {line(9, ProgramSet{0, number(1),
-                                                                                 true})}})}})})},
+          {at_start({line(8, ir::Repeat{ir::RepeatKind::times,
+                                        number(2000000),
+                                        {kWait, line(9, ir::Repeat{ir::RepeatKind::times,
+                                                                   number(2000000),
+                                                                   {line(9, ir::Set{0, number(1),
+                                                                                    true})}})}})})},
           {plain("n")}),
       "too long", 80);
   variables.resize(65, plain("w"));

@@ -12,7 +12,7 @@
 
 namespace robosync::compiler::testing {
 
-// What a program reads and sets, by the numbers of build.hpp and Program::variables.
+// What a program reads and sets, by the numbers of build.hpp and ir::Program::variables.
 struct World {
   std::array<vm::Value, 4> channels{};
   std::vector<vm::Value> variables;

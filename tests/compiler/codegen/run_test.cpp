@@ -14,16 +14,16 @@ using namespace robosync::compiler::testing;
 
 namespace {
 
-ProgramStatement turn_to(E value) {
+ir::Statement turn_to(E value) {
   return line(24, move(0, {{vm::Param::to, std::move(value)}}));
 }
 
 constexpr unsigned kPauses = 50;
 
 // What an AT START response does in the world.
-Deeds deeds(ProgramBlock block, World world, std::vector<ProgramVariable> variables = {},
+Deeds deeds(ir::Block block, World world, std::vector<ir::Variable> variables = {},
             const std::function<void(World&)>& pass_time = {}) {
-  for (const ProgramVariable& one : variables)
+  for (const ir::Variable& one : variables)
     world.variables.push_back(one.initial);
   const Built built = must_build(program_of({at_start(std::move(block))}, std::move(variables)));
   return Runner(built.image, 0).respond(0, world, kPauses, pass_time);
@@ -42,53 +42,51 @@ std::size_t count(const Deeds& deeds, const std::string& what) {
 }  // namespace
 
 TEST_CASE("IF chooses a side only when it knows") {
-  const ProgramBlock block = {
-      line(10, ProgramIf{greater(channel(0), number(3)), {kLeft}, {kRight}}), kSound};
+  const ir::Block block = {line(10, ir::If{greater(channel(0), number(3)), {kLeft}, {kRight}}),
+                           kSound};
   CHECK(deeds(block, with_level(4000)) == Deeds{"left", "sound"});
   CHECK(deeds(block, with_level(3000)) == Deeds{"right", "sound"});
   CHECK(deeds(block, with_level(vm::kUnknown)) == Deeds{"sound"});
-  const ProgramBlock alone = {line(10, ProgramIf{greater(channel(0), number(3)), {kLeft}, {}})};
+  const ir::Block alone = {line(10, ir::If{greater(channel(0), number(3)), {kLeft}, {}})};
   CHECK(deeds(alone, with_level(4000)) == Deeds{"left"});
   CHECK(deeds(alone, with_level(vm::kUnknown)).empty());
 }
 
 TEST_CASE("REPEAT runs as often as it is told") {
-  const ProgramBlock block = {
-      line(10, ProgramRepeat{RepeatKind::times, channel(0), {kLeft, kWait}})};
+  const ir::Block block = {line(10, ir::Repeat{ir::RepeatKind::times, channel(0), {kLeft, kWait}})};
   const std::map<vm::Value, std::size_t> expected = {
       {3000, 3}, {1000, 1}, {2500, 3}, {1, 1}, {0, 0}, {-2000, 0}, {vm::kUnknown, 0}};
   for (const auto& [level, times] : expected) {
     INFO(level);
     CHECK(deeds(block, with_level(level)).size() == times);
     if (level == vm::kUnknown) continue;
-    ProgramRepeat constant{RepeatKind::times, number(0), {kLeft}};
+    ir::Repeat constant{ir::RepeatKind::times, number(0), {kLeft}};
     constant.control.constant = level;
     CHECK(deeds({line(10, constant)}, {}).size() == times);
   }
 }
 
 TEST_CASE("REPEATs nest, and each keeps its own count") {
-  const ProgramStatement inner =
-      line(11, ProgramRepeat{RepeatKind::times, channel(0), {kLeft, kWait}});
-  const ProgramBlock block = {
-      line(10, ProgramRepeat{RepeatKind::times, number(3), {inner, kRight}})};
+  const ir::Statement inner =
+      line(11, ir::Repeat{ir::RepeatKind::times, channel(0), {kLeft, kWait}});
+  const ir::Block block = {line(10, ir::Repeat{ir::RepeatKind::times, number(3), {inner, kRight}})};
   const Deeds done = deeds(block, with_level(2000));
   CHECK(done.size() == 9);
   CHECK(count(done, "left") == 6);
 }
 
 TEST_CASE("REPEAT WHILE ends when its condition does") {
-  const ProgramBlock block = {
-      line(10, ProgramRepeat{RepeatKind::while_,
-                             less(variable(0), number(3)),
-                             {kLeft, line(11, ProgramSet{0, number(1), true}), kWait}}),
+  const ir::Block block = {
+      line(10, ir::Repeat{ir::RepeatKind::while_,
+                          less(variable(0), number(3)),
+                          {kLeft, line(11, ir::Set{0, number(1), true}), kWait}}),
       kSound};
   CHECK(deeds(block, {}, {plain("n")}) == Deeds{"left", "left", "left", "sound"});
   CHECK(deeds(block, {}, {plain("n", 3)}) == Deeds{"sound"});
 }
 
 TEST_CASE("PICK ONE takes each option as often as its share says") {
-  const ProgramPick pick{{{60000, {kLeft}}, {30000, {kRight}}, {10000, {kSound}}}};
+  const ir::Pick pick{{{60000, {kLeft}}, {30000, {kRight}}, {10000, {kSound}}}};
   const Built built = must_build(program_of({at_start({line(10, pick)})}));
   Runner runner(built.image, 0);
   runner.machine.random = 0x0506'0708;
@@ -106,22 +104,22 @@ TEST_CASE("PICK ONE takes each option as often as its share says") {
 }
 
 TEST_CASE("a response sees what it has set, clamped") {
-  const ProgramStatement raise = line(10, ProgramSet{0, number(60), true});
-  const ProgramStatement lower = line(11, ProgramSet{0, channel(0), true});
-  const std::vector<ProgramVariable> joy = {ranged("joy", 0, 100)};
+  const ir::Statement raise = line(10, ir::Set{0, number(60), true});
+  const ir::Statement lower = line(11, ir::Set{0, channel(0), true});
+  const std::vector<ir::Variable> joy = {ranged("joy", 0, 100)};
   CHECK(deeds({raise, raise, turn_to(variable(0))}, {}, joy) == Deeds{"left 0:100000"});
   CHECK(deeds({raise, lower, turn_to(variable(0))}, with_level(-90000), joy) == Deeds{"left 0:0"});
-  CHECK(deeds({line(10, ProgramSet{0, number(150), false}), turn_to(variable(0))}, {}, joy) ==
+  CHECK(deeds({line(10, ir::Set{0, number(150), false}), turn_to(variable(0))}, {}, joy) ==
         Deeds{"left 0:100000"});
-  CHECK(deeds({line(10, ProgramSet{0, channel(0), false}), turn_to(variable(0))}, with_level(-5000),
+  CHECK(deeds({line(10, ir::Set{0, channel(0), false}), turn_to(variable(0))}, with_level(-5000),
               joy) == Deeds{"left 0:0"});
 }
 
 TEST_CASE("SET assigns, RAISE only shifts, and unknown does neither") {
-  const auto built = must_build(program_of({at_start({line(10, ProgramSet{0, number(5), false}),
-                                                      line(11, ProgramSet{1, number(1), true}),
-                                                      line(12, ProgramSet{2, channel(0), false})})},
-                                           {plain("a"), plain("b"), plain("c", 7)}));
+  const auto built = must_build(program_of(
+      {at_start({line(10, ir::Set{0, number(5), false}), line(11, ir::Set{1, number(1), true}),
+                 line(12, ir::Set{2, channel(0), false})})},
+      {plain("a"), plain("b"), plain("c", 7)}));
   Runner runner(built.image, 0);
   World world = with_level(vm::kUnknown);
   world.variables = {0, 2000, 7000};
@@ -132,8 +130,8 @@ TEST_CASE("SET assigns, RAISE only shifts, and unknown does neither") {
 }
 
 TEST_CASE("WAIT UNTIL goes on when its condition is true, or when its time is over") {
-  const ProgramWaitUntil wait{greater(channel(0), number(3)), number(0.01)};
-  const ProgramBlock block = {line(10, wait), turn_to(channel(1))};
+  const ir::WaitUntil wait{greater(channel(0), number(3)), number(0.01)};
+  const ir::Block block = {line(10, wait), turn_to(channel(1))};
   const auto clock = [](World& world) {
     world.channels[1] = static_cast<vm::Value>(world.now);
     if (world.now == 5) world.channels[0] = 4000;
@@ -148,36 +146,35 @@ TEST_CASE("WAIT UNTIL goes on when its condition is true, or when its time is ov
 }
 
 TEST_CASE("what a DEFINE is given outlasts waits, whatever the sensors do") {
-  const ProgramBlock block = {
-      line(10, ProgramLocal{7, of(Operation::multiply, {channel(0), number(2)})}), kWait,
-      line(11, ProgramThen{}), turn_to(local(7))};
+  const ir::Block block = {line(10, ir::Local{7, of(Operation::multiply, {channel(0), number(2)})}),
+                           kWait, line(11, ir::Then{}), turn_to(local(7))};
   const auto later = [](World& world) { world.channels[0] = 1; };
   CHECK(deeds(block, with_level(21000), {}, later) == Deeds{"left 0:42000"});
 }
 
 TEST_CASE("a watched time word is seen inside the response") {
   const E long_enough = held(greater(channel(0), number(3)), 0.02);
-  const ProgramBlock block = {line(10, ProgramIf{long_enough, {kLeft}, {kRight}}),
-                              line(11, ProgramWaitUntil{long_enough, {}}), turn_to(channel(1))};
+  const ir::Block block = {line(10, ir::If{long_enough, {kLeft}, {kRight}}),
+                           line(11, ir::WaitUntil{long_enough, {}}), turn_to(channel(1))};
   const auto clock = [](World& world) { world.channels[1] = static_cast<vm::Value>(world.now); };
   CHECK(deeds(block, with_level(4000), {}, clock) == Deeds{"right", "left 0:20"});
 }
 
 TEST_CASE("a rule outside reads a limit beyond the 256th constant") {
-  std::vector<ProgramRule> rules;
+  std::vector<ir::Rule> rules;
   for (int i = 0; i < 250; ++i)
     rules.push_back(when(less(channel(1), number(1000 + i)), {kSound}));
   for (int i = 0; i < 5; ++i)
     rules.push_back(when(less(channel(1), number(2000 + i)), {kSound}));
-  Program program = program_of(rules, {ranged("joy", 0, 100)});
+  ir::Program program = program_of(rules, {ranged("joy", 0, 100)});
   const std::vector<std::pair<Operation, vm::Value>> comparisons = {
       {Operation::less, vm::kFalse},    {Operation::less_equal, vm::kTrue},
       {Operation::greater, vm::kFalse}, {Operation::greater_equal, vm::kTrue},
       {Operation::equal, vm::kTrue},    {Operation::not_equal, vm::kFalse}};
-  std::vector<ProgramRule> last;
+  std::vector<ir::Rule> last;
   for (const auto& [operation, truth] : comparisons)
     last.push_back(when(of(operation, {channel(0), number(7777)}),
-                        {line(10, ProgramSet{0, channel(0), true}), turn_to(variable(0))}));
+                        {line(10, ir::Set{0, channel(0), true}), turn_to(variable(0))}));
   program.behaviors.push_back({40, "late", last});
   const Built built = must_build(program);
   REQUIRE(built.image.constants.size() > 256);

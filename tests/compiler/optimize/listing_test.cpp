@@ -64,13 +64,13 @@ TEST_CASE("programs as they are written, and optimised", "[golden]") {
 TEST_CASE("a jump that compares becomes two instructions where its target is too far away") {
   using namespace robosync::compiler::testing;
   for (const std::size_t sets : {252U, 253U, 300U}) {
-    ProgramBlock body;
+    ir::Block body;
     for (std::size_t i = 0; i < sets; ++i)
-      body.push_back(line(2, ProgramSet{i % 2, number(static_cast<double>(i % 7) + 1)}));
-    body.push_back(line(3, ProgramThen{}));
-    const ProgramIf inner{less(channel(1), number(2)), body, {}};
-    const ProgramIf outer{less(channel(0), number(1)), {line(1, inner)}, {}};
-    const ProgramRule rule = at_start({line(1, outer), line(4, ProgramThen{})});
+      body.push_back(line(2, ir::Set{i % 2, number(static_cast<double>(i % 7) + 1)}));
+    body.push_back(line(3, ir::Then{}));
+    const ir::If inner{less(channel(1), number(2)), body, {}};
+    const ir::If outer{less(channel(0), number(1)), {line(1, inner)}, {}};
+    const ir::Rule rule = at_start({line(1, outer), line(4, ir::Then{})});
     const Built built = build(program_of({rule}, {plain("a"), plain("b")}),
                               {.source_lines = true, .optimize = true});
     INFO(sets);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kI = 0, kS = 1;
 
-VariableFacts prove(Program program) {
+VariableFacts prove(ir::Program program) {
   return prove_variables(program, small_robot());
 }
 
@@ -24,26 +24,26 @@ E sum(E left, E right) {
   return of(Operation::add, {std::move(left), std::move(right)});
 }
 
-ProgramStatement set(std::size_t variable, E value) {
-  return line(1, ProgramSet{variable, std::move(value)});
+ir::Statement set(std::size_t variable, E value) {
+  return line(1, ir::Set{variable, std::move(value)});
 }
 
-ProgramStatement raise(std::size_t variable, E value) {
-  return line(1, ProgramSet{variable, std::move(value), true});
+ir::Statement raise(std::size_t variable, E value) {
+  return line(1, ir::Set{variable, std::move(value), true});
 }
 
-ProgramStatement repeat(double times, ProgramBlock body) {
-  return line(1, ProgramRepeat{RepeatKind::times, number(times), std::move(body)});
+ir::Statement repeat(double times, ir::Block body) {
+  return line(1, ir::Repeat{ir::RepeatKind::times, number(times), std::move(body)});
 }
 
 // s := s + i * i MOD 251; i := i + 1
-ProgramBlock round_of_w2() {
+ir::Block round_of_w2() {
   const E square = of(Operation::multiply, {variable(kI), variable(kI)});
   const E rest = of(Operation::modulo, {square, number(251)});
   return {set(kS, sum(variable(kS), rest)), set(kI, sum(variable(kI), number(1)))};
 }
 
-const std::vector<ProgramVariable> kTwo = {plain("i"), plain("s")};
+const std::vector<ir::Variable> kTwo = {plain("i"), plain("s")};
 const E kClose = less(channel(1), number(1));
 
 }  // namespace
@@ -55,8 +55,7 @@ TEST_CASE("a counted loop at the start raises variables by so much and no more")
 }
 
 TEST_CASE("so does one that is set up each time") {
-  const ProgramBlock response = {set(kI, number(0)), set(kS, number(0)),
-                                 repeat(1000, round_of_w2())};
+  const ir::Block response = {set(kI, number(0)), set(kS, number(0)), repeat(1000, round_of_w2())};
   const VariableFacts facts = prove(program_of({when(kClose, response)}, kTwo));
   CHECK(facts[kI] == units(0, 1000));
   CHECK(facts[kS] == units(0, 250000));
@@ -71,17 +70,17 @@ TEST_CASE("a loop that is run again goes on from where it was, without end") {
 }
 
 TEST_CASE("a response to AT START that waits sees what it has written") {
-  const ProgramStatement pause = line(2, ProgramWait{number(1)});
-  const ProgramBlock counting = {set(kI, sum(variable(kI), number(1))), pause,
-                                 set(kI, sum(variable(kI), number(1)))};
+  const ir::Statement pause = line(2, ir::Wait{number(1)});
+  const ir::Block counting = {set(kI, sum(variable(kI), number(1))), pause,
+                              set(kI, sum(variable(kI), number(1)))};
   CHECK(prove(program_of({at_start(counting)}, kTwo))[kI].high == vm::kValueMax);
-  const ProgramBlock at_once = {counting[0], counting[2]};
+  const ir::Block at_once = {counting[0], counting[2]};
   CHECK(prove(program_of({at_start(at_once)}, kTwo))[kI] == units(0, 2));
 }
 
 TEST_CASE("a loop whose body waits proves nothing about its rounds") {
-  const ProgramBlock body = {set(kI, sum(variable(kI), number(1))), line(2, ProgramThen{})};
-  const ProgramBlock response = {set(kI, number(0)), repeat(10, body)};
+  const ir::Block body = {set(kI, sum(variable(kI), number(1))), line(2, ir::Then{})};
+  const ir::Block response = {set(kI, number(0)), repeat(10, body)};
   CHECK(prove(program_of({when(kClose, response)}, kTwo))[kI].high == vm::kValueMax);
 }
 
@@ -98,11 +97,11 @@ TEST_CASE("to set something unknown does nothing") {
 }
 
 TEST_CASE("differences of several rules come together") {
-  const Program program = program_of({when(kClose, {raise(kI, number(1))}),
-                                      when(kClose, {set(kI, number(2)), raise(kI, number(1))})},
-                                     {ranged("i", 0, 10), plain("s")});
+  const ir::Program program = program_of({when(kClose, {raise(kI, number(1))}),
+                                          when(kClose, {set(kI, number(2)), raise(kI, number(1))})},
+                                         {ranged("i", 0, 10), plain("s")});
   CHECK(prove(program)[kI] == units(0, 10));
-  Program falling = program_of({when(kClose, {raise(kI, number(-1))})}, kTwo);
+  ir::Program falling = program_of({when(kClose, {raise(kI, number(-1))})}, kTwo);
   const Fact fact = prove(falling)[kI];
   CHECK(fact.low == vm::kValueMin);
   CHECK(fact.high == 0);
@@ -110,7 +109,7 @@ TEST_CASE("differences of several rules come together") {
 }
 
 TEST_CASE("what fades is anything on its way") {
-  ProgramVariable fading = ranged("i", 0, 10);
+  ir::Variable fading = ranged("i", 0, 10);
   fading.fade = 1;
   fading.fades_to = 5000;
   const Fact fact = prove(program_of({when(kClose, {set(0, number(7))})}, {fading}))[0];
@@ -119,13 +118,13 @@ TEST_CASE("what fades is anything on its way") {
 
 TEST_CASE("a branch that never runs writes nothing") {
   const E never = greater(channel(3), number(2));  // a word: 0 or 1
-  const ProgramBlock response = {line(1, ProgramIf{never, {set(kI, number(9))}, {}})};
+  const ir::Block response = {line(1, ir::If{never, {set(kI, number(9))}, {}})};
   CHECK(prove(program_of({when(kClose, response)}, kTwo))[kI] == units(0, 0));
 }
 
 TEST_CASE("chains of variables come to an end") {
-  std::vector<ProgramVariable> variables;
-  std::vector<ProgramRule> rules;
+  std::vector<ir::Variable> variables;
+  std::vector<ir::Rule> rules;
   for (std::size_t i = 0; i < 30; ++i)
     variables.push_back(plain("v" + std::to_string(i)));
   for (std::size_t i = 0; i < 30; ++i)

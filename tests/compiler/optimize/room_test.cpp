@@ -17,17 +17,17 @@ E dear() {
 }
 
 // As many texts as a step may put out.
-ProgramRule shares_numbers() {
+ir::Rule shares_numbers() {
   constexpr unsigned kWords = 5;  // of a text with two numbers
-  ProgramBlock block;
+  ir::Block block;
   for (unsigned i = 1; i <= vm::kMaxResponseOutput / kWords; ++i) {
     const E number_of_its_own = of(Operation::add, {dear(), number(i)});
-    block.push_back(line(2, ProgramLog{false, "{} {}", {number_of_its_own, number_of_its_own}}));
+    block.push_back(line(2, ir::Log{false, "{} {}", {number_of_its_own, number_of_its_own}}));
   }
   return at_start(block);
 }
 
-ProgramRule shares_in_condition() {
+ir::Rule shares_in_condition() {
   return when(
       of(Operation::logical_or,
          {less(dear(), number(1)),
@@ -36,15 +36,14 @@ ProgramRule shares_in_condition() {
 }
 
 // A loop each, which keeps a counter.
-ProgramRule loops(unsigned count) {
-  ProgramBlock block;
+ir::Rule loops(unsigned count) {
+  ir::Block block;
   for (unsigned i = 0; i < count; ++i)
-    block.push_back(
-        line(3, ProgramRepeat{RepeatKind::times, variable(1), {line(3, ProgramThen{})}}));
+    block.push_back(line(3, ir::Repeat{ir::RepeatKind::times, variable(1), {line(3, ir::Then{})}}));
   return at_start(block);
 }
 
-Program with_loops(unsigned count) {
+ir::Program with_loops(unsigned count) {
   return program_of({shares_numbers(), shares_in_condition(), loops(count)},
                     {plain("a"), plain("b")});
 }
@@ -63,7 +62,8 @@ TEST_CASE("values are worked out once as far as the frame has room") {
 
   const std::size_t others = cells(must_build(with_loops(0)));
   for (std::size_t cells_left = 0; cells_left < 40; ++cells_left) {
-    const Program program = with_loops(static_cast<unsigned>(vm::kMaxCells - others - cells_left));
+    const ir::Program program =
+        with_loops(static_cast<unsigned>(vm::kMaxCells - others - cells_left));
     INFO(cells_left);
     REQUIRE(cells(must_build(program)) == vm::kMaxCells - cells_left);
     const Built optimized = build(program, {.optimize = true});
@@ -72,7 +72,7 @@ TEST_CASE("values are worked out once as far as the frame has room") {
 }
 
 TEST_CASE("so it is with the frames of all behaviours together") {
-  Program program = with_loops(vm::kMaxCells - 40);
+  ir::Program program = with_loops(vm::kMaxCells - 40);
   const std::size_t own = cells(must_build(program));
   const std::size_t behaviors = vm::Limits{}.frame_cells / own;
   for (std::size_t i = 1; i < behaviors; ++i)
@@ -91,10 +91,10 @@ TEST_CASE("an AND becomes blocks in blocks as far as there is room") {
     for (unsigned i = 1; i < parts; ++i)
       condition = of(Operation::logical_and, {condition, less(channel(1), number(i))});
     for (unsigned depth = 0; depth < vm::kMaxBlocks; ++depth) {
-      ProgramBlock inside = {line(4, ProgramThen{})};
+      ir::Block inside = {line(4, ir::Then{})};
       for (unsigned i = 0; i < depth; ++i)
-        inside = {line(4, ProgramIf{less(channel(2), number(2)), inside, {}})};
-      const Program program = program_of({at_start({line(3, ProgramIf{condition, inside, {}})})});
+        inside = {line(4, ir::If{less(channel(2), number(2)), inside, {}})};
+      const ir::Program program = program_of({at_start({line(3, ir::If{condition, inside, {}})})});
       INFO(parts << " parts around " << depth << " blocks");
       REQUIRE(!build(program).bytes.empty());
       REQUIRE(!build(program, {.optimize = true}).bytes.empty());

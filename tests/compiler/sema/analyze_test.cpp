@@ -14,7 +14,7 @@ using namespace robosync::compiler::testing;
 
 namespace {
 
-Program analyzed(const std::string& text) {
+ir::Program analyzed(const std::string& text) {
   SourceMap sources;
   Diagnostics diagnostics;
   const FileId program_file = sources.add("robot.rsl", text);
@@ -22,7 +22,7 @@ Program analyzed(const std::string& text) {
   const ast::Tree tree = parse(sources, program_file, diagnostics);
   const auto robot = read_robot(sources, robot_file, diagnostics);
   REQUIRE(robot.has_value());
-  Program program = analyze({&tree}, *robot, sources, diagnostics);
+  ir::Program program = analyze({&tree}, *robot, sources, diagnostics);
   INFO(render_human(diagnostics, sources, false));
   REQUIRE(diagnostics.errors() == 0);
   return program;
@@ -34,14 +34,14 @@ std::string rule(const std::string& condition, const std::string& body = "MOVE l
 
 // The condition of the only rule.
 Expression condition_of(const std::string& text, const std::string& before = "") {
-  const Program program = analyzed(before + rule(text));
+  const ir::Program program = analyzed(before + rule(text));
   REQUIRE(program.behaviors.size() == 1);
   return program.behaviors[0].rules[0].condition;
 }
 
 // The response of the only rule.
-ProgramBlock response_of(const std::string& body, const std::string& around = "") {
-  const Program program = analyzed(around + rule("touch LEVEL > 3", body));
+ir::Block response_of(const std::string& body, const std::string& around = "") {
+  const ir::Program program = analyzed(around + rule("touch LEVEL > 3", body));
   REQUIRE(program.behaviors.size() == 1);
   return program.behaviors[0].rules[0].then_response;
 }
@@ -77,12 +77,12 @@ TEST_CASE("time words become operations with their durations") {
 }
 
 TEST_CASE("bands meet, and hold on to their values up to the MARGIN") {
-  const Program program = analyzed(
+  const ir::Program program = analyzed(
       "CHECK space OF proximity DISTANCE\n very close BELOW 30cm\n close BELOW 120cm\n"
       " far OTHERWISE\n MARGIN 5cm\n SMOOTH OVER 200ms\nEND\n" +
       rule("space IS very close"));
   REQUIRE(program.checks.size() == 1);
-  const ProgramCheck& check = program.checks[0];
+  const ir::Check& check = program.checks[0];
   CHECK(check.window == 10);
   REQUIRE(check.bands.size() == 3);
   CHECK(check.bands[0].high == 299'999);
@@ -99,7 +99,7 @@ TEST_CASE("bands meet, and hold on to their values up to the MARGIN") {
 }
 
 TEST_CASE("a band with another in its middle holds on to nothing") {
-  const Program program = analyzed(
+  const ir::Program program = analyzed(
       "CHECK tone OF touch LEVEL\n concert BETWEEN 4 AND 5\n other OTHERWISE\n MARGIN 1\nEND\n" +
       rule("tone IS concert"));
   const vm::Band& other = program.checks[0].bands[1];
@@ -108,7 +108,7 @@ TEST_CASE("a band with another in its middle holds on to nothing") {
 }
 
 TEST_CASE("a FEELING fades so that 5 % are left after its time") {
-  const Program program = analyzed(
+  const ir::Program program = analyzed(
       "FEELING joy FROM 0% TO 100% START 50%\n FADES TO 20% OVER 100ms\n"
       "FEELING fear FROM 0% TO 100% START 0%\n FADES TO 0% OVER 20s\n" +
       rule("joy > fear"));
@@ -122,16 +122,16 @@ TEST_CASE("a constant stands for its parameter, another value is worked out once
       "DEFINE nod WITH angle, beat\n MOVE left_arm TO angle OVER beat\n"
       " MOVE right_arm TO angle OVER beat\nEND\n"
       "REMEMBER far = 10deg\n";
-  const ProgramBlock constant = response_of("nod WITH 20deg, 300ms", define);
+  const ir::Block constant = response_of("nod WITH 20deg, 300ms", define);
   REQUIRE(constant.size() == 2);
-  CHECK(std::get<ProgramCommand>(constant[0].node).arguments[0].value.constant == 20'000);
-  const ProgramBlock worked_out = response_of("nod WITH far * 2, 300ms\nnod WITH far, 1s", define);
+  CHECK(std::get<ir::Command>(constant[0].node).arguments[0].value.constant == 20'000);
+  const ir::Block worked_out = response_of("nod WITH far * 2, 300ms\nnod WITH far, 1s", define);
   REQUIRE(worked_out.size() == 6);
-  CHECK(std::get<ProgramLocal>(worked_out[0].node).number == 0);
-  const Expression& use = std::get<ProgramCommand>(worked_out[2].node).arguments[0].value;
+  CHECK(std::get<ir::Local>(worked_out[0].node).number == 0);
+  const Expression& use = std::get<ir::Command>(worked_out[2].node).arguments[0].value;
   CHECK(use.operation == Operation::local);
   CHECK(use.index == 0);
-  CHECK(std::get<ProgramLocal>(worked_out[3].node).number == 1);
+  CHECK(std::get<ir::Local>(worked_out[3].node).number == 1);
 }
 
 namespace {
@@ -143,9 +143,9 @@ std::size_t readings(const Expression& expression) {
   return count;
 }
 
-std::size_t readings(const ProgramBlock& block) {
+std::size_t readings(const ir::Block& block) {
   std::size_t count = 0;
-  for_each_statement(block, [&](const ProgramStatement& statement) {
+  for_each_statement(block, [&](const ir::Statement& statement) {
     for_each_expression(statement,
                         [&](const Expression& expression) { count += readings(expression); });
   });
@@ -159,11 +159,11 @@ TEST_CASE("what a FOLLOW follows is worked out anew, though it is a parameter") 
       "DEFINE track WITH arm, goal\n FOLLOW arm TO (goal / 2) AT 30deg/s\nEND\n"
       "DEFINE both WITH goal\n track WITH left_arm, goal + 1deg\n track WITH right_arm, "
       "goal\nEND\n";
-  const ProgramBlock block = response_of("both WITH touch LEVEL * 2deg", defines);
-  const auto* const follow = std::get_if<ProgramFollow>(&block.back().node);
+  const ir::Block block = response_of("both WITH touch LEVEL * 2deg", defines);
+  const auto* const follow = std::get_if<ir::Follow>(&block.back().node);
   REQUIRE(follow != nullptr);
   CHECK(readings(follow->body) == 2);  // both go on together, each reads for itself
-  const ProgramBlock once =
+  const ir::Block once =
       response_of("look WITH touch LEVEL * 2deg",
                   "DEFINE look WITH goal\n MOVE left_arm TO goal\n MOVE right_arm TO goal\nEND\n");
   CHECK(readings(once) == 1);
@@ -185,23 +185,23 @@ TEST_CASE("what is followed may be handed on, but not grow without end") {
 }
 
 TEST_CASE("SET, RAISE, LOWER and SIGNAL") {
-  const ProgramBlock block =
+  const ir::Block block =
       response_of("SET mood TO very sad\nRAISE n BY 2\nLOWER n BY 3\nSIGNAL bell",
                   "STATE mood: calm, very sad\nREMEMBER n = 0\n");
-  CHECK(std::get<ProgramSet>(block[0].node).value.constant == 1'000);
-  CHECK_FALSE(std::get<ProgramSet>(block[0].node).relative);
-  CHECK(std::get<ProgramSet>(block[1].node).relative);
-  CHECK(std::get<ProgramSet>(block[2].node).value.constant == -3'000);
-  CHECK(std::get<ProgramSet>(block[3].node).value.constant == 1);
+  CHECK(std::get<ir::Set>(block[0].node).value.constant == 1'000);
+  CHECK_FALSE(std::get<ir::Set>(block[0].node).relative);
+  CHECK(std::get<ir::Set>(block[1].node).relative);
+  CHECK(std::get<ir::Set>(block[2].node).value.constant == -3'000);
+  CHECK(std::get<ir::Set>(block[3].node).value.constant == 1);
 }
 
 TEST_CASE("PICK ONE: shares as given, or equal ones") {
-  const ProgramBlock block = response_of(
+  const ir::Block block = response_of(
       "PICK ONE\n OPTION 60%\n THEN\n OPTION 40%\n THEN\nEND\n"
       "PICK ONE\n OPTION\n THEN\n OPTION\n THEN\nEND");
   const auto weights = [&](std::size_t i) {
     std::vector<vm::Value> result;
-    for (const ProgramOption& option : std::get<ProgramPick>(block[i].node).options)
+    for (const ir::Option& option : std::get<ir::Pick>(block[i].node).options)
       result.push_back(option.weight);
     return result;
   };
@@ -210,19 +210,19 @@ TEST_CASE("PICK ONE: shares as given, or equal ones") {
 }
 
 TEST_CASE("LOG joins its parts into one text") {
-  const ProgramBlock block = response_of("LOG \"at\", proximity DISTANCE, \"now\"");
-  const auto& log = std::get<ProgramLog>(block[0].node);
+  const ir::Block block = response_of("LOG \"at\", proximity DISTANCE, \"now\"");
+  const auto& log = std::get<ir::Log>(block[0].node);
   CHECK(log.text == "at {cm} now");
   CHECK(log.values.size() == 1);
   const auto text = [](const std::string& line) {
-    return std::get<ProgramLog>(response_of(line)[0].node).text;
+    return std::get<ir::Log>(response_of(line)[0].node).text;
   };
   CHECK(text("LOG 90s, 1m + proximity DISTANCE, touch LEVEL, 3, \"{x} }{ {\"") ==
         "{s} {m} {} {} {x} }{ {");
 }
 
 TEST_CASE("LIMIT: a speed, or a SAFETY rule for what a sensor measures") {
-  const Program program = analyzed(
+  const ir::Program program = analyzed(
       "LIMIT arms SPEED TO 60deg/s\nLIMIT left_arm SPEED TO 90deg/s\n" + rule("touch LEVEL > 3"));
   REQUIRE(program.speed_limits.size() == 2);
   CHECK(program.speed_limits[0] == std::pair<std::size_t, vm::Value>{0, 60'000});
@@ -230,7 +230,7 @@ TEST_CASE("LIMIT: a speed, or a SAFETY rule for what a sensor measures") {
 }
 
 TEST_CASE("rules: kinds, modifiers, priorities") {
-  const Program program = analyzed(
+  const ir::Program program = analyzed(
       "EVERY 3s TO 7s\nDO BLINK lamp\nEND\nAT START\nDO BLINK lamp\nEND\n"
       "WHILE touch LEVEL > 3 PRIORITY 7 COOLDOWN 2s\nDO BLINK lamp\nEND\n"
       "WHEN touch LEVEL > 3 RESTARTING WAITING 1s\nDO BLINK lamp\nEND\n");
@@ -312,13 +312,12 @@ TEST_CASE("actuators, groups, texts and DEFINEs stand for their parameters") {
   const std::string defines =
       "DEFINE wave WITH arm, item\nMOVE arm SLOWLY\nPLAY sound item\nSTOP arm\nEND\n"
       "DEFINE outer WITH action, who\naction WITH who, \"warning.wav\"\nEND\n";
-  const ProgramBlock given = response_of("outer WITH wave, arms", defines);
-  const ProgramBlock written =
-      response_of("MOVE arms SLOWLY\nPLAY sound \"warning.wav\"\nSTOP arms");
+  const ir::Block given = response_of("outer WITH wave, arms", defines);
+  const ir::Block written = response_of("MOVE arms SLOWLY\nPLAY sound \"warning.wav\"\nSTOP arms");
   REQUIRE(given.size() == written.size());
   for (std::size_t i = 0; i < given.size(); ++i) {
-    const auto& one = std::get<ProgramCommand>(given[i].node);
-    const auto& other = std::get<ProgramCommand>(written[i].node);
+    const auto& one = std::get<ir::Command>(given[i].node);
+    const auto& other = std::get<ir::Command>(written[i].node);
     CHECK(one.actuators == other.actuators);
     CHECK(one.group == other.group);
     CHECK(one.verb == other.verb);

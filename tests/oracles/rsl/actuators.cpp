@@ -50,7 +50,8 @@ bool speed_is_of_way(const compiler::ActuatorConfig& actuator) {
 
 }  // namespace
 
-Actuators::Actuators(const compiler::Program& program, const compiler::Robot& robot, Trace& trace)
+Actuators::Actuators(const compiler::ir::Program& program, const compiler::Robot& robot,
+                     Trace& trace)
     : program_(program), trace_(trace), queues_(robot.actuators.size()) {
   for (const compiler::ActuatorConfig& actuator : robot.actuators) {
     const bool goes = speed_is_of_way(actuator);
@@ -60,12 +61,12 @@ Actuators::Actuators(const compiler::Program& program, const compiler::Robot& ro
     on_release_.push_back(actuator.on_release);
     safe_.push_back(actuator.safe);
   }
-  compiler::for_each_rule(program, [this](const compiler::ProgramRule& rule) {
+  compiler::for_each_rule(program, [this](const compiler::ir::Rule& rule) {
     for (const auto* block : {&rule.then_response, &rule.else_response})
-      compiler::for_each_statement(*block, [this](const compiler::ProgramStatement& statement) {
-        if (const auto* command = std::get_if<compiler::ProgramCommand>(&statement.node))
+      compiler::for_each_statement(*block, [this](const compiler::ir::Statement& statement) {
+        if (const auto* command = std::get_if<compiler::ir::Command>(&statement.node))
           used_.insert(command->actuators.begin(), command->actuators.end());
-        if (const auto* halt = std::get_if<compiler::ProgramHalt>(&statement.node))
+        if (const auto* halt = std::get_if<compiler::ir::Halt>(&statement.node))
           used_.insert(halt->actuators.begin(), halt->actuators.end());
       });
   });
@@ -173,7 +174,7 @@ Millis Actuators::follow_at_once(std::size_t actuator, std::int64_t to, Millis n
 
 // "A key's time counts from the beginning of its round"; AT is how fast, TIMES how often.
 void Actuators::begin_motion(std::size_t actuator, const Order& order, Millis now) {
-  const compiler::ProgramMotion& motion = program_.motions.at(*order.command->motion);
+  const compiler::ir::Motion& motion = program_.motions.at(*order.command->motion);
   Queue& queue = queues_[actuator];
   const std::int64_t tempo = given(order, vm::Param::at).value_or(100'000);
   const std::int64_t times = given(order, vm::Param::times).value_or(1000) / 1000;
@@ -181,7 +182,7 @@ void Actuators::begin_motion(std::size_t actuator, const Order& order, Millis no
   const auto stretched = [&](std::int64_t time) { return time * 100'000 / tempo; };
   const Millis length = stretched(motion.length);
   for (std::int64_t round = 0; round < std::min(times, kMostGestures); ++round) {
-    for (const compiler::ProgramTrack& track : motion.tracks)
+    for (const compiler::ir::Track& track : motion.tracks)
       for (const vm::Key& key : track.keys)
         if (track.actuator == actuator)
           queue.keys.push_back({now + round * length + stretched(key.time), key.to});

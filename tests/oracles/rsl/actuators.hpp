@@ -12,7 +12,7 @@ namespace robosync::oracle {
 
 class Actuators {
 public:
-  Actuators(const compiler::Program& program, const compiler::Robot& robot, Trace& trace);
+  Actuators(const compiler::ir::Program& program, const compiler::Robot& robot, Trace& trace);
 
   // False if too many wait already: the command is dropped. "What is out of the actuator's range is
   // moved to its end", and no speed is above the LIMIT.
@@ -65,7 +65,7 @@ private:
     return queue.orders.size() - (queue.busy ? 1 : 0);
   }
 
-  const compiler::Program& program_;
+  const compiler::ir::Program& program_;
   std::set<std::size_t> used_;  // actuators that the program commands or halts
   Trace& trace_;
   std::vector<vm::Release> on_release_, safe_;

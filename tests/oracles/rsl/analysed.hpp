@@ -20,7 +20,7 @@ public:
   // are looked for.
   Analysed(const std::string& name, const std::string& rsl, const std::string& json);
 
-  [[nodiscard]] const compiler::Program& program() const { return program_; }
+  [[nodiscard]] const compiler::ir::Program& program() const { return program_; }
   [[nodiscard]] const compiler::Robot& robot() const { return robot_; }
   [[nodiscard]] compiler::ChannelRef channel(std::string_view sensor,
                                              std::string_view channel) const;
@@ -31,7 +31,7 @@ private:
   compiler::ast::Tree tree_;
   std::vector<compiler::Module> modules_;
   compiler::Robot robot_;
-  compiler::Program program_;
+  compiler::ir::Program program_;
 };
 
 }  // namespace robosync::oracle

@@ -12,13 +12,13 @@ constexpr Millis kFadeEvery = 100;  // "ten times a second"
 
 }  // namespace
 
-Inputs::Inputs(const compiler::Program& program, const compiler::Robot& robot, Trace& trace)
+Inputs::Inputs(const compiler::ir::Program& program, const compiler::Robot& robot, Trace& trace)
     : program_(program), trace_(trace), smoothing_(program.checks.size()) {
   for (std::size_t s = 0; s < robot.sensors.size(); ++s)
     for (std::size_t c = 0; c < robot.sensors[s].channels.size(); ++c)
       channels_[{s, c}].config = &robot.sensors[s].channels[c];
   for (std::size_t v = 0; v < program.variables.size(); ++v) {
-    const compiler::ProgramVariable& variable = program.variables[v];
+    const compiler::ir::Variable& variable = program.variables[v];
     const bool band = variable.kind == vm::VariableKind::band;
     snapshot_.variables.push_back(band ? std::nullopt : Number(variable.initial));
     if (!band) begin_fade(v, 0);
@@ -67,7 +67,7 @@ Snapshot Inputs::readings(Millis heard, Millis now) const {
 
 // ---- what is remembered
 
-std::int64_t clamped(const compiler::ProgramVariable& variable, std::int64_t value) {
+std::int64_t clamped(const compiler::ir::Variable& variable, std::int64_t value) {
   return std::clamp<std::int64_t>(value, variable.min, variable.max);
 }
 
@@ -95,7 +95,7 @@ void Inputs::enter_variables(Millis now) {
 }
 
 void Inputs::begin_fade(std::size_t variable, Millis now) {
-  const compiler::ProgramVariable& config = program_.variables[variable];
+  const compiler::ir::Variable& config = program_.variables[variable];
   const std::int64_t way = *snapshot_.variables[variable] - config.fades_to;
   fades_.erase(variable);
   if (config.fade != 0 && way != 0) fades_[variable] = {way, now};
@@ -109,7 +109,7 @@ void Inputs::fade(Millis now) {
     const Millis since = now - fade.began;
     std::int64_t left = fade.way;
     if (since > 0 && since % kFadeEvery == 0) {
-      const compiler::ProgramVariable& config = program_.variables[variable];
+      const compiler::ir::Variable& config = program_.variables[variable];
       const long double part = static_cast<long double>(config.fade) / 2147483648.0L;
       left =
           static_cast<std::int64_t>(static_cast<long double>(fade.way) *
@@ -122,7 +122,7 @@ void Inputs::fade(Millis now) {
 
 // ---- CHECKs
 
-Number Inputs::smoothed(const compiler::ProgramCheck& check, Smoothing& smoothing, Number value,
+Number Inputs::smoothed(const compiler::ir::Check& check, Smoothing& smoothing, Number value,
                         Millis now) const {
   if (check.window <= 1) return value;
   if (!value) {
@@ -143,7 +143,7 @@ Number Inputs::smoothed(const compiler::ProgramCheck& check, Smoothing& smoothin
 
 // "The first band that has the value is it. A band is left only when the value is past its border
 // by the margin."
-void Inputs::check(const compiler::ProgramCheck& check, Smoothing& smoothing, Millis now) {
+void Inputs::check(const compiler::ir::Check& check, Smoothing& smoothing, Millis now) {
   const bool channel = check.input.operation == compiler::Operation::input;
   const Number value = smoothed(
       check, smoothing,

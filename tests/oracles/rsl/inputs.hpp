@@ -18,11 +18,11 @@ struct Change {
 using Changes = std::map<std::size_t, Change>;
 
 // A value inside the variable's range.
-[[nodiscard]] std::int64_t clamped(const compiler::ProgramVariable& variable, std::int64_t value);
+[[nodiscard]] std::int64_t clamped(const compiler::ir::Variable& variable, std::int64_t value);
 
 class Inputs {
 public:
-  Inputs(const compiler::Program& program, const compiler::Robot& robot, Trace& trace);
+  Inputs(const compiler::ir::Program& program, const compiler::Robot& robot, Trace& trace);
 
   // Gives whether that is news: it differs enough from what is known.
   bool feed(compiler::ChannelRef channel, std::int64_t value, Millis now);
@@ -58,11 +58,11 @@ private:
   void enter_readings(Millis now);
   void enter_variables(Millis now);
   void fade(Millis now);
-  void check(const compiler::ProgramCheck& check, Smoothing& smoothing, Millis now);
-  [[nodiscard]] Number smoothed(const compiler::ProgramCheck& check, Smoothing& smoothing,
+  void check(const compiler::ir::Check& check, Smoothing& smoothing, Millis now);
+  [[nodiscard]] Number smoothed(const compiler::ir::Check& check, Smoothing& smoothing,
                                 Number value, Millis now) const;
 
-  const compiler::Program& program_;
+  const compiler::ir::Program& program_;
   Trace& trace_;
   std::map<compiler::ChannelRef, Channel> channels_;
   Snapshot snapshot_;

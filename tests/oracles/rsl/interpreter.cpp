@@ -15,7 +15,7 @@ void collect(const compiler::Expression& expression, std::set<compiler::ChannelR
 
 }  // namespace
 
-Interpreter::Interpreter(const compiler::Program& program, const compiler::Robot& robot,
+Interpreter::Interpreter(const compiler::ir::Program& program, const compiler::Robot& robot,
                          std::uint32_t seed, Trace& trace)
     : program_(program),
       trace_(trace),
@@ -26,7 +26,7 @@ Interpreter::Interpreter(const compiler::Program& program, const compiler::Robot
   const std::uint32_t first = program.safety.empty() ? 0 : 1;
   for (std::size_t rank = 0; rank < program.behaviors.size(); ++rank) {
     chances_.emplace_back(seed, first + static_cast<std::uint32_t>(rank));
-    for (const compiler::ProgramRule& rule : program.behaviors[rank].rules) {
+    for (const compiler::ir::Rule& rule : program.behaviors[rank].rules) {
       Rule made;
       made.rule = &rule;
       made.behavior = &program.behaviors[rank];
@@ -40,7 +40,7 @@ Interpreter::Interpreter(const compiler::Program& program, const compiler::Robot
       rules_.push_back(std::move(made));
     }
   }
-  for (const compiler::ProgramRule& rule : program.safety) {
+  for (const compiler::ir::Rule& rule : program.safety) {
     Guard guard;
     guard.rule = &rule;
     collect(rule.condition, guard.channels);

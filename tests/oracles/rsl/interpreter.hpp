@@ -29,8 +29,8 @@ struct Reading {
 
 class Interpreter {
 public:
-  Interpreter(const compiler::Program& program, const compiler::Robot& robot, std::uint32_t seed,
-              Trace& trace);
+  Interpreter(const compiler::ir::Program& program, const compiler::Robot& robot,
+              std::uint32_t seed, Trace& trace);
 
   // Readings in the order of their times. Everything up to `end`, that included.
   void run(const std::vector<Reading>& readings, Millis end);
@@ -48,8 +48,8 @@ private:
     Millis until = 0;
   };
   struct Rule {
-    const compiler::ProgramRule* rule = nullptr;
-    const compiler::ProgramBehavior* behavior = nullptr;
+    const compiler::ir::Rule* rule = nullptr;
+    const compiler::ir::Behavior* behavior = nullptr;
     std::size_t rank = 0;  // of the behaviour, 0 the most important
     std::set<std::size_t> then_actuators, else_actuators;
     Truth last;  // known truth
@@ -66,7 +66,7 @@ private:
     bool trigger = true;  // or tried again
   };
   struct Guard {
-    const compiler::ProgramRule* rule = nullptr;
+    const compiler::ir::Rule* rule = nullptr;
     std::set<compiler::ChannelRef> channels;  // that it reads
     bool tripped = false;
     Millis looked_at = 0;  // when it looked last whether they still report
@@ -107,7 +107,7 @@ private:
   [[nodiscard]] std::set<std::size_t> halted() const;
   [[nodiscard]] static std::string name_of(const Rule& rule);
 
-  const compiler::Program& program_;
+  const compiler::ir::Program& program_;
   Trace& trace_;
   std::vector<Chance> chances_;  // by rank
   Chance no_chance_;             // of SAFETY rules, which draw nothing

@@ -49,7 +49,7 @@ Output Response::run(const Surroundings& around) {
       leave_block();
       continue;
     }
-    const compiler::ProgramStatement& statement = (*place.block)[place.next++];
+    const compiler::ir::Statement& statement = (*place.block)[place.next++];
     std::visit([this](const auto& node) { run(node); }, statement.node);
   }
   // What stands behind a pause is nothing if all blocks are at their end.
@@ -65,13 +65,13 @@ void Response::leave_block() {
     follows_on_ = true;
   }
   if (place.loop != nullptr) switch (place.loop->kind) {
-      case compiler::RepeatKind::times:
+      case compiler::ir::RepeatKind::times:
         again = --place.rounds > 0;
         break;
-      case compiler::RepeatKind::while_:
+      case compiler::ir::RepeatKind::while_:
         again = truth(place.loop->control) == true;
         break;
-      case compiler::RepeatKind::forever:
+      case compiler::ir::RepeatKind::forever:
         again = true;
         break;
     }
@@ -90,22 +90,22 @@ void Response::pause(Pause why, Number duration) {
 
 // ---- statements
 
-void Response::run(const compiler::ProgramCommand& node) {
+void Response::run(const compiler::ir::Command& node) {
   Order order{rule_, &node, {}};
-  for (const compiler::ProgramArgument& argument : node.arguments)
+  for (const compiler::ir::Argument& argument : node.arguments)
     order.given.emplace_back(argument.param, number(argument.value));
   output_.deeds.emplace_back(Commanded{node.actuators, std::move(order)});
 }
 
-void Response::run(const compiler::ProgramLocal& node) {
+void Response::run(const compiler::ir::Local& node) {
   locals_[node.number] = number(node.value);
 }
 
-void Response::run(const compiler::ProgramSet& node) {
+void Response::run(const compiler::ir::Set& node) {
   const Number given = number(node.value);
   if (!given) return;
   Change& change = output_.changes[node.variable];
-  const compiler::ProgramVariable& variable = around_->variables[node.variable];
+  const compiler::ir::Variable& variable = around_->variables[node.variable];
   const Number before = around_->snapshot.variables[node.variable];
   Number& sum = sums_.emplace(node.variable, before).first->second;
   sum = node.relative ? add(sum, given) : Number(clamped(variable, *given));
@@ -116,11 +116,11 @@ void Response::run(const compiler::ProgramSet& node) {
     change.raise = *subtract(sum, before);
 }
 
-void Response::run(const compiler::ProgramWait& node) {
+void Response::run(const compiler::ir::Wait& node) {
   pause(Pause::time, number(node.duration));
 }
 
-void Response::run(const compiler::ProgramWaitUntil& node) {
+void Response::run(const compiler::ir::WaitUntil& node) {
   const Number within = node.within ? number(*node.within) : std::nullopt;
   pause(Pause::condition, std::nullopt);
   condition_ = &node.condition;
@@ -128,74 +128,74 @@ void Response::run(const compiler::ProgramWaitUntil& node) {
 }
 
 // "Brought up to date in each step", from the next one on, "until FOR is over".
-void Response::run(const compiler::ProgramFollow& node) {
+void Response::run(const compiler::ir::Follow& node) {
   const Number lasts = node.lasts ? number(*node.lasts) : std::nullopt;
   pause(Pause::follow, std::nullopt);
   follow_ = &node;
   if (node.lasts) until_ = around_->now + std::max<Millis>(lasts.value_or(0), 0);
 }
 
-void Response::run(const compiler::ProgramThen&) {
+void Response::run(const compiler::ir::Then&) {
   pause(Pause::commands, std::nullopt);
 }
 
-void Response::run(const compiler::ProgramIf& node) {
+void Response::run(const compiler::ir::If& node) {
   const Truth side = truth(node.condition);
   if (side) enter(*side ? node.then_block : node.else_block);
 }
 
-void Response::run(const compiler::ProgramRepeat& node) {
+void Response::run(const compiler::ir::Repeat& node) {
   std::int64_t rounds = 0;
-  if (node.kind == compiler::RepeatKind::times) {
+  if (node.kind == compiler::ir::RepeatKind::times) {
     rounds = (number(node.control).value_or(0) + 999) / 1000;
     if (rounds < 1) return;
   }
-  if (node.kind == compiler::RepeatKind::while_ && truth(node.control) != true) return;
+  if (node.kind == compiler::ir::RepeatKind::while_ && truth(node.control) != true) return;
   places_.push_back({&node.body, 0, &node, rounds, false});
 }
 
-void Response::run(const compiler::ProgramPick& node) {
+void Response::run(const compiler::ir::Pick& node) {
   std::int64_t sum = 0;
-  for (const compiler::ProgramOption& option : node.options)
+  for (const compiler::ir::Option& option : node.options)
     sum += option.weight;
   std::int64_t drawn = node.options.size() > 1 ? *around_->chance.draw(0, sum - 1) : 0;
-  for (const compiler::ProgramOption& option : node.options) {
+  for (const compiler::ir::Option& option : node.options) {
     if (drawn < option.weight) return enter(option.body);
     drawn -= option.weight;
   }
 }
 
-void Response::run(const compiler::ProgramLog& node) {
+void Response::run(const compiler::ir::Log& node) {
   std::vector<Number> values;
   for (const compiler::Expression& value : node.values)
     values.push_back(number(value));
   output_.deeds.emplace_back(Said{node.alert, node.text, std::move(values)});
 }
 
-void Response::run(const compiler::ProgramHalt&) {}  // of SAFETY rules, which have no responses
+void Response::run(const compiler::ir::Halt&) {}  // of SAFETY rules, which have no responses
 
 // ---- about blocks
 
-std::set<std::size_t> actuators_of(const compiler::ProgramBlock& block) {
+std::set<std::size_t> actuators_of(const compiler::ir::Block& block) {
   std::set<std::size_t> result;
-  compiler::for_each_statement(block, [&](const compiler::ProgramStatement& statement) {
-    if (const auto* command = std::get_if<compiler::ProgramCommand>(&statement.node))
+  compiler::for_each_statement(block, [&](const compiler::ir::Statement& statement) {
+    if (const auto* command = std::get_if<compiler::ir::Command>(&statement.node))
       result.insert(command->actuators.begin(), command->actuators.end());
-    if (const auto* halt = std::get_if<compiler::ProgramHalt>(&statement.node))
+    if (const auto* halt = std::get_if<compiler::ir::Halt>(&statement.node))
       result.insert(halt->actuators.begin(), halt->actuators.end());
   });
   return result;
 }
 
-void for_each_condition(const compiler::ProgramBlock& block,
+void for_each_condition(const compiler::ir::Block& block,
                         const std::function<void(const compiler::Expression&)>& visit) {
-  compiler::for_each_statement(block, [&](const compiler::ProgramStatement& statement) {
-    if (const auto* choice = std::get_if<compiler::ProgramIf>(&statement.node))
+  compiler::for_each_statement(block, [&](const compiler::ir::Statement& statement) {
+    if (const auto* choice = std::get_if<compiler::ir::If>(&statement.node))
       visit(choice->condition);
-    if (const auto* wait = std::get_if<compiler::ProgramWaitUntil>(&statement.node))
+    if (const auto* wait = std::get_if<compiler::ir::WaitUntil>(&statement.node))
       visit(wait->condition);
-    if (const auto* loop = std::get_if<compiler::ProgramRepeat>(&statement.node))
-      if (loop->kind == compiler::RepeatKind::while_) visit(loop->control);
+    if (const auto* loop = std::get_if<compiler::ir::Repeat>(&statement.node))
+      if (loop->kind == compiler::ir::RepeatKind::while_) visit(loop->control);
   });
 }
 

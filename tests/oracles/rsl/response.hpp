@@ -36,7 +36,7 @@ struct Output {
 struct Surroundings {
   Evaluator& evaluator;
   Chance& chance;
-  const std::vector<compiler::ProgramVariable>& variables;
+  const std::vector<compiler::ir::Variable>& variables;
   const Snapshot& snapshot;
   Millis now = 0;
   bool commands_done = false;  // of this response, all so far
@@ -44,7 +44,7 @@ struct Surroundings {
 
 class Response {
 public:
-  Response(const compiler::ProgramBlock& block, std::size_t rule) : rule_(rule) {
+  Response(const compiler::ir::Block& block, std::size_t rule) : rule_(rule) {
     places_.push_back({&block, 0, nullptr, 0, false});
   }
 
@@ -62,9 +62,9 @@ public:
 private:
   enum class Pause { none, time, commands, condition, follow };
   struct Place {
-    const compiler::ProgramBlock* block = nullptr;
+    const compiler::ir::Block* block = nullptr;
     std::size_t next = 0;
-    const compiler::ProgramRepeat* loop = nullptr;
+    const compiler::ir::Repeat* loop = nullptr;
     std::int64_t rounds = 0;  // that are left, of a loop that counts
     bool follow = false;      // it is the body of a FOLLOW
   };
@@ -72,24 +72,24 @@ private:
   [[nodiscard]] Sight sight(const Surroundings& around) const;
   [[nodiscard]] Number number(const compiler::Expression& expression) const;
   [[nodiscard]] Truth truth(const compiler::Expression& expression) const;
-  void enter(const compiler::ProgramBlock& block) {
+  void enter(const compiler::ir::Block& block) {
     places_.push_back({&block, 0, nullptr, 0, false});
   }
   void leave_block();
   void pause(Pause why, Number duration);
 
-  void run(const compiler::ProgramCommand& node);
-  void run(const compiler::ProgramLocal& node);
-  void run(const compiler::ProgramSet& node);
-  void run(const compiler::ProgramWait& node);
-  void run(const compiler::ProgramWaitUntil& node);
-  void run(const compiler::ProgramFollow& node);
-  void run(const compiler::ProgramThen& node);
-  void run(const compiler::ProgramIf& node);
-  void run(const compiler::ProgramRepeat& node);
-  void run(const compiler::ProgramPick& node);
-  void run(const compiler::ProgramLog& node);
-  void run(const compiler::ProgramHalt& node);
+  void run(const compiler::ir::Command& node);
+  void run(const compiler::ir::Local& node);
+  void run(const compiler::ir::Set& node);
+  void run(const compiler::ir::Wait& node);
+  void run(const compiler::ir::WaitUntil& node);
+  void run(const compiler::ir::Follow& node);
+  void run(const compiler::ir::Then& node);
+  void run(const compiler::ir::If& node);
+  void run(const compiler::ir::Repeat& node);
+  void run(const compiler::ir::Pick& node);
+  void run(const compiler::ir::Log& node);
+  void run(const compiler::ir::Halt& node);
 
   std::size_t rule_;
   std::vector<Place> places_;
@@ -98,7 +98,7 @@ private:
   Millis paused_at_ = 0;
   std::optional<Millis> until_;
   const compiler::Expression* condition_ = nullptr;
-  const compiler::ProgramFollow* follow_ = nullptr;
+  const compiler::ir::Follow* follow_ = nullptr;
   bool follows_on_ = false;
 
   // While it runs.
@@ -108,9 +108,9 @@ private:
 };
 
 // Every actuator that a block could ever command or halt.
-[[nodiscard]] std::set<std::size_t> actuators_of(const compiler::ProgramBlock& block);
+[[nodiscard]] std::set<std::size_t> actuators_of(const compiler::ir::Block& block);
 // Calls visit(expression) for every expression in a block.
-void for_each_condition(const compiler::ProgramBlock& block,
+void for_each_condition(const compiler::ir::Block& block,
                         const std::function<void(const compiler::Expression&)>& visit);
 // A LOG's text with the values in its {} places.
 [[nodiscard]] std::string filled_in(const std::string& text, const std::vector<Number>& values);

@@ -58,15 +58,15 @@ void Trace::channel(const char* event, compiler::ChannelRef channel, std::option
 }
 
 void Trace::variable(std::size_t variable, Number value) {
-  const compiler::ProgramVariable& config = program_.variables[variable];
+  const compiler::ir::Variable& config = program_.variables[variable];
   Json object = line(now_, "set");
   object["variable"] = config.name;
   add_value(object, value, config.labels, config.dimension);
   out_ << object << "\n";
 }
 
-void Trace::rule(const char* event, const compiler::ProgramRule& rule,
-                 const compiler::ProgramBehavior* behavior, std::optional<bool> side,
+void Trace::rule(const char* event, const compiler::ir::Rule& rule,
+                 const compiler::ir::Behavior* behavior, std::optional<bool> side,
                  const std::string& by) {
   Json object = line(now_, event);
   if (behavior != nullptr && !behavior->name.empty()) object["behavior"] = behavior->name;

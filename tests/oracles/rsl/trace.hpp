@@ -16,13 +16,13 @@ namespace robosync::oracle {
 // A command as an actuator gets it.
 struct Order {
   std::size_t rule = 0;  // place in the list of all rules
-  const compiler::ProgramCommand* command = nullptr;
+  const compiler::ir::Command* command = nullptr;
   std::vector<std::pair<vm::Param, Number>> given;  // what is said in numbers
 };
 
 class Trace {
 public:
-  Trace(std::ostream& out, const compiler::Program& program, const compiler::Robot& robot)
+  Trace(std::ostream& out, const compiler::ir::Program& program, const compiler::Robot& robot)
       : out_(out), program_(program), robot_(robot) {}
 
   void set_time(Millis now) { now_ = now; }
@@ -30,8 +30,8 @@ public:
   void channel(const char* event, compiler::ChannelRef channel, std::optional<Number> value);
   void variable(std::size_t variable, Number value);
   // `behavior` null: a SAFETY rule.
-  void rule(const char* event, const compiler::ProgramRule& rule,
-            const compiler::ProgramBehavior* behavior, std::optional<bool> side = std::nullopt,
+  void rule(const char* event, const compiler::ir::Rule& rule,
+            const compiler::ir::Behavior* behavior, std::optional<bool> side = std::nullopt,
             const std::string& by = "");
   void actuator(const char* event, std::size_t actuator);
   void command(std::size_t actuator, const Order& order);
@@ -40,7 +40,7 @@ public:
 
 private:
   std::ostream& out_;
-  const compiler::Program& program_;
+  const compiler::ir::Program& program_;
   const compiler::Robot& robot_;
   Millis now_ = 0;
 };
