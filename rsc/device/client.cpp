@@ -130,6 +130,10 @@ link::Status Client::status() {
   return request<link::Status>(MessageType::get_status, MessageType::status);
 }
 
+link::Fault Client::last_fault() {
+  return request<link::Fault>(MessageType::get_fault, MessageType::last_fault);
+}
+
 link::Status Client::clear(std::uint32_t image_crc) {
   return request<link::Status>(MessageType::clear, MessageType::status,
                                link::wire_bytes(link::Clear{image_crc}));

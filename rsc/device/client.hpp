@@ -32,6 +32,7 @@ public:
   // Each sends its request again until its reply comes. Throw Failure (outside) after the timeout.
   link::HelloReply hello();
   link::Status status();
+  link::Fault last_fault();  // of those the board has kept; no thread: there was none
   link::Status clear(std::uint32_t image_crc);  // ends the program, if it runs
   link::Status set_trace(bool on);
   // All outputs to their safe state, until resume(). The board does it when the frame has come, and replies when it

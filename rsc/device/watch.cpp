@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "link/events.hpp"
+#include "rsc/device/past.hpp"
 #include "rsc/device/threads.hpp"
 #include "rsc/failure.hpp"
 #include "vm/verifier.hpp"
@@ -49,13 +50,6 @@ private:
   struct sigaction before_term_ {};
 };
 
-Json registers(const link::Fault& fault) {
-  Json list = Json::array();
-  for (const std::uint32_t value : fault.r)
-    list.push_back(fmt::format("{:08x}", value));
-  return list;
-}
-
 }  // namespace
 
 Watch::Watch(Session& session, Format format, bool threads)
@@ -84,6 +78,24 @@ void Watch::learn_threads() {
   names_.threads.clear();
   for (const link::ThreadInfo& thread : session_.client.threads())
     names_.threads.push_back(text_of(thread.name));
+}
+
+void Watch::introduce() {
+  const Past past(session_.client);
+  if (format_ == Format::json) {
+    const Json line{{"event", "board"},
+                    {"name", text_of(session_.board.board)},
+                    {"uptime_us", past.status.uptime_us},
+                    {"reset_reason", reset_reason(past.status)},
+                    {"faults", past.status.faults},
+                    {"last_fault", last_fault_json(past)}};
+    std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else {
+    std::cout << fmt::format("        board  {}, up {}{}\n", text_of(session_.board.board),
+                             past_text(past.status),
+                             past.has_fault() ? "; last fault: " + fault_text(past.fault) : "");
+  }
+  std::cout.flush();
 }
 
 void Watch::show(std::optional<milliseconds> duration) {
@@ -147,19 +159,13 @@ void Watch::show_fault(const Message& message) {
   link::Fault fault{};
   if (!link::read_payload(message.payload, fault)) return;
   if (format_ == Format::json) {
-    const Json line{{"event", "fault"},     {"thread", text_of(fault.thread)},
-                    {"cause", fault.cause}, {"address", fault.address},
-                    {"pc", fault.pc},       {"lr", fault.lr},
-                    {"sp", fault.sp},       {"xpsr", fault.xpsr},
-                    {"r", registers(fault)}};
+    Json line;
+    line["event"] = "fault";
+    line.update(fault_json(fault));
     std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
     return;
   }
-  std::cout << fmt::format(
-      "        fault  thread {} stopped: cause {:08x} address {:08x} pc {:08x} lr {:08x} sp {:08x} "
-      "xpsr {:08x} r0-r12 {:08x}\n",
-      text_of(fault.thread), fault.cause, fault.address, fault.pc, fault.lr, fault.sp, fault.xpsr,
-      fmt::join(fault.r, " "));
+  std::cout << "        fault  " << fault_text(fault) << '\n';
 }
 
 void Watch::show_threads() {

@@ -18,6 +18,8 @@ public:
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
 
+  // One line: which board it is, why it has started, and its last fault.
+  void introduce();
   // Writes to stdout, one line each (and with `threads` the list of them once a second), until the
   // duration is over or the user interrupts (Ctrl-C).
   void show(std::optional<std::chrono::milliseconds> duration);

@@ -5,13 +5,13 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
+#include "rsc/device/past.hpp"
 #include "rsc/device/session.hpp"
 #include "rsc/device/threads.hpp"
 #include "rsc/program.hpp"
@@ -22,13 +22,6 @@ namespace robosync::tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// The numbers of link::Status.
-constexpr std::array<std::string_view, 3> kResetReasons = {"power", "watchdog", "software"};
-
-std::string_view reset_reason(const link::Status& status) {
-  return status.reset_reason < kResetReasons.size() ? kResetReasons[status.reset_reason] : "?";
-}
 
 std::string hash(const link::HelloReply& board) {
   return fmt::format("{:02x}", fmt::join(board.program_hash, ""));
@@ -82,7 +75,8 @@ Json board_json(const link::HelloReply& board, std::span<const std::byte> image)
   return object;
 }
 
-Json status_json(const link::Status& status) {
+Json status_json(const Past& past) {
+  const link::Status& status = past.status;
   return {{"uptime_us", status.uptime_us},
           {"program_us", status.program_us},
           {"steps", status.steps},
@@ -92,18 +86,20 @@ Json status_json(const link::Status& status) {
           {"lost_events", status.lost_events},
           {"activations", status.activations},
           {"faults", status.faults},
-          {"reset_reason", reset_reason(status)}};
+          {"reset_reason", reset_reason(status)},
+          {"last_fault", last_fault_json(past)}};
 }
 
-void print_json(const link::HelloReply& board, std::span<const std::byte> image,
-                const link::Status& status, const std::vector<link::ThreadInfo>& threads) {
-  Json report{{"board", board_json(board, image)}, {"status", status_json(status)}};
+void print_json(const link::HelloReply& board, std::span<const std::byte> image, const Past& past,
+                const std::vector<link::ThreadInfo>& threads) {
+  Json report{{"board", board_json(board, image)}, {"status", status_json(past)}};
   report["threads"] = threads_json(threads, {});
   std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
-void print_human(const link::HelloReply& board, std::span<const std::byte> image,
-                 const link::Status& status, const std::vector<link::ThreadInfo>& threads) {
+void print_human(const link::HelloReply& board, std::span<const std::byte> image, const Past& past,
+                 const std::vector<link::ThreadInfo>& threads) {
+  const link::Status& status = past.status;
   std::cout << fmt::format("board     {}, firmware {}, protocol {}\n", text_of(board.board),
                            text_of(board.firmware), board.protocol);
   std::cout << memory_text(board, image);
@@ -117,9 +113,8 @@ void print_human(const link::HelloReply& board, std::span<const std::byte> image
   }
   if (board.stopped != 0)
     std::cout << "stopped   all outputs are in their safe state until `rsc resume`\n";
-  std::cout << fmt::format("up        {:.3f} s (reset: {}), {} activations, {} faults\n",
-                           static_cast<double>(status.uptime_us) / 1e6, reset_reason(status),
-                           status.activations, status.faults);
+  std::cout << "up        " << past_text(status) << '\n';
+  if (past.has_fault()) std::cout << "fault     " << fault_text(past.fault) << '\n';
   std::cout << fmt::format("safety    {} checks, latest by {} us\n", status.safety_checks,
                            status.safety_late_us);
   std::cout << fmt::format("line      {} bad frames, {} lost events\n\n", status.bad_frames,
@@ -129,11 +124,11 @@ void print_human(const link::HelloReply& board, std::span<const std::byte> image
 
 void info(const std::string& port, Format format) {
   Session session(port);
-  const link::Status status = session.client.status();
+  const Past past(session.client);
   const std::vector<link::ThreadInfo> threads = session.client.threads();
   const std::vector<std::byte> image = session.client.running_image();
-  format == Format::json ? print_json(session.board, image, status, threads)
-                         : print_human(session.board, image, status, threads);
+  format == Format::json ? print_json(session.board, image, past, threads)
+                         : print_human(session.board, image, past, threads);
 }
 
 }  // namespace

@@ -30,7 +30,9 @@ void add_monitor(Options& options) {
                "once a second, every thread's priority and share of the processor, too");
   options.runs([asked] {
     Session session(asked->port);
-    Watch(session, asked->format, asked->threads).show(asked->duration);
+    Watch watch(session, asked->format, asked->threads);
+    watch.introduce();
+    watch.show(asked->duration);
   });
 }
 

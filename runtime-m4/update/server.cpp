@@ -118,6 +118,8 @@ void Server::handle(const link::Frame& frame) {
       return activate(frame);
     case MessageType::feed:
       return feed(frame);
+    case MessageType::get_fault:
+      return last_fault(frame.sequence);
     case MessageType::get_status:
       return status(frame.sequence);
     case MessageType::stop:
@@ -310,6 +312,12 @@ void Server::report(const link::Fault& fault) {
   const auto lock = kernel_.lock();
   if (fault_count_ < faults_.size()) faults_[fault_count_++] = fault;
   kernel_.signal(thread_, kNews);
+}
+
+// Before there was one, the first place says so.
+void Server::last_fault(std::uint8_t sequence) {
+  const link::Fault& last = faults_[fault_count_ - (fault_count_ == 0 ? 0U : 1U)];
+  send(MessageType::last_fault, sequence, link::wire_bytes(last));
 }
 
 bool Server::send_fault() {

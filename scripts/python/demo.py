@@ -82,9 +82,9 @@ class Monitor:
             time.sleep(0.02)
 
     def __enter__(self):
-        """Returns when it listens: until it says something, the touch trembles above the threshold."""
+        """Returns when it listens: until it says more than which board it is, the touch trembles above the threshold."""
         deadline = time.monotonic() + PATIENCE_SECONDS
-        while not self.lines and time.monotonic() < deadline:
+        while len(self.lines) < 2 and time.monotonic() < deadline:
             self._board.set_touch(BEFORE - 1)
             time.sleep(0.1)
             self._board.set_touch(BEFORE)

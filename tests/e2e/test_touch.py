@@ -27,7 +27,7 @@ class Touch(RobotTest):
         reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
         for value in [1, 2] * 100:
             self.board.set_touch(value)
-            if reader.wait_for(lambda lines: lines, 0.2):
+            if reader.wait_for(lambda lines: events(lines, event="input"), 0.2):
                 break
         self.board.set_touch(0)
         self.expect(reader, event="input", value=0)

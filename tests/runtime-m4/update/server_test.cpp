@@ -312,12 +312,14 @@ TEST_CASE("the first faults are kept until a host listens, and sent once") {
   Robot robot;
   tool::Client client(robot);
   client.hello();
+  CHECK(client.last_fault().thread == link::Name{});
   for (std::uint32_t pc = 1; pc <= 3; ++pc) {
     link::Fault fault{};
     fault.pc = pc;
     robot.server.report(fault);
   }
   CHECK_FALSE(client.next_unasked(milliseconds(100)));
+  CHECK(client.last_fault().pc == 2);
   client.set_trace(true);
   for (std::uint32_t pc = 1; pc <= 2; ++pc) {
     const auto message = client.next_unasked(milliseconds(100));
@@ -329,6 +331,7 @@ TEST_CASE("the first faults are kept until a host listens, and sent once") {
   }
   client.set_trace(true);
   CHECK_FALSE(client.next_unasked(milliseconds(100)));
+  CHECK(client.last_fault().pc == 2);
 }
 
 TEST_CASE("a board without power is reported with the port's name") {

@@ -1,0 +1,81 @@
+"""What the shipped firmware tells of its past, after the safety thread itself failed: why the board has started again, and
+which fault it had, in `rsc info` and in the first line of `rsc monitor`."""
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import rsc
+from board import FAST, FIRMWARE, Board
+from debugger import Debugger
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
+from counting import symbols  # noqa: E402
+
+PATIENCE = 20
+NOWHERE = 0xA000_0000  # nothing may run there
+PC = 15
+IN_SAFETY = "robosync::Runtime::look_at_rules()"
+
+
+def endless_loop():
+    """The address of an instruction of the firmware that jumps to itself."""
+    listing = subprocess.run(["arm-none-eabi-objdump", "-d", str(FIRMWARE)], check=True, text=True,
+                             stdout=subprocess.PIPE).stdout
+    return int(re.search(r"^\s*([0-9a-f]+):\s+e7fe\s", listing, re.M)[1], 16)
+
+
+class LastWords(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="robosync-last-words-")
+        self.addCleanup(folder.cleanup)
+        self.gdb = Path(folder.name) / "gdb"
+        self.board = Board(icount=FAST, extra=["-gdb", f"unix:{self.gdb},server=on,wait=off"])
+        self.addCleanup(self.board.stop)
+
+    def send_safety_to(self, address):
+        """The safety thread's next look at the rules jumps there."""
+        with Debugger(self.gdb) as debugger:
+            debugger.run_to(symbols(FIRMWARE)[IN_SAFETY], lambda: None)
+            debugger.set_register(PC, address)
+
+    def await_reset(self, reason):
+        give_up = time.monotonic() + PATIENCE
+        while (status := rsc.info(self.board.port)["status"])["reset_reason"] != reason:
+            self.assertLess(time.monotonic(), give_up, f"the board never started again because of {reason}: {status}")
+        return status
+
+    def first_line(self, *arguments):
+        said = rsc.run("monitor", "--port", self.board.port, "--duration", "100ms", *arguments)
+        return said.splitlines()[0]
+
+    def test_a_board_that_was_switched_on_has_nothing_to_tell(self):
+        status = rsc.info(self.board.port)["status"]
+        self.assertEqual((status["reset_reason"], status["last_fault"]), ("power", None))
+        line = json.loads(self.first_line("--format", "json"))
+        self.assertEqual((line["event"], line["reset_reason"], line["last_fault"]), ("board", "power", None))
+        self.assertRegex(self.first_line(), r"^ +board  mps2-an386, up [\d.]+ s \(reset: power\), .* 0 faults$")
+
+    def test_a_fault_of_the_safety_thread_is_told_after_the_reset(self):
+        self.send_safety_to(NOWHERE)
+        fault = self.await_reset("software")["last_fault"]
+        self.assertEqual((fault["thread"], fault["pc"]), ("safety", NOWHERE))
+        for _ in range(2):  # whoever asks
+            line = json.loads(self.first_line("--format", "json"))
+            self.assertEqual((line["reset_reason"], line["last_fault"]), ("software", fault))
+            self.assertRegex(self.first_line(), r"\(reset: software\).* last fault: thread safety stopped: .* pc a0000000")
+        self.assertIn("fault     thread safety stopped", rsc.run("info", "--port", self.board.port))
+
+    def test_a_safety_thread_that_hangs_is_told_after_the_reset(self):
+        self.send_safety_to(endless_loop())
+        self.assertIsNone(self.await_reset("watchdog")["last_fault"])
+        self.assertIn("(reset: watchdog)", self.first_line())
+
+
+if __name__ == "__main__":
+    unittest.main()
