@@ -1,13 +1,15 @@
 """Runs an ELF in QEMU under the counting plugin, and gives what was counted between markers."""
 
 import copy
+import functools
+import re
 import struct
 import subprocess
 import tempfile
 import time
 from pathlib import Path
 
-from board import qemu
+from board import FIRMWARE, qemu
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILT = ROOT / "build/m4/bench"
@@ -32,6 +34,15 @@ def symbols(elf):
         if len(words) == 3 and line[0] != " ":  # undefined ones have no address, a few no name
             found[words[2]] = int(words[0], 16) & ~1
     return found
+
+
+@functools.cache
+def of_the_board(name):
+    """What the code of the firmware's own board begins with, whichever board that is."""
+    for known in symbols(FIRMWARE):
+        if found := re.match(r"robosync::boards::\w+::", known):
+            return found[0] + name
+    raise BenchError(f"no code of a board in {FIRMWARE}")
 
 
 class Count(int):

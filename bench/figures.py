@@ -8,9 +8,8 @@ import time
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, Board
-from counting import (BUILT, ROOT, BenchError, Marks, plugin_arguments, return_instructions, run,
-                      symbols)
+from board import FIRMWARE, Board
+from counting import BUILT, ROOT, BenchError, return_instructions, run, symbols
 from tap import Tap
 from workloads import PAPER
 

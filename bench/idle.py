@@ -15,11 +15,11 @@ from pathlib import Path
 
 import rsc
 from board import FAST, FIRMWARE, Board
-from counting import ROOT, BenchError, Marks, plugin_arguments, symbols
+from counting import ROOT, BenchError, Marks, of_the_board, plugin_arguments, symbols
 from workloads import PAPER
 
-KICK = "robosync::boards::mps2::Board::watchdog_kick("
-BUS = ("robosync::boards::mps2::I2c::", "robosync::boards::mps2::(anonymous namespace)::half_bit(")
+KICK = "Board::watchdog_kick("
+BUS = ("I2c::", "(anonymous namespace)::half_bit(")  # code of the board, both
 SECONDS = 10  # measured, at the end of the run
 PATIENCE = 30  # seconds until so many have passed: the core's sleep takes no time
 
@@ -47,12 +47,12 @@ def code_of(prefixes):
 
 def idle_second(period, program=None):
     """The costliest of some seconds, which have kicks every `period` milliseconds: (instructions, apart)."""
-    kicks = {KICK: at for name, at in symbols(FIRMWARE).items() if name.startswith(KICK)}
+    kicks = {KICK: at for name, at in symbols(FIRMWARE).items() if name.startswith(of_the_board(KICK))}
     if not kicks:
         raise BenchError(f"the firmware has no {KICK}")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "marks"
-        with Board(icount=FAST, extra=plugin_arguments(kicks, out, code_of(BUS))) as board:
+        with Board(icount=FAST, extra=plugin_arguments(kicks, out, code_of(map(of_the_board, BUS)))) as board:
             if program:
                 rsc.run("upload", program, "--port", board.port)
             deadline = time.monotonic() + PATIENCE

@@ -14,14 +14,14 @@ from pathlib import Path
 
 import rsc
 from board import FIRMWARE, REAL_TIME, Board
-from counting import BenchError, Marks, plugin_arguments, symbols, wait_for
+from counting import BenchError, Marks, of_the_board, plugin_arguments, symbols, wait_for
 from idle import code_of
 
 READING = "robosync::layers::Mailboxes::post("
 BYTE = "Uart0Receive_Handler"
 ORDER = "robosync::guard::OutputGuard::drive("
 SHUT = "robosync::guard::OutputGuard::halt("
-PIN = "robosync::boards::mps2::Board::pwm_write("
+PIN = "Board::pwm_write("  # of the board
 TIMES = 20
 LIGHT, FIRM, TOO_FIRM = 1, 5, 9
 BETWEEN = 6  # readings, 120 ms
@@ -113,7 +113,7 @@ def marks_of(program):
         (folder / "robot.rsl").write_text(program)
         image, out = folder / "robot.rsb", folder / "marks"
         rsc.run("compile", folder / "robot.rsl", "-o", image)
-        arguments = plugin_arguments(known, out, code_of([ORDER, PIN, SHUT]))
+        arguments = plugin_arguments(known, out, code_of([ORDER, of_the_board(PIN), SHUT]))
         with Board(icount=REAL_TIME, extra=arguments) as board:
             drive(board, image, lambda: wait_for(out, known[READING], BETWEEN))
         return Marks(known, out)

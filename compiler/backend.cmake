@@ -22,6 +22,7 @@ embed(${PROJECT_SOURCE_DIR}/stdlib/devices json compiler/config/devices.hpp Devi
 set(board_texts ${CMAKE_CURRENT_BINARY_DIR}/board_texts.cpp)
 embed(${PROJECT_SOURCE_DIR}/stdlib/boards json compiler/config/boards.hpp BoardText board_texts
       ${board_texts})
+set_source_files_properties(config/boards.cpp PROPERTIES COMPILE_DEFINITIONS ROBOSYNC_BOARD="${ROBOSYNC_BOARD}")
 set(module_texts ${CMAKE_CURRENT_BINARY_DIR}/module_texts.cpp)
 embed(${PROJECT_SOURCE_DIR}/stdlib rsl compiler/modules.hpp ModuleText module_texts
       ${module_texts})

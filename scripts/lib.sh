@@ -76,10 +76,10 @@ build_tool() {
 # preset_of BOARD: `preset` is then the preset that builds its firmware.
 preset=
 preset_of() {
-  case "$1" in
-    mps2-an386) preset=m4 ;;
-    *) preset=$1 ;;
-  esac
+  local reference
+  reference=$(sed -n '/"name": "m4"/,/"ROBOSYNC_BOARD"/s/.*"ROBOSYNC_BOARD": "\([^"]*\)".*/\1/p' CMakePresets.json)
+  preset=$1
+  [ "$1" != "$reference" ] || preset=m4
   [ -f "stdlib/boards/$1.json" ] || die "no board '$1'; there are: $(cd stdlib/boards && echo *.json | sed 's/\.json//g')" 2
 }
 

@@ -77,8 +77,8 @@ Board board_at(std::size_t place) {
 
 Board default_board() {
   const auto names = board_names();
-  return board_at(
-      static_cast<std::size_t>(std::ranges::find(names, kDefaultBoard) - names.begin()));
+  return board_at(static_cast<std::size_t>(
+      std::ranges::find(names, std::string_view(ROBOSYNC_BOARD)) - names.begin()));
 }
 
 }  // namespace robosync::compiler

@@ -32,14 +32,13 @@ struct Board {
   [[nodiscard]] bool has_output(std::uint16_t pin) const;
 };
 
-inline constexpr std::string_view kDefaultBoard = "mps2-an386";  // when robot.json names none
-
 // Reads one profile. Mistakes in it are reported; the tests hold the built-in ones to none.
 [[nodiscard]] Board read_board(const BoardText& text, Diagnostics& diagnostics);
 // In their order.
 [[nodiscard]] std::vector<std::string_view> board_names();
 // `place` in board_names().
 [[nodiscard]] Board board_at(std::size_t place);
-[[nodiscard]] Board default_board();
+[[nodiscard]] Board
+default_board();  // when robot.json names none: that of the preset (CMakePresets.json)
 
 }  // namespace robosync::compiler

@@ -18,7 +18,8 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-REFERENCE = "mps2-an386"
+PRESETS = json.loads((ROOT / "CMakePresets.json").read_text("utf-8"))["configurePresets"]
+REFERENCE = next(preset for preset in PRESETS if preset["name"] == "m4")["cacheVariables"]["ROBOSYNC_BOARD"]
 NAME = os.environ.get("ROBOSYNC_BOARD", REFERENCE)
 BUILT = ROOT / "build" / ("m4" if NAME == REFERENCE else NAME)
 FIRMWARE = BUILT / "robosync.elf"

@@ -92,8 +92,11 @@ def each(items, command):
 
 
 def run_format():
-    return each(own_sources({".hpp", ".cpp", ".h", ".c"}),
-                lambda path: ["clang-format", "--dry-run", "-Werror", str(path)])
+    """clang-format, and for Python pyflakes: what is imported or named in vain."""
+    def command(path):
+        return ["pyflakes3", str(path)] if path.suffix == ".py" else ["clang-format", "--dry-run", "-Werror", str(path)]
+
+    return each([*own_sources({".hpp", ".cpp", ".h", ".c", ".py"}), *(ROOT / "scripts/python").glob("*.py")], command)
 
 
 def compiled_together(path):

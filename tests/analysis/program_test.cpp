@@ -180,7 +180,7 @@ TEST_CASE(
     const policy::BoardCosts& costs = tool::costs_of(board);
     CHECK(&costs != &tool::board_costs());
     CHECK(costs.instructions_per_ms() > 0);
-    if (board.name == compiler::kDefaultBoard)
+    if (board.name == compiler::default_board().name)
       CHECK(costs.clock_hz == tool::board_costs().clock_hz);
     if (board.name == "b-l475e-iot01a") CHECK(costs.clock_hz == 80'000'000);
   }

@@ -7,6 +7,8 @@ import socket
 import time
 from pathlib import Path
 
+from support import RobotTest
+
 PATIENCE = 20
 CONNECTED = "T02"
 
@@ -93,3 +95,13 @@ class Debugger:
             if not data:
                 raise AssertionError("QEMU closed the debugger port")
             self._received += data
+
+
+class DebuggedTest(RobotTest):
+    """A test whose board has a debugger port."""
+
+    def qemu_arguments(self):
+        return ["-gdb", f"unix:{self.folder / 'gdb'},server=on,wait=off"]
+
+    def debugger(self):
+        return Debugger(self.folder / "gdb")

@@ -32,8 +32,11 @@ class RobotTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="robosync-e2e-")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
-        self.board = Board(self.elf, icount=FAST)
+        self.board = Board(self.elf, icount=FAST, extra=self.qemu_arguments())
         self.addCleanup(self.board.stop)
+
+    def qemu_arguments(self):
+        return []
 
     def compile(self, program, config=CONFIG):
         image = self.folder / f"{Path(program).stem}.rsb"

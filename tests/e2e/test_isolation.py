@@ -5,13 +5,12 @@ import json
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, Board
-from debugger import Debugger
+from board import FIRMWARE
+from debugger import DebuggedTest
 from support import LineReader
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
@@ -59,14 +58,9 @@ def endless_loop():
     return int(re.search(r"^\s*([0-9a-f]+):\s+e7fe\s", listing, re.M)[1], 16)
 
 
-class Isolation(unittest.TestCase):
+class Isolation(DebuggedTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="robosync-isolation-")
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-        self.gdb = self.folder / "gdb"
-        self.board = Board(icount=FAST, extra=["-gdb", f"unix:{self.gdb},server=on,wait=off"])
-        self.addCleanup(self.board.stop)
+        super().setUp()
         self.symbols = symbols(FIRMWARE)
 
     def expect(self, reader, **wanted):
@@ -78,27 +72,27 @@ class Isolation(unittest.TestCase):
 
     def pulses(self):
         """What the servos are told."""
-        with Debugger(self.gdb) as debugger:
+        with self.debugger() as debugger:
             return debugger.read_words(self.symbols[PWM_PULSES], 2)
 
     def main_stack_left(self):
         """Bytes of the handlers' stack that were never used: the board's RAM is zero when it starts."""
         top = self.symbols["main_stack_top"]
-        with Debugger(self.gdb) as debugger:
+        with self.debugger() as debugger:
             words = debugger.read_words(RAM, (top - RAM) // 4)
         return 4 * next(i for i, word in enumerate(words) if word)
 
     def make_wild(self):
         """The next time the interpreter runs for the behaviour, it takes a serial line for its machine."""
         interpreter = next(at for name, at in self.symbols.items() if name.startswith(INTERPRETER))
-        with Debugger(self.gdb) as debugger:
+        with self.debugger() as debugger:
             debugger.run_to(interpreter, lambda: self.board.set_touch(9, WILD))
             debugger.set_register(0, UART)
 
     def make_endless(self):
         """The next time the interpreter runs for the behaviour, it jumps to where nothing leaves again."""
         interpreter = next(at for name, at in self.symbols.items() if name.startswith(INTERPRETER))
-        with Debugger(self.gdb) as debugger:
+        with self.debugger() as debugger:
             debugger.run_to(interpreter, lambda: self.board.set_touch(9, WILD))
             debugger.set_register(PC, endless_loop())
 

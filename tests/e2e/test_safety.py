@@ -5,7 +5,6 @@ import json
 import unittest
 from collections import namedtuple
 
-from support import host_trace  # and where what follows is found
 from traces import TraceTest
 
 Reading = namedtuple("Reading", "at_ms channel value")

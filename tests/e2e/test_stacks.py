@@ -6,19 +6,18 @@ Where there is far too little, the sensor's thread is stopped while the debugger
 """
 
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, Board
-from debugger import Debugger
+from board import FIRMWARE
+from debugger import DebuggedTest
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
-from counting import symbols  # noqa: E402
+from counting import of_the_board, symbols  # noqa: E402
 
 SP = 13
-HALF_BIT = "robosync::boards::mps2::(anonymous namespace)::half_bit()"
+HALF_BIT = "(anonymous namespace)::half_bit()"
 TIMES = 1500  # some samples' worth
 FRAME, SAVED = 32, 36  # what the core stacks, and PendSV_Handler: no thread has FPU registers to save
 PAINT = 0xA5A5A5A5
@@ -35,14 +34,9 @@ END
 """
 
 
-class Stacks(unittest.TestCase):
+class Stacks(DebuggedTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="robosync-stacks-")
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-        self.gdb = self.folder / "gdb"
-        self.board = Board(icount=FAST, extra=["-gdb", f"unix:{self.gdb},server=on,wait=off"])
-        self.addCleanup(self.board.stop)
+        super().setUp()
         (self.folder / "robot.json").write_text(CONFIG)
         (self.folder / "robot.rsl").write_text(PROGRAM)
         rsc.run("upload", self.folder / "robot.rsl", "--port", self.board.port)
@@ -52,7 +46,7 @@ class Stacks(unittest.TestCase):
 
     def lowest_used(self, deepest, size):
         """The lowest word of the stack that was ever written."""
-        with Debugger(self.gdb) as debugger:
+        with self.debugger() as debugger:
             words = debugger.read_words(deepest - size, size // 4)
         for i in range(len(words), UNTOUCHED - 1, -1):
             if words[i - UNTOUCHED:i] == [PAINT] * UNTOUCHED:
@@ -60,8 +54,8 @@ class Stacks(unittest.TestCase):
         return self.fail("nothing of the stack is left")
 
     def test_a_sensor_may_be_interrupted_anywhere(self):
-        with Debugger(self.gdb) as debugger:
-            deepest = min(debugger.register_at(symbols(FIRMWARE)[HALF_BIT], SP, TIMES))
+        with self.debugger() as debugger:
+            deepest = min(debugger.register_at(symbols(FIRMWARE)[of_the_board(HALF_BIT)], SP, TIMES))
         thread = self.sensor()
         bottom = self.lowest_used(deepest, thread["stack_bytes"]) + thread["stack_used"] - thread["stack_bytes"]
         self.assertEqual(thread["stack_used"], self.sensor()["stack_used"], "it grew meanwhile")

@@ -2,15 +2,14 @@
 
 import struct
 import sys
-import tempfile
 import time
 import unittest
 import zlib
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, Board
-from debugger import Debugger
+from board import FIRMWARE
+from debugger import DebuggedTest
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
@@ -41,21 +40,16 @@ END
 """
 
 
-class Stop(unittest.TestCase):
+class Stop(DebuggedTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="robosync-stop-")
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-        self.gdb = self.folder / "gdb"
+        super().setUp()
         (self.folder / "robot.json").write_text(CONFIG)
-        self.board = Board(icount=FAST, extra=["-gdb", f"unix:{self.gdb},server=on,wait=off"])
-        self.addCleanup(self.board.stop)
         self.pulses_at = symbols(FIRMWARE)["robosync_virtual_pwm"]
 
     def pulses(self):
         give_up = time.monotonic() + PATIENCE
         while time.monotonic() < give_up:
-            with Debugger(self.gdb) as debugger:
+            with self.debugger() as debugger:
                 if (pulses := debugger.read_words(self.pulses_at, PINS)) is not None:
                     return pulses
         return self.fail("the pulses could not be read")

@@ -8,10 +8,10 @@ sys.path.insert(0, str(GENERATORS))
 
 import stimuli  # noqa: E402
 from generator import WideGenerator  # noqa: E402
-from stimuli import Reading  # noqa: E402, F401
 
 CONFIG = GENERATORS / "robot.json"
 UNITS = stimuli.WIDE_UNITS
+Reading = stimuli.Reading
 readings = stimuli.drawn_wide
 
 

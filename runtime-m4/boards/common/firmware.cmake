@@ -11,9 +11,11 @@ file(WRITE ${PROJECT_BINARY_DIR}/machine "${board_machine}\n")
 set(board_common ${CMAKE_CURRENT_LIST_DIR})
 set(board_script ${CMAKE_CURRENT_SOURCE_DIR}/boards/${ROBOSYNC_BOARD}/${board_script})
 add_library(robosync_board OBJECT
-  boards/common/startup.cpp boards/common/reset.cpp boards/common/costs.cpp ${board_sources})
+  boards/common/startup.cpp boards/common/reset.cpp boards/common/costs.cpp boards/common/vectors.cpp ${board_sources})
 set_source_files_properties(boards/common/costs.cpp PROPERTIES
   COMPILE_DEFINITIONS ROBOSYNC_BOARD_COSTS="runtime-m4/boards/${ROBOSYNC_BOARD}/costs.def")
+set_source_files_properties(boards/common/vectors.cpp PROPERTIES
+  COMPILE_DEFINITIONS ROBOSYNC_BOARD_INTERRUPTS="runtime-m4/boards/${ROBOSYNC_BOARD}/interrupts.hpp")
 target_link_libraries(robosync_board PUBLIC robosync_runtime)
 robosync_variant(robosync_board asserted ROBOSYNC_ASSERTIONS)
 target_link_libraries(robosync_board_asserted PUBLIC robosync_runtime_asserted)

@@ -1,9 +1,8 @@
-// The two vector tables of a board with a Cortex-M4: the core's own exceptions, which are the same
+// The vector tables of a board with a Cortex-M4: the core's own exceptions, which are the same
 // everywhere, and behind them the interrupts that the board says it uses.
 //
-// A board defines robosync_vectors and robosync_unprivileged_vectors (section .vectors.0 and .vectors.1,
-// aligned to kVectorAlignment). The second one is used while a thread without privileges runs: such
-// a thread may call, and is left in another way (port/cortex-m4/switch.S).
+// A board says in its interrupts.hpp how many it has (kInterrupts) and which are used (kUsedInterrupts); vectors.cpp
+// makes the tables.
 #pragma once
 
 #include <array>
