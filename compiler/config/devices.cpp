@@ -55,10 +55,32 @@ VerbConfig read_verb(const json::Member& member, Diagnostics& diagnostics) {
   return verb;
 }
 
-// {"SLOWLY": {"at": "30deg/s"}}
+// ["MOVE", "DRIVE"]: verbs of this device.
+std::vector<std::string> read_verbs_of_word(const json::Value& list, const ActuatorConfig& actuator,
+                                            Diagnostics& diagnostics) {
+  std::vector<std::string> verbs;
+  if (!expect_kind(list, json::Kind::array, diagnostics)) return verbs;
+  verbs.reserve(list.items.size());
+  for (const json::Value& item : list.items) {
+    const VerbConfig* verb = actuator.find_verb(item.text);
+    if (verb == nullptr)
+      diagnostics.report(Code::E0202, "no verb `" + item.text + "`").label(item.span);
+    else
+      verbs.push_back(verb->name);
+  }
+  return verbs;
+}
+
+// {"SLOWLY": {"at": "30deg/s"}, "LEFT": {"verbs": ["TURN"], "direction": -1}}
 void read_word(const json::Member& member, ActuatorConfig& actuator, Diagnostics& diagnostics) {
   if (!expect_kind(member.value, json::Kind::object, diagnostics)) return;
+  const std::size_t first = actuator.words.size();
+  std::vector<std::string> verbs;
   for (const json::Member& setting : member.value.members) {
+    if (setting.key == "verbs") {
+      verbs = read_verbs_of_word(setting.value, actuator, diagnostics);
+      continue;
+    }
     const auto named = std::find(kParams.begin(), kParams.end(), setting.key);
     if (named == kParams.end()) {
       diagnostics.report(Code::E0202, "no parameter `" + setting.key + "`").label(setting.key_span);
@@ -69,6 +91,8 @@ void read_word(const json::Member& member, ActuatorConfig& actuator, Diagnostics
     const auto value = read_quantity(setting.value, unit, diagnostics);
     actuator.words.push_back({member.key, param, value.value_or(0), false, {}});
   }
+  for (std::size_t i = first; i < actuator.words.size(); ++i)
+    actuator.words[i].verbs = verbs;
 }
 
 // How long a virtual one takes, which is what the real one would.

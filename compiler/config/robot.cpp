@@ -26,6 +26,20 @@ const WordConfig* ActuatorConfig::find_text(std::string_view text) const {
   return find_in(words, [&](const WordConfig& w) { return w.text && w.name == text; });
 }
 
+bool VerbConfig::goes_with(const WordConfig& word) const {
+  return has(word.param) &&
+         (word.verbs.empty() ||
+          find_in(word.verbs, [&](const std::string& verb) { return verb == name; }) != nullptr);
+}
+
+std::vector<std::string> ActuatorConfig::words_of(const VerbConfig& verb) const {
+  std::vector<std::string> names;
+  names.reserve(words.size());
+  for (const WordConfig& word : words)
+    if (!word.text && verb.goes_with(word)) names.push_back(word.name);
+  return names;
+}
+
 WrittenUnits units_of(const Robot& robot) {
   WrittenUnits units;
   for (const SensorConfig& sensor : robot.sensors)

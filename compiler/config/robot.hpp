@@ -48,6 +48,15 @@ enum class Texts : std::uint8_t {
   any      // whatever the program says
 };
 
+struct WordConfig {  // SLOWLY, or a sound
+  std::string name;
+  vm::Param param{};
+  vm::Value value = 0;
+  bool text = false;                  // written in quotes
+  std::optional<vm::Value> duration;  // of a sound, when it is not the player's own default
+  std::vector<std::string> verbs{};   // it belongs to; none: to all that take its parameter
+};
+
 struct VerbConfig {
   std::string name;
   vm::Action action{};
@@ -58,6 +67,7 @@ struct VerbConfig {
   [[nodiscard]] bool has(vm::Param param) const {
     return (takes >> static_cast<unsigned>(param) & 1u) != 0;
   }
+  [[nodiscard]] bool goes_with(const WordConfig& word) const;
   // As in the image: what it takes, and what carries the values of a text.
   [[nodiscard]] std::uint8_t carries() const {
     std::uint8_t params = takes;
@@ -66,14 +76,6 @@ struct VerbConfig {
         params |= static_cast<std::uint8_t>(1u << static_cast<unsigned>(param));
     return params;
   }
-};
-
-struct WordConfig {  // SLOWLY, or a sound
-  std::string name;
-  vm::Param param{};
-  vm::Value value = 0;
-  bool text = false;                  // written in quotes
-  std::optional<vm::Value> duration;  // of a sound, when it is not the player's own default
 };
 
 struct ActuatorConfig {
@@ -98,8 +100,9 @@ struct ActuatorConfig {
   std::vector<WordConfig> words;
 
   [[nodiscard]] const VerbConfig* find_verb(std::string_view verb) const;
-  [[nodiscard]] const WordConfig* find_word(std::string_view word) const;  // not a text
-  [[nodiscard]] const WordConfig* find_text(std::string_view text) const;  // exact
+  [[nodiscard]] const WordConfig* find_word(std::string_view word) const;         // not a text
+  [[nodiscard]] const WordConfig* find_text(std::string_view text) const;         // exact
+  [[nodiscard]] std::vector<std::string> words_of(const VerbConfig& verb) const;  // no texts
 };
 
 struct GroupConfig {

@@ -486,10 +486,8 @@ bool Commands::add_word(const Recipient& to, const ast::Word& word, Span span,
     report_unknown_word(to, word);
     return false;
   }
-  if (!to.verb.has(known->param)) {
-    to.diagnostics
-        .report(Code::E0505, "`" + to.verb.name + "` does not go with `" + known->name + "`")
-        .label(span);
+  if (!to.verb.goes_with(*known)) {
+    report_foreign_word(to, *known, span);
     return false;
   }
   if (is_given(result, known->param)) {
@@ -507,6 +505,21 @@ bool Commands::add_word(const Recipient& to, const ast::Word& word, Span span,
   }
   put(known->name, known->param, known->value, result);
   return true;
+}
+
+// `DRIVE base LEFT`: a word of the actuator, but of other verbs.
+void Commands::report_foreign_word(const Recipient& to, const WordConfig& word, Span span) {
+  const auto own = to.actuator.words_of(to.verb);
+  Diagnostic& d =
+      to.diagnostics
+          .report(Code::E0505, "`" + to.verb.name + "` does not go with `" + word.name + "`")
+          .label(span)
+          .helps("`" + to.verb.name + "` " +
+                 (own.empty() ? "has no words" : "goes with " + list_names(own)));
+  std::vector<std::string> verbs;
+  for (const VerbConfig& verb : to.actuator.verbs)
+    if (verb.goes_with(word)) verbs.push_back(verb.name);
+  if (!verbs.empty()) d.helps("`" + word.name + "` belongs to " + list_names(verbs));
 }
 
 void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) const {

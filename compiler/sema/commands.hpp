@@ -122,6 +122,7 @@ private:
   bool add_text(const Recipient& to, const Given& given, ir::Command& result) const;
   bool say_values(const Recipient& to, const Given& given, ir::Command& result) const;
   bool add_number(const Recipient& to, const Given& given, ir::Command& result) const;
+  static void report_foreign_word(const Recipient& to, const WordConfig& word, Span span);
   void report_unknown_word(const Recipient& to, const ast::Word& word) const;
 
   const Robot& robot_;

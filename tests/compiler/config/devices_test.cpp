@@ -1,6 +1,7 @@
 // The device descriptors of stdlib/devices, and that robot.schema.json says what the reader does.
 #include "compiler/config/devices.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include <catch2/catch.hpp>
@@ -104,6 +105,10 @@ TEST_CASE("a descriptor's mistakes are found") {
   CHECK(mistakes(R"({"kind": "actuator", "type": "PWM", "verbs": {"GO": {"action": "fly"}}})") ==
         1);
   CHECK(mistakes(R"({"kind": "actuator", "type": "PWM", "words": {"FAST": {"speed": 3}}})") == 1);
+  CHECK(
+      mistakes(
+          R"({"kind": "actuator", "type": "PWM", "verbs": {"GO": {"action": "move", "takes": ["direction"]}},
+                "words": {"LEFT": {"verbs": ["GO", "FLY"], "direction": -1}}})") == 1);
   CHECK(mistakes(R"({"kind": "actuator", "type": "PWM", "to": {"unit": "degs"}})") == 1);
   CHECK(mistakes("[") == 1);
 }
@@ -112,12 +117,26 @@ TEST_CASE("a word's parameter is one that some verb of its device takes") {
   for (const DeviceText& text : device_texts()) {
     Diagnostics diagnostics;
     const Device device = read_device(text, diagnostics);
-    unsigned taken = 0;
-    for (const VerbConfig& verb : device.actuator.verbs)
-      taken |= verb.takes;
     for (const WordConfig& word : device.actuator.words) {
       INFO(device.name << " " << word.name);
-      CHECK((taken >> static_cast<unsigned>(word.param) & 1u) != 0);
+      CHECK(std::ranges::any_of(device.actuator.verbs,
+                                [&](const VerbConfig& verb) { return verb.goes_with(word); }));
+    }
+  }
+}
+
+// `DRIVE base LEFT` must not be a way backward, nor `TURN base FORWARD` a turn to the right.
+TEST_CASE("a direction belongs to ways or to turns on the spot, not to both") {
+  for (const DeviceText& text : device_texts()) {
+    Diagnostics diagnostics;
+    const Device device = read_device(text, diagnostics);
+    for (const WordConfig& word : device.actuator.words) {
+      if (word.param != vm::Param::direction) continue;
+      std::set<vm::Action> actions;
+      for (const VerbConfig& verb : device.actuator.verbs)
+        if (verb.goes_with(word)) actions.insert(verb.action);
+      INFO(device.name << " " << word.name);
+      CHECK((!actions.contains(vm::Action::move) || !actions.contains(vm::Action::play)));
     }
   }
 }
