@@ -9,6 +9,7 @@ Ends with code 1 and the smallest case that it finds when something differs.
 import argparse
 import functools
 import os
+import re
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -26,7 +27,7 @@ LEVELS = [("-O0",), ("-O1",)]  # of rsc compile, each of which must give the sam
 @functools.cache
 def options_of(rsc):
     """What a compiler without levels has: one, which is not named."""
-    return LEVELS if "-O0" in comparison.call(rsc, "compile", "--help").stdout else [()]
+    return LEVELS if re.search("-O ?0", comparison.call(rsc, "compile", "--help").stdout) else [()]
 
 
 class Case(NamedTuple):

@@ -12,7 +12,7 @@ import drawn
 import shrink
 
 PROGRAMS = int(os.environ.get("ROBOSYNC_REFERENCE_PROGRAMS", "100"))
-LEAST_COMPARED = 2 * PROGRAMS  # scripts; the compiler refuses some programs, as too large
+LEAST_COMPARED = 4 * PROGRAMS  # scripts, at both levels; the compiler refuses some programs, as too large
 MOST_TIES = 0.2  # of the scripts
 
 FINE = """\
@@ -50,6 +50,9 @@ class Comparison(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             source, image = comparison.compile_program(FINE, folder)
             self.rsc, self.reference = comparison.traces(source, image, READINGS, folder)
+
+    def test_both_levels_are_compared(self):
+        self.assertEqual(differ.options_of(comparison.RSC), differ.LEVELS)
 
     def test_the_same(self):
         self.assertGreater(len(self.reference), 20)
