@@ -12,6 +12,7 @@
 #include "compiler/config/units.hpp"
 #include "compiler/config/wiring.hpp"
 #include "tests/compiler/compiled.hpp"
+#include "tests/support/golden.hpp"
 
 using namespace robosync;
 using namespace robosync::compiler;
@@ -180,30 +181,32 @@ TEST_CASE("the schema has exactly the reader's keys") {
   }
 }
 
-TEST_CASE("the schema lists the reader's types, devices and units") {
-  const auto list = [](const nlohmann::json& values) {
-    return values.get<std::set<std::string>>();
+// ROBOSYNC_UPDATE_GOLDEN=1 writes them into the schema.
+TEST_CASE("the schema lists the boards, types, devices and units that the reader knows") {
+  using Json = nlohmann::ordered_json;
+  const auto path = source_folder() / "grammar/robot.schema.json";
+  Json wanted = Json::parse(read_file(path));
+  Json& definitions = wanted.at("definitions");
+  const auto list = [](Json& object, const char* property) -> Json& {
+    return object.at("properties").at(property).at("enum") = Json::array();
   };
-  std::set<std::string> sensor_types;
-  std::set<std::string> actuator_types;
+  Json& boards = list(wanted, "board");
+  for (const std::string_view name : board_names())
+    boards.push_back(name);
+  Json& sensor_types = list(definitions.at("sensor"), "type");
+  Json& actuator_types = list(definitions.at("actuator"), "type");
   for (const WiringType& type : wiring_types()) {
-    if (type.for_sensors) sensor_types.emplace(type.name);
-    if (type.for_actuators) actuator_types.emplace(type.name);
+    if (type.for_sensors) sensor_types.push_back(type.name);
+    if (type.for_actuators) actuator_types.push_back(type.name);
   }
-  const auto& definitions = schema().at("definitions");
-  CHECK(list(definitions.at("sensor").at("properties").at("type").at("enum")) == sensor_types);
-  CHECK(list(definitions.at("actuator").at("properties").at("type").at("enum")) == actuator_types);
-  std::set<std::string> sensor_devices;
-  std::set<std::string> actuator_devices;
+  Json& sensor_devices = list(definitions.at("sensor"), "device");
+  Json& actuator_devices = list(definitions.at("actuator"), "device");
   for (const DeviceText& device : device_texts())
-    (device.is_sensor ? sensor_devices : actuator_devices).emplace(device.name);
-  CHECK(list(definitions.at("sensor").at("properties").at("device").at("enum")) == sensor_devices);
-  CHECK(list(definitions.at("actuator").at("properties").at("device").at("enum")) ==
-        actuator_devices);
-  std::set<std::string> unit_names;
+    (device.is_sensor ? sensor_devices : actuator_devices).push_back(device.name);
+  Json& unit_names = list(definitions.at("channel"), "unit");
   for (const Unit& unit : units())
-    unit_names.emplace(unit.spelling);
-  CHECK(list(definitions.at("channel").at("properties").at("unit").at("enum")) == unit_names);
+    unit_names.push_back(unit.spelling);
+  robosync::testing::expect_golden(path, wanted.dump(2) + "\n");
 }
 
 TEST_CASE("the examples use only what the schema has") {
@@ -223,8 +226,7 @@ TEST_CASE("the examples use only what the schema has") {
   }
 }
 
-TEST_CASE("the boards are read without a mistake, and robot.schema.json names them") {
-  std::set<std::string> names;
+TEST_CASE("the boards are read without a mistake") {
   for (const BoardText& text : board_texts()) {
     INFO(text.name);
     Diagnostics diagnostics;
@@ -235,11 +237,8 @@ TEST_CASE("the boards are read without a mistake, and robot.schema.json names th
     CHECK(board.arena_bytes % 64 == 0);  // stacks stand at its end
     CHECK(board.step_budget > 0);
     CHECK_FALSE(board.outputs.empty());
-    names.emplace(text.name);
   }
-  const auto& known = schema().at("properties").at("board").at("enum");
-  CHECK(std::set<std::string>(known.begin(), known.end()) == names);
-  CHECK(names.contains(default_board().name));
+  CHECK(default_board().step_budget > 0);
 }
 
 TEST_CASE("mistakes in a board's profile are reported") {
