@@ -22,6 +22,9 @@ from workloads import PAPER
 READING = "robosync::layers::Mailboxes::post("
 COMMAND = "robosync::drivers::servo::start("
 RELEASE = "robosync::drivers::servo::release("
+RULE = "robosync::layers::BehaviorLayer::evaluate_rule("
+SIGNAL = "robosync::kernel::Kernel::signal("  # to an actuator's thread, when a command is in its queue
+WAY = (READING, COMMAND, RELEASE)
 START_UPS = 8
 CHANGES = 8
 FOLLOWING = "WHILE touch LEVEL >= 0\nDO FOLLOW left_arm TO (touch LEVEL * 10deg)\nEND\n"
@@ -29,11 +32,10 @@ LIGHT, FIRM = 1, 9  # touches on either side of the paper's threshold
 BETWEEN = 15  # readings between two touches, 300 ms; the arms move for longer
 
 
-def functions():
-    found = {end: at for name, at in symbols(FIRMWARE).items() for end in (READING, COMMAND, RELEASE)
-             if name.startswith(end)}
-    if len(found) != 3:
-        raise BenchError(f"the firmware has not all of {READING}…, {COMMAND}…, {RELEASE}…")
+def functions(*wanted):
+    found = {end: at for name, at in symbols(FIRMWARE).items() for end in wanted if name.startswith(end)}
+    if len(found) != len(wanted):
+        raise BenchError(f"the firmware has not all of {wanted}")
     return found
 
 
@@ -82,10 +84,26 @@ def ways(marks):
             start, stopped = count, False
         elif name == RELEASE:
             stopped = True
-        elif start is not None:
+        elif name == COMMAND and start is not None:
             found.append((count - start, stopped))
             start = None
     return found
+
+
+def rule_to_queue(marks):
+    """The most from the last rule that was looked at before each first command to the last signal before it."""
+    found, rule, signal, waits = [], 0, 0, False
+    for name, count in marks.all:
+        if name == READING:
+            waits = True
+        elif name == RULE:
+            rule = count
+        elif name == SIGNAL:
+            signal = count
+        elif name == COMMAND and waits:
+            found.append(signal - rule)
+            waits = False
+    return max(found[:START_UPS])
 
 
 def follow_update(known):
@@ -107,16 +125,17 @@ def follow_update(known):
 
 
 def path_figures():
-    known = functions()
+    known = functions(*WAY, RULE, SIGNAL)
     with tempfile.TemporaryDirectory() as folder:
         image, out, told = (Path(folder) / name for name in ("paper.rsb", "marks", "told"))
         rsc.run("compile", PAPER, "-o", image)
         with Board(icount=REAL_TIME, extra=plugin_arguments(known, out)) as board:
             drive(board, image, pacer(out, known), told)
-        found = ways(Marks(known, out))
+        marks = Marks(known, out)
+    found = ways(marks)
     free, busy, monitored = found[:START_UPS], found[START_UPS:][:CHANGES], found[-CHANGES:]
     if len(found) <= START_UPS + 2 * CHANGES or not all(stopped for _, stopped in busy + monitored):
         raise BenchError(f"not every touch led to a command, or the arms stood still: {found}")
-    return follow_update(known) | {
+    return follow_update(functions(*WAY)) | {"vm/W1_queue": (rule_to_queue(marks), "insn")} | {
         f"path/reading_to_command{name}": (max(count for count, _ in way), "insn")
         for name, way in (("", free), ("_busy", busy), ("_monitored", monitored))}

@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 
 import rsc
-from counting import BUILT, ROOT, BenchError, run_given, symbols
+from counting import BUILT, ROOT, BenchError, run_given
 
 PROGRAMS = ROOT / "bench/programs"
 PAPER = ROOT / "examples/touch_companion/robot.rsl"
@@ -133,7 +133,6 @@ def workload_figures():
         smooth = w3_natural(folder, smooth_readings(), MOST_SAMPLES)
     per_round = two.spans[0] / ROUNDS
     opcodes = two.number(r"\bagain +r\d+, -(\d+)")  # from there back: the loop has no branches
-    cells = one.number(r"(\d+) cells")
     verify = one.marks.spans("mark_verify_begin", "mark_verify_end")[0]
     works = {"W1": one, "W2": two, "W3": three}
     return {
@@ -144,7 +143,6 @@ def workload_figures():
         "path/smooth_sample": (max(smooth), "insn"),
         "vm/insn_per_op": (round(per_round / opcodes, 1), "insn"),
         "vm/verify_per_word": (round(verify / one.words, 1), "insn"),
-        "vm/ram_per_thread": (symbols(BUILT / "bench_workload")["size_machine"] + 4 * cells, "B"),
         **{f"vm/bytes_{name}": (work.bytes_of("code"), "B") for name, work in works.items()},
         **{f"vm/constants_{name}": (work.bytes_of("constants"), "B") for name, work in works.items()},
     }

@@ -110,17 +110,11 @@ void measure(const vm::Image& image) {
   }
 }
 
-// The size of what a thread needs to run code, as a symbol.
-void record_sizes() {
-  asm volatile(".global size_machine\n.equ size_machine, %c0" ::"i"(sizeof(vm::Machine)));
-}
-
 }  // namespace
 }  // namespace robosync::bench
 
 int main() {
   using namespace robosync;
-  bench::record_sizes();
   vm::Image image;
   if (!bench::verified(image)) bench::leave(false);
   if (!image.rules.empty()) bench::measure(image);
