@@ -1,0 +1,19 @@
+"""A share of the safety campaign: `scripts/soak safety` does more of it."""
+
+import unittest
+
+from campaign import FAULTS, campaign
+
+SEED = 13
+RUNS = 30
+
+
+class Campaign(unittest.TestCase):
+    def test_outputs_are_safe_whatever_fails(self):
+        seen = set()
+        self.assertEqual(campaign(RUNS, SEED, show=lambda _, run, __: seen.add(run.fault)), [])
+        self.assertGreater(len(seen), len(FAULTS) // 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
