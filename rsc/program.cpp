@@ -185,6 +185,12 @@ Program load_program(const std::string& file, const CompileOptions& options) {
   return {std::move(result.image), file, memory_of(result.board), std::move(origin)};
 }
 
+void seal(std::span<std::byte> image) {
+  constexpr std::size_t kCrc = offsetof(vm::ImageHeader, crc32);
+  const std::uint32_t crc = vm::crc32(image.subspan(kCrc + sizeof(vm::ImageHeader::crc32)));
+  std::memcpy(image.data() + kCrc, &crc, sizeof crc);
+}
+
 // It is the last section, so the image is cut there and the header told.
 std::vector<std::byte> without_source_lines(const Program& program) {
   vm::ImageHeader header = *program.image().header;
@@ -194,9 +200,7 @@ std::vector<std::byte> without_source_lines(const Program& program) {
   std::vector<std::byte> bytes(program.bytes().begin(),
                                program.bytes().begin() + static_cast<std::ptrdiff_t>(length));
   std::memcpy(bytes.data(), &header, sizeof header);
-  constexpr std::size_t kCrcEnd = offsetof(vm::ImageHeader, crc32) + sizeof header.crc32;
-  header.crc32 = vm::crc32(std::span(bytes).subspan(kCrcEnd));
-  std::memcpy(bytes.data(), &header, sizeof header);
+  seal(bytes);
   return bytes;
 }
 

@@ -109,6 +109,7 @@ enum class VariableKind : std::uint8_t {
   signal,   // counts the SIGNALs
   band,     // of a CHECK: the place of a band's label, in thousandths; set by the check only
   timer,    // TIMER: program time of its last RESTART
+  kept,     // REMEMBER … KEPT: plain, and written down when the power goes by what can do so
   count_
 };
 

@@ -78,7 +78,8 @@ private:
     return fmt::format("  {} stands for {}.\n", node.name.text, number(*node.value));
   }
   static std::string remembered(const ast::Remember& node) {
-    return fmt::format("  {} is a number that the robot remembers, {} at first.\n", node.name.text,
+    return fmt::format("  {} is a number that the robot remembers{}, {} at first.\n",
+                       node.name.text, node.kept ? ", also when it is switched off" : "",
                        number(*node.value));
   }
   static std::string remembered(const ast::State& node) {

@@ -121,10 +121,12 @@ void Prover::count_shifts() {
     });
 }
 
-// A band is unknown when its input is, or between bands.
+// A band is unknown when its input is, or between bands. What was kept may come from another program.
 Fact Prover::initial(std::size_t place) const {
   const ir::Variable& variable = program_.variables[place];
   if (variable.kind == vm::VariableKind::band) return {false, true, 0, vm::kValueMax};
+  if (variable.kind == vm::VariableKind::kept)
+    return known_between(variable.min, variable.max, false);
   const Fact start = fact_of(variable.initial);
   if (variable.fade == 0) return start;
   Fact fading = either(start, fact_of(variable.fades_to));

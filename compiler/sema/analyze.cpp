@@ -63,6 +63,7 @@ private:
     lint_waits(input);
     lint_names(input);
     lint_robot(input);
+    lint_kept(input, robot_);
   }
 
   void add(const ast::Item& item) {

@@ -21,6 +21,10 @@ std::vector<std::string> channel_names(const SensorConfig& sensor) {
   return names;
 }
 
+vm::VariableKind remembered_as(const ast::Remember& variable) {
+  return variable.kept ? vm::VariableKind::kept : vm::VariableKind::plain;
+}
+
 }  // namespace
 
 bool Names::names_a_channel(std::string_view name) const {
@@ -155,7 +159,8 @@ const ast::Behavior* Names::set_scope(const ast::Behavior* behavior) {
 
 std::string Names::kind_of(std::string_view name) {
   constexpr std::array<std::string_view, static_cast<std::size_t>(vm::VariableKind::count_)>
-      kKinds = {"a REMEMBER", "a STATE", "a FEELING", "a signal", "a CHECK", "a TIMER"};
+      kKinds = {"a REMEMBER", "a STATE", "a FEELING", "a signal",
+                "a CHECK",    "a TIMER", "a REMEMBER"};
   if (const VariableName* variable = find_variable(name))
     return std::string(kKinds[static_cast<std::size_t>(variable->kind)]);
   if (find_constant(name) != nullptr) return "a LET";
@@ -355,7 +360,7 @@ void Names::add(const ast::Behavior& behavior) {
     if (names_a_channel(variable.name.text))
       diagnostics_.report(Code::E0101, variable.name.shown() + " is already a sensor of the robot")
           .label(variable.name.span);
-    VariableName named{variable.name, 0, &variable, vm::VariableKind::plain, {}};
+    VariableName named{variable.name, 0, &variable, remembered_as(variable), {}};
     add_variable(std::move(named), places);
   }
 }
@@ -369,7 +374,7 @@ void Names::add_variable(VariableName variable, Places& places) {
 
 void Names::add(const ast::Remember& variable) {
   if (claim_operand(variable.name))
-    add_variable({variable.name, 0, &variable, vm::VariableKind::plain, {}}, globals_);
+    add_variable({variable.name, 0, &variable, remembered_as(variable), {}}, globals_);
 }
 
 void Names::add(const ast::State& state) {

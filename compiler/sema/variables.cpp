@@ -12,6 +12,7 @@ namespace {
 constexpr double kFadeOne = 2147483648.0;  // 2^31: vm::Variable::fade of a variable that stays
 constexpr double kLeft = 0.05;             // part of the distance left after FADES … OVER
 constexpr double kTick = vm::kFadeTickMs;  // a duration counts milliseconds, too
+constexpr std::size_t kMaxKept = 16;       // so that what is kept is one small record
 
 // 0 would mean that it does not fade at all.
 std::uint32_t fade_factor(vm::Value over) {
@@ -38,6 +39,7 @@ void Variables::declare(ir::Program& program) {
     result.unit = name.unit;
     program.variables.push_back(std::move(result));
   }
+  check_kept();
   for (VariableName& name : names_.variables())
     name.ready = name.kind != vm::VariableKind::band;
   for (VariableName& name : names_.variables())
@@ -57,6 +59,28 @@ void Variables::declare(const ast::Remember& node, VariableName& name, ir::Varia
   if (value->is_bare()) return;
   name.unit = value->unit;
   name.unit_span = value->unit_span;
+}
+
+// What is kept is found again by its name, in whichever behaviour it stands.
+void Variables::check_kept() {
+  NameIndex kept;
+  std::vector<Span> places;
+  for (const VariableName& name : names_.variables()) {
+    if (name.kind != vm::VariableKind::kept) continue;
+    const Span place = name.name.span;
+    if (!kept.add(name.name.text, places.size())) {
+      diagnostics_.report(Code::E0101, "there is another KEPT " + name.name.shown())
+          .label(place)
+          .label(places[*kept.find(name.name.text)], "the first one", false)
+          .helps("what is kept is found again by its name: give one of them another");
+    } else if (places.size() == kMaxKept) {
+      diagnostics_
+          .report(Code::E0407, "at most " + std::to_string(kMaxKept) + " numbers can be KEPT")
+          .label(place, "this is one too many")
+          .helps("keep what must outlast the power, and remember the rest");
+    }
+    places.push_back(place);
+  }
 }
 
 void Variables::declare(const ast::State& node, VariableName& name, ir::Variable& result) {

@@ -16,6 +16,7 @@ public:
 
 private:
   void declare(const ast::Remember& node, VariableName& name, ir::Variable& result);
+  void check_kept();
   static void declare_timer(VariableName& name);
   void declare(const ast::State& node, VariableName& name, ir::Variable& result);
   void declare(const ast::Feeling& node, VariableName& name, ir::Variable& result);

@@ -282,6 +282,7 @@ struct Let {
 struct Remember {
   Name name;
   Box<Expr> value;
+  std::optional<Span> kept;  // KEPT
 };
 struct State {
   Name name;

@@ -174,6 +174,12 @@ void Builder::set_priority(ast::Modifiers& modifiers, Span keyword, Span number)
   modifiers.priority = whole_number(number);
 }
 
+void Builder::cannot_be_kept(Span kept) {
+  report(Code::E0010, "only a REMEMBER can be KEPT")
+      .label(kept)
+      .helps("what is kept is a number: `REMEMBER visits = 0 KEPT`");
+}
+
 void Builder::set_restarting(ast::Modifiers& modifiers, Span keyword) {
   if (modifiers.restarting) report(Code::E0011, "`RESTARTING` is given twice").label(keyword);
   modifiers.restarting = true;

@@ -61,6 +61,7 @@ public:
   void add_key(std::vector<ast::MotionKey>& keys, ast::MotionKey key);
   void once(ast::Box<ast::Expr>& place, ast::Box<ast::Expr> value, Span keyword);
   void set_priority(ast::Modifiers& modifiers, Span keyword, Span number);
+  void cannot_be_kept(Span kept);
   void set_restarting(ast::Modifiers& modifiers, Span keyword);
   void add_part(ast::Behavior& behavior, ast::Item item);
   ast::WhenRule when(ast::Box<ast::Expr> condition, ast::Block then_block, Span else_span,

@@ -11,7 +11,7 @@ namespace robosync::tool {
 namespace {
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::VariableKind::count_)> kKinds =
-    {"number", "state", "feeling", "signal", "band", "timer"};
+    {"number", "state", "feeling", "signal", "band", "timer", "number that is kept"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::TimerKind::count_)> kTimers = {
 #define TIMER(name, words, counts, doc) doc,
 #include "vm/timers.def"

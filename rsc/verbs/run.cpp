@@ -1,4 +1,4 @@
-// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--all] [--config FILE] [-O0] [--seed N]
+// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--all] [--kept FILE] [--fresh] [--config FILE] [-O0] [--seed N]
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -11,6 +11,7 @@
 
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/kept.hpp"
 #include "rsc/output.hpp"
 #include "rsc/program.hpp"
 #include "rsc/timing.hpp"
@@ -27,10 +28,11 @@ namespace {
 constexpr std::uint64_t kDefaultDurationUs = 10'000'000;
 
 struct RunOptions {
-  std::string file, scenario, trace;
+  std::string file, scenario, trace, kept;
   CompileOptions how;
   std::optional<std::chrono::milliseconds> duration;
   bool all = false;
+  bool fresh = false;
   Format format = Format::human;
 };
 
@@ -39,8 +41,10 @@ std::uint64_t duration_us(const RunOptions& options, const Scenario& scenario) {
   return scenario.duration_us.value_or(kDefaultDurationUs);
 }
 
-std::vector<std::string> inputs_of(const RunOptions& options, const Program& program) {
+std::vector<std::string> inputs_of(const RunOptions& options, const Program& program,
+                                   const Kept& kept) {
   std::vector<std::string> inputs = program.files();
+  inputs.push_back(kept.file());
   if (!options.scenario.empty()) inputs.push_back(options.scenario);
   return inputs;
 }
@@ -51,13 +55,16 @@ void run(const RunOptions& options) {
   if (!options.scenario.empty()) scenario = read_scenario(options.scenario, program);
   show_notes(scenario);
 
-  if (!options.trace.empty()) check_output(options.trace, inputs_of(options, program));
+  Kept kept(program, options.file, options.kept, options.fresh);
+  if (!options.trace.empty()) check_output(options.trace, inputs_of(options, program, kept));
 
   const TraceNames names{&program.image(), {}, &program.origin()};
   Digest digest(program.image());
   std::string trace;
-  const std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
+  std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
+  kept.put_into(uploaded);
   const auto take = [&](const link::Event& event) {
+    kept.see(event);
     const std::string json = trace_json(event, names) + "\n";
     if (!options.trace.empty()) trace += json;
     if (options.format == Format::json)
@@ -74,6 +81,7 @@ void run(const RunOptions& options) {
   for (const Stimulus& stimulus : scenario.stimuli)
     simulator.feed(stimulus.at_us, stimulus.channel, stimulus.value);
   simulator.run_until(duration_us(options, scenario));
+  kept.write();
   if (!options.trace.empty()) write_output(options.trace, std::as_bytes(std::span(trace)));
 }
 
@@ -86,6 +94,9 @@ void add_run(Options& options) {
   add_duration_option(options, "--duration", asked->duration, "else the scenario's, else 10s");
   options.option("--trace", "T.jsonl", asked->trace, "write the trace as JSON lines");
   options.flag("--all", asked->all, "show readings and what happens inside as well");
+  options.option("--kept", "K.json", asked->kept,
+                 "keeps the KEPT numbers; else STEM.kept.json beside the program");
+  options.flag("--fresh", asked->fresh, "KEPT numbers begin as the program says");
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_format_option(options, asked->format);

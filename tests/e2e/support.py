@@ -68,7 +68,7 @@ class RobotTest(unittest.TestCase):
 
 def host_trace(image, scenario, until_ms):
     """The lines of `rsc run`."""
-    return rsc.run("run", image, "--scenario", scenario, "--duration", f"{until_ms}ms",
+    return rsc.run("run", image, "--fresh", "--scenario", scenario, "--duration", f"{until_ms}ms",
                    "--format", "json").splitlines()
 
 

@@ -43,7 +43,7 @@ def traces(seed, folder):
     program.write_text(text)
     scenario.write_text(scenario_of(readings))
     until_ms = readings[-1].at_ms + AFTER_MS
-    runs = [rsc.call("run", program, level, "--config", CONFIG, "--scenario", scenario,
+    runs = [rsc.call("run", program, level, "--fresh", "--config", CONFIG, "--scenario", scenario,
                      "--duration", f"{until_ms}ms", "--format", "json") for level in ("-O0", "-O1")]
     if runs[0].returncode == REFUSED:
         return (), (), text

@@ -60,6 +60,12 @@ def anyway(rsc):
     return ["--anyway"] if "--anyway" in call(rsc, "compile", "--help").stdout else []
 
 
+@functools.cache
+def fresh(rsc):
+    """Each run by itself, whatever the program keeps; an older rsc keeps nothing."""
+    return ["--fresh"] if "--fresh" in call(rsc, "run", "--help").stdout else []
+
+
 def compile_program(text, folder, *options, rsc=RSC):
     """The program and its image in `folder`."""
     source = Path(folder) / "program.rsl"
@@ -144,7 +150,8 @@ def traces(source, image, readings, folder, rsc=RSC):
     """The lines of rsc run and of the reference."""
     scenario = write_scenario(readings, folder)
     end_ms = (readings[-1].at_ms if readings else 0) + AFTER_MS
-    ours = call(rsc, "run", image, "--scenario", scenario, "--duration", f"{end_ms}ms", "--format", "json")
+    ours = call(rsc, "run", image, "--scenario", scenario, "--duration", f"{end_ms}ms", "--format", "json",
+                *fresh(rsc))
     if ours.returncode:
         raise (Refused if "would refuse" in ours.stderr else RuntimeError)(ours.stderr)
     lines = ours.stdout.splitlines()

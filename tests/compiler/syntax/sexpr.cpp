@@ -231,6 +231,7 @@ std::string show(const Let& n) {
   return list({"let", show(n.name), show(n.value)});
 }
 std::string show(const Remember& n) {
+  if (n.kept) return list({"remember", show(n.name), show(n.value), "kept"});
   return list({"remember", show(n.name), show(n.value)});
 }
 std::string show(const State& n) {
