@@ -95,7 +95,7 @@ std::string Kept::shown(std::size_t variable, vm::Value value) const {
   const auto& units = program_.origin().units.variables;
   const auto written = units.find(std::string(program_.image().string(record.name)));
   if (written != units.end() && written->second != nullptr) {
-    const std::string text = compiler::format_value(value, *written->second);
+    std::string text = compiler::format_value(value, *written->second);
     if (parse_quantity(text, record.dimension) == value) return text;
   }
   return format_quantity(value, record.dimension);

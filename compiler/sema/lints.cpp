@@ -622,7 +622,7 @@ void lint_kept(const LintInput& input, const Robot& robot) {
   for (const VariableName& name : input.names.variables())
     if (name.kind == vm::VariableKind::kept) kept.push_back(&name);
   if (kept.empty()) return;
-  const std::string board(robot.board ? board_names()[*robot.board] : kDefaultBoard);
+  const std::string board = (robot.board ? board_at(*robot.board) : default_board()).name;
   Diagnostic& d = input.diagnostics.report(
       Code::W0220, "the board " + board + " cannot keep " + kept.front()->name.shown() +
                        (kept.size() > 1 ? " and others" : "") + " when it is switched off");

@@ -67,6 +67,8 @@ void Variables::check_kept() {
   std::vector<Span> places;
   for (const VariableName& name : names_.variables()) {
     if (name.kind != vm::VariableKind::kept) continue;
+    const VariableName* global = names_.find_variable(name.name.text);
+    if (global != nullptr && global->index != name.index) continue;  // that is reported
     const Span place = name.name.span;
     if (!kept.add(name.name.text, places.size())) {
       diagnostics_.report(Code::E0101, "there is another KEPT " + name.name.shown())

@@ -207,6 +207,13 @@ TEST_CASE("docs/language.md lists the reserved words, and those that may be name
   CHECK(documented("and behind another word") == with(role::word, true));
 }
 
+TEST_CASE("a REMEMBER that is KEPT", "[tree]") {
+  CHECK(tree("REMEMBER n = a + 1 KEPT\nREMEMBER kept = kept\n") ==
+        "(remember n (+ a 1) kept)\n(remember kept kept)\n");
+  CHECK(tree("BEHAVIOR x\nREMEMBER n = 0 kept\nAT START DO b END\nEND") ==
+        "(behavior x - (remember n 0 kept) (at-start (do (b))))\n");
+}
+
 TEST_CASE("LISTs, and what is taken out of them", "[tree]") {
   CHECK(tree("LIST jokes: \"a\", 'b'\n") == "(list jokes \"a\" \"b\")\n");
   CHECK(statement("SAY NEXT jokes FOR 2s\nSAY ITEM a + 1 OF jokes\nALERT ANY jokes") ==

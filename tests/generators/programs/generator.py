@@ -39,7 +39,7 @@ LIST words: "one", "two", "three", "four", "five"
 LIST numbers: 3, -1, 0.5, 4, 2
 LIST places: 10deg, 45deg, 90deg
 REMEMBER count = 0
-REMEMBER last = 1.5
+REMEMBER last = 1.5 KEPT
 TIMER idle
 TIMER busy
 STATE mood: calm_down, very happy, wary

@@ -1,0 +1,127 @@
+// rsc run keeps KEPT numbers from one run to the next, and never what is not its own.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/rsc/image.hpp"
+#include "tests/rsc/process.hpp"
+
+using namespace robosync;
+using Catch::Contains;
+using nlohmann::json;
+using test::Folder;
+using test::Outcome;
+
+namespace {
+
+constexpr const char* kProgram =
+    "REMEMBER visits = 0 KEPT\nREMEMBER nearest = 400cm KEPT\nREMEMBER touches = 0\n"
+    "WHEN near DISTANCE < 80cm\nDO\n  RAISE visits BY 1\n  RAISE touches BY 1\n"
+    "  SET nearest TO MIN(nearest, near DISTANCE)\n  LOG \"visit\", visits, nearest\nEND\n"
+    "TEST \"fresh\"\n  AT 0s near DISTANCE = 50cm\n  EXPECT LOG \"visit 1 50cm\" WITHIN "
+    "10ms\nEND\n";
+
+// A robot with somebody at 35.5 cm.
+class Visit : public Folder {
+public:
+  Visit() : program(write("robot.rsl", kProgram)) {
+    write("robot.json", R"({"sensors": [{"name": "near", "type": "VIRTUAL", "channels":
+        {"DISTANCE": {"unit": "cm", "range": [2, 400]}}}], "actuators": []})");
+    scenario = write("visit.json", R"({"duration": "3s", "stimuli": [
+        {"at": "1s", "sensor": "near", "value": "35.5cm"}]})");
+  }
+  [[nodiscard]] Outcome run(const std::string& file,
+                            const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"run", file, "--scenario", scenario};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return test::rsc(arguments);
+  }
+  [[nodiscard]] json kept(const std::string& file = "robot.kept.json") const {
+    return json::parse(read(file)).at("kept");
+  }
+
+  std::string program, scenario;
+};
+
+}  // namespace
+
+TEST_CASE("KEPT numbers go on in the next run, and other ones begin anew") {
+  const Visit robot;
+  CHECK_THAT(robot.run(robot.program).out, Contains("visit 1 35.5cm"));
+  CHECK(robot.kept() == json({{"visits", "1"}, {"nearest", "35.5cm"}}));
+  for (const char* const level : {"-O0", "-O1"}) {
+    robot.write("robot.kept.json", R"({"kept": {"visits": "41", "nearest": "20cm"}})");
+    const Outcome again = robot.run(robot.program, {level});
+    CHECK_THAT(again.out, Contains("visit 42 20cm") && Contains("touches becomes 1"));
+    CHECK_THAT(again.err,
+               Contains("visits begins with 41, as ") && Contains("nearest begins with 20cm"));
+    CHECK(robot.kept().at("visits") == "42");
+  }
+}
+
+TEST_CASE("an image, --fresh, --kept, and a TEST") {
+  const Visit robot;
+  robot.write("robot.kept.json", R"({"kept": {"visits": "6", "nearest": "20cm"}})");
+  const std::string image = robot.path("robot.rsb");
+  const Outcome compiled = test::rsc({"compile", robot.program, "-o", image});
+  CHECK(compiled.exit == 0);
+  CHECK_THAT(compiled.err,
+             Contains("warning[W0220]: the board mps2-an386 cannot keep `visits` and others"));
+  CHECK_THAT(robot.run(image).out, Contains("visit 7 20cm"));
+  CHECK(robot.kept() == json({{"visits", "7"}, {"nearest", "200mm"}}));
+  CHECK(test::rsc({"test", robot.program}).exit == 0);
+  CHECK(robot.kept().at("visits") == "7");
+  CHECK_THAT(robot.run(robot.program, {"--fresh"}).out, Contains("visit 1 35.5cm"));
+  CHECK(robot.kept().at("visits") == "1");
+  CHECK(robot.run(robot.program, {"--kept", robot.path("mine.json")}).exit == 0);
+  CHECK(robot.kept("mine.json").at("visits") == "1");
+}
+
+TEST_CASE("what cannot be read is left as it is") {
+  const Visit robot;
+  const std::string half = R"({"kept": {"visi)";
+  for (const std::string& text :
+       {half, std::string(), std::string("[1]"), std::string(R"({"sensors": []})"),
+        std::string(R"({"kept": {"visits": 3}})"), std::string(R"({"kept": {}, "more": 1})")}) {
+    robot.write("robot.kept.json", text);
+    for (const bool fresh : {false, true}) {
+      const Outcome outcome = robot.run(
+          robot.program, fresh ? std::vector<std::string>{"--fresh"} : std::vector<std::string>{});
+      CHECK(outcome.exit == 3);
+      CHECK(outcome.out.empty());
+      CHECK_THAT(outcome.err, Contains("robot.kept.json: this is no file of kept numbers") &&
+                                  Contains("nothing was changed"));
+      CHECK(robot.read("robot.kept.json") == text);
+    }
+  }
+}
+
+TEST_CASE("a number of another kind, one too large, and one that the program does not have") {
+  const Visit robot;
+  const std::string other = R"({"kept": {"Visits": "3s", "old": "4"}})";
+  robot.write("robot.kept.json", other);
+  Outcome outcome = robot.run(robot.program);
+  CHECK(outcome.exit == 3);
+  CHECK_THAT(outcome.err, Contains("`Visits`: `3s` is a time, but this is a plain number") &&
+                              Contains("--fresh"));
+  CHECK(robot.read("robot.kept.json") == other);
+  robot.write("robot.kept.json", R"({"kept": {"visits": "9999999999"}})");
+  CHECK(robot.run(robot.program).exit == 3);
+
+  robot.write("robot.kept.json", R"({"kept": {"Visits": "3", "old": "4"}})");
+  outcome = robot.run(robot.program);
+  CHECK_THAT(outcome.out, Contains("visit 4 35.5cm"));
+  CHECK_THAT(outcome.err, Contains("keeps `old` too, which the program does not; it stays there"));
+  CHECK(robot.kept() == json({{"Visits", "4"}, {"old", "4"}, {"nearest", "35.5cm"}}));
+}
+
+TEST_CASE("a program that keeps nothing makes no file, and a trace is not written onto it") {
+  const Visit robot;
+  const std::string plain =
+      robot.write("plain.rsl", "WHEN near DISTANCE < 80cm\nDO LOG \"x\"\nEND\n");
+  CHECK(robot.run(plain, {"--config", robot.path("robot.json")}).exit == 0);
+  CHECK(!robot.has("plain.kept.json"));
+  CHECK(robot.run(robot.program).exit == 0);
+  const std::string before = robot.read("robot.kept.json");
+  CHECK(robot.run(robot.program, {"--trace", robot.path("robot.kept.json")}).exit == 2);
+  CHECK(robot.read("robot.kept.json") == before);
+}
