@@ -58,6 +58,21 @@ TEST_CASE("KEPT numbers go on in the next run, and other ones begin anew") {
   }
 }
 
+// The optimiser must not take what is written for what the number is.
+TEST_CASE("a KEPT number that nothing sets is what the file says") {
+  const Visit robot;
+  const std::string program =
+      robot.write("robot.rsl",
+                  "REMEMBER floor = 0 KEPT\nWHEN near DISTANCE < 80cm AND floor > 2\n"
+                  "DO LOG \"floor\", floor\nEND\n");
+  for (const char* const level : {"-O0", "-O1"}) {
+    robot.write("robot.kept.json", R"({"kept": {"floor": "3"}})");
+    CHECK_THAT(robot.run(program, {level}).out, Contains("floor 3"));
+    CHECK(robot.kept().at("floor") == "3");
+    CHECK_THAT(robot.run(program, {level, "--fresh"}).out, !Contains("floor"));
+  }
+}
+
 TEST_CASE("an image, --fresh, --kept, and a TEST") {
   const Visit robot;
   robot.write("robot.kept.json", R"({"kept": {"visits": "6", "nearest": "20cm"}})");
