@@ -39,6 +39,7 @@ const std::vector<Group>& groups() {
       {{K::NAME, K::QUANTITY, K::OPEN}, {K::MINUS, K::RANDOM, K::NOT, K::STRING}, "a value"},
       {{K::LESS, K::IS}, {K::BECOMES, K::CHANGES}, "a comparison such as `<` or `IS`"},
       {{K::LESS}, {}, "a comparison such as `<`"},
+      {{K::KEPT}, {}, nullptr},  // it also stands where it is refused
       {{K::DO},
        {K::PRIORITY, K::COOLDOWN, K::MARGIN, K::WAITING, K::RESTARTING, K::NAME, K::QUANTITY,
         K::THEN, K::FOR, K::AND, K::OR},
@@ -92,7 +93,7 @@ std::string summarize(const std::vector<TokenKind>& expected) {
     const bool all = std::all_of(group.needs.begin(), group.needs.end(),
                                  [&left](TokenKind kind) { return contains(left, kind); });
     if (!all) continue;
-    phrases.emplace_back(group.phrase);
+    if (group.phrase != nullptr) phrases.emplace_back(group.phrase);
     for (const TokenKind kind : group.needs)
       remove(left, kind);
     for (const TokenKind kind : group.covers)
