@@ -277,6 +277,16 @@ TEST_CASE("a module gives its names; what nobody runs of it need not fit the rob
   CHECK(view(good).header->program_hash != view(changed).header->program_hash);
 }
 
+TEST_CASE("two modules that bring one name: both places, and a way out") {
+  const Result both =
+      with_module("USE gestures\nUSE \"own.rsl\"\n" + rule("touch LEVEL > 3", "PERFORM nod"),
+                  "MOTION nod OF left_arm\n AT 300ms 60deg\nEND\n");
+  CHECK(both.image.empty());
+  CHECK(messages(both).find("the name `nod` is given twice") != std::string::npos);
+  CHECK(messages(both).find("<gestures>:") != std::string::npos);
+  CHECK(messages(both).find("use one of the two modules") != std::string::npos);
+}
+
 TEST_CASE("a MOTION of a module needs the actuators that it moves when somebody performs it") {
   const std::string module =
       "MOTION wave OF left_arm\n AT 300ms 60deg\n AT 600ms 0deg\nEND\n"
