@@ -4,6 +4,7 @@ The host's fuzzer (build/host) makes the images and says what it found; the firm
 and runs them again, and ends QEMU with a failure where something differs or faults.
 """
 
+import os
 import struct
 import subprocess
 import sys
@@ -18,7 +19,8 @@ FUZZER = ROOT / "build/host/tests/fuzz/fuzz_images"
 SEEDS = FUZZER.parent / "seeds"
 FIRMWARE = ROOT / "build/m4/bench/fuzz_vm"
 BLOCK_AT = 0x21000000  # the board's RAM for blocks, 16 MB
-IMAGES = 10_000
+IMAGES = 10_000  # in a block
+BLOCKS = int(os.environ.get("ROBOSYNC_FUZZ_BLOCKS", "1"))  # each of another seed
 TIMEOUT = 300
 
 # tests/fuzz/block.hpp
@@ -62,11 +64,12 @@ class Board(unittest.TestCase):
         self.block = Path(folder.name) / "block"
 
     def test_no_image_faults_and_all_do_as_on_the_host(self):
-        make_block(self.block, IMAGES, seed=1)
-        code, said = run_board(self.block)
-        print(said.strip(), file=sys.stderr)
-        self.assertEqual(code, 0, said)
-        self.assertRegex(said, rf"^{IMAGES} images, \d{{3,}} run, .*no fault")
+        for seed in range(1, BLOCKS + 1):
+            make_block(self.block, IMAGES, seed)
+            code, said = run_board(self.block)
+            print(f"seed {seed}: {said.strip()}", file=sys.stderr)
+            self.assertEqual(code, 0, said)
+            self.assertRegex(said, rf"^{IMAGES} images, \d{{3,}} run, .*no fault")
 
     def test_a_stray_write_is_trapped(self):
         make_block(self.block, 1, seed=1)
