@@ -23,7 +23,11 @@ void Triggers::start(const vm::Image& image, Memory& memory) {
   image_ = &image;
   std::ranges::fill(workspace_.due, kNever);
   phases_ = memory.take_zero<policy::Part::phases, State>();
+  delay_of_ = memory.take<policy::Part::delay_of, std::uint16_t>();
   until_ = memory.take<policy::Part::until, std::uint32_t>();
+  std::uint16_t delays = 0;
+  for (std::size_t rule = 0; rule < image.rules.size(); ++rule)
+    if (policy::has_delays(image.rules[rule])) delay_of_[rule] = delays++;
   const auto words = memory.take<policy::Part::trigger_sets, RuleSet::Word>();
   eventful_.start(part_of(words, policy::kTriggerSets, 0));
   active_.start(part_of(words, policy::kTriggerSets, 1));
@@ -34,6 +38,10 @@ void Triggers::start(const vm::Image& image, Memory& memory) {
 
 const vm::Modifiers& Triggers::modifiers(unsigned rule) const {
   return policy::modifiers_of(*image_, image_->rules[rule]);
+}
+
+std::uint32_t& Triggers::until(unsigned rule, Side side) const {
+  return until_[policy::kSides * delay_of_[rule] + static_cast<unsigned>(side)];
 }
 
 // --- what was evaluated ---

@@ -124,10 +124,8 @@ private:
   static constexpr unsigned mask_of(Side side) { return 1U << static_cast<unsigned>(side); }
 
   RuleBits noted() const { return RuleBits(workspace_.noted.data()); }
-  // The end of its cooldown, by side; of the waiting as well, which has no other side.
-  std::uint32_t& until(unsigned rule, Side side) const {
-    return until_[policy::kSides * rule + static_cast<unsigned>(side)];
-  }
+  // Of a rule with modifiers: the end of its cooldown, by side; of the waiting as well, which has no other side.
+  std::uint32_t& until(unsigned rule, Side side) const;
   bool chooses(unsigned rule) const { return image_->rules[rule].kind == vm::RuleKind::when_else; }
   // Of a WHEN/ELSE: the chosen side was not the last to run.
   bool is_unsettled(unsigned rule, Side& side) const;
@@ -145,7 +143,8 @@ private:
   Workspace& workspace_;
   const vm::Image* image_ = nullptr;
   std::span<State> phases_;
-  std::span<std::uint32_t> until_;  // see until()
+  std::span<std::uint16_t> delay_of_;  // by rule with modifiers
+  std::span<std::uint32_t> until_;     // see until()
   RuleSet eventful_;
   RuleSet active_;
   RuleSet sleeping_;  // those that are due at some time

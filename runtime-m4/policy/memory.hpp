@@ -18,6 +18,7 @@
 #include <cstdint>
 
 #include "runtime-m4/policy/regions.hpp"
+#include "runtime-m4/policy/rules.hpp"
 #include "runtime-m4/policy/threads.hpp"
 #include "vm/image.hpp"
 #include "vm/opcode_traits.hpp"
@@ -87,6 +88,7 @@ enum class Count : std::uint32_t {
   safety_output,
   tripped_words,
   rules,
+  delays,
   set_words,
   reader_words,
   actuators,
@@ -155,6 +157,8 @@ inline void count_behaviors(const vm::Image& image, Counts& counts) {
   counts[Count::behavior_threads] = counts[Count::behaviors];
   counts[Count::rules] = static_cast<std::uint32_t>(image.rules.size());
   counts[Count::set_words] = set_words(counts[Count::rules]);
+  for (const vm::Rule& rule : image.rules)
+    if (has_delays(rule)) ++counts[Count::delays];
   for (const vm::Behavior& behavior : image.behaviors)
     counts[Count::cells] += behavior.cells;
   for (const vm::Timer& timer : image.timers)

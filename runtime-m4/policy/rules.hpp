@@ -36,6 +36,11 @@ inline const vm::Modifiers& modifiers_of(const vm::Image& image, const vm::Rule&
   return rule.modifiers == vm::kNoModifiers ? kPlain : image.modifiers[rule.modifiers];
 }
 
+// May it cool down or wait? Few do, so that times of these are kept for those alone.
+constexpr bool has_delays(const vm::Rule& rule) {
+  return rule.modifiers != vm::kNoModifiers;
+}
+
 // Does it claim its actuators again after it has lost them, without a new trigger?
 inline bool claims_again(const vm::Image& image, const vm::Rule& rule) {
   return rule.kind == vm::RuleKind::while_ || rule.kind == vm::RuleKind::when_else ||
