@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "compiler/config/boards.hpp"
 #include "tests/rsc/image.hpp"
 #include "tests/rsc/process.hpp"
 
@@ -266,6 +267,43 @@ TEST_CASE("run shows what a person wants to see, in the units of the files") {
   CHECK_THAT(all, Contains("near DISTANCE = 20cm\n") && Contains("rule at line 6 triggers") &&
                       Contains("arm is done"));
   CHECK(std::ranges::count(all, '\n') > 50);
+}
+
+TEST_CASE("blank lines and comments change nothing that is drawn") {
+  const RobotFolder robot;
+  const std::string rule =
+      "EVERY 1s\nDO\n  PICK ONE\n    OPTION LOG \"one\"\n    OPTION LOG \"two\"\n  END\nEND\n";
+  const std::string plain = robot.write("plain.rsl", rule);
+  const std::string aired = robot.write("aired.rsl", "\n% first\n\n" + rule + "\n# last\n");
+  const auto drawn = [](const std::string& program, const char* seed) {
+    return test::rsc({"run", program, "--duration", "60s", "--seed", seed}).out;
+  };
+  CHECK_THAT(drawn(plain, "9"), Contains("log: one") && Contains("log: two"));
+  CHECK(drawn(plain, "9") == drawn(aired, "9"));
+  CHECK(drawn(plain, "9") != drawn(plain, "10"));
+}
+
+TEST_CASE("every board has room for 16 servos with 12 behaviours") {
+  const Folder folder;
+  std::string program = "LIMIT s0 SPEED TO 60deg/s\n";
+  json robot{{"sensors", {{{"name", "touch"}, {"type", "VIRTUAL"}}}}, {"actuators", json::array()}};
+  for (unsigned i = 0; i < 16; ++i)
+    robot["actuators"].push_back(
+        {{"name", "s" + std::to_string(i)}, {"type", "VIRTUAL"}, {"device", "joint"}});
+  for (unsigned i = 0; i < 12; ++i) {
+    const std::string number = std::to_string(i);
+    program += "BEHAVIOR b" + number + " PRIORITY " + std::to_string(i + 1) +
+               "\n  WHEN touch LEVEL > " + number + "\n  DO\n    MOVE s" + number +
+               " TO 30deg\n    MOVE s" + std::to_string((i + 4) % 16) + " TO 60deg\n  END\nEND\n";
+  }
+  for (const std::string_view board : compiler::board_names()) {
+    CAPTURE(std::string(board));
+    robot["board"] = std::string(board);
+    folder.write("robot.json", robot.dump());
+    const Outcome outcome = test::rsc({"check", folder.write("robot.rsl", program)});
+    CAPTURE(outcome.err);
+    CHECK(outcome.exit == 0);
+  }
 }
 
 TEST_CASE("run takes an image, and a duration that ends it") {
