@@ -155,9 +155,9 @@ private:
         Code::E0008, what + " is missing" + (first ? " before " + found(edit_.at) : where));
     message.label(gap(), first ? "" : "here");
     const bool word = kind >= Kinds::USE;
-    // With a sign behind it, something else may be meant.
+    // With a sign behind it, something else may be meant; and the line may want another word than WHEN.
     const bool sign = edit_.at < tokens_.size() && tokens_[edit_.at].kind == Kinds::MINUS;
-    const auto sure = sign ? Applicability::likely : Applicability::certain;
+    const auto sure = sign || kind == Kinds::WHEN ? Applicability::likely : Applicability::certain;
     if (word && !first) message.fix(gap(), " " + plain(kind), sure);
     if (word && first) message.fix(gap(), plain(kind) + " ", sure);
     if (where.empty() && outside_blocks() && word) {
@@ -230,10 +230,19 @@ private:
     if (belongs_to_number(edit_.at)) {
       message.label(token.span);  // without it, the number would be another one
     } else {
-      message.label(token.span, "leave this out").fix(token.span, "");
+      message.label(token.span, "leave this out")
+          .fix(token.span, "",
+               may_be_meant(edit_.at) ? Applicability::likely : Applicability::certain);
     }
     const bool known = edit_.expected != nullptr && !edit_.expected->empty();
     if (known) message.helps("RSL expects " + summarize(*edit_.expected) + after(edit_.at));
+  }
+
+  // Without its first word a line says something else; a comma may want what is missing beside it. What stands there
+  // twice is not meant twice.
+  bool may_be_meant(std::size_t at) const {
+    if (at + 1 < tokens_.size() && quote(at) == quote(at + 1)) return false;
+    return begins_line(at) || tokens_[at].kind == Kinds::COMMA;
   }
 
   // `40 cm`: digits, a space, and a name that may be a unit.
