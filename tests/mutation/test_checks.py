@@ -3,6 +3,7 @@
 import unittest
 
 import checks
+import safety
 
 
 def found(source):
@@ -45,6 +46,13 @@ class Instrument(unittest.TestCase):
         source = "bool f(int a, int b) {\n  return a < 3 && b < 4;\n}\n"
         text = checks.instrument(source, checks.find_checks("a.cpp", source), 7)
         self.assertIn("return (mutant(7) || ((mutant(8) || (a < 3)) && (mutant(9) || (b < 4))));", text)
+
+
+class Safety(unittest.TestCase):
+    def test_what_a_mutant_changes_is_there_once(self):
+        for mutant in safety.MUTANTS:
+            with self.subTest(mutant.what):
+                self.assertEqual((safety.ROOT / mutant.file).read_text().count(mutant.is_there), 1)
 
 
 if __name__ == "__main__":

@@ -140,6 +140,58 @@ TEST_CASE("when a silent sensor trips does not depend on when the program began"
   }
 }
 
+TEST_CASE("a pin that may not change at once goes on by itself until it is there") {
+  constexpr std::uint16_t kSlow = 32;
+  Rig rig;
+  REQUIRE(rig.activate(robosync::test::compile(
+                           "WHEN near X > 10\nDO MOVE arm TO 100deg\nELSE MOVE arm TO 0deg\nEND\n",
+                           R"({"sensors": [{"name": "near", "type": "VIRTUAL",
+                                            "channels": {"X": {"range": [0, 100]}}}],
+                               "actuators": [{"name": "arm", "type": "PWM", "pin": 32, "device": "servo",
+                                              "range": ["0deg", "100deg"]}]})"))
+              .ok());
+  rig.feed(0, 20);
+  rig.run(1000);
+  CHECK(rig.board.pwm_read(kSlow) == 2000);
+  rig.feed(0, 0);
+  rig.run(1100);
+  CHECK(rig.board.pwm_read(kSlow) > 1700);
+  rig.run(3000);
+  CHECK(rig.board.pwm_read(kSlow) == 1000);
+}
+
+// The step thread would note that the reading is too old; SAFETY does not wait for it.
+TEST_CASE("a silent sensor trips although no step comes") {
+  const auto image = robosync::test::compile(
+      kGuarded,
+      R"({"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}},
+                   {"name": "far", "type": "VIRTUAL",
+                    "channels": {"Y": {"range": [0, 100], "stale_after": "20ms"}}}],
+       "actuators": [{"name": "a", "type": "VIRTUAL"}, {"name": "b", "type": "VIRTUAL"}]})");
+  Rig rig;
+  REQUIRE(rig.activate(image).ok());
+  rig.feed(1, 2);
+  rig.run(10);
+  rig.kernel.stop(rig.thread("step"));
+  rig.run(45);
+  CHECK(rig.only("trip") == "30 #1 trip r0\n");
+}
+
+TEST_CASE("a rule stays tripped as long as it is in danger, whatever its RESUME WHEN says") {
+  Robot robot(R"(
+SAFETY pinch
+  WHEN far Y > 15
+  DO STOP a
+  RESUME WHEN far Y > 10
+END
+)");
+  robot.feed(0, "Y", 2);
+  robot.feed(100, "Y", 18);
+  robot.feed(300, "Y", 12);
+  robot.run(500);
+  CHECK(robot.only("trip resume") == "100 #1 trip r0\n300 #2 resume r0\n");
+}
+
 TEST_CASE("two rules that halt the same: it is let go when both have") {
   Robot robot(R"(
 SAFETY first

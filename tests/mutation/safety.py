@@ -1,0 +1,132 @@
+"""scripts/mutate safety: the safety monitor, its rules and the output guard, broken on purpose, one promise at a time.
+
+Each mutant is a small change of one source. It is built as build/host builds the original, linked to the tests of the layers,
+and those that are about safety run. Prints each mutant with the first test that notices; one that none notices, though it could,
+is a survivor.
+Assumes that build/host is built. The last line is "N passed, N failed": mutants noticed, and survivors.
+"""
+
+import json
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[2]
+HOST = ROOT / "build/host"
+WORK = ROOT / "build/mutation/safety"
+TESTS = "[#guard_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test]"
+TIMEOUT = 120
+GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
+MONITOR, CONTROL, RUNTIME = "runtime-m4/safety/monitor.cpp", "runtime-m4/layers/control.cpp", "runtime-m4/runtime.cpp"
+
+
+class Mutant(NamedTuple):
+    what: str
+    file: str
+    is_there: str
+    instead: str
+    unseen: str = ""  # why no test can notice
+
+
+MUTANTS = (
+    Mutant("a halt does not shut the pin to drivers", GUARD, "halted_ |= actuators;\n    free_ = owned_ & ~halted_;",
+           "halted_ |= actuators;"),
+    Mutant("a halt leaves the pulse as it is", GUARD, "if (slot.safe != kStays && slot.pulse != 0) return", "if (false) return"),
+    Mutant("a halt makes what was off begin to move", GUARD, "slot.safe != kStays && slot.pulse != 0", "slot.safe != kStays"),
+    Mutant("letting one go lets all go", GUARD, "halted_ &= ~actuators;", "halted_ = 0;"),
+    Mutant("an upload ends a stop for the guard", GUARD, "halted_ = halted;\n  free_ = owned & ~halted;",
+           "halted_ = 0;\n  free_ = owned;"),
+    Mutant("the next program leaves on what it does not have", GUARD, "next == nullptr || !drives(*next, slot.pin, slot.driver)",
+           "next == nullptr"),
+    Mutant("without a program pins stay on", GUARD, "next == nullptr || ", "next != nullptr && "),
+    Mutant("who does not own a pin may drive it", GUARD, "if ((free_ & bit(actuator)) != 0) aim", "if ((halted_ & bit(actuator)) == 0) aim"),
+    Mutant("no limit of the pulse", GUARD, "if (target != 0) target = std::clamp", "if (false) target = std::clamp"),
+    Mutant("no limit of the rise", GUARD, "if (limit.rise != 0) [[unlikely]]", "if (false)"),
+    Mutant("a reading is never too old", RULES, "layers_.mailboxes.fresh_value(input, image.channels[input], now)",
+           "layers_.mailboxes.value(input)"),
+    Mutant("what is unknown does not trip", RULES, "danger != vm::kFalse", "danger == vm::kTrue"),
+    Mutant("a rule resumes while it is in danger", RULES, "was_tripped && danger == vm::kFalse && ", "was_tripped && "),
+    Mutant("a rule lets go what another one halts", RULES, "halted_by(rule) & ~still", "halted_by(rule)"),
+    Mutant("the guard is told of a trip with the rest, not first", RULES,
+           "if (trips) layers_.control.make_safe(halted_by(rule), now);", "",
+           "the rule's body halts the same right behind it; the figure safety/reading_to_safe knows"),
+    Mutant("a hung program is kicked for", MONITOR, "if (without_progress_ < kChecksUntilHung) {",
+           "if (without_progress_ == kChecksUntilHung) supervised_.halt(kChecksUntilHung * kPeriod);\n  if (true) {"),
+    Mutant("a hung program is not halted", MONITOR, "supervised_.halt(kChecksUntilHung * kPeriod);", ";"),
+    Mutant("rules are not looked at when nothing is new", MONITOR, "(why & kNews) != 0 || now >= std::min(due, rules_due)",
+           "(why & kNews) != 0"),
+    Mutant("a person's stop is not heard", MONITOR, "if ((why & kPerson) != 0) supervised_.obey();", ""),
+    Mutant("slow changes do not go on", MONITOR, "supervised_.tend_outputs();", ""),
+    Mutant("a resume lets go what rules halt", CONTROL, "set_free(halted() & ~by_rules_)", "set_free(halted())"),
+    Mutant("a rule's end ends a stop", CONTROL, "if (!stopped_) set_free", "set_free"),
+    Mutant("a stop does not hold for the next program", CONTROL, "halted_ = stopped_ ? all() : 0;", "halted_ = 0;"),
+    Mutant("a thread that stopped leaves its pin on", CONTROL, "outputs_.halt(bit<ActuatorMask>(actuator), kernel_.now());", "",
+           "its driver puts it into the safe state as well, and nobody else drives it"),
+    Mutant("the program begins before the rules know", RUNTIME, "if (!begun_ && !sensors_.knows_enough()) {", "if (false) {"),
+)
+
+
+def unity_of(file):
+    """The compilation that has this source among others: (its command, the source that includes them)."""
+    for entry in json.loads((HOST / "compile_commands.json").read_text()):
+        if "robosync_runtime.dir" in entry["command"] and str(ROOT / file) in Path(entry["file"]).read_text():
+            return shlex.split(entry["command"]), Path(entry["file"])
+    raise LookupError(f"build/host does not compile {file}")
+
+
+def compile_mutant(mutant):
+    text = (ROOT / mutant.file).read_text()
+    if text.count(mutant.is_there) != 1:
+        raise LookupError(f"{mutant.file} does not have `{mutant.is_there}` once: bring the mutant up to date")
+    changed = WORK / Path(mutant.file).name
+    changed.write_text(text.replace(mutant.is_there, mutant.instead))
+    words, unity = unity_of(mutant.file)
+    source, target = WORK / "unity.cpp", WORK / "mutant.o"
+    source.write_text(unity.read_text().replace(str(ROOT / mutant.file), str(changed)))
+    words[words.index("-o") + 1] = str(target)
+    words[words.index("-c") + 1] = str(source)
+    subprocess.run([*words, "-O1", "-Wno-error", "-w"], cwd=HOST, check=True)
+    return target
+
+
+def link(target):
+    """The tests as build/host links them; what the mutant's object has, the library is not asked for."""
+    said = subprocess.run(["ninja", "-C", str(HOST), "-t", "commands", "tests/runtime-m4/test_layers"], check=True, text=True,
+                          stdout=subprocess.PIPE).stdout.splitlines()
+    words = shlex.split(next(line for line in reversed(said) if "-o tests/runtime-m4/test_layers" in line)
+                        .removeprefix(": && ").split(" && ")[0])
+    at = words.index("-o")
+    words[at + 1] = str(WORK / "test_layers")
+    subprocess.run([*words[:at], str(target), *words[at:]], cwd=HOST, check=True)
+
+
+def noticed_by():
+    """The first test that fails; None: all pass."""
+    try:
+        done = subprocess.run([WORK / "test_layers", "--abort", "--filenames-as-tags", "--reporter", "xml", TESTS], check=False,
+                              timeout=TIMEOUT, cwd=WORK, text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    except subprocess.TimeoutExpired:
+        return "it never ends"
+    if done.returncode == 0:
+        return None
+    return re.findall(r'<TestCase name="([^"]*)"', done.stdout)[-1]
+
+
+def main():
+    WORK.mkdir(parents=True, exist_ok=True)
+    survivors = 0
+    for mutant in MUTANTS:
+        link(compile_mutant(mutant))
+        test = noticed_by()
+        survivors += test is None and not mutant.unseen
+        nobody = f"nobody: {mutant.unseen}" if mutant.unseen else "NOBODY notices"
+        print(f"{mutant.what} ({Path(mutant.file).name}): {test or nobody}", flush=True)
+    print(f"{len(MUTANTS) - survivors} passed, {survivors} failed")
+    return 1 if survivors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
