@@ -41,7 +41,7 @@ STALE_MS = 100
 BOUND_MS = STALE_MS + 20  # a sensor that has just measured falls silent; one period of the safety thread, one of the sensor
 STAYS = 3  # looks behind the bound
 MOST_KICKS = 30  # of the watchdog, that a fault waits for its place
-ATTEMPTS = 40
+ATTEMPTS = 160  # of a quarter of a second: the machine may be busy
 STOP = b"\0" + wire.frame("stop", sequence=255)
 CONFIG = {
     "sensors": [{"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451", "channels": {
