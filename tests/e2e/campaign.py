@@ -25,7 +25,7 @@ sys.path[:0] = [str(ROOT / "scripts/python"), str(ROOT / "bench"), str(Path(__fi
 
 import rsc  # noqa: E402
 import wire  # noqa: E402
-from board import FIRMWARE, Board  # noqa: E402
+from board import FIRMWARE, Board, end_on_signals  # noqa: E402
 from counting import symbols  # noqa: E402
 from debugger import Debugger  # noqa: E402
 
@@ -421,6 +421,7 @@ def main():
         if (number + 1 - wanted.first) % 100 == 0:
             print(f"{number + 1 - wanted.first} of {wanted.runs}", flush=True)
 
+    end_on_signals()
     wrong = campaign(wanted.runs, wanted.seed, wanted.first, show)
     for number, fault, told, what in wrong:
         print(f"{number}: {fault} ({', '.join(told)}): {what}; again: campaign.py 1 --seed {wanted.seed} --first {number}")
