@@ -14,7 +14,6 @@ import json
 import random
 import re
 import socket
-import subprocess
 import sys
 import tempfile
 import time
@@ -26,8 +25,8 @@ sys.path[:0] = [str(ROOT / "scripts/python"), str(ROOT / "bench"), str(Path(__fi
 import rsc  # noqa: E402
 import wire  # noqa: E402
 from board import FIRMWARE, Board, end_on_signals  # noqa: E402
-from counting import symbols  # noqa: E402
-from debugger import Debugger  # noqa: E402
+from counting import of_the_board, symbols  # noqa: E402
+from debugger import Debugger, endless_loop  # noqa: E402
 
 CLOCK = 0x40001004  # timer 1, which counts down
 CLOCK_MHZ = 25
@@ -75,10 +74,10 @@ END
 # Where a fault happens: functions that the board comes to all the time. The interpreter runs in the behaviours' threads.
 INTERPRETER = "robosync::vm::run("
 PLACES = {"interpreter": INTERPRETER, "sensor": "robosync::layers::Mailboxes::post(",
-          "actuator": "robosync::guard::OutputGuard::drive(", "bus": "robosync::boards::mps2::I2c::transfer(",
-          "halves of bits": "robosync::boards::mps2::(anonymous namespace)::half_bit()",
+          "actuator": "robosync::guard::OutputGuard::drive(", "bus": of_the_board("I2c::transfer("),
+          "halves of bits": of_the_board("(anonymous namespace)::half_bit()"),
           "safety": "robosync::Runtime::look_at_rules()", "switch": "PendSV_Handler"}
-WATCHED = {"kick": "robosync::boards::mps2::Board::watchdog_kick()", "nmi": "NMI_Handler", "reset": "Reset_Handler",
+WATCHED = {"kick": of_the_board("Board::watchdog_kick()"), "nmi": "NMI_Handler", "reset": "Reset_Handler",
            "said": "robosync::Runtime::say(bool)"}
 GRANT = "robosync::kernel::Kernel::grant("
 
@@ -95,10 +94,7 @@ def addresses():
     known = symbols(FIRMWARE)
     wanted = {**PLACES, **WATCHED, "grant": GRANT}
     found = {key: next(at for name, at in known.items() if name.startswith(start)) for key, start in wanted.items()}
-    listing = subprocess.run(["arm-none-eabi-objdump", "-d", str(FIRMWARE)], check=True, text=True,
-                             stdout=subprocess.PIPE).stdout
-    endless = int(re.search(r"^\s*([0-9a-f]+):\s+e7fe\s", listing, re.M)[1], 16)
-    return {**found, "endless": endless, "pulses": known["robosync_virtual_pwm"], "kernel": known["robosync_kernel"]}
+    return {**found, "endless": endless_loop(), "pulses": known["robosync_virtual_pwm"], "kernel": known["robosync_kernel"]}
 
 
 class Control(Debugger):

@@ -3,10 +3,13 @@
 So a fault can be made to happen in the firmware as it is shipped, which has no hook for that.
 """
 
+import re
 import socket
+import subprocess
 import time
 from pathlib import Path
 
+from board import FIRMWARE
 from support import RobotTest
 
 PATIENCE = 20
@@ -95,6 +98,13 @@ class Debugger:
             if not data:
                 raise AssertionError("QEMU closed the debugger port")
             self._received += data
+
+
+def endless_loop():
+    """The address of an instruction of the firmware that jumps to itself."""
+    listing = subprocess.run(["arm-none-eabi-objdump", "-d", str(FIRMWARE)], check=True, text=True,
+                             stdout=subprocess.PIPE).stdout
+    return int(re.search(r"^\s*([0-9a-f]+):\s+e7fe\s", listing, re.M)[1], 16)
 
 
 class DebuggedTest(RobotTest):

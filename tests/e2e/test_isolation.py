@@ -2,15 +2,13 @@
 comes to rest, the others go on, and safety is never late."""
 
 import json
-import re
-import subprocess
 import sys
 import unittest
 from pathlib import Path
 
 import rsc
 from board import FIRMWARE
-from debugger import DebuggedTest
+from debugger import DebuggedTest, endless_loop
 from support import LineReader
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
@@ -49,13 +47,6 @@ BEHAVIOR tame PRIORITY 10
   END
 END
 """
-
-
-def endless_loop():
-    """The address of an instruction of the firmware that jumps to itself."""
-    listing = subprocess.run(["arm-none-eabi-objdump", "-d", str(FIRMWARE)], check=True, text=True,
-                             stdout=subprocess.PIPE).stdout
-    return int(re.search(r"^\s*([0-9a-f]+):\s+e7fe\s", listing, re.M)[1], 16)
 
 
 class Isolation(DebuggedTest):

@@ -2,17 +2,14 @@
 which fault it had, in `rsc info` and in the first line of `rsc monitor`."""
 
 import json
-import re
-import subprocess
 import sys
-import tempfile
 import time
 import unittest
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, Board
-from debugger import Debugger
+from board import FIRMWARE
+from debugger import DebuggedTest, endless_loop
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
@@ -23,24 +20,10 @@ PC = 15
 IN_SAFETY = "robosync::Runtime::look_at_rules()"
 
 
-def endless_loop():
-    """The address of an instruction of the firmware that jumps to itself."""
-    listing = subprocess.run(["arm-none-eabi-objdump", "-d", str(FIRMWARE)], check=True, text=True,
-                             stdout=subprocess.PIPE).stdout
-    return int(re.search(r"^\s*([0-9a-f]+):\s+e7fe\s", listing, re.M)[1], 16)
-
-
-class LastWords(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="robosync-last-words-")
-        self.addCleanup(folder.cleanup)
-        self.gdb = Path(folder.name) / "gdb"
-        self.board = Board(icount=FAST, extra=["-gdb", f"unix:{self.gdb},server=on,wait=off"])
-        self.addCleanup(self.board.stop)
-
+class LastWords(DebuggedTest):
     def send_safety_to(self, address):
         """The safety thread's next look at the rules jumps there."""
-        with Debugger(self.gdb) as debugger:
+        with self.debugger() as debugger:
             debugger.run_to(symbols(FIRMWARE)[IN_SAFETY], lambda: None)
             debugger.set_register(PC, address)
 
