@@ -1,6 +1,7 @@
 // The examples and the standard library, as their readers would try them: rsc check, test, run.
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,21 @@ TEST_CASE("every example is right, passes its TESTs and lives through its scenar
     if (has_tests(program)) works({"test", program});
     for (const fs::path& scenario : files(folder, ".json"))
       if (scenario.filename() != "robot.json") works({"run", program, "--scenario", scenario});
+  }
+}
+
+TEST_CASE("an example is a page: 60 lines at most, without its TESTs and empty lines") {
+  for (const fs::path& folder : examples()) {
+    INFO(folder);
+    std::istringstream program(read_file(folder / "robot.rsl"));
+    unsigned lines = 0;
+    bool in_test = false;
+    for (std::string line; std::getline(program, line);) {
+      in_test = in_test || line.starts_with("TEST \"");
+      if (!in_test && !line.empty()) ++lines;
+      if (line == "END") in_test = false;
+    }
+    CHECK(lines <= 60);
   }
 }
 
