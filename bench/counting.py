@@ -18,12 +18,14 @@ TIMEOUT = 120
 PATIENCE = 60  # seconds for what takes one, on a busy machine
 IMAGE_ADDRESS = 0x21000000  # bench/firmware/given.hpp
 READINGS_ADDRESS = 0x21100000
+READING = "robosync::layers::Mailboxes::post("  # a sensor's, which it takes at its rate: a clock of the robot's own
 
 
 class BenchError(RuntimeError):
     """Something needed for a figure is missing, or the bench firmware says it failed."""
 
 
+@functools.cache
 def symbols(elf):
     """{name: address} of an ELF, C++ names as the source writes them, the Thumb bit taken off."""
     listing = subprocess.run(["arm-none-eabi-nm", "-C", str(elf)], check=True, text=True,
@@ -33,6 +35,14 @@ def symbols(elf):
         words = line.split(maxsplit=2)
         if len(words) == 3 and line[0] != " ":  # undefined ones have no address, a few no name
             found[words[2]] = int(words[0], 16) & ~1
+    return found
+
+
+def functions(*wanted):
+    """{beginning of a name: address} of the shipped firmware's functions."""
+    found = {begin: at for name, at in symbols(FIRMWARE).items() for begin in wanted if name.startswith(begin)}
+    if len(found) != len(wanted):
+        raise BenchError(f"the firmware has not all of {wanted}")
     return found
 
 
@@ -108,17 +118,18 @@ class Marks:
         return [numbers for word, *numbers in self.said if word == what]
 
 
-def wait_for(path, address, times):
-    """Until the plugin has written the marker at this address so often from now on: time as the firmware sees it pass,
-    however slow the host is."""
+def wait_for_readings(path, times, what=READING):
+    """Until the plugin has written so many marks of readings from now on: so much time has passed for the robot, however
+    slow the host is. Or of another function."""
+    mark = f"{functions(what)[what]:x} "
     deadline = time.monotonic() + PATIENCE
     with open(path, encoding="ascii") as lines:
         lines.seek(0, 2)
         while times > 0:
             if time.monotonic() > deadline:
-                raise BenchError(f"nothing ran at {address:#x} for long")
+                raise BenchError(f"the board has not come to {what} for long")
             line = lines.readline()
-            times -= line.startswith(f"{address:x} ")
+            times -= line.startswith(mark)
             if not line:
                 time.sleep(0.01)
 
@@ -133,6 +144,27 @@ def plugin_arguments(names, out, apart=()):
     marks = "".join(f",mark={address:#x}" for address in names.values())
     ranges = "".join(f",apart={begin:#x}-{end:#x}" for begin, end in apart)
     return ["-plugin", f"{PLUGIN},out={out}{marks}{ranges}{',profile=on' if profiling else ''}"]
+
+
+def code_of_function(function):
+    """[(address, instruction)] of a function of the shipped firmware, whose name begins so."""
+    listing = subprocess.run(["arm-none-eabi-objdump", "-d", "-C", "--no-show-raw-insn", str(FIRMWARE)], check=True,
+                             text=True, stdout=subprocess.PIPE).stdout
+    code = re.search(rf"^\w+ <{re.escape(function)}.*?^$", listing, re.M | re.S)
+    if not code:
+        raise BenchError(f"the firmware has no {function}")
+    return [(int(at, 16), what) for at, what in re.findall(r"^\s*(\w+):\s+(.+)$", code[0], re.M)]
+
+
+def ends_of(function):
+    """Addresses of the instructions by which it returns."""
+    return [at for at, what in code_of_function(function) if what.endswith("pc}") or what == "bx\tlr"]
+
+
+def begin_of(handler):
+    """The second instruction of an interrupt's handler: of one that comes while a device is accessed, QEMU shows the plugin no
+    first one."""
+    return code_of_function(handler)[1][0]
 
 
 def return_instructions(elf, function):

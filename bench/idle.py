@@ -15,7 +15,7 @@ from pathlib import Path
 
 import rsc
 from board import FAST, FIRMWARE, Board
-from counting import ROOT, BenchError, Marks, of_the_board, plugin_arguments, symbols
+from counting import ROOT, BenchError, Marks, functions, of_the_board, plugin_arguments
 from workloads import PAPER
 
 KICK = "Board::watchdog_kick("
@@ -47,9 +47,7 @@ def code_of(prefixes):
 
 def idle_second(period, program=None):
     """The costliest of some seconds, which have kicks every `period` milliseconds: (instructions, apart)."""
-    kicks = {KICK: at for name, at in symbols(FIRMWARE).items() if name.startswith(of_the_board(KICK))}
-    if not kicks:
-        raise BenchError(f"the firmware has no {KICK}")
+    kicks = functions(of_the_board(KICK))
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "marks"
         with Board(icount=FAST, extra=plugin_arguments(kicks, out, code_of(map(of_the_board, BUS)))) as board:

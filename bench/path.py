@@ -15,11 +15,10 @@ import time
 from pathlib import Path
 
 import rsc
-from board import FIRMWARE, REAL_TIME, Board
-from counting import PATIENCE, BenchError, Marks, plugin_arguments, symbols, wait_for
+from board import REAL_TIME, Board
+from counting import PATIENCE, READING, BenchError, Marks, functions, plugin_arguments, wait_for_readings
 from workloads import PAPER
 
-READING = "robosync::layers::Mailboxes::post("
 COMMAND = "robosync::drivers::servo::start("
 RELEASE = "robosync::drivers::servo::release("
 RULE = "robosync::layers::BehaviorLayer::evaluate_rule("
@@ -27,37 +26,30 @@ SIGNAL = "robosync::kernel::Kernel::signal("  # to an actuator's thread, when a 
 WAY = (READING, COMMAND, RELEASE)
 START_UPS = 8
 CHANGES = 8
+AWAKE = 2  # touches after which the arms move for sure
 FOLLOWING = "WHILE touch LEVEL >= 0\nDO FOLLOW left_arm TO (touch LEVEL * 10deg)\nEND\n"
 LIGHT, FIRM = 1, 9  # touches on either side of the paper's threshold
 BETWEEN = 15  # readings between two touches, 300 ms; the arms move for longer
 
 
-def functions(*wanted):
-    found = {end: at for name, at in symbols(FIRMWARE).items() for end in wanted if name.startswith(end)}
-    if len(found) != len(wanted):
-        raise BenchError(f"the firmware has not all of {wanted}")
-    return found
-
-
-def touch_again_and_again(board, pause):
-    for change in range(CHANGES):
+def touch_again_and_again(board, pause, changes=CHANGES):
+    for change in range(changes):
         board.set_touch((FIRM, LIGHT)[change % 2])
         pause()
 
 
-def touch_until_told(board, pause, told):
-    """Until a monitor has said something, which it does of each touch that it hears of."""
+def wait_until_it_listens(told):
+    """`rsc monitor` says which board it is when that has begun to tell."""
     deadline = time.monotonic() + PATIENCE
     while told.stat().st_size == 0:
         if time.monotonic() > deadline:
             raise BenchError("rsc monitor says nothing")
-        for raw in (FIRM, LIGHT):
-            board.set_touch(raw)
-            pause()
+        time.sleep(0.01)
 
 
 def drive(board, image, pause, told):
-    """Free arms START_UPS times, then moving ones CHANGES times, then the same with a monitor, after some touches more."""
+    """Free arms START_UPS times, then moving ones CHANGES times, then the same with a monitor, after some touches that make
+    the arms move again."""
     board.set_touch(LIGHT)
     for _ in range(START_UPS):
         rsc.run("upload", image, "--port", board.port)
@@ -66,14 +58,14 @@ def drive(board, image, pause, told):
     with open(told, "wb") as output, subprocess.Popen([rsc.TOOL, "monitor", "--port", board.port], stdin=subprocess.DEVNULL,
                                                       stdout=output, stderr=subprocess.DEVNULL) as monitor:
         try:
-            touch_until_told(board, pause, told)
-            touch_again_and_again(board, pause)
+            wait_until_it_listens(told)
+            touch_again_and_again(board, pause, AWAKE + CHANGES)
         finally:
             monitor.terminate()
 
 
-def pacer(out, known):
-    return functools.partial(wait_for, out, known[READING], BETWEEN)
+def pacer(out):
+    return functools.partial(wait_for_readings, out, BETWEEN)
 
 
 def ways(marks):
@@ -115,7 +107,7 @@ def follow_update(known):
         with Board(icount=REAL_TIME, extra=plugin_arguments(known, out)) as board:
             board.set_touch(LIGHT)
             rsc.run("upload", image, "--port", board.port)
-            pause = pacer(out, known)
+            pause = pacer(out)
             pause()
             touch_again_and_again(board, pause)
         found = ways(Marks(known, out))
@@ -130,11 +122,11 @@ def path_figures():
         image, out, told = (Path(folder) / name for name in ("paper.rsb", "marks", "told"))
         rsc.run("compile", PAPER, "-o", image)
         with Board(icount=REAL_TIME, extra=plugin_arguments(known, out)) as board:
-            drive(board, image, pacer(out, known), told)
+            drive(board, image, pacer(out), told)
         marks = Marks(known, out)
     found = ways(marks)
     free, busy, monitored = found[:START_UPS], found[START_UPS:][:CHANGES], found[-CHANGES:]
-    if len(found) <= START_UPS + 2 * CHANGES or not all(stopped for _, stopped in busy + monitored):
+    if len(found) != START_UPS + 2 * CHANGES + AWAKE or not all(stopped for _, stopped in busy + monitored):
         raise BenchError(f"not every touch led to a command, or the arms stood still: {found}")
     return follow_update(functions(*WAY)) | {"vm/W1_queue": (rule_to_queue(marks), "insn")} | {
         f"path/reading_to_command{name}": (max(count for count, _ in way), "insn")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 FILE = Path(__file__).parent / "recorded.json"
 TOLERANCE = 0.02
-# Counted on a board that runs with the clock of this machine: which interrupts come in between is another thing each time.
+# Counted on a board that talks with this machine: when that comes is another thing each time.
 IN_REAL_TIME = ("safety/reading_to_safe", "safety/stop_frame_to_safe")
 TOLERANCE_IN_REAL_TIME = 0.5
 TIMES = {"ms", "lines/s"}  # units of what depends on how fast the machine is
