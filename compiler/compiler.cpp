@@ -103,8 +103,7 @@ Result compile(Input program, Input configuration, const Options& options) {
   Diagnostics& diagnostics = result.diagnostics;
   const Parsed parsed = parse_all(std::move(program), std::move(configuration), options.read_module,
                                   result.sources, diagnostics);
-  const bool named = parsed.robot && parsed.robot->board;
-  result.board = named ? board_at(*parsed.robot->board) : default_board();
+  result.board = board_for(parsed.robot ? parsed.robot->board : std::nullopt);
   ir::Program written;
   if (parsed.complete) {
     written = analyze(parsed.trees(), *parsed.robot, result.sources, diagnostics);

@@ -81,4 +81,8 @@ Board default_board() {
       std::ranges::find(names, std::string_view(ROBOSYNC_BOARD)) - names.begin()));
 }
 
+Board board_for(std::optional<std::size_t> named) {
+  return named ? board_at(*named) : default_board();
+}
+
 }  // namespace robosync::compiler

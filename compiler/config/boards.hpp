@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,7 +39,9 @@ struct Board {
 [[nodiscard]] std::vector<std::string_view> board_names();
 // `place` in board_names().
 [[nodiscard]] Board board_at(std::size_t place);
-[[nodiscard]] Board
-default_board();  // when robot.json names none: that of the preset (CMakePresets.json)
+// That of the preset (CMakePresets.json).
+[[nodiscard]] Board default_board();
+// The one that robot.json names, by its place; the default where it names none.
+[[nodiscard]] Board board_for(std::optional<std::size_t> named);
 
 }  // namespace robosync::compiler

@@ -286,7 +286,7 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
     robot.board = read_choice(*board, board_names(), diagnostics);
     robot.complete = robot.complete && robot.board.has_value();
   }
-  WiringReader wiring(robot.board ? board_at(*robot.board) : default_board(), diagnostics);
+  WiringReader wiring(board_for(robot.board), diagnostics);
   for_each_entry(fields, "sensors", robot, diagnostics, [&](const json::Value& entry) {
     auto sensor = read_sensor(entry, wiring, diagnostics);
     if (sensor) robot.sensors.push_back(std::move(*sensor));

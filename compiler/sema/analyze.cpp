@@ -58,12 +58,12 @@ private:
   }
 
   void lint() {
-    const LintInput input{*trees_.front(), program_, names_, diagnostics_};
+    const LintInput input{*trees_.front(), program_, robot_, names_, diagnostics_};
     lint_rules(input);
     lint_waits(input);
     lint_names(input);
     lint_robot(input);
-    lint_kept(input, robot_);
+    lint_kept(input);
   }
 
   void add(const ast::Item& item) {

@@ -617,12 +617,12 @@ void lint_robot(const LintInput& input) {
 }
 
 // No board has memory yet that outlasts its power and that programs may use.
-void lint_kept(const LintInput& input, const Robot& robot) {
+void lint_kept(const LintInput& input) {
   std::vector<const VariableName*> kept;
   for (const VariableName& name : input.names.variables())
     if (name.kind == vm::VariableKind::kept) kept.push_back(&name);
   if (kept.empty()) return;
-  const std::string board = (robot.board ? board_at(*robot.board) : default_board()).name;
+  const std::string board = board_for(input.robot.board).name;
   Diagnostic& d = input.diagnostics.report(
       Code::W0220, "the board " + board + " cannot keep " + kept.front()->name.shown() +
                        (kept.size() > 1 ? " and others" : "") + " when it is switched off");

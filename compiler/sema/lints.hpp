@@ -23,6 +23,7 @@ void lint_bands(const ast::Check& node, const ir::Check& check, const Typed& inp
 struct LintInput {
   const ast::Tree& tree;  // without its modules: they are not the user's to mend
   const ir::Program& program;
+  const Robot& robot;
   Names& names;
   Diagnostics& diagnostics;
 };
@@ -36,6 +37,6 @@ void lint_names(const LintInput& input);
 // W0208, W0209, W0218: thresholds on noisy sensors; motion without SAFETY; no rule at all.
 void lint_robot(const LintInput& input);
 // W0220: KEPT numbers, which the board begins anew.
-void lint_kept(const LintInput& input, const Robot& robot);
+void lint_kept(const LintInput& input);
 
 }  // namespace robosync::compiler

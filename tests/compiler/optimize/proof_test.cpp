@@ -122,6 +122,16 @@ TEST_CASE("a branch that never runs writes nothing") {
   CHECK(prove(program_of({when(kClose, response)}, kTwo))[kI] == units(0, 0));
 }
 
+// As FOLLOW has one, which the body writes for its next run.
+TEST_CASE("a local with other writers may be anything they leave there") {
+  for (const bool others : {false, true}) {
+    const ir::Block response = {line(1, ir::Local{0, number(7), others}), set(kI, local(0))};
+    const Fact fact = prove(program_of({when(kClose, response)}, kTwo))[kI];
+    CHECK((fact == units(0, 7)) == !others);
+    CHECK((fact.high == vm::kValueMax) == others);
+  }
+}
+
 TEST_CASE("chains of variables come to an end") {
   std::vector<ir::Variable> variables;
   std::vector<ir::Rule> rules;

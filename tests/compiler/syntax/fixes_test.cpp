@@ -224,3 +224,19 @@ TEST_CASE("a fix never changes what a number or a condition says") {
     CHECK(fixed(program, result) == program);
   }
 }
+
+TEST_CASE("a fix is certain only where nothing else can be meant") {
+  const Example robot{"", "", read_file(fs::path(ROBOSYNC_SOURCE_DIR) / "docs/robot.json")};
+  const std::string rest = " DO\n  LOG \"x\"\nEND\n";
+  for (const std::string& program :
+       {"touch LEVEL > 3" + rest,                            // WHEN or WHILE
+        " greetings\nWHEN touch LEVEL > 3" + rest,           // USE
+        std::string("LIST words: \"one\", , \"two\"\n")}) {  // a text is missing
+    const Result result = compiled(robot, program);
+    CAPTURE(program, render_human(result.diagnostics, result.sources, false));
+    CHECK(result.diagnostics.errors() == 1);
+    CHECK(fixed(program, result) == program);
+  }
+  const std::string twice = "WHEN WHEN touch LEVEL > 3" + rest;
+  CHECK(compiled(robot, fixed(twice, compiled(robot, twice))).diagnostics.errors() == 0);
+}
