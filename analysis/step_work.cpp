@@ -98,7 +98,8 @@ void StepWork::load_rule(unsigned r, const vm::Behavior& behavior) {
     const Opcode op = vm::opcode_of(word);
     if (op == Opcode::lasted) note_held(r, lasts_ms(code.first(i), vm::operand_c(word)));
     if (is_event(op)) ++events_[r];
-    if (op == Opcode::held) note_held(r, image_.timers[vm::operand_c(word)].duration);
+    if (op == Opcode::held)
+      note_held(r, static_cast<std::uint32_t>(image_.timers[vm::operand_c(word)].duration));
     if (vm::info_of(op).effect == vm::Effect::division) divides_[r] = true;
   }
   worst_[r] = worst_of(work_of(image_, behavior, rule.then_response),

@@ -12,7 +12,11 @@ namespace robosync::compiler::testing {
 namespace {
 
 constexpr std::uint8_t kAllParams = 0xFF;
-const ir::Verb kMove{"MOVE", vm::Action::move, kAllParams};
+// In a function, for constants of other files are made of it.
+const ir::Verb& move_verb() {
+  static const ir::Verb verb{"MOVE", vm::Action::move, kAllParams};
+  return verb;
+}
 
 ChannelConfig channel_config(std::string name, vm::Dimension dimension) {
   ChannelConfig config;
@@ -25,7 +29,8 @@ ActuatorConfig actuator_config(std::string name) {
   ActuatorConfig config;
   config.name.text = std::move(name);
   config.driver = vm::DriverId::virtual_actuator;
-  config.verbs.push_back({kMove.name, kMove.action, kMove.takes, Texts::none});
+  const ir::Verb& verb = move_verb();
+  config.verbs.push_back({verb.name, verb.action, verb.takes, Texts::none});
   return config;
 }
 
@@ -142,11 +147,11 @@ E held(E condition, double seconds) {
 }
 
 ir::Command move(std::size_t actuator, std::vector<ir::Argument> arguments) {
-  return {std::nullopt, {actuator}, kMove, std::nullopt, std::move(arguments)};
+  return {std::nullopt, {actuator}, move_verb(), std::nullopt, std::move(arguments)};
 }
 
 ir::Command move_arms(std::vector<ir::Argument> arguments) {
-  return {0, {0, 1}, kMove, std::nullopt, std::move(arguments)};
+  return {0, {0, 1}, move_verb(), std::nullopt, std::move(arguments)};
 }
 
 ir::Rule when(E condition, ir::Block then_response) {

@@ -260,14 +260,14 @@ void Mutator::change_records(Draft& draft) {
 void Mutator::splice_section(Draft& draft) {
   donor_.assign(donors_[random_.below(donors_.size())]);
   const Section section = section_with(donor_);
-  const std::size_t wanted = donor_.count(section);
-  const std::size_t there = draft.count(section);
-  if (wanted > there) {
-    if (!draft.insert(section, there, wanted - there)) return;
+  const std::size_t given = donor_.count(section);
+  const std::size_t present = draft.count(section);
+  if (given > present) {
+    if (!draft.insert(section, present, given - present)) return;
   } else {
-    draft.erase(section, wanted, there - wanted);
+    draft.erase(section, given, present - given);
   }
-  for (std::size_t i = 0; i < wanted; ++i) {
+  for (std::size_t i = 0; i < given; ++i) {
     const auto from = donor_.record(section, i);
     std::copy(from.begin(), from.end(), draft.record(section, i).begin());
   }

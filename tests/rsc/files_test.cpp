@@ -26,7 +26,7 @@ struct Scratch {
 
 TEST_CASE("files of all sizes are read whole") {
   const Scratch scratch;
-  for (const std::size_t size : {0, 1, 65535, 65536, 65537, 300'000, 16 * 1024 * 1024}) {
+  for (const std::size_t size : {0U, 1U, 65535U, 65536U, 65537U, 300'000U, 16U * 1024 * 1024}) {
     std::string text(size, 'x');
     for (std::size_t i = 0; i < size; i += 97)
       text[i] = static_cast<char>(i);

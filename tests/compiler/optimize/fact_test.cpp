@@ -2,6 +2,7 @@
 #include "compiler/ir/fact.hpp"
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -24,8 +25,9 @@ struct Case {
   std::vector<Value> values;
 };
 
-Case case_of(const std::vector<Value>& all, std::size_t from, std::size_t to, bool known) {
-  Case made{{known, true, all[from], all[to]}, {all.begin() + from, all.begin() + to + 1}};
+Case case_of(std::span<const Value> all, std::size_t from, std::size_t to, bool known) {
+  const auto part = all.subspan(from, to + 1 - from);
+  Case made{{known, true, all[from], all[to]}, {part.begin(), part.end()}};
   for (const Value value : made.values)
     made.fact.whole = made.fact.whole && value % vm::kScale == 0;
   if (!known) made.values.push_back(kUnknown);

@@ -28,7 +28,7 @@ constexpr Tables kTables = [] {
 
 }  // namespace
 
-[[gnu::no_sanitize("address", "undefined")]] std::uint32_t fast_crc32(
+__attribute__((no_sanitize("address", "undefined"))) std::uint32_t fast_crc32(
     std::span<const std::byte> bytes) {
   const auto& t = kTables.of;
   const std::byte* next = bytes.data();

@@ -39,7 +39,6 @@ private:
   Random& random_;
   Drawer drawer_;
   std::vector<Word> code_;
-  unsigned next_local_ = 0;
 };
 
 }  // namespace robosync::fuzz
