@@ -52,6 +52,7 @@ target_sources(robosync_compiler PRIVATE
   sema/analyze.cpp
   sema/behaviors.cpp
   sema/commands.cpp
+  sema/misread.cpp
   sema/conditions.cpp
   sema/defines.cpp
   sema/expressions.cpp

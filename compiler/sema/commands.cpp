@@ -164,8 +164,12 @@ void Commands::report_unknown_verb(const ast::Command& command) {
   const std::string what = command.arguments.empty() ? "DEFINE or verb " : "verb ";
   Diagnostic& d =
       diagnostics_.report(Code::E0501, "there is no " + what + verb.shown()).label(verb.span);
-  if (command.arguments.empty()) d.unknown = verb.text;
   if (names_.find_motion(verb.text) != nullptr) return suggest_perform(d, verb);
+  if (command.arguments.empty()) d.unknown = verb.text;
+  if (names_.find_define(verb.text) != nullptr) {
+    d.helps(verb.shown() + " is a DEFINE: what it is given stands behind WITH, with commas");
+    return;
+  }
   if (!diagnostics_.may_search(robot_.actuators.size() + names_.defines().size())) return;
   auto candidates = names_.verb_names();
   const auto defines = names_.define_names();
@@ -215,7 +219,7 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Comman
   }
   for (std::size_t i = 0; i < command.arguments.size(); ++i) {
     if (i == named_by || (is_chosen(i) && i != chosen_->at)) continue;
-    if (lacks_brackets(command, i)) return std::nullopt;
+    if (is_misread(command, i)) return std::nullopt;
     if (i >= first_part || (is_chosen(i) && chosen_->at + chosen_->count > first_part)) {
       result.push_back(put_together(command, i));
       if (!result.back().text) return std::nullopt;
@@ -288,6 +292,12 @@ std::optional<Target> Commands::find_stopped(const ast::Name& name) {
   if (target || name.text.empty()) return target;
   Diagnostic& d =
       diagnostics_.report(Code::E0501, "there is no actuator " + name.shown()).label(name.span);
+  const VariableName* const timer = names_.find_variable(name.text);
+  if (timer != nullptr && timer->kind == vm::VariableKind::timer) {
+    d.helps(name.shown() + " is a TIMER, which goes on; `RESTART " + std::string(name.text) +
+            "` sets it back to 0");
+    return std::nullopt;
+  }
   const auto candidates = names_.target_names();
   suggest(d, name.span, name.text, candidates);
   if (d.help.empty() && !candidates.empty()) d.helps("actuators: " + list_names(candidates));

@@ -91,6 +91,12 @@ private:
   // The text whose parts begin at `first`; its text is nothing after a mistake.
   Given put_together(const ast::Command& command, std::size_t first);
   bool lacks_brackets(const ast::Command& command, std::size_t place);
+  // Arguments that are something else together (misread.cpp).
+  bool is_misread(const ast::Command& command, std::size_t place);
+  bool is_reading(const ast::Command& command, std::size_t place);
+  bool lacks_comma(const ast::Command& command, std::size_t place);
+  bool lacks_list(const ast::Command& command, std::size_t place);
+  bool is_unit_apart(const ast::Command& command, std::size_t place);
   Typed evaluate_number(const ast::Argument& argument);
   [[nodiscard]] bool is_known_word(std::string_view word) const;  // of any actuator
   [[nodiscard]] bool names_a_number(const ast::Name& name) const;

@@ -83,6 +83,7 @@ public:
   [[nodiscard]] bool has_lost() const { return lost_; }
   // The LIST of this name; reports when there is none.
   const ListName* find_list(const ast::Name& name);
+  bool lacks_quotes(const ast::Expr& item);
   // Reports what is wrong in LISTs of numbers.
   void check_lists();
   // Which item, from 0, an index that is known now means; reports when there is none.

@@ -29,6 +29,19 @@ void Expressions::check_lists() {
     if (list.numbers) (void)numbers_of(list);
 }
 
+// `LIST words: hello, world`. It is reported, once for the LIST.
+bool Expressions::lacks_quotes(const ast::Expr& item) {
+  const auto* const word = std::get_if<ast::Operand>(&item.node);
+  if (word == nullptr || !names_.kind_of(word->name.text).empty() ||
+      names_.find_sensor(word->name.text))
+    return false;
+  const std::string text(word->name.text);
+  diagnostics_.report(Code::E0501, "there is no number called " + word->name.shown())
+      .label(word->name.span)
+      .helps("a text stands in quotes: `\"" + text + "\"`");
+  return true;
+}
+
 // Bare numbers take the unit of the first one.
 const NumberList& Expressions::numbers_of(const ListName& list) {
   const auto [found, added] = lists_.emplace(&list, NumberList{&list, {}, nullptr});
@@ -40,6 +53,10 @@ const NumberList& Expressions::numbers_of(const ListName& list) {
   for (const ast::Argument& item : list.list->items) {
     const auto* amount = std::get_if<ast::Amount>(&item.value);
     if (amount == nullptr || amount->value == nullptr) continue;
+    if (lacks_quotes(*amount->value)) {
+      good = false;
+      break;
+    }
     if (numbers.unit == nullptr) {
       const Typed first = number(*amount->value);
       if (!(good = first.is_number())) break;

@@ -309,13 +309,19 @@ bool LexerState::curly_string(char32_t quote) {
   return false;
 }
 
-// Neighbouring strange bytes make one message.
+// Strange bytes make one message a line: who writes one of them often writes more.
 void LexerState::strange(std::size_t size) {
   cursor_ = start_ + size;
-  const bool goes_on = strange_end_ == start_;
+  const bool said = strange_end_ <= start_ &&
+                    text_.substr(strange_end_, start_ - strange_end_).find_first_of("\r\n") ==
+                        std::string_view::npos;
   strange_end_ = cursor_;
-  if (goes_on) return;
-  report(Code::E0002, "RSL does not use this character").label(here());
+  if (said) return;
+  Diagnostic& message = report(Code::E0002, "RSL does not use this character").label(here());
+  if (text_[start_] == '[' || text_[start_] == ']')
+    message.helps(
+        "a LIST stands without brackets, `LIST words: \"one\", \"two\"`; one of it is `ITEM 1 OF "
+        "words`");
 }
 
 void LexerState::other() {

@@ -2,6 +2,7 @@
 // stops, repair.hpp.
 #include "compiler/syntax/parser.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -25,7 +26,7 @@ struct EmptyBlock {
 };
 
 std::optional<EmptyBlock> empty_block(const Tokens& tokens) {
-  constexpr std::size_t longest = 5;  // words of an empty block
+  constexpr std::size_t longest = 40;  // words of an empty block
   std::vector<TokenKind> kinds;
   Span head_end;
   for (const Token& token : tokens) {
@@ -40,6 +41,12 @@ std::optional<EmptyBlock> empty_block(const Tokens& tokens) {
   if (kinds == Head{Kinds::BEHAVIOR, Kinds::NAME, Kinds::PRIORITY, Kinds::QUANTITY, Kinds::END})
     return EmptyBlock{head_end, "a rule",
                       "a rule begins with `WHEN`, `WHILE`, `EVERY` or `AT START`"};
+  const bool motion = kinds.size() >= 5 && kinds[0] == Kinds::MOTION && kinds[2] == Kinds::OF &&
+                      std::find(kinds.begin(), kinds.end(), Kinds::AT) == kinds.end();
+  const auto is_list = [](TokenKind kind) { return kind == Kinds::NAME || kind == Kinds::COMMA; };
+  if (motion && kinds.back() == Kinds::END &&
+      std::all_of(kinds.begin() + 3, kinds.end() - 1, is_list))
+    return EmptyBlock{head_end, "a row", "a row is a time and a value for each: `AT 0s 10deg`"};
   return std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compiler/syntax/edit.hpp"
+#include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/wording.hpp"
 
 namespace robosync::compiler {
@@ -80,6 +81,10 @@ Edit last_resort(const Tokens& tokens, const Attempt& failure) {
 
 void mend(Tokens& tokens, const Attempt& failure, Reader& reader, Diagnostics& diagnostics,
           Budget& budget) {
+  if (const auto habit = explain_habit(tokens, reader.source(), failure, diagnostics)) {
+    tokens = edited(tokens, *habit);
+    return;
+  }
   constexpr std::size_t readings = 3;  // that possible_edits() makes at most
   std::vector<Edit> edits;
   if (budget.spend(readings * tokens.size())) edits = possible_edits(tokens, failure, reader);

@@ -296,7 +296,7 @@ TEST_CASE("mistakes in a TEST are shown with their place, and no test runs") {
            {"EXPECT 2 TIMES STOPPED arms WITHIN 1s", "is not counted"},
            {"EXPECT 2s TIMES MOVE arms WITHIN 1s", "a whole number without a unit"},
            {"EXPECT 99999999999 TIMES MOVE arms WITHIN 1s", "a whole number from 0"},
-           {"EXPECT LOG touched WITHIN 1s", "E0009"},
+           {"EXPECT LOG touched WITHIN 1s", "E0001"},
            {"SEED 1.5", "a whole number without a unit"},
            {"SEED 99999999999", "a whole number from 1"},
            {"SEED 0", "a whole number from 1"},

@@ -1,0 +1,114 @@
+// Commands, part: arguments that are each a word, a text or a number, and together something else that was meant. Said once for
+// all of them, before each by itself would be refused.
+#include <algorithm>
+
+#include "compiler/config/units.hpp"
+#include "compiler/sema/commands.hpp"
+
+namespace robosync::compiler {
+
+namespace {
+
+bool is_text(const ast::Argument& argument) {
+  return argument.preposition == ast::Preposition::none &&
+         std::holds_alternative<ast::Text>(argument.value);
+}
+
+Span both(const ast::Argument& first, const ast::Argument& second) {
+  return {first.span.file, first.span.begin, second.span.end};
+}
+
+}  // namespace
+
+// Is the argument, with the next one, something else than two arguments? It is reported.
+bool Commands::is_misread(const ast::Command& command, std::size_t place) {
+  if (lacks_brackets(command, place)) return true;
+  const std::size_t next = place + 1;
+  const std::size_t first_part = command.arguments.size() - command.parts;
+  if (next >= command.arguments.size() || is_chosen(place) || is_chosen(next)) return false;
+  if (lacks_list(command, place)) return true;
+  return next < first_part && (is_reading(command, place) || lacks_comma(command, place) ||
+                               is_unit_apart(command, place));
+}
+
+// `SAY touch LEVEL`
+bool Commands::is_reading(const ast::Command& command, std::size_t place) {
+  const ast::Word* const sensor = plain_word(command.arguments[place]);
+  const ast::Word* const channel = plain_word(command.arguments[place + 1]);
+  if (sensor == nullptr || channel == nullptr || is_known_word(channel->name.text)) return false;
+  const auto found = names_.find_sensor(sensor->name.text);
+  if (!found || std::ranges::none_of(robot_.sensors[*found].channels, [&](const auto& one) {
+        return same_name(one.name.text, channel->name.text);
+      }))
+    return false;
+  const std::string reading =
+      std::string(sensor->name.text) + " " + std::string(channel->name.text);
+  Diagnostic& d = diagnostics_
+                      .report(Code::E0505, "this is a number, and " + command.verb.shown() +
+                                               " needs to know what it is")
+                      .label(both(command.arguments[place], command.arguments[place + 1]));
+  if (same_name(command.verb.text, "SAY"))
+    d.helps("write the words, a comma and the number: `SAY \"…\", " + reading + "`");
+  else
+    d.helps("write TO, BY, AT, OVER or FOR and brackets, such as `TO (" + reading + ")`");
+  return true;
+}
+
+// `SAY "You have" points`
+bool Commands::lacks_comma(const ast::Command& command, std::size_t place) {
+  const ast::Argument& next = command.arguments[place + 1];
+  if (!is_text(command.arguments[place])) return false;
+  const ast::Word* const word = plain_word(next);
+  const bool number = word != nullptr && !is_known_word(word->name.text) &&
+                      !names_.find_target(word->name.text) && names_a_number(word->name);
+  const bool more = is_text(next) && same_name(command.verb.text, "SAY");
+  if (!more && !number) return false;
+  const Span gap{next.span.file, command.arguments[place].span.end, next.span.begin};
+  diagnostics_.report(Code::E0505, "a comma is missing between the parts of a text")
+      .label(next.span, "this goes on with it")
+      .helps("write commas between: `\"You have\", points, \"points\"`")
+      .fix(gap, ", ", Applicability::likely);
+  return true;
+}
+
+// `SAY ANY "one", "two"`, `SAY ITEM 3 jokes`
+bool Commands::lacks_list(const ast::Command& command, std::size_t place) {
+  const ast::Word* const word = plain_word(command.arguments[place]);
+  if (word == nullptr || is_known_word(word->name.text)) return false;
+  const ast::Argument& next = command.arguments[place + 1];
+  const bool chooses = same_name(word->name.text, "ANY") || same_name(word->name.text, "NEXT");
+  if (chooses && is_text(next)) {
+    diagnostics_.report(Code::E0505, word->name.shown() + " chooses from a LIST")
+        .label(next.span, "this is a text")
+        .helps("give the texts a name at the top, `LIST words: \"one\", \"two\"`, and write `" +
+               std::string(word->name.text) + " words`");
+    return true;
+  }
+  if (!same_name(word->name.text, "ITEM") || !std::holds_alternative<ast::Amount>(next.value))
+    return false;
+  diagnostics_.report(Code::E0505, "`OF` is missing behind the number of the ITEM")
+      .label(both(command.arguments[place], next))
+      .helps("write `ITEM 3 OF` and the LIST");
+  return true;
+}
+
+// `30 degrees`
+bool Commands::is_unit_apart(const ast::Command& command, std::size_t place) {
+  const auto* const amount = std::get_if<ast::Amount>(&command.arguments[place].value);
+  const ast::Argument& next = command.arguments[place + 1];
+  const ast::Word* const word = plain_word(next);
+  if (amount == nullptr || amount->times || amount->value == nullptr || word == nullptr)
+    return false;
+  const auto* const number = std::get_if<ast::Quantity>(&amount->value->node);
+  const bool bare = number != nullptr && number->unit.empty();
+  const Unit* const unit = find_unit(word->name.text);
+  if (!bare || unit == nullptr || is_known_word(word->name.text)) return false;
+  const Span gap{next.span.file, command.arguments[place].span.end, next.span.begin};
+  diagnostics_.report(Code::E0505, "no space stands between a number and its unit")
+      .label(both(command.arguments[place], next))
+      .helps("write the unit right behind it, such as `30" + std::string(unit->spelling) + "`")
+      .fix(gap, "");
+  return true;
+}
+
+}  // namespace robosync::compiler
