@@ -40,6 +40,7 @@ STALE_MS = 100
 BOUND_MS = STALE_MS + 20  # a sensor that has just measured falls silent; one period of the safety thread, one of the sensor
 STAYS = 3  # looks behind the bound
 MOST_KICKS = 30  # of the watchdog, that a fault waits for its place
+STARTS = 5
 ATTEMPTS = 160  # of a quarter of a second: the machine may be busy
 STOP = b"\0" + wire.frame("stop", sequence=255)
 CONFIG = {
@@ -76,7 +77,7 @@ INTERPRETER = "robosync::vm::run("
 PLACES = {"interpreter": INTERPRETER, "sensor": "robosync::layers::Mailboxes::post(",
           "actuator": "robosync::guard::OutputGuard::drive(", "bus": of_the_board("I2c::transfer("),
           "halves of bits": of_the_board("(anonymous namespace)::half_bit()"),
-          "safety": "robosync::Runtime::look_at_rules()", "switch": "PendSV_Handler"}
+          "safety": "robosync::Runtime::look_at_rules(", "switch": "PendSV_Handler"}
 WATCHED = {"kick": of_the_board("Board::watchdog_kick()"), "nmi": "NMI_Handler", "reset": "Reset_Handler",
            "said": "robosync::Runtime::say(bool)"}
 GRANT = "robosync::kernel::Kernel::grant("
@@ -119,14 +120,11 @@ class Control(Debugger):
         return next(name for name, address in places.items() if address == at)
 
     def __exit__(self, kind, *rest):
-        """A board that hangs answers no more."""
-        if kind is not None and issubclass(kind, Violation):
+        """A board that hangs answers no more, nor does one that does not come to where it was to stop."""
+        if kind is not None and issubclass(kind, (Violation, TimeoutError)):
             self._socket.close()
         else:
             super().__exit__(kind, *rest)
-
-    def register(self, number):
-        return int.from_bytes(bytes.fromhex(self._ask(f"p{number:x}")), "little")
 
     def flip(self, address, bit):
         """Whoever runs must be able to read it."""
@@ -345,7 +343,11 @@ class Robot:
         self.image = (Path(folder) / "robot.rsb").read_bytes()
         self.board = Board(icount="shift=5,sleep=off", extra=["-gdb", f"unix:{self.gdb},server=on,wait=off"])
         self.line = Line(self.board.serial_path)
-        self.writable = self._find_writable()
+        try:
+            self.writable = self._find_writable()
+        except BaseException:
+            self.stop()
+            raise
 
     def _find_writable(self):
         """(address, bytes) of what the behaviours' threads may write."""
@@ -384,13 +386,23 @@ class Robot:
         self.board.stop()
 
 
+def start(seed, folder):
+    """A robot. Where the machine is so busy that QEMU's watchdog resets the board under the debugger, another one."""
+    for _ in range(STARTS - 1):
+        try:
+            return Robot(seed, folder)
+        except TimeoutError:
+            continue
+    return Robot(seed, folder)
+
+
 def campaign(runs, seed, first=0, show=lambda *_: None):
     """[(number of the run, what was done, what went wrong)] of the runs that went wrong. A board that did wrong is put away."""
     wrong, robot = [], None
     with tempfile.TemporaryDirectory(prefix="robosync-campaign-") as folder:
         try:
             for number in range(first, first + runs):
-                robot = robot or Robot(seed, folder)
+                robot = robot or start(seed, folder)
                 run = Run(robot, number)
                 try:
                     robot.begin()

@@ -51,9 +51,12 @@ class Debugger:
         found = []
         for _ in range(times):
             self.run_to(address, lambda: None)
-            found.append(int.from_bytes(bytes.fromhex(self._ask(f"p{number:x}")), "little"))
+            found.append(self.register(number))
             self._ask("s")  # off the place, or the board would never leave it
         return found
+
+    def register(self, number):
+        return int.from_bytes(bytes.fromhex(self._ask(f"p{number:x}")), "little")
 
     def set_register(self, number, value):
         self._expect_ok(f"P{number:x}={value.to_bytes(4, 'little').hex()}")

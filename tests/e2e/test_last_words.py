@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 import rsc
-from board import FIRMWARE
+from board import FIRMWARE, NAME
 from debugger import DebuggedTest, endless_loop
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
@@ -17,7 +17,7 @@ from counting import symbols  # noqa: E402
 PATIENCE = 20
 NOWHERE = 0xA000_0000  # nothing may run there
 PC = 15
-IN_SAFETY = "robosync::Runtime::look_at_rules()"
+IN_SAFETY = "robosync::Runtime::look_at_rules(unsigned long long)"
 
 
 class LastWords(DebuggedTest):
@@ -42,7 +42,7 @@ class LastWords(DebuggedTest):
         self.assertEqual((status["reset_reason"], status["last_fault"]), ("power", None))
         line = json.loads(self.first_line("--format", "json"))
         self.assertEqual((line["event"], line["reset_reason"], line["last_fault"]), ("board", "power", None))
-        self.assertRegex(self.first_line(), r"^ +board  mps2-an386, up [\d.]+ s \(reset: power\), .* 0 faults$")
+        self.assertRegex(self.first_line(), rf"^ +board  {NAME}, up [\d.]+ s \(reset: power\), .* 0 faults$")
 
     def test_a_fault_of_the_safety_thread_is_told_after_the_reset(self):
         self.send_safety_to(NOWHERE)
