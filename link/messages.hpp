@@ -8,7 +8,7 @@
 
 namespace robosync::link {
 
-inline constexpr std::uint8_t kProtocolVersion = 4;
+inline constexpr std::uint8_t kProtocolVersion = 5;
 inline constexpr std::size_t kMaxPayload = 240;
 inline constexpr std::size_t kNameLength = 16;  // NUL-padded
 using Name = std::array<char, kNameLength>;
@@ -121,6 +121,17 @@ struct Fault {
   std::uint32_t address;  // MMFAR/BFAR, 0 when not valid
   std::uint32_t pc, lr, sp, xpsr;
   std::array<std::uint32_t, 13> r;  // r0–r12
+};
+
+// How it stands on the buses, since the running program began.
+struct Devices {
+  std::uint32_t asked;   // bit s: sensor s of the program has been measured on its bus
+  std::uint32_t silent;  // bit s: … and does not answer
+  std::uint16_t
+      bus_clears;  // since start-up: a device held the data line down, and was given clocks to let go
+  std::uint8_t held;  // bit b: a line of bus b is held down, so that nobody on it can answer
+  std::uint8_t reserved;
+  std::array<std::uint16_t, 32> failed;  // by sensor: transfers; 65535: that many or more
 };
 
 struct TraceOn {

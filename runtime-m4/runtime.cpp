@@ -127,7 +127,10 @@ std::uint32_t Runtime::choose_seed(std::uint32_t of_image) const {
 
 void Runtime::end_program() {
   faults_ += threads_.stopped();
-  running_ = false;
+  {
+    const auto lock = kernel_.lock();
+    running_ = begun_ = false;
+  }
   threads_.dismiss();
   control_.release_all();
   halted_ = false;
@@ -217,6 +220,13 @@ void Runtime::fill_status(link::Status& status) const {
   status.reset_reason = board_.reset_reason();
 }
 
+void Runtime::fill_devices(link::Devices& devices) const {
+  const boards::BusState buses = board_.buses();
+  devices.bus_clears = buses.clears;
+  devices.held = buses.held;
+  if (running_) sensors_.fill_devices(devices);
+}
+
 void Runtime::hold_to_budgets(bool alive) {
   if (alive) return budget_.forget();
   kernel::Thread* const over = budget_.look(kernel_);
@@ -235,15 +245,15 @@ void Runtime::halt(kernel::Duration stuck_for) {
 
 // What is unknown when program time begins trips before the first step: no thread of the program has
 // run since.
-kernel::Time Runtime::look_at_rules() {
-  if (!running_) return kernel::kForever;
+kernel::Time Runtime::look_at_rules(kernel::Time now) {
+  if (!begun_ && !running_) return kernel::kForever;
   sensors_.deliver_due();
   if (!begun_ && !sensors_.knows_enough()) {
     if (simulated()) return kernel::kForever;
-    if (kernel_.now() < trace_.activated_at()) return trace_.activated_at();
+    if (now < trace_.activated_at()) return trace_.activated_at();
   }
   if (!begun_) begin();
-  return safety_rules_.look();
+  return safety_rules_.look(now);
 }
 
 }  // namespace robosync

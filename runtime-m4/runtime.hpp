@@ -79,6 +79,7 @@ public:
 
   // Everything but what only the link knows: bad_frames and lost_events.
   void fill_status(link::Status& status) const;
+  void fill_devices(link::Devices& devices) const;
   bool running() const override { return running_; }
   const vm::Image& image() const { return shared_.program.image; }  // of the running program
   const vm::Limits& limits() const { return limits_; }
@@ -109,7 +110,7 @@ private:
   std::uint32_t progress() const override { return shared_.processing.passes(); }
   void hold_to_budgets(bool alive) override;
   void halt(kernel::Duration stuck_for) override;
-  kernel::Time look_at_rules() override;
+  kernel::Time look_at_rules(kernel::Time now) override;
   void tend_outputs() override { outputs_.go_on(kernel_.now()); }
   void obey() override;
   kernel::Time began() const override { return trace_.activated_at(); }
@@ -134,7 +135,7 @@ private:
   std::atomic<bool> running_ = false;
   std::atomic<bool> stopped_ = false;  // what the person has said last
   bool halted_ = false;                // this program, by safety
-  bool begun_ = false;                 // its program time
+  bool begun_ = false;                 // its program time; only while it runs
   std::uint16_t activations_ = 0;
   std::uint32_t given_seed_ = 0;
   unsigned faults_ = 0;  // of programs that are gone

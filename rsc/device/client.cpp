@@ -134,6 +134,10 @@ link::Fault Client::last_fault() {
   return request<link::Fault>(MessageType::get_fault, MessageType::last_fault);
 }
 
+link::Devices Client::devices() {
+  return request<link::Devices>(MessageType::get_devices, MessageType::devices);
+}
+
 link::Status Client::clear(std::uint32_t image_crc) {
   return request<link::Status>(MessageType::clear, MessageType::status,
                                link::wire_bytes(link::Clear{image_crc}));

@@ -33,6 +33,7 @@ public:
   link::HelloReply hello();
   link::Status status();
   link::Fault last_fault();  // of those the board has kept; no thread: there was none
+  link::Devices devices();   // that the running program measures
   link::Status clear(std::uint32_t image_crc);  // ends the program, if it runs
   link::Status set_trace(bool on);
   // All outputs to their safe state, until resume(). The board does it when the frame has come, and replies when it

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "link/events.hpp"
+#include "rsc/device/devices.hpp"
 #include "rsc/device/past.hpp"
 #include "rsc/device/threads.hpp"
 #include "rsc/failure.hpp"
@@ -82,18 +83,24 @@ void Watch::learn_threads() {
 
 void Watch::introduce() {
   const Past past(session_.client);
+  std::vector<OnBus> silent;
+  if (names_.image != nullptr) silent = on_buses(image_, session_.client.devices());
+  std::erase_if(silent, [](const OnBus& device) { return !device.silent; });
   if (format_ == Format::json) {
     const Json line{{"event", "board"},
                     {"name", text_of(session_.board.board)},
                     {"uptime_us", past.status.uptime_us},
                     {"reset_reason", reset_reason(past.status)},
                     {"faults", past.status.faults},
-                    {"last_fault", last_fault_json(past)}};
+                    {"last_fault", last_fault_json(past)},
+                    {"silent", devices_json(silent)}};
     std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   } else {
     std::cout << fmt::format("        board  {}, up {}{}\n", text_of(session_.board.board),
                              past_text(past.status),
                              past.has_fault() ? "; last fault: " + fault_text(past.fault) : "");
+    for (const OnBus& device : silent)
+      std::cout << "       silent  " << silent_text(device) << '\n';
   }
   std::cout.flush();
 }

@@ -18,7 +18,7 @@ public:
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
 
-  // One line: which board it is, why it has started, and its last fault.
+  // One line: which board it is, why it has started, and its last fault. Then one for each device that does not answer.
   void introduce();
   // Writes to stdout, one line each (and with `threads` the list of them once a second), until the
   // duration is over or the user interrupts (Ctrl-C).

@@ -134,7 +134,12 @@ std::int16_t EventReader::base_priority() const {
 
 // ---- other names
 
+const vm::Sensor* EventReader::sensor() const {
+  return at(&vm::Image::sensors, event_.subject);
+}
 std::string EventReader::sensor_name() const {
+  if (shape_.subject == About::sensor)
+    return name_at(&vm::Image::sensors, event_.subject, "sensor");
   const vm::Channel* const channel = at(&vm::Image::channels, event_.subject);
   return channel == nullptr ? "?" : name_at(&vm::Image::sensors, channel->sensor, "sensor");
 }

@@ -16,6 +16,7 @@ namespace robosync::tool {
 // What the subject and the object of an event are (events.def).
 enum class About : std::uint8_t {
   none,
+  sensor,
   channel,
   variable,
   rule,
@@ -63,7 +64,8 @@ public:
   std::string rule_name() const;
   std::int16_t base_priority() const;  // of the behaviour it is about, as it is written
   std::string behavior_name(std::uint16_t index) const;
-  std::string sensor_name() const;   // of the channel that is the subject
+  std::string sensor_name() const;   // the subject, or that of the channel that is it
+  const vm::Sensor* sensor() const;  // the subject; nullptr when the image does not have it
   std::string channel_name() const;  // without its sensor
   std::string variable_name() const;
   bool is_signal() const;  // the variable is one

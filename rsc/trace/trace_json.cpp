@@ -2,6 +2,7 @@
 #include <array>
 #include <string_view>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "compiler/config/units.hpp"
@@ -43,8 +44,19 @@ void add_rule(Json& object, const EventReader& reader) {
   object["line"] = rule->line;
 }
 
+void add_device(Json& object, const EventReader& reader) {
+  object["sensor"] = reader.sensor_name();
+  const vm::Sensor* const sensor = reader.sensor();
+  if (sensor == nullptr) return;
+  object["bus"] = sensor->bus;
+  object["address"] = fmt::format("0x{:02x}", sensor->address);
+}
+
 void add_subject(Json& object, const EventReader& reader) {
   switch (reader.shape().subject) {
+    case About::sensor:
+      add_device(object, reader);
+      break;
     case About::channel:
       object["sensor"] = reader.sensor_name();
       object["channel"] = reader.channel_name();

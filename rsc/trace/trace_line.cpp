@@ -100,6 +100,15 @@ std::string priority_words(const EventReader& reader) {
   return fmt::format("{} has priority {} now, in place of {}", behavior, reader.value(0), written);
 }
 
+std::string device_words(const EventReader& reader) {
+  std::string text = reader.sensor_name();
+  if (const vm::Sensor* const sensor = reader.sensor())
+    text += fmt::format(" at address 0x{:02x} on i2c bus {}", sensor->address, sensor->bus);
+  const bool silent = reader.event().kind == EventKind::silent;
+  return text + fmt::format(" {} ({} failed transfers so far)",
+                            silent ? "does not answer" : "answers again", reader.value(0));
+}
+
 std::string other_words(const EventReader& reader) {
   switch (reader.event().kind) {
     case EventKind::activated:
@@ -125,6 +134,9 @@ std::string other_words(const EventReader& reader) {
       return fmt::format("{} is late by {} us", reader.thread_name(), reader.value(0));
     case EventKind::priority:
       return priority_words(reader);
+    case EventKind::silent:
+    case EventKind::answers:
+      return device_words(reader);
     default:
       return std::string(reader.shape().name);
   }

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
+#include "rsc/device/devices.hpp"
 #include "rsc/device/past.hpp"
 #include "rsc/device/session.hpp"
 #include "rsc/device/threads.hpp"
@@ -90,15 +91,41 @@ Json status_json(const Past& past) {
           {"last_fault", last_fault_json(past)}};
 }
 
+// What stands on the board's buses: `said` by the board, of the program in `bytes`.
+struct Buses {
+  Buses(std::span<const std::byte> bytes, const link::Devices& said) : clears(said.bus_clears) {
+    vm::Image image;
+    if (vm::verify(bytes, vm::Limits{}, image).ok()) devices = on_buses(image, said);
+  }
+  std::vector<OnBus> devices;
+  unsigned clears;
+};
+
+std::string buses_text(const Buses& buses) {
+  if (buses.devices.empty() && buses.clears == 0) return {};
+  unsigned failed = 0;
+  for (const OnBus& device : buses.devices)
+    failed += device.failed;
+  std::string text = fmt::format("buses     {} sensors, {} failed transfers, {} bus clears\n",
+                                 buses.devices.size(), failed, buses.clears);
+  for (const OnBus& device : buses.devices) {
+    if (device.silent) text += "silent    " + silent_text(device) + '\n';
+    if (!device.silent && device.failed != 0)
+      text += fmt::format("failed    {}: {} transfers\n", device.name, device.failed);
+  }
+  return text;
+}
+
 void print_json(const link::HelloReply& board, std::span<const std::byte> image, const Past& past,
-                const std::vector<link::ThreadInfo>& threads) {
+                const Buses& buses, const std::vector<link::ThreadInfo>& threads) {
   Json report{{"board", board_json(board, image)}, {"status", status_json(past)}};
+  report["buses"] = {{"clears", buses.clears}, {"devices", devices_json(buses.devices)}};
   report["threads"] = threads_json(threads, {});
   std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
 void print_human(const link::HelloReply& board, std::span<const std::byte> image, const Past& past,
-                 const std::vector<link::ThreadInfo>& threads) {
+                 const Buses& buses, const std::vector<link::ThreadInfo>& threads) {
   const link::Status& status = past.status;
   std::cout << fmt::format("board     {}, firmware {}, protocol {}\n", text_of(board.board),
                            text_of(board.firmware), board.protocol);
@@ -117,6 +144,7 @@ void print_human(const link::HelloReply& board, std::span<const std::byte> image
   if (past.has_fault()) std::cout << "fault     " << fault_text(past.fault) << '\n';
   std::cout << fmt::format("safety    {} checks, latest by {} us\n", status.safety_checks,
                            status.safety_late_us);
+  std::cout << buses_text(buses);
   std::cout << fmt::format("line      {} bad frames, {} lost events\n\n", status.bad_frames,
                            status.lost_events);
   std::cout << threads_table(threads, {});
@@ -127,8 +155,9 @@ void info(const std::string& port, Format format) {
   const Past past(session.client);
   const std::vector<link::ThreadInfo> threads = session.client.threads();
   const std::vector<std::byte> image = session.client.running_image();
-  format == Format::json ? print_json(session.board, image, past, threads)
-                         : print_human(session.board, image, past, threads);
+  const Buses buses(image, session.client.devices());
+  format == Format::json ? print_json(session.board, image, past, buses, threads)
+                         : print_human(session.board, image, past, buses, threads);
 }
 
 }  // namespace

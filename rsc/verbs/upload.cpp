@@ -4,11 +4,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
+#include "rsc/device/devices.hpp"
 #include "rsc/device/serial_transport.hpp"
 #include "rsc/device/uploader.hpp"
 #include "rsc/failure.hpp"
@@ -37,7 +39,8 @@ void show_progress(std::size_t sent, std::size_t total) {
   std::cerr.flush();
 }
 
-void report(const SendOptions& options, const UploadResult& result, const Program& program) {
+void report(const SendOptions& options, const UploadResult& result, const Program& program,
+            const std::vector<OnBus>& silent) {
   const std::size_t bytes = result.bytes;
   const double ms = static_cast<double>(result.time.count()) / 1000;
   const double wire_ms = static_cast<double>(bytes) * kBitsPerByte / kBaudRate * 1000;
@@ -49,8 +52,9 @@ void report(const SendOptions& options, const UploadResult& result, const Progra
                                         {"wire_time_ms", wire_ms},
                                         {"frames", result.frames_sent},
                                         {"program", hash},
-                                        {"uptime_us", result.activation.uptime_us}}
-                     .dump()
+                                        {"uptime_us", result.activation.uptime_us},
+                                        {"silent", devices_json(silent)}}
+                     .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
     return;
   }
@@ -59,6 +63,8 @@ void report(const SendOptions& options, const UploadResult& result, const Progra
       "{:.3f} s after start-up\n",
       options.file, bytes, ms, wire_ms, hash,
       static_cast<double>(result.activation.uptime_us) / 1e6);
+  for (const OnBus& device : silent)
+    std::cerr << "warning: " << silent_text(device) << '\n';
 }
 
 void upload(const SendOptions& options) {
@@ -70,7 +76,7 @@ void upload(const SendOptions& options) {
   constexpr milliseconds kAnswer{2000};
   Session session(options.port, std::min(how.timeout.value_or(kAnswer), kAnswer));
   const UploadResult result = upload_program(session, program, how);
-  report(options, result, program);
+  report(options, result, program, silent_after_start(session.client, program.image()));
 }
 
 }  // namespace

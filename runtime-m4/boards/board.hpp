@@ -20,6 +20,12 @@ struct LineEvents {
   void* argument = nullptr;
 };
 
+// How it stands on the I2C buses.
+struct BusState {
+  std::uint16_t clears = 0;  // a device held the data line down, and was given clocks to let go
+  std::uint8_t held = 0;     // bit b: a line of bus b was held down when somebody wanted it last
+};
+
 class Board {
 public:
   virtual const char* name() const = 0;
@@ -28,9 +34,11 @@ public:
   // What programs may do with the pins. It never changes.
   virtual const policy::BoardPins& pins() const = 0;
   // One I2C transaction: writes `out`, then (repeated start) reads `in`. False when the device does
-  // not acknowledge or there is no such bus. Takes at most a few milliseconds.
+  // not acknowledge, a line is held down or there is no such bus. Takes at most a few milliseconds; where a line is held
+  // down for good, as long only once.
   virtual bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                             std::span<std::byte> in) = 0;
+  virtual BusState buses() const = 0;
   // Pulse width on a PWM pin in microseconds, 20 ms frame; 0 switches the output off.
   virtual void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) = 0;
   virtual std::uint32_t pwm_read(std::uint16_t pin) const = 0;

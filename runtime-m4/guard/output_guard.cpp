@@ -16,6 +16,13 @@ constexpr OutputGuard::Mask bit(unsigned actuator) {
   return OutputGuard::Mask{1} << actuator;
 }
 
+// 0 is off, and always may be.
+std::uint16_t within(const policy::PinLimit& limit, std::uint32_t pulse_us) {
+  if (pulse_us == 0) return 0;
+  return static_cast<std::uint16_t>(
+      std::clamp<std::uint32_t>(pulse_us, limit.shortest, limit.longest));
+}
+
 bool drives(const vm::Image& image, std::uint16_t pin, vm::DriverId driver) {
   return std::ranges::any_of(image.actuators, [&](const vm::Actuator& actuator) {
     return actuator.pin == pin && actuator.driver == driver;
@@ -56,7 +63,7 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
                  .pulse = pulse,
                  .target = pulse,
                  .changed = 0,
-                 .safe = safe ? static_cast<std::uint16_t>(*safe) : kStays,
+                 .safe = safe ? within(*limit, *safe) : kStays,
                  .limit = static_cast<std::uint8_t>(limit - limits_),
                  .driver = actuator.driver};
     owned |= bit(a);
@@ -70,20 +77,19 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
 [[gnu::noinline]] void OutputGuard::drive(unsigned actuator, std::uint32_t pulse_us,
                                           kernel::Time now) {
   const auto lock = kernel_.lock();
-  if ((free_ & bit(actuator)) != 0) aim(actuator, pulse_us, now);
+  if ((free_ & bit(actuator)) != 0)
+    settle(actuator, within(limits_[slots_[actuator].limit], pulse_us), now);
 }
 
-[[gnu::always_inline]] inline void OutputGuard::aim(unsigned actuator, std::uint32_t pulse_us,
-                                                    kernel::Time now) {
+// `pulse` is inside the limits.
+[[gnu::always_inline]] inline void OutputGuard::settle(unsigned actuator, std::uint16_t pulse,
+                                                       kernel::Time now) {
   Slot& slot = slots_[actuator];
-  const policy::PinLimit& limit = limits_[slot.limit];
-  std::uint32_t target = pulse_us;
-  if (target != 0) target = std::clamp<std::uint32_t>(target, limit.shortest, limit.longest);
-  slot.target = static_cast<std::uint16_t>(target);
-  if (limit.rise != 0) [[unlikely]]
+  slot.target = pulse;
+  if (limits_[slot.limit].rise != 0) [[unlikely]]
     return put(actuator, now);
-  slot.pulse = slot.target;
-  board_.pwm_write(slot.pin, target);
+  slot.pulse = pulse;
+  board_.pwm_write(slot.pin, pulse);
 }
 
 void OutputGuard::go_on(kernel::Time now) {
@@ -132,7 +138,7 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
 void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
   const auto lock = kernel_.lock();
   Slot& slot = slots_[actuator];
-  if (slot.safe != kStays && slot.pulse != 0) return aim(actuator, slot.safe, now);
+  if (slot.safe != kStays && slot.pulse != 0) return settle(actuator, slot.safe, now);
   slot.target = slot.pulse;
   lagging_ &= ~bit(actuator);
 }

@@ -46,14 +46,14 @@ private:
     std::uint16_t pulse;    // what is on the pin
     std::uint16_t target;   // where it goes, as far as it may
     std::uint16_t changed;  // when it was written last, in ms; of pins with a limited rise
-    std::uint16_t safe;     // the pulse of the safe state, or kStays
+    std::uint16_t safe;     // the pulse of the safe state, inside the limits, or kStays
     std::uint8_t limit;     // in the board's list
     vm::DriverId driver;
   };
 
   static constexpr std::uint16_t kStays = UINT16_MAX;
 
-  void aim(unsigned actuator, std::uint32_t pulse_us, kernel::Time now);
+  void settle(unsigned actuator, std::uint16_t pulse, kernel::Time now);
   void put(unsigned actuator, kernel::Time now);
   void make_safe(unsigned actuator, kernel::Time now);
   std::uint16_t next_pulse(Slot& slot, std::uint16_t rise, bool pulses, kernel::Time now) const;

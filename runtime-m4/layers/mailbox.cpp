@@ -72,7 +72,7 @@ kernel::Time Mailboxes::expires_at(unsigned channel, const vm::Channel& wiring) 
   if (!box.is_known()) return kernel::kForever;
   if (has(forgotten_, channel)) return 0;
   if (wiring.stale_ms == 0) return kernel::kForever;
-  return box.sampled_at() + kernel::milliseconds(wiring.stale_ms) + kernel::kTick;
+  return box.sampled_at() + life_of(wiring);
 }
 
 }  // namespace robosync::layers

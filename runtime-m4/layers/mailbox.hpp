@@ -32,9 +32,13 @@ public:
   bool has_announced() const { return announced_ != 0; }
   ChannelMask take_announced();
   vm::Value value(unsigned channel) const { return boxes_[channel].value; }
-  // For the safety thread, which does not wait for expire(): unknown as soon as it is too old.
+  // For the safety thread, which does not wait for expire(): unknown as soon as it is too old. Nobody who posts
+  // interrupts it, so it needs no lock.
   vm::Value fresh_value(unsigned channel, const vm::Channel& wiring, kernel::Time now) const {
-    return now < expires_at(channel, wiring) ? value(channel) : vm::kUnknown;
+    const Mailbox& box = boxes_[channel];
+    if (has(forgotten_, channel)) return vm::kUnknown;
+    return wiring.stale_ms == 0 || now < box.sampled_at() + life_of(wiring) ? box.value
+                                                                            : vm::kUnknown;
   }
   // Those, but for `fresh` ones, whose last sample is older than channel.stale_ms, or that were
   // forgotten; each once. They are unknown from now on.
@@ -63,6 +67,10 @@ private:
     std::uint32_t sampled_high_ = 0;
   };
 
+  // Of a reading, where wiring.stale_ms is not 0.
+  static kernel::Duration life_of(const vm::Channel& wiring) {
+    return kernel::milliseconds(wiring.stale_ms) + kernel::kTick;
+  }
   [[nodiscard]] ChannelMask expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,
                                        kernel::Time now);
   [[nodiscard]] bool expire(unsigned channel, const vm::Channel& wiring, kernel::Time now);

@@ -32,10 +32,10 @@ bool SensorLayer::start(const LoadedProgram& program, Sampler& sampler, bool sim
 
 bool SensorLayer::start_sensor(unsigned sensor, ProgramThreads& threads) {
   Unit& unit = units_[sensor];
-  unit = {this, nullptr, static_cast<std::uint8_t>(sensor)};
+  unit = {.layer = this, .thread = nullptr, .contact = {}};
   const auto entry = [](void* self) {
     const auto& mine = *static_cast<Unit*>(self);
-    mine.layer->run_sensor(mine.sensor);
+    mine.layer->run_sensor(static_cast<unsigned>(&mine - mine.layer->units_.data()));
   };
   kernel::ThreadSpec spec;
   spec.name = name_of(program_->image, program_->image.sensors[sensor].name, "sensor");
@@ -126,12 +126,37 @@ kernel::Time SensorLayer::next_sample(unsigned sensor, kernel::Time last) {
 void SensorLayer::sample(unsigned sensor) {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
   ChannelMask news = 0;
+  unsigned failed = 0;
   for (unsigned i = 0; i < wiring.channel_count; ++i) {
     const auto channel = static_cast<std::uint8_t>(wiring.first_channel + i);
     vm::Value value = 0;
-    if (sampler_->sample(program_->image, channel, value)) news |= publish(channel, value);
+    if (sampler_->sample(program_->image, channel, value)) {
+      news |= publish(channel, value);
+    } else {
+      ++failed;
+    }
   }
   announce(news);
+  note_contact(sensor, failed);
+}
+
+// What is made up comes from no device.
+void SensorLayer::note_contact(unsigned sensor, unsigned failed) {
+  Contact& contact = units_[sensor].contact;
+  const Contact::News news = contact.note(failed);
+  if (news == Contact::News::none || simulated_) return;
+  const auto kind =
+      news == Contact::News::silent ? link::EventKind::silent : link::EventKind::answers;
+  trace_.emit(kind, trace_.now(), sensor, 0, contact.failed());
+}
+
+void SensorLayer::fill_devices(link::Devices& devices) const {
+  for (std::size_t s = 0; s < std::min(units_.size(), devices.failed.size()); ++s) {
+    const Contact& contact = units_[s].contact;
+    if (contact.asked()) devices.asked |= std::uint32_t{1} << s;
+    if (contact.silent()) devices.silent |= std::uint32_t{1} << s;
+    devices.failed[s] = contact.failed();
+  }
 }
 
 void SensorLayer::run_feeds() {

@@ -2,7 +2,8 @@
 // thread for all sensors that are fed, since what they wait for is one queue.
 //
 // A reading is clamped to its channel's range and published only if it is news (mailbox.hpp). A
-// sample that fails publishes nothing; if it goes on failing, the channel becomes unknown by age.
+// sample that fails publishes nothing; if it goes on failing, the channel becomes unknown by age. Devices that do not
+// answer are noted and told of (contact.hpp).
 // All readings that one sensor takes at one time, and all feeds that are due at one tick, enter the
 // same step: that of their tick, before its timers, for who looks at it first delivers what is due
 // (deliver_due()).
@@ -15,6 +16,7 @@
 #include "link/messages.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/alarm.hpp"
+#include "runtime-m4/layers/contact.hpp"
 #include "runtime-m4/layers/feed_queue.hpp"
 #include "runtime-m4/layers/loaded_program.hpp"
 #include "runtime-m4/layers/mailbox.hpp"
@@ -50,6 +52,8 @@ public:
 
   // A reading for a fed channel, of a program that runs.  [link thread]
   link::FeedResult feed(const link::Feed& feed);
+  // What is known of the devices that are measured.  [link thread]
+  void fill_devices(link::Devices& devices) const;
 
   // Publishes the feeds that are due. The step and the safety thread outrank the one that serves the
   // feeds: each calls this before it asks what is known, and what is due.  [thread]
@@ -68,7 +72,7 @@ private:
   struct Unit {
     SensorLayer* layer = nullptr;
     kernel::Thread* thread = nullptr;  // null: it is fed
-    std::uint8_t sensor = 0;
+    Contact contact;
   };
 
   [[nodiscard]] bool start_sensor(unsigned sensor, ProgramThreads& threads);
@@ -81,6 +85,7 @@ private:
   void run_feeds();
   kernel::Time next_sample(unsigned sensor, kernel::Time last);
   void sample(unsigned sensor);
+  void note_contact(unsigned sensor, unsigned failed);
   [[gnu::noinline]] void deliver();
   ChannelMask publish(std::uint8_t channel, vm::Value value);
   void announce(ChannelMask channels);

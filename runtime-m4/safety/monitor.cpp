@@ -28,7 +28,7 @@ void Monitor::run() {
       without_progress_ = 0;
     }
     if ((why & kNews) != 0 || now >= std::min(due, rules_due))
-      rules_due = supervised_.look_at_rules();
+      rules_due = supervised_.look_at_rules(now);
     if (now < due) continue;
     check(now - due);
     due = next_after(due, now);

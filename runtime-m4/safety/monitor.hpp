@@ -38,8 +38,8 @@ public:
   virtual void tend_outputs() = 0;
   // A person has said stop, or resume.
   virtual void obey() = 0;
-  // Evaluates the safety rules. Returns when a time word of theirs is due.
-  virtual kernel::Time look_at_rules() = 0;
+  // Evaluates the safety rules; it is `now`. Returns when a time word of theirs is due.
+  virtual kernel::Time look_at_rules(kernel::Time now) = 0;
   virtual bool running() const = 0;        // is there a program?
   virtual kernel::Time began() const = 0;  // its time 0, or when that will be there at the latest
 

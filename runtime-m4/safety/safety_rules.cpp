@@ -24,14 +24,14 @@ void SafetyRules::start(const layers::LoadedProgram& program, layers::Memory& me
   program_ = &program;
   tripped_.start(memory.take<policy::Part::tripped, layers::RuleSet::Word>());
   output_ = memory.take<policy::Part::safety_output, vm::Word>();
-  layers_.alarm.watch(program.image.has_safety() ? program.inputs[vm::kSafetyBehavior] : 0);
-  if (program.image.has_safety()) machine_ = layers_.frames.machine(program, vm::kSafetyBehavior);
+  are_there_ = program.image.has_safety();
+  layers_.alarm.watch(are_there_ ? program.inputs[vm::kSafetyBehavior] : 0);
+  if (are_there_) machine_ = layers_.frames.machine(program, vm::kSafetyBehavior);
 }
 
-kernel::Time SafetyRules::look() {
-  if (!program_->image.has_safety()) return kernel::kForever;
+kernel::Time SafetyRules::look(kernel::Time now) {
+  if (!are_there_) return kernel::kForever;
   const vm::Image& image = program_->image;
-  const kernel::Time now = kernel_.now();
   layers::Frames::latch(machine_, image, rules(), [&](std::uint8_t input) {
     if (program_->is_variable(input)) return snapshot().value(input);
     return layers_.mailboxes.fresh_value(input, image.channels[input], now);
@@ -40,7 +40,7 @@ kernel::Time SafetyRules::look() {
   machine_.wake = vm::Machine::kNever;
   for (unsigned r = rules().first_rule; r < rules().first_rule + 0U + rules().rule_count; ++r)
     if (image.rules[r].kind == vm::RuleKind::safety) evaluate(r, now);
-  return next_look();
+  return next_look(now);
 }
 
 // Where it trips, the pins come first and all else behind them. The resume condition is evaluated in any case: it may
@@ -107,10 +107,10 @@ ActuatorMask SafetyRules::halted_by(unsigned rule) const {
   return image.responses[image.rules[rule].then_response].actuators;
 }
 
-kernel::Time SafetyRules::next_look() const {
+kernel::Time SafetyRules::next_look(kernel::Time now) const {
   if (machine_.wake == vm::Machine::kNever) return kernel::kForever;
   const std::uint32_t delay = std::max<std::uint32_t>(machine_.wake - machine_.now, 1);
-  return kernel_.now() + kernel::milliseconds(delay);
+  return now + kernel::milliseconds(delay);
 }
 
 }  // namespace robosync::safety

@@ -45,8 +45,8 @@ public:
   // Nothing is tripped. `program` must stay until the next start().
   void start(const layers::LoadedProgram& program, layers::Memory& memory);
 
-  // Evaluates all rules. Returns when a time word of theirs is due.  [safety thread]
-  kernel::Time look();
+  // Evaluates all rules; it is `now`. Returns when a time word of theirs is due.  [safety thread]
+  kernel::Time look(kernel::Time now);
 
 private:
   void evaluate(unsigned rule, kernel::Time now);
@@ -55,7 +55,7 @@ private:
   void resume(unsigned rule);
   void act(const vm::Output& said);
   layers::ActuatorMask halted_by(unsigned rule) const;
-  kernel::Time next_look() const;
+  kernel::Time next_look(kernel::Time now) const;
   const layers::Snapshot& snapshot() const { return layers_.processing.snapshot(); }
   const vm::Behavior& rules() const { return program_->image.behaviors[vm::kSafetyBehavior]; }
 
@@ -64,6 +64,7 @@ private:
   kernel::Thread& step_thread_;
   kernel::Events acted_;  // signalled when something was set
   const layers::LoadedProgram* program_ = nullptr;
+  bool are_there_ = false;
   layers::RuleSet tripped_;
   vm::Machine machine_;
   std::span<vm::Word> output_;

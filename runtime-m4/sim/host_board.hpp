@@ -18,6 +18,7 @@ public:
 
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
+  boards::BusState buses() const override { return {}; }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override { pulses_[pin] = pulse_us; }
   std::uint32_t pwm_read(std::uint16_t pin) const override;
 

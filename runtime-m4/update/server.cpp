@@ -120,6 +120,8 @@ void Server::handle(const link::Frame& frame) {
       return feed(frame);
     case MessageType::get_fault:
       return last_fault(frame.sequence);
+    case MessageType::get_devices:
+      return devices(frame.sequence);
     case MessageType::get_status:
       return status(frame.sequence);
     case MessageType::stop:
@@ -253,6 +255,12 @@ void Server::status(std::uint8_t sequence) {
   answer.bad_frames = decoder_.bad_frames() + bad_requests_;
   answer.lost_events = ring_.lost();
   send(MessageType::status, sequence, link::wire_bytes(answer));
+}
+
+void Server::devices(std::uint8_t sequence) {
+  link::Devices answer{};
+  runtime_.fill_devices(answer);
+  send(MessageType::devices, sequence, link::wire_bytes(answer));
 }
 
 void Server::clear(const link::Frame& frame) {

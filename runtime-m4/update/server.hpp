@@ -67,6 +67,7 @@ private:
   void resume(std::uint8_t sequence);
   void status(std::uint8_t sequence);
   void last_fault(std::uint8_t sequence);
+  void devices(std::uint8_t sequence);
   void read_image(const link::Frame& frame);
   void clear(const link::Frame& frame);
   void trace_on(const link::Frame& frame);

@@ -152,6 +152,43 @@ TEST_CASE("upload, info, feed and monitor against a running robot") {
   CHECK(outcome.exit == 0);
 }
 
+TEST_CASE("a sensor whose bus is held down is told at the upload, by info and by monitor") {
+  const Device device;
+  device.write("robot.json", R"({
+    "sensors": [{"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
+                 "channels": {"LEVEL": {"input": 0, "range": [0, 10]}}}],
+    "actuators": [{"name": "arm", "type": "VIRTUAL", "device": "virtual_actuator"}]})");
+  const std::string file = device.write("touch.rsl", "WHEN touch LEVEL > 5 DO\n  MOVE arm\nEND\n");
+  const auto says_held = [](const std::string& text) {
+    CHECK_THAT(text, Contains("touch at address 0x70 on i2c bus 0 does not answer (") &&
+                         Contains("a line of that bus is held down"));
+  };
+
+  Outcome outcome = device.run({"upload", file, "--config", device.path("robot.json")});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit == 0);
+  CHECK_THAT(outcome.err, Contains("warning: "));
+  says_held(outcome.err);
+  outcome = device.run({"upload", file, "--config", device.path("robot.json"), "--format", "json"});
+  const json uploaded = json::parse(outcome.out).at("silent").at(0);
+  CHECK(uploaded.at("sensor") == "touch");
+  CHECK(uploaded.at("bus_held") == true);
+
+  outcome = device.run({"info"});
+  CHECK_THAT(outcome.out, Contains("buses     1 sensors, ") && Contains(", 2 bus clears\n") &&
+                              Contains("silent    "));
+  says_held(outcome.out);
+  const json buses = json::parse(device.run({"info", "--format", "json"}).out).at("buses");
+  CHECK(buses.at("clears") == 2);
+  CHECK(buses.at("devices").at(0).at("answers") == false);
+
+  outcome = device.run({"monitor", "--duration", "200ms"});
+  CHECK_THAT(outcome.out, Contains("       silent  "));
+  says_held(outcome.out);
+  outcome = device.run({"monitor", "--duration", "200ms", "--format", "json"});
+  CHECK(json::parse(outcome.out.substr(0, outcome.out.find('\n'))).at("silent").size() == 1);
+}
+
 TEST_CASE("a program this board cannot run is refused before it is sent, and the old one goes on") {
   const Device device(12 * 1024);  // less than the board that robot.json is for
   REQUIRE(device.run({"upload", device.program}).exit == 0);

@@ -228,3 +228,20 @@ TEST_CASE("any event of any image is shown, whatever its numbers") {
     }
   }
 }
+
+TEST_CASE("a device on a bus is told of with where it is; without an image by its number") {
+  const Event silent = event(EventKind::silent, 1, 0, {3});
+  CHECK(as_json(silent) ==
+        json::parse(R"({"t_us":1020000,"step":7,"event":"silent","sensor":"proximity",
+                                           "bus":0,"address":"0x00","failed":3})"));
+  CHECK(as_words(silent) ==
+        "   1.020 s  proximity at address 0x00 on i2c bus 0 does not answer (3 failed transfers so "
+        "far)");
+  const Event answers = event(EventKind::answers, 1, 0, {8});
+  CHECK_THAT(as_words(answers), Catch::Contains("answers again (8 failed transfers so far)"));
+  CHECK(tool::trace_line(answers, {}) ==
+        "   1.020 s  sensor 1 answers again (8 failed transfers so far)");
+  CHECK(
+      json::parse(tool::trace_json(answers, {})) ==
+      json::parse(R"({"t_us":1020000,"step":7,"event":"answers","sensor":"sensor 1","failed":8})"));
+}

@@ -40,6 +40,7 @@ public:
     }
     return acknowledges;
   }
+  boards::BusState buses() const override { return bus_state; }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override {
     pulses[pin].push_back(pulse_us);
   }
@@ -56,6 +57,7 @@ public:
   std::vector<Transfer> transfers;
   std::deque<std::byte> answers;  // bytes the next reads get; none left: no acknowledge
   bool acknowledges = true;
+  boards::BusState bus_state;
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;  // all, by pin
   policy::BoardPins board_pins = boards::kPins;
   unsigned kicks = 0;

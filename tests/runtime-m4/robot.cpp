@@ -108,6 +108,10 @@ std::string rule(const link::Event& event, const char* name) {
 std::string what(const link::Event& event, const vm::Image& image) {
   using link::EventKind;
   const auto actuator = [&] { return word_of(image, image.actuators[event.subject].name); };
+  const auto device = [&] {
+    return word_of(image, image.sensors[event.subject].name) + " " +
+           std::to_string(event.values[0]);
+  };
   switch (event.kind) {
     case EventKind::activated:
       return "activated";
@@ -160,6 +164,10 @@ std::string what(const link::Event& event, const vm::Image& image) {
       return rule_only(event, "zero_divide");
     case EventKind::priority:
       return "priority b" + std::to_string(event.subject) + " " + std::to_string(event.values[0]);
+    case EventKind::silent:
+      return "silent " + device();
+    case EventKind::answers:
+      return "answers " + device();
   }
   return "?";
 }

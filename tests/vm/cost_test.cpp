@@ -15,7 +15,6 @@
 using namespace robosync::vm;
 using namespace robosync::vm::test;
 using namespace robosync::vm::test::companion;
-using Op = Opcode;
 
 namespace {
 
@@ -32,7 +31,7 @@ public:
 
   std::vector<Word> write() {
     block(3);
-    code_.push_back(encode(Op::end));
+    code_.push_back(encode(Opcode::end));
     return code_;
   }
 
@@ -51,9 +50,9 @@ private:
   void statement(unsigned depth) {
     switch (draw(depth > 0 ? 9 : 4)) {
       case 0:
-        return put(encode(Op::add, kFirstRegister, 0, 0));
+        return put(encode(Opcode::add, kFirstRegister, 0, 0));
       case 1:
-        return put(encode(Op::cmd, left_arm, move_verb, slowly));
+        return put(encode(Opcode::cmd, left_arm, move_verb, slowly));
       case 2:
         return wait();
       case 3:
@@ -68,44 +67,44 @@ private:
         return endless(depth - 1);
     }
   }
-  void wait() { put(draw(2) == 0 ? encode(Op::wait, 0) : encode(Op::wait_done)); }
+  void wait() { put(draw(2) == 0 ? encode(Opcode::wait, 0) : encode(Opcode::wait_done)); }
   void poll() {
-    put(encode(Op::poll));
+    put(encode(Opcode::poll));
     const std::size_t start = code_.size();
     for (unsigned left = draw(3); left > 0; --left)
-      put(encode(Op::add, kFirstRegister, 0, 0));
-    put(encode_wide(Op::until, kWatchCell, since(start) + 1));
+      put(encode(Opcode::add, kFirstRegister, 0, 0));
+    put(encode_wide(Opcode::until, kWatchCell, since(start) + 1));
   }
   void choice(unsigned depth) {
     const std::size_t begin = code_.size();
     put(0);
     block(depth);
     if (draw(2) == 0) {
-      code_[begin] = encode_wide(Op::unless, kWatchCell, since(begin) - 1);
+      code_[begin] = encode_wide(Opcode::unless, kWatchCell, since(begin) - 1);
       return;
     }
     const std::size_t middle = code_.size();
     put(0);
-    code_[begin] = encode_wide(Op::unless, kWatchCell, since(begin) - 1);
+    code_[begin] = encode_wide(Opcode::unless, kWatchCell, since(begin) - 1);
     block(depth);
-    code_[middle] = encode_wide(Op::jump, 0, since(middle) - 1);
+    code_[middle] = encode_wide(Opcode::jump, 0, since(middle) - 1);
   }
   void counted(unsigned depth) {
     if (local_ > kLocals) return;
     const unsigned local = local_++;
-    put(encode_wide(Op::times, local, draw(kMostRounds)));
+    put(encode_wide(Opcode::times, local, draw(kMostRounds)));
     const std::size_t start = code_.size();
     block(depth);
-    put(encode_wide(Op::again, local, since(start) + 1));
+    put(encode_wide(Opcode::again, local, since(start) + 1));
   }
   void endless(unsigned depth) {
-    put(encode(Op::loop));
+    put(encode(Opcode::loop));
     const std::size_t start = code_.size();
     block(depth);
-    put(encode(Op::wait, 0));
+    put(encode(Opcode::wait, 0));
     block(depth);
-    put(draw(2) == 0 ? encode_wide(Op::around_always, 0, since(start) + 1)
-                     : encode_wide(Op::around, kWatchCell, since(start) + 1));
+    put(draw(2) == 0 ? encode_wide(Opcode::around_always, 0, since(start) + 1)
+                     : encode_wide(Opcode::around, kWatchCell, since(start) + 1));
   }
 
   std::mt19937 random_;
@@ -119,11 +118,12 @@ Bytes image_of(const std::vector<Word>& code) {
   for (Value times = 1; times <= kMostRounds; ++times)
     image.constants.push_back(times * kScale);
   image.inputs = {touch_level};
-  const auto truth = {encode(Op::lt_k, kFirstRegister, 0, 0), encode(Op::ret, kFirstRegister)};
+  const auto truth = {encode(Opcode::lt_k, kFirstRegister, 0, 0),
+                      encode(Opcode::ret, kFirstRegister)};
   image.rule(0, kNoIndex, truth);
   image.rule_of(RuleKind::watch, kNoIndex, truth);
-  const bool commands =
-      std::any_of(code.begin(), code.end(), [](Word word) { return opcode_of(word) == Op::cmd; });
+  const bool commands = std::any_of(code.begin(), code.end(),
+                                    [](Word word) { return opcode_of(word) == Opcode::cmd; });
   const std::uint32_t mask = commands ? 1 << left_arm : 0;
   image.responses.push_back({static_cast<std::uint16_t>(image.code.size()),
                              static_cast<std::uint16_t>(code.size()), mask});
@@ -166,38 +166,38 @@ private:
     run_.cost += cost_of(op);
     ++at_;
     switch (op) {
-      case Op::cmd:
+      case Opcode::cmd:
         ++run_.output;
         break;
-      case Op::jump:
+      case Opcode::jump:
         at_ += operand_wide(word);
         break;
-      case Op::unless:
+      case Opcode::unless:
         if (!draw_truth()) at_ += operand_wide(word);
         break;
-      case Op::times:
+      case Opcode::times:
         rounds_[operand_a(word)] = operand_wide(word) + 1U;  // the constants are 1, 2, 3
         break;
-      case Op::again:
+      case Opcode::again:
         if (--rounds_[operand_a(word)] > 0) at_ -= operand_wide(word);
         break;
-      case Op::around:
+      case Opcode::around:
         if (draw_truth()) at_ -= operand_wide(word);
         break;
-      case Op::around_always:
+      case Opcode::around_always:
         at_ -= operand_wide(word);
         break;
-      case Op::wait:
-      case Op::wait_done:
-      case Op::poll:
+      case Opcode::wait:
+      case Opcode::wait_done:
+      case Opcode::poll:
         pause();
         break;
-      case Op::until:
+      case Opcode::until:
         if (draw_truth()) break;
         at_ -= operand_wide(word);
         pause();
         break;
-      case Op::end:
+      case Opcode::end:
         at_ = code_.size();
         break;
       default:
@@ -215,7 +215,7 @@ private:
 }  // namespace
 
 TEST_CASE("no way through a drawn response is costlier than what the verifier has found") {
-  const std::uint32_t conditions = 2 * (cost_of(Op::lt_k) + cost_of(Op::ret));
+  const std::uint32_t conditions = 2 * (cost_of(Opcode::lt_k) + cost_of(Opcode::ret));
   const auto programs = robosync::test::share_of<std::uint32_t>(1500);
   unsigned accepted = 0;
   unsigned exact = 0;

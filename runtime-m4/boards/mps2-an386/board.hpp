@@ -31,6 +31,7 @@ public:
   const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
+  BusState buses() const override { return i2c_.state(); }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
   std::size_t link_write(std::span<const std::byte> bytes) override { return uart_.write(bytes); }

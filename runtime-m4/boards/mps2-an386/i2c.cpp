@@ -8,8 +8,9 @@ namespace {
 
 // Turns of the waiting loop: four cycles each, 5 µs at 25 MHz.
 constexpr unsigned kHalfBit = kClockHz / 200'000 / 4;
-// How often a clock line that a device holds down is looked at: about 1 ms.
+// As long as devices may hold the clock down in one transfer, in half bits: 1 ms.
 constexpr unsigned kStretchLimit = 200;
+constexpr unsigned kMostClocks = 9;  // a byte, and its acknowledgement
 
 void half_bit() {
   for (unsigned i = 0; i < kHalfBit; ++i)
@@ -33,17 +34,20 @@ bool I2c::is_high(std::uint32_t line) const {
 // A device may hold the clock down to gain time; not for ever.
 bool I2c::release_clock() {
   release(kI2cClock);
-  for (unsigned i = 0; i < kStretchLimit; ++i) {
+  half_bit();
+  for (; !is_high(kI2cClock); --patience_) {
+    if (patience_ == 0) return false;
     half_bit();
-    if (is_high(kI2cClock)) return true;
   }
-  return false;
+  return true;
 }
 
 bool I2c::free_bus() {
   release(kI2cData);
   if (!release_clock()) return false;
-  for (unsigned i = 0; i < 9 && !is_high(kI2cData); ++i) {
+  if (is_high(kI2cData)) return true;
+  clears_ = static_cast<std::uint16_t>(clears_ + !held_);
+  for (unsigned i = 0; i < kMostClocks && !is_high(kI2cData); ++i) {
     pull(kI2cClock);
     half_bit();
     if (!release_clock()) return false;
@@ -124,7 +128,12 @@ bool I2c::read_message(std::uint8_t address, std::span<std::byte> in) {
 }
 
 bool I2c::transfer(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in) {
-  if (!free_bus()) return false;
+  patience_ =
+      held_ ? 0
+            : kStretchLimit;  // nobody waits for ever for the same line: others want the processor
+  held_ = !free_bus();
+  if (held_) return false;
+  patience_ = kStretchLimit;
   const bool done = (out.empty() && !in.empty() ? true : write_message(address, out)) &&
                     (in.empty() ? true : read_message(address, in));
   stop();

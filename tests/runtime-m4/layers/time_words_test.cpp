@@ -75,6 +75,23 @@ TEST_CASE("COOLDOWN drops triggers after a response has started, not after one t
         "0 #1 fire r0 DO\n0 #1 log \"hi\"\n1000 #11 fire r0 DO\n1000 #11 log \"hi\"\n");
 }
 
+TEST_CASE("rules cool down by themselves") {
+  Robot robot(
+      "WHEN near X > 10\nCOOLDOWN 1s\nDO LOG \"near\"\nEND\n"
+      "WHEN near X > 0\nDO LOG \"there\"\nEND\n"
+      "WHEN far Y > 10\nCOOLDOWN 1s\nDO LOG \"far\"\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(200, "Y", 20);
+  robot.feed(300, "Y", 0);
+  robot.feed(1050, "X", 0);
+  robot.feed(1100, "X", 20);  // far has been cooling down since 200, near since 0
+  robot.feed(1150, "Y", 20);
+  robot.run(3000);
+  CHECK(robot.only("fire") ==
+        "0 #1 fire r0 DO\n0 #1 fire r1 DO\n200 #2 fire r2 DO\n"
+        "1100 #5 fire r0 DO\n1100 #5 fire r1 DO\n");
+}
+
 TEST_CASE("each side of a WHEN/ELSE cools down by itself, and the rule ends on its side") {
   Robot robot("WHEN near X > 10\nCOOLDOWN 1s\nDO MOVE a FOR 5s\nELSE\nMOVE a FOR 3s\nEND\n");
   robot.feed(0, "X", 20);

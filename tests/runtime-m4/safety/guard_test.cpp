@@ -98,6 +98,18 @@ TEST_CASE("a pin is driven only for an actuator of the program") {
   CHECK(bench.pulse(3) == 0);
 }
 
+TEST_CASE("a safe state beside the range of its pin ends where the range does") {
+  Bench bench;
+  vm::Actuator resting = on_pin(4);
+  resting.safe = vm::Release::rest;  // 500 us, as the image has it
+  bench.own({resting});
+  bench.guard.drive(0, 1'010, 0);
+  bench.guard.halt(1, 0);
+  for (unsigned ms = 20; ms < 1000; ms += 20)
+    bench.guard.go_on(kernel::milliseconds(ms));
+  CHECK(bench.pulse(4) == 1'000);
+}
+
 TEST_CASE("what the next program drives in the same way stays as it is, all else goes off") {
   Bench bench;
   bench.own({on_pin(0), on_pin(1), on_pin(2)});
@@ -189,7 +201,7 @@ TEST_CASE("a pulse that may not change at once goes on by itself, up to where it
   kernel::Time now = 1'000'000;
   bench.guard.drive(0, 1'100, now);
   CHECK(bench.pulse(4) == 1'040);
-  for (const std::uint32_t expected : {1'060, 1'080, 1'100, 1'100}) {
+  for (const unsigned expected : {1'060U, 1'080U, 1'100U, 1'100U}) {
     now += 10'000;
     bench.guard.go_on(now);
     CHECK(bench.pulse(4) == expected);

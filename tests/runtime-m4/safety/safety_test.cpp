@@ -1,4 +1,7 @@
 // SAFETY rules: what halts, when, for how long, and what a halted actuator means for the rest.
+#include <string>
+#include <vector>
+
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/rig.hpp"
@@ -25,6 +28,16 @@ BEHAVIOR wave PRIORITY 20
   END
 END
 )";
+
+std::vector<std::byte> guarded_with_stale_after(const std::string& time) {
+  return robosync::test::compile(
+      kGuarded,
+      R"({"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}},
+                   {"name": "far", "type": "VIRTUAL",
+                    "channels": {"Y": {"range": [0, 100], "stale_after": ")" +
+          time + R"("}}}],
+       "actuators": [{"name": "a", "type": "VIRTUAL"}, {"name": "b", "type": "VIRTUAL"}]})");
+}
 
 }  // namespace
 
@@ -118,12 +131,7 @@ TEST_CASE("a robot begins when what is fed has come, and feeds keep their progra
 }
 
 TEST_CASE("when a silent sensor trips does not depend on when the program began") {
-  const auto image = robosync::test::compile(
-      kGuarded,
-      R"({"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}},
-                   {"name": "far", "type": "VIRTUAL",
-                    "channels": {"Y": {"range": [0, 100], "stale_after": "203ms"}}}],
-       "actuators": [{"name": "a", "type": "VIRTUAL"}, {"name": "b", "type": "VIRTUAL"}]})");
+  const auto image = guarded_with_stale_after("203ms");
   for (const bool after_another : {false, true}) {
     for (unsigned phase = 0; phase < 35; ++phase) {
       INFO("it begins after " << phase << " ms");
@@ -162,12 +170,7 @@ TEST_CASE("a pin that may not change at once goes on by itself until it is there
 
 // The step thread would note that the reading is too old; SAFETY does not wait for it.
 TEST_CASE("a silent sensor trips although no step comes") {
-  const auto image = robosync::test::compile(
-      kGuarded,
-      R"({"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}},
-                   {"name": "far", "type": "VIRTUAL",
-                    "channels": {"Y": {"range": [0, 100], "stale_after": "20ms"}}}],
-       "actuators": [{"name": "a", "type": "VIRTUAL"}, {"name": "b", "type": "VIRTUAL"}]})");
+  const auto image = guarded_with_stale_after("20ms");
   Rig rig;
   REQUIRE(rig.activate(image).ok());
   rig.feed(1, 2);

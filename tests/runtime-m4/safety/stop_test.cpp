@@ -182,7 +182,9 @@ TEST_CASE("no image, reading or stop drives what it must not") {
         rig.feed(0, static_cast<int>(draw.below(100)));
     }
     rig.run(rig.kernel.now() / 1000 + draw.below(40));
-    for (auto& [pin, pulses] : rig.board.pulses) {
+    for (auto& entry : rig.board.pulses) {
+      const std::uint16_t pin = entry.first;  // clang 14 lets no lambda name what is bound
+      auto& pulses = entry.second;
       const policy::PinLimit* const limit = policy::limit_of(boards::kPins, pin);
       REQUIRE(limit != nullptr);
       for (const std::uint32_t pulse : pulses)

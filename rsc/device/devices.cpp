@@ -1,0 +1,80 @@
+// See devices.hpp. May assume nothing of what the board sends.
+#include "rsc/device/devices.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "runtime-m4/policy/threads.hpp"
+#include "vm/drivers.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using std::chrono::milliseconds;
+
+// A sensor is measured as soon as its program begins.
+constexpr milliseconds kFirstRound{1000};
+
+bool has(std::uint32_t mask, std::size_t bit) {
+  return bit < 32 && (mask >> bit & 1) != 0;
+}
+
+std::string name_of(const vm::Image& image, std::size_t sensor) {
+  const std::string_view name = image.string(image.sensors[sensor].name);
+  return name.empty() ? fmt::format("sensor {}", sensor) : std::string(name);
+}
+
+}  // namespace
+
+std::vector<OnBus> on_buses(const vm::Image& image, const link::Devices& said) {
+  std::vector<OnBus> found;
+  found.reserve(image.sensors.size());
+  for (std::size_t s = 0; s < image.sensors.size(); ++s) {
+    const vm::Sensor& sensor = image.sensors[s];
+    if (policy::is_fed(sensor) || !vm::is_on_i2c(sensor.driver)) continue;
+    found.push_back({.name = name_of(image, s),
+                     .bus = sensor.bus,
+                     .address = sensor.address,
+                     .asked = has(said.asked, s),
+                     .silent = has(said.silent, s),
+                     .held = has(said.held, sensor.bus),
+                     .failed = s < said.failed.size() ? said.failed.at(s) : 0U});
+  }
+  return found;
+}
+
+std::vector<OnBus> silent_after_start(Client& client, const vm::Image& image) {
+  std::vector<OnBus> devices = on_buses(image, {});
+  const auto give_up = client.now() + kFirstRound + milliseconds(image.header->safety_start_ms);
+  while (!std::ranges::all_of(devices, &OnBus::asked) && client.now() < give_up)
+    devices = on_buses(image, client.devices());
+  std::erase_if(devices, [](const OnBus& device) { return !device.silent; });
+  return devices;
+}
+
+std::string silent_text(const OnBus& device) {
+  const char* const look =
+      device.held
+          ? "a line of that bus is held down: do two wires touch, and has every device on it power?"
+          : "has it power, are both wires of the bus connected, is this its address?";
+  return fmt::format(
+      "{} at address 0x{:02x} on i2c bus {} does not answer ({} transfer{} failed): {}",
+      device.name, device.address, device.bus, device.failed, device.failed == 1 ? "" : "s", look);
+}
+
+nlohmann::ordered_json devices_json(const std::vector<OnBus>& devices) {
+  auto list = nlohmann::ordered_json::array();
+  for (const OnBus& device : devices)
+    list.push_back({{"sensor", device.name},
+                    {"bus", device.bus},
+                    {"address", fmt::format("0x{:02x}", device.address)},
+                    {"answers", device.asked ? nlohmann::ordered_json(!device.silent) : nullptr},
+                    {"bus_held", device.held},
+                    {"failed", device.failed}});
+  return list;
+}
+
+}  // namespace robosync::tool

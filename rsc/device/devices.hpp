@@ -1,0 +1,35 @@
+// How the devices on a board's buses answer: in `rsc info`, in `rsc monitor` and after `rsc upload`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "link/messages.hpp"
+#include "rsc/device/client.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::tool {
+
+// A sensor of the running program that is measured on a bus.
+struct OnBus {
+  std::string name;  // of the sensor
+  unsigned bus = 0;
+  unsigned address = 0;
+  bool asked = false;   // the board has tried to
+  bool silent = false;  // it does not answer
+  bool held = false;    // nor can anybody on this bus
+  unsigned failed = 0;  // transfers since the program began
+};
+
+// `said` by the board that runs `image`.
+[[nodiscard]] std::vector<OnBus> on_buses(const vm::Image& image, const link::Devices& said);
+// Those that do not answer, once the board has asked all of them, or had the time to.
+[[nodiscard]] std::vector<OnBus> silent_after_start(Client& client, const vm::Image& image);
+
+// "touch at address 0x70 on i2c bus 0 does not answer (12 transfers failed): …", with what to look at.
+[[nodiscard]] std::string silent_text(const OnBus& device);
+[[nodiscard]] nlohmann::ordered_json devices_json(const std::vector<OnBus>& devices);
+
+}  // namespace robosync::tool

@@ -1,0 +1,49 @@
+// Does the device behind a sensor answer on its bus? Kept for each sensor that measures, from round to round: in a round
+// each of its channels is read once.
+//
+// A device that has not answered yet is silent with its first round. From then on it takes kRounds in a row that say
+// otherwise, so that one that answers now and then is not told of in every round.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace robosync::layers {
+
+class Contact {
+public:
+  static constexpr unsigned kRounds = 3;
+
+  enum class News : std::uint8_t { none, silent, answers };
+
+  // A round is over in which so many transfers failed.  [sensor's thread]
+  News note(unsigned failed) {
+    failed_ = static_cast<std::uint16_t>(std::min(failed_ + failed, unsigned{UINT16_MAX}));
+    const Standing now = failed == 0 ? Standing::answers : Standing::silent;
+    if (now == standing_) {
+      otherwise_ = 0;
+      return News::none;
+    }
+    const bool first = standing_ == Standing::not_asked;
+    if (!first && ++otherwise_ < kRounds) return News::none;
+    otherwise_ = 0;
+    standing_ = now;
+    if (now == Standing::silent) return News::silent;
+    return first ? News::none : News::answers;
+  }
+
+  bool asked() const { return standing_ != Standing::not_asked; }
+  bool silent() const { return standing_ == Standing::silent; }
+  std::uint16_t failed() const {
+    return failed_;
+  }  // transfers so far; UINT16_MAX: that many or more
+
+private:
+  enum class Standing : std::uint8_t { not_asked, answers, silent };
+
+  std::uint16_t failed_ = 0;
+  std::uint8_t otherwise_ = 0;  // rounds in a row
+  Standing standing_ = Standing::not_asked;
+};
+
+}  // namespace robosync::layers
