@@ -1,44 +1,58 @@
-"""The board does what `rsc run` does, for programs on which that does what the reference says.
+"""The board does what `rsc run` does, and both what the reference says, for drawn programs (tests/properties/differ.py)."""
 
-tests/oracles/rsl compares the same programs, with the same readings, with the interpreter that is
-written from docs/language.md. A board of its own for each: some of them never rest.
-"""
-
+import os
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
-from traces import TraceTest
-
 sys.path.append(str(Path(__file__).resolve().parents[1] / "properties"))
 
+import comparison  # noqa: E402
 import differ  # noqa: E402
 import drawn  # noqa: E402
+from boards import Boards  # noqa: E402
+
+PROGRAMS = int(os.environ.get("ROBOSYNC_REFERENCE_PROGRAMS", "24"))
+MOST_REFUSED = 0.2  # of the programs, by the compiler or the board
+
+LAMP = """\
+WHEN touch LEVEL > 4
+DO LIGHT lamp {}
+END
+WHEN touch LEVEL > 4
+DO LIGHT lamp ON
+END
+"""
+READINGS = [drawn.Reading(1500, "touch.LEVEL", 2), drawn.Reading(1600, "touch.LEVEL", 7)]
 
 
-class Reference(TraceTest):
-    units = drawn.UNITS
+class Reference(unittest.TestCase):
+    def setUp(self):
+        self.boards = self.enterContext(Boards())
 
-    def check_drawn(self, seed):
-        result = differ.check(seed, scripts=1)
-        self.assertEqual((result.ties, result.cases), (0, ()))
-        self.assertGreater(result.compared, 0)
-        text = drawn.program(seed)
-        program = self.folder / f"reference{seed}.rsl"
-        program.write_text(text)
-        self.check(program, drawn.readings(seed, text), drawn.CONFIG)
+    def test_drawn_programs(self):
+        total = differ.Result()
+        for seed in range(PROGRAMS):
+            result = differ.check(seed, scripts=1, board=self.boards)
+            for case in result.cases:
+                self.fail(differ.shown(case))
+            total += result
+        print(differ.said(total))
+        self.assertGreaterEqual(total.played, (1 - MOST_REFUSED) * PROGRAMS)
 
-    def test_commands_and_fading(self):
-        self.check_drawn(2)
+    def test_another_program_is_noticed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def image(word):
+                return comparison.compile_program(LAMP.format(word), folder, "-O1")[1]
 
-    def test_repeats_and_chance(self):
-        self.check_drawn(9)
-
-    def test_stale_sensors(self):
-        self.check_drawn(19)
-
-    def test_safety(self):
-        self.check_drawn(21)
+            scenario, end_ms = comparison.write_scenario(READINGS, folder), comparison.end_of(READINGS)
+            wanted = comparison.rsc_trace(image("OFF"), scenario, end_ms)
+            same, why = self.boards.play(image("OFF"), scenario, end_ms)
+            self.assertEqual((same, why), (wanted, "whole"))
+            other, why = self.boards.play(image("TO 50%"), scenario, end_ms)
+            self.assertEqual(why, "whole")
+            self.assertIn('"actuator":"lamp"', comparison.first_other_line(wanted, other))
 
 
 if __name__ == "__main__":

@@ -11,8 +11,10 @@ ends the comparison of that script, and is counted.
 """
 
 import functools
+import itertools
 import json
 import os
+import re
 import subprocess
 from collections import Counter, defaultdict
 from pathlib import Path
@@ -27,6 +29,7 @@ RSC = BUILD / "rsc"
 AFTER_MS = 3_000  # after the last reading
 TIMEOUT = 60
 SEED = 20_250_711  # of what programs draw: the board must not take one of its own
+LEVELS = [("-O0",), ("-O1",)]  # of rsc compile, each of which must give the same
 IGNORED = {"activated", "zero_divide"}
 WITHOUT_STEP = {"done", "trip", "halt", "resume", "release"}  # come between steps
 IN_STEP = {"input", "fire", "win", "lose", "interrupt", "go_on", "set"}
@@ -55,6 +58,12 @@ def call(*arguments):
 
 
 @functools.cache
+def options_of(rsc):
+    """What a compiler without levels has: one, which is not named."""
+    return LEVELS if re.search("-O ?0", call(rsc, "compile", "--help").stdout) else [()]
+
+
+@functools.cache
 def anyway(rsc):
     """A drawn program may be more than a board can keep up with; an older rsc does not ask."""
     return ["--anyway"] if "--anyway" in call(rsc, "compile", "--help").stdout else []
@@ -66,16 +75,31 @@ def fresh(rsc):
     return ["--fresh"] if "--fresh" in call(rsc, "run", "--help").stdout else []
 
 
+def config_in(folder):
+    """The robot, with the board that the environment says, as for the end-to-end tests."""
+    if "ROBOSYNC_BOARD" not in os.environ:
+        return drawn.CONFIG
+    path = Path(folder) / "robot.json"
+    path.write_text(json.dumps({**json.loads(drawn.CONFIG.read_text()), "board": os.environ["ROBOSYNC_BOARD"]}))
+    return path
+
+
 def compile_program(text, folder, *options, rsc=RSC):
     """The program and its image in `folder`."""
     source = Path(folder) / "program.rsl"
     image = Path(folder) / ("program" + "".join(options) + ".rsb")
     source.write_text(text)
-    done = call(rsc, "compile", source, "--config", drawn.CONFIG, "--seed", SEED, "-o", image, *options,
+    done = call(rsc, "compile", source, "--config", config_in(folder), "--seed", SEED, "-o", image, *options,
                 *anyway(rsc))
     if done.returncode:
         raise Refused(done.stderr)
     return source, image
+
+
+def compile_levels(text, folder, rsc=RSC):
+    """The program and its images, one of each level."""
+    compiled = [compile_program(text, folder, *options, rsc=rsc) for options in options_of(rsc)]
+    return compiled[0][0], [image for _, image in compiled]
 
 
 def write_scenario(readings, folder):
@@ -146,21 +170,42 @@ def first_difference(rsc_lines, reference_lines):
     return None
 
 
-def traces(source, image, readings, folder, rsc=RSC):
-    """The lines of rsc run and of the reference."""
-    scenario = write_scenario(readings, folder)
-    end_ms = (readings[-1].at_ms if readings else 0) + AFTER_MS
-    ours = call(rsc, "run", image, "--scenario", scenario, "--duration", f"{end_ms}ms", "--format", "json",
+def first_other_line(wanted, lines, why="whole"):
+    """Where the board's trace, of which its player says `why` it ends, is not what rsc says; nothing when it is."""
+    for number, (ours, theirs) in enumerate(itertools.zip_longest(wanted, lines)):
+        if ours != theirs:
+            return f"line {number} ({why})\n  rsc:   {ours}\n  board: {theirs}"
+    return None
+
+
+def end_of(readings):
+    return (readings[-1].at_ms if readings else 0) + AFTER_MS
+
+
+def rsc_trace(image, scenario, end_ms, rsc=RSC):
+    """The lines of rsc run."""
+    done = call(rsc, "run", image, "--scenario", scenario, "--duration", f"{end_ms}ms", "--format", "json",
                 *fresh(rsc))
-    if ours.returncode:
-        raise (Refused if "would refuse" in ours.stderr else RuntimeError)(ours.stderr)
-    lines = ours.stdout.splitlines()
-    seed = json.loads(lines[0])["seed"]
-    theirs = call(REFERENCE, source, drawn.CONFIG, scenario, end_ms, seed)
-    if theirs.returncode:
-        raise RuntimeError(theirs.stderr)
-    return lines, theirs.stdout.splitlines()
+    if done.returncode:
+        raise (Refused if "would refuse" in done.stderr else RuntimeError)(done.stderr)
+    return done.stdout.splitlines()
 
 
-def compare(source, image, readings, folder, rsc=RSC):
-    return first_difference(*traces(source, image, readings, folder, rsc))
+def reference_trace(source, scenario, end_ms):
+    """The lines of the reference."""
+    done = call(REFERENCE, source, drawn.CONFIG, scenario, end_ms, SEED)
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    return done.stdout.splitlines()
+
+
+def traces(source, images, readings, folder, rsc=RSC):
+    """The lines of rsc run, of each image, and those of the reference."""
+    scenario, end_ms = write_scenario(readings, folder), end_of(readings)
+    return [rsc_trace(image, scenario, end_ms, rsc) for image in images], reference_trace(source, scenario, end_ms)
+
+
+def compare(source, images, readings, folder, rsc=RSC):
+    """What is different first, of each image."""
+    ours, theirs = traces(source, images, readings, folder, rsc)
+    return [first_difference(lines, theirs) for lines in ours]

@@ -11,9 +11,9 @@ import comparison
 def differs(text, readings, rsc):
     with tempfile.TemporaryDirectory(prefix="robosync-shrink-") as folder:
         try:
-            source, image = comparison.compile_program(text, folder, rsc=rsc)
-            difference = comparison.compare(source, image, readings, folder, rsc)
-            return difference is not None and not difference.tie
+            source, images = comparison.compile_levels(text, folder, rsc)
+            found = comparison.compare(source, images, readings, folder, rsc)
+            return any(difference is not None and not difference.tie for difference in found)
         except (comparison.Refused, RuntimeError):
             return False
 

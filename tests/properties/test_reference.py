@@ -48,11 +48,11 @@ class Comparison(unittest.TestCase):
 
     def setUp(self):
         with tempfile.TemporaryDirectory() as folder:
-            source, image = comparison.compile_program(FINE, folder)
-            self.rsc, self.reference = comparison.traces(source, image, READINGS, folder)
+            source, images = comparison.compile_levels(FINE, folder)
+            (self.rsc, _), self.reference = comparison.traces(source, images, READINGS, folder)
 
     def test_both_levels_are_compared(self):
-        self.assertEqual(differ.options_of(comparison.RSC), differ.LEVELS)
+        self.assertEqual(comparison.options_of(comparison.RSC), comparison.LEVELS)
 
     def test_the_same(self):
         self.assertGreater(len(self.reference), 20)
