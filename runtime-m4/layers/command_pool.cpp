@@ -56,10 +56,6 @@ void CommandPool::append(Queue& queue, Queue& from) {
     queue = std::exchange(from, {});
     return;
   }
-  if (from.count > 0 && follows(queue) && front(from).action() == vm::Action::follow) {
-    copy(front(from), nodes_[queue.last].command);
-    pop(from);
-  }
   if (from.count == 0) return;
   nodes_[queue.last].next = from.first;
   queue.last = from.last;

@@ -74,14 +74,18 @@ void ControlLayer::stage(const Command& command, ActuatorMask actuators) {
   to_commit_ |= staged_;
 }
 
+// A follow behind a follow that waits is its new target, and takes no place.
 bool ControlLayer::stage_one(Unit& unit, const Command& command) {
   const auto lock = kernel_.lock();
   if (command.action() == vm::Action::stop) {
     pool_.clear(unit.staged);
     unit.staged_stop = true;
   }
-  const bool renews = command.action() == vm::Action::follow && pool_.follows(unit.queue);
-  const unsigned waiting = unit.staged_stop || renews ? 0U : unit.queue.count;
+  const bool first = unit.staged.count == 0 && !unit.staged_stop;
+  CommandPool::Queue& behind = first ? unit.queue : unit.staged;
+  if (command.action() == vm::Action::follow && pool_.follows(behind))
+    return pool_.push(behind, command);
+  const unsigned waiting = unit.staged_stop ? 0U : unit.queue.count;
   return waiting + unit.staged.count < policy::kMaxQueued && pool_.push(unit.staged, command);
 }
 

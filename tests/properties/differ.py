@@ -135,8 +135,7 @@ def shown(case):
 
 def report(case, wanted):
     if not wanted.no_shrink and not case.on_board:
-        text, readings = shrink.shrunk(case.text, case.readings, wanted.rsc)
-        case = case._replace(text=text, readings=readings)
+        case = Case(*shrink.shrunk(case.text, case.readings, wanted.rsc))
     print(shown(case))
 
 

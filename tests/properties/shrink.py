@@ -9,13 +9,14 @@ import comparison
 
 
 def differs(text, readings, rsc):
+    """What does, at one of the levels; nothing when all is the same."""
     with tempfile.TemporaryDirectory(prefix="robosync-shrink-") as folder:
         try:
             source, images = comparison.compile_levels(text, folder, rsc)
             found = comparison.compare(source, images, readings, folder, rsc)
-            return any(difference is not None and not difference.tie for difference in found)
+            return next((difference for difference in found if difference is not None and not difference.tie), None)
         except (comparison.Refused, RuntimeError):
-            return False
+            return None
 
 
 def without_pieces(items, still_differs):
@@ -35,13 +36,14 @@ def without_pieces(items, still_differs):
 
 
 def shrunk(text, readings, rsc=comparison.RSC):
+    """A smaller program, fewer readings, and what differs there."""
     def programs_differ(lines):
         return differs("".join(lines), readings, rsc)
 
     def readings_differ(less):
-        return bool(less) and differs(text, less, rsc)
+        return differs(text, less, rsc) if less else None
 
     readings = without_pieces(readings, readings_differ)
     text = "".join(without_pieces(text.splitlines(keepends=True), programs_differ))
     readings = without_pieces(readings, readings_differ)
-    return text, readings
+    return text, readings, differs(text, readings, rsc)

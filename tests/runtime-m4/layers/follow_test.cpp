@@ -107,6 +107,19 @@ TEST_CASE(
         "0 #1 command arm MOVE to=180 over=1\n1000 #22 command arm FOLLOW to=20\n");
 }
 
+// Each round follows behind seven commands that wait, the last of them a follow.
+TEST_CASE("a new target of a follow that waits takes no place from the command behind it") {
+  Follower follower(
+      "MOVE arm TO 180deg OVER 2s\n  MOVE arm TO 10deg OVER 1s\n  MOVE arm TO 20deg OVER 1s\n"
+      "  MOVE arm TO 30deg OVER 1s\n  MOVE arm TO 40deg OVER 1s\n  MOVE arm TO 50deg OVER 1s\n"
+      "  MOVE arm TO 60deg OVER 1s\n  REPEAT 2 TIMES\n    FOLLOW arm TO (voice D) FOR 1ms\n    "
+      "WAIT 5ms\n  END\n"
+      "  FOLLOW arm TO (voice D) FOR 1ms\n  MOVE arm TO 90deg OVER 1s\n  WAIT 1h");
+  follower.hear(0, 45);
+  (void)follower.arm(9000);
+  CHECK(follower.rig().only("overrun").empty());
+}
+
 TEST_CASE("an unknown value is no target") {
   Follower follower("FOLLOW arm TO (voice D)");
   (void)follower.arm(500);
