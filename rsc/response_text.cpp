@@ -54,8 +54,10 @@ Json response_object(const ResponseReport& report, const ResponseTime& response)
 
 std::string response_text(const ResponseReport& report) {
   std::string text =
-      fmt::format("        {:<36}{:>10}{:>10}{:>10}{:>10}\n", "from a reading to the command",
-                  "at most", "us", "every us", "share");
+      report.paths.empty()
+          ? "        No reading commands an actuator in its own step.\n"
+          : fmt::format("        {:<36}{:>10}{:>10}{:>10}{:>10}\n", "from a reading to the command",
+                        "at most", "us", "every us", "share");
   for (const PathTiming& path : report.paths) {
     const ResponseTime& worst = worst_of(path);
     const double share =

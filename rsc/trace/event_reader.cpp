@@ -233,7 +233,11 @@ std::string EventReader::shown(vm::Value value) const {
   return compiler::format_value(value, *means.unit);
 }
 
+// How fast a MOTION is performed is a share of what is written, and no speed of its actuators.
 const compiler::Unit* EventReader::unit_of(vm::Param param) const {
+  const vm::Verb* const verb = at(&vm::Image::verbs, event_.object);
+  if (param == vm::Param::at && verb != nullptr && verb->action == vm::Action::perform)
+    return &compiler::canonical_unit(vm::Dimension::percent);
   if (names_.origin == nullptr) return nullptr;
   const auto& actuators = names_.origin->units.actuators;
   const auto found = actuators.find(actuator_name());

@@ -150,8 +150,8 @@ private:
       if (event->time_us >= from_us_ && event->time_us <= until_us_ && matches(*event, playback))
         ++count;
     if (count == *expected.times) return std::nullopt;
-    return fmt::format("{} was told to {} times {}, not {}", actuator, count, window(),
-                       *expected.times);
+    return fmt::format("{} was told to {} time{} {}, not {}", actuator, count,
+                       count == 1 ? "" : "s", window(), *expected.times);
   }
 
   // The command that comes nearest to what was expected: of this verb, in the window if there is one.

@@ -22,7 +22,7 @@ import shrink
 
 sys.path.append(str(comparison.ROOT / "scripts/python"))
 
-from board import BoardError  # noqa: E402
+from board import BoardError, end_on_signals  # noqa: E402
 from boards import Boards  # noqa: E402
 
 SCRIPTS = 3  # of readings for each program
@@ -141,6 +141,7 @@ def report(case, wanted):
 
 def main():
     wanted = arguments()
+    end_on_signals()
     seeds = range(wanted.seed, wanted.seed + wanted.programs)
     total = Result()
     cores = itertools.cycle(sorted(os.sched_getaffinity(0)))

@@ -29,6 +29,7 @@ using link::FeedError;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPatience{20'000};
+constexpr milliseconds kSilence{300};  // of a board that has nothing to say
 constexpr std::size_t kFeedBytes = sizeof(link::Feed) + link::kFrameOverhead + 2;
 
 struct Job {
@@ -111,28 +112,38 @@ public:
   }
 
 private:
-  // The last reading comes again behind the end, and another one, so that one of them is an event.
+  // The last reading comes again behind the end, and another one, so that one of them is an event; but of a channel that
+  // nothing depends on there is none. Then the board has nothing more to say, and is behind the end.
   void show(const Job& job, const vm::Image& image, tool::Stimulus last) {
     last.at_us = job.end_us() + 1000;
     tool::Stimulus other = last;
     other.at_us += 1000;
     other.value = last.value == 0 ? 1000 : 0;
     Feeding(session_, {last, other}).run();
-    for (link::Event event = next(); event.time_us <= job.end_us(); event = next())
-      std::cout << tool::trace_json(event, {&image, {}, nullptr}) << '\n';
+    const auto give_up = session_.client.now() + kPatience;
+    for (bool behind = false; session_.client.now() < give_up;) {
+      link::Event event;
+      if (next(event)) {
+        if (event.time_us > job.end_us()) return;
+        std::cout << tool::trace_json(event, {&image, {}, nullptr}) << '\n';
+      } else if (behind) {
+        return;
+      } else {
+        behind = session_.client.status().program_us > other.at_us;
+      }
+    }
+    throw tool::Failure(tool::Exit::outside, "the program has come to no end");
   }
 
-  // The next event of the program that has begun last.
-  link::Event next() {
-    while (true) {
-      const auto message = session_.client.next_unasked(kPatience);
-      if (!message) throw tool::Failure(tool::Exit::outside, "the program has come to no end");
-      link::Event event;
+  // The next event of the program that has begun last. False when none comes.
+  bool next(link::Event& event) {
+    while (const auto message = session_.client.next_unasked(kSilence)) {
       if (message->type != link::MessageType::event || !link::decode_event(message->payload, event))
         continue;
       if (event.kind == link::EventKind::activated) ++seen_;
-      if (seen_ == begun_) return event;
+      if (seen_ == begun_) return true;
     }
+    return false;
   }
 
   tool::Session session_;

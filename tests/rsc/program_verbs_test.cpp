@@ -269,6 +269,22 @@ TEST_CASE("run shows what a person wants to see, in the units of the files") {
   CHECK(std::ranges::count(all, '\n') > 50);
 }
 
+TEST_CASE("check --timing says so where no reading commands an actuator in its own step") {
+  const Folder folder;
+  folder.write("robot.json", test::kRobot);
+  const std::string by_variable =
+      folder.write("robot.rsl",
+                   "REMEMBER n = 0\nWHEN touch LEVEL > 3\nDO SET n TO 1\nEND\nWHEN n > 0\nDO MOVE "
+                   "left_arm TO 9deg\nEND\n");
+  const std::string out = test::rsc({"check", "--timing", by_variable}).out;
+  CHECK_THAT(out, Contains("No reading commands an actuator in its own step.") &&
+                      Contains("the processor, all of it"));
+  CHECK(out.find("at most") == std::string::npos);
+  const RobotFolder robot;
+  CHECK_THAT(test::rsc({"check", "--timing", robot.program}).out,
+             Contains("from a reading to the command          at most"));
+}
+
 TEST_CASE("blank lines and comments change nothing that is drawn") {
   const RobotFolder robot;
   const std::string rule =

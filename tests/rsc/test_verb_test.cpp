@@ -235,7 +235,7 @@ TEST_CASE("the nearest miss is named") {
             "it was not written at 2.000 s; it was at 1.000 s\n"},
            {"EXPECT NO LOG \"touched\" WITHIN 1s", "it was written at 1.000 s: touched with 5\n"},
            {"EXPECT 2 TIMES MOVE arms WITHIN 1s",
-            "left_arm was told to 1 times from 1.000 s to 2.000 s, not 2\n"}}) {
+            "left_arm was told to 1 time from 1.000 s to 2.000 s, not 2\n"}}) {
     const TestFolder robot(touched("it", step));
     const Outcome outcome = test::rsc({"test", robot.program});
     CHECK(outcome.exit == 1);

@@ -245,3 +245,13 @@ TEST_CASE("a device on a bus is told of with where it is; without an image by it
       json::parse(tool::trace_json(answers, {})) ==
       json::parse(R"({"t_us":1020000,"step":7,"event":"answers","sensor":"sensor 1","failed":8})"));
 }
+
+TEST_CASE("how fast a MOTION is performed is a share, whatever unit its actuators' speed has") {
+  const tool::Program motion = test::compile(
+      "MOTION wave OF left_arm\n  AT 300ms 90deg\nEND\nWHEN touch LEVEL > 3\nDO PERFORM wave AT "
+      "150%\nEND\n");
+  const auto at = 1 << static_cast<unsigned>(vm::Param::at);
+  const Event command = event(EventKind::command, 0, 0, {0, at, 150'000});
+  CHECK(tool::trace_words(command, {&motion.image(), {}, &motion.origin()}) ==
+        "left_arm PERFORM wave AT 150%");
+}
