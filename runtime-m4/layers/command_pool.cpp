@@ -15,10 +15,6 @@ void CommandPool::start(Memory& memory) {
 }
 
 bool CommandPool::push(Queue& queue, const Command& command) {
-  if (command.action() == vm::Action::follow && follows(queue)) {
-    copy(command, nodes_[queue.last].command);
-    return true;
-  }
   if (queue.count == policy::kMaxQueued || free_ == kNone) return false;
   const std::uint8_t taken = free_;
   Node& node = nodes_[taken];
@@ -32,6 +28,10 @@ bool CommandPool::push(Queue& queue, const Command& command) {
   queue.last = taken;
   ++queue.count;
   return true;
+}
+
+void CommandPool::renew(const Queue& queue, const Command& follow) {
+  copy(follow, nodes_[queue.last].command);
 }
 
 // What is not given is not there to be copied.
@@ -48,6 +48,7 @@ void CommandPool::pop(Queue& queue) {
   const std::uint8_t freed = queue.first;
   queue.first = std::exchange(nodes_[freed].next, free_);
   free_ = freed;
+  queue.begun = false;
   if (--queue.count == 0) queue = {};
 }
 
@@ -66,6 +67,18 @@ void CommandPool::append(Queue& queue, Queue& from) {
 void CommandPool::clear(Queue& queue) {
   while (queue.count > 0)
     pop(queue);
+}
+
+void CommandPool::drop_waiting(Queue& queue) {
+  if (!queue.begun) return clear(queue);
+  while (queue.count > 1) {
+    Node& front = nodes_[queue.first];
+    const std::uint8_t freed = front.next;
+    front.next = std::exchange(nodes_[freed].next, free_);
+    free_ = freed;
+    --queue.count;
+  }
+  queue.last = queue.first;
 }
 
 }  // namespace robosync::layers

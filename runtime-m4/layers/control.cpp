@@ -79,14 +79,18 @@ bool ControlLayer::stage_one(Unit& unit, const Command& command) {
   const auto lock = kernel_.lock();
   if (command.action() == vm::Action::stop) {
     pool_.clear(unit.staged);
-    unit.staged_stop = true;
+    pool_.drop_waiting(unit.queue);
+    unit.staged_stop = command.verb();
+    return true;
   }
-  const bool first = unit.staged.count == 0 && !unit.staged_stop;
+  const bool first = unit.staged.count == 0 && unit.staged_stop == kNoVerb;
   CommandPool::Queue& behind = first ? unit.queue : unit.staged;
-  if (command.action() == vm::Action::follow && pool_.follows(behind))
-    return pool_.push(behind, command);
-  const unsigned waiting = unit.staged_stop ? 0U : unit.queue.count;
-  return waiting + unit.staged.count < policy::kMaxQueued && pool_.push(unit.staged, command);
+  if (command.action() == vm::Action::follow && pool_.renews(behind)) {
+    pool_.renew(behind, command);
+    return true;
+  }
+  return unit.queue.count + unit.staged.count < policy::kMaxQueued &&
+         pool_.push(unit.staged, command);
 }
 
 ActuatorMask ControlLayer::take_staged() {
@@ -109,10 +113,10 @@ void ControlLayer::commit() {
   for (ActuatorMask left = std::exchange(to_commit_, 0); left != 0; left &= left - 1) {
     const auto a = static_cast<unsigned>(std::countr_zero(left));
     Unit& unit = units_[a];
-    if (unit.staged.count == 0) continue;
+    if (unit.staged.count == 0 && unit.staged_stop == kNoVerb) continue;
     if (has(retired_, a)) {
       pool_.clear(unit.staged);
-      unit.staged_stop = false;
+      unit.staged_stop = kNoVerb;
       idle_ |= bit<ActuatorMask>(a);
       kernel_.signal(step_thread_, events_.idle);
       continue;
@@ -125,11 +129,7 @@ void ControlLayer::commit() {
 // Behind what the same response has sent in an earlier step; its new owner gets an actuator with an
 // empty queue. If it was idle, it is no more.
 void ControlLayer::hand_over(Unit& unit) {
-  if (std::exchange(unit.staged_stop, false)) {
-    unit.stopping = true;
-    unit.keeps = 0;
-  }
-  unit.keeps = static_cast<std::uint8_t>(unit.keeps + unit.staged.count);
+  if (unit.staged_stop != kNoVerb) unit.stopping = std::exchange(unit.staged_stop, kNoVerb);
   pool_.append(unit.queue, unit.staged);
   unit.committed = trace_.step();
   idle_ &= ~bit<ActuatorMask>(unit.actuator);
@@ -239,13 +239,13 @@ void ControlLayer::run(Unit& unit) {
       continue;
     }
     if (is_halted(unit)) {
-      drop(unit, 0);
+      drop_all(unit);
       unit.busy = false;
       wake = kernel::kForever;
       continue;
     }
     if ((events & kCommit) != 0) {
-      finish_stop(unit);
+      if (unit.stopping != kNoVerb) wake = obey_stop(unit);
       if (goes_elsewhere(unit)) unit.busy = false;
     }
     if (unit.busy && kernel_.now() >= wake) wake = go_on(unit);
@@ -264,16 +264,22 @@ bool ControlLayer::goes_elsewhere(const Unit& unit) const {
 
 // Begins commands until one needs time, or none is left. Returns when to wake.
 kernel::Time ControlLayer::work_off(Unit& unit, Stamp stamp) {
-  for (unsigned i = 0; i < policy::kMaxQueued && unit.queue.count > 0 && !is_halted(unit); ++i) {
+  for (unsigned i = 0; i <= policy::kMaxQueued && claim_next(unit); ++i) {
     kernel::Time wake = 0;
     begin_next(unit, stamp, wake);
     if (unit.busy) return wake;
   }
+  return kernel::kForever;
+}
+
+// Is there one to begin? If there is not, its owner gets to know that the actuator is idle.
+bool ControlLayer::claim_next(Unit& unit) {
   const auto lock = kernel_.lock();
-  if (unit.queue.count > 0 || is_halted(unit)) return kernel::kForever;
+  if (is_held(unit)) return false;
+  if (unit.queue.count > 0) return unit.queue.begun = true;
   idle_ |= bit<ActuatorMask>(unit.actuator);
   kernel_.signal(step_thread_, events_.idle);
-  return kernel::kForever;
+  return false;
 }
 
 // It is told before it is started, and both do not stand on the stack at once.
@@ -335,36 +341,52 @@ kernel::Time ControlLayer::keep_at(Unit& unit, kernel::Time wake, Stamp stamp) {
 void ControlLayer::finish_cancel(Unit& unit) {
   release(unit, is_halted(unit) ? wiring(unit).safe : wiring(unit).on_release);
   unit.busy = false;
-  unit.stopping = false;
-  unit.keeps = 0;
   trace_.emit(EventKind::cancel, trace_.step(), unit.actuator);
   const auto lock = kernel_.lock();
   pool_.clear(unit.queue);
+  unit.stopping = kNoVerb;
   idle_ &= ~bit<ActuatorMask>(unit.actuator);
   cancelling_ &= ~bit<ActuatorMask>(unit.actuator);
   kernel_.signal(step_thread_, events_.cancelled);
 }
 
-// What stands before the STOP was never begun, or ends here.
-void ControlLayer::finish_stop(Unit& unit) {
-  unsigned keeps = 0;
+// What waited was dropped when it was staged; what is under way ends here.
+kernel::Time ControlLayer::obey_stop(Unit& unit) {
+  unsigned verb = kNoVerb;
   {
     const auto lock = kernel_.lock();
-    keeps = std::exchange(unit.keeps, std::uint8_t{0});
-    if (!std::exchange(unit.stopping, false)) return;
+    verb = std::exchange(unit.stopping, kNoVerb);
   }
-  const bool dropped = drop(unit, keeps);
-  if (unit.busy || dropped) trace_.emit(EventKind::cancel, unit.committed, unit.actuator);
-  unit.busy = false;
+  const Stamp stamp = unit.committed;
+  if (unit.busy) trace_.emit(EventKind::cancel, stamp, unit.actuator);
+  if (trace_.listening()) [[unlikely]]
+    tell_stop(unit, verb, stamp);
+  unit.follows = false;
+  return keep_at(unit, stop_driver(unit), stamp);
 }
 
-// All but the last `keeps` commands of its queue. False when there were not more.
-bool ControlLayer::drop(Unit& unit, unsigned keeps) {
+[[gnu::noinline]] kernel::Time ControlLayer::stop_driver(Unit& unit) {
+  unit.performance.end();
+  if (is_halted(unit)) return drivers::kDone;
+  drivers::Order order;
+  order.action = vm::Action::stop;
+  return drivers::driver(wiring(unit).driver).start(device(unit), order, kernel_.now());
+}
+
+void ControlLayer::drop_all(Unit& unit) {
   const auto lock = kernel_.lock();
-  const bool more = unit.queue.count > keeps;
-  while (unit.queue.count > keeps)
-    pool_.pop(unit.queue);
-  return more;
+  pool_.clear(unit.queue);
+  unit.stopping = kNoVerb;
+}
+
+// values as below, without word and parameters.
+void ControlLayer::tell_stop(const Unit& unit, unsigned verb, Stamp stamp) {
+  link::Event event;
+  Trace::begin(event, EventKind::command, stamp, unit.actuator, verb);
+  event.values[0] = -1;
+  event.values[1] = 0;
+  event.value_count = 2;
+  trace_.emit(event);
 }
 
 // values: the word or -1, the mask of parameters the program gave, and these, limits applied.

@@ -6,8 +6,8 @@
 // the robot are applied here, whatever the program says.
 //
 // STOP is a command that does not wait: what stands before it in the queue is dropped, and what the
-// actuator is doing ends. A follow does not wait for a follow: it takes its place, in the queue or under
-// way, and nothing is done or cancelled by that.
+// actuator is doing ends. It needs no place in the queue. A follow does not wait for a follow: it takes its
+// place, in the queue or under way, and nothing is done or cancelled by that.
 //
 // Halting (safety) puts actuators into their `safe` state from the caller's thread and refuses all
 // commands to them from then on, until they are let go or the next program comes. A person's stop halts
@@ -86,6 +86,7 @@ private:
   static constexpr kernel::Events kCommit = 1;
   static constexpr kernel::Events kCancel = 2;
   static constexpr kernel::Events kHalt = 4;
+  static constexpr std::uint8_t kNoVerb = 0xFF;
 
   struct Unit {
     ControlLayer* layer = nullptr;
@@ -97,10 +98,9 @@ private:
     Stamp committed;            // the step that `queue` comes from
     std::uint8_t actuator = 0;
     bool busy = false;
-    bool follows = false;      // what it is doing is a follow
-    bool staged_stop = false;  // `staged` begins with a STOP
-    bool stopping = false;     // it was handed over
-    std::uint8_t keeps = 0;    // commands at the end of `queue` that were handed over since
+    bool follows = false;                // what it is doing is a follow
+    std::uint8_t staged_stop = kNoVerb;  // the STOP that `staged` stands behind
+    std::uint8_t stopping = kNoVerb;     // … and `queue`: it was handed over
   };
 
   bool stage_one(Unit& unit, const Command& command);
@@ -115,8 +115,11 @@ private:
   kernel::Time keep_at(Unit& unit, kernel::Time wake, Stamp stamp);
   void hand_over(Unit& unit);
   void finish_cancel(Unit& unit);
-  void finish_stop(Unit& unit);
-  bool drop(Unit& unit, unsigned keeps);
+  bool claim_next(Unit& unit);
+  kernel::Time obey_stop(Unit& unit);
+  [[gnu::noinline]] kernel::Time stop_driver(Unit& unit);
+  void drop_all(Unit& unit);
+  [[gnu::noinline]] void tell_stop(const Unit& unit, unsigned verb, Stamp stamp);
   [[gnu::noinline]] void tell_command(const Unit& unit, const Command& command, Stamp stamp);
 
   drivers::Device device(Unit& unit);
@@ -124,6 +127,8 @@ private:
     return program_->image.actuators[unit.actuator];
   }
   bool is_halted(const Unit& unit) const { return has(halted(), unit.actuator); }
+  // Its queue has to wait.
+  bool is_held(const Unit& unit) const { return is_halted(unit) || unit.stopping != kNoVerb; }
   ActuatorMask all() const;
   void release(Unit& unit, vm::Release how);
   void hold_back(ActuatorMask fresh);

@@ -61,8 +61,12 @@ private:
   Millis follow_at_once(std::size_t actuator, std::int64_t to, Millis now);
   Millis go_to_next_key(std::size_t actuator, Millis now);
   void let_go(std::size_t actuator, vm::Release how, Millis now);
+  // What is under way takes no place any more, and a STOP never does.
   static std::size_t waiting(const Queue& queue) {
-    return queue.orders.size() - (queue.busy ? 1 : 0);
+    const bool first =
+        queue.busy ||
+        (!queue.orders.empty() && queue.orders.front().command->verb.action == vm::Action::stop);
+    return queue.orders.size() - (first ? 1 : 0);
   }
 
   const compiler::ir::Program& program_;

@@ -120,6 +120,19 @@ TEST_CASE("a new target of a follow that waits takes no place from the command b
   CHECK(follower.rig().only("overrun").empty());
 }
 
+TEST_CASE("a newer value takes the older one's place although all places for commands are taken") {
+  std::string moves;
+  for (int i = 1; i <= 8; ++i)
+    moves += "MOVE arm TO " + std::to_string(10 * i) + "deg OVER 100ms\n";
+  Follower follower(moves + "WAIT 10ms\nFOLLOW arm TO (voice D)");
+  for (unsigned i = 1; i <= 20; ++i)
+    follower.hear(10 + 10 * i, static_cast<int>(i));
+  (void)follower.arm(1500);
+  CHECK(follower.rig().only("overrun").empty());
+  CHECK(follower.rig().only("command").ends_with("command arm FOLLOW to=20\n"));
+  CHECK(degrees_of(follower.rig(), 3) == 20);
+}
+
 TEST_CASE("an unknown value is no target") {
   Follower follower("FOLLOW arm TO (voice D)");
   (void)follower.arm(500);

@@ -141,3 +141,53 @@ TEST_CASE("STOP drops what waits for its actuator and ends what it does") {
         "50 #2 cancel a\n50 #2 command a STOP\n50 #2 done a\n50 #2 command a MOVE for_=0.020\n"
         "70 #2 done a\n90 #2 done b\n90 #2 finished r0\n");
 }
+
+TEST_CASE(
+    "STOP is obeyed although all places for commands are taken by what waits for its actuator") {
+  std::string program = "WHEN near X > 10\nDO\n";
+  for (int i = 0; i < 8; ++i)
+    program += "MOVE a FOR 100ms\n";
+  Robot robot(program +
+              "WAIT 10ms\nMOVE a FOR 100ms\nWAIT 10ms\nSTOP a\nWAIT 1s\nMOVE a FOR 30ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.run(3000);
+  CHECK(robot.only("command cancel done overrun") ==
+        "0 #1 command a MOVE for_=0.100\n20 #3 cancel a\n20 #3 command a STOP\n20 #3 done a\n"
+        "1020 #4 command a MOVE for_=0.030\n1050 #4 done a\n");
+}
+
+TEST_CASE("STOP is obeyed although others have taken all places for commands") {
+  std::string program = "WHEN near X > 10\nDO\nMOVE a FOR 500ms\n";
+  const std::string others = "MOVE bc FOR 1s\nMOVE d FOR 1s\n";  // of 24 places 8, 8 and 8
+  for (int i = 0; i < 7; ++i)
+    program += others;
+  Robot robot(program + "WAIT 10ms\n" + others + others + "WAIT 10ms\nSTOP a\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.run(25);
+  CHECK(robot.only("cancel overrun") == "20 #3 cancel a\n");
+  CHECK(robot.only("command").ends_with("20 #3 command a STOP\n"));
+}
+
+TEST_CASE("what stands behind a STOP takes places again, and only the last STOP counts") {
+  Robot robot(
+      "WHEN near X > 10\nDO\nMOVE a FOR 100ms\nWAIT 10ms\nMOVE a FOR 70ms\nSTOP a\nMOVE a FOR "
+      "60ms\n"
+      "STOP a\nMOVE a FOR 20ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.run(1000);
+  CHECK(robot.only("command cancel done finished") ==
+        "0 #1 command a MOVE for_=0.100\n10 #2 cancel a\n10 #2 command a STOP\n10 #2 done a\n"
+        "10 #2 command a MOVE for_=0.020\n30 #2 done a\n30 #2 finished r0\n");
+}
+
+TEST_CASE("eight commands wait behind a STOP that found all places taken") {
+  std::string moves;
+  for (int i = 0; i < 8; ++i)
+    moves += "MOVE a FOR 10ms\n";
+  Robot robot("WHEN near X > 10\nDO\n" + moves + "WAIT 5ms\nMOVE a FOR 10ms\nSTOP a\n" + moves +
+              "MOVE a FOR 10ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.run(1000);
+  CHECK(robot.only("cancel overrun finished") ==
+        "5 #2 overrun a\n5 #2 cancel a\n85 #2 finished r0\n");
+}
