@@ -6,6 +6,7 @@
 #include "compiler/config/fields.hpp"
 #include "compiler/config/json_reader.hpp"
 #include "compiler/config/values.hpp"
+#include "vm/image.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -35,6 +36,28 @@ std::vector<Board::Pins> read_outputs(const json::Value& list, Diagnostics& diag
   return outputs;
 }
 
+std::string require_text(Fields& fields, std::string_view key, std::string_view what,
+                         Diagnostics& diagnostics) {
+  const auto* value = fields.require(key, what);
+  return value == nullptr ? std::string() : read_text(*value, diagnostics).value_or("");
+}
+
+Board::Flash read_flash(const json::Value& value, Diagnostics& diagnostics) {
+  constexpr std::string_view kWhat = "flash";
+  Fields fields(value, Object::flash, diagnostics);
+  Board::Flash flash;
+  flash.socket = require_text(fields, "socket", kWhat, diagnostics);
+  flash.usb = require_text(fields, "usb", kWhat, diagnostics);
+  flash.openocd = require_text(fields, "openocd", kWhat, diagnostics);
+  flash.pyocd = require_text(fields, "pyocd", kWhat, diagnostics);
+  if (const auto* drive = fields.require("drive", kWhat)) {
+    Fields of_drive(*drive, Object::drive, diagnostics);
+    flash.drive = require_text(of_drive, "label", "a drive", diagnostics);
+    flash.drive_takes = require_text(of_drive, "takes", "a drive", diagnostics);
+  }
+  return flash;
+}
+
 }  // namespace
 
 bool Board::has_output(std::uint16_t pin) const {
@@ -54,6 +77,7 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
   board.i2c_buses = read_number(fields, "i2c_buses", "a board", diagnostics);
   if (const auto* outputs = fields.require("outputs", "a board"))
     board.outputs = read_outputs(*outputs, diagnostics);
+  if (const auto* flash = fields.find("flash")) board.flash = read_flash(*flash, diagnostics);
   const auto* arena = fields.require("arena", "a board");
   if (arena == nullptr) return board;
   Fields of_arena(*arena, Object::arena, diagnostics);
@@ -79,6 +103,11 @@ Board default_board() {
   const auto names = board_names();
   return board_at(static_cast<std::size_t>(
       std::ranges::find(names, std::string_view(ROBOSYNC_BOARD)) - names.begin()));
+}
+
+std::uint8_t board_id(std::string_view name) {
+  const auto byte = static_cast<std::uint8_t>(vm::crc32(std::as_bytes(std::span(name))));
+  return byte == 0 ? 1 : byte;
 }
 
 Board board_for(std::optional<std::size_t> named) {

@@ -29,6 +29,17 @@ struct Board {
   };
   std::vector<Pins> outputs;    // pins that a program may drive
   std::uint32_t i2c_buses = 0;  // numbered from 0
+  // How its firmware gets there; nothing: there is no such board but in an emulator.
+  struct Flash {
+    std::string socket;  // of the cable, in words
+    std::string
+        usb;  // what its serial line is there, "vendor:product", four hexadecimal digits each
+    std::string drive;        // its name as a drive
+    std::string drive_takes;  // files with this ending
+    std::string openocd;      // the script that knows it
+    std::string pyocd;        // what it is called
+  };
+  std::optional<Flash> flash;
 
   [[nodiscard]] bool has_output(std::uint16_t pin) const;
 };
@@ -41,6 +52,8 @@ struct Board {
 [[nodiscard]] Board board_at(std::size_t place);
 // That of the preset (CMakePresets.json).
 [[nodiscard]] Board default_board();
+// What stands for its name in an image: a byte of its CRC-32, never 0. The tests see to it that no two boards here share one.
+[[nodiscard]] std::uint8_t board_id(std::string_view name);
 // The one that robot.json names, by its place; the default where it names none.
 [[nodiscard]] Board board_for(std::optional<std::size_t> named);
 

@@ -29,7 +29,9 @@ enum class Object : std::uint8_t {
   verb,
   board,
   arena,
-  outputs
+  outputs,
+  flash,
+  drive
 };
 
 enum class KeyUse : std::uint8_t { used, later, editor };

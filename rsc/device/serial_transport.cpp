@@ -100,7 +100,10 @@ std::vector<SerialPort> list_serial_ports() {
   std::vector<SerialPort> result;
   for (sp_port** at = list; *at != nullptr; ++at) {
     const char* const description = sp_get_port_description(*at);
-    result.push_back({sp_get_port_name(*at), description != nullptr ? description : ""});
+    int vendor = 0, product = 0;
+    const bool on_usb = sp_get_port_usb_vid_pid(*at, &vendor, &product) == SP_OK;
+    result.push_back({sp_get_port_name(*at), description != nullptr ? description : "",
+                      on_usb ? fmt::format("{:04x}:{:04x}", vendor, product) : ""});
   }
   return result;
 }

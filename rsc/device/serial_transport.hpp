@@ -15,6 +15,7 @@ inline constexpr int kBaudRate = 115200;
 
 struct SerialPort {
   std::string name, description;
+  std::string usb;  // "0483:374b", vendor and product; empty when it is not on USB
 };
 [[nodiscard]] std::vector<SerialPort> list_serial_ports();
 

@@ -1,29 +1,58 @@
 // rsc ports [--format human|json]
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
-#include "rsc/device/serial_transport.hpp"
+#include "rsc/device/seen_boards.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {
 
+nlohmann::ordered_json json_of(const SeenPort& seen) {
+  nlohmann::ordered_json object{{"port", seen.port.name},
+                                {"description", seen.port.description},
+                                {"board", nullptr},
+                                {"may_be", seen.may_be}};
+  if (seen.answer) {
+    object["board"] = seen.answer->board;
+    object["firmware"] = seen.answer->firmware;
+  }
+  return object;
+}
+
+std::string line_of(const SeenPort& seen) {
+  std::string text = fmt::format("{:<20}  {}", seen.port.name, seen.port.description);
+  if (seen.answer)
+    text += fmt::format("  {}, firmware {}", seen.answer->board, seen.answer->firmware);
+  else if (!seen.may_be.empty())
+    text += fmt::format("  may be {}, but RoboSync does not answer: rsc flash --board {}",
+                        fmt::join(seen.may_be, " or "), seen.may_be.front());
+  return text;
+}
+
 void ports(Format format) {
-  const std::vector<SerialPort> found = list_serial_ports();
+  const std::vector<SeenPort> found = look_at_ports(list_serial_ports(), ask_board);
+  const std::vector<SeenDrive> drives = look_at_drives();
   if (format == Format::json) {
     auto list = nlohmann::ordered_json::array();
-    for (const SerialPort& port : found)
-      list.push_back({{"port", port.name}, {"description", port.description}});
+    for (const SeenPort& seen : found)
+      list.push_back(json_of(seen));
+    for (const SeenDrive& seen : drives)
+      list.push_back({{"drive", seen.place.string()}, {"board", seen.board}});
     std::cout << list.dump() << '\n';
     return;
   }
-  for (const SerialPort& port : found)
-    std::cout << fmt::format("{:<20}  {}\n", port.name, port.description);
+  for (const SeenPort& seen : found)
+    std::cout << line_of(seen) << '\n';
+  for (const SeenDrive& seen : drives)
+    std::cout << fmt::format("{:<20}  the drive of a {}\n", seen.place.string(), seen.board);
   if (found.empty()) {
     std::cerr << "rsc: no serial ports found; is the board plugged in? (`scripts/robot` starts an "
                  "emulated one)\n";

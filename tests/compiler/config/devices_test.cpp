@@ -239,10 +239,14 @@ TEST_CASE("the boards are read without a mistake") {
     CHECK_FALSE(board.outputs.empty());
   }
   CHECK(std::ranges::count(board_names(), default_board().name) == 1);
+  std::set<unsigned> ids;
+  for (const std::string_view name : board_names())
+    CHECK(ids.insert(board_id(name)).second);
+  CHECK(ids.count(0) == 0);
 }
 
 TEST_CASE("mistakes in a board's profile are reported") {
   Diagnostics diagnostics;
-  (void)read_board({"none", R"({"name": "none", "arena": {"begin": 0}, "flash": 1})"}, diagnostics);
+  (void)read_board({"none", R"({"name": "none", "arena": {"begin": 0}, "flesh": 1})"}, diagnostics);
   CHECK(diagnostics.errors() == 5);  // no bytes, step_budget, buses, outputs, and what nobody knows
 }

@@ -1,0 +1,142 @@
+// rsc flash --board NAME [FILE] [--drive FOLDER | --by drive|openocd|pyocd]
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "compiler/config/boards.hpp"
+#include "compiler/diagnostics/nearest.hpp"
+#include "rsc/device/drives.hpp"
+#include "rsc/device/firmware_file.hpp"
+#include "rsc/device/programmer.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/files.hpp"
+#include "rsc/verb.hpp"
+
+namespace robosync::tool {
+namespace {
+
+namespace fs = std::filesystem;
+using compiler::Board;
+
+enum class Way : std::uint8_t { drive, openocd, pyocd };
+const std::vector<std::string> kWays = {"drive", "openocd", "pyocd"};
+
+struct FlashOptions {
+  std::string board, file, drive;
+  std::optional<Way> by;
+};
+
+Board board_called(const std::string& name) {
+  const std::vector<std::string_view> known = compiler::board_names();
+  const std::vector<std::string> names(known.begin(), known.end());
+  const auto found = std::ranges::find(names, name);
+  if (found != names.end())
+    return compiler::board_at(static_cast<std::size_t>(found - names.begin()));
+  const auto near = compiler::nearest(name, names);
+  throw Failure(Exit::usage, fmt::format("there is no board `{}`; {}", name,
+                                         near ? fmt::format("did you mean `{}`?", *near)
+                                              : fmt::format("boards: {}", fmt::join(names, ", "))));
+}
+
+void connected(const Board& board) {
+  std::cout << fmt::format(
+      "`rsc ports` shows where it is, `rsc info --port PORT` whether it runs: {} and this rsc's "
+      "firmware.\n",
+      board.name);
+}
+
+void copy_to(const fs::path& drive, const FlashOptions& options, const Board& board) {
+  std::error_code error;
+  if (!fs::is_directory(drive, error))
+    throw Failure(Exit::outside, drive.string() + ": there is no such folder");
+  const fs::path file = find_firmware(options.file, board.name, {board.flash->drive_takes});
+  const std::vector<std::byte> bytes = read_bytes(file);
+  std::cout << fmt::format("copies {} ({} bytes) to the drive {}\n", file.string(), bytes.size(),
+                           drive.string());
+  write_to_drive(drive / file.filename(), bytes);
+  std::cout << "The board programs itself, leaves as a drive and comes back. If there is a "
+               "FAIL.TXT then, it says "
+               "why it could not.\n";
+  connected(board);
+}
+
+// A word of openocd's own commands: one that it takes as it is.
+std::string braced(const fs::path& file) {
+  return "{" + fs::absolute(file).string() + "}";
+}
+
+std::vector<std::string> command_of(Way way, const Board::Flash& flash, const fs::path& file) {
+  if (way == Way::openocd)
+    return {"openocd", "-f", flash.openocd, "-c",
+            fmt::format("program {} verify reset exit", braced(file))};
+  return {"pyocd", "flash", "--target", flash.pyocd, file.string()};
+}
+
+void program_by(Way way, const FlashOptions& options, const Board& board) {
+  const fs::path file = find_firmware(options.file, board.name, {".elf", ".hex"});
+  const std::vector<std::string> command = command_of(way, *board.flash, file);
+  std::cout << fmt::format("runs {}\n", fmt::join(command, " ")) << std::flush;
+  if (const int code = run_program(command); code != 0) {
+    throw Failure(Exit::outside, fmt::format("{} ended with {}: is the board connected, by {}?",
+                                             command.front(), code, board.flash->socket));
+  }
+  connected(board);
+}
+
+[[noreturn]] void not_found(const Board& board) {
+  const Board::Flash& flash = *board.flash;
+  throw Failure(
+      Exit::outside,
+      fmt::format(
+          "no board found: no drive {} is mounted, and neither openocd nor pyocd is installed.\n"
+          "  Connect {} of the {}, and open its drive {}, so that it is mounted; where it is "
+          "somewhere else, say --drive FOLDER.\n"
+          "  Or install openocd (apt install openocd), which needs no drive.",
+          flash.drive, flash.socket, board.name, flash.drive));
+}
+
+void flash(const FlashOptions& options) {
+  const Board board = board_called(options.board);
+  if (!board.flash) {
+    throw Failure(Exit::usage, fmt::format("{} is an emulated board: there is nothing to flash, "
+                                           "`scripts/robot` starts it with its "
+                                           "firmware",
+                                           board.name));
+  }
+  if (!options.drive.empty()) return copy_to(options.drive, options, board);
+  const auto may = [&](Way way) { return options.by.value_or(way) == way; };
+  if (may(Way::drive))
+    if (const auto drive = mounted_drive(board.flash->drive))
+      return copy_to(*drive, options, board);
+  for (const Way way : {Way::openocd, Way::pyocd}) {
+    const std::string& tool = kWays[static_cast<std::size_t>(way)];
+    if (may(way) && is_installed(tool)) return program_by(way, options, board);
+    if (options.by == way)
+      throw Failure(Exit::outside, fmt::format("{} is not installed, or not on PATH", tool));
+  }
+  not_found(board);
+}
+
+}  // namespace
+
+void add_flash(Options& options) {
+  auto asked = std::make_shared<FlashOptions>();
+  options.option("--board", "NAME", asked->board, "which board (stdlib/boards)",
+                 Options::Need::required);
+  options.argument("FILE", asked->file,
+                   "its firmware; else robosync-NAME here or in build/firmware",
+                   Options::Need::optional);
+  options.option("--drive", "FOLDER", asked->drive, "where its drive is mounted");
+  options.choice(
+      "--by", kWays, [asked](std::size_t way) { asked->by = static_cast<Way>(way); },
+      "how; else by its drive, or by what is installed");
+  options.runs([asked] { flash(*asked); });
+}
+
+}  // namespace robosync::tool
