@@ -15,6 +15,13 @@ const policy::BoardCosts& costs_of(const compiler::Board& board) {
   return board_costs();
 }
 
+std::optional<compiler::Board> board_of(const vm::ImageHeader& header) {
+  for (std::size_t i = 0; i < compiler::board_names().size(); ++i)
+    if (compiler::board_id(compiler::board_names()[i]) == header.board)
+      return compiler::board_at(i);
+  return std::nullopt;
+}
+
 const policy::BoardMemory& board_memory() {
   return boards::kMemory;
 }

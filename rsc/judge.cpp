@@ -79,7 +79,9 @@ void judge(compiler::Result& result, Judged judged) {
 }
 
 void judge_time(const Program& program, const std::string& name) {
-  const Overload overload = overload_of(responses_of(program.image(), board_costs()));
+  const auto board = board_of(*program.image().header);
+  const Overload overload =
+      overload_of(responses_of(program.image(), board ? costs_of(*board) : board_costs()));
   if (overload.what.empty()) return;
   throw Failure(Exit::program,
                 fmt::format("{}: the board cannot keep up with the program: {}\n  {}\n  --anyway "

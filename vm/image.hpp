@@ -20,7 +20,6 @@ using Word = std::uint32_t;  // one instruction: op | a << 8 | b << 16 | c << 24
 
 inline constexpr std::uint32_t kMagic = 0x31425352;  // "RSB1"
 inline constexpr std::uint8_t kFormatMajor = 2;      // a board runs images of its own major only
-inline constexpr std::uint8_t kFormatMinor = 0;
 
 inline constexpr std::uint16_t kNoIndex = 0xFFFF;    // "none" in any u16 index
 inline constexpr std::uint8_t kNoWord = 0xFF;        // CMD without a word
@@ -126,8 +125,8 @@ struct ImageHeader {
   std::uint32_t crc32;         // CRC-32 (IEEE) of everything after this field
   std::uint32_t total_length;  // bytes, header included, a multiple of 4
   std::uint8_t format_major;
-  std::uint8_t format_minor;
-  std::uint16_t opcode_set;                  // opcode_set_id() of the compiler's opcodes.def
+  std::uint8_t board;        // for which one it is, as a number made of its name; 0: for none
+  std::uint16_t opcode_set;  // opcode_set_id() of the compiler's opcodes.def
   std::array<std::uint8_t, 8> program_hash;  // first bytes of SHA-256 over source and configuration
   std::uint32_t seed;                        // of RANDOM and PICK ONE; 0: the runtime takes one
   std::uint32_t step_cost;                   // worst-case M4 instructions of VM code in one step

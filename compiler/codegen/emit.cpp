@@ -6,6 +6,7 @@
 
 #include "compiler/codegen/records.hpp"
 #include "compiler/codegen/rules.hpp"
+#include "compiler/config/boards.hpp"
 #include "vm/opcode.hpp"
 #include "vm/verifier.hpp"
 
@@ -121,11 +122,11 @@ void Emitter::finish_header(const Robot& robot, const ProgramHash& hash) {
   header_.magic = vm::kMagic;
   header_.total_length = static_cast<std::uint32_t>(bytes_.size());
   header_.format_major = vm::kFormatMajor;
-  header_.format_minor = vm::kFormatMinor;
   header_.opcode_set = vm::opcode_set_id();
   header_.program_hash = hash;
   header_.seed = options_.seed != 0 ? options_.seed : robot.seed;
   header_.safety_start_ms = robot.safety_start_ms;
+  header_.board = board_id(board_for(robot.board).name);
   std::memcpy(bytes_.data(), &header_, sizeof header_);
   vm::Image view;
   if (vm::view_image(bytes_, view)) header_.step_cost = vm::step_cost(view);

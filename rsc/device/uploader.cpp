@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/config/boards.hpp"
 #include "link/frame.hpp"
 #include "link/wire.hpp"
 #include "rsc/failure.hpp"
@@ -178,9 +179,17 @@ milliseconds patience(std::size_t image_bytes) {
   return milliseconds(10000) + milliseconds(1) * image_bytes;
 }
 
+// Of another board everything may be different, so nothing else is said then.
 std::vector<std::string> obstacles(const link::HelloReply& board, const vm::Image& image) {
   std::vector<std::string> found;
   const vm::ImageHeader& header = *image.header;
+  const std::string name = text_of(board.board);
+  if (header.board != 0 && header.board != compiler::board_id(name)) {
+    const auto meant = board_of(header);
+    return {fmt::format(
+        "it is for {}, and this is {}: say \"board\": \"{}\" in robot.json, and compile it again",
+        meant ? meant->name : "a board that this rsc does not know", name, name)};
+  }
   if (board.image_major != header.format_major) {
     found.push_back(
         fmt::format("the firmware runs images of format {}, this one is format {}: "

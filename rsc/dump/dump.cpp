@@ -13,11 +13,13 @@ namespace {
 
 std::string header_text(const vm::Image& image) {
   const vm::ImageHeader& header = *image.header;
-  std::string text = fmt::format("image {:02x}, format {}.{}, opcode set {:04x}, crc32 {:08x}\n",
+  std::string text = fmt::format("image {:02x}, format {}, opcode set {:04x}, crc32 {:08x}\n",
                                  fmt::join(header.program_hash, ""), header.format_major,
-                                 header.format_minor, header.opcode_set, header.crc32);
-  text += fmt::format("{} bytes, a step costs up to {} instructions, seed {}\n",
-                      header.total_length, header.step_cost, header.seed);
+                                 header.opcode_set, header.crc32);
+  const auto board = board_of(header);
+  text += fmt::format("for {}; {} bytes, a step costs up to {} instructions, seed {}\n",
+                      board ? board->name : "no board that this rsc knows", header.total_length,
+                      header.step_cost, header.seed);
   for (const SectionSize& size : section_sizes(image)) {
     text += fmt::format("  {:<14}{:>5} x {:>6} bytes\n", vm::describe(size.section), size.records,
                         size.bytes);

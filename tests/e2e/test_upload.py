@@ -4,7 +4,8 @@ import json
 import unittest
 
 import rsc
-from support import PROGRAMS, LineReader, RobotTest
+from board import NAME, ROOT
+from support import CONFIG, PROGRAMS, LineReader, RobotTest
 
 SAFETY_PERIOD_US = 10_000
 
@@ -37,17 +38,26 @@ class Upload(RobotTest):
             self.assertIn(info["board"]["program"]["hash"], report)
 
     def test_commands_of_the_old_program_do_not_outlive_it(self):
-        self.upload(PROGRAMS / "paper.rsl", "--config", PROGRAMS / "robot.json")
+        self.upload(PROGRAMS / "paper.rsl", "--config", self.for_board(CONFIG))
         rsc.run("feed", "touch.LEVEL=1", "--port", self.board.port)  # sweeps for seconds
-        self.upload(PROGRAMS / "priorities.rsl", "--config", PROGRAMS / "robot.json")
+        self.upload(PROGRAMS / "priorities.rsl", "--config", self.for_board(CONFIG))
         reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
         reader.wait_for(lambda lines: len(lines) > 1, 2)
         reader.stop()
         self.assertEqual([json.loads(line)["event"] for line in reader.lines], ["board"])
 
     def test_source_is_compiled_and_uploaded(self):
-        said = self.upload(PROGRAMS / "paper.rsl", "--config", PROGRAMS / "robot.json")
+        said = self.upload(PROGRAMS / "paper.rsl", "--config", self.for_board(CONFIG))
         self.assertRegex(said, r"bytes in [\d.]+ ms")
+
+    def test_an_image_for_another_board_is_refused(self):
+        other = next(path.stem for path in (ROOT / "stdlib/boards").glob("*.json") if path.stem != NAME)
+        config = self.folder / "other.json"
+        config.write_text(json.dumps({**json.loads(CONFIG.read_text()), "board": other}))
+        done = rsc.call("upload", PROGRAMS / "paper.rsl", "--config", config, "--port", self.board.port)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(f"it is for {other}, and this is {NAME}", done.stderr)
+        self.assertEqual(self.status()["activations"], 0)
 
     def test_every_thread_keeps_within_its_stack(self):
         self.upload(self.compile(PROGRAMS / "arithmetic.rsl"))

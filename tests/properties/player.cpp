@@ -28,7 +28,7 @@ using namespace robosync;
 using link::FeedError;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPatience{20'000};
+constexpr milliseconds kPatience{60'000};
 constexpr milliseconds kSilence{300};  // of a board that has nothing to say
 constexpr std::size_t kFeedBytes = sizeof(link::Feed) + link::kFrameOverhead + 2;
 
@@ -120,11 +120,12 @@ private:
     other.at_us += 1000;
     other.value = last.value == 0 ? 1000 : 0;
     Feeding(session_, {last, other}).run();
-    const auto give_up = session_.client.now() + kPatience;
+    auto give_up = session_.client.now() + kPatience;
     for (bool behind = false; session_.client.now() < give_up;) {
       link::Event event;
       if (next(event)) {
         if (event.time_us > job.end_us()) return;
+        give_up = session_.client.now() + kPatience;  // it goes on, however slowly
         std::cout << tool::trace_json(event, {&image, {}, nullptr}) << '\n';
       } else if (behind) {
         return;

@@ -113,8 +113,8 @@ TEST_CASE("upload, info, feed and monitor against a running robot") {
   Outcome outcome = device.run({"info"});
   CAPTURE(outcome.err);
   REQUIRE(outcome.exit == 0);
-  CHECK_THAT(outcome.out, Contains("board     test, firmware") && Contains("program   none") &&
-                              Contains("link"));
+  CHECK_THAT(outcome.out, Contains("board     mps2-an386, firmware") &&
+                              Contains("program   none") && Contains("link"));
 
   outcome = device.run({"feed", "touch.LEVEL=2"});
   CHECK(outcome.exit == 1);
@@ -187,6 +187,32 @@ TEST_CASE("a sensor whose bus is held down is told at the upload, by info and by
   says_held(outcome.out);
   outcome = device.run({"monitor", "--duration", "200ms", "--format", "json"});
   CHECK(json::parse(outcome.out.substr(0, outcome.out.find('\n'))).at("silent").size() == 1);
+}
+
+TEST_CASE("a program for another board than the one on the line is refused, and both are named") {
+  const Device device;
+  REQUIRE(device.run({"upload", device.program}).exit == 0);
+  json robot = json::parse(test::kRobot);
+  robot["board"] = "b-l475e-iot01a";
+  robot["actuators"][0]["pin"] = 3;
+  const std::string config = device.write("other.json", robot.dump());
+  const std::string image = device.path("other.rsb");
+  REQUIRE(test::rsc({"compile", device.program, "--config", config, "-o", image}).exit == 0);
+  CHECK_THAT(test::rsc({"dump", image}).out, Contains("for b-l475e-iot01a; "));
+  for (const std::vector<std::string>& upload :
+       {std::vector<std::string>{"upload", device.program, "--config", config},
+        {"upload", image},
+        {"upload", image, "--anyway"},
+        {"feed", "touch.LEVEL=2", "--upload", image}}) {
+    const Outcome outcome = device.run(upload);
+    CAPTURE(outcome.err);
+    CHECK(outcome.exit == 1);
+    CHECK_THAT(outcome.err,
+               Contains("it is for b-l475e-iot01a, and this is mps2-an386: say \"board\": "
+                        "\"mps2-an386\" in robot.json, and compile it again"));
+  }
+  CHECK(json::parse(device.run({"info", "--format", "json"}).out).at("status").at("activations") ==
+        1);
 }
 
 TEST_CASE("a program this board cannot run is refused before it is sent, and the old one goes on") {

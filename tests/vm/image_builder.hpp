@@ -133,7 +133,6 @@ private:
     ImageHeader header{};
     header.magic = kMagic;
     header.format_major = kFormatMajor;
-    header.format_minor = kFormatMinor;
     header.opcode_set = opcode_set_id();
 #define IMAGE_SECTION(records, Record, Count, check, name) \
   header.records = static_cast<Count>(records.size());

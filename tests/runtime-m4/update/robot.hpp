@@ -36,7 +36,7 @@ class LineBoard final : public boards::Board {
 public:
   static constexpr std::size_t kRing = 512;
 
-  const char* name() const override { return "test"; }
+  const char* name() const override { return "mps2-an386"; }
   std::uint8_t reset_reason() const override { return 2; }
   const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t, std::uint8_t, std::span<const std::byte>,

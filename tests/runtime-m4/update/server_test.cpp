@@ -57,7 +57,7 @@ TEST_CASE("hello introduces the board, without a program and with one") {
   link::HelloReply board = client.hello();
   CHECK(board.protocol == link::kProtocolVersion);
   CHECK(board.opcode_set == vm::opcode_set_id());
-  CHECK(tool::text_of(board.board) == "test");
+  CHECK(tool::text_of(board.board) == "mps2-an386");
   CHECK(board.arena_bytes == boards::kMemory.arena_bytes);
   CHECK(board.arena_begin == boards::kMemory.arena_begin);
   const std::uint32_t without = board.arena_used;
