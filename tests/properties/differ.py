@@ -46,6 +46,7 @@ class Result(NamedTuple):
     refused: int = 0  # programs, by the compiler
     played: int = 0  # … by a board
     refused_by_board: int = 0
+    too_much: int = 0  # more than fits on the line, each time: nothing is compared
     unsteady: int = 0  # played otherwise the first time, but not again
 
     def __add__(self, other):
@@ -84,6 +85,8 @@ def check_board(seed, program, readings, rsc, board):
         difference, why = play(image, later, folder, rsc, board)
         if why == "refused":
             return Result(refused_by_board=1)
+        if difference and why == "lost":
+            return result + Result(too_much=1)
         if why != "late":
             break
     if difference:  # on the board time passes while the line is busy: a movement may end a millisecond late
@@ -118,7 +121,8 @@ def said(total):
     text = (f"{total.compared} scripts compared, {len(total.cases)} differ, {total.ties} as far as a tie; "
             f"{total.refused} programs refused")
     if total.played or total.refused_by_board:
-        text += f"; {total.played} programs played by the board, which refused {total.refused_by_board}; {total.unsteady} unsteady"
+        text += (f"; {total.played} programs played by the board, which refused {total.refused_by_board}; "
+                 f"of {total.too_much} the trace does not fit on the line, {total.unsteady} were unsteady")
     return text
 
 
