@@ -34,7 +34,8 @@ design's arithmetic and commands (4,096).
 are in it. `firmware/idle_second_paper` is without what the bit-banged I2C bus executes, `…_i2c` is that alone.
 `vm/bytes_W3` (90): the response takes 88, the period of its EVERY, which the peers' step has not, 8 more.
 `vm/W1` ends when both commands are put out, as the peers' does; `vm/W1_queue` is the same rule in the shipped firmware, until both
-are in their drivers' queues: claims, two threads and their switches included. `vm/ram_per_thread` is all that a behaviour takes.
+are in their drivers' queues: claims, two threads and their switches included. `vm/W3_staged` is W3 in the shipped firmware, until
+what it has SET is staged for the next step. `vm/ram_per_thread` is all that a behaviour takes.
 `vm/verify_per_word` is of
 the paper's image, most of which is wiring and names; `vm/verify_64k` is of 1,000 rules in 64 behaviours at the format's
 limit of 64 KB (`image/largest_bytes`), nearly all of it rules and code, of which a word costs more.

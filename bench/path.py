@@ -16,13 +16,15 @@ from pathlib import Path
 
 import rsc
 from board import REAL_TIME, Board
-from counting import PATIENCE, READING, BenchError, Marks, functions, plugin_arguments, wait_for_readings
-from workloads import PAPER
+from counting import PATIENCE, READING, BenchError, Marks, ends_of, functions, plugin_arguments, wait_for_readings
+from workloads import PAPER, W3
 
 COMMAND = "robosync::drivers::servo::start("
 RELEASE = "robosync::drivers::servo::release("
 RULE = "robosync::layers::BehaviorLayer::evaluate_rule("
 SIGNAL = "robosync::kernel::Kernel::signal("  # to an actuator's thread, when a command is in its queue
+RESPONSE = "robosync::layers::BehaviorLayer::run_response("
+CONCLUDE = "robosync::layers::ProcessingLayer::conclude("  # stages what the response has SET
 WAY = (READING, COMMAND, RELEASE)
 START_UPS = 8
 CHANGES = 8
@@ -116,6 +118,23 @@ def follow_update(known):
     return {"path/follow_update": (max(count for count, _ in found[-CHANGES:]), "insn")}
 
 
+def sets_staged():
+    """W3 in its behaviour's thread, until the step thread has staged its SETs: the most of several times."""
+    known = functions(RESPONSE, READING) | {CONCLUDE: ends_of(CONCLUDE)[-1]}
+    with tempfile.TemporaryDirectory() as folder:
+        image, out = Path(folder) / "w3.rsb", Path(folder) / "marks"
+        rsc.run("compile", W3, "-o", image)
+        with Board(icount=REAL_TIME, extra=plugin_arguments(known, out)) as board:
+            rsc.run("upload", image, "--port", board.port)
+            for raw in (LIGHT, FIRM) * CHANGES:
+                board.set_touch(raw)
+                wait_for_readings(out, 2)
+        spans = Marks(known, out).spans(RESPONSE, CONCLUDE)
+    if len(spans) < CHANGES:
+        raise BenchError(f"W3 ran {len(spans)} times only")
+    return {"vm/W3_staged": (max(spans), "insn")}
+
+
 def path_figures():
     known = functions(*WAY, RULE, SIGNAL)
     with tempfile.TemporaryDirectory() as folder:
@@ -128,6 +147,6 @@ def path_figures():
     free, busy, monitored = found[:START_UPS], found[START_UPS:][:CHANGES], found[-CHANGES:]
     if len(found) != START_UPS + 2 * CHANGES + AWAKE or not all(stopped for _, stopped in busy + monitored):
         raise BenchError(f"not every touch led to a command, or the arms stood still: {found}")
-    return follow_update(functions(*WAY)) | {"vm/W1_queue": (rule_to_queue(marks), "insn")} | {
+    return follow_update(functions(*WAY)) | sets_staged() | {"vm/W1_queue": (rule_to_queue(marks), "insn")} | {
         f"path/reading_to_command{name}": (max(count for count, _ in way), "insn")
         for name, way in (("", free), ("_busy", busy), ("_monitored", monitored))}
