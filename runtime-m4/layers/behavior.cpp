@@ -138,10 +138,10 @@ void BehaviorLayer::conclude(unsigned rule) {
 }
 
 void BehaviorLayer::stage_writes(unsigned behavior) {
-  vm::Machine machine = layers_.frames.machine(*program_, behavior);
-  machine.assigned = workspace_.result->assigned;
-  machine.shifted = workspace_.result->shifted;
-  layers_.variables.stage(machine, program_->image.behaviors[behavior], *snapshot_);
+  layers_.variables.stage({.frame = layers_.frames.frame(*program_, behavior),
+                           .assigned = workspace_.result->assigned,
+                           .shifted = workspace_.result->shifted},
+                          program_->image.behaviors[behavior], *snapshot_);
 }
 
 // Commands reach the actuators that the response has declared, whatever its thread says.

@@ -28,15 +28,20 @@ void Frames::start(std::uint32_t seed, Memory& memory) {
   std::ranges::fill(workspace_.cells, unknown);
 }
 
+vm::Value* Frames::frame(const LoadedProgram& program, unsigned behavior) const {
+  const unsigned first = program.first_behavior();
+  std::size_t begin = 0;
+  for (unsigned before = first; before < behavior; ++before)
+    begin += program.image.behaviors[before].cells;
+  const std::span<std::uint32_t> cells = behavior < first ? safety_cells_ : workspace_.cells;
+  return reinterpret_cast<vm::Value*>(cells.data() + begin);
+}
+
 // The timers are numbered from the first one of the program, which is SAFETY's.
 vm::Machine Frames::machine(const LoadedProgram& program, unsigned behavior) const {
   const bool safety = behavior < program.first_behavior();
-  std::size_t frame = 0;
-  for (unsigned before = program.first_behavior(); before < behavior; ++before)
-    frame += program.image.behaviors[before].cells;
-  const std::span<std::uint32_t> cells = safety ? safety_cells_ : workspace_.cells;
   vm::Machine machine;
-  machine.frame = reinterpret_cast<vm::Value*>(cells.data() + frame);
+  machine.frame = frame(program, behavior);
   machine.constants = program.image.constants.data();
   machine.timers = program.image.timers.data();
   machine.timer_memory =

@@ -19,6 +19,7 @@ public:
   // Nothing is known, nothing remembered; random numbers begin with `seed`. After the workspace.
   void start(std::uint32_t seed, Memory& memory);
 
+  vm::Value* frame(const LoadedProgram& program, unsigned behavior) const;
   // A machine for one behaviour. Its random numbers depend on the program's seed and on the number
   // of the behaviour only.
   vm::Machine machine(const LoadedProgram& program, unsigned behavior) const;

@@ -54,39 +54,44 @@ void Variables::start(const vm::Image& image, std::span<vm::Value> values, Memor
 
 // --- writes ---
 
+void Variables::stage(const Written& written, const vm::Behavior& behavior,
+                      const Snapshot& before) {
+  stage_all<Rank::below_those_staged>(written, behavior, before);
+}
+
+void Variables::stage_first(const Written& written, const vm::Behavior& behavior,
+                            const Snapshot& before) {
+  stage_all<Rank::above_all>(written, behavior, before);
+}
+
 // Which cells were written is not believed: it comes from a behaviour's thread.
-void Variables::stage_all(const vm::Machine& machine, const vm::Behavior& behavior,
-                          const Snapshot& before, void (Variables::*add_one)(const Write&)) {
-  for (std::uint32_t left = machine.written(); left != 0; left &= left - 1) {
+template <Variables::Rank rank>
+void Variables::stage_all(const Written& written, const vm::Behavior& behavior,
+                          const Snapshot& before) {
+  const std::uint8_t* const inputs = &image_->inputs[behavior.first_input];
+  for (std::uint32_t left = written.assigned | written.shifted; left != 0; left &= left - 1) {
     const auto cell = static_cast<unsigned>(std::countr_zero(left));
     if (cell >= behavior.input_count) break;
-    const std::uint8_t input = image_->inputs[behavior.first_input + cell];
+    const std::uint8_t input = inputs[cell];
     if (input < image_->channels.size()) continue;
-    const bool set = has(machine.assigned, cell);
-    const vm::Value value = machine.frame[cell];
-    (this->*add_one)({.variable = static_cast<std::uint8_t>(input - image_->channels.size()),
-                      .set = set,
-                      .value = set ? value : vm::subtract(value, before.value(input))});
+    const bool set = has(written.assigned, cell);
+    const vm::Value value =
+        set ? written.frame[cell] : vm::subtract(written.frame[cell], before.value(input));
+    if (value == vm::kUnknown) continue;
+    stage_one<rank>({.variable = static_cast<std::uint8_t>(input - image_->channels.size()),
+                     .set = set,
+                     .value = value});
   }
 }
 
-void Variables::add(const Write& write) {
-  if (write.value == vm::kUnknown) return;
+template <Variables::Rank rank>
+inline void Variables::stage_one(const Write& write) {
   const auto mine = bit<VariableMask>(write.variable);
   const auto lock = kernel_.lock();
-  if ((set_ & mine) != 0) return;  // by a more important one
-  const vm::Value before = (staged_ & mine) != 0 ? sums_[write.variable] : 0;
-  sums_[write.variable] = saturated(std::int64_t{before} + write.value);
-  staged_ |= mine;
-  if (write.set) set_ |= mine;
-}
-
-void Variables::add_first(const Write& write) {
-  if (write.value == vm::kUnknown) return;
-  const auto mine = bit<VariableMask>(write.variable);
-  const auto lock = kernel_.lock();
-  const bool adds = !write.set && (staged_ & mine) != 0;
-  sums_[write.variable] = saturated(std::int64_t{adds ? sums_[write.variable] : 0} + write.value);
+  if (rank == Rank::below_those_staged && (set_ & mine) != 0) return;
+  vm::Value& sum = sums_[write.variable];
+  const bool adds = (staged_ & mine) != 0 && !(rank == Rank::above_all && write.set);
+  sum = adds ? saturated(std::int64_t{sum} + write.value) : write.value;
   staged_ |= mine;
   if (write.set) set_ |= mine;
 }

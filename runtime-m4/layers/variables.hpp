@@ -29,24 +29,23 @@ public:
     vm::Value value;        // unknown: there is no such write
   };
 
+  // What a response has written into its behaviour's frame; bit c of the masks: cell c.
+  struct Written {
+    const vm::Value* frame;
+    std::uint32_t assigned;  // by SET
+    std::uint32_t shifted;   // by RAISE and LOWER
+  };
+
   explicit Variables(kernel::Kernel& kernel) : kernel_(kernel) {}
 
   // Writes the initial values into `values`, one for each variable of `image`.
   void start(const vm::Image& image, std::span<vm::Value> values, Memory& memory);
 
-  // Stages what a response has written into the frame of `behavior`, which was latched from
-  // `before`: in a step from the most important response down  [step thread]
-  void stage(const vm::Machine& machine, const vm::Behavior& behavior, const Snapshot& before) {
-    stage_all(machine, behavior, before, &Variables::add);
-  }
+  // Stages what a response of `behavior` has written; its frame was latched from `before`. In a step from the most
+  // important response down  [step thread]
+  void stage(const Written& written, const vm::Behavior& behavior, const Snapshot& before);
   // … or more important than all those, at any time  [safety thread].
-  void stage_first(const vm::Machine& machine, const vm::Behavior& behavior,
-                   const Snapshot& before) {
-    stage_all(machine, behavior, before, &Variables::add_first);
-  }
-  // One write.
-  void add(const Write& write);
-  void add_first(const Write& write);
+  void stage_first(const Written& written, const vm::Behavior& behavior, const Snapshot& before);
 
   // --- for the step thread; `now` is milliseconds of program time ---
   bool staged() const { return staged_ != 0; }
@@ -63,8 +62,11 @@ private:
     std::uint32_t since = 0;  // when that was
   };
 
-  void stage_all(const vm::Machine& machine, const vm::Behavior& behavior, const Snapshot& before,
-                 void (Variables::*add_one)(const Write&));
+  enum class Rank : std::uint8_t { below_those_staged, above_all };
+  template <Rank rank>
+  void stage_all(const Written& written, const vm::Behavior& behavior, const Snapshot& before);
+  template <Rank rank>
+  void stage_one(const Write& write);
   bool take(unsigned variable, Write& write);
   static vm::Value result_of(const vm::Variable& wiring, vm::Value before, const Write& write);
 

@@ -81,7 +81,9 @@ void SafetyRules::trip(unsigned rule) {
   while (reader.next(said))
     act(said);
   if (machine_.written() == 0) return;
-  layers_.variables.stage_first(machine_, rules(), snapshot());
+  layers_.variables.stage_first(
+      {.frame = machine_.frame, .assigned = machine_.assigned, .shifted = machine_.shifted},
+      rules(), snapshot());
   kernel_.signal(step_thread_, acted_);
 }
 
