@@ -1,6 +1,7 @@
 // The command line as a whole: help with working examples, did-you-mean, exit codes, streams.
 #include "rsc/cli.hpp"
 
+#include <filesystem>
 #include <iterator>
 #include <sstream>
 #include <string>
@@ -22,6 +23,15 @@ std::vector<std::string> words(std::string_view line) {
   return {std::istream_iterator<std::string>(stream), {}};
 }
 
+// Runs what follows in a folder of its own.
+struct InFolder : test::Folder {
+  InFolder() { std::filesystem::current_path(path(".")); }
+  ~InFolder() { std::filesystem::current_path(before); }
+  InFolder(const InFolder&) = delete;
+  InFolder& operator=(const InFolder&) = delete;
+  std::filesystem::path before = std::filesystem::current_path();
+};
+
 }  // namespace
 
 TEST_CASE("every verb explains itself, with an example of its own") {
@@ -42,6 +52,7 @@ TEST_CASE("every verb explains itself, with an example of its own") {
 }
 
 TEST_CASE("every example is understood by the parser") {
+  const InFolder here;  // what an example makes goes with it
   for (const tool::Verb& verb : tool::kVerbs) {
     INFO(verb.example);
     std::vector<std::string> arguments = words(verb.example);

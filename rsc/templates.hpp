@@ -1,0 +1,22 @@
+// Robots to begin with (templates.def), their files with them, so that the tool needs nothing beside itself.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace robosync::tool {
+
+struct TemplateFile {
+  std::string_view name, text;
+};
+
+struct Template {
+  std::string_view name;
+  std::string_view scenario;  // one of its files
+  std::string_view summary;   // what the robot does
+  std::span<const TemplateFile> files;
+};
+
+[[nodiscard]] std::span<const Template> templates();
+
+}  // namespace robosync::tool
