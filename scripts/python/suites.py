@@ -111,7 +111,7 @@ TOGETHER = 24  # sources at a time: the headers are looked at once for all of th
 # How many states of a function of the host the analyzer of clang looks at, at most; 225,000 is what it does by itself. A
 # function that uses up its states has, as a rule, a std::find_if or a std::visit in it, of which all ways through the
 # standard library are followed. On the board there is none of that, and all states are looked at.
-STATES_ON_THE_HOST = 50_000
+STATES_ON_THE_HOST = 15_000
 GCC_ALONE = ("-fno-tree-loop-distribute-patterns",)  # options that clang takes for errors
 
 
