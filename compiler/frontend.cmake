@@ -42,6 +42,7 @@ target_sources(robosync_compiler PRIVATE
   syntax/blocks.cpp
   syntax/builder.cpp
   syntax/edit.cpp
+  syntax/format.cpp
   syntax/habits.cpp
   syntax/keywords.cpp
   syntax/layout.cpp

@@ -1,0 +1,355 @@
+// See format.hpp. Which blocks are open the BlockWalk says; how deep a line stands follows from its first word and
+// from the innermost of them.
+#include "compiler/syntax/format.hpp"
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "compiler/syntax/blocks.hpp"
+#include "compiler/syntax/keyword_roles.hpp"
+#include "compiler/syntax/layout.hpp"
+#include "compiler/syntax/lexer.hpp"
+
+namespace robosync::compiler {
+namespace {
+
+constexpr std::size_t kIndent = 2;         // columns a level
+constexpr std::size_t kBeforeComment = 2;  // columns, at least
+constexpr std::string_view kBlanks = " \t\v\f\r";
+
+template <class... Kind>
+bool is_one_of(TokenKind kind, Kind... kinds) {
+  return ((kind == kinds) || ...);
+}
+
+bool is_relation(TokenKind kind) {
+  return is_one_of(kind, Kinds::LESS, Kinds::GREATER, Kinds::LESS_EQUAL, Kinds::GREATER_EQUAL,
+                   Kinds::EQUAL, Kinds::NOT_EQUAL);
+}
+
+// What stands around it, on either side; a minus may be a sign.
+bool is_spaced(TokenKind kind) {
+  return is_relation(kind) || is_one_of(kind, Kinds::PLUS, Kinds::STAR, Kinds::SLASH);
+}
+
+// Between two words of a line, of which the writer had put something in between, or nothing.
+bool is_space_between(TokenKind left, TokenKind right, bool written) {
+  if (is_one_of(right, Kinds::COMMA, Kinds::CLOSE, Kinds::COLON) || left == Kinds::OPEN)
+    return false;
+  return written || is_one_of(left, Kinds::COMMA, Kinds::COLON) || is_spaced(left) ||
+         is_spaced(right);
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
+}
+
+// Code points, which are columns in all that programs are written in.
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+// ---- how deep a line stands
+
+struct Block {
+  TokenKind opener = TokenKind{};
+  std::size_t level = 0;  // of the line that it stands in
+  bool body = false;      // its DO has come
+};
+
+bool has_do(TokenKind opener) {
+  return is_one_of(opener, Kinds::WHEN, Kinds::WHILE, Kinds::EVERY, Kinds::AT, Kinds::IF,
+                   Kinds::SAFETY);
+}
+
+// Words of a rule that stand below its first one.
+bool is_part_of_rule(TokenKind first) {
+  return is_one_of(first, Kinds::WHEN, Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF, Kinds::RESUME,
+                   Kinds::PRIORITY, Kinds::COOLDOWN, Kinds::MARGIN, Kinds::WAITING,
+                   Kinds::RESTARTING);
+}
+
+// Of the statements in it, or of comments between them.
+std::size_t inner_level(const Block& block) {
+  // The rule of a SAFETY stands one deeper, and so do the statements of an OPTION.
+  const bool twice = is_one_of(block.opener, Kinds::SAFETY, Kinds::PICK);
+  return block.level + (twice ? 2U : 1U);
+}
+
+std::size_t level_in(const Block& block, TokenKind first) {
+  if (first == Kinds::END) return block.level;
+  if (block.opener == Kinds::PICK && first == Kinds::OPTION) return block.level + 1;
+  if (!has_do(block.opener)) return inner_level(block);
+  if (is_part_of_rule(first) && !(block.body && first == Kinds::WHEN))
+    return inner_level(block) - 1;
+  return inner_level(block) + (block.body ? 0U : 1U);  // a condition goes on
+}
+
+std::size_t level_of_comment(const std::vector<Block>& blocks) {
+  if (blocks.empty()) return 0;
+  const Block& block = blocks.back();
+  const bool outside = has_do(block.opener) ? !block.body : block.opener == Kinds::PICK;
+  return inner_level(block) - (outside ? 1U : 0U);
+}
+
+// ---- lines
+
+enum class Table : std::uint8_t { none, motion, bands };
+
+struct Line {
+  std::size_t level = 0;
+  std::vector<std::string> cells;  // one, but for rows of a table
+  std::string_view comment;
+  Table table = Table::none;
+
+  [[nodiscard]] bool is_blank() const { return cells.empty() && comment.empty(); }
+};
+
+bool touch(const Token& left, const Token& right) {
+  return left.span.end == right.span.begin;
+}
+
+bool begins_cell(Table table, const Tokens& tokens, std::size_t at) {
+  const TokenKind kind = tokens[at].kind;
+  if (table == Table::bands)
+    return is_one_of(kind, Kinds::BELOW, Kinds::ABOVE, Kinds::BETWEEN, Kinds::OTHERWISE);
+  // The first one is AT and a time. A minus by itself is a key, before a number its sign.
+  const bool signed_number =
+      tokens[at - 1].kind == Kinds::MINUS && touch(tokens[at - 1], tokens[at]);
+  return table == Table::motion && at > 1 && !signed_number;
+}
+
+class Formatter {
+public:
+  Formatter(const SourceMap& sources, FileId file)
+      : source_(sources.file(file)), all_(lex(source_, file, ignored_)) {
+    std::vector<std::uint32_t> order;
+    significant(all_, order);
+    for (const std::uint32_t place : order)
+      seen_.push_back(all_[place]);
+  }
+
+  // False when a line holds what is neither a word nor a comment.
+  bool read() {
+    BlockWalk walk(seen_);
+    for (std::uint32_t number = 1; start_of(number) < source_.text().size(); ++number)
+      if (!read_line(number, walk)) return false;
+    return true;
+  }
+
+  std::string write() {
+    align_tables();
+    align_comments();
+    std::string text;
+    bool blank = true;  // none at the beginning
+    for (const Line& line : lines_) {
+      if (line.is_blank() && blank) continue;
+      blank = line.is_blank();
+      text += shown(line) + '\n';
+    }
+    if (blank && !text.empty()) text.pop_back();
+    return text;
+  }
+
+private:
+  std::size_t start_of(std::uint32_t number) const {
+    const std::string_view line = source_.line(number);
+    return line.data() == nullptr ? source_.text().size() : source_.line_start(number);
+  }
+
+  Tokens tokens_of(std::size_t end) {
+    Tokens found;
+    for (; next_ < all_.size() && all_[next_].span.begin < end; ++next_)
+      if (all_[next_].kind != Kinds::NEWLINE) found.push_back(all_[next_]);
+    return found;
+  }
+
+  bool read_line(std::uint32_t number, BlockWalk& walk) {
+    const std::size_t begin = source_.line_start(number);
+    const std::string_view text = source_.line(number);
+    const Tokens tokens = tokens_of(begin + text.size());
+    Line line;
+    const std::size_t code = tokens.empty() ? 0 : tokens.back().span.end - begin;
+    line.comment = trimmed(text.substr(std::min(code, text.size())));
+    if (!line.comment.empty() && line.comment.front() != '#' && line.comment.front() != '%')
+      return false;
+    if (tokens.empty()) {
+      line.level = level_of_comment(blocks_);
+    } else {
+      skip_to(tokens.front(), walk);
+      line.level = level_of(tokens.front().kind);
+      line.table = table_of(tokens);
+      line.cells = cells_of(tokens, line.table);
+      for (std::size_t i = 0; i < tokens.size(); ++i)
+        step(walk, line.level);
+    }
+    lines_.push_back(std::move(line));
+    return true;
+  }
+
+  // Over the end of the line before, if that counts.
+  void skip_to(const Token& token, BlockWalk& walk) {
+    while (at_ < seen_.size() && seen_[at_].span.begin < token.span.begin)
+      walk.step(at_++);
+  }
+
+  void step(BlockWalk& walk, std::size_t level) {
+    const TokenKind kind = seen_[at_].kind;
+    walk.step(at_++);
+    if (!blocks_.empty() && is_one_of(kind, Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF))
+      blocks_.back().body = kind != Kinds::ELSE_IF;
+    if (walk.open().size() < blocks_.size()) blocks_.pop_back();
+    if (walk.open().size() > blocks_.size()) blocks_.push_back({kind, level});
+  }
+
+  std::size_t level_of(TokenKind first) const {
+    const std::size_t level = blocks_.empty() ? 0 : level_in(blocks_.back(), first);
+    return level + (goes_on(first) ? 1U : 0U);
+  }
+
+  // It goes on with what the line before says, and is no part of a block; of conditions level_in() knows.
+  bool goes_on(TokenKind first) const {
+    if (at_ == 0 || seen_[at_ - 1].kind == Kinds::NEWLINE) return false;
+    if (is_one_of(first, Kinds::END, Kinds::OPTION, Kinds::SMOOTH) || is_part_of_rule(first))
+      return false;
+    if (!blocks_.empty() && has_do(blocks_.back().opener) && !blocks_.back().body) return false;
+    return (roles_of(seen_[at_ - 1].kind) & role::begins) == 0;
+  }
+
+  Table table_of(const Tokens& tokens) const {
+    if (blocks_.empty()) return Table::none;
+    const TokenKind opener = blocks_.back().opener;
+    if (opener == Kinds::MOTION && tokens.front().kind == Kinds::AT) return Table::motion;
+    const bool band = std::ranges::any_of(tokens, [](const Token& token) {
+      return is_one_of(token.kind, Kinds::BELOW, Kinds::ABOVE, Kinds::BETWEEN, Kinds::OTHERWISE);
+    });
+    return opener == Kinds::CHECK && band ? Table::bands : Table::none;
+  }
+
+  std::vector<std::string> cells_of(const Tokens& tokens, Table table) const {
+    std::vector<std::string> cells{std::string(text_of(tokens.front()))};
+    int depth = 0;
+    for (std::size_t i = 1; i < tokens.size(); ++i) {
+      const Token& left = tokens[i - 1];
+      const Token& right = tokens[i];
+      if (depth == 0 && begins_cell(table, tokens, i)) {
+        cells.emplace_back(text_of(right));
+      } else {
+        if (is_space_between(left.kind, right.kind, !touch(left, right))) cells.back() += ' ';
+        cells.back() += text_of(right);
+      }
+      depth += (right.kind == Kinds::OPEN ? 1 : 0) - (right.kind == Kinds::CLOSE ? 1 : 0);
+    }
+    return cells;
+  }
+
+  std::string_view text_of(const Token& token) const {
+    return token.kind == Kinds::ELSE_IF ? "ELSE IF" : source_.text(token.span);
+  }
+
+  // Calls take(first, end) for each run of lines that belong together.
+  template <class Together, class Take>
+  void each_run(Together together, Take take) {
+    for (std::size_t first = 0; first < lines_.size();) {
+      std::size_t end = first + 1;
+      while (end < lines_.size() && together(lines_[end - 1], lines_[end]))
+        ++end;
+      take(std::span(lines_).subspan(first, end - first));
+      first = end;
+    }
+  }
+
+  void align_tables() {
+    each_run([](const Line& a, const Line& b) { return a.table == b.table && a.level == b.level; },
+             [](std::span<Line> lines) {
+               if (lines.front().table == Table::none) return;
+               for (std::size_t column = 0; pad_column(lines, column); ++column) {
+               }
+             });
+  }
+
+  // Where another cell follows, it begins in the same column. False when there is no such column.
+  static bool pad_column(std::span<Line> lines, std::size_t column) {
+    std::size_t width = 0;
+    for (const Line& line : lines)
+      if (line.cells.size() > column + 1) width = std::max(width, width_of(line.cells[column]));
+    if (width == 0) return false;
+    for (Line& line : lines)
+      if (line.cells.size() > column + 1)
+        line.cells[column].append(width + 1 - width_of(line.cells[column]), ' ');
+    return true;
+  }
+
+  static std::string code_of(const Line& line) {
+    std::string text(line.cells.empty() ? 0 : kIndent * line.level, ' ');
+    for (const std::string& cell : line.cells)
+      text += cell;
+    return text;
+  }
+
+  void align_comments() {
+    const auto has_both = [](const Line& line) {
+      return !line.comment.empty() && !line.cells.empty();
+    };
+    columns_.clear();
+    each_run([&](const Line& a, const Line& b) { return has_both(a) && has_both(b); },
+             [&](std::span<Line> lines) {
+               std::size_t width = 0;
+               for (const Line& line : lines)
+                 width = std::max(width, width_of(code_of(line)));
+               columns_.insert(columns_.end(), lines.size(), width + kBeforeComment);
+             });
+  }
+
+  std::string shown(const Line& line) const {
+    std::string text = code_of(line);
+    if (line.comment.empty()) return text;
+    const std::size_t column = columns_[static_cast<std::size_t>(&line - lines_.data())];
+    text.append(line.cells.empty() ? kIndent * line.level : column - width_of(text), ' ');
+    return text + std::string(line.comment);
+  }
+
+  Diagnostics ignored_;
+  const SourceFile& source_;
+  Tokens all_, seen_;
+  std::size_t next_ = 0;  // in all_
+  std::size_t at_ = 0;    // in seen_
+  std::vector<Block> blocks_;
+  std::vector<Line> lines_;
+  std::vector<std::size_t> columns_;  // where the comment of each line begins
+};
+
+// The words of a text, as the grammar sees them.
+std::vector<std::pair<TokenKind, std::string>> words_of(const SourceMap& sources, FileId file) {
+  Diagnostics ignored;
+  Tokens all = lex(sources.file(file), file, ignored);
+  std::vector<std::uint32_t> order;
+  significant(all, order);
+  std::vector<std::pair<TokenKind, std::string>> words;
+  for (const std::uint32_t place : order) {
+    const Token& token = all[place];
+    const bool named = token.kind != Kinds::NEWLINE && token.kind != Kinds::ELSE_IF;
+    words.emplace_back(token.kind, named ? sources.text(token.span) : "");
+  }
+  return words;
+}
+
+}  // namespace
+
+std::optional<std::string> formatted(const SourceMap& sources, FileId file) {
+  Formatter formatter(sources, file);
+  if (!formatter.read()) return std::nullopt;
+  std::string text = formatter.write();
+  SourceMap after;
+  const FileId same = after.add(sources.file(file).name(), text);
+  if (words_of(sources, file) != words_of(after, same)) return std::nullopt;
+  return text;
+}
+
+}  // namespace robosync::compiler

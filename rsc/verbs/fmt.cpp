@@ -1,0 +1,85 @@
+// rsc fmt FILE... [--check]
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "compiler/diagnostics/render.hpp"
+#include "compiler/syntax/format.hpp"
+#include "compiler/syntax/parser.hpp"
+#include "rsc/console.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/files.hpp"
+#include "rsc/output.hpp"
+#include "rsc/verb.hpp"
+
+namespace robosync::tool {
+namespace {
+
+struct FormatOptions {
+  std::vector<std::string> files;
+  bool check = false;
+};
+
+// What the text would be; nothing when something is wrong with it, which has been said then.
+std::optional<std::string> formatted(const std::string& name, const std::string& text) {
+  compiler::SourceMap sources;
+  compiler::Diagnostics diagnostics;
+  const compiler::FileId file = sources.add(name, text);
+  (void)compiler::parse(sources, file, diagnostics);
+  diagnostics.finish();
+  if (diagnostics.errors() > 0) {
+    std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr())
+              << fmt::format("{}: {}; it stays as it is\n", name, summary(diagnostics));
+    return std::nullopt;
+  }
+  std::optional<std::string> result = compiler::formatted(sources, file);
+  if (!result)
+    std::cerr << fmt::format("{}: cannot be formatted without changing it; it stays as it is\n",
+                             name);
+  return result;
+}
+
+bool format_file(const std::string& name, bool check) {
+  const std::string text = read_text(name);
+  const std::optional<std::string> result = formatted(name, text);
+  if (!result) return false;
+  if (*result == text) return true;
+  std::cout << name << '\n';
+  if (!check) write_output(name, std::as_bytes(std::span(*result)));
+  return !check;
+}
+
+// Reads stdin and writes stdout, as editors want it.
+bool format_stdin() {
+  const std::string text = read_text("/dev/stdin");
+  const std::optional<std::string> result = formatted("<stdin>", text);
+  std::cout << (result ? *result : text);
+  return result.has_value();
+}
+
+void format(const FormatOptions& options) {
+  bool good = true;
+  for (const std::string& file : options.files)
+    good = (file == "-" ? format_stdin() : format_file(file, options.check)) && good;
+  if (!good) throw Failure(Exit::program, "");
+}
+
+}  // namespace
+
+void add_fmt(Options& options) {
+  auto asked = std::make_shared<FormatOptions>();
+  options.arguments(
+      "FILE", asked->files,
+      "programs (.rsl), which are written again where they change; -: stdin to stdout",
+      Options::Need::required);
+  options.flag("--check", asked->check, "change nothing; exit 1 when a file would change");
+  options.runs([asked] { format(*asked); });
+}
+
+}  // namespace robosync::tool

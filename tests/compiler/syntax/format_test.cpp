@@ -1,0 +1,158 @@
+// rsc fmt's style: what it makes of each kind of line, that it does not depend on how a program was spaced before, and
+// that nothing but space changes.
+#include "compiler/syntax/format.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "compiler/compiler.hpp"
+#include "compiler/syntax/lexer.hpp"
+#include "compiler/syntax/parser.hpp"
+#include "tests/support/golden.hpp"
+#include "vm/image.hpp"
+
+using namespace robosync::compiler;
+using robosync::testing::read_file;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = ROBOSYNC_SOURCE_DIR;
+
+// The text formatted; that of a program with a mistake is empty.
+std::string styled(const std::string& text) {
+  SourceMap sources;
+  Diagnostics diagnostics;
+  const FileId file = sources.add("robot.rsl", text);
+  (void)parse(sources, file, diagnostics);
+  return diagnostics.errors() > 0 ? "" : formatted(sources, file).value_or("changed");
+}
+
+std::vector<fs::path> programs() {
+  std::vector<fs::path> found;
+  for (const char* const folder : {"examples", "stdlib"})
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder))
+      if (entry.path().extension() == ".rsl") found.push_back(entry.path());
+  std::ranges::sort(found);
+  return found;
+}
+
+// The same words in the same lines, with other blanks between them, and blank lines where some were.
+std::string respaced(const std::string& text, std::mt19937& random) {
+  SourceMap sources;
+  Diagnostics ignored;
+  const FileId file = sources.add("robot.rsl", text);
+  const auto blanks = [&](unsigned least) {
+    return std::string(least + random() % 4, random() % 4 == 0 ? '\t' : ' ');
+  };
+  std::string made;
+  std::size_t at = 0;
+  for (const Token& token : lex(sources.file(file), file, ignored)) {
+    const std::string_view gap = std::string_view(text).substr(at, token.span.begin - at);
+    const std::size_t comment = gap.find_first_of("#%");
+    const bool starts = made.empty() || made.back() == '\n';
+    if (comment != std::string_view::npos) {
+      made += blanks(2) + std::string(gap.substr(comment));
+    } else if (!gap.empty() || starts) {
+      made += blanks(starts ? 0 : 1);
+    }
+    const bool line_ends = token.kind == Kinds::NEWLINE;
+    made += line_ends ? "\n" : std::string(sources.text(token.span));
+    if (line_ends && made.ends_with("\n\n")) made += random() % 2 == 0 ? "\n" : "";
+    at = token.span.end;
+  }
+  return made;
+}
+
+}  // namespace
+
+TEST_CASE("each kind of line has its place") {
+  const fs::path folder = kRoot / "tests/compiler/syntax/style";
+  const std::string after = styled(read_file(folder / "before.rsl"));
+  REQUIRE_FALSE(after.empty());
+  robosync::testing::expect_golden(folder / "after.rsl", after);
+}
+
+TEST_CASE("the library and the examples are in the one style") {
+  REQUIRE(programs().size() > 20);
+  for (const fs::path& path : programs()) {
+    INFO(path);
+    const std::string folder = path.parent_path().filename().string();
+    if (folder == "touch_companion" || folder == "paper")
+      continue;  // the listing of the paper, as it was printed
+    CHECK(styled(read_file(path)) == read_file(path));
+  }
+}
+
+TEST_CASE("however a program is spaced, it is formatted to the same") {
+  std::mt19937 random(1);
+  for (const fs::path& path : programs()) {
+    const std::string text = read_file(path);
+    const std::string wanted = styled(text);
+    REQUIRE_FALSE(wanted.empty());
+    CHECK(styled(wanted) == wanted);
+    for (int i = 0; i < 20; ++i) {
+      const std::string other = respaced(text, random);
+      INFO(path << '\n' << other);
+      REQUIRE(styled(other) == wanted);
+    }
+  }
+}
+
+// What the robot does: the image without the hash of its text and the sum over all.
+std::vector<std::byte> meaning(const std::string& text, const std::string& robot) {
+  Result result = compile({"robot.rsl", text}, {"robot.json", robot}, {.source_lines = true});
+  REQUIRE(result.diagnostics.errors() == 0);
+  robosync::vm::ImageHeader header{};
+  std::memcpy(&header, result.image.data(), sizeof header);
+  header.program_hash = {};
+  header.seed = header.crc32 = 0;
+  std::memcpy(result.image.data(), &header, sizeof header);
+  return result.image;
+}
+
+TEST_CASE("the image is the same, with the lines of the source in it") {
+  for (const char* const example : {"quizmaster", "museum_guide", "greeting_robot", "puppet"}) {
+    const fs::path folder = kRoot / "examples" / example;
+    const std::string robot = read_file(folder / "robot.json");
+    const std::string text = read_file(folder / "robot.rsl");
+    CHECK(meaning(styled(text), robot) == meaning(text, robot));
+  }
+}
+
+TEST_CASE("programs that lack a word are formatted, if they are programs") {
+  int formatted_programs = 0;
+  for (const fs::path& path : programs()) {
+    SourceMap sources;
+    Diagnostics ignored;
+    const std::string text = read_file(path);
+    const FileId file = sources.add("robot.rsl", text);
+    for (const Token& token : lex(sources.file(file), file, ignored)) {
+      if (token.span.begin == token.span.end) continue;
+      std::string other = text;
+      other.erase(token.span.begin, token.span.end - token.span.begin);
+      const std::string once = styled(other);
+      if (once.empty()) continue;
+      ++formatted_programs;
+      INFO(other);
+      REQUIRE(once != "changed");
+      REQUIRE(styled(once) == once);
+    }
+  }
+  CHECK(formatted_programs > 500);
+}
+
+TEST_CASE("odd texts are formatted, or left as they are") {
+  CHECK(styled("").empty());
+  CHECK(styled("\n\n\n").empty());
+  CHECK(styled("# only this") == "# only this\n");
+  CHECK(styled("USE quiz\r\nUSE gaze\r") == "USE quiz\nUSE gaze\n");
+  CHECK(styled("USE   quiz % why\n\n\n\n") == "USE quiz  % why\n");
+  CHECK(styled("WHEN touch LEVEL<3 DO LOG \"a  b\" END") ==
+        "WHEN touch LEVEL < 3 DO LOG \"a  b\" END\n");
+}

@@ -1,0 +1,47 @@
+// rsc fmt: which files it writes, which stay as they are, and how it ends.
+#include <catch2/catch.hpp>
+
+#include "tests/rsc/process.hpp"
+
+using namespace robosync;
+using Catch::Contains;
+using test::Folder;
+using test::Outcome;
+
+namespace {
+
+constexpr const char* kPlain = "WHEN touch LEVEL<3\nDO\nLOG \"x\"\nEND\n";
+constexpr const char* kStyled = "WHEN touch LEVEL < 3\nDO\n  LOG \"x\"\nEND\n";
+
+}  // namespace
+
+TEST_CASE("files that are not in the one style are written, and named") {
+  const Folder folder;
+  const std::string plain = folder.write("plain.rsl", kPlain);
+  const std::string styled = folder.write("styled.rsl", kStyled);
+  const Outcome outcome = test::rsc({"fmt", plain, styled});
+  CHECK(outcome.exit == 0);
+  CHECK(outcome.out == plain + "\n");
+  CHECK(folder.read("plain.rsl") == kStyled);
+  CHECK(test::rsc({"fmt", plain, styled}).out.empty());
+}
+
+TEST_CASE("--check changes nothing, and exits with 1 where something would") {
+  const Folder folder;
+  const std::string plain = folder.write("plain.rsl", kPlain);
+  const Outcome outcome = test::rsc({"fmt", "--check", plain});
+  CHECK(outcome.exit == 1);
+  CHECK(outcome.out == plain + "\n");
+  CHECK(folder.read("plain.rsl") == kPlain);
+  CHECK(test::rsc({"fmt", "--check", folder.write("styled.rsl", kStyled)}).exit == 0);
+}
+
+TEST_CASE("a program with a mistake stays as it is, and the others are written") {
+  const Folder folder;
+  const std::string wrong = folder.write("wrong.rsl", "WHEN touch LEVEL<\n");
+  const Outcome outcome = test::rsc({"fmt", wrong, folder.write("plain.rsl", kPlain)});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("error[") && Contains("it stays as it is"));
+  CHECK(folder.read("wrong.rsl") == "WHEN touch LEVEL<\n");
+  CHECK(folder.read("plain.rsl") == kStyled);
+}
