@@ -1,14 +1,14 @@
-# Writes the robots of templates.def, each with its files, into one C++ file:
-#   cmake -DOUT=FILE -DTEMPLATES=templates.def -DEXAMPLES=FOLDER -P embed_templates.cmake
+# Writes the robots of templates.txt, each with its files, into one C++ file:
+#   cmake -DOUT=FILE -DTEMPLATES=templates.txt -DEXAMPLES=FOLDER -P embed_templates.cmake
 # The path of the schema is left out: it is that of the repository.
-file(STRINGS ${TEMPLATES} lines REGEX "^TEMPLATE")
+file(STRINGS ${TEMPLATES} lines REGEX "^[a-z]")
 set(files_of "")
 set(rows "")
 foreach(line ${lines})
-  string(REGEX REPLACE "^TEMPLATE\\(([a-z_]+), ([a-z_]+), (.*)\\)$" "\\1;\\2;\\3" parts "${line}")
-  list(GET parts 0 name)
-  list(GET parts 1 example)
-  list(GET parts 2 said)
+  string(REGEX MATCH "^([a-z_]+) ([a-z_]+) ([a-z_.]+) (.*)$" all "${line}")
+  set(name ${CMAKE_MATCH_1})
+  set(example ${CMAKE_MATCH_2})
+  set(said "\"${CMAKE_MATCH_3}\", \"${CMAKE_MATCH_4}\"")
   file(GLOB files ${EXAMPLES}/${example}/*.rsl ${EXAMPLES}/${example}/*.json ${EXAMPLES}/${example}/*.csv)
   string(APPEND files_of "constexpr TemplateFile k_${name}[] = {\n")
   foreach(file ${files})

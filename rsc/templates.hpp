@@ -1,4 +1,4 @@
-// Robots to begin with (templates.def), their files with them, so that the tool needs nothing beside itself.
+// Robots to begin with (templates.txt), their files with them, so that the tool needs nothing beside itself.
 #pragma once
 
 #include <span>
