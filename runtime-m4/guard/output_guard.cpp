@@ -53,6 +53,7 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
   const policy::BoardPins& pins = board_.pins();
   limits_ = pins.outputs.data();
   Mask owned = 0;
+  gradual_ = 0;
   for (unsigned a = 0; a < image.actuators.size(); ++a) {
     const vm::Actuator& actuator = image.actuators[a];
     const policy::PinLimit* const limit = policy::limit_of(pins, actuator.pin);
@@ -67,6 +68,7 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
                  .limit = static_cast<std::uint8_t>(limit - limits_),
                  .driver = actuator.driver};
     owned |= bit(a);
+    if (limit->rise != 0) gradual_ |= bit(a);
   }
   const auto lock = kernel_.lock();
   owned_ = owned;
@@ -77,16 +79,16 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
 [[gnu::noinline]] void OutputGuard::drive(unsigned actuator, std::uint32_t pulse_us,
                                           kernel::Time now) {
   const auto lock = kernel_.lock();
-  if ((free_ & bit(actuator)) != 0)
-    settle(actuator, within(limits_[slots_[actuator].limit], pulse_us), now);
+  if ((free_ & bit(actuator)) == 0) return;
+  Slot& slot = slots_[actuator];
+  settle(slot, actuator, within(limits_[slot.limit], pulse_us), now);
 }
 
 // `pulse` is inside the limits.
-[[gnu::always_inline]] inline void OutputGuard::settle(unsigned actuator, std::uint16_t pulse,
-                                                       kernel::Time now) {
-  Slot& slot = slots_[actuator];
+[[gnu::always_inline]] inline void OutputGuard::settle(Slot& slot, unsigned actuator,
+                                                       std::uint16_t pulse, kernel::Time now) {
   slot.target = pulse;
-  if (limits_[slot.limit].rise != 0) [[unlikely]]
+  if ((gradual_ & bit(actuator)) != 0) [[unlikely]]
     return put(actuator, now);
   slot.pulse = pulse;
   board_.pwm_write(slot.pin, pulse);
@@ -123,22 +125,20 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
   return static_cast<std::uint16_t>(std::max(target, pulse - std::min(pulse, most)));
 }
 
-// The mask comes first: from then on no driver can undo what follows.
+// The mask comes first: from then on no driver can undo what follows. The lock holds off the switch alone, and who
+// halts several at once is the safety thread, which nobody waits for.
 [[gnu::noinline]] void OutputGuard::halt(Mask actuators, kernel::Time now) {
+  const auto lock = kernel_.lock();
   const Mask fresh = actuators & owned_ & ~halted_;
-  {
-    const auto lock = kernel_.lock();
-    halted_ |= actuators;
-    free_ = owned_ & ~halted_;
-  }
+  halted_ |= actuators;
+  free_ = owned_ & ~halted_;
   for (Mask left = fresh; left != 0; left &= left - 1)
     make_safe(static_cast<unsigned>(std::countr_zero(left)), now);
 }
 
-void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
-  const auto lock = kernel_.lock();
+[[gnu::always_inline]] inline void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
-  if (slot.safe != kStays && slot.pulse != 0) return settle(actuator, slot.safe, now);
+  if (slot.safe != kStays && slot.pulse != 0) return settle(slot, actuator, slot.safe, now);
   slot.target = slot.pulse;
   lagging_ &= ~bit(actuator);
 }

@@ -53,7 +53,7 @@ private:
 
   static constexpr std::uint16_t kStays = UINT16_MAX;
 
-  void settle(unsigned actuator, std::uint16_t pulse, kernel::Time now);
+  void settle(Slot& slot, unsigned actuator, std::uint16_t pulse, kernel::Time now);
   void put(unsigned actuator, kernel::Time now);
   void make_safe(unsigned actuator, kernel::Time now);
   std::uint16_t next_pulse(Slot& slot, std::uint16_t rise, bool pulses, kernel::Time now) const;
@@ -65,7 +65,8 @@ private:
   Mask owned_ = 0;
   Mask halted_ = 0;
   Mask free_ = 0;     // owned, and not halted
-  Mask lagging_ = 0;  // whose pulse is not yet where it shall be
+  Mask gradual_ = 0;  // whose pulse may not change at once
+  Mask lagging_ = 0;  // … and is not yet where it shall be
   std::array<Slot, vm::kMaxActuators> slots_{};
 };
 

@@ -7,8 +7,9 @@ namespace robosync::layers {
 namespace {
 
 bool differs(vm::Value a, vm::Value b, vm::Value least) {
-  const std::int64_t difference = std::int64_t{a} - b;
-  return (difference < 0 ? -difference : difference) >= std::max(least, vm::Value{1});
+  const auto up = static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b);
+  const std::uint32_t difference = a < b ? -up : up;
+  return difference >= static_cast<std::uint32_t>(std::max(least, vm::Value{1}));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "runtime-m4/safety/safety_rules.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "runtime-m4/layers/report.hpp"
 
@@ -61,9 +60,14 @@ void SafetyRules::evaluate(unsigned rule, kernel::Time now) {
 vm::Value SafetyRules::truth_of(unsigned rule) {
   const vm::Image& image = program_->image;
   const vm::Value truth = vm::evaluate(machine_, &image.code[image.rules[rule].condition_start]);
-  if (std::exchange(machine_.divided_by_zero, false))
-    layers_.trace.emit(EventKind::zero_divide, layers_.trace.now(), rule);
+  if (machine_.divided_by_zero) [[unlikely]]
+    tell_zero_divide(rule);
   return truth;
+}
+
+void SafetyRules::tell_zero_divide(unsigned rule) {
+  machine_.divided_by_zero = false;
+  layers_.trace.emit(EventKind::zero_divide, layers_.trace.now(), rule);
 }
 
 void SafetyRules::trip(unsigned rule) {
@@ -104,7 +108,7 @@ void SafetyRules::resume(unsigned rule) {
 }
 
 // What its body halts: it has no other use for actuators, and the verifier has counted them.
-ActuatorMask SafetyRules::halted_by(unsigned rule) const {
+inline ActuatorMask SafetyRules::halted_by(unsigned rule) const {
   const vm::Image& image = program_->image;
   return image.responses[image.rules[rule].then_response].actuators;
 }

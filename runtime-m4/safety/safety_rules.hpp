@@ -51,8 +51,10 @@ public:
 private:
   void evaluate(unsigned rule, kernel::Time now);
   vm::Value truth_of(unsigned rule);
-  void trip(unsigned rule);
-  void resume(unsigned rule);
+  // What is not in a hurry takes no registers from what is.
+  [[gnu::noinline]] void tell_zero_divide(unsigned rule);
+  [[gnu::noinline]] void trip(unsigned rule);
+  [[gnu::noinline]] void resume(unsigned rule);
   void act(const vm::Output& said);
   layers::ActuatorMask halted_by(unsigned rule) const;
   kernel::Time next_look(kernel::Time now) const;

@@ -32,7 +32,7 @@ class Mutant(NamedTuple):
 
 
 MUTANTS = (
-    Mutant("a halt does not shut the pin to drivers", GUARD, "halted_ |= actuators;\n    free_ = owned_ & ~halted_;",
+    Mutant("a halt does not shut the pin to drivers", GUARD, "halted_ |= actuators;\n  free_ = owned_ & ~halted_;",
            "halted_ |= actuators;"),
     Mutant("a halt leaves the pulse as it is", GUARD, "if (slot.safe != kStays && slot.pulse != 0) return", "if (false) return"),
     Mutant("a halt makes what was off begin to move", GUARD, "slot.safe != kStays && slot.pulse != 0", "slot.safe != kStays"),
@@ -42,12 +42,13 @@ MUTANTS = (
     Mutant("the next program leaves on what it does not have", GUARD, "next == nullptr || !drives(*next, slot.pin, slot.driver)",
            "next == nullptr"),
     Mutant("without a program pins stay on", GUARD, "next == nullptr || ", "next != nullptr && "),
-    Mutant("who does not own a pin may drive it", GUARD, "if ((free_ & bit(actuator)) != 0)\n    settle",
-           "if ((halted_ & bit(actuator)) == 0)\n    settle"),
-    Mutant("no limit of the pulse", GUARD, "settle(actuator, within(limits_[slots_[actuator].limit], pulse_us), now)",
-           "settle(actuator, static_cast<std::uint16_t>(pulse_us), now)"),
+    Mutant("who does not own a pin may drive it", GUARD, "if ((free_ & bit(actuator)) == 0) return;",
+           "if ((halted_ & bit(actuator)) != 0) return;"),
+    Mutant("no limit of the pulse", GUARD, "settle(slot, actuator, within(limits_[slot.limit], pulse_us), now)",
+           "settle(slot, actuator, static_cast<std::uint16_t>(pulse_us), now)"),
     Mutant("no limit of the safe state's pulse", GUARD, "within(*limit, *safe)", "static_cast<std::uint16_t>(*safe)"),
-    Mutant("no limit of the rise", GUARD, "if (limits_[slot.limit].rise != 0) [[unlikely]]", "if (false)"),
+    Mutant("no limit of the rise", GUARD, "if ((gradual_ & bit(actuator)) != 0) [[unlikely]]", "if (false)"),
+    Mutant("a pin that may rise at once has its rise limited once another has", GUARD, "  gradual_ = 0;\n", ""),
     Mutant("a reading is never too old", RULES, "layers_.mailboxes.fresh_value(input, image.channels[input], now)",
            "layers_.mailboxes.value(input)"),
     Mutant("what is unknown does not trip", RULES, "danger != vm::kFalse", "danger == vm::kTrue"),

@@ -209,6 +209,16 @@ TEST_CASE("a pulse that may not change at once goes on by itself, up to where it
 }
 
 // Random actuators on random pins, and random words of drivers that know no limit.
+TEST_CASE(
+    "how fast a pulse may change is a matter of the pin, whatever the program before had there") {
+  Bench bench;
+  bench.own({on_pin(4)});
+  bench.own({on_pin(2)});
+  bench.guard.drive(0, 1000, 0);
+  bench.guard.drive(0, 1500, 0);
+  CHECK(bench.pulse(2) == 1500);
+}
+
 TEST_CASE("no sequence widens a limit, nor drives a pin that no running program owns") {
   test::Draw draw(13);
   for (unsigned round = 0; round < 300; ++round) {
