@@ -20,7 +20,7 @@ bars: `bench/bars.json`.
 
 Bars are the design's, and none is moved to what was measured: what misses one is shown as missed. `scripts/bench` fails
 when a figure misses a bar that it met before, and when a counted figure is more than 2 % above what `bench/recorded.json`
-says: so nothing grows unnoticed. `scripts/bench --record` records what is measured now; `scripts/bench --profile NAME` says
+says (25 or 50 % where this machine touches the board, and so says when): so nothing grows unnoticed. `scripts/bench --record` records what is measured now; `scripts/bench --profile NAME` says
 which functions ran while a figure was counted, and how many instructions of each.
 
 Of what misses its bar: seven instructions of each switch are the time that threads ran, which no peer's figure includes.
