@@ -11,8 +11,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char** environ;
-
 namespace robosync::tool {
 
 bool is_installed(const std::string& program) {

@@ -16,6 +16,7 @@
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
 #include "rsc/output.hpp"
+#include "rsc/program.hpp"
 #include "rsc/verb.hpp"
 
 namespace robosync::tool {

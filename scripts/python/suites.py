@@ -112,7 +112,7 @@ TOGETHER = 24  # sources at a time: the headers are looked at once for all of th
 # function that uses up its states has, as a rule, a std::find_if or a std::visit in it, of which all ways through the
 # standard library are followed. On the board there is none of that, and all states are looked at.
 STATES_ON_THE_HOST = 15_000
-GCC_ALONE = ("-fno-tree-loop-distribute-patterns",)  # options that clang takes for errors
+GCC_ALONE = ("-fno-tree-loop-distribute-patterns", "--param=")  # begin options that clang takes for errors
 
 
 def starts_with(source, folders):
@@ -127,7 +127,7 @@ def product_batches(preset):
     for command in json.loads((ROOT / "build" / preset / "compile_commands.json").read_text()):
         words = shlex.split(command["command"])
         compiler = next(i for i, word in enumerate(words) if word.endswith(("cc", "c++", "g++")))
-        flags = [word for word in words[compiler + 1:words.index("-o")] if word not in GCC_ALONE]
+        flags = [word for word in words[compiler + 1:words.index("-o")] if not word.startswith(GCC_ALONE)]
         sources = [source for source in compiled_together(command["file"])
                    if starts_with(source, product) and source not in seen]
         seen.update(sources)

@@ -30,6 +30,10 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPatience{60'000};
 constexpr milliseconds kSilence{300};  // of a board that has nothing to say
+// So many silences, with an answer of the board before each, are the end of its trace. Beside other work a board may stand
+// still for longer than one.
+constexpr unsigned kSilences = 3;
+constexpr unsigned kMissed = 10;  // … and the first event of its program will not come any more
 constexpr std::size_t kFeedBytes = sizeof(link::Feed) + link::kFrameOverhead + 2;
 
 struct Job {
@@ -105,33 +109,38 @@ public:
     if (begun.running == 0) return "refused";
     ++begun_;
     const bool in_time = Feeding(session_, readings).run();
-    if (in_time) show(job, program.image(), readings.back());
+    const bool shown = in_time && show(job, program.image(), readings.back());
     const std::uint32_t before = lost_;
     lost_ = session_.client.clear(program.image().header->crc32).lost_events;
-    return !in_time ? "late" : lost_ == before ? "whole" : "lost";
+    return !in_time ? "late" : shown && lost_ == before ? "whole" : "lost";
   }
 
 private:
   // The last reading comes again behind the end, and another one, so that one of them is an event; but of a channel that
-  // nothing depends on there is none. Then the board has nothing more to say, and is behind the end.
-  void show(const Job& job, const vm::Image& image, tool::Stimulus last) {
+  // nothing depends on there is none. Then the board has nothing more to say, and is behind the end. False when the first
+  // event is missing.
+  bool show(const Job& job, const vm::Image& image, tool::Stimulus last) {
     last.at_us = job.end_us() + 1000;
     tool::Stimulus other = last;
     other.at_us += 1000;
     other.value = last.value == 0 ? 1000 : 0;
     Feeding(session_, {last, other}).run();
     auto give_up = session_.client.now() + kPatience;
-    for (bool behind = false; session_.client.now() < give_up;) {
+    for (unsigned silences = 0; session_.client.now() < give_up;) {
       link::Event event;
       if (next(event)) {
-        if (event.time_us > job.end_us()) return;
+        if (event.time_us > job.end_us()) return true;
+        silences = 0;
         give_up = session_.client.now() + kPatience;  // it goes on, however slowly
         std::cout << tool::trace_json(event, {&image, {}, nullptr}) << '\n';
-      } else if (behind) {
-        return;
-      } else {
-        behind = session_.client.status().program_us > other.at_us;
+        continue;
       }
+      if (silences >= kSilences && seen_ == begun_) return true;
+      if (silences >= kMissed) {
+        seen_ = begun_;
+        return false;
+      }
+      if (session_.client.status().program_us > other.at_us) ++silences;
     }
     throw tool::Failure(tool::Exit::outside, "the program has come to no end");
   }
