@@ -1,6 +1,6 @@
-// Expressions, part: ABS, ROUND, MIN and MAX. The four are no words of the grammar, so their names may
-// also be those of a LET, a REMEMBER or a sensor.
-#include <algorithm>
+// Expressions, part: the functions of numbers (compiler/syntax/functions.def).
+#include "compiler/syntax/functions.hpp"
+
 #include <array>
 #include <utility>
 
@@ -11,15 +11,12 @@
 namespace robosync::compiler {
 namespace {
 
-struct Known {
-  std::string_view name;  // folded
-  std::string_view written;
-  Operation operation;
-  std::size_t arguments;
+// In the order of kFunctions.
+constexpr std::array kOperations = {
+#define FUNCTION(name, operation, arguments) Operation::operation,
+#include "compiler/syntax/functions.def"
+#undef FUNCTION
 };
-constexpr std::array kFunctions = {
-    Known{"abs", "ABS", Operation::absolute, 1}, Known{"round", "ROUND", Operation::round, 1},
-    Known{"min", "MIN", Operation::minimum, 2}, Known{"max", "MAX", Operation::maximum, 2}};
 constexpr unsigned kDecimals = 3;  // of what is worked out here
 
 // What ROUND makes whole: the unit that its number is declared in. Those whose scale begins
@@ -42,27 +39,34 @@ void become_constant(Typed& number, vm::Value value) {
 }  // namespace
 
 Typed Expressions::of(const ast::Function& node, Span span) {
-  const std::string folded = fold_name(node.name.text);
-  const auto* const known = std::ranges::find(kFunctions, folded, &Known::name);
-  if (known == kFunctions.end()) {
+  const FunctionName* const known = find_function(node.name.text);
+  if (known == nullptr) {
     Diagnostic& d = diagnostics_.report(Code::E0501, "there is no function " + node.name.shown())
                         .label(node.name.span);
-    suggest(d, node.name.span, node.name.text, {"ABS", "ROUND", "MIN", "MAX", "RANDOM"});
-    if (d.help.empty()) d.helps("functions: ABS, ROUND, MIN, MAX and RANDOM");
+    std::vector<std::string> names;
+    std::string list;
+    for (const FunctionName& function : kFunctions) {
+      names.emplace_back(function.name);
+      list += (list.empty() ? "" : ", ") + names.back();
+    }
+    names.emplace_back("RANDOM");
+    suggest(d, node.name.span, node.name.text, names);
+    if (d.help.empty()) d.helps("functions: " + list + " and RANDOM");
     return make_nothing(span);
   }
   const std::size_t given = node.second == nullptr ? 1 : 2;
   if (given != known->arguments) {
     diagnostics_
-        .report(Code::E0411, "`" + std::string(known->written) + "` wants " +
+        .report(Code::E0411, "`" + std::string(known->name) + "` wants " +
                                  (known->arguments == 1 ? "one number" : "two numbers") +
                                  ", and is given " + (given == 1 ? "one" : "two"))
         .label(span)
-        .helps("write `" + std::string(known->written) +
+        .helps("write `" + std::string(known->name) +
                (known->arguments == 1 ? "(number)`" : "(number, number)`"));
     return make_nothing(span);
   }
-  return given == 1 ? of_one(known->operation, node, span) : of_two(known->operation, node, span);
+  const Operation operation = kOperations.at(static_cast<std::size_t>(known - kFunctions.data()));
+  return given == 1 ? of_one(operation, node, span) : of_two(operation, node, span);
 }
 
 Typed Expressions::of_one(Operation operation, const ast::Function& node, Span span) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/syntax/functions.hpp"
 #include "compiler/syntax/walk.hpp"
 
 namespace robosync::compiler {
@@ -92,11 +93,11 @@ void Names::report_unknown(const ast::Operand& operand) {
   const std::string what = operand.channel ? "sensor " : "sensor, LET or variable called ";
   Diagnostic& d = diagnostics_.report(Code::E0501, "there is no " + what + operand.name.shown())
                       .label(operand.name.span);
-  for (const std::string_view function : {"ABS", "ROUND", "MIN", "MAX"})
-    if (operand.channel && same_name(operand.name.text, function)) {
-      d.helps("write `" + std::string(function) + "(…)`: its number stands in brackets");
-      return;
-    }
+  if (const FunctionName* const function = find_function(operand.name.text);
+      function != nullptr && operand.channel) {
+    d.helps("write `" + std::string(function->name) + "(…)`: its number stands in brackets");
+    return;
+  }
   const std::size_t most = joined_.size() + constants_.size() + variables_.size();
   if (!diagnostics_.may_search(robot_.sensors.size() + (operand.channel ? 0 : most))) return;
   std::vector<std::string> candidates;

@@ -3,6 +3,7 @@
 #include "compiler/syntax/format.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -20,26 +21,16 @@ constexpr std::size_t kIndent = 2;         // columns a level
 constexpr std::size_t kBeforeComment = 2;  // columns, at least
 constexpr std::string_view kBlanks = " \t\v\f\r";
 
-template <class... Kind>
-bool is_one_of(TokenKind kind, Kind... kinds) {
-  return ((kind == kinds) || ...);
-}
-
-bool is_relation(TokenKind kind) {
-  return is_one_of(kind, Kinds::LESS, Kinds::GREATER, Kinds::LESS_EQUAL, Kinds::GREATER_EQUAL,
-                   Kinds::EQUAL, Kinds::NOT_EQUAL);
-}
-
 // What stands around it, on either side; a minus may be a sign.
 bool is_spaced(TokenKind kind) {
-  return is_relation(kind) || is_one_of(kind, Kinds::PLUS, Kinds::STAR, Kinds::SLASH);
+  return is_relation(kind) || is_one_of(kind, {Kinds::PLUS, Kinds::STAR, Kinds::SLASH});
 }
 
 // Between two words of a line, of which the writer had put something in between, or nothing.
 bool is_space_between(TokenKind left, TokenKind right, bool written) {
-  if (is_one_of(right, Kinds::COMMA, Kinds::CLOSE, Kinds::COLON) || left == Kinds::OPEN)
+  if (is_one_of(right, {Kinds::COMMA, Kinds::CLOSE, Kinds::COLON}) || left == Kinds::OPEN)
     return false;
-  return written || is_one_of(left, Kinds::COMMA, Kinds::COLON) || is_spaced(left) ||
+  return written || is_one_of(left, {Kinds::COMMA, Kinds::COLON}) || is_spaced(left) ||
          is_spaced(right);
 }
 
@@ -55,6 +46,16 @@ std::size_t width_of(std::string_view text) {
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
+// As the grammar sees them: without the ends of lines that do not count.
+Tokens without_idle_ends(Tokens& all) {
+  std::vector<std::uint32_t> order;
+  significant(all, order);
+  Tokens seen;
+  for (const std::uint32_t place : order)
+    seen.push_back(all[place]);
+  return seen;
+}
+
 // ---- how deep a line stands
 
 struct Block {
@@ -64,21 +65,21 @@ struct Block {
 };
 
 bool has_do(TokenKind opener) {
-  return is_one_of(opener, Kinds::WHEN, Kinds::WHILE, Kinds::EVERY, Kinds::AT, Kinds::IF,
-                   Kinds::SAFETY);
+  return is_one_of(opener,
+                   {Kinds::WHEN, Kinds::WHILE, Kinds::EVERY, Kinds::AT, Kinds::IF, Kinds::SAFETY});
 }
 
 // Words of a rule that stand below its first one.
 bool is_part_of_rule(TokenKind first) {
-  return is_one_of(first, Kinds::WHEN, Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF, Kinds::RESUME,
-                   Kinds::PRIORITY, Kinds::COOLDOWN, Kinds::MARGIN, Kinds::WAITING,
-                   Kinds::RESTARTING);
+  return is_one_of(
+      first, {Kinds::WHEN, Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF, Kinds::RESUME, Kinds::PRIORITY,
+              Kinds::COOLDOWN, Kinds::MARGIN, Kinds::WAITING, Kinds::RESTARTING});
 }
 
 // Of the statements in it, or of comments between them.
 std::size_t inner_level(const Block& block) {
   // The rule of a SAFETY stands one deeper, and so do the statements of an OPTION.
-  const bool twice = is_one_of(block.opener, Kinds::SAFETY, Kinds::PICK);
+  const bool twice = is_one_of(block.opener, {Kinds::SAFETY, Kinds::PICK});
   return block.level + (twice ? 2U : 1U);
 }
 
@@ -118,7 +119,7 @@ bool touch(const Token& left, const Token& right) {
 bool begins_cell(Table table, const Tokens& tokens, std::size_t at) {
   const TokenKind kind = tokens[at].kind;
   if (table == Table::bands)
-    return is_one_of(kind, Kinds::BELOW, Kinds::ABOVE, Kinds::BETWEEN, Kinds::OTHERWISE);
+    return is_one_of(kind, {Kinds::BELOW, Kinds::ABOVE, Kinds::BETWEEN, Kinds::OTHERWISE});
   // The first one is AT and a time. A minus by itself is a key, before a number its sign.
   const bool signed_number =
       tokens[at - 1].kind == Kinds::MINUS && touch(tokens[at - 1], tokens[at]);
@@ -129,10 +130,7 @@ class Formatter {
 public:
   Formatter(const SourceMap& sources, FileId file)
       : source_(sources.file(file)), all_(lex(source_, file, ignored_)) {
-    std::vector<std::uint32_t> order;
-    significant(all_, order);
-    for (const std::uint32_t place : order)
-      seen_.push_back(all_[place]);
+    seen_ = without_idle_ends(all_);
   }
 
   // False when a line holds what is neither a word nor a comment.
@@ -202,7 +200,7 @@ private:
   void step(BlockWalk& walk, std::size_t level) {
     const TokenKind kind = seen_[at_].kind;
     walk.step(at_++);
-    if (!blocks_.empty() && is_one_of(kind, Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF))
+    if (!blocks_.empty() && is_one_of(kind, {Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF}))
       blocks_.back().body = kind != Kinds::ELSE_IF;
     if (walk.open().size() < blocks_.size()) blocks_.pop_back();
     if (walk.open().size() > blocks_.size()) blocks_.push_back({kind, level});
@@ -216,7 +214,7 @@ private:
   // It goes on with what the line before says, and is no part of a block; of conditions level_in() knows.
   bool goes_on(TokenKind first) const {
     if (at_ == 0 || seen_[at_ - 1].kind == Kinds::NEWLINE) return false;
-    if (is_one_of(first, Kinds::END, Kinds::OPTION, Kinds::SMOOTH) || is_part_of_rule(first))
+    if (is_one_of(first, {Kinds::END, Kinds::OPTION, Kinds::SMOOTH}) || is_part_of_rule(first))
       return false;
     if (!blocks_.empty() && has_do(blocks_.back().opener) && !blocks_.back().body) return false;
     return (roles_of(seen_[at_ - 1].kind) & role::begins) == 0;
@@ -227,7 +225,7 @@ private:
     const TokenKind opener = blocks_.back().opener;
     if (opener == Kinds::MOTION && tokens.front().kind == Kinds::AT) return Table::motion;
     const bool band = std::ranges::any_of(tokens, [](const Token& token) {
-      return is_one_of(token.kind, Kinds::BELOW, Kinds::ABOVE, Kinds::BETWEEN, Kinds::OTHERWISE);
+      return is_one_of(token.kind, {Kinds::BELOW, Kinds::ABOVE, Kinds::BETWEEN, Kinds::OTHERWISE});
     });
     return opener == Kinds::CHECK && band ? Table::bands : Table::none;
   }
@@ -269,21 +267,24 @@ private:
     each_run([](const Line& a, const Line& b) { return a.table == b.table && a.level == b.level; },
              [](std::span<Line> lines) {
                if (lines.front().table == Table::none) return;
-               for (std::size_t column = 0; pad_column(lines, column); ++column) {
-               }
+               for (std::size_t column = 0; column + 1 < most_cells(lines); ++column)
+                 pad_column(lines, column);
              });
   }
 
-  // Where another cell follows, it begins in the same column. False when there is no such column.
-  static bool pad_column(std::span<Line> lines, std::size_t column) {
+  static std::size_t most_cells(std::span<const Line> lines) {
+    return std::ranges::max(
+        lines | std::views::transform([](const Line& line) { return line.cells.size(); }));
+  }
+
+  // Where another cell follows, it begins in the same column.
+  static void pad_column(std::span<Line> lines, std::size_t column) {
     std::size_t width = 0;
     for (const Line& line : lines)
       if (line.cells.size() > column + 1) width = std::max(width, width_of(line.cells[column]));
-    if (width == 0) return false;
     for (Line& line : lines)
       if (line.cells.size() > column + 1)
         line.cells[column].append(width + 1 - width_of(line.cells[column]), ' ');
-    return true;
   }
 
   static std::string code_of(const Line& line) {
@@ -329,11 +330,8 @@ private:
 std::vector<std::pair<TokenKind, std::string>> words_of(const SourceMap& sources, FileId file) {
   Diagnostics ignored;
   Tokens all = lex(sources.file(file), file, ignored);
-  std::vector<std::uint32_t> order;
-  significant(all, order);
   std::vector<std::pair<TokenKind, std::string>> words;
-  for (const std::uint32_t place : order) {
-    const Token& token = all[place];
+  for (const Token& token : without_idle_ends(all)) {
     const bool named = token.kind != Kinds::NEWLINE && token.kind != Kinds::ELSE_IF;
     words.emplace_back(token.kind, named ? sources.text(token.span) : "");
   }

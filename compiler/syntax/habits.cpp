@@ -6,21 +6,14 @@
 #include <string>
 
 #include "compiler/source/ascii.hpp"
+#include "compiler/syntax/functions.hpp"
 
 namespace robosync::compiler {
 
 namespace {
 
-bool is_one_of(TokenKind kind, std::initializer_list<TokenKind> kinds) {
-  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
-}
-
 bool is_operator(TokenKind kind) {
   return is_one_of(kind, {Kinds::PLUS, Kinds::MINUS, Kinds::STAR, Kinds::SLASH, Kinds::MOD});
-}
-
-bool is_comparison(TokenKind kind) {
-  return kind >= Kinds::LESS && kind <= Kinds::NOT_EQUAL;
 }
 
 bool is_preposition(TokenKind kind) {
@@ -349,7 +342,7 @@ private:
 
   // `ELSE x > 3 DO`; an ELSE IF behind an ELSE, or in a rule
   std::optional<Edit> else_if() {
-    if (statement_ > 0 && is(statement_ - 1, Kinds::ELSE) && is_comparison(tokens_[stop_].kind) &&
+    if (statement_ > 0 && is(statement_ - 1, Kinds::ELSE) && is_relation(tokens_[stop_].kind) &&
         has(stop_, end_, Kinds::DO)) {
       report(Code::E0001, "ELSE asks nothing; to ask once more, write `ELSE IF`",
              tokens_[statement_ - 1].span);
@@ -369,7 +362,7 @@ private:
   // `x IS 30s`, `x IS > 3`
   std::optional<Edit> is_number() {
     if (stop_ < 2 || !is(stop_ - 1, Kinds::IS)) return std::nullopt;
-    const bool relation = is_comparison(tokens_[stop_].kind);
+    const bool relation = is_relation(tokens_[stop_].kind);
     if (!relation && !is(stop_, Kinds::QUANTITY)) return std::nullopt;
     if (relation) {
       report(Code::E0009, "no IS stands in front of " + quote(stop_), tokens_[stop_ - 1].span);
@@ -428,7 +421,7 @@ private:
       return change(first + 1, 1, {{Kinds::STRING, tokens_[first + 1].span}});
     }
     const bool asks =
-        (is_comparison(tokens_[stop_].kind) && !is(stop_, Kinds::EQUAL)) || is(stop_, Kinds::IS);
+        (is_relation(tokens_[stop_].kind) && !is(stop_, Kinds::EQUAL)) || is(stop_, Kinds::IS);
     if (is(first, Kinds::NAME) && asks) {
       report(Code::E0008, "`THAT` is missing after `EXPECT`", tokens_[begin_].span)
           .helps("write `EXPECT THAT " + text(first, end_) + "`");
@@ -445,7 +438,7 @@ private:
   // `ROUND touch LEVEL`, `MIN(1, 2, 3)`, `MIN()`
   std::optional<Edit> function() {
     const auto known = [this](std::size_t at) {
-      return is_any_name(at, {"ABS", "ROUND", "MIN", "MAX"});
+      return is(at, Kinds::NAME) && find_function(text(at)) != nullptr;
     };
     const std::size_t name = stop_ - 2;
     if (stop_ >= 2 && known(name) && is(stop_ - 1, Kinds::NAME) && is(stop_, Kinds::NAME)) {
@@ -461,7 +454,7 @@ private:
     }
     if (!is(open, Kinds::OPEN) || open == 0 || !known(open - 1)) return std::nullopt;
     const std::string word(text(open - 1));
-    const bool pair = is_any_name(open - 1, {"MIN", "MAX"});
+    const bool pair = find_function(word)->arguments == 2;
     const std::string help = "write `" + word + (pair ? "(number, number)`" : "(number)`");
     if (!is(stop_, Kinds::COMMA) && stop_ != open + 1) return std::nullopt;
     if (is(stop_, Kinds::COMMA) && !has(open, stop_, Kinds::COMMA)) return std::nullopt;

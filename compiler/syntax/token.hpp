@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <initializer_list>
 #include <vector>
 
 #include "compiler/source/source_file.hpp"
@@ -14,6 +15,15 @@ using TokenKind = grammar::Grammar::token_kind_type;
 
 inline bool contains(const std::vector<TokenKind>& kinds, TokenKind kind) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
+inline bool is_one_of(TokenKind kind, std::initializer_list<TokenKind> kinds) {
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
+// <, >, <=, >=, = and <>
+inline bool is_relation(TokenKind kind) {
+  return kind >= Kinds::LESS && kind <= Kinds::NOT_EQUAL;
 }
 
 struct Token {

@@ -356,9 +356,7 @@ private:
         .label({first.file, first.begin, second.end});
   }
 
-  static bool is_comparison(TokenKind kind) {
-    return (kind >= Kinds::LESS && kind <= Kinds::NOT_EQUAL) || kind == Kinds::IS;
-  }
+  static bool is_comparison(TokenKind kind) { return is_relation(kind) || kind == Kinds::IS; }
 
   // `0 < x < 3`
   bool is_chained() const {
