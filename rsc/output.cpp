@@ -114,9 +114,7 @@ void write_through(const fs::path& path, std::span<const std::byte> bytes) {
     write_all(STDOUT_FILENO, bytes, path);
     return;
   }
-  const File file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFile));
-  if (file.number() < 0) fail(path, errno);
-  write_all(file.number(), bytes, path);
+  write_in_place(path, bytes);
 }
 
 mode_t mode_of_new_file() {
@@ -149,6 +147,14 @@ bool is_stdout(const fs::path& path) {
   struct stat out {};
   if (!facts || fstat(STDOUT_FILENO, &out) != 0 || !same_file(*facts, out)) return false;
   return !S_ISCHR(out.st_mode) || isatty(STDOUT_FILENO) == 1;  // /dev/null shows nothing
+}
+
+// A pipe or a terminal has nothing to wait for.
+void write_in_place(const fs::path& path, std::span<const std::byte> bytes) {
+  const File file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFile));
+  if (file.number() < 0) fail(path, errno);
+  write_all(file.number(), bytes, path);
+  if (fsync(file.number()) != 0 && errno != EINVAL && errno != EROFS) fail(path, errno);
 }
 
 void write_output(const fs::path& path, std::span<const std::byte> bytes) {

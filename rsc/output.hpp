@@ -21,4 +21,8 @@ void check_output(const std::filesystem::path& path, const std::vector<std::stri
 // (outside).
 void write_output(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
+// Over what is there, and all of it is there when this returns: for what knows no other files and no renaming. Throws
+// Failure (outside).
+void write_in_place(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
 }  // namespace robosync::tool

@@ -1,17 +1,9 @@
 // See drives.hpp. Linux lists what is mounted in a file; macOS has a folder of it.
 #include "rsc/device/drives.hpp"
 
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
-
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include "rsc/failure.hpp"
 
 namespace robosync::tool {
 namespace fs = std::filesystem;
@@ -55,25 +47,6 @@ std::optional<fs::path> mounted_drive(const std::string& label) {
   const fs::path volume = fs::path("/Volumes") / label;
   if (fs::is_directory(volume, error)) return volume;
   return std::nullopt;
-}
-
-void write_to_drive(const fs::path& file, std::span<const std::byte> bytes) {
-  constexpr mode_t kNewFile = 0666;
-  const int number = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFile);
-  bool good = number >= 0;
-  while (good && !bytes.empty()) {
-    const ssize_t count = write(number, bytes.data(), bytes.size());
-    if (count >= 0)
-      bytes = bytes.subspan(static_cast<std::size_t>(count));
-    else
-      good = errno == EINTR;
-  }
-  good = good && fsync(number) == 0;
-  const int why = errno;
-  if (number >= 0) close(number);
-  if (!good)
-    throw Failure(Exit::outside,
-                  fmt::format("cannot write {}: {}", file.string(), std::strerror(why)));
 }
 
 }  // namespace robosync::tool

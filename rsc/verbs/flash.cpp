@@ -16,6 +16,7 @@
 #include "rsc/device/programmer.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
+#include "rsc/output.hpp"
 #include "rsc/verb.hpp"
 
 namespace robosync::tool {
@@ -44,10 +45,9 @@ Board board_called(const std::string& name) {
                                               : fmt::format("boards: {}", fmt::join(names, ", "))));
 }
 
-void connected(const Board& board) {
+void say_what_next(const Board& board) {
   std::cout << fmt::format(
-      "`rsc ports` shows where it is, `rsc info --port PORT` whether it runs: {} and this rsc's "
-      "firmware.\n",
+      "`rsc ports` shows at which port the {} is, and `rsc info --port PORT` what runs there.\n",
       board.name);
 }
 
@@ -59,11 +59,11 @@ void copy_to(const fs::path& drive, const FlashOptions& options, const Board& bo
   const std::vector<std::byte> bytes = read_bytes(file);
   std::cout << fmt::format("copies {} ({} bytes) to the drive {}\n", file.string(), bytes.size(),
                            drive.string());
-  write_to_drive(drive / file.filename(), bytes);
+  write_in_place(drive / file.filename(), bytes);
   std::cout << "The board programs itself, leaves as a drive and comes back. If there is a "
                "FAIL.TXT then, it says "
                "why it could not.\n";
-  connected(board);
+  say_what_next(board);
 }
 
 // A word of openocd's own commands: one that it takes as it is.
@@ -86,7 +86,7 @@ void program_by(Way way, const FlashOptions& options, const Board& board) {
     throw Failure(Exit::outside, fmt::format("{} ended with {}: is the board connected, by {}?",
                                              command.front(), code, board.flash->socket));
   }
-  connected(board);
+  say_what_next(board);
 }
 
 [[noreturn]] void not_found(const Board& board) {
