@@ -3,7 +3,10 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <string_view>
+
+#include <fmt/format.h>
 
 #include "vm/image.hpp"
 
@@ -24,6 +27,12 @@ namespace robosync::tool {
 
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(vm::RuleKind::count_)>
     kRuleKinds = {"when", "when/else", "while", "every", "at start", "watch", "safety", "resume"};
+
+// "touch at address 0x70 on i2c bus 0"
+[[nodiscard]] inline std::string name_on_bus(std::string_view sensor, unsigned address,
+                                             unsigned bus) {
+  return fmt::format("{} at address 0x{:02x} on i2c bus {}", sensor, address, bus);
+}
 
 template <typename Enum, std::size_t N>
 std::string_view word_of(const std::array<std::string_view, N>& words, Enum value) {

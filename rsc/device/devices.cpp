@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "rsc/names.hpp"
 #include "runtime-m4/policy/threads.hpp"
 #include "vm/drivers.hpp"
 
@@ -60,9 +61,9 @@ std::string silent_text(const OnBus& device) {
       device.held
           ? "a line of that bus is held down: do two wires touch, and has every device on it power?"
           : "has it power, are both wires of the bus connected, is this its address?";
-  return fmt::format(
-      "{} at address 0x{:02x} on i2c bus {} does not answer ({} transfer{} failed): {}",
-      device.name, device.address, device.bus, device.failed, device.failed == 1 ? "" : "s", look);
+  return fmt::format("{} does not answer ({} transfer{} failed): {}",
+                     name_on_bus(device.name, device.address, device.bus), device.failed,
+                     device.failed == 1 ? "" : "s", look);
 }
 
 nlohmann::ordered_json devices_json(const std::vector<OnBus>& devices) {

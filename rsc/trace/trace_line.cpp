@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "rsc/names.hpp"
 #include "rsc/trace/event_reader.hpp"
 #include "rsc/trace/time_units.hpp"
 #include "rsc/trace/trace_format.hpp"
@@ -101,9 +102,10 @@ std::string priority_words(const EventReader& reader) {
 }
 
 std::string device_words(const EventReader& reader) {
-  std::string text = reader.sensor_name();
-  if (const vm::Sensor* const sensor = reader.sensor())
-    text += fmt::format(" at address 0x{:02x} on i2c bus {}", sensor->address, sensor->bus);
+  const vm::Sensor* const sensor = reader.sensor();
+  const std::string text = sensor == nullptr
+                               ? reader.sensor_name()
+                               : name_on_bus(reader.sensor_name(), sensor->address, sensor->bus);
   const bool silent = reader.event().kind == EventKind::silent;
   return text + fmt::format(" {} ({} failed transfers so far)",
                             silent ? "does not answer" : "answers again", reader.value(0));
