@@ -1,4 +1,6 @@
 // rsc fmt: which files it writes, which stay as they are, and how it ends.
+#include <cstdlib>
+
 #include <catch2/catch.hpp>
 
 #include "tests/rsc/process.hpp"
@@ -44,4 +46,18 @@ TEST_CASE("a program with a mistake stays as it is, and the others are written")
   CHECK_THAT(outcome.err, Contains("error[") && Contains("it stays as it is"));
   CHECK(folder.read("wrong.rsl") == "WHEN touch LEVEL<\n");
   CHECK(folder.read("plain.rsl") == kStyled);
+}
+
+TEST_CASE("- reads stdin and writes stdout") {
+  const Folder folder;
+  const auto piped = [&](const std::string& program) {
+    const std::string command = RSC_BINARY " fmt - < " + folder.write("in.rsl", program) + " > " +
+                                folder.path("out.rsl") + " 2> " + folder.path("said");
+    return WEXITSTATUS(std::system(command.c_str()));
+  };
+  CHECK(piped(kPlain) == 0);
+  CHECK(folder.read("out.rsl") == kStyled);
+  CHECK(piped("WHEN touch LEVEL<\n") == 1);
+  CHECK(folder.read("out.rsl") == "WHEN touch LEVEL<\n");
+  CHECK_THAT(folder.read("said"), Contains("<stdin>:1:"));
 }

@@ -1,4 +1,6 @@
 // rsc new: what it makes works as it stands, and nothing that is there is touched.
+#include <cstdlib>
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -65,4 +67,15 @@ TEST_CASE("an unknown template is answered with the known ones") {
   CHECK(outcome.exit == 2);
   CHECK_THAT(outcome.err, Contains("companion"));
   CHECK(folder.files() == 0);
+}
+
+TEST_CASE("what cannot be written whole is not there at all") {
+  const Folder folder;
+  const std::string place = folder.path("robot");
+  // No file may have more than 1,024 bytes, as on a full disk: robot.json has less, robot.rsl more.
+  const std::string command =
+      "trap '' XFSZ; ulimit -f 2; " RSC_BINARY " new " + place + " 2> " + folder.path("said");
+  CHECK(WEXITSTATUS(std::system(("sh -c \"" + command + "\"").c_str())) == 3);
+  CHECK_THAT(folder.read("said"), Contains("cannot write " + place + "/robot.rsl"));
+  CHECK_FALSE(folder.has("robot"));
 }
