@@ -25,7 +25,7 @@ STOP = wire.frame("stop", sequence=STOP_SEQUENCE)
 
 def endless_upload():
     """The frames of one transfer after the other; the board takes each `begin` with another checksum for a new one."""
-    most = 240 - wire.layout("Data").size
+    most = wire.MOST_PAYLOAD - wire.layout("Data").size
     for crc in range(1 << 32):
         yield wire.frame("begin", wire.pack("Begin", size=len(IMAGE), crc32=crc), crc % STOP_SEQUENCE)
         for at in range(0, len(IMAGE), most):

@@ -34,9 +34,8 @@ public:
 
   bool asked() const { return standing_ != Standing::not_asked; }
   bool silent() const { return standing_ == Standing::silent; }
-  std::uint16_t failed() const {
-    return failed_;
-  }  // transfers so far; UINT16_MAX: that many or more
+  // Transfers so far; UINT16_MAX: that many or more.
+  std::uint16_t failed() const { return failed_; }
 
 private:
   enum class Standing : std::uint8_t { not_asked, answers, silent };

@@ -48,6 +48,7 @@ def _read_structs(text, enums):
 
 
 _MESSAGES = (LINK / "messages.hpp").read_text("utf-8")
+MOST_PAYLOAD = int(re.search(r"kMaxPayload = (\d+)", _MESSAGES)[1])
 NUMBERS = _read_numbers()
 NAMES = {number: name for name, number in NUMBERS.items()}
 ENUMS = _read_enums(_MESSAGES)
@@ -158,7 +159,7 @@ class Line:
         crc = struct.unpack_from("<I", image, 4)[0] if len(image) >= 8 else 0
         reply = self.ask("begin", pack("Begin", size=len(image), crc32=crc), "transfer_status")
         status = unpack("TransferStatus", reply)
-        most = 240 - layout("Data").size
+        most = MOST_PAYLOAD - layout("Data").size
         while ENUMS["TransferState"][status.state] == "receiving":
             offset = status.next_offset
             data = pack("Data", offset=offset) + image[offset:offset + most]

@@ -128,9 +128,8 @@ bool I2c::read_message(std::uint8_t address, std::span<std::byte> in) {
 }
 
 bool I2c::transfer(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in) {
-  patience_ =
-      held_ ? 0
-            : kStretchLimit;  // nobody waits for ever for the same line: others want the processor
+  // Nobody waits again for a line that was held down before: others want the processor.
+  patience_ = held_ ? 0 : kStretchLimit;
   held_ = !free_bus();
   if (held_) return false;
   patience_ = kStretchLimit;

@@ -7,10 +7,12 @@
 
 #include "compiler/syntax/keywords.hpp"
 #include "tests/compiler/parsed.hpp"
+#include "tests/support/repeated.hpp"
 #include "tests/support/share.hpp"
 
 using namespace robosync::compiler;
 using namespace robosync::compiler::testing;
+using robosync::testing::repeated;
 
 namespace {
 
@@ -42,13 +44,6 @@ std::string random_words(std::mt19937& random) {
     const auto& words = keyword ? keyword_spellings() : others;
     text += words[random() % words.size()] + " ";
   }
-  return text;
-}
-
-std::string repeated(const std::string& part, std::size_t count) {
-  std::string text;
-  for (std::size_t i = 0; i < count; ++i)
-    text += part;
   return text;
 }
 

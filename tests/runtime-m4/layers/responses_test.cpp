@@ -2,12 +2,14 @@
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/robot.hpp"
+#include "tests/support/repeated.hpp"
 
 using robosync::test::high_and_low;
 using robosync::test::Robot;
 using robosync::test::rule;
 using robosync::test::when_far;
 using robosync::test::when_near;
+using robosync::testing::repeated;
 
 TEST_CASE("a WHEN that triggers while it runs is ignored") {
   Robot robot(when_near("MOVE a FOR 1s"));
@@ -150,10 +152,8 @@ TEST_CASE("a command with an unknown parameter is seen and not carried out") {
 }
 
 TEST_CASE("a cancelled queue gives its places back and never runs") {
-  std::string wave = "WHEN near X > 10\nDO\n";
-  for (int i = 0; i < 8; ++i)
-    wave += "MOVE a FOR 50ms\n";
-  Robot robot(wave + "ELSE\nMOVE b FOR 5ms\nEND\n");
+  Robot robot("WHEN near X > 10\nDO\n" + repeated("MOVE a FOR 50ms\n", 8) +
+              "ELSE\nMOVE b FOR 5ms\nEND\n");
   for (int i = 0; i < 12; ++i)
     robot.feed(static_cast<std::uint64_t>(i) * 20, "X", i % 2 == 0 ? 20 : 5);
   robot.run(2000);
@@ -195,9 +195,7 @@ END
 }
 
 TEST_CASE("what an interrupted response had in its queue takes no place from its successor") {
-  std::string sweep;
-  for (int i = 0; i < 8; ++i)
-    sweep += "MOVE a FOR 50ms\n";
+  const std::string sweep = repeated("MOVE a FOR 50ms\n", 8);
   Robot robot(high_and_low(when_far(sweep), when_near(sweep)));
   robot.feed(0, "X", 20);
   robot.feed(10, "Y", 60);

@@ -2,11 +2,13 @@
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/robot.hpp"
+#include "tests/support/repeated.hpp"
 
 using robosync::test::high_and_low;
 using robosync::test::Robot;
 using robosync::test::when_far;
 using robosync::test::when_near;
+using robosync::testing::repeated;
 
 TEST_CASE("WAIT goes on when its time is over, in a step of its own") {
   Robot robot(when_near("LOG \"one\"\nWAIT 200ms\nLOG \"two\""));
@@ -144,10 +146,7 @@ TEST_CASE("STOP drops what waits for its actuator and ends what it does") {
 
 TEST_CASE(
     "STOP is obeyed although all places for commands are taken by what waits for its actuator") {
-  std::string program = "WHEN near X > 10\nDO\n";
-  for (int i = 0; i < 8; ++i)
-    program += "MOVE a FOR 100ms\n";
-  Robot robot(program +
+  Robot robot("WHEN near X > 10\nDO\n" + repeated("MOVE a FOR 100ms\n", 8) +
               "WAIT 10ms\nMOVE a FOR 100ms\nWAIT 10ms\nSTOP a\nWAIT 1s\nMOVE a FOR 30ms\nEND\n");
   robot.feed(0, "X", 20);
   robot.run(3000);
@@ -157,11 +156,9 @@ TEST_CASE(
 }
 
 TEST_CASE("STOP is obeyed although others have taken all places for commands") {
-  std::string program = "WHEN near X > 10\nDO\nMOVE a FOR 500ms\n";
   const std::string others = "MOVE bc FOR 1s\nMOVE d FOR 1s\n";  // of 24 places 8, 8 and 8
-  for (int i = 0; i < 7; ++i)
-    program += others;
-  Robot robot(program + "WAIT 10ms\n" + others + others + "WAIT 10ms\nSTOP a\nEND\n");
+  Robot robot("WHEN near X > 10\nDO\nMOVE a FOR 500ms\n" + repeated(others, 7) + "WAIT 10ms\n" +
+              repeated(others, 2) + "WAIT 10ms\nSTOP a\nEND\n");
   robot.feed(0, "X", 20);
   robot.run(25);
   CHECK(robot.only("cancel overrun") == "20 #3 cancel a\n");
@@ -181,9 +178,7 @@ TEST_CASE("what stands behind a STOP takes places again, and only the last STOP 
 }
 
 TEST_CASE("eight commands wait behind a STOP that found all places taken") {
-  std::string moves;
-  for (int i = 0; i < 8; ++i)
-    moves += "MOVE a FOR 10ms\n";
+  const std::string moves = repeated("MOVE a FOR 10ms\n", 8);
   Robot robot("WHEN near X > 10\nDO\n" + moves + "WAIT 5ms\nMOVE a FOR 10ms\nSTOP a\n" + moves +
               "MOVE a FOR 10ms\nEND\n");
   robot.feed(0, "X", 20);
