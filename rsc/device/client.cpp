@@ -16,6 +16,8 @@ using std::chrono::milliseconds;
 
 // A reply takes at most 45 ms on the wire; the board verifies an image in a few.
 constexpr milliseconds kRepeatAfter{250};
+// What has come while this machine had no time is still read, but a board that never stops talking is not heard out.
+constexpr milliseconds kHearsOut{1000};
 constexpr std::size_t kMaxKept = 4096;  // unasked messages nobody has fetched
 
 bool is_unasked(MessageType type) {
@@ -57,7 +59,7 @@ bool Client::receive(Transport::Clock::time_point until) {
     if (queue.size() == kMaxKept) queue.pop_front();
     queue.push_back({frame.type, frame.sequence, {frame.payload.begin(), frame.payload.end()}});
   }
-  return count > 0 || transport_.now() < until;
+  return transport_.now() < until + (count > 0 ? kHearsOut : milliseconds(0));
 }
 
 std::optional<Message> Client::next_reply(milliseconds timeout) {

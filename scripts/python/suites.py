@@ -5,10 +5,12 @@ Exit code 0 when nothing failed and something ran, otherwise 1.
 """
 
 import argparse
+import faulthandler
 import json
 import os
 import re
 import shlex
+import signal
 import subprocess
 import sys
 import tempfile
@@ -16,6 +18,8 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+
+from board import end_on_signals
 
 ROOT = Path(__file__).resolve().parents[2]
 OURS = ("compiler", "vm", "link", "runtime-m4", "analysis", "rsc", "tests", "bench")
@@ -62,6 +66,8 @@ def run_ctest(preset):
 
 def run_unittest(place):
     """`place`: a folder with tests, or one file of it."""
+    end_on_signals()
+    faulthandler.register(signal.SIGTERM, file=sys.stdout, chain=True)  # where a test stands that takes too long
     path = ROOT / place
     folder, pattern = (path, "test*.py") if path.is_dir() else (path.parent, path.name)
     tests = unittest.defaultTestLoader.discover(str(folder), pattern)

@@ -105,8 +105,8 @@ class Bus(DebuggedTest):
         self.begin(TOUCH)
         with self.debugger() as debugger:
             transfer = self.place(of_the_board("I2c::transfer("))
-            while debugger.register_at(transfer, WRITTEN, 1) != [1]:  # it selects its page first
-                pass
+            # It selects its page first.
+            self.assertTrue(any(debugger.register_at(transfer, WRITTEN, 1) == [1] for _ in range(10)))
             debugger.register_at(self.place(of_the_board("(anonymous namespace)::half_bit()")), PC, TO_DATA)
             self.board.qmp.command("system_reset")
         done = self.begin(TOUCH)

@@ -33,7 +33,7 @@ constexpr milliseconds kSilence{300};  // of a board that has nothing to say
 // So many silences, with an answer of the board before each, are the end of its trace. Beside other work a board may stand
 // still for longer than one.
 constexpr unsigned kSilences = 3;
-constexpr unsigned kMissed = 10;  // … and the first event of its program will not come any more
+constexpr milliseconds kFirst{10'000};  // for the first event of a program; later it is lost
 constexpr std::size_t kFeedBytes = sizeof(link::Feed) + link::kFrameOverhead + 2;
 
 struct Job {
@@ -112,6 +112,7 @@ public:
     const bool shown = in_time && show(job, program.image(), readings.back());
     const std::uint32_t before = lost_;
     lost_ = session_.client.clear(program.image().header->crc32).lost_events;
+    if (in_time && !shown) begin_anew();
     return !in_time ? "late" : shown && lost_ == before ? "whole" : "lost";
   }
 
@@ -125,35 +126,43 @@ private:
     other.at_us += 1000;
     other.value = last.value == 0 ? 1000 : 0;
     Feeding(session_, {last, other}).run();
+    const auto first_by = session_.client.now() + kFirst;
     auto give_up = session_.client.now() + kPatience;
     for (unsigned silences = 0; session_.client.now() < give_up;) {
       link::Event event;
-      if (next(event)) {
+      const Heard heard = hear(event);
+      if (heard == Heard::event) {
         if (event.time_us > job.end_us()) return true;
         silences = 0;
         give_up = session_.client.now() + kPatience;  // it goes on, however slowly
         std::cout << tool::trace_json(event, {&image, {}, nullptr}) << '\n';
         continue;
       }
-      if (silences >= kSilences && seen_ == begun_) return true;
-      if (silences >= kMissed) {
-        seen_ = begun_;
-        return false;
-      }
-      if (session_.client.status().program_us > other.at_us) ++silences;
+      const bool begun = seen_ == begun_;
+      if (!begun && session_.client.now() > first_by) return false;
+      if (heard == Heard::nothing && session_.client.status().program_us > other.at_us) ++silences;
+      if (begun && silences >= kSilences) return true;
     }
     throw tool::Failure(tool::Exit::outside, "the program has come to no end");
   }
 
-  // The next event of the program that has begun last. False when none comes.
-  bool next(link::Event& event) {
-    while (const auto message = session_.client.next_unasked(kSilence)) {
-      if (message->type != link::MessageType::event || !link::decode_event(message->payload, event))
-        continue;
-      if (event.kind == link::EventKind::activated) ++seen_;
-      if (seen_ == begun_) return true;
+  // `event`: of the program that has begun last. `other`: of the one before, or no event.
+  enum class Heard { nothing, event, other };
+  Heard hear(link::Event& event) {
+    const auto message = session_.client.next_unasked(kSilence);
+    if (!message) return Heard::nothing;
+    if (message->type != link::MessageType::event || !link::decode_event(message->payload, event))
+      return Heard::other;
+    if (event.kind == link::EventKind::activated) ++seen_;
+    return seen_ == begun_ ? Heard::event : Heard::other;
+  }
+
+  // No program runs. What still comes is of one whose first event did not come, or came late.
+  void begin_anew() {
+    const auto until = session_.client.now() + kFirst;
+    while (session_.client.now() < until && session_.client.next_unasked(kSilence)) {
     }
-    return false;
+    seen_ = begun_;
   }
 
   tool::Session session_;

@@ -334,6 +334,31 @@ TEST_CASE("the first faults are kept until a host listens, and sent once") {
   CHECK(client.last_fault().pc == 2);
 }
 
+TEST_CASE("a board that never stops talking, and answers nothing, does not keep the host") {
+  class Talker final : public tool::Transport {
+  public:
+    Talker() : length_(link::encode_frame(MessageType::log, 0, {}, log_)) {}
+    std::size_t read(std::span<std::byte> bytes, std::chrono::milliseconds) override {
+      time_ += std::chrono::milliseconds(1);
+      REQUIRE(++reads_ < 100'000);
+      std::copy_n(log_.begin(), length_, bytes.begin());
+      return length_;
+    }
+    void write(std::span<const std::byte>) override {}
+    std::string name() const override { return "/dev/ttyACM0"; }
+    Clock::time_point now() const override { return time_; }
+
+  private:
+    std::array<std::byte, link::kMaxEncodedFrame> log_{};
+    std::size_t length_;
+    Clock::time_point time_{};
+    unsigned reads_ = 0;
+  };
+  Talker talker;
+  tool::Client client(talker);
+  CHECK_THROWS_WITH(client.hello(), Catch::Contains("the board does not answer"));
+}
+
 TEST_CASE("a board without power is reported with the port's name") {
   Robot robot;
   robot.to_board.set([](const test::Bytes&, std::size_t) { return test::Bytes(); });
