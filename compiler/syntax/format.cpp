@@ -3,7 +3,6 @@
 #include "compiler/syntax/format.hpp"
 
 #include <algorithm>
-#include <ranges>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -273,8 +272,10 @@ private:
   }
 
   static std::size_t most_cells(std::span<const Line> lines) {
-    return std::ranges::max(
-        lines | std::views::transform([](const Line& line) { return line.cells.size(); }));
+    std::size_t most = 0;
+    for (const Line& line : lines)
+      most = std::max(most, line.cells.size());
+    return most;
   }
 
   // Where another cell follows, it begins in the same column.
