@@ -8,7 +8,7 @@
 
 namespace robosync::link {
 
-inline constexpr std::uint8_t kProtocolVersion = 5;
+inline constexpr std::uint8_t kProtocolVersion = 6;
 inline constexpr std::size_t kMaxPayload = 240;
 inline constexpr std::size_t kNameLength = 16;  // NUL-padded
 using Name = std::array<char, kNameLength>;
@@ -132,6 +132,32 @@ struct Devices {
   std::uint8_t held;  // bit b: a line of bus b is held down, so that nobody on it can answer
   std::uint8_t reserved;
   std::array<std::uint16_t, 32> failed;  // by sensor: transfers; 65535: that many or more
+};
+
+// The running program, and a reset.
+enum class Keeping : std::uint8_t {
+  no_store,    // the board has none, or it does not answer
+  no_program,  // none runs
+  reading,     // not known yet: the board looks into its store, or goes back to a program in it
+  kept,        // the robot starts with it
+  on_trial,    // not yet: the robot starts with the kept program
+  failed,      // a thread faulted in its trial, and there is no program to go back to
+  too_large    // for the store
+};
+
+struct Kept {
+  std::uint32_t kept_bytes, kept_crc32;          // with which the robot starts; 0 bytes: none
+  std::uint32_t previous_bytes, previous_crc32;  // the one that was kept before
+  std::uint32_t most_bytes;                      // of an image, that can be kept
+  std::uint32_t trial_ms;  // on_trial: left of it; then it is kept as soon as it is written
+  std::uint32_t
+      given_up_crc32;  // of the last program since start-up that faulted in its trial; 0: none
+  Keeping state;
+  std::array<std::uint8_t, 3> reserved;
+};
+
+struct RollBack {
+  std::uint32_t image_crc;  // to this program: the previous one, or in a trial the kept one
 };
 
 struct TraceOn {

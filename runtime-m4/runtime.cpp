@@ -78,7 +78,7 @@ bool Runtime::start() {
 }
 
 // Everything is counted from the verified image, so that no image can say that it needs less. Not
-// inlined, as load(): what one has on the stack is gone before the other.
+// inlined, as load() and start_program(): what one has on the stack is gone before the other.
 vm::Verdict Runtime::check(std::span<const std::byte> bytes) {
   vm::Image image;
   const vm::Verdict verdict = vm::verify(bytes, limits_, image);

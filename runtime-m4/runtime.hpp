@@ -120,7 +120,7 @@ private:
   [[gnu::noinline]] bool load(std::span<const std::byte> bytes);
   void end_program();
   void say(bool stopped);
-  bool start_program();
+  [[gnu::noinline]] bool start_program();
   std::uint32_t choose_seed(std::uint32_t of_image) const;
   void go();
   bool simulated() const { return sampler_ != &drivers_; }

@@ -145,6 +145,15 @@ link::Status Client::clear(std::uint32_t image_crc) {
                                link::wire_bytes(link::Clear{image_crc}));
 }
 
+link::Kept Client::kept() {
+  return request<link::Kept>(MessageType::get_kept, MessageType::kept);
+}
+
+link::Kept Client::roll_back(std::uint32_t to_image_crc) {
+  return request<link::Kept>(MessageType::roll_back, MessageType::kept,
+                             link::wire_bytes(link::RollBack{to_image_crc}));
+}
+
 link::Status Client::stop() {
   return request<link::Status>(MessageType::stop, MessageType::status);
 }

@@ -35,6 +35,9 @@ public:
   link::Fault last_fault();  // of those the board has kept; no thread: there was none
   link::Devices devices();   // that the running program measures
   link::Status clear(std::uint32_t image_crc);  // ends the program, if it runs
+  link::Kept kept();
+  // Asks for it only: the board then reads its store.
+  link::Kept roll_back(std::uint32_t to_image_crc);
   link::Status set_trace(bool on);
   // All outputs to their safe state, until resume(). The board does it when the frame has come, and replies when it
   // finds the time: no reply does not mean that it has not stopped.

@@ -12,6 +12,7 @@
 
 #include "rsc/console.hpp"
 #include "rsc/device/devices.hpp"
+#include "rsc/device/keeping.hpp"
 #include "rsc/device/past.hpp"
 #include "rsc/device/session.hpp"
 #include "rsc/device/threads.hpp"
@@ -117,15 +118,18 @@ std::string buses_text(const Buses& buses) {
 }
 
 void print_json(const link::HelloReply& board, std::span<const std::byte> image, const Past& past,
-                const Buses& buses, const std::vector<link::ThreadInfo>& threads) {
+                const Buses& buses, const link::Kept& kept,
+                const std::vector<link::ThreadInfo>& threads) {
   Json report{{"board", board_json(board, image)}, {"status", status_json(past)}};
+  report["kept"] = keeping_json(kept);
   report["buses"] = {{"clears", buses.clears}, {"devices", devices_json(buses.devices)}};
   report["threads"] = threads_json(threads, {});
   std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
 void print_human(const link::HelloReply& board, std::span<const std::byte> image, const Past& past,
-                 const Buses& buses, const std::vector<link::ThreadInfo>& threads) {
+                 const Buses& buses, const link::Kept& kept,
+                 const std::vector<link::ThreadInfo>& threads) {
   const link::Status& status = past.status;
   std::cout << fmt::format("board     {}, firmware {}, protocol {}\n", text_of(board.board),
                            text_of(board.firmware), board.protocol);
@@ -138,6 +142,9 @@ void print_human(const link::HelloReply& board, std::span<const std::byte> image
   } else {
     std::cout << "program   none\n";
   }
+  std::cout << "reset     " << keeping_text(kept) << '\n';
+  if (kept.given_up_crc32 != 0)
+    std::cout << "given up  a program that was uploaded: a thread of it faulted in its trial\n";
   if (board.stopped != 0)
     std::cout << "stopped   all outputs are in their safe state until `rsc resume`\n";
   std::cout << "up        " << past_text(status) << '\n';
@@ -156,8 +163,9 @@ void info(const std::string& port, Format format) {
   const std::vector<link::ThreadInfo> threads = session.client.threads();
   const std::vector<std::byte> image = session.client.running_image();
   const Buses buses(image, session.client.devices());
-  format == Format::json ? print_json(session.board, image, past, buses, threads)
-                         : print_human(session.board, image, past, buses, threads);
+  const link::Kept kept = session.client.kept();
+  format == Format::json ? print_json(session.board, image, past, buses, kept, threads)
+                         : print_human(session.board, image, past, buses, kept, threads);
 }
 
 }  // namespace

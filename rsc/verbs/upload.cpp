@@ -11,6 +11,7 @@
 
 #include "rsc/console.hpp"
 #include "rsc/device/devices.hpp"
+#include "rsc/device/keeping.hpp"
 #include "rsc/device/serial_transport.hpp"
 #include "rsc/device/uploader.hpp"
 #include "rsc/failure.hpp"
@@ -40,7 +41,7 @@ void show_progress(std::size_t sent, std::size_t total) {
 }
 
 void report(const SendOptions& options, const UploadResult& result, const Program& program,
-            const std::vector<OnBus>& silent) {
+            const std::vector<OnBus>& silent, const link::Kept& kept) {
   const std::size_t bytes = result.bytes;
   const double ms = static_cast<double>(result.time.count()) / 1000;
   const double wire_ms = static_cast<double>(bytes) * kBitsPerByte / kBaudRate * 1000;
@@ -53,7 +54,8 @@ void report(const SendOptions& options, const UploadResult& result, const Progra
                                         {"frames", result.frames_sent},
                                         {"program", hash},
                                         {"uptime_us", result.activation.uptime_us},
-                                        {"silent", devices_json(silent)}}
+                                        {"silent", devices_json(silent)},
+                                        {"kept", keeping_json(kept)}}
                      .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
     return;
@@ -63,6 +65,7 @@ void report(const SendOptions& options, const UploadResult& result, const Progra
       "{:.3f} s after start-up\n",
       options.file, bytes, ms, wire_ms, hash,
       static_cast<double>(result.activation.uptime_us) / 1e6);
+  std::cout << keeping_text(kept) << '\n';
   for (const OnBus& device : silent)
     std::cerr << "warning: " << silent_text(device) << '\n';
 }
@@ -76,7 +79,8 @@ void upload(const SendOptions& options) {
   constexpr milliseconds kAnswer{2000};
   Session session(options.port, std::min(how.timeout.value_or(kAnswer), kAnswer));
   const UploadResult result = upload_program(session, program, how);
-  report(options, result, program, silent_after_start(session.client, program.image()));
+  const std::vector<OnBus> silent = silent_after_start(session.client, program.image());
+  report(options, result, program, silent, session.client.kept());
 }
 
 }  // namespace

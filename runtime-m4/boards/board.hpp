@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime-m4/boards/store.hpp"
 #include "runtime-m4/policy/pins.hpp"
 
 namespace robosync::boards {
@@ -42,6 +43,9 @@ public:
   // Pulse width on a PWM pin in microseconds, 20 ms frame; 0 switches the output off.
   virtual void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) = 0;
   virtual std::uint32_t pwm_read(std::uint16_t pin) const = 0;
+
+  // What outlasts a reset; nullptr where the board has nothing for it.
+  virtual Store* store() { return nullptr; }
 
   // The link's serial line. Both return at once with the number of bytes moved.
   virtual std::size_t link_write(std::span<const std::byte> bytes) = 0;

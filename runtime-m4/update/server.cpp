@@ -71,6 +71,7 @@ bool Server::start() {
     server.stops_seen_.fetch_add(1, std::memory_order_relaxed);
     server.runtime_.stop();
   };
+  keeper_.boot();
   board_.link_start({.ready = line_ready, .stop = line_stop, .argument = this});
   return true;
 }
@@ -79,12 +80,14 @@ void Server::run() {
   while (true) {
     while (work()) {
     }
-    kernel_.wait(kLine | kNews);
+    kernel_.wait(kLine | kNews, keeper_.due());
   }
 }
 
 bool Server::work() {
-  return writer_.ready() && (read_line() || send_next_thread() || send_fault() || send_unasked());
+  const bool said =
+      writer_.ready() && (read_line() || send_next_thread() || send_fault() || send_unasked());
+  return said || keeper_.work();
 }
 
 // Decodes until a request was handled. What follows it waits until its reply is written.
@@ -129,16 +132,17 @@ void Server::handle(const link::Frame& frame) {
     case MessageType::resume:
       return resume(frame.sequence);
     case MessageType::get_threads:
-      listing_threads_ = true;
-      next_thread_ = 0;
-      threads_sequence_ = frame.sequence;
-      return;
+      return list_threads(frame.sequence);
     case MessageType::trace_on:
       return trace_on(frame);
     case MessageType::clear:
       return clear(frame);
     case MessageType::read_image:
       return read_image(frame);
+    case MessageType::get_kept:
+      return kept(frame.sequence);
+    case MessageType::roll_back:
+      return roll_back(frame);
     default:
       return;  // a message to the host, or of a later protocol
   }
@@ -191,6 +195,7 @@ void Server::begin(const link::Frame& frame) {
     return;
   }
   have_result_ = false;
+  keeper_.host_sends();
   const link::TransferStatus answer = receiver_.begin(request, runtime_.room());
   send(MessageType::transfer_status, frame.sequence, link::wire_bytes(answer));
 }
@@ -210,9 +215,12 @@ void Server::data(const link::Frame& frame) {
 // twice.
 void Server::activate(const link::Frame& frame) {
   if (receiver_.complete()) {
+    keeper_.host_activates();
     last_result_ = activate_received();
     have_result_ = true;
     receiver_.reset();
+    if (last_result_.running != 0) keeper_.activated();
+    if (!runtime_.running()) keeper_.cleared();
   }
   link::ActivateResult answer{};
   answer.refusal = link::kNothingToActivate;
@@ -272,6 +280,7 @@ void Server::clear(const link::Frame& frame) {
   if (runtime_.running() && runtime_.image().header->crc32 == request.image_crc) {
     runtime_.clear();
     receiver_.reset();  // the room is another
+    keeper_.cleared();
   }
   status(frame.sequence);
 }
@@ -285,6 +294,22 @@ void Server::read_image(const link::Frame& frame) {
   std::array<std::byte, link::kMaxPayload> payload{};
   const std::size_t length = fill_image_data(running_image(), request.offset, payload);
   send(MessageType::image_data, frame.sequence, std::span(payload).first(length));
+}
+
+void Server::kept(std::uint8_t sequence) {
+  link::Kept answer{};
+  keeper_.fill(answer);
+  send(MessageType::kept, sequence, link::wire_bytes(answer));
+}
+
+void Server::roll_back(const link::Frame& frame) {
+  link::RollBack request{};
+  if (!link::read_payload(frame.payload, request)) {
+    ++bad_requests_;
+    return;
+  }
+  keeper_.roll_back(request.image_crc);
+  kept(frame.sequence);
 }
 
 void Server::trace_on(const link::Frame& frame) {
@@ -303,6 +328,12 @@ std::span<const std::byte> Server::running_image() const {
   return {reinterpret_cast<const std::byte*>(&header), header.total_length};
 }
 
+void Server::list_threads(std::uint8_t sequence) {
+  listing_threads_ = true;
+  next_thread_ = 0;
+  threads_sequence_ = sequence;
+}
+
 bool Server::send_next_thread() {
   if (!listing_threads_) return false;
   const auto threads = kernel_.threads();
@@ -319,6 +350,7 @@ bool Server::send_next_thread() {
 void Server::report(const link::Fault& fault) {
   const auto lock = kernel_.lock();
   if (fault_count_ < faults_.size()) faults_[fault_count_++] = fault;
+  keeper_.fault();
   kernel_.signal(thread_, kNews);
 }
 

@@ -20,6 +20,7 @@
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/runtime.hpp"
+#include "runtime-m4/update/keeper.hpp"
 #include "runtime-m4/update/line_writer.hpp"
 #include "runtime-m4/update/trace_ring.hpp"
 
@@ -33,7 +34,12 @@ class Server {
 public:
   // `ring` is the sink that `runtime` was made with.
   Server(kernel::Kernel& kernel, boards::Board& board, Runtime& runtime, TraceRing& ring)
-      : kernel_(kernel), board_(board), runtime_(runtime), ring_(ring), writer_(board) {}
+      : kernel_(kernel),
+        board_(board),
+        runtime_(runtime),
+        ring_(ring),
+        writer_(board),
+        keeper_(kernel, runtime, receiver_, board.store()) {}
 
   // Creates the link thread and starts the line. Once, before Kernel::run(). False when the kernel has
   // no place.
@@ -68,9 +74,12 @@ private:
   void status(std::uint8_t sequence);
   void last_fault(std::uint8_t sequence);
   void devices(std::uint8_t sequence);
+  void list_threads(std::uint8_t sequence);
   void read_image(const link::Frame& frame);
   void clear(const link::Frame& frame);
   void trace_on(const link::Frame& frame);
+  void kept(std::uint8_t sequence);
+  void roll_back(const link::Frame& frame);
 
   link::ActivateResult activate_received();
   std::span<const std::byte> running_image() const;
@@ -96,6 +105,7 @@ private:
   link::Receiver receiver_;
   link::ActivateResult last_result_{};  // repeated when the host asks again
   bool have_result_ = false;
+  Keeper keeper_;
 
   bool listing_threads_ = false;
   std::uint8_t next_thread_ = 0;

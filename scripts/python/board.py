@@ -26,6 +26,8 @@ FIRMWARE = BUILT / "robosync.elf"
 MACHINE = BUILT / "machine"
 # What is on its buses in QEMU, and the first QEMU that has the board.
 DEVICES = {REFERENCE: ["-device", "max34451,id=touch,address=0x70"]}
+# Its store: an EEPROM whose bytes stand in a file.
+STORES = {REFERENCE: (65_536, ["-device", "at24c-eeprom,address=0x50,rom-size=65536,drive=store"])}
 SINCE = {"b-l475e-iot01a": (9, 2)}
 UNPACKED = ROOT / "build/qemu/usr"  # by scripts/emulator
 TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
@@ -99,10 +101,26 @@ class Qmp:
         self._socket.close()
 
 
+def with_store(path):
+    """How QEMU is told of the board's store."""
+    if NAME not in STORES:
+        raise BoardError(f"{NAME} has no store in QEMU")
+    size, devices = STORES[NAME]
+    try:
+        with open(path, "ab") as file:
+            if file.tell() not in (0, size):
+                raise BoardError(f"{path} is something else: a store has {size} bytes, this file {file.tell()}")
+            file.truncate(size)
+    except OSError as error:
+        raise BoardError(f"{path}: {error.strerror}") from error
+    return ["-drive", f"if=none,format=raw,file={str(path).replace(',', ',,')},id=store", *devices]
+
+
 class Board:
     """One running board. `port` is what rsc takes as --port."""
 
-    def __init__(self, elf=FIRMWARE, pty=False, serial_path=None, icount=REAL_TIME, extra=()):
+    def __init__(self, elf=FIRMWARE, pty=False, serial_path=None, icount=REAL_TIME, extra=(), store=None):
+        """`store`: a file with what the board keeps without power, made when it is not there; else it keeps nothing."""
         if not Path(elf).is_file():
             raise BoardError(f"no firmware at {elf}: build the preset {BUILT.name} first")
         self._folder = tempfile.TemporaryDirectory(prefix="robosync-")
@@ -110,7 +128,7 @@ class Board:
         self.serial_path = Path(serial_path or Path(self._folder.name) / "serial").resolve()
         self._pty = pty
         self._log = Path(self._folder.name) / "qemu.log"
-        self._process = self._start(elf, icount, extra)
+        self._process = self._start(elf, icount, [*extra, *(with_store(store) if store else [])])
         self.qmp = None
         try:
             self.qmp = self._connect()
@@ -164,6 +182,17 @@ class Board:
     def set_touch(self, raw, channel=0):
         """What the touch sensor's input measures from now on, as its raw 16-bit number."""
         self.qmp.command("qom-set", path=TOUCH, property=f"vout[{channel}]", value=raw)
+
+    def word(self, address):
+        """Of its memory, whoever runs."""
+        said = self.qmp.command("human-monitor-command", **{"command-line": f"xp /1xw {address:#x}"})
+        return int(said.split()[1], 16)
+
+    def cut_power(self):
+        """At whatever it is."""
+        self._process.kill()
+        self._process.wait()
+        self.stop()
 
     def stop(self):
         if self.qmp:

@@ -76,7 +76,7 @@ END
 INTERPRETER = "robosync::vm::run("
 PLACES = {"interpreter": INTERPRETER, "sensor": "robosync::layers::Mailboxes::post(",
           "actuator": "robosync::guard::OutputGuard::drive(", "bus": of_the_board("I2c::transfer("),
-          "halves of bits": of_the_board("(anonymous namespace)::half_bit()"),
+          "halves of bits": of_the_board("I2c::half_bit() const"),
           "safety": "robosync::Runtime::look_at_rules(", "switch": "PendSV_Handler"}
 WATCHED = {"kick": of_the_board("Board::watchdog_kick()"), "nmi": "NMI_Handler", "reset": "Reset_Handler",
            "said": "robosync::Runtime::say(bool)"}

@@ -107,7 +107,7 @@ class Bus(DebuggedTest):
             transfer = self.place(of_the_board("I2c::transfer("))
             # It selects its page first.
             self.assertTrue(any(debugger.register_at(transfer, WRITTEN, 1) == [1] for _ in range(10)))
-            debugger.register_at(self.place(of_the_board("(anonymous namespace)::half_bit()")), PC, TO_DATA)
+            debugger.register_at(self.place(of_the_board("I2c::half_bit() const")), PC, TO_DATA)
             self.board.qmp.command("system_reset")
         done = self.begin(TOUCH)
         self.assertEqual((done.returncode, done.stderr), (0, ""))

@@ -17,7 +17,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import of_the_board, symbols  # noqa: E402
 
 SP = 13
-HALF_BIT = "(anonymous namespace)::half_bit()"
+HALF_BIT = "I2c::half_bit() const"
 TIMES = 1500  # some samples' worth
 FRAME, SAVED = 32, 36  # what the core stacks, and PendSV_Handler: no thread has FPU registers to save
 PAINT = 0xA5A5A5A5

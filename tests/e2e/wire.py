@@ -39,7 +39,6 @@ def _field(type_name, enums):
 def _read_structs(text, enums):
     structs = {}
     for name, body in re.findall(r"^struct (\w+) \{(.*?)^\};", text, re.M | re.S):
-        body = re.sub(r"//.*", "", body)
         fields = [(field.strip(), _field(kind, enums))
                   for kind, names in re.findall(r"([\w:]+(?:<[^;]*>)?)\s+([\w,\s]+)(?:\{\})?;", body)
                   for field in names.split(",")]
@@ -47,7 +46,7 @@ def _read_structs(text, enums):
     return structs
 
 
-_MESSAGES = (LINK / "messages.hpp").read_text("utf-8")
+_MESSAGES = re.sub(r"//.*", "", (LINK / "messages.hpp").read_text("utf-8"))
 MOST_PAYLOAD = int(re.search(r"kMaxPayload = (\d+)", _MESSAGES)[1])
 NUMBERS = _read_numbers()
 NAMES = {number: name for name, number in NUMBERS.items()}

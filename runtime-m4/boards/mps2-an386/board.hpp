@@ -11,6 +11,7 @@
 
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
+#include "runtime-m4/boards/mps2-an386/eeprom.hpp"
 #include "runtime-m4/boards/mps2-an386/i2c.hpp"
 #include "runtime-m4/boards/mps2-an386/registers.hpp"
 #include "runtime-m4/boards/mps2-an386/uart.hpp"
@@ -32,6 +33,7 @@ public:
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
   BusState buses() const override { return i2c_.state(); }
+  Store* store() override { return &eeprom_; }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
   std::size_t link_write(std::span<const std::byte> bytes) override { return uart_.write(bytes); }
@@ -45,6 +47,7 @@ public:
 private:
   Uart uart_;
   I2c i2c_{kI2c0};
+  Eeprom eeprom_{i2c_};
 };
 
 }  // namespace robosync::boards::mps2

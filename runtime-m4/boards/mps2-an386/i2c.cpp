@@ -7,17 +7,21 @@ namespace robosync::boards::mps2 {
 namespace {
 
 // Turns of the waiting loop: four cycles each, 5 µs at 25 MHz.
-constexpr unsigned kHalfBit = kClockHz / 200'000 / 4;
+constexpr std::uint16_t kHalfBit = kClockHz / 200'000 / 4;
+constexpr std::uint16_t kFastHalfBit =
+    kHalfBit / 6;  // besides what the code between takes: 1.25 µs altogether
 // As long as devices may hold the clock down in one transfer, in half bits: 1 ms.
 constexpr unsigned kStretchLimit = 200;
 constexpr unsigned kMostClocks = 9;  // a byte, and its acknowledgement
 
-void half_bit() {
-  for (unsigned i = 0; i < kHalfBit; ++i)
-    asm volatile("nop");
-}
-
 }  // namespace
+
+void I2c::half_bit() const {
+  unsigned turns = half_bit_;
+  do
+    asm volatile("nop");
+  while (--turns != 0);
+}
 
 void I2c::pull(std::uint32_t line) {
   at<I2cRegisters>(registers_).clear = line;
@@ -31,10 +35,12 @@ bool I2c::is_high(std::uint32_t line) const {
   return (at<I2cRegisters>(registers_).set & line) != 0;
 }
 
-// A device may hold the clock down to gain time; not for ever.
+// A device may hold the clock down to gain time; not for ever. A sensor that has taken the bus from the store is
+// through when this one is on again: then nobody uses it.
 bool I2c::release_clock() {
   release(kI2cClock);
   half_bit();
+  if (user_.load(std::memory_order_relaxed) == User::nobody) return false;
   for (; !is_high(kI2cClock); --patience_) {
     if (patience_ == 0) return false;
     half_bit();
@@ -66,10 +72,11 @@ bool I2c::start() {
   return true;
 }
 
+// Also when the clock does not come up: whoever comes next finds the data line let go.
 void I2c::stop() {
   pull(kI2cData);
   half_bit();
-  if (!release_clock()) return;
+  static_cast<void>(release_clock());
   release(kI2cData);
   half_bit();
 }
@@ -127,16 +134,51 @@ bool I2c::read_message(std::uint8_t address, std::span<std::byte> in) {
   return true;
 }
 
-bool I2c::transfer(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in) {
-  // Nobody waits again for a line that was held down before: others want the processor.
+// Nobody waits again for a line that was held down before: others want the processor. False also when a sensor has
+// used the bus meanwhile.
+bool I2c::prepare(bool taken) {
   patience_ = held_ ? 0 : kStretchLimit;
-  held_ = !free_bus();
-  if (held_) return false;
+  const std::uint16_t clears = clears_;
+  const bool held = !free_bus();
+  if (user_.load(std::memory_order_relaxed) == User::nobody) return false;
+  held_ = held;
+  if (taken &&
+      !held) {  // the store's transfer, in which the device may have been about to acknowledge
+    clears_ = clears;
+    pull(kI2cClock);
+    half_bit();
+    stop();
+  }
+  return !held;
+}
+
+bool I2c::exchange(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in) {
   patience_ = kStretchLimit;
   const bool done = (out.empty() && !in.empty() ? true : write_message(address, out)) &&
                     (in.empty() ? true : read_message(address, in));
   stop();
+  user_.store(User::nobody, std::memory_order_relaxed);
   return done;
+}
+
+bool I2c::transfer(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in) {
+  const bool taken = user_.exchange(User::sensor, std::memory_order_relaxed) == User::store;
+  if (taken) taken_ = true;
+  half_bit_ = kHalfBit;
+  if (prepare(taken)) return exchange(address, out, in);
+  user_.store(User::nobody, std::memory_order_relaxed);
+  return false;
+}
+
+Store::Outcome I2c::transfer_between(std::uint8_t address, std::span<const std::byte> out,
+                                     std::span<std::byte> in) {
+  taken_ = false;
+  half_bit_ = kFastHalfBit;
+  user_.store(User::store, std::memory_order_relaxed);
+  const bool done = prepare(false) && exchange(address, out, in);
+  user_.store(User::nobody, std::memory_order_relaxed);
+  if (taken_) return Store::Outcome::taken;
+  return done ? Store::Outcome::done : Store::Outcome::busy;
 }
 
 }  // namespace robosync::boards::mps2

@@ -36,6 +36,8 @@ class LineBoard final : public boards::Board {
 public:
   static constexpr std::size_t kRing = 512;
 
+  explicit LineBoard(boards::Store* store) : store_(store) {}
+
   const char* name() const override { return "mps2-an386"; }
   std::uint8_t reset_reason() const override { return 2; }
   const policy::BoardPins& pins() const override { return boards::kPins; }
@@ -47,6 +49,7 @@ public:
   boards::BusState buses() const override { return {.clears = 2, .held = 1}; }
   void pwm_write(std::uint16_t, std::uint32_t) override {}
   std::uint32_t pwm_read(std::uint16_t) const override { return 0; }
+  boards::Store* store() override { return store_; }
   void watchdog_start() override {}
   void watchdog_kick() override {}
 
@@ -77,6 +80,7 @@ public:
   std::deque<std::byte> from_host, to_host;
 
 private:
+  boards::Store* store_;
   bool wants_room_ = false;
   std::size_t watched_ = 0;  // bytes of from_host that the interrupt has seen
   link::StopDetector stops_;
@@ -115,8 +119,10 @@ class Robot final : public tool::Transport {
 public:
   static constexpr unsigned kBytesPerSecond = 11520;  // 115,200 baud, 8N1
 
-  explicit Robot(const policy::BoardMemory& memory = boards::kMemory)
-      : ring(kernel),
+  explicit Robot(const policy::BoardMemory& memory = boards::kMemory,
+                 boards::Store* store = nullptr)
+      : board(store),
+        ring(kernel),
         arena(memory),
         runtime(kernel, board, ring, arena.bytes(), arena.board()),
         server(kernel, board, runtime, ring) {

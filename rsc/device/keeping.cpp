@@ -1,0 +1,102 @@
+// See keeping.hpp.
+#include "rsc/device/keeping.hpp"
+
+#include <array>
+#include <chrono>
+#include <string_view>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "rsc/failure.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using link::Keeping;
+using std::chrono::milliseconds;
+using Json = nlohmann::ordered_json;
+
+constexpr milliseconds kReading{10'000};  // a board needs one second for the largest program
+constexpr milliseconds kLook{20};
+
+// By link::Keeping.
+constexpr std::array<std::string_view, 7> kStates = {"no_store", "no_program", "reading",  "kept",
+                                                     "on_trial", "failed",     "too_large"};
+
+Json program(std::uint32_t bytes, std::uint32_t crc32) {
+  if (bytes == 0) return nullptr;
+  return {{"crc32", crc32}, {"bytes", bytes}};
+}
+
+link::Kept when_read(Client& client) {
+  const auto give_up = client.now() + kReading;
+  link::Kept kept = client.kept();
+  while (kept.state == Keeping::reading && client.now() < give_up) {
+    std::this_thread::sleep_for(kLook);
+    kept = client.kept();
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::string keeping_text(const link::Kept& kept) {
+  const std::string_view instead =
+      kept.kept_bytes == 0 ? "has no program" : "starts with the program kept before";
+  switch (kept.state) {
+    case Keeping::no_store:
+      return "not kept: this board has no store, and no program after a reset";
+    case Keeping::no_program:
+      return fmt::format("after a reset the robot {}",
+                         kept.kept_bytes == 0 ? instead : "starts with the kept program");
+    case Keeping::reading:
+      return "the board is reading its store";
+    case Keeping::kept:
+      return "kept: the robot starts with it after a reset";
+    case Keeping::on_trial:
+      return fmt::format(
+          "kept in {:.1f} s, if no thread of it faults; after a reset before, the robot {}",
+          kept.trial_ms / 1000.0, instead);
+    case Keeping::failed:
+      return fmt::format("not kept: a thread of it has faulted; after a reset the robot {}",
+                         instead);
+    case Keeping::too_large:
+      return fmt::format(
+          "not kept: the board keeps programs of up to {} bytes; after a reset the robot {}",
+          kept.most_bytes, instead);
+  }
+  return "?";
+}
+
+Json keeping_json(const link::Kept& kept) {
+  const auto state = static_cast<std::size_t>(kept.state);
+  Json object{{"state", state < kStates.size() ? kStates[state] : "?"},
+              {"program", program(kept.kept_bytes, kept.kept_crc32)},
+              {"previous", program(kept.previous_bytes, kept.previous_crc32)},
+              {"most_bytes", kept.most_bytes},
+              {"trial_ms", kept.trial_ms}};
+  object["given_up"] = kept.given_up_crc32 == 0 ? Json(nullptr) : Json(kept.given_up_crc32);
+  return object;
+}
+
+std::uint32_t roll_back(Client& client) {
+  const link::Kept before = when_read(client);
+  if (before.state == Keeping::no_store)
+    throw Failure(Exit::program, "this board keeps no programs: there is none to go back to");
+  const bool trial = before.state != Keeping::kept;
+  const std::uint32_t bytes = trial ? before.kept_bytes : before.previous_bytes;
+  const std::uint32_t crc32 = trial ? before.kept_crc32 : before.previous_crc32;
+  if (bytes == 0)
+    throw Failure(Exit::program,
+                  "the board has kept no program before this one: upload the one you want");
+  client.roll_back(crc32);
+  when_read(client);
+  if (const link::HelloReply board = client.hello(); board.running == 0 || board.image_crc != crc32)
+    throw Failure(Exit::program,
+                  "the program before is not whole in the board's store: upload the one you want");
+  return crc32;
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,21 @@
+// Which programs a board keeps through a reset: in `rsc info`, after `rsc upload`, and for `rsc rollback`.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "link/messages.hpp"
+#include "rsc/device/client.hpp"
+
+namespace robosync::tool {
+
+// How it stands with the running program: "kept: the robot starts with it", or why not.
+[[nodiscard]] std::string keeping_text(const link::Kept& kept);
+[[nodiscard]] nlohmann::ordered_json keeping_json(const link::Kept& kept);
+
+// Back to the program before the running one, which then runs. Returns its CRC. Throws Failure (program) when there is
+// none, or it cannot be started.
+std::uint32_t roll_back(Client& client);
+
+}  // namespace robosync::tool

@@ -1,0 +1,35 @@
+// Memory of a board that keeps what is in it without power: an EEPROM, or pages of flash.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace robosync::boards {
+
+class Store {
+public:
+  enum class Outcome : std::uint8_t {
+    done,
+    taken,  // somebody with a higher rank needed the bus: nothing is certain to have happened; at once again
+    busy  // it does not answer: it is writing, which takes a few milliseconds, or it is not there
+  };
+  // Most bytes of one read or write: so few that a thread of the lowest rank gets them done between others.
+  static constexpr std::size_t kPiece = 16;
+
+  virtual std::uint32_t size() const = 0;  // bytes
+  // Bytes that a cut of the power while one of them is written may spoil, on a boundary of that many; a
+  // multiple of kPiece.
+  virtual std::uint32_t page() const = 0;
+
+  // Both: at most kPiece bytes, on a boundary of kPiece, inside of size().  [the thread with the lowest rank]
+  // Nobody may measure with sensors meanwhile.
+  virtual Outcome read(std::uint32_t at, std::span<std::byte> bytes) = 0;
+  // They may, and take the bus away.
+  virtual Outcome write(std::uint32_t at, std::span<const std::byte> bytes) = 0;
+
+protected:
+  ~Store() = default;
+};
+
+}  // namespace robosync::boards

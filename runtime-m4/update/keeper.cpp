@@ -1,0 +1,184 @@
+// See keeper.hpp.
+#include "runtime-m4/update/keeper.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace robosync::update {
+
+using link::Keeping;
+
+void Keeper::boot() {
+  store_.open();
+  doing_ = Doing::opening;
+}
+
+Keeper::Program Keeper::running_program() const {
+  if (!runtime_.running()) return {};
+  const vm::ImageHeader& header = *runtime_.image().header;
+  return {header.total_length, header.crc32};
+}
+
+void Keeper::activated() {
+  running_ = running_program();
+  trial_ends_ = kernel_.now() + kTrial;
+  fault_ = false;
+  if (doing_ != Doing::opening) write_running();
+}
+
+void Keeper::cleared() {
+  running_ = {};
+  if (doing_ != Doing::writing) return;
+  store_.give_up();
+  doing_ = Doing::nothing;
+}
+
+void Keeper::host_sends() {
+  if (!reads()) return;
+  store_.give_up();
+  doing_ = Doing::nothing;
+}
+
+void Keeper::host_activates() {
+  while (doing_ == Doing::opening && work()) {
+  }
+}
+
+void Keeper::roll_back(std::uint32_t crc32) {
+  const bool trial = running_ != store_.kept();
+  const Program target = trial ? store_.kept() : store_.previous();
+  if (target.bytes == 0 || target.crc32 != crc32 || doing_ == Doing::opening || reads()) return;
+  read(trial ? Doing::giving_up_trial : Doing::rolling_back);
+}
+
+// The running program's image stays where it is as long as it runs.
+void Keeper::write_running() {
+  doing_ = Doing::nothing;
+  store_.give_up();
+  if (!on_trial() || !fits()) return;
+  store_.write({reinterpret_cast<const std::byte*>(runtime_.image().header), running_.bytes},
+               running_);
+  doing_ = Doing::writing;
+}
+
+void Keeper::read(Doing why) {
+  receiver_.reset();
+  runtime_.clear();
+  running_ = {};
+  doing_ = why;
+  reads_previous() ? store_.read_previous(runtime_.room()) : store_.read_kept(runtime_.room());
+}
+
+void Keeper::read_the_other(Doing instead_of) {
+  if (instead_of == Doing::rolling_back) {
+    read(Doing::starting_kept);
+  } else if (instead_of != Doing::starting_previous && store_.previous().bytes != 0) {
+    read(Doing::starting_previous);
+  }
+}
+
+bool Keeper::work() {
+  due_ = kernel::kForever;
+  if (fault_ && on_trial() && (doing_ == Doing::nothing || doing_ == Doing::writing))
+    return give_up_trial();
+  switch (store_.work()) {
+    case ProgramStore::Work::some:
+      return true;
+    case ProgramStore::Work::waits:
+      due_ = kernel_.now() + kernel::kTick;
+      return false;
+    case ProgramStore::Work::ended:
+      ended();
+      return true;
+    case ProgramStore::Work::none:
+      break;
+  }
+  return judge_trial();
+}
+
+void Keeper::ended() {
+  if (!store_.there()) {
+    doing_ = Doing::nothing;
+  } else if (reads()) {
+    start_what_was_read();
+  } else if (doing_ == Doing::opening && running_.bytes == 0 && store_.kept().bytes != 0) {
+    read(Doing::starting_kept);
+  } else if (doing_ == Doing::opening) {
+    write_running();
+  } else {
+    doing_ = Doing::nothing;
+  }
+}
+
+void Keeper::start_what_was_read() {
+  const Program wanted = reads_previous() ? store_.previous() : store_.kept();
+  const std::span<const std::byte> image = store_.image();
+  const Doing why = doing_;
+  doing_ = Doing::nothing;
+  std::uint32_t crc32 = 0;
+  constexpr std::size_t kAt = offsetof(vm::ImageHeader, crc32);
+  const bool whole = image.size() == wanted.bytes && image.size() >= kAt + sizeof crc32;
+  if (whole) std::memcpy(&crc32, image.data() + kAt, sizeof crc32);
+  if (whole && crc32 == wanted.crc32 && runtime_.activate(image).ok()) {
+    running_ = wanted;
+    fault_ = false;
+    if (why == Doing::giving_up_trial || why == Doing::starting_kept) return;
+    store_.swap();
+    doing_ = Doing::recording;
+  } else {
+    read_the_other(why);
+  }
+}
+
+// Without a program to go back to it runs on, and is not kept.
+bool Keeper::give_up_trial() {
+  fault_ = false;
+  given_up_ = running_.crc32;
+  trial_ends_ = kernel::kForever;
+  store_.give_up();
+  doing_ = Doing::nothing;
+  if (store_.kept().bytes != 0) read(Doing::giving_up_trial);
+  return true;
+}
+
+// True when there is something to do because it is over.
+bool Keeper::judge_trial() {
+  if (!on_trial() || doing_ != Doing::nothing || store_.written() != running_) return false;
+  if (kernel_.now() < trial_ends_) {
+    due_ = trial_ends_;
+    return false;
+  }
+  store_.keep_written();
+  doing_ = Doing::recording;
+  return true;
+}
+
+void Keeper::fill(link::Kept& answer) const {
+  answer.kept_bytes = store_.kept().bytes;
+  answer.kept_crc32 = store_.kept().crc32;
+  answer.previous_bytes = store_.previous().bytes;
+  answer.previous_crc32 = store_.previous().crc32;
+  answer.most_bytes = store_.most_bytes();
+  answer.given_up_crc32 = given_up_;
+  const kernel::Time now = kernel_.now();
+  const bool swaps = doing_ == Doing::recording && running_ == store_.previous();
+  if (doing_ == Doing::opening || reads() || swaps) {
+    answer.state = Keeping::reading;
+  } else if (!store_.there()) {
+    answer.state = Keeping::no_store;
+  } else if (running_.bytes == 0) {
+    answer.state = Keeping::no_program;
+  } else if (!on_trial()) {
+    answer.state = Keeping::kept;
+  } else if (!fits()) {
+    answer.state = Keeping::too_large;
+  } else if (trial_ends_ == kernel::kForever) {
+    answer.state = Keeping::failed;
+  } else {
+    answer.state = Keeping::on_trial;
+    answer.trial_ms =
+        trial_ends_ <= now ? 0 : static_cast<std::uint32_t>((trial_ends_ - now) / 1000);
+  }
+}
+
+}  // namespace robosync::update

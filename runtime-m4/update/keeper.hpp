@@ -1,0 +1,89 @@
+// Decides with which program the robot starts after a reset, and brings it back.
+//
+// A program that the host has uploaded is on trial: it is written into the store meanwhile, and kept when it has run
+// for kTrial without a fault. A fault before that brings the kept program back at once, a reset does so by itself. All
+// of it in pieces of one transfer, by the link thread, between the host's requests; who uploads comes first.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "link/messages.hpp"
+#include "link/receiver.hpp"
+#include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/runtime.hpp"
+#include "runtime-m4/update/program_store.hpp"
+
+namespace robosync::update {
+
+class Keeper {
+public:
+  static constexpr kernel::Duration kTrial = kernel::milliseconds(5000);
+
+  // A transfer to `receiver` that has not come to its end is given up when a program is read from the store:
+  // both need the room.
+  Keeper(kernel::Kernel& kernel, Runtime& runtime, link::Receiver& receiver, boards::Store* store)
+      : kernel_(kernel), runtime_(runtime), receiver_(receiver), store_(store) {}
+
+  // All but fault() by the link thread.
+  void boot();            // once, first of all
+  void activated();       // a program of the host runs
+  void cleared();         // … has ended
+  void host_sends();      // an image is coming into the room
+  void host_activates();  // … and is about to run: no sensor measures while the store is read
+  // A person's wish: back to the program with that CRC. When it is not the one before, nothing happens: so asking
+  // twice does no more than asking once.
+  void roll_back(std::uint32_t crc32);
+  void fault() { fault_ = true; }  // of a thread of the running program  [any]
+
+  // The next piece. False when there is none before due(), or fault().
+  bool work();
+  kernel::Time due() const { return due_; }
+
+  void fill(link::Kept& answer) const;
+
+private:
+  using Program = ProgramStore::Program;
+  // What is being done with the store. While it is read, no program runs: where the one that is wanted is not whole,
+  // the other one is.
+  enum class Doing : std::uint8_t {
+    nothing,
+    opening,
+    starting_kept,
+    starting_previous,
+    giving_up_trial,
+    rolling_back,
+    writing,
+    recording
+  };
+
+  bool reads() const { return doing_ >= Doing::starting_kept && doing_ <= Doing::rolling_back; }
+  bool reads_previous() const {
+    return doing_ == Doing::starting_previous || doing_ == Doing::rolling_back;
+  }
+  bool on_trial() const { return running_.bytes != 0 && running_ != store_.kept(); }
+  bool fits() const { return running_.bytes <= store_.most_bytes(); }
+  Program running_program() const;
+  void write_running();
+  void read(Doing why);
+  void read_the_other(Doing instead_of);
+  void ended();
+  void start_what_was_read();
+  bool judge_trial();
+  bool give_up_trial();
+
+  kernel::Kernel& kernel_;
+  Runtime& runtime_;
+  link::Receiver& receiver_;
+  ProgramStore store_;
+  Doing doing_ = Doing::nothing;
+  Program running_{};
+  kernel::Time trial_ends_ = 0;
+  kernel::Time due_ = kernel::kForever;
+  std::uint32_t given_up_ = 0;  // CRC of the last program that did not stand its trial
+  std::atomic<bool> fault_ = false;
+};
+
+}  // namespace robosync::update

@@ -1,0 +1,169 @@
+"""What the shipped firmware keeps without power, in an EEPROM on the sensor's bus: the program that stood its trial. A new
+QEMU with the same file is a board that was switched off and on."""
+
+import random
+import sys
+import time
+import unittest
+from pathlib import Path
+
+import rsc
+from board import FAST, FIRMWARE, REAL_TIME, Board
+from debugger import Debugger
+from support import PROGRAMS, LineReader, RobotTest
+from test_isolation import CONFIG, INTERPRETER, PROGRAM, UART, WILD
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
+from counting import symbols  # noqa: E402
+
+PATIENCE = 20
+SOON_US = 100_000  # from power-up to the first step
+LARGEST_SOON = 4_096  # bytes of an image that comes so soon
+STEADY, OTHER = 5, 3000  # what the sensor's inputs measure
+STEADY_CONFIG = """{
+  "sensors": [{"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
+               "channels": {"LEVEL": {"input": 0, "range": [0, 65535], "rate": "50Hz"},
+                            "OTHER": {"input": 1, "range": [0, 65535], "rate": "50Hz"}}}],
+  "actuators": [{"name": "arm", "type": "PWM", "pin": 0, "device": "servo", "range": ["0deg", "120deg"]}]
+}"""
+
+
+class Switched(RobotTest):
+    """A board that can be switched off and on. `icount`: where the clock of the wall must not run behind a trial, REAL_TIME."""
+
+    icount = FAST
+
+    def setUp(self):
+        super().setUp()
+        self.board.stop()  # the one without a store
+        self.file = self.folder / "store"
+        self.switch_on()
+        self.addCleanup(lambda: self.board.stop())
+
+    def switch_on(self, *extra):
+        self.board = Board(self.elf, icount=self.icount, extra=extra, store=self.file)
+
+    def power_cycle(self, *extra):
+        self.board.stop()
+        self.switch_on(*extra)
+
+    def kept(self):
+        return rsc.info(self.board.port)["kept"]
+
+    def running(self):
+        program = rsc.info(self.board.port)["board"]["program"]
+        return program and program["crc32"]
+
+    def await_kept(self, state):
+        give_up = time.monotonic() + PATIENCE
+        while (kept := self.kept())["state"] != state:
+            self.assertLess(time.monotonic(), give_up, kept)
+        return kept
+
+    def keep(self, image):
+        self.upload(image)
+        return self.await_kept("kept")["program"]["crc32"]
+
+    def images(self):
+        """Two programs, and their CRCs when they ran here."""
+        first = self.compile(PROGRAMS / "priorities.rsl")
+        second = self.folder / "second.rsb"
+        rsc.run("compile", PROGRAMS / "priorities.rsl", "--config", self.folder / "robot.json", "--seed", 1, "-o", second,
+                "--anyway")
+        return first, second
+
+
+class Store(Switched):
+    def test_power_that_goes_at_any_time_leaves_a_kept_program(self):
+        images = self.images()
+        known = {self.keep(image) for image in images}
+        draw = random.Random(1)
+        for round_ in range(4):
+            with self.subTest(round=round_):
+                self.upload(images[round_ % 2])
+                time.sleep(draw.random() * 0.2)  # some seconds of the board's
+                self.board.cut_power()
+                self.switch_on()
+                self.await_kept("kept")
+                self.assertIn(self.running(), known)
+
+    def test_back_and_forth(self):
+        first, second = map(self.keep, self.images())
+        for wanted in (first, second):
+            self.assertRegex(rsc.run("rollback", "--port", self.board.port), r"^program [0-9a-f]{16} runs again \(\d+ bytes\)$")
+            self.assertEqual(self.running(), wanted)
+        self.power_cycle()
+        self.await_kept("kept")
+        self.assertEqual(self.running(), second)
+
+    def test_sensors_on_its_bus_never_wait_for_it(self):
+        """While programs that measure a hundred times a second are written, no transfer fails, none is late, and none gives
+        another value than the sensor has."""
+        (self.folder / "robot.json").write_text(STEADY_CONFIG)
+        program, pulse = self.folder / "program.rsl", symbols(FIRMWARE)["robosync_virtual_pwm"]
+        self.board.set_touch(STEADY)
+        self.board.set_touch(OTHER, channel=1)
+        for round_ in range(4):
+            rules = "".join(f"WHEN touch LEVEL > {STEADY + 1 + i} DO MOVE arm TO {i + round_}deg END\n" for i in range(30))
+            program.write_text(f"WHEN touch LEVEL < {STEADY} OR touch OTHER < {OTHER} DO MOVE arm TO 100deg END\n" + rules)
+            rsc.run("upload", program, "--port", self.board.port)
+            self.await_kept("kept")
+            info = rsc.info(self.board.port)
+            self.assertEqual(info["buses"]["clears"], 0)
+            self.assertEqual([(device["answers"], device["failed"]) for device in info["buses"]["devices"]], [(True, 0)])
+            self.assertEqual([thread["missed_deadlines"] for thread in info["threads"]], [0] * len(info["threads"]))
+            self.assertEqual(self.board.word(pulse), 0, "it has moved")
+
+
+class Trial(Switched):
+    icount = REAL_TIME
+
+    def test_it_starts_with_the_program_that_stood_its_trial(self):
+        first, second = self.images()
+        self.assertIsNone(self.running())
+        kept = self.keep(first)
+        for switched in (self.power_cycle, lambda: self.board.qmp.command("system_reset")):
+            switched()
+            self.await_kept("kept")
+            status = self.status()
+            self.assertEqual(self.running(), kept)
+            self.assertLess(first.stat().st_size, LARGEST_SOON)
+            self.assertLessEqual(status["uptime_us"] - status["program_us"], SOON_US)
+        said = self.upload(second)
+        self.assertRegex(said, r"kept in [45]\.\d s, if no thread of it faults; after a reset before, the robot starts with")
+        self.assertNotEqual(self.running(), kept)
+        self.power_cycle()  # in its trial
+        self.await_kept("kept")
+        self.assertEqual(self.running(), kept)
+
+    def test_a_behaviour_that_faults_in_its_trial_brings_the_kept_program_back(self):
+        kept = self.keep(self.compile(PROGRAMS / "priorities.rsl"))
+        gdb = self.folder / "gdb"
+        self.power_cycle("-gdb", f"unix:{gdb},server=on,wait=off")
+        config, program = self.folder / "robot.json", self.folder / "program.rsl"
+        config.write_text(CONFIG)
+        program.write_text(PROGRAM)
+        rsc.run("upload", program, "--config", config, "--port", self.board.port)
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
+        interpreter = next(at for name, at in symbols(FIRMWARE).items() if name.startswith(INTERPRETER))
+        with Debugger(gdb) as debugger:
+            debugger.run_to(interpreter, lambda: self.board.set_touch(9, WILD))
+            debugger.set_register(0, UART)
+        self.assertTrue(reader.wait_for(lambda lines: any('"fault"' in line for line in lines[1:]), PATIENCE), reader.lines)
+        reader.stop()
+        self.assertIsNotNone(self.await_kept("kept")["given_up"])
+        self.assertEqual(self.running(), kept)
+        self.assertIn("given up  a program that was uploaded", rsc.run("info", "--port", self.board.port))
+
+
+class NoStore(RobotTest):
+    def test_it_says_so(self):
+        said = self.upload(self.compile(PROGRAMS / "priorities.rsl"))
+        self.assertIn("not kept: this board has no store", said)
+        done = rsc.call("rollback", "--port", self.board.port)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("this board keeps no programs", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,75 @@
+// A board's store in memory, which may lose its power in the middle of a write, be busy, and have its bus taken away.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "runtime-m4/boards/store.hpp"
+
+namespace robosync::test {
+
+class MemoryStore final : public boards::Store {
+public:
+  static constexpr std::uint32_t kPage = 64;
+
+  explicit MemoryStore(std::uint32_t size) : bytes(size, std::byte{0xFF}) {}
+
+  std::uint32_t size() const override { return static_cast<std::uint32_t>(bytes.size()); }
+  std::uint32_t page() const override { return kPage; }
+
+  Outcome read(std::uint32_t at, std::span<std::byte> to) override {
+    if (const auto other = in_the_way()) return *other;
+    std::copy_n(bytes.begin() + at, to.size(), to.begin());
+    return Outcome::done;
+  }
+
+  // What was taken away may have been written in part.
+  Outcome write(std::uint32_t at, std::span<const std::byte> from) override {
+    const auto other = in_the_way();
+    if (other == Outcome::busy) return *other;
+    for (std::size_t i = 0; i < from.size() / (other ? 2 : 1); ++i) {
+      if (power_for == 0) return lose_power(at);
+      if (power_for) --*power_for;
+      bytes[at + i] = from[i];
+      ++written;
+    }
+    if (other) return *other;
+    busy_for_ = writes_take;
+    return Outcome::done;
+  }
+
+  std::vector<std::byte> bytes;
+  std::size_t written = 0;  // bytes
+  std::optional<std::size_t>
+      power_for;                 // so many more bytes; then the page of the next one is spoiled
+  unsigned writes_take = 0;      // transfers that find the store busy after a write
+  unsigned one_in_is_taken = 0;  // 0: none
+  bool dead = false;             // it never answers
+
+private:
+  std::optional<Outcome> in_the_way() {
+    if (dead || busy_for_ != 0) {
+      busy_for_ -= busy_for_ != 0 ? 1 : 0;
+      return Outcome::busy;
+    }
+    if (one_in_is_taken != 0 && random_() % one_in_is_taken == 0) return Outcome::taken;
+    return std::nullopt;
+  }
+
+  Outcome lose_power(std::uint32_t at) {
+    const auto page = bytes.begin() + at / kPage * kPage;
+    std::generate(page, page + kPage, [this] { return static_cast<std::byte>(random_()); });
+    dead = true;
+    return Outcome::busy;
+  }
+
+  unsigned busy_for_ = 0;
+  std::mt19937 random_{1};
+};
+
+}  // namespace robosync::test

@@ -1,0 +1,397 @@
+// What outlasts a cut of the power, at every byte that is written: by itself, and with the whole robot around it.
+#include "runtime-m4/update/program_store.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "rsc/device/client.hpp"
+#include "rsc/device/keeping.hpp"
+#include "rsc/device/uploader.hpp"
+#include "tests/runtime-m4/update/memory_store.hpp"
+#include "tests/runtime-m4/update/programs.hpp"
+#include "tests/runtime-m4/update/robot.hpp"
+
+using namespace robosync;
+using link::Keeping;
+using test::Bytes;
+using test::MemoryStore;
+using test::Robot;
+using update::ProgramStore;
+using Work = ProgramStore::Work;
+
+namespace {
+
+constexpr std::uint32_t kSize = 8192;
+constexpr unsigned kTrialMs = 5000;
+constexpr unsigned kMostMs = 100;  // from a reset to the kept program
+
+// Ends what was asked for. Bounded.
+void finish(ProgramStore& store) {
+  for (unsigned i = 0; i < 10'000; ++i) {
+    const Work work = store.work();
+    if (work == Work::none || work == Work::ended) return;
+  }
+  FAIL("the store comes to no end");
+}
+
+Bytes some_image(unsigned seed, std::size_t size) {
+  Bytes image(size);
+  std::mt19937 random(seed);
+  std::generate(image.begin(), image.end(), [&] { return static_cast<std::byte>(random()); });
+  return image;
+}
+
+ProgramStore::Program named(const Bytes& image) {
+  return {static_cast<std::uint32_t>(image.size()), vm::crc32(image)};
+}
+
+void keep(ProgramStore& store, const Bytes& image) {
+  store.write(image, named(image));
+  finish(store);
+  if (store.written() != named(image)) return;
+  store.keep_written();
+  finish(store);
+}
+
+Bytes read_kept(ProgramStore& store) {
+  Bytes room(kSize);
+  store.read_kept(room);
+  finish(store);
+  return {store.image().begin(), store.image().end()};
+}
+
+// After the power has come back.
+ProgramStore opened(MemoryStore& memory) {
+  memory.power_for.reset();
+  memory.dead = false;
+  ProgramStore store(&memory);
+  store.open();
+  finish(store);
+  return store;
+}
+
+Bytes bytes_of(const tool::Program& program) {
+  return {program.bytes().begin(), program.bytes().end()};
+}
+
+std::uint32_t crc_of(const tool::Program& program) {
+  return program.image().header->crc32;
+}
+
+void upload(Robot& robot, const tool::Program& program) {
+  tool::Client client(robot);
+  REQUIRE(tool::upload(client, client.hello(), program.bytes(), {}).activation.running == 1);
+}
+
+// A robot that keeps `program`.
+void keep(MemoryStore& memory, const tool::Program& program) {
+  Robot robot(boards::kMemory, &memory);
+  upload(robot, program);
+  robot.run(kTrialMs + 2000);
+}
+
+// With what the robot runs soon after a reset; 0: nothing.
+std::uint32_t started(MemoryStore& memory) {
+  memory.power_for.reset();
+  memory.dead = false;
+  Robot robot(boards::kMemory, &memory);
+  robot.run(kMostMs);
+  tool::Client client(robot);
+  const link::HelloReply hello = client.hello();
+  return hello.running == 1 ? hello.image_crc : 0;
+}
+
+}  // namespace
+
+TEST_CASE("a new store has no program, and one without answers none to keep any") {
+  MemoryStore memory(kSize);
+  ProgramStore store = opened(memory);
+  CHECK(store.there());
+  CHECK(store.kept().bytes == 0);
+  CHECK(store.most_bytes() == (kSize / MemoryStore::kPage - 2) / 2 * MemoryStore::kPage);
+
+  memory.dead = true;
+  ProgramStore dead(&memory);
+  dead.open();
+  finish(dead);
+  CHECK_FALSE(dead.there());
+  CHECK(dead.most_bytes() == 0);
+  ProgramStore none(nullptr);
+  none.open();
+  CHECK(none.work() == Work::none);
+  CHECK_FALSE(none.there());
+}
+
+TEST_CASE("a cut of the power at every byte leaves the program of before, or the new one") {
+  const Bytes first = some_image(1, 600), second = some_image(2, 777), third = some_image(3, 401);
+  MemoryStore before(kSize);
+  {
+    ProgramStore store = opened(before);
+    keep(store, first);
+    keep(store, second);
+  }
+  MemoryStore after = before;
+  after.written = 0;
+  {
+    ProgramStore store = opened(after);
+    keep(store, third);
+  }
+  REQUIRE(after.written > third.size());
+  for (std::size_t cut = 0; cut <= after.written; ++cut) {
+    CAPTURE(cut);
+    MemoryStore memory = before;
+    ProgramStore store = opened(memory);
+    memory.power_for = cut;
+    keep(store, third);
+    ProgramStore again = opened(memory);
+    const bool whole = cut == after.written;
+    REQUIRE(again.kept() == named(whole ? third : second));
+    REQUIRE(read_kept(again) == (whole ? third : second));
+    keep(again, first);  // and it goes on
+    ProgramStore last = opened(memory);
+    REQUIRE(read_kept(last) == first);
+  }
+}
+
+TEST_CASE("a cut while programs change places leaves them as they were, or changed") {
+  const Bytes first = some_image(1, 300), second = some_image(2, 500);
+  MemoryStore before(kSize);
+  {
+    ProgramStore store = opened(before);
+    keep(store, first);
+    keep(store, second);
+    CHECK(store.previous() == named(first));
+  }
+  for (std::size_t cut = 0; cut <= 32; ++cut) {
+    CAPTURE(cut);
+    MemoryStore memory = before;
+    ProgramStore store = opened(memory);
+    memory.power_for = cut;
+    store.swap();
+    finish(store);
+    ProgramStore again = opened(memory);
+    REQUIRE(read_kept(again) == (cut == 32 ? first : second));
+    REQUIRE(again.previous() == named(cut == 32 ? second : first));
+  }
+}
+
+TEST_CASE(
+    "a store that is busy after each write, and whose bus is taken away, ends up with the same") {
+  const Bytes image = some_image(1, 1000);
+  MemoryStore memory(kSize);
+  memory.writes_take = 6;
+  memory.one_in_is_taken = 3;
+  ProgramStore store = opened(memory);
+  keep(store, image);
+  CHECK(store.kept() == named(image));
+  ProgramStore again = opened(memory);
+  CHECK(read_kept(again) == image);
+}
+
+TEST_CASE("whatever stands in a store, no more is read than there is room") {
+  MemoryStore memory(kSize);
+  std::mt19937 random(1);
+  for (unsigned i = 0; i < 2000; ++i) {
+    if (i % 2 == 0) {  // a whole record with any numbers in it
+      std::array<std::uint32_t, 8> record{0x3150'5352,
+                                          static_cast<std::uint32_t>(random()) % 3 + 1};
+      for (std::size_t word = 2; word < 7; ++word)
+        record[word] = static_cast<std::uint32_t>(random()) >> (random() % 32);
+      record[7] = vm::crc32(std::as_bytes(std::span(record)).first(28));
+      std::ranges::copy(std::as_bytes(std::span(record)), memory.bytes.begin());
+    } else {
+      std::generate_n(memory.bytes.begin(), 2 * MemoryStore::kPage,
+                      [&] { return static_cast<std::byte>(random()); });
+    }
+    ProgramStore store = opened(memory);
+    REQUIRE(store.kept().bytes <= store.most_bytes());
+    Bytes room(300);
+    store.read_kept(room);
+    finish(store);
+    REQUIRE(store.image().size() <= room.size());
+    store.read_previous(room);
+    finish(store);
+    REQUIRE(store.image().size() <= room.size());
+  }
+}
+
+TEST_CASE(
+    "a program that has stood its trial runs soon after a reset; before, the one that was kept") {
+  MemoryStore memory(kSize);
+  const tool::Program first = test::program(3), second = test::program(5);
+  CHECK(started(memory) == 0);
+  keep(memory, first);
+  CHECK(started(memory) == crc_of(first));
+  {
+    Robot robot(boards::kMemory, &memory);
+    robot.run(kMostMs);
+    upload(robot, second);
+    robot.run(kTrialMs - 1000);
+    tool::Client client(robot);
+    CHECK(client.kept().state == Keeping::on_trial);
+    CHECK(client.kept().trial_ms <= 1000);
+  }
+  CHECK(started(memory) == crc_of(first));
+  keep(memory, second);
+  CHECK(started(memory) == crc_of(second));
+}
+
+TEST_CASE("a fault in its trial brings the kept program back, and it is said") {
+  MemoryStore memory(kSize);
+  const tool::Program good = test::program(3), bad = test::program(5);
+  keep(memory, good);
+  for (const unsigned after_ms : {0U, 30U, 2000U}) {
+    CAPTURE(after_ms);
+    Robot robot(boards::kMemory, &memory);
+    robot.run(kMostMs);
+    upload(robot, bad);
+    robot.run(after_ms);
+    robot.server.report({});
+    robot.run(kMostMs);
+    tool::Client client(robot);
+    CHECK(client.hello().image_crc == crc_of(good));
+    CHECK(client.kept().state == Keeping::kept);
+    CHECK(client.kept().given_up_crc32 == crc_of(bad));
+    robot.run(kTrialMs + 1000);
+    CHECK(client.kept().kept_crc32 == crc_of(good));
+  }
+  CHECK(started(memory) == crc_of(good));
+}
+
+TEST_CASE("a fault after its trial, or without a program to go back to, changes no program") {
+  MemoryStore memory(kSize);
+  Robot robot(boards::kMemory, &memory);
+  const tool::Program program = test::program(3);
+  upload(robot, program);
+  robot.server.report({});
+  robot.run(kTrialMs + 2000);
+  tool::Client client(robot);
+  CHECK(client.hello().image_crc == crc_of(program));
+  CHECK(client.kept().state == Keeping::failed);
+  CHECK(client.kept().kept_bytes == 0);
+  upload(robot, program);
+  robot.run(kTrialMs + 2000);
+  CHECK(client.kept().state == Keeping::kept);
+  robot.server.report({});
+  robot.run(kMostMs);
+  CHECK(client.hello().image_crc == crc_of(program));
+}
+
+TEST_CASE("a person goes back to the program before, and forth again") {
+  MemoryStore memory(kSize);
+  const tool::Program first = test::program(3), second = test::long_program(),
+                      third = test::program(7);
+  keep(memory, first);
+  {
+    Robot robot(boards::kMemory, &memory);
+    robot.run(kMostMs);
+    tool::Client client(robot);
+    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("has kept no program before"));
+    upload(robot, second);
+    robot.run(kTrialMs + 2000);
+    REQUIRE(client.kept().state == Keeping::kept);
+    CHECK(tool::roll_back(client) == crc_of(first));
+    client.roll_back(crc_of(first));  // asked for twice
+    robot.run(kMostMs);
+    CHECK(client.hello().image_crc == crc_of(first));
+    CHECK(tool::roll_back(client) == crc_of(second));
+    robot.run(kMostMs);
+    upload(robot, third);
+    CHECK(tool::roll_back(client) == crc_of(second));  // in its trial
+    robot.run(kTrialMs + 2000);
+    CHECK(client.kept().kept_crc32 == crc_of(second));
+  }
+  CHECK(started(memory) == crc_of(second));
+}
+
+TEST_CASE("a kept program that is damaged gives way to the one before, or to none") {
+  const tool::Program first = test::program(3), second = test::program(5);
+  MemoryStore memory(kSize);
+  keep(memory, first);
+  keep(memory, second);
+  const auto damage = [&](const tool::Program& program) {
+    const Bytes image = bytes_of(program);
+    const auto at =
+        std::search(memory.bytes.begin(), memory.bytes.end(), image.begin(), image.end());
+    REQUIRE(at != memory.bytes.end());
+    at[200] ^= std::byte{1};
+  };
+  damage(second);
+  {
+    Robot robot(boards::kMemory, &memory);
+    robot.run(kMostMs);
+    tool::Client client(robot);
+    CHECK(client.hello().image_crc == crc_of(first));
+    CHECK(client.kept().kept_crc32 == crc_of(first));
+    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("not whole"));
+    CHECK(client.hello().image_crc == crc_of(first));
+  }
+  CHECK(started(memory) == crc_of(first));
+  damage(first);
+  CHECK(started(memory) == 0);
+  keep(memory, second);
+  CHECK(started(memory) == crc_of(second));
+}
+
+TEST_CASE("an upload right after a reset comes before the kept program") {
+  MemoryStore memory(kSize);
+  const tool::Program kept = test::long_program(), mine = test::program(5);
+  keep(memory, kept);
+  Robot robot(boards::kMemory, &memory);
+  upload(robot, mine);
+  robot.run(1000);
+  tool::Client client(robot);
+  CHECK(client.hello().image_crc == crc_of(mine));
+  CHECK(client.kept().state == Keeping::on_trial);
+}
+
+TEST_CASE("a program that is too large for the store runs, and is not kept") {
+  MemoryStore memory(512);
+  Robot robot(boards::kMemory, &memory);
+  const tool::Program program = test::long_program();
+  upload(robot, program);
+  robot.run(kTrialMs + 2000);
+  tool::Client client(robot);
+  CHECK(client.hello().running == 1);
+  CHECK(client.kept().state == Keeping::too_large);
+  CHECK(memory.written == 0);
+}
+
+TEST_CASE(
+    "uploads, faults, rollbacks and resets with cuts at any byte: a kept program is never lost") {
+  const std::array<tool::Program, 3> programs{test::program(3), test::program(5),
+                                              test::long_program()};
+  std::mt19937 random(1);
+  MemoryStore memory(kSize);
+  keep(memory, programs[0]);
+  std::uint32_t kept = crc_of(programs[0]);
+  unsigned cuts = 0;
+  for (unsigned round = 0; round < 120; ++round) {
+    CAPTURE(round);
+    link::Kept before{}, after{};
+    const tool::Program& next = programs[random() % programs.size()];
+    {
+      Robot robot(boards::kMemory, &memory);
+      robot.run(kMostMs);
+      tool::Client client(robot);
+      REQUIRE(client.hello().image_crc == kept);
+      before = client.kept();
+      if (random() % 2 == 0) memory.power_for = random() % 2000;
+      upload(robot, next);
+      robot.run(random() % (2 * kTrialMs));
+      if (random() % 4 == 0) robot.server.report({});
+      if (random() % 4 == 0) client.roll_back(client.kept().previous_crc32);
+      robot.run(random() % 300);
+      after = client.kept();
+    }
+    const bool cut = memory.dead;
+    cuts += cut ? 1 : 0;
+    kept = started(memory);
+    if (cut) {
+      REQUIRE((kept == before.kept_crc32 || kept == before.previous_crc32 || kept == crc_of(next)));
+    } else {
+      REQUIRE(kept == after.kept_crc32);
+    }
+    REQUIRE(kept != 0);
+  }
+  CHECK(cuts > 10);
+}
