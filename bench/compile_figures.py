@@ -21,7 +21,7 @@ RUNS = 5
 MOST_RUNS = 25  # while a ratio is above its bar: other work on the machine may be the reason
 BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
 GROWTH_BAR = BARS["compile/growth_of_memory"]
-LITTLE = 4096  # KiB; of less, nobody can tell how it grows
+LITTLE, LITTLE_TIME = 4096, 1e-3  # KiB, seconds; of less, nobody can tell how it grows
 
 
 def write(source, folder):
@@ -74,7 +74,7 @@ class Growing:
         """(of time, of memory)."""
         (few, few_kib), (many, many_kib) = (
             [used - base for used, base in zip(each, self._base)] for each in (self._few, self._many))
-        return max(many, 0) / max(few, 1e-9), max(many_kib, 0) / max(few_kib, LITTLE)
+        return max(many, 0) / max(few, LITTLE_TIME), max(many_kib, 0) / max(few_kib, LITTLE)
 
 
 def lines_per_second(source, without=0):

@@ -45,15 +45,42 @@ private:
   int number_;
 };
 
+constexpr int kConnectTimeoutMs = 2000;
+
+// False when it has taken too long. EINTR: a signal came in.
+bool wait_for(int file, short events, int timeout_ms) {
+  pollfd entry{file, events, 0};
+  return poll(&entry, 1, timeout_ms) > 0;
+}
+
+// Connects a socket that does not block; 0, or the error. Who listens and takes nobody makes it wait, but not for ever.
+int connect_to(int file, const sockaddr* address, socklen_t length) {
+  for (int waited_ms = 0; connect(file, address, length) != 0; ++waited_ms) {
+    if (errno == EINPROGRESS) {
+      if (!wait_for(file, POLLOUT, kConnectTimeoutMs)) return ETIMEDOUT;
+      int error = 0;
+      socklen_t size = sizeof error;
+      getsockopt(file, SOL_SOCKET, SO_ERROR, &error, &size);
+      return error;
+    }
+    if (errno != EAGAIN && errno != EINTR) return errno;
+    if (waited_ms == kConnectTimeoutMs) return ETIMEDOUT;
+    poll(nullptr, 0, 1);
+  }
+  return 0;
+}
+
 class FileTransport final : public Transport {
 public:
-  FileTransport(std::string name, Descriptor file)
-      : name_(std::move(name)), file_(std::move(file)) {
+  enum class Kind { device, socket };
+
+  FileTransport(std::string name, Descriptor file, Kind kind)
+      : name_(std::move(name)), file_(std::move(file)), kind_(kind) {
     fcntl(file_, F_SETFL, O_NONBLOCK);
   }
 
   std::size_t read(std::span<std::byte> bytes, std::chrono::milliseconds timeout) override {
-    if (!wait_for(POLLIN, static_cast<int>(timeout.count()))) return 0;
+    if (!ready(POLLIN, static_cast<int>(timeout.count()))) return 0;
     const ssize_t count = ::read(file_, bytes.data(), bytes.size());
     if (count > 0) return static_cast<std::size_t>(count);
     if (count < 0 && (errno == EINTR || errno == EAGAIN)) return 0;
@@ -62,11 +89,11 @@ public:
 
   void write(std::span<const std::byte> bytes) override {
     while (!bytes.empty()) {
-      const ssize_t count = ::write(file_, bytes.data(), bytes.size());
+      const ssize_t count = write_some(bytes);
       if (count >= 0) {
         bytes = bytes.subspan(static_cast<std::size_t>(count));
       } else if (errno == EAGAIN) {
-        if (!wait_for(POLLOUT, kWriteTimeoutMs)) fail(name_, "the line takes no bytes");
+        if (!ready(POLLOUT, kWriteTimeoutMs)) fail(name_, "the line takes no bytes");
       } else if (errno != EINTR) {
         fail(name_, errno);
       }
@@ -76,15 +103,22 @@ public:
   std::string name() const override { return name_; }
 
 private:
-  bool wait_for(short events, int timeout_ms) {
-    pollfd entry{file_, events, 0};
-    const int ready = poll(&entry, 1, timeout_ms);
-    if (ready < 0 && errno != EINTR) fail(name_, errno);
-    return ready > 0;
+  bool ready(short events, int timeout_ms) {
+    errno = 0;
+    const bool is = wait_for(file_, events, timeout_ms);
+    if (!is && errno != 0 && errno != EINTR) fail(name_, errno);
+    return is;
+  }
+
+  // A line that was closed is an error, not the end of the program.
+  ssize_t write_some(std::span<const std::byte> bytes) {
+    return kind_ == Kind::socket ? send(file_, bytes.data(), bytes.size(), MSG_NOSIGNAL)
+                                 : ::write(file_, bytes.data(), bytes.size());
   }
 
   std::string name_;
   Descriptor file_;
+  Kind kind_;
 };
 
 }  // namespace
@@ -96,7 +130,7 @@ std::unique_ptr<Transport> open_pty(const std::string& path) {
   if (tcgetattr(file, &settings) != 0) fail(path, errno);
   cfmakeraw(&settings);
   if (tcsetattr(file, TCSANOW, &settings) != 0) fail(path, errno);
-  return std::make_unique<FileTransport>(path, std::move(file));
+  return std::make_unique<FileTransport>(path, std::move(file), FileTransport::Kind::device);
 }
 
 std::unique_ptr<Transport> open_unix_socket(const std::string& path) {
@@ -107,13 +141,16 @@ std::unique_ptr<Transport> open_unix_socket(const std::string& path) {
     throw Failure(Exit::usage, name + ": give the path of a socket, at most 107 characters long");
   }
   path.copy(address.sun_path, path.size());
-  Descriptor file(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  Descriptor file(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (file < 0) fail(name, errno);
-  if (connect(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+  const int error = connect_to(file, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  if (error == ETIMEDOUT)
+    fail(name, "somebody listens there, and takes no more connections: is another rsc using it?");
+  if (error != 0) {
     fail(name, fmt::format("{}; is the robot running? (`scripts/robot --socket {}`)",
-                           std::strerror(errno), path));
+                           std::strerror(error), path));
   }
-  return std::make_unique<FileTransport>(name, std::move(file));
+  return std::make_unique<FileTransport>(name, std::move(file), FileTransport::Kind::socket);
 }
 
 std::unique_ptr<Transport> open_tcp_socket(const std::string& host_and_port) {
@@ -131,13 +168,14 @@ std::unique_ptr<Transport> open_tcp_socket(const std::string& host_and_port) {
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, freeaddrinfo);
   int why = ECONNREFUSED;
   for (const addrinfo* at = found; at != nullptr; at = at->ai_next) {
-    Descriptor file(socket(at->ai_family, at->ai_socktype | SOCK_CLOEXEC, at->ai_protocol));
-    if (file >= 0 && connect(file, at->ai_addr, at->ai_addrlen) == 0) {
+    Descriptor file(
+        socket(at->ai_family, at->ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK, at->ai_protocol));
+    why = file < 0 ? errno : connect_to(file, at->ai_addr, at->ai_addrlen);
+    if (why == 0) {
       const int on = 1;  // frames are small and each waits for its reply
       setsockopt(file, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-      return std::make_unique<FileTransport>(name, std::move(file));
+      return std::make_unique<FileTransport>(name, std::move(file), FileTransport::Kind::socket);
     }
-    why = errno;
   }
   fail(name, why);
 }

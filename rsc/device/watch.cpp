@@ -83,6 +83,7 @@ void Watch::learn_threads() {
 
 void Watch::introduce() {
   const Past past(session_.client);
+  uptime_us_ = past.status.uptime_us;
   std::vector<OnBus> silent;
   if (names_.image != nullptr) silent = on_buses(image_, session_.client.devices());
   std::erase_if(silent, [](const OnBus& device) { return !device.silent; });
@@ -113,7 +114,7 @@ void Watch::show(std::optional<milliseconds> duration) {
     const auto now = session_.client.now();
     if (duration && now - start >= *duration) break;
     if (now >= next_look) {
-      report_losses(session_.client.status());
+      look(session_.client.set_trace(true));
       if (threads_) show_threads();
       next_look = now + kLookForLosses;
     }
@@ -185,6 +186,19 @@ void Watch::show_threads() {
   }
   std::cout.flush();
   thread_list_ = now;
+}
+
+// A board that has started again has forgotten that somebody listens, so it is told each time.
+void Watch::look(const link::Status& status) {
+  if (status.uptime_us < uptime_us_) {
+    std::cerr << "rsc: the board has started again\n";
+    lost_ = 0;
+    learn_names();
+    introduce();
+  } else {
+    report_losses(status);
+  }
+  uptime_us_ = status.uptime_us;
 }
 
 void Watch::report_losses(const link::Status& status) {

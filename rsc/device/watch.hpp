@@ -31,6 +31,7 @@ private:
   void show_event(const Message& message);
   void show_fault(const Message& message);
   void show_threads();
+  void look(const link::Status& status);
   void report_losses(const link::Status& status);
 
   Session& session_;
@@ -41,6 +42,7 @@ private:
   vm::Image image_;
   TraceNames names_;
   std::uint32_t lost_ = 0;
+  std::uint64_t uptime_us_ = 0;  // of the board, when it was looked at last
 };
 
 }  // namespace robosync::tool

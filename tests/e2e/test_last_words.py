@@ -10,6 +10,7 @@ from pathlib import Path
 import rsc
 from board import FIRMWARE, NAME
 from debugger import DebuggedTest, endless_loop
+from support import LineReader
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
@@ -43,6 +44,16 @@ class LastWords(DebuggedTest):
         line = json.loads(self.first_line("--format", "json"))
         self.assertEqual((line["event"], line["reset_reason"], line["last_fault"]), ("board", "power", None))
         self.assertRegex(self.first_line(), rf"^ +board  {NAME}, up [\d.]+ s \(reset: power\), .* 0 faults$")
+
+    def test_a_monitor_goes_on_after_a_reset(self):
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
+        self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
+        time.sleep(2)  # it has looked how long the board is up
+        self.board.qmp.command("system_reset")
+        self.assertTrue(reader.wait_for(lambda lines: len(lines) == 2, PATIENCE), reader.lines)
+        errors = reader.stop()
+        self.assertEqual([json.loads(line)["event"] for line in reader.lines], ["board", "board"])
+        self.assertIn("the board has started again", errors)
 
     def test_a_fault_of_the_safety_thread_is_told_after_the_reset(self):
         self.send_safety_to(NOWHERE)

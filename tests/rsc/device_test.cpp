@@ -297,6 +297,37 @@ TEST_CASE("a port without firmware behind it is exit 3") {
   CHECK_THAT(outcome.err, Contains("the board does not answer") && Contains(robot.path("dumb")));
 }
 
+TEST_CASE("a line that is closed while somebody listens is exit 3") {
+  auto device = std::make_unique<Device>();
+  Outcome outcome;
+  std::thread monitor([&, port = device->port] {
+    outcome = test::rsc({"monitor", "--port", port, "--duration", "30s"});
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  device.reset();
+  monitor.join();
+  CHECK(outcome.exit == 3);
+  CHECK_THAT(outcome.err, Contains("the other end closed the line"));
+}
+
+TEST_CASE("a port whose owner takes nobody is exit 3, and says so") {
+  const RobotFolder folder;
+  const int listener = listen_at(folder.path("busy"));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  folder.path("busy").copy(address.sun_path, sizeof address.sun_path - 1);
+  std::vector<int> waiting;
+  do
+    waiting.push_back(socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0));
+  while (connect(waiting.back(), reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
+  const Outcome outcome = test::rsc({"info", "--port", "unix:" + folder.path("busy")});
+  for (const int file : waiting)
+    close(file);
+  close(listener);
+  CHECK(outcome.exit == 3);
+  CHECK_THAT(outcome.err, Contains("takes no more connections"));
+}
+
 TEST_CASE("the line may be TCP") {
   sockaddr_in address{};
   address.sin_family = AF_INET;
