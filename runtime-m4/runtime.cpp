@@ -156,7 +156,7 @@ bool Runtime::start_program() {
   trace_.emit(EventKind::activated, {}, 0, 0, static_cast<std::int32_t>(seed));
   if (!control_.start(program, memory_, threads_) ||
       !shared_.behaviors.start(program, memory_, threads_) ||
-      !shared_.processing.start(program, memory_) ||
+      !shared_.processing.start(program, kept_, memory_) ||
       !sensors_.start(program, *sampler_, simulated(), memory_, threads_))
     return false;
   shared_.processing.rank();
@@ -225,6 +225,24 @@ void Runtime::fill_devices(link::Devices& devices) const {
   devices.bus_clears = buses.clears;
   devices.held = buses.held;
   if (running_) sensors_.fill_devices(devices);
+}
+
+std::size_t Runtime::fill_kept(std::span<layers::KeptNumber, layers::kMostKept> kept) const {
+  if (!running_) return 0;
+  const vm::Image& image = shared_.program.image;
+  std::size_t count = 0;
+  {
+    const auto lock = kernel_.lock();
+    for (std::size_t v = 0; v < image.variables.size() && count < kept.size(); ++v)
+      if (image.variables[v].kind == vm::VariableKind::kept)
+        kept[count++].value = shared_.processing.snapshot().value(
+            static_cast<std::uint8_t>(image.channels.size() + v));
+  }
+  count = 0;
+  for (const vm::Variable& variable : image.variables)
+    if (variable.kind == vm::VariableKind::kept && count < kept.size())
+      kept[count++].key = layers::kept_key(image, variable);
+  return count;
 }
 
 void Runtime::hold_to_budgets(bool alive) {

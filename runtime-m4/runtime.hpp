@@ -22,6 +22,7 @@
 #include "runtime-m4/layers/control.hpp"
 #include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/layers/frames.hpp"
+#include "runtime-m4/layers/kept.hpp"
 #include "runtime-m4/layers/loaded_program.hpp"
 #include "runtime-m4/layers/mailbox.hpp"
 #include "runtime-m4/layers/memory.hpp"
@@ -84,6 +85,11 @@ public:
   const vm::Image& image() const { return shared_.program.image; }  // of the running program
   const vm::Limits& limits() const { return limits_; }
 
+  // KEPT numbers begin with these, in each program that has them. Before activate(); the table stays where it is.
+  void begin_with(std::span<const layers::KeptNumber> kept) { kept_ = kept; }
+  // Those of the running program as they are now, all of one step. Returns how many.
+  std::size_t fill_kept(std::span<layers::KeptNumber, layers::kMostKept> kept) const;
+
   // Measures with `sampler` in place of the drivers. Before activate().
   // That is a simulation: its program does not wait for a first reading.
   void measure_with(layers::Sampler& sampler) { sampler_ = &sampler; }
@@ -138,6 +144,7 @@ private:
   bool begun_ = false;                 // its program time; only while it runs
   std::uint16_t activations_ = 0;
   std::uint32_t given_seed_ = 0;
+  std::span<const layers::KeptNumber> kept_;
   unsigned faults_ = 0;  // of programs that are gone
   safety::Monitor monitor_;
   layers::Budget budget_;

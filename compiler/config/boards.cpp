@@ -77,6 +77,8 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
   board.i2c_buses = read_number(fields, "i2c_buses", "a board", diagnostics);
   if (const auto* outputs = fields.require("outputs", "a board"))
     board.outputs = read_outputs(*outputs, diagnostics);
+  if (fields.find("store") != nullptr)
+    board.store_bytes = read_number(fields, "store", "a board", diagnostics);
   if (const auto* flash = fields.find("flash")) board.flash = read_flash(*flash, diagnostics);
   const auto* arena = fields.require("arena", "a board");
   if (arena == nullptr) return board;

@@ -27,8 +27,9 @@ struct Board {
   struct Pins {
     std::uint16_t first, last;
   };
-  std::vector<Pins> outputs;    // pins that a program may drive
-  std::uint32_t i2c_buses = 0;  // numbered from 0
+  std::vector<Pins> outputs;      // pins that a program may drive
+  std::uint32_t i2c_buses = 0;    // numbered from 0
+  std::uint32_t store_bytes = 0;  // that outlast a loss of power
   // How its firmware gets there; nothing: there is no such board but in an emulator.
   struct Flash {
     std::string socket;  // of the cable, in words

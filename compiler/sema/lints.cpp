@@ -616,15 +616,15 @@ void lint_robot(const LintInput& input) {
   lint_safety(input);
 }
 
-// No board has memory yet that outlasts its power and that programs may use.
 void lint_kept(const LintInput& input) {
   std::vector<const VariableName*> kept;
   for (const VariableName& name : input.names.variables())
     if (name.kind == vm::VariableKind::kept) kept.push_back(&name);
   if (kept.empty()) return;
-  const std::string board = board_for(input.robot.board).name;
+  const Board board = board_for(input.robot.board);
+  if (board.store_bytes != 0) return;
   Diagnostic& d = input.diagnostics.report(
-      Code::W0220, "the board " + board + " cannot keep " + kept.front()->name.shown() +
+      Code::W0220, "the board " + board.name + " cannot keep " + kept.front()->name.shown() +
                        (kept.size() > 1 ? " and others" : "") + " when it is switched off");
   for (std::size_t i = 0; i < kept.size(); ++i)
     d.label(kept[i]->name.span, "there it begins anew at each start", i == 0);

@@ -149,6 +149,10 @@ link::Kept Client::kept() {
   return request<link::Kept>(MessageType::get_kept, MessageType::kept);
 }
 
+link::Kept Client::forget() {
+  return request<link::Kept>(MessageType::forget, MessageType::kept);
+}
+
 link::Kept Client::roll_back(std::uint32_t to_image_crc) {
   return request<link::Kept>(MessageType::roll_back, MessageType::kept,
                              link::wire_bytes(link::RollBack{to_image_crc}));

@@ -36,6 +36,7 @@ public:
   link::Devices devices();   // that the running program measures
   link::Status clear(std::uint32_t image_crc);  // ends the program, if it runs
   link::Kept kept();
+  link::Kept forget();  // KEPT numbers, when the next program is activated
   // Asks for it only: the board then reads its store.
   link::Kept roll_back(std::uint32_t to_image_crc);
   link::Status set_trace(bool on);

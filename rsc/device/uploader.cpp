@@ -267,6 +267,7 @@ UploadResult upload_program(Session& session, const Program& program,
   check_board(session, program);
   if (options.replace && session.board.running != 0)
     (void)session.client.clear(session.board.image_crc);
+  if (options.fresh) (void)session.client.forget();
   const UploadResult result =
       upload(session.client, session.board, without_source_lines(program), options);
   check_result(result.activation, program);

@@ -23,6 +23,7 @@ struct UploadOptions {
   std::optional<std::chrono::milliseconds> timeout;  // for all of it; else patience()
   std::function<void(std::size_t sent, std::size_t total)> progress;  // may be empty
   bool replace = false;  // the running program is ended first, for its memory
+  bool fresh = false;    // its KEPT numbers begin as it says
 };
 
 // How long an upload may take when nobody says: ten times what the bytes take on the wire, and some

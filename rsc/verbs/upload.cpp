@@ -1,4 +1,4 @@
-// rsc upload FILE|X.rsb --port P [--config FILE] [--timeout TIME] [--replace] [--anyway]
+// rsc upload FILE|X.rsb --port P [--config FILE] [--timeout TIME] [--replace] [--fresh] [--anyway]
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -30,6 +30,7 @@ struct SendOptions {
   CompileOptions how;
   std::optional<milliseconds> timeout;
   bool replace = false;
+  bool fresh = false;
   bool anyway = false;
   Format format = Format::human;
 };
@@ -75,6 +76,7 @@ void upload(const SendOptions& options) {
   UploadOptions how;
   how.timeout = options.timeout;
   how.replace = options.replace;
+  how.fresh = options.fresh;
   if (stderr_is_terminal()) how.progress = show_progress;
   constexpr milliseconds kAnswer{2000};
   Session session(options.port, std::min(how.timeout.value_or(kAnswer), kAnswer));
@@ -95,6 +97,7 @@ void add_upload(Options& options) {
                       "give up after (10s, longer for a large image)");
   options.flag("--replace", asked->replace,
                "end the running program first, where the board has no room for both");
+  options.flag("--fresh", asked->fresh, "KEPT numbers begin as the program says");
   options.flag("--anyway", asked->anyway,
                "also when it is too much for the board, which may refuse it");
   add_format_option(options, asked->format);

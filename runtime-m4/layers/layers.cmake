@@ -11,6 +11,7 @@ target_sources(robosync_runtime PRIVATE
   layers/program_threads.cpp
   layers/feed_queue.cpp
   layers/frames.cpp
+  layers/kept.cpp
   layers/mailbox.cpp
   layers/memory.cpp
   layers/median.cpp

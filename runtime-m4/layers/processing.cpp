@@ -29,14 +29,15 @@ bool starts_at_once(const LoadedProgram& program, const vm::Behavior& behavior) 
 
 }  // namespace
 
-bool ProcessingLayer::start(const LoadedProgram& program, Memory& memory) {
+bool ProcessingLayer::start(const LoadedProgram& program, std::span<const KeptNumber> kept,
+                            Memory& memory) {
   program_ = &program;
   snapshot_.stamp_ = {};
   snapshot_.milliseconds_ = 0;
   snapshot_.values_ = memory.take<policy::Part::snapshot, vm::Value>();
   std::ranges::fill(snapshot_.values_, vm::kUnknown);
   layers_.variables.start(program.image, snapshot_.values_.subspan(program.image.channels.size()),
-                          memory);
+                          kept, memory);
   checks_.start(program.image, memory);
   adaptation_.start(memory);
   concerned_.start(memory.take<policy::Part::concerned, RuleSet::Word>());

@@ -99,7 +99,8 @@ public:
       : kernel_(kernel), trace_(trace), thread_(thread), layers_(neighbours) {}
 
   // Starts the step thread of `program`, which must stay until it is dismissed.
-  [[nodiscard, gnu::cold]] bool start(const LoadedProgram& program, Memory& memory);
+  [[nodiscard, gnu::cold]] bool start(const LoadedProgram& program,
+                                      std::span<const KeptNumber> kept, Memory& memory);
   // All threads of the program are there: they get their ranks.
   void rank() { adaptation_.rank(*program_, layers_.threads, trace_); }
   // … and the first step comes when its clock begins.

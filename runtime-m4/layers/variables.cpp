@@ -35,7 +35,8 @@ std::int64_t faded(std::int64_t distance, std::uint32_t fade, std::uint32_t tick
   return distance < 0 ? -rest : rest;
 }
 
-void Variables::start(const vm::Image& image, std::span<vm::Value> values, Memory& memory) {
+void Variables::start(const vm::Image& image, std::span<vm::Value> values,
+                      std::span<const KeptNumber> kept, Memory& memory) {
   image_ = &image;
   sums_ = memory.take<policy::Part::sums, vm::Value>();
   fades_ = memory.take_zero<policy::Part::fades, Fade>();
@@ -45,7 +46,7 @@ void Variables::start(const vm::Image& image, std::span<vm::Value> values, Memor
   fading_ = 0;
   unsigned fading = 0;
   for (unsigned v = 0; v < image_->variables.size(); ++v) {
-    values[v] = image_->variables[v].initial;
+    values[v] = initial_of(image, image.variables[v], kept);
     if (image_->variables[v].fade == 0) continue;
     fading_ |= bit<VariableMask>(v);
     fades_[fading++] = {.from = values[v], .since = 0};

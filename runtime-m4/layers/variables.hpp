@@ -15,6 +15,7 @@
 #include <span>
 
 #include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/kept.hpp"
 #include "runtime-m4/layers/memory.hpp"
 #include "runtime-m4/layers/messages.hpp"
 #include "vm/interpreter.hpp"
@@ -38,8 +39,9 @@ public:
 
   explicit Variables(kernel::Kernel& kernel) : kernel_(kernel) {}
 
-  // Writes the initial values into `values`, one for each variable of `image`.
-  void start(const vm::Image& image, std::span<vm::Value> values, Memory& memory);
+  // Writes the initial values into `values`, one for each variable of `image`; KEPT ones begin with what `kept` has.
+  void start(const vm::Image& image, std::span<vm::Value> values, std::span<const KeptNumber> kept,
+             Memory& memory);
 
   // Stages what a response of `behavior` has written; its frame was latched from `before`. In a step from the most
   // important response down  [step thread]

@@ -23,7 +23,8 @@ void Keeper::activated() {
   running_ = running_program();
   trial_ends_ = kernel_.now() + kTrial;
   fault_ = false;
-  if (doing_ != Doing::opening) write_running();
+  next_look_ = kernel_.now() + kLook;
+  write_running();
 }
 
 void Keeper::cleared() {
@@ -40,14 +41,22 @@ void Keeper::host_sends() {
 }
 
 void Keeper::host_activates() {
-  while (doing_ == Doing::opening && work()) {
+  while (opens() && work()) {
   }
+  if (opens()) doing_ = Doing::nothing;  // nobody answers
+  if (forget_) {
+    count_ = 0;
+  } else {
+    learn_numbers();
+  }
+  forget_ = false;
+  runtime_.begin_with(numbers());
 }
 
 void Keeper::roll_back(std::uint32_t crc32) {
   const bool trial = running_ != store_.kept();
   const Program target = trial ? store_.kept() : store_.previous();
-  if (target.bytes == 0 || target.crc32 != crc32 || doing_ == Doing::opening || reads()) return;
+  if (target.bytes == 0 || target.crc32 != crc32 || opens() || reads()) return;
   read(trial ? Doing::giving_up_trial : Doing::rolling_back);
 }
 
@@ -63,6 +72,8 @@ void Keeper::write_running() {
 
 void Keeper::read(Doing why) {
   receiver_.reset();
+  learn_numbers();
+  runtime_.begin_with(numbers());
   runtime_.clear();
   running_ = {};
   doing_ = why;
@@ -81,33 +92,74 @@ bool Keeper::work() {
   due_ = kernel::kForever;
   if (fault_ && on_trial() && (doing_ == Doing::nothing || doing_ == Doing::writing))
     return give_up_trial();
-  switch (store_.work()) {
-    case ProgramStore::Work::some:
+  const bool of_numbers = doing_ == Doing::opening_numbers || doing_ == Doing::writing_numbers;
+  switch (of_numbers ? number_store_.work() : store_.work()) {
+    case Work::some:
       return true;
-    case ProgramStore::Work::waits:
+    case Work::waits:
       due_ = kernel_.now() + kernel::kTick;
       return false;
-    case ProgramStore::Work::ended:
+    case Work::ended:
       ended();
       return true;
-    case ProgramStore::Work::none:
+    case Work::none:
       break;
   }
-  return judge_trial();
+  return judge_trial() || look_at_numbers();
 }
 
 void Keeper::ended() {
-  if (!store_.there()) {
-    doing_ = Doing::nothing;
-  } else if (reads()) {
+  if (store_.there() && doing_ == Doing::opening) {
+    number_store_.open();
+    doing_ = Doing::opening_numbers;
+  } else if (store_.there() && doing_ == Doing::opening_numbers) {
+    opened();
+  } else if (store_.there() && reads()) {
     start_what_was_read();
-  } else if (doing_ == Doing::opening && running_.bytes == 0 && store_.kept().bytes != 0) {
-    read(Doing::starting_kept);
-  } else if (doing_ == Doing::opening) {
-    write_running();
   } else {
     doing_ = Doing::nothing;
   }
+}
+
+void Keeper::opened() {
+  doing_ = Doing::nothing;
+  const std::span<const layers::KeptNumber> kept = number_store_.numbers();
+  count_ = kept.size();
+  std::ranges::copy(kept, numbers_.begin());
+  if (store_.kept().bytes != 0) read(Doing::starting_kept);
+}
+
+// Of other programs stay as many as there is room for.
+void Keeper::learn_numbers() {
+  std::array<layers::KeptNumber, layers::kMostKept> learnt{};
+  std::size_t count = runtime_.fill_kept(learnt);
+  for (const layers::KeptNumber& known : numbers()) {
+    const auto begin = learnt.begin();
+    const auto end = begin + static_cast<std::ptrdiff_t>(count);
+    if (count < learnt.size() &&
+        std::ranges::find(begin, end, known.key, &layers::KeptNumber::key) == end)
+      learnt[count++] = known;
+  }
+  numbers_ = learnt;
+  count_ = count;
+}
+
+// True when there is something to write.
+bool Keeper::look_at_numbers() {
+  if (doing_ != Doing::nothing || !store_.there() || running_.bytes == 0) return false;
+  const kernel::Time now = kernel_.now();
+  if (now >= next_look_) {
+    next_look_ = now + kLook;
+    learn_numbers();
+    if (count_ == 0) next_look_ = kernel::kForever;  // nor will it ever have any
+    if (!std::ranges::equal(numbers(), number_store_.numbers())) {
+      number_store_.write(numbers());
+      doing_ = Doing::writing_numbers;
+      return true;
+    }
+  }
+  due_ = std::min(due_, next_look_);
+  return false;
 }
 
 void Keeper::start_what_was_read() {
@@ -121,6 +173,7 @@ void Keeper::start_what_was_read() {
   if (whole) std::memcpy(&crc32, image.data() + kAt, sizeof crc32);
   if (whole && crc32 == wanted.crc32 && runtime_.activate(image).ok()) {
     running_ = wanted;
+    next_look_ = kernel_.now() + kLook;
     fault_ = false;
     if (why == Doing::giving_up_trial || why == Doing::starting_kept) return;
     store_.swap();
@@ -162,7 +215,7 @@ void Keeper::fill(link::Kept& answer) const {
   answer.given_up_crc32 = given_up_;
   const kernel::Time now = kernel_.now();
   const bool swaps = doing_ == Doing::recording && running_ == store_.previous();
-  if (doing_ == Doing::opening || reads() || swaps) {
+  if (opens() || reads() || swaps) {
     answer.state = Keeping::reading;
   } else if (!store_.there()) {
     answer.state = Keeping::no_store;

@@ -1,10 +1,12 @@
-// Decides with which program the robot starts after a reset, and brings it back.
+// Decides with which program the robot starts after a reset, and brings it and its KEPT numbers back.
 //
 // A program that the host has uploaded is on trial: it is written into the store meanwhile, and kept when it has run
-// for kTrial without a fault. A fault before that brings the kept program back at once, a reset does so by itself. All
+// for kTrial without a fault. A fault before that brings the kept program back at once, a reset does so by itself. KEPT
+// numbers are written down once a second when they have changed; a program that comes begins with those of the one before. All
 // of it in pieces of one transfer, by the link thread, between the host's requests; who uploads comes first.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +16,7 @@
 #include "link/receiver.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/runtime.hpp"
+#include "runtime-m4/update/number_store.hpp"
 #include "runtime-m4/update/program_store.hpp"
 
 namespace robosync::update {
@@ -21,11 +24,16 @@ namespace robosync::update {
 class Keeper {
 public:
   static constexpr kernel::Duration kTrial = kernel::milliseconds(5000);
+  static constexpr kernel::Duration kLook = kernel::milliseconds(1000);  // at the numbers
 
   // A transfer to `receiver` that has not come to its end is given up when a program is read from the store:
   // both need the room.
   Keeper(kernel::Kernel& kernel, Runtime& runtime, link::Receiver& receiver, boards::Store* store)
-      : kernel_(kernel), runtime_(runtime), receiver_(receiver), store_(store) {}
+      : kernel_(kernel),
+        runtime_(runtime),
+        receiver_(receiver),
+        store_(store),
+        number_store_(store) {}
 
   // All but fault() by the link thread.
   void boot();            // once, first of all
@@ -36,7 +44,8 @@ public:
   // A person's wish: back to the program with that CRC. When it is not the one before, nothing happens: so asking
   // twice does no more than asking once.
   void roll_back(std::uint32_t crc32);
-  void fault() { fault_ = true; }  // of a thread of the running program  [any]
+  void forget() { forget_ = true; }  // the numbers, with the next program of the host
+  void fault() { fault_ = true; }    // of a thread of the running program  [any]
 
   // The next piece. False when there is none before due(), or fault().
   bool work();
@@ -51,14 +60,17 @@ private:
   enum class Doing : std::uint8_t {
     nothing,
     opening,
+    opening_numbers,
     starting_kept,
     starting_previous,
     giving_up_trial,
     rolling_back,
     writing,
-    recording
+    recording,
+    writing_numbers
   };
 
+  bool opens() const { return doing_ == Doing::opening || doing_ == Doing::opening_numbers; }
   bool reads() const { return doing_ >= Doing::starting_kept && doing_ <= Doing::rolling_back; }
   bool reads_previous() const {
     return doing_ == Doing::starting_previous || doing_ == Doing::rolling_back;
@@ -73,17 +85,28 @@ private:
   void start_what_was_read();
   bool judge_trial();
   bool give_up_trial();
+  void opened();
+  void learn_numbers();
+  bool look_at_numbers();
+  std::span<const layers::KeptNumber> numbers() const { return std::span(numbers_).first(count_); }
 
   kernel::Kernel& kernel_;
   Runtime& runtime_;
   link::Receiver& receiver_;
   ProgramStore store_;
+  NumberStore number_store_;
   Doing doing_ = Doing::nothing;
   Program running_{};
   kernel::Time trial_ends_ = 0;
   kernel::Time due_ = kernel::kForever;
   std::uint32_t given_up_ = 0;  // CRC of the last program that did not stand its trial
   std::atomic<bool> fault_ = false;
+
+  // The running program's first, then those of others.
+  std::array<layers::KeptNumber, layers::kMostKept> numbers_{};
+  std::size_t count_ = 0;
+  kernel::Time next_look_ = 0;
+  bool forget_ = false;
 };
 
 }  // namespace robosync::update

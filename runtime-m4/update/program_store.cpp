@@ -7,35 +7,18 @@
 #include "vm/image.hpp"
 
 namespace robosync::update {
-namespace {
-
-using boards::Store;
-
-constexpr std::uint32_t kMagic = 0x3150'5352;  // "RSP1"
-
-}  // namespace
-
 std::uint32_t ProgramStore::most_bytes() const {
-  if (!there_) return 0;
-  const std::uint32_t page = store_->page();
-  return (store_->size() / page - kRecords) / 2 * page;
-}
-
-std::uint32_t ProgramStore::slot_at(std::uint32_t slot) const {
-  return kRecords * store_->page() + slot * most_bytes();
-}
-
-void ProgramStore::begin(Task task, std::uint32_t at, std::uint32_t length) {
-  task_ = task;
-  begin_ = at;
-  length_ = length;
-  done_ = 0;
-  unanswered_ = 0;
+  return there_ ? layout().slot_bytes() : 0;
 }
 
 void ProgramStore::open() {
   opened_ = 0;
-  if (store_ != nullptr) begin(Task::open, 0, kRecordBytes);
+  if (store_ != nullptr) read_record();
+}
+
+void ProgramStore::read_record() {
+  task_ = Task::open;
+  transfer_.read(layout().record_at(opened_), std::as_writable_bytes(std::span(&next_, 1)));
 }
 
 void ProgramStore::read_kept(std::span<std::byte> room) {
@@ -48,14 +31,15 @@ void ProgramStore::read_previous(std::span<std::byte> room) {
 
 void ProgramStore::read_slot(Program program, std::uint32_t slot, std::span<std::byte> room) {
   room_ = room.first(std::min<std::size_t>(program.bytes, room.size()));
-  begin(Task::read, slot_at(slot), static_cast<std::uint32_t>(room_.size()));
+  task_ = Task::read;
+  transfer_.read(layout().slot_at(slot), room_);
 }
 
 void ProgramStore::write(std::span<const std::byte> image, Program what) {
   written_ = {};
-  source_ = image;
   next_.kept = what;
-  begin(Task::write, slot_at(1 - record_.slot), static_cast<std::uint32_t>(image.size()));
+  task_ = Task::write;
+  transfer_.write(layout().slot_at(1 - record_.slot), image);
 }
 
 void ProgramStore::keep_written() {
@@ -67,69 +51,37 @@ void ProgramStore::swap() {
 }
 
 void ProgramStore::write_record(Program kept, Program previous, std::uint32_t slot) {
-  next_ = {kMagic, record_.number + 1, kept, previous, slot, 0};
+  next_ = {Record::kMagic, record_.number + 1, kept, previous, slot, 0};
   next_.crc32 = vm::crc32(std::as_bytes(std::span(&next_, 1)).first(offsetof(Record, crc32)));
-  begin(Task::record, next_.number % kRecords * store_->page(), kRecordBytes);
+  task_ = Task::record;
+  transfer_.write(layout().record_at(next_.number % StoreLayout::kRecords),
+                  std::as_bytes(std::span(&next_, 1)));
 }
 
-ProgramStore::Work ProgramStore::work() {
-  if (task_ == Task::none) return Work::none;
-  if (done_ == length_) return finish();
-  switch (transfer()) {
-    case Store::Outcome::taken:
-      return Work::some;
-    case Store::Outcome::busy:
-      if (++unanswered_ < kPatience) return Work::waits;
-      there_ = false;
-      task_ = Task::none;
-      return Work::ended;
-    case Store::Outcome::done:
-      break;
-  }
-  unanswered_ = 0;
-  done_ += static_cast<std::uint32_t>(std::min<std::size_t>(Store::kPiece, length_ - done_));
-  return Work::some;
-}
-
-Store::Outcome ProgramStore::transfer() {
-  const std::size_t count = std::min<std::size_t>(Store::kPiece, length_ - done_);
-  const auto record = std::as_writable_bytes(std::span(&next_, 1));
-  switch (task_) {
-    case Task::open:
-      return store_->read(begin_ + done_, record.subspan(done_, count));
-    case Task::read:
-      return store_->read(begin_ + done_, room_.subspan(done_, count));
-    case Task::write:
-      return store_->write(begin_ + done_, source_.subspan(done_, count));
-    default:
-      return store_->write(begin_ + done_, record.subspan(done_, count));
-  }
-}
-
-ProgramStore::Work ProgramStore::finish() {
-  if (task_ == Task::open) return finish_open();
-  if (task_ == Task::write) written_ = next_.kept;
-  if (task_ == Task::record) {
+Work ProgramStore::work() {
+  const Work work = transfer_.work();
+  if (work != Work::ended) return work;
+  const Task task = task_;
+  task_ = Task::none;
+  there_ = transfer_.answered();
+  if (!there_) return Work::ended;
+  if (task == Task::open) look_at_record();
+  if (task == Task::write) written_ = next_.kept;
+  if (task == Task::record) {
     record_ = next_;
     written_ = {};
   }
-  task_ = Task::none;
-  return Work::ended;
+  return task_ == Task::none ? Work::ended : Work::some;
 }
 
 // A record is believed that could have been written: what is damaged otherwise is not there.
-ProgramStore::Work ProgramStore::finish_open() {
-  there_ = true;
+void ProgramStore::look_at_record() {
   const auto bytes = std::as_bytes(std::span(&next_, 1)).first(offsetof(Record, crc32));
-  const bool whole = next_.magic == kMagic && vm::crc32(bytes) == next_.crc32 && next_.slot < 2 &&
-                     next_.kept.bytes <= most_bytes() && next_.previous.bytes <= most_bytes();
+  const bool whole = next_.magic == Record::kMagic && vm::crc32(bytes) == next_.crc32 &&
+                     next_.slot < 2 && next_.kept.bytes <= most_bytes() &&
+                     next_.previous.bytes <= most_bytes();
   if (whole && next_.number > record_.number) record_ = next_;
-  if (++opened_ < kRecords) {
-    begin(Task::open, opened_ * store_->page(), kRecordBytes);
-    return Work::some;
-  }
-  task_ = Task::none;
-  return Work::ended;
+  if (++opened_ < StoreLayout::kRecords) read_record();
 }
 
 }  // namespace robosync::update

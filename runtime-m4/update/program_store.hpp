@@ -12,7 +12,9 @@
 #include <cstdint>
 #include <span>
 
-#include "runtime-m4/boards/store.hpp"
+#include "runtime-m4/update/number_store.hpp"
+#include "runtime-m4/update/store_layout.hpp"
+#include "runtime-m4/update/store_transfer.hpp"
 
 namespace robosync::update {
 
@@ -23,15 +25,7 @@ public:
     std::uint32_t crc32;  // ImageHeader::crc32
     bool operator==(const Program&) const = default;
   };
-  enum class Work : std::uint8_t {
-    none,   // there is nothing to do
-    some,   // a piece is done; there may be more
-    waits,  // as `some`, but it makes no sense before a millisecond is over
-    ended   // the last piece of what was asked for is done
-  };
-
-  // Without a store (nullptr), it is as one that does not answer.
-  explicit ProgramStore(boards::Store* store) : store_(store) {}
+  explicit ProgramStore(boards::Store* store) : store_(store), transfer_(store) {}
 
   // What may be asked for, one at a time; asking for another gives up the one before.
   void open();                                // first of all: reads the records
@@ -41,10 +35,9 @@ public:
              Program what);  // into the slot of the previous one, which is lost
   void keep_written();       // from now on that is the kept one
   void swap();               // the previous is the kept one, and the other way round
-  void give_up() { task_ = Task::none; }
+  void give_up() { transfer_.give_up(); }
 
-  // Does the next piece: one transfer.
-  Work work();
+  Work work();  // the next piece of it
 
   bool there() const { return there_; }  // a store that answers
   Program kept() const { return record_.kept; }
@@ -56,41 +49,33 @@ public:
 
 private:
   enum class Task : std::uint8_t { none, open, read, write, record };
-  static constexpr unsigned kRecords = 2;
-  static constexpr unsigned kPatience = 20;  // transfers without an answer, a millisecond each
 
   struct Record {
+    static constexpr std::uint32_t kMagic = 0x3150'5352;  // "RSP1"
     std::uint32_t magic;
     std::uint32_t number;
     Program kept, previous;
     std::uint32_t slot;   // of the kept one: 0 or 1
     std::uint32_t crc32;  // of what stands before it
   };
-  static constexpr std::size_t kRecordBytes = 32;
-  static_assert(sizeof(Record) == kRecordBytes && kRecordBytes % boards::Store::kPiece == 0);
+  static_assert(sizeof(Record) % boards::Store::kPiece == 0);
 
-  void begin(Task task, std::uint32_t at, std::uint32_t length);
+  StoreLayout layout() const { return {*store_, sizeof(NumberStore::Record)}; }
+  void read_record();
   void read_slot(Program program, std::uint32_t slot, std::span<std::byte> room);
   void write_record(Program kept, Program previous, std::uint32_t slot);
-  std::uint32_t slot_at(std::uint32_t slot) const;
-  boards::Store::Outcome transfer();
-  Work finish();
-  Work finish_open();
+  void look_at_record();
 
   boards::Store* store_;
+  StoreTransfer transfer_;
   bool there_ = false;
   Record record_{};  // the one that counts; number 0: none
   Program written_{};
 
   Task task_ = Task::none;
-  std::uint32_t begin_ = 0;   // in the store
-  std::uint32_t length_ = 0;  // bytes of the task
-  std::uint32_t done_ = 0;    // … of which these are done
-  unsigned unanswered_ = 0;
   std::span<std::byte> room_;
-  std::span<const std::byte> source_;
-  unsigned opened_ = 0;  // records that have been read
-  Record next_{};        // being read or written
+  std::uint32_t opened_ = 0;  // records that have been read
+  Record next_{};             // being read or written
 };
 
 }  // namespace robosync::update

@@ -141,6 +141,8 @@ void Server::handle(const link::Frame& frame) {
       return read_image(frame);
     case MessageType::get_kept:
       return kept(frame.sequence);
+    case MessageType::forget:
+      return forget(frame.sequence);
     case MessageType::roll_back:
       return roll_back(frame);
     default:
@@ -300,6 +302,11 @@ void Server::kept(std::uint8_t sequence) {
   link::Kept answer{};
   keeper_.fill(answer);
   send(MessageType::kept, sequence, link::wire_bytes(answer));
+}
+
+void Server::forget(std::uint8_t sequence) {
+  keeper_.forget();
+  kept(sequence);
 }
 
 void Server::roll_back(const link::Frame& frame) {

@@ -1,6 +1,7 @@
 # The board's end of the link.
 target_sources(robosync_runtime PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/keeper.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/number_store.cpp
   ${CMAKE_CURRENT_LIST_DIR}/program_store.cpp
   ${CMAKE_CURRENT_LIST_DIR}/server.cpp
   ${CMAKE_CURRENT_LIST_DIR}/trace_ring.cpp)

@@ -1,6 +1,7 @@
 """What the shipped firmware keeps without power, in an EEPROM on the sensor's bus: the program that stood its trial. A new
 QEMU with the same file is a board that was switched off and on."""
 
+import json
 import random
 import sys
 import time
@@ -26,6 +27,21 @@ STEADY_CONFIG = """{
                             "OTHER": {"input": 1, "range": [0, 65535], "rate": "50Hz"}}}],
   "actuators": [{"name": "arm", "type": "PWM", "pin": 0, "device": "servo", "range": ["0deg", "120deg"]}]
 }"""
+COUNTING_CONFIG = """{
+  "sensors": [{"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}}],
+  "actuators": []
+}"""
+COUNTING = """
+REMEMBER visits = 0 KEPT
+
+BEHAVIOR count PRIORITY 50
+  WHEN touch LEVEL > 5
+  DO
+    RAISE visits BY 1
+    LOG "visit", visits
+  END
+END
+"""
 
 
 class Switched(RobotTest):
@@ -113,6 +129,36 @@ class Store(Switched):
             self.assertEqual([(device["answers"], device["failed"]) for device in info["buses"]["devices"]], [(True, 0)])
             self.assertEqual([thread["missed_deadlines"] for thread in info["threads"]], [0] * len(info["threads"]))
             self.assertEqual(self.board.word(pulse), 0, "it has moved")
+
+
+class Numbers(Switched):
+    def visits(self):
+        """What it says at the next touch."""
+        reader = LineReader("feed", "touch.LEVEL=9", "touch.LEVEL=1", "--port", self.board.port, "--watch", "10s", "--format", "json")
+        try:
+            self.assertTrue(reader.wait_for(lambda lines: any('"log"' in line for line in lines), PATIENCE), reader.lines)
+        finally:
+            reader.stop()
+        return [json.loads(line)["text"] for line in reader.lines if '"log"' in line]
+
+    def test_kept_numbers_outlast_the_power(self):
+        (self.folder / "robot.json").write_text(COUNTING_CONFIG)
+        program = self.folder / "count.rsl"
+        program.write_text(COUNTING)
+        self.assertEqual(rsc.call("check", program).stderr, "")
+        self.upload(program)
+        self.assertEqual(self.visits(), ["visit 1"])
+        self.await_kept("kept")
+        self.assertEqual(self.visits(), ["visit 2"])
+        time.sleep(1)  # some seconds of the board's
+        self.board.cut_power()
+        self.switch_on()
+        self.await_kept("kept")
+        self.assertEqual(self.visits(), ["visit 3"])
+        self.upload(program)
+        self.assertEqual(self.visits(), ["visit 4"])
+        self.upload(program, "--fresh")
+        self.assertEqual(self.visits(), ["visit 1"])
 
 
 class Trial(Switched):

@@ -79,8 +79,6 @@ TEST_CASE("an image, --fresh, --kept, and a TEST") {
   const std::string image = robot.path("robot.rsb");
   const Outcome compiled = test::rsc({"compile", robot.program, "-o", image});
   CHECK(compiled.exit == 0);
-  CHECK_THAT(compiled.err,
-             Contains("warning[W0220]: the board mps2-an386 cannot keep `visits` and others"));
   CHECK_THAT(robot.run(image).out, Contains("visit 7 20cm"));
   CHECK(robot.kept() == json({{"visits", "7"}, {"nearest", "200mm"}}));
   CHECK(test::rsc({"test", robot.program}).exit == 0);

@@ -43,6 +43,11 @@ public:
     return Outcome::done;
   }
 
+  void switch_on() {
+    power_for.reset();
+    dead = false;
+  }
+
   std::vector<std::byte> bytes;
   std::size_t written = 0;  // bytes
   std::optional<std::size_t>

@@ -3,36 +3,26 @@
 
 #include <catch2/catch.hpp>
 
-#include "rsc/device/client.hpp"
 #include "rsc/device/keeping.hpp"
-#include "rsc/device/uploader.hpp"
-#include "tests/runtime-m4/update/memory_store.hpp"
-#include "tests/runtime-m4/update/programs.hpp"
-#include "tests/runtime-m4/update/robot.hpp"
+#include "tests/runtime-m4/update/kept.hpp"
 
 using namespace robosync;
 using link::Keeping;
 using test::Bytes;
+using test::finish;
+using test::kStoreBytes;
+using test::kTrialMs;
 using test::MemoryStore;
 using test::Robot;
+using test::run_on;
 using update::ProgramStore;
-using Work = ProgramStore::Work;
+using update::Work;
 
 namespace {
 
-constexpr std::uint32_t kSize = 8192;
-constexpr unsigned kTrialMs = 5000;
 constexpr unsigned kMostMs = 100;  // from a reset to the kept program
 
 // Ends what was asked for. Bounded.
-void finish(ProgramStore& store) {
-  for (unsigned i = 0; i < 10'000; ++i) {
-    const Work work = store.work();
-    if (work == Work::none || work == Work::ended) return;
-  }
-  FAIL("the store comes to no end");
-}
-
 Bytes some_image(unsigned seed, std::size_t size) {
   Bytes image(size);
   std::mt19937 random(seed);
@@ -53,20 +43,10 @@ void keep(ProgramStore& store, const Bytes& image) {
 }
 
 Bytes read_kept(ProgramStore& store) {
-  Bytes room(kSize);
+  Bytes room(kStoreBytes);
   store.read_kept(room);
   finish(store);
   return {store.image().begin(), store.image().end()};
-}
-
-// After the power has come back.
-ProgramStore opened(MemoryStore& memory) {
-  memory.power_for.reset();
-  memory.dead = false;
-  ProgramStore store(&memory);
-  store.open();
-  finish(store);
-  return store;
 }
 
 Bytes bytes_of(const tool::Program& program) {
@@ -77,22 +57,16 @@ std::uint32_t crc_of(const tool::Program& program) {
   return program.image().header->crc32;
 }
 
-void upload(Robot& robot, const tool::Program& program) {
-  tool::Client client(robot);
-  REQUIRE(tool::upload(client, client.hello(), program.bytes(), {}).activation.running == 1);
-}
-
 // A robot that keeps `program`.
 void keep(MemoryStore& memory, const tool::Program& program) {
   Robot robot(boards::kMemory, &memory);
-  upload(robot, program);
+  run_on(robot, program);
   robot.run(kTrialMs + 2000);
 }
 
 // With what the robot runs soon after a reset; 0: nothing.
 std::uint32_t started(MemoryStore& memory) {
-  memory.power_for.reset();
-  memory.dead = false;
+  memory.switch_on();
   Robot robot(boards::kMemory, &memory);
   robot.run(kMostMs);
   tool::Client client(robot);
@@ -103,11 +77,11 @@ std::uint32_t started(MemoryStore& memory) {
 }  // namespace
 
 TEST_CASE("a new store has no program, and one without answers none to keep any") {
-  MemoryStore memory(kSize);
-  ProgramStore store = opened(memory);
+  MemoryStore memory(kStoreBytes);
+  ProgramStore store = test::opened<ProgramStore>(memory);
   CHECK(store.there());
   CHECK(store.kept().bytes == 0);
-  CHECK(store.most_bytes() == (kSize / MemoryStore::kPage - 2) / 2 * MemoryStore::kPage);
+  CHECK(store.most_bytes() == 2496);
 
   memory.dead = true;
   ProgramStore dead(&memory);
@@ -123,40 +97,40 @@ TEST_CASE("a new store has no program, and one without answers none to keep any"
 
 TEST_CASE("a cut of the power at every byte leaves the program of before, or the new one") {
   const Bytes first = some_image(1, 600), second = some_image(2, 777), third = some_image(3, 401);
-  MemoryStore before(kSize);
+  MemoryStore before(kStoreBytes);
   {
-    ProgramStore store = opened(before);
+    ProgramStore store = test::opened<ProgramStore>(before);
     keep(store, first);
     keep(store, second);
   }
   MemoryStore after = before;
   after.written = 0;
   {
-    ProgramStore store = opened(after);
+    ProgramStore store = test::opened<ProgramStore>(after);
     keep(store, third);
   }
   REQUIRE(after.written > third.size());
   for (std::size_t cut = 0; cut <= after.written; ++cut) {
     CAPTURE(cut);
     MemoryStore memory = before;
-    ProgramStore store = opened(memory);
+    ProgramStore store = test::opened<ProgramStore>(memory);
     memory.power_for = cut;
     keep(store, third);
-    ProgramStore again = opened(memory);
+    ProgramStore again = test::opened<ProgramStore>(memory);
     const bool whole = cut == after.written;
     REQUIRE(again.kept() == named(whole ? third : second));
     REQUIRE(read_kept(again) == (whole ? third : second));
     keep(again, first);  // and it goes on
-    ProgramStore last = opened(memory);
+    ProgramStore last = test::opened<ProgramStore>(memory);
     REQUIRE(read_kept(last) == first);
   }
 }
 
 TEST_CASE("a cut while programs change places leaves them as they were, or changed") {
   const Bytes first = some_image(1, 300), second = some_image(2, 500);
-  MemoryStore before(kSize);
+  MemoryStore before(kStoreBytes);
   {
-    ProgramStore store = opened(before);
+    ProgramStore store = test::opened<ProgramStore>(before);
     keep(store, first);
     keep(store, second);
     CHECK(store.previous() == named(first));
@@ -164,11 +138,11 @@ TEST_CASE("a cut while programs change places leaves them as they were, or chang
   for (std::size_t cut = 0; cut <= 32; ++cut) {
     CAPTURE(cut);
     MemoryStore memory = before;
-    ProgramStore store = opened(memory);
+    ProgramStore store = test::opened<ProgramStore>(memory);
     memory.power_for = cut;
     store.swap();
     finish(store);
-    ProgramStore again = opened(memory);
+    ProgramStore again = test::opened<ProgramStore>(memory);
     REQUIRE(read_kept(again) == (cut == 32 ? first : second));
     REQUIRE(again.previous() == named(cut == 32 ? second : first));
   }
@@ -177,18 +151,18 @@ TEST_CASE("a cut while programs change places leaves them as they were, or chang
 TEST_CASE(
     "a store that is busy after each write, and whose bus is taken away, ends up with the same") {
   const Bytes image = some_image(1, 1000);
-  MemoryStore memory(kSize);
+  MemoryStore memory(kStoreBytes);
   memory.writes_take = 6;
   memory.one_in_is_taken = 3;
-  ProgramStore store = opened(memory);
+  ProgramStore store = test::opened<ProgramStore>(memory);
   keep(store, image);
   CHECK(store.kept() == named(image));
-  ProgramStore again = opened(memory);
+  ProgramStore again = test::opened<ProgramStore>(memory);
   CHECK(read_kept(again) == image);
 }
 
 TEST_CASE("whatever stands in a store, no more is read than there is room") {
-  MemoryStore memory(kSize);
+  MemoryStore memory(kStoreBytes);
   std::mt19937 random(1);
   for (unsigned i = 0; i < 2000; ++i) {
     if (i % 2 == 0) {  // a whole record with any numbers in it
@@ -202,7 +176,7 @@ TEST_CASE("whatever stands in a store, no more is read than there is room") {
       std::generate_n(memory.bytes.begin(), 2 * MemoryStore::kPage,
                       [&] { return static_cast<std::byte>(random()); });
     }
-    ProgramStore store = opened(memory);
+    ProgramStore store = test::opened<ProgramStore>(memory);
     REQUIRE(store.kept().bytes <= store.most_bytes());
     Bytes room(300);
     store.read_kept(room);
@@ -216,7 +190,7 @@ TEST_CASE("whatever stands in a store, no more is read than there is room") {
 
 TEST_CASE(
     "a program that has stood its trial runs soon after a reset; before, the one that was kept") {
-  MemoryStore memory(kSize);
+  MemoryStore memory(kStoreBytes);
   const tool::Program first = test::program(3), second = test::program(5);
   CHECK(started(memory) == 0);
   keep(memory, first);
@@ -224,7 +198,7 @@ TEST_CASE(
   {
     Robot robot(boards::kMemory, &memory);
     robot.run(kMostMs);
-    upload(robot, second);
+    run_on(robot, second);
     robot.run(kTrialMs - 1000);
     tool::Client client(robot);
     CHECK(client.kept().state == Keeping::on_trial);
@@ -236,14 +210,14 @@ TEST_CASE(
 }
 
 TEST_CASE("a fault in its trial brings the kept program back, and it is said") {
-  MemoryStore memory(kSize);
+  MemoryStore memory(kStoreBytes);
   const tool::Program good = test::program(3), bad = test::program(5);
   keep(memory, good);
   for (const unsigned after_ms : {0U, 30U, 2000U}) {
     CAPTURE(after_ms);
     Robot robot(boards::kMemory, &memory);
     robot.run(kMostMs);
-    upload(robot, bad);
+    run_on(robot, bad);
     robot.run(after_ms);
     robot.server.report({});
     robot.run(kMostMs);
@@ -258,17 +232,17 @@ TEST_CASE("a fault in its trial brings the kept program back, and it is said") {
 }
 
 TEST_CASE("a fault after its trial, or without a program to go back to, changes no program") {
-  MemoryStore memory(kSize);
+  MemoryStore memory(kStoreBytes);
   Robot robot(boards::kMemory, &memory);
   const tool::Program program = test::program(3);
-  upload(robot, program);
+  run_on(robot, program);
   robot.server.report({});
   robot.run(kTrialMs + 2000);
   tool::Client client(robot);
   CHECK(client.hello().image_crc == crc_of(program));
   CHECK(client.kept().state == Keeping::failed);
   CHECK(client.kept().kept_bytes == 0);
-  upload(robot, program);
+  run_on(robot, program);
   robot.run(kTrialMs + 2000);
   CHECK(client.kept().state == Keeping::kept);
   robot.server.report({});
@@ -277,7 +251,7 @@ TEST_CASE("a fault after its trial, or without a program to go back to, changes 
 }
 
 TEST_CASE("a person goes back to the program before, and forth again") {
-  MemoryStore memory(kSize);
+  MemoryStore memory(kStoreBytes);
   const tool::Program first = test::program(3), second = test::long_program(),
                       third = test::program(7);
   keep(memory, first);
@@ -286,7 +260,7 @@ TEST_CASE("a person goes back to the program before, and forth again") {
     robot.run(kMostMs);
     tool::Client client(robot);
     CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("has kept no program before"));
-    upload(robot, second);
+    run_on(robot, second);
     robot.run(kTrialMs + 2000);
     REQUIRE(client.kept().state == Keeping::kept);
     CHECK(tool::roll_back(client) == crc_of(first));
@@ -295,7 +269,7 @@ TEST_CASE("a person goes back to the program before, and forth again") {
     CHECK(client.hello().image_crc == crc_of(first));
     CHECK(tool::roll_back(client) == crc_of(second));
     robot.run(kMostMs);
-    upload(robot, third);
+    run_on(robot, third);
     CHECK(tool::roll_back(client) == crc_of(second));  // in its trial
     robot.run(kTrialMs + 2000);
     CHECK(client.kept().kept_crc32 == crc_of(second));
@@ -305,7 +279,7 @@ TEST_CASE("a person goes back to the program before, and forth again") {
 
 TEST_CASE("a kept program that is damaged gives way to the one before, or to none") {
   const tool::Program first = test::program(3), second = test::program(5);
-  MemoryStore memory(kSize);
+  MemoryStore memory(kStoreBytes);
   keep(memory, first);
   keep(memory, second);
   const auto damage = [&](const tool::Program& program) {
@@ -333,11 +307,11 @@ TEST_CASE("a kept program that is damaged gives way to the one before, or to non
 }
 
 TEST_CASE("an upload right after a reset comes before the kept program") {
-  MemoryStore memory(kSize);
+  MemoryStore memory(kStoreBytes);
   const tool::Program kept = test::long_program(), mine = test::program(5);
   keep(memory, kept);
   Robot robot(boards::kMemory, &memory);
-  upload(robot, mine);
+  run_on(robot, mine);
   robot.run(1000);
   tool::Client client(robot);
   CHECK(client.hello().image_crc == crc_of(mine));
@@ -345,10 +319,10 @@ TEST_CASE("an upload right after a reset comes before the kept program") {
 }
 
 TEST_CASE("a program that is too large for the store runs, and is not kept") {
-  MemoryStore memory(512);
+  MemoryStore memory(4096);
   Robot robot(boards::kMemory, &memory);
   const tool::Program program = test::long_program();
-  upload(robot, program);
+  run_on(robot, program);
   robot.run(kTrialMs + 2000);
   tool::Client client(robot);
   CHECK(client.hello().running == 1);
@@ -361,7 +335,7 @@ TEST_CASE(
   const std::array<tool::Program, 3> programs{test::program(3), test::program(5),
                                               test::long_program()};
   std::mt19937 random(1);
-  MemoryStore memory(kSize);
+  MemoryStore memory(kStoreBytes);
   keep(memory, programs[0]);
   std::uint32_t kept = crc_of(programs[0]);
   unsigned cuts = 0;
@@ -376,7 +350,7 @@ TEST_CASE(
       REQUIRE(client.hello().image_crc == kept);
       before = client.kept();
       if (random() % 2 == 0) memory.power_for = random() % 2000;
-      upload(robot, next);
+      run_on(robot, next);
       robot.run(random() % (2 * kTrialMs));
       if (random() % 4 == 0) robot.server.report({});
       if (random() % 4 == 0) client.roll_back(client.kept().previous_crc32);

@@ -1,0 +1,27 @@
+// See kept.hpp.
+#include "runtime-m4/layers/kept.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+namespace robosync::layers {
+
+std::uint32_t kept_key(const vm::Image& image, const vm::Variable& variable) {
+  std::uint32_t key = vm::crc32(std::as_bytes(std::span(&variable.dimension, 1)));
+  for (const char letter : image.string(variable.name)) {
+    const bool capital = letter >= 'A' && letter <= 'Z';
+    const auto byte = static_cast<std::byte>(capital ? letter - 'A' + 'a' : letter);
+    key = vm::crc32(std::span(&byte, 1), key);
+  }
+  return key;
+}
+
+vm::Value initial_of(const vm::Image& image, const vm::Variable& variable,
+                     std::span<const KeptNumber> kept) {
+  if (variable.kind != vm::VariableKind::kept || kept.empty()) return variable.initial;
+  const auto found = std::ranges::find(kept, kept_key(image, variable), &KeptNumber::key);
+  if (found == kept.end()) return variable.initial;
+  return std::clamp(found->value, variable.min, variable.max);
+}
+
+}  // namespace robosync::layers

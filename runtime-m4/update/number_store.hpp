@@ -1,0 +1,66 @@
+// The KEPT numbers in the board's store: a ring of records, each whole in itself, of which the newest whole one counts.
+// They are written one after the other, so that no page wears out, and a cut of the power leaves the one before.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "runtime-m4/layers/kept.hpp"
+#include "runtime-m4/update/store_layout.hpp"
+#include "runtime-m4/update/store_transfer.hpp"
+
+namespace robosync::update {
+
+class NumberStore {
+public:
+  struct Record {
+    static constexpr std::uint32_t kMagic = 0x314B'5352;  // "RSK1"
+    std::uint32_t magic;
+    std::uint32_t number;  // counts up
+    std::uint32_t count;   // of the entries
+    std::array<layers::KeptNumber, layers::kMostKept> entries;
+    std::uint32_t crc32;  // of what stands before it
+  };
+  static_assert(sizeof(Record) % boards::Store::kPiece == 0);
+
+  explicit NumberStore(boards::Store* store) : store_(store), transfer_(store) {}
+
+  // What may be asked for, one at a time.
+  void open();  // first of all: reads the newest
+  void write(std::span<const layers::KeptNumber> numbers);
+
+  Work work();  // the next piece of it
+
+  // What stands in the store.
+  std::span<const layers::KeptNumber> numbers() const {
+    return std::span(record_.entries).first(record_.count);
+  }
+
+private:
+  enum class Task : std::uint8_t { none, heads, body, write };
+  struct Head {
+    std::uint32_t magic, number, reserved[2];
+  };
+  static_assert(sizeof(Head) == boards::Store::kPiece);
+
+  StoreLayout layout() const { return {*store_, sizeof(Record)}; }
+  void read_head();
+  void look_at_head();
+  void look_at_body();
+  bool whole() const;
+
+  boards::Store* store_;
+  StoreTransfer transfer_;
+  Task task_ = Task::none;
+  Record record_{};          // the one that counts; number 0: none
+  Record next_{};            // being read or written
+  Head head_{};              // being read
+  std::uint32_t place_ = 0;  // … of which place
+  Head best_{};              // the newest head that was seen
+  std::uint32_t best_place_ = 0;
+  std::uint32_t below_ = 0;  // newer ones are not whole
+};
+
+}  // namespace robosync::update

@@ -1,0 +1,32 @@
+// What stands where in a board's store: two records and two slots for programs (program_store.hpp), and a ring of records
+// of KEPT numbers (number_store.hpp). Each begins on a page of its own, so that a cut of the power spoils no other.
+#pragma once
+
+#include <cstdint>
+
+#include "runtime-m4/boards/store.hpp"
+
+namespace robosync::update {
+
+class StoreLayout {
+public:
+  static constexpr std::uint32_t kRecords = 2;
+  static constexpr std::uint32_t kSlots = 2;
+  // A store bears so many writes of a page. With each second a new number, 16 times a million seconds are half a year.
+  static constexpr std::uint32_t kRing = 16;
+
+  constexpr StoreLayout(const boards::Store& store, std::uint32_t numbers_bytes)
+      : page_(store.page()),
+        numbers_((numbers_bytes + page_ - 1) / page_ * page_),
+        first_number_(store.size() / page_ * page_ - kRing * numbers_) {}
+
+  std::uint32_t record_at(std::uint32_t record) const { return record * page_; }
+  std::uint32_t slot_at(std::uint32_t slot) const { return kRecords * page_ + slot * slot_bytes(); }
+  std::uint32_t slot_bytes() const { return (first_number_ / page_ - kRecords) / kSlots * page_; }
+  std::uint32_t numbers_at(std::uint32_t place) const { return first_number_ + place * numbers_; }
+
+private:
+  std::uint32_t page_, numbers_, first_number_;
+};
+
+}  // namespace robosync::update

@@ -1,0 +1,84 @@
+// A piece of the board's store on its way to or from memory, one transfer at a time.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "runtime-m4/boards/store.hpp"
+
+namespace robosync::update {
+
+enum class Work : std::uint8_t {
+  none,   // there is nothing to do
+  some,   // a piece is done; there may be more
+  waits,  // as `some`, but it makes no sense before a millisecond is over
+  ended   // the last piece is done
+};
+
+class StoreTransfer {
+public:
+  // Without a store (nullptr), it is as one that does not answer.
+  explicit StoreTransfer(boards::Store* store) : store_(store) {}
+
+  // From or to the byte `at` of the store, on a boundary of Store::kPiece. What was under way is given up.
+  void read(std::uint32_t at, std::span<std::byte> to) { begin(at, to, {}); }
+  void write(std::uint32_t at, std::span<const std::byte> from) { begin(at, {}, from); }
+  void give_up() { busy_ = false; }
+
+  // The next piece.
+  Work work() {
+    if (!busy_) return Work::none;
+    switch (done_ == length() || store_ == nullptr ? boards::Store::Outcome::done : transfer()) {
+      case boards::Store::Outcome::taken:
+        return Work::some;
+      case boards::Store::Outcome::busy:
+        if (++unanswered_ < kPatience) return Work::waits;
+        return end(false);
+      case boards::Store::Outcome::done:
+        break;
+    }
+    if (store_ == nullptr || done_ == length()) return end(store_ != nullptr);
+    unanswered_ = 0;
+    done_ += std::min(boards::Store::kPiece, length() - done_);
+    return Work::some;
+  }
+  // … all of it went through.
+  bool answered() const { return answered_; }
+
+private:
+  static constexpr unsigned kPatience = 20;  // transfers without an answer, a millisecond each
+
+  void begin(std::uint32_t at, std::span<std::byte> to, std::span<const std::byte> from) {
+    busy_ = true;
+    at_ = at;
+    to_ = to;
+    from_ = from;
+    done_ = 0;
+    unanswered_ = 0;
+  }
+  Work end(bool answered) {
+    busy_ = false;
+    answered_ = answered;
+    return Work::ended;
+  }
+  std::size_t length() const { return std::max(to_.size(), from_.size()); }
+  boards::Store::Outcome transfer() {
+    const std::uint32_t at = at_ + static_cast<std::uint32_t>(done_);
+    const std::size_t count = std::min(boards::Store::kPiece, length() - done_);
+    return from_.empty() ? store_->read(at, to_.subspan(done_, count))
+                         : store_->write(at, from_.subspan(done_, count));
+  }
+
+  boards::Store* store_;
+  bool busy_ = false;
+  bool answered_ = false;
+  std::uint32_t at_ = 0;
+  std::span<std::byte> to_;
+  std::span<const std::byte> from_;
+  std::size_t done_ = 0;
+  unsigned unanswered_ = 0;
+};
+
+}  // namespace robosync::update

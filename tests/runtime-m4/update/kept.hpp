@@ -1,0 +1,45 @@
+// What the tests share that switch a robot off and on.
+#pragma once
+
+#include <cstdint>
+
+#include <catch2/catch.hpp>
+
+#include "rsc/device/client.hpp"
+#include "rsc/device/uploader.hpp"
+#include "runtime-m4/update/store_transfer.hpp"
+#include "tests/runtime-m4/update/memory_store.hpp"
+#include "tests/runtime-m4/update/programs.hpp"
+#include "tests/runtime-m4/update/robot.hpp"
+
+namespace robosync::test {
+
+inline constexpr std::uint32_t kStoreBytes = 8192;
+inline constexpr unsigned kTrialMs = 5000, kLookMs = 1000;
+
+// Ends what a ProgramStore or NumberStore was asked for. Bounded.
+template <typename Store>
+void finish(Store& store) {
+  for (unsigned i = 0; i < 10'000; ++i) {
+    const update::Work work = store.work();
+    if (work == update::Work::none || work == update::Work::ended) return;
+  }
+  FAIL("the store comes to no end");
+}
+
+// After the power has come back.
+template <typename Store>
+Store opened(MemoryStore& memory) {
+  memory.switch_on();
+  Store store(&memory);
+  store.open();
+  finish(store);
+  return store;
+}
+
+inline void run_on(Robot& robot, const tool::Program& program) {
+  tool::Client client(robot);
+  REQUIRE(tool::upload(client, client.hello(), program.bytes(), {}).activation.running == 1);
+}
+
+}  // namespace robosync::test
