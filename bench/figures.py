@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 import rsc
-from board import FIRMWARE, Board
+from board import FAST, FIRMWARE, Board
 from counting import BUILT, ROOT, BenchError, return_instructions, run, symbols
 from tap import Tap
 from workloads import PAPER
@@ -283,3 +283,24 @@ def link_figures():
         "link/upload_over_wire_time": (round(seconds / wire, 1), "x"),
         "link/bytes_over_image_bytes": (round(both_ways / wire, 2), "x"),
     }
+
+
+def kept(port):
+    """Waits until the board keeps its program; gives what it says of itself."""
+    give_up = time.monotonic() + rsc.TIMEOUT
+    while (info := rsc.info(port))["kept"]["state"] != "kept":
+        if time.monotonic() > give_up:
+            raise BenchError(f"the board does not keep its program: {info['kept']}")
+    return info
+
+
+def power_up_figures():
+    """From power-up to program time 0 of the paper's program, which the board has kept."""
+    with tempfile.TemporaryDirectory() as folder:
+        store = Path(folder) / "store"
+        with Board(icount=FAST, store=store) as board:
+            rsc.run("upload", compile_example(folder, "--strip"), "--port", board.port)
+            kept(board.port)
+        with Board(icount=FAST, store=store) as board:
+            status = kept(board.port)["status"]
+    return {"firmware/power_up_to_program": (status["uptime_us"] - status["program_us"], "us")}

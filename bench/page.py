@@ -20,7 +20,8 @@ bars: `bench/bars.json`.
 
 Bars are the design's, and none is moved to what was measured: what misses one is shown as missed. `scripts/bench` fails
 when a figure misses a bar that it met before, and when a counted figure is more than 2 % above what `bench/recorded.json`
-says (25 or 50 % where this machine touches the board, and so says when): so nothing grows unnoticed. `scripts/bench --record` records what is measured now; `scripts/bench --profile NAME` says
+says: so nothing grows unnoticed. (Of the ways of a touch that this machine gives the board, 25 or 50 % above: what else is due in
+that moment is another thing each time.) `scripts/bench --record` records what is measured now; `scripts/bench --profile NAME` says
 which functions ran while a figure was counted, and how many instructions of each.
 
 Of what misses its bar: seven instructions of each switch are the time that threads ran, which no peer's figure includes.
@@ -28,7 +29,8 @@ Of what misses its bar: seven instructions of each switch are the time that thre
 loaded. `kernel/yield_isolated` has the second system call in it, by which the thread that was let run takes its events.
 `path/…`: no single place is dear; of the way to the command three commands take a quarter (decoded, queued, handed over),
 threads and their switches another, the rest is the step's bookkeeping for rules. `firmware/flash`: memory
-as large as the board, laid out for each program, took the last kilobyte. `vm/flash` has a bar of the whole language, not of the first
+as large as the board, laid out for each program, took one kilobyte, programs and numbers that outlast the power four.
+`firmware/power_up_to_program`: the paper's program from the board's store, until its time begins. `vm/flash` has a bar of the whole language, not of the first
 design's arithmetic and commands (4,096).
 `path/smooth_sample` is `vm/W3_natural` with the largest window, 32 samples, in the order that moves most of them; its bands
 are in it. `firmware/idle_second_paper` is without what the bit-banged I2C bus executes, `…_i2c` is that alone.
