@@ -8,9 +8,9 @@ namespace robosync::update {
 
 using link::Keeping;
 
-void Keeper::boot() {
-  store_.open();
-  doing_ = Doing::opening;
+void Keeper::boot(bool failed) {
+  failed_ = failed;
+  if (store_.open()) doing_ = Doing::opening;
 }
 
 Keeper::Program Keeper::running_program() const {
@@ -21,13 +21,16 @@ Keeper::Program Keeper::running_program() const {
 
 void Keeper::activated() {
   running_ = running_program();
+  failed_ = false;
   trial_ends_ = kernel_.now() + kTrial;
   fault_ = false;
   next_look_ = kernel_.now() + kLook;
   write_running();
 }
 
-void Keeper::cleared() {
+void Keeper::ends() {
+  learn_numbers();
+  heard_ = kernel_.now();
   running_ = {};
   if (doing_ != Doing::writing) return;
   store_.give_up();
@@ -35,15 +38,17 @@ void Keeper::cleared() {
 }
 
 void Keeper::host_sends() {
+  heard_ = kernel_.now();
   if (!reads()) return;
   store_.give_up();
   doing_ = Doing::nothing;
 }
 
+// Sensors are about to measure, on the bus from which the store is still read if the host is very quick: it takes some
+// milliseconds.
 void Keeper::host_activates() {
-  while (opens() && work()) {
-  }
-  if (opens()) doing_ = Doing::nothing;  // nobody answers
+  while (opens())
+    if (!work()) kernel_.sleep_until(due_);
   if (forget_) {
     count_ = 0;
   } else {
@@ -105,7 +110,7 @@ bool Keeper::work() {
     case Work::none:
       break;
   }
-  return judge_trial() || look_at_numbers();
+  return judge_trial() || look_at_numbers() || start_after_all();
 }
 
 void Keeper::ended() {
@@ -126,7 +131,20 @@ void Keeper::opened() {
   const std::span<const layers::KeptNumber> kept = number_store_.numbers();
   count_ = kept.size();
   std::ranges::copy(kept, numbers_.begin());
-  if (store_.kept().bytes != 0) read(Doing::starting_kept);
+  const bool host_has_the_room = receiver_.status().state != link::TransferState::idle;
+  if (store_.kept().bytes != 0 && !host_has_the_room) read(Doing::starting_kept);
+}
+
+// A host that has gone away in the midst of an upload leaves no robot without a program.
+bool Keeper::start_after_all() {
+  if (doing_ != Doing::nothing || running_.bytes != 0 || store_.kept().bytes == 0) return false;
+  if (const kernel::Time at = heard_ + kSilence; kernel_.now() < at) {
+    due_ = at;
+    return false;
+  }
+  heard_ = kernel_.now();  // if it is not whole, not at once again
+  read(Doing::starting_kept);
+  return true;
 }
 
 // Of other programs stay as many as there is room for.
@@ -167,6 +185,8 @@ void Keeper::start_what_was_read() {
   const std::span<const std::byte> image = store_.image();
   const Doing why = doing_;
   doing_ = Doing::nothing;
+  if (failed_) runtime_.stop();
+  failed_ = false;
   std::uint32_t crc32 = 0;
   constexpr std::size_t kAt = offsetof(vm::ImageHeader, crc32);
   const bool whole = image.size() == wanted.bytes && image.size() >= kAt + sizeof crc32;

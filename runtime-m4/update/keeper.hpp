@@ -25,6 +25,8 @@ class Keeper {
 public:
   static constexpr kernel::Duration kTrial = kernel::milliseconds(5000);
   static constexpr kernel::Duration kLook = kernel::milliseconds(1000);  // at the numbers
+  // Where no program runs and no host has sent anything for so long, the kept one begins.
+  static constexpr kernel::Duration kSilence = kernel::milliseconds(3000);
 
   // A transfer to `receiver` that has not come to its end is given up when a program is read from the store:
   // both need the room.
@@ -36,11 +38,13 @@ public:
         number_store_(store) {}
 
   // All but fault() by the link thread.
-  void boot();            // once, first of all
+  // Once, first of all. `failed`: the board has started because it had hung or faulted. Then nothing moves by itself:
+  // the kept program begins as if a person had said stop.
+  void boot(bool failed);
   void activated();       // a program of the host runs
-  void cleared();         // … has ended
+  void ends();            // the running one is about to
   void host_sends();      // an image is coming into the room
-  void host_activates();  // … and is about to run: no sensor measures while the store is read
+  void host_activates();  // … and is about to run
   // A person's wish: back to the program with that CRC. When it is not the one before, nothing happens: so asking
   // twice does no more than asking once.
   void roll_back(std::uint32_t crc32);
@@ -86,6 +90,7 @@ private:
   bool judge_trial();
   bool give_up_trial();
   void opened();
+  bool start_after_all();
   void learn_numbers();
   bool look_at_numbers();
   std::span<const layers::KeptNumber> numbers() const { return std::span(numbers_).first(count_); }
@@ -99,6 +104,7 @@ private:
   Program running_{};
   kernel::Time trial_ends_ = 0;
   kernel::Time due_ = kernel::kForever;
+  kernel::Time heard_ = 0;      // from the host
   std::uint32_t given_up_ = 0;  // CRC of the last program that did not stand its trial
   std::atomic<bool> fault_ = false;
 
@@ -107,6 +113,7 @@ private:
   std::size_t count_ = 0;
   kernel::Time next_look_ = 0;
   bool forget_ = false;
+  bool failed_ = false;  // … and no program has begun since
 };
 
 }  // namespace robosync::update

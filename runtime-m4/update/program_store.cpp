@@ -7,13 +7,15 @@
 #include "vm/image.hpp"
 
 namespace robosync::update {
+
 std::uint32_t ProgramStore::most_bytes() const {
   return there_ ? layout().slot_bytes() : 0;
 }
 
-void ProgramStore::open() {
+bool ProgramStore::open() {
   opened_ = 0;
   if (store_ != nullptr) read_record();
+  return store_ != nullptr;
 }
 
 void ProgramStore::read_record() {

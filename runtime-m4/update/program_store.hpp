@@ -25,16 +25,17 @@ public:
     std::uint32_t crc32;  // ImageHeader::crc32
     bool operator==(const Program&) const = default;
   };
+
+  // nullptr: as one that does not answer.
   explicit ProgramStore(boards::Store* store) : store_(store), transfer_(store) {}
 
   // What may be asked for, one at a time; asking for another gives up the one before.
-  void open();                                // first of all: reads the records
+  bool open();  // first of all: reads the records; false without a store
   void read_kept(std::span<std::byte> room);  // into the beginning of `room`
   void read_previous(std::span<std::byte> room);
-  void write(std::span<const std::byte> image,
-             Program what);  // into the slot of the previous one, which is lost
-  void keep_written();       // from now on that is the kept one
-  void swap();               // the previous is the kept one, and the other way round
+  void write(std::span<const std::byte> image, Program what);  // in place of the previous one
+  void keep_written();                                         // from now on that is the kept one
+  void swap();  // the previous is the kept one, and the other way round
   void give_up() { transfer_.give_up(); }
 
   Work work();  // the next piece of it

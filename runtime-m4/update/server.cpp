@@ -71,7 +71,7 @@ bool Server::start() {
     server.stops_seen_.fetch_add(1, std::memory_order_relaxed);
     server.runtime_.stop();
   };
-  keeper_.boot();
+  keeper_.boot(board_.reset_reason() != 0);
   board_.link_start({.ready = line_ready, .stop = line_stop, .argument = this});
   return true;
 }
@@ -208,6 +208,7 @@ void Server::data(const link::Frame& frame) {
     ++bad_requests_;
     return;
   }
+  keeper_.host_sends();
   const link::TransferStatus answer =
       receiver_.data(head.offset, frame.payload.subspan(sizeof head));
   send(MessageType::transfer_status, frame.sequence, link::wire_bytes(answer));
@@ -222,7 +223,7 @@ void Server::activate(const link::Frame& frame) {
     have_result_ = true;
     receiver_.reset();
     if (last_result_.running != 0) keeper_.activated();
-    if (!runtime_.running()) keeper_.cleared();
+    if (!runtime_.running()) keeper_.ends();
   }
   link::ActivateResult answer{};
   answer.refusal = link::kNothingToActivate;
@@ -280,9 +281,9 @@ void Server::clear(const link::Frame& frame) {
     return;
   }
   if (runtime_.running() && runtime_.image().header->crc32 == request.image_crc) {
+    keeper_.ends();
     runtime_.clear();
     receiver_.reset();  // the room is another
-    keeper_.cleared();
   }
   status(frame.sequence);
 }

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import rsc
 from board import FAST, FIRMWARE, REAL_TIME, Board
-from debugger import Debugger
+from debugger import Debugger, endless_loop
 from support import PROGRAMS, LineReader, RobotTest
-from test_isolation import CONFIG, INTERPRETER, PROGRAM, UART, WILD
+from test_isolation import CONFIG, INTERPRETER, PC, PROGRAM, UART, WILD
+from test_last_words import IN_SAFETY
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
@@ -129,6 +130,25 @@ class Store(Switched):
             self.assertEqual([(device["answers"], device["failed"]) for device in info["buses"]["devices"]], [(True, 0)])
             self.assertEqual([thread["missed_deadlines"] for thread in info["threads"]], [0] * len(info["threads"]))
             self.assertEqual(self.board.word(pulse), 0, "it has moved")
+
+
+class Failed(Switched):
+    def test_after_its_watchdog_has_reset_it_the_robot_stands_still(self):
+        self.keep(self.compile(PROGRAMS / "priorities.rsl"))
+        gdb = self.folder / "gdb"
+        self.power_cycle("-gdb", f"unix:{gdb},server=on,wait=off")
+        self.await_kept("kept")
+        self.assertFalse(rsc.info(self.board.port)["board"]["stopped"])
+        with Debugger(gdb) as debugger:
+            debugger.run_to(symbols(FIRMWARE)[IN_SAFETY], lambda: None)
+            debugger.set_register(PC, endless_loop())
+        give_up = time.monotonic() + PATIENCE
+        while self.status()["reset_reason"] != "watchdog":
+            self.assertLess(time.monotonic(), give_up)
+        self.await_kept("kept")
+        self.assertTrue(rsc.info(self.board.port)["board"]["stopped"])
+        rsc.run("resume", "--port", self.board.port)
+        self.assertFalse(rsc.info(self.board.port)["board"]["stopped"])
 
 
 class Numbers(Switched):

@@ -104,6 +104,7 @@ public:
     const tool::Program program = tool::load_program(job.image, {});
     const std::vector<tool::Stimulus> readings = tool::read_scenario(job.scenario, program).stimuli;
     const std::vector<std::byte> image = tool::without_source_lines(program);
+    session_.client.forget();
     const link::ActivateResult begun =
         tool::upload(session_.client, session_.board, image, {}).activation;
     if (begun.running == 0) return "refused";

@@ -8,8 +8,8 @@ namespace {
 
 // Turns of the waiting loop: four cycles each, 5 µs at 25 MHz.
 constexpr std::uint16_t kHalfBit = kClockHz / 200'000 / 4;
-constexpr std::uint16_t kFastHalfBit =
-    kHalfBit / 6;  // besides what the code between takes: 1.25 µs altogether
+// With what the code between takes: 1.25 µs.
+constexpr std::uint16_t kFastHalfBit = kHalfBit / 6;
 // As long as devices may hold the clock down in one transfer, in half bits: 1 ms.
 constexpr unsigned kStretchLimit = 200;
 constexpr unsigned kMostClocks = 9;  // a byte, and its acknowledgement
@@ -142,8 +142,8 @@ bool I2c::prepare(bool taken) {
   const bool held = !free_bus();
   if (user_.load(std::memory_order_relaxed) == User::nobody) return false;
   held_ = held;
-  if (taken &&
-      !held) {  // the store's transfer, in which the device may have been about to acknowledge
+  // In the midst of the store's transfer its device may have been about to acknowledge: that was no fault of the bus.
+  if (taken && !held) {
     clears_ = clears;
     pull(kI2cClock);
     half_bit();

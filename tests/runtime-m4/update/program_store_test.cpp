@@ -318,6 +318,55 @@ TEST_CASE("an upload right after a reset comes before the kept program") {
   CHECK(client.kept().state == Keeping::on_trial);
 }
 
+TEST_CASE("a host that goes away in the midst of an upload leaves no robot without a program") {
+  MemoryStore memory(kStoreBytes);
+  const tool::Program kept = test::program(3), next = test::long_program();
+  keep(memory, kept);
+  Robot robot(boards::kMemory, &memory);
+  robot.run(kMostMs);
+  tool::Client client(robot);
+  client.clear(crc_of(kept));
+  const auto size = static_cast<std::uint32_t>(next.bytes().size());
+  for (unsigned i = 0; i < 20; ++i) {  // slowly, but it is still there
+    client.send(link::MessageType::begin, link::wire_bytes(link::Begin{size, crc_of(next)}));
+    robot.run(200);
+  }
+  CHECK(client.hello().running == 0);
+  robot.run(4000);
+  CHECK(client.hello().image_crc == crc_of(kept));
+}
+
+TEST_CASE("after a reset by a failure the kept program stands still until somebody says so") {
+  MemoryStore memory(kStoreBytes);
+  keep(memory, test::program(3));
+  for (const auto reason : {Robot::kPower, Robot::kWatchdog, Robot::kSoftware}) {
+    CAPTURE(reason);
+    Robot robot(boards::kMemory, &memory, reason);
+    robot.run(kMostMs);
+    tool::Client client(robot);
+    CHECK(client.hello().running == 1);
+    CHECK(client.hello().stopped == (reason == Robot::kPower ? 0 : 1));
+    client.resume();
+    CHECK(client.hello().stopped == 0);
+    run_on(robot, test::program(5));
+    CHECK(client.hello().stopped == 0);
+  }
+  Robot robot;  // with a program from the host, it is the host's affair
+  run_on(robot, test::program(3));
+  tool::Client client(robot);
+  CHECK(client.hello().stopped == 0);
+}
+
+TEST_CASE("a board without a store says so, and runs what comes") {
+  Robot robot;
+  run_on(robot, test::program(3));
+  robot.run(kTrialMs + 1000);
+  tool::Client client(robot);
+  CHECK(client.hello().running == 1);
+  CHECK(client.kept().state == Keeping::no_store);
+  CHECK(client.kept().most_bytes == 0);
+}
+
 TEST_CASE("a program that is too large for the store runs, and is not kept") {
   MemoryStore memory(4096);
   Robot robot(boards::kMemory, &memory);

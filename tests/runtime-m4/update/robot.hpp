@@ -36,10 +36,11 @@ class LineBoard final : public boards::Board {
 public:
   static constexpr std::size_t kRing = 512;
 
-  explicit LineBoard(boards::Store* store) : store_(store) {}
+  LineBoard(boards::Store* store, std::uint8_t reset_reason)
+      : store_(store), reset_reason_(reset_reason) {}
 
   const char* name() const override { return "mps2-an386"; }
-  std::uint8_t reset_reason() const override { return 2; }
+  std::uint8_t reset_reason() const override { return reset_reason_; }
   const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t, std::uint8_t, std::span<const std::byte>,
                     std::span<std::byte>) override {
@@ -81,6 +82,7 @@ public:
 
 private:
   boards::Store* store_;
+  std::uint8_t reset_reason_;
   bool wants_room_ = false;
   std::size_t watched_ = 0;  // bytes of from_host that the interrupt has seen
   link::StopDetector stops_;
@@ -117,11 +119,12 @@ private:
 
 class Robot final : public tool::Transport {
 public:
-  static constexpr unsigned kBytesPerSecond = 11520;  // 115,200 baud, 8N1
+  static constexpr unsigned kBytesPerSecond = 11520;                 // 115,200 baud, 8N1
+  enum ResetReason : std::uint8_t { kPower, kWatchdog, kSoftware };  // link::Status::reset_reason
 
   explicit Robot(const policy::BoardMemory& memory = boards::kMemory,
-                 boards::Store* store = nullptr)
-      : board(store),
+                 boards::Store* store = nullptr, std::uint8_t reset_reason = kSoftware)
+      : board(store, reset_reason),
         ring(kernel),
         arena(memory),
         runtime(kernel, board, ring, arena.bytes(), arena.board()),
