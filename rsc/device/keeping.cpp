@@ -57,7 +57,7 @@ std::string keeping_text(const link::Kept& kept) {
       return "kept: the robot starts with it after a reset";
     case Keeping::on_trial:
       return fmt::format(
-          "kept in {:.1f} s, if no thread of it faults; after a reset before, the robot {}",
+          "kept in {:.1f} s if no thread of it faults; after a reset before then, the robot {}",
           kept.trial_ms / 1000.0, instead);
     case Keeping::failed:
       return fmt::format("not kept: a thread of it has faulted; after a reset the robot {}",

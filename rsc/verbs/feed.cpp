@@ -1,4 +1,4 @@
-// rsc feed READING… --port P [--at TIME] [--scenario S.json] [--upload FILE]
+// rsc feed READING… --port P [--at TIME] [--scenario S.json] [--upload FILE [--fresh]]
 //          [--watch TIME] [--format human|json]
 #include <algorithm>
 #include <chrono>
@@ -35,6 +35,7 @@ struct FeedOptions {
   std::string scenario, upload, port;
   CompileOptions how;
   std::optional<milliseconds> at, watch;
+  bool fresh = false;
   Format format = Format::human;
 };
 
@@ -121,7 +122,9 @@ void feed(const FeedOptions& options) {
   std::optional<Watch> watch;
   if (options.watch) watch.emplace(session, options.format);
   if (program) {
-    upload_program(session, *program, {});
+    UploadOptions how;
+    how.fresh = options.fresh;
+    upload_program(session, *program, how);
   } else {
     program = running_program(session);
   }
@@ -147,6 +150,7 @@ void add_feed(Options& options) {
   options.option("--scenario", "S.json", asked->scenario, "readings with their times");
   options.option("--upload", "FILE", asked->upload,
                  "upload this program (.rsl or .rsb) first; --watch shows all it does");
+  options.flag("--fresh", asked->fresh, "with --upload: KEPT numbers begin as the program says");
   add_compile_options(options, asked->how);
   add_duration_option(options, "--watch", asked->watch, "then show what happens for so long");
   add_format_option(options, asked->format);

@@ -196,7 +196,7 @@ class Trial(Switched):
             self.assertLess(first.stat().st_size, LARGEST_SOON)
             self.assertLessEqual(status["uptime_us"] - status["program_us"], SOON_US)
         said = self.upload(second)
-        self.assertRegex(said, r"kept in [45]\.\d s, if no thread of it faults; after a reset before, the robot starts with")
+        self.assertRegex(said, r"kept in [45]\.\d s if no thread of it faults; after a reset before then, the robot starts with")
         self.assertNotEqual(self.running(), kept)
         self.power_cycle()  # in its trial
         self.await_kept("kept")

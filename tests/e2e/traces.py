@@ -38,7 +38,7 @@ class TraceTest(RobotTest):
 
     def board_trace(self, image, scenario, count, until_ms):
         """The board's lines from activation on; `count` are expected, more are waited for a little."""
-        reader = LineReader("feed", "--upload", image, "--scenario", scenario, "--port",
+        reader = LineReader("feed", "--upload", image, "--fresh", "--scenario", scenario, "--port",
                             self.board.port, "--watch", f"{2 * PATIENCE}s", "--format", "json")
         reader.wait_for(lambda lines: len(own(lines)) >= count, PATIENCE)
         reader.wait_for(lambda lines: len(own(lines)) > count, QUIET)
