@@ -47,17 +47,17 @@ private:
 
 constexpr int kConnectTimeoutMs = 2000;
 
-// False when it has taken too long. EINTR: a signal came in.
-bool wait_for(int file, short events, int timeout_ms) {
+// As poll(): 0 when it has taken too long, less when it went wrong.
+int wait_for(int file, short events, int timeout_ms) {
   pollfd entry{file, events, 0};
-  return poll(&entry, 1, timeout_ms) > 0;
+  return poll(&entry, 1, timeout_ms);
 }
 
 // Connects a socket that does not block; 0, or the error. Who listens and takes nobody makes it wait, but not for ever.
 int connect_to(int file, const sockaddr* address, socklen_t length) {
   for (int waited_ms = 0; connect(file, address, length) != 0; ++waited_ms) {
     if (errno == EINPROGRESS) {
-      if (!wait_for(file, POLLOUT, kConnectTimeoutMs)) return ETIMEDOUT;
+      if (wait_for(file, POLLOUT, kConnectTimeoutMs) <= 0) return ETIMEDOUT;
       int error = 0;
       socklen_t size = sizeof error;
       getsockopt(file, SOL_SOCKET, SO_ERROR, &error, &size);
@@ -104,10 +104,9 @@ public:
 
 private:
   bool ready(short events, int timeout_ms) {
-    errno = 0;
-    const bool is = wait_for(file_, events, timeout_ms);
-    if (!is && errno != 0 && errno != EINTR) fail(name_, errno);
-    return is;
+    const int count = wait_for(file_, events, timeout_ms);
+    if (count < 0 && errno != EINTR) fail(name_, errno);
+    return count > 0;
   }
 
   // A line that was closed is an error, not the end of the program.

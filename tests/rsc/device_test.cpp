@@ -45,6 +45,8 @@ public:
   Bridge(const Bridge&) = delete;
   Bridge& operator=(const Bridge&) = delete;
 
+  void wait_until_heard() const { heard_.wait(false); }
+
 private:
   void run() {
     test::Robot robot(memory_);
@@ -66,10 +68,14 @@ private:
     if (accepting_ && line >= 0) close(line);
   }
 
-  static bool carry(test::Robot& robot, int line) {
+  bool carry(test::Robot& robot, int line) {
     std::array<std::byte, 512> bytes{};
     const ssize_t count = ::read(line, bytes.data(), bytes.size());
-    if (count > 0) robot.write(std::span(bytes).first(static_cast<std::size_t>(count)));
+    if (count > 0) {
+      robot.write(std::span(bytes).first(static_cast<std::size_t>(count)));
+      heard_ = true;
+      heard_.notify_all();
+    }
     if (count == 0 || (count < 0 && errno != EAGAIN)) return false;
     const std::size_t ready = robot.read(bytes, std::chrono::milliseconds(0));
     return ready == 0 || ::write(line, bytes.data(), ready) >= 0;
@@ -79,6 +85,7 @@ private:
   bool accepting_;
   policy::BoardMemory memory_;
   std::atomic<bool> stop_ = false;
+  std::atomic<bool> heard_ = false;
   std::thread thread_;
 };
 
@@ -303,11 +310,20 @@ TEST_CASE("a line that is closed while somebody listens is exit 3") {
   std::thread monitor([&, port = device->port] {
     outcome = test::rsc({"monitor", "--port", port, "--duration", "30s"});
   });
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  device->bridge.wait_until_heard();
   device.reset();
   monitor.join();
   CHECK(outcome.exit == 3);
   CHECK_THAT(outcome.err, Contains("the other end closed the line"));
+}
+
+TEST_CASE("to write on a line that is closed is an error, and no signal that ends the tool") {
+  const RobotFolder robot;
+  const int listener = listen_at(robot.path("line"));
+  const std::unique_ptr<tool::Transport> transport = tool::open_port("unix:" + robot.path("line"));
+  close(accept(listener, nullptr, nullptr));
+  close(listener);
+  CHECK_THROWS_WITH(transport->write(std::array<std::byte, 1>{}), Contains("Broken pipe"));
 }
 
 TEST_CASE("a port whose owner takes nobody is exit 3, and says so") {
