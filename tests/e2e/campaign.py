@@ -26,13 +26,13 @@ import rsc  # noqa: E402
 import wire  # noqa: E402
 from board import FIRMWARE, Board, end_on_signals  # noqa: E402
 from counting import of_the_board, symbols  # noqa: E402
-from debugger import Debugger, endless_loop  # noqa: E402
+from debugger import INTERPRETER, PC, Debugger, endless_loop  # noqa: E402
 
 CLOCK = 0x40001004  # timer 1, which counts down
 CLOCK_MHZ = 25
 UART = 0x40004000
 NOWHERE = 0xA0000000
-SP, LR, PC = 13, 14, 15
+SP, LR = 13, 14
 PINS = 36
 ARM, MOTOR = 3, 4
 LEVEL, HAZARD = 0, 1  # inputs of the sensor
@@ -73,7 +73,6 @@ BEHAVIOR thinks PRIORITY 10
 END
 """
 # Where a fault happens: functions that the board comes to all the time. The interpreter runs in the behaviours' threads.
-INTERPRETER = "robosync::vm::run("
 PLACES = {"interpreter": INTERPRETER, "sensor": "robosync::layers::Mailboxes::post(",
           "actuator": "robosync::guard::OutputGuard::drive(", "bus": of_the_board("I2c::transfer("),
           "halves of bits": of_the_board("I2c::half_bit() const"),
@@ -157,7 +156,7 @@ class Line(wire.Line):
                 data = wire.pack("Data", offset=at) + image[at:at + 236]
                 status = wire.unpack("TransferStatus", self.patient("data", data, "transfer_status"))
             yield status
-            if wire.unpack("ActivateResult", self.patient("activate", reply="activate_result")).running:
+            if wire.unpack("ActivateResult", self.patient("activate", wire.ACTIVATE, reply="activate_result")).running:
                 return
         raise Violation("a good program is refused")
 
@@ -354,7 +353,7 @@ class Robot:
         uploaded = self.line.upload(self.image)
         next(uploaded)
         with Control(self.gdb) as debugger:
-            debugger.run_to(self.at["grant"], lambda: self.line.send_raw(wire.frame("activate")))
+            debugger.run_to(self.at["grant"], lambda: self.line.send_raw(wire.frame("activate", wire.ACTIVATE)))
             _, _, begin, size = debugger.read_words(debugger.register(1), 4)
         return begin, size
 

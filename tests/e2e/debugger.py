@@ -14,6 +14,9 @@ from support import RobotTest
 
 PATIENCE = 20
 CONNECTED = "T02"
+PC = 15
+INTERPRETER = "robosync::vm::run("  # (machine, code, progress)
+IN_SAFETY = "robosync::Runtime::look_at_rules(unsigned long long)"
 
 
 class Debugger:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import rsc
 from board import FIRMWARE
-from debugger import DebuggedTest, endless_loop
+from debugger import INTERPRETER, PC, DebuggedTest, endless_loop
 from support import LineReader
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
@@ -20,10 +20,8 @@ RAM = 0x20000000
 NMI_NEEDS = 192  # bytes: a frame with FPU registers, and what it calls
 NO_ACCESS = 0x82  # CFSR: a data access that the MPU refused, with its address
 OVERRUN = 1 << 22  # port/cortex-m4/fault.hpp
-PC = 15
 AT_REST, AT_60_DEGREES = 500, 1500  # us
 PWM_PULSES = "robosync_virtual_pwm"
-INTERPRETER = "robosync::vm::run("  # (machine, code, progress)
 WILD, TAME = 0, 1  # inputs of the sensor
 CONFIG = """{
   "sensors": [

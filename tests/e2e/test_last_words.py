@@ -9,7 +9,7 @@ from pathlib import Path
 
 import rsc
 from board import FIRMWARE, NAME
-from debugger import DebuggedTest, endless_loop
+from debugger import IN_SAFETY, PC, DebuggedTest, endless_loop
 from support import LineReader
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
@@ -17,8 +17,6 @@ from counting import symbols  # noqa: E402
 
 PATIENCE = 20
 NOWHERE = 0xA000_0000  # nothing may run there
-PC = 15
-IN_SAFETY = "robosync::Runtime::look_at_rules(unsigned long long)"
 
 
 class LastWords(DebuggedTest):

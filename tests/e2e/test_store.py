@@ -10,10 +10,9 @@ from pathlib import Path
 
 import rsc
 from board import FAST, FIRMWARE, REAL_TIME, Board
-from debugger import Debugger, endless_loop
+from debugger import IN_SAFETY, INTERPRETER, PC, Debugger, endless_loop
 from support import PROGRAMS, LineReader, RobotTest
-from test_isolation import CONFIG, INTERPRETER, PC, PROGRAM, UART, WILD
-from test_last_words import IN_SAFETY
+from test_isolation import CONFIG, PROGRAM, UART, WILD
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
