@@ -58,6 +58,10 @@ struct TransferStatus {
 
 inline constexpr std::uint8_t kNothingToActivate = 0xFF;
 
+struct Activate {
+  std::uint8_t fresh;  // 1: KEPT numbers begin as the program says, not with what they were
+};
+
 struct ActivateResult {
   std::uint8_t running;  // 1: it runs; 0: refused, the old program goes on
   std::uint8_t refusal;  // vm::Refusal, or kNothingToActivate: no complete transfer
@@ -88,6 +92,8 @@ struct FeedResult {
   std::uint8_t free_places;  // in the board's queue of timed readings
 };
 
+enum class ResetReason : std::uint8_t { power, watchdog, software };
+
 struct Status {
   std::uint64_t uptime_us;
   std::uint64_t program_us;      // since activation
@@ -98,7 +104,7 @@ struct Status {
   std::uint32_t lost_events;     // trace events that did not fit in the ring
   std::uint16_t activations;     // programs activated since boot
   std::uint8_t faults;           // threads stopped by a fault since boot
-  std::uint8_t reset_reason;     // 0 power, 1 watchdog, 2 software
+  ResetReason reset_reason;      // of the last start
 };
 
 struct ThreadInfo {
@@ -134,15 +140,10 @@ struct Devices {
   std::array<std::uint16_t, 32> failed;  // by sensor: transfers; 65535: that many or more
 };
 
-// The running program, and a reset.
 enum class Keeping : std::uint8_t {
-  no_store,    // the board has none, or it does not answer
-  no_program,  // none runs
-  reading,     // not known yet: the board looks into its store, or goes back to a program in it
-  kept,        // the robot starts with it
-  on_trial,    // not yet: the robot starts with the kept program
-  failed,      // a thread faulted in its trial, and there is no program to go back to
-  too_large    // for the store
+#define KEEPING(name, doc) name,
+#include "link/keeping.def"
+#undef KEEPING
 };
 
 struct Kept {
@@ -151,7 +152,7 @@ struct Kept {
   std::uint32_t most_bytes;                      // of an image, that can be kept
   std::uint32_t trial_ms;  // on_trial: left of it; then it is kept as soon as it is written
   std::uint32_t
-      given_up_crc32;  // of the last program since start-up that faulted in its trial; 0: none
+      given_up_crc32;  // of the last one since start-up that faulted in its trial; 0: none
   Keeping state;
   std::array<std::uint8_t, 3> reserved;
 };

@@ -227,7 +227,7 @@ void Runtime::fill_devices(link::Devices& devices) const {
   if (running_) sensors_.fill_devices(devices);
 }
 
-std::size_t Runtime::fill_kept(std::span<layers::KeptNumber, layers::kMostKept> kept) const {
+std::size_t Runtime::fill_kept(std::span<layers::KeptNumber, vm::kMaxKept> kept) const {
   if (!running_) return 0;
   const vm::Image& image = shared_.program.image;
   std::size_t count = 0;

@@ -88,7 +88,7 @@ public:
   // KEPT numbers begin with these, in each program that has them. Before activate(); the table stays where it is.
   void begin_with(std::span<const layers::KeptNumber> kept) { kept_ = kept; }
   // Those of the running program as they are now, all of one step. Returns how many.
-  std::size_t fill_kept(std::span<layers::KeptNumber, layers::kMostKept> kept) const;
+  std::size_t fill_kept(std::span<layers::KeptNumber, vm::kMaxKept> kept) const;
 
   // Measures with `sampler` in place of the drivers. Before activate().
   // That is a simulation: its program does not wait for a first reading.

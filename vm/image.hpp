@@ -46,6 +46,7 @@ inline constexpr unsigned kMaxVerbs = 32;      // one bit each in Actuator::verb
 inline constexpr unsigned kMaxWords = 255;
 inline constexpr unsigned kMaxInputs = 255;         // channels and variables
 inline constexpr unsigned kMaxCells = 255;          // frame cells of a behaviour
+inline constexpr unsigned kMaxKept = 16;            // variables: what is kept is one small record
 inline constexpr unsigned kMaxResponseOutput = 64;  // words a response may put out in one step
 
 enum class Dimension : std::uint8_t {

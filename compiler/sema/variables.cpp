@@ -12,7 +12,6 @@ namespace {
 constexpr double kFadeOne = 2147483648.0;  // 2^31: vm::Variable::fade of a variable that stays
 constexpr double kLeft = 0.05;             // part of the distance left after FADES … OVER
 constexpr double kTick = vm::kFadeTickMs;  // a duration counts milliseconds, too
-constexpr std::size_t kMaxKept = 16;       // so that what is kept is one small record
 
 // 0 would mean that it does not fade at all.
 std::uint32_t fade_factor(vm::Value over) {
@@ -75,9 +74,9 @@ void Variables::check_kept() {
           .label(place)
           .label(places[*kept.find(name.name.text)], "the first one", false)
           .helps("what is kept is found again by its name: give one of them another");
-    } else if (places.size() == kMaxKept) {
+    } else if (places.size() == vm::kMaxKept) {
       diagnostics_
-          .report(Code::E0407, "at most " + std::to_string(kMaxKept) + " numbers can be KEPT")
+          .report(Code::E0407, "at most " + std::to_string(vm::kMaxKept) + " numbers can be KEPT")
           .label(place, "this is one too many")
           .helps("keep what must outlast the power, and remember the rest");
     }

@@ -149,10 +149,6 @@ link::Kept Client::kept() {
   return request<link::Kept>(MessageType::get_kept, MessageType::kept);
 }
 
-link::Kept Client::forget() {
-  return request<link::Kept>(MessageType::forget, MessageType::kept);
-}
-
 link::Kept Client::roll_back(std::uint32_t to_image_crc) {
   return request<link::Kept>(MessageType::roll_back, MessageType::kept,
                              link::wire_bytes(link::RollBack{to_image_crc}));
@@ -176,8 +172,10 @@ link::FeedResult Client::feed(const link::Feed& feed) {
                                    link::wire_bytes(feed));
 }
 
-link::ActivateResult Client::activate() {
-  return request<link::ActivateResult>(MessageType::activate, MessageType::activate_result);
+link::ActivateResult Client::activate(bool fresh) {
+  const link::Activate wish{static_cast<std::uint8_t>(fresh)};
+  return request<link::ActivateResult>(MessageType::activate, MessageType::activate_result,
+                                       link::wire_bytes(wish));
 }
 
 std::vector<link::ThreadInfo> Client::threads() {

@@ -36,7 +36,6 @@ public:
   link::Devices devices();   // that the running program measures
   link::Status clear(std::uint32_t image_crc);  // ends the program, if it runs
   link::Kept kept();
-  link::Kept forget();  // KEPT numbers, when the next program is activated
   // Asks for it only: the board then reads its store.
   link::Kept roll_back(std::uint32_t to_image_crc);
   link::Status set_trace(bool on);
@@ -45,7 +44,7 @@ public:
   link::Status stop();
   link::Status resume();
   link::FeedResult feed(const link::Feed& feed);
-  link::ActivateResult activate();
+  link::ActivateResult activate(bool fresh = false);  // link::Activate
   std::vector<link::ThreadInfo> threads();
   std::vector<std::byte> running_image();  // empty when no program runs
 

@@ -21,9 +21,11 @@ using Json = nlohmann::ordered_json;
 constexpr milliseconds kReading{10'000};  // a board needs one second for the largest program
 constexpr milliseconds kLook{20};
 
-// By link::Keeping.
-constexpr std::array<std::string_view, 7> kStates = {"no_store", "no_program", "reading",  "kept",
-                                                     "on_trial", "failed",     "too_large"};
+constexpr std::array kStates = {
+#define KEEPING(name, doc) std::string_view(#name),
+#include "link/keeping.def"
+#undef KEEPING
+};
 
 Json program(std::uint32_t bytes, std::uint32_t crc32) {
   if (bytes == 0) return nullptr;
@@ -81,7 +83,7 @@ Json keeping_json(const link::Kept& kept) {
   return object;
 }
 
-std::uint32_t roll_back(Client& client) {
+link::HelloReply roll_back(Client& client) {
   const link::Kept before = when_read(client);
   if (before.state == Keeping::no_store)
     throw Failure(Exit::program, "this board keeps no programs: there is none to go back to");
@@ -93,10 +95,11 @@ std::uint32_t roll_back(Client& client) {
                   "the board has kept no program before this one: upload the one you want");
   client.roll_back(crc32);
   when_read(client);
-  if (const link::HelloReply board = client.hello(); board.running == 0 || board.image_crc != crc32)
+  const link::HelloReply board = client.hello();
+  if (board.running == 0 || board.image_crc != crc32)
     throw Failure(Exit::program,
                   "the program before is not whole in the board's store: upload the one you want");
-  return crc32;
+  return board;
 }
 
 }  // namespace robosync::tool

@@ -14,8 +14,8 @@ namespace robosync::tool {
 [[nodiscard]] std::string keeping_text(const link::Kept& kept);
 [[nodiscard]] nlohmann::ordered_json keeping_json(const link::Kept& kept);
 
-// Back to the program before the running one, which then runs. Returns its CRC. Throws Failure (program) when there is
-// none, or it cannot be started.
-std::uint32_t roll_back(Client& client);
+// Back to the program before the running one; what the board says of it when it runs. Throws Failure (program) when there
+// is none, or it cannot be started.
+link::HelloReply roll_back(Client& client);
 
 }  // namespace robosync::tool

@@ -1,8 +1,6 @@
 // See past.hpp. May assume nothing of what the board sends.
 #include "rsc/device/past.hpp"
 
-#include <array>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -12,9 +10,6 @@ namespace robosync::tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// The numbers of link::Status.
-constexpr std::array<std::string_view, 3> kResetReasons = {"power", "watchdog", "software"};
 
 Json registers(const link::Fault& fault) {
   Json list = Json::array();
@@ -26,7 +21,15 @@ Json registers(const link::Fault& fault) {
 }  // namespace
 
 std::string_view reset_reason(const link::Status& status) {
-  return status.reset_reason < kResetReasons.size() ? kResetReasons[status.reset_reason] : "?";
+  switch (status.reset_reason) {
+    case link::ResetReason::power:
+      return "power";
+    case link::ResetReason::watchdog:
+      return "watchdog";
+    case link::ResetReason::software:
+      return "software";
+  }
+  return "?";
 }
 
 std::string past_text(const link::Status& status) {

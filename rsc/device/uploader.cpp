@@ -231,7 +231,7 @@ UploadResult upload(Client& client, const link::HelloReply& hello, std::span<con
     Transfer transfer(client, hello.receive_window, image, options, give_up);
     transfer.run();
     result.frames_sent += transfer.frames_sent();
-    result.activation = client.activate();
+    result.activation = client.activate(options.fresh);
   } while (result.activation.refusal == link::kNothingToActivate && client.now() < give_up);
   result.time = std::chrono::duration_cast<std::chrono::microseconds>(client.now() - start);
   return result;
@@ -267,7 +267,6 @@ UploadResult upload_program(Session& session, const Program& program,
   check_board(session, program);
   if (options.replace && session.board.running != 0)
     (void)session.client.clear(session.board.image_crc);
-  if (options.fresh) (void)session.client.forget();
   const UploadResult result =
       upload(session.client, session.board, without_source_lines(program), options);
   check_result(result.activation, program);

@@ -17,8 +17,7 @@ void add_rollback(Options& options) {
   add_port_option(options, *port);
   options.runs([port] {
     Session session(*port);
-    roll_back(session.client);
-    const link::HelloReply board = session.client.hello();
+    const link::HelloReply board = roll_back(session.client);
     std::cout << fmt::format("program {:02x} runs again ({} bytes)\n",
                              fmt::join(board.program_hash, ""), board.image_bytes);
   });

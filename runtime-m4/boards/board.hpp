@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "link/messages.hpp"
 #include "runtime-m4/boards/store.hpp"
 #include "runtime-m4/policy/pins.hpp"
 
@@ -30,7 +31,7 @@ struct BusState {
 class Board {
 public:
   virtual const char* name() const = 0;
-  virtual std::uint8_t reset_reason() const = 0;  // link::Status::reset_reason
+  virtual link::ResetReason reset_reason() const = 0;
 
   // What programs may do with the pins. It never changes.
   virtual const policy::BoardPins& pins() const = 0;

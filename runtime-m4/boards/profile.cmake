@@ -7,6 +7,10 @@ string(JSON arena_begin GET "${profile}" arena begin)
 string(JSON arena_bytes GET "${profile}" arena bytes)
 string(JSON step_budget GET "${profile}" step_budget)
 string(JSON i2c_buses GET "${profile}" i2c_buses)
+string(JSON store_bytes ERROR_VARIABLE any GET "${profile}" store)
+if(any)
+  set(store_bytes 0)
+endif()
 # {first pin, last, shortest pulse, longest, µs per ms}, as policy::PinLimit has them.
 string(JSON count LENGTH "${profile}" outputs)
 math(EXPR last "${count} - 1")
@@ -24,4 +28,4 @@ foreach(i RANGE ${last})
 endforeach()
 set(board_definitions
   ROBOSYNC_ARENA_BEGIN=${arena_begin} ROBOSYNC_ARENA_BYTES=${arena_bytes} ROBOSYNC_STEP_BUDGET=${step_budget}
-  ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_OUTPUTS=${board_outputs})
+  ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_STORE_BYTES=${store_bytes} ROBOSYNC_OUTPUTS=${board_outputs})

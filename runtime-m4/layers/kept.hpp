@@ -10,8 +10,6 @@
 
 namespace robosync::layers {
 
-inline constexpr std::size_t kMostKept = 16;  // in a program
-
 struct KeptNumber {
   std::uint32_t key;  // kept_key()
   vm::Value value;

@@ -13,7 +13,7 @@ namespace robosync::sim {
 class HostBoard final : public boards::Board {
 public:
   const char* name() const override { return "host"; }
-  std::uint8_t reset_reason() const override { return 0; }
+  link::ResetReason reset_reason() const override { return link::ResetReason::power; }
   const policy::BoardPins& pins() const override { return boards::kPins; }
 
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,

@@ -29,7 +29,7 @@ void Keeper::activated() {
 }
 
 void Keeper::ends() {
-  learn_numbers();
+  numbers_.learn(runtime_);
   heard_ = kernel_.now();
   running_ = {};
   if (doing_ != Doing::writing) return;
@@ -46,16 +46,11 @@ void Keeper::host_sends() {
 
 // Sensors are about to measure, on the bus from which the store is still read if the host is very quick: it takes some
 // milliseconds.
-void Keeper::host_activates() {
+void Keeper::host_activates(bool fresh) {
   while (opens())
     if (!work()) kernel_.sleep_until(due_);
-  if (forget_) {
-    count_ = 0;
-  } else {
-    learn_numbers();
-  }
-  forget_ = false;
-  runtime_.begin_with(numbers());
+  numbers_.learn(runtime_);
+  runtime_.begin_with(fresh ? std::span<const layers::KeptNumber>() : numbers_.all());
 }
 
 void Keeper::roll_back(std::uint32_t crc32) {
@@ -77,8 +72,8 @@ void Keeper::write_running() {
 
 void Keeper::read(Doing why) {
   receiver_.reset();
-  learn_numbers();
-  runtime_.begin_with(numbers());
+  numbers_.learn(runtime_);
+  runtime_.begin_with(numbers_.all());
   runtime_.clear();
   running_ = {};
   doing_ = why;
@@ -128,9 +123,7 @@ void Keeper::ended() {
 
 void Keeper::opened() {
   doing_ = Doing::nothing;
-  const std::span<const layers::KeptNumber> kept = number_store_.numbers();
-  count_ = kept.size();
-  std::ranges::copy(kept, numbers_.begin());
+  numbers_.begin_with(number_store_.numbers());
   const bool host_has_the_room = receiver_.status().state != link::TransferState::idle;
   if (store_.kept().bytes != 0 && !host_has_the_room) read(Doing::starting_kept);
 }
@@ -147,31 +140,16 @@ bool Keeper::start_after_all() {
   return true;
 }
 
-// Of other programs stay as many as there is room for.
-void Keeper::learn_numbers() {
-  std::array<layers::KeptNumber, layers::kMostKept> learnt{};
-  std::size_t count = runtime_.fill_kept(learnt);
-  for (const layers::KeptNumber& known : numbers()) {
-    const auto begin = learnt.begin();
-    const auto end = begin + static_cast<std::ptrdiff_t>(count);
-    if (count < learnt.size() &&
-        std::ranges::find(begin, end, known.key, &layers::KeptNumber::key) == end)
-      learnt[count++] = known;
-  }
-  numbers_ = learnt;
-  count_ = count;
-}
-
 // True when there is something to write.
 bool Keeper::look_at_numbers() {
   if (doing_ != Doing::nothing || !store_.there() || running_.bytes == 0) return false;
   const kernel::Time now = kernel_.now();
   if (now >= next_look_) {
     next_look_ = now + kLook;
-    learn_numbers();
-    if (count_ == 0) next_look_ = kernel::kForever;  // nor will it ever have any
-    if (!std::ranges::equal(numbers(), number_store_.numbers())) {
-      number_store_.write(numbers());
+    numbers_.learn(runtime_);
+    if (numbers_.all().empty()) next_look_ = kernel::kForever;  // nor will it ever have any
+    if (!std::ranges::equal(numbers_.all(), number_store_.numbers())) {
+      number_store_.write(numbers_.all());
       doing_ = Doing::writing_numbers;
       return true;
     }

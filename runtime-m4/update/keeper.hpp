@@ -6,7 +6,6 @@
 // of it in pieces of one transfer, by the link thread, between the host's requests; who uploads comes first.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +15,7 @@
 #include "link/receiver.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/runtime.hpp"
+#include "runtime-m4/update/kept_numbers.hpp"
 #include "runtime-m4/update/number_store.hpp"
 #include "runtime-m4/update/program_store.hpp"
 
@@ -41,15 +41,15 @@ public:
   // Once, first of all. `failed`: the board has started because it had hung or faulted. Then nothing moves by itself:
   // the kept program begins as if a person had said stop.
   void boot(bool failed);
-  void activated();       // a program of the host runs
-  void ends();            // the running one is about to
-  void host_sends();      // an image is coming into the room
-  void host_activates();  // … and is about to run
+  void activated();   // a program of the host runs
+  void ends();        // the running one is about to
+  void host_sends();  // an image is coming into the room
+  // … and is about to run; `fresh`: its KEPT numbers begin as it says.
+  void host_activates(bool fresh);
   // A person's wish: back to the program with that CRC. When it is not the one before, nothing happens: so asking
   // twice does no more than asking once.
   void roll_back(std::uint32_t crc32);
-  void forget() { forget_ = true; }  // the numbers, with the next program of the host
-  void fault() { fault_ = true; }    // of a thread of the running program  [any]
+  void fault() { fault_ = true; }  // of a thread of the running program  [any]
 
   // The next piece. False when there is none before due(), or fault().
   bool work();
@@ -75,10 +75,13 @@ private:
   };
 
   bool opens() const { return doing_ == Doing::opening || doing_ == Doing::opening_numbers; }
-  bool reads() const { return doing_ >= Doing::starting_kept && doing_ <= Doing::rolling_back; }
+  bool reads_kept() const {
+    return doing_ == Doing::starting_kept || doing_ == Doing::giving_up_trial;
+  }
   bool reads_previous() const {
     return doing_ == Doing::starting_previous || doing_ == Doing::rolling_back;
   }
+  bool reads() const { return reads_kept() || reads_previous(); }
   bool on_trial() const { return running_.bytes != 0 && running_ != store_.kept(); }
   bool fits() const { return running_.bytes <= store_.most_bytes(); }
   Program running_program() const;
@@ -91,9 +94,7 @@ private:
   bool give_up_trial();
   void opened();
   bool start_after_all();
-  void learn_numbers();
   bool look_at_numbers();
-  std::span<const layers::KeptNumber> numbers() const { return std::span(numbers_).first(count_); }
 
   kernel::Kernel& kernel_;
   Runtime& runtime_;
@@ -108,11 +109,8 @@ private:
   std::uint32_t given_up_ = 0;  // CRC of the last program that did not stand its trial
   std::atomic<bool> fault_ = false;
 
-  // The running program's first, then those of others.
-  std::array<layers::KeptNumber, layers::kMostKept> numbers_{};
-  std::size_t count_ = 0;
+  KeptNumbers numbers_;
   kernel::Time next_look_ = 0;
-  bool forget_ = false;
   bool failed_ = false;  // … and no program has begun since
 };
 

@@ -30,7 +30,7 @@ void NumberStore::write(std::span<const layers::KeptNumber> numbers) {
   if (store_ == nullptr) return;
   next_ = {.magic = Record::kMagic,
            .number = record_.number + 1,
-           .count = static_cast<std::uint32_t>(std::min(numbers.size(), layers::kMostKept)),
+           .count = static_cast<std::uint32_t>(std::min<std::size_t>(numbers.size(), vm::kMaxKept)),
            .entries = {},
            .crc32 = 0};
   std::copy_n(numbers.begin(), next_.count, next_.entries.begin());
@@ -64,7 +64,7 @@ void NumberStore::look_at_head() {
 }
 
 bool NumberStore::whole() const {
-  return next_.magic == Record::kMagic && next_.count <= layers::kMostKept &&
+  return next_.magic == Record::kMagic && next_.count <= vm::kMaxKept &&
          next_.number == best_.number && next_.crc32 == vm::crc32(before_crc(next_));
 }
 

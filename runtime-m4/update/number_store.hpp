@@ -20,10 +20,11 @@ public:
     std::uint32_t magic;
     std::uint32_t number;  // counts up
     std::uint32_t count;   // of the entries
-    std::array<layers::KeptNumber, layers::kMostKept> entries;
+    std::array<layers::KeptNumber, vm::kMaxKept> entries;
     std::uint32_t crc32;  // of what stands before it
   };
-  static_assert(sizeof(Record) % boards::Store::kPiece == 0);
+  static_assert(sizeof(Record) == StoreLayout::kNumbersBytes &&
+                sizeof(Record) % boards::Store::kPiece == 0);
 
   explicit NumberStore(boards::Store* store) : store_(store), transfer_(store) {}
 
@@ -45,7 +46,7 @@ private:
   };
   static_assert(sizeof(Head) == boards::Store::kPiece);
 
-  StoreLayout layout() const { return {*store_, sizeof(Record)}; }
+  StoreLayout layout() const { return StoreLayout(*store_); }
   void read_head();
   void look_at_head();
   void look_at_body();

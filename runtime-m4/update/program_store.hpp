@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <span>
 
-#include "runtime-m4/update/number_store.hpp"
 #include "runtime-m4/update/store_layout.hpp"
 #include "runtime-m4/update/store_transfer.hpp"
 
@@ -61,7 +60,7 @@ private:
   };
   static_assert(sizeof(Record) % boards::Store::kPiece == 0);
 
-  StoreLayout layout() const { return {*store_, sizeof(NumberStore::Record)}; }
+  StoreLayout layout() const { return StoreLayout(*store_); }
   void read_record();
   void read_slot(Program program, std::uint32_t slot, std::span<std::byte> room);
   void write_record(Program kept, Program previous, std::uint32_t slot);

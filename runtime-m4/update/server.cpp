@@ -71,7 +71,7 @@ bool Server::start() {
     server.stops_seen_.fetch_add(1, std::memory_order_relaxed);
     server.runtime_.stop();
   };
-  keeper_.boot(board_.reset_reason() != 0);
+  keeper_.boot(board_.reset_reason() != link::ResetReason::power);
   board_.link_start({.ready = line_ready, .stop = line_stop, .argument = this});
   return true;
 }
@@ -141,8 +141,6 @@ void Server::handle(const link::Frame& frame) {
       return read_image(frame);
     case MessageType::get_kept:
       return kept(frame.sequence);
-    case MessageType::forget:
-      return forget(frame.sequence);
     case MessageType::roll_back:
       return roll_back(frame);
     default:
@@ -217,8 +215,13 @@ void Server::data(const link::Frame& frame) {
 // The reply may get lost and the host ask again: then the answer is the same, and nothing is done
 // twice.
 void Server::activate(const link::Frame& frame) {
+  link::Activate request{};
+  if (!link::read_payload(frame.payload, request)) {
+    ++bad_requests_;
+    return;
+  }
   if (receiver_.complete()) {
-    keeper_.host_activates();
+    keeper_.host_activates(request.fresh != 0);
     last_result_ = activate_received();
     have_result_ = true;
     receiver_.reset();
@@ -303,11 +306,6 @@ void Server::kept(std::uint8_t sequence) {
   link::Kept answer{};
   keeper_.fill(answer);
   send(MessageType::kept, sequence, link::wire_bytes(answer));
-}
-
-void Server::forget(std::uint8_t sequence) {
-  keeper_.forget();
-  kept(sequence);
 }
 
 void Server::roll_back(const link::Frame& frame) {

@@ -79,7 +79,6 @@ private:
   void clear(const link::Frame& frame);
   void trace_on(const link::Frame& frame);
   void kept(std::uint8_t sequence);
-  void forget(std::uint8_t sequence);
   void roll_back(const link::Frame& frame);
 
   link::ActivateResult activate_received();

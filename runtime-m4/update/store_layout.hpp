@@ -15,9 +15,11 @@ public:
   // A store bears so many writes of a page. With each second a new number, 16 times a million seconds are half a year.
   static constexpr std::uint32_t kRing = 16;
 
-  constexpr StoreLayout(const boards::Store& store, std::uint32_t numbers_bytes)
+  static constexpr std::uint32_t kNumbersBytes = 144;  // of a record in the ring
+
+  constexpr explicit StoreLayout(const boards::Store& store)
       : page_(store.page()),
-        numbers_((numbers_bytes + page_ - 1) / page_ * page_),
+        numbers_((kNumbersBytes + page_ - 1) / page_ * page_),
         first_number_(store.size() / page_ * page_ - kRing * numbers_) {}
 
   std::uint32_t record_at(std::uint32_t record) const { return record * page_; }

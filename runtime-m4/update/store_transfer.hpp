@@ -30,18 +30,17 @@ public:
   // The next piece.
   Work work() {
     if (!busy_) return Work::none;
-    switch (done_ == length() || store_ == nullptr ? boards::Store::Outcome::done : transfer()) {
+    if (store_ == nullptr) return end(false);
+    if (done_ == length()) return end(true);
+    switch (transfer()) {
       case boards::Store::Outcome::taken:
-        return Work::some;
-      case boards::Store::Outcome::busy:
-        if (++unanswered_ < kPatience) return Work::waits;
-        return end(false);
-      case boards::Store::Outcome::done:
         break;
+      case boards::Store::Outcome::busy:
+        return ++unanswered_ < kPatience ? Work::waits : end(false);
+      case boards::Store::Outcome::done:
+        unanswered_ = 0;
+        done_ += std::min(boards::Store::kPiece, length() - done_);
     }
-    if (store_ == nullptr || done_ == length()) return end(store_ != nullptr);
-    unanswered_ = 0;
-    done_ += std::min(boards::Store::kPiece, length() - done_);
     return Work::some;
   }
   // … all of it went through.

@@ -26,8 +26,8 @@ FIRMWARE = BUILT / "robosync.elf"
 MACHINE = BUILT / "machine"
 # What is on its buses in QEMU, and the first QEMU that has the board.
 DEVICES = {REFERENCE: ["-device", "max34451,id=touch,address=0x70"]}
-# Its store: an EEPROM whose bytes stand in a file.
-STORES = {REFERENCE: (65_536, ["-device", "at24c-eeprom,address=0x50,rom-size=65536,drive=store"])}
+# Its store: an EEPROM whose bytes stand in a file, as many as its profile says.
+STORES = {REFERENCE: "at24c-eeprom,address=0x50,rom-size={size},drive=store"}
 SINCE = {"b-l475e-iot01a": (9, 2)}
 UNPACKED = ROOT / "build/qemu/usr"  # by scripts/emulator
 TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
@@ -105,7 +105,7 @@ def with_store(path):
     """How QEMU is told of the board's store."""
     if NAME not in STORES:
         raise BoardError(f"{NAME} has no store in QEMU")
-    size, devices = STORES[NAME]
+    size = json.loads((ROOT / "stdlib/boards" / f"{NAME}.json").read_text("utf-8"))["store"]
     try:
         with open(path, "ab") as file:
             if file.tell() not in (0, size):
@@ -113,7 +113,8 @@ def with_store(path):
             file.truncate(size)
     except OSError as error:
         raise BoardError(f"{path}: {error.strerror}") from error
-    return ["-drive", f"if=none,format=raw,file={str(path).replace(',', ',,')},id=store", *devices]
+    return ["-drive", f"if=none,format=raw,file={str(path).replace(',', ',,')},id=store",
+            "-device", STORES[NAME].format(size=size)]
 
 
 class Board:

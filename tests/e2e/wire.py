@@ -27,6 +27,11 @@ def _read_enums(text):
             for name, body in re.findall(r"enum class (\w+) : std::uint8_t \{([\w\s,]+)\}", text)}
 
 
+def _enum_names(text):
+    """Also of those whose list is a .def."""
+    return set(re.findall(r"enum class (\w+) : std::uint8_t", text))
+
+
 def _field(type_name, enums):
     if type_name in enums:
         return "B"
@@ -51,7 +56,7 @@ MOST_PAYLOAD = int(re.search(r"kMaxPayload = (\d+)", _MESSAGES)[1])
 NUMBERS = _read_numbers()
 NAMES = {number: name for name, number in NUMBERS.items()}
 ENUMS = _read_enums(_MESSAGES)
-STRUCTS = _read_structs(_MESSAGES, ENUMS)
+STRUCTS = _read_structs(_MESSAGES, _enum_names(_MESSAGES))
 
 
 def layout(name):
@@ -65,6 +70,9 @@ def pack(name, **values):
 def unpack(name, payload):
     values = layout(name).unpack(payload)
     return SimpleNamespace(**{field: value for (field, _), value in zip(STRUCTS[name], values)})
+
+
+ACTIVATE = pack("Activate", fresh=0)
 
 
 def crc16(data):
@@ -166,4 +174,4 @@ class Line:
         return status
 
     def activate(self):
-        return unpack("ActivateResult", self.ask("activate", reply="activate_result"))
+        return unpack("ActivateResult", self.ask("activate", ACTIVATE, reply="activate_result"))

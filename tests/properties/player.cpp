@@ -94,6 +94,13 @@ private:
   bool in_time_ = true;
 };
 
+// As a run on the host begins.
+tool::UploadOptions fresh() {
+  tool::UploadOptions options;
+  options.fresh = true;
+  return options;
+}
+
 class Player {
 public:
   explicit Player(const std::string& port)
@@ -104,9 +111,8 @@ public:
     const tool::Program program = tool::load_program(job.image, {});
     const std::vector<tool::Stimulus> readings = tool::read_scenario(job.scenario, program).stimuli;
     const std::vector<std::byte> image = tool::without_source_lines(program);
-    session_.client.forget();
     const link::ActivateResult begun =
-        tool::upload(session_.client, session_.board, image, {}).activation;
+        tool::upload(session_.client, session_.board, image, fresh()).activation;
     if (begun.running == 0) return "refused";
     ++begun_;
     const bool in_time = Feeding(session_, readings).run();

@@ -28,7 +28,7 @@ public:
   };
 
   const char* name() const override { return "noting"; }
-  std::uint8_t reset_reason() const override { return 1; }
+  link::ResetReason reset_reason() const override { return link::ResetReason::watchdog; }
   const policy::BoardPins& pins() const override { return board_pins; }
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override {

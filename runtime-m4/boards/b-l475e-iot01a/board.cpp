@@ -27,8 +27,8 @@ Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
 }
 
 // A reset by the watchdog comes without warning, so nobody could note it in memory.
-std::uint8_t Board::reset_reason() const {
-  return static_cast<std::uint8_t>(watchdog_reset_ ? ResetReason::watchdog : last_reset());
+link::ResetReason Board::reset_reason() const {
+  return watchdog_reset_ ? ResetReason::watchdog : last_reset();
 }
 
 bool Board::i2c_transfer(std::uint8_t /*bus*/, std::uint8_t /*address*/,

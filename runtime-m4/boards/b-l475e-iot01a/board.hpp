@@ -18,7 +18,7 @@ public:
   Board();
 
   const char* name() const override { return "b-l475e-iot01a"; }
-  std::uint8_t reset_reason() const override;
+  link::ResetReason reset_reason() const override;
   const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;

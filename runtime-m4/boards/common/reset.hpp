@@ -8,8 +8,7 @@
 
 namespace robosync::boards {
 
-// What link::Status::reset_reason says.
-enum class ResetReason : std::uint8_t { power, watchdog, software };
+using link::ResetReason;
 
 ResetReason last_reset();
 // The fault that made the firmware reset itself before this start, or null.

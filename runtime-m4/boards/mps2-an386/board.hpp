@@ -28,7 +28,7 @@ public:
   Board();
 
   const char* name() const override { return "mps2-an386"; }
-  std::uint8_t reset_reason() const override { return static_cast<std::uint8_t>(last_reset()); }
+  ResetReason reset_reason() const override { return last_reset(); }
   const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;

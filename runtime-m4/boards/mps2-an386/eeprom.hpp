@@ -1,4 +1,4 @@
-// An AT24C512 on the I2C bus as the board's store: 64 KB in pages of 128 bytes, two bytes of address. Microchip
+// An AT24C512 on the I2C bus as the board's store: pages of 128 bytes, two bytes of address. Microchip
 // AT24C512C, DS20006218: a page write takes up to 5 ms, in which the device does not acknowledge.
 #pragma once
 
@@ -17,7 +17,7 @@ class Eeprom final : public Store {
 public:
   explicit constexpr Eeprom(I2c& bus) : bus_(bus) {}
 
-  std::uint32_t size() const override { return 65'536; }
+  std::uint32_t size() const override { return ROBOSYNC_STORE_BYTES; }
   std::uint32_t page() const override { return 128; }
 
   Outcome read(std::uint32_t at, std::span<std::byte> bytes) override {

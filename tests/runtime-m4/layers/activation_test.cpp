@@ -76,7 +76,7 @@ TEST_CASE("a new program takes the place of the running one, and the safety thre
   CHECK(after.safety_late_us == 0);
   CHECK(after.uptime_us == 1'000'000);
   CHECK(after.program_us == 500'000);
-  CHECK(after.reset_reason == 1);
+  CHECK(after.reset_reason == link::ResetReason::watchdog);
   CHECK(rig.only("activated input fire cancel") ==
         "0 #0 activated\n0 #1 input X 8\n100 #2 input X 20\n100 #2 fire r0 DO\n"
         "500 #2 cancel a\n0 #0 activated\n0 #1 input X 8\n0 #1 fire r0 DO\n");

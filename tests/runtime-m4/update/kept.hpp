@@ -7,6 +7,7 @@
 
 #include "rsc/device/client.hpp"
 #include "rsc/device/uploader.hpp"
+#include "runtime-m4/update/keeper.hpp"
 #include "runtime-m4/update/store_transfer.hpp"
 #include "tests/runtime-m4/update/memory_store.hpp"
 #include "tests/runtime-m4/update/programs.hpp"
@@ -15,7 +16,8 @@
 namespace robosync::test {
 
 inline constexpr std::uint32_t kStoreBytes = 8192;
-inline constexpr unsigned kTrialMs = 5000, kLookMs = 1000;
+inline constexpr auto kTrialMs = static_cast<unsigned>(update::Keeper::kTrial / 1000);
+inline constexpr auto kLookMs = static_cast<unsigned>(update::Keeper::kLook / 1000);
 
 // Ends what a ProgramStore or NumberStore was asked for. Bounded.
 template <typename Store>
@@ -37,9 +39,11 @@ Store opened(MemoryStore& memory) {
   return store;
 }
 
-inline void run_on(Robot& robot, const tool::Program& program) {
+inline void run_on(Robot& robot, const tool::Program& program, bool fresh = false) {
   tool::Client client(robot);
-  REQUIRE(tool::upload(client, client.hello(), program.bytes(), {}).activation.running == 1);
+  tool::UploadOptions options;
+  options.fresh = fresh;
+  REQUIRE(tool::upload(client, client.hello(), program.bytes(), options).activation.running == 1);
 }
 
 }  // namespace robosync::test

@@ -25,6 +25,8 @@ public:
   Outcome read(std::uint32_t at, std::span<std::byte> to) override {
     if (const auto other = in_the_way()) return *other;
     std::copy_n(bytes.begin() + at, to.size(), to.begin());
+    busy_for_ = reads_take;
+    ++reads;
     return Outcome::done;
   }
 
@@ -50,9 +52,11 @@ public:
 
   std::vector<std::byte> bytes;
   std::size_t written = 0;  // bytes
+  std::size_t reads = 0;    // transfers
   std::optional<std::size_t>
       power_for;                 // so many more bytes; then the page of the next one is spoiled
   unsigned writes_take = 0;      // transfers that find the store busy after a write
+  unsigned reads_take = 0;       // … after a read
   unsigned one_in_is_taken = 0;  // 0: none
   bool dead = false;             // it never answers
 

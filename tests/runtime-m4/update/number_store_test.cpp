@@ -68,7 +68,7 @@ void touch(Robot& robot, unsigned times) {
 
 // Of the running program, in whole numbers.
 std::vector<int> kept(const Robot& robot) {
-  std::array<KeptNumber, layers::kMostKept> numbers{};
+  std::array<KeptNumber, vm::kMaxKept> numbers{};
   std::vector<int> values;
   for (const KeptNumber& number : std::span(numbers).first(robot.runtime.fill_kept(numbers)))
     values.push_back(number.value / 1000);
@@ -116,7 +116,7 @@ TEST_CASE("whatever stands in the ring, no more numbers come out than there may 
   std::mt19937 random(3);
   for (unsigned i = 0; i < 1000; ++i) {
     memory.bytes[random() % memory.bytes.size()] = static_cast<std::byte>(random());
-    REQUIRE(read(memory).size() <= layers::kMostKept);
+    REQUIRE(read(memory).size() <= vm::kMaxKept);
   }
   MemoryStore none(kStoreBytes);
   none.dead = true;
@@ -174,16 +174,38 @@ TEST_CASE("a number that is outside of the range now begins at its end") {
 
 TEST_CASE("numbers are forgotten when somebody says so, once") {
   Robot robot;
-  tool::Client client(robot);
   run_on(robot, counting());
   touch(robot, 4);
-  client.forget();
-  CHECK(kept(robot) == Values{4});
-  run_on(robot, counting());
+  run_on(robot, counting(), true);
   CHECK(kept(robot) == Values{0});
   touch(robot, 2);
   run_on(robot, counting());
   CHECK(kept(robot) == Values{2});
+}
+
+TEST_CASE("numbers of the last instant outlast a program that is ended before the next one comes") {
+  Robot robot;
+  tool::Client client(robot);
+  run_on(robot, counting());
+  touch(robot, 4);
+  client.clear(client.hello().image_crc);
+  REQUIRE(kept(robot).empty());
+  run_on(robot, counting());
+  CHECK(kept(robot) == Values{4});
+}
+
+TEST_CASE("an upload that is there before the numbers are read waits for them") {
+  MemoryStore memory(kStoreBytes);
+  {
+    Robot robot(boards::kMemory, &memory);
+    run_on(robot, counting());
+    touch(robot, 4);
+    robot.run(2 * kLookMs);
+  }
+  memory.reads_take = 15;
+  Robot robot(boards::kMemory, &memory);
+  run_on(robot, counting());
+  CHECK(kept(robot) == Values{4});
 }
 
 TEST_CASE("power that goes at any time costs a second of counting at most") {

@@ -8,6 +8,7 @@
 
 using namespace robosync;
 using link::Keeping;
+using link::ResetReason;
 using test::Bytes;
 using test::finish;
 using test::kStoreBytes;
@@ -22,7 +23,6 @@ namespace {
 
 constexpr unsigned kMostMs = 100;  // from a reset to the kept program
 
-// Ends what was asked for. Bounded.
 Bytes some_image(unsigned seed, std::size_t size) {
   Bytes image(size);
   std::mt19937 random(seed);
@@ -263,14 +263,14 @@ TEST_CASE("a person goes back to the program before, and forth again") {
     run_on(robot, second);
     robot.run(kTrialMs + 2000);
     REQUIRE(client.kept().state == Keeping::kept);
-    CHECK(tool::roll_back(client) == crc_of(first));
+    CHECK(tool::roll_back(client).image_crc == crc_of(first));
     client.roll_back(crc_of(first));  // asked for twice
     robot.run(kMostMs);
     CHECK(client.hello().image_crc == crc_of(first));
-    CHECK(tool::roll_back(client) == crc_of(second));
+    CHECK(tool::roll_back(client).image_crc == crc_of(second));
     robot.run(kMostMs);
     run_on(robot, third);
-    CHECK(tool::roll_back(client) == crc_of(second));  // in its trial
+    CHECK(tool::roll_back(client).image_crc == crc_of(second));  // in its trial
     robot.run(kTrialMs + 2000);
     CHECK(client.kept().kept_crc32 == crc_of(second));
   }
@@ -318,6 +318,40 @@ TEST_CASE("an upload right after a reset comes before the kept program") {
   CHECK(client.kept().state == Keeping::on_trial);
 }
 
+TEST_CASE(
+    "an upload that is there before the store is read goes through, with the kept one behind it") {
+  MemoryStore memory(kStoreBytes);
+  const tool::Program mine = test::program(5), kept = test::long_program();
+  keep(memory, kept);
+  memory.reads_take = 15;
+  Robot robot(boards::kMemory, &memory);
+  tool::Client client(robot);
+  const link::HelloReply hello = client.hello();
+  const tool::UploadResult result = tool::upload(client, hello, mine.bytes(), {});
+  CHECK(result.activation.running == 1);
+  CHECK(result.frames_sent == (mine.bytes().size() + link::kMaxData - 1) / link::kMaxData);
+  const std::size_t reads = memory.reads;
+  robot.run(1000);
+  CHECK(memory.reads == reads);
+  CHECK(client.hello().image_crc == crc_of(mine));
+  CHECK(client.kept().kept_crc32 == crc_of(kept));
+}
+
+TEST_CASE("a program that is ended while it is written is written no further") {
+  MemoryStore memory(kStoreBytes);
+  memory.writes_take = 10;
+  Robot robot(boards::kMemory, &memory);
+  run_on(robot, test::long_program());
+  tool::Client client(robot);
+  robot.run(100);
+  client.clear(crc_of(test::long_program()));
+  const std::size_t written = memory.written;
+  REQUIRE(written > 0);
+  REQUIRE(written < test::long_program().bytes().size());
+  robot.run(1000);
+  CHECK(memory.written == written);
+}
+
 TEST_CASE("a host that goes away in the midst of an upload leaves no robot without a program") {
   MemoryStore memory(kStoreBytes);
   const tool::Program kept = test::program(3), next = test::long_program();
@@ -339,13 +373,13 @@ TEST_CASE("a host that goes away in the midst of an upload leaves no robot witho
 TEST_CASE("after a reset by a failure the kept program stands still until somebody says so") {
   MemoryStore memory(kStoreBytes);
   keep(memory, test::program(3));
-  for (const auto reason : {Robot::kPower, Robot::kWatchdog, Robot::kSoftware}) {
+  for (const auto reason : {ResetReason::power, ResetReason::watchdog, ResetReason::software}) {
     CAPTURE(reason);
     Robot robot(boards::kMemory, &memory, reason);
     robot.run(kMostMs);
     tool::Client client(robot);
     CHECK(client.hello().running == 1);
-    CHECK(client.hello().stopped == (reason == Robot::kPower ? 0 : 1));
+    CHECK(client.hello().stopped == (reason == ResetReason::power ? 0 : 1));
     client.resume();
     CHECK(client.hello().stopped == 0);
     run_on(robot, test::program(5));

@@ -36,11 +36,11 @@ class LineBoard final : public boards::Board {
 public:
   static constexpr std::size_t kRing = 512;
 
-  LineBoard(boards::Store* store, std::uint8_t reset_reason)
+  LineBoard(boards::Store* store, link::ResetReason reset_reason)
       : store_(store), reset_reason_(reset_reason) {}
 
   const char* name() const override { return "mps2-an386"; }
-  std::uint8_t reset_reason() const override { return reset_reason_; }
+  link::ResetReason reset_reason() const override { return reset_reason_; }
   const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t, std::uint8_t, std::span<const std::byte>,
                     std::span<std::byte>) override {
@@ -82,7 +82,7 @@ public:
 
 private:
   boards::Store* store_;
-  std::uint8_t reset_reason_;
+  link::ResetReason reset_reason_;
   bool wants_room_ = false;
   std::size_t watched_ = 0;  // bytes of from_host that the interrupt has seen
   link::StopDetector stops_;
@@ -119,11 +119,11 @@ private:
 
 class Robot final : public tool::Transport {
 public:
-  static constexpr unsigned kBytesPerSecond = 11520;                 // 115,200 baud, 8N1
-  enum ResetReason : std::uint8_t { kPower, kWatchdog, kSoftware };  // link::Status::reset_reason
+  static constexpr unsigned kBytesPerSecond = 11520;  // 115,200 baud, 8N1
 
   explicit Robot(const policy::BoardMemory& memory = boards::kMemory,
-                 boards::Store* store = nullptr, std::uint8_t reset_reason = kSoftware)
+                 boards::Store* store = nullptr,
+                 link::ResetReason reset_reason = link::ResetReason::software)
       : board(store, reset_reason),
         ring(kernel),
         arena(memory),

@@ -102,7 +102,7 @@ TEST_CASE("status counts, and the thread list has everyone by rank") {
   CHECK(status.program_us < status.uptime_us);
   CHECK(status.activations == 1);
   CHECK(status.safety_checks > 50);
-  CHECK(status.reset_reason == 2);
+  CHECK(status.reset_reason == link::ResetReason::software);
 
   const std::vector<link::ThreadInfo> threads = client.threads();
   REQUIRE(threads.size() == robot.kernel.threads().size());

@@ -125,7 +125,7 @@ void first_boot() {
 // Second boot: what the first one left; then the watchdog against a thread that locks up.
 void second_boot() {
   begin();
-  CHECK(robosync_board.reset_reason() == 2);
+  CHECK(robosync_board.reset_reason() == robosync::link::ResetReason::software);
   const robosync::link::Fault* words = robosync::boards::last_fault();
   CHECK(words != nullptr);
   if (words != nullptr) {
@@ -155,7 +155,7 @@ void third_boot() {
   run_all(rig::idle_scenarios());
   begin();
   CHECK(progress.kicked);  // else it struck before the board locked up
-  CHECK(robosync_board.reset_reason() == 1);
+  CHECK(robosync_board.reset_reason() == robosync::link::ResetReason::watchdog);
   CHECK(robosync::boards::last_fault() == nullptr);
   end("the watchdog resets a board that has locked up");
   finish();
