@@ -59,12 +59,14 @@ struct TransferStatus {
 inline constexpr std::uint8_t kNothingToActivate = 0xFF;
 
 struct Activate {
-  std::uint8_t fresh;  // 1: KEPT numbers begin as the program says, not with what they were
+  std::uint32_t image_crc32;  // as Begin: another host may have sent something else meanwhile
+  std::uint8_t fresh;         // 1: KEPT numbers begin as the program says, not with what they were
+  std::array<std::uint8_t, 3> reserved{};
 };
 
 struct ActivateResult {
   std::uint8_t running;  // 1: it runs; 0: refused, the old program goes on
-  std::uint8_t refusal;  // vm::Refusal, or kNothingToActivate: no complete transfer
+  std::uint8_t refusal;  // vm::Refusal, or kNothingToActivate: no complete transfer of it
   std::uint8_t section;  // vm::Section
   std::uint8_t reserved;
   std::uint16_t index;

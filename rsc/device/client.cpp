@@ -172,10 +172,9 @@ link::FeedResult Client::feed(const link::Feed& feed) {
                                    link::wire_bytes(feed));
 }
 
-link::ActivateResult Client::activate(bool fresh) {
-  const link::Activate wish{static_cast<std::uint8_t>(fresh)};
+link::ActivateResult Client::activate(const link::Activate& what) {
   return request<link::ActivateResult>(MessageType::activate, MessageType::activate_result,
-                                       link::wire_bytes(wish));
+                                       link::wire_bytes(what));
 }
 
 std::vector<link::ThreadInfo> Client::threads() {

@@ -44,7 +44,7 @@ public:
   link::Status stop();
   link::Status resume();
   link::FeedResult feed(const link::Feed& feed);
-  link::ActivateResult activate(bool fresh = false);  // link::Activate
+  link::ActivateResult activate(const link::Activate& what);
   std::vector<link::ThreadInfo> threads();
   std::vector<std::byte> running_image();  // empty when no program runs
 

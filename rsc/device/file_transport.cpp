@@ -17,6 +17,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "rsc/device/line_lock.hpp"
 #include "rsc/failure.hpp"
 
 namespace robosync::tool {
@@ -125,6 +126,7 @@ private:
 std::unique_ptr<Transport> open_pty(const std::string& path) {
   Descriptor file(open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
   if (file < 0) fail(path, errno);
+  lock_line(file, path);
   termios settings{};
   if (tcgetattr(file, &settings) != 0) fail(path, errno);
   cfmakeraw(&settings);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <libserialport.h>
 
+#include "rsc/device/line_lock.hpp"
 #include "rsc/failure.hpp"
 
 namespace robosync::tool {
@@ -88,6 +89,7 @@ Port find(const std::string& path) {
 std::unique_ptr<Transport> open_serial(const std::string& path) {
   Port port = find(path);
   expect(sp_open(port.get(), SP_MODE_READ_WRITE), path);
+  if (int file = -1; sp_get_port_handle(port.get(), &file) == SP_OK) lock_line(file, path);
   auto transport = std::make_unique<SerialTransport>(path, std::move(port));
   expect(transport->configure(), path);
   return transport;

@@ -23,6 +23,13 @@
 namespace robosync::tool {
 namespace {
 
+// Of an image, which names it.
+std::uint32_t crc_of(std::span<const std::byte> image) {
+  std::uint32_t crc32 = 0;
+  std::memcpy(&crc32, image.data() + offsetof(vm::ImageHeader, crc32), sizeof crc32);
+  return crc32;
+}
+
 using link::MessageType;
 using std::chrono::milliseconds;
 
@@ -73,9 +80,7 @@ private:
     under_way_.clear();
     bytes_under_way_ = 0;
     next_ = wanted_;
-    link::Begin request{static_cast<std::uint32_t>(image_.size()), 0};
-    std::memcpy(&request.crc32, image_.data() + offsetof(vm::ImageHeader, crc32),
-                sizeof request.crc32);
+    const link::Begin request{static_cast<std::uint32_t>(image_.size()), crc_of(image_)};
     begin_sequence_ = client_.send(MessageType::begin, link::wire_bytes(request));
   }
 
@@ -231,7 +236,8 @@ UploadResult upload(Client& client, const link::HelloReply& hello, std::span<con
     Transfer transfer(client, hello.receive_window, image, options, give_up);
     transfer.run();
     result.frames_sent += transfer.frames_sent();
-    result.activation = client.activate(options.fresh);
+    result.activation =
+        client.activate({crc_of(image), static_cast<std::uint8_t>(options.fresh), {}});
   } while (result.activation.refusal == link::kNothingToActivate && client.now() < give_up);
   result.time = std::chrono::duration_cast<std::chrono::microseconds>(client.now() - start);
   return result;

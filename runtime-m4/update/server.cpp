@@ -220,9 +220,10 @@ void Server::activate(const link::Frame& frame) {
     ++bad_requests_;
     return;
   }
-  if (receiver_.complete()) {
+  if (receiver_.complete() && receiver_.crc32() == request.image_crc32) {
     keeper_.host_activates(request.fresh != 0);
     last_result_ = activate_received();
+    result_of_ = request.image_crc32;
     have_result_ = true;
     receiver_.reset();
     if (last_result_.running != 0) keeper_.activated();
@@ -230,7 +231,7 @@ void Server::activate(const link::Frame& frame) {
   }
   link::ActivateResult answer{};
   answer.refusal = link::kNothingToActivate;
-  if (have_result_) answer = last_result_;
+  if (have_result_ && result_of_ == request.image_crc32) answer = last_result_;
   send(MessageType::activate_result, frame.sequence, link::wire_bytes(answer));
 }
 

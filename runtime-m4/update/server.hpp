@@ -104,6 +104,7 @@ private:
 
   link::Receiver receiver_;
   link::ActivateResult last_result_{};  // repeated when the host asks again
+  std::uint32_t result_of_ = 0;         // … its CRC
   bool have_result_ = false;
   Keeper keeper_;
 

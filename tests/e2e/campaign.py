@@ -156,7 +156,7 @@ class Line(wire.Line):
                 data = wire.pack("Data", offset=at) + image[at:at + 236]
                 status = wire.unpack("TransferStatus", self.patient("data", data, "transfer_status"))
             yield status
-            if wire.unpack("ActivateResult", self.patient("activate", wire.ACTIVATE, reply="activate_result")).running:
+            if wire.unpack("ActivateResult", self.patient("activate", wire.activation(crc), reply="activate_result")).running:
                 return
         raise Violation("a good program is refused")
 
@@ -352,8 +352,9 @@ class Robot:
         """(address, bytes) of what the behaviours' threads may write."""
         uploaded = self.line.upload(self.image)
         next(uploaded)
+        activate = wire.frame("activate", wire.activation(int.from_bytes(self.image[4:8], "little")))
         with Control(self.gdb) as debugger:
-            debugger.run_to(self.at["grant"], lambda: self.line.send_raw(wire.frame("activate", wire.ACTIVATE)))
+            debugger.run_to(self.at["grant"], lambda: self.line.send_raw(activate))
             _, _, begin, size = debugger.read_words(debugger.register(1), 4)
         return begin, size
 

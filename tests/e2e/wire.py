@@ -72,7 +72,8 @@ def unpack(name, payload):
     return SimpleNamespace(**{field: value for (field, _), value in zip(STRUCTS[name], values)})
 
 
-ACTIVATE = pack("Activate", fresh=0)
+def activation(crc32):
+    return pack("Activate", image_crc32=crc32, fresh=0, reserved=bytes(3))
 
 
 def crc16(data):
@@ -113,6 +114,7 @@ class Line:
         self._socket.connect(str(path))
         self._received = b""
         self._sequence = 0
+        self._image_crc32 = 0
 
     def send_raw(self, data):
         self._socket.sendall(data)
@@ -163,8 +165,8 @@ class Line:
 
     def transfer(self, image):
         """Sends an image as it stands; gives the last transfer_status."""
-        crc = struct.unpack_from("<I", image, 4)[0] if len(image) >= 8 else 0
-        reply = self.ask("begin", pack("Begin", size=len(image), crc32=crc), "transfer_status")
+        self._image_crc32 = struct.unpack_from("<I", image, 4)[0] if len(image) >= 8 else 0
+        reply = self.ask("begin", pack("Begin", size=len(image), crc32=self._image_crc32), "transfer_status")
         status = unpack("TransferStatus", reply)
         most = MOST_PAYLOAD - layout("Data").size
         while ENUMS["TransferState"][status.state] == "receiving":
@@ -174,4 +176,5 @@ class Line:
         return status
 
     def activate(self):
-        return unpack("ActivateResult", self.ask("activate", ACTIVATE, reply="activate_result"))
+        """What was transferred last."""
+        return unpack("ActivateResult", self.ask("activate", activation(self._image_crc32), reply="activate_result"))

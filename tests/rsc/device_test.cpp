@@ -386,3 +386,18 @@ TEST_CASE("ports is valid JSON, whatever this computer has") {
   CHECK(outcome.exit == 0);
   CHECK(json::parse(outcome.out).is_array());
 }
+
+TEST_CASE("a line that another rsc uses is exit 3, and says so, until that one ends") {
+  const int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  REQUIRE(grantpt(master) == 0);
+  REQUIRE(unlockpt(master) == 0);
+  const std::string port = ptsname(master);
+  const Bridge bridge(master, false);
+  {
+    const std::unique_ptr<tool::Transport> other = tool::open_port(port);
+    const Outcome outcome = test::rsc({"info", "--port", port});
+    CHECK(outcome.exit == 3);
+    CHECK_THAT(outcome.err, Contains(port + ": another rsc uses this line; end it first"));
+  }
+  CHECK(test::rsc({"info", "--port", port}).exit == 0);
+}

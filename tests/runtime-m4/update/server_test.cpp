@@ -2,7 +2,6 @@
 // when the host does not read, asks twice, or sends what it should not.
 #include "runtime-m4/update/server.hpp"
 
-#include <cstring>
 #include <random>
 
 #include <catch2/catch.hpp>
@@ -14,6 +13,7 @@
 #include "rsc/failure.hpp"
 #include "tests/runtime-m4/update/programs.hpp"
 #include "tests/runtime-m4/update/robot.hpp"
+#include "tests/runtime-m4/update/transfer.hpp"
 #include "vm/opcode.hpp"
 
 using namespace robosync;
@@ -21,6 +21,7 @@ using link::EventKind;
 using link::MessageType;
 using std::chrono::milliseconds;
 using test::Robot;
+using test::transfer;
 
 namespace {
 
@@ -193,10 +194,27 @@ TEST_CASE("an activation that is asked for twice is done once") {
   Robot robot;
   tool::Client client(robot);
   const link::ActivateResult first = upload(client, test::program(3).bytes());
-  const link::ActivateResult second = client.activate();
+  const link::ActivateResult second = client.activate({client.hello().image_crc, 0, {}});
   CHECK(second.running == 1);
   CHECK(second.uptime_us == first.uptime_us);
   CHECK(client.status().activations == 1);
+}
+
+TEST_CASE("of two hosts none starts the other one's program, and both are told the truth") {
+  Robot robot;
+  tool::Client client(robot);
+  const tool::Program mine = test::program(3), other = test::program(5);
+  const auto activate = [&](const tool::Program& program) {
+    return client.activate({program.image().header->crc32, 0, {}});
+  };
+  transfer(robot, client, mine.bytes(), mine.image().header->crc32);
+  transfer(robot, client, other.bytes(), other.image().header->crc32);
+  CHECK(activate(mine).refusal == link::kNothingToActivate);
+  CHECK(client.hello().running == 0);
+  CHECK(activate(other).running == 1);
+  CHECK(client.hello().image_crc == other.image().header->crc32);
+  CHECK(activate(mine).refusal == link::kNothingToActivate);
+  CHECK(activate(other).running == 1);
 }
 
 TEST_CASE("the same program may be uploaded again, and starts anew") {
@@ -214,7 +232,7 @@ TEST_CASE("the same program may be uploaded again, and starts anew") {
 TEST_CASE("nothing to activate is said so") {
   Robot robot;
   tool::Client client(robot);
-  const link::ActivateResult result = client.activate();
+  const link::ActivateResult result = client.activate({});
   CHECK(result.running == 0);
   CHECK(result.refusal == 0xFF);
 }

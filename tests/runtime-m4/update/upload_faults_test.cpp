@@ -11,6 +11,7 @@
 #include "rsc/failure.hpp"
 #include "tests/runtime-m4/update/programs.hpp"
 #include "tests/runtime-m4/update/robot.hpp"
+#include "tests/runtime-m4/update/transfer.hpp"
 
 using namespace robosync;
 using test::Bytes;
@@ -250,17 +251,8 @@ TEST_CASE("an image other than the one announced is refused") {
   Scene scene(old_program, new_program);
   scene.client.hello();
   const Bytes image(new_program.bytes().begin(), new_program.bytes().end());
-  const link::Begin begin{static_cast<std::uint32_t>(image.size()), 0xBAD};
-  scene.client.send(link::MessageType::begin, link::wire_bytes(begin));
-  for (std::uint32_t at = 0; at < image.size(); at += 200) {
-    Bytes payload(sizeof at);
-    std::memcpy(payload.data(), &at, sizeof at);
-    const auto part = std::span(image).subspan(at, std::min<std::size_t>(200, image.size() - at));
-    payload.insert(payload.end(), part.begin(), part.end());
-    scene.client.send(link::MessageType::data, payload);
-    scene.robot.run(50);
-  }
-  const link::ActivateResult result = scene.client.activate();
+  test::transfer(scene.robot, scene.client, image, 0xBAD);
+  const link::ActivateResult result = scene.client.activate({0xBAD, 0, {}});
   CHECK(result.running == 0);
   CHECK(result.refusal == static_cast<std::uint8_t>(vm::Refusal::bad_crc));
   CHECK(scene.runs_old());

@@ -1,0 +1,30 @@
+// An image on its way to the board as it stands, which the tool would not send so.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "rsc/device/client.hpp"
+#include "tests/runtime-m4/update/robot.hpp"
+
+namespace robosync::test {
+
+// `crc32`: the one that is announced.
+inline void transfer(Robot& robot, tool::Client& client, std::span<const std::byte> image,
+                     std::uint32_t crc32) {
+  const link::Begin begin{static_cast<std::uint32_t>(image.size()), crc32};
+  client.send(link::MessageType::begin, link::wire_bytes(begin));
+  for (std::uint32_t at = 0; at < image.size(); at += 200) {
+    std::vector<std::byte> payload(sizeof at);
+    std::memcpy(payload.data(), &at, sizeof at);
+    const auto part = image.subspan(at, std::min<std::size_t>(200, image.size() - at));
+    payload.insert(payload.end(), part.begin(), part.end());
+    client.send(link::MessageType::data, payload);
+    robot.run(50);
+  }
+}
+
+}  // namespace robosync::test
