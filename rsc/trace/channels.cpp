@@ -47,11 +47,11 @@ bool is_channel(std::string_view name, std::string_view sensor, std::string_view
          (channel.empty() || compiler::ascii::same(name.substr(dot + 1), channel));
 }
 
-struct ChannelName {
+struct DottedName {
   std::string_view sensor, channel;
 };
 
-ChannelName split(std::string_view name) {
+DottedName split(std::string_view name) {
   const std::size_t at = name.find_first_of(". ");
   if (at == std::string_view::npos) return {name, ""};
   return {name.substr(0, at), name.substr(at + 1)};
@@ -71,13 +71,13 @@ std::uint8_t find_channel(const vm::Image& image, std::string_view sensor,
 }
 
 std::uint8_t find_channel(const vm::Image& image, std::string_view name) {
-  const ChannelName parts = split(name);
+  const DottedName parts = split(name);
   return find_channel(image, parts.sensor, parts.channel);
 }
 
 std::optional<std::uint8_t> find_read_channel(const Program& program, std::string_view sensor,
                                               std::string_view channel) {
-  const ChannelName name = channel.empty() ? split(sensor) : ChannelName{sensor, channel};
+  const DottedName name = channel.empty() ? split(sensor) : DottedName{sensor, channel};
   const auto meant = [&](const auto& entry) {
     return is_channel(entry.first, name.sensor, name.channel);
   };

@@ -1,4 +1,4 @@
-// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--all] [--kept FILE] [--fresh] [--config FILE] [-O0] [--seed N]
+// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--html OUT.html] [--all] [--kept FILE] [--fresh] [--config FILE] [-O0] [--seed N]
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -8,12 +8,15 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/kept.hpp"
 #include "rsc/output.hpp"
 #include "rsc/program.hpp"
+#include "rsc/timeline/page.hpp"
+#include "rsc/timeline/recorder.hpp"
 #include "rsc/timing.hpp"
 #include "rsc/trace/digest.hpp"
 #include "rsc/trace/scenario.hpp"
@@ -28,7 +31,7 @@ namespace {
 constexpr std::uint64_t kDefaultDurationUs = 10'000'000;
 
 struct RunOptions {
-  std::string file, scenario, trace, kept;
+  std::string file, scenario, trace, html, kept;
   CompileOptions how;
   std::optional<std::chrono::milliseconds> duration;
   bool all = false;
@@ -49,6 +52,47 @@ std::vector<std::string> inputs_of(const RunOptions& options, const Program& pro
   return inputs;
 }
 
+// What a run shows while it goes on, and leaves behind.
+class Output {
+public:
+  Output(const RunOptions& options, const Program& program, Kept& kept)
+      : options_(options),
+        program_(program),
+        kept_(kept),
+        names_{&program.image(), {}, &program.origin()},
+        digest_(program.image()),
+        timeline_(program, names_) {}
+
+  void see(const link::Event& event) {
+    kept_.see(event);
+    const std::string json = trace_json(event, names_) + "\n";
+    if (!options_.trace.empty()) trace_ += json;
+    if (!options_.html.empty()) timeline_.see(event);
+    if (options_.format == Format::json)
+      std::cout << json;
+    else if (options_.all || digest_.shows(event))
+      std::cout << trace_line(event, names_) << '\n';
+  }
+
+  void write(std::uint64_t end_us) {
+    kept_.write();
+    if (!options_.trace.empty()) write_output(options_.trace, std::as_bytes(std::span(trace_)));
+    if (options_.html.empty()) return;
+    const std::string page =
+        timeline_page(options_.file, timeline_.finish(end_us), program_.source());
+    write_output(options_.html, std::as_bytes(std::span(page)));
+  }
+
+private:
+  const RunOptions& options_;
+  const Program& program_;
+  Kept& kept_;
+  TraceNames names_;
+  Digest digest_;
+  std::string trace_;
+  TimelineRecorder timeline_;
+};
+
 void run(const RunOptions& options) {
   const Program program = load_program(options.file, options.how);
   Scenario scenario;
@@ -56,23 +100,14 @@ void run(const RunOptions& options) {
   show_notes(scenario);
 
   Kept kept(program, options.file, options.kept, options.fresh);
-  if (!options.trace.empty()) check_output(options.trace, inputs_of(options, program, kept));
+  for (const std::string& output : {options.trace, options.html})
+    if (!output.empty()) check_output(output, inputs_of(options, program, kept));
 
-  const TraceNames names{&program.image(), {}, &program.origin()};
-  Digest digest(program.image());
-  std::string trace;
   std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
   kept.put_into(uploaded);
-  const auto take = [&](const link::Event& event) {
-    kept.see(event);
-    const std::string json = trace_json(event, names) + "\n";
-    if (!options.trace.empty()) trace += json;
-    if (options.format == Format::json)
-      std::cout << json;
-    else if (options.all || digest.shows(event))
-      std::cout << trace_line(event, names) << '\n';
-  };
-  sim::Simulator simulator(uploaded, take, program.board(), options.how.seed);
+  Output output(options, program, kept);
+  const auto see = [&](const link::Event& event) { output.see(event); };
+  sim::Simulator simulator(uploaded, see, program.board(), options.how.seed);
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
     throw Failure(Exit::program,
                   fmt::format("{}: the board would refuse it: {}", options.file,
@@ -80,9 +115,9 @@ void run(const RunOptions& options) {
   }
   for (const Stimulus& stimulus : scenario.stimuli)
     simulator.feed(stimulus.at_us, stimulus.channel, stimulus.value);
-  simulator.run_until(duration_us(options, scenario));
-  kept.write();
-  if (!options.trace.empty()) write_output(options.trace, std::as_bytes(std::span(trace)));
+  const std::uint64_t end_us = duration_us(options, scenario);
+  simulator.run_until(end_us);
+  output.write(end_us);
 }
 
 }  // namespace
@@ -93,6 +128,8 @@ void add_run(Options& options) {
   options.option("--scenario", "S.json", asked->scenario, "what the sensors measure, when");
   add_duration_option(options, "--duration", asked->duration, "else the scenario's, else 10s");
   options.option("--trace", "T.jsonl", asked->trace, "write the trace as JSON lines");
+  options.option("--html", "OUT.html", asked->html,
+                 "write a page that shows the run, for a browser");
   options.flag("--all", asked->all, "show readings and what happens inside as well");
   options.option("--kept", "K.json", asked->kept,
                  "keeps the KEPT numbers; else STEM.kept.json beside the program");

@@ -45,9 +45,10 @@ RUNTIME = {
 MAY_KNOW_THE_PROCESSOR = {"port", "port's sources", "boards/common", "a board"}
 # Inside rsc/: the same. What stands in rsc/ itself includes none of them.
 TOOL = {
-    "verbs": {"device", "trace", "dump"},
+    "verbs": {"device", "trace", "dump", "timeline"},
     "device": {"trace"},
     "trace": set(),
+    "timeline": {"trace"},
     "dump": set(),
 }
 # Inside compiler/, in the order of the passes: what each folder may include of it, besides itself.

@@ -1,0 +1,61 @@
+// See page.hpp.
+#include "rsc/timeline/page.hpp"
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace robosync::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string in_html(std::string_view text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '<')
+      safe += "&lt;";
+    else if (c == '&')
+      safe += "&amp;";
+    else
+      safe += c;
+  }
+  return safe;
+}
+
+// No text in it can end the element it stands in.
+std::string in_script(const Json& run) {
+  std::string safe;
+  for (const char c : run.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<')
+      safe += "\\u003c";
+    else
+      safe += c;
+  }
+  return safe;
+}
+
+}  // namespace
+
+std::string timeline_page(const std::string& title, Json run,
+                          const std::vector<std::string>& source) {
+  run["source"] = source;
+  const PageParts parts = page_parts();
+  const std::array<std::pair<std::string_view, std::string>, 4> places = {
+      {{"@TITLE@", in_html(title)},
+       {"@STYLE@", parts.style},
+       {"@RUN@", in_script(run)},
+       {"@SCRIPT@", parts.script}}};
+  std::string page;
+  std::string_view rest = parts.html;
+  for (const auto& [place, text] : places) {
+    const std::size_t at = rest.find(place);
+    page.append(rest.substr(0, at)).append(text);
+    rest.remove_prefix(at + place.size());
+  }
+  return page.append(rest);
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,21 @@
+// The page that shows a run: one HTML file that needs no network.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace robosync::tool {
+
+// The page's parts, from this folder.
+struct PageParts {
+  const char *html, *style, *script;
+};
+[[nodiscard]] PageParts page_parts();
+
+// `run`: from TimelineRecorder. `title`: of the page. `source`: the lines that the rules' lines mean; may be empty.
+[[nodiscard]] std::string timeline_page(const std::string& title, nlohmann::ordered_json run,
+                                        const std::vector<std::string>& source);
+
+}  // namespace robosync::tool

@@ -1,0 +1,61 @@
+// What a run looked like, for the page that shows it (page.hpp): lanes of what was sensed, felt, commanded, halted and denied,
+// over program time.
+//
+// As JSON, which timeline.js reads; times are in microseconds, values in thousandths of their canonical unit:
+//   end_us, behaviors: [name]
+//   signals:   [{group: "sensor"|"variable", name, unit: {name, factor, offset, divisor}, labels: [word],
+//                points: [[time, value or null]], thresholds: [{value, text, rule}]}]
+//   actuators: [{name, bars: [{from, to, behavior: index or -1, text, rule, step}], halts: [[from, to]]}]
+//   safety:    [{from, to, rule, step}]
+//   denied:    [{at, behavior, by, side, rule, step}]
+//   messages:  [{at, kind: "log"|"alert"|"fault"|"deadline", text, step}]
+//   steps:     [[step, what happened in it, in words …]], in their order
+//   rules:     [{name, line}]
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "link/events.hpp"
+#include "rsc/program.hpp"
+#include "rsc/trace/trace_format.hpp"
+
+namespace robosync::tool {
+
+// Takes the events of a run in their order. May assume nothing of their numbers.
+class TimelineRecorder {
+public:
+  // `program` and `names` must outlive it.
+  TimelineRecorder(const Program& program, const TraceNames& names);
+
+  void see(const link::Event& event);
+  // The whole run, which ended at `end_us`. Ends what still goes on.
+  [[nodiscard]] nlohmann::ordered_json finish(std::uint64_t end_us);
+
+private:
+  using Json = nlohmann::ordered_json;
+
+  void add_signals();
+  void add_rules();
+  void see_value(const link::Event& event, std::size_t signal);
+  void see_rule(const link::Event& event);
+  void see_actuator(const link::Event& event);
+  void begin_bar(const link::Event& event);
+  void end_bar(std::size_t actuator, std::uint64_t at);
+  void end_halt(std::size_t actuator, std::uint64_t at);
+  void add_message(const link::Event& event, const char* kind);
+  void deny(const link::Event& event);
+  int behavior_of(std::size_t rule) const;
+
+  const vm::Image& image_;
+  const TraceNames& names_;
+  Json page_;
+  Json steps_ = Json::array();
+  std::vector<std::optional<std::size_t>> owners_;  // of each actuator: the rule that started last
+  std::vector<bool> moves_, halted_;                // … its last bar goes on
+};
+
+}  // namespace robosync::tool

@@ -1,0 +1,111 @@
+"""The page of rsc run --html in a browser: Chromium, headless, with every example."""
+
+import json
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import rsc
+
+EXAMPLES = rsc.ROOT / "examples"
+WIDE = "16000,2000"  # so that no two commands fall into one pixel
+MARKS = {"lose": "denied", "log": "log", "alert": "alert", "fault": "fault", "deadline": "deadline"}
+# Appended to a page: does what a person does, and writes what is to be seen then into the title.
+HANDS = """<script>
+const seen = {};
+const middle = shape => Math.abs(shape.getBoundingClientRect().left - innerWidth / 2);
+const bar = [...document.querySelectorAll(".bar")].sort((a, b) => middle(a) - middle(b))[0];
+const box = bar.getBoundingClientRect();
+const at = kind => bar.dispatchEvent(new PointerEvent(kind, {bubbles: true, clientX: box.left + 1, clientY: box.top + 1}));
+at("pointermove");
+seen.tip = document.getElementById("tip").textContent;
+at("pointerdown");
+at("pointerup");
+seen.source = document.querySelector("#source .here").textContent;
+const width = () => Number([...document.querySelectorAll(".bar")].find(shape => shape.item === bar.item).getAttribute("width"));
+const before = width();
+document.getElementById("in").click();
+document.getElementById("in").click();
+seen.wider = width() / before;
+dispatchEvent(new KeyboardEvent("keydown", {key: "0"}));
+seen.back = width() / before;
+document.title = JSON.stringify(seen);
+</script>"""
+
+
+def dom(page, size="1300,1200"):
+    """The document as it is when its script has run."""
+    with tempfile.TemporaryDirectory() as profile:
+        done = subprocess.run(
+            ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", f"--user-data-dir={profile}",
+             f"--window-size={size}", "--dump-dom", page.as_uri()],
+            check=True, text=True, timeout=120, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    return done.stdout
+
+
+def count(document, kind):
+    return len(re.findall(rf'class="{kind}[ "]', document))
+
+
+class Page(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def show(self, example, scenario=None):
+        """The page of an example's scenario, or of another one, and its trace."""
+        page, trace = self.folder / "run.html", self.folder / "run.jsonl"
+        if scenario is None:
+            (scenario,) = (path for path in example.glob("*.json") if path.name != "robot.json")
+        rsc.run("run", example / "robot.rsl", "--scenario", scenario, "--fresh", "--kept", self.folder / "kept.json",
+                "--html", page, "--trace", trace)
+        return page, [json.loads(line) for line in trace.read_text("utf-8").splitlines()]
+
+    def test_every_event_of_every_example_is_drawn(self):
+        examples = [path.parent for path in sorted(EXAMPLES.glob("*/robot.rsl")) if len(list(path.parent.glob("*.json"))) == 2]
+        self.assertGreater(len(examples), 10)
+        for example in examples:
+            with self.subTest(example.name):
+                page, trace = self.show(example)
+                document = dom(page, WIDE)
+                kinds = [event["event"] for event in trace]
+                self.assertEqual(count(document, "bar"), kinds.count("command") + kinds.count("trip"))
+                self.assertEqual(count(document, "halt"), kinds.count("halt"))
+                for kind, mark in MARKS.items():
+                    self.assertEqual(count(document, f"mark {mark}"), kinds.count(kind), kind)
+                for name in {f"{event['sensor']} {event['channel']}" for event in trace if event["event"] == "input"}:
+                    self.assertIn(f'aria-label="{name}"', document)
+
+    def test_a_long_run_draws_what_there_is_room_for(self):
+        scenario = self.folder / "long.json"
+        touches = [{"at": f"{20 * i}ms", "sensor": "touch", "channel": "LEVEL", "value": i * 7 % 10} for i in range(20_000)]
+        scenario.write_text(json.dumps({"duration": "400s", "stimuli": touches}), "utf-8")
+        page, trace = self.show(EXAMPLES / "touch_companion", scenario)
+        self.assertGreater(len(trace), 80_000)
+        document = dom(page)
+        for lane in document.split('class="lane"')[1:]:
+            self.assertLess(lane.count("<rect") + lane.count("<text"), 2 * 1300)
+
+    def hands(self, page):
+        page.write_text(page.read_text("utf-8").replace("</body>", HANDS + "</body>"), "utf-8")
+        title = re.search(r"<title>(.*?)</title>", dom(page), re.DOTALL)[1]
+        return json.loads(title.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&"))
+
+    def test_pointing_tells_why_and_clicking_shows_the_rule(self):
+        seen = self.hands(self.show(EXAMPLES / "touch_companion")[0])
+        self.assertIn("4.000 s to 5.354 s: left_arm MOVE QUICKLY", seen["tip"])
+        self.assertIn("touch LEVEL = 5", seen["tip"])
+        self.assertIn("rule at line 1 triggers its ELSE side", seen["tip"])
+        self.assertIn("1  WHEN touch LEVEL < 3", seen["source"])
+
+    def test_zooming_in_and_back(self):
+        seen = self.hands(self.show(EXAMPLES / "touch_companion")[0])
+        self.assertAlmostEqual(seen["wider"], 1 / 0.8**2, 2)
+        self.assertAlmostEqual(seen["back"], 1, 3)
+
+
+if __name__ == "__main__":
+    unittest.main()
