@@ -19,6 +19,7 @@
 #include "compiler/diagnostics/nearest.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/options.hpp"
+#include "rsc/usage.hpp"
 #include "rsc/verb.hpp"
 
 namespace robosync::tool {
@@ -170,6 +171,27 @@ void print_help(const char* verb) {
   const std::vector<std::string> names = verb_names();
   if (std::ranges::find(names, verb) == names.end()) unknown_verb(verb);
   std::cout << app->get_subcommand(verb)->help(app->get_name());
+}
+
+std::vector<VerbUsage> all_usage() {
+  const auto app = make_parser();
+  std::vector<VerbUsage> all;
+  for (const Verb& verb : kVerbs) {
+    VerbUsage usage{
+        std::string(verb.name), std::string(verb.summary), std::string(verb.example), {}};
+    for (const CLI::Option* option : app->get_subcommand(usage.name)->get_options()) {
+      const bool takes_value = option->get_items_expected_max() != 0;
+      OptionUsage one{{}, takes_value ? option->get_type_name() : "", option->get_description()};
+      for (const std::string& name : option->get_lnames())
+        one.names.push_back("--" + name);
+      for (const std::string& name : option->get_snames())
+        one.names.push_back("-" + name);
+      if (one.names.empty()) one.value = option->get_name(true);
+      usage.options.push_back(std::move(one));
+    }
+    all.push_back(std::move(usage));
+  }
+  return all;
 }
 
 int run_command_line(int argument_count, const char* const* arguments) {

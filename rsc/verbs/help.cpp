@@ -1,8 +1,10 @@
-// rsc help [VERB]
+// rsc help [VERB] [--man]
+#include <iostream>
 #include <memory>
 #include <string>
 
 #include "rsc/cli.hpp"
+#include "rsc/usage.hpp"
 #include "rsc/verb.hpp"
 
 namespace robosync::tool {
@@ -11,7 +13,14 @@ void add_help(Options& options) {
   auto verb = std::make_shared<std::string>();
   options.argument("VERB", *verb, "the verb to explain; without it, all are listed",
                    Options::Need::optional);
-  options.runs([verb] { print_help(verb->c_str()); });
+  auto man = std::make_shared<bool>(false);
+  options.flag("--man", *man, "all of it, as a page for man");
+  options.runs([verb, man] {
+    if (*man)
+      std::cout << manual_page(all_usage());
+    else
+      print_help(verb->c_str());
+  });
 }
 
 }  // namespace robosync::tool

@@ -13,7 +13,7 @@ using test::Outcome;
 
 namespace {
 
-constexpr const char* kProgram =
+constexpr const char* kKeptProgram =
     "REMEMBER visits = 0 KEPT\nREMEMBER nearest = 400cm KEPT\nREMEMBER touches = 0\n"
     "WHEN near DISTANCE < 80cm\nDO\n  RAISE visits BY 1\n  RAISE touches BY 1\n"
     "  SET nearest TO MIN(nearest, near DISTANCE)\n  LOG \"visit\", visits, nearest\nEND\n"
@@ -23,7 +23,7 @@ constexpr const char* kProgram =
 // A robot with somebody at 35.5 cm.
 class Visit : public Folder {
 public:
-  Visit() : program(write("robot.rsl", kProgram)) {
+  Visit() : program(write("robot.rsl", kKeptProgram)) {
     write("robot.json", R"({"sensors": [{"name": "near", "type": "VIRTUAL", "channels":
         {"DISTANCE": {"unit": "cm", "range": [2, 400]}}}], "actuators": []})");
     scenario = write("visit.json", R"({"duration": "3s", "stimuli": [

@@ -34,7 +34,7 @@ constexpr const char* kRobot = R"({
   "groups": {"arms": ["left_arm", "right_arm"]}
 })";
 
-constexpr const char* kProgram = R"(STATE mood: calm, scared
+constexpr const char* kTestedProgram = R"(STATE mood: calm, scared
 REMEMBER touches = 0
 
 SAFETY stop_button
@@ -63,7 +63,7 @@ END
 struct TestFolder : Folder {
   explicit TestFolder(const std::string& tests) {
     write("robot.json", kRobot);
-    write("robot.rsl", kProgram + tests);
+    write("robot.rsl", kTestedProgram + tests);
   }
   std::string program = path("robot.rsl");
 };

@@ -1,0 +1,117 @@
+// What bash and fish need to complete the words of rsc. Values are words where an option names them ("human|json"), serial
+// ports after --port, and files everywhere else.
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "rsc/usage.hpp"
+
+namespace robosync::tool {
+namespace {
+
+constexpr std::string_view kPort = "--port";
+
+// "human|json" as "human json"; nothing when the value is no choice of words.
+std::string words_of(const OptionUsage& option) {
+  std::string words = option.value;
+  if (words.find('|') == std::string::npos) return {};
+  for (char& c : words)
+    if (c == '|') c = ' ';
+  return words;
+}
+
+std::string case_of(const VerbUsage& verb, const OptionUsage& option) {
+  if (option.names.empty() || option.value.empty()) return {};
+  std::string patterns;
+  for (const std::string& name : option.names)
+    patterns += fmt::format("{}{},{}", patterns.empty() ? "" : "|", verb.name, name);
+  const std::string words = words_of(option);
+  if (option.names.front() == kPort)
+    return fmt::format("    {}) _rsc_ports; return ;;\n", patterns);
+  if (words.empty()) return fmt::format("    {}) _rsc_files; return ;;\n", patterns);
+  return fmt::format("    {}) _rsc_words \"{}\"; return ;;\n", patterns, words);
+}
+
+std::string names_of(const VerbUsage& verb) {
+  std::string names;
+  for (const OptionUsage& option : verb.options)
+    for (const std::string& name : option.names)
+      names += (names.empty() ? "" : " ") + name;
+  return names;
+}
+
+// As fish quotes within '…'.
+std::string in_fish(std::string_view text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "'";
+}
+
+std::string fish_option(const VerbUsage& verb, const OptionUsage& option) {
+  std::string line = fmt::format("complete -c rsc -n '__fish_seen_subcommand_from {}'", verb.name);
+  for (const std::string& name : option.names)
+    line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+  if (option.names.front() == kPort)
+    line += " -x -a '(ls /dev/ttyACM* /dev/ttyUSB* 2>/dev/null)'";
+  else if (const std::string words = words_of(option); !words.empty())
+    line += fmt::format(" -x -a '{}'", words);
+  else if (!option.value.empty())
+    line += " -r";
+  return fmt::format("{} -d {}\n", line, in_fish(option.description));
+}
+
+}  // namespace
+
+std::string bash_completion(const std::vector<VerbUsage>& verbs) {
+  std::string names, values, options;
+  for (const VerbUsage& verb : verbs) {
+    names += (names.empty() ? "" : " ") + verb.name;
+    for (const OptionUsage& option : verb.options)
+      values += case_of(verb, option);
+    options += fmt::format("    {}) _rsc_words \"{}\" ;;\n", verb.name, names_of(verb));
+  }
+  return fmt::format(R"(# Completion of rsc for bash, printed by `rsc completion bash`.
+_rsc_words() {{ COMPREPLY=($(compgen -W "$1" -- "$word")); }}
+_rsc_files() {{
+  local IFS=$'\n'
+  compopt -o filenames 2>/dev/null
+  COMPREPLY=($(compgen -f -- "$word"))
+}}
+_rsc_ports() {{ COMPREPLY=($(compgen -G "$word*" | grep -E '^/dev/(tty(ACM|USB)|pts/)')); }}
+_rsc() {{
+  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} verb=${{COMP_WORDS[1]}}
+  if [ "$COMP_CWORD" = 1 ]; then
+    _rsc_words "{}"
+    return
+  fi
+  case $verb,$before in
+{}    help,help) _rsc_words "{}"; return ;;
+  esac
+  if [ "${{word#-}}" = "$word" ]; then
+    _rsc_files
+    return
+  fi
+  case $verb in
+{}  esac
+}}
+complete -F _rsc rsc
+)",
+                     names, values, names, options);
+}
+
+std::string fish_completion(const std::vector<VerbUsage>& verbs) {
+  std::string text = "# Completion of rsc for fish, printed by `rsc completion fish`.\n";
+  for (const VerbUsage& verb : verbs)
+    text += fmt::format("complete -c rsc -f -n __fish_use_subcommand -a {} -d {}\n", verb.name,
+                        in_fish(verb.summary));
+  for (const VerbUsage& verb : verbs)
+    for (const OptionUsage& option : verb.options)
+      if (!option.names.empty()) text += fish_option(verb, option);
+  return text;
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,36 @@
+// rsc completion bash|fish
+#include <array>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "rsc/failure.hpp"
+#include "rsc/usage.hpp"
+#include "rsc/verb.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using Script = std::string (*)(const std::vector<VerbUsage>&);
+constexpr std::array<std::pair<std::string_view, Script>, 2> kShells = {
+    {{"bash", bash_completion}, {"fish", fish_completion}}};
+
+}  // namespace
+
+void add_completion(Options& options) {
+  auto shell = std::make_shared<std::string>();
+  options.argument("SHELL", *shell, "bash or fish", Options::Need::required);
+  options.runs([shell] {
+    for (const auto& [name, script] : kShells)
+      if (name == *shell) {
+        std::cout << script(all_usage());
+        return;
+      }
+    throw Failure(Exit::usage, fmt::format("SHELL is bash or fish, not `{}`", *shell));
+  });
+}
+
+}  // namespace robosync::tool
