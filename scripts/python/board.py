@@ -28,6 +28,7 @@ MACHINE = BUILT / "machine"
 DEVICES = {REFERENCE: ["-device", "max34451,id=touch,address=0x70"]}
 # Its store: an EEPROM whose bytes stand in a file.
 STORES = {REFERENCE: (65_536, ["-device", "at24c-eeprom,address=0x50,rom-size=65536,drive=store"])}
+HAVE_WATCHDOG = {REFERENCE}  # in QEMU
 SINCE = {"b-l475e-iot01a": (9, 2), "microbit-v2": (9, 2)}
 UNPACKED = ROOT / "build/qemu/usr"  # by scripts/emulator
 # For whom scripts/emulator makes a QEMU of its own, and what else the machine is told: bytes of its memory.
