@@ -6,7 +6,7 @@ import time
 import unittest
 
 import rsc
-from support import PROGRAMS, RobotTest
+from support import RobotTest
 
 PATIENCE = 20
 WRITE = re.compile(r"device write \(size 4, offset 0x([0-9a-f]+), value 0x([0-9a-f]+)\)")
