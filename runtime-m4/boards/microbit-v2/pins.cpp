@@ -127,7 +127,10 @@ std::uint32_t read(std::uint16_t pin) {
   return output == nullptr ? 0 : state_of(*output).wanted;
 }
 
+// A module that is off lets its pins go, whatever it was about.
 void switch_off() {
+  for (const Pwm& module : kModules)
+    module.enable().write(0);
   for (const Output& output : kOutputs)
     low_at_once(output, state_of(output));
 }

@@ -17,7 +17,7 @@ void write(std::uint16_t pin, std::uint32_t pulse_us);
 // What was written last.
 std::uint32_t read(std::uint16_t pin);
 
-// All of them, at once. Any state of the machine.
+// All of them, at once, and for good: until start(). Any state of the machine.
 void switch_off();
 
 // A module's period has ended. [its interrupt]

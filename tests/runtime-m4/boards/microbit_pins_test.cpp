@@ -227,6 +227,9 @@ TEST_CASE("micro:bit: all off is at once, and before the start it does nothing")
   edge::switch_off();
   for (const auto& [number, time] : chip.high_times(2 * kEdgeFrame))
     CHECK(time == 0);
+  CHECK(chip.served == 0);  // nor does a period end any more
+  edge::write(16, kEdgeFrame);
+  CHECK(chip.high_time(16, 2 * kEdgeFrame) == 0);
   Nrf52833 fresh;
   edge::switch_off();
   CHECK(fresh.level({0, 2}) == Nrf52833::Level::floating);
