@@ -72,9 +72,10 @@ def wired_as_it_can(actuators):
     """What is wired to a pin that is no output of the board goes to the first free one."""
     outputs = [pin for row in PROFILE["outputs"] for pin in range(row["pins"][0], row["pins"][1] + 1)]
     wired = [actuator for actuator in actuators if "pin" in actuator]
-    free = [pin for pin in outputs if pin not in {int(actuator["pin"]) for actuator in wired}]
-    for actuator in wired:
-        if int(actuator["pin"]) not in outputs:
+    taken = [int(str(actuator["pin"]), 0) for actuator in wired]
+    free = [pin for pin in outputs if pin not in taken]
+    for actuator, pin in zip(wired, taken):
+        if pin not in outputs:
             actuator["pin"] = str(free.pop(0))
 
 
