@@ -83,11 +83,21 @@ preset_of() {
   [ -f "stdlib/boards/$1.json" ] || die "no board '$1'; there are: $(cd stdlib/boards && echo *.json | sed 's/\.json//g')" 2
 }
 
-# unpack_emulator: the first part of what scripts/emulator says; `emulator` is then the program. Package and sum are those of
+# unpack_emulator: what scripts/emulator says; `emulator` is then the program, and build/qemu-microbit-v2 the other one, unless
+# that cannot be made: then its message has said why.
+unpack_emulator() {
+  newer_emulator
+  local maker=scripts/python/microbit_emulator.py copy=build/qemu-microbit-v2
+  if [ "$copy" -nt "$emulator" ] && [ "$copy" -nt $maker ]; then return 0; fi
+  rm -f "$copy"
+  /usr/bin/python3 $maker "$emulator" "$copy" || true
+}
+
+# newer_emulator: the first part of that. Package and sum are those of
 # https://deb.debian.org/debian/dists/bookworm-backports/main/binary-amd64/Packages.xz; it uses the libraries of the
 # installed qemu-system-arm.
 emulator=
-unpack_emulator() {
+newer_emulator() {
   local version archive=build/qemu.deb
   local pool=pool/main/q/qemu/qemu-system-arm_10.0.2+ds-2+deb13u1~bpo12+1_amd64.deb
   local sum=edebbab09db3882c48ef9c00049c7c6a2d76d195cb88d830baadd1fb705bbc66

@@ -37,7 +37,7 @@ struct Board {
         usb;  // what its serial line is there, "vendor:product", four hexadecimal digits each
     std::string drive;        // its name as a drive
     std::string drive_takes;  // files with this ending
-    std::string openocd;      // the script that knows it
+    std::string openocd;      // the scripts that know it, with spaces between
     std::string pyocd;        // what it is called
   };
   std::optional<Flash> flash;

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -72,10 +73,13 @@ std::string braced(const fs::path& file) {
 }
 
 std::vector<std::string> command_of(Way way, const Board::Flash& flash, const fs::path& file) {
-  if (way == Way::openocd)
-    return {"openocd", "-f", flash.openocd, "-c",
-            fmt::format("program {} verify reset exit", braced(file))};
-  return {"pyocd", "flash", "--target", flash.pyocd, file.string()};
+  if (way == Way::pyocd) return {"pyocd", "flash", "--target", flash.pyocd, file.string()};
+  std::vector<std::string> command = {"openocd"};
+  std::istringstream scripts(flash.openocd);
+  for (std::string script; scripts >> script;)
+    command.insert(command.end(), {"-f", script});
+  command.insert(command.end(), {"-c", fmt::format("program {} verify reset exit", braced(file))});
+  return command;
 }
 
 void program_by(Way way, const FlashOptions& options, const Board& board) {

@@ -28,8 +28,15 @@ MACHINE = BUILT / "machine"
 DEVICES = {REFERENCE: ["-device", "max34451,id=touch,address=0x70"]}
 # Its store: an EEPROM whose bytes stand in a file, as many as its profile says.
 STORES = {REFERENCE: "at24c-eeprom,address=0x50,rom-size={size},drive=store"}
-SINCE = {"b-l475e-iot01a": (9, 2)}
+HAVE_WATCHDOG = {REFERENCE}  # in QEMU
+SINCE = {"b-l475e-iot01a": (9, 2), "microbit-v2": (9, 2)}
 UNPACKED = ROOT / "build/qemu/usr"  # by scripts/emulator
+# For whom scripts/emulator makes a QEMU of its own, and what else the machine is told: bytes of its memory.
+MADE = {"microbit-v2": ROOT / "build/qemu-microbit-v2"}
+MEMORY = {"microbit-v2": ["-global", "nrf51-soc.sram-size=131072", "-global", "nrf51-soc.flash-size=524288"]}
+# Whose UART in QEMU loses its interrupt when a byte has to wait for the reader at the other end of the line. On a Unix
+# socket that happens after some hundred bytes, on TCP after megabytes.
+NEVER_WAITS = {"microbit-v2"}
 TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
 BOOT_SECONDS = 20  # on a busy machine
 # How virtual time passes: it counts instructions, so that a firmware that is held up by a busy host
@@ -51,23 +58,31 @@ def machine():
 
 @functools.cache
 def emulator():
-    """The installed QEMU when it has the board, else the one that scripts/emulator has unpacked."""
+    """The installed QEMU when it has the board, else the one that scripts/emulator has unpacked or made."""
     installed = shutil.which("qemu-system-arm")
     if installed is None:
         raise BoardError("qemu-system-arm is not installed (Debian package qemu-system-arm)")
     since = SINCE.get(NAME, (0, 0))
     said = subprocess.run([installed, "--version"], check=True, text=True, stdout=subprocess.PIPE).stdout
     if tuple(map(int, re.search(r"version (\d+)\.(\d+)", said).groups())) >= since:
-        return [installed]
+        return [made(installed)]
     unpacked = UNPACKED / "bin/qemu-system-arm"
     if not unpacked.is_file():
         raise BoardError(f"{NAME} needs QEMU {since[0]}.{since[1]} or newer: run scripts/emulator first")
-    return [str(unpacked), "-L", str(UNPACKED / "share/qemu")]
+    return [made(str(unpacked)), "-L", str(UNPACKED / "share/qemu")]
+
+
+def made(program):
+    """The one made of it for this board, if any."""
+    own = MADE.get(NAME)
+    if own is not None and not own.is_file():
+        raise BoardError(f"{NAME} needs a QEMU of its own, which is not there: run scripts/emulator first")
+    return str(own or program)
 
 
 def qemu():
     """How QEMU is started for that board."""
-    return [*emulator(), "-M", machine(), "-display", "none", "-monitor", "none"]
+    return [*emulator(), "-M", machine(), *MEMORY.get(NAME, []), "-display", "none", "-monitor", "none"]
 
 
 class Qmp:
@@ -128,6 +143,7 @@ class Board:
         self.qmp_path = Path(self._folder.name) / "qmp"
         self.serial_path = Path(serial_path or Path(self._folder.name) / "serial").resolve()
         self._pty = pty
+        self._tcp = NAME in NEVER_WAITS and not pty and not serial_path
         self._log = Path(self._folder.name) / "qemu.log"
         self._process = self._start(elf, icount, [*extra, *(with_store(store) if store else [])])
         self.qmp = None
@@ -140,6 +156,8 @@ class Board:
 
     def _start(self, elf, icount, extra):
         line = "pty" if self._pty else f"socket,path={self.serial_path},server=on,wait=off"
+        if self._tcp:
+            line = "socket,host=127.0.0.1,port=0,server=on,wait=off,nodelay=on"
         command = [*qemu(), "-kernel", str(elf),
                    "-chardev", f"{line},id=line", "-serial", "chardev:line",
                    *DEVICES.get(NAME, []),
@@ -147,7 +165,7 @@ class Board:
                    "-icount", icount, *extra]
         with open(self._log, "wb") as log:
             modules = {"QEMU_MODULE_DIR": str(UNPACKED / "lib/x86_64-linux-gnu/qemu")}  # those of its own build
-            environment = {**os.environ, **(modules if str(UNPACKED) in command[0] else {})}
+            environment = {**os.environ, **(modules if str(UNPACKED / "share/qemu") in command else {})}
             return subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                     start_new_session=True)
 
@@ -162,12 +180,14 @@ class Board:
         raise BoardError("QEMU does not answer on its control socket")
 
     def _find_port(self):
-        if not self._pty:
+        if not self._pty and not self._tcp:
             return f"unix:{self.serial_path}"
         for device in self.qmp.command("query-chardev"):
+            if device["label"] == "line" and self._tcp:
+                return re.search(r"tcp:[\d.]+:\d+", device["filename"])[0]
             if device["label"] == "line":
                 return device["filename"].removeprefix("pty:")
-        raise BoardError("QEMU made no pty")
+        raise BoardError("QEMU made no line")
 
     def check(self):
         """Raises with QEMU's last words when it is not running any more."""

@@ -183,5 +183,6 @@ TEST_CASE(
     if (board.name == compiler::default_board().name)
       CHECK(costs.clock_hz == tool::board_costs().clock_hz);
     if (board.name == "b-l475e-iot01a") CHECK(costs.clock_hz == 80'000'000);
+    if (board.name == "microbit-v2") CHECK(costs.clock_hz == 64'000'000);
   }
 }

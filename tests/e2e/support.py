@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, NAME, Board
+from board import FAST, FIRMWARE, NAME, ROOT, Board
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "generators/programs"))
@@ -20,6 +20,7 @@ from stimuli import UNITS  # noqa: E402
 PROGRAMS = HERE / "programs"
 CONFIG = PROGRAMS / "robot.json"
 SEED = 20_250_711
+PROFILE = json.loads((ROOT / f"stdlib/boards/{NAME}.json").read_text("utf-8"))
 
 
 class RobotTest(unittest.TestCase):
@@ -46,8 +47,9 @@ class RobotTest(unittest.TestCase):
         return image
 
     def for_board(self, config):
-        """A robot.json, for the board that runs."""
+        """A robot.json, for the board that runs: on pins that it has."""
         robot = json.loads(Path(config).read_text())
+        wired_as_it_can(robot.get("actuators", []))
         path = self.folder / "robot.json"
         path.write_text(json.dumps({**robot, "board": NAME}))
         return path
@@ -64,6 +66,17 @@ class RobotTest(unittest.TestCase):
         path = self.folder / "scenario.json"
         path.write_text(json.dumps({"stimuli": stimuli}))
         return path
+
+
+def wired_as_it_can(actuators):
+    """What is wired to a pin that is no output of the board goes to the first free one."""
+    outputs = [pin for row in PROFILE["outputs"] for pin in range(row["pins"][0], row["pins"][1] + 1)]
+    wired = [actuator for actuator in actuators if "pin" in actuator]
+    taken = [int(str(actuator["pin"]), 0) for actuator in wired]
+    free = [pin for pin in outputs if pin not in taken]
+    for actuator, pin in zip(wired, taken):
+        if pin not in outputs:
+            actuator["pin"] = str(free.pop(0))
 
 
 def host_trace(image, scenario, until_ms):

@@ -5,11 +5,12 @@ import unittest
 
 import examples
 import rsc
+import stimuli
 from board import NAME
+from support import PROFILE, PROGRAMS
 from traces import TraceTest
 
 COMPANION = rsc.ROOT / "examples/touch_companion"
-PROFILE = json.loads((rsc.ROOT / f"stdlib/boards/{NAME}.json").read_text())
 SAFETY_PERIOD_US = 30_000  # without a program
 READINGS_SEED = 475
 BY_I2C = """{"board": "%s", "actuators": [],
@@ -45,6 +46,10 @@ class EveryBoard(TraceTest):
         self.units = examples.units(COMPANION)
         lines = self.check(COMPANION / "robot.rsl", examples.drawn(COMPANION, READINGS_SEED), config)
         self.assertTrue(any('"verb":"MOVE"' in line for line in lines))
+
+    def test_the_papers_program_does_what_it_does_on_the_host(self):
+        lines = self.check(PROGRAMS / "paper.rsl", stimuli.touch(0, 1, 2, 3, 4, 5, 2, 2, 10, 0))
+        self.assertTrue(any("greeting.wav" in line for line in lines))
 
     def test_stop_holds_until_resume(self):
         config = self.folder / "companion.json"

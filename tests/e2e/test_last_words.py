@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 import rsc
-from board import FIRMWARE, NAME
+from board import FIRMWARE, HAVE_WATCHDOG, NAME
 from debugger import IN_SAFETY, PC, DebuggedTest, endless_loop
 from support import LineReader
 
@@ -63,6 +63,7 @@ class LastWords(DebuggedTest):
             self.assertRegex(self.first_line(), r"\(reset: software\).* last fault: thread safety stopped: .* pc a0000000")
         self.assertIn("fault     thread safety stopped", rsc.run("info", "--port", self.board.port))
 
+    @unittest.skipUnless(NAME in HAVE_WATCHDOG, "this board has no watchdog in QEMU")
     def test_a_safety_thread_that_hangs_is_told_after_the_reset(self):
         self.send_safety_to(endless_loop())
         self.assertIsNone(self.await_reset("watchdog")["last_fault"])

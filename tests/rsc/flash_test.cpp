@@ -88,6 +88,26 @@ TEST_CASE("flash calls openocd, else pyocd, and says with which words") {
   CHECK(computer.has("pyocd.told"));
 }
 
+TEST_CASE(
+    "flash puts the .hex on a micro:bit's drive, and gives openocd both scripts that it takes") {
+  const Computer computer;
+  computer.install("openocd");
+  const std::string firmware = "RoboSync microbit-v2 0.1.0";
+  const std::string hex = computer.write("robosync-microbit-v2.hex", hex_of(firmware));
+  computer.write("robosync-microbit-v2.bin", firmware);
+  const auto flash = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"flash", "--board", "microbit-v2", hex});
+    return test::rsc(std::move(arguments), {"PATH=" + computer.path("bin")});
+  };
+  CHECK(flash({"--drive", computer.path("drive")}).exit == 0);
+  CHECK(computer.read("drive/robosync-microbit-v2.hex") == hex_of(firmware));
+  CHECK(flash({"--by", "openocd"}).exit == 0);
+  CHECK(computer.read("openocd.told") ==
+        "-f\ninterface/cmsis-dap.cfg\n-f\ntarget/nrf52.cfg\n-c\nprogram {" + hex +
+            "} verify reset exit\n");
+  CHECK_THAT(flash({"--by", "drive"}).err, Contains("no drive MICROBIT is mounted"));
+}
+
 TEST_CASE("flash says what to do when a tool fails, and when there is no board") {
   const Computer computer;
   Outcome outcome = computer.flash({computer.hex});

@@ -3,7 +3,8 @@
 #   board_sources   the board's own sources, in boards/NAME/
 #   board_script    its linker script, which includes firmware.ld
 #   board_machine   what QEMU calls the board (build/…/machine, for scripts and tests)
-#   board_clock     ROBOSYNC_CLOCK_IS_SYSTICK when it has no free-running counter of 32 bits (port/cortex-m4/clock.hpp)
+#   board_clock     when no load reads a free-running counter of 32 bits: ROBOSYNC_CLOCK_IS_SYSTICK where there is none,
+#                   or ROBOSYNC_CLOCK_IS_CALLED (port/cortex-m4/clock.hpp)
 list(TRANSFORM board_sources PREPEND boards/${ROBOSYNC_BOARD}/)
 file(WRITE ${PROJECT_BINARY_DIR}/machine "${board_machine}\n")
 

@@ -16,7 +16,7 @@ extern "C" robosync::kernel::Kernel robosync_kernel;
 
 namespace robosync::port::hooks {
 
-// Counts of the core's clock, which SysTick and robosync_clock count, in a tick (kernel::kTick).
+// Counts of the clock (clock.hpp) in a tick (kernel::kTick).
 extern const std::uint32_t kTickCounts;
 
 // Only where the clock is not SysTick (clock.hpp). All threads wait: after so many counts an interrupt of the lowest priority is to end the core's

@@ -10,6 +10,12 @@ namespace robosync::port {
 // The test's.
 std::uint32_t read_register(std::uintptr_t address);
 void write_register(std::uintptr_t address, std::uint32_t value);
+std::uint32_t bus_address(const volatile void* memory);
+#else
+// Where a peripheral that reads memory by itself finds it.
+inline std::uint32_t bus_address(const volatile void* memory) {
+  return reinterpret_cast<std::uintptr_t>(memory);
+}
 #endif
 
 struct Register {

@@ -48,7 +48,7 @@ robosync_saving_core:
     stmdb   r0!, {r4-r11, lr}
 
 robosync_saved:
-#if defined(ROBOSYNC_CLOCK_IS_SYSTICK)
+#if defined(ROBOSYNC_CLOCK_IS_SYSTICK) || defined(ROBOSYNC_CLOCK_IS_CALLED)
     mov     r5, r0
     bl      robosync_read_clock
     mov     r4, r0

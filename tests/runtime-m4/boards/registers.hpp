@@ -16,4 +16,7 @@ public:
   virtual void write(std::uintptr_t address, std::uint32_t value) = 0;
 };
 
+// What the code under test has told a peripheral to read by itself: the peripheral has the address as a number of 32 bits.
+const volatile void* memory_at(std::uint32_t bus_address);
+
 }  // namespace robosync::tests

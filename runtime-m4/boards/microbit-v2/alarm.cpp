@@ -1,0 +1,27 @@
+// What the port asks of TIMER0: the clock, which it wants to count down, and what ends the core's sleep.
+#include "runtime-m4/boards/microbit-v2/clock.hpp"
+#include "runtime-m4/boards/microbit-v2/registers.hpp"
+#include "runtime-m4/port/cortex-m4/clock.hpp"
+#include "runtime-m4/port/cortex-m4/core.hpp"
+#include "runtime-m4/port/cortex-m4/hooks.hpp"
+
+std::uint32_t robosync_read_clock() {
+  return ~robosync::boards::microbit::counted();
+}
+
+namespace robosync::port::hooks {
+
+namespace microbit = boards::microbit;
+
+void set_alarm(std::uint32_t counts) {
+  const bool missed = microbit::begin_alarm(counts);
+  core::enable_interrupt(microbit::timer::kInterrupt, core::kSwitchPriority);
+  if (missed) core::pend_interrupt(microbit::timer::kInterrupt);
+}
+
+void clear_alarm() {
+  microbit::end_alarm();
+  core::clear_interrupt(microbit::timer::kInterrupt);
+}
+
+}  // namespace robosync::port::hooks

@@ -1,0 +1,86 @@
+#include "runtime-m4/boards/microbit-v2/board.hpp"
+
+#include "runtime-m4/boards/common/firmware.hpp"
+#include "runtime-m4/boards/common/reset.hpp"
+#include "runtime-m4/boards/microbit-v2/clock.hpp"
+#include "runtime-m4/boards/microbit-v2/pins.hpp"
+#include "runtime-m4/kernel/time.hpp"
+#include "runtime-m4/port/cortex-m4/hooks.hpp"
+
+namespace robosync::boards::microbit {
+
+namespace {
+
+Board board;
+
+}  // namespace
+
+// The pins first: they are low as soon as can be.
+Board::Board() : chip_reset_(take_reset_cause()) {
+  pins::start();
+  for (const Pwm& module : {kPwm0, kPwm1})
+    port::core::enable_interrupt(module.interrupt);
+  if (!start_clock()) port::core::reset();
+}
+
+// A reset by the watchdog comes without warning, and one after two faults inside of each other too: nobody could note them
+// in memory.
+link::ResetReason Board::reset_reason() const {
+  switch (chip_reset_) {
+    case ChipReset::watchdog:
+      return ResetReason::watchdog;
+    case ChipReset::lockup:
+      return ResetReason::software;
+    case ChipReset::other:
+      break;
+  }
+  return last_reset();
+}
+
+bool Board::i2c_transfer(std::uint8_t /*bus*/, std::uint8_t /*address*/,
+                         std::span<const std::byte> /*out*/, std::span<std::byte> /*in*/) {
+  return false;
+}
+
+void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {
+  pins::write(pin, pulse_us);
+}
+
+std::uint32_t Board::pwm_read(std::uint16_t pin) const {
+  return pins::read(pin);
+}
+
+}  // namespace robosync::boards::microbit
+
+robosync::boards::Board& robosync_board = robosync::boards::microbit::board;
+
+void robosync::boards::switch_outputs_off() {
+  microbit::pins::switch_off();
+}
+
+const std::uint32_t robosync::port::hooks::kTickCounts =
+    robosync::boards::microbit::timer::kHz / 1'000'000 * robosync::kernel::kTick;
+
+extern "C" {
+
+void NMI_Handler();
+void Uart0_Handler();
+void Pwm_Handler();
+
+// The chip has nothing that causes one.
+void NMI_Handler() {
+  robosync::boards::reset_after({});
+}
+
+void Uart0_Handler() {
+  using robosync::boards::microbit::Uart0;
+  auto& line = robosync::boards::microbit::board.line();
+  if (Uart0::has_received()) line.on_receive();
+  if (Uart0::wants_to_send() && Uart0::can_send()) line.on_transmit();
+}
+
+void Pwm_Handler() {
+  robosync::boards::microbit::pins::on_period_end();
+}
+
+}  // extern "C"

@@ -1,0 +1,18 @@
+// The interrupts of the board that the firmware uses, for boards/common/vectors.cpp. TIMER0's only ends the core's sleep,
+// and is never taken.
+#pragma once
+
+#include "runtime-m4/boards/common/vectors.hpp"
+#include "runtime-m4/boards/microbit-v2/registers.hpp"
+
+extern "C" void Uart0_Handler();
+extern "C" void Pwm_Handler();
+
+namespace robosync::boards {
+
+inline constexpr std::size_t kInterrupts = 48;
+inline constexpr std::array kUsedInterrupts{Interrupt{microbit::uart::kInterrupt, Uart0_Handler},
+                                            Interrupt{microbit::kPwm0.interrupt, Pwm_Handler},
+                                            Interrupt{microbit::kPwm1.interrupt, Pwm_Handler}};
+
+}  // namespace robosync::boards

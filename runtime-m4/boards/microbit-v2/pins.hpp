@@ -1,0 +1,26 @@
+// The pins that give pulses: those of the edge connector that nothing on the board uses, numbered as printed there, by the
+// modules PWM0 and PWM1. A frame is 20 ms.
+//
+// From reset until start() they are not driven.
+#pragma once
+
+#include <cstdint>
+
+namespace robosync::boards::microbit::pins {
+
+// All pins low.
+void start();
+
+// The pulse in microseconds, from the next frame on, or the one after: no frame has part of one. 0 is off, at once; who was
+// switched off gives pulses again 60 ms later at the earliest. A pin that gives no pulses is left alone.
+void write(std::uint16_t pin, std::uint32_t pulse_us);
+// What was written last.
+std::uint32_t read(std::uint16_t pin);
+
+// All of them, at once, and for good: until start(). Any state of the machine.
+void switch_off();
+
+// A module's period has ended. [its interrupt]
+void on_period_end();
+
+}  // namespace robosync::boards::microbit::pins

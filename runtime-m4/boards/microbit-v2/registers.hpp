@@ -1,0 +1,165 @@
+// The peripherals of the nRF52833 that the firmware uses, and how the micro:bit V2 wires them. Facts of Nordic's nRF52833
+// Product Specification (the chip) and of tech.microbit.org (the board).
+#pragma once
+
+#include <cstdint>
+
+#include "runtime-m4/port/cortex-m4/register.hpp"
+
+namespace robosync::boards::microbit {
+
+using port::Register;
+
+inline constexpr std::uint32_t kClockHz = 64'000'000;  // of the core
+
+// A task is done when 1 is written; an event stands until 0 is.
+inline constexpr std::uint32_t kDoIt = 1;
+
+// A write reaches a peripheral some cycles later. When it takes an interrupt back, its handler must not have ended by then:
+// the reading lets them pass.
+inline void forget(Register event) {
+  event.write(0);
+  static_cast<void>(event.read());
+}
+
+namespace clock {
+inline constexpr Register kStartCrystal{0x4000'0000};
+inline constexpr Register kCrystalRuns{0x4000'0100};  // event
+}  // namespace clock
+
+namespace power {
+inline constexpr Register kResetReason{0x4000'0400};  // adds up; 1 forgets
+inline constexpr std::uint32_t kPinReset = 1U << 0;
+inline constexpr std::uint32_t kWatchdogReset = 1U << 1;
+inline constexpr std::uint32_t kLockup = 1U << 3;
+}  // namespace power
+
+namespace flash {
+inline constexpr Register kInstructionCache{0x4001'E540};
+inline constexpr std::uint32_t kOn = 1;
+}  // namespace flash
+
+struct Pin {  // {0, 6} is P0.06
+  unsigned port, bit;
+
+  constexpr std::uint32_t mask() const { return 1U << bit; }
+  // As peripherals are told which one they have.
+  constexpr std::uint32_t number() const { return port << 5 | bit; }
+  constexpr Register set_high() const { return {base() + 0x508}; }
+  constexpr Register set_low() const { return {base() + 0x50C}; }
+  constexpr Register configuration() const { return {base() + 0x700 + std::uintptr_t{4} * bit}; }
+
+  static constexpr std::uint32_t kOutput = 0b11;  // which nobody reads
+  static constexpr std::uint32_t kInputPulledUp = 0b1100;
+
+private:
+  constexpr std::uintptr_t base() const { return 0x5000'0000 + std::uintptr_t{0x300} * port; }
+};
+inline constexpr std::uint32_t kNoPin = 1U << 31;  // in the place of a pin's number
+
+namespace uart {  // UART0, the one without DMA, to the interface chip, which is a serial port of USB
+inline constexpr unsigned kInterrupt = 2;
+inline constexpr Pin kTransmitPin{0, 6};
+inline constexpr Pin kReceivePin{1, 8};
+inline constexpr Register kStartReceiving{0x4000'2000};
+inline constexpr Register kStartTransmitting{0x4000'2008};
+inline constexpr Register kReceived{0x4000'2108};     // event: the next byte is in kReceive
+inline constexpr Register kSent{0x4000'211C};         // event: the byte has left
+inline constexpr Register kInterruptOn{0x4000'2304};  // reads as what is on
+inline constexpr Register kInterruptOff{0x4000'2308};
+inline constexpr std::uint32_t kWhenReceived = 1U << 2;
+inline constexpr std::uint32_t kWhenSent = 1U << 7;
+inline constexpr Register kEnable{0x4000'2500};
+inline constexpr std::uint32_t kOn = 4;
+inline constexpr Register kTransmitPinSelect{0x4000'250C};
+inline constexpr Register kReceivePinSelect{0x4000'2514};
+inline constexpr Register kReceive{0x4000'2518};
+inline constexpr Register kTransmit{0x4000'251C};
+inline constexpr Register kBaudRate{0x4000'2524};
+inline constexpr std::uint32_t k115200 = 0x01D7'E000;
+}  // namespace uart
+
+namespace timer {  // TIMER0, which counts while the core sleeps; SysTick does not
+inline constexpr unsigned kInterrupt = 8;
+inline constexpr std::uint32_t kHz = 16'000'000;
+inline constexpr Register kStart{0x4000'8000};
+inline constexpr Register kInterruptOn{0x4000'8304};
+inline constexpr Register kInterruptOff{0x4000'8308};
+inline constexpr Register kWidth{0x4000'8508};
+inline constexpr std::uint32_t k32Bits = 3;
+inline constexpr Register kPrescaler{0x4000'8510};
+
+struct Channel {
+  unsigned index;
+  constexpr Register capture() const { return {0x4000'8040 + std::uintptr_t{4} * index}; }
+  constexpr Register reached() const { return {0x4000'8140 + std::uintptr_t{4} * index}; }
+  constexpr Register value() const { return {0x4000'8540 + std::uintptr_t{4} * index}; }
+  constexpr std::uint32_t interrupt() const { return 1U << (16 + index); }
+};
+inline constexpr Channel kAlarm{0};
+inline constexpr Channel kReading{1};
+}  // namespace timer
+
+namespace watchdog {  // WDT, on the oscillator of 32,768 Hz
+inline constexpr std::uint32_t kHz = 32'768;
+inline constexpr Register kStart{0x4001'0000};
+inline constexpr Register kReload{0x4001'0504};  // counts - 1
+inline constexpr Register kKicksAsked{0x4001'0508};
+inline constexpr std::uint32_t kFirst = 1U << 0;
+inline constexpr Register kConfiguration{0x4001'050C};
+inline constexpr std::uint32_t kRunsInSleep = 1U << 0;  // and not while a debugger halts the core
+inline constexpr Register kKick{0x4001'0600};           // the first one
+inline constexpr std::uint32_t kKicked = 0x6E52'4635;
+}  // namespace watchdog
+
+// What gives pulses: a counter of 15 bits, and four channels that are compared with it. What they are compared with the
+// module fetches itself from memory, anew for each period (pins.cpp).
+struct Pwm {
+  std::uintptr_t base;
+  unsigned interrupt;
+
+  static constexpr unsigned kChannels = 4;
+  static constexpr unsigned kSequences = 2;
+
+  constexpr Register play() const { return {base + 0x008}; }
+  constexpr Register period_ended() const { return {base + 0x118}; }  // event
+  constexpr Register shortcuts() const { return {base + 0x200}; }
+  constexpr Register interrupt_on() const { return {base + 0x304}; }
+  constexpr Register interrupt_off() const { return {base + 0x308}; }
+  constexpr Register enable() const { return {base + 0x500}; }
+  constexpr Register top() const { return {base + 0x508}; }
+  constexpr Register prescaler() const { return {base + 0x50C}; }
+  constexpr Register decoder() const { return {base + 0x510}; }
+  constexpr Register loop() const { return {base + 0x514}; }
+  constexpr Register values(unsigned sequence) const {
+    return {base + 0x520 + std::uintptr_t{0x20} * sequence};
+  }
+  constexpr Register count(unsigned sequence) const {
+    return {base + 0x524 + std::uintptr_t{0x20} * sequence};
+  }
+  // Periods that a value is kept for besides its own, and that come behind a sequence.
+  constexpr Register refresh(unsigned sequence) const {
+    return {base + 0x528 + std::uintptr_t{0x20} * sequence};
+  }
+  constexpr Register end_delay(unsigned sequence) const {
+    return {base + 0x52C + std::uintptr_t{0x20} * sequence};
+  }
+  constexpr Register pin(unsigned channel) const {
+    return {base + 0x560 + std::uintptr_t{4} * channel};
+  }
+
+  static constexpr std::uint32_t kOn = 1;
+  static constexpr std::uint32_t kPeriodEnds = 1U << 6;  // interrupt
+  static constexpr std::uint32_t kPlayAgain = 1U << 2;   // when all loops are done
+  static constexpr std::uint32_t kMicroseconds = 4;      // 16 MHz / 16
+  static constexpr std::uint32_t kValueEach = 2;         // a channel
+  static constexpr std::uint32_t kMostLoops = 0xFFFF;
+  // A value that is compared: from the begin of the period the channel is high, or it is low, until the counter has
+  // come so far; for ever, when that is behind the counter's end.
+  static constexpr std::uint16_t kHighUntil = 1U << 15;
+  static constexpr std::uint16_t kNever = 0x7FFF;
+};
+inline constexpr Pwm kPwm0{0x4001'C000, 28};
+inline constexpr Pwm kPwm1{0x4002'1000, 33};
+
+}  // namespace robosync::boards::microbit

@@ -1,0 +1,30 @@
+// See resets.hpp.
+#include "runtime-m4/boards/microbit-v2/resets.hpp"
+
+#include "runtime-m4/boards/microbit-v2/registers.hpp"
+
+namespace robosync::boards::microbit {
+
+// After a reset by the pin other bits may be set that should not (Nordic's anomaly 136).
+ChipReset take_reset_cause() {
+  const std::uint32_t causes = power::kResetReason.read();
+  power::kResetReason.write(causes);
+  if ((causes & power::kPinReset) != 0) return ChipReset::other;
+  if ((causes & power::kWatchdogReset) != 0) return ChipReset::watchdog;
+  return (causes & power::kLockup) != 0 ? ChipReset::lockup : ChipReset::other;
+}
+
+// It may run already, as a reset by the core may leave it alone: then it does not hear what is said here, but the kick.
+void start_watchdog() {
+  watchdog::kConfiguration.write(watchdog::kRunsInSleep);
+  watchdog::kReload.write(watchdog::kHz / 10 - 1);
+  watchdog::kKicksAsked.write(watchdog::kFirst);
+  watchdog::kStart.write(kDoIt);
+  kick_watchdog();
+}
+
+void kick_watchdog() {
+  watchdog::kKick.write(watchdog::kKicked);
+}
+
+}  // namespace robosync::boards::microbit

@@ -1,0 +1,60 @@
+// UART0, which the interface chip of the board makes a serial port of USB: the link's serial line.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "runtime-m4/boards/microbit-v2/registers.hpp"
+
+namespace robosync::boards::microbit {
+
+// All of it but what the core's interrupt controller is told: for SerialLine.
+class Uart {
+public:
+  // Both pins are high, as a line is where nobody speaks, before UART0 has them.
+  static void open() {
+    uart::kTransmitPin.set_high().write(uart::kTransmitPin.mask());
+    uart::kTransmitPin.configuration().write(Pin::kOutput);
+    uart::kReceivePin.configuration().write(Pin::kInputPulledUp);
+    uart::kTransmitPinSelect.write(uart::kTransmitPin.number());
+    uart::kReceivePinSelect.write(uart::kReceivePin.number());
+    uart::kBaudRate.write(uart::k115200);
+    uart::kEnable.write(uart::kOn);
+    sends_ = false;
+    forget(uart::kSent);
+    forget(uart::kReceived);
+    uart::kInterruptOn.write(uart::kWhenReceived);
+    uart::kStartTransmitting.write(kDoIt);
+    uart::kStartReceiving.write(kDoIt);
+  }
+
+  // It takes a byte when the one before has left, which it says once. [interrupt]
+  static bool can_send() {
+    if (sends_ && uart::kSent.read() != 0) {
+      forget(uart::kSent);
+      sends_ = false;
+    }
+    return !sends_;
+  }
+  static void send(std::byte byte) {
+    sends_ = true;
+    uart::kTransmit.write(std::to_integer<std::uint32_t>(byte));
+  }
+
+  // Behind the byte that is read up to five more wait; the next one says so anew.
+  static bool has_received() { return uart::kReceived.read() != 0; }
+  static std::byte receive() {
+    forget(uart::kReceived);
+    return static_cast<std::byte>(uart::kReceive.read());
+  }
+
+  static void wants_to_send(bool wants) {
+    (wants ? uart::kInterruptOn : uart::kInterruptOff).write(uart::kWhenSent);
+  }
+  static bool wants_to_send() { return uart::kInterruptOn.has(uart::kWhenSent); }
+
+private:
+  static inline bool sends_ = false;  // a byte is on its way
+};
+
+}  // namespace robosync::boards::microbit

@@ -1,0 +1,94 @@
+"""The emulator of the micro:bit V2: QEMU's machine `microbit`, which is the first micro:bit, with another core and clock.
+
+usage: microbit_emulator.py QEMU TARGET
+
+TARGET becomes a copy of the program QEMU (qemu-system-arm, x86-64) in which two numbers of that machine are others, both as
+long as before: its core is a Cortex-M4 instead of a Cortex-M0, and runs with 64 MHz instead of 16. How much memory it has is a
+property, and set at its start (board.py). QEMU itself stays as it is. Each place must be found exactly once; else nothing is
+written.
+"""
+
+import struct
+import sys
+from pathlib import Path
+
+CORE, NEW_CORE = b"\0cortex-m0-arm-cpu\0", b"\0cortex-m4-arm-cpu\0"
+# A clock's period in QEMU, in 2^-32 ns, is the second argument of a call: `movabs $period, %rsi`.
+MOVE = b"\x48\xbe"
+HZ, NEW_HZ = 16_000_000, 64_000_000
+# Many machines have such a call. That of this one is in the function that names its memory some hundred bytes later.
+MEMORY = b"\0nrf51.sram\0"
+NEAR = 1024
+LOAD_ADDRESS = b"\x48\x8d"  # `lea offset(%rip), register`, and a byte that says which
+LOAD = 1  # a segment
+
+
+class Unknown(ValueError):
+    """The program is not built as it should be."""
+
+
+def load_clock(hz):
+    return MOVE + struct.pack("<Q", (1_000_000_000 << 32) // hz)
+
+
+def places(program, wanted):
+    at = program.find(wanted)
+    while at >= 0:
+        yield at
+        at = program.find(wanted, at + 1)
+
+
+def only(found, what):
+    found = list(found)
+    if len(found) != 1:
+        raise Unknown(f"{what} is there {len(found)} times, not once")
+    return found[0]
+
+
+def address_of(program, at):
+    """Where that byte of the file is when the program runs."""
+    headers, size, count = (*struct.unpack_from("<Q", program, 32), *struct.unpack_from("<HH", program, 54))
+    for i in range(count):
+        kind, _, offset, address, _, length = struct.unpack_from("<IIQQQQ", program, headers + i * size)
+        if kind == LOAD and offset <= at < offset + length:
+            return at - offset + address
+    raise Unknown("a place of the file is not loaded")
+
+
+def loads_address(program, at, wanted):
+    """Some instruction behind `at` does."""
+    for place in places(program[at:at + NEAR], LOAD_ADDRESS):
+        end = at + place + len(LOAD_ADDRESS) + 1 + 4
+        offset, = struct.unpack_from("<i", program, end - 4)
+        if address_of(program, end) + offset == wanted:
+            return True
+    return False
+
+
+def patched(program):
+    if program[:5] != b"\x7fELF\x02" or struct.unpack_from("<H", program, 18) != (62,):
+        raise Unknown("it is no program for x86-64")
+    memory = address_of(program, only(places(program, MEMORY), "the name of its memory")) + 1
+    core = only(places(program, CORE), "the name of its core")
+    clock = only((at for at in places(program, load_clock(HZ)) if loads_address(program, at, memory)), "its clock")
+    changed = bytearray(program)
+    changed[core:core + len(CORE)] = NEW_CORE
+    changed[clock:clock + len(load_clock(HZ))] = load_clock(NEW_HZ)
+    return bytes(changed)
+
+
+def main(qemu, target):
+    try:
+        program = patched(Path(qemu).read_bytes())
+    except Unknown as error:
+        print(f"{qemu} cannot be made the micro:bit V2's emulator: {error}", file=sys.stderr)
+        return 3
+    new = Path(target + ".new")
+    new.write_bytes(program)
+    new.chmod(0o755)
+    new.rename(target)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,85 @@
+// A model of the parts of an nRF52833 that the micro:bit's firmware drives and no emulator has, after Nordic's Product
+// Specification: pins (GPIO), PWM0 to PWM3, the watchdog, and why the chip was reset. Nothing of it knows the drivers:
+// addresses, fields and values stand here once more.
+//
+// Left out: everything else these peripherals can do. Who uses it gets an exception.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "tests/runtime-m4/boards/registers.hpp"
+
+namespace robosync::tests {
+
+class Nrf52833 : public RegisterModel {
+public:
+  using Pin = std::pair<unsigned, unsigned>;  // {1, 2} is P1.02
+  enum class Level { floating, low, high };
+
+  // When a PWM module reads the values of a period: where the period before begins, or where it ends. Nordic does not say.
+  enum class Fetch { early, late };
+
+  explicit Nrf52833(Fetch fetch = Fetch::late) : fetch_(fetch) {}
+
+  std::uint32_t read(std::uintptr_t address) override;
+  void write(std::uintptr_t address, std::uint32_t value) override;
+
+  // Throws where two peripherals have the pin, or where it is not prepared for the one that has.
+  Level level(Pin pin) const;
+  void pass_microsecond();
+  // A module asks for its interrupt.
+  bool pwm_interrupt() const;
+
+  struct Watchdog {
+    bool runs = false;
+    std::uint32_t reload = 0xFFFF'FFFF, asked = 1, configuration = 1, left = 0;
+    bool expired = false;
+  };
+  const Watchdog& watchdog() const { return watchdog_; }
+  // Of the oscillator of 32,768 Hz.
+  void pass_slow_counts(std::uint32_t counts);
+  void reset_by(std::uint32_t cause) { reset_reason_ |= cause; }
+
+private:
+  struct Sequence {
+    std::uint32_t values = 0, count = 0, refresh = 1, end_delay = 0;
+  };
+  struct Pwm {
+    bool enabled = false, plays = false;
+    std::uint32_t shortcuts = 0, interrupts = 0, period_ended = 0;
+    std::uint32_t mode = 0, top = 0x3FF, prescaler = 0, decoder = 0, loop = 0;
+    std::array<Sequence, 2> sequences;
+    std::array<std::uint32_t, 4> pins{~0U, ~0U, ~0U, ~0U};
+    unsigned counter = 0, sequence = 0;
+    std::uint32_t loops_left = 0;
+    std::array<std::uint16_t, 4> fetched{}, at_work{};
+    bool high(unsigned channel) const;
+    std::optional<unsigned> channel_at(std::uint32_t pin) const;
+  };
+  struct Port {
+    std::uint32_t out = 0;
+    std::array<std::uint32_t, 32> configuration{};
+    Port() { configuration.fill(0b10); }
+  };
+
+  std::uint32_t read(const Pwm& pwm, std::uintptr_t offset) const;
+  void write(Pwm& pwm, std::uintptr_t offset, std::uint32_t value);
+  static void configure(Pwm& pwm, std::uintptr_t offset, std::uint32_t value);
+  void play(Pwm& pwm);
+  void fetch(Pwm& pwm);
+  void end_period(Pwm& pwm);
+  void write_port(Port& port, std::uintptr_t offset, std::uint32_t value);
+  void write_watchdog(std::uintptr_t offset, std::uint32_t value);
+
+  Fetch fetch_;
+  std::array<Pwm, 4> pwms_;
+  std::array<Port, 2> ports_;
+  Watchdog watchdog_;
+  std::uint32_t reset_reason_ = 0;
+};
+
+}  // namespace robosync::tests
