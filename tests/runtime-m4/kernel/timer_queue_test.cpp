@@ -28,6 +28,15 @@ struct Bench {
     return due;
   }
 
+  // As a queue comes there: from 0, in two parts, since work that is due is seen half the range of ticks ahead.
+  void sleep_until_near_the_wrap() {
+    for (const std::uint32_t tick : {0x7FFF'FF00U, 0xFFFF'FF00U}) {
+      now = tick;
+      while (queue.has_work(now))
+        queue.collect();
+    }
+  }
+
   bool any_armed() const {
     return std::any_of(timers.begin(), timers.end(), [](const Timer& t) { return t.armed(); });
   }
@@ -57,10 +66,7 @@ struct Bench {
 TEST_CASE("every timer is due at its tick, no sooner, no later") {
   const bool holds = rc::check([] {
     Bench bench;
-    // Near a wrap of the tick counter half of the time.
-    bench.now = *rc::gen::element<std::uint32_t>(0U, 0xFFFF'FF00U);
-    while (bench.queue.has_work(bench.now))
-      bench.queue.collect();
+    if (*rc::gen::arbitrary<bool>()) bench.sleep_until_near_the_wrap();
     const int steps = *rc::gen::inRange(1, 300);
     for (int i = 0; i < steps; ++i) {
       Timer& timer = bench.timers[*rc::gen::inRange(0U, kTimers)];
