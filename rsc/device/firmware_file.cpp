@@ -52,6 +52,13 @@ std::optional<fs::path> with_ending(const fs::path& stem,
   return std::nullopt;
 }
 
+// Beside the tool, where the package has put it.
+fs::path installed_firmware() {
+  std::error_code error;
+  const fs::path tool = fs::read_symlink("/proc/self/exe", error);
+  return tool.parent_path().parent_path() / "share/robosync/firmware";
+}
+
 // As written, or its sibling.
 std::optional<fs::path> named(const fs::path& file, const std::vector<std::string_view>& endings) {
   std::error_code error;
@@ -72,6 +79,7 @@ fs::path find_firmware(const std::string& file, const std::string& board,
   } else {
     found = with_ending(usual, endings);
     if (!found) found = with_ending(fs::path("build/firmware") / usual, endings);
+    if (!found) found = with_ending(installed_firmware() / usual, endings);
   }
   if (!found) {
     throw Failure(Exit::outside,

@@ -1,0 +1,23 @@
+# The package for Debian (scripts/package): the tool, what is beside it for its users, and the boards' firmware.
+set(doc share/doc/robosync)
+install(FILES README.md LICENSE NOTICE DESTINATION ${doc} COMPONENT tool)
+install(DIRECTORY docs/ DESTINATION ${doc}/docs COMPONENT tool FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY examples DESTINATION ${doc} COMPONENT tool)
+install(DIRECTORY grammar/ DESTINATION share/robosync/schemas COMPONENT tool FILES_MATCHING PATTERN "*.schema.json")
+install(DIRECTORY build/firmware DESTINATION share/robosync COMPONENT firmware
+        FILES_MATCHING PATTERN "*.hex" PATTERN "*.bin" PATTERN "*.elf")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME robosync)
+set(CPACK_PACKAGE_CONTACT "The RoboSync project")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "gives a small robot its behaviour")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL tool firmware)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION devel)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "openocd, qemu-system-arm")
+include(CPack)
