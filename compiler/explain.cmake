@@ -14,6 +14,7 @@ target_sources(robosync_compiler PRIVATE
   query/outline.cpp
   query/rename.cpp
   query/symbols.cpp
+  query/tokens.cpp
   query/walk.cpp
   test_plan/evaluate.cpp
   test_plan/plan.cpp)

@@ -29,6 +29,9 @@ struct Desk {
 [[nodiscard]] Json prepare_rename(Desk desk, const Json& params);
 [[nodiscard]] Json rename(Desk desk, const Json& params);
 [[nodiscard]] Json document_symbols(Desk desk, const Json& params);
+[[nodiscard]] Json semantic_tokens(Desk desk, const Json& params);
+[[nodiscard]] Json colour_legend();  // what the numbers of semantic_tokens() mean
+[[nodiscard]] Json folding_ranges(Desk desk, const Json& params);
 
 // What a place in a text is about.
 struct Asked {

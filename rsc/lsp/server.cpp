@@ -158,6 +158,10 @@ const std::map<std::string_view, Server::Handler>& Server::requests() {
       {"textDocument/rename", [](Server& s, const Json& p) { return rename(desk(s), p); }},
       {"textDocument/documentSymbol",
        [](Server& s, const Json& p) { return document_symbols(desk(s), p); }},
+      {"textDocument/semanticTokens/full",
+       [](Server& s, const Json& p) { return semantic_tokens(desk(s), p); }},
+      {"textDocument/foldingRange",
+       [](Server& s, const Json& p) { return folding_ranges(desk(s), p); }},
   };
   return all;
 }
@@ -207,7 +211,9 @@ Json Server::initialize(const Json& params) {
             {"definitionProvider", true},
             {"referencesProvider", true},
             {"renameProvider", {{"prepareProvider", true}}},
-            {"documentSymbolProvider", true}}}};
+            {"documentSymbolProvider", true},
+            {"semanticTokensProvider", {{"legend", colour_legend()}, {"full", true}}},
+            {"foldingRangeProvider", true}}}};
 }
 
 // Files that change behind the editor's back: a robot.json that somebody else writes.

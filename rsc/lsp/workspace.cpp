@@ -17,8 +17,9 @@ namespace {
 
 using compiler::FileId, compiler::SourceFile;
 
-// Programs of a folder that are looked at for a robot.json alone.
+// Programs, and entries, of a folder that are looked at for a robot.json alone.
 constexpr std::size_t kMostPrograms = 32;
+constexpr std::size_t kMostEntries = 2000;
 
 bool is_program(const fs::path& path) {
   return path.extension() == ".rsl";
@@ -160,9 +161,11 @@ void Workspace::add_users_of_configuration(const fs::path& path,
                                            std::set<std::string>& programs) const {
   std::error_code error;
   std::set<std::string> users;
-  for (const auto& entry : fs::directory_iterator(path.parent_path(), error)) {
-    if (users.size() == kMostPrograms) break;
-    const fs::path program = entry.path().lexically_normal();
+  fs::directory_iterator entry(path.parent_path(), error);
+  for (std::size_t entries = 0; !error && entry != fs::directory_iterator() &&
+                                entries < kMostEntries && users.size() < kMostPrograms;
+       ++entries, entry.increment(error)) {
+    const fs::path program = entry->path().lexically_normal();
     if (is_program(program) && configuration_of(program, *this) == path)
       users.insert(program.string());
   }

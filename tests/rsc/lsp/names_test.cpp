@@ -315,3 +315,41 @@ TEST_CASE("the items of a program are listed, and what stands in them") {
   CHECK(all.size() == 4);
   CHECK(all[2].at("containerName") == "BEHAVIOR hug");
 }
+
+TEST_CASE("words are coloured by what they mean, in units of UTF-16") {
+  Editor editor;
+  editor.open("robot.rsl",
+              "LET most = 7 % 🤖\nWHEN touch LEVEL > most DO LOG \"🤖\", most\nEND\n");
+  const Json legend =
+      editor.started.at("capabilities").at("semanticTokensProvider").at("legend").at("tokenTypes");
+  const Json data = editor
+                        .ask("textDocument/semanticTokens/full",
+                             {{"textDocument", {{"uri", editor.uri("robot.rsl")}}}})
+                        .at("data");
+  REQUIRE(data.size() % 5 == 0);
+  std::vector<std::string> seen;
+  int line = 0, character = 0;
+  for (std::size_t at = 0; at < data.size(); at += 5) {
+    character = data[at] == 0 ? character + data[at + 1].get<int>() : data[at + 1].get<int>();
+    line += data[at].get<int>();
+    seen.push_back(std::to_string(line) + ":" + std::to_string(character) + "+" +
+                   std::to_string(data[at + 2].get<int>()) + " " +
+                   legend[data[at + 3].get<std::size_t>()].get<std::string>() + " " +
+                   std::to_string(data[at + 4].get<int>()));
+  }
+  CHECK(seen == Words{"0:0+3 keyword 0", "0:4+4 variable 3", "0:11+1 number 0", "1:0+4 keyword 0",
+                      "1:5+5 property 0", "1:11+5 property 0", "1:19+4 variable 2",
+                      "1:24+2 keyword 0", "1:27+3 keyword 0", "1:31+4 string 0",
+                      "1:37+4 variable 2", "2:0+3 keyword 0"});
+}
+
+TEST_CASE("blocks of several lines can be folded, also while there is a mistake") {
+  Editor editor;
+  editor.open("robot.rsl",
+              "BEHAVIOR b PRIORITY\n  WHEN touch LEVEL > 3 DO STOP ALL END\n  WHEN touch LEVEL > "
+              "4\n  DO STOP ALL\n  END\nEND\nEND\n");
+  const Json folds = editor.ask("textDocument/foldingRange",
+                                {{"textDocument", {{"uri", editor.uri("robot.rsl")}}}});
+  CHECK(folds ==
+        Json::array({{{"startLine", 2}, {"endLine", 4}}, {{"startLine", 0}, {"endLine", 5}}}));
+}
