@@ -40,6 +40,7 @@ std::string spoken(std::string_view text) {
 
 std::vector<std::string> names_of(const auto& list) {
   std::vector<std::string> names;
+  names.reserve(list.size());
   for (const auto& one : list)
     names.push_back(spoken(one.name.text));
   return names;
@@ -179,7 +180,8 @@ std::string comment_above(const SourceFile& source, std::uint32_t offset) {
     if (sign == std::string_view::npos || (words[sign] != '%' && words[sign] != '#')) break;
     words.remove_prefix(sign);
     words.remove_prefix(std::min(words.find_first_not_of("%# \t"), words.size()));
-    text = std::string(words) + (text.empty() ? "" : "\n") + text;
+    if (!text.empty()) text.insert(0, 1, '\n');
+    text.insert(0, words);
   }
   return text;
 }

@@ -47,25 +47,20 @@ std::string why_not_called(std::string_view name, const Symbol& symbol, const Pr
   if (is_keyword(name)) return shown(name) + " is a word of RSL";
   if (!is_written_as_name(name, symbol.kind == SymbolKind::label))
     return shown(name) + " is no name: letters, digits and `_`, and no digit at the beginning";
-  const auto same = [name](const Symbol& other) { return same_name(other.name, name); };
-  if (symbol.kind == SymbolKind::label) {
-    const auto beside = [&](const Symbol& other) {
-      return other.kind == SymbolKind::label && other.within == symbol.within && same(other);
-    };
-    const bool taken = !same(symbol) && std::ranges::any_of(symbols.all(), beside);
-    return taken ? shown(symbol.within) + " has the word " + shown(name) + " already" : "";
-  }
-  if (find_function(name) != nullptr) return shown(name) + " is a function of numbers";
+  if (same_name(symbol.name, name)) return {};
+  // In `SET mood TO calm` a label stands where a number could, so they are not called alike either.
+  const auto is_taken = [&](const Symbol& other) {
+    const bool apart = symbol.kind == SymbolKind::label && other.kind == SymbolKind::label &&
+                       other.within != symbol.within;
+    return !apart && same_name(other.name, name);
+  };
   Diagnostics ignored;
   Names names(project.trees, project.robot, ignored);
-  const bool taken = std::ranges::any_of(symbols.all(), [&](const Symbol& other) {
-    return &other != &symbol && other.kind != SymbolKind::label && same(other) &&
-           !same_name(symbol.name, name);
-  });
-  if (taken || names.is_verb(name) || names.is_word(name))
-    return shown(name) + " is a name already";
-  const std::string kind = same_name(symbol.name, name) ? "" : names.kind_of(name);
-  return kind.empty() ? "" : shown(name) + " is " + kind + " already";
+  const bool taken = std::ranges::any_of(symbols.all(), is_taken) || names.is_verb(name) ||
+                     names.is_word(name) || find_function(name) != nullptr;
+  const std::string kind = names.kind_of(name);
+  if (!kind.empty()) return shown(name) + " is " + kind + " already";
+  return taken ? shown(name) + " is a name already" : "";
 }
 
 }  // namespace robosync::compiler::query

@@ -21,6 +21,8 @@
   "Programs of RoboSync."
   (setq-local comment-start "% ")
   (setq-local comment-start-skip "[%#]+\\s-*")
+  ;; Behind digits % is a unit.
+  (font-lock-add-keywords nil '(("\\(?:^\\|[^0-9]\\)\\(%.*\\)$" 1 font-lock-comment-face t)))
   (setq-local tab-width 2)
   (setq-local indent-tabs-mode nil)
   (setq-local indent-line-function #'indent-relative))

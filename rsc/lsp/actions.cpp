@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "compiler/modules.hpp"
+#include "compiler/reading.hpp"
 #include "rsc/lsp/answers.hpp"
 #include "rsc/lsp/uris.hpp"
 
@@ -75,6 +77,7 @@ private:
     const SourceMap& sources = checked.result().sources;
     for (const Diagnostic& diagnostic : checked.result().diagnostics.all()) {
       const auto found = finding_of(diagnostic, checked, desk_.workspace, desk_.client);
+      if (found && found->uri == uri_) offer_module(checked, diagnostic, *found);
       for (const Fix& fix : diagnostic.fixes) {
         const Json location = location_json(sources, fix.span, desk_.workspace);
         if (location.is_null() || !found) continue;
@@ -90,6 +93,33 @@ private:
                             {"edit", {{"changes", {{where, Json::array({edit})}}}}}});
       }
     }
+  }
+  // What is not there may be in a module that is not used.
+  void offer_module(const Checked& checked, const Diagnostic& diagnostic, const Finding& found) {
+    const std::string_view module =
+        diagnostic.unknown.empty() ? std::string_view() : compiler::module_with(diagnostic.unknown);
+    const auto& items = checked.result().reading->tree.items;
+    if (module.empty() || items.empty() || !wants("quickfix")) return;
+    const SourceMap& sources = checked.result().sources;
+    const std::uint32_t begin = items.front().span.begin;
+    const Json edit = {{"range", range_json(sources, {compiler::kProgramFile, begin, begin},
+                                            desk_.workspace.encoding())},
+                       {"newText", fmt::format("USE {}\n", module)}};
+    const bool is_program = sources.file(compiler::kProgramFile).name() == path_->string();
+    if (!is_program || !is_shown_here(found)) return;
+    actions_.push_back({{"title", fmt::format("Insert `USE {}`", module)},
+                        {"kind", "quickfix"},
+                        {"isPreferred", false},
+                        {"diagnostics", Json::array({found.diagnostic})},
+                        {"edit", {{"changes", {{uri_, Json::array({edit})}}}}}});
+  }
+  [[nodiscard]] bool is_shown_here(const Finding& found) const {
+    const Json& range = found.diagnostic.at("range");
+    const Place first = place_in(range.at("start")), last = place_in(range.at("end"));
+    const auto before = [](Place a, Place b) {
+      return a.line < b.line || (a.line == b.line && a.character <= b.character);
+    };
+    return before(first, end_) && before(begin_, last);
   }
   // Those that do not reach into one another.
   void add_to_all(Span span, const std::string& uri, const Json& edit) {

@@ -13,7 +13,7 @@
 namespace robosync::tool::lsp {
 
 namespace query = compiler::query;
-using compiler::SourceMap, compiler::Span;
+using compiler::SourceMap;
 
 namespace {
 

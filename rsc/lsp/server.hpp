@@ -2,6 +2,7 @@
 // time: what shall be done when the editor is quiet is done when idle() is called.
 #pragma once
 
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <map>
@@ -36,6 +37,8 @@ public:
   void receive(std::string_view message);
   // A message that could not be read, and why.
   void complain(int code, const std::string& why);
+  // Messages that wait for step().
+  [[nodiscard]] std::size_t waiting() const { return queue_.size(); }
   // Answers the oldest message. False when there is none.
   bool step();
   // True when idle() has something to do.

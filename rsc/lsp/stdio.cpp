@@ -17,6 +17,8 @@ namespace robosync::tool::lsp {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{64} * 1024;
+// Messages that wait before no more are read: an editor that never stops does not fill the memory.
+constexpr std::size_t kMostWaiting = 1000;
 
 // False when nobody reads any more.
 bool write_all(int out, std::string_view bytes) {
@@ -39,7 +41,7 @@ public:
   int serve() {
     while (open_ && !server_.exit_code()) {
       const bool waits = !has_work_ && !server_.is_dirty();
-      if (has_come(waits)) {
+      if (server_.waiting() < kMostWaiting && has_come(waits)) {
         read_some();
       } else if (has_work_) {
         has_work_ = server_.step();

@@ -191,6 +191,18 @@ TEST_CASE("a fix that is not certain is not preferred, and not part of all that 
   CHECK(offered[0].at("kind") == "quickfix");
 }
 
+TEST_CASE("a module that has what is missing is offered") {
+  Editor editor;
+  editor.open("robot.rsl", "% 🤖\nWHEN touch LEVEL > 3 DO PERFORM wave\nEND\n");
+  const Json offered = actions(editor, "robot.rsl", range(1, 34, 34));
+  REQUIRE(offered.size() == 1);
+  CHECK(offered[0].at("title") == "Insert `USE gestures`");
+  editor.apply("robot.rsl", offered[0].at("edit").at("changes").at(editor.uri("robot.rsl")));
+  CHECK(editor.server().workspace().find(editor.uri("robot.rsl"))->source.text() ==
+        "% 🤖\nUSE gestures\nWHEN touch LEVEL > 3 DO PERFORM wave\nEND\n");
+  CHECK(actions(editor, "robot.rsl", range(0, 0, 0)).empty());
+}
+
 TEST_CASE("all that is certain is mended at once") {
   Editor editor;
   editor.open("robot.rsl",

@@ -261,7 +261,10 @@ TEST_CASE(
   CHECK_THAT(why(let, "left_arm"), Contains("already"));
   CHECK_THAT(why(let, "play"), Contains("already"));
   CHECK_THAT(why(let, "slowly"), Contains("already"));
+  CHECK_THAT(why(let, "wild"), Contains("already"));
+  CHECK_THAT(why(let, "abs"), Contains("already"));
   CHECK(why(let, "most_of_all").empty());
+  CHECK(why(let, "MOST").empty());
   CHECK_THAT(why("STATE mood: calm, wild\nWHEN mood IS wi|ld DO SET mood TO calm\nEND\n", "calm"),
              Contains("already"));
 }
