@@ -78,15 +78,11 @@ private:
   void stmt(const ast::Call& node);
   void stmt(const ast::Set& node);
   void stmt(const ast::Raise& node);
-  void stmt(const ast::Wait& node);
-  void stmt(const ast::WaitUntil& node);
-  void stmt(const ast::Then&) {}
-  void stmt(const ast::If& node);
-  void stmt(const ast::Repeat& node);
-  void stmt(const ast::PickOne& node);
   void stmt(const ast::Stop& node);
   void stmt(const ast::Signal& node);
   void stmt(const ast::Log& node);
+  template <typename Other>
+  void stmt(const Other& node);  // has no names of its own
   void step(const ast::TestFeed& node);
   void step(const ast::ExpectCommand& node);
   void step(const ast::ExpectText& node) { expr(node.within); }

@@ -23,6 +23,7 @@ void for_each_part(const Node& node, const Visit& visit) {
   if constexpr (requires { node.duration; }) visit(node.duration);
   if constexpr (requires { node.within; }) visit(node.within);
   if constexpr (requires { node.index; }) visit(node.index);
+  if constexpr (requires { visit(node.times); }) visit(node.times);
 }
 
 }  // namespace
@@ -177,6 +178,12 @@ void Collector::add(const ast::Test& node) {
 
 // ---- statements
 
+template <typename Other>
+void Collector::stmt(const Other& node) {
+  for_each_part(node, [this](const ast::Box<ast::Expr>& part) { expr(part); });
+  ast::for_each_block_of(node, [this](const ast::Block& inner) { block(inner); });
+}
+
 void Collector::block(const ast::Block& block) {
   for (const ast::Stmt& one : block)
     std::visit([this](const auto& node) { stmt(node); }, one.node);
@@ -225,34 +232,6 @@ void Collector::stmt(const ast::Set& node) {
 void Collector::stmt(const ast::Raise& node) {
   value(node.name);
   expr(node.by);
-}
-
-void Collector::stmt(const ast::Wait& node) {
-  expr(node.duration);
-}
-
-void Collector::stmt(const ast::WaitUntil& node) {
-  expr(node.condition);
-  expr(node.within);
-}
-
-void Collector::stmt(const ast::If& node) {
-  expr(node.condition);
-  block(node.then_block);
-  block(node.else_block);
-}
-
-void Collector::stmt(const ast::Repeat& node) {
-  expr(node.times);
-  expr(node.condition);
-  block(node.body);
-}
-
-void Collector::stmt(const ast::PickOne& node) {
-  for (const ast::Option& option : node.options) {
-    expr(option.weight);
-    block(option.body);
-  }
 }
 
 void Collector::stmt(const ast::Stop& node) {

@@ -123,7 +123,7 @@ void Server::answer(const Json& message) {
 
 void Server::notify(const std::string& method, const Json& params) {
   if (method == "exit") {
-    exit_code_ = exit_code_at_end();
+    exit_code_ = phase_ == Phase::down ? 0 : 1;
     return;
   }
   const auto found = notifications().find(method);

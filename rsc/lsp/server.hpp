@@ -47,8 +47,8 @@ public:
   void idle();
   // Set when the editor has asked it to end.
   [[nodiscard]] std::optional<int> exit_code() const { return exit_code_; }
-  // When the line is closed instead.
-  [[nodiscard]] int exit_code_at_end() const { return phase_ == Phase::down ? 0 : 1; }
+  // When the line is closed instead: nothing is wrong with that before `initialize` and after `shutdown`.
+  [[nodiscard]] int exit_code_at_end() const { return phase_ == Phase::up ? 1 : 0; }
 
   [[nodiscard]] const Workspace& workspace() const { return workspace_; }
 

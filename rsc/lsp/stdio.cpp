@@ -52,7 +52,7 @@ public:
     while (!server_.exit_code() && server_.step()) {
       // What came before the line was closed is answered.
     }
-    return server_.exit_code().value_or(server_.exit_code_at_end());
+    return server_.exit_code().value_or(broken_ ? 1 : server_.exit_code_at_end());
   }
 
 private:
@@ -91,6 +91,7 @@ private:
     server_.complain(error::parse_error,
                      "a message begins with `Content-Length: ` and the number of its bytes");
     open_ = false;
+    broken_ = true;
     return false;
   }
 
@@ -99,6 +100,7 @@ private:
   FrameReader frames_;
   std::array<char, kBlock> block_{};
   bool open_ = true;
+  bool broken_ = false;
   bool has_work_ = false;
 };
 

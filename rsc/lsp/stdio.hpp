@@ -5,7 +5,8 @@
 
 namespace robosync::tool::lsp {
 
-// Serves until the editor ends it or the line is closed. Returns the exit code: 0 after `shutdown`, else 1.
+// Serves until the editor ends it or the line is closed. Returns the exit code: 0 after `shutdown`,
+// or when nothing was begun, else 1.
 [[nodiscard]] int serve(int in, int out);
 
 }  // namespace robosync::tool::lsp

@@ -53,13 +53,16 @@ class Session(unittest.TestCase):
         server = self.server()
         server.process.stdin.close()
         self.assertEqual(server.process.wait(PATIENCE), 1)
+        server = self.server(initialize=False)
+        server.process.stdin.close()
+        self.assertEqual(server.process.wait(PATIENCE), 0)
         server = self.server()
         server.ask("shutdown")
         server.process.stdin.close()
         self.assertEqual(server.process.wait(PATIENCE), 0)
 
     def test_a_header_that_is_none_ends_it_with_an_error(self):
-        server = self.server()
+        server = self.server(initialize=False)
         server.write(b"WHEN touch LEVEL > 3\r\n\r\n")
         self.assertEqual(server.wait(None)["error"]["code"], -32700)
         self.assertEqual(server.process.wait(PATIENCE), 1)

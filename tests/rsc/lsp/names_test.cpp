@@ -356,3 +356,35 @@ TEST_CASE("blocks of several lines can be folded, also while there is a mistake"
   CHECK(folds ==
         Json::array({{{"startLine", 2}, {"endLine", 4}}, {{"startLine", 0}, {"endLine", 5}}}));
 }
+
+TEST_CASE("a name is found in every kind of item and statement") {
+  const std::string text =
+      "REMEMBER total = 0\nLET other = 3\nLIST few: total, other\nCHECK size OF total\n  small "
+      "BELOW 3\n  big OTHERWISE\nEND\n"
+      "MOTION wave OF left_arm\n  AT 0s total\n  AT 1s (total + 1)\nEND\n"
+      "DEFINE note WITH what\n  LOG what, total\nEND\n"
+      "SAFETY stop WHEN total > 9\nDO STOP ALL\nRESUME WHEN total < 2\nEND\n"
+      "BEHAVIOR b PRIORITY 3\n  WHILE total > 1 AND (total < 3 OR NOT total = 2) COOLDOWN total\n  "
+      "DO\n"
+      "    IF total > 3\n    DO WAIT total\n    ELSE IF total < 2\n    DO WAIT UNTIL total > 1 "
+      "WITHIN total\n"
+      "    ELSE\n      MOVE left_arm TO (total) OVER (total)\n    END\n"
+      "    REPEAT total TIMES\n      note WITH total\n      THEN\n    END\n    REPEAT WHILE total "
+      "> 2\n      WAIT 1s\n    END\n"
+      "    PICK ONE\n      OPTION 50%\n        SET total TO total + MIN(total, 3)\n      OPTION "
+      "50%\n        RAISE total BY total\n    END\n"
+      "    ALERT total\n  END\nEND\nEVERY total TO total\nDO LOG ITEM total OF few\nEND\n"
+      "TEST \"t\"\n  AT 1s touch LEVEL = total\n  EXPECT MOVE left_arm TO (total) WITHIN total\n  "
+      "EXPECT THAT total > 2 WITHIN 1s\nEND\n";
+  std::size_t written = 0;
+  for (std::size_t at = text.find("total"); at != std::string::npos;
+       at = text.find("total", at + 1))
+    ++written;
+  Editor editor;
+  editor.open("robot.rsl", text);
+  const Json found =
+      editor.ask("textDocument/references", {{"textDocument", {{"uri", editor.uri("robot.rsl")}}},
+                                             {"position", {{"line", 0}, {"character", 10}}},
+                                             {"context", {{"includeDeclaration", true}}}});
+  CHECK(found.size() == written);
+}
