@@ -86,13 +86,18 @@ private:
         const std::string where = location["uri"].get<std::string>();
         if (certain && where == uri_) add_to_all(fix.span, where, edit);
         if (!is_touched(sources, diagnostic, fix) || !wants("quickfix")) continue;
-        actions_.push_back({{"title", title_of(fix, sources)},
-                            {"kind", "quickfix"},
-                            {"isPreferred", certain},
-                            {"diagnostics", Json::array({found->diagnostic})},
-                            {"edit", {{"changes", {{where, Json::array({edit})}}}}}});
+        offer({{"title", title_of(fix, sources)},
+               {"kind", "quickfix"},
+               {"isPreferred", certain},
+               {"diagnostics", Json::array({found->diagnostic})},
+               {"edit", {{"changes", {{where, Json::array({edit})}}}}}});
       }
     }
+  }
+  // Two programs may find the same in a robot.json that they share.
+  void offer(Json action) {
+    if (std::ranges::find(actions_, action) == actions_.end())
+      actions_.push_back(std::move(action));
   }
   // What is not there may be in a module that is not used.
   void offer_module(const Checked& checked, const Diagnostic& diagnostic, const Finding& found) {

@@ -63,11 +63,13 @@ def measure(lines, keys, typed):
 
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("--lines", type=int, default=10_000)
+    options.add_argument("--lines", type=int, default=10_000, help="at least 2000")
     options.add_argument("--keys", type=int, default=200)
     options.add_argument("--rsc", default=client.RSC)
     asked = options.parse_args()
     client.RSC = asked.rsc
+    if asked.lines < 2000:
+        options.error("the program has at least 2000 lines")
     for what, typed in TYPED.items():
         costs, before, after = measure(asked.lines, asked.keys, typed)
         costs.sort()

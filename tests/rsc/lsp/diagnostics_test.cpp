@@ -130,6 +130,21 @@ TEST_CASE("two programs with one robot.json show what is wrong with it once") {
   CHECK(std::ranges::count(found, found.front()) == 1);
 }
 
+TEST_CASE("what mends a robot.json that two programs share is offered once, and done once") {
+  Editor editor;
+  editor.open("a.rsl", kRight);
+  editor.open("b.rsl", kRight);
+  std::string robot = test::kRobot;
+  robot.replace(robot.find("\"servo\""), 7, "\"servp\"");
+  editor.open("robot.json", robot);
+  const Json where = editor.diagnostics("robot.json")[0].at("range");
+  CHECK(actions(editor, "robot.json", where, {{"only", {"quickfix"}}}).size() == 1);
+  const Json all = actions(editor, "robot.json", where, {{"only", {"source.fixAll"}}});
+  REQUIRE(all.size() == 1);
+  editor.apply("robot.json", all[0].at("edit").at("changes").at(editor.uri("robot.json")));
+  CHECK(editor.server().workspace().find(editor.uri("robot.json"))->source.text() == test::kRobot);
+}
+
 TEST_CASE("a module is looked at with the program that uses it") {
   Editor editor;
   (void)editor.folder.write("part.rsl", "DEFINE wave\n  MOVE arms TO 30deg OVER 1s\nEND\n");
