@@ -141,6 +141,7 @@ TEST_CASE("what mends a robot.json that two programs share is offered once, and 
   CHECK(actions(editor, "robot.json", where, {{"only", {"quickfix"}}}).size() == 1);
   const Json all = actions(editor, "robot.json", where, {{"only", {"source.fixAll"}}});
   REQUIRE(all.size() == 1);
+  CHECK(all[0].at("edit").at("changes").at(editor.uri("robot.json")).size() == 1);
   editor.apply("robot.json", all[0].at("edit").at("changes").at(editor.uri("robot.json")));
   CHECK(editor.server().workspace().find(editor.uri("robot.json"))->source.text() == test::kRobot);
 }
