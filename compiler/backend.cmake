@@ -30,6 +30,8 @@ embed(${PROJECT_SOURCE_DIR}/stdlib rsl compiler/modules.hpp ModuleText module_te
 target_sources(robosync_compiler PRIVATE
   compiler.cpp
   modules.cpp
+  project.cpp
+  reading.cpp
   ${board_texts}
   ${device_texts}
   ${module_texts}

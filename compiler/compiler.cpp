@@ -8,11 +8,10 @@
 
 #include "compiler/codegen/emit.hpp"
 #include "compiler/codegen/verify_image.hpp"
-#include "compiler/config/robot_reader.hpp"
 #include "compiler/modules.hpp"
 #include "compiler/optimize/optimize.hpp"
+#include "compiler/reading.hpp"
 #include "compiler/sema/analyze.hpp"
-#include "compiler/syntax/parser.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -67,42 +66,15 @@ Diagnostics offer_modules(const Diagnostics& diagnostics) {
   return result;
 }
 
-struct Parsed {
-  ast::Tree tree;
-  std::vector<Module> modules;
-  std::optional<Robot> robot;  // nothing: nothing can be said of it
-  bool complete = false;       // nothing had to be left out
-
-  [[nodiscard]] Trees trees() const {
-    Trees trees{&tree};
-    for (const Module& module : modules)
-      trees.push_back(module.tree.get());
-    return trees;
-  }
-};
-
-// What the parsers had to leave out would be missed by name: better one true message than ten.
-Parsed parse_all(Input program, Input configuration, const ModuleReader& read_module,
-                 SourceMap& files, Diagnostics& diagnostics) {
-  const FileId program_file = files.add(std::move(program.name), std::move(program.text));
-  const FileId configuration_file =
-      files.add(std::move(configuration.name), std::move(configuration.text));
-  Parsed parsed;
-  parsed.tree = parse(files, program_file, diagnostics);
-  parsed.modules = load_modules(parsed.tree, files, read_module, diagnostics);
-  const bool whole_trees = diagnostics.errors() == 0;
-  parsed.robot = read_robot(files, configuration_file, diagnostics);
-  parsed.complete = whole_trees && parsed.robot && parsed.robot->complete;
-  return parsed;
-}
-
 }  // namespace
 
 Result compile(Input program, Input configuration, const Options& options) {
   Result result;
   Diagnostics& diagnostics = result.diagnostics;
-  const Parsed parsed = parse_all(std::move(program), std::move(configuration), options.read_module,
-                                  result.sources, diagnostics);
+  result.reading =
+      std::make_shared<const Reading>(read_all(std::move(program), std::move(configuration),
+                                               options.read_module, result.sources, diagnostics));
+  const Reading& parsed = *result.reading;
   result.board = board_for(parsed.robot ? parsed.robot->board : std::nullopt);
   ir::Program written;
   if (parsed.complete) {

@@ -2,28 +2,19 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
-#include <optional>
-#include <string>
+#include <memory>
 #include <vector>
 
 #include "compiler/config/boards.hpp"
 #include "compiler/config/robot.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/input.hpp"
 #include "compiler/source/source_file.hpp"
 #include "compiler/test_plan/plan.hpp"
 
 namespace robosync::compiler {
 
-struct Input {
-  std::string name;  // as it shall stand in messages
-  std::string text;
-};
-
-// What `USE "file"` in the file called `user` means: the module with the name of its own, the same
-// for the same file. Nothing when it cannot be read. The compiler itself opens no files.
-using ModuleReader =
-    std::function<std::optional<Input>(const std::string& user, const std::string& file)>;
+struct Reading;  // reading.hpp
 
 struct Options {
   bool source_lines = true;  // keep the debug section
@@ -41,6 +32,8 @@ struct Result {
   WrittenUnits units;            // of what the image names
   test_plan::TestPlan tests;     // the program's TEST blocks; likewise
   Board board;                   // that robot.json names, or the default one
+  std::shared_ptr<const Reading>
+      reading;  // what editors ask (query/); never null, views of `sources`
 };
 
 [[nodiscard]] Result compile(Input program, Input configuration, const Options& options = {});

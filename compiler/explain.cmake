@@ -1,4 +1,4 @@
-# What the compiler tells people: programs and diagnostics in plain English, and TEST blocks.
+# What the compiler tells people: programs and diagnostics in plain English, TEST blocks, and what editors ask.
 find_package(fmt REQUIRED)
 target_sources(robosync_compiler PRIVATE
   explain/actuators.cpp
@@ -7,6 +7,15 @@ target_sources(robosync_compiler PRIVATE
   explain/program_text.cpp
   explain/rules.cpp
   explain/statements.cpp
+  query/collector.cpp
+  query/completion.cpp
+  query/describe.cpp
+  query/expected.cpp
+  query/outline.cpp
+  query/rename.cpp
+  query/symbols.cpp
+  query/tokens.cpp
+  query/walk.cpp
   test_plan/evaluate.cpp
   test_plan/plan.cpp)
 target_link_libraries(robosync_compiler PRIVATE fmt::fmt)

@@ -6,7 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/compiler.hpp"
+#include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/input.hpp"
+#include "compiler/source/source_file.hpp"
 #include "compiler/syntax/ast.hpp"
 
 namespace robosync::compiler {

@@ -83,14 +83,23 @@ std::vector<std::byte> read_bytes(const fs::path& path) {
   return {bytes.begin(), bytes.end()};
 }
 
-fs::path find_configuration(const fs::path& program, const std::string& config) {
+std::string Texts::read(const fs::path& path) const {
+  return read_text(path);
+}
+
+bool Texts::has(const fs::path& path) const {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+fs::path find_configuration(const fs::path& program, const std::string& config,
+                            const Texts& texts) {
   if (!config.empty()) return config;
   fs::path by_stem = program;
   by_stem.replace_extension(".json");
-  std::error_code error;
-  if (fs::exists(by_stem, error)) return by_stem;
+  if (texts.has(by_stem)) return by_stem;
   fs::path common = program.parent_path() / "robot.json";
-  if (fs::exists(common, error)) return common;
+  if (texts.has(common)) return common;
   throw Failure(Exit::outside,
                 fmt::format("no configuration for {}: there is no {} and no {}; name one with "
                             "--config FILE",

@@ -12,9 +12,23 @@ namespace robosync::tool {
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 [[nodiscard]] std::vector<std::byte> read_bytes(const std::filesystem::path& path);
 
+// Where programs and configurations are read: the disk, unless somebody has newer texts (lsp/).
+class Texts {
+public:
+  Texts() = default;
+  virtual ~Texts() = default;
+  Texts(const Texts&) = delete;
+  Texts& operator=(const Texts&) = delete;
+
+  // As read_text().
+  [[nodiscard]] virtual std::string read(const std::filesystem::path& path) const;
+  [[nodiscard]] virtual bool has(const std::filesystem::path& path) const;
+};
+
 // `config` if it is not empty, else STEM.json beside `program`, else robot.json beside it. Throws
 // Failure (outside) when there is none.
 [[nodiscard]] std::filesystem::path find_configuration(const std::filesystem::path& program,
-                                                       const std::string& config);
+                                                       const std::string& config,
+                                                       const Texts& texts = Texts());
 
 }  // namespace robosync::tool

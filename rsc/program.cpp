@@ -37,12 +37,13 @@ bool is_image(const std::string& file, std::span<const std::byte> bytes) {
 }
 
 // Relative to the file that uses it. Two ways to write one path give one name.
-std::optional<compiler::Input> read_module(const std::string& user, const std::string& file) {
+std::optional<compiler::Input> read_module(const Texts& texts, const std::string& user,
+                                           const std::string& file) {
   const std::filesystem::path path =
       (std::filesystem::path(user).parent_path() / file).lexically_normal();
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  return compiler::Input{path.string(), read_text(path)};
+  if (!texts.has(path) || std::filesystem::is_directory(path, error)) return std::nullopt;
+  return compiler::Input{path.string(), texts.read(path)};
 }
 
 std::vector<std::string> lines_of(std::string_view text) {
@@ -56,11 +57,11 @@ std::vector<std::string> lines_of(std::string_view text) {
 }
 
 compiler::Result compile(const std::string& file, const CompileOptions& options,
-                         const compiler::ModuleReader& modules) {
-  std::string text = read_text(file);
-  const std::filesystem::path path = find_configuration(file, options.config);
+                         const compiler::ModuleReader& modules, const Texts& texts) {
+  std::string text = texts.read(file);
+  const std::filesystem::path path = find_configuration(file, options.config, texts);
   compiler::Result result =
-      compiler::compile({file, std::move(text)}, {path.string(), read_text(path)},
+      compiler::compile({file, std::move(text)}, {path.string(), texts.read(path)},
                         {.source_lines = options.source_lines,
                          .optimize = options.optimize,
                          .seed = options.seed,
@@ -122,8 +123,12 @@ std::string no_room_text(const policy::Needs& needs, const policy::BoardMemory& 
       needs.total, board.arena_bytes, part(0), part(1), part(2));
 }
 
-compiler::Result compile_file(const std::string& file, const CompileOptions& options) {
-  return compile(file, options, read_module);
+compiler::Result compile_file(const std::string& file, const CompileOptions& options,
+                              const Texts& texts) {
+  const auto modules = [&texts](const std::string& user, const std::string& name) {
+    return read_module(texts, user, name);
+  };
+  return compile(file, options, modules, texts);
 }
 
 std::vector<std::string> names_of(const compiler::SourceMap& sources) {
@@ -171,11 +176,12 @@ Program load_program(const std::string& file, const CompileOptions& options) {
     return program;
   }
   bool has_modules = false;  // then a line number may be one of another file
-  compiler::Result result =
-      compile(file, options, [&](const std::string& user, const std::string& name) {
-        has_modules = true;
-        return read_module(user, name);
-      });
+  const Texts texts;
+  const auto modules = [&](const std::string& user, const std::string& name) {
+    has_modules = true;
+    return read_module(texts, user, name);
+  };
+  compiler::Result result = compile(file, options, modules, texts);
   std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
   if (result.diagnostics.errors() > 0) {
     throw Failure(Exit::program, fmt::format("{}: {}", file, summary(result.diagnostics)));

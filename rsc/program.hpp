@@ -10,6 +10,7 @@
 
 #include "compiler/compiler.hpp"
 #include "rsc/board.hpp"
+#include "rsc/files.hpp"
 #include "runtime-m4/policy/memory.hpp"
 #include "vm/verifier.hpp"
 
@@ -44,7 +45,8 @@ struct CompileOptions {
 [[nodiscard]] std::string_view name_of(policy::Whose whose);
 
 // Compiles `file` with its configuration. Throws Failure (outside) when one cannot be read.
-[[nodiscard]] compiler::Result compile_file(const std::string& file, const CompileOptions& options);
+[[nodiscard]] compiler::Result compile_file(const std::string& file, const CompileOptions& options,
+                                            const Texts& texts = Texts());
 
 // "0 errors, 1 warning, 2 notes".
 [[nodiscard]] std::string summary(const compiler::Diagnostics& diagnostics);

@@ -186,6 +186,8 @@ Device read_device(const DeviceText& text, Diagnostics& diagnostics) {
     driver = read_enum<vm::DriverId>(*named, kDrivers, diagnostics);
     device.has_driver = true;
   }
+  device.sensor.device = device.name;
+  device.actuator.device = device.name;
   device.sensor.driver = driver;
   device.actuator.driver = driver;
   if (device.is_sensor)

@@ -35,6 +35,7 @@ struct ChannelConfig {
 
 struct SensorConfig {
   Spelled name;
+  std::string device;  // its descriptor in stdlib/devices/
   vm::DriverId driver{};
   std::uint8_t bus = 0;
   std::uint16_t address = 0;    // or pin
@@ -80,6 +81,7 @@ struct VerbConfig {
 
 struct ActuatorConfig {
   Spelled name;
+  std::string device;  // its descriptor in stdlib/devices/
   vm::DriverId driver{};
   std::uint8_t bus = 0;
   std::uint16_t pin = 0;

@@ -295,10 +295,9 @@ void Names::collect(const ast::Tree& tree) {
 }
 
 void Names::report_twice(const ast::Name& name, Span first) {
-  constexpr FileId kProgram = 0;
   Diagnostic& d = diagnostics_.report(Code::E0101, "the name " + name.shown() + " is given twice");
-  const bool yours = name.span.file == kProgram;
-  if (yours == (first.file == kProgram)) {
+  const bool yours = name.span.file == kProgramFile;
+  if (yours == (first.file == kProgramFile)) {
     d.label(name.span).label(first, "first given here", false);
     if (name.span.file != first.file)
       d.helps("use one of the two modules, or a copy of one with another name in it");

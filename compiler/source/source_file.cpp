@@ -49,9 +49,13 @@ std::string_view SourceFile::text(Span span) const {
   return std::string_view(text_).substr(begin, end - begin);
 }
 
-Position SourceFile::position(std::uint32_t offset) const {
+std::uint32_t SourceFile::line_of(std::uint32_t offset) const {
   const auto next = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
-  const auto line = static_cast<std::uint32_t>(next - line_starts_.begin());
+  return static_cast<std::uint32_t>(next - line_starts_.begin());
+}
+
+Position SourceFile::position(std::uint32_t offset) const {
+  const std::uint32_t line = line_of(offset);
   const std::size_t end = std::min<std::size_t>(offset, text_.size());
   Milestone from{line_starts_[line - 1], 1};
   const auto beyond = std::upper_bound(

@@ -13,6 +13,10 @@ namespace robosync::compiler {
 
 using FileId = std::uint16_t;
 
+// The first two files of a compilation; the modules that the program uses follow.
+inline constexpr FileId kProgramFile = 0;
+inline constexpr FileId kConfigurationFile = 1;
+
 // Bytes begin … end-1 of one file.
 struct Span {
   FileId file = 0;
@@ -34,6 +38,8 @@ public:
   Position position(std::uint32_t offset) const;
   std::string_view line(std::uint32_t number) const;  // without its end; empty when there is none
   std::uint32_t line_start(std::uint32_t number) const;
+  std::uint32_t line_of(std::uint32_t offset) const;  // from 1
+  std::uint32_t lines() const { return static_cast<std::uint32_t>(line_starts_.size()); }
 
 private:
   // A column that is known: in a long line, so that not all of it is read for each place in it.

@@ -45,11 +45,12 @@ RUNTIME = {
 MAY_KNOW_THE_PROCESSOR = {"port", "port's sources", "boards/common", "a board"}
 # Inside rsc/: the same. What stands in rsc/ itself includes none of them.
 TOOL = {
-    "verbs": {"device", "trace", "dump", "timeline"},
+    "verbs": {"device", "trace", "dump", "timeline", "lsp"},
     "device": {"trace"},
     "trace": set(),
     "timeline": {"trace"},
     "dump": set(),
+    "lsp": set(),
 }
 # Inside compiler/, in the order of the passes: what each folder may include of it, besides itself.
 # What lies in compiler/ itself puts them together and may include all; none may include that.
@@ -64,6 +65,7 @@ COMPILER = {
     "codegen": {"source", "diagnostics", "config", "ir"},
     "explain": {"source", "diagnostics", "syntax", "config"},
     "test_plan": {"source", "diagnostics", "syntax", "config", "ir", "sema"},
+    "query": {"source", "diagnostics", "syntax", "config", "sema", "explain"},
 }
 # Standard headers that allocate or throw, or need an operating system.
 HOSTED_HEADERS = {

@@ -1,0 +1,47 @@
+// What an editor asks about a text, and the answers. Each takes the `params` of the request and gives its `result`; null
+// where there is nothing to say. They throw Refusal, or what nlohmann throws when the request is not as it should be.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "rsc/lsp/convert.hpp"
+
+namespace robosync::tool::lsp {
+
+// The request is understood, and what it asks for cannot be done.
+class Refusal : public std::runtime_error {
+public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Desk {
+  Workspace& workspace;
+  const Client& client;
+};
+
+[[nodiscard]] Json formatting(Desk desk, const Json& params);
+[[nodiscard]] Json code_actions(Desk desk, const Json& params);
+[[nodiscard]] Json completion(Desk desk, const Json& params);
+[[nodiscard]] Json hover(Desk desk, const Json& params);
+[[nodiscard]] Json definition(Desk desk, const Json& params);
+[[nodiscard]] Json references(Desk desk, const Json& params);
+[[nodiscard]] Json prepare_rename(Desk desk, const Json& params);
+[[nodiscard]] Json rename(Desk desk, const Json& params);
+[[nodiscard]] Json document_symbols(Desk desk, const Json& params);
+[[nodiscard]] Json semantic_tokens(Desk desk, const Json& params);
+[[nodiscard]] Json colour_legend();  // what the numbers of semantic_tokens() mean
+[[nodiscard]] Json folding_ranges(Desk desk, const Json& params);
+
+// What a place in a text is about.
+struct Asked {
+  const Checked* checked = nullptr;
+  compiler::FileId file = 0;
+  std::uint32_t offset = 0;
+};
+// Nothing when the text is not part of a program.
+[[nodiscard]] std::optional<Asked> asked_at(Desk desk, const Json& params);
+// The address in `textDocument`.
+[[nodiscard]] std::string address_in(const Json& params);
+
+}  // namespace robosync::tool::lsp

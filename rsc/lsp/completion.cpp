@@ -1,0 +1,87 @@
+// textDocument/completion: what could be written at a place.
+#include "compiler/query/completion.hpp"
+
+#include <utility>
+
+#include "rsc/lsp/answers.hpp"
+
+namespace robosync::tool::lsp {
+
+namespace query = compiler::query;
+using compiler::SourceFile, compiler::SourceMap, compiler::Span;
+
+namespace {
+
+// CompletionItemKind of the protocol.
+int item_kind(const query::Candidate& candidate) {
+  constexpr int kFunction = 3, kField = 5, kVariable = 6, kModule = 9, kUnit = 11, kValue = 12,
+                kKeyword = 14, kReference = 18, kEnumMember = 20, kConstant = 21, kEvent = 23;
+  using K = query::SymbolKind;
+  if (!candidate.kind) return kKeyword;
+  switch (*candidate.kind) {
+    case K::define:
+    case K::motion:
+    case K::function:
+    case K::verb:
+      return kFunction;
+    case K::let:
+      return kConstant;
+    case K::label:
+      return kEnumMember;
+    case K::signal:
+      return kEvent;
+    case K::module:
+      return kModule;
+    case K::sensor:
+    case K::actuator:
+    case K::group:
+      return kReference;
+    case K::channel:
+      return kField;
+    case K::word:
+      return candidate.is_text ? kValue : kUnit;
+    default:
+      return kVariable;
+  }
+}
+
+Json item_json(const query::Candidate& candidate, const Json& range, char quote,
+               const Client& client) {
+  std::string text = candidate.text;
+  if (candidate.is_text) text = quote + text + quote;
+  Json item = {{"label", candidate.text},
+               {"kind", item_kind(candidate)},
+               {"sortText", (candidate.kind ? "0" : "1") + candidate.text},
+               {"filterText", text},
+               {"textEdit", {{"range", range}, {"newText", text}}}};
+  if (!candidate.detail.empty()) item["detail"] = candidate.detail;
+  if (!candidate.text_about.empty())
+    item["documentation"] = {{"kind", client.markdown ? "markdown" : "plaintext"},
+                             {"value", candidate.text_about}};
+  return item;
+}
+
+}  // namespace
+
+Json completion(Desk desk, const Json& params) {
+  const auto asked = asked_at(desk, params);
+  if (!asked || asked->file == compiler::kConfigurationFile) return nullptr;
+  const SourceMap& sources = asked->checked->result().sources;
+  const query::Completion found = query::complete(
+      asked->checked->project(), asked->checked->symbols(), asked->file, asked->offset);
+  const SourceFile& source = sources.file(asked->file);
+  Span typed = found.typed;
+  const char first = typed.begin < source.text().size() ? source.text()[typed.begin] : '"';
+  const char quote = first == '\'' ? '\'' : '"';
+  // Editors write the second quote with the first one.
+  const bool closed = typed.end < source.text().size() && typed.end > typed.begin &&
+                      source.text()[typed.end] == quote && first == quote;
+  if (closed) ++typed.end;
+  const Json range = range_json(sources, typed, desk.workspace.encoding());
+  Json items = Json::array();
+  for (const query::Candidate& candidate : found.candidates)
+    items.push_back(item_json(candidate, range, quote, desk.client));
+  return {{"isIncomplete", false}, {"items", std::move(items)}};
+}
+
+}  // namespace robosync::tool::lsp

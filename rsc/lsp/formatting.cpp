@@ -1,0 +1,52 @@
+// textDocument/formatting: what the text would be in the one style.
+#include <algorithm>
+
+#include "compiler/syntax/format.hpp"
+#include "compiler/syntax/parser.hpp"
+#include "rsc/lsp/answers.hpp"
+#include "rsc/lsp/uris.hpp"
+
+namespace robosync::tool::lsp {
+
+using compiler::SourceFile, compiler::SourceMap;
+
+namespace {
+
+// What differs between two texts, as one change of whole lines.
+Json difference(const SourceFile& before, std::string_view after, Encoding encoding) {
+  const std::string_view text = before.text();
+  const auto first =
+      static_cast<std::size_t>(std::ranges::mismatch(text, after).in1 - text.begin());
+  const std::size_t shorter = std::min(text.size(), after.size());
+  std::size_t tail = 0;
+  while (tail < shorter - first && text[text.size() - 1 - tail] == after[after.size() - 1 - tail])
+    ++tail;
+  // Only whole lines: no code point and no end of a line is cut.
+  const std::size_t begin = first == 0 ? 0 : text.rfind('\n', first - 1) + 1;
+  const std::size_t next = text.find('\n', std::max(begin, text.size() - tail));
+  const std::size_t end = next == std::string_view::npos ? text.size() : next + 1;
+  const std::size_t kept = text.size() - end;
+  return {{"range", range_json(before, static_cast<std::uint32_t>(begin),
+                               static_cast<std::uint32_t>(end), encoding)},
+          {"newText", after.substr(begin, after.size() - kept - begin)}};
+}
+
+}  // namespace
+
+Json formatting(Desk desk, const Json& params) {
+  const Document* const document = desk.workspace.find(address_in(params));
+  if (document == nullptr) throw Refusal("this text is not open");
+  if (name_of(document->uri).ends_with(".json")) return nullptr;
+  SourceMap sources;
+  compiler::Diagnostics diagnostics;
+  const compiler::FileId file = sources.add("", std::string(document->source.text()));
+  (void)compiler::parse(sources, file, diagnostics);
+  // What is wrong is shown already.
+  if (diagnostics.errors() > 0) return nullptr;
+  const auto result = compiler::formatted(sources, file);
+  if (!result) throw Refusal("this text cannot be formatted without changing what it says");
+  if (*result == document->source.text()) return Json::array();
+  return Json::array({difference(document->source, *result, desk.workspace.encoding())});
+}
+
+}  // namespace robosync::tool::lsp

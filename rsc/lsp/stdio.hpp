@@ -1,0 +1,12 @@
+// The language server at the two ends of its line.
+#pragma once
+
+#include <cstddef>
+
+namespace robosync::tool::lsp {
+
+// Serves until the editor ends it or the line is closed. Returns the exit code: 0 after `shutdown`,
+// or when nothing was begun, else 1.
+[[nodiscard]] int serve(int in, int out);
+
+}  // namespace robosync::tool::lsp

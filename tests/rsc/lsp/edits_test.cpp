@@ -1,0 +1,177 @@
+// Random changes, as an editor sends them: the text of the server is that of the editor, and no question about it ends badly.
+// The number of changes is ROBOSYNC_EDITS where that is set (scripts/soak).
+#include <cstdlib>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "tests/rsc/lsp/editor.hpp"
+
+using namespace robosync;
+using test::Editor, test::Json;
+
+namespace {
+
+// A text as the editor has it: UTF-16, in which positions are counted by themselves.
+class Text {
+public:
+  explicit Text(std::u16string text) : text_(std::move(text)) {}
+  std::size_t size() const { return text_.size(); }
+  bool is_between(std::size_t at) const {  // two halves of a code point, or CR and LF
+    const bool halves = at > 0 && at < size() && (text_[at] & 0xFC00) == 0xDC00;
+    return halves || (at > 0 && at < size() && text_[at - 1] == u'\r' && text_[at] == u'\n');
+  }
+  Json place(std::size_t at) const {
+    std::size_t line = 0, start = 0;
+    for (std::size_t i = 0; i < at; ++i) {
+      const bool end =
+          text_[i] == u'\n' || (text_[i] == u'\r' && (i + 1 >= size() || text_[i + 1] != u'\n'));
+      if (end) ++line, start = i + 1;
+    }
+    return {{"line", line}, {"character", at - start}};
+  }
+  void replace(std::size_t begin, std::size_t end, const std::u16string& by) {
+    text_.replace(begin, end - begin, by);
+  }
+  std::string utf8() const {
+    std::string result;
+    for (std::size_t i = 0; i < size(); ++i) {
+      char32_t c = text_[i];
+      if ((c & 0xFC00) == 0xD800) c = 0x10000 + ((c & 0x3FFU) << 10U) + (text_[++i] & 0x3FFU);
+      const auto add = [&](char32_t bits, unsigned mark) {
+        result += static_cast<char>(mark | bits);
+      };
+      if (c < 0x80)
+        add(c, 0);
+      else if (c < 0x800)
+        add(c >> 6U, 0xC0), add(c & 0x3FU, 0x80);
+      else if (c < 0x10000)
+        add(c >> 12U, 0xE0), add(c >> 6U & 0x3FU, 0x80), add(c & 0x3FU, 0x80);
+      else
+        add(c >> 18U, 0xF0), add(c >> 12U & 0x3FU, 0x80), add(c >> 6U & 0x3FU, 0x80),
+            add(c & 0x3FU, 0x80);
+    }
+    return result;
+  }
+
+private:
+  std::u16string text_;
+};
+
+const std::u16string kPieces[] = {u"WHEN touch LEVEL > 3\nDO\n  MOVE arms TO 30deg SLOWLY\nEND\n",
+                                  u"% ä🤖𝄞\n",
+                                  u"\n",
+                                  u"\r\n",
+                                  u"\r",
+                                  u" ",
+                                  u"🤖",
+                                  u"END\n",
+                                  u"STATE mood: calm, wild\n",
+                                  u"mood IS ",
+                                  u"\"",
+                                  u"DEFINE greet WITH how\n  SAY how\nEND\n",
+                                  u"greet WITH 3\n",
+                                  u"BEHAVIOR b PRIORITY 3\n",
+                                  u"touch ",
+                                  u"LEVEL",
+                                  u"(",
+                                  u")",
+                                  u", ",
+                                  u"USE gestures\n",
+                                  u"PLAY sound \"greeting.wav\"\n",
+                                  u"TEST \"t\"\n  AT 1s touch LEVEL = 2\nEND\n",
+                                  u"3cm",
+                                  u"",
+                                  u"",
+                                  u"",
+                                  u""};
+
+constexpr const char* kQuestions[] = {
+    "completion",     "hover",      "definition", "references",          "prepareRename", "rename",
+    "documentSymbol", "formatting", "codeAction", "semanticTokens/full", "foldingRange"};
+
+std::size_t number_of_edits() {
+  const char* const wanted = std::getenv("ROBOSYNC_EDITS");
+  return wanted == nullptr ? 2000 : std::strtoul(wanted, nullptr, 10);
+}
+
+class Typist {
+public:
+  explicit Typist(unsigned seed) : random_(seed) { editor_.open("robot.rsl", text_.utf8()); }
+
+  void change() {
+    Json changes = Json::array();
+    const std::size_t count = below(10) == 0 ? 3 : 1;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t begin = place();
+      std::size_t end = below(3) == 0 ? std::min(text_.size(), begin + below(60)) : begin;
+      while (text_.is_between(end))
+        ++end;
+      const std::u16string by =
+          text_.size() > 3000 && end == begin ? u"" : kPieces[below(std::size(kPieces))];
+      changes.push_back({{"range", {{"start", text_.place(begin)}, {"end", text_.place(end)}}},
+                         {"text", Text(by).utf8()}});
+      text_.replace(begin, end, by);
+      if (text_.size() > 3000) {  // now and then all of it is another
+        text_ = Text(u"");
+        changes.push_back({{"text", ""}});
+      }
+    }
+    editor_.tell(
+        "textDocument/didChange",
+        {{"textDocument", {{"uri", editor_.uri("robot.rsl")}, {"version", ++editor_.version}}},
+         {"contentChanges", changes}});
+  }
+  // A moment in which nothing is typed.
+  void rest() { editor_.rest(); }
+  void settle() { editor_.settle(); }
+
+  void ask() {
+    const std::string question = kQuestions[below(std::size(kQuestions))];
+    const Json at = text_.place(place());
+    (void)editor_.ask("textDocument/" + question,
+                      {{"textDocument", {{"uri", editor_.uri("robot.rsl")}}},
+                       {"position", at},
+                       {"range", {{"start", at}, {"end", at}}},
+                       {"newName", "other"},
+                       {"context", {{"includeDeclaration", true}}}});
+    editor_.answers.clear();
+    editor_.others.clear();
+  }
+
+  bool is_same() const {
+    return editor_.server().workspace().find(editor_.uri("robot.rsl"))->source.text() ==
+           text_.utf8();
+  }
+  std::int64_t shown() const { return editor_.shown.at(editor_.uri("robot.rsl")).at("version"); }
+  std::int64_t version() const { return editor_.version; }
+
+private:
+  std::size_t below(std::size_t end) { return random_() % end; }
+  std::size_t place() {
+    std::size_t at = below(text_.size() + 1);
+    while (text_.is_between(at))
+      ++at;
+    return at;
+  }
+
+  std::mt19937 random_;
+  Editor editor_;
+  Text text_{u"WHEN touch LEVEL > 3\nDO\n  MOVE arms TO 30deg SLOWLY\nEND\n"};
+};
+
+}  // namespace
+
+TEST_CASE("after any changes the text is that of the editor, and every question has an answer") {
+  Typist typist(17);
+  const std::size_t edits = number_of_edits();
+  for (std::size_t i = 0; i < edits; ++i) {
+    typist.change();
+    typist.settle();
+    REQUIRE(typist.is_same());
+    if (i % 16 == 0) typist.ask();
+    if (i % 32 != 0) continue;
+    typist.rest();
+    REQUIRE(typist.shown() == typist.version());
+  }
+}
