@@ -67,13 +67,13 @@ TEST_CASE("a place behind characters outside of the basic plane is counted in UT
 TEST_CASE(
     "what is wrong in robot.json is shown there, and looked at again when either text changes") {
   Editor editor(kRelated);
-  std::string robot = test::kRobot;
+  std::string robot = test::kEditorsRobot;
   editor.open("robot.rsl", kRight);
   robot.replace(robot.find("\"VIRTUAL\""), 9, "\"VIRTUEL\"");
   editor.open("robot.json", robot);
   REQUIRE(!editor.diagnostics("robot.json").empty());
   CHECK(editor.diagnostics("robot.json")[0].at("range").at("start").at("line") == 2);
-  editor.write("robot.json", test::kRobot);
+  editor.write("robot.json", test::kEditorsRobot);
   CHECK(editor.diagnostics("robot.json").empty());
   CHECK(editor.diagnostics("robot.rsl").empty());
   editor.write("robot.json", R"({"sensors": []})");
@@ -104,7 +104,7 @@ TEST_CASE("a program without a robot.json says so, and what is wrong with how it
   REQUIRE(shown.size() == 2);
   CHECK_THAT(shown[0].at("message").get<std::string>(), Contains("no configuration"));
   CHECK(!shown[0].contains("code"));
-  editor.open("robot.json", test::kRobot);  // not on the disk yet
+  editor.open("robot.json", test::kEditorsRobot);  // not on the disk yet
   CHECK(editor.diagnostics("robot.rsl").size() == 1);
 }
 
@@ -115,7 +115,7 @@ TEST_CASE("robot.json alone is looked at, for the programs beside it that are no
   (void)editor.folder.write("robot.rsl", kRight);
   editor.write("robot.json", R"({"sensors": []})");
   CHECK(codes(editor.diagnostics("robot.rsl")).front() == "E0501");
-  editor.write("robot.json", test::kRobot);
+  editor.write("robot.json", test::kEditorsRobot);
   CHECK(editor.diagnostics("robot.rsl").empty());
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("two programs with one robot.json show what is wrong with it once") {
   Editor editor;
   editor.open("a.rsl", kRight);
   editor.open("b.rsl", kRight);
-  std::string robot = test::kRobot;
+  std::string robot = test::kEditorsRobot;
   robot.replace(robot.find("\"VIRTUAL\""), 9, "\"VIRTUEL\"");
   editor.open("robot.json", robot);
   const auto found = codes(editor.diagnostics("robot.json"));
@@ -134,7 +134,7 @@ TEST_CASE("what mends a robot.json that two programs share is offered once, and 
   Editor editor;
   editor.open("a.rsl", kRight);
   editor.open("b.rsl", kRight);
-  std::string robot = test::kRobot;
+  std::string robot = test::kEditorsRobot;
   robot.replace(robot.find("\"servo\""), 7, "\"servp\"");
   editor.open("robot.json", robot);
   const Json where = editor.diagnostics("robot.json")[0].at("range");
@@ -143,7 +143,8 @@ TEST_CASE("what mends a robot.json that two programs share is offered once, and 
   REQUIRE(all.size() == 1);
   CHECK(all[0].at("edit").at("changes").at(editor.uri("robot.json")).size() == 1);
   editor.apply("robot.json", all[0].at("edit").at("changes").at(editor.uri("robot.json")));
-  CHECK(editor.server().workspace().find(editor.uri("robot.json"))->source.text() == test::kRobot);
+  CHECK(editor.server().workspace().find(editor.uri("robot.json"))->source.text() ==
+        test::kEditorsRobot);
 }
 
 TEST_CASE("a module is looked at with the program that uses it") {

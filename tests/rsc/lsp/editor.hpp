@@ -16,7 +16,7 @@ namespace robosync::test {
 
 using Json = nlohmann::json;
 
-inline constexpr const char* kRobot = R"({
+inline constexpr const char* kEditorsRobot = R"({
   "sensors": [
     {"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}},
     {"name": "proximity", "type": "VIRTUAL", "channels": {"DISTANCE": {"unit": "cm", "range": [2, 400]}}},
@@ -55,7 +55,7 @@ struct Marked {
 
 class Editor {
 public:
-  explicit Editor(const Json& capabilities = Json::object(), const char* robot = kRobot)
+  explicit Editor(const Json& capabilities = Json::object(), const char* robot = kEditorsRobot)
       : server_([this](const std::string& text) { hear(Json::parse(text)); }) {
     if (robot != nullptr) (void)folder.write("robot.json", robot);
     started = ask("initialize", {{"capabilities", capabilities}});

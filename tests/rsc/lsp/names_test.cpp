@@ -215,7 +215,7 @@ TEST_CASE("references of robot.json are those of every program that uses it") {
   Editor editor;
   editor.open("a.rsl", "WHEN touch LEVEL > 3 DO STOP ALL\nEND\n");
   editor.open("b.rsl", "WHEN touch LEVEL > 4 DO STOP ALL\nEND\n");
-  editor.open("robot.json", test::kRobot);
+  editor.open("robot.json", test::kEditorsRobot);
   const Json found =
       editor.ask("textDocument/references", {{"textDocument", {{"uri", editor.uri("robot.json")}}},
                                              {"position", {{"line", 2}, {"character", 15}}},
@@ -270,7 +270,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a BEHAVIOR is renamed in robot.json too, inside of its quotes") {
-  std::string robot = test::kRobot;
+  std::string robot = test::kEditorsRobot;
   robot.insert(robot.rfind('}'), R"(, "behaviors": [{"name": "hug", "priority": 7}])");
   Editor editor(Json::object(), robot.c_str());
   const Json changes =
