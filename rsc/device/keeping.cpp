@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr milliseconds kReading{10'000};  // a board needs one second for the largest program
 constexpr milliseconds kLook{20};
 
-constexpr std::array kStates = {
+constexpr std::array kKeepingStates = {
 #define KEEPING(name, doc) std::string_view(#name),
 #include "link/keeping.def"
 #undef KEEPING
@@ -74,7 +74,7 @@ std::string keeping_text(const link::Kept& kept) {
 
 Json keeping_json(const link::Kept& kept) {
   const auto state = static_cast<std::size_t>(kept.state);
-  Json object{{"state", state < kStates.size() ? kStates[state] : "?"},
+  Json object{{"state", state < kKeepingStates.size() ? kKeepingStates[state] : "?"},
               {"program", program(kept.kept_bytes, kept.kept_crc32)},
               {"previous", program(kept.previous_bytes, kept.previous_crc32)},
               {"most_bytes", kept.most_bytes},

@@ -12,6 +12,7 @@ import rsc
 EXAMPLES = rsc.ROOT / "examples"
 WIDE = "16000,2000"  # so that no two commands fall into one pixel
 MARKS = {"lose": "denied", "log": "log", "alert": "alert", "fault": "fault", "deadline": "deadline"}
+PROFILE = tempfile.TemporaryDirectory()  # of the browser, which takes longer to make one than to show a page
 # Appended to a page: does what a person does, and writes what is to be seen then into the title.
 HANDS = """<script>
 const seen = {};
@@ -37,11 +38,10 @@ document.title = JSON.stringify(seen);
 
 def dom(page, size="1300,1200"):
     """The document as it is when its script has run."""
-    with tempfile.TemporaryDirectory() as profile:
-        done = subprocess.run(
-            ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", f"--user-data-dir={profile}",
-             f"--window-size={size}", "--dump-dom", page.as_uri()],
-            check=True, text=True, timeout=120, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    done = subprocess.run(
+        ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", f"--user-data-dir={PROFILE.name}",
+         f"--window-size={size}", "--dump-dom", page.as_uri()],
+        check=True, text=True, timeout=120, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     return done.stdout
 
 

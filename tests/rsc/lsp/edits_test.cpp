@@ -92,7 +92,7 @@ constexpr const char* kQuestions[] = {
 
 std::size_t number_of_edits() {
   const char* const wanted = std::getenv("ROBOSYNC_EDITS");
-  return wanted == nullptr ? 2000 : std::strtoul(wanted, nullptr, 10);
+  return wanted == nullptr ? 1000 : std::strtoul(wanted, nullptr, 10);
 }
 
 class Typist {
