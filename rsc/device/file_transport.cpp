@@ -123,10 +123,10 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Transport> open_pty(const std::string& path) {
+std::unique_ptr<Transport> open_pty(const std::string& path, Sharing sharing) {
   Descriptor file(open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
   if (file < 0) fail(path, errno);
-  lock_line(file, path);
+  if (sharing == Sharing::alone) lock_line(file, path);
   termios settings{};
   if (tcgetattr(file, &settings) != 0) fail(path, errno);
   cfmakeraw(&settings);

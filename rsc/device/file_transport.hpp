@@ -9,7 +9,7 @@
 namespace robosync::tool {
 
 // All throw Failure as open_port() does.
-[[nodiscard]] std::unique_ptr<Transport> open_pty(const std::string& path);
+[[nodiscard]] std::unique_ptr<Transport> open_pty(const std::string& path, Sharing sharing);
 [[nodiscard]] std::unique_ptr<Transport> open_unix_socket(const std::string& path);
 [[nodiscard]] std::unique_ptr<Transport> open_tcp_socket(const std::string& host_and_port);
 

@@ -1,4 +1,4 @@
-// One rsc at a time on a line: two would each take bytes that are for the other.
+// Sharing::alone (transport.hpp), for devices.
 #pragma once
 
 #include <string>

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <libserialport.h>
+#include <sys/ioctl.h>
 
 #include "rsc/device/line_lock.hpp"
 #include "rsc/failure.hpp"
@@ -84,12 +85,20 @@ Port find(const std::string& path) {
   return Port(found);
 }
 
+// The lock keeps other rsc away. Newer versions of libserialport keep everyone away, which would lock out `rsc stop` too.
+void claim(const sp_port* port, const std::string& path, Sharing sharing) {
+  int file = -1;
+  if (sp_get_port_handle(port, &file) != SP_OK) return;
+  ioctl(file, TIOCNXCL);
+  if (sharing == Sharing::alone) lock_line(file, path);
+}
+
 }  // namespace
 
-std::unique_ptr<Transport> open_serial(const std::string& path) {
+std::unique_ptr<Transport> open_serial(const std::string& path, Sharing sharing) {
   Port port = find(path);
   expect(sp_open(port.get(), SP_MODE_READ_WRITE), path);
-  if (int file = -1; sp_get_port_handle(port.get(), &file) == SP_OK) lock_line(file, path);
+  claim(port.get(), path, sharing);
   auto transport = std::make_unique<SerialTransport>(path, std::move(port));
   expect(transport->configure(), path);
   return transport;

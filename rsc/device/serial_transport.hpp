@@ -11,7 +11,7 @@ namespace robosync::tool {
 
 inline constexpr int kBaudRate = 115200;
 
-[[nodiscard]] std::unique_ptr<Transport> open_serial(const std::string& path);
+[[nodiscard]] std::unique_ptr<Transport> open_serial(const std::string& path, Sharing sharing);
 
 struct SerialPort {
   std::string name, description;

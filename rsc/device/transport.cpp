@@ -19,11 +19,11 @@ bool is_pty(const std::string& port) {
 
 }  // namespace
 
-std::unique_ptr<Transport> open_port(const std::string& port) {
+std::unique_ptr<Transport> open_port(const std::string& port, Sharing sharing) {
   if (port.starts_with("unix:")) return open_unix_socket(port.substr(5));
   if (port.starts_with("tcp:")) return open_tcp_socket(port.substr(4));
-  if (is_pty(port)) return open_pty(port);
-  return open_serial(port);
+  if (is_pty(port)) return open_pty(port, sharing);
+  return open_serial(port, sharing);
 }
 
 }  // namespace robosync::tool

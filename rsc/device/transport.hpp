@@ -28,8 +28,15 @@ public:
   virtual Clock::time_point now() const { return Clock::now(); }
 };
 
+// One rsc at a time uses a serial line or a pty: two would each take bytes that are for the other.
+enum class Sharing {
+  alone,       // waits half a second for another one that is about to end; then throws Failure (outside)
+  with_others  // for what must not wait: the reply may go to the other one
+};
+
 // `port`: a serial device (115,200 baud, 8N1), a pty, unix:PATH or tcp:HOST:PORT. Throws Failure:
 // outside when it cannot be opened (and says why), usage when it is not such a name.
-[[nodiscard]] std::unique_ptr<Transport> open_port(const std::string& port);
+[[nodiscard]] std::unique_ptr<Transport> open_port(const std::string& port,
+                                                   Sharing sharing = Sharing::alone);
 
 }  // namespace robosync::tool

@@ -13,16 +13,17 @@ namespace robosync::tool {
 
 namespace {
 
-// Without a hello first: a board with much to do may need some time for that.
+// Without a hello first, for which a board with much to do may need some time; and beside another rsc, such as a monitor.
 void stop_board(const std::string& port) {
-  const std::unique_ptr<Transport> transport = open_port(port);
+  const std::unique_ptr<Transport> transport = open_port(port, Sharing::with_others);
   try {
     Client(*transport).stop();
   } catch (const Failure& failure) {
     throw Failure(failure.exit(),
                   std::string(failure.what()) +
                       " It may have stopped all the same: a board with much to do stops first, and "
-                      "answers when it finds the time");
+                      "answers when it finds the time; and another rsc on this line may have taken "
+                      "the answer");
   }
 }
 

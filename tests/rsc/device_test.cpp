@@ -360,11 +360,16 @@ TEST_CASE("the line may be TCP") {
   CHECK(outcome.exit == 0);
 }
 
-TEST_CASE("the line may be a pty") {
+int open_pty_master() {
   const int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
   REQUIRE(master >= 0);
   REQUIRE(grantpt(master) == 0);
   REQUIRE(unlockpt(master) == 0);
+  return master;
+}
+
+TEST_CASE("the line may be a pty") {
+  const int master = open_pty_master();
   const std::string path = ptsname(master);
   const int kept_open = open(path.c_str(), O_RDWR | O_NOCTTY);  // or the master reads EIO
   termios raw{};
@@ -388,9 +393,7 @@ TEST_CASE("ports is valid JSON, whatever this computer has") {
 }
 
 TEST_CASE("a line that another rsc uses is exit 3, and says so, until that one ends") {
-  const int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
-  REQUIRE(grantpt(master) == 0);
-  REQUIRE(unlockpt(master) == 0);
+  const int master = open_pty_master();
   const std::string port = ptsname(master);
   const Bridge bridge(master, false);
   {
@@ -400,4 +403,17 @@ TEST_CASE("a line that another rsc uses is exit 3, and says so, until that one e
     CHECK_THAT(outcome.err, Contains(port + ": another rsc uses this line; end it first"));
   }
   CHECK(test::rsc({"info", "--port", port}).exit == 0);
+}
+
+TEST_CASE("stop does not wait for another rsc that uses the line") {
+  const int master = open_pty_master();
+  const std::string port = ptsname(master);
+  const Bridge bridge(master, false);
+  {
+    const std::unique_ptr<tool::Transport> other = tool::open_port(port);
+    const Outcome outcome = test::rsc({"stop", "--port", port});
+    CAPTURE(outcome.err);
+    CHECK(outcome.exit == 0);
+  }
+  CHECK_THAT(test::rsc({"info", "--port", port}).out, Contains("stopped   all outputs are in their safe state"));
 }
