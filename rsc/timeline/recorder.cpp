@@ -8,7 +8,6 @@
 
 #include "compiler/config/units.hpp"
 #include "rsc/timeline/thresholds.hpp"
-#include "rsc/trace/event_reader.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -43,6 +42,23 @@ Json labels_of(const vm::Image& image, std::size_t first, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
     labels.push_back(image.string(image.labels[first + i]));
   return labels;
+}
+
+// What a person should read by itself.
+bool is_message(EventKind kind) {
+  switch (kind) {
+    case EventKind::log:
+    case EventKind::alert:
+    case EventKind::fault:
+    case EventKind::deadline:
+    case EventKind::overrun:
+    case EventKind::zero_divide:
+    case EventKind::silent:
+    case EventKind::answers:
+      return true;
+    default:
+      return false;
+  }
 }
 
 }  // namespace
@@ -126,24 +142,24 @@ void TimelineRecorder::see(const link::Event& event) {
   if (steps_.empty() || steps_.back().front() != event.step)
     steps_.push_back(Json::array({event.step}));
   steps_.back().push_back(trace_words(event, names_));
-  if (event.kind == EventKind::input || event.kind == EventKind::stale) {
-    if (event.subject < image_.channels.size()) see_value(event, event.subject);
-  } else if (event.kind == EventKind::set) {
-    if (event.subject < image_.variables.size())
-      see_value(event, image_.channels.size() + event.subject);
-  } else if (reader.shape().subject == About::rule) {
-    if (event.subject < image_.rules.size()) see_rule(event);
-  } else if (reader.shape().subject == About::actuator) {
-    if (event.subject < image_.actuators.size()) see_actuator(event);
-  } else if (event.kind == EventKind::log) {
-    add_message(event, "log");
-  } else if (event.kind == EventKind::alert) {
-    add_message(event, "alert");
-  } else if (event.kind == EventKind::fault) {
-    add_message(event, "fault");
-  } else if (event.kind == EventKind::deadline) {
-    add_message(event, "deadline");
-  }
+  if (is_message(event.kind)) add_message(reader);
+  see_subject(reader);
+}
+
+// What is drawn in the lane of whom the event is about.
+void TimelineRecorder::see_subject(const EventReader& reader) {
+  const link::Event& event = reader.event();
+  const auto is_one_of = [&](About kind, const auto& list) {
+    return reader.shape().subject == kind && event.subject < list.size();
+  };
+  if (is_one_of(About::channel, image_.channels))
+    see_value(event, event.subject);
+  else if (is_one_of(About::variable, image_.variables))
+    see_value(event, image_.channels.size() + event.subject);
+  else if (is_one_of(About::rule, image_.rules))
+    see_rule(event);
+  else if (is_one_of(About::actuator, image_.actuators))
+    see_actuator(event);
 }
 
 void TimelineRecorder::see_value(const link::Event& event, std::size_t signal) {
@@ -172,10 +188,8 @@ void TimelineRecorder::see_rule(const link::Event& event) {
 }
 
 void TimelineRecorder::deny(const link::Event& event) {
-  const EventReader reader(event, names_);
   page_["denied"].push_back({{"at", event.time_us},
                              {"behavior", behavior_of(event.subject)},
-                             {"by", event.object},
                              {"text", trace_words(event, names_)},
                              {"rule", event.subject},
                              {"step", event.step}});
@@ -231,9 +245,10 @@ void TimelineRecorder::end_halt(std::size_t actuator, std::uint64_t at) {
   halted_[actuator] = false;
 }
 
-void TimelineRecorder::add_message(const link::Event& event, const char* kind) {
+void TimelineRecorder::add_message(const EventReader& reader) {
+  const link::Event& event = reader.event();
   page_["messages"].push_back({{"at", event.time_us},
-                               {"kind", kind},
+                               {"kind", reader.shape().name},
                                {"text", trace_words(event, names_)},
                                {"step", event.step}});
 }

@@ -7,8 +7,8 @@
 //                points: [[time, value or null]], thresholds: [{value, text, rule}]}]
 //   actuators: [{name, bars: [{from, to, behavior: index or -1, text, rule, step}], halts: [[from, to]]}]
 //   safety:    [{from, to, rule, step}]
-//   denied:    [{at, behavior, by, side, rule, step}]
-//   messages:  [{at, kind: "log"|"alert"|"fault"|"deadline", text, step}]
+//   denied:    [{at, behavior, text, rule, step}]
+//   messages:  [{at, kind: the event's name in link/events.def, text, step}]
 //   steps:     [[step, what happened in it, in words …]], in their order
 //   rules:     [{name, line}]
 #pragma once
@@ -21,6 +21,7 @@
 
 #include "link/events.hpp"
 #include "rsc/program.hpp"
+#include "rsc/trace/event_reader.hpp"
 #include "rsc/trace/trace_format.hpp"
 
 namespace robosync::tool {
@@ -43,10 +44,11 @@ private:
   void see_value(const link::Event& event, std::size_t signal);
   void see_rule(const link::Event& event);
   void see_actuator(const link::Event& event);
+  void see_subject(const EventReader& reader);
   void begin_bar(const link::Event& event);
   void end_bar(std::size_t actuator, std::uint64_t at);
   void end_halt(std::size_t actuator, std::uint64_t at);
-  void add_message(const link::Event& event, const char* kind);
+  void add_message(const EventReader& reader);
   void deny(const link::Event& event);
   int behavior_of(std::size_t rule) const;
 

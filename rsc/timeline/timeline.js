@@ -69,7 +69,7 @@ function label(lane, x, y, room, text, quiet = false) {
   lane.svg.append(element("text", quiet ? {x, y, class: "quiet"} : {x, y}, short));
 }
 
-// Things with a beginning and an end; those of one pixel are drawn once.
+// Things with a beginning and an end, sorted, of which none overlaps another; those of one pixel are drawn once.
 function drawSpans(lane, spans, draw) {
   let last = -Infinity;
   for (let i = Math.max(firstFrom(spans, span => span.from, from) - 1, 0); i < spans.length && spans[i].from <= to; ++i) {
@@ -223,6 +223,16 @@ function addLane(name, note, height, of, drawn) {
   return lanes.at(-1);
 }
 
+// A list for each key, in the order in which the keys first appear.
+function grouped(items, keyOf) {
+  const groups = new Map();
+  for (const item of items) {
+    if (!groups.has(keyOf(item))) groups.set(keyOf(item), []);
+    groups.get(keyOf(item)).push(item);
+  }
+  return groups;
+}
+
 function addSignal(signal) {
   if (signal.labels.length > 0) {
     const lane = addLane(signal.name, "", 28, signal, drawSegments);
@@ -254,15 +264,13 @@ function build() {
   const of = group => run.signals.filter(signal => signal.group === group);
   const variables = of("variable"), sensors = of("sensor");
   if (variables.length + run.safety.length + run.messages.length > 0) heading("What it feels, knows and says");
-  if (run.safety.length > 0) addLane("SAFETY", "", 24, {trips: run.safety}, drawTrips);
+  for (const [rule, trips] of grouped(run.safety, trip => trip.rule)) addLane("SAFETY", ruleName(rule), 30, {trips}, drawTrips);
   variables.forEach(addSignal);
   if (run.messages.length > 0) addLane("log and alerts", "", 24, {marks: run.messages}, drawMarks);
   heading("What it does");
   for (const actuator of run.actuators) addLane(actuator.name, "", 34, actuator, drawBars);
-  const losers = [...new Set(run.denied.map(mark => mark.behavior))];
-  if (losers.length > 0) heading("What it wanted to do, and was denied");
-  for (const index of losers)
-    addLane(behaviorName(index), "", 24, {marks: run.denied.filter(mark => mark.behavior === index)}, drawMarks);
+  if (run.denied.length > 0) heading("What it wanted to do, and was denied");
+  for (const [index, marks] of grouped(run.denied, mark => mark.behavior)) addLane(behaviorName(index), "", 24, {marks}, drawMarks);
   if (sensors.length > 0) heading("What it senses");
   sensors.forEach(addSignal);
   buildLegend();

@@ -53,9 +53,9 @@ std::vector<std::string> inputs_of(const RunOptions& options, const Program& pro
 }
 
 // What a run shows while it goes on, and leaves behind.
-class Output {
+class RunOutput {
 public:
-  Output(const RunOptions& options, const Program& program, Kept& kept)
+  RunOutput(const RunOptions& options, const Program& program, Kept& kept)
       : options_(options),
         program_(program),
         kept_(kept),
@@ -105,7 +105,7 @@ void run(const RunOptions& options) {
 
   std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
   kept.put_into(uploaded);
-  Output output(options, program, kept);
+  RunOutput output(options, program, kept);
   const auto see = [&](const link::Event& event) { output.see(event); };
   sim::Simulator simulator(uploaded, see, program.board(), options.how.seed);
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {

@@ -11,8 +11,23 @@ import rsc
 
 EXAMPLES = rsc.ROOT / "examples"
 WIDE = "16000,2000"  # so that no two commands fall into one pixel
-MARKS = {"lose": "denied", "log": "log", "alert": "alert", "fault": "fault", "deadline": "deadline"}
+MARKS = {"lose": "denied"} | {kind: kind for kind in (
+    "log", "alert", "fault", "deadline", "overrun", "zero_divide", "silent", "answers")}
 PROFILE = tempfile.TemporaryDirectory()  # of the browser, which takes longer to make one than to show a page
+# Two SAFETY rules that are tripped at once, the second for shorter; and a message that is neither LOG nor ALERT.
+TRIPPED_TWICE = """SAFETY long
+  WHEN touch LEVEL > 5 DO STOP arm
+  RESUME WHEN touch LEVEL < 2
+END
+SAFETY short
+  WHEN touch LEVEL > 7 DO STOP arm
+  RESUME WHEN touch LEVEL < 7
+END
+WHEN 6 / touch LEVEL > 3 DO MOVE arm TO 10deg END
+"""
+TRIPPED_ROBOT = {"sensors": [{"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}}],
+                 "actuators": [{"name": "arm", "device": "joint", "type": "VIRTUAL"}]}
+TOUCHES = {"0s": 1, "1s": 6, "3s": 9, "4s": 6, "8s": 0}
 # Appended to a page: does what a person does, and writes what is to be seen then into the title.
 HANDS = """<script>
 const seen = {};
@@ -89,8 +104,28 @@ class Page(unittest.TestCase):
         for lane in document.split('class="lane"')[1:]:
             self.assertLess(lane.count("<rect") + lane.count("<text"), 2 * 1300)
 
+    def test_safety_rules_that_are_tripped_at_once_are_drawn_beside_each_other(self):
+        example = self.folder / "twice"
+        example.mkdir()
+        (example / "robot.rsl").write_text(TRIPPED_TWICE, "utf-8")
+        (example / "robot.json").write_text(json.dumps(TRIPPED_ROBOT), "utf-8")
+        stimuli = [{"at": at, "sensor": "touch", "value": value} for at, value in TOUCHES.items()]
+        (example / "touches.json").write_text(json.dumps({"stimuli": stimuli}), "utf-8")
+        page, trace = self.show(example)
+        kinds = [event["event"] for event in trace]
+        self.assertEqual((kinds.count("trip"), kinds.count("zero_divide")), (2, 1))
+        document = dom(page)
+        self.assertEqual(count(document, "bar trip"), 2)
+        self.assertEqual(count(document, "mark zero_divide"), 1)
+        self.append(page, "<script>show(5e6, 6e6);</script>")
+        self.assertEqual(count(dom(page), "bar trip"), 1)
+
+    @staticmethod
+    def append(page, script):
+        page.write_text(page.read_text("utf-8").replace("</body>", script + "</body>"), "utf-8")
+
     def hands(self, page):
-        page.write_text(page.read_text("utf-8").replace("</body>", HANDS + "</body>"), "utf-8")
+        self.append(page, HANDS)
         title = re.search(r"<title>(.*?)</title>", dom(page), re.DOTALL)[1]
         return json.loads(title.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&"))
 
