@@ -415,5 +415,6 @@ TEST_CASE("stop does not wait for another rsc that uses the line") {
     CAPTURE(outcome.err);
     CHECK(outcome.exit == 0);
   }
-  CHECK_THAT(test::rsc({"info", "--port", port}).out, Contains("stopped   all outputs are in their safe state"));
+  CHECK_THAT(test::rsc({"info", "--port", port}).out,
+             Contains("stopped   all outputs are in their safe state"));
 }
