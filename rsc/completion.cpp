@@ -1,16 +1,25 @@
 // What bash and fish need to complete the words of rsc. Values are words where an option names them ("human|json"), serial
-// ports after --port, and files everywhere else.
+// ports after --port, files where it takes one, and nothing where it takes a number or a name.
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "rsc/escaped.hpp"
 #include "rsc/usage.hpp"
 
 namespace robosync::tool {
 namespace {
 
 constexpr std::string_view kPort = "--port";
+constexpr std::string_view kListPorts =
+    "ls -d /dev/ttyACM* /dev/ttyUSB* /dev/pts/[0-9]* 2>/dev/null";
+
+// "FILE", "FOLDER", "S.json".
+bool is_path(const OptionUsage& option) {
+  return option.value == "FILE" || option.value == "FOLDER" ||
+         option.value.find('.') != std::string::npos;
+}
 
 // "human|json" as "human json"; nothing when the value is no choice of words.
 std::string words_of(const OptionUsage& option) {
@@ -26,11 +35,10 @@ std::string case_of(const VerbUsage& verb, const OptionUsage& option) {
   std::string patterns;
   for (const std::string& name : option.names)
     patterns += fmt::format("{}{},{}", patterns.empty() ? "" : "|", verb.name, name);
-  const std::string words = words_of(option);
-  if (option.names.front() == kPort)
-    return fmt::format("    {}) _rsc_ports; return ;;\n", patterns);
-  if (words.empty()) return fmt::format("    {}) _rsc_files; return ;;\n", patterns);
-  return fmt::format("    {}) _rsc_words \"{}\"; return ;;\n", patterns, words);
+  const std::string offer = option.names.front() == kPort ? "_rsc_ports"
+                            : is_path(option)             ? "_rsc_files"
+                                              : fmt::format("_rsc_words \"{}\"", words_of(option));
+  return fmt::format("    {}) {}; return ;;\n", patterns, offer);
 }
 
 std::string names_of(const VerbUsage& verb) {
@@ -43,12 +51,7 @@ std::string names_of(const VerbUsage& verb) {
 
 // As fish quotes within '…'.
 std::string in_fish(std::string_view text) {
-  std::string quoted = "'";
-  for (const char c : text) {
-    if (c == '\'' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "'";
+  return "'" + escaped(text, {{'\'', "\\'"}, {'\\', "\\\\"}}) + "'";
 }
 
 std::string fish_option(const VerbUsage& verb, const OptionUsage& option) {
@@ -56,11 +59,11 @@ std::string fish_option(const VerbUsage& verb, const OptionUsage& option) {
   for (const std::string& name : option.names)
     line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
   if (option.names.front() == kPort)
-    line += " -x -a '(ls /dev/ttyACM* /dev/ttyUSB* 2>/dev/null)'";
+    line += fmt::format(" -x -a '({})'", kListPorts);
   else if (const std::string words = words_of(option); !words.empty())
     line += fmt::format(" -x -a '{}'", words);
   else if (!option.value.empty())
-    line += " -r";
+    line += is_path(option) ? " -r" : " -x";
   return fmt::format("{} -d {}\n", line, in_fish(option.description));
 }
 
@@ -81,7 +84,10 @@ _rsc_files() {{
   compopt -o filenames 2>/dev/null
   COMPREPLY=($(compgen -f -- "$word"))
 }}
-_rsc_ports() {{ COMPREPLY=($(compgen -G "$word*" | grep -E '^/dev/(tty(ACM|USB)|pts/)')); }}
+_rsc_ports() {{
+  local lines=$({})
+  _rsc_words "$lines"
+}}
 _rsc() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} verb=${{COMP_WORDS[1]}}
   if [ "$COMP_CWORD" = 1 ]; then
@@ -100,7 +106,7 @@ _rsc() {{
 }}
 complete -F _rsc rsc
 )",
-                     names, values, names, options);
+                     kListPorts, names, values, names, options);
 }
 
 std::string fish_completion(const std::vector<VerbUsage>& verbs) {

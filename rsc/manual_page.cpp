@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "rsc/escaped.hpp"
 #include "rsc/usage.hpp"
 
 namespace robosync::tool {
@@ -11,17 +12,8 @@ namespace {
 
 // A minus that may be copied, and no line that roff takes for a request.
 std::string in_roff(std::string_view text) {
-  std::string safe;
-  if (text.starts_with('.') || text.starts_with('\'')) safe = "\\&";
-  for (const char c : text) {
-    if (c == '\\')
-      safe += "\\e";
-    else if (c == '-')
-      safe += "\\-";
-    else
-      safe += c;
-  }
-  return safe;
+  const bool request = text.starts_with('.') || text.starts_with('\'');
+  return (request ? "\\&" : "") + escaped(text, {{'\\', "\\e"}, {'-', "\\-"}});
 }
 
 std::string option_text(const OptionUsage& option) {

@@ -7,34 +7,20 @@
 
 #include <nlohmann/json.hpp>
 
+#include "rsc/escaped.hpp"
+
 namespace robosync::tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 std::string in_html(std::string_view text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '<')
-      safe += "&lt;";
-    else if (c == '&')
-      safe += "&amp;";
-    else
-      safe += c;
-  }
-  return safe;
+  return escaped(text, {{'<', "&lt;"}, {'&', "&amp;"}});
 }
 
 // No text in it can end the element it stands in.
 std::string in_script(const Json& run) {
-  std::string safe;
-  for (const char c : run.dump(-1, ' ', false, Json::error_handler_t::replace)) {
-    if (c == '<')
-      safe += "\\u003c";
-    else
-      safe += c;
-  }
-  return safe;
+  return escaped(run.dump(-1, ' ', false, Json::error_handler_t::replace), {{'<', "\\u003c"}});
 }
 
 }  // namespace

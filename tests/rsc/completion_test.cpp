@@ -1,9 +1,12 @@
 // rsc completion and rsc help --man: what a shell and man make of the list of verbs.
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 
 #include <catch2/catch.hpp>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "rsc/usage.hpp"
 #include "rsc/verb.hpp"
@@ -54,6 +57,18 @@ TEST_CASE("bash completes verbs, options, the words of an option, and files") {
   CHECK(offered(place, {"rsc", "run", "--scenario", "my"}) == "my robot.rsl\n");
   CHECK(offered(place, {"rsc", "help", "roll"}) == "rollback\n");
   CHECK(offered(place, {"rsc", "nothing", "--x"}) == "\n");
+}
+
+TEST_CASE("bash completes serial lines, and offers no files where a number is wanted") {
+  const test::Folder folder;
+  folder.write("7.rsl", "");
+  const int line = posix_openpt(O_RDWR | O_NOCTTY);
+  REQUIRE(unlockpt(line) == 0);
+  const std::string name = ptsname(line);
+  CHECK_THAT(offered(folder.path(""), {"rsc", "info", "--port", ""}), Contains(name + "\n"));
+  CHECK(offered(folder.path(""), {"rsc", "info", "--port", name}) == name + "\n");
+  close(line);
+  CHECK(offered(folder.path(""), {"rsc", "run", "--seed", ""}).empty());
 }
 
 TEST_CASE("fish and the manual page have every verb, and every option of it") {
