@@ -119,7 +119,7 @@ void Kept::put_into(std::vector<std::byte>& image) const {
         begin + variable * sizeof(vm::Variable) + offsetof(vm::Variable, initial);
     std::memcpy(image.data() + at, &value, sizeof value);
   }
-  seal(image);
+  vm::seal(image);
 }
 
 void Kept::see(const link::Event& event) {

@@ -191,12 +191,6 @@ Program load_program(const std::string& file, const CompileOptions& options) {
   return {std::move(result.image), file, memory_of(result.board), std::move(origin)};
 }
 
-void seal(std::span<std::byte> image) {
-  constexpr std::size_t kCrc = offsetof(vm::ImageHeader, crc32);
-  const std::uint32_t crc = vm::crc32(image.subspan(kCrc + sizeof(vm::ImageHeader::crc32)));
-  std::memcpy(image.data() + kCrc, &crc, sizeof crc);
-}
-
 // It is the last section, so the image is cut there and the header told.
 std::vector<std::byte> without_source_lines(const Program& program) {
   vm::ImageHeader header = *program.image().header;
@@ -206,7 +200,7 @@ std::vector<std::byte> without_source_lines(const Program& program) {
   std::vector<std::byte> bytes(program.bytes().begin(),
                                program.bytes().begin() + static_cast<std::ptrdiff_t>(length));
   std::memcpy(bytes.data(), &header, sizeof header);
-  seal(bytes);
+  vm::seal(bytes);
   return bytes;
 }
 

@@ -98,9 +98,6 @@ private:
 // is wrong.
 [[nodiscard]] Program load_program(const std::string& file, const CompileOptions& options);
 
-// Sets the checksum of an image whose bytes have been changed.
-void seal(std::span<std::byte> image);
-
 // The same program without its debug section, which the board has no use for.
 [[nodiscard]] std::vector<std::byte> without_source_lines(const Program& program);
 

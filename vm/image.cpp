@@ -4,6 +4,7 @@
 #include "vm/image.hpp"
 
 #include <bit>
+#include <cstddef>
 #include <cstring>
 
 namespace robosync::vm {
@@ -91,6 +92,19 @@ std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t seed) {
   while (next != end)
     crc = crc_byte(crc ^ std::to_integer<std::uint32_t>(*next++));
   return ~crc;
+}
+
+std::uint32_t stated_crc32(std::span<const std::byte> image) {
+  std::uint32_t crc = 0;
+  if (image.size() >= sizeof(ImageHeader))
+    std::memcpy(&crc, image.data() + offsetof(ImageHeader, crc32), sizeof crc);
+  return crc;
+}
+
+void seal(std::span<std::byte> image) {
+  constexpr std::size_t kAt = offsetof(ImageHeader, crc32);
+  const std::uint32_t crc = crc32(image.subspan(kAt + sizeof crc));
+  std::memcpy(image.data() + kAt, &crc, sizeof crc);
 }
 
 }  // namespace robosync::vm

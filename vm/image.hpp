@@ -362,4 +362,10 @@ enum class Section : std::uint8_t {
 // CRC-32 (IEEE 802.3) of `bytes`, continuing from `seed` (0 to begin).
 [[nodiscard]] std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t seed = 0);
 
+// The CRC-32 in an image's header, which names the image on the line and in the store. Whether it is that of the bytes is
+// the verifier's part. 0 when there is no whole header, which verifies as too short whatever is said of its CRC.
+[[nodiscard]] std::uint32_t stated_crc32(std::span<const std::byte> image);
+// Makes it that of the bytes, after some were changed. `image` has a whole header.
+void seal(std::span<std::byte> image);
+
 }  // namespace robosync::vm

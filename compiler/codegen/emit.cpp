@@ -131,9 +131,7 @@ void Emitter::finish_header(const Robot& robot, const ProgramHash& hash) {
   vm::Image view;
   if (vm::view_image(bytes_, view)) header_.step_cost = vm::step_cost(view);
   std::memcpy(bytes_.data(), &header_, sizeof header_);
-  constexpr std::size_t kCrcEnd = offsetof(vm::ImageHeader, crc32) + sizeof header_.crc32;
-  header_.crc32 = vm::crc32(std::span(bytes_).subspan(kCrcEnd));
-  std::memcpy(bytes_.data(), &header_, sizeof header_);
+  vm::seal(bytes_);
 }
 
 }  // namespace

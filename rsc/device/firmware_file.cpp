@@ -82,13 +82,14 @@ fs::path find_firmware(const std::string& file, const std::string& board,
     if (!found) found = with_ending(installed_firmware() / usual, endings);
   }
   if (!found) {
-    throw Failure(Exit::outside,
-                  file.empty()
-                      ? fmt::format("there is no {}{} here or in build/firmware: name the file, or "
-                                    "make it with `scripts/firmware {}`",
-                                    usual, endings.front(), board)
-                      : fmt::format("{}: a file that ends in {} is needed, and none is beside it",
-                                    file, endings.front()));
+    throw Failure(
+        Exit::outside,
+        file.empty()
+            ? fmt::format("there is no {}{} here, in build/firmware or in {}: name the file, or "
+                          "make it with `scripts/firmware {}`",
+                          usual, endings.front(), installed_firmware().string(), board)
+            : fmt::format("{}: a file that ends in {} is needed, and none is beside it", file,
+                          endings.front()));
   }
   check_board(*found, board);
   return *found;

@@ -23,13 +23,6 @@
 namespace robosync::tool {
 namespace {
 
-// Of an image, which names it.
-std::uint32_t crc_of(std::span<const std::byte> image) {
-  std::uint32_t crc32 = 0;
-  std::memcpy(&crc32, image.data() + offsetof(vm::ImageHeader, crc32), sizeof crc32);
-  return crc32;
-}
-
 using link::MessageType;
 using std::chrono::milliseconds;
 
@@ -80,7 +73,7 @@ private:
     under_way_.clear();
     bytes_under_way_ = 0;
     next_ = wanted_;
-    const link::Begin request{static_cast<std::uint32_t>(image_.size()), crc_of(image_)};
+    const link::Begin request{static_cast<std::uint32_t>(image_.size()), vm::stated_crc32(image_)};
     begin_sequence_ = client_.send(MessageType::begin, link::wire_bytes(request));
   }
 
@@ -237,7 +230,7 @@ UploadResult upload(Client& client, const link::HelloReply& hello, std::span<con
     transfer.run();
     result.frames_sent += transfer.frames_sent();
     result.activation =
-        client.activate({crc_of(image), static_cast<std::uint8_t>(options.fresh), {}});
+        client.activate({vm::stated_crc32(image), static_cast<std::uint8_t>(options.fresh), {}});
   } while (result.activation.refusal == link::kNothingToActivate && client.now() < give_up);
   result.time = std::chrono::duration_cast<std::chrono::microseconds>(client.now() - start);
   return result;

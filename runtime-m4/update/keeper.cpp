@@ -165,11 +165,8 @@ void Keeper::start_what_was_read() {
   doing_ = Doing::nothing;
   if (failed_) runtime_.stop();
   failed_ = false;
-  std::uint32_t crc32 = 0;
-  constexpr std::size_t kAt = offsetof(vm::ImageHeader, crc32);
-  const bool whole = image.size() == wanted.bytes && image.size() >= kAt + sizeof crc32;
-  if (whole) std::memcpy(&crc32, image.data() + kAt, sizeof crc32);
-  if (whole && crc32 == wanted.crc32 && runtime_.activate(image).ok()) {
+  const bool whole = image.size() == wanted.bytes;
+  if (whole && vm::stated_crc32(image) == wanted.crc32 && runtime_.activate(image).ok()) {
     running_ = wanted;
     next_look_ = kernel_.now() + kLook;
     fault_ = false;

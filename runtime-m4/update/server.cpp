@@ -223,7 +223,7 @@ void Server::activate(const link::Frame& frame) {
   if (receiver_.complete() && receiver_.crc32() == request.image_crc32) {
     keeper_.host_activates(request.fresh != 0);
     last_result_ = activate_received();
-    result_of_ = request.image_crc32;
+    last_activated_ = request.image_crc32;
     have_result_ = true;
     receiver_.reset();
     if (last_result_.running != 0) keeper_.activated();
@@ -231,20 +231,14 @@ void Server::activate(const link::Frame& frame) {
   }
   link::ActivateResult answer{};
   answer.refusal = link::kNothingToActivate;
-  if (have_result_ && result_of_ == request.image_crc32) answer = last_result_;
+  if (have_result_ && last_activated_ == request.image_crc32) answer = last_result_;
   send(MessageType::activate_result, frame.sequence, link::wire_bytes(answer));
 }
 
 link::ActivateResult Server::activate_received() {
   const std::span<const std::byte> bytes = receiver_.bytes();
   vm::Verdict verdict{vm::Refusal::bad_crc, vm::Section::header, 0};
-  std::uint32_t stored_crc = 0;
-  constexpr std::size_t kAt = offsetof(vm::ImageHeader, crc32);
-  if (bytes.size() >= kAt + sizeof stored_crc) {
-    std::memcpy(&stored_crc, bytes.data() + kAt, sizeof stored_crc);
-  }
-  // That the stored CRC is the one of the bytes is the verifier's part.
-  if (stored_crc == receiver_.crc32()) verdict = runtime_.activate(bytes);
+  if (vm::stated_crc32(bytes) == receiver_.crc32()) verdict = runtime_.activate(bytes);
   return {.running = static_cast<std::uint8_t>(verdict.ok()),
           .refusal = static_cast<std::uint8_t>(verdict.refusal),
           .section = static_cast<std::uint8_t>(verdict.section),

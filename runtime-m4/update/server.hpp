@@ -104,7 +104,7 @@ private:
 
   link::Receiver receiver_;
   link::ActivateResult last_result_{};  // repeated when the host asks again
-  std::uint32_t result_of_ = 0;         // … its CRC
+  std::uint32_t last_activated_ = 0;    // … the CRC-32 of the image that it is about
   bool have_result_ = false;
   Keeper keeper_;
 

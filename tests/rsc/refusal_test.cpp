@@ -32,9 +32,7 @@ struct WrongImage : test::Folder {
   void change(const Record& record, const Record& wrong) {
     const auto offset = reinterpret_cast<const std::byte*>(&record) - bytes.data();
     std::memcpy(bytes.data() + offset, &wrong, sizeof wrong);
-    constexpr std::size_t kCovered = offsetof(vm::ImageHeader, total_length);
-    const std::uint32_t crc = vm::crc32(std::span(bytes).subspan(kCovered));
-    std::memcpy(bytes.data() + offsetof(vm::ImageHeader, crc32), &crc, sizeof crc);
+    vm::seal(bytes);
   }
   const vm::Rule& rule() const {
     const auto found = std::ranges::find(view.rules, kDistanceLine, &vm::Rule::line);

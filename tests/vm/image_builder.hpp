@@ -22,9 +22,7 @@ namespace robosync::vm::test {
 using Bytes = std::vector<std::byte>;
 
 inline void repair_crc(std::span<std::byte> bytes) {
-  if (bytes.size() < sizeof(ImageHeader)) return;
-  const std::uint32_t crc = crc32(bytes.subspan(offsetof(ImageHeader, total_length)));
-  std::memcpy(bytes.data() + offsetof(ImageHeader, crc32), &crc, sizeof crc);
+  if (bytes.size() >= sizeof(ImageHeader)) seal(bytes);
 }
 
 struct ImageBuilder {

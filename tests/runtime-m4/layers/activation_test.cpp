@@ -198,10 +198,7 @@ TEST_CASE("an image with changed numbers is refused, or runs in the memory it ne
     for (unsigned changes = 1 + draw.below(2); changes > 0; --changes)
       bytes[8 + draw.below(static_cast<unsigned>(end - 8))] =
           static_cast<std::byte>(draw.below(256));
-    constexpr std::size_t kAt = offsetof(vm::ImageHeader, crc32);
-    constexpr std::size_t kCovered = offsetof(vm::ImageHeader, total_length);
-    const std::uint32_t crc = vm::crc32(std::span(bytes).subspan(kCovered));
-    std::memcpy(bytes.data() + kAt, &crc, sizeof crc);
+    vm::seal(bytes);
     if (!rig.activate(bytes).ok()) continue;
     ++ran;
     CHECK(rig.runtime.needs().total <= boards::kMemory.arena_bytes);
