@@ -30,7 +30,7 @@ public:
 
 // One rsc at a time uses a serial line or a pty: two would each take bytes that are for the other.
 enum class Sharing {
-  alone,       // waits half a second for another one that is about to end; then throws Failure (outside)
+  alone,  // waits half a second for another one that is about to end; then throws Failure (outside)
   with_others  // for what must not wait: the reply may go to the other one
 };
 
