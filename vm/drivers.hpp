@@ -26,10 +26,13 @@ constexpr PinUse pin_use(DriverId driver) {
   return PinUse::nothing;
 }
 
-// Are its sensors measured over an I2C bus? Others are fed.
-constexpr bool is_on_i2c(DriverId driver) {
-  const auto fed = [] { return false; };
-  const auto i2c = [](unsigned, unsigned) { return true; };
+// By what a driver's sensors are measured; nothing: they are fed, or it has no sensors.
+enum class Bus : std::uint8_t { nothing, i2c, pin };
+
+constexpr Bus bus_of(DriverId driver) {
+  const auto fed = [] { return Bus::nothing; };
+  const auto i2c = [](unsigned, unsigned) { return Bus::i2c; };
+  const auto pin = [] { return Bus::pin; };
   switch (driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case DriverId::name:                   \
@@ -41,7 +44,14 @@ constexpr bool is_on_i2c(DriverId driver) {
     case DriverId::count_:
       break;
   }
-  return false;
+  return Bus::nothing;
+}
+
+constexpr bool is_on_i2c(DriverId driver) {
+  return bus_of(driver) == Bus::i2c;
+}
+constexpr bool is_on_pin(DriverId driver) {
+  return bus_of(driver) == Bus::pin;
 }
 
 // Others are reserved by the I2C specification.

@@ -82,6 +82,9 @@ enum class Action : std::uint8_t { move, play, set, stop, perform, follow, count
 // What an actuator does when its response ends by interruption, and when safety halts it.
 enum class Release : std::uint8_t { hold, rest, coast, count_ };
 
+// Sensor::bus of a sensor on a pin: the level there that reads as 1.
+enum class ActiveLevel : std::uint8_t { low, high, count_ };
+
 // Actuator::bus of a virtual_motion; its pin is the speed that it usually has, in whole units a second
 // (0: what it does takes as long as it is told).
 enum class VirtualMotion : std::uint8_t {

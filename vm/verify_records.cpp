@@ -89,9 +89,11 @@ Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t) {
   if (walk.next_channel > walk.image.channels.size()) return Refusal::bad_index;
   if (sensor.reserved != 0) return Refusal::bad_value;
   const Refusal driver = check_driver(walk, sensor.driver, DriverKind::sensor);
-  if (driver != Refusal::none || !is_on_i2c(sensor.driver)) return driver;
-  return good_or(Refusal::bad_value, sensor.period_ms > 0 && sensor.address >= kFirstAddress &&
-                                         sensor.address <= kLastAddress);
+  if (driver != Refusal::none || bus_of(sensor.driver) == Bus::nothing) return driver;
+  const bool place = is_on_pin(sensor.driver)
+                         ? is_enumerator(static_cast<ActiveLevel>(sensor.bus))
+                         : sensor.address >= kFirstAddress && sensor.address <= kLastAddress;
+  return good_or(Refusal::bad_value, sensor.period_ms > 0 && place);
 }
 
 // Each channel names its sensor, and stands in that sensor's range. As the ranges follow each other
@@ -107,10 +109,17 @@ Refusal check_channel(Walk& walk, const Channel& channel, std::size_t index) {
                                          is_range(channel.min, channel.max) && channel.change >= 0);
 }
 
+bool is_read(const Walk& walk, std::uint16_t pin) {
+  for (const Sensor& sensor : walk.image.sensors)
+    if (sensor.address == pin && is_on_pin(sensor.driver)) return true;
+  return false;
+}
+
 // One pin has one owner, and whoever has a motor lets it stand still in its safe state.
 Refusal check_pin(const Walk& walk, const Actuator& actuator, std::size_t index) {
   const PinUse use = pin_use(actuator.driver);
   if (use == PinUse::nothing) return Refusal::none;
+  if (is_read(walk, actuator.pin)) return Refusal::shared_pin;
   for (std::size_t a = 0; a < index; ++a) {
     const Actuator& before = walk.image.actuators[a];
     if (before.pin == actuator.pin && pin_use(before.driver) != PinUse::nothing)

@@ -142,15 +142,16 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
                                             Diagnostics& diagnostics) {
   Fields fields(value, Object::actuator, diagnostics);
   const auto name = read_name(fields, "an actuator", diagnostics);
-  const WiringType* type = read_type(fields, false, diagnostics);
+  const Board::Part* part = find_part(fields, wiring.board(), false);
+  const WiringType* type = choose_type(fields, part, false, diagnostics);
   if (!name) return std::nullopt;
-  const Device& device = choose_device(fields, type, *name, false, diagnostics);
+  const Device& device = choose_device(fields, type, *name, wiring.board(), false, diagnostics);
   ActuatorConfig actuator = device.actuator;
   actuator.name = *name;
   actuator.range_span = name->span;
   actuator.limit_span = name->span;
   if (type != nullptr) {
-    const Wiring place = wiring.read(fields, *type, false);
+    const Wiring place = wiring.read(fields, *type, part, false);
     actuator.bus = place.bus;
     actuator.pin = place.place;
     if (type->name == "VIRTUAL") actuator.driver = vm::DriverId::virtual_actuator;

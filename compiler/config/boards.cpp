@@ -5,6 +5,7 @@
 
 #include "compiler/config/fields.hpp"
 #include "compiler/config/json_reader.hpp"
+#include "compiler/config/names.hpp"
 #include "compiler/config/values.hpp"
 #include "vm/image.hpp"
 
@@ -18,28 +19,51 @@ std::uint32_t read_number(Fields& fields, std::string_view key, std::string_view
   return static_cast<std::uint32_t>(read_whole(*value, 0, UINT32_MAX, diagnostics).value_or(0));
 }
 
-// [{"pins": [first, last], …}]: how far a program may go with each is the board's own business.
-std::vector<Board::Pins> read_outputs(const json::Value& list, Diagnostics& diagnostics) {
-  std::vector<Board::Pins> outputs;
-  if (!expect_kind(list, json::Kind::array, diagnostics)) return outputs;
-  outputs.reserve(list.items.size());
+std::uint16_t read_pin(const json::Value& value, Diagnostics& diagnostics) {
+  return static_cast<std::uint16_t>(read_whole(value, 0, UINT16_MAX - 1, diagnostics).value_or(0));
+}
+
+// [{"pins": [first, last], …}]: how far a program may go with an output is the board's own business.
+std::vector<Board::Pins> read_pins(const json::Value& list, Object object,
+                                   Diagnostics& diagnostics) {
+  std::vector<Board::Pins> ranges;
+  if (!expect_kind(list, json::Kind::array, diagnostics)) return ranges;
+  ranges.reserve(list.items.size());
   for (const json::Value& entry : list.items) {
-    Fields fields(entry, Object::outputs, diagnostics);
-    const auto* pins = fields.require("pins", "outputs");
+    Fields fields(entry, object, diagnostics);
+    const auto* pins = fields.require("pins", "a row of pins");
     if (pins == nullptr || pins->items.size() != 2) continue;
-    const auto read = [&](const json::Value& value) {
-      return static_cast<std::uint16_t>(
-          read_whole(value, 0, UINT16_MAX - 1, diagnostics).value_or(0));
-    };
-    outputs.push_back({read(pins->items[0]), read(pins->items[1])});
+    ranges.push_back(
+        {read_pin(pins->items[0], diagnostics), read_pin(pins->items[1], diagnostics)});
   }
-  return outputs;
+  return ranges;
+}
+
+bool is_in(const std::vector<Board::Pins>& ranges, std::uint16_t pin) {
+  return std::ranges::any_of(
+      ranges, [&](const Board::Pins& pins) { return pin >= pins.first && pin <= pins.last; });
 }
 
 std::string require_text(Fields& fields, std::string_view key, std::string_view what,
                          Diagnostics& diagnostics) {
   const auto* value = fields.require(key, what);
   return value == nullptr ? std::string() : read_text(*value, diagnostics).value_or("");
+}
+
+// {"button_a": {"device": "button", "pin": 5}, …}
+std::vector<Board::Part> read_parts(const json::Value& value, Diagnostics& diagnostics) {
+  std::vector<Board::Part> parts;
+  if (!expect_kind(value, json::Kind::object, diagnostics)) return parts;
+  for (const json::Member& member : value.members) {
+    constexpr std::string_view kWhat = "a part of a board";
+    Fields fields(member.value, Object::part, diagnostics);
+    Board::Part part;
+    part.name = member.key;
+    part.device = require_text(fields, "device", kWhat, diagnostics);
+    if (const auto* pin = fields.require("pin", kWhat)) part.pin = read_pin(*pin, diagnostics);
+    parts.push_back(std::move(part));
+  }
+  return parts;
 }
 
 Board::Flash read_flash(const json::Value& value, Diagnostics& diagnostics) {
@@ -61,8 +85,17 @@ Board::Flash read_flash(const json::Value& value, Diagnostics& diagnostics) {
 }  // namespace
 
 bool Board::has_output(std::uint16_t pin) const {
-  return std::ranges::any_of(
-      outputs, [&](const Pins& pins) { return pin >= pins.first && pin <= pins.last; });
+  return is_in(outputs, pin);
+}
+
+bool Board::has_input(std::uint16_t pin) const {
+  return is_in(inputs, pin);
+}
+
+const Board::Part* Board::find_part(std::string_view wanted) const {
+  const auto found =
+      std::ranges::find_if(parts, [&](const Part& part) { return same_name(part.name, wanted); });
+  return found == parts.end() ? nullptr : &*found;
 }
 
 Board read_board(const BoardText& text, Diagnostics& diagnostics) {
@@ -76,7 +109,10 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
   board.step_budget = read_number(fields, "step_budget", "a board", diagnostics);
   board.i2c_buses = read_number(fields, "i2c_buses", "a board", diagnostics);
   if (const auto* outputs = fields.require("outputs", "a board"))
-    board.outputs = read_outputs(*outputs, diagnostics);
+    board.outputs = read_pins(*outputs, Object::outputs, diagnostics);
+  if (const auto* inputs = fields.require("inputs", "a board"))
+    board.inputs = read_pins(*inputs, Object::inputs, diagnostics);
+  if (const auto* parts = fields.find("on_board")) board.parts = read_parts(*parts, diagnostics);
   if (fields.find("store") != nullptr)
     board.store_bytes = read_number(fields, "store", "a board", diagnostics);
   if (const auto* flash = fields.find("flash")) board.flash = read_flash(*flash, diagnostics);

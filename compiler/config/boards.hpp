@@ -28,6 +28,7 @@ struct Board {
     std::uint16_t first, last;
   };
   std::vector<Pins> outputs;      // pins that a program may drive
+  std::vector<Pins> inputs;       // … and read; none is both
   std::uint32_t i2c_buses = 0;    // numbered from 0
   std::uint32_t store_bytes = 0;  // that outlast a loss of power
   // How its firmware gets there; nothing: there is no such board but in an emulator.
@@ -41,8 +42,16 @@ struct Board {
     std::string pyocd;        // what it is called
   };
   std::optional<Flash> flash;
+  struct Part {  // soldered to the board, so nobody has to say how it is wired
+    std::string name;
+    std::string device;  // its descriptor in stdlib/devices/
+    std::uint16_t pin = 0;
+  };
+  std::vector<Part> parts;
 
   [[nodiscard]] bool has_output(std::uint16_t pin) const;
+  [[nodiscard]] bool has_input(std::uint16_t pin) const;
+  [[nodiscard]] const Part* find_part(std::string_view wanted) const;  // any case
 };
 
 // Reads one profile. Mistakes in it are reported; the tests hold the built-in ones to none.

@@ -1,6 +1,8 @@
 // What sensors and actuators have in common: a name, a type, a device.
 #include "compiler/config/entries.hpp"
 
+#include <algorithm>
+
 #include "compiler/config/values.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 
@@ -9,25 +11,50 @@ namespace {
 
 constexpr std::string_view kVirtual = "VIRTUAL";
 
-void report_unknown_device(const json::Value& value, bool is_sensor, Diagnostics& diagnostics) {
-  std::vector<std::string> candidates;
+bool is_kind(const Board::Part& part, bool is_sensor) {
+  return find_device(part.device, is_sensor) != nullptr;
+}
+
+std::vector<std::string> device_names(const Board& board, bool is_sensor) {
+  std::vector<std::string> names;
   for (const DeviceText& device : device_texts())
-    if (device.is_sensor == is_sensor) candidates.emplace_back(device.name);
+    if (device.is_sensor == is_sensor) names.emplace_back(device.name);
+  for (const Board::Part& part : board.parts)
+    if (is_kind(part, is_sensor)) names.push_back(part.name);
+  return names;
+}
+
+// The first board that has such a part.
+std::string_view owner_of(std::string_view part) {
+  const auto names = board_names();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (board_at(i).find_part(part) != nullptr) return names[i];
+  return {};
+}
+
+void report_unknown_device(const json::Value& value, const Board& board, bool is_sensor,
+                           Diagnostics& diagnostics) {
+  const std::vector<std::string> candidates = device_names(board, is_sensor);
   Diagnostic& d =
       diagnostics.report(Code::E0208, "rsc knows no device `" + value.text + "`").label(value.span);
-  if (const auto near = nearest(value.text, candidates))
+  const std::string_view owner = owner_of(value.text);
+  if (!owner.empty() && owner != board.name)
+    d.helps("it is on the board " + std::string(owner) + ", and this robot has the board " +
+            board.name);
+  else if (const auto near = nearest(value.text, candidates))
     d.helps("did you mean `" + *near + "`?").fix(value.span, "\"" + *near + "\"");
   else
     d.helps("known devices: " + list_names(candidates));
 }
 
 // The device that "device" names, if there is one of this kind and type.
-const Device* named_device(const json::Value& value, const WiringType* type, bool is_sensor,
-                           Diagnostics& diagnostics) {
+const Device* named_device(const json::Value& value, const WiringType* type, const Board& board,
+                           bool is_sensor, Diagnostics& diagnostics) {
   if (!read_text(value, diagnostics)) return nullptr;
-  const Device* device = find_device(value.text, is_sensor);
+  const Board::Part* part = board.find_part(value.text);
+  const Device* device = find_device(part != nullptr ? part->device : value.text, is_sensor);
   if (device == nullptr) {
-    report_unknown_device(value, is_sensor, diagnostics);
+    report_unknown_device(value, board, is_sensor, diagnostics);
   } else if (type != nullptr && type->name != kVirtual && type->name != device->type) {
     diagnostics
         .report(Code::E0205, "a " + device->name + " is wired by " + device->type + ", not by " +
@@ -68,12 +95,32 @@ std::optional<Spelled> read_name(Fields& fields, std::string_view what, Diagnost
   return name;
 }
 
+const Board::Part* find_part(const Fields& fields, const Board& board, bool is_sensor) {
+  const auto* device = fields.find("device");
+  const Board::Part* part = device == nullptr ? nullptr : board.find_part(device->text);
+  return part != nullptr && is_kind(*part, is_sensor) ? part : nullptr;
+}
+
+// A part of another board is wired as well: that it is not here is said by choose_device().
+const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_sensor,
+                              Diagnostics& diagnostics) {
+  const auto* device = fields.find("device");
+  const bool typeless = fields.find("type") == nullptr;
+  if (typeless && part == nullptr && device != nullptr && !owner_of(device->text).empty())
+    return nullptr;
+  if (part == nullptr || !typeless) return read_type(fields, is_sensor, diagnostics);
+  const std::string& of_part = find_device(part->device, is_sensor)->type;
+  const auto types = wiring_types();
+  const auto found = std::ranges::find(types, of_part, &WiringType::name);
+  return found == types.end() ? nullptr : &*found;
+}
+
 const Device& choose_device(const Fields& fields, const WiringType* type, const Spelled& name,
-                            bool is_sensor, Diagnostics& diagnostics) {
+                            const Board& board, bool is_sensor, Diagnostics& diagnostics) {
   const Device& fallback = *default_device(kVirtual, is_sensor);
   const Device* device = nullptr;
   if (const auto* value = fields.find("device")) {
-    device = named_device(*value, type, is_sensor, diagnostics);
+    device = named_device(*value, type, board, is_sensor, diagnostics);
     if (device == nullptr) return fallback;
   } else if (type == nullptr) {
     return fallback;

@@ -26,10 +26,17 @@ void read_channel(const json::Value& value, unsigned inputs, ChannelConfig& chan
 [[nodiscard]] std::optional<Spelled> read_name(Fields& fields, std::string_view what,
                                                Diagnostics& diagnostics);
 
+// Which of the board's own parts an entry means by its "device"; null: none.
+[[nodiscard]] const Board::Part* find_part(const Fields& fields, const Board& board,
+                                           bool is_sensor);
+// Its "type", which for a part need not be said. As read_type().
+[[nodiscard]] const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_sensor,
+                                            Diagnostics& diagnostics);
+
 // The device an entry means: the one it names, or the generic one of its type. Says what it assumed
-// (N0001) and when there is no driver (W0212). Never nullptr: what is unknown is virtual.
+// (N0001) and when there is no driver (W0212). What is unknown is virtual.
 [[nodiscard]] const Device& choose_device(const Fields& fields, const WiringType* type,
-                                          const Spelled& name, bool is_sensor,
+                                          const Spelled& name, const Board& board, bool is_sensor,
                                           Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

@@ -30,6 +30,8 @@ enum class Object : std::uint8_t {
   board,
   arena,
   outputs,
+  inputs,
+  part,
   flash,
   drive
 };

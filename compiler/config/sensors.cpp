@@ -207,24 +207,30 @@ void place_channels(SensorConfig& sensor) {
   }
 }
 
+void check_place(const Fields& fields, const SensorConfig& sensor, WiringReader& wiring,
+                 const Wiring& place) {
+  if (vm::is_on_i2c(sensor.driver)) wiring.check_bus(fields, place);
+  if (vm::is_on_pin(sensor.driver)) wiring.check_input(fields, place);
+}
+
 }  // namespace
 
 std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& wiring,
                                         Diagnostics& diagnostics) {
   Fields fields(value, Object::sensor, diagnostics);
   const auto name = read_name(fields, "a sensor", diagnostics);
-  const WiringType* type = read_type(fields, true, diagnostics);
+  const Board::Part* part = find_part(fields, wiring.board(), true);
+  const WiringType* type = choose_type(fields, part, true, diagnostics);
   if (!name) return std::nullopt;
-  const Device& device = choose_device(fields, type, *name, true, diagnostics);
+  const Device& device = choose_device(fields, type, *name, wiring.board(), true, diagnostics);
   SensorConfig sensor = device.sensor;
   sensor.name = *name;
   place_channels(sensor);
   if (type != nullptr) {
-    const Wiring place = wiring.read(fields, *type, true);
+    const Wiring place = wiring.read(fields, *type, part, true);
     sensor.bus = place.bus;
     sensor.address = place.place;
-    if (type->name != "VIRTUAL" && device.has_driver && vm::is_on_i2c(sensor.driver))
-      wiring.check_bus(fields, place);
+    if (type->name != "VIRTUAL" && device.has_driver) check_place(fields, sensor, wiring, place);
   }
   if (const auto* number = fields.find("register"))
     for (ChannelConfig& channel : sensor.channels)

@@ -22,6 +22,9 @@ constexpr std::array<WiringType, 7> kTypes = {{
     {"VIRTUAL", true, true, true, true, true},  // keys of the real thing may stay
 }};
 
+constexpr std::array<std::string_view, static_cast<std::size_t>(vm::ActiveLevel::count_)> kLevels =
+    {"low", "high"};
+
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::count_)> kReleases = {
     "hold", "rest", "coast"};
 
@@ -56,23 +59,49 @@ void WiringReader::report_foreign(const Fields& fields, const WiringType& type) 
   check("bus", type.bus);
   check("address", type.address);
   check("pin", type.pin);
+  check("active", type.name == "GPIO");
 }
 
 std::uint16_t WiringReader::read_pin(const json::Value& value) {
   const auto pin = read_whole(value, 0, UINT16_MAX - 1, diagnostics_);
   if (!pin) return 0;
   const auto number = static_cast<std::uint16_t>(*pin);
-  const auto [first, added] = pins_.emplace(number, value.span);
-  if (!added)
-    diagnostics_.report(Code::E0207, "pin " + std::to_string(number) + " is used twice")
-        .label(value.span)
-        .label(first->second, "first used here", false);
+  take_pin(number, value.span);
   return number;
 }
 
-Wiring WiringReader::read(Fields& fields, const WiringType& type, bool is_sensor) {
+void WiringReader::take_pin(std::uint16_t pin, Span span) {
+  const auto [first, added] = pins_.emplace(pin, span);
+  if (added) return;
+  diagnostics_.report(Code::E0207, "pin " + std::to_string(pin) + " is used twice")
+      .label(span)
+      .label(first->second, "first used here", false);
+}
+
+// A contact to GND on a pin that is pulled up is what most people wire.
+std::uint8_t WiringReader::read_active(const Fields& fields) {
+  const auto* active = fields.find("active");
+  if (active == nullptr) return static_cast<std::uint8_t>(vm::ActiveLevel::low);
+  return static_cast<std::uint8_t>(read_choice(*active, kLevels, diagnostics_).value_or(0));
+}
+
+// Those that are there close to ground, against a pull-up.
+Wiring WiringReader::read_part(const Fields& fields, const Board::Part& part) {
+  for (const char* key : {"bus", "address", "pin", "active"})
+    if (const auto* value = fields.find(key))
+      diagnostics_
+          .report(Code::E0205, "the `" + part.name + "` of the board " + board_.name +
+                                   " is wired already: it has no `" + key + "`")
+          .label(value->span);
+  take_pin(part.pin, fields.find("device")->span);
+  return {static_cast<std::uint8_t>(vm::ActiveLevel::low), part.pin};
+}
+
+Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::Part* part,
+                          bool is_sensor) {
   Wiring wiring;
   if (type.name == "VIRTUAL") return wiring;
+  if (part != nullptr) return read_part(fields, *part);
   report_foreign(fields, type);
   const std::string what =
       std::string(is_sensor ? "a sensor" : "an actuator") + " of type " + std::string(type.name);
@@ -87,6 +116,7 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, bool is_sensor
   } else if (type.pin) {
     if (const auto* pin = fields.require("pin", what)) wiring.place = read_pin(*pin);
   }
+  if (is_sensor && type.name == "GPIO") wiring.bus = read_active(fields);
   return wiring;
 }
 
@@ -105,16 +135,27 @@ void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
 
 void WiringReader::check_output(const Fields& fields, const Wiring& wiring) {
   const auto* pin = fields.find("pin");
-  if (pin == nullptr || board_.has_output(wiring.place)) return;
-  std::vector<std::string> outputs;
-  for (const auto& [first, last] : board_.outputs)
-    outputs.push_back(first == last ? std::to_string(first)
-                                    : std::to_string(first) + " to " + std::to_string(last));
+  if (pin != nullptr && !board_.has_output(wiring.place))
+    report_no_pin(*pin, wiring, "output", board_.outputs);
+}
+
+void WiringReader::check_input(const Fields& fields, const Wiring& wiring) {
+  const auto* pin = fields.find("pin");
+  if (pin != nullptr && !board_.has_input(wiring.place))
+    report_no_pin(*pin, wiring, "input", board_.inputs);
+}
+
+void WiringReader::report_no_pin(const json::Value& pin, const Wiring& wiring, const char* what,
+                                 std::span<const Board::Pins> those) {
+  std::vector<std::string> pins;
+  for (const auto& [first, last] : those)
+    pins.push_back(first == last ? std::to_string(first)
+                                 : std::to_string(first) + " to " + std::to_string(last));
   diagnostics_
       .report(Code::E0205, "on the board " + board_.name + " pin " + std::to_string(wiring.place) +
-                               " is no output")
-      .label(pin->span)
-      .helps("its outputs are the pins " + list_names(outputs, "and"));
+                               " is no " + what)
+      .label(pin.span)
+      .helps("its " + std::string(what) + "s are the pins " + list_names(pins, "and"));
 }
 
 std::optional<std::size_t> read_choice(const json::Value& value,

@@ -24,7 +24,7 @@ struct WiringType {
 [[nodiscard]] const WiringType* read_type(Fields& fields, bool is_sensor, Diagnostics& diagnostics);
 
 struct Wiring {
-  std::uint8_t bus = 0;
+  std::uint8_t bus = 0;     // of a sensor of type GPIO: vm::ActiveLevel
   std::uint16_t place = 0;  // I2C address or pin
 };
 
@@ -33,14 +33,23 @@ class WiringReader {
 public:
   WiringReader(Board board, Diagnostics& diagnostics)
       : board_(std::move(board)), diagnostics_(diagnostics) {}
-  [[nodiscard]] Wiring read(Fields& fields, const WiringType& type, bool is_sensor);
+  // `part`: which of the board's own parts it is, which brings its wiring; or null.
+  [[nodiscard]] Wiring read(Fields& fields, const WiringType& type, const Board::Part* part,
+                            bool is_sensor);
   // For those whose driver uses them: the board must have them.
   void check_bus(const Fields& fields, const Wiring& wiring);
+  void check_input(const Fields& fields, const Wiring& wiring);
   void check_output(const Fields& fields, const Wiring& wiring);
+  [[nodiscard]] const Board& board() const { return board_; }
 
 private:
+  [[nodiscard]] Wiring read_part(const Fields& fields, const Board::Part& part);
   std::uint16_t read_pin(const json::Value& value);
+  std::uint8_t read_active(const Fields& fields);
+  void take_pin(std::uint16_t pin, Span span);
   void report_foreign(const Fields& fields, const WiringType& type);
+  void report_no_pin(const json::Value& pin, const Wiring& wiring, const char* what,
+                     std::span<const Board::Pins> those);
 
   Board board_;
   Diagnostics& diagnostics_;

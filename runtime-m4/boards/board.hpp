@@ -41,6 +41,8 @@ public:
   virtual bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                             std::span<std::byte> in) = 0;
   virtual BusState buses() const = 0;
+  // Is the level of an input (pins()) high? Of another pin: no.
+  virtual bool input(std::uint16_t pin) const = 0;
   // Pulse width on a PWM pin in microseconds, 20 ms frame; 0 switches the output off.
   virtual void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) = 0;
   virtual std::uint32_t pwm_read(std::uint16_t pin) const = 0;

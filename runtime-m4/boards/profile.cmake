@@ -26,6 +26,16 @@ foreach(i RANGE ${last})
   endif()
   string(APPEND board_outputs "{${first},${final},${shortest},${longest},${rise}},")
 endforeach()
+# {first pin, last}, as policy::PinRange has them.
+string(JSON count LENGTH "${profile}" inputs)
+math(EXPR last "${count} - 1")
+set(board_inputs "")
+foreach(i RANGE ${last})
+  string(JSON first GET "${profile}" inputs ${i} pins 0)
+  string(JSON final GET "${profile}" inputs ${i} pins 1)
+  string(APPEND board_inputs "{${first},${final}},")
+endforeach()
 set(board_definitions
   ROBOSYNC_ARENA_BEGIN=${arena_begin} ROBOSYNC_ARENA_BYTES=${arena_bytes} ROBOSYNC_STEP_BUDGET=${step_budget}
-  ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_STORE_BYTES=${store_bytes} ROBOSYNC_OUTPUTS=${board_outputs})
+  ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_STORE_BYTES=${store_bytes} ROBOSYNC_OUTPUTS=${board_outputs}
+  ROBOSYNC_INPUTS=${board_inputs})

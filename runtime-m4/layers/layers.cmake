@@ -29,6 +29,7 @@ target_sources(robosync_runtime PRIVATE
   guard/output_guard.cpp
   safety/safety_rules.cpp
   safety/monitor.cpp
+  drivers/digital_input.cpp
   drivers/i2c_register.cpp
   drivers/max34451.cpp
   drivers/player.cpp

@@ -50,6 +50,7 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
   const auto i2c = [&](std::uint32_t transfers, std::uint32_t bytes) {
     return transfers * board.i2c_transfer + bytes * board.i2c_byte;
   };
+  const auto pin = [&] { return std::uint32_t{board.input}; };
   switch (driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case vm::DriverId::name:               \

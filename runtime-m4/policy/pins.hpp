@@ -19,9 +19,15 @@ struct PinLimit {
   std::uint16_t rise;               // µs that the pulse may change in a millisecond; 0: any
 };
 
-// stdlib/boards/NAME.json. A pin that stands in none of `outputs` is no output.
+struct PinRange {
+  std::uint16_t first, last;  // both included
+};
+
+// stdlib/boards/NAME.json. A pin that stands in none of `outputs` is no output, and so with inputs. On a board no pin
+// is both: what a pin is it stays, whatever image comes.
 struct BoardPins {
   std::span<const PinLimit> outputs;
+  std::span<const PinRange> inputs;
   std::uint8_t i2c_buses = 0;
 };
 
@@ -32,10 +38,30 @@ constexpr const PinLimit* limit_of(const BoardPins& board, std::uint16_t pin) {
   return nullptr;
 }
 
+constexpr bool is_input(const BoardPins& board, std::uint16_t pin) {
+  for (const PinRange& range : board.inputs)
+    if (pin >= range.first && pin <= range.last) return true;
+  return false;
+}
+
+constexpr vm::Refusal judge(const vm::Sensor& sensor, const BoardPins& board) {
+  switch (vm::bus_of(sensor.driver)) {
+    case vm::Bus::i2c:
+      return sensor.bus < board.i2c_buses ? vm::Refusal::none : vm::Refusal::no_bus;
+    case vm::Bus::pin:
+      return is_input(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
+    case vm::Bus::nothing:
+      break;
+  }
+  return vm::Refusal::none;
+}
+
 inline vm::Verdict judge(const vm::Image& image, const BoardPins& board) {
-  for (std::size_t s = 0; s < image.sensors.size(); ++s)
-    if (vm::is_on_i2c(image.sensors[s].driver) && image.sensors[s].bus >= board.i2c_buses)
-      return {vm::Refusal::no_bus, vm::Section::sensors, static_cast<std::uint16_t>(s)};
+  for (std::size_t s = 0; s < image.sensors.size(); ++s) {
+    const vm::Refusal refusal = judge(image.sensors[s], board);
+    if (refusal != vm::Refusal::none)
+      return {refusal, vm::Section::sensors, static_cast<std::uint16_t>(s)};
+  }
   for (std::size_t a = 0; a < image.actuators.size(); ++a) {
     const vm::Actuator& actuator = image.actuators[a];
     if (vm::pin_use(actuator.driver) != vm::PinUse::nothing &&

@@ -1,5 +1,5 @@
-// The host as a board: PWM pins that remember their last pulse, no bus, no line, a watchdog that
-// only counts.
+// The host as a board: PWM pins that remember their last pulse, inputs that nobody asks (what sensors measure, a scenario
+// says), no bus, no line, a watchdog that only counts. It takes programs of all boards, so each pin may be an input.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,12 @@ class HostBoard final : public boards::Board {
 public:
   const char* name() const override { return "host"; }
   link::ResetReason reset_reason() const override { return link::ResetReason::power; }
-  const policy::BoardPins& pins() const override { return boards::kPins; }
+  const policy::BoardPins& pins() const override { return kPins; }
 
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
   boards::BusState buses() const override { return {}; }
+  bool input(std::uint16_t) const override { return false; }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override { pulses_[pin] = pulse_us; }
   std::uint32_t pwm_read(std::uint16_t pin) const override;
 
@@ -31,6 +32,10 @@ public:
   std::uint64_t kicks() const { return kicks_; }
 
 private:
+  static constexpr policy::PinRange kAny[] = {{0, UINT16_MAX}};
+  static constexpr policy::BoardPins kPins = {
+      .outputs = boards::kOutputs, .inputs = kAny, .i2c_buses = ROBOSYNC_I2C_BUSES};
+
   std::map<std::uint16_t, std::uint32_t> pulses_;
   std::uint64_t kicks_ = 0;
 };

@@ -4,21 +4,64 @@ import json
 import unittest
 
 import examples
+import pins
 import rsc
 import stimuli
 from board import NAME
-from support import PROFILE, PROGRAMS
+from support import PROFILE, PROGRAMS, LineReader
 from traces import TraceTest
 
 COMPANION = rsc.ROOT / "examples/touch_companion"
 SAFETY_PERIOD_US = 30_000  # without a program
 READINGS_SEED = 475
+PATIENCE = 20
+INPUTS = [pin for row in PROFILE["inputs"] for pin in range(row["pins"][0], row["pins"][1] + 1)]
+PARTS = PROFILE.get("on_board", {})
 BY_I2C = """{"board": "%s", "actuators": [],
  "sensors": [{"name": "touch", "type": "I2C", "bus": %d, "address": "0x70", "device": "max34451",
               "channels": {"LEVEL": {"input": 0}}}]}"""
 
 
+# What stdlib/safety_basics.rsl expects, on the first output.
+ARMS = {"actuators": [{"name": "arm", "type": "PWM", "pin": PROFILE["outputs"][0]["pins"][0], "device": "servo",
+                       "range": ["0deg", "100deg"]}],
+        "groups": {"arms": ["arm"]}}
+FORCE = {"name": "arms", "type": "VIRTUAL", "channels": {"FORCE": {"unit": "N", "range": [0, 50]}}}
+ALL_INPUTS = "\n".join(f'WHEN i{pin} IS closed\nDO LOG "{pin} low"\nELSE LOG "{pin} high"\nEND' for pin in INPUTS)
+
+
+def button(name, pin):
+    """By its name where the board has one there."""
+    part = next((part for part, wired in PARTS.items() if wired["pin"] == pin), None)
+    return {"name": name, "device": part} if part else {"name": name, "type": "GPIO", "pin": pin, "device": "button"}
+
+
 class EveryBoard(TraceTest):
+    def qemu_arguments(self):
+        return pins.arguments(self.folder)
+
+    def run_wired(self, program, robot, *feeds):
+        """Uploads it; gives the pins, and a reader of what the board tells from then on."""
+        config, source = self.folder / "wired.json", self.folder / "wired.rsl"
+        config.write_text(json.dumps({"board": NAME, **robot}))
+        source.write_text(program)
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        self.upload(source, "--config", config)
+        for feed in feeds:
+            rsc.run("feed", feed, "--port", self.board.port)
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
+        self.addCleanup(reader.stop)
+        self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
+        return wires, reader
+
+    def await_event(self, reader, kind, times=1, **wanted):
+        def found(lines):
+            events = [json.loads(line) for line in lines]
+            return sum(event.get("event") == kind and wanted.items() <= event.items() for event in events) >= times
+
+        self.assertTrue(reader.wait_for(found, PATIENCE), (kind, wanted, reader.lines[-8:]))
+
     def test_it_says_what_it_is(self):
         said = rsc.info(self.board.port)
         board, status = said["board"], said["status"]
@@ -50,6 +93,29 @@ class EveryBoard(TraceTest):
     def test_the_papers_program_does_what_it_does_on_the_host(self):
         lines = self.check(PROGRAMS / "paper.rsl", stimuli.touch(0, 1, 2, 3, 4, 5, 2, 2, 10, 0))
         self.assertTrue(any("greeting.wav" in line for line in lines))
+
+    def test_the_red_button_stops_it_and_the_green_one_lets_it_go_on(self):
+        red, green = INPUTS[0], INPUTS[-1]
+        wires, reader = self.run_wired(
+            "USE safety_basics\n", {"sensors": [button("red_button", red), button("green_button", green), FORCE], **ARMS},
+            "arms.FORCE=0N")
+        wires.set(red, False)
+        self.await_event(reader, "trip")
+        self.await_event(reader, "alert", text="Stopped by the red button")
+        wires.set(red, True)
+        wires.set(green, False)
+        self.await_event(reader, "release", actuator="arm")
+
+    def test_each_input_is_its_own_pin(self):
+        switches = [{"name": f"i{pin}", "type": "GPIO", "pin": pin, "device": "switch"} for pin in INPUTS]
+        wires, reader = self.run_wired(ALL_INPUTS, {"sensors": switches})
+        for pin in INPUTS:
+            for high in (False, True):
+                wires.set(pin, high)
+                self.await_event(reader, "log", text=f"{pin} {'high' if high else 'low'}")
+        told = [json.loads(line) for line in reader.lines]
+        self.assertEqual([event["text"] for event in told if event["event"] == "log"],
+                         [f"{pin} {level}" for pin in INPUTS for level in ("low", "high")])
 
     def test_stop_holds_until_resume(self):
         config = self.folder / "companion.json"

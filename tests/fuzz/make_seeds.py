@@ -25,13 +25,19 @@ SAFETY near
   RESUME WHEN range DISTANCE > 12cm FOR 1s
 END
 
+SAFETY bumped
+  WHEN bumper IS pressed
+  DO STOP ALL
+END
+
 WHEN range DISTANCE > 50cm
 DO RUN wheel AT 40% FOR 2s
 END
 """
 ROVER_ROBOT = {
     "sensors": [{"name": "range", "type": "I2C", "bus": 0, "address": "0x29", "device": "i2c_register", "channels": {
-        "DISTANCE": {"input": 0, "unit": "cm", "range": [2, 200], "rate": "50Hz", "stale_after": "100ms"}}}],
+        "DISTANCE": {"input": 0, "unit": "cm", "range": [2, 200], "rate": "50Hz", "stale_after": "100ms"}}},
+                {"name": "bumper", "type": "GPIO", "pin": 40, "device": "button"}],
     "actuators": [{"name": "wheel", "type": "PWM", "pin": "12", "device": "pwm"}]}
 
 

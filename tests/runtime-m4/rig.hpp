@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -41,6 +42,7 @@ public:
     return acknowledges;
   }
   boards::BusState buses() const override { return bus_state; }
+  bool input(std::uint16_t pin) const override { return level(pin); }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override {
     pulses[pin].push_back(pulse_us);
   }
@@ -58,7 +60,8 @@ public:
   std::deque<std::byte> answers;  // bytes the next reads get; none left: no acknowledge
   bool acknowledges = true;
   boards::BusState bus_state;
-  std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;  // all, by pin
+  std::function<bool(std::uint16_t pin)> level = [](std::uint16_t) { return true; };  // pulled up
+  std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;                         // all, by pin
   policy::BoardPins board_pins = boards::kPins;
   unsigned kicks = 0;
   bool watching = false;

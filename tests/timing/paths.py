@@ -42,10 +42,11 @@ def actuator_drivers():
 
 def samples():
     """{driver: instructions of one sample of one channel}, of the drivers that sample."""
-    declared = costs()
-    return {name: int(transfers) * declared["i2c_transfer"] + int(size) * declared["i2c_byte"] for
-            name, transfers, size in re.findall(r"^SENSOR_DRIVER\((\w+),\s*i2c\((\d+), (\d+)\)",
-                                                DRIVERS.read_text(), re.M)}
+    declared, drivers = costs(), DRIVERS.read_text()
+    by_i2c = {name: int(transfers) * declared["i2c_transfer"] + int(size) * declared["i2c_byte"] for
+              name, transfers, size in re.findall(r"^SENSOR_DRIVER\((\w+),\s*i2c\((\d+), (\d+)\)", drivers, re.M)}
+    by_pin = re.findall(r"^SENSOR_DRIVER\((\w+),\s*pin\(\)", drivers, re.M)
+    return by_i2c | {name: declared["input"] for name in by_pin}
 
 
 def robot(actuators=4, sensors=None):

@@ -187,14 +187,16 @@ class Table(unittest.TestCase):
 class Sampling(unittest.TestCase):
     """A tick in which a sensor on the bus is read, and nothing new is read."""
 
-    def worst(self, sensor, channel):
-        config = paths.robot(1, [{"name": "t", "type": "I2C", "address": sensor.pop("address"), **sensor}])
-        ticks = run(f'WHEN t {channel} > 5\nDO LOG "x"\nEND\n', [wait(200)], config)
+    def worst(self, sensor, *conditions):
+        config = paths.robot(1, [{"name": "t", **sensor}])
+        rules = "".join(f'WHEN t {condition}\nDO LOG "x"\nEND\n' for condition in conditions)
+        ticks = run(rules, [wait(200)], config)
         return max(ticks.ticks[20:]) - ticks.idle_tick
 
-    WIRED = {"max34451": ({"address": "0x70", "device": "max34451",
-                           "channels": {"L": {"input": 0, "range": [0, 10], "rate": "50Hz"}}}, "L"),
-             "i2c_register": ({"address": "0x48"}, "")}
+    WIRED = {"max34451": ({"type": "I2C", "address": "0x70", "device": "max34451",
+                           "channels": {"L": {"input": 0, "range": [0, 10], "rate": "50Hz"}}}, "L > 5"),
+             "i2c_register": ({"type": "I2C", "address": "0x48"}, "> 5"),
+             "digital_input": ({"type": "GPIO", "pin": 43, "device": "switch"}, "IS closed")}
 
     def test_every_driver_that_samples(self):
         costs = paths.costs()
@@ -205,6 +207,15 @@ class Sampling(unittest.TestCase):
                 # The safety monitor's periods are those of the program, and so are the sensor's.
                 self.assertGreaterEqual(said + 2 * costs["wake_by_timer"] + costs["kMonitor"], measured)
                 self.assertLessEqual(said, LOOSEST * measured)
+
+    def test_an_input_pin(self):
+        """Another channel of it. The last pin is the one that takes longest."""
+        switch = {"type": "GPIO", "pin": 43, "device": "switch", "channels": {"A": {}, "B": {}}}
+        measured = self.worst(switch, "A IS closed", "B IS closed") - self.worst(switch, "A IS closed")
+        said = paths.samples()["digital_input"]
+        print(f"\n  an input pin: {measured}, said {said}")
+        self.assertGreaterEqual(said, measured)
+        self.assertLessEqual(said, LOOSEST * measured + SLACK)
 
 
 class ActuatorDrivers(unittest.TestCase):

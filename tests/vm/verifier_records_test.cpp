@@ -41,6 +41,22 @@ TEST_CASE("sensors") {
   refused(Refusal::bad_value, 0, [](auto& s) { s[0].address = 0x07; });
   refused(Refusal::bad_value, 0, [](auto& s) { s[0].address = 0x78; });
   refused(Refusal::bad_value, 0, [](auto& s) { s[0].address = 0xFFFF; });
+  // A pin may be any here; the board knows its own. Two levels can be the active one.
+  refused(Refusal::bad_value, 0, [](auto& s) {
+    s[0].driver = DriverId::digital_input;
+    s[0].period_ms = 0;
+  });
+  refused(Refusal::bad_value, 0, [](auto& s) {
+    s[0].driver = DriverId::digital_input;
+    s[0].bus = 2;
+  });
+  for (const int address : {0x00, 0xFFFE}) {
+    ImageBuilder image = robot::make();
+    image.sensors[0].driver = DriverId::digital_input;
+    image.sensors[0].address = static_cast<std::uint16_t>(address);
+    image.sensors[0].bus = 1;
+    check_accepted(image);
+  }
   for (const int address : {0x08, 0x77}) {
     ImageBuilder image = robot::make();
     image.sensors[0].address = static_cast<std::uint16_t>(address);
@@ -136,9 +152,18 @@ TEST_CASE("actuators") {
     a[0].driver = DriverId::pwm;
     a[0].safe = Release::hold;
   });
+  // Nor may a pin be driven that is read.
+  check_refused(
+      [](ImageBuilder& i) {
+        i.sensors[0].driver = DriverId::digital_input;
+        i.sensors[0].bus = 0;
+        i.sensors[0].address = i.actuators[1].pin;
+      },
+      {Refusal::shared_pin, Section::actuators, 1});
   ImageBuilder image = robot::make();
-  image.actuators[2].pin = image.actuators[0].pin;  // a player has none
-  image.actuators[0].safe = Release::hold;          // a servo may
+  image.actuators[0].pin = image.sensors[0].address;  // on I2C that is no pin
+  image.actuators[2].pin = image.actuators[0].pin;    // a player has none
+  image.actuators[0].safe = Release::hold;            // a servo may
   image.actuators[1].driver = DriverId::pwm;
   image.actuators[1].on_release = Release::hold;
   check_accepted(image);

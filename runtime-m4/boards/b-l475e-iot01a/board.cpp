@@ -1,6 +1,7 @@
 #include "runtime-m4/boards/b-l475e-iot01a/board.hpp"
 
 #include "runtime-m4/boards/b-l475e-iot01a/clock.hpp"
+#include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
@@ -22,8 +23,9 @@ Board board;
 Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
   rcc::kStatus.set(rcc::kForgetReset);
   if (!start_clock()) port::core::reset();
-  rcc::give_clock(rcc::kAhb2, rcc::kPortsABD);
+  rcc::give_clock(rcc::kAhb2, rcc::kPortsAToD);
   pins::start();
+  inputs::start();
 }
 
 // A reset by the watchdog comes without warning, so nobody could note it in memory.
@@ -34,6 +36,10 @@ link::ResetReason Board::reset_reason() const {
 bool Board::i2c_transfer(std::uint8_t /*bus*/, std::uint8_t /*address*/,
                          std::span<const std::byte> /*out*/, std::span<std::byte> /*in*/) {
   return false;
+}
+
+bool Board::input(std::uint16_t pin) const {
+  return inputs::is_high(pin);
 }
 
 void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {

@@ -23,7 +23,7 @@ inline constexpr Register kPll{0x4002'100C};
 // From MSI, which comes out of reset with 4 MHz: times 40, and half of that comes out.
 inline constexpr std::uint32_t kPllOf80MHz = 0b01U | 40U << 8 | 1U << 24;
 inline constexpr Register kAhb2{0x4002'104C};
-inline constexpr std::uint32_t kPortsABD = 0b1011;
+inline constexpr std::uint32_t kPortsAToD = 0b1111;
 inline constexpr Register kApb1{0x4002'1058};
 inline constexpr std::uint32_t kTimers2To5 = 0b1111;
 inline constexpr Register kApb2{0x4002'1060};
@@ -49,6 +49,7 @@ struct Port {  // of pins
   std::uintptr_t base;
   constexpr Register mode() const { return {base}; }  // 2 bits a pin
   constexpr Register pulls() const { return {base + 0x0C}; }
+  constexpr Register levels() const { return {base + 0x10}; }
   // 4 bits a pin, of eight pins.
   constexpr Register function(unsigned pin) const {
     return {base + 0x20 + std::uintptr_t{4} * (pin / 8)};
@@ -56,7 +57,9 @@ struct Port {  // of pins
 };
 inline constexpr Port kPortA{0x4800'0000};
 inline constexpr Port kPortB{0x4800'0400};
+inline constexpr Port kPortC{0x4800'0800};
 inline constexpr Port kPortD{0x4800'0C00};
+inline constexpr std::uint32_t kModeOfInput = 0b00;
 inline constexpr std::uint32_t kModeOfFunction = 0b10;
 inline constexpr std::uint32_t kPullUp = 0b01;
 

@@ -3,6 +3,7 @@
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
 #include "runtime-m4/boards/microbit-v2/clock.hpp"
+#include "runtime-m4/boards/microbit-v2/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
@@ -18,6 +19,7 @@ Board board;
 // The pins first: they are low as soon as can be.
 Board::Board() : chip_reset_(take_reset_cause()) {
   pins::start();
+  inputs::start();
   for (const Pwm& module : {kPwm0, kPwm1})
     port::core::enable_interrupt(module.interrupt);
   if (!start_clock()) port::core::reset();
@@ -40,6 +42,10 @@ link::ResetReason Board::reset_reason() const {
 bool Board::i2c_transfer(std::uint8_t /*bus*/, std::uint8_t /*address*/,
                          std::span<const std::byte> /*out*/, std::span<std::byte> /*in*/) {
   return false;
+}
+
+bool Board::input(std::uint16_t pin) const {
+  return inputs::is_high(pin);
 }
 
 void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {

@@ -47,6 +47,7 @@ struct Pin {  // {0, 6} is P0.06
   constexpr std::uint32_t number() const { return port << 5 | bit; }
   constexpr Register set_high() const { return {base() + 0x508}; }
   constexpr Register set_low() const { return {base() + 0x50C}; }
+  constexpr Register levels() const { return {base() + 0x510}; }
   constexpr Register configuration() const { return {base() + 0x700 + std::uintptr_t{4} * bit}; }
 
   static constexpr std::uint32_t kOutput = 0b11;  // which nobody reads

@@ -6,6 +6,7 @@
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 
 std::array<volatile std::uint32_t, kVirtualPwmPins> robosync_virtual_pwm{};
+volatile std::uint32_t robosync_virtual_inputs = (1U << kVirtualInputs) - 1;  // as if pulled up
 
 namespace robosync::boards::mps2 {
 
@@ -32,6 +33,11 @@ Board::Board() {
 bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                          std::span<std::byte> in) {
   return bus == 0 && i2c_.transfer(address, out, in);
+}
+
+bool Board::input(std::uint16_t pin) const {
+  const unsigned bit = pin - unsigned{kFirstInput};
+  return bit < kVirtualInputs && (robosync_virtual_inputs >> bit & 1) != 0;
 }
 
 void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {

@@ -1,7 +1,8 @@
 // The MPS2 board with AN386 (Cortex-M4, 25 MHz), as QEMU's mps2-an386 has it.
 //
-// It has no PWM. PWM pins are words in memory, `robosync_virtual_pwm`, which the host reads through
-// the debugger; everything above this file is as it would be on real pins.
+// It has no PWM and no pins that could be read. PWM pins are words in memory, `robosync_virtual_pwm`, which the
+// host reads, and input pins the bits of a word that it writes, `robosync_virtual_inputs`; everything above this
+// file is as it would be on real pins.
 #pragma once
 
 #include <array>
@@ -19,6 +20,9 @@
 
 inline constexpr std::size_t kVirtualPwmPins = 36;
 extern "C" std::array<volatile std::uint32_t, kVirtualPwmPins> robosync_virtual_pwm;  // pulse, µs
+extern "C" volatile std::uint32_t robosync_virtual_inputs;  // bit i: pin kFirstInput + i is high
+inline constexpr std::uint16_t kFirstInput = 40;
+inline constexpr std::uint16_t kVirtualInputs = 4;
 
 namespace robosync::boards::mps2 {
 
@@ -33,6 +37,7 @@ public:
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
   BusState buses() const override { return i2c_.state(); }
+  bool input(std::uint16_t pin) const override;
   Store* store() override { return &eeprom_; }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;

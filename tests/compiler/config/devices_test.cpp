@@ -13,6 +13,7 @@
 #include "compiler/config/wiring.hpp"
 #include "tests/compiler/compiled.hpp"
 #include "tests/support/golden.hpp"
+#include "vm/drivers.hpp"
 
 using namespace robosync;
 using namespace robosync::compiler;
@@ -66,6 +67,15 @@ void check_keys(const nlohmann::json& value, Object object) {
     INFO(key);
     CHECK(described(object).at("properties").contains(key));
   }
+}
+
+// All of them are sensors.
+std::set<std::string> parts_of_boards() {
+  std::set<std::string> parts;
+  for (std::size_t i = 0; i < board_names().size(); ++i)
+    for (const Board::Part& part : board_at(i).parts)
+      parts.insert(part.name);
+  return parts;
 }
 
 }  // namespace
@@ -203,6 +213,14 @@ TEST_CASE("the schema lists the boards, types, devices and units that the reader
   Json& actuator_devices = list(definitions.at("actuator"), "device");
   for (const DeviceText& device : device_texts())
     (device.is_sensor ? sensor_devices : actuator_devices).push_back(device.name);
+  // Who names a part of a board need not say how it is wired.
+  Json& sensor_parts =
+      definitions.at("sensor").at("anyOf").at(1).at("properties").at("device").at("enum") =
+          Json::array();
+  for (const std::string& part : parts_of_boards()) {
+    sensor_parts.push_back(part);
+    sensor_devices.push_back(part);
+  }
   Json& unit_names = list(definitions.at("channel"), "unit");
   for (const Unit& unit : units())
     unit_names.push_back(unit.spelling);
@@ -237,6 +255,20 @@ TEST_CASE("the boards are read without a mistake") {
     CHECK(board.arena_bytes % 64 == 0);  // stacks stand at its end
     CHECK(board.step_budget > 0);
     CHECK_FALSE(board.outputs.empty());
+    for (std::uint16_t pin = 0; pin < 200; ++pin) {
+      INFO(pin);
+      CHECK_FALSE((board.has_output(pin) && board.has_input(pin)));
+    }
+    for (const Board::Part& part : board.parts) {
+      INFO(part.name);
+      const Device* sensor = find_device(part.device, true);
+      REQUIRE(sensor != nullptr);
+      CHECK(vm::is_on_pin(sensor->sensor.driver));
+      CHECK(board.has_input(part.pin));
+      // Else nobody could say which one is meant.
+      CHECK(find_device(part.name, true) == nullptr);
+      CHECK(find_device(part.name, false) == nullptr);
+    }
   }
   CHECK(std::ranges::count(board_names(), default_board().name) == 1);
   std::set<unsigned> ids;
@@ -248,5 +280,6 @@ TEST_CASE("the boards are read without a mistake") {
 TEST_CASE("mistakes in a board's profile are reported") {
   Diagnostics diagnostics;
   (void)read_board({"none", R"({"name": "none", "arena": {"begin": 0}, "flesh": 1})"}, diagnostics);
-  CHECK(diagnostics.errors() == 5);  // no bytes, step_budget, buses, outputs, and what nobody knows
+  CHECK(diagnostics.errors() ==
+        6);  // no bytes, step_budget, buses, outputs, inputs, and what nobody knows
 }

@@ -37,7 +37,7 @@ std::vector<std::uint16_t> outputs() {
 // The chip, started as the board starts it, and never with a pin high on the way.
 struct Chip : Stm32Timers {
   Chip() {
-    boards::l475::rcc::kAhb2.set(boards::l475::rcc::kPortsABD);
+    boards::l475::rcc::kAhb2.set(boards::l475::rcc::kPortsAToD);
     pins::start();
     starting = false;
   }

@@ -189,6 +189,21 @@ bool Nrf52833::pwm_interrupt() const {
   });
 }
 
+// IN: only of pins whose input buffer is connected. What nothing drives is as it is pulled, which is disabled, down or up.
+std::uint32_t Nrf52833::read_port(unsigned number, std::uintptr_t offset) const {
+  if (offset != 0x510) no_register(offset);
+  std::uint32_t levels = 0;
+  for (const auto& [pin, high] : wired_) {
+    if (pin.first != number) continue;
+    const std::uint32_t configuration = ports_[number].configuration[pin.second];
+    if ((configuration & 0b10) != 0) continue;
+    const unsigned pull = configuration >> 2 & 3;
+    demand(high || pull == 1 || pull == 3, "a pin is read that floats");
+    if (high.value_or(pull == 3)) levels |= 1U << pin.second;
+  }
+  return levels;
+}
+
 void Nrf52833::write_port(Port& port, std::uintptr_t offset, std::uint32_t value) {
   if (offset >= 0x700) {
     port.configuration[(offset - 0x700) / 4] = value;
@@ -239,6 +254,10 @@ void Nrf52833::pass_slow_counts(std::uint32_t counts) {
 
 std::uint32_t Nrf52833::read(std::uintptr_t address) {
   if (address == kResetReason) return reset_reason_;
+  if (is_port(address)) {
+    const auto [port, offset] = of_port(address);
+    return read_port(port, offset);
+  }
   for (std::size_t i = 0; i < kPwms.size(); ++i)
     if (address >= kPwms[i] && address < kPwms[i] + 0x1000)
       return read(pwms_[i], address - kPwms[i]);

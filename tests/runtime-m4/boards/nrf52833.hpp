@@ -30,6 +30,8 @@ public:
 
   // Throws where two peripherals have the pin, or where it is not prepared for the one that has.
   Level level(Pin pin) const;
+  // What is wired to the pin gives it this level, or none.
+  void wire(Pin pin, std::optional<bool> high) { wired_[pin] = high; }
   void pass_microsecond();
   // A module asks for its interrupt.
   bool pwm_interrupt() const;
@@ -72,12 +74,14 @@ private:
   void play(Pwm& pwm);
   void fetch(Pwm& pwm);
   void end_period(Pwm& pwm);
+  std::uint32_t read_port(unsigned number, std::uintptr_t offset) const;
   void write_port(Port& port, std::uintptr_t offset, std::uint32_t value);
   void write_watchdog(std::uintptr_t offset, std::uint32_t value);
 
   Fetch fetch_;
   std::array<Pwm, 4> pwms_;
   std::array<Port, 2> ports_;
+  std::map<Pin, std::optional<bool>> wired_;
   Watchdog watchdog_;
   std::uint32_t reset_reason_ = 0;
 };

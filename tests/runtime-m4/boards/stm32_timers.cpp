@@ -132,9 +132,27 @@ std::uint32_t* Stm32Timers::of_port(std::uintptr_t address) {
   }
 }
 
+// IDR: analog pins read 0. What nothing drives is as it is pulled: up (1) or down (2).
+std::uint32_t Stm32Timers::levels(char name) const {
+  const Port& port = ports_.at(name);
+  std::uint32_t levels = 0;
+  for (const auto& [pin, high] : wired_) {
+    const auto [of, bit] = pin;
+    if (of != name || (port.modes >> 2 * bit & 3) == 3) continue;
+    const std::uint32_t pull = port.pulls >> 2 * bit & 3;
+    if (!high && pull != 1 && pull != 2) throw std::runtime_error("a pin is read that floats");
+    if (high.value_or(pull == 1)) levels |= 1U << bit;
+  }
+  return levels;
+}
+
 std::uint32_t Stm32Timers::read(std::uintptr_t address) {
   if (address == kPortClocks) return port_clocks_;
   if (address == kTimerClocks) return timer_clocks_;
+  if (address >= kPorts && (address - kPorts) % kBetweenPorts == 0x10) {
+    const auto index = (address - kPorts) / kBetweenPorts;
+    return (port_clocks_ >> index & 1) != 0 ? levels(static_cast<char>('A' + index)) : 0;
+  }
   if (address >= kPorts) return *of_port(address);
   const auto timer = static_cast<unsigned>((address - kTimers) / kBetweenTimers);
   if (timer >= timers_.size()) unknown(address);

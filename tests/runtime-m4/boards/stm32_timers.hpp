@@ -1,5 +1,5 @@
 // A model of what the pulses of an STM32L475 come from, after RM0351: the clocks of ports and timers (RCC), the functions of
-// pins (GPIO), the timers 2 to 5 counting up in PWM mode 1, with what waits for the next period. Nothing of it knows
+// pins and their levels (GPIO), the timers 2 to 5 counting up in PWM mode 1, with what waits for the next period. Nothing of it knows
 // the driver: addresses, fields and the wiring of the pins stand here once more.
 //
 // Left out: everything else these peripherals can do. Who uses it gets an exception.
@@ -7,6 +7,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "tests/runtime-m4/boards/registers.hpp"
@@ -23,6 +24,8 @@ public:
   void write(std::uintptr_t address, std::uint32_t value) override;
 
   Level level(Pin pin) const;
+  // What is wired to the pin gives it this level, or none.
+  void wire(Pin pin, std::optional<bool> high) { wired_[pin] = high; }
   // One microsecond passes, for timers whose prescaler makes that one count at 80 MHz. Throws for others.
   void pass_microsecond();
 
@@ -51,13 +54,16 @@ private:
 
   bool has_clock(unsigned timer) const { return (timer_clocks_ >> timer & 1) != 0; }
   std::uint32_t* of_port(std::uintptr_t address);
+  std::uint32_t levels(char name) const;
 
   std::uint32_t port_clocks_ = 0, timer_clocks_ = 0;
   std::array<Timer, 4> timers_;  // 2 to 5
   // As they come out of reset: all analog, but for what belongs to the debugger.
   std::map<char, Port> ports_{{'A', {0xABFF'FFFF, 0x6400'0000, 0x0C00'0000, {}}},
                               {'B', {0xFFFF'FEBF, 0x0000'0100, 0, {}}},
+                              {'C', {0xFFFF'FFFF, 0, 0, {}}},
                               {'D', {0xFFFF'FFFF, 0, 0, {}}}};
+  std::map<Pin, std::optional<bool>> wired_;
 };
 
 }  // namespace robosync::tests

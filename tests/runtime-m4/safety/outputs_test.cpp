@@ -20,7 +20,8 @@ const char* const kRobot = R"({
   "sensors": [
     {"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}},
     {"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
-     "channels": {"LEVEL": {"input": 2, "range": [0, 100], "rate": "50Hz"}}}],
+     "channels": {"LEVEL": {"input": 2, "range": [0, 100], "rate": "50Hz"}}},
+    {"name": "button", "type": "GPIO", "pin": 40, "device": "button"}],
   "actuators": [
     {"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "100deg"]},
     {"name": "motor", "type": "PWM", "pin": 4, "device": "pwm", "on_release": "hold"}]
@@ -31,7 +32,7 @@ SAFETY near_wall
   WHEN touch LEVEL > 50
   DO STOP ALL
 END
-WHEN near X > 10
+WHEN near X > 10 AND button IS released
 DO
   RUN motor TO 70%
   MOVE arm TO 100deg AT 500deg/s
@@ -51,7 +52,7 @@ std::vector<std::byte> program() {
 // The program with one thing changed in its tables, and a right checksum.
 using Change =
     std::function<void(vm::Sensor&, vm::Channel&, vm::Actuator& arm, vm::Actuator& motor)>;
-std::vector<std::byte> patched(const Change& change) {
+std::vector<std::byte> patched(const Change& change, std::string_view sensor = "touch") {
   std::vector<std::byte> bytes = program();
   vm::Image image;
   REQUIRE(vm::view_image(bytes, image));
@@ -62,7 +63,7 @@ std::vector<std::byte> patched(const Change& change) {
     FAIL("no " << name);
     return const_cast<Record&>(records[0]);
   };
-  change(named(image.sensors, "touch"), named(image.channels, "LEVEL"),
+  change(named(image.sensors, sensor), named(image.channels, "LEVEL"),
          named(image.actuators, "arm"), named(image.actuators, "motor"));
   vm::test::repair_crc(bytes);
   return bytes;
@@ -77,12 +78,13 @@ vm::Word& command_of(const vm::Image& image, unsigned response) {
   return const_cast<vm::Word&>(image.code[0]);
 }
 
-void refused(const Change& change) {
+Refusal refused(const Change& change, std::string_view sensor = "touch") {
   Rig rig;
   REQUIRE(rig.activate(program()).ok());
-  const vm::Verdict verdict = rig.activate(patched(change));
+  const vm::Verdict verdict = rig.activate(patched(change, sensor));
   CHECK_FALSE(verdict.ok());
   CHECK(rig.status().activations == 1);
+  return verdict.refusal;
 }
 
 }  // namespace
@@ -102,6 +104,33 @@ TEST_CASE("an I2C bus and an address that cannot be are refused") {
     refused([&](auto& touch, auto&, auto&, auto&) {
       touch.address = static_cast<std::uint16_t>(address);
     });
+}
+
+TEST_CASE("a pin that is no input of the board, or an actuator's, is not read") {
+  for (const int pin : {0, 3, 35, 39, 44, 0xFFFF})
+    CHECK(refused(
+              [&](auto& button, auto&, auto& arm, auto&) {
+                arm.pin = 10;
+                button.address = static_cast<std::uint16_t>(pin);
+              },
+              "button") == Refusal::no_input);
+  const auto takes = [](auto& button, auto&, auto& arm, auto&) { button.address = arm.pin; };
+  CHECK(refused(takes, "button") == Refusal::shared_pin);
+  const auto drives = [](auto& button, auto&, auto& arm, auto&) { arm.pin = button.address; };
+  CHECK(refused(drives, "button") == Refusal::shared_pin);
+  // Where the button has another pin, this one is still no output.
+  const auto swaps = [](auto& button, auto&, auto& arm, auto&) {
+    arm.pin = button.address;
+    button.address = 41;
+  };
+  CHECK(refused(swaps, "button") == Refusal::no_pin);
+}
+
+TEST_CASE("a button that is never asked, or asked for a third level, is refused") {
+  CHECK(refused([](auto& button, auto&, auto&, auto&) { button.period_ms = 0; }, "button") ==
+        Refusal::bad_value);
+  CHECK(refused([](auto& button, auto&, auto&, auto&) { button.bus = 2; }, "button") ==
+        Refusal::bad_value);
 }
 
 TEST_CASE("a sensor that measures cannot be made one that is fed") {

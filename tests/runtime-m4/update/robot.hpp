@@ -48,6 +48,7 @@ public:
   }
   // On its bus nobody answers, since a line is held down.
   boards::BusState buses() const override { return {.clears = 2, .held = 1}; }
+  bool input(std::uint16_t) const override { return true; }
   void pwm_write(std::uint16_t, std::uint32_t) override {}
   std::uint32_t pwm_read(std::uint16_t) const override { return 0; }
   boards::Store* store() override { return store_; }

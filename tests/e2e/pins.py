@@ -1,0 +1,71 @@
+"""What is wired to the board's input pins: a test gives them their levels, through QEMU's test protocol, while the board runs."""
+
+import socket
+import sys
+import time
+from pathlib import Path
+
+from board import BOOT_SECONDS, FIRMWARE, NAME
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
+from counting import symbols  # noqa: E402
+
+# Which line of which of QEMU's devices a pin is, by the boards' documents.
+LINES = {
+    "b-l475e-iot01a": {7: ("/machine/soc/gpioa", 4), 8: ("/machine/soc/gpiob", 2), 9: ("/machine/soc/gpioa", 15),
+                       12: ("/machine/soc/gpioa", 6), 32: ("/machine/soc/gpioc", 13)},
+    "microbit-v2": {5: ("/machine/nrf51", 14), 11: ("/machine/nrf51", 23)},
+}
+VIRTUAL = range(40, 44)  # of the mps2-an386: bits of a word of its memory
+
+
+class Pins:
+    """Of a board that was started with arguments(folder)."""
+
+    def __init__(self, folder):
+        self._socket = socket.socket(socket.AF_UNIX)
+        give_up = time.monotonic() + BOOT_SECONDS
+        while True:
+            try:
+                self._socket.connect(str(path_in(folder)))
+                break
+            except (FileNotFoundError, ConnectionRefusedError):
+                if time.monotonic() > give_up:
+                    raise
+                time.sleep(0.02)
+        self._socket.settimeout(BOOT_SECONDS)
+        self._lines = self._socket.makefile("rw", encoding="ascii")
+        self._word = (1 << len(VIRTUAL)) - 1
+
+    def set(self, pin, high):
+        if NAME in LINES:
+            device, line = LINES[NAME][pin]
+            self._say(f"set_irq_in {device} unnamed-gpio-in {line} {int(high)}")
+        else:
+            mask = 1 << VIRTUAL.index(pin)
+            self._word = self._word | mask if high else self._word & ~mask
+            self._say(f"writel {symbols(FIRMWARE)['robosync_virtual_inputs']:#x} {self._word:#x}")
+
+    def word(self, address):
+        return int(self._say(f"readl {address:#x}").split()[1], 16)
+
+    def _say(self, command):
+        self._lines.write(command + "\n")
+        self._lines.flush()
+        answer = self._lines.readline().strip()
+        if not answer.startswith("OK"):
+            raise RuntimeError(f"{command}: {answer}")
+        return answer
+
+    def close(self):
+        self._lines.close()
+        self._socket.close()
+
+
+def path_in(folder):
+    return folder / "pins"
+
+
+def arguments(folder):
+    """For QEMU."""
+    return ["-qtest", f"unix:{path_in(folder)},server=on,wait=off", "-qtest-log", "none"]
