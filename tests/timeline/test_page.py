@@ -1,5 +1,6 @@
 """The page of rsc run --html in a browser: Chromium, headless, with every example."""
 
+import html
 import json
 import re
 import subprocess
@@ -10,7 +11,6 @@ from pathlib import Path
 import rsc
 
 EXAMPLES = rsc.ROOT / "examples"
-WIDE = "16000,2000"  # so that no two commands fall into one pixel
 MARKS = {"lose": "denied"} | {kind: kind for kind in (
     "log", "alert", "fault", "deadline", "overrun", "zero_divide", "silent", "answers")}
 PROFILE = tempfile.TemporaryDirectory()  # of the browser, which takes longer to make one than to show a page
@@ -51,13 +51,32 @@ document.title = JSON.stringify(seen);
 </script>"""
 
 
-def dom(page, size="1300,1200"):
+# Pages beside each other, for a browser takes longer to start than to show one: their documents, when all scripts have run,
+# stand in its title.
+FRAMES = """{}<script>
+const documents = () => [...document.querySelectorAll("iframe")].map(frame => frame.contentDocument.documentElement.outerHTML);
+onload = () => document.title = JSON.stringify(documents());
+</script>"""
+FRAME = '<iframe src="{}" width="16000" height="2000"></iframe>'  # so wide that no two commands fall into one pixel
+
+
+def dom(page):
     """The document as it is when its script has run."""
     done = subprocess.run(
         ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", f"--user-data-dir={PROFILE.name}",
-         f"--window-size={size}", "--dump-dom", page.as_uri()],
+         "--allow-file-access-from-files", "--window-size=1300,1200", "--dump-dom", page.as_uri()],
         check=True, text=True, timeout=120, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     return done.stdout
+
+
+def title_of(page):
+    return json.loads(html.unescape(re.search(r"<title>(.*?)</title>", dom(page), re.DOTALL)[1]))
+
+
+def wide_doms(pages, folder):
+    together = folder / "together.html"
+    together.write_text(FRAMES.format("".join(FRAME.format(page.as_uri()) for page in pages)), "utf-8")
+    return title_of(together)
 
 
 def count(document, kind):
@@ -72,7 +91,7 @@ class Page(unittest.TestCase):
 
     def show(self, example, scenario=None):
         """The page of an example's scenario, or of another one, and its trace."""
-        page, trace = self.folder / "run.html", self.folder / "run.jsonl"
+        page, trace = self.folder / f"{example.name}.html", self.folder / "run.jsonl"
         if scenario is None:
             (scenario,) = (path for path in example.glob("*.json") if path.name != "robot.json")
         rsc.run("run", example / "robot.rsl", "--scenario", scenario, "--fresh", "--kept", self.folder / "kept.json",
@@ -82,10 +101,10 @@ class Page(unittest.TestCase):
     def test_every_event_of_every_example_is_drawn(self):
         examples = [path.parent for path in sorted(EXAMPLES.glob("*/robot.rsl")) if len(list(path.parent.glob("*.json"))) == 2]
         self.assertGreater(len(examples), 10)
-        for example in examples:
+        shown = [self.show(example) for example in examples]
+        documents = wide_doms([page for page, _ in shown], self.folder)
+        for example, (_, trace), document in zip(examples, shown, documents, strict=True):
             with self.subTest(example.name):
-                page, trace = self.show(example)
-                document = dom(page, WIDE)
                 kinds = [event["event"] for event in trace]
                 self.assertEqual(count(document, "bar"), kinds.count("command") + kinds.count("trip"))
                 self.assertEqual(count(document, "halt"), kinds.count("halt"))
@@ -126,8 +145,7 @@ class Page(unittest.TestCase):
 
     def hands(self, page):
         self.append(page, HANDS)
-        title = re.search(r"<title>(.*?)</title>", dom(page), re.DOTALL)[1]
-        return json.loads(title.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&"))
+        return title_of(page)
 
     def test_pointing_tells_why_and_clicking_shows_the_rule(self):
         seen = self.hands(self.show(EXAMPLES / "touch_companion")[0])
