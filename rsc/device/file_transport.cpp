@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include <fcntl.h>
@@ -75,8 +76,8 @@ class FileTransport final : public Transport {
 public:
   enum class Kind { device, socket };
 
-  FileTransport(std::string name, Descriptor file, Kind kind)
-      : name_(std::move(name)), file_(std::move(file)), kind_(kind) {
+  FileTransport(std::string name, Descriptor file, Kind kind, std::optional<LineLock> lock = {})
+      : name_(std::move(name)), file_(std::move(file)), kind_(kind), lock_(lock) {
     fcntl(file_, F_SETFL, O_NONBLOCK);
   }
 
@@ -102,6 +103,10 @@ public:
   }
 
   std::string name() const override { return name_; }
+  bool wanted() const override { return lock_ && lock_->wanted(); }
+  bool lend(const std::function<bool()>& waiting) override {
+    return !lock_ || lock_->lend(waiting);
+  }
 
 private:
   bool ready(short events, int timeout_ms) {
@@ -119,6 +124,7 @@ private:
   std::string name_;
   Descriptor file_;
   Kind kind_;
+  std::optional<LineLock> lock_;
 };
 
 }  // namespace
@@ -126,12 +132,12 @@ private:
 std::unique_ptr<Transport> open_pty(const std::string& path, Sharing sharing) {
   Descriptor file(open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
   if (file < 0) fail(path, errno);
-  if (sharing == Sharing::alone) lock_line(file, path);
+  const LineLock lock(file, path, sharing);
   termios settings{};
   if (tcgetattr(file, &settings) != 0) fail(path, errno);
   cfmakeraw(&settings);
   if (tcsetattr(file, TCSANOW, &settings) != 0) fail(path, errno);
-  return std::make_unique<FileTransport>(path, std::move(file), FileTransport::Kind::device);
+  return std::make_unique<FileTransport>(path, std::move(file), FileTransport::Kind::device, lock);
 }
 
 std::unique_ptr<Transport> open_unix_socket(const std::string& path) {

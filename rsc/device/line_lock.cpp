@@ -1,31 +1,74 @@
-// See line_lock.hpp. May assume POSIX.
+// See line_lock.hpp. May assume Linux: locks on bytes of the device that belong to the open file (F_OFD_SETLK). Byte 0
+// is the line, byte 1 is to want it. They go with the process that has them, however it ends.
 #include "rsc/device/line_lock.hpp"
 
 #include <cerrno>
 #include <chrono>
 #include <thread>
 
-#include <sys/file.h>
+#include <fcntl.h>
 
 #include "rsc/failure.hpp"
 
 namespace robosync::tool {
 namespace {
 
-constexpr std::chrono::milliseconds kWaitForOther{500}, kBetweenTries{10};
+using std::chrono::milliseconds;
+
+constexpr milliseconds kWaitForOther{1000}, kBetweenTries{10};
+
+enum Part : off_t { kLine = 0, kWanted = 1 };
+
+struct flock lock_of(Part part, short type) {
+  struct flock lock {};
+  lock.l_type = type;
+  lock.l_whence = SEEK_SET;
+  lock.l_start = part;
+  lock.l_len = 1;
+  return lock;
+}
+
+// What cannot be locked for another reason is used without.
+bool try_take(int file, Part part) {
+  struct flock lock = lock_of(part, F_WRLCK);
+  return fcntl(file, F_OFD_SETLK, &lock) == 0 || (errno != EAGAIN && errno != EACCES);
+}
+
+void let_go(int file, Part part) {
+  struct flock lock = lock_of(part, F_UNLCK);
+  fcntl(file, F_OFD_SETLK, &lock);
+}
 
 }  // namespace
 
-// What cannot be locked for another reason is used without.
-void lock_line(int file, const std::string& port) {
-  for (auto waited = kBetweenTries; flock(file, LOCK_EX | LOCK_NB) != 0; waited += kBetweenTries) {
-    if (errno != EWOULDBLOCK && errno != EINTR) return;
-    if (waited > kWaitForOther)
-      throw Failure(
-          Exit::outside,
-          port + ": another rsc uses this line; end it first (`rsc monitor` ends with Ctrl-C)");
+LineLock::LineLock(int file, const std::string& port, Sharing sharing) : file_(file) {
+  if (sharing == Sharing::at_once) {
+    (void)try_take(file, kWanted);
+    return;
+  }
+  const auto give_up = std::chrono::steady_clock::now() + kWaitForOther;
+  for (const Part part : {kWanted, kLine})
+    while (!try_take(file, part)) {
+      if (std::chrono::steady_clock::now() >= give_up)
+        throw Failure(Exit::outside, port + ": another rsc uses this line; end it first");
+      std::this_thread::sleep_for(kBetweenTries);
+    }
+  let_go(file, kWanted);
+}
+
+bool LineLock::wanted() const {
+  struct flock lock = lock_of(kWanted, F_WRLCK);
+  return fcntl(file_, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+}
+
+// To want it as well would take it from whom it was lent to.
+bool LineLock::lend(const std::function<bool()>& waiting) const {
+  let_go(file_, kLine);
+  while (wanted() || !try_take(file_, kLine)) {
+    if (!waiting()) return false;
     std::this_thread::sleep_for(kBetweenTries);
   }
+  return true;
 }
 
 }  // namespace robosync::tool

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -37,7 +38,8 @@ void expect(sp_return result, const std::string& port) {
 
 class SerialTransport final : public Transport {
 public:
-  SerialTransport(std::string name, Port port) : name_(std::move(name)), port_(std::move(port)) {}
+  SerialTransport(std::string name, Port port, std::optional<LineLock> lock)
+      : name_(std::move(name)), port_(std::move(port)), lock_(lock) {}
   ~SerialTransport() override { sp_close(port_.get()); }
 
   sp_return configure() {
@@ -67,10 +69,15 @@ public:
   }
 
   std::string name() const override { return name_; }
+  bool wanted() const override { return lock_ && lock_->wanted(); }
+  bool lend(const std::function<bool()>& waiting) override {
+    return !lock_ || lock_->lend(waiting);
+  }
 
 private:
   std::string name_;
   Port port_;
+  std::optional<LineLock> lock_;
 };
 
 Port find(const std::string& path) {
@@ -86,11 +93,11 @@ Port find(const std::string& path) {
 }
 
 // The lock keeps other rsc away. Newer versions of libserialport keep everyone away, which would lock out `rsc stop` too.
-void claim(const sp_port* port, const std::string& path, Sharing sharing) {
+std::optional<LineLock> claim(const sp_port* port, const std::string& path, Sharing sharing) {
   int file = -1;
-  if (sp_get_port_handle(port, &file) != SP_OK) return;
+  if (sp_get_port_handle(port, &file) != SP_OK) return std::nullopt;
   ioctl(file, TIOCNXCL);
-  if (sharing == Sharing::alone) lock_line(file, path);
+  return LineLock(file, path, sharing);
 }
 
 }  // namespace
@@ -98,8 +105,8 @@ void claim(const sp_port* port, const std::string& path, Sharing sharing) {
 std::unique_ptr<Transport> open_serial(const std::string& path, Sharing sharing) {
   Port port = find(path);
   expect(sp_open(port.get(), SP_MODE_READ_WRITE), path);
-  claim(port.get(), path, sharing);
-  auto transport = std::make_unique<SerialTransport>(path, std::move(port));
+  const std::optional<LineLock> lock = claim(port.get(), path, sharing);
+  auto transport = std::make_unique<SerialTransport>(path, std::move(port), lock);
   expect(transport->configure(), path);
   return transport;
 }

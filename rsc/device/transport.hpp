@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -24,19 +25,22 @@ public:
   // Writes all. Throws Failure (outside) when the line is gone or takes nothing for so long.
   virtual void write(std::span<const std::byte> bytes) = 0;
   virtual std::string name() const = 0;  // as the user wrote it
+  // Lines that every rsc can open (line_lock.hpp); of others there is nothing to lend.
+  virtual bool wanted() const { return false; }
+  [[nodiscard]] virtual bool lend(const std::function<bool()>& /*waiting*/) { return true; }
   // What timeouts are measured with.
   virtual Clock::time_point now() const { return Clock::now(); }
 };
 
-// One rsc at a time uses a serial line or a pty: two would each take bytes that are for the other.
+// How a serial line or a pty is shared with other rsc (line_lock.hpp).
 enum class Sharing {
-  alone,  // waits half a second for another one that is about to end; then throws Failure (outside)
-  with_others  // for what must not wait: the reply may go to the other one
+  in_turn,  // waits for it
+  at_once   // begins while it waits: the first reply may go to the other one
 };
 
 // `port`: a serial device (115,200 baud, 8N1), a pty, unix:PATH or tcp:HOST:PORT. Throws Failure:
 // outside when it cannot be opened (and says why), usage when it is not such a name.
 [[nodiscard]] std::unique_ptr<Transport> open_port(const std::string& port,
-                                                   Sharing sharing = Sharing::alone);
+                                                   Sharing sharing = Sharing::in_turn);
 
 }  // namespace robosync::tool

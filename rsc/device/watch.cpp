@@ -2,6 +2,7 @@
 // losses are said, and that the board's trace is off again afterwards.
 #include "rsc/device/watch.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <iostream>
@@ -61,6 +62,7 @@ Watch::Watch(Session& session, Format format, bool threads)
 }
 
 Watch::~Watch() {
+  if (!has_line_) return;
   try {
     session_.client.set_trace(false);
   } catch (const Failure&) {
@@ -109,10 +111,13 @@ void Watch::introduce() {
 void Watch::show(std::optional<milliseconds> duration) {
   const Interruptible interruptible;
   const auto start = session_.client.now();
+  const auto goes_on = [&] {
+    return interrupted == 0 && (!duration || session_.client.now() - start < *duration);
+  };
   auto next_look = start + kLookForLosses;
-  while (interrupted == 0) {
+  while (goes_on()) {
+    if (session_.transport->wanted() && !lend(goes_on)) return;
     const auto now = session_.client.now();
-    if (duration && now - start >= *duration) break;
     if (now >= next_look) {
       look(session_.client.set_trace(true));
       if (threads_) show_threads();
@@ -120,7 +125,8 @@ void Watch::show(std::optional<milliseconds> duration) {
     }
     auto wait = milliseconds(100);
     if (duration) {
-      wait = std::min(wait, std::chrono::ceil<milliseconds>(start + *duration - now));
+      const auto left = std::chrono::ceil<milliseconds>(start + *duration - now);
+      wait = std::clamp(left, milliseconds(0), wait);
     }
     if (const auto message = session_.client.next_unasked(wait)) show(*message);
   }
@@ -199,6 +205,26 @@ void Watch::look(const link::Status& status) {
     report_losses(status);
   }
   uptime_us_ = status.uptime_us;
+}
+
+// What has come is shown first: its numbers are those of the program that has run so far. The other one's hello switches
+// the trace off anyway.
+bool Watch::lend(const std::function<bool()>& waiting) {
+  session_.client.set_trace(false);
+  while (const auto message = session_.client.next_unasked(milliseconds(0)))
+    show(*message);
+  const auto lent = session_.client.now();
+  has_line_ = session_.transport->lend(waiting);
+  if (!has_line_) return false;
+  const link::Status status = session_.client.set_trace(true);
+  const std::vector<std::byte> before = image_bytes_;
+  learn_names();
+  std::cerr << fmt::format(
+      "rsc: another rsc has used the line for {:.1f} s{}; what happened meanwhile is not shown\n",
+      std::chrono::duration<double>(session_.client.now() - lent).count(),
+      image_bytes_ == before ? "" : ", and another program runs");
+  look(status);
+  return true;
 }
 
 void Watch::report_losses(const link::Status& status) {

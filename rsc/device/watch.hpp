@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 
 #include "rsc/console.hpp"
@@ -21,7 +22,7 @@ public:
   // One line: which board it is, why it has started, and its last fault. Then one for each device that does not answer.
   void introduce();
   // Writes to stdout, one line each (and with `threads` the list of them once a second), until the
-  // duration is over or the user interrupts (Ctrl-C).
+  // duration is over or the user interrupts (Ctrl-C). Meanwhile another rsc gets the line when it wants it.
   void show(std::optional<std::chrono::milliseconds> duration);
 
 private:
@@ -32,6 +33,7 @@ private:
   void show_fault(const Message& message);
   void show_threads();
   void look(const link::Status& status);
+  bool lend(const std::function<bool()>& waiting);
   void report_losses(const link::Status& status);
 
   Session& session_;
@@ -43,6 +45,7 @@ private:
   TraceNames names_;
   std::uint32_t lost_ = 0;
   std::uint64_t uptime_us_ = 0;  // of the board, when it was looked at last
+  bool has_line_ = true;         // it is not lent to another rsc
 };
 
 }  // namespace robosync::tool

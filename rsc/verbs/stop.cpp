@@ -15,7 +15,7 @@ namespace {
 
 // Without a hello first, for which a board with much to do may need some time; and beside another rsc, such as a monitor.
 void stop_board(const std::string& port) {
-  const std::unique_ptr<Transport> transport = open_port(port, Sharing::with_others);
+  const std::unique_ptr<Transport> transport = open_port(port, Sharing::at_once);
   try {
     Client(*transport).stop();
   } catch (const Failure& failure) {

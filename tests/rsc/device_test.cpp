@@ -45,7 +45,8 @@ public:
   Bridge(const Bridge&) = delete;
   Bridge& operator=(const Bridge&) = delete;
 
-  void wait_until_heard() const { heard_.wait(false); }
+  void wait_until_heard() const { heard_.wait(0); }
+  std::size_t bytes_heard() const { return heard_; }
 
 private:
   void run() {
@@ -73,7 +74,7 @@ private:
     const ssize_t count = ::read(line, bytes.data(), bytes.size());
     if (count > 0) {
       robot.write(std::span(bytes).first(static_cast<std::size_t>(count)));
-      heard_ = true;
+      heard_ += static_cast<std::size_t>(count);
       heard_.notify_all();
     }
     if (count == 0 || (count < 0 && errno != EAGAIN)) return false;
@@ -85,7 +86,7 @@ private:
   bool accepting_;
   policy::BoardMemory memory_;
   std::atomic<bool> stop_ = false;
-  std::atomic<bool> heard_ = false;
+  std::atomic<std::size_t> heard_ = 0;
   std::thread thread_;
 };
 
@@ -392,7 +393,8 @@ TEST_CASE("ports is valid JSON, whatever this computer has") {
   CHECK(json::parse(outcome.out).is_array());
 }
 
-TEST_CASE("a line that another rsc uses is exit 3, and says so, until that one ends") {
+TEST_CASE(
+    "a line that another rsc uses and does not lend is exit 3, and says so, until that one ends") {
   const int master = open_pty_master();
   const std::string port = ptsname(master);
   const Bridge bridge(master, false);
@@ -417,4 +419,42 @@ TEST_CASE("stop does not wait for another rsc that uses the line") {
   }
   CHECK_THAT(test::rsc({"info", "--port", port}).out,
              Contains("stopped   all outputs are in their safe state"));
+}
+
+TEST_CASE("monitor lends the line to an upload, and goes on with the new program") {
+  const int master = open_pty_master();
+  const std::string port = ptsname(master);
+  const RobotFolder robot;
+  const std::string ticking = robot.write("robot.rsl", "EVERY 100ms DO LOG \"tick\" END\n");
+  const Bridge bridge(master, false);
+  Outcome monitor;
+  std::thread watching([&] {
+    monitor = test::rsc({"monitor", "--port", port, "--duration", "2s"});
+  });
+  bridge.wait_until_heard();
+  const Outcome upload = test::rsc({"upload", ticking, "--port", port});
+  watching.join();
+  CAPTURE(upload.err, monitor.err);
+  CHECK(upload.exit == 0);
+  CHECK(monitor.exit == 0);
+  CHECK_THAT(monitor.err, Contains("another rsc has used the line for") &&
+                              Contains(", and another program runs; what happened"));
+  CHECK_THAT(monitor.out, Contains("log: tick"));
+}
+
+TEST_CASE("a monitor whose line is lent for its whole time ends without a word on it") {
+  const int master = open_pty_master();
+  const std::string port = ptsname(master);
+  const Bridge bridge(master, false);
+  Outcome monitor;
+  std::thread watching([&] {
+    monitor = test::rsc({"monitor", "--port", port, "--duration", "300ms"});
+  });
+  bridge.wait_until_heard();
+  const std::unique_ptr<tool::Transport> other = tool::open_port(port);
+  const std::size_t heard = bridge.bytes_heard();
+  watching.join();
+  CAPTURE(monitor.err);
+  CHECK(monitor.exit == 0);
+  CHECK(bridge.bytes_heard() == heard);
 }
