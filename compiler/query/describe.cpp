@@ -11,28 +11,11 @@
 namespace robosync::compiler::query {
 namespace {
 
-constexpr std::array<std::string_view, 22> kKinds = {"a LET",
-                                                     "a REMEMBER",
-                                                     "a STATE",
-                                                     "a TIMER",
-                                                     "a LIST",
-                                                     "a FEELING",
-                                                     "a CHECK",
-                                                     "a DEFINE",
-                                                     "a MOTION",
-                                                     "a BEHAVIOR",
-                                                     "a SAFETY rule",
-                                                     "a signal",
-                                                     "a value given to the DEFINE",
-                                                     "a word of",
-                                                     "a module of the library",
-                                                     "a function of numbers",
-                                                     "a sensor",
-                                                     "a channel of the sensor",
-                                                     "an actuator",
-                                                     "a group of actuators",
-                                                     "a verb",
-                                                     "a word"};
+constexpr std::string_view kKinds[] = {
+#define SYMBOL_KIND(name, said) said,
+#include "compiler/query/symbol_kinds.def"
+#undef SYMBOL_KIND
+};
 
 std::string spoken(std::string_view text) {
   return fmt::format("`{}`", text);
@@ -188,7 +171,7 @@ std::string comment_above(const SourceFile& source, std::uint32_t offset) {
 
 Description describe(const Symbol& symbol, const Project& project) {
   Description result;
-  result.kind = kKinds.at(static_cast<std::size_t>(symbol.kind));
+  result.kind = kKinds[static_cast<std::size_t>(symbol.kind)];
   if (symbol.kind == SymbolKind::channel)
     result.kind += " " + spoken(project.robot.sensors.at(symbol.owner).name.text);
   else if (!symbol.within.empty() && symbol.kind <= SymbolKind::label)

@@ -15,28 +15,9 @@
 namespace robosync::compiler::query {
 
 enum class SymbolKind : std::uint8_t {
-  let,
-  remember,
-  state,
-  timer,
-  list,
-  feeling,
-  check,
-  define,
-  motion,
-  behavior,
-  safety,
-  signal,
-  parameter,
-  label,
-  module,
-  function,
-  sensor,
-  channel,
-  actuator,
-  group,
-  verb,
-  word
+#define SYMBOL_KIND(name, said) name,
+#include "compiler/query/symbol_kinds.def"
+#undef SYMBOL_KIND
 };
 
 struct Symbol {

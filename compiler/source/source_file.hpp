@@ -55,9 +55,13 @@ private:
 };
 
 // Every file of one compilation. FileId is the place in this list. References to files and views of
-// their text hold as long as the list.
+// their text hold as long as the list, also when it is moved.
 class SourceMap {
 public:
+  SourceMap() = default;
+  SourceMap(SourceMap&&) = default;
+  SourceMap& operator=(SourceMap&&) = default;
+
   FileId add(std::string name, std::string text);
   const SourceFile& file(FileId id) const { return files_[id]; }
   std::size_t size() const { return files_.size(); }
