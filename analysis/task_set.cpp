@@ -15,6 +15,7 @@
 #include "runtime-m4/policy/adaptation.hpp"
 #include "runtime-m4/policy/rules.hpp"
 #include "runtime-m4/policy/threads.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::analysis {
 namespace {
@@ -343,6 +344,10 @@ private:
     set_.interferences.push_back({"the serial line",
                                   instructions_in_ms(1000) / board_.line_bytes_per_second,
                                   Instructions{board_.receive} + board_.send});
+    if (std::ranges::any_of(image_.actuators, [](const vm::Actuator& actuator) {
+          return vm::drives_lights(actuator.driver);
+        }))
+      set_.interferences.push_back({"the lights", instructions_in_ms(policy::kRowMs), board_.row});
     set_.interferences.push_back(
         {"the safety thread", period, board_.wake_by_timer + costs::kMonitor + looks()});
     if (work_.trips() != 0)

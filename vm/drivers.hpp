@@ -8,8 +8,9 @@
 namespace robosync::vm {
 
 // What an actuator's driver puts out on its pin. Pulses say where to go: while they stay as they are, so does the
-// actuator. A level is power: as long as it is there, a motor runs.
-enum class PinUse : std::uint8_t { nothing, pulses, level };
+// actuator. A level is power: as long as it is there, a motor runs. A picture is on no pin of an actuator's own, but on the
+// lights, which a board has once.
+enum class PinUse : std::uint8_t { nothing, pulses, level, picture };
 
 constexpr PinUse pin_use(DriverId driver) {
   switch (driver) {
@@ -24,6 +25,13 @@ constexpr PinUse pin_use(DriverId driver) {
       break;
   }
   return PinUse::nothing;
+}
+
+constexpr bool drives_pin(DriverId driver) {
+  return pin_use(driver) == PinUse::pulses || pin_use(driver) == PinUse::level;
+}
+constexpr bool drives_lights(DriverId driver) {
+  return pin_use(driver) == PinUse::picture;
 }
 
 // By what a driver's sensors are measured; nothing: they are fed, or it has no sensors.

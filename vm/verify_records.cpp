@@ -109,23 +109,25 @@ Refusal check_channel(Walk& walk, const Channel& channel, std::size_t index) {
                                          is_range(channel.min, channel.max) && channel.change >= 0);
 }
 
-bool is_read(const Walk& walk, std::uint16_t pin) {
-  for (const Sensor& sensor : walk.image.sensors)
-    if (sensor.address == pin && is_on_pin(sensor.driver)) return true;
-  return false;
+// What an actuator has for itself alone: its pin, or the lights.
+constexpr std::uint32_t kNothing = UINT32_MAX;
+constexpr std::uint32_t kLights = UINT16_MAX + 1;
+
+std::uint32_t output_of(const Actuator& actuator) {
+  if (drives_lights(actuator.driver)) return kLights;
+  return drives_pin(actuator.driver) ? actuator.pin : kNothing;
 }
 
-// One pin has one owner, and whoever has a motor lets it stand still in its safe state.
-Refusal check_pin(const Walk& walk, const Actuator& actuator, std::size_t index) {
-  const PinUse use = pin_use(actuator.driver);
-  if (use == PinUse::nothing) return Refusal::none;
-  if (is_read(walk, actuator.pin)) return Refusal::shared_pin;
-  for (std::size_t a = 0; a < index; ++a) {
-    const Actuator& before = walk.image.actuators[a];
-    if (before.pin == actuator.pin && pin_use(before.driver) != PinUse::nothing)
-      return Refusal::shared_pin;
-  }
-  return good_or(Refusal::drives_on, use != PinUse::level || actuator.safe != Release::hold);
+// One output has one owner, nobody reads its pin, and whoever has a motor lets it stand still in its safe state.
+Refusal check_output(const Walk& walk, const Actuator& actuator, std::size_t index) {
+  const std::uint32_t output = output_of(actuator);
+  if (output == kNothing) return Refusal::none;
+  for (const Sensor& sensor : walk.image.sensors)
+    if (sensor.address == output && is_on_pin(sensor.driver)) return Refusal::shared_pin;
+  for (std::size_t a = 0; a < index; ++a)
+    if (output_of(walk.image.actuators[a]) == output) return Refusal::shared_pin;
+  return good_or(Refusal::drives_on,
+                 pin_use(actuator.driver) != PinUse::level || actuator.safe != Release::hold);
 }
 
 Refusal check_actuator(Walk& walk, const Actuator& actuator, std::size_t index) {
@@ -134,7 +136,7 @@ Refusal check_actuator(Walk& walk, const Actuator& actuator, std::size_t index) 
                     is_range(actuator.min, actuator.max) && actuator.speed_limit >= 0;
   if (!good) return Refusal::bad_value;
   const Refusal driver = check_driver(walk, actuator.driver, DriverKind::actuator);
-  return driver == Refusal::none ? check_pin(walk, actuator, index) : driver;
+  return driver == Refusal::none ? check_output(walk, actuator, index) : driver;
 }
 
 Refusal check_group(Walk& walk, const Group& group, std::size_t) {

@@ -155,7 +155,8 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
     actuator.bus = place.bus;
     actuator.pin = place.place;
     if (type->name == "VIRTUAL") actuator.driver = vm::DriverId::virtual_actuator;
-    if (vm::pin_use(actuator.driver) != vm::PinUse::nothing) wiring.check_output(fields, place);
+    if (vm::drives_pin(actuator.driver)) wiring.check_output(fields, place);
+    if (vm::drives_lights(actuator.driver)) wiring.check_lights(fields, part);
   }
   if (const auto* range = fields.find("range")) read_position_range(*range, actuator, diagnostics);
   if (const auto* speeds = fields.find("speeds")) read_speeds(*speeds, actuator, diagnostics);

@@ -60,7 +60,7 @@ std::vector<Board::Part> read_parts(const json::Value& value, Diagnostics& diagn
     Board::Part part;
     part.name = member.key;
     part.device = require_text(fields, "device", kWhat, diagnostics);
-    if (const auto* pin = fields.require("pin", kWhat)) part.pin = read_pin(*pin, diagnostics);
+    if (const auto* pin = fields.find("pin")) part.pin = read_pin(*pin, diagnostics);
     parts.push_back(std::move(part));
   }
   return parts;

@@ -44,8 +44,8 @@ struct Board {
   std::optional<Flash> flash;
   struct Part {  // soldered to the board, so nobody has to say how it is wired
     std::string name;
-    std::string device;  // its descriptor in stdlib/devices/
-    std::uint16_t pin = 0;
+    std::string device;                // its descriptor in stdlib/devices/
+    std::optional<std::uint16_t> pin;  // of the lights: none that could be said
   };
   std::vector<Part> parts;
 

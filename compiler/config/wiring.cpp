@@ -93,8 +93,26 @@ Wiring WiringReader::read_part(const Fields& fields, const Board::Part& part) {
           .report(Code::E0205, "the `" + part.name + "` of the board " + board_.name +
                                    " is wired already: it has no `" + key + "`")
           .label(value->span);
-  take_pin(part.pin, fields.find("device")->span);
-  return {static_cast<std::uint8_t>(vm::ActiveLevel::low), part.pin};
+  const Span span = fields.find("device")->span;
+  part.pin ? take_pin(*part.pin, span) : take_part(part, span);
+  return {static_cast<std::uint8_t>(vm::ActiveLevel::low), part.pin.value_or(0)};
+}
+
+void WiringReader::take_part(const Board::Part& part, Span span) {
+  const auto [first, added] = parts_.emplace(&part, span);
+  if (added) return;
+  diagnostics_.report(Code::E0207, "the `" + part.name + "` of the board are used twice")
+      .label(span)
+      .label(first->second, "first used here", false);
+}
+
+void WiringReader::check_lights(const Fields& fields, const Board::Part* part) {
+  const auto* device = fields.find("device");
+  if (part != nullptr || device == nullptr) return;
+  diagnostics_
+      .report(Code::E0205, "a " + device->text + " is a part of a board, and cannot be wired")
+      .label(device->span)
+      .helps("the micro:bit V2 has one: `\"board\": \"microbit-v2\"`, `\"device\": \"lights\"`");
 }
 
 Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::Part* part,

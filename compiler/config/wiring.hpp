@@ -40,6 +40,8 @@ public:
   void check_bus(const Fields& fields, const Wiring& wiring);
   void check_input(const Fields& fields, const Wiring& wiring);
   void check_output(const Fields& fields, const Wiring& wiring);
+  // The lights are a part of a board, or nowhere.
+  void check_lights(const Fields& fields, const Board::Part* part);
   [[nodiscard]] const Board& board() const { return board_; }
 
 private:
@@ -47,6 +49,7 @@ private:
   std::uint16_t read_pin(const json::Value& value);
   std::uint8_t read_active(const Fields& fields);
   void take_pin(std::uint16_t pin, Span span);
+  void take_part(const Board::Part& part, Span span);
   void report_foreign(const Fields& fields, const WiringType& type);
   void report_no_pin(const json::Value& pin, const Wiring& wiring, const char* what,
                      std::span<const Board::Pins> those);
@@ -54,6 +57,7 @@ private:
   Board board_;
   Diagnostics& diagnostics_;
   std::map<std::uint16_t, Span> pins_;
+  std::map<const Board::Part*, Span> parts_;  // without a pin
 };
 
 // Which of `names` a string is, any case; reports E0205 with the choice when none.

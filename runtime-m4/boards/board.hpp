@@ -47,6 +47,9 @@ public:
   virtual void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) = 0;
   virtual std::uint32_t pwm_read(std::uint16_t pin) const = 0;
 
+  // The picture on the lights from now on, for boards that have some: bit 5 * row + column, from the top left. 0: dark.
+  virtual void show(std::uint32_t /*picture*/) {}
+
   // What outlasts a reset; nullptr where the board has nothing for it.
   virtual Store* store() { return nullptr; }
 

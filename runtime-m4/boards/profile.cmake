@@ -35,7 +35,12 @@ foreach(i RANGE ${last})
   string(JSON final GET "${profile}" inputs ${i} pins 1)
   string(APPEND board_inputs "{${first},${final}},")
 endforeach()
+string(JSON lights ERROR_VARIABLE any GET "${profile}" lights)
+set(board_lights 1)
+if(any AND CMAKE_CROSSCOMPILING)
+  set(board_lights 0)
+endif()
 set(board_definitions
   ROBOSYNC_ARENA_BEGIN=${arena_begin} ROBOSYNC_ARENA_BYTES=${arena_bytes} ROBOSYNC_STEP_BUDGET=${step_budget}
   ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_STORE_BYTES=${store_bytes} ROBOSYNC_OUTPUTS=${board_outputs}
-  ROBOSYNC_INPUTS=${board_inputs})
+  ROBOSYNC_INPUTS=${board_inputs} ROBOSYNC_LIGHTS=${board_lights})

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/pins.hpp"
 #include "runtime-m4/drivers/motion.hpp"
 #include "runtime-m4/guard/output_guard.hpp"
 #include "runtime-m4/kernel/time.hpp"
@@ -52,6 +53,7 @@ struct Device {
   void drive(std::uint32_t pulse_us, kernel::Time now) const {
     outputs.drive(state.actuator, pulse_us, now);
   }
+  void show(std::uint32_t picture) const { outputs.show(state.actuator, picture); }
 };
 
 inline constexpr kernel::Time kDone = 0;
@@ -84,17 +86,31 @@ struct Driver {
   ReleaseFunction release = nullptr;
 };
 
+// Code for lights is not there where there are none.
+constexpr bool is_present(vm::DriverId id) {
+  return boards::kHasLights || !vm::drives_lights(id);
+}
+template <vm::DriverId id>
+constexpr Driver actuator_driver(Driver driver) {
+  return is_present(id) ? driver : Driver{};
+}
+
 inline constexpr Driver kDrivers[] = {
 #define SENSOR_DRIVER(name, ...) {name::read, nullptr, nullptr, nullptr},
-#define ACTUATOR_DRIVER(name, ...) {nullptr, name::start, name::advance, name::release},
+#define ACTUATOR_DRIVER(name, ...) \
+  actuator_driver<vm::DriverId::name>({nullptr, name::start, name::advance, name::release}),
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER
 #undef ACTUATOR_DRIVER
 };
 
 // Bit d: driver d is in this firmware (vm::Limits::drivers).
-inline constexpr std::uint32_t kPresent = ~std::uint32_t{0} >>
-                                          (32 - sizeof kDrivers / sizeof kDrivers[0]);
+inline constexpr std::uint32_t kPresent = [] {
+  std::uint32_t present = 0;
+  for (unsigned d = 0; d < sizeof kDrivers / sizeof kDrivers[0]; ++d)
+    if (is_present(static_cast<vm::DriverId>(d))) present |= std::uint32_t{1} << d;
+  return present;
+}();
 
 // `id` comes from a verified image.
 constexpr const Driver& driver(vm::DriverId id) {

@@ -37,11 +37,12 @@ void OutputGuard::switch_off(const vm::Image* next) {
     const auto lock = kernel_.lock();
     halted_ = free_ = lagging_ = 0;
   }
-  for (Mask left = owned_; left != 0; left &= left - 1) {
+  if (lights() != 0) board_.show(0);
+  for (Mask left = owned_ & ~lights(); left != 0; left &= left - 1) {
     const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
     if (next == nullptr || !drives(*next, slot.pin, slot.driver)) board_.pwm_write(slot.pin, 0);
   }
-  owned_ = 0;
+  owned_ = lights_ = 0;
 }
 
 void OutputGuard::disown() {
@@ -57,7 +58,11 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
   for (unsigned a = 0; a < image.actuators.size(); ++a) {
     const vm::Actuator& actuator = image.actuators[a];
     const policy::PinLimit* const limit = policy::limit_of(pins, actuator.pin);
-    if (vm::pin_use(actuator.driver) == vm::PinUse::nothing || limit == nullptr) continue;
+    if (boards::kHasLights && vm::drives_lights(actuator.driver)) {
+      own_lights(a, actuator.safe);
+      owned |= bit(a);
+    }
+    if (!vm::drives_pin(actuator.driver) || limit == nullptr) continue;
     const auto pulse = static_cast<std::uint16_t>(board_.pwm_read(actuator.pin));
     const auto safe = policy::safe_pulse(actuator);
     slots_[a] = {.pin = actuator.pin,
@@ -74,6 +79,16 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
   owned_ = owned;
   halted_ = halted;
   free_ = owned & ~halted;
+}
+
+void OutputGuard::own_lights(unsigned actuator, vm::Release safe) {
+  lights_ = bit(actuator);
+  lights_stay_ = safe == vm::Release::hold;
+}
+
+void OutputGuard::show(unsigned actuator, std::uint32_t picture) {
+  const auto lock = kernel_.lock();
+  if ((free_ & lights() & bit(actuator)) != 0) board_.show(picture);
 }
 
 [[gnu::noinline]] void OutputGuard::drive(unsigned actuator, std::uint32_t pulse_us,
@@ -132,7 +147,8 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
   const Mask fresh = actuators & owned_ & ~halted_;
   halted_ |= actuators;
   free_ = owned_ & ~halted_;
-  for (Mask left = fresh; left != 0; left &= left - 1)
+  if ((fresh & lights()) != 0 && !lights_stay_) board_.show(0);
+  for (Mask left = fresh & ~lights(); left != 0; left &= left - 1)
     make_safe(static_cast<unsigned>(std::countr_zero(left)), now);
 }
 

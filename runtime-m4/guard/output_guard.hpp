@@ -7,6 +7,9 @@
 // * An actuator that is halted goes to its safe state at once, without its driver, and takes no order until it is let
 //   go. A pin that is off stays off: nothing begins to move because something is wrong.
 //
+// The lights of a board that has some are kept in the same way: who shows a picture owns them, they go dark with a halt
+// unless its safe state is to hold, and with the program.
+//
 // A check and its write are one under the kernel's lock: who is interrupted in between writes nothing old later.
 // docs/safety.md says what follows from that.
 #pragma once
@@ -15,6 +18,7 @@
 #include <cstdint>
 
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/pins.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "vm/image.hpp"
 
@@ -34,6 +38,8 @@ public:
 
   // Pulse on the actuator's pin, in microseconds of the 20 ms frame; 0: off.
   void drive(unsigned actuator, std::uint32_t pulse_us, kernel::Time now);
+  // The picture on the lights (boards::Board::show()).
+  void show(unsigned actuator, std::uint32_t picture);
   // Pins whose pulse may not yet be where it shall go on. Called at each check of the safety monitor.
   void go_on(kernel::Time now);
 
@@ -58,6 +64,9 @@ private:
   void make_safe(unsigned actuator, kernel::Time now);
   std::uint16_t next_pulse(Slot& slot, std::uint16_t rise, bool pulses, kernel::Time now) const;
   void switch_off(const vm::Image* next);
+  void own_lights(unsigned actuator, vm::Release safe);
+  // The actuator that has the lights, if any.
+  Mask lights() const { return boards::kHasLights ? lights_ : 0; }
 
   kernel::Kernel& kernel_;
   boards::Board& board_;
@@ -67,6 +76,8 @@ private:
   Mask free_ = 0;     // owned, and not halted
   Mask gradual_ = 0;  // whose pulse may not change at once
   Mask lagging_ = 0;  // … and is not yet where it shall be
+  Mask lights_ = 0;
+  bool lights_stay_ = false;  // in the safe state
   std::array<Slot, vm::kMaxActuators> slots_{};
 };
 

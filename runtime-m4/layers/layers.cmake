@@ -31,6 +31,7 @@ target_sources(robosync_runtime PRIVATE
   safety/monitor.cpp
   drivers/digital_input.cpp
   drivers/i2c_register.cpp
+  drivers/lights.cpp
   drivers/max34451.cpp
   drivers/player.cpp
   drivers/pwm.cpp

@@ -64,8 +64,7 @@ inline vm::Verdict judge(const vm::Image& image, const BoardPins& board) {
   }
   for (std::size_t a = 0; a < image.actuators.size(); ++a) {
     const vm::Actuator& actuator = image.actuators[a];
-    if (vm::pin_use(actuator.driver) != vm::PinUse::nothing &&
-        limit_of(board, actuator.pin) == nullptr)
+    if (vm::drives_pin(actuator.driver) && limit_of(board, actuator.pin) == nullptr)
       return {vm::Refusal::no_pin, vm::Section::actuators, static_cast<std::uint16_t>(a)};
   }
   return {};

@@ -30,6 +30,9 @@ inline constexpr std::uint32_t kSafetyPeriodMs = 10;
 // What a moving actuator gets its next setpoint in: the frame of servos and PWM.
 inline constexpr std::uint32_t kSetpointPeriodMs = 20;
 
+// How long a row of a board's lights is on, until the next one is.
+inline constexpr std::uint32_t kRowMs = 2;
+
 inline constexpr vm::Modifiers kPlain{};
 
 inline const vm::Modifiers& modifiers_of(const vm::Image& image, const vm::Rule& rule) {

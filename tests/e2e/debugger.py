@@ -14,7 +14,7 @@ from support import RobotTest
 
 PATIENCE = 20
 CONNECTED = "T02"
-PC = 15
+PC, XPSR = 15, 25
 INTERPRETER = "robosync::vm::run("  # (machine, code, progress)
 IN_SAFETY = "robosync::Runtime::look_at_rules(unsigned long long)"
 
@@ -57,6 +57,13 @@ class Debugger:
             found.append(self.register(number))
             self._ask("s")  # off the place, or the board would never leave it
         return found
+
+    def step(self):
+        self._ask("s")
+
+    def mode(self):
+        """Which exception is handled; 0: none."""
+        return self.register(XPSR) & 0x1FF
 
     def register(self, number):
         return int.from_bytes(bytes.fromhex(self._ask(f"p{number:x}")), "little")

@@ -1,12 +1,20 @@
 """What the shipped firmware of the micro:bit V2 tells those parts of its chip that QEMU does not have: QEMU writes that
 down. Run with ROBOSYNC_BOARD=microbit-v2."""
 
+import json
 import re
+import sys
 import time
 import unittest
+from pathlib import Path
 
+import pins
 import rsc
-from support import RobotTest
+from debugger import PC, DebuggedTest
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
+from board import FIRMWARE, ROOT  # noqa: E402
+from counting import symbols  # noqa: E402
 
 PATIENCE = 20
 WRITE = re.compile(r"device write \(size 4, offset 0x([0-9a-f]+), value 0x([0-9a-f]+)\)")
@@ -30,12 +38,38 @@ DO
   MOVE arm TO 50deg
 END
 """
+# The lights' pins of port 0: QEMU has no second port, where column 4 is.
+ROWS, COLUMNS = (21, 22, 15, 24, 19), {0: 28, 1: 11, 2: 31, 4: 30}
+P0_OUT, LINK_REGISTER, END_OF_INTERRUPT = 0x5000_0504, 14, 0xFFFF_FFE0
+FACE = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+        "actuators": [{"name": "face", "device": "lights"}]}
+SHOWS = "WHEN near X > 10\nDO\n  {}\nEND\n"
+HAPPY = [".....", ".#.#.", ".....", "#...#", ".###."]
+LOOKS = 4000
+COST_OF_LIGHTS = re.compile(r"^ACTUATOR_DRIVER\(lights,\s*(\d+),\s*(\d+),\s*(\d+),", re.M)
+COST_OF_ROW = re.compile(r"^COST\(row,\s*(\d+),", re.M)
+# Pictures, blinks, and others that take the lights away.
+BLINKS = """
+BEHAVIOR blinks PRIORITY 10
+  EVERY 300ms
+  DO
+    SHOW face happy FOR 77ms
+    THEN
+    BLINK face 3 TIMES OVER 133ms
+  END
+END
+BEHAVIOR interrupts PRIORITY 90
+  EVERY 170ms
+  DO SHOW face sad FOR 33ms
+  END
+END
+"""
 
 
-class OnMicrobit(RobotTest):
+class OnMicrobit(DebuggedTest):
     def qemu_arguments(self):
         self.log = self.folder / "told"
-        return ["-d", "unimp", "-D", str(self.log)]
+        return ["-d", "unimp", "-D", str(self.log), *pins.arguments(self.folder), *super().qemu_arguments()]
 
     def told(self, address):
         """The values that were written there, so far."""
@@ -63,6 +97,65 @@ class OnMicrobit(RobotTest):
         self.say("stop")
         self.await_told(PIN_OF_PWM0[1], NOBODY)
         self.assertEqual(self.told(PIN_OF_PWM0[2]) + self.told(PIN_OF_PWM0[3]), [])
+
+    def begin(self, body, more=""):
+        config, program = self.folder / "face.json", self.folder / "face.rsl"
+        config.write_text(json.dumps({"board": "microbit-v2", **FACE}))
+        program.write_text(SHOWS.format(body) + more)
+        self.upload(program, "--config", config)
+
+    def seen(self, wires, rows=len(ROWS)):
+        """{row: its lights} of the rows that come to be on, until there are so many."""
+        found = {}
+        for _ in range(LOOKS):
+            levels = wires.word(P0_OUT)
+            on = [row for row, pin in enumerate(ROWS) if levels >> pin & 1]
+            self.assertLessEqual(len(on), 1)
+            for row in on:
+                found[row] = "".join("#" if column in COLUMNS and not levels >> COLUMNS[column] & 1 else "."
+                                     for column in range(len(ROWS)))
+            if len(found) == rows:
+                break
+        return found
+
+    def test_a_face_is_on_the_lights_row_by_row_until_the_robot_is_stopped(self):
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        self.begin("SHOW face happy")
+        self.assertEqual(self.seen(wires, 1), {})
+        self.say("feed", "near.X=20")
+        visible = [row[:3] + "." + row[4] for row in HAPPY]
+        self.assertEqual(self.seen(wires), dict(enumerate(visible)))
+        self.say("stop")
+        self.assertEqual(self.seen(wires, 1), {})
+
+    def counted(self, start, calls=6):
+        """Instructions from there until it returns, of its next calls at most."""
+        counts = []
+        with self.debugger() as debugger:
+            for _ in range(calls):
+                debugger.run_to(start, lambda: None)
+                back, steps = debugger.register(LINK_REGISTER), 0
+                end = back & ~1
+                # Where an interrupt ends the core takes its return out of what was pushed.
+                while debugger.register(PC) != end and (back < END_OF_INTERRUPT or debugger.mode() != 0):
+                    debugger.step()
+                    steps += 1
+                    self.assertLess(steps, LOOKS)
+                counts.append(steps)
+        return max(counts)
+
+    def test_what_the_lights_cost(self):
+        at, declared = symbols(FIRMWARE), COST_OF_LIGHTS.search((ROOT / "vm/drivers.def").read_text()).groups()
+        said = {f"robosync::drivers::lights::{call}(": int(cost) for call, cost in zip(("start", "advance", "release"), declared)}
+        said["Row_Handler"] = int(COST_OF_ROW.search((ROOT / "runtime-m4/boards/microbit-v2/costs.def").read_text())[1])
+        self.begin("SHOW face happy", BLINKS)
+        for name, cost in said.items():
+            with self.subTest(name):
+                measured = self.counted(next(place for known, place in at.items() if known.startswith(name)))
+                print(f"\n  {name}: {measured}, said {cost}")
+                self.assertGreaterEqual(cost, measured)
+                self.assertLessEqual(cost, 1.25 * measured + 60)
 
     def test_the_watchdog_is_started_once_and_kicked_with_each_check_of_safety(self):
         self.status()  # it has started

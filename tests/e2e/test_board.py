@@ -32,7 +32,7 @@ ALL_INPUTS = "\n".join(f'WHEN i{pin} IS closed\nDO LOG "{pin} low"\nELSE LOG "{p
 
 def button(name, pin):
     """By its name where the board has one there."""
-    part = next((part for part, wired in PARTS.items() if wired["pin"] == pin), None)
+    part = next((part for part, wired in PARTS.items() if wired.get("pin") == pin), None)
     return {"name": name, "device": part} if part else {"name": name, "type": "GPIO", "pin": pin, "device": "button"}
 
 

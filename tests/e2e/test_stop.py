@@ -19,7 +19,7 @@ PINS = 36
 ARM, MOTOR = 3, 4
 SEVENTY_PERCENT = 14_000  # us
 CRC_FROM = 8  # everything behind the checksum
-PWM_DRIVER = 5  # in vm/drivers.def
+PWM_DRIVER, LIGHTS_DRIVER = 5, 9  # in vm/drivers.def
 CONFIG = """{
   "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
   "actuators": [
@@ -99,16 +99,23 @@ class Stop(DebuggedTest):
         self.assertEqual([pulse for pin, pulse in enumerate(pulses) if pin not in (ARM, MOTOR)], [0] * (PINS - 2))
 
     def test_an_image_for_a_pin_that_is_no_output_is_refused(self):
+        self.refuses("<BBH", (PWM_DRIVER, 0, 65535), "does not let programs drive this pin")
+
+    def test_an_image_for_lights_is_refused_where_there_are_none(self):
+        self.refuses("<BBH", (LIGHTS_DRIVER, 0, 0), "does not have the driver `lights`")
+
+    def refuses(self, form, wiring, why):
+        """The program, with the motor's wiring changed."""
         image = self.compiled(PROGRAM)
         self.say("upload", image)
         damaged = bytearray(image.read_bytes())
-        motor = damaged.index(struct.pack("<BBH", PWM_DRIVER, 0, MOTOR))
-        struct.pack_into("<H", damaged, motor + 2, 65535)
+        motor = damaged.index(struct.pack(form, PWM_DRIVER, 0, MOTOR))
+        struct.pack_into(form, damaged, motor, *wiring)
         struct.pack_into("<I", damaged, 4, zlib.crc32(damaged[CRC_FROM:]))
         image.write_bytes(damaged)
         done = rsc.call("upload", image, "--port", self.board.port)
         self.assertNotEqual(done.returncode, 0)
-        self.assertIn("does not let programs drive this pin", done.stderr)
+        self.assertIn(why, done.stderr)
 
 
 if __name__ == "__main__":

@@ -50,6 +50,7 @@ public:
     const auto found = pulses.find(pin);
     return found == pulses.end() ? 0 : found->second.back();
   }
+  void show(std::uint32_t picture) override { pictures.push_back(picture); }
   std::size_t link_write(std::span<const std::byte> bytes) override { return bytes.size(); }
   std::size_t link_read(std::span<std::byte>) override { return 0; }
   void link_start(const boards::LineEvents&) override {}
@@ -63,6 +64,7 @@ public:
   std::function<bool(std::uint16_t pin)> level = [](std::uint16_t) { return true; };  // pulled up
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;                         // all, by pin
   policy::BoardPins board_pins = boards::kPins;
+  std::vector<std::uint32_t> pictures;  // all
   unsigned kicks = 0;
   bool watching = false;
 };

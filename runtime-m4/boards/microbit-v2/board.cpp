@@ -4,6 +4,7 @@
 #include "runtime-m4/boards/common/reset.hpp"
 #include "runtime-m4/boards/microbit-v2/clock.hpp"
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
+#include "runtime-m4/boards/microbit-v2/lights.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
@@ -20,6 +21,8 @@ Board board;
 Board::Board() : chip_reset_(take_reset_cause()) {
   pins::start();
   inputs::start();
+  lights::start();
+  port::core::enable_interrupt(row_timer::kInterrupt);
   for (const Pwm& module : {kPwm0, kPwm1})
     port::core::enable_interrupt(module.interrupt);
   if (!start_clock()) port::core::reset();
@@ -56,12 +59,17 @@ std::uint32_t Board::pwm_read(std::uint16_t pin) const {
   return pins::read(pin);
 }
 
+void Board::show(std::uint32_t picture) {
+  lights::show(picture);
+}
+
 }  // namespace robosync::boards::microbit
 
 robosync::boards::Board& robosync_board = robosync::boards::microbit::board;
 
 void robosync::boards::switch_outputs_off() {
   microbit::pins::switch_off();
+  microbit::lights::show(0);
 }
 
 const std::uint32_t robosync::port::hooks::kTickCounts =
@@ -83,6 +91,10 @@ void Uart0_Handler() {
   auto& line = robosync::boards::microbit::board.line();
   if (Uart0::has_received()) line.on_receive();
   if (Uart0::wants_to_send() && Uart0::can_send()) line.on_transmit();
+}
+
+void Row_Handler() {
+  robosync::boards::microbit::lights::next_row();
 }
 
 void Pwm_Handler() {

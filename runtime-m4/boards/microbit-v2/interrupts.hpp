@@ -7,11 +7,13 @@
 
 extern "C" void Uart0_Handler();
 extern "C" void Pwm_Handler();
+extern "C" void Row_Handler();
 
 namespace robosync::boards {
 
 inline constexpr std::size_t kInterrupts = 48;
 inline constexpr std::array kUsedInterrupts{Interrupt{microbit::uart::kInterrupt, Uart0_Handler},
+                                            Interrupt{microbit::row_timer::kInterrupt, Row_Handler},
                                             Interrupt{microbit::kPwm0.interrupt, Pwm_Handler},
                                             Interrupt{microbit::kPwm1.interrupt, Pwm_Handler}};
 

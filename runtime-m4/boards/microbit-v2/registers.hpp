@@ -101,6 +101,21 @@ inline constexpr Channel kAlarm{0};
 inline constexpr Channel kReading{1};
 }  // namespace timer
 
+namespace row_timer {  // TIMER1: when the next row of the lights is on
+inline constexpr unsigned kInterrupt = 9;
+inline constexpr Register kStart{0x4000'9000};
+inline constexpr Register kStop{0x4000'9004};
+inline constexpr Register kReached{0x4000'9140};  // event: it has come to kValue
+inline constexpr Register kShortcuts{0x4000'9200};
+inline constexpr std::uint32_t kBeginAgain = 1U << 0;
+inline constexpr Register kInterruptOn{0x4000'9304};
+inline constexpr std::uint32_t kWhenReached = 1U << 16;
+inline constexpr Register kPrescaler{0x4000'9510};
+inline constexpr std::uint32_t kMicroseconds =
+    4;  // 16 MHz / 16; of 16 bits, as it comes out of reset
+inline constexpr Register kValue{0x4000'9540};
+}  // namespace row_timer
+
 namespace watchdog {  // WDT, on the oscillator of 32,768 Hz
 inline constexpr std::uint32_t kHz = 32'768;
 inline constexpr Register kStart{0x4001'0000};

@@ -2,6 +2,7 @@
 #include "compiler/config/devices.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include <catch2/catch.hpp>
@@ -69,12 +70,12 @@ void check_keys(const nlohmann::json& value, Object object) {
   }
 }
 
-// All of them are sensors.
-std::set<std::string> parts_of_boards() {
-  std::set<std::string> parts;
+// Each, and whether it is a sensor.
+std::map<std::string, bool> parts_of_boards() {
+  std::map<std::string, bool> parts;
   for (std::size_t i = 0; i < board_names().size(); ++i)
     for (const Board::Part& part : board_at(i).parts)
-      parts.insert(part.name);
+      parts.emplace(part.name, find_device(part.device, true) != nullptr);
   return parts;
 }
 
@@ -214,12 +215,14 @@ TEST_CASE("the schema lists the boards, types, devices and units that the reader
   for (const DeviceText& device : device_texts())
     (device.is_sensor ? sensor_devices : actuator_devices).push_back(device.name);
   // Who names a part of a board need not say how it is wired.
-  Json& sensor_parts =
-      definitions.at("sensor").at("anyOf").at(1).at("properties").at("device").at("enum") =
-          Json::array();
-  for (const std::string& part : parts_of_boards()) {
-    sensor_parts.push_back(part);
-    sensor_devices.push_back(part);
+  const auto typeless = [&](const char* kind) -> Json& {
+    return definitions.at(kind).at("anyOf").at(1).at("properties").at("device").at("enum") =
+               Json::array();
+  };
+  Json &sensor_parts = typeless("sensor"), &actuator_parts = typeless("actuator");
+  for (const auto& [part, is_sensor] : parts_of_boards()) {
+    (is_sensor ? sensor_parts : actuator_parts).push_back(part);
+    (is_sensor ? sensor_devices : actuator_devices).push_back(part);
   }
   Json& unit_names = list(definitions.at("channel"), "unit");
   for (const Unit& unit : units())
@@ -262,9 +265,13 @@ TEST_CASE("the boards are read without a mistake") {
     for (const Board::Part& part : board.parts) {
       INFO(part.name);
       const Device* sensor = find_device(part.device, true);
-      REQUIRE(sensor != nullptr);
-      CHECK(vm::is_on_pin(sensor->sensor.driver));
-      CHECK(board.has_input(part.pin));
+      const Device* actuator = find_device(part.device, false);
+      REQUIRE((sensor != nullptr || actuator != nullptr));
+      if (sensor != nullptr) CHECK((part.pin && board.has_input(*part.pin)));
+      if (actuator != nullptr) {
+        CHECK(vm::drives_lights(actuator->actuator.driver));
+        CHECK_FALSE(part.pin);
+      }
       // Else nobody could say which one is meant.
       CHECK(find_device(part.name, true) == nullptr);
       CHECK(find_device(part.name, false) == nullptr);

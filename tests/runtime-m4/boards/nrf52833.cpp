@@ -9,7 +9,8 @@ namespace robosync::tests {
 namespace {
 
 constexpr std::array<std::uintptr_t, 4> kPwms{0x4001'C000, 0x4002'1000, 0x4002'2000, 0x4002'D000};
-constexpr std::uintptr_t kWatchdog = 0x4001'0000, kResetReason = 0x4000'0400;
+constexpr std::uintptr_t kWatchdog = 0x4001'0000, kResetReason = 0x4000'0400,
+                         kRowTimer = 0x4000'9000;
 constexpr std::uintptr_t kGpio = 0x5000'0000, kNextPort = 0x300;
 constexpr std::uint32_t kPeriodEnds = 1U << 6;
 constexpr std::uint32_t kDisconnected = 1U << 31;
@@ -243,6 +244,37 @@ void Nrf52833::write_watchdog(std::uintptr_t offset, std::uint32_t value) {
   }
 }
 
+void Nrf52833::write_row_timer(std::uintptr_t offset, std::uint32_t value) {
+  switch (offset) {
+    case 0x000:
+      row_timer_.runs = row_timer_.runs || value == 1;
+      return;
+    case 0x004:
+      row_timer_.runs = row_timer_.runs && value != 1;
+      return;
+    case 0x140:
+      demand(value == 0, "an event can only be cleared");
+      row_timer_.reached = 0;
+      return;
+    case 0x200:
+      row_timer_.shortcuts = value;
+      return;
+    case 0x304:
+      row_timer_.interrupts |= value;
+      return;
+    case 0x510:
+      demand(!row_timer_.runs, "the prescaler is written while the timer runs");
+      row_timer_.prescaler = value;
+      return;
+    case 0x540:
+      demand(value < 0x10000, "the timer has 16 bits");
+      row_timer_.value = value;
+      return;
+    default:
+      no_register(offset);
+  }
+}
+
 void Nrf52833::pass_slow_counts(std::uint32_t counts) {
   for (; watchdog_.runs && counts > 0; --counts) {
     if (watchdog_.left == 0)
@@ -254,6 +286,7 @@ void Nrf52833::pass_slow_counts(std::uint32_t counts) {
 
 std::uint32_t Nrf52833::read(std::uintptr_t address) {
   if (address == kResetReason) return reset_reason_;
+  if (address == kRowTimer + 0x140) return row_timer_.reached;
   if (is_port(address)) {
     const auto [port, offset] = of_port(address);
     return read_port(port, offset);
@@ -271,6 +304,8 @@ void Nrf52833::write(std::uintptr_t address, std::uint32_t value) {
   }
   if (address >= kWatchdog && address < kWatchdog + 0x1000)
     return write_watchdog(address - kWatchdog, value);
+  if (address >= kRowTimer && address < kRowTimer + 0x1000)
+    return write_row_timer(address - kRowTimer, value);
   if (is_port(address)) {
     const auto [port, offset] = of_port(address);
     return write_port(ports_[port], offset, value);

@@ -1,5 +1,5 @@
 // A model of the parts of an nRF52833 that the micro:bit's firmware drives and no emulator has, after Nordic's Product
-// Specification: pins (GPIO), PWM0 to PWM3, the watchdog, and why the chip was reset. Nothing of it knows the drivers:
+// Specification: pins (GPIO), PWM0 to PWM3, TIMER1, the watchdog, and why the chip was reset. Nothing of it knows the drivers:
 // addresses, fields and values stand here once more.
 //
 // Left out: everything else these peripherals can do. Who uses it gets an exception.
@@ -42,6 +42,14 @@ public:
     bool expired = false;
   };
   const Watchdog& watchdog() const { return watchdog_; }
+  struct RowTimer {  // TIMER1
+    bool runs = false;
+    std::uint32_t reached = 0, shortcuts = 0, interrupts = 0, prescaler = 4, value = 0;
+    // It comes to its value, and asks for its interrupt then, again and again.
+    bool asks() const { return runs && (interrupts & 1U << 16) != 0 && (shortcuts & 1) != 0; }
+    std::uint32_t period_us() const { return (value << prescaler) / 16; }
+  };
+  const RowTimer& row_timer() const { return row_timer_; }
   // Of the oscillator of 32,768 Hz.
   void pass_slow_counts(std::uint32_t counts);
   void reset_by(std::uint32_t cause) { reset_reason_ |= cause; }
@@ -78,11 +86,14 @@ private:
   void write_port(Port& port, std::uintptr_t offset, std::uint32_t value);
   void write_watchdog(std::uintptr_t offset, std::uint32_t value);
 
+  void write_row_timer(std::uintptr_t offset, std::uint32_t value);
+
   Fetch fetch_;
   std::array<Pwm, 4> pwms_;
   std::array<Port, 2> ports_;
   std::map<Pin, std::optional<bool>> wired_;
   Watchdog watchdog_;
+  RowTimer row_timer_;
   std::uint32_t reset_reason_ = 0;
 };
 

@@ -1,0 +1,91 @@
+// See lights.hpp. The timer goes on for one row behind a picture that has become dark, and is stopped then.
+#include "runtime-m4/boards/microbit-v2/lights.hpp"
+
+#include <array>
+
+#include "runtime-m4/boards/microbit-v2/registers.hpp"
+
+namespace robosync::boards::microbit::lights {
+
+namespace {
+
+constexpr std::array kRows{Pin{0, 21}, Pin{0, 22}, Pin{0, 15}, Pin{0, 24}, Pin{0, 19}};
+constexpr std::array kColumns{Pin{0, 28}, Pin{0, 11}, Pin{0, 31}, Pin{1, 5}, Pin{0, 30}};
+constexpr std::uint32_t kRowTime = 2000;  // microseconds; policy::kRowMs
+
+volatile std::uint32_t shown = 0;
+unsigned row = 0;
+bool runs = false;
+
+constexpr unsigned kPorts = 2;
+constexpr Pin port_pin(unsigned port) {
+  return {port, 0};
+}
+
+constexpr std::uint32_t columns_of(unsigned port) {
+  std::uint32_t columns = 0;
+  for (const Pin& column : kColumns)
+    columns |= column.port == port ? column.mask() : 0;
+  return columns;
+}
+constexpr std::array<std::uint32_t, kPorts> kAllColumns{columns_of(0), columns_of(1)};
+
+// The row's columns, while no row is on.
+void set_columns(std::uint32_t lit) {
+  std::array<std::uint32_t, kPorts> low{};
+  for (const Pin& column : kColumns) {
+    if ((lit & 1) != 0) low[column.port] |= column.mask();
+    lit >>= 1;
+  }
+  for (unsigned port = 0; port < kPorts; ++port) {
+    port_pin(port).set_high().write(kAllColumns[port]);
+    port_pin(port).set_low().write(low[port]);
+  }
+}
+
+void all_dark() {
+  for (const Pin& pin : kRows)
+    pin.set_low().write(pin.mask());
+}
+
+}  // namespace
+
+void start() {
+  all_dark();
+  for (const Pin& column : kColumns)
+    column.set_high().write(column.mask());
+  for (const auto* pins : {&kRows, &kColumns})
+    for (const Pin& pin : *pins)
+      pin.configuration().write(Pin::kOutput);
+  row_timer::kPrescaler.write(row_timer::kMicroseconds);
+  row_timer::kValue.write(kRowTime);
+  row_timer::kShortcuts.write(row_timer::kBeginAgain);
+  row_timer::kInterruptOn.write(row_timer::kWhenReached);
+  runs = false;
+}
+
+void show(std::uint32_t picture) {
+  const port::Alone alone;
+  shown = picture;
+  if (picture == 0) return all_dark();
+  if (runs) return;
+  runs = true;
+  row_timer::kStart.write(kDoIt);
+}
+
+// The row before goes dark first, or its lights would glow in the columns of the next one.
+void next_row() {
+  const port::Alone alone;
+  forget(row_timer::kReached);
+  kRows[row].set_low().write(kRows[row].mask());
+  if (shown == 0) {
+    row_timer::kStop.write(kDoIt);
+    runs = false;
+    return;
+  }
+  row = row + 1 == kRows.size() ? 0 : row + 1;
+  set_columns(shown >> (kColumns.size() * row));
+  kRows[row].set_high().write(kRows[row].mask());
+}
+
+}  // namespace robosync::boards::microbit::lights

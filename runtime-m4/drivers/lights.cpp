@@ -1,0 +1,85 @@
+// A picture on the lights of the board. SHOW puts one up, which stays; with FOR it is dark again after that. BLINK closes
+// the eyes of the one that is up: so many TIMES, all in OVER.
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "runtime-m4/drivers/timed.hpp"
+
+namespace robosync::drivers::lights {
+namespace {
+
+constexpr std::uint32_t rows(std::string_view a, std::string_view b, std::string_view c,
+                             std::string_view d, std::string_view e) {
+  std::uint32_t picture = 0;
+  unsigned light = 0;
+  for (const std::string_view row : {a, b, c, d, e})
+    for (const char sign : row)
+      picture |= std::uint32_t{sign == '#'} << light++;
+  return picture;
+}
+
+constexpr std::array kPictures = {
+#define PICTURE(name, a, b, c, d, e) rows(a, b, c, d, e),
+#include "runtime-m4/drivers/pictures.def"
+#undef PICTURE
+};
+
+constexpr vm::Value kMostBlinks = 1000;
+constexpr kernel::Duration kBlink = kernel::milliseconds(150);  // dark, and lit again
+constexpr kernel::Duration kShortest = kernel::milliseconds(20);
+
+std::uint32_t picture_of(vm::Value item) {
+  const auto index = static_cast<std::uint32_t>(item / vm::kScale);
+  return index < kPictures.size() ? kPictures[index] : 0;
+}
+
+// A leg is over. The first one is dark, the last one lit.
+kernel::Time next_leg(Device device, kernel::Time now) {
+  if (--device.state.legs == 0) return kDone;
+  const bool dark = device.state.legs % 2 == 0;
+  device.show(dark ? 0 : static_cast<std::uint32_t>(device.state.home));
+  device.state.until = now + static_cast<kernel::Duration>(device.state.speed);
+  return device.state.until;
+}
+
+kernel::Time blink(Device device, const Order& order, kernel::Time now) {
+  const vm::Value times = order.get(vm::Param::times, vm::kScale) / vm::kScale;
+  const auto legs = static_cast<unsigned>(2 * std::clamp(times, vm::Value{1}, kMostBlinks));
+  const kernel::Duration over = duration_of(order.get(vm::Param::over, 0));
+  const kernel::Duration leg =
+      over == 0 ? kBlink : std::clamp<kernel::Duration>(over / legs, kShortest, INT32_MAX);
+  device.state.speed = static_cast<vm::Value>(leg);
+  device.state.legs = static_cast<std::uint16_t>(legs);
+  device.state.until = now + leg;
+  device.show(0);
+  return device.state.until;
+}
+
+}  // namespace
+
+kernel::Time start(Device device, const Order& order, kernel::Time now) {
+  device.state.legs = 0;
+  if (order.action == vm::Action::play) return blink(device, order, now);
+  const bool shows = order.action == vm::Action::set;
+  device.state.home = static_cast<vm::Value>(shows ? picture_of(order.get(vm::Param::item, 0)) : 0);
+  device.show(static_cast<std::uint32_t>(device.state.home));
+  if (!shows || !order.has(vm::Param::for_)) return kDone;
+  return take_time(device, order, now);
+}
+
+kernel::Time advance(Device device, kernel::Time now) {
+  if (now < device.state.until) return device.state.until;
+  if (device.state.legs > 0) return next_leg(device, now);
+  release(device, vm::Release::rest, now);
+  return kDone;
+}
+
+// What holds keeps its picture, also amid a blink.
+void release(Device device, vm::Release how, kernel::Time) {
+  device.state.legs = 0;
+  if (how != vm::Release::hold) device.state.home = 0;
+  device.show(static_cast<std::uint32_t>(device.state.home));
+}
+
+}  // namespace robosync::drivers::lights

@@ -1,0 +1,167 @@
+// Lights: pictures, how long they stay, and that they are dark whenever nobody may show one.
+#include <set>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "runtime-m4/guard/output_guard.hpp"
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
+#include "tests/support/golden.hpp"
+#include "tests/vm/image_builder.hpp"
+
+using namespace robosync;
+using test::Rig;
+
+namespace {
+
+// From the top left, as drivers/pictures.def draws them.
+constexpr std::uint32_t picture(std::string_view signs) {
+  std::uint32_t lights = 0;
+  for (std::size_t i = 0; i < signs.size(); ++i)
+    lights |= std::uint32_t{signs[i] == '#'} << i;
+  return lights;
+}
+constexpr std::uint32_t kHappy = picture(
+    "....."
+    ".#.#."
+    "....."
+    "#...#"
+    ".###.");
+
+std::string with_lights(const std::string& more = "") {
+  return R"({"board": "microbit-v2",
+             "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+             "actuators": [{"name": "face", "device": "lights")" +
+         more + "}]}";
+}
+
+struct Lit {
+  explicit Lit(const std::string& body, const std::string& more = "") {
+    const std::string rsl =
+        "WHEN near X > 10\nDO\n" + body +
+        "\nEND\nSAFETY far\nWHEN near X > 90\nDO STOP ALL\nRESUME WHEN near X < 5\nEND\n";
+    REQUIRE(activate(test::compile(rsl, with_lights(more))).ok());
+    feed(0, 6);
+    run(10);
+    feed(0, 20);
+    run(20);
+  }
+  vm::Verdict activate(const std::vector<std::byte>& bytes) { return rig.activate(bytes); }
+  void feed(std::uint8_t channel, int units) { rig.feed(channel, units); }
+  void run(std::uint64_t until_ms) { rig.run(until_ms); }
+  const std::vector<std::uint32_t>& pictures() const { return rig.board.pictures; }
+  std::uint32_t now() const { return pictures().empty() ? 0 : pictures().back(); }
+
+  Rig rig;
+};
+
+}  // namespace
+
+TEST_CASE("lights: each word has its picture, and happy is the one that is drawn") {
+  const auto descriptor = nlohmann::json::parse(testing::read_file(
+      std::filesystem::path(ROBOSYNC_SOURCE_DIR) / "stdlib/devices/matrix.json"));
+  const auto face = nlohmann::json::parse(
+      testing::read_file(std::filesystem::path(ROBOSYNC_SOURCE_DIR) / "stdlib/devices/face.json"));
+  std::set<std::uint32_t> seen;
+  for (const auto& [word, settings] : descriptor.at("words").items()) {
+    Lit lit("SHOW face " + word);
+    CHECK(lit.now() != 0);
+    seen.insert(lit.now());
+    if (face.at("words").contains(word)) CHECK(face.at("words").at(word) == settings);
+  }
+  CHECK(seen.size() == descriptor.at("words").size() - 1);  // smile is happy
+  for (const auto& [word, settings] : face.at("words").items())
+    CHECK(descriptor.at("words").contains(word));
+  CHECK(Lit("SHOW face happy").now() == kHappy);
+}
+
+TEST_CASE("lights: a picture stays; with FOR it goes, STOP is dark at once") {
+  Lit stays("SHOW face happy");
+  stays.run(5000);
+  CHECK(stays.now() == kHappy);
+  Lit goes("SHOW face happy FOR 500ms");
+  goes.run(500);
+  CHECK(goes.now() == kHappy);
+  goes.run(530);
+  CHECK(goes.now() == 0);
+  CHECK(Lit("SHOW face happy\nTHEN\nSTOP face").now() == 0);
+}
+
+TEST_CASE("lights: BLINK closes and opens, so many times in that time") {
+  Lit lit("SHOW face happy\nTHEN\nBLINK face 2 TIMES OVER 800ms");
+  lit.run(3000);
+  CHECK(lit.pictures() == std::vector<std::uint32_t>{kHappy, 0, kHappy, 0, kHappy});
+  CHECK(lit.rig.only("done") == "10 #2 done face\n811 #3 done face\n");
+}
+
+TEST_CASE(
+    "lights: a halt is dark at once, unless the safe state is to hold; nothing shows until it is "
+    "over") {
+  for (const bool holds : {false, true}) {
+    Lit lit("SHOW face happy", holds ? R"(, "safe": "hold")" : "");
+    lit.feed(0, 95);
+    lit.run(40);
+    CHECK(lit.now() == (holds ? kHappy : 0));
+    lit.feed(0, 0);
+    lit.run(60);
+    lit.feed(0, 20);
+    lit.run(80);
+    CHECK(lit.now() == kHappy);
+    lit.rig.runtime.stop();
+    lit.run(100);
+    CHECK(lit.now() == (holds ? kHappy : 0));
+  }
+}
+
+TEST_CASE("lights: the next program, and no program, begin in the dark") {
+  Lit lit("SHOW face happy");
+  REQUIRE(lit.now() == kHappy);
+  REQUIRE(lit.activate(test::compile("WHEN near X > 10\nDO LOG \"x\"\nEND\n", with_lights())).ok());
+  CHECK(lit.now() == 0);
+  Lit cleared("SHOW face happy");
+  cleared.rig.runtime.clear();
+  CHECK(cleared.now() == 0);
+}
+
+TEST_CASE("lights: two actuators that have them are refused") {
+  std::vector<std::byte> bytes =
+      test::compile("WHEN near X > 10\nDO\nSHOW face happy\nMOVE arm TO 10deg\nEND\n",
+                    R"({"board": "microbit-v2",
+          "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+          "actuators": [{"name": "face", "device": "lights"},
+                        {"name": "arm", "type": "PWM", "pin": 0, "device": "servo"}]})");
+  vm::Image image;
+  REQUIRE(vm::view_image(bytes, image));
+  for (const vm::Actuator& actuator : image.actuators)
+    const_cast<vm::Actuator&>(actuator).driver = vm::DriverId::lights;
+  vm::test::repair_crc(bytes);
+  CHECK(Rig().activate(bytes).refusal == vm::Refusal::shared_pin);
+}
+
+TEST_CASE("lights: the guard shows nothing for whom it has halted, nor for who has no lights") {
+  kernel::Kernel kernel;
+  test::NotingBoard board;
+  guard::OutputGuard outputs(kernel, board);
+  std::array<vm::Actuator, 2> wiring{};
+  wiring[0].driver = vm::DriverId::servo;
+  wiring[0].pin = 7;
+  wiring[0].max = vm::kScale;
+  wiring[1].driver = vm::DriverId::lights;
+  wiring[1].safe = vm::Release::rest;
+  vm::Image image;
+  image.actuators = wiring;
+  outputs.show(1, 7);  // nobody owns them yet
+  outputs.own(image, 0);
+  outputs.show(0, 7);
+  CHECK(board.pictures.empty());
+  outputs.show(1, 7);
+  outputs.halt(0b10, 0);
+  outputs.show(1, 7);
+  CHECK(board.pictures == std::vector<std::uint32_t>{7, 0});
+  outputs.let_go(0b10);
+  outputs.show(1, 5);
+  outputs.disown();
+  outputs.show(1, 5);
+  CHECK(board.pictures == std::vector<std::uint32_t>{7, 0, 5, 0});
+}
