@@ -25,6 +25,17 @@ std::vector<Contributor> loads_of(const TaskSet& set, Instructions per_ms) {
   return loads;
 }
 
+// Of an algorithm whose input is sampled: from that on.
+ResponseTime from_the_reading(const TaskSet& set, std::size_t source, Priorities priorities) {
+  ResponseTime response = response_time_of(set, source, priorities);
+  const Instructions late = set.sources[source].jitter;
+  if (late == 0) return response;
+  response.time += late;
+  response.contributors.push_back({"until its input is sampled", late});
+  std::ranges::stable_sort(response.contributors, std::ranges::greater{}, &Contributor::cost);
+  return response;
+}
+
 bool keeps_up(const ResponseTime& response, Instructions period) {
   return response.bounded && response.time <= period;
 }
@@ -59,8 +70,8 @@ ResponseReport response_report(const vm::Image& image, const policy::BoardCosts&
     PathTiming path;
     path.sensor = source.name;
     path.period = source.period;
-    path.base = response_time_of(base, s, Priorities::base);
-    if (cap > 0) path.adapted = response_time_of(adapted, s, Priorities::adapted);
+    path.base = from_the_reading(base, s, Priorities::base);
+    if (cap > 0) path.adapted = from_the_reading(adapted, s, Priorities::adapted);
     for (const std::string& actuator : source.actuators) {
       path.actuator = actuator;
       report.paths.push_back(path);

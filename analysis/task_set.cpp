@@ -12,6 +12,7 @@
 #include "analysis/costs.hpp"
 #include "analysis/exclusive.hpp"
 #include "analysis/step_work.hpp"
+#include "runtime-m4/algorithms/judge.hpp"
 #include "runtime-m4/policy/adaptation.hpp"
 #include "runtime-m4/policy/rules.hpp"
 #include "runtime-m4/policy/threads.hpp"
@@ -91,8 +92,7 @@ private:
   void place(Source& source, unsigned sensor) const {
     const unsigned thread = policy::thread_of(image_, sensor);
     Inputs channels;
-    for (unsigned s = 0; s < image_.sensors.size(); ++s)
-      if (policy::thread_of(image_, s) == thread) channels |= channels_of(image_.sensors[s]);
+    policy::each_channel_of_thread(image_, thread, [&](unsigned c) { channels.set(c); });
     const policy::Standing base = standing_of(channels, false);
     const policy::Standing raised = standing_of(channels, true);
     source.rank = rank_of(base, thread);
@@ -112,6 +112,7 @@ private:
 
   void add_sensor(unsigned s) {
     const vm::Sensor& sensor = image_.sensors[s];
+    source_of_sensor_.push_back(set_.sources.size());
     const Inputs channels = channels_of(sensor);
     const Inputs changed = work_.with_bands(channels);
     const Rules rules = work_.concerned(changed);
@@ -119,7 +120,11 @@ private:
     source.name = image_.string(sensor.name);
     source.period =
         instructions_in_ms(policy::is_fed(sensor) ? kFedPeriodMs : std::uint32_t{sensor.period_ms});
-    if (!policy::is_fed(sensor))
+    if (policy::is_algorithm(sensor)) {
+      source.sample = Instructions{board_.wake_by_timer} + costs::kAlgorithm +
+                      (sensor.channel_count - Instructions{1}) * costs::kChannel;
+      source.follows = sampled_input_of(sensor);
+    } else if (!policy::is_fed(sensor))
       source.sample =
           board_.wake_by_timer + sensor.channel_count * policy::sample_cost(sensor.driver, board_) +
           (sensor.channel_count - Instructions{1}) * costs::kChannel;  // the first is in the step
@@ -131,6 +136,12 @@ private:
       if ((work_.actuators(fire) >> a & 1) != 0)
         source.actuators.emplace_back(image_.string(image_.actuators[a].name));
     add_with_followers(std::move(source), rules, fire, work_.sets(fire));
+  }
+
+  // Where an algorithm's input is sampled, that releases it; where it is fed, its own period does.
+  std::size_t sampled_input_of(const vm::Sensor& algorithm) const {
+    const unsigned input = policy::input_of(image_, algorithm);
+    return policy::is_fed(image_.sensors[input]) ? Source::kNone : source_of_sensor_[input];
   }
 
   // Due by itself, in the step thread.
@@ -357,6 +368,14 @@ private:
       set_.interferences.push_back(
           {"priorities that adapt", instructions_in_ms(adaptation.window_ms),
            costs::kRank * (image_.behaviors.size() - policy::first_behavior(image_))});
+    // By its category a module outranks sensors of its priority: it counts as if it outranked all.
+    for (const vm::Sensor& sensor : image_.sensors)
+      if (policy::is_algorithm(sensor))
+        set_.interferences.push_back(
+            {fmt::format("the module of {}", image_.string(sensor.name)),
+             instructions_in_ms(sensor.period_ms),
+             Instructions{board_.wake} +
+                 algorithms::module_of(sensor).cost(algorithms::config_of(image_, sensor))});
     for (const vm::Behavior& behavior : image_.behaviors.subspan(policy::first_behavior(image_)))
       commanded_ |= behavior.actuators;
     // Its next setpoint; or its command is done, and the next one in its queue begins.
@@ -376,6 +395,7 @@ private:
   TaskSet set_;
   // By rule: the sources whose steps may trigger it, or let it go on.
   std::map<unsigned, std::vector<std::size_t>> triggered_by_, goes_on_;
+  std::vector<std::size_t> source_of_sensor_;
   std::size_t by_itself_ = 0;  // the source that add_timed() has made last
   Actuators commanded_ = 0;
 };

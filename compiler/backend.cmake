@@ -36,6 +36,7 @@ target_sources(robosync_compiler PRIVATE
   ${device_texts}
   ${module_texts}
   config/actuators.cpp
+  config/algorithms.cpp
   config/boards.cpp
   config/devices.cpp
   config/entries.cpp

@@ -20,6 +20,7 @@
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
 #include "rsc/judge.hpp"
+#include "runtime-m4/algorithms/judge.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -72,7 +73,8 @@ compiler::Result compile(const std::string& file, const CompileOptions& options,
 }
 
 constexpr std::array<std::string_view, policy::kWhose> kWhose = {
-    "runtime", "sensors", "actuators", "behaviours", "rules", "variables", "image", "borders"};
+    "runtime",   "sensors",    "actuators", "behaviours", "rules",
+    "variables", "algorithms", "image",     "borders"};
 
 }  // namespace
 
@@ -160,7 +162,8 @@ std::string summary(const compiler::Diagnostics& diagnostics) {
 Program::Program(std::vector<std::byte> bytes, const std::string& name,
                  const policy::BoardMemory& board, Origin origin)
     : bytes_(std::move(bytes)), board_(board), origin_(std::move(origin)) {
-  const vm::Verdict verdict = vm::verify(bytes_, vm::Limits{}, image_);
+  vm::Verdict verdict = vm::verify(bytes_, vm::Limits{}, image_);
+  if (verdict.ok()) verdict = algorithms::judge(image_);
   if (verdict.ok()) return;
   vm::Image view;  // what is wrong may stand between good source lines
   const bool sections_fit = vm::view_image(bytes_, view);

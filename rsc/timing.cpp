@@ -65,9 +65,11 @@ std::size_t sum(const Record& records, SizeOf size_of) {
 std::vector<Share> memory_of(const policy::Needs& needs, const policy::BoardMemory& board) {
   std::vector<Share> memory;
   const auto shares = policy::shares_of(needs);
-  for (std::size_t i = 0; i < shares.size(); ++i)
-    memory.push_back(
-        {name_of(static_cast<policy::Whose>(i)), "bytes", shares[i], board.arena_bytes});
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const auto whose = static_cast<policy::Whose>(i);
+    if (whose == policy::Whose::algorithms && shares[i] == 0) continue;  // few robots have any
+    memory.push_back({name_of(whose), "bytes", shares[i], board.arena_bytes});
+  }
   memory.push_back({"memory", "bytes", needs.total, board.arena_bytes});
   return memory;
 }

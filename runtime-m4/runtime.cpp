@@ -5,6 +5,7 @@
 #include <cstring>
 #include <new>
 
+#include "runtime-m4/algorithms/judge.hpp"
 #include "runtime-m4/drivers/drivers.hpp"
 
 namespace robosync {
@@ -24,6 +25,7 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
       threads_(kernel),
       mailboxes_(kernel),
       sensors_(kernel, trace_, mailboxes_, alarm_, step_thread_, layers::kNews),
+      algorithms_(kernel, trace_, mailboxes_, sensors_, step_thread_, layers::kStopped),
       outputs_(kernel, board),
       control_(kernel, outputs_, trace_, step_thread_,
                {.idle = layers::kIdle, .cancelled = layers::kCancelled, .halted = layers::kHalted}),
@@ -70,7 +72,8 @@ Runtime::Shared& Runtime::share(std::span<std::byte> arena) {
                                                     .behaviors = shared.behaviors,
                                                     .control = control_,
                                                     .threads = threads_,
-                                                    .alarm = alarm_})};
+                                                    .alarm = alarm_,
+                                                    .algorithms = algorithms_})};
 }
 
 bool Runtime::start() {
@@ -85,6 +88,8 @@ vm::Verdict Runtime::check(std::span<const std::byte> bytes) {
   if (!verdict.ok()) return verdict;
   const vm::Verdict wired = policy::judge(image, board_.pins());
   if (!wired.ok()) return wired;
+  const vm::Verdict modules = algorithms::judge(image);
+  if (!modules.ok()) return modules;
   policy::count_needs(image, memory_.board(), next_);
   return policy::judge(next_, memory_.board());
 }
@@ -157,7 +162,8 @@ bool Runtime::start_program() {
   if (!control_.start(program, memory_, threads_) ||
       !shared_.behaviors.start(program, memory_, threads_) ||
       !shared_.processing.start(program, kept_, memory_) ||
-      !sensors_.start(program, *sampler_, simulated(), memory_, threads_))
+      !sensors_.start(program, *sampler_, simulated(), memory_, threads_) ||
+      !algorithms_.start(program, memory_, threads_))
     return false;
   shared_.processing.rank();
   go();
@@ -192,6 +198,7 @@ void Runtime::begin() {
   begun_ = true;
   shared_.processing.go();
   sensors_.begin(meant);
+  algorithms_.begin();
 }
 
 // Done in the safety thread, which outranks everybody: at once.
@@ -246,6 +253,7 @@ std::size_t Runtime::fill_kept(std::span<layers::KeptNumber, vm::kMaxKept> kept)
 }
 
 void Runtime::hold_to_budgets(bool alive) {
+  if (running_) algorithms_.hold_to_budgets();
   if (alive) return budget_.forget();
   kernel::Thread* const over = budget_.look(kernel_);
   if (over != nullptr) port::stop_overrun(kernel_, *over);

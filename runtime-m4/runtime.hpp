@@ -17,6 +17,7 @@
 #include "runtime-m4/guard/output_guard.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/alarm.hpp"
+#include "runtime-m4/layers/algorithms.hpp"
 #include "runtime-m4/layers/behavior.hpp"
 #include "runtime-m4/layers/budget.hpp"
 #include "runtime-m4/layers/control.hpp"
@@ -153,6 +154,7 @@ private:
 
   layers::Mailboxes mailboxes_;
   layers::SensorLayer sensors_;
+  layers::AlgorithmLayer algorithms_;
   guard::OutputGuard outputs_;
   layers::ControlLayer control_;
   layers::Variables variables_;

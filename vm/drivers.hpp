@@ -39,6 +39,7 @@ enum class Bus : std::uint8_t { nothing, i2c, pin };
 
 constexpr Bus bus_of(DriverId driver) {
   const auto fed = [] { return Bus::nothing; };
+  const auto computed = [] { return Bus::nothing; };
   const auto i2c = [](unsigned, unsigned) { return Bus::i2c; };
   const auto pin = [] { return Bus::pin; };
   switch (driver) {

@@ -83,13 +83,23 @@ Refusal check_driver(const Walk& walk, DriverId driver, DriverKind kind) {
   return good_or(Refusal::no_driver, (walk.limits.drivers >> number & 1) != 0);
 }
 
+// It reads what was measured before it, so algorithms cannot wait for each other. What its module
+// takes, the firmware knows (runtime-m4/algorithms/judge.hpp).
+Refusal check_algorithm(const Sensor& sensor) {
+  if (sensor.first_input >= sensor.first_channel) return Refusal::bad_index;
+  return good_or(Refusal::bad_value, sensor.period_ms > 0);
+}
+
 Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t) {
   if (sensor.first_channel != walk.next_channel) return Refusal::bad_index;
   walk.next_channel += sensor.channel_count;
   if (walk.next_channel > walk.image.channels.size()) return Refusal::bad_index;
   if (sensor.reserved != 0) return Refusal::bad_value;
   const Refusal driver = check_driver(walk, sensor.driver, DriverKind::sensor);
-  if (driver != Refusal::none || bus_of(sensor.driver) == Bus::nothing) return driver;
+  if (driver != Refusal::none) return driver;
+  if (sensor.driver == DriverId::algorithm) return check_algorithm(sensor);
+  if (sensor.first_input != 0) return Refusal::bad_value;
+  if (bus_of(sensor.driver) == Bus::nothing) return Refusal::none;
   const bool place = is_on_pin(sensor.driver)
                          ? is_enumerator(static_cast<ActiveLevel>(sensor.bus))
                          : sensor.address >= kFirstAddress && sensor.address <= kLastAddress;
@@ -199,7 +209,10 @@ Refusal check_band(Walk&, const Band& band, std::size_t) {
 bool grows_stale(const Image& image, std::uint8_t input) {
   if (input >= image.channels.size()) return true;  // a variable
   const Channel& channel = image.channels[input];
-  return channel.stale_ms > 0 || !is_on_i2c(image.sensors[channel.sensor].driver);
+  const Sensor& sensor = image.sensors[channel.sensor];
+  const Channel& measured =
+      sensor.driver == DriverId::algorithm ? image.channels[sensor.first_input] : channel;
+  return channel.stale_ms > 0 || !is_on_i2c(image.sensors[measured.sensor].driver);
 }
 
 bool all_grow_stale(const Image& image, const Behavior& safety) {

@@ -22,10 +22,11 @@ public:
 
   Emitted emit(const ir::Program& program, const ir::Program& written, const Robot& robot,
                const ProgramHash& hash) {
-    const Tables tables(written, diagnostics_);
+    const Tables tables(written, robot, diagnostics_);
     if (diagnostics_.errors() > 0) return {};
     rules_ = make_rules(program, written, tables, strings_, diagnostics_);
     records_ = make_records(written, robot, tables, strings_);
+    add_algorithms(robot, tables);
     if (diagnostics_.errors() > 0 || !counts_fit()) return {};
     if (options_.source_lines) lines_ = rules_.pool.lines();
     lay_out();
@@ -34,6 +35,7 @@ public:
   }
 
 private:
+  void add_algorithms(const Robot& robot, const Tables& tables);
   bool counts_fit();
   void lay_out();
   vm::Image sections() const;
@@ -45,10 +47,24 @@ private:
   Strings strings_;
   Records records_;
   RuleSections rules_;
+  std::vector<vm::Value> constants_;
   std::vector<vm::SourceLine> lines_;
   vm::ImageHeader header_{};
   std::vector<std::byte> bytes_;
 };
+
+// Their parameters stand behind the numbers of the code.
+void Emitter::add_algorithms(const Robot& robot, const Tables& tables) {
+  constants_ = rules_.pool.constants();
+  for (vm::Sensor& record : records_.sensors) {
+    const std::size_t place = tables.sensor_of(record.first_channel);
+    const auto& algorithm = robot.sensors[place].algorithm;
+    if (!algorithm) continue;
+    record.bus = algorithm->module;
+    record.address = place_row(constants_, algorithm->config);
+    record.first_input = tables.input({algorithm->input, 0});
+  }
+}
 
 bool Emitter::counts_fit() {
   const auto fits = [&](std::size_t count, std::size_t limit, const char* what) {
@@ -68,7 +84,7 @@ bool Emitter::counts_fit() {
          fits(rules_.rules.size(), kMost, "rules") &&
          fits(rules_.responses.size(), kMost, "responses") &&
          fits(rules_.inputs.size(), kMost, "inputs") &&
-         fits(rules_.pool.constants().size(), kMost, "different numbers") &&
+         fits(constants_.size(), kMost, "different numbers") &&
          fits(rules_.pool.code().size(), kMost, "commands and conditions") &&
          fits(strings_.labels().size(), kMost, "labels") &&
          fits(strings_.text().size(), kMost, "names and texts");
@@ -95,7 +111,7 @@ vm::Image Emitter::sections() const {
   image.rules = rules_.rules;
   image.responses = rules_.responses;
   image.inputs = rules_.inputs;
-  image.constants = rules_.pool.constants();
+  image.constants = constants_;
   image.code = rules_.pool.code();
   image.labels = strings_.labels();
   image.strings = strings_.text();

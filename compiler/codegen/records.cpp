@@ -62,7 +62,7 @@ void RecordMaker::sensors() {
     if (sensor_places_.empty() || sensor_places_.back() != ref.sensor) {
       const SensorConfig& sensor = robot_.sensors[ref.sensor];
       records_.sensors.push_back({strings_.offset(sensor.name.text), sensor.driver, sensor.bus,
-                                  sensor.address, sensor.period_ms, number, 0, 0});
+                                  sensor.address, sensor.period_ms, number, 0, 0, 0});
       sensor_places_.push_back(ref.sensor);
     }
     ++records_.sensors.back().channel_count;

@@ -31,15 +31,28 @@ void number(Map& map) {
 
 }  // namespace
 
-Tables::Tables(const ir::Program& program, Diagnostics& diagnostics) {
+Tables::Tables(const ir::Program& program, const Robot& robot, Diagnostics& diagnostics) {
   for (const ir::Check& check : program.checks)
     use(check.input);
   for_each_rule(program, [this](const ir::Rule& rule) { use(rule); });
+  use_inputs(robot);
   check_counts(program, diagnostics);
   number(channels_);
   number(actuators_);
   number(groups_);
   number(motion_groups_);
+}
+
+// What the algorithms read whose outputs are used.
+void Tables::use_inputs(const Robot& robot) {
+  std::set<std::size_t> used;
+  for (const auto& [ref, number] : channels_)
+    if (robot.sensors[ref.sensor].algorithm) used.insert(ref.sensor);
+  for (const std::size_t place : used) {
+    const AlgorithmConfig& algorithm = *robot.sensors[place].algorithm;
+    for (std::size_t i = 0; i < algorithm.inputs; ++i)
+      channels_.emplace(ChannelRef{algorithm.input, i}, 0);
+  }
 }
 
 void Tables::use(const ir::Rule& rule) {

@@ -24,10 +24,15 @@ namespace robosync::compiler {
 class Tables {
 public:
   // Reports E0407 when there is more than the image format can number.
-  Tables(const ir::Program& program, Diagnostics& diagnostics);
+  Tables(const ir::Program& program, const Robot& robot, Diagnostics& diagnostics);
 
   // Valid when nothing was reported.
   [[nodiscard]] std::uint8_t input(ChannelRef ref) const { return channels_.at(ref); }
+  // The sensor that a channel with this number is of: its place in the Robot's list.
+  [[nodiscard]] std::size_t sensor_of(std::uint8_t number) const {
+    return std::ranges::find(channels_, number, [](const auto& entry) { return entry.second; })
+        ->first.sensor;
+  }
   [[nodiscard]] std::uint8_t variable(std::size_t place) const {
     return static_cast<std::uint8_t>(channels_.size() + place);
   }
@@ -56,6 +61,7 @@ public:
   [[nodiscard]] std::uint32_t verbs_of(const ActuatorConfig& actuator, std::size_t place) const;
 
 private:
+  void use_inputs(const Robot& robot);
   void use(const ir::Rule& rule);
   void use(const ir::Block& block);
   void use(const Expression& expression);

@@ -33,6 +33,14 @@ struct ChannelConfig {
   bool truth = false;  // its two labels mean false and true: it may stand alone as a condition
 };
 
+// What makes a sensor an algorithm: its channels are the outputs of a module.
+struct AlgorithmConfig {
+  std::uint8_t module = 0;        // its number (runtime-m4/algorithms/modules.def)
+  std::size_t input = 0;          // the sensor that it reads, a place in Robot::sensors
+  std::size_t inputs = 0;         // … of which so many channels, the first ones
+  std::vector<vm::Value> config;  // its parameters, all of them
+};
+
 struct SensorConfig {
   Spelled name;
   std::string device;  // its descriptor in stdlib/devices/
@@ -41,6 +49,7 @@ struct SensorConfig {
   std::uint16_t address = 0;    // or pin
   std::uint16_t period_ms = 0;  // of its fastest channel
   std::vector<ChannelConfig> channels;
+  std::optional<AlgorithmConfig> algorithm;
 };
 
 enum class Texts : std::uint8_t {

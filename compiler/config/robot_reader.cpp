@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 
+#include "compiler/config/algorithms.hpp"
 #include "compiler/config/boards.hpp"
 #include "compiler/config/entries.hpp"
 #include "compiler/config/fields.hpp"
@@ -126,7 +127,7 @@ bool BehaviorReader::read(const json::Value& value) {
   return true;
 }
 
-// ---- scheduler, safety, algorithms
+// ---- scheduler, safety
 
 // Of α: what a u16 of thousandths holds, in whole numbers.
 constexpr vm::Value kMaxAlpha = 65 * vm::kScale;
@@ -163,17 +164,6 @@ void read_safety(const json::Value& value, Robot& robot, Diagnostics& diagnostic
   const Fields fields(value, Object::safety, diagnostics);
   if (const auto* start = fields.find("start"))
     robot.safety_start_ms = read_milliseconds(*start, diagnostics).value_or(kSafetyStartMs);
-}
-
-// They cannot be loaded by this version: checks the entry and says so.
-void report_algorithm(const json::Value& value, Diagnostics& diagnostics) {
-  Fields fields(value, Object::algorithm, diagnostics);
-  const auto name = read_name(fields, "an algorithm", diagnostics);
-  if (!name) return;
-  diagnostics
-      .report(Code::W0214,
-              "this version of rsc cannot load algorithms yet: `" + name->text + "` does nothing")
-      .label(name->span);
 }
 
 // ---- lints
@@ -302,8 +292,7 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
   for_each_entry(fields, "behaviors", robot, diagnostics,
                  [&](const json::Value& entry) { return behaviors.read(entry); });
   for_each_entry(fields, "algorithms", robot, diagnostics, [&](const json::Value& entry) {
-    report_algorithm(entry, diagnostics);
-    return true;
+    return read_algorithm(entry, robot, diagnostics);
   });
   if (const auto* scheduler = fields.find("scheduler"))
     robot.scheduler = read_scheduler(*scheduler, diagnostics);

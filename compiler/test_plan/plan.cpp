@@ -86,7 +86,7 @@ private:
   void add(const ast::TestFeed& node, Span span) {
     const auto at = time(*node.at, "AT");
     const auto channel = names_.find_channel(node.target);
-    if (!channel) return;
+    if (!channel || !may_feed(*channel, span)) return;
     const auto value = reading(node, *channel, span);
     if (!at || !value) return;
     if (*at < now_) {
@@ -99,6 +99,16 @@ private:
     reach(now_);
     name_channel(*channel);
     test_.readings.push_back({now_, *channel, *value});
+  }
+
+  bool may_feed(ChannelRef ref, Span span) {
+    const SensorConfig& sensor = names_.sensor(ref);
+    if (!sensor.algorithm) return true;
+    diagnostics_.report(Code::E0509, sensor.name.shown() + " is an algorithm and cannot be fed")
+        .label(span)
+        .helps("feed what it makes its readings of: " +
+               robot_.sensors[sensor.algorithm->input].name.shown());
+    return false;
   }
 
   std::optional<vm::Value> reading(const ast::TestFeed& node, ChannelRef ref, Span span) {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rsc/device/session.hpp"
+#include "runtime-m4/policy/standing.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -18,8 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // The numbers of link::ThreadInfo; kernel::Category has the same order.
-constexpr std::array<std::string_view, 6> kCategories = {"system",   "sensor",  "processing",
-                                                         "behavior", "control", "safety"};
+constexpr std::array<std::string_view, policy::kCategories> kCategories = {
+    "system", "sensor", "algorithm", "processing", "behavior", "control", "safety"};
 constexpr std::array<std::string_view, 4> kStates = {"blocked", "ready", "stopped", "absent"};
 
 template <std::size_t N>

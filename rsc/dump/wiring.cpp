@@ -7,6 +7,8 @@
 #include "rsc/dump/parts.hpp"
 #include "rsc/names.hpp"
 #include "rsc/quantity.hpp"
+#include "runtime-m4/algorithms/modules.hpp"
+#include "runtime-m4/policy/threads.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -43,13 +45,30 @@ std::string channel_text(const vm::Image& image, std::size_t index) {
       labels_text(image, channel.first_label, channel.label_count));
 }
 
+// With its parameters, by their names.
+std::string algorithm_text(const vm::Image& image, const vm::Sensor& sensor) {
+  const robosync_description* const module = algorithms::find_description(sensor.bus);
+  std::string text =
+      fmt::format("  {}: {} of channel {} on, every {} ms\n", image.string(sensor.name),
+                  module == nullptr ? "a module that rsc does not know" : module->name,
+                  sensor.first_input, sensor.period_ms);
+  for (std::size_t p = 0; module != nullptr && p < module->module->parameters; ++p)
+    if (sensor.address + p < image.constants.size())
+      text += fmt::format("    {} {}\n", module->parameters[p].name,
+                          number(image.constants[sensor.address + p]));
+  return text;
+}
+
 std::string sensors(const vm::Image& image) {
   std::string text = "\nsensors\n";
   for (const vm::Sensor& sensor : image.sensors) {
-    text += fmt::format(
-        "  {}: {} on bus {} address 0x{:x}, {}\n", image.string(sensor.name),
-        driver_name(sensor.driver), sensor.bus, sensor.address,
-        sensor.period_ms == 0 ? "when fed" : fmt::format("every {} ms", sensor.period_ms));
+    if (policy::is_algorithm(sensor))
+      text += algorithm_text(image, sensor);
+    else
+      text += fmt::format(
+          "  {}: {} on bus {} address 0x{:x}, {}\n", image.string(sensor.name),
+          driver_name(sensor.driver), sensor.bus, sensor.address,
+          sensor.period_ms == 0 ? "when fed" : fmt::format("every {} ms", sensor.period_ms));
     for (std::size_t i = 0; i < sensor.channel_count; ++i)
       text += channel_text(image, sensor.first_channel + i);
   }

@@ -11,6 +11,7 @@
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/source/ascii.hpp"
 #include "rsc/quantity.hpp"
+#include "runtime-m4/policy/threads.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -24,6 +25,11 @@ namespace {
 }
 
 std::uint8_t channel_of(const vm::Image& image, const vm::Sensor& sensor, std::string_view name) {
+  if (policy::is_algorithm(sensor))
+    throw std::invalid_argument(
+        fmt::format("`{}` is an algorithm and cannot be fed; it makes its readings of `{}`",
+                    image.string(sensor.name),
+                    image.string(image.sensors[policy::input_of(image, sensor)].name)));
   const auto channels = image.channels.subspan(sensor.first_channel, sensor.channel_count);
   if (name.empty() && channels.size() == 1) return sensor.first_channel;
   std::vector<std::string> known;

@@ -134,6 +134,10 @@ std::string other_words(const EventReader& reader) {
       return fmt::format("{} is stopped by a fault", reader.thread_name());
     case EventKind::deadline:
       return fmt::format("{} is late by {} us", reader.thread_name(), reader.value(0));
+    case EventKind::lowered:
+      return fmt::format(
+          "{} runs longer than its module declares: it ranks below all behaviours now",
+          reader.thread_name());
     case EventKind::priority:
       return priority_words(reader);
     case EventKind::silent:

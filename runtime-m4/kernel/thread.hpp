@@ -25,6 +25,10 @@ struct ThreadSpec {
   // calls.def. Its stack: alignas(port::kUnprivilegedStackAlignment), a multiple of that, at most
   // port::kMaxUnprivilegedStack bytes.
   bool privileged = true;
+  // Not 0: of the stack, the first so many bytes are data of the thread, which is without privileges;
+  // and besides the stack it has nothing, not even what Kernel::grant() gives. The stack is then of
+  // port::kSecludedStack bytes and aligned to that.
+  std::uint16_t data_bytes = 0;
 };
 
 // Unused stack is filled with this, to see later how deep it was used.

@@ -2,6 +2,7 @@
 target_sources(robosync_runtime PRIVATE
   runtime.cpp
   layers/adaptation.cpp
+  layers/algorithms.cpp
   layers/arbiter.cpp
   layers/behavior.cpp
   layers/budget.cpp
@@ -29,6 +30,7 @@ target_sources(robosync_runtime PRIVATE
   guard/output_guard.cpp
   safety/safety_rules.cpp
   safety/monitor.cpp
+  drivers/algorithm.cpp
   drivers/digital_input.cpp
   drivers/i2c_register.cpp
   drivers/lights.cpp

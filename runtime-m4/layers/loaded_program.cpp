@@ -38,7 +38,9 @@ void LoadedProgram::load_rules(unsigned b) {
 }
 
 BehaviorMask LoadedProgram::needing(kernel::Category category, unsigned index) const {
-  const ChannelMask channels = category == kernel::Category::sensor ? channels_of(index) : 0;
+  ChannelMask channels = 0;
+  if (category == kernel::Category::sensor) channels = channels_of(index);
+  if (category == kernel::Category::algorithm) channels = channels_of(policy::kAlgorithms);
   BehaviorMask needing = 0;
   for (unsigned b = 0; b < image.behaviors.size(); ++b)
     if (policy::needs(image, b, category, index, (inputs[b] & channels) != 0))
@@ -48,12 +50,8 @@ BehaviorMask LoadedProgram::needing(kernel::Category category, unsigned index) c
 
 ChannelMask LoadedProgram::channels_of(unsigned sensor_thread) const {
   ChannelMask channels = 0;
-  for (unsigned s = 0; s < image.sensors.size(); ++s) {
-    const vm::Sensor& wiring = image.sensors[s];
-    if (policy::thread_of(image, s) == sensor_thread)
-      for (unsigned i = 0; i < wiring.channel_count; ++i)
-        channels |= bit<ChannelMask>(wiring.first_channel + i);
-  }
+  policy::each_channel_of_thread(image, sensor_thread,
+                                 [&](unsigned c) { channels |= bit<ChannelMask>(c); });
   return channels;
 }
 

@@ -43,10 +43,10 @@ struct LoadedProgram {
   }
 
   // The behaviours that need a thread, the SAFETY rules among them. `index` is that of its sensor
-  // (policy::kFedSensors: all that are fed), behaviour or actuator.
+  // (policy::kFedSensors: all that are fed; policy::kAlgorithms), behaviour or actuator.
   BehaviorMask needing(kernel::Category category, unsigned index) const;
 
-  // That a sensor's thread publishes.
+  // Whose readers need a sensor's thread.
   ChannelMask channels_of(unsigned sensor_thread) const;
 
 private:

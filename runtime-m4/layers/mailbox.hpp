@@ -40,6 +40,11 @@ public:
     return wiring.stale_ms == 0 || now < box.sampled_at() + life_of(wiring) ? box.value
                                                                             : vm::kUnknown;
   }
+  // When its last reading was taken; 0: it never was.
+  kernel::Time sampled_at(unsigned channel) const {
+    const auto lock = kernel_.lock();
+    return boxes_[channel].sampled_at();
+  }
   // Those, but for `fresh` ones, whose last sample is older than channel.stale_ms, or that were
   // forgotten; each once. They are unknown from now on.
   [[nodiscard]] ChannelMask take_expired(std::span<const vm::Channel> channels, ChannelMask fresh,

@@ -235,6 +235,7 @@ kernel::Time ProcessingLayer::next_time() {
 // --- threads that were stopped ---
 
 void ProcessingLayer::note_stops() {
+  layers_.algorithms.lower_those_over(layers_.threads);
   for (const ProgramThreads::Member* member = layers_.threads.next_stopped(); member != nullptr;
        member = layers_.threads.next_stopped())
     retire(*member);
@@ -245,6 +246,9 @@ void ProcessingLayer::retire(const ProgramThreads::Member& member) {
   switch (member.thread.category()) {
     case kernel::Category::sensor:
       layers_.sensors.retire(member.index);
+      break;
+    case kernel::Category::algorithm:
+      layers_.algorithms.retire(member.index);
       break;
     case kernel::Category::behavior:
       layers_.behaviors.retire(member.index);

@@ -52,6 +52,7 @@
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/layers/adaptation.hpp"
 #include "runtime-m4/layers/alarm.hpp"
+#include "runtime-m4/layers/algorithms.hpp"
 #include "runtime-m4/layers/arbiter.hpp"
 #include "runtime-m4/layers/behavior.hpp"
 #include "runtime-m4/layers/checks.hpp"
@@ -76,9 +77,10 @@ inline constexpr kernel::Events kNews = 1;       // readings were announced
 inline constexpr kernel::Events kIdle = 2;       // an actuator has done all its commands
 inline constexpr kernel::Events kFinished = 4;   // a behaviour has done what it was released for
 inline constexpr kernel::Events kCancelled = 8;  // an actuator was cancelled
-inline constexpr kernel::Events kStopped = 16;   // a thread was stopped by a fault
-inline constexpr kernel::Events kHalted = 32;    // safety has halted, let go, or set something
-inline constexpr kernel::Events kBegin = 64;     // all threads of the program are there
+inline constexpr kernel::Events kStopped =
+    16;  // a thread was stopped by a fault, or is to be lowered
+inline constexpr kernel::Events kHalted = 32;  // safety has halted, let go, or set something
+inline constexpr kernel::Events kBegin = 64;   // all threads of the program are there
 
 class ProcessingLayer {
 public:
@@ -92,6 +94,7 @@ public:
     ControlLayer& control;
     ProgramThreads& threads;
     Alarm& alarm;
+    AlgorithmLayer& algorithms;
   };
 
   ProcessingLayer(kernel::Kernel& kernel, Trace& trace, kernel::Thread& thread,

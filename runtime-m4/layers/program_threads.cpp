@@ -7,15 +7,18 @@ using kernel::Category;
 using policy::Part;
 
 // Stacks of threads without privileges come first: where the closed parts end they are aligned as
-// those must be.
+// those must be, and those of algorithms at the very end, which is aligned to their size.
 void ProgramThreads::prepare(Memory& memory) {
   static_assert(policy::kStackUnit % port::kUnprivilegedStackAlignment == 0);
   static_assert(policy::kBehaviorStack % port::kUnprivilegedStackAlignment == 0);
   static_assert(policy::kBehaviorStack <= port::kMaxUnprivilegedStack);
+  static_assert(policy::kAlgorithmStack == port::kSecludedStack);
+  algorithms_.stacks = memory.take_bytes(Part::algorithm_stacks);
   behaviors_.stacks = memory.take_bytes(Part::behavior_stacks);
   sensors_.stacks = memory.take_bytes(Part::sensor_stacks);
   controls_.stacks = memory.take_bytes(Part::control_stacks);
   step_stack_ = memory.take_bytes(Part::step_stack);
+  algorithms_.members = memory.take<Part::algorithm_threads, Member>();
   behaviors_.members = memory.take<Part::behavior_threads, Member>();
   sensors_.members = memory.take<Part::sensor_threads, Member>();
   controls_.members = memory.take<Part::control_threads, Member>();
@@ -23,6 +26,7 @@ void ProgramThreads::prepare(Memory& memory) {
 
 ProgramThreads::Places& ProgramThreads::places(Category category) {
   if (category == Category::sensor) return sensors_;
+  if (category == Category::algorithm) return algorithms_;
   return category == Category::behavior ? behaviors_ : controls_;
 }
 
@@ -47,6 +51,14 @@ bool ProgramThreads::start_step_thread(kernel::Thread& thread, kernel::ThreadSpe
   return true;
 }
 
+void ProgramThreads::keep_at(const kernel::Thread& thread, kernel::Priority priority) {
+  for (Member* member = first_; member != nullptr; member = member->next) {
+    if (&member->thread != &thread) continue;
+    member->kept = true;
+    kernel_.set_priority(member->thread, priority);
+  }
+}
+
 void ProgramThreads::dismiss() {
   for (Member* member = first_; member != nullptr; member = member->next)
     kernel_.remove(member->thread);
@@ -57,7 +69,7 @@ void ProgramThreads::dismiss() {
 
 // A control block may own something where the port keeps it elsewhere.
 void ProgramThreads::forget() {
-  for (Places* const places : {&sensors_, &behaviors_, &controls_}) {
+  for (Places* const places : {&algorithms_, &sensors_, &behaviors_, &controls_}) {
     for (Member& member : places->members)
       member.~Member();
     *places = {};

@@ -17,6 +17,7 @@ public:
     kernel::Thread thread;
     std::uint8_t index = 0;  // of its sensor, behaviour or actuator in the image
     bool reported = false;   // its stop was reported
+    bool kept = false;       // keep_at()
     Member* next = nullptr;  // started after it
   };
 
@@ -32,15 +33,22 @@ public:
   [[nodiscard]] kernel::Thread* start(kernel::ThreadSpec spec, unsigned index);
   // Like it, with a control block of the caller's. It is removed by dismiss() as well.
   [[nodiscard]] bool start_step_thread(kernel::Thread& thread, kernel::ThreadSpec spec);
+  // Where the data of the algorithm's thread begins that is started next, or null.
+  [[nodiscard]] std::byte* next_algorithm_data() const {
+    return algorithms_.stacks.data() + algorithms_.used * policy::kAlgorithmStack;
+  }
   // Takes all threads out of the kernel. Not from one of them.
   void dismiss();
 
-  // Gives every thread the priority that `priority_of(thread, index)` says, in the order they were
+  // One of them has this priority from now on, whatever rank() says.
+  void keep_at(const kernel::Thread& thread, kernel::Priority priority);
+  // Gives every other thread the priority that `priority_of(thread, index)` says, in the order they were
   // started in.
   template <class PriorityOf>
   void rank(PriorityOf priority_of) {
     for (Member* member = first_; member != nullptr; member = member->next)
-      kernel_.set_priority(member->thread, priority_of(member->thread, member->index));
+      if (!member->kept)
+        kernel_.set_priority(member->thread, priority_of(member->thread, member->index));
     kernel_.set_priority(*step_thread_, priority_of(*step_thread_, 0));
   }
 
@@ -61,7 +69,7 @@ private:
   void forget();
 
   kernel::Kernel& kernel_;
-  Places sensors_, behaviors_, controls_;
+  Places algorithms_, sensors_, behaviors_, controls_;
   std::span<std::byte> step_stack_;
   kernel::Thread* step_thread_ = nullptr;
   Member* first_ = nullptr;  // of all, in the order they were started in

@@ -19,12 +19,13 @@ bool SensorLayer::start(const LoadedProgram& program, Sampler& sampler, bool sim
   awaited_ =
       program.image.has_safety() ? layers::channels_of(program.inputs[vm::kSafetyBehavior]) : 0;
   feed_thread_ = nullptr;
+  sample_thread_ = nullptr;
   feeds_.start(memory);
   units_ = memory.take_zero<policy::Part::sensor_units, Unit>();
   for (unsigned s = 0; s < program.image.sensors.size(); ++s)
     if (policy::is_fed(program.image.sensors[s])) {
       if (simulated) awaited_ &= ~channels_of(s);
-    } else if (!start_sensor(s, threads)) {
+    } else if (!policy::is_algorithm(program.image.sensors[s]) && !start_sensor(s, threads)) {
       return false;
     }
   return !policy::has_fed_sensors(program.image) || start_feeds(threads);
@@ -54,8 +55,20 @@ ChannelMask SensorLayer::channels_of(unsigned sensor) const {
   return channels;
 }
 
+// … and of the algorithms that read it.
+ChannelMask SensorLayer::made_of(unsigned sensor) const {
+  const vm::Image& image = program_->image;
+  ChannelMask channels = channels_of(sensor);
+  for (unsigned s = 0; s < image.sensors.size(); ++s)
+    if (policy::is_algorithm(image.sensors[s]) &&
+        policy::input_of(image, image.sensors[s]) == sensor)
+      channels |= channels_of(s);
+  return channels;
+}
+
 void SensorLayer::go() {
   signal_sensors(kGo);
+  if (sample_thread_ != nullptr) kernel_.signal(*sample_thread_, kSampled);
 }
 
 void SensorLayer::begin(kernel::Time zero) {
@@ -95,7 +108,7 @@ void SensorLayer::run_sensor(unsigned sensor) {
 // One that SAFETY reads measures already.
 void SensorLayer::await_begin(unsigned sensor) {
   const kernel::Duration period = kernel::milliseconds(program_->image.sensors[sensor].period_ms);
-  const bool measures = (awaited_ & channels_of(sensor)) != 0;
+  const bool measures = (awaited_ & made_of(sensor)) != 0;
   while (!begun_) {
     if (measures) sample(sensor);
     if (measures && simulated_) note_tried(channels_of(sensor));
@@ -131,12 +144,13 @@ void SensorLayer::sample(unsigned sensor) {
     const auto channel = static_cast<std::uint8_t>(wiring.first_channel + i);
     vm::Value value = 0;
     if (sampler_->sample(program_->image, channel, value)) {
-      news |= publish(channel, value);
+      news |= publish(channel, value, kernel_.now());
     } else {
       ++failed;
     }
   }
   announce(news);
+  if (sample_thread_ != nullptr) kernel_.signal(*sample_thread_, kSampled);
   note_contact(sensor, failed);
 }
 
@@ -181,17 +195,17 @@ void SensorLayer::deliver() {
     FeedQueue::Entry entry;
     if (!feeds_.take_due(now, entry)) break;
     if (entry.value() == vm::kUnknown) continue;
-    const ChannelMask mine = publish(entry.channel(), entry.value());
+    const ChannelMask mine = publish(entry.channel(), entry.value(), kernel_.now());
     mailboxes_.announce(mine);
     news |= mine;
   }
   tell(news);
+  if (awaited_ != 0 && sample_thread_ != nullptr) kernel_.signal(*sample_thread_, kSampled);
 }
 
-// The channel's bit if it is news.
-ChannelMask SensorLayer::publish(std::uint8_t channel, vm::Value value) {
+ChannelMask SensorLayer::publish(std::uint8_t channel, vm::Value value, kernel::Time time) {
   const vm::Channel& wiring = program_->image.channels[channel];
-  const Reading reading(channel, std::clamp(value, wiring.min, wiring.max), kernel_.now());
+  const Reading reading(channel, std::clamp(value, wiring.min, wiring.max), time);
   if (awaited_ != 0) [[unlikely]] {
     const auto lock = kernel_.lock();
     awaited_ &= ~bit<ChannelMask>(channel);

@@ -64,6 +64,21 @@ public:
   // Its thread was stopped: what it measures is no longer known.
   void retire(unsigned member_index);
 
+  // --- for the algorithms ---
+  // From now on kSampled of `thread` is signalled when a sensor has sampled; null: nobody cares.
+  void tell_of_samples(kernel::Thread* thread) { sample_thread_ = thread; }
+  static constexpr kernel::Events kSampled = 1;
+  // What was made of readings that were taken at `time`; the channel's bit if it is news. Then announce it.
+  ChannelMask publish(std::uint8_t channel, vm::Value value, kernel::Time time);
+  void announce(ChannelMask channels);
+  // SAFETY waits for a first reading of one of them.
+  bool awaits(ChannelMask channels) const { return (awaited_ & channels) != 0; }
+  // In a simulation SAFETY waits no longer for these: whatever was to be read was.
+  void note_turn(ChannelMask channels) {
+    if (simulated_ && awaits(channels)) note_tried(channels);
+  }
+  ChannelMask channels_of(unsigned sensor) const;
+
 private:
   static constexpr kernel::Events kFeed = 1;
   static constexpr kernel::Events kGo = 2;
@@ -81,14 +96,12 @@ private:
   void await_begin(unsigned sensor);
   void note_tried(ChannelMask channels);
   void signal_sensors(kernel::Events events);
-  ChannelMask channels_of(unsigned sensor) const;
+  ChannelMask made_of(unsigned sensor) const;
   void run_feeds();
   kernel::Time next_sample(unsigned sensor, kernel::Time last);
   void sample(unsigned sensor);
   void note_contact(unsigned sensor, unsigned failed);
   [[gnu::noinline]] void deliver();
-  ChannelMask publish(std::uint8_t channel, vm::Value value);
-  void announce(ChannelMask channels);
   void tell(ChannelMask channels);
   link::FeedError check(const link::Feed& feed) const;
 
@@ -101,6 +114,7 @@ private:
   const LoadedProgram* program_ = nullptr;
   Sampler* sampler_ = nullptr;
   kernel::Thread* feed_thread_ = nullptr;
+  kernel::Thread* sample_thread_ = nullptr;
   std::span<Unit> units_;
   FeedQueue feeds_;
   ChannelMask awaited_ = 0;  // SAFETY reads them, and they have not said anything yet

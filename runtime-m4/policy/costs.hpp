@@ -47,6 +47,7 @@ struct ActuatorCosts {
 // One sample of one channel; 0 of an actuator's driver.
 constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board) {
   const auto fed = [] { return std::uint32_t{0}; };
+  const auto computed = [] { return std::uint32_t{0}; };
   const auto i2c = [&](std::uint32_t transfers, std::uint32_t bytes) {
     return transfers * board.i2c_transfer + bytes * board.i2c_byte;
   };
@@ -82,14 +83,16 @@ constexpr ActuatorCosts actuator_costs(vm::DriverId driver) {
   return {};
 }
 
-// A sensor's driver either is not sampled (threads.hpp: is_fed()), or costs something.
+// A sensor's driver either is not sampled (threads.hpp: is_fed(), is_algorithm()), or costs something.
 inline constexpr BoardCosts kOneEach = {
 #define BOARD_COST(name, doc) .name = 1,
 #include "runtime-m4/policy/board_costs.def"
 #undef BOARD_COST
 };
-#define SENSOR_DRIVER(name, ...) \
-  static_assert(vm::DriverId::name == kFedDriver || sample_cost(vm::DriverId::name, kOneEach) > 0);
+#define SENSOR_DRIVER(name, ...)                                 \
+  static_assert(vm::DriverId::name == kFedDriver ||              \
+                vm::DriverId::name == vm::DriverId::algorithm || \
+                sample_cost(vm::DriverId::name, kOneEach) > 0);
 #define ACTUATOR_DRIVER(name, ...)
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER

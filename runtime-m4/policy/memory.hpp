@@ -44,6 +44,8 @@ inline constexpr std::uint32_t kSensorStack = 576;
 inline constexpr std::uint32_t kStepStack = 736;
 inline constexpr std::uint32_t kBehaviorStack = 320;  // no guard
 inline constexpr std::uint32_t kControlStack = 512;
+inline constexpr std::uint32_t kAlgorithmStack =
+    512;                                         // with its module's data; a region of its own
 inline constexpr std::uint32_t kStackUnit = 64;  // without privileges
 
 inline constexpr std::uint32_t kMaxQueued = 8;  // commands that wait for one actuator
@@ -72,6 +74,7 @@ enum class Count : std::uint32_t {
   one,
   sensors,
   sensor_threads,
+  algorithms,
   channels,
   feeds,
   inputs,
@@ -101,8 +104,8 @@ public:
   constexpr std::uint32_t operator[](Count count) const { return counts_[place(count)]; }
   constexpr std::uint32_t& operator[](Count count) { return counts_[place(count)]; }
   constexpr std::uint32_t threads() const {
-    return (*this)[Count::sensor_threads] + (*this)[Count::behavior_threads] +
-           (*this)[Count::actuators] + kFixedThreads;
+    return (*this)[Count::sensor_threads] + (*this)[Count::algorithms] +
+           (*this)[Count::behavior_threads] + (*this)[Count::actuators] + kFixedThreads;
   }
 
 private:
@@ -131,12 +134,15 @@ inline void count_sensors(const vm::Image& image, Counts& counts) {
   counts[Count::sensors] = static_cast<std::uint32_t>(image.sensors.size());
   counts[Count::channels] = static_cast<std::uint32_t>(image.channels.size());
   for (const vm::Sensor& sensor : image.sensors)
-    if (is_fed(sensor)) {
+    if (is_algorithm(sensor)) {
+      ++counts[Count::algorithms];
+    } else if (is_fed(sensor)) {
       fed_channels += sensor.channel_count;
       ++fed_sensors;
     } else {
       ++counts[Count::sensor_threads];
     }
+  if (counts[Count::algorithms] != 0) ++counts[Count::sensor_threads];  // one for all of them
   if (fed_sensors == 0) return;
   ++counts[Count::sensor_threads];  // one for all of them
   counts[Count::feeds] = std::max(kFeeds, fed_channels);
@@ -193,6 +199,7 @@ enum class Whose : std::uint32_t {
   behaviors,
   rules,
   variables,
+  algorithms,
   image,
   borders,  // what the MPU's eighths waste
   count_

@@ -10,11 +10,19 @@ namespace robosync::policy {
 // Threads that the kernel ranks at most: one bit each in its ready set.
 inline constexpr unsigned kMaxThreads = 96;
 
-// The paper's four categories, and the two kinds of threads around them. Inside one behaviour's
-// priority, a later category of the four ranks higher: a decision reaches the actuator before new
+// The paper's four categories with that of algorithms, and the two kinds of threads around them. Inside one behaviour's
+// priority, a later category of the five ranks higher: a decision reaches the actuator before new
 // data is gathered. `safety` ranks above everything, `system` (the link) below everything.
-enum class Category : std::uint8_t { system, sensor, processing, behavior, control, safety };
-inline constexpr unsigned kCategories = 6;
+enum class Category : std::uint8_t {
+  system,
+  sensor,
+  algorithm,
+  processing,
+  behavior,
+  control,
+  safety
+};
+inline constexpr unsigned kCategories = 7;
 
 // What a thread's behaviour is worth: `now` decides, and between equals `base`, the priority as it
 // was written (adaptation.hpp says how the two come to differ). Behaviours have distinct bases, so

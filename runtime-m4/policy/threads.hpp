@@ -16,22 +16,60 @@ namespace robosync::policy {
 
 inline constexpr vm::DriverId kFedDriver = vm::DriverId::virtual_sensor;
 
+// Its readings are made of another sensor's: it is neither sampled nor fed.
+constexpr bool is_algorithm(const vm::Sensor& sensor) {
+  return sensor.driver == vm::DriverId::algorithm;
+}
+
 // Its readings come from outside, at any time: it is not sampled.
 constexpr bool is_fed(const vm::Sensor& sensor) {
-  return sensor.period_ms == 0 || sensor.driver == kFedDriver;
+  return !is_algorithm(sensor) && (sensor.period_ms == 0 || sensor.driver == kFedDriver);
 }
 
 inline bool has_fed_sensors(const vm::Image& image) {
   return std::ranges::any_of(image.sensors, is_fed);
 }
 
+inline bool has_algorithms(const vm::Image& image) {
+  return std::ranges::any_of(image.sensors, is_algorithm);
+}
+
+// The sensor that an algorithm reads.
+inline unsigned input_of(const vm::Image& image, const vm::Sensor& algorithm) {
+  return image.channels[algorithm.first_input].sensor;
+}
+
 // In the place of a sensor: all that are fed, which one thread serves. It is started after those of
 // the sensors that are sampled, which have one each, in the order of the image.
-inline constexpr unsigned kFedSensors = 0xFF;
+inline constexpr unsigned kFedSensors = 0xFE;
+// In the place of a sensor: all algorithms. One thread, started behind all of the sensors, brings the readings to
+// the modules' threads and back; these have the same priority, and by their category outrank it.
+inline constexpr unsigned kAlgorithms = 0xFF;
 
-// The thread that serves a sensor: named after the sensor, or kFedSensors.
+// The thread that serves a sensor: named after the sensor, or kFedSensors, or kAlgorithms.
 inline unsigned thread_of(const vm::Image& image, unsigned sensor) {
+  if (is_algorithm(image.sensors[sensor])) return kAlgorithms;
   return is_fed(image.sensors[sensor]) ? kFedSensors : sensor;
+}
+
+// Does what a thread measures go into an algorithm? Then who reads an algorithm needs that thread, too: so it
+// never ranks below what waits for its readings.
+inline bool feeds_algorithm(const vm::Image& image, unsigned sensor_thread) {
+  return std::ranges::any_of(image.sensors, [&](const vm::Sensor& algorithm) {
+    return is_algorithm(algorithm) && thread_of(image, input_of(image, algorithm)) == sensor_thread;
+  });
+}
+
+// Calls take(channel) for the channels whose readers need the thread.
+template <class Take>
+void each_channel_of_thread(const vm::Image& image, unsigned sensor_thread, Take take) {
+  const bool feeds = sensor_thread != kAlgorithms && feeds_algorithm(image, sensor_thread);
+  for (unsigned s = 0; s < image.sensors.size(); ++s) {
+    const vm::Sensor& sensor = image.sensors[s];
+    if (thread_of(image, s) == sensor_thread || (feeds && is_algorithm(sensor)))
+      for (unsigned i = 0; i < sensor.channel_count; ++i)
+        take(sensor.first_channel + i);
+  }
 }
 
 // --- behaviours ---
@@ -48,11 +86,12 @@ inline std::int8_t idle_priority(const vm::Image& image) {
 }
 
 // Does `behavior` need a thread of this category? `index` is that of its behaviour or actuator;
-// `reads`: of a sensor's thread, that the behaviour reads one of its channels.
+// `reads`: of a sensor's or an algorithm's thread, that the behaviour reads one of its channels.
 inline bool needs(const vm::Image& image, unsigned behavior, Category category, unsigned index,
                   bool reads) {
   switch (category) {
     case Category::sensor:
+    case Category::algorithm:
       return reads;
     case Category::behavior:
       return behavior == index;

@@ -8,6 +8,7 @@
 //   kArenaScale             How many times the bytes of the Cortex-M4 what a program needs may take here.
 //   kMinStack               Least bytes of stack a thread must have.
 //   kUnprivilegedStackAlignment, kMaxUnprivilegedStack   What the stack of a thread without privileges must be.
+//   kSecludedStack          … and of one with data on its stack, and nothing else: bytes, and alignment.
 //   struct Areas            What threads without privileges may use besides their stacks: what is
 //                           readable and, perhaps inside of it, writable.
 //   call(kernel, number, argument)       A system call: Kernel::answer() from a thread without

@@ -124,5 +124,120 @@ class Isolation(DebuggedTest):
         self.assertGreaterEqual(status["safety_checks"], status["program_us"] // 10_000)
 
 
+SKIN_CONFIG = """{
+  "sensors": [
+    {"name": "pad", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
+     "channels": {"FORCE": {"input": 0, "range": [0, 10], "rate": "50Hz"}}},
+    {"name": "other", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
+     "channels": {"LEVEL": {"input": 1, "range": [0, 10], "rate": "50Hz"}}}],
+  "actuators": [
+    {"name": "left_arm", "type": "PWM", "pin": 0, "device": "servo", "range": ["0deg", "120deg"]},
+    {"name": "right_arm", "type": "PWM", "pin": 1, "device": "servo", "range": ["0deg", "120deg"]}],
+  "algorithms": [{"name": "skin", "module": "touch_levels", "input": "pad", "config": {"light": 1, "firm": 5}}]
+}"""
+SKIN_PROGRAM = """
+BEHAVIOR feels PRIORITY 20
+  WHEN skin LEVEL IS firm
+  DO MOVE left_arm TO 60deg
+  END
+END
+BEHAVIOR tame PRIORITY 10
+  WHEN other LEVEL > 2
+  DO MOVE right_arm TO 60deg
+  END
+END
+"""
+MODULE = "touch_levels_process"
+ARENA = 0x20004000  # behaviours may read it, modules may not
+TICK = "SysTick_Handler"
+
+
+class Algorithms(DebuggedTest):
+    """A module that goes wild: it is lowered or stopped, its outputs become unknown, and all others go on."""
+
+    def setUp(self):
+        super().setUp()
+        self.symbols = symbols(FIRMWARE)
+        program, config = self.folder / "program.rsl", self.folder / "robot.json"
+        program.write_text(SKIN_PROGRAM)
+        config.write_text(SKIN_CONFIG)
+        self.board.set_touch(0, 0)
+        self.board.set_touch(0, 1)
+        rsc.run("upload", program, "--config", config, "--port", self.board.port)
+        self.reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
+        for value in [1, 2] * 50:  # until it listens
+            self.board.set_touch(value, 1)
+            if self.reader.wait_for(lambda lines: lines, 0.2):
+                break
+
+    def tearDown(self):
+        if self.reader:
+            self.reader.stop()
+        super().tearDown()
+
+    def events(self, **wanted):
+        found = [json.loads(line) for line in self.reader.lines]
+        return [e for e in found if all(e.get(key) == value for key, value in wanted.items())]
+
+    def expect(self, **wanted):
+        self.assertTrue(self.reader.wait_for(lambda _: self.events(**wanted), PATIENCE),
+                        f"no {wanted} in {self.reader.lines}")
+
+    def in_module(self, act):
+        """act(debugger) the next time that the module is called."""
+        with self.debugger() as debugger:
+            debugger.run_to(self.symbols[MODULE], lambda: None)
+            act(debugger)
+
+    def stay(self, debugger):
+        """It takes two milliseconds in the place of some microseconds."""
+        debugger.set_register(PC, endless_loop())
+        for _ in range(3):
+            debugger.run_to(self.symbols[TICK], lambda: None)
+            debugger.run_to(endless_loop(), lambda: None)
+        debugger.set_register(PC, self.symbols[MODULE])
+
+    def others_go_on(self, stopped):
+        self.board.set_touch(6, 1)
+        self.expect(event="command", actuator="right_arm")
+        self.expect(event="done", actuator="right_arm")
+        self.reader.stop()
+        self.reader = None
+        info = rsc.info(self.board.port)
+        threads = {thread["name"]: thread["state"] for thread in info["threads"]}
+        self.assertEqual(threads["skin"], "stopped" if stopped else "blocked")
+        self.assertEqual(threads["feels"], "blocked")
+        status = info["status"]
+        self.assertEqual((status["faults"], status["safety_late_us"]), (1 if stopped else 0, 0))
+
+    def test_one_that_touches_what_is_not_its_own_is_stopped(self):
+        """Not even what behaviours may read."""
+        self.in_module(lambda debugger: debugger.set_register(0, ARENA))
+        self.expect(event="fault", thread="skin", cause=NO_ACCESS)
+        self.expect(event="stale", sensor="skin")
+        address = next(fault["address"] for fault in self.events(event="fault", cause=NO_ACCESS))
+        self.assertTrue(ARENA <= address < ARENA + 64, hex(address))
+        self.others_go_on(stopped=True)
+
+    def test_one_that_takes_longer_than_it_declares_is_lowered_and_stopped_the_next_time(self):
+        self.in_module(self.stay)
+        self.expect(event="lowered", thread="skin")
+        self.board.set_touch(6, 0)
+        self.expect(event="command", actuator="left_arm")  # it works nevertheless
+        self.assertEqual(self.events(event="fault"), [])
+        self.in_module(self.stay)
+        self.expect(event="fault", thread="skin", cause=OVERRUN)
+        self.assertEqual(len(self.events(event="lowered")), 1)
+        self.expect(event="stale", sensor="skin")
+        self.others_go_on(stopped=True)
+
+    def test_one_that_never_ends_is_lowered_and_stopped(self):
+        self.in_module(lambda debugger: debugger.set_register(PC, endless_loop()))
+        self.expect(event="lowered", thread="skin")
+        self.expect(event="fault", thread="skin", cause=OVERRUN, pc=endless_loop())
+        self.expect(event="stale", sensor="skin")
+        self.others_go_on(stopped=True)
+
+
 if __name__ == "__main__":
     unittest.main()

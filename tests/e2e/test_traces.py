@@ -52,6 +52,15 @@ class Traces(TraceTest):
                 program.write_text(text)
                 self.check(program, stimuli.drawn(seed, text), config)
 
+    def test_algorithms(self):
+        """The modules of the firmware, on recordings that are made up: the board's run behind its MPU."""
+        self.units = stimuli.FEELING_UNITS
+        for seed in range(2):
+            with self.subTest(seed=seed):
+                lines = self.check(PROGRAMS / "feeling.rsl", stimuli.touches(seed), PROGRAMS / "feeling.json")
+                said = {json.loads(line).get("word") for line in lines if '"event":"command"' in line}
+                self.assertLessEqual({"tap", "pat", "stroke", "firm"}, said)
+
     def test_drawn_programs(self):
         seeds = itertools.islice(filter(self.draw, itertools.count()), 12)
         for seed in seeds:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime-m4/algorithms/judge.hpp"
 #include "runtime-m4/policy/memory.hpp"
 #include "runtime-m4/policy/pins.hpp"
 #include "vm/disassembler.hpp"
@@ -146,6 +147,25 @@ void Campaign::wire() {
   const policy::PinRange inputs[] = {{first, 40}};
   const policy::BoardPins board{outputs, inputs, static_cast<std::uint8_t>(random_.below(3))};
   const vm::Verdict verdict = policy::judge(accepted_, board);
+  if (!verdict.ok()) ++totals_.verdicts[static_cast<std::size_t>(verdict.refusal)];
+  compute();
+}
+
+// The firmware may not have its modules; nor may they be able to work with an algorithm that is drawn for it.
+void Campaign::compute() {
+  std::vector<vm::Sensor> sensors(accepted_.sensors.begin(), accepted_.sensors.end());
+  if (!sensors.empty() && sensors.back().first_channel > 0) {
+    vm::Sensor& last = sensors.back();
+    last.driver = vm::DriverId::algorithm;
+    last.bus = static_cast<std::uint8_t>(random_.below(3));
+    last.first_input = static_cast<std::uint8_t>(random_.below(last.first_channel));
+    const auto constants = static_cast<std::uint32_t>(accepted_.constants.size());
+    last.address = static_cast<std::uint16_t>(random_.below(constants + 2));
+    if (random_.one_in(4)) sensors.front().driver = vm::DriverId::algorithm;
+  }
+  vm::Image image = accepted_;
+  image.sensors = sensors;
+  const vm::Verdict verdict = algorithms::judge(image);
   if (!verdict.ok()) ++totals_.verdicts[static_cast<std::size_t>(verdict.refusal)];
 }
 

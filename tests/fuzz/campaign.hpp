@@ -45,6 +45,7 @@ private:
   void read_names();
   void lay_out();
   void wire();
+  void compute();
   void run(Entry& entry);
   void keep();
 

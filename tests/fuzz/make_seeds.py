@@ -68,6 +68,8 @@ def make(rsc, folder):
     rover.write_text(ROVER)
     rover.with_suffix(".json").write_text(json.dumps(ROVER_ROBOT))
     compile_program(rsc, rover, rover.with_suffix(".rsb"))
+    feeling = CONFIG.with_name("feeling.rsl")  # with algorithms
+    compile_program(rsc, feeling, folder / "feeling.rsb", "--config", feeling.with_suffix(".json"))
     (folder / "made").touch()
 
 

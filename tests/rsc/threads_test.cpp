@@ -6,6 +6,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "runtime-m4/policy/standing.hpp"
+
 using namespace robosync;
 
 namespace {
@@ -14,7 +16,7 @@ link::ThreadInfo thread(const char* name, std::int8_t priority, std::int8_t base
                         std::uint32_t run_time, std::uint32_t clock) {
   link::ThreadInfo info{};
   std::copy_n(name, std::char_traits<char>::length(name), info.name.begin());
-  info.category = 3;
+  info.category = static_cast<std::uint8_t>(policy::Category::behavior);
   info.rank = 2;
   info.priority = priority;
   info.base_priority = base;

@@ -164,6 +164,8 @@ std::string what(const link::Event& event, const vm::Image& image) {
       return rule_only(event, "zero_divide");
     case EventKind::priority:
       return "priority b" + std::to_string(event.subject) + " " + std::to_string(event.values[0]);
+    case EventKind::lowered:
+      return "lowered";
     case EventKind::silent:
       return "silent " + device();
     case EventKind::answers:

@@ -28,15 +28,16 @@ HOST_ONLY = ("runtime-m4/port/host/", "runtime-m4/sim/")
 # implement it by the kernel; the interface of the board (boards/board.hpp) and the boards.
 RUNTIME = {
     "policy": set(),
+    "algorithms": set(),
     "port": {"policy"},
     "boards": {"policy"},
     "kernel": {"policy", "port"},
     "port's sources": {"port", "kernel"},
     "guard": {"policy", "boards", "kernel"},
     "drivers": {"policy", "boards", "kernel", "guard"},
-    "layers": {"policy", "boards", "kernel", "drivers", "guard"},
+    "layers": {"policy", "algorithms", "boards", "kernel", "drivers", "guard"},
     "safety": {"policy", "boards", "kernel", "layers"},
-    "runtime": {"boards", "kernel", "guard", "drivers", "layers", "safety"},
+    "runtime": {"algorithms", "boards", "kernel", "guard", "drivers", "layers", "safety"},
     "update": {"policy", "boards", "kernel", "layers", "runtime"},
     "sim": {"policy", "boards", "kernel", "layers", "runtime"},
     "boards/common": {"port", "boards", "kernel", "layers", "runtime", "update"},

@@ -13,6 +13,9 @@ from collections import Counter
 from pathlib import Path
 
 import paths
+import rsc
+import stimuli
+from board import FAST, FIRMWARE, Board
 from paths import counting, feed, run, wait
 from timing import examples
 
@@ -290,6 +293,71 @@ class Kernel(unittest.TestCase):
             measured = sum(recorded[f"kernel/{figure}"] for figure in figures)
             self.assertGreaterEqual(costs[name], measured, name)
             self.assertLessEqual(costs[name], LOOSEST * measured + SLACK, name)
+
+
+class Algorithms(unittest.TestCase):
+    """What the modules of the firmware declare, and what it takes to give one a sample, behind its MPU."""
+
+    INTERRUPTS = ("SysTick_Handler", "Uart0Receive_Handler", "Uart0Transmit_Handler")
+    MODULES = {"touch_levels": stimuli.touches}
+    LAYER = "robosync::layers::AlgorithmLayer::"
+
+    def test_every_module(self):
+        costs, listed = paths.costs(), (paths.ROOT / "runtime-m4/algorithms/modules.def").read_text()
+        self.assertEqual(set(re.findall(r"^MODULE\((\w+)", listed, re.M)), set(self.MODULES))
+        for module, recording in self.MODULES.items():
+            with self.subTest(module):
+                process = f"{module}_process"
+                marks = self.run_with(recording(0), process)
+                alone = self.spans(marks, process)
+                whole = self.spans(marks, "latch", within=process)
+                source = (paths.ROOT / f"runtime-m4/algorithms/{module}.c").read_text()
+                declared = int(re.search(r"uint32_t cost\(.*?return (\d+);", source, re.S)[1])
+                print(f"  {module}: {max(alone)}, said {declared}; with what is around it {max(whole)}")
+                for said, measured in ((declared, max(alone)), (costs["kAlgorithm"], max(whole) - max(alone))):
+                    self.assertGreaterEqual(said, measured)
+                    self.assertLessEqual(said, LOOSEST * measured + SLACK)
+
+    def run_with(self, readings, process):
+        """The shipped firmware with the readings; where it comes by."""
+        latch, collect = self.LAYER + "latch_inputs(", self.LAYER + "collect("
+        marks = {process: counting.symbols(FIRMWARE)[process], "latch": counting.functions(latch)[latch],
+                 **{handler: counting.begin_of(handler) for handler in self.INTERRUPTS}}
+        marks |= {f"end of {name} {i}": at for name, function in ((process, process), ("latch", collect))
+                  for i, at in enumerate(counting.ends_of(function))}
+        with tempfile.TemporaryDirectory() as folder:
+            scenario, out = Path(folder) / "scenario.json", Path(folder) / "marks"
+            with Board(icount=FAST, extra=counting.plugin_arguments(marks, out)) as board:
+                until_ms = self.feed(readings, scenario, board)
+                counting.wait_for_readings(out, until_ms // 20, process)
+            return counting.Marks(marks, out).all
+
+    def feed(self, readings, scenario, board):
+        """Later, where this machine is too busy to be in time."""
+        program = paths.ROOT / "tests/e2e/programs/feeling.rsl"
+        for lead in (6_000, 20_000, 60_000):
+            scenario.write_text(json.dumps({"stimuli": [
+                {"at": f"{lead + r.at_ms}ms", "sensor": r.channel.split(".")[0], "channel": r.channel.split(".")[1],
+                 "value": f"{r.value}{stimuli.FEELING_UNITS[r.channel]}"} for r in readings]}))
+            done = rsc.call("feed", "--upload", program, "--config", program.with_suffix(".json"), "--fresh",
+                            "--scenario", scenario, "--port", board.port)
+            if done.returncode == 0:
+                return lead + readings[-1].at_ms
+        self.fail(done.stderr)
+
+    @staticmethod
+    def spans(marks, name, within=None):
+        """Instructions from `name` to its end, of those that no interrupt came into."""
+        found, start = [], None
+        for mark, count in marks:
+            if mark == name:
+                start = count
+            elif start is not None and mark.startswith(f"end of {name}"):
+                found.append(count - start)
+                start = None
+            elif within is None or within not in mark:
+                start = None
+        return found
 
 
 def fed(sensor):

@@ -38,8 +38,8 @@ inline void add_sensors(ImageBuilder& image) {
     record.max = 5000 * kScale;
     image.channels.push_back(record);
   };
-  image.sensors.push_back({image.name("touch"), DriverId::max34451, 1, 0x21, 20, 0, 2, 0});
-  image.sensors.push_back({image.name("proximity"), DriverId::virtual_sensor, 0, 0, 0, 2, 1, 0});
+  image.sensors.push_back({image.name("touch"), DriverId::max34451, 1, 0x21, 20, 0, 2, 0, 0});
+  image.sensors.push_back({image.name("proximity"), DriverId::virtual_sensor, 0, 0, 0, 2, 1, 0, 0});
   channel("LEVEL", 0, Dimension::number);
   channel("FORCE", 0, Dimension::force);
   channel("DISTANCE", 1, Dimension::length);

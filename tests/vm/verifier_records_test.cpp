@@ -64,6 +64,26 @@ TEST_CASE("sensors") {
   }
 }
 
+TEST_CASE("an algorithm reads what was measured before it, every so often") {
+  const auto algorithm = [](std::uint8_t first_input, std::uint16_t period_ms) {
+    return [=](ImageBuilder& image) {
+      image.sensors[1].driver = DriverId::algorithm;
+      image.sensors[1].first_input = first_input;
+      image.sensors[1].period_ms = period_ms;
+    };
+  };
+  ImageBuilder good = robot::make();
+  algorithm(1, 20)(good);
+  check_accepted(good);
+  check_refused(algorithm(2, 20), {Refusal::bad_index, Section::sensors, 1});  // itself
+  check_refused(algorithm(200, 20), {Refusal::bad_index, Section::sensors, 1});
+  check_refused(algorithm(0, 0), {Refusal::bad_value, Section::sensors, 1});
+  // Others read nothing.
+  for (const std::uint16_t index : {std::uint16_t{0}, std::uint16_t{1}})
+    check_refused([&](ImageBuilder& i) { i.sensors[index].first_input = 1; },
+                  {Refusal::bad_value, Section::sensors, index});
+}
+
 TEST_CASE("a driver that the firmware does not have is named by its record") {
   Limits limits;
   limits.drivers = ~(1U << static_cast<unsigned>(DriverId::max34451));

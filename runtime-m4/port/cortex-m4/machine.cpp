@@ -24,11 +24,26 @@ constexpr std::uint32_t kXpsrThumb = 1U << 24;
 constexpr std::uint32_t kReturnToThread = 0xFFFF'FFFD;        // thread mode, PSP, no FPU frame
 constexpr std::uint32_t kReturnToUnprivileged = 0xFFFF'FFCD;  // … without privileges, for switch.S
 
+constexpr std::uint32_t kReturnToSecluded = 0xFFFF'FF8D;  // … as if it had used the FPU
+
 // What a thread's stack holds before it runs for the first time; switch.S draws it.
-struct FirstFrame {
+struct SavedRegisters {
   std::array<std::uint32_t, 8> r4_r11;
   std::uint32_t exc_return;
+};
+struct StackedRegisters {
   std::uint32_t r0, r1, r2, r3, r12, lr, pc, xpsr;
+};
+struct FirstFrame {
+  SavedRegisters saved;
+  StackedRegisters stacked;
+};
+// … of one that has used the FPU.
+struct FirstFpuFrame {
+  SavedRegisters saved;
+  std::array<std::uint32_t, 16> s16_s31;
+  StackedRegisters stacked;
+  std::array<std::uint32_t, 18> s0_s15_fpscr;
 };
 
 // The idle thread needs the frame of an interrupt and of a switch, without FPU registers.
@@ -59,16 +74,38 @@ void set_stack_window(Context& context, std::span<const std::byte> stack) {
   context.windows = window.lower.size_and_eighths | window.upper.size_and_eighths << 16;
 }
 
+void set_secluded(Context& context, std::span<const std::byte> stack) {
+  context.region = base_of(RegionNumber::stack_upper, word_of(stack.data()));
+  context.windows = policy::regions::size_field(kSecludedBits) | Context::kSecluded;
+}
+
+template <class Frame>
+void make_first_frame(Context& context, const kernel::ThreadSpec& spec, std::uint32_t top,
+                      std::uint32_t exc_return) {
+  auto* const frame = reinterpret_cast<Frame*>(top - sizeof(Frame));
+  *frame = {};
+  frame->saved.exc_return = exc_return;
+  frame->stacked.r0 = word_of(spec.argument);
+  frame->stacked.lr = word_of(reinterpret_cast<const void*>(&thread_ended));
+  frame->stacked.pc = word_of(reinterpret_cast<const void*>(spec.entry)) & ~1U;
+  frame->stacked.xpsr = kXpsrThumb;
+  context.sp = reinterpret_cast<std::uint32_t*>(frame);
+}
+
 }  // namespace
 
 bool Machine::can_run(const kernel::ThreadSpec& spec) {
+  if (spec.data_bytes != 0)
+    return !spec.privileged && spec.stack.size() == kSecludedStack &&
+           word_of(spec.stack.data()) % kSecludedStack == 0 &&
+           spec.data_bytes + kMinStack <= kSecludedStack && spec.data_bytes % 8 == 0;
   return spec.privileged || policy::regions::fits_window(
                                 word_of(spec.stack.data()),
                                 static_cast<std::uint32_t>(spec.stack.size()), kStackWindowBits);
 }
 
 std::span<std::byte> Machine::usable(const kernel::ThreadSpec& spec) {
-  if (!spec.privileged) return spec.stack;
+  if (!spec.privileged) return spec.stack.subspan(spec.data_bytes);
   const std::uint32_t stack = word_of(spec.stack.data());
   const std::uint32_t begin = (stack + kGuard - 1) / kGuard * kGuard + kGuard;
   return spec.stack.subspan(begin - stack);
@@ -77,17 +114,15 @@ std::span<std::byte> Machine::usable(const kernel::ThreadSpec& spec) {
 void Machine::prepare(Context& context, const kernel::ThreadSpec& spec,
                       std::span<std::byte> stack) {
   const std::uint32_t top = word_of(stack.data() + stack.size()) & ~7U;
-  auto* const frame = reinterpret_cast<FirstFrame*>(top - sizeof(FirstFrame));
-  *frame = {};
-  frame->exc_return = spec.privileged ? kReturnToThread : kReturnToUnprivileged;
-  frame->r0 = word_of(spec.argument);
-  frame->lr = word_of(reinterpret_cast<const void*>(&thread_ended));
-  frame->pc = word_of(reinterpret_cast<const void*>(spec.entry)) & ~1U;
-  frame->xpsr = kXpsrThumb;
-  context.sp = reinterpret_cast<std::uint32_t*>(frame);
   context.run_time = 0;
+  if (spec.data_bytes != 0) {
+    set_secluded(context, spec.stack);
+    return make_first_frame<FirstFpuFrame>(context, spec, top, kReturnToSecluded);
+  }
   context.region = guard_below(stack);
   if (!spec.privileged) set_stack_window(context, stack);
+  make_first_frame<FirstFrame>(context, spec, top,
+                               spec.privileged ? kReturnToThread : kReturnToUnprivileged);
 }
 
 std::span<std::byte> Machine::prepare_idle(Context& context) {

@@ -38,6 +38,11 @@ inline constexpr std::size_t kUnprivilegedStackAlignment = (std::size_t{1} << kS
 inline constexpr std::size_t kMaxUnprivilegedStack =
     9 * kUnprivilegedStackAlignment;  // wherever it begins
 
+// One that has data on its stack, and nothing else: a single region, so that the other one of the
+// window can close the rest of the memory.
+inline constexpr unsigned kSecludedBits = 9;
+inline constexpr std::size_t kSecludedStack = std::size_t{1} << kSecludedBits;
+
 // Alignment and guard, what the core stacks with FPU registers, and what switch.S adds.
 inline constexpr std::size_t kFrame = 104;
 inline constexpr std::size_t kSaved = 100;
@@ -49,10 +54,13 @@ struct Context {
   // How long it ran: the switch adds the clock when the thread begins to run and takes it off when
   // it stops.
   std::uint32_t run_time = 0;
-  // For the MPU's base register: the guard; without privileges, the lower region of the window.
+  // For the MPU's base register: the guard; without privileges, the lower region of the window; of a
+  // secluded thread, its stack.
   std::uint32_t region = 0;
-  // Without privileges: sizes and eighths of the lower region, and above them of the upper one.
+  // Without privileges: sizes and eighths of the lower region, and above them of the upper one; of a
+  // secluded thread, the size of its stack's, and kSecluded.
   std::uint32_t windows = 0;
+  static constexpr std::uint32_t kSecluded = 1U << 22;  // no bit of a size or of eighths
 };
 static_assert(offsetof(Context, sp) == 0 && offsetof(Context, run_time) == 4);
 static_assert(offsetof(Context, region) == 8 && offsetof(Context, windows) == 12);

@@ -21,7 +21,8 @@
 
    A thread without privileges costs the others nothing. It leaves by a vector table of its
    own, and what it saves as EXC_RETURN has bits 4 and 5 cleared, and bit 6 if it used the FPU: they
-   are told apart where the FPU is. */
+   are told apart where the FPU is. A secluded one (ThreadSpec::data_bytes) begins as if it had used the
+   FPU, and so always has: it is told apart where that is known. */
 
     .syntax unified
     .cpu    cortex-m4
@@ -31,6 +32,9 @@
     .equ    VTOR, 0xE000ED08
     .equ    MPU_RASR, 0xE000EDA0
     .equ    ALL_WRITE, 0x1302       /* upper half of core::kMpuAllWrite */
+    .equ    SECLUDED, 1 << 22       /* Context::kSecluded */
+    .equ    ALL_RAM, 0x20000015     /* its base; region 5, which gives way to the stack's */
+    .equ    CLOSED, 0x11020039      /* core::kMpuPrivileged, 512 MB */
     .equ    SWITCH_PRIORITY, 0xC0   /* core::kSwitchPriority */
 
     .section .text.PendSV_Handler, "ax"
@@ -94,7 +98,7 @@ robosync_saving_fpu:
     movt    r12, #ALL_WRITE
     pkhbt   r1, r2, r12
     pkhtb   r12, r12, r2, asr #16
-    stmia   r0, {r1, r3, r12}
+9:  stmia   r0, {r1, r3, r12}
     ldr     r1, =robosync_unprivileged_vectors
     str     r1, [r0, #VTOR - MPU_RASR]
     movs    r1, #1
@@ -102,7 +106,16 @@ robosync_saving_fpu:
     bx      lr
 6:  vldmia  r1!, {s16-s31}
     orr     lr, lr, #0x60
-    b       5b
+    ldr     r2, [r0, #12]           /* Context::windows */
+    tst     r2, #SECLUDED
+    beq     5b
+    msr     psp, r1
+    ldr     r0, =MPU_RASR
+    movt    r12, #ALL_WRITE
+    pkhbt   r1, r2, r12
+    ldr     r3, =ALL_RAM
+    ldr     r12, =CLOSED
+    b       9b
 
 /* Out of one: (psp), when there is room on its stack (PendSV_Unprivileged_Handler). */
     .thumb_func

@@ -52,7 +52,7 @@ void Machine::prepare(Context& context, const kernel::ThreadSpec& spec, std::spa
 }
 
 std::span<std::byte> Machine::usable(const kernel::ThreadSpec& spec) {
-  return spec.stack;
+  return spec.stack.subspan(spec.data_bytes);
 }
 
 std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t argument) {

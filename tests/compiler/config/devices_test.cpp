@@ -12,6 +12,7 @@
 #include "compiler/config/fields.hpp"
 #include "compiler/config/units.hpp"
 #include "compiler/config/wiring.hpp"
+#include "runtime-m4/algorithms/modules.hpp"
 #include "tests/compiler/compiled.hpp"
 #include "tests/support/golden.hpp"
 #include "vm/drivers.hpp"
@@ -193,7 +194,7 @@ TEST_CASE("the schema has exactly the reader's keys") {
 }
 
 // ROBOSYNC_UPDATE_GOLDEN=1 writes them into the schema.
-TEST_CASE("the schema lists the boards, types, devices and units that the reader knows") {
+TEST_CASE("the schema lists the boards, types, devices, modules and units that the reader knows") {
   using Json = nlohmann::ordered_json;
   const auto path = source_folder() / "grammar/robot.schema.json";
   Json wanted = Json::parse(read_file(path));
@@ -224,6 +225,9 @@ TEST_CASE("the schema lists the boards, types, devices and units that the reader
     (is_sensor ? sensor_parts : actuator_parts).push_back(part);
     (is_sensor ? sensor_devices : actuator_devices).push_back(part);
   }
+  Json& modules = list(definitions.at("algorithm"), "module");
+  for (std::size_t m = 0; const auto* description = algorithms::find_description(m); ++m)
+    modules.push_back(description->name);
   Json& unit_names = list(definitions.at("channel"), "unit");
   for (const Unit& unit : units())
     unit_names.push_back(unit.spelling);
@@ -255,7 +259,8 @@ TEST_CASE("the boards are read without a mistake") {
     CHECK(diagnostics.all().empty());
     CHECK(nlohmann::json::parse(text.json).at("name") == std::string(text.name));
     CHECK(board.arena_bytes > 0);
-    CHECK(board.arena_bytes % 64 == 0);  // stacks stand at its end
+    // Stacks stand at its end, those of algorithms first, which are regions of the MPU.
+    CHECK((board.arena_begin + board.arena_bytes) % 512 == 0);
     CHECK(board.step_budget > 0);
     CHECK_FALSE(board.outputs.empty());
     for (std::uint16_t pin = 0; pin < 200; ++pin) {

@@ -54,3 +54,22 @@ def drawn(seed, program, count=40, channels=CHANNELS, gaps=GAPS_MS):
 def drawn_wide(seed, program, count=40):
     """The same for what WideGenerator draws."""
     return drawn(f"readings {seed}", program, count, WIDE_CHANNELS, WIDE_GAPS_MS)
+
+
+FEELING_UNITS = {"pad.FORCE": "N"}  # of tests/e2e/programs/feeling.json
+
+
+def touches(seed, rounds=2, channel="pad.FORCE"):
+    """A hand on a touch sensor: taps, pats, strokes and presses, each of them trembling, with pauses."""
+    random_ = random.Random(f"touches {seed}")
+    kinds = [(2, 120), (8, 160), (3, 900), (7, 450), (1.6, 290)]
+    at, readings = 40, [Reading(0, channel, 0)]
+    for level, lasts in random_.sample(rounds * kinds, rounds * len(kinds)):
+        until = at + lasts
+        while at < until:
+            readings.append(Reading(at, channel, round(level * random_.uniform(0.75, 1.2), 3)))
+            at += random_.choice([30, 70, 110])
+        at = until
+        readings.append(Reading(at, channel, 0))
+        at += random_.choice([60, 200, 700])
+    return readings

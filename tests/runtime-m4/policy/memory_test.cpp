@@ -185,6 +185,7 @@ TEST_CASE("what one more of each takes") {
               .period_ms = 20,
               .first_channel = 0,
               .channel_count = 1,
+              .first_input = 0,
               .reserved = 0};
   drawn.actuators.resize(10);
   drawn.behaviors.resize(4);

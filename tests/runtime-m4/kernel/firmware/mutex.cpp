@@ -64,6 +64,7 @@ void read_once(Reader& reader) {
                              .period_ms = 1,
                              .first_channel = 0,
                              .channel_count = 1,
+                             .first_input = 0,
                              .reserved = 0};
   vm::Channel channel{};
   channel.input = reader.input;

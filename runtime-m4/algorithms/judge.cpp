@@ -1,0 +1,51 @@
+// See judge.hpp.
+#include "runtime-m4/algorithms/judge.hpp"
+
+namespace robosync::algorithms {
+namespace {
+
+using vm::Refusal;
+
+// Its inputs are channels of one sensor, which is measured and not an algorithm itself.
+bool can_read(const vm::Image& image, const vm::Sensor& algorithm, unsigned inputs) {
+  const vm::Channel& first = image.channels[algorithm.first_input];
+  const vm::Sensor& sensor = image.sensors[first.sensor];
+  return sensor.driver != vm::DriverId::algorithm &&
+         algorithm.first_input + inputs <= sensor.first_channel + unsigned{sensor.channel_count};
+}
+
+bool are_in_range(const robosync_module& module, const std::int32_t* config) {
+  for (unsigned p = 0; p < module.parameters; ++p)
+    if (config[p] < module.ranges[p].least || config[p] > module.ranges[p].most) return false;
+  return true;
+}
+
+Refusal judge(const vm::Image& image, const vm::Sensor& algorithm) {
+  const robosync_module* const module = find_module(algorithm.bus);
+  if (module == nullptr) return Refusal::no_module;
+  if (!can_read(image, algorithm, module->inputs)) return Refusal::wrong_input;
+  if (algorithm.address + std::size_t{module->parameters} > image.constants.size())
+    return Refusal::bad_index;
+  const std::int32_t* const config = config_of(image, algorithm);
+  bool good = are_in_range(*module, config) && algorithm.period_ms >= module->shortest_period_ms &&
+              algorithm.period_ms <= module->longest_period_ms;
+  for (unsigned i = 0; i < algorithm.channel_count; ++i)
+    good = good && image.channels[algorithm.first_channel + i].input < module->outputs;
+  if (!good) return Refusal::bad_value;
+  const std::uint32_t bytes = module->state_bytes(config) + module->scratch_bytes(config);
+  return bytes <= ROBOSYNC_MOST_BYTES ? Refusal::none : Refusal::no_room;
+}
+
+}  // namespace
+
+vm::Verdict judge(const vm::Image& image) {
+  for (std::size_t s = 0; s < image.sensors.size(); ++s) {
+    if (image.sensors[s].driver != vm::DriverId::algorithm) continue;
+    const Refusal refusal = judge(image, image.sensors[s]);
+    if (refusal != Refusal::none)
+      return {refusal, vm::Section::sensors, static_cast<std::uint16_t>(s)};
+  }
+  return {};
+}
+
+}  // namespace robosync::algorithms

@@ -1,0 +1,22 @@
+// What the verifier cannot know of an image's algorithms: whether this firmware has their modules, and whether
+// these can work with their inputs, parameters and outputs. Pure; board and rsc ask it of each image that verify() has
+// accepted.
+#pragma once
+
+#include "runtime-m4/algorithms/modules.hpp"
+#include "vm/image.hpp"
+#include "vm/verifier.hpp"
+
+namespace robosync::algorithms {
+
+[[nodiscard]] vm::Verdict judge(const vm::Image& image);
+
+// Of an algorithm's record of a judged image.
+inline const robosync_module& module_of(const vm::Sensor& algorithm) {
+  return *find_module(algorithm.bus);
+}
+inline const std::int32_t* config_of(const vm::Image& image, const vm::Sensor& algorithm) {
+  return image.constants.data() + algorithm.address;
+}
+
+}  // namespace robosync::algorithms

@@ -1,0 +1,24 @@
+// The algorithm modules of the firmware, by the number in the image (modules.def).
+#pragma once
+
+#include <cstddef>
+
+#include "runtime-m4/algorithms/robosync_module.h"
+
+extern "C" {
+#define MODULE(name, doc)                     \
+  extern const robosync_module name##_module; \
+  const robosync_description* name##_describe(uint32_t abi);
+#include "runtime-m4/algorithms/modules.def"
+#undef MODULE
+}
+
+namespace robosync::algorithms {
+
+// The module, or null. Tests put a table with modules of their own in the place of modules.cpp.
+[[nodiscard]] const robosync_module* find_module(std::size_t number);
+
+// Its names, or null. The firmware does not call it, and so has none of them.
+[[nodiscard]] const robosync_description* find_description(std::size_t number);
+
+}  // namespace robosync::algorithms

@@ -1,0 +1,241 @@
+// See algorithms.hpp. May rely on the verifier and on algorithms::judge() for the image.
+#include "runtime-m4/layers/algorithms.hpp"
+
+#include <algorithm>
+#include <new>
+
+#include "runtime-m4/algorithms/judge.hpp"
+#include "runtime-m4/kernel/calls.hpp"
+
+namespace robosync::layers {
+
+using link::EventKind;
+
+// --- start ---
+
+bool AlgorithmLayer::start(const LoadedProgram& program, Memory& memory, ProgramThreads& threads) {
+  program_ = &program;
+  server_ = nullptr;
+  begun_ = false;
+  units_ = memory.take<policy::Part::algorithm_units, Unit>();
+  if (units_.empty()) return true;
+  auto unit = units_.begin();
+  for (unsigned s = 0; s < program.image.sensors.size(); ++s) {
+    if (!policy::is_algorithm(program.image.sensors[s])) continue;
+    unit->sensor = static_cast<std::uint8_t>(s);
+    if (!start_unit(*unit++, threads)) return false;
+  }
+  return start_server(threads);
+}
+
+bool AlgorithmLayer::start_server(ProgramThreads& threads) {
+  kernel::ThreadSpec spec;
+  spec.name = "algorithms";
+  spec.category = kernel::Category::sensor;
+  spec.entry = [](void* self) { static_cast<AlgorithmLayer*>(self)->run(); };
+  spec.argument = this;
+  server_ = threads.start(spec, policy::kAlgorithms);
+  sensors_.tell_of_samples(server_);
+  return server_ != nullptr;
+}
+
+// The kernel paints the stack, and leaves the data below it alone.
+bool AlgorithmLayer::start_unit(Unit& unit, ProgramThreads& threads) {
+  static_assert(sizeof(Data) % 8 == 0 && sizeof(Data) + port::kMinStack <= port::kSecludedStack);
+  kernel::ThreadSpec spec;
+  spec.name = name_of(program_->image, wiring_of(unit).name, "algorithm");
+  spec.category = kernel::Category::algorithm;
+  spec.privileged = false;
+  spec.data_bytes = sizeof(Data);
+  unit.data = new (threads.next_algorithm_data()) Data;
+  fill(unit, *unit.data);
+  spec.entry = [](void* data) { run_module(*static_cast<Data*>(data)); };
+  spec.argument = unit.data;
+  unit.thread = threads.start(spec, unit.sensor);
+  return unit.thread != nullptr;
+}
+
+void AlgorithmLayer::fill(Unit& unit, Data& data) const {
+  const vm::Sensor& wiring = wiring_of(unit);
+  const robosync_module& module = algorithms::module_of(wiring);
+  const std::int32_t* const config = algorithms::config_of(program_->image, wiring);
+  data.kernel = &kernel_;
+  data.module = &module;
+  data.period_ms = wiring.period_ms;
+  data.begins = 1;
+  std::ranges::fill(data.outputs, ROBOSYNC_UNKNOWN);
+  std::copy_n(config, module.parameters, data.config);
+  unit.budget = 2 * module.cost(config) + kInterrupts;
+}
+
+// --- the module's thread: without privileges ---
+
+void AlgorithmLayer::run_module(Data& data) {
+  const robosync_module& module = *data.module;
+  std::byte* const state = data.memory;
+  std::byte* const scratch = state + ((module.state_bytes(data.config) + 7) & ~7U);
+  const robosync_block block = {data.inputs, data.outputs, data.config};
+  while (true) {
+    kernel::calls::wait(*data.kernel, kReleased);
+    if (data.begins != 0) module.init(state, data.config, data.period_ms);
+    data.begins = 0;
+    data.changed = module.process(state, scratch, &block);
+  }
+}
+
+// --- the thread that serves them ---
+
+void AlgorithmLayer::run() {
+  while (true) {
+    const kernel::Events why = kernel_.wait(kBegin | SensorLayer::kSampled, next_due());
+    if ((why & kBegin) != 0) note_begin();
+    sensors_.deliver_due();
+    const kernel::Time now = kernel_.now();
+    for (Unit& unit : units_) {
+      if (is_due(unit, now)) serve(unit, now);
+      sensors_.note_turn(sensors_.channels_of(unit.sensor));
+    }
+  }
+}
+
+// What came before program time, for SAFETY to begin with, is forgotten: so it does not matter how much that was.
+void AlgorithmLayer::note_begin() {
+  begun_ = true;
+  for (Unit& unit : units_) {
+    unit.due = trace_.activated_at();
+    unit.seen = kernel::kForever;
+    unit.data->begins = 1;
+  }
+}
+
+// One whose input is sampled has its turn when that was.
+bool AlgorithmLayer::is_timed(const Unit& unit) const {
+  const vm::Image& image = program_->image;
+  return policy::is_fed(image.sensors[policy::input_of(image, wiring_of(unit))]);
+}
+
+kernel::Time AlgorithmLayer::next_due() const {
+  kernel::Time next = kernel::kForever;
+  for (const Unit& unit : units_)
+    if (begun_ && is_timed(unit)) next = std::min(next, unit.due);
+  return next;
+}
+
+// Periods that are over already are skipped, never made up for.
+bool AlgorithmLayer::is_due(Unit& unit, kernel::Time now) {
+  if (!is_timed(unit))
+    return mailboxes_.sampled_at(wiring_of(unit).first_input) != unit.seen ||
+           (!unit.released && !latch_inputs(unit, now));
+  if (!begun_) return sensors_.awaits(sensors_.channels_of(unit.sensor));
+  if (now < unit.due) return false;
+  const kernel::Duration period = kernel::milliseconds(wiring_of(unit).period_ms);
+  const kernel::Time missed = (now - unit.due) / period;
+  if (missed != 0) kernel_.current().note_miss();
+  unit.due += (missed + 1) * period;
+  return true;
+}
+
+// A module that has not been seen to be done was lowered: it has its time, and this sample is lost.
+void AlgorithmLayer::serve(Unit& unit, kernel::Time now) {
+  if (kernel_.state(*unit.thread) == kernel::Thread::State::stopped) return;
+  if (unit.released) collect(unit);
+  if (unit.released || !latch(unit, now)) return;
+  release(unit);
+  collect(unit);
+}
+
+bool AlgorithmLayer::latch(Unit& unit, kernel::Time now) {
+  const auto lock = kernel_.lock();
+  unit.seen = mailboxes_.sampled_at(wiring_of(unit).first_input);
+  return latch_inputs(unit, now);
+}
+
+// False when one is unknown: then the module begins anew.
+bool AlgorithmLayer::latch_inputs(Unit& unit, kernel::Time now) {
+  const vm::Sensor& wiring = wiring_of(unit);
+  Data& data = *unit.data;
+  const auto lock = kernel_.lock();
+  for (unsigned i = 0; i < algorithms::module_of(wiring).inputs; ++i) {
+    const unsigned channel = wiring.first_input + i;
+    data.inputs[i] = mailboxes_.fresh_value(channel, program_->image.channels[channel], now);
+    if (data.inputs[i] == vm::kUnknown) {
+      data.begins = 1;
+      return false;
+    }
+  }
+  return true;
+}
+
+void AlgorithmLayer::release(Unit& unit) {
+  {
+    const auto lock = kernel_.lock();
+    unit.run_time = kernel_.run_time(*unit.thread);
+    unit.released = true;
+    unit.told = false;
+  }
+  kernel_.signal(*unit.thread, kReleased);
+}
+
+bool AlgorithmLayer::is_done(const Unit& unit) const {
+  return kernel_.state(*unit.thread) == kernel::Thread::State::blocked;
+}
+
+void AlgorithmLayer::collect(Unit& unit) {
+  if (!is_done(unit)) return;
+  if (!unit.told && is_over(unit, 1)) punish(unit);
+  unit.released = false;
+  if (kernel_.state(*unit.thread) == kernel::Thread::State::stopped) return;
+  const vm::Sensor& wiring = wiring_of(unit);
+  ChannelMask news = 0;
+  for (unsigned i = 0; i < wiring.channel_count; ++i) {
+    const auto channel = static_cast<std::uint8_t>(wiring.first_channel + i);
+    const vm::Value value = unit.data->outputs[program_->image.channels[channel].input];
+    if (value != vm::kUnknown) news |= sensors_.publish(channel, value, unit.seen);
+  }
+  sensors_.announce(news);
+}
+
+// --- budgets ---
+
+bool AlgorithmLayer::is_over(const Unit& unit, std::uint32_t times) const {
+  const auto lock = kernel_.lock();
+  return unit.released && kernel_.run_time(*unit.thread) - unit.run_time > times * unit.budget;
+}
+
+// It runs now, or it would. What is over twice in one release goes on and on.
+void AlgorithmLayer::look_at_budgets() {
+  for (Unit& unit : units_) {
+    if (kernel_.state(*unit.thread) != kernel::Thread::State::ready) continue;
+    if (is_over(unit, unit.told ? 2 : 1)) punish(unit);
+  }
+}
+
+void AlgorithmLayer::punish(Unit& unit) {
+  {
+    const auto lock = kernel_.lock();
+    if (unit.conduct == Conduct::good) {
+      unit.conduct = Conduct::over;
+      unit.told = true;
+      return kernel_.signal(step_thread_, lower_);
+    }
+  }
+  port::stop_overrun(kernel_, *unit.thread);
+}
+
+void AlgorithmLayer::lower_those_over(ProgramThreads& threads) {
+  const std::int8_t idle = policy::idle_priority(program_->image);
+  for (Unit& unit : units_) {
+    if (unit.conduct != Conduct::over) continue;
+    unit.conduct = Conduct::lowered;
+    trace_.emit(EventKind::lowered, trace_.now(), unit.thread->rank());
+    threads.keep_at(*unit.thread, {idle, idle});
+  }
+}
+
+void AlgorithmLayer::retire(unsigned sensor) {
+  const vm::Sensor& wiring = program_->image.sensors[sensor];
+  for (unsigned i = 0; i < wiring.channel_count; ++i)
+    mailboxes_.forget(wiring.first_channel + i);
+}
+
+}  // namespace robosync::layers

@@ -1,0 +1,85 @@
+// What the firmware refuses of an image's algorithms, one wrong thing at a time.
+#include "runtime-m4/algorithms/judge.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/runtime-m4/robot.hpp"
+
+using namespace robosync;
+using vm::Refusal;
+
+namespace {
+
+const char* const kSkinRobot = R"({
+  "sensors": [{"name": "pad", "type": "VIRTUAL", "channels": {"FORCE": {"range": [0, 20]}}}],
+  "actuators": [{"name": "a", "type": "VIRTUAL", "device": "virtual_actuator"}],
+  "algorithms": [{"name": "skin", "module": "touch_levels", "input": "pad"}]})";
+
+// A view of an image that may be changed.
+struct Judged {
+  Judged() : bytes(test::compile("WHEN skin TOUCH IS tap\nDO MOVE a\nEND\n", kSkinRobot)) {
+    REQUIRE(vm::view_image(bytes, image));
+  }
+  vm::Sensor& skin() { return const_cast<vm::Sensor&>(image.sensors[1]); }
+  vm::Value& parameter(std::size_t place) {
+    return const_cast<vm::Value&>(image.constants[skin().address + place]);
+  }
+  template <class Wrong>
+  Refusal refusal(Wrong wrong) {
+    wrong(*this);
+    const vm::Verdict verdict = algorithms::judge(image);
+    if (!verdict.ok()) CHECK((verdict.section == vm::Section::sensors && verdict.index == 1));
+    return verdict.refusal;
+  }
+
+  std::vector<std::byte> bytes;
+  vm::Image image;
+};
+
+template <class Wrong>
+Refusal refusal_of(Wrong wrong) {
+  return Judged().refusal(wrong);
+}
+
+}  // namespace
+
+TEST_CASE("an algorithm needs a module, inputs, parameters, a period and outputs that fit") {
+  CHECK(refusal_of([](auto&) {}) == Refusal::none);
+  CHECK(refusal_of([](auto& i) { i.skin().bus = 1 + 200; }) == Refusal::no_module);
+  CHECK(refusal_of([](auto& i) { i.skin().first_input = 1; }) == Refusal::wrong_input);  // itself
+  CHECK(refusal_of([](auto& i) {
+          const_cast<vm::Sensor&>(i.image.sensors[0]).channel_count = 0;
+        }) == Refusal::wrong_input);
+  CHECK(refusal_of([](auto& i) { i.skin().address = 60'000; }) == Refusal::bad_index);
+  CHECK(refusal_of([](auto& i) { ++i.skin().address; }) == Refusal::bad_index);  // the last ones
+  CHECK(refusal_of([](auto& i) { i.parameter(0) = 0; }) == Refusal::bad_value);
+  CHECK(refusal_of([](auto& i) { i.parameter(0) = 1; }) == Refusal::none);
+  CHECK(refusal_of([](auto& i) { i.parameter(5) = 60'000; }) == Refusal::none);
+  CHECK(refusal_of([](auto& i) { i.parameter(5) = 60'001; }) == Refusal::bad_value);
+  CHECK(refusal_of([](auto& i) { i.skin().period_ms = 1; }) == Refusal::bad_value);
+  CHECK(refusal_of([](auto& i) { i.skin().period_ms = 101; }) == Refusal::bad_value);
+  CHECK(refusal_of([](auto& i) { const_cast<vm::Channel&>(i.image.channels[1]).input = 2; }) ==
+        Refusal::bad_value);
+}
+
+TEST_CASE("every module keeps to the interface's limits") {
+  for (std::size_t m = 0; const robosync_module* module = algorithms::find_module(m); ++m) {
+    const robosync_description* const names = algorithms::find_description(m);
+    REQUIRE(names != nullptr);
+    INFO(names->name);
+    CHECK(names->module == module);
+    CHECK((module->inputs >= 1 && module->inputs <= ROBOSYNC_MOST_INPUTS));
+    CHECK((module->outputs >= 1 && module->outputs <= ROBOSYNC_MOST_OUTPUTS));
+    CHECK(module->parameters <= ROBOSYNC_MOST_PARAMETERS);
+    CHECK((0 < module->shortest_period_ms && module->shortest_period_ms <= names->usual_period_ms &&
+           names->usual_period_ms <= module->longest_period_ms));
+    std::vector<std::int32_t> usual;
+    for (std::size_t p = 0; p < module->parameters; ++p) {
+      const robosync_range& range = module->ranges[p];
+      CHECK((range.least <= range.usual && range.usual <= range.most));
+      usual.push_back(range.usual);
+    }
+    CHECK(module->state_bytes(usual.data()) + module->scratch_bytes(usual.data()) <=
+          ROBOSYNC_MOST_BYTES);
+  }
+}
