@@ -14,7 +14,9 @@ enum class PinUse : std::uint8_t { nothing, pulses, level, picture };
 
 constexpr PinUse pin_use(DriverId driver) {
   switch (driver) {
-#define SENSOR_DRIVER(name, ...) case DriverId::name:
+#define SENSOR_DRIVER(name, ...) \
+  case DriverId::name:           \
+    return PinUse::nothing;
 #define ACTUATOR_DRIVER(name, start, advance, release, ends, output, doc) \
   case DriverId::name:                                                    \
     return PinUse::output;
@@ -46,7 +48,9 @@ constexpr Bus bus_of(DriverId driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case DriverId::name:                   \
     return sample;
-#define ACTUATOR_DRIVER(name, ...) case DriverId::name:
+#define ACTUATOR_DRIVER(name, ...) \
+  case DriverId::name:             \
+    return Bus::nothing;
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER
 #undef ACTUATOR_DRIVER
@@ -55,6 +59,13 @@ constexpr Bus bus_of(DriverId driver) {
   }
   return Bus::nothing;
 }
+
+// No sensor's driver is taken for that of an actuator next to it in the list, nor the other way round.
+#define SENSOR_DRIVER(name, ...) static_assert(pin_use(DriverId::name) == PinUse::nothing);
+#define ACTUATOR_DRIVER(name, ...) static_assert(bus_of(DriverId::name) == Bus::nothing);
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
 
 constexpr bool is_on_i2c(DriverId driver) {
   return bus_of(driver) == Bus::i2c;

@@ -56,7 +56,9 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
 #define SENSOR_DRIVER(name, sample, doc) \
   case vm::DriverId::name:               \
     return sample;
-#define ACTUATOR_DRIVER(name, ...) case vm::DriverId::name:
+#define ACTUATOR_DRIVER(name, ...) \
+  case vm::DriverId::name:         \
+    return 0;
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER
 #undef ACTUATOR_DRIVER
@@ -70,7 +72,9 @@ constexpr ActuatorCosts actuator_costs(vm::DriverId driver) {
   constexpr bool at_once = true;
   constexpr bool later = false;
   switch (driver) {
-#define SENSOR_DRIVER(name, ...) case vm::DriverId::name:
+#define SENSOR_DRIVER(name, ...) \
+  case vm::DriverId::name:       \
+    return {};
 #define ACTUATOR_DRIVER(name, start, advance, release, ends, output, doc) \
   case vm::DriverId::name:                                                \
     return {start, advance, release, ends};
