@@ -212,7 +212,7 @@ class Algorithms(DebuggedTest):
 
     def test_one_that_touches_what_is_not_its_own_is_stopped(self):
         """Not even what behaviours may read."""
-        self.in_module(lambda debugger: debugger.set_register(0, ARENA))
+        self.in_module(lambda debugger: debugger.set_register(2, ARENA))  # what it only reads
         self.expect(event="fault", thread="skin", cause=NO_ACCESS)
         self.expect(event="stale", sensor="skin")
         address = next(fault["address"] for fault in self.events(event="fault", cause=NO_ACCESS))
