@@ -2,6 +2,7 @@
 //
 // One walk over the sections in their order, one check for each kind of record. A check may rely on
 // the sections before its own.
+#include <algorithm>
 #include <cstddef>
 #include <type_traits>
 
@@ -26,6 +27,7 @@ struct Walk {
   std::uint32_t next_track = 0;
   std::uint32_t next_key = 0;
   std::uint32_t last_word = 0;  // of the source lines
+  bool reads_pins = false;      // there is a sensor on a pin
 };
 
 enum class DriverKind : std::uint8_t { sensor, actuator };
@@ -100,6 +102,7 @@ Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t) {
   if (sensor.driver == DriverId::algorithm) return check_algorithm(sensor);
   if (sensor.first_input != 0) return Refusal::bad_value;
   if (bus_of(sensor.driver) == Bus::nothing) return Refusal::none;
+  walk.reads_pins = walk.reads_pins || is_on_pin(sensor.driver);
   const bool place = is_on_pin(sensor.driver)
                          ? is_enumerator(static_cast<ActiveLevel>(sensor.bus))
                          : sensor.address >= kFirstAddress && sensor.address <= kLastAddress;
@@ -128,12 +131,17 @@ std::uint32_t output_of(const Actuator& actuator) {
   return drives_pin(actuator.driver) ? actuator.pin : kNothing;
 }
 
+bool is_read(const Image& image, std::uint32_t pin) {
+  return std::ranges::any_of(image.sensors, [pin](const Sensor& sensor) {
+    return sensor.address == pin && is_on_pin(sensor.driver);
+  });
+}
+
 // One output has one owner, nobody reads its pin, and whoever has a motor lets it stand still in its safe state.
 Refusal check_output(const Walk& walk, const Actuator& actuator, std::size_t index) {
   const std::uint32_t output = output_of(actuator);
   if (output == kNothing) return Refusal::none;
-  for (const Sensor& sensor : walk.image.sensors)
-    if (sensor.address == output && is_on_pin(sensor.driver)) return Refusal::shared_pin;
+  if (walk.reads_pins && is_read(walk.image, output)) return Refusal::shared_pin;
   for (std::size_t a = 0; a < index; ++a)
     if (output_of(walk.image.actuators[a]) == output) return Refusal::shared_pin;
   return good_or(Refusal::drives_on,
