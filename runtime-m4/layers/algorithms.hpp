@@ -61,8 +61,9 @@ public:
 private:
   static constexpr kernel::Events kBegin = 2;  // besides SensorLayer::kSampled
   static constexpr kernel::Events kReleased = 1;
-  // Counts of the clock that interrupts may take in one release.
-  static constexpr std::uint32_t kInterrupts = 2000;
+  // Counts of the clock that interrupts may take in one release: what both buffers of the line hold may come and go at once
+  // where nothing paces it, as in an emulator.
+  static constexpr std::uint32_t kInterrupts = 50'000;
 
   // How a module stands with its budget.
   enum class Conduct : std::uint8_t { good, over, lowered };
