@@ -8,7 +8,7 @@
 
 namespace robosync::link {
 
-inline constexpr std::uint8_t kProtocolVersion = 7;
+inline constexpr std::uint8_t kProtocolVersion = 8;
 inline constexpr std::size_t kMaxPayload = 240;
 inline constexpr std::size_t kNameLength = 16;  // NUL-padded
 using Name = std::array<char, kNameLength>;

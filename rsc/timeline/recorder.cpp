@@ -51,6 +51,7 @@ bool is_message(EventKind kind) {
     case EventKind::alert:
     case EventKind::fault:
     case EventKind::deadline:
+    case EventKind::lowered:
     case EventKind::overrun:
     case EventKind::zero_divide:
     case EventKind::silent:

@@ -137,7 +137,7 @@ std::string other_words(const EventReader& reader) {
     case EventKind::lowered:
       return fmt::format(
           "{} runs longer than its module declares: it ranks below all behaviours now",
-          reader.thread_name());
+          reader.sensor_name());
     case EventKind::priority:
       return priority_words(reader);
     case EventKind::silent:

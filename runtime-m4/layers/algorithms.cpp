@@ -227,7 +227,7 @@ void AlgorithmLayer::lower_those_over(ProgramThreads& threads) {
   for (Unit& unit : units_) {
     if (unit.conduct != Conduct::over) continue;
     unit.conduct = Conduct::lowered;
-    trace_.emit(EventKind::lowered, trace_.now(), unit.thread->rank());
+    trace_.emit(EventKind::lowered, trace_.now(), unit.sensor);
     threads.keep_at(*unit.thread, {idle, idle});
   }
 }

@@ -221,7 +221,7 @@ class Algorithms(DebuggedTest):
 
     def test_one_that_takes_longer_than_it_declares_is_lowered_and_stopped_the_next_time(self):
         self.in_module(self.stay)
-        self.expect(event="lowered", thread="skin")
+        self.expect(event="lowered", sensor="skin")
         self.board.set_touch(6, 0)
         self.expect(event="command", actuator="left_arm")  # it works nevertheless
         self.assertEqual(self.events(event="fault"), [])
@@ -233,7 +233,7 @@ class Algorithms(DebuggedTest):
 
     def test_one_that_never_ends_is_lowered_and_stopped(self):
         self.in_module(lambda debugger: debugger.set_register(PC, endless_loop()))
-        self.expect(event="lowered", thread="skin")
+        self.expect(event="lowered", sensor="skin")
         self.expect(event="fault", thread="skin", cause=OVERRUN, pc=endless_loop())
         self.expect(event="stale", sensor="skin")
         self.others_go_on(stopped=True)
