@@ -2,7 +2,6 @@
 //
 // One walk over the sections in their order, one check for each kind of record. A check may rely on
 // the sections before its own.
-#include <algorithm>
 #include <cstddef>
 #include <type_traits>
 
@@ -132,9 +131,9 @@ std::uint32_t output_of(const Actuator& actuator) {
 }
 
 bool is_read(const Image& image, std::uint32_t pin) {
-  return std::ranges::any_of(image.sensors, [pin](const Sensor& sensor) {
-    return sensor.address == pin && is_on_pin(sensor.driver);
-  });
+  for (const Sensor& sensor : image.sensors)
+    if (sensor.address == pin && is_on_pin(sensor.driver)) return true;
+  return false;
 }
 
 // One output has one owner, nobody reads its pin, and whoever has a motor lets it stand still in its safe state.
