@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "analysis/task_set.hpp"
-
 namespace robosync::analysis {
 namespace {
 
@@ -54,16 +52,16 @@ Instructions ResponseReport::microseconds(Instructions instructions) const {
   return (instructions * 1000 + instructions_per_ms - 1) / instructions_per_ms;
 }
 
-ResponseReport response_report(const vm::Image& image, const policy::BoardCosts& board, int cap,
-                               Depth depth) {
-  const TaskSet base = task_set_of(image, board);
+ResponseReport response_report(const vm::Image& image, const policy::BoardCosts& board,
+                               ModuleCost module_cost, int cap, Depth depth) {
+  const TaskSet base = task_set_of(image, board, module_cost);
   ResponseReport report;
   report.instructions_per_ms = board.instructions_per_ms();
   report.utilization = utilization(base);
   report.adapts = cap > 0;
   report.loads = loads_of(base, report.instructions_per_ms);
   if (depth == Depth::until_refused && report.utilization > 1) return report;
-  const TaskSet adapted = cap > 0 ? task_set_of(image, board, cap) : TaskSet{};
+  const TaskSet adapted = cap > 0 ? task_set_of(image, board, module_cost, cap) : TaskSet{};
   for (std::size_t s = 0; s < base.sources.size(); ++s) {
     const Source& source = base.sources[s];
     if (source.actuators.empty()) continue;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/response_time.hpp"
+#include "analysis/task_set.hpp"
 #include "runtime-m4/policy/costs.hpp"
 #include "vm/image.hpp"
 
@@ -33,9 +34,10 @@ struct ResponseReport {
 // What is known when the processor as a whole cannot do it: that, or every path nevertheless.
 enum class Depth : std::uint8_t { until_refused, all };
 
-// `cap`: as in task_set.hpp. The image must be verified.
+// Image, `module_cost` and `cap` as in task_set.hpp.
 [[nodiscard]] ResponseReport response_report(const vm::Image& image,
-                                             const policy::BoardCosts& board, int cap = 0,
+                                             const policy::BoardCosts& board,
+                                             ModuleCost module_cost, int cap = 0,
                                              Depth depth = Depth::all);
 
 }  // namespace robosync::analysis

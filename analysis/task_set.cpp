@@ -12,7 +12,6 @@
 #include "analysis/costs.hpp"
 #include "analysis/exclusive.hpp"
 #include "analysis/step_work.hpp"
-#include "runtime-m4/algorithms/judge.hpp"
 #include "runtime-m4/policy/adaptation.hpp"
 #include "runtime-m4/policy/rules.hpp"
 #include "runtime-m4/policy/threads.hpp"
@@ -33,8 +32,12 @@ Rules common(const Rules& a, const Rules& b) {
 
 class Builder {
 public:
-  Builder(const vm::Image& image, const policy::BoardCosts& board, int cap)
-      : image_(image), board_(board), cap_(static_cast<std::int8_t>(cap)), work_(image) {}
+  Builder(const vm::Image& image, const policy::BoardCosts& board, ModuleCost module_cost, int cap)
+      : image_(image),
+        board_(board),
+        module_cost_(module_cost),
+        cap_(static_cast<std::int8_t>(cap)),
+        work_(image) {}
 
   TaskSet build() {
     for (unsigned s = 0; s < image_.sensors.size(); ++s)
@@ -371,11 +374,9 @@ private:
     // By its category a module outranks sensors of its priority: it counts as if it outranked all.
     for (const vm::Sensor& sensor : image_.sensors)
       if (policy::is_algorithm(sensor))
-        set_.interferences.push_back(
-            {fmt::format("the module of {}", image_.string(sensor.name)),
-             instructions_in_ms(sensor.period_ms),
-             Instructions{board_.wake} +
-                 algorithms::module_of(sensor).cost(algorithms::config_of(image_, sensor))});
+        set_.interferences.push_back({fmt::format("the module of {}", image_.string(sensor.name)),
+                                      instructions_in_ms(sensor.period_ms),
+                                      Instructions{board_.wake} + module_cost_(image_, sensor)});
     for (const vm::Behavior& behavior : image_.behaviors.subspan(policy::first_behavior(image_)))
       commanded_ |= behavior.actuators;
     // Its next setpoint; or its command is done, and the next one in its queue begins.
@@ -390,6 +391,7 @@ private:
 
   const vm::Image& image_;
   const policy::BoardCosts& board_;
+  ModuleCost module_cost_;
   std::int8_t cap_;
   StepWork work_;
   TaskSet set_;
@@ -402,8 +404,9 @@ private:
 
 }  // namespace
 
-TaskSet task_set_of(const vm::Image& image, const policy::BoardCosts& board, int cap) {
-  TaskSet set = Builder(image, board, cap).build();
+TaskSet task_set_of(const vm::Image& image, const policy::BoardCosts& board, ModuleCost module_cost,
+                    int cap) {
+  TaskSet set = Builder(image, board, module_cost, cap).build();
   settle(set, cap > 0 ? Priorities::adapted : Priorities::base);
   return set;
 }

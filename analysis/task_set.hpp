@@ -8,9 +8,12 @@
 
 namespace robosync::analysis {
 
-// Of a verified image. `cap`: the highest priority that an adapted behaviour can reach; 0:
+// Instructions that one call of an algorithm's module takes at most, as the firmware says.
+using ModuleCost = Instructions (*)(const vm::Image& image, const vm::Sensor& algorithm);
+
+// Of a verified image, whose algorithms the firmware has. `cap`: the highest priority that an adapted behaviour can reach; 0:
 // priorities stay as they are written.
 [[nodiscard]] TaskSet task_set_of(const vm::Image& image, const policy::BoardCosts& board,
-                                  int cap = 0);
+                                  ModuleCost module_cost, int cap = 0);
 
 }  // namespace robosync::analysis

@@ -71,9 +71,9 @@ Diagnostics offer_modules(const Diagnostics& diagnostics) {
 Result compile(Input program, Input configuration, const Options& options) {
   Result result;
   Diagnostics& diagnostics = result.diagnostics;
-  result.reading =
-      std::make_shared<const Reading>(read_all(std::move(program), std::move(configuration),
-                                               options.read_module, result.sources, diagnostics));
+  result.reading = std::make_shared<const Reading>(
+      read_all(std::move(program), std::move(configuration), options.read_module,
+               options.algorithms, result.sources, diagnostics));
   const Reading& parsed = *result.reading;
   result.board = board_for(parsed.robot ? parsed.robot->board : std::nullopt);
   ir::Program written;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "compiler/config/algorithm_modules.hpp"
 #include "compiler/config/boards.hpp"
 #include "compiler/config/robot.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
@@ -22,6 +23,7 @@ struct Options {
   std::uint32_t seed = 0;  // of the random numbers, in the place of the configuration's; 0: none
   bool hash = true;        // name the program in the image; who only checks it needs no name
   ModuleReader read_module{};
+  AlgorithmModules algorithms{};  // that robot.json may name
 };
 
 struct Result {

@@ -16,7 +16,7 @@ Trees Reading::trees() const {
 
 // What the parsers had to leave out would be missed by name: better one true message than ten.
 Reading read_all(Input program, Input configuration, const ModuleReader& read_module,
-                 SourceMap& sources, Diagnostics& diagnostics) {
+                 AlgorithmModules algorithms, SourceMap& sources, Diagnostics& diagnostics) {
   const FileId program_file = sources.add(std::move(program.name), std::move(program.text));
   const FileId configuration_file =
       sources.add(std::move(configuration.name), std::move(configuration.text));
@@ -24,7 +24,7 @@ Reading read_all(Input program, Input configuration, const ModuleReader& read_mo
   reading.tree = parse(sources, program_file, diagnostics);
   reading.modules = load_modules(reading.tree, sources, read_module, diagnostics);
   const bool whole_trees = diagnostics.errors() == 0;
-  reading.robot = read_robot(sources, configuration_file, diagnostics);
+  reading.robot = read_robot(sources, configuration_file, diagnostics, algorithms);
   reading.complete = whole_trees && reading.robot && reading.robot->complete;
   return reading;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "compiler/config/algorithm_modules.hpp"
 #include "compiler/config/robot.hpp"
 #include "compiler/input.hpp"
 #include "compiler/modules.hpp"
@@ -23,6 +24,7 @@ struct Reading {
 
 // The texts go into `sources`, which must outlive the result.
 [[nodiscard]] Reading read_all(Input program, Input configuration, const ModuleReader& read_module,
-                               SourceMap& sources, Diagnostics& diagnostics);
+                               AlgorithmModules algorithms, SourceMap& sources,
+                               Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

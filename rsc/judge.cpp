@@ -5,6 +5,7 @@
 
 #include "analysis/report.hpp"
 #include "compiler/codegen/costly_rules.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/timing.hpp"
 
@@ -14,7 +15,8 @@ namespace {
 using compiler::Code, compiler::Diagnostic;
 
 analysis::ResponseReport responses_of(const vm::Image& image, const policy::BoardCosts& board) {
-  return analysis::response_report(image, board, cap_of(image), analysis::Depth::until_refused);
+  return analysis::response_report(image, board, module_cost, cap_of(image),
+                                   analysis::Depth::until_refused);
 }
 
 void judge_memory(const vm::Image& image, const policy::BoardMemory& board,

@@ -16,6 +16,7 @@
 
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/source/ascii.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
@@ -67,7 +68,8 @@ compiler::Result compile(const std::string& file, const CompileOptions& options,
                          .optimize = options.optimize,
                          .seed = options.seed,
                          .hash = options.hash,
-                         .read_module = modules});
+                         .read_module = modules,
+                         .algorithms = algorithm_modules()});
   judge(result, options.judged);
   return result;
 }

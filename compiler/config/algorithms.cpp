@@ -8,25 +8,18 @@
 #include "compiler/config/fields.hpp"
 #include "compiler/config/values.hpp"
 #include "compiler/diagnostics/nearest.hpp"
-#include "runtime-m4/algorithms/modules.hpp"
 
 namespace robosync::compiler {
 namespace {
 
-using algorithms::find_description;
-
-constexpr std::uint8_t number_of(vm::Dimension dimension) {
-  return static_cast<std::uint8_t>(dimension);
-}
-static_assert(ROBOSYNC_NUMBER == number_of(vm::Dimension::number) &&
-              ROBOSYNC_SECONDS == number_of(vm::Dimension::duration) &&
-              ROBOSYNC_G == number_of(vm::Dimension::acceleration));
-static_assert(ROBOSYNC_ONE == vm::kScale && ROBOSYNC_UNKNOWN == vm::kUnknown);
-
 class AlgorithmReader {
 public:
-  AlgorithmReader(const json::Value& value, Robot& robot, Diagnostics& diagnostics)
-      : fields_(value, Object::algorithm, diagnostics), robot_(robot), diagnostics_(diagnostics) {}
+  AlgorithmReader(const json::Value& value, AlgorithmModules modules, Robot& robot,
+                  Diagnostics& diagnostics)
+      : fields_(value, Object::algorithm, diagnostics),
+        modules_(modules),
+        robot_(robot),
+        diagnostics_(diagnostics) {}
 
   bool read() {
     const auto name = read_name(fields_, "an algorithm", diagnostics_);
@@ -42,17 +35,17 @@ public:
     sensor.name = *name;
     sensor.driver = vm::DriverId::algorithm;
     sensor.period_ms = period(*input);
-    sensor.algorithm = {number_, static_cast<std::size_t>(input - robot_.sensors.data()),
-                        module().inputs, config(input->channels.front())};
-    for (std::size_t i = 0; i < module().outputs; ++i)
-      sensor.channels.push_back(channel(*name, i, *input));
+    sensor.algorithm = {static_cast<std::uint8_t>(module_ - modules_.data()),
+                        static_cast<std::size_t>(input - robot_.sensors.data()),
+                        module_->inputs.size(), config(input->channels.front())};
+    for (const ModuleOutput& output : module_->outputs)
+      sensor.channels.push_back(channel(*name, output, *input));
     robot_.sensors.push_back(std::move(sensor));
     return true;
   }
 
 private:
-  const robosync_module& module() const { return *description_->module; }
-  std::string shown() const { return "`" + std::string(description_->name) + "`"; }
+  std::string shown() const { return "`" + module_->name + "`"; }
 
   // ---- which module
 
@@ -76,33 +69,35 @@ private:
         .report(Code::W0214, "this version of rsc cannot load modules from files: " + name.shown() +
                                  " does nothing")
         .label(path.span)
-        .helps("the modules of the firmware are named with \"module\": " + list_names(names()));
+        .helps("the modules of the firmware are named with \"module\": " +
+               list_names(names_of(modules_)));
   }
 
-  static std::vector<std::string> names() {
+  template <typename Named>
+  static std::vector<std::string> names_of(const Named& list) {
     std::vector<std::string> names;
-    for (std::size_t i = 0; const auto* description = find_description(i); ++i)
-      names.emplace_back(description->name);
+    names.reserve(list.size());
+    for (const auto& entry : list)
+      names.push_back(entry.name);
     return names;
   }
 
   bool find_module() {
     const auto* value = fields_.require("module", "an algorithm");
     if (value == nullptr || !read_text(*value, diagnostics_)) return false;
-    const std::vector<std::string> known = names();
-    const auto found = std::ranges::find(known, value->text);
-    if (found != known.end()) {
-      number_ = static_cast<std::uint8_t>(found - known.begin());
-      description_ = find_description(number_);
+    const auto found = std::ranges::find(modules_, value->text, &AlgorithmModule::name);
+    if (found != modules_.end()) {
+      module_ = &*found;
       return true;
     }
+    const std::vector<std::string> known = names_of(modules_);
     Diagnostic& d =
         diagnostics_
             .report(Code::E0209, "the firmware has no algorithm module `" + value->text + "`")
             .label(value->span);
     if (const auto near = nearest(value->text, known))
       d.helps("did you mean `" + *near + "`?").fix(value->span, "\"" + *near + "\"");
-    else
+    else if (!known.empty())
       d.helps("it has " + list_names(known));
     return false;
   }
@@ -137,30 +132,26 @@ private:
 
   // Its first channels, in their order.
   bool can_read(const SensorConfig& sensor) {
-    const std::size_t needed = module().inputs;
+    const std::size_t needed = module_->inputs.size();
     if (sensor.channels.size() < needed) {
-      std::vector<std::string> wanted;
-      for (std::size_t i = 0; i < needed; ++i)
-        wanted.emplace_back(description_->inputs[i].name);
       diagnostics_
           .report(Code::E0205, shown() + " reads " + std::to_string(needed) + " channels, and " +
                                    sensor.name.shown() + " has " +
                                    std::to_string(sensor.channels.size()))
           .label(input_span_)
-          .helps("in this order: " + list_names(wanted));
+          .helps("in this order: " + list_names(names_of(module_->inputs)));
       return false;
     }
     for (std::size_t i = 0; i < needed; ++i)
-      if (!can_read(sensor.channels[i], description_->inputs[i])) return false;
+      if (!can_read(sensor.channels[i], module_->inputs[i])) return false;
     return true;
   }
 
-  bool can_read(const ChannelConfig& channel, const robosync_input& input) {
-    const bool any = input.unit == ROBOSYNC_AS_INPUT;
-    if (channel.labels.empty() && (any || input.unit == number_of(channel.unit->dimension)))
-      return true;
+  bool can_read(const ChannelConfig& channel, const ModuleInput& input) {
+    const vm::Dimension wanted = input.dimension.value_or(channel.unit->dimension);
+    if (channel.labels.empty() && wanted == channel.unit->dimension) return true;
     const std::string what =
-        any ? "numbers" : std::string(dimension_phrase(static_cast<vm::Dimension>(input.unit)));
+        input.dimension ? std::string(dimension_phrase(wanted)) : std::string("numbers");
     const std::string is = channel.labels.empty()
                                ? std::string(dimension_phrase(channel.unit->dimension))
                                : std::string("words");
@@ -186,16 +177,16 @@ private:
           .helps("set the rate of its channels, and leave this one out");
       return input.period_ms;
     }
-    std::uint16_t period = fed ? description_->usual_period_ms : input.period_ms;
+    std::uint16_t period = fed ? module_->usual_period_ms : input.period_ms;
     if (rate != nullptr) period = read_rate(*rate, diagnostics_).value_or(period);
-    if (period >= module().shortest_period_ms && period <= module().longest_period_ms)
+    if (period >= module_->shortest_period_ms && period <= module_->longest_period_ms)
       return period;
     diagnostics_
-        .report(Code::E0205, shown() + " works from " + hertz(module().longest_period_ms) + " to " +
-                                 hertz(module().shortest_period_ms) + ", not at " + hertz(period))
+        .report(Code::E0205, shown() + " works from " + hertz(module_->longest_period_ms) + " to " +
+                                 hertz(module_->shortest_period_ms) + ", not at " + hertz(period))
         .label(rate != nullptr ? rate->span : input_span_)
         .helps(rate != nullptr ? "change this rate" : "change the `rate` of its channels");
-    return description_->usual_period_ms;
+    return module_->usual_period_ms;
   }
 
   static std::string hertz(std::uint16_t period_ms) {
@@ -207,26 +198,23 @@ private:
 
   std::vector<vm::Value> config(const ChannelConfig& input) {
     std::vector<vm::Value> values;
-    for (std::size_t p = 0; p < module().parameters; ++p)
-      values.push_back(module().ranges[p].usual);
+    for (const ModuleParameter& parameter : module_->parameters)
+      values.push_back(parameter.usual);
     const auto* object = fields_.find("config");
     if (object == nullptr || !expect_kind(*object, json::Kind::object, diagnostics_)) return values;
     report_repeated_keys(*object, diagnostics_);
     for (const json::Member& member : object->members)
       if (const auto place = find_parameter(member)) {
-        const std::uint8_t unit = description_->parameters[*place].unit;
-        read_parameter(member.value, module().ranges[*place],
-                       unit == ROBOSYNC_AS_INPUT ? *input.unit
-                                                 : canonical_unit(static_cast<vm::Dimension>(unit)),
+        const ModuleParameter& parameter = module_->parameters[*place];
+        read_parameter(member.value, parameter,
+                       parameter.dimension ? canonical_unit(*parameter.dimension) : *input.unit,
                        values[*place]);
       }
     return values;
   }
 
   std::optional<std::size_t> find_parameter(const json::Member& member) {
-    std::vector<std::string> known;
-    for (std::size_t p = 0; p < module().parameters; ++p)
-      known.emplace_back(description_->parameters[p].name);
+    const std::vector<std::string> known = names_of(module_->parameters);
     const auto found = std::ranges::find(known, member.key);
     if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
     Diagnostic& d =
@@ -239,34 +227,34 @@ private:
     return std::nullopt;
   }
 
-  void read_parameter(const json::Value& value, const robosync_range& range, const Unit& unit,
-                      vm::Value& parameter) {
+  void read_parameter(const json::Value& value, const ModuleParameter& parameter, const Unit& unit,
+                      vm::Value& into) {
     const auto read = read_quantity(value, unit, diagnostics_);
     if (!read) return;
-    if (*read >= range.least && *read <= range.most) {
-      parameter = *read;
+    if (*read >= parameter.min && *read <= parameter.max) {
+      into = *read;
       return;
     }
     diagnostics_
-        .report(Code::E0205, "this must be from " + format_value(range.least, unit) + " to " +
-                                 format_value(range.most, unit))
+        .report(Code::E0205, "this must be from " + format_value(parameter.min, unit) + " to " +
+                                 format_value(parameter.max, unit))
         .label(value.span);
   }
 
   // ---- its channels
 
-  ChannelConfig channel(const Spelled& name, std::size_t place, const SensorConfig& input) const {
-    const robosync_output& output = description_->outputs[place];
+  ChannelConfig channel(const Spelled& name, const ModuleOutput& output,
+                        const SensorConfig& input) const {
     ChannelConfig channel;
     channel.name = {output.name, name.span};
-    channel.unit = &canonical_unit(static_cast<vm::Dimension>(output.unit));
+    channel.unit = &canonical_unit(output.dimension);
     channel.unit_span = name.span;
-    channel.input = static_cast<std::uint8_t>(place);
-    channel.min = output.least;
-    channel.max = output.most;
-    channel.labels.assign(output.labels, output.labels + output.label_count);
+    channel.input = static_cast<std::uint8_t>(&output - module_->outputs.data());
+    channel.min = output.min;
+    channel.max = output.max;
+    channel.labels = output.labels;
     // It is as old as what it was made of.
-    for (std::size_t i = 0; i < module().inputs; ++i) {
+    for (std::size_t i = 0; i < module_->inputs.size(); ++i) {
       const std::uint16_t stale = input.channels[i].stale_ms;
       if (stale != 0 && (channel.stale_ms == 0 || stale < channel.stale_ms))
         channel.stale_ms = stale;
@@ -275,17 +263,18 @@ private:
   }
 
   Fields fields_;
+  AlgorithmModules modules_;
   Robot& robot_;
   Diagnostics& diagnostics_;
-  const robosync_description* description_ = nullptr;
-  std::uint8_t number_ = 0;
+  const AlgorithmModule* module_ = nullptr;
   Span input_span_;
 };
 
 }  // namespace
 
-bool read_algorithm(const json::Value& value, Robot& robot, Diagnostics& diagnostics) {
-  return AlgorithmReader(value, robot, diagnostics).read();
+bool read_algorithm(const json::Value& value, AlgorithmModules modules, Robot& robot,
+                    Diagnostics& diagnostics) {
+  return AlgorithmReader(value, modules, robot, diagnostics).read();
 }
 
 }  // namespace robosync::compiler

@@ -1,6 +1,7 @@
-// Entries of "algorithms" in robot.json. What a module says of itself (runtime-m4/algorithms/) decides what may stand there.
+// Entries of "algorithms" in robot.json.
 #pragma once
 
+#include "compiler/config/algorithm_modules.hpp"
 #include "compiler/config/json_reader.hpp"
 #include "compiler/config/robot.hpp"
 
@@ -8,6 +9,7 @@ namespace robosync::compiler {
 
 // Adds the algorithm behind the sensors of `robot`, which have been read, as one more sensor: its outputs are that one's
 // channels. False when there is an entry that cannot be used.
-bool read_algorithm(const json::Value& value, Robot& robot, Diagnostics& diagnostics);
+bool read_algorithm(const json::Value& value, AlgorithmModules modules, Robot& robot,
+                    Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

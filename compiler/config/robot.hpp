@@ -35,7 +35,7 @@ struct ChannelConfig {
 
 // What makes a sensor an algorithm: its channels are the outputs of a module.
 struct AlgorithmConfig {
-  std::uint8_t module = 0;        // its number (runtime-m4/algorithms/modules.def)
+  std::uint8_t module = 0;        // its number (algorithm_modules.hpp)
   std::size_t input = 0;          // the sensor that it reads, a place in Robot::sensors
   std::size_t inputs = 0;         // … of which so many channels, the first ones
   std::vector<vm::Value> config;  // its parameters, all of them

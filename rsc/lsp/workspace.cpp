@@ -6,6 +6,7 @@
 
 #include "compiler/project.hpp"
 #include "compiler/reading.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/lsp/library.hpp"
 #include "rsc/lsp/uris.hpp"
@@ -54,7 +55,8 @@ compiler::Result without_robot(const std::string& program, const Texts& texts) {
 
 // A robot.json that no program uses yet.
 compiler::Result alone(const std::string& configuration, const Texts& texts) {
-  compiler::Result result = compiler::compile({"", ""}, {configuration, texts.read(configuration)});
+  compiler::Result result = compiler::compile({"", ""}, {configuration, texts.read(configuration)},
+                                              {.algorithms = algorithm_modules()});
   compiler::Diagnostics kept;
   for (const compiler::Diagnostic& diagnostic : result.diagnostics.all()) {
     const auto is_there = [](const compiler::Label& label) {

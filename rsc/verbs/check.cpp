@@ -12,6 +12,7 @@
 
 #include "analysis/report.hpp"
 #include "compiler/diagnostics/render.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "rsc/board.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
@@ -50,7 +51,7 @@ void report_timing(const CheckOptions& options, const std::string& file, compile
   const policy::BoardCosts& costs = costs_of(compiled.board);
   const Timing timing = timing_of(program.image(), program.board());
   const analysis::ResponseReport responses =
-      analysis::response_report(program.image(), costs, cap_of(program.image()));
+      analysis::response_report(program.image(), costs, module_cost, cap_of(program.image()));
   if (options.format == Format::json) {
     auto object = timing_json(timing, file);
     object["responses"] = response_json(responses);

@@ -15,6 +15,7 @@
 #include "compiler/explain/codes.hpp"
 #include "compiler/explain/program_text.hpp"
 #include "compiler/syntax/parser.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
@@ -78,7 +79,7 @@ std::optional<compiler::Robot> robot_for(const ExplainOptions& options,
   }
   const compiler::FileId file = sources.add(path.string(), read_text(path));
   compiler::Diagnostics ignored;
-  return compiler::read_robot(sources, file, ignored);
+  return compiler::read_robot(sources, file, ignored, algorithm_modules());
 }
 
 void explain_file(const ExplainOptions& options) {

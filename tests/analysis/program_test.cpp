@@ -6,6 +6,7 @@
 
 #include "analysis/report.hpp"
 #include "analysis/task_set.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "rsc/board.hpp"
 #include "tests/analysis/simulation.hpp"
 #include "tests/rsc/process.hpp"
@@ -50,8 +51,10 @@ TEST_CASE("examples: no simulated release takes longer than is printed") {
     if (!std::filesystem::exists(test::kRoot / file)) continue;
     INFO(file);
     const tool::Program program = test::compile_example(file);
-    const analysis::TaskSet set = analysis::task_set_of(program.image(), tool::board_costs());
-    CHECK(analysis::response_report(program.image(), tool::board_costs()).schedulable());
+    const analysis::TaskSet set =
+        analysis::task_set_of(program.image(), tool::board_costs(), tool::module_cost);
+    CHECK(analysis::response_report(program.image(), tool::board_costs(), tool::module_cost)
+              .schedulable());
     for (unsigned p = 0; p < 100; ++p) {
       test::Pattern pattern;
       for (const analysis::Source& source : set.sources)
@@ -74,7 +77,7 @@ TEST_CASE("examples: no simulated release takes longer than is printed") {
 TEST_CASE("adapted priorities make nothing shorter") {
   const tool::Program program = test::compile_example("examples/tickle_companion/robot.rsl");
   const analysis::ResponseReport report =
-      analysis::response_report(program.image(), tool::board_costs(), 99);
+      analysis::response_report(program.image(), tool::board_costs(), tool::module_cost, 99);
   REQUIRE_FALSE(report.paths.empty());
   for (const analysis::PathTiming& path : report.paths)
     CHECK((!path.adapted.bounded || path.adapted.time >= path.base.time));
@@ -158,7 +161,7 @@ TEST_CASE(
         test::compile_with_docs_robot("TIMER idle\nREMEMBER n = 5s\nWHEN " + condition +
                                       " DO\n  RESTART idle\n  SET n TO idle\nEND\n");
     const policy::BoardCosts& board = tool::board_costs();
-    const analysis::TaskSet set = analysis::task_set_of(program.image(), board);
+    const analysis::TaskSet set = analysis::task_set_of(program.image(), board, tool::module_cost);
     const auto timer = std::ranges::find_if(set.sources, [](const analysis::Source& source) {
       return source.name == "the rule at line 3, FOR or TIMER";
     });

@@ -9,6 +9,7 @@
 
 #include "compiler/compiler.hpp"
 #include "compiler/diagnostics/render.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "tests/runtime-m4/rig.hpp"
 
 namespace robosync::test {
@@ -44,7 +45,8 @@ std::string when_near(const std::string& body) {
 }
 
 std::vector<std::byte> compile(const std::string& rsl, const std::string& json) {
-  const compiler::Result result = compiler::compile({"test.rsl", rsl}, {"test.json", json});
+  const compiler::Result result = compiler::compile({"test.rsl", rsl}, {"test.json", json},
+                                                    {.algorithms = tool::algorithm_modules()});
   INFO(compiler::render_human(result.diagnostics, result.sources, false) << rsl);
   REQUIRE_FALSE(result.image.empty());
   return result.image;

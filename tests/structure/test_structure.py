@@ -33,10 +33,10 @@ class Repository(unittest.TestCase):
     def test_the_map_is_read(self):
         lines = (ROOT / "docs/architecture.md").read_text("utf-8").splitlines()
         layers = structure.read_layers(lines)
-        self.assertEqual(layers["compiler"], {"compiler", "vm", "runtime-m4/algorithms"})
+        self.assertEqual(layers["compiler"], {"compiler", "vm"})
         self.assertEqual(layers["runtime-m4"], {"runtime-m4", "vm", "link"})
         self.assertEqual(layers["runtime-m4/policy"], {"runtime-m4/policy", "vm"})
-        self.assertEqual(layers["analysis"], {"analysis", "vm", "runtime-m4/policy", "runtime-m4/algorithms"})
+        self.assertEqual(layers["analysis"], {"analysis", "vm", "runtime-m4/policy"})
         self.assertIsNone(layers["rsc"])
 
     def assert_clean(self, rule):

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/report.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "rsc/board.hpp"
 #include "rsc/judge.hpp"
 #include "rsc/timing.hpp"
@@ -48,9 +49,9 @@ TEST_CASE("docs/timing.md: the table of an example") {
 TEST_CASE("docs/timing.md: the response times of an example") {
   const std::string file = "examples/touch_companion/robot.rsl";
   const tool::Program program = test::compile_example(file);
-  expect_printed(
-      "rsc check --timing " + file + ", its end",
-      tool::response_text(analysis::response_report(program.image(), tool::board_costs())));
+  expect_printed("rsc check --timing " + file + ", its end",
+                 tool::response_text(analysis::response_report(program.image(), tool::board_costs(),
+                                                               tool::module_cost)));
 }
 
 TEST_CASE("docs/timing.md: a program that costs too much, and its mend") {

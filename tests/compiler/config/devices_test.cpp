@@ -12,7 +12,7 @@
 #include "compiler/config/fields.hpp"
 #include "compiler/config/units.hpp"
 #include "compiler/config/wiring.hpp"
-#include "runtime-m4/algorithms/modules.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "tests/compiler/compiled.hpp"
 #include "tests/support/golden.hpp"
 #include "vm/drivers.hpp"
@@ -226,8 +226,8 @@ TEST_CASE("the schema lists the boards, types, devices, modules and units that t
     (is_sensor ? sensor_devices : actuator_devices).push_back(part);
   }
   Json& modules = list(definitions.at("algorithm"), "module");
-  for (std::size_t m = 0; const auto* description = algorithms::find_description(m); ++m)
-    modules.push_back(description->name);
+  for (const AlgorithmModule& module : tool::algorithm_modules())
+    modules.push_back(module.name);
   Json& unit_names = list(definitions.at("channel"), "unit");
   for (const Unit& unit : units())
     unit_names.push_back(unit.spelling);

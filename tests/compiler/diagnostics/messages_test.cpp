@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "rsc/algorithm_modules.hpp"
 #include "tests/compiler/compiled.hpp"
 
 using namespace robosync::compiler;
@@ -30,7 +31,8 @@ Input part(const std::string& name, const std::string& extension) {
 }
 
 Result run(const std::string& name) {
-  return compile(part(name, ".rsl"), part(name, ".json"), {.source_lines = false});
+  return compile(part(name, ".rsl"), part(name, ".json"),
+                 {.source_lines = false, .algorithms = robosync::tool::algorithm_modules()});
 }
 
 // The codes of the back end, as diagnostics.def lists them.

@@ -8,6 +8,7 @@
 
 #include "compiler/compiler.hpp"
 #include "compiler/diagnostics/render.hpp"
+#include "rsc/algorithm_modules.hpp"
 
 using namespace robosync::compiler;
 using Catch::Contains;
@@ -45,7 +46,8 @@ struct Outcome {
 Outcome compile_example(std::string_view example) {
   const bool json = example.starts_with('{');
   const Result result = compile({"robot.rsl", json ? kProgram : std::string(example) + "\n"},
-                                {"robot.json", json ? std::string(example) : kRobot});
+                                {"robot.json", json ? std::string(example) : kRobot},
+                                {.algorithms = robosync::tool::algorithm_modules()});
   Outcome outcome{
       {}, result.diagnostics.errors(), render_human(result.diagnostics, result.sources, false)};
   for (const Diagnostic& diagnostic : result.diagnostics.all())

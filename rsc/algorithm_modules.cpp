@@ -1,0 +1,68 @@
+#include "rsc/algorithm_modules.hpp"
+
+#include <vector>
+
+#include "runtime-m4/algorithms/judge.hpp"
+
+namespace robosync::tool {
+namespace {
+
+// What robosync_module.h says in C of vm/.
+constexpr std::uint8_t number_of(vm::Dimension dimension) {
+  return static_cast<std::uint8_t>(dimension);
+}
+static_assert(ROBOSYNC_NUMBER == number_of(vm::Dimension::number) &&
+              ROBOSYNC_SECONDS == number_of(vm::Dimension::duration) &&
+              ROBOSYNC_G == number_of(vm::Dimension::acceleration));
+static_assert(ROBOSYNC_ONE == vm::kScale && ROBOSYNC_UNKNOWN == vm::kUnknown);
+
+std::optional<vm::Dimension> dimension(std::uint8_t unit) {
+  if (unit == ROBOSYNC_AS_INPUT) return std::nullopt;
+  return static_cast<vm::Dimension>(unit);
+}
+
+compiler::AlgorithmModule described(const robosync_description& description) {
+  const robosync_module& module = *description.module;
+  compiler::AlgorithmModule result;
+  result.name = description.name;
+  for (std::size_t i = 0; i < module.inputs; ++i)
+    result.inputs.push_back({description.inputs[i].name, dimension(description.inputs[i].unit)});
+  for (std::size_t i = 0; i < module.outputs; ++i) {
+    const robosync_output& output = description.outputs[i];
+    result.outputs.push_back({output.name,
+                              static_cast<vm::Dimension>(output.unit),
+                              output.least,
+                              output.most,
+                              {output.labels, output.labels + output.label_count}});
+  }
+  for (std::size_t i = 0; i < module.parameters; ++i) {
+    const robosync_parameter& parameter = description.parameters[i];
+    const robosync_range& range = module.ranges[i];
+    result.parameters.push_back(
+        {parameter.name, dimension(parameter.unit), range.usual, range.least, range.most});
+  }
+  result.shortest_period_ms = module.shortest_period_ms;
+  result.longest_period_ms = module.longest_period_ms;
+  result.usual_period_ms = description.usual_period_ms;
+  return result;
+}
+
+std::vector<compiler::AlgorithmModule> all() {
+  std::vector<compiler::AlgorithmModule> modules;
+  while (const robosync_description* next = algorithms::find_description(modules.size()))
+    modules.push_back(described(*next));
+  return modules;
+}
+
+}  // namespace
+
+compiler::AlgorithmModules algorithm_modules() {
+  static const std::vector<compiler::AlgorithmModule> modules = all();
+  return modules;
+}
+
+analysis::Instructions module_cost(const vm::Image& image, const vm::Sensor& algorithm) {
+  return algorithms::module_of(algorithm).cost(algorithms::config_of(image, algorithm));
+}
+
+}  // namespace robosync::tool
