@@ -55,6 +55,13 @@ typedef struct robosync_block {
   const int32_t* config;  // the parameters
 } robosync_block;
 
+// Leaves a value at output `i`. Its bit in what process() returns, or 0 where it was that already.
+static inline uint32_t robosync_put(const robosync_block* block, uint32_t i, int32_t value) {
+  if (block->outputs[i] == value) return 0;
+  block->outputs[i] = value;
+  return 1u << i;
+}
+
 typedef struct robosync_module {
   uint8_t inputs, outputs, parameters;  // how many
   uint16_t shortest_period_ms, longest_period_ms;

@@ -72,13 +72,6 @@ static void end(state* self, const int32_t* config) {
   self->shown_ms = 0;
 }
 
-static uint32_t show(int32_t* output, uint8_t word, uint32_t bit) {
-  const int32_t value = word * ROBOSYNC_ONE;
-  if (*output == value) return 0;
-  *output = value;
-  return bit;
-}
-
 static uint32_t touch_levels_process(void* memory, void* scratch, const robosync_block* block) {
   (void)scratch;
   state* self = memory;
@@ -92,8 +85,8 @@ static uint32_t touch_levels_process(void* memory, void* scratch, const robosync
     self->shown_ms += self->period_ms;
     if (self->shown_ms >= (uint32_t)config[SHOWN_FOR]) self->touch = TOUCH_NONE;
   }
-  return show(&block->outputs[LEVEL], self->band, 1u << LEVEL) |
-         show(&block->outputs[TOUCH], self->touch, 1u << TOUCH);
+  return robosync_put(block, LEVEL, self->band * ROBOSYNC_ONE) |
+         robosync_put(block, TOUCH, self->touch * ROBOSYNC_ONE);
 }
 
 static const robosync_range ranges[PARAMETERS] = {

@@ -54,12 +54,15 @@ class Traces(TraceTest):
 
     def test_algorithms(self):
         """The modules of the firmware, on recordings that are made up: the board's run behind its MPU."""
-        self.units = stimuli.FEELING_UNITS
-        for seed in range(2):
-            with self.subTest(seed=seed):
-                lines = self.check(PROGRAMS / "feeling.rsl", stimuli.touches(seed), PROGRAMS / "feeling.json")
+        for name, units, recording, words in (
+                ("feeling", stimuli.FEELING_UNITS, stimuli.touches, {"tap", "pat", "stroke", "firm"}),
+                ("moving", stimuli.MOVING_UNITS, stimuli.motions,
+                 {"shaken", "tapped", "falling", "lifted", "left", "jerked"})):
+            with self.subTest(name):
+                self.units = units
+                lines = self.check(PROGRAMS / f"{name}.rsl", recording(0), PROGRAMS / f"{name}.json")
                 said = {json.loads(line).get("word") for line in lines if '"event":"command"' in line}
-                self.assertLessEqual({"tap", "pat", "stroke", "firm"}, said)
+                self.assertLessEqual(words, said)
 
     def test_drawn_programs(self):
         seeds = itertools.islice(filter(self.draw, itertools.count()), 12)

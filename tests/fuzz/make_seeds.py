@@ -68,8 +68,9 @@ def make(rsc, folder):
     rover.write_text(ROVER)
     rover.with_suffix(".json").write_text(json.dumps(ROVER_ROBOT))
     compile_program(rsc, rover, rover.with_suffix(".rsb"))
-    feeling = CONFIG.with_name("feeling.rsl")  # with algorithms
-    compile_program(rsc, feeling, folder / "feeling.rsb", "--config", feeling.with_suffix(".json"))
+    for name in ("feeling", "moving"):  # with algorithms
+        source = CONFIG.with_name(f"{name}.rsl")
+        compile_program(rsc, source, folder / f"{name}.rsb", "--config", source.with_suffix(".json"))
     (folder / "made").touch()
 
 

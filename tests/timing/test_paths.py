@@ -299,16 +299,18 @@ class Algorithms(unittest.TestCase):
     """What the modules of the firmware declare, and what it takes to give one a sample, behind its MPU."""
 
     INTERRUPTS = ("SysTick_Handler", "Uart0Receive_Handler", "Uart0Transmit_Handler")
-    MODULES = {"touch_levels": stimuli.touches}
+    # The program that uses it, and its recording.
+    MODULES = {"touch_levels": ("feeling", stimuli.touches, stimuli.FEELING_UNITS),
+               "imu_gestures": ("moving", stimuli.motions, stimuli.MOVING_UNITS)}
     LAYER = "robosync::layers::AlgorithmLayer::"
 
     def test_every_module(self):
         costs, listed = paths.costs(), (paths.ROOT / "runtime-m4/algorithms/modules.def").read_text()
         self.assertEqual(set(re.findall(r"^MODULE\((\w+)", listed, re.M)), set(self.MODULES))
-        for module, recording in self.MODULES.items():
+        for module in self.MODULES:
             with self.subTest(module):
                 process = f"{module}_process"
-                marks = self.run_with(recording(0), process)
+                marks = self.run_with(module, process)
                 alone = self.spans(marks, process)
                 whole = self.spans(marks, "latch", within=process)
                 source = (paths.ROOT / f"runtime-m4/algorithms/{module}.c").read_text()
@@ -318,8 +320,8 @@ class Algorithms(unittest.TestCase):
                     self.assertGreaterEqual(said, measured)
                     self.assertLessEqual(said, LOOSEST * measured + SLACK)
 
-    def run_with(self, readings, process):
-        """The shipped firmware with the readings; where it comes by."""
+    def run_with(self, module, process):
+        """The shipped firmware with the module's recording; where it comes by."""
         latch, collect = self.LAYER + "latch_inputs(", self.LAYER + "collect("
         marks = {process: counting.symbols(FIRMWARE)[process], "latch": counting.functions(latch)[latch],
                  **{handler: counting.begin_of(handler) for handler in self.INTERRUPTS}}
@@ -328,17 +330,18 @@ class Algorithms(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             scenario, out = Path(folder) / "scenario.json", Path(folder) / "marks"
             with Board(icount=FAST, extra=counting.plugin_arguments(marks, out)) as board:
-                until_ms = self.feed(readings, scenario, board)
+                until_ms = self.feed(module, scenario, board)
                 counting.wait_for_readings(out, until_ms // 20, process)
             return counting.Marks(marks, out).all
 
-    def feed(self, readings, scenario, board):
+    def feed(self, module, scenario, board):
         """Later, where this machine is too busy to be in time."""
-        program = paths.ROOT / "tests/e2e/programs/feeling.rsl"
+        name, recording, units = self.MODULES[module]
+        program, readings = paths.ROOT / f"tests/e2e/programs/{name}.rsl", recording(0)
         for lead in (6_000, 20_000, 60_000):
             scenario.write_text(json.dumps({"stimuli": [
                 {"at": f"{lead + r.at_ms}ms", "sensor": r.channel.split(".")[0], "channel": r.channel.split(".")[1],
-                 "value": f"{r.value}{stimuli.FEELING_UNITS[r.channel]}"} for r in readings]}))
+                 "value": f"{r.value}{units[r.channel]}"} for r in readings]}))
             done = rsc.call("feed", "--upload", program, "--config", program.with_suffix(".json"), "--fresh",
                             "--scenario", scenario, "--port", board.port)
             if done.returncode == 0:
@@ -416,6 +419,19 @@ class Paths(unittest.TestCase):
                 self.assertGreater(worst, paths.samples()["max34451"] / 2)
                 self.assertLessEqual(worst, said)
 
+    def test_with_an_algorithm(self):
+        """From the tick at which it is released, on what was fed last."""
+        program = paths.ROOT / "tests/e2e/programs/feeling.rsl"
+        config = program.with_suffix(".json")
+        with tempfile.TemporaryDirectory() as folder:
+            image = Path(folder) / "p.rsb"
+            paths.compiled(program, config, image)
+            worst = max(paths.Run(image, [feed(8, 0), wait(200), feed(0, 0), wait(200)]).ticks)
+            said = self.said(program, config)["skin"]
+            print(f"\n  from the tick on, {worst} instructions, said {said}")
+            self.assertGreater(worst, paths.costs()["kAlgorithm"])
+            self.assertLessEqual(worst, said)
+
     def check(self, program, folder):
         wiring = json.loads(program.with_suffix(".json").read_text())
         wiring["sensors"] = [fed(sensor) for sensor in wiring["sensors"]]
@@ -431,6 +447,8 @@ class Paths(unittest.TestCase):
             if found := re.match(r"    channel (\d+) .*range (-?[\d.]+)\S* … (-?[\d.]+)", line):
                 channels.append((int(found[1]), float(found[2]), float(found[3])))
                 names[int(found[1])] = sensor
+        made = {algorithm["name"] for algorithm in wiring.get("algorithms", [])}  # nobody can feed them
+        channels = [channel for channel in channels if names[channel[0]] not in made]
         orders = drawn_orders(channels, random.Random(1))
         measured = paths.Run(image, orders)
         readings = [channel for channel, value in orders if value != paths.PAUSE]

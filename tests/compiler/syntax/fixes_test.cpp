@@ -12,6 +12,7 @@
 #include "compiler/compiler.hpp"
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/syntax/lexer.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "tests/support/golden.hpp"
 #include "vm/image.hpp"
 
@@ -40,7 +41,8 @@ std::vector<Example> examples() {
 }
 
 Result compiled(const Example& example, const std::string& program) {
-  return compile({"robot.rsl", program}, {"robot.json", example.robot}, {.source_lines = false});
+  return compile({"robot.rsl", program}, {"robot.json", example.robot},
+                 {.source_lines = false, .algorithms = robosync::tool::algorithm_modules()});
 }
 
 // A robot with other names for its variables and their words does the same.

@@ -1,5 +1,6 @@
 """What robots are fed: readings at program times, some drawn with fixed seeds."""
 
+import itertools
 import random
 from typing import NamedTuple
 
@@ -57,6 +58,7 @@ def drawn_wide(seed, program, count=40):
 
 
 FEELING_UNITS = {"pad.FORCE": "N"}  # of tests/e2e/programs/feeling.json
+MOVING_UNITS = {"imu.X": "g", "imu.Y": "g", "imu.Z": "g"}  # of tests/e2e/programs/moving.json
 
 
 def touches(seed, rounds=2, channel="pad.FORCE"):
@@ -72,4 +74,30 @@ def touches(seed, rounds=2, channel="pad.FORCE"):
         at = until
         readings.append(Reading(at, channel, 0))
         at += random_.choice([60, 200, 700])
+    return readings
+
+
+# What is done to a body: how long it reads which acceleration, in g.
+REST = (600, (0, 0, 1))
+MOTIONS = [
+    [REST, *3 * [(170, (0, 1.6, 1)), (170, (0, -1.6, 1))]],  # shaken
+    [REST, (30, (1, 0, 3))],  # tapped
+    [REST, (260, (0.05, 0, 0.1)), (30, (2, 0, 7))],  # dropped
+    [REST, (160, (0, 0, 1.4)), (160, (0, 0, 0.6))],  # lifted
+    [REST, (1400, (0, -0.9, 0.4))],  # leant to the left
+]
+
+
+def motions(seed, rounds=2):
+    """A body in all these ways, each time a little stronger or weaker. As many readings as the board can keep."""
+    random_ = random.Random(f"motions {seed}")
+    at, readings, last = 0, [], {}
+    for lasts, acceleration in itertools.chain(*random_.sample(rounds * MOTIONS, rounds * len(MOTIONS)), [REST]):
+        strength = random_.uniform(0.95, 1.1)
+        for axis, value in zip("XYZ", acceleration):
+            new = round(value * strength, 3) if (lasts, acceleration) != REST else value
+            if last.get(axis) != new:
+                readings.append(Reading(at, f"imu.{axis}", new))
+            last[axis] = new
+        at += lasts
     return readings
