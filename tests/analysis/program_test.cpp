@@ -95,6 +95,34 @@ TEST_CASE("adapted priorities: robot.json says so, and each path is told for bot
   CHECK_THAT(outcome.out, Contains("touch -> arm") && Contains("adapted to P_max"));
 }
 
+TEST_CASE("check: algorithms take memory and time, and who asks for too much is refused") {
+  const auto check = [](int count, const std::string& more) {
+    test::Folder folder;
+    std::string algorithms;
+    std::string program;
+    for (int i = 0; i < count; ++i) {
+      const std::string name = "skin" + std::to_string(i);
+      algorithms += std::string(i == 0 ? "" : ",") + R"({"name": ")" + name +
+                    R"(", "module": "touch_levels", "input": "pad")" + more + "}";
+      program += "WHEN " + name + " TOUCH IS tap\nDO MOVE a\nEND\n";
+    }
+    folder.write("robot.json",
+                 R"({"sensors": [{"name": "pad", "type": "VIRTUAL", "channels": {"FORCE": {}}}],
+    "actuators": [{"name": "a", "type": "VIRTUAL", "device": "virtual_actuator"}],
+    "algorithms": [)" +
+                     algorithms + "]}");
+    return test::rsc({"check", "--timing", folder.write("robot.rsl", program)});
+  };
+  const test::Outcome one = check(1, "");
+  CHECK_THAT(one.out,
+             Contains("algorithms           624 of 114688 bytes") && Contains("skin0 -> a"));
+  CHECK_THAT(check(2, "").out, Contains("algorithms          1248 of 114688 bytes"));
+  CHECK(check(2, R"(, "rate": "500Hz")").exit == 0);
+  const test::Outcome fast = check(8, R"(, "rate": "500Hz")");
+  CHECK(fast.exit == 1);
+  CHECK_THAT(fast.err, Contains("E0412") && Contains("for skin0") && Contains("lower rate"));
+}
+
 TEST_CASE("check: a sensor that is read too often is refused, and why") {
   const Robot slow("50Hz");
   const test::Outcome good = test::rsc({"check", "--timing", slow.file});
