@@ -56,6 +56,8 @@ TEST_CASE("an algorithm needs a module, inputs, parameters, a period and outputs
   CHECK(refusal_of([](auto& i) { i.parameter(0) = 1; }) == Refusal::none);
   CHECK(refusal_of([](auto& i) { i.parameter(5) = 60'000; }) == Refusal::none);
   CHECK(refusal_of([](auto& i) { i.parameter(5) = 60'001; }) == Refusal::bad_value);
+  CHECK(refusal_of([](auto& i) { i.skin().period_ms = 2; }) == Refusal::none);
+  CHECK(refusal_of([](auto& i) { i.skin().period_ms = 100; }) == Refusal::none);
   CHECK(refusal_of([](auto& i) { i.skin().period_ms = 1; }) == Refusal::bad_value);
   CHECK(refusal_of([](auto& i) { i.skin().period_ms = 101; }) == Refusal::bad_value);
   CHECK(refusal_of([](auto& i) { const_cast<vm::Channel&>(i.image.channels[1]).input = 2; }) ==
