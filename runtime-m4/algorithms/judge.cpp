@@ -20,6 +20,13 @@ bool are_in_range(const robosync_module& module, const std::int32_t* config) {
   return true;
 }
 
+bool has_room(const robosync_module& module, const std::int32_t* config) {
+  constexpr std::uint32_t kMost = ROBOSYNC_MOST_BYTES;
+  static_assert(kMost % 8 == 0);
+  return module.state_bytes(config) <= kMost &&
+         module.scratch_bytes(config) <= kMost - scratch_at(module, config);
+}
+
 Refusal judge(const vm::Image& image, const vm::Sensor& algorithm) {
   const robosync_module* const module = find_module(algorithm.bus);
   if (module == nullptr) return Refusal::no_module;
@@ -32,8 +39,7 @@ Refusal judge(const vm::Image& image, const vm::Sensor& algorithm) {
   for (unsigned i = 0; i < algorithm.channel_count; ++i)
     good = good && image.channels[algorithm.first_channel + i].input < module->outputs;
   if (!good) return Refusal::bad_value;
-  const std::uint32_t bytes = module->state_bytes(config) + module->scratch_bytes(config);
-  return bytes <= ROBOSYNC_MOST_BYTES ? Refusal::none : Refusal::no_room;
+  return has_room(*module, config) ? Refusal::none : Refusal::no_room;
 }
 
 }  // namespace

@@ -15,6 +15,10 @@ namespace robosync::algorithms {
 inline const robosync_module& module_of(const vm::Sensor& algorithm) {
   return *find_module(algorithm.bus);
 }
+// Where a module's scratch begins in its memory, behind its state.
+inline std::uint32_t scratch_at(const robosync_module& module, const std::int32_t* config) {
+  return (module.state_bytes(config) + 7U) & ~7U;
+}
 inline const std::int32_t* config_of(const vm::Image& image, const vm::Sensor& algorithm) {
   return image.constants.data() + algorithm.address;
 }

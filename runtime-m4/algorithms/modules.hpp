@@ -15,7 +15,7 @@ extern "C" {
 
 namespace robosync::algorithms {
 
-// The module, or null. Tests put a table with modules of their own in the place of modules.cpp.
+// The module, or null.
 [[nodiscard]] const robosync_module* find_module(std::size_t number);
 
 // Its names, or null. The firmware does not call it, and so has none of them.

@@ -33,7 +33,7 @@ enum { ROBOSYNC_ABI = 1 };
 // Most inputs, outputs and parameters of a module.
 enum { ROBOSYNC_MOST_INPUTS = 4, ROBOSYNC_MOST_OUTPUTS = 8, ROBOSYNC_MOST_PARAMETERS = 12 };
 
-// Bytes that state_bytes() and scratch_bytes() may come to together.
+// Bytes that state_bytes(), rounded up to a multiple of 8, and scratch_bytes() may come to together.
 enum { ROBOSYNC_MOST_BYTES = 96 };
 
 // One, and what nobody knows: an output that is left at it has no new reading.

@@ -73,7 +73,7 @@ void AlgorithmLayer::fill(Unit& unit, Data& data) const {
 void AlgorithmLayer::run_module(Data& data) {
   const robosync_module& module = *data.module;
   std::byte* const state = data.memory;
-  std::byte* const scratch = state + ((module.state_bytes(data.config) + 7) & ~7U);
+  std::byte* const scratch = state + algorithms::scratch_at(module, data.config);
   const robosync_block block = {data.inputs, data.outputs, data.config};
   while (true) {
     kernel::calls::wait(*data.kernel, kReleased);

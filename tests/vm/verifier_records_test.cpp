@@ -78,6 +78,16 @@ TEST_CASE("an algorithm reads what was measured before it, every so often") {
   check_refused(algorithm(2, 20), {Refusal::bad_index, Section::sensors, 1});  // itself
   check_refused(algorithm(200, 20), {Refusal::bad_index, Section::sensors, 1});
   check_refused(algorithm(0, 0), {Refusal::bad_value, Section::sensors, 1});
+  // What SAFETY reads of it grows stale, as what it is made of does.
+  const auto safety_reads = [&](std::uint16_t stale_ms) {
+    ImageBuilder image = robot::make();
+    algorithm(1, 20)(image);
+    image.inputs[image.behaviors[kSafetyBehavior].first_input] = 2;
+    image.channels[2].stale_ms = stale_ms;
+    return image;
+  };
+  check_refused(safety_reads(0), {Refusal::never_stale, Section::behaviors, 0});
+  check_accepted(safety_reads(100));
   // Others read nothing.
   for (const std::uint16_t index : {std::uint16_t{0}, std::uint16_t{1}})
     check_refused([&](ImageBuilder& i) { i.sensors[index].first_input = 1; },

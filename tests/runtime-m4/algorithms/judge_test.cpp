@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/runtime-m4/algorithms/other_module.hpp"
 #include "tests/runtime-m4/robot.hpp"
 
 using namespace robosync;
@@ -62,6 +63,27 @@ TEST_CASE("an algorithm needs a module, inputs, parameters, a period and outputs
   CHECK(refusal_of([](auto& i) { i.skin().period_ms = 101; }) == Refusal::bad_value);
   CHECK(refusal_of([](auto& i) { const_cast<vm::Channel&>(i.image.channels[1]).input = 2; }) ==
         Refusal::bad_value);
+}
+
+TEST_CASE("a module that wants more memory than it may have is refused, with these parameters") {
+  // What it wants are its first two parameters.
+  robosync_module greedy = *algorithms::find_module(0);
+  greedy.state_bytes = [](const std::int32_t* config) { return std::uint32_t(config[0]); };
+  greedy.scratch_bytes = [](const std::int32_t* config) { return std::uint32_t(config[1]); };
+  const test::OtherModule other(greedy);
+  const auto wants = [](std::int32_t state, std::int32_t scratch) {
+    return [=](auto& i) {
+      i.parameter(0) = state;
+      i.parameter(1) = scratch;
+    };
+  };
+  CHECK(refusal_of(wants(ROBOSYNC_MOST_BYTES - 8, 8)) == Refusal::none);
+  CHECK(refusal_of(wants(ROBOSYNC_MOST_BYTES - 8, 9)) == Refusal::no_room);
+  CHECK(refusal_of(wants(ROBOSYNC_MOST_BYTES - 9, 8)) == Refusal::none);
+  CHECK(refusal_of(wants(ROBOSYNC_MOST_BYTES - 7, 1)) == Refusal::no_room);  // a multiple of 8
+  CHECK(refusal_of(wants(ROBOSYNC_MOST_BYTES + 1, 1)) == Refusal::no_room);
+  CHECK(refusal_of(wants(1'000'000'000, 1)) == Refusal::no_room);
+  CHECK(refusal_of(wants(1, 1'000'000'000)) == Refusal::no_room);
 }
 
 TEST_CASE("every module keeps to the interface's limits") {

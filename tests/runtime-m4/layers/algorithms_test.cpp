@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/runtime-m4/algorithms/other_module.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 
@@ -121,4 +122,48 @@ TEST_CASE("an algorithm cannot be fed") {
   robot.feed(100, "LEVEL", 2);
   robot.run(300);
   CHECK(robot.only("fire").empty());
+}
+
+TEST_CASE("what a module puts out is cut off at the range of its channel") {
+  robosync_module wild = *algorithms::find_module(0);
+  wild.process = [](void*, void*, const robosync_block* block) {
+    block->outputs[0] = block->inputs[0] > 1000 ? INT32_MAX : INT32_MIN + 1;
+    return 0u;  // that nothing has changed is not believed either
+  };
+  const test::OtherModule other(wild);
+  Robot robot(kWhenFirm, pad_robot(kFedPad));
+  robot.feed(0, "FORCE", 0);
+  robot.feed(100, "FORCE", 6);
+  robot.run(300);
+  CHECK(robot.only("input") ==
+        "0 #1 input FORCE 0\n"
+        "0 #2 input LEVEL 0\n"
+        "100 #3 input FORCE 6\n"
+        "100 #4 input LEVEL 2\n");
+}
+
+TEST_CASE("a module finds its memory aligned, its scratch behind its state, and its period") {
+  static std::uintptr_t state_at, scratch_at;
+  static std::uint32_t period;
+  robosync_module curious = *algorithms::find_module(0);
+  curious.state_bytes = [](const std::int32_t*) { return 13u; };
+  curious.scratch_bytes = [](const std::int32_t*) { return 80u; };
+  curious.init = [](void* state, const std::int32_t*, std::uint32_t period_ms) {
+    period = period_ms;
+    state_at = reinterpret_cast<std::uintptr_t>(state);
+  };
+  curious.process = [](void* state, void* scratch, const robosync_block*) {
+    CHECK(state_at == reinterpret_cast<std::uintptr_t>(state));
+    scratch_at = reinterpret_cast<std::uintptr_t>(scratch);
+    return 0u;
+  };
+  const test::OtherModule other(curious);
+  Robot robot(kWhenFirm, pad_robot(kFedPad, R"(, "rate": "25Hz")"));
+  robot.feed(0, "FORCE", 0);
+  robot.run(100);
+  CHECK(period == 40);
+  CHECK(state_at % 8 == 0);
+  CHECK(scratch_at == state_at + 16);
+  CHECK(robot.only("input") ==
+        "0 #1 input FORCE 0\n");  // an output that is left unknown is no reading
 }
