@@ -1,6 +1,8 @@
 // Algorithms in a robot: when they run, what becomes of their outputs, and of those that depend on them.
 #include "runtime-m4/layers/algorithms.hpp"
 
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/algorithms/other_module.hpp"
@@ -166,4 +168,27 @@ TEST_CASE("a module finds its memory aligned, its scratch behind its state, and 
   CHECK(scratch_at == state_at + 16);
   CHECK(robot.only("input") ==
         "0 #1 input FORCE 0\n");  // an output that is left unknown is no reading
+}
+
+TEST_CASE("a module begins before its first sample, and again when program time does") {
+  static std::string calls;
+  calls.clear();
+  robosync_module noted = *algorithms::find_module(0);
+  noted.init = [](void*, const std::int32_t*, std::uint32_t) { calls += 'i'; };
+  noted.process = [](void*, void*, const robosync_block* block) {
+    block->outputs[0] = 0;
+    calls += 'p';
+    return 1u;
+  };
+  const test::OtherModule other(noted);
+  for (const std::string& pad : {kSampledPad, kFedPad}) {
+    // SAFETY has it run before program time, to have a first reading.
+    Robot robot("SAFETY skin WHEN skin LEVEL IS firm\nDO STOP ALL\nEND\nEVERY 1s\nDO MOVE a\nEND\n",
+                pad_robot(pad));
+    robot.feed(0, "FORCE", 0);
+    robot.run(50);
+    CHECK(calls.starts_with("ipip"));
+    CHECK(std::ranges::count(calls, 'i') == 2);
+    calls.clear();
+  }
 }
