@@ -235,6 +235,28 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Comman
   return result;
 }
 
+// `TO 30,5deg`: nothing stands between the comma and the numbers beside it.
+bool Commands::has_decimal_comma(const ast::Argument& part, const ast::Argument& next) {
+  const auto number_of = [](const ast::Argument& one) -> const ast::Quantity* {
+    const auto* const amount = std::get_if<ast::Amount>(&one.value);
+    return amount == nullptr ? nullptr : std::get_if<ast::Quantity>(&amount->value->node);
+  };
+  const ast::Quantity* const whole = number_of(part);
+  const ast::Quantity* const decimals = number_of(next);
+  if (whole == nullptr || !whole->unit.empty() || decimals == nullptr ||
+      part.preposition == ast::Preposition::none || next.preposition != ast::Preposition::none ||
+      next.span.begin != part.span.end + 1)
+    return false;
+  Span all = std::get<ast::Amount>(part.value).value->span;
+  all.end = next.span.end;
+  const std::string better = std::string(whole->digits) + "." + std::string(decimals->digits) +
+                             std::string(decimals->unit);
+  diagnostics_.report(Code::E0004, "a number has a point in front of its decimals, not a comma")
+      .label(all, "write `" + better + "`")
+      .fix(all, better, Applicability::likely);
+  return true;
+}
+
 Commands::Given Commands::put_together(const ast::Command& command, std::size_t first) {
   TextBuilder text(expressions_, diagnostics_);
   const ast::Argument& begin = command.arguments[first];
@@ -245,6 +267,9 @@ Commands::Given Commands::put_together(const ast::Command& command, std::size_t 
     const ast::Argument& part = command.arguments[i];
     if (is_chosen(i)) {
       if (i == chosen_->at) good = text.add(chosen_->text, chosen_->span) && good;
+    } else if (i + 1 < command.arguments.size() &&
+               has_decimal_comma(part, command.arguments[i + 1])) {
+      return given;
     } else if (part.preposition != ast::Preposition::none) {
       diagnostics_.report(Code::E0505, "a comma stands between the parts of a text")
           .label(part.span, "this is none")

@@ -90,6 +90,7 @@ private:
   Given evaluate(const ast::Argument& argument);
   // The text whose parts begin at `first`; its text is nothing after a mistake.
   Given put_together(const ast::Command& command, std::size_t first);
+  bool has_decimal_comma(const ast::Argument& part, const ast::Argument& next);
   bool lacks_brackets(const ast::Command& command, std::size_t place);
   // Arguments that are something else together (misread.cpp).
   bool is_misread(const ast::Command& command, std::size_t place);

@@ -49,7 +49,7 @@ public:
          {&Habits::kept, &Habits::value_of_text, &Habits::list, &Habits::of, &Habits::timer,
           &Habits::table, &Habits::foreign_else, &Habits::else_if, &Habits::is_number,
           &Habits::comparison_in_words, &Habits::expect, &Habits::function, &Habits::parameters,
-          &Habits::worked_out}) {
+          &Habits::worked_out, &Habits::decimal_comma}) {
       if (auto edit = (this->*habit)()) return edit;
     }
     return std::nullopt;
@@ -169,6 +169,22 @@ private:
   }
 
   // ---- the habits
+
+  // `3,5%`: nothing stands between the comma and the numbers beside it.
+  std::optional<Edit> decimal_comma() {
+    if (stop_ == 0 || !is(stop_, Kinds::COMMA)) return std::nullopt;
+    if (!is(stop_ - 1, Kinds::QUANTITY) || !is(stop_ + 1, Kinds::QUANTITY)) return std::nullopt;
+    const Span all = span(stop_ - 1, stop_ + 2);
+    const char last = text(stop_ - 1).back();
+    const bool has_unit = last < '0' || last > '9';
+    const std::size_t behind = tokens_[stop_ - 1].span.end + 1;
+    if (has_unit || tokens_[stop_ + 1].span.begin != behind) return std::nullopt;
+    const std::string better = text(stop_ - 1, stop_) + "." + text(stop_ + 1, stop_ + 2);
+    diagnostics_.report(Code::E0004, "a number has a point in front of its decimals, not a comma")
+        .label(all, "write `" + better + "`")
+        .fix(all, better, Applicability::likely);
+    return change(stop_, 2);
+  }
 
   // `LET x = 3 KEPT`, `REMEMBER x KEPT = 0`
   std::optional<Edit> kept() {

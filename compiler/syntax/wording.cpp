@@ -225,7 +225,7 @@ private:
           .label(place(edit_.at), "expected " + summarize(failure_.expected));
       return;
     }
-    if (unit_apart() || decimal_comma() || texts_added(edit_.at)) return;
+    if (unit_apart() || texts_added(edit_.at)) return;
     Diagnostic& message = diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here");
     if (belongs_to_number(edit_.at)) {
       message.label(token.span);  // without it, the number would be another one
@@ -292,22 +292,6 @@ private:
         return is_number(at + 1) ||
                (at > 0 && is_number(at - 1) && tokens_[at].kind == Kinds::COMMA);
     }
-  }
-
-  // `3,5%`: nothing stands between the comma and the numbers beside it.
-  bool decimal_comma() {
-    if (tokens_[edit_.at].kind != Kinds::COMMA || edit_.at == 0) return false;
-    if (!is_number(edit_.at - 1) || !is_number(edit_.at + 1)) return false;
-    const Span before = tokens_[edit_.at - 1].span;
-    const Span behind = tokens_[edit_.at + 1].span;
-    if (behind.begin != before.end + 1) return false;
-    const Span all{before.file, before.begin, behind.end};
-    const std::string better =
-        std::string(source_.text(before)) + "." + std::string(source_.text(behind));
-    diagnostics_.report(Code::E0004, "a number has a point in front of its decimals, not a comma")
-        .label(all, "write `" + better + "`")
-        .fix(all, better, Applicability::likely);
-    return true;
   }
 
   void idle_end() {

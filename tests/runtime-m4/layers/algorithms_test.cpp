@@ -67,6 +67,23 @@ TEST_CASE("where the input is sampled, an algorithm runs with it, and grows stal
         "600 #7 input LEVEL 2\n");
 }
 
+TEST_CASE("what an algorithm says is as old as the reading that it was made of") {
+  Robot robot(kWhenFirm, pad_robot(R"({"name": "pad", "type": "VIRTUAL",
+                  "channels": {"FORCE": {"range": [0, 20], "stale_after": "100ms"}}})",
+                                   R"(, "rate": "25Hz")"));
+  robot.feed(0, "FORCE", 0);
+  robot.feed(90, "FORCE", 6);  // seen at 120
+  robot.run(400);
+  CHECK(robot.only("input stale") ==
+        "0 #1 input FORCE 0\n"
+        "0 #2 input LEVEL 0\n"
+        "90 #3 input FORCE 6\n"
+        "101 #4 stale LEVEL\n"  // made of the 0, at 80 too
+        "120 #5 input LEVEL 2\n"
+        "191 #6 stale FORCE\n"
+        "191 #6 stale LEVEL\n");
+}
+
 TEST_CASE("a module begins anew when its input comes back") {
   Robot robot("WHEN skin TOUCH IS stroke\nDO MOVE a\nEND\n", pad_robot(kSampledPad));
   robot.feed(0, "FORCE", 2);
