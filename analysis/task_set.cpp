@@ -131,6 +131,10 @@ private:
       source.sample =
           board_.wake_by_timer + sensor.channel_count * policy::sample_cost(sensor.driver, board_) +
           (sensor.channel_count - Instructions{1}) * costs::kChannel;  // the first is in the step
+    if (asks_ahead(sensor)) {
+      source.follows = add_asking(sensor, s, source.period);
+      source.delay = instructions_in_ms(1 + policy::kBusTicks);
+    }
     if ((channels & work_.watched()).any()) source.sample += board_.wake + looks() + work_.trips();
     source.step = work_.step(rules, changed);
     place(source, s);
@@ -139,6 +143,23 @@ private:
       if ((work_.actuators(fire) >> a & 1) != 0)
         source.actuators.emplace_back(image_.string(image_.actuators[a].name));
     add_with_followers(std::move(source), rules, fire, work_.sets(fire));
+  }
+
+  // Its bus works by itself, from a tick before it is sampled on (layers/sensor.cpp).
+  bool asks_ahead(const vm::Sensor& sensor) const {
+    return board_.i2c_ask != 0 && !policy::is_fed(sensor) && vm::is_on_i2c(sensor.driver);
+  }
+
+  // In its thread, and in the bus's interrupts; what is sampled follows.
+  std::size_t add_asking(const vm::Sensor& sensor, unsigned s, Instructions period) {
+    Source source;
+    source.name = fmt::format("asking for {}", image_.string(sensor.name));
+    source.period = period;
+    source.sample = board_.wake_by_timer + sensor.channel_count * Instructions{board_.i2c_ask};
+    place(source, s);
+    set_.sources.push_back(std::move(source));
+    source_of_sensor_.back() = set_.sources.size();
+    return set_.sources.size() - 1;
   }
 
   // Where an algorithm's input is sampled, that releases it; where it is fed, its own period does.

@@ -61,6 +61,10 @@ std::vector<Board::Part> read_parts(const json::Value& value, Diagnostics& diagn
     part.name = member.key;
     part.device = require_text(fields, "device", kWhat, diagnostics);
     if (const auto* pin = fields.find("pin")) part.pin = read_pin(*pin, diagnostics);
+    if (const auto* bus = fields.find("bus"))
+      part.bus = static_cast<std::uint8_t>(read_pin(*bus, diagnostics));
+    if (const auto* address = fields.find("address"))
+      part.address = read_pin(*address, diagnostics);
     parts.push_back(std::move(part));
   }
   return parts;

@@ -46,6 +46,8 @@ struct Board {
     std::string name;
     std::string device;                // its descriptor in stdlib/devices/
     std::optional<std::uint16_t> pin;  // of the lights: none that could be said
+    std::uint8_t bus = 0;              // of what is on I2C
+    std::uint16_t address = 0;
   };
   std::vector<Part> parts;
 

@@ -28,6 +28,13 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(vm::ActiveLevel:
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::count_)> kReleases = {
     "hold", "rest", "coast"};
 
+std::string boards_with_i2c() {
+  std::vector<std::string> boards;
+  for (std::size_t i = 0; i < board_names().size(); ++i)
+    if (board_at(i).i2c_buses != 0) boards.emplace_back(board_names()[i]);
+  return list_names(boards, "and");
+}
+
 }  // namespace
 
 std::span<const WiringType> wiring_types() {
@@ -95,13 +102,14 @@ Wiring WiringReader::read_part(const Fields& fields, const Board::Part& part) {
           .label(value->span);
   const Span span = fields.find("device")->span;
   part.pin ? take_pin(*part.pin, span) : take_part(part, span);
+  if (part.address != 0) return {part.bus, part.address};
   return {static_cast<std::uint8_t>(vm::ActiveLevel::low), part.pin.value_or(0)};
 }
 
 void WiringReader::take_part(const Board::Part& part, Span span) {
   const auto [first, added] = parts_.emplace(&part, span);
   if (added) return;
-  diagnostics_.report(Code::E0207, "the `" + part.name + "` of the board are used twice")
+  diagnostics_.report(Code::E0207, "the part `" + part.name + "` of the board is used twice")
       .label(span)
       .label(first->second, "first used here", false);
 }
@@ -139,10 +147,12 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
 }
 
 void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
+  if (wiring.bus < board_.i2c_buses) return;
   const auto* bus = fields.find("bus");
-  if (bus == nullptr || wiring.bus < board_.i2c_buses) return;
+  if (bus == nullptr) bus = fields.find("type");
   std::string buses = "its buses are 0 to " + std::to_string(board_.i2c_buses - 1);
-  if (board_.i2c_buses == 0) buses = "its firmware drives no I2C bus yet";
+  if (board_.i2c_buses == 0)
+    buses = "its firmware drives no I2C bus yet; that of " + boards_with_i2c() + " does";
   if (board_.i2c_buses == 1) buses = "it has one, bus 0";
   diagnostics_
       .report(Code::E0205,

@@ -41,6 +41,13 @@ public:
   virtual bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                             std::span<std::byte> in) = 0;
   virtual BusState buses() const = 0;
+  // Buses with hardware of their own work while the processor does something else, so they are asked twice. While they
+  // are asked ahead (i2c_ask(true)), i2c_transfer() only notes what is wanted and has it begin: it gives true where
+  // nothing is read, else false. When i2c_busy() is over, the same transfer gives what came of it, at once; what still
+  // goes on then is given up. Boards that do not ask ahead give what is wanted when they are asked for it.
+  virtual bool i2c_asks_ahead() const { return false; }
+  virtual void i2c_ask(bool /*ahead*/) {}
+  virtual bool i2c_busy() const { return false; }
   // Is the level of an input (pins()) high? Of another pin: no.
   virtual bool input(std::uint16_t pin) const = 0;
   // Pulse width on a PWM pin in microseconds, 20 ms frame; 0 switches the output off.

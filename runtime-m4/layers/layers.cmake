@@ -34,6 +34,7 @@ target_sources(robosync_runtime PRIVATE
   drivers/digital_input.cpp
   drivers/i2c_register.cpp
   drivers/lights.cpp
+  drivers/lsm303agr.cpp
   drivers/max34451.cpp
   drivers/player.cpp
   drivers/pwm.cpp

@@ -29,4 +29,19 @@ bool DriverSampler::sample(const vm::Image& image, std::uint8_t channel, vm::Val
   return true;
 }
 
+bool DriverSampler::asks_ahead(const vm::Sensor& sensor) const {
+  return board_.i2c_asks_ahead() && vm::is_on_i2c(sensor.driver);
+}
+
+// What a driver makes of no answer is nobody's.
+void DriverSampler::ask(const vm::Image& image, std::uint8_t channel) {
+  const vm::Channel& wiring = image.channels[channel];
+  const vm::Sensor& sensor = image.sensors[wiring.sensor];
+  std::int32_t raw = 0;
+  const kernel::MutexGuard mine(kernel_, buses_);
+  board_.i2c_ask(true);
+  static_cast<void>(drivers::driver(sensor.driver).read(board_, sensor, wiring, raw));
+  board_.i2c_ask(false);
+}
+
 }  // namespace robosync::layers

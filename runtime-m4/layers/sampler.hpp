@@ -11,6 +11,11 @@ class Sampler {
 public:
   // One sample of a channel in thousandths of its unit. False when there is none to be had.
   virtual bool sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) = 0;
+  // Is a sensor to be asked before it is sampled? Then its channels are asked for, and sampled when nothing is awaited
+  // any more.
+  virtual bool asks_ahead(const vm::Sensor& /*sensor*/) const { return false; }
+  virtual void ask(const vm::Image& /*image*/, std::uint8_t /*channel*/) {}
+  virtual bool awaits() const { return false; }
 
 protected:
   ~Sampler() = default;
@@ -22,6 +27,9 @@ class DriverSampler final : public Sampler {
 public:
   DriverSampler(kernel::Kernel& kernel, boards::Board& board) : kernel_(kernel), board_(board) {}
   bool sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) override;
+  bool asks_ahead(const vm::Sensor& sensor) const override;
+  void ask(const vm::Image& image, std::uint8_t channel) override;
+  bool awaits() const override { return board_.i2c_busy(); }
 
 private:
   kernel::Kernel& kernel_;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "runtime-m4/policy/rules.hpp"
+
 namespace robosync::layers {
 namespace {
 
@@ -99,10 +101,29 @@ void SensorLayer::run_sensor(unsigned sensor) {
   await_begin(sensor);
   kernel::Time due = trace_.activated_at();
   while (true) {
-    kernel_.sleep_until(due);
+    await_sample(sensor, due);
     sample(sensor);
     due = next_sample(sensor, due);
   }
+}
+
+// Where it is to be asked before, that is a tick ahead: the answer is there when it is due. Who has come too late to ask
+// waits for the answer, not for ever.
+void SensorLayer::await_sample(unsigned sensor, kernel::Time due) {
+  const bool ahead = asks_ahead(sensor);
+  if (ahead) {
+    kernel_.sleep_until(std::max(due, kernel::kTick) - kernel::kTick);
+    ask(sensor);
+  }
+  kernel_.sleep_until(due);
+  for (unsigned i = 0; ahead && i < policy::kBusTicks && sampler_->awaits(); ++i)
+    kernel_.sleep_until(kernel_.now() + kernel::kTick);
+}
+
+void SensorLayer::ask(unsigned sensor) {
+  const vm::Sensor& wiring = program_->image.sensors[sensor];
+  for (unsigned i = 0; i < wiring.channel_count; ++i)
+    sampler_->ask(program_->image, static_cast<std::uint8_t>(wiring.first_channel + i));
 }
 
 // One that SAFETY reads measures already.
@@ -110,6 +131,7 @@ void SensorLayer::await_begin(unsigned sensor) {
   const kernel::Duration period = kernel::milliseconds(program_->image.sensors[sensor].period_ms);
   const bool measures = (awaited_ & made_of(sensor)) != 0;
   while (!begun_) {
+    if (measures && asks_ahead(sensor)) await_sample(sensor, kernel_.now() + kernel::kTick);
     if (measures) sample(sensor);
     if (measures && simulated_) note_tried(channels_of(sensor));
     kernel_.wait(kBegin, measures ? kernel_.now() + period : kernel::kForever);

@@ -98,6 +98,11 @@ private:
   void signal_sensors(kernel::Events events);
   ChannelMask made_of(unsigned sensor) const;
   void run_feeds();
+  bool asks_ahead(unsigned sensor) const {
+    return sampler_->asks_ahead(program_->image.sensors[sensor]);
+  }
+  void ask(unsigned sensor);
+  void await_sample(unsigned sensor, kernel::Time due);
   kernel::Time next_sample(unsigned sensor, kernel::Time last);
   void sample(unsigned sensor);
   void note_contact(unsigned sensor, unsigned failed);

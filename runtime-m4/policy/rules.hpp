@@ -30,6 +30,9 @@ inline constexpr std::uint32_t kSafetyPeriodMs = 10;
 // What a moving actuator gets its next setpoint in: the frame of servos and PWM.
 inline constexpr std::uint32_t kSetpointPeriodMs = 20;
 
+// How long who has asked a bus waits at most, once the answer is due, in ticks of a millisecond.
+inline constexpr std::uint32_t kBusTicks = 2;
+
 // How long a row of a board's lights is on, until the next one is.
 inline constexpr std::uint32_t kRowMs = 2;
 

@@ -217,3 +217,37 @@ TEST_CASE(
     if (board.name == "microbit-v2") CHECK(costs.clock_hz == 64'000'000);
   }
 }
+
+TEST_CASE(
+    "a sensor whose bus works by itself is asked a millisecond before: that is where its path "
+    "begins") {
+  const char* const config = R"({"board": "microbit-v2",
+    "sensors": [{"name": "motion", "device": "accelerometer", "channels": {"STRENGTH": {}}}],
+    "actuators": [{"name": "face", "device": "lights"}]})";
+  const tool::Program program = test::as_program(
+      compiler::compile({"robot.rsl", "WHEN motion STRENGTH > 2g DO SHOW face scared END\n"},
+                        {"robot.json", config}));
+  const vm::Image& image = program.image();
+  const auto names = compiler::board_names();
+  const auto place = std::ranges::find(names, std::string_view("microbit-v2")) - names.begin();
+  const policy::BoardCosts& board =
+      tool::costs_of(compiler::board_at(static_cast<std::size_t>(place)));
+  const analysis::TaskSet set = analysis::task_set_of(image, board, tool::module_cost);
+  const auto named = [&](std::string_view name) {
+    const auto found = std::ranges::find(set.sources, name, &analysis::Source::name);
+    REQUIRE(found != set.sources.end());
+    return static_cast<std::size_t>(found - set.sources.begin());
+  };
+  const std::size_t asking = named("asking for motion"), sampling = named("motion");
+  CHECK(set.sources[asking].sample == board.wake_by_timer + board.i2c_ask);
+  CHECK(set.sources[asking].step == 0);
+  CHECK(set.sources[asking].actuators.empty());
+  CHECK(set.sources[sampling].follows == asking);
+  CHECK(set.sources[sampling].delay == 3ULL * board.instructions_per_ms());
+  CHECK(set.sources[asking].rank == set.sources[sampling].rank);
+  const analysis::ResponseReport report =
+      analysis::response_report(image, board, tool::module_cost);
+  CHECK(report.schedulable());
+  REQUIRE(report.paths.size() == 1);
+  CHECK(report.paths[0].base.time > set.sources[sampling].delay);
+}

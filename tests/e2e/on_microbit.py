@@ -11,6 +11,7 @@ from pathlib import Path
 import pins
 import rsc
 from debugger import PC, DebuggedTest
+from support import LineReader
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from board import FIRMWARE, ROOT  # noqa: E402
@@ -46,7 +47,20 @@ FACE = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"rang
 SHOWS = "WHEN near X > 10\nDO\n  {}\nEND\n"
 HAPPY = [".....", ".#.#.", ".....", "#...#", ".###."]
 LOOKS = 4000
+# The bus of what is on the board: QEMU has a stub of it there, which keeps what it is told, and has always just stopped.
+BUS_WRITE = re.compile(r"microbit_i2c_write: 0x([0-9a-f]+) <- 0x([0-9a-f]+)")
+TWIM0, BUS_INTERRUPT, CORE = 0x4000_3000, 3, "/machine/nrf51/armv6m"
+ENABLE, CLOCK_PIN, DATA_PIN, ADDRESS = (TWIM0 + at for at in (0x500, 0x508, 0x50C, 0x588))
+READ_TO, READ_COUNT, WRITE_FROM, WRITE_COUNT = (TWIM0 + at for at in (0x534, 0x538, 0x544, 0x548))
+MOTION = {"sensors": [{"name": "motion", "device": "accelerometer", "channels": {"STRENGTH": {}}}], "actuators": []}
+SHAKEN = 'WHEN motion STRENGTH > 2g MARGIN 0.2g\nDO LOG "shaken"\nEND\n'
+WAKE = bytes((0xA0, 0x67, 0, 0, 0x90))
+ASLEEP = bytes((0x07, *13 * (0,)))
+AWAKE = bytes((*WAKE[1:], 0, 0, 0, 8))  # and two bytes for each axis
+REGISTERS = len(ASLEEP)
 COST_OF_LIGHTS = re.compile(r"^ACTUATOR_DRIVER\(lights,\s*(\d+),\s*(\d+),\s*(\d+),", re.M)
+COSTS = ROOT / "runtime-m4/boards/microbit-v2/costs.def"
+COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*([\d']+),", re.M)
 COST_OF_ROW = re.compile(r"^COST\(row,\s*(\d+),", re.M)
 # Pictures, blinks, and others that take the lights away.
 BLINKS = """
@@ -73,7 +87,9 @@ class OnMicrobit(DebuggedTest):
 
     def told(self, address):
         """The values that were written there, so far."""
-        writes = ((int(at, 16) + PERIPHERALS, int(value, 16)) for at, value in WRITE.findall(self.log.read_text()))
+        log = self.log.read_text()
+        writes = [(int(at, 16) + PERIPHERALS, int(value, 16)) for at, value in WRITE.findall(log)]
+        writes += [(int(at, 16) + TWIM0, int(value, 16)) for at, value in BUS_WRITE.findall(log)]
         return [value for at, value in writes if at == address]
 
     def await_told(self, address, value):
@@ -135,15 +151,18 @@ class OnMicrobit(DebuggedTest):
         with self.debugger() as debugger:
             for _ in range(calls):
                 debugger.run_to(start, lambda: None)
-                back, steps = debugger.register(LINK_REGISTER), 0
-                end = back & ~1
-                # Where an interrupt ends the core takes its return out of what was pushed.
-                while debugger.register(PC) != end and (back < END_OF_INTERRUPT or debugger.mode() != 0):
-                    debugger.step()
-                    steps += 1
-                    self.assertLess(steps, LOOKS)
-                counts.append(steps)
+                counts.append(self.steps_to_return(debugger))
         return max(counts)
+
+    def steps_to_return(self, debugger):
+        back, steps = debugger.register(LINK_REGISTER), 0
+        end = back & ~1
+        # Where an interrupt ends the core takes its return out of what was pushed.
+        while debugger.register(PC) != end and (back < END_OF_INTERRUPT or debugger.mode() != 0):
+            debugger.step()
+            steps += 1
+            self.assertLess(steps, LOOKS)
+        return steps
 
     def test_what_the_lights_cost(self):
         at, declared = symbols(FIRMWARE), COST_OF_LIGHTS.search((ROOT / "vm/drivers.def").read_text()).groups()
@@ -156,6 +175,75 @@ class OnMicrobit(DebuggedTest):
                 print(f"\n  {name}: {measured}, said {cost}")
                 self.assertGreaterEqual(cost, measured)
                 self.assertLessEqual(cost, 1.25 * measured + 60)
+
+    def begin_motion(self):
+        config, program = self.folder / "motion.json", self.folder / "motion.rsl"
+        config.write_text(json.dumps({"board": "microbit-v2", **MOTION}))
+        program.write_text(SHAKEN)
+        rsc.run("upload", program, "--config", config, "--port", self.board.port)
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        return wires, next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::drivers::lsm303agr::read("))
+
+    def serve(self, debugger, wires, read):
+        """One call of the driver; then the bus says that it is through with what it has been told."""
+        debugger.run_to(read, lambda: None)
+        debugger.run_to(debugger.register(LINK_REGISTER) & ~1, lambda: None)
+        wires.interrupt(CORE, BUS_INTERRUPT)
+
+    def test_the_accelerometer_is_woken_and_read_and_nobody_waits_for_it(self):
+        """The test is the sensor: it puts what was read where the firmware has told the bus to."""
+        wires, read = self.begin_motion()
+        self.assertEqual([self.told(at)[0] for at in (CLOCK_PIN, DATA_PIN, ADDRESS)], [8, 16, 0x19])
+        self.assertEqual((set(self.told(READ_COUNT)), set(self.told(WRITE_COUNT))), ({REGISTERS}, {1}))
+        self.assertEqual(wires.read(self.told(WRITE_FROM)[-1], 1), WAKE[:1])
+        held = self.status()["safety_late_us"]
+        with self.debugger() as debugger:
+            for _ in range(2):
+                self.serve(debugger, wires, read)  # nothing stands there yet: it is asleep
+            place = self.told(READ_TO)[0]
+            for _ in range(8):
+                wires.write(place, ASLEEP)
+                self.serve(debugger, wires, read)
+            self.assertIn(len(WAKE), self.told(WRITE_COUNT))
+            told = [wires.read(at, len(WAKE)) for at, count in zip(self.told(WRITE_FROM), self.told(WRITE_COUNT))
+                    if count == len(WAKE)]
+            self.assertEqual(set(told), {WAKE})
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
+        try:
+            self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
+            with self.debugger() as debugger:
+                for g in (1, 3):
+                    wires.write(place, AWAKE + (round(g / 0.00782) * 64).to_bytes(2, "little") + bytes(4))
+                    for _ in range(8):
+                        self.serve(debugger, wires, read)
+            self.assertTrue(reader.wait_for(lambda lines: any('"shaken"' in line for line in lines), PATIENCE))
+        finally:
+            reader.stop()
+        self.assertEqual(self.status()["safety_late_us"], held)
+
+    def test_what_the_bus_costs(self):
+        wires, read = self.begin_motion()
+        handler = symbols(FIRMWARE)["OwnBus_Handler"]
+        declared = {name: int(value.replace("'", "")) for name, value in COST_OF_BUS.findall(COSTS.read_text())}
+        asked, taken, ends = [], [], []
+        with self.debugger() as debugger:
+            for registers in 8 * [ASLEEP] + 8 * [AWAKE + bytes(range(200, 206))]:
+                debugger.run_to(read, lambda: None)
+                if self.told(READ_TO):
+                    wires.write(self.told(READ_TO)[0], registers)
+                before = self.told(WRITE_COUNT).count(1)
+                count = self.steps_to_return(debugger)
+                (asked if self.told(WRITE_COUNT).count(1) > before else taken).append(count)
+                wires.interrupt(CORE, BUS_INTERRUPT)
+                debugger.run_to(handler, lambda: None)
+                ends.append(self.steps_to_return(debugger))
+        # At worst the sensor is told to wake up as well: a second transfer, and its end.
+        for what, said, measured in (("asking", declared["i2c_ask"], max(asked) + 2 * max(ends)),
+                                     ("taking", 2 * declared["i2c_transfer"] + 23 * declared["i2c_byte"], max(taken))):
+            print(f"\n  {what}: {measured}, said {said}")
+            self.assertGreaterEqual(said, measured, (asked, taken, ends))
+            self.assertLessEqual(said, 1.25 * measured + 60)
 
     def test_the_watchdog_is_started_once_and_kicked_with_each_check_of_safety(self):
         self.status()  # it has started

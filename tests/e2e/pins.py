@@ -49,6 +49,17 @@ class Pins:
     def word(self, address):
         return int(self._say(f"readl {address:#x}").split()[1], 16)
 
+    def write(self, address, data):
+        self._say(f"write {address:#x} {len(data):#x} 0x{data.hex()}")
+
+    def read(self, address, count):
+        return bytes.fromhex(self._say(f"read {address:#x} {count:#x}").split()[1][2:])
+
+    def interrupt(self, controller, line):
+        """It is asked for, once."""
+        for level in (1, 0):
+            self._say(f"set_irq_in {controller} unnamed-gpio-in {line} {level}")
+
     def _say(self, command):
         self._lines.write(command + "\n")
         self._lines.flush()

@@ -34,6 +34,7 @@ public:
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override {
     transfers.push_back({bus, address, {out.begin(), out.end()}, in.size()});
+    if (on_transfer) return on_transfer(out, in);
     for (std::byte& byte : in) {
       if (answers.empty()) return false;
       byte = answers.front();
@@ -42,6 +43,9 @@ public:
     return acknowledges;
   }
   boards::BusState buses() const override { return bus_state; }
+  bool i2c_asks_ahead() const override { return asks_ahead; }
+  void i2c_ask(bool ahead) override { asked_ahead = ahead; }
+  bool i2c_busy() const override { return busy && busy(); }
   bool input(std::uint16_t pin) const override { return level(pin); }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override {
     pulses[pin].push_back(pulse_us);
@@ -60,6 +64,10 @@ public:
   std::vector<Transfer> transfers;
   std::deque<std::byte> answers;  // bytes the next reads get; none left: no acknowledge
   bool acknowledges = true;
+  std::function<bool(std::span<const std::byte> out, std::span<std::byte> in)>
+      on_transfer;  // answers in the place of `answers`
+  bool asks_ahead = false, asked_ahead = false;
+  std::function<bool()> busy;
   boards::BusState bus_state;
   std::function<bool(std::uint16_t pin)> level = [](std::uint16_t) { return true; };  // pulled up
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;                         // all, by pin

@@ -199,6 +199,8 @@ class Sampling(unittest.TestCase):
     WIRED = {"max34451": ({"type": "I2C", "address": "0x70", "device": "max34451",
                            "channels": {"L": {"input": 0, "range": [0, 10], "rate": "50Hz"}}}, "L > 5"),
              "i2c_register": ({"type": "I2C", "address": "0x48"}, "> 5"),
+             # In its place one that acknowledges all, and never is as it should be: it is told so again with each sample.
+             "lsm303agr": ({"type": "I2C", "address": "0x19", "device": "lsm303agr"}, "X > 1g"),
              "digital_input": ({"type": "GPIO", "pin": 43, "device": "switch"}, "IS closed")}
 
     def test_every_driver_that_samples(self):

@@ -1,5 +1,7 @@
 #include "runtime-m4/boards/microbit-v2/board.hpp"
 
+#include <algorithm>
+
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
 #include "runtime-m4/boards/microbit-v2/clock.hpp"
@@ -25,6 +27,10 @@ Board::Board() : chip_reset_(take_reset_cause()) {
   port::core::enable_interrupt(row_timer::kInterrupt);
   for (const Pwm& module : {kPwm0, kPwm1})
     port::core::enable_interrupt(module.interrupt);
+  for (I2c& bus : i2c_)
+    bus.start();
+  for (const Twim& master : {kTwim0, kTwim1})
+    port::core::enable_interrupt(master.interrupt);
   if (!start_clock()) port::core::reset();
 }
 
@@ -42,9 +48,23 @@ link::ResetReason Board::reset_reason() const {
   return last_reset();
 }
 
-bool Board::i2c_transfer(std::uint8_t /*bus*/, std::uint8_t /*address*/,
-                         std::span<const std::byte> /*out*/, std::span<std::byte> /*in*/) {
-  return false;
+bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
+                         std::span<std::byte> in) {
+  return bus < i2c_.size() && i2c_[bus].transfer(asks_ahead_, address, out, in);
+}
+
+bool Board::i2c_busy() const {
+  return std::ranges::any_of(i2c_, &I2c::is_busy);
+}
+
+BusState Board::buses() const {
+  BusState all;
+  for (std::size_t bus = 0; bus < i2c_.size(); ++bus) {
+    const BusState one = i2c_[bus].state();
+    all.clears = static_cast<std::uint16_t>(all.clears + one.clears);
+    all.held = static_cast<std::uint8_t>(all.held | one.held << bus);
+  }
+  return all;
 }
 
 bool Board::input(std::uint16_t pin) const {
@@ -79,6 +99,9 @@ extern "C" {
 
 void NMI_Handler();
 void Uart0_Handler();
+void Row_Handler();
+void EdgeBus_Handler();
+void OwnBus_Handler();
 void Pwm_Handler();
 
 // The chip has nothing that causes one.
@@ -95,6 +118,14 @@ void Uart0_Handler() {
 
 void Row_Handler() {
   robosync::boards::microbit::lights::next_row();
+}
+
+void EdgeBus_Handler() {
+  robosync::boards::microbit::board.i2c(0).on_end();
+}
+
+void OwnBus_Handler() {
+  robosync::boards::microbit::board.i2c(1).on_end();
 }
 
 void Pwm_Handler() {

@@ -2,12 +2,14 @@
 // with an nRF51: scripts/emulator makes one with a Cortex-M4 of it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/common/serial_line.hpp"
+#include "runtime-m4/boards/microbit-v2/i2c.hpp"
 #include "runtime-m4/boards/microbit-v2/resets.hpp"
 #include "runtime-m4/boards/microbit-v2/uart.hpp"
 #include "runtime-m4/boards/pins.hpp"
@@ -39,7 +41,10 @@ public:
   const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
-  BusState buses() const override { return {}; }
+  BusState buses() const override;
+  bool i2c_asks_ahead() const override { return true; }
+  void i2c_ask(bool ahead) override { asks_ahead_ = ahead; }
+  bool i2c_busy() const override;
   bool input(std::uint16_t pin) const override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
@@ -51,10 +56,15 @@ public:
   void watchdog_kick() override { kick_watchdog(); }
 
   Line& line() { return line_; }
+  I2c& i2c(unsigned bus) { return i2c_[bus]; }
 
 private:
   ChipReset chip_reset_;
   Line line_;
+  bool asks_ahead_ = false;
+  // 0: of the edge connector, pins 19 and 20; 1: of what is on the board.
+  std::array<I2c, 2> i2c_{I2c(kTwim1, {.clock = {0, 26}, .data = {1, 0}}),
+                          I2c(kTwim0, {.clock = {0, 8}, .data = {0, 16}})};
 };
 
 }  // namespace robosync::boards::microbit

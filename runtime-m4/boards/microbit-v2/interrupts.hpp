@@ -8,12 +8,16 @@
 extern "C" void Uart0_Handler();
 extern "C" void Pwm_Handler();
 extern "C" void Row_Handler();
+extern "C" void EdgeBus_Handler();
+extern "C" void OwnBus_Handler();
 
 namespace robosync::boards {
 
 inline constexpr std::size_t kInterrupts = 48;
 inline constexpr std::array kUsedInterrupts{Interrupt{microbit::uart::kInterrupt, Uart0_Handler},
                                             Interrupt{microbit::row_timer::kInterrupt, Row_Handler},
+                                            Interrupt{microbit::kTwim0.interrupt, OwnBus_Handler},
+                                            Interrupt{microbit::kTwim1.interrupt, EdgeBus_Handler},
                                             Interrupt{microbit::kPwm0.interrupt, Pwm_Handler},
                                             Interrupt{microbit::kPwm1.interrupt, Pwm_Handler}};
 

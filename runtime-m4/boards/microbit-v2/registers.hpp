@@ -52,6 +52,9 @@ struct Pin {  // {0, 6} is P0.06
 
   static constexpr std::uint32_t kOutput = 0b11;  // which nobody reads
   static constexpr std::uint32_t kInputPulledUp = 0b1100;
+  // Pulled up, and low or let go: S0D1. TWIM has them as inputs.
+  static constexpr std::uint32_t kBusLine = 6 << 8 | 0b1100;
+  static constexpr std::uint32_t kDrivenBusLine = kBusLine | 1;
 
 private:
   constexpr std::uintptr_t base() const { return 0x5000'0000 + std::uintptr_t{0x300} * port; }
@@ -127,6 +130,42 @@ inline constexpr std::uint32_t kRunsInSleep = 1U << 0;  // and not while a debug
 inline constexpr Register kKick{0x4001'0600};           // the first one
 inline constexpr std::uint32_t kKicked = 0x6E52'4635;
 }  // namespace watchdog
+
+// A master of I2C that fetches what it writes from memory by itself, and puts what it reads there.
+struct Twim {
+  std::uintptr_t base;
+  unsigned interrupt;
+
+  constexpr Register start_reading() const { return {base + 0x000}; }
+  constexpr Register start_writing() const { return {base + 0x008}; }
+  constexpr Register stop() const { return {base + 0x014}; }
+  constexpr Register stopped() const { return {base + 0x104}; }  // event
+  constexpr Register error() const { return {base + 0x124}; }    // event: it has not stopped
+  constexpr Register shortcuts() const { return {base + 0x200}; }
+  constexpr Register interrupt_on() const { return {base + 0x304}; }
+  constexpr Register errors() const { return {base + 0x4C4}; }  // which; 1 forgets
+  constexpr Register enable() const { return {base + 0x500}; }
+  constexpr Register clock_pin() const { return {base + 0x508}; }
+  constexpr Register data_pin() const { return {base + 0x50C}; }
+  constexpr Register frequency() const { return {base + 0x524}; }
+  constexpr Register read_to() const { return {base + 0x534}; }
+  constexpr Register read_count() const { return {base + 0x538}; }
+  constexpr Register write_from() const { return {base + 0x544}; }
+  constexpr Register write_count() const { return {base + 0x548}; }
+  constexpr Register address() const { return {base + 0x588}; }
+
+  static constexpr std::uint32_t kOn = 6;
+  static constexpr std::uint32_t kReadWhenWritten = 1U << 7;
+  static constexpr std::uint32_t kStopWhenWritten = 1U << 9;
+  static constexpr std::uint32_t kStopWhenRead = 1U << 12;
+  static constexpr std::uint32_t kWhenStopped = 1U << 1;  // interrupts
+  static constexpr std::uint32_t kWhenWrong = 1U << 9;
+  // At 400 kHz the clock is low for less than I2C asks for (Nordic's anomaly 219).
+  static constexpr std::uint32_t k390kHz = 0x0620'0000;
+  static constexpr std::uint32_t kAllErrors = 0b111;
+};
+inline constexpr Twim kTwim0{0x4000'3000, 3};
+inline constexpr Twim kTwim1{0x4000'4000, 4};
 
 // What gives pulses: a counter of 15 bits, and four channels that are compared with it. What they are compared with the
 // module fetches itself from memory, anew for each period (pins.cpp).

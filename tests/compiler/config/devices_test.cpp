@@ -272,7 +272,10 @@ TEST_CASE("the boards are read without a mistake") {
       const Device* sensor = find_device(part.device, true);
       const Device* actuator = find_device(part.device, false);
       REQUIRE((sensor != nullptr || actuator != nullptr));
-      if (sensor != nullptr) CHECK((part.pin && board.has_input(*part.pin)));
+      if (sensor != nullptr && vm::is_on_i2c(sensor->sensor.driver))
+        CHECK((part.bus < board.i2c_buses && part.address >= vm::kFirstAddress));
+      else if (sensor != nullptr)
+        CHECK((part.pin && board.has_input(*part.pin)));
       if (actuator != nullptr) {
         CHECK(vm::drives_lights(actuator->actuator.driver));
         CHECK_FALSE(part.pin);

@@ -89,7 +89,7 @@ void Nrf52833::configure(Pwm& pwm, std::uintptr_t offset, std::uint32_t value) {
     default:
       break;
   }
-  switch (offset & ~std::uintptr_t{0x60} | 0x20) {
+  switch ((offset & ~std::uintptr_t{0x60}) | 0x20) {
     case 0x520:
       sequence.values = value;
       return;

@@ -52,6 +52,10 @@ public:
   const RowTimer& row_timer() const { return row_timer_; }
   // Of the oscillator of 32,768 Hz.
   void pass_slow_counts(std::uint32_t counts);
+  std::uint32_t configuration_of(Pin pin) const {
+    return ports_[pin.first].configuration[pin.second];
+  }
+  bool is_set(Pin pin) const { return (ports_[pin.first].out >> pin.second & 1) != 0; }
   void reset_by(std::uint32_t cause) { reset_reason_ |= cause; }
 
 private:
