@@ -8,9 +8,9 @@
 namespace robosync::vm {
 
 // What an actuator's driver puts out on its pin. Pulses say where to go: while they stay as they are, so does the
-// actuator. A level is power: as long as it is there, a motor runs. A picture is on no pin of an actuator's own, but on the
-// lights, which a board has once.
-enum class PinUse : std::uint8_t { nothing, pulses, level, picture };
+// actuator. A level is power: as long as it is there, a motor runs. A picture and tones are on no pin of an actuator's own,
+// but on the lights and the speaker, which a board has once.
+enum class PinUse : std::uint8_t { nothing, pulses, level, picture, tones };
 
 constexpr PinUse pin_use(DriverId driver) {
   switch (driver) {
@@ -34,6 +34,13 @@ constexpr bool drives_pin(DriverId driver) {
 }
 constexpr bool drives_lights(DriverId driver) {
   return pin_use(driver) == PinUse::picture;
+}
+constexpr bool drives_speaker(DriverId driver) {
+  return pin_use(driver) == PinUse::tones;
+}
+// What goes on by itself as long as nobody ends it: it cannot be held in a halt.
+constexpr bool drives_on(DriverId driver) {
+  return pin_use(driver) == PinUse::level || pin_use(driver) == PinUse::tones;
 }
 
 // By what a driver's sensors are measured; nothing: they are fed, or it has no sensors.

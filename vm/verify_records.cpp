@@ -121,12 +121,14 @@ Refusal check_channel(Walk& walk, const Channel& channel, std::size_t index) {
                                          is_range(channel.min, channel.max) && channel.change >= 0);
 }
 
-// What an actuator has for itself alone: its pin, or the lights.
+// What an actuator has for itself alone: its pin, the lights, or the speaker.
 constexpr std::uint32_t kNothing = UINT32_MAX;
 constexpr std::uint32_t kLights = UINT16_MAX + 1;
+constexpr std::uint32_t kSpeaker = kLights + 1;
 
 std::uint32_t output_of(const Actuator& actuator) {
   if (drives_lights(actuator.driver)) return kLights;
+  if (drives_speaker(actuator.driver)) return kSpeaker;
   return drives_pin(actuator.driver) ? actuator.pin : kNothing;
 }
 
@@ -143,8 +145,7 @@ Refusal check_output(const Walk& walk, const Actuator& actuator, std::size_t ind
   if (walk.reads_pins && is_read(walk.image, output)) return Refusal::shared_pin;
   for (std::size_t a = 0; a < index; ++a)
     if (output_of(walk.image.actuators[a]) == output) return Refusal::shared_pin;
-  return good_or(Refusal::drives_on,
-                 pin_use(actuator.driver) != PinUse::level || actuator.safe != Release::hold);
+  return good_or(Refusal::drives_on, !drives_on(actuator.driver) || actuator.safe != Release::hold);
 }
 
 Refusal check_actuator(Walk& walk, const Actuator& actuator, std::size_t index) {

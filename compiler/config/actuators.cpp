@@ -128,10 +128,12 @@ void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics
 // What moves by power alone must not hold.
 void read_safe(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
   actuator.safe = read_release(value, diagnostics).value_or(actuator.safe);
-  if (actuator.safe != vm::Release::hold || vm::pin_use(actuator.driver) != vm::PinUse::level)
-    return;
+  if (actuator.safe != vm::Release::hold || !vm::drives_on(actuator.driver)) return;
+  const bool sounds = vm::drives_speaker(actuator.driver);
   diagnostics
-      .report(Code::E0205, "a motor that holds what it does runs on when the robot is halted")
+      .report(Code::E0205, std::string(sounds ? "a tone that is held sounds"
+                                              : "a motor that holds what it does runs") +
+                               " on when the robot is halted")
       .label(value.span)
       .helps("`safe` can be `coast` here: off; only a servo may `hold`");
 }
@@ -156,7 +158,8 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
     actuator.pin = place.place;
     if (type->name == "VIRTUAL") actuator.driver = vm::DriverId::virtual_actuator;
     if (vm::drives_pin(actuator.driver)) wiring.check_output(fields, place);
-    if (vm::drives_lights(actuator.driver)) wiring.check_lights(fields, part);
+    if (vm::drives_lights(actuator.driver) || vm::drives_speaker(actuator.driver))
+      wiring.check_part(fields, part);
   }
   if (const auto* range = fields.find("range")) read_position_range(*range, actuator, diagnostics);
   if (const auto* speeds = fields.find("speeds")) read_speeds(*speeds, actuator, diagnostics);

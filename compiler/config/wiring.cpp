@@ -28,6 +28,16 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(vm::ActiveLevel:
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::count_)> kReleases = {
     "hold", "rest", "coast"};
 
+// By the names that their parts of this device have.
+std::string boards_with(std::string_view device) {
+  std::vector<std::string> boards;
+  for (std::size_t i = 0; i < board_names().size(); ++i)
+    for (const Board::Part& part : board_at(i).parts)
+      if (same_name(part.device, device))
+        boards.push_back(std::string(board_names()[i]) + "` as `\"device\": \"" + part.name + "\"");
+  return list_names(boards, "and");
+}
+
 std::string boards_with_i2c() {
   std::vector<std::string> boards;
   for (std::size_t i = 0; i < board_names().size(); ++i)
@@ -114,13 +124,13 @@ void WiringReader::take_part(const Board::Part& part, Span span) {
       .label(first->second, "first used here", false);
 }
 
-void WiringReader::check_lights(const Fields& fields, const Board::Part* part) {
+void WiringReader::check_part(const Fields& fields, const Board::Part* part) {
   const auto* device = fields.find("device");
   if (part != nullptr || device == nullptr) return;
   diagnostics_
       .report(Code::E0205, "a " + device->text + " is a part of a board, and cannot be wired")
       .label(device->span)
-      .helps("the micro:bit V2 has one: `\"board\": \"microbit-v2\"`, `\"device\": \"lights\"`");
+      .helps("boards that have one: " + boards_with(device->text));
 }
 
 Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::Part* part,

@@ -40,8 +40,8 @@ public:
   void check_bus(const Fields& fields, const Wiring& wiring);
   void check_input(const Fields& fields, const Wiring& wiring);
   void check_output(const Fields& fields, const Wiring& wiring);
-  // The lights are a part of a board, or nowhere.
-  void check_lights(const Fields& fields, const Board::Part* part);
+  // Lights and speakers are parts of a board, or nowhere.
+  void check_part(const Fields& fields, const Board::Part* part);
   [[nodiscard]] const Board& board() const { return board_; }
 
 private:

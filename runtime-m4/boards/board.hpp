@@ -57,6 +57,9 @@ public:
   // The picture on the lights from now on, for boards that have some: bit 5 * row + column, from the top left. 0: dark.
   virtual void show(std::uint32_t /*picture*/) {}
 
+  // The tone of the speaker from now on, for boards that have one, in Hz. 0: silent, at once.
+  virtual void sound(std::uint32_t /*hertz*/) {}
+
   // What outlasts a reset; nullptr where the board has nothing for it.
   virtual Store* store() { return nullptr; }
 

@@ -9,6 +9,7 @@ namespace robosync::boards {
 inline constexpr policy::PinLimit kOutputs[] = {ROBOSYNC_OUTPUTS};
 // On the host, what any board has.
 inline constexpr bool kHasLights = ROBOSYNC_LIGHTS != 0;
+inline constexpr bool kHasSpeaker = ROBOSYNC_SPEAKER != 0;
 inline constexpr policy::PinRange kInputs[] = {ROBOSYNC_INPUTS};
 inline constexpr policy::BoardPins kPins = {
     .outputs = kOutputs, .inputs = kInputs, .i2c_buses = ROBOSYNC_I2C_BUSES};

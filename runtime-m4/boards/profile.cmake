@@ -40,7 +40,13 @@ set(board_lights 1)
 if(any AND CMAKE_CROSSCOMPILING)
   set(board_lights 0)
 endif()
+string(JSON speaker ERROR_VARIABLE any GET "${profile}" speaker)
+set(board_speaker 1)
+if(any AND CMAKE_CROSSCOMPILING)
+  set(board_speaker 0)
+endif()
 set(board_definitions
   ROBOSYNC_ARENA_BEGIN=${arena_begin} ROBOSYNC_ARENA_BYTES=${arena_bytes} ROBOSYNC_STEP_BUDGET=${step_budget}
   ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_STORE_BYTES=${store_bytes} ROBOSYNC_OUTPUTS=${board_outputs}
-  ROBOSYNC_INPUTS=${board_inputs} ROBOSYNC_LIGHTS=${board_lights})
+  ROBOSYNC_INPUTS=${board_inputs} ROBOSYNC_LIGHTS=${board_lights}
+  ROBOSYNC_SPEAKER=${board_speaker})

@@ -54,6 +54,7 @@ struct Device {
     outputs.drive(state.actuator, pulse_us, now);
   }
   void show(std::uint32_t picture) const { outputs.show(state.actuator, picture); }
+  void sound(std::uint32_t hertz) const { outputs.sound(state.actuator, hertz); }
 };
 
 inline constexpr kernel::Time kDone = 0;
@@ -86,9 +87,10 @@ struct Driver {
   ReleaseFunction release = nullptr;
 };
 
-// Code for lights is not there where there are none.
+// Code for lights and speakers is not there where there are none.
 constexpr bool is_present(vm::DriverId id) {
-  return boards::kHasLights || !vm::drives_lights(id);
+  if (vm::drives_lights(id)) return boards::kHasLights;
+  return boards::kHasSpeaker || !vm::drives_speaker(id);
 }
 template <vm::DriverId id>
 constexpr Driver actuator_driver(Driver driver) {

@@ -38,11 +38,12 @@ void OutputGuard::switch_off(const vm::Image* next) {
     halted_ = free_ = lagging_ = 0;
   }
   if (lights() != 0) board_.show(0);
-  for (Mask left = owned_ & ~lights(); left != 0; left &= left - 1) {
+  if (speaker() != 0) board_.sound(0);
+  for (Mask left = owned_ & ~(lights() | speaker()); left != 0; left &= left - 1) {
     const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
     if (next == nullptr || !drives(*next, slot.pin, slot.driver)) board_.pwm_write(slot.pin, 0);
   }
-  owned_ = lights_ = 0;
+  owned_ = lights_ = speaker_ = 0;
 }
 
 void OutputGuard::disown() {
@@ -62,6 +63,7 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
       own_lights(a, actuator.safe);
       owned |= bit(a);
     }
+    if (boards::kHasSpeaker && vm::drives_speaker(actuator.driver)) owned |= speaker_ = bit(a);
     if (!vm::drives_pin(actuator.driver) || limit == nullptr) continue;
     const auto pulse = static_cast<std::uint16_t>(board_.pwm_read(actuator.pin));
     const auto safe = policy::safe_pulse(actuator);
@@ -89,6 +91,11 @@ void OutputGuard::own_lights(unsigned actuator, vm::Release safe) {
 void OutputGuard::show(unsigned actuator, std::uint32_t picture) {
   const auto lock = kernel_.lock();
   if ((free_ & lights() & bit(actuator)) != 0) board_.show(picture);
+}
+
+void OutputGuard::sound(unsigned actuator, std::uint32_t hertz) {
+  const auto lock = kernel_.lock();
+  if ((free_ & speaker() & bit(actuator)) != 0) board_.sound(hertz);
 }
 
 [[gnu::noinline]] void OutputGuard::drive(unsigned actuator, std::uint32_t pulse_us,
@@ -148,7 +155,8 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
   halted_ |= actuators;
   free_ = owned_ & ~halted_;
   if ((fresh & lights()) != 0 && !lights_stay_) board_.show(0);
-  for (Mask left = fresh & ~lights(); left != 0; left &= left - 1)
+  if ((fresh & speaker()) != 0) board_.sound(0);
+  for (Mask left = fresh & ~(lights() | speaker()); left != 0; left &= left - 1)
     make_safe(static_cast<unsigned>(std::countr_zero(left)), now);
 }
 

@@ -8,7 +8,8 @@
 //   go. A pin that is off stays off: nothing begins to move because something is wrong.
 //
 // The lights of a board that has some are kept in the same way: who shows a picture owns them, they go dark with a halt
-// unless its safe state is to hold, and with the program.
+// unless its safe state is to hold, and with the program. The speaker of one that has it is silent then, whatever its safe
+// state.
 //
 // A check and its write are one under the kernel's lock: who is interrupted in between writes nothing old later.
 // docs/safety.md says what follows from that.
@@ -40,6 +41,8 @@ public:
   void drive(unsigned actuator, std::uint32_t pulse_us, kernel::Time now);
   // The picture on the lights (boards::Board::show()).
   void show(unsigned actuator, std::uint32_t picture);
+  // The tone of the speaker (boards::Board::sound()).
+  void sound(unsigned actuator, std::uint32_t hertz);
   // Pins whose pulse may not yet be where it shall go on. Called at each check of the safety monitor.
   void go_on(kernel::Time now);
 
@@ -67,6 +70,8 @@ private:
   void own_lights(unsigned actuator, vm::Release safe);
   // The actuator that has the lights, if any.
   Mask lights() const { return boards::kHasLights ? lights_ : 0; }
+  // … and the speaker.
+  Mask speaker() const { return boards::kHasSpeaker ? speaker_ : 0; }
 
   kernel::Kernel& kernel_;
   boards::Board& board_;
@@ -77,6 +82,7 @@ private:
   Mask gradual_ = 0;  // whose pulse may not change at once
   Mask lagging_ = 0;  // … and is not yet where it shall be
   Mask lights_ = 0;
+  Mask speaker_ = 0;
   bool lights_stay_ = false;  // in the safe state
   std::array<Slot, vm::kMaxActuators> slots_{};
 };

@@ -39,6 +39,7 @@ target_sources(robosync_runtime PRIVATE
   drivers/player.cpp
   drivers/pwm.cpp
   drivers/servo.cpp
+  drivers/tones.cpp
   drivers/virtual_actuator.cpp
   drivers/virtual_motion.cpp
   drivers/virtual_sensor.cpp

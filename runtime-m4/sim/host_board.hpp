@@ -1,5 +1,6 @@
 // The host as a board: PWM pins that remember their last pulse, inputs that nobody asks (what sensors measure, a scenario
-// says), no bus, no line, a watchdog that only counts. It takes programs of all boards, so each pin may be an input.
+// says), no bus, no line, a watchdog that only counts. It takes programs of all boards, so each pin may be an input, and
+// each bus is there.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,7 @@ public:
 private:
   static constexpr policy::PinRange kAny[] = {{0, UINT16_MAX}};
   static constexpr policy::BoardPins kPins = {
-      .outputs = boards::kOutputs, .inputs = kAny, .i2c_buses = ROBOSYNC_I2C_BUSES};
+      .outputs = boards::kOutputs, .inputs = kAny, .i2c_buses = UINT8_MAX};
 
   std::map<std::uint16_t, std::uint32_t> pulses_;
   std::uint64_t kicks_ = 0;

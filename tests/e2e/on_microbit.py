@@ -4,6 +4,7 @@ down. Run with ROBOSYNC_BOARD=microbit-v2."""
 import json
 import re
 import sys
+import threading
 import time
 import unittest
 from pathlib import Path
@@ -42,6 +43,12 @@ END
 # The lights' pins of port 0: QEMU has no second port, where column 4 is.
 ROWS, COLUMNS = (21, 22, 15, 24, 19), {0: 28, 1: 11, 2: 31, 4: 30}
 P0_OUT, LINK_REGISTER, END_OF_INTERRUPT = 0x5000_0504, 14, 0xFFFF_FFE0
+# Of the speaker: PSEL.OUT, and where the module fetches its values, the last of which is the period in microseconds.
+PIN_OF_SPEAKER, VALUES_OF_SPEAKER, P0_00 = 0x4002_2560, 0x4002_2520, 0
+HORN = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+        "actuators": [{"name": "face", "device": "beeper"}]}
+SOUND = "robosync::boards::microbit::Board::sound("
+NOTES = re.compile(r"NOTE\((\d+),")
 FACE = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
         "actuators": [{"name": "face", "device": "lights"}]}
 SHOWS = "WHEN near X > 10\nDO\n  {}\nEND\n"
@@ -58,7 +65,7 @@ WAKE = bytes((0xA0, 0x67, 0, 0, 0x90))
 ASLEEP = bytes((0x07, *13 * (0,)))
 AWAKE = bytes((*WAKE[1:], 0, 0, 0, 8))  # and two bytes for each axis
 REGISTERS = len(ASLEEP)
-COST_OF_LIGHTS = re.compile(r"^ACTUATOR_DRIVER\(lights,\s*(\d+),\s*(\d+),\s*(\d+),", re.M)
+COST_OF_DRIVER = r"(?m)^ACTUATOR_DRIVER\({},\s*(\d+),\s*(\d+),\s*(\d+),"
 COSTS = ROOT / "runtime-m4/boards/microbit-v2/costs.def"
 COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*([\d']+),", re.M)
 COST_OF_ROW = re.compile(r"^COST\(row,\s*(\d+),", re.M)
@@ -75,6 +82,21 @@ END
 BEHAVIOR interrupts PRIORITY 90
   EVERY 170ms
   DO SHOW face sad FOR 33ms
+  END
+END
+"""
+TUNES = """
+BEHAVIOR plays PRIORITY 10
+  EVERY 900ms
+  DO
+    PLAY face giggle FOR 333ms
+    THEN
+    PLAY face AT 777Hz FOR 51ms
+  END
+END
+BEHAVIOR interrupts PRIORITY 90
+  EVERY 1100ms
+  DO PLAY face beep
   END
 END
 """
@@ -114,9 +136,9 @@ class OnMicrobit(DebuggedTest):
         self.await_told(PIN_OF_PWM0[1], NOBODY)
         self.assertEqual(self.told(PIN_OF_PWM0[2]) + self.told(PIN_OF_PWM0[3]), [])
 
-    def begin(self, body, more=""):
+    def begin(self, body, more="", robot=FACE):
         config, program = self.folder / "face.json", self.folder / "face.rsl"
-        config.write_text(json.dumps({"board": "microbit-v2", **FACE}))
+        config.write_text(json.dumps({"board": "microbit-v2", **robot}))
         program.write_text(SHOWS.format(body) + more)
         self.upload(program, "--config", config)
 
@@ -145,6 +167,31 @@ class OnMicrobit(DebuggedTest):
         self.say("stop")
         self.assertEqual(self.seen(wires, 1), {})
 
+    def test_a_melody_is_on_the_speaker_note_by_note_until_it_is_over_or_the_robot_is_stopped(self):
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        self.assertEqual(self.told(PIN_OF_SPEAKER), [])
+        self.begin("PLAY face yawn", "WHEN near X > 80\nDO\nPLAY face alarm FOR 60s\nEND\n", HORN)
+        melodies = (ROOT / "runtime-m4/drivers/melodies.def").read_text()
+        yawn, alarm = ([int(hertz) for hertz in NOTES.findall(re.search(rf"MELODY\({name}, .*", melodies)[0])]
+                       for name in ("yawn", "alarm"))
+        sound = next(at for name, at in symbols(FIRMWARE).items() if name.startswith(SOUND))
+        feeder = threading.Thread(target=self.say, args=("feed", "near.X=20"))
+        with self.debugger() as debugger:
+            debugger.run_to(sound, feeder.start)
+            heard = [debugger.register(1)]
+            debugger.step()
+            heard += debugger.register_at(sound, 1, len(yawn) + 1)
+        feeder.join()
+        self.assertEqual(heard, [0, *yawn, 0])  # it begins with silence, and ends with it
+        self.await_told(PIN_OF_SPEAKER, NOBODY)
+        self.say("feed", "near.X=90")
+        self.await_told(PIN_OF_SPEAKER, P0_00)
+        period = int.from_bytes(wires.read(self.told(VALUES_OF_SPEAKER)[-1], 8)[6:], "little")
+        self.assertIn(period, [1_000_000 // hertz for hertz in alarm if hertz])
+        self.say("stop")
+        self.await_told(PIN_OF_SPEAKER, NOBODY)
+
     def counted(self, start, calls=6):
         """Instructions from there until it returns, of its next calls at most."""
         counts = []
@@ -164,17 +211,27 @@ class OnMicrobit(DebuggedTest):
             self.assertLess(steps, LOOKS)
         return steps
 
-    def test_what_the_lights_cost(self):
-        at, declared = symbols(FIRMWARE), COST_OF_LIGHTS.search((ROOT / "vm/drivers.def").read_text()).groups()
-        said = {f"robosync::drivers::lights::{call}(": int(cost) for call, cost in zip(("start", "advance", "release"), declared)}
-        said["Row_Handler"] = int(COST_OF_ROW.search((ROOT / "runtime-m4/boards/microbit-v2/costs.def").read_text())[1])
-        self.begin("SHOW face happy", BLINKS)
+    def calls_of(self, driver):
+        """{what: declared} of its calls."""
+        said = re.search(COST_OF_DRIVER.format(driver), (ROOT / "vm/drivers.def").read_text()).groups()
+        return {f"robosync::drivers::{driver}::{call}(": int(cost) for call, cost in zip(("start", "advance", "release"), said)}
+
+    def compare_costs(self, said):
+        at = symbols(FIRMWARE)
         for name, cost in said.items():
             with self.subTest(name):
                 measured = self.counted(next(place for known, place in at.items() if known.startswith(name)))
                 print(f"\n  {name}: {measured}, said {cost}")
                 self.assertGreaterEqual(cost, measured)
                 self.assertLessEqual(cost, 1.25 * measured + 60)
+
+    def test_what_the_lights_cost(self):
+        self.begin("SHOW face happy", BLINKS)
+        self.compare_costs({**self.calls_of("lights"), "Row_Handler": int(COST_OF_ROW.search(COSTS.read_text())[1])})
+
+    def test_what_the_speaker_costs(self):
+        self.begin("PLAY face hello", TUNES, HORN)
+        self.compare_costs(self.calls_of("tones"))
 
     def begin_motion(self):
         config, program = self.folder / "motion.json", self.folder / "motion.rsl"

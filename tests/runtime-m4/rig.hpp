@@ -55,6 +55,7 @@ public:
     return found == pulses.end() ? 0 : found->second.back();
   }
   void show(std::uint32_t picture) override { pictures.push_back(picture); }
+  void sound(std::uint32_t hertz) override { sounds.push_back(hertz); }
   std::size_t link_write(std::span<const std::byte> bytes) override { return bytes.size(); }
   std::size_t link_read(std::span<std::byte>) override { return 0; }
   void link_start(const boards::LineEvents&) override {}
@@ -73,6 +74,7 @@ public:
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;                         // all, by pin
   policy::BoardPins board_pins = boards::kPins;
   std::vector<std::uint32_t> pictures;  // all
+  std::vector<std::uint32_t> sounds;    // all
   unsigned kicks = 0;
   bool watching = false;
 };

@@ -8,6 +8,7 @@
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/lights.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
+#include "runtime-m4/boards/microbit-v2/speaker.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 
@@ -24,6 +25,7 @@ Board::Board() : chip_reset_(take_reset_cause()) {
   pins::start();
   inputs::start();
   lights::start();
+  speaker::start();
   port::core::enable_interrupt(row_timer::kInterrupt);
   for (const Pwm& module : {kPwm0, kPwm1})
     port::core::enable_interrupt(module.interrupt);
@@ -83,6 +85,10 @@ void Board::show(std::uint32_t picture) {
   lights::show(picture);
 }
 
+void Board::sound(std::uint32_t hertz) {
+  speaker::sound(hertz);
+}
+
 }  // namespace robosync::boards::microbit
 
 robosync::boards::Board& robosync_board = robosync::boards::microbit::board;
@@ -90,6 +96,7 @@ robosync::boards::Board& robosync_board = robosync::boards::microbit::board;
 void robosync::boards::switch_outputs_off() {
   microbit::pins::switch_off();
   microbit::lights::show(0);
+  microbit::speaker::sound(0);
 }
 
 const std::uint32_t robosync::port::hooks::kTickCounts =

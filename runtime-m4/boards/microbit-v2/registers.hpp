@@ -208,6 +208,7 @@ struct Pwm {
   static constexpr std::uint32_t kPlayAgain = 1U << 2;   // when all loops are done
   static constexpr std::uint32_t kMicroseconds = 4;      // 16 MHz / 16
   static constexpr std::uint32_t kValueEach = 2;         // a channel
+  static constexpr std::uint32_t kValuesAndTop = 3;  // three channels, and where the counter ends
   static constexpr std::uint32_t kMostLoops = 0xFFFF;
   // A value that is compared: from the begin of the period the channel is high, or it is low, until the counter has
   // come so far; for ever, when that is behind the counter's end.
@@ -216,5 +217,6 @@ struct Pwm {
 };
 inline constexpr Pwm kPwm0{0x4001'C000, 28};
 inline constexpr Pwm kPwm1{0x4002'1000, 33};
+inline constexpr Pwm kPwm2{0x4002'2000, 34};
 
 }  // namespace robosync::boards::microbit

@@ -55,6 +55,7 @@ std::optional<unsigned> Nrf52833::Pwm::channel_at(std::uint32_t pin) const {
   for (unsigned channel = 0; channel < pins.size(); ++channel) {
     if ((pins[channel] & kDisconnected) != 0 || pins[channel] != pin) continue;
     demand(!found, "two channels of a module have a pin");
+    demand(decoder != 3 || channel < 3, "the fourth value is no channel's");
     found = channel;
   }
   return found;
@@ -139,7 +140,7 @@ void Nrf52833::write(Pwm& pwm, std::uintptr_t offset, std::uint32_t value) {
 void Nrf52833::play(Pwm& pwm) {
   if (!pwm.enabled) return;
   demand(pwm.mode == 0 && pwm.prescaler == 4, "the model counts microseconds, and up");
-  demand(pwm.decoder == 2, "the model knows a value for each channel only");
+  demand(pwm.decoder == 2 || pwm.decoder == 3, "the model knows a value for each channel only");
   for (const Sequence& sequence : pwm.sequences)
     demand(sequence.count == 4 && sequence.refresh == 0 && sequence.end_delay == 0,
            "the model knows sequences of one period only");
@@ -148,7 +149,14 @@ void Nrf52833::play(Pwm& pwm) {
   pwm.loops_left = pwm.loop;
   pwm.counter = 0;
   fetch(pwm);
+  begin_period(pwm);
+}
+
+// Where the counter ends is the fourth value, in the mode for wave forms.
+void Nrf52833::begin_period(Pwm& pwm) {
   pwm.at_work = pwm.fetched;
+  if (pwm.decoder == 3) pwm.top = pwm.at_work[3] & 0x7FFF;
+  demand(pwm.top > 2, "a counter counts to 3 at least");
   if (fetch_ == Fetch::early) fetch(pwm);
 }
 
@@ -175,8 +183,7 @@ void Nrf52833::end_period(Pwm& pwm) {
     return;
   }
   if (fetch_ == Fetch::late) fetch(pwm);
-  pwm.at_work = pwm.fetched;
-  if (fetch_ == Fetch::early) fetch(pwm);
+  begin_period(pwm);
 }
 
 void Nrf52833::pass_microsecond() {

@@ -85,6 +85,7 @@ private:
   static void configure(Pwm& pwm, std::uintptr_t offset, std::uint32_t value);
   void play(Pwm& pwm);
   void fetch(Pwm& pwm);
+  void begin_period(Pwm& pwm);
   void end_period(Pwm& pwm);
   std::uint32_t read_port(unsigned number, std::uintptr_t offset) const;
   void write_port(Port& port, std::uintptr_t offset, std::uint32_t value);

@@ -1,0 +1,29 @@
+"""A robot without the parts that are soldered to its board: it can run on another one, and a test can feed all of it."""
+
+import json
+from pathlib import Path
+
+STDLIB = Path(__file__).resolve().parents[3] / "stdlib"
+KEPT = ("unit", "range", "labels")  # of a channel: what is fed has no inputs and no scale
+
+
+def without_parts(robot, kinds=("sensors", "actuators")):
+    """The robot, with what is on its board replaced by the same, virtual; without its board, when nothing is left of it."""
+    if "board" not in robot:
+        return robot
+    parts = json.loads((STDLIB / f"boards/{robot['board']}.json").read_text()).get("on_board", {})
+    for kind in kinds:
+        for entry in robot[kind]:
+            if part := parts.get(entry.get("device")):
+                entry.update(type="VIRTUAL", device=part["device"])
+                if kind == "sensors":
+                    entry["channels"] = _channels(entry, part["device"])
+    if len(kinds) == 2:
+        del robot["board"]
+    return robot
+
+
+def _channels(sensor, device):
+    known = json.loads((STDLIB / f"devices/{device}.json").read_text())["channels"]
+    return {name: {key: value for key, value in {**known.get(name, {}), **said}.items() if key in KEPT}
+            for name, said in sensor.get("channels", known).items()}
