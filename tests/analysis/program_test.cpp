@@ -42,6 +42,15 @@ struct Robot : test::Folder {
   std::string file;
 };
 
+// Of the board that an example is for.
+const policy::BoardCosts& costs_for(const std::filesystem::path& example) {
+  const std::string robot = testing::read_file(example / "robot.json");
+  for (std::size_t i = 0; i < compiler::board_names().size(); ++i)
+    if (robot.find("\"board\": \"" + std::string(compiler::board_names()[i])) != std::string::npos)
+      return tool::costs_of(compiler::board_at(i));
+  return tool::board_costs();
+}
+
 }  // namespace
 
 TEST_CASE("examples: no simulated release takes longer than is printed") {
@@ -51,10 +60,9 @@ TEST_CASE("examples: no simulated release takes longer than is printed") {
     if (!std::filesystem::exists(test::kRoot / file)) continue;
     INFO(file);
     const tool::Program program = test::compile_example(file);
-    const analysis::TaskSet set =
-        analysis::task_set_of(program.image(), tool::board_costs(), tool::module_cost);
-    CHECK(analysis::response_report(program.image(), tool::board_costs(), tool::module_cost)
-              .schedulable());
+    const policy::BoardCosts& board = costs_for(entry.path());
+    const analysis::TaskSet set = analysis::task_set_of(program.image(), board, tool::module_cost);
+    CHECK(analysis::response_report(program.image(), board, tool::module_cost).schedulable());
     for (unsigned p = 0; p < 100; ++p) {
       test::Pattern pattern;
       for (const analysis::Source& source : set.sources)

@@ -10,6 +10,8 @@ ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
 sys.path.insert(0, str(ROOT / "tests/generators/programs"))
 
+from board import NAME  # noqa: E402
+from on_board import without_parts  # noqa: E402
 from stimuli import Reading  # noqa: E402
 
 
@@ -18,8 +20,10 @@ def folders():
 
 
 def config(folder):
-    """Its robot.json with virtual sensors in place of real ones, so that the board can be fed."""
+    """Its robot.json with virtual sensors in place of real ones, so that the board can be fed; on another board than its
+    own, with virtual actuators in the place of that board's parts."""
     robot = json.loads((folder / "robot.json").read_text())
+    robot = without_parts(robot, ("sensors",) if robot.get("board") == NAME else ("sensors", "actuators"))
     for sensor in robot["sensors"]:
         for key in set(sensor) - {"name", "channels"}:
             del sensor[key]

@@ -90,6 +90,18 @@ class EveryBoard(TraceTest):
         lines = self.check(COMPANION / "robot.rsl", examples.drawn(COMPANION, READINGS_SEED), config)
         self.assertTrue(any('"verb":"MOVE"' in line for line in lines))
 
+    def test_examples_of_this_board_do_what_they_do_on_the_host(self):
+        """With the parts of the board that they are for: elsewhere these are virtual."""
+        for folder in examples.folders():
+            if json.loads((folder / "robot.json").read_text()).get("board") != NAME:
+                continue
+            with self.subTest(folder.name):
+                config = self.folder / f"{folder.name}.json"
+                config.write_text(json.dumps(examples.config(folder)))
+                self.units = examples.units(folder)
+                lines = self.check(folder / "robot.rsl", examples.drawn(folder, READINGS_SEED), config)
+                self.assertTrue(any('"command"' in line for line in lines))
+
     def test_the_papers_program_does_what_it_does_on_the_host(self):
         lines = self.check(PROGRAMS / "paper.rsl", stimuli.touch(0, 1, 2, 3, 4, 5, 2, 2, 10, 0))
         self.assertTrue(any("greeting.wav" in line for line in lines))
