@@ -161,7 +161,8 @@ void Watch::show_event(const Message& message) {
   // Another program runs: numbers mean something else from here on.
   if (event.kind == link::EventKind::activated) learn_names();
   // Ranks, which is how events name threads, are others. Asked for only when one is named.
-  if (event.kind == link::EventKind::priority) names_.threads.clear();
+  if (event.kind == link::EventKind::priority || event.kind == link::EventKind::lowered)
+    names_.threads.clear();
   const bool names_thread =
       event.kind == link::EventKind::fault || event.kind == link::EventKind::deadline;
   if (names_thread && names_.threads.empty()) learn_threads();

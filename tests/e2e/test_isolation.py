@@ -149,7 +149,9 @@ END
 """
 MODULE = "touch_levels_process"
 ARENA = 0x20004000  # behaviours may read it, modules may not
+PUNISH = "robosync::layers::AlgorithmLayer::punish("
 TICK = "SysTick_Handler"
+LOWERED = 9  # below the last behaviour
 
 
 class Algorithms(DebuggedTest):
@@ -190,23 +192,24 @@ class Algorithms(DebuggedTest):
             act(debugger)
 
     def stay(self, debugger):
-        """It takes two milliseconds in the place of some microseconds."""
+        """It takes milliseconds in the place of some microseconds."""
         debugger.set_register(PC, endless_loop())
         for _ in range(3):
             debugger.run_to(self.symbols[TICK], lambda: None)
             debugger.run_to(endless_loop(), lambda: None)
         debugger.set_register(PC, self.symbols[MODULE])
 
-    def others_go_on(self, stopped):
+    def others_go_on(self, stopped, priority=20):
+        self.assertLessEqual({e["thread"] for e in self.events(event="fault")}, {"skin"})
         self.board.set_touch(6, 1)
         self.expect(event="command", actuator="right_arm")
         self.expect(event="done", actuator="right_arm")
         self.reader.stop()
         self.reader = None
         info = rsc.info(self.board.port)
-        threads = {thread["name"]: thread["state"] for thread in info["threads"]}
-        self.assertEqual(threads["skin"], "stopped" if stopped else "blocked")
-        self.assertEqual(threads["feels"], "blocked")
+        threads = {thread["name"]: (thread["state"], thread["priority"]) for thread in info["threads"]}
+        self.assertEqual(threads["skin"], ("stopped" if stopped else "blocked", priority))
+        self.assertEqual(threads["feels"], ("blocked", 20))
         status = info["status"]
         self.assertEqual((status["faults"], status["safety_late_us"]), (1 if stopped else 0, 0))
 
@@ -229,14 +232,30 @@ class Algorithms(DebuggedTest):
         self.expect(event="fault", thread="skin", cause=OVERRUN)
         self.assertEqual(len(self.events(event="lowered")), 1)
         self.expect(event="stale", sensor="skin")
-        self.others_go_on(stopped=True)
+        self.others_go_on(stopped=True, priority=LOWERED)
+
+    def stay_until_seen(self, debugger):
+        """… by the safety monitor, which looks every ten milliseconds."""
+        punish = next(at for name, at in self.symbols.items() if name.startswith(PUNISH))
+        debugger.set_register(PC, endless_loop())
+        debugger.run_to(punish, lambda: None)
+        debugger.run_to(endless_loop(), lambda: None)
+        debugger.set_register(PC, self.symbols[MODULE])
+
+    def test_one_that_the_monitor_has_seen_is_not_told_twice_in_one_release(self):
+        self.in_module(self.stay_until_seen)
+        self.expect(event="lowered", sensor="skin")
+        self.board.set_touch(6, 0)
+        self.expect(event="command", actuator="left_arm")
+        self.assertEqual(self.events(event="fault"), [])
+        self.others_go_on(stopped=False, priority=LOWERED)
 
     def test_one_that_never_ends_is_lowered_and_stopped(self):
         self.in_module(lambda debugger: debugger.set_register(PC, endless_loop()))
         self.expect(event="lowered", sensor="skin")
         self.expect(event="fault", thread="skin", cause=OVERRUN, pc=endless_loop())
         self.expect(event="stale", sensor="skin")
-        self.others_go_on(stopped=True)
+        self.others_go_on(stopped=True, priority=LOWERED)
 
 
 if __name__ == "__main__":

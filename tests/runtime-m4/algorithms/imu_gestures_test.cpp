@@ -17,11 +17,11 @@ struct Vector {
 };
 
 struct Body : Module {
-  explicit Body(int period_ms = 10, std::vector<std::int32_t> config = {})
+  explicit Body(int period_ms = 10, std::vector<std::int32_t> config = {}, int rest_ms = 1000)
       : Module(*imu_gestures_describe(ROBOSYNC_ABI), std::move(config),
                static_cast<std::uint32_t>(period_ms)),
         period(period_ms) {
-    (void)hold({}, 1000);
+    (void)hold({}, rest_ms);
   }
 
   // All that changes but the jerk, with the time since it began.
@@ -110,6 +110,11 @@ TEST_CASE("what is swung to and fro often and hard enough is shaken") {
   CHECK(body.move(4000, now_and_then).find("shaken") == std::string::npos);
 }
 
+TEST_CASE("who goes on shaking it is told nothing new") {
+  Body body(10, {1000, 700, 4000, 150, 500, 100, 450});  // three swings take 375 ms, four 500
+  CHECK(body.shake(4, 1500, 3000) == "390 GESTURE shaken");
+}
+
 TEST_CASE("a short spike is a tap, a push is not") {
   Body body;
   CHECK(body.hold({0, 0, 3000}, 20).empty());
@@ -145,8 +150,12 @@ TEST_CASE("what is raised is lifted, what is put down is not") {
   (void)body.hold({}, 2000);
   CHECK(body.hold({0, 0, 1300}, 80).empty());  // too short
   CHECK(body.hold({}, 2000).empty());
-  (void)body.hold({0, 1000, 0}, 3000);                         // held on its side
-  CHECK(body.hold({0, 1300, 0}, 150) == "90 GESTURE lifted");  // up is up
+  (void)body.hold({0, 0, 3000}, 20);
+  CHECK(body.hold({}, 130) == "110 GESTURE tapped");
+  CHECK(body.hold({0, 0, 1300}, 150).empty());  // something else is shown
+  (void)body.hold({0, 1000, 0}, 3000);          // held on its side
+  CHECK(Body(10, {}, 10).hold({0, 0, 1300}, 150) == "90 GESTURE lifted");  // at once
+  CHECK(body.hold({0, 1300, 0}, 150) == "90 GESTURE lifted");              // up is up
 }
 
 TEST_CASE("readings beyond all measure do no harm") {
