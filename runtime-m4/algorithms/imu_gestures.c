@@ -98,16 +98,16 @@ static int is_falling(state* self, const int32_t* config) {
   int64_t square = 0;
   for (int i = 0; i < AXES; ++i)
     square += (int64_t)self->last[i] * self->last[i];
-  const int is_weightless = square < NEAR_NOTHING * NEAR_NOTHING;
+  const int is_weightless = square < (int64_t)NEAR_NOTHING * NEAR_NOTHING;
   self->falling_ms = is_weightless ? later(self->falling_ms, self->period_ms) : 0;
   return self->falling_ms >= (uint32_t)config[FALL_TIME];
 }
 
 static uint8_t strongest_axis(const state* self) {
-  uint8_t axis = X;
-  for (uint8_t i = Y; i < AXES; ++i)
+  int axis = X;
+  for (int i = Y; i < AXES; ++i)
     if (size_of(self->motion[i]) > size_of(self->motion[axis])) axis = i;
-  return axis;
+  return (uint8_t)axis;
 }
 
 // The first swing says along which axis the others have to be.
