@@ -10,11 +10,7 @@ namespace robosync::kernel::calls {
 
 // As Kernel::wait(mask).  [a thread without privileges]
 inline Events wait(Kernel& kernel, Events mask) {
-  Events taken = 0;
-  do
-    taken = port::call(kernel, static_cast<std::uint32_t>(Call::wait), mask);
-  while (taken == 0);
-  return taken;
+  return port::call(kernel, static_cast<std::uint32_t>(Call::wait), mask);
 }
 
 // Says that it has done what it was woken for.  [a thread without privileges]

@@ -29,7 +29,22 @@ enum class Call : std::uint32_t {
 #undef CALL
 };
 
-class Kernel {
+// What the context switch goes by. The Cortex-M4's reads it at once, so switch.S knows where what stands
+// (machine.cpp holds it to that).
+struct Selection {
+  Thread* running_ = nullptr;
+  [[no_unique_address]] port::RunClock run_clock_;
+  Mutex* held_ = nullptr;  // the latest of those that are held
+  ReadySet ready_;
+  // The ceiling of what the running thread holds, else its rank; Kernel's kNoneRuns from the moment
+  // it blocks.
+  std::uint8_t running_rank_ = kIdleRank;
+  std::uint8_t ceiling_ = kIdleRank;  // the highest of the ceilings of what is held
+  std::uint8_t count_ = 0;
+  std::array<Thread*, kMaxThreads + 1> by_rank_{};  // the last is idle
+};
+
+class Kernel : private Selection {
 public:
   Kernel();
   Kernel(const Kernel&) = delete;
@@ -164,6 +179,7 @@ public:
   // The context switch: takes the highest ready thread as the running one, unless the holder of a
   // mutex stands at its ceiling. Interrupts may come in between: after `ready_` is read they
   // compare with a rank that is not above the one found, so none they make ready is overlooked.
+  // (The Cortex-M4 does the same in registers: switch.S.)
   Thread& select_next() {
     const unsigned rank = ready_.first();
     std::atomic_signal_fence(std::memory_order_seq_cst);
@@ -177,25 +193,19 @@ public:
     return *running_;
   }
 
-  // Does what a thread without privileges asks for: the system call `number` of calls.def. False:
-  // there is no such call.
-  bool answer(std::uint32_t number, std::uint32_t argument, std::uint32_t& result) {
-    switch (static_cast<Call>(number)) {
-      case Call::wait:
-        result = take_or_block(argument);
-        return true;
-      case Call::report:
-        report();
-        return true;
-      case Call::rest:
-        rest(argument);
-        return true;
-    }
-    return false;
+  // Does what a thread without privileges asks for: a system call of calls.def.
+  void answer(port::CallFrame& call) {
+    const auto what = static_cast<Call>(call.number());
+    if (what == Call::wait) [[likely]]
+      return take_or_block(call);
+    if (what == Call::rest) return rest(call.argument());
+    if (what == Call::report) return report();
+    port::Machine::refuse_call();
   }
 
   Thread& idle() { return idle_; }
   port::Machine& machine() { return machine_; }
+  port::RunClock& run_clock() { return run_clock_; }
   static port::Context& context(Thread& thread) { return thread; }
 
 private:
@@ -223,7 +233,7 @@ private:
   void arm(Thread& thread, std::uint32_t sleep);
   void disarm(Thread& thread);
   void block(Thread& thread, Events mask);
-  Events take_or_block(Events mask);
+  void take_or_block(port::CallFrame& call);
   void report();
   void rest(Events mask);
   void make_ready(Thread& thread);
@@ -245,16 +255,7 @@ private:
   void swap_with_next(unsigned rank);
   void move_highest(const Thread& sunk, const Thread& risen);
 
-  Thread* running_ = &idle_;                        // stands first: switch.S reads it
-  std::array<Thread*, kMaxThreads + 1> by_rank_{};  // the last is idle_
-  ReadySet ready_;
-  // The ceiling of what the running thread holds, else its rank; kNoneRuns from the moment it
-  // blocks.
-  std::uint8_t running_rank_ = kIdleRank;
-  std::uint8_t count_ = 0;
   std::array<std::uint8_t, kCategories> highest_of_;  // rank of the highest thread of each category
-  Mutex* held_ = nullptr;                             // the latest of those that are held
-  std::uint8_t ceiling_ = kIdleRank;                  // … and the highest of their ceilings
   std::uint32_t tick_ = 0;                            // wraps …
   std::uint32_t eras_ = 0;                            // … and so often it did
   TimerQueue timers_;
@@ -265,16 +266,17 @@ private:
   [[no_unique_address]] port::Machine machine_;
 };
 
-// Its interrupts are held off.
-inline Events Kernel::take_or_block(Events mask) {
+// Its interrupts are held off. A thread that was woken takes its events by making the call again.
+inline void Kernel::take_or_block(port::CallFrame& call) {
   Thread& self = *running_;
+  const Events mask = call.argument();
   const Events taken = self.events_ & mask;
-  if (taken != 0) [[likely]] {
-    self.events_ &= ~mask;
-  } else {
-    block(self, mask);
+  if (taken == 0) {
+    call.repeat();
+    return block(self, mask);
   }
-  return taken;
+  self.events_ &= ~mask;
+  call.give(taken);
 }
 
 }  // namespace robosync::kernel

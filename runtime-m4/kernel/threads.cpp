@@ -72,7 +72,7 @@ Thread::State Kernel::state(const Thread& thread) const {
 std::uint32_t Kernel::run_time(const Thread& thread) const {
   expect().any();
   port::Lock lock(machine_);
-  return port::Machine::run_time(thread, &thread == running_);
+  return port::Machine::run_time(thread, run_clock_, &thread == running_);
 }
 
 std::uint32_t Kernel::ticks_to_next_wake() const {
@@ -100,6 +100,7 @@ void Thread::set_stack(std::span<std::byte> stack) {
 }
 
 Kernel::Kernel() : machine_(*this) {
+  running_ = &idle_;
   idle_.name_ = "idle";
   idle_.set_stack(port::Machine::prepare_idle(context(idle_)));
   by_rank_.fill(&idle_);

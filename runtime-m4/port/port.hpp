@@ -2,6 +2,7 @@
 // kernel is in a hurry:
 //
 //   struct Context          What a thread leaves behind while it does not run.
+//   struct RunClock         What it notes of how long the running thread has been running.
 //   kStackAlignment         How stacks should be aligned, so that nothing of them is wasted.
 //   kTimeFlows              Does time pass while threads run? On the host it stands still until all
 //                           wait.
@@ -11,8 +12,10 @@
 //   kSecludedStack          … and of one with data on its stack, and nothing else: bytes, and alignment.
 //   struct Areas            What threads without privileges may use besides their stacks: what is
 //                           readable and, perhaps inside of it, writable.
-//   call(kernel, number, argument)       A system call: Kernel::answer() from a thread without
-//                                        privileges.
+//   struct CallFrame        A system call that is being answered: number(), argument(); give(result),
+//                           or repeat(): the thread makes it again when it runs next.
+//   call(kernel, number, argument)       Makes one: Kernel::answer() from a thread without
+//                                        privileges. Its result.
 //   stop_overrun(kernel, thread)         Stops a thread, not the calling one, that runs longer than
 //                                        it may, and reports it as a fault.
 //   fetch_and_clear(word, mask)   Clears bits and returns what was there; an interrupt that changes
@@ -37,8 +40,9 @@
 //     prepare_idle(context)         The idle thread's context; returns its usable stack.
 //     clock()                       A counter that counts down while threads run, and wraps at 32
 //                                   bits; stands still where kTimeFlows is false.
-//     run_time(context, runs)       How much of it passed while the thread ran, which does now if
-//                                   `runs`. Under a Lock.
+//     run_time(context, run_clock, runs)   How much of it passed while the thread ran, which does now
+//                                   if `runs`. Under a Lock.
+//     refuse_call()                 A thread without privileges has made a call that there is not.
 //     request_switch()              Runs Kernel::select_next() and switches, as soon as no Lock is
 //                                   held and no interrupt handler runs.
 //     run()                         Runs threads; the caller becomes the idle thread.

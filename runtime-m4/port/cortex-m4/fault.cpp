@@ -196,8 +196,8 @@ void stop_overrun(kernel::Kernel&, kernel::Thread& thread) {
   stop_and_report(thread, fault);
 }
 
-// A fault before it may have stopped the thread already: the call was still pending then.
-void refuse_call() {
+// Stops the running thread. A fault before it may have done so already: the call was still pending then.
+void Machine::refuse_call() {
   kernel::Thread& thread = robosync_kernel.current();
   if (robosync_kernel.state(thread) == kernel::Thread::State::stopped) return;
   link::Fault fault{};

@@ -14,15 +14,7 @@ inline constexpr std::uint32_t kCauseNoSuchCall = 1U << 21;
 // Set when a thread ran longer than it may (stop_overrun()). Unused as well.
 inline constexpr std::uint32_t kCauseOverrun = 1U << 22;
 
-// What the core stacks.
-struct CoreFrame {
-  std::uint32_t r0, r1, r2, r3, r12, lr, pc, xpsr;
-};
-
 // From now on faults have handlers of their own, and a division by zero is one.
 void enable_fault_handlers();
-
-// Stops the running thread for a system call that there is not. [the handler of system calls]
-void refuse_call();
 
 }  // namespace robosync::port

@@ -1,7 +1,9 @@
-// Makes threads runnable, takes the decisions of the context switch, and takes system calls.
+// Makes threads runnable, says where the context switch finds what, and takes system calls.
 #include "runtime-m4/port/cortex-m4/machine.hpp"
 
 #include <array>
+#include <cstddef>
+#include <type_traits>
 
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/port/cortex-m4/fault.hpp"
@@ -31,18 +33,25 @@ struct SavedRegisters {
   std::array<std::uint32_t, 8> r4_r11;
   std::uint32_t exc_return;
 };
-struct StackedRegisters {
-  std::uint32_t r0, r1, r2, r3, r12, lr, pc, xpsr;
-};
+
+// switch.S loads what stands here in one instruction, and more of it by these distances.
+using kernel::Selection;
+static_assert(std::is_standard_layout_v<Selection> && kernel::kMaxThreads == 3 * 32);
+static_assert(offsetof(Selection, running_) == 0 && offsetof(Selection, run_clock_) == 4);
+static_assert(offsetof(RunClock, origin) == 0 && sizeof(RunClock) == 8);
+static_assert(offsetof(Selection, held_) == 12 && offsetof(Selection, ready_) == 16);
+static_assert(offsetof(Selection, running_rank_) == 28 && offsetof(Selection, ceiling_) == 29);
+static_assert(offsetof(Selection, by_rank_) == 32);
+
 struct FirstFrame {
   SavedRegisters saved;
-  StackedRegisters stacked;
+  CoreFrame stacked;
 };
 // … of one that has used the FPU.
 struct FirstFpuFrame {
   SavedRegisters saved;
   std::array<std::uint32_t, 16> s16_s31;
-  StackedRegisters stacked;
+  CoreFrame stacked;
   std::array<std::uint32_t, 18> s0_s15_fpscr;
 };
 
@@ -136,7 +145,7 @@ void Machine::run() {
   core::reg(core::kShpr2) = core::kKernelPriority << 24;
   start_isolation();
   start_tick();
-  kernel::Kernel::context(robosync_kernel.idle()).run_time = clock();
+  robosync_kernel.run_clock().origin = clock();  // of the idle thread
   request_switch();
   robosync_become_idle(idle_stack.data() + idle_stack.size());
 }
@@ -145,19 +154,8 @@ void Machine::run() {
 
 extern "C" {
 
-const robosync::port::Context* robosync_switch(std::uint32_t* sp, robosync::kernel::Kernel& kernel);
 void PendSV_Unprivileged_Handler();
 void SVC_Handler();
-
-// Called by switch.S when the thread that ran is saved, its stack pointer noted; returns the
-// context of the next one.
-const robosync::port::Context* robosync_switch(std::uint32_t* /*sp*/,
-                                               robosync::kernel::Kernel& kernel) {
-  namespace core = robosync::port::core;
-  const robosync::port::Context& next = robosync::kernel::Kernel::context(kernel.select_next());
-  core::reg(core::kMpuRbar) = next.region;
-  return &next;
-}
 
 // PendSV while a thread without privileges runs. Its stack pointer may be anything at which the
 // core was let stack a frame, and saving has privileges: there must be room on the thread's own
@@ -177,10 +175,9 @@ void PendSV_Unprivileged_Handler() {
 // the thread may write.
 void SVC_Handler() {
   using namespace robosync::port;
-  CoreFrame* frame = nullptr;
-  asm volatile("mrs %0, psp" : "=r"(frame));
-  if (!robosync_kernel.answer(frame->r0, frame->r1, frame->r0)) [[unlikely]]
-    refuse_call();
+  CallFrame* call = nullptr;
+  asm volatile("mrs %0, psp" : "=r"(call));
+  robosync_kernel.answer(*call);
 }
 
 }  // extern "C"

@@ -51,9 +51,7 @@ inline constexpr std::size_t kMinStack = kGuard - 8 + kGuard + kFrame + kSaved;
 // switch.S knows where these stand.
 struct Context {
   std::uint32_t* sp = nullptr;  // r4–r11 and EXC_RETURN stand there, below the core's own frame
-  // How long it ran: the switch adds the clock when the thread begins to run and takes it off when
-  // it stops.
-  std::uint32_t run_time = 0;
+  std::uint32_t run_time = 0;   // how long it ran, until it stopped last
   // For the MPU's base register: the guard; without privileges, the lower region of the window; of a
   // secluded thread, its stack.
   std::uint32_t region = 0;
@@ -64,6 +62,28 @@ struct Context {
 };
 static_assert(offsetof(Context, sp) == 0 && offsetof(Context, run_time) == 4);
 static_assert(offsetof(Context, region) == 8 && offsetof(Context, windows) == 12);
+
+// What the core stacks.
+struct CoreFrame {
+  std::uint32_t r0, r1, r2, r3, r12, lr, pc, xpsr;
+};
+
+struct CallFrame : CoreFrame {
+  std::uint32_t number() const { return r0; }
+  std::uint32_t argument() const { return r1; }
+  void give(std::uint32_t result) { r0 = result; }
+  void repeat() { pc -= 2; }  // to the SVC, which has no other length
+};
+
+// Of the running thread: its run time so far is `origin` less the clock.
+struct RunClock {
+  std::uint32_t origin = 0;
+#if defined(ROBOSYNC_CLOCK_IS_SYSTICK) || defined(ROBOSYNC_CLOCK_IS_CALLED)
+  std::uint32_t unused = 0;
+#else
+  const volatile std::uint32_t* clock = &robosync_clock;  // as the switch finds it
+#endif
+};
 
 struct Areas {
   std::span<const std::byte> readable;
@@ -83,8 +103,8 @@ public:
   [[gnu::cold]] void prepare(Context& context, const kernel::ThreadSpec& spec,
                              std::span<std::byte> stack);
   static std::uint32_t clock() { return read_clock(); }
-  static std::uint32_t run_time(const Context& context, bool runs) {
-    return context.run_time - (runs ? clock() : 0);
+  static std::uint32_t run_time(const Context& context, const RunClock& run_clock, bool runs) {
+    return runs ? run_clock.origin - clock() : context.run_time;
   }
   void request_switch() { core::reg(core::kIcsr) = core::kIcsrPendSvSet; }
   [[noreturn, gnu::cold]] void run();
@@ -92,6 +112,7 @@ public:
   [[gnu::cold]] static bool can_run(const kernel::ThreadSpec& spec);
   static void grant(const Areas& areas);
   static std::span<std::byte> prepare_idle(Context& context);
+  [[gnu::cold]] static void refuse_call();
 };
 
 inline std::uint32_t fetch_and_clear(std::uint32_t& word, std::uint32_t mask) {

@@ -13,11 +13,16 @@
    then faults, fault.cpp stops the thread, and the switch goes on at robosync_saved.
 
    Bit 4 of EXC_RETURN is 0 if the thread used the FPU; storing s16 makes the core store s0–s15
-   first where it put that off. Which thread comes next is decided in C++: robosync_switch.
+   first where it put that off.
+
+   Which thread comes next is Kernel::select_next(), here in registers: all that it reads stands together (kernel::Selection)
+   and is loaded by one instruction, before anything is decided by it. So whatever an interrupt makes ready after
+   that load is compared with a rank that is not above the one chosen here, and asks for another switch when it
+   is above.
 
    A thread's run time is what the free-running clock, which counts down, stood at when it began,
-   less what it stands at when it ends. Six instructions of each switch are for that, and a call where the clock is
-   SysTick (clock.hpp).
+   less what it stands at when it ends. Three instructions of each switch are for that, since the running thread's share stands
+   beside the pointer to it, and is loaded and stored with it; and a call where the clock takes one (clock.hpp).
 
    A thread without privileges costs the others nothing. It leaves by a vector table of its
    own, and what it saves as EXC_RETURN has bits 4 and 5 cleared, and bit 6 if it used the FPU: they
@@ -30,7 +35,10 @@
     .thumb
 
     .equ    VTOR, 0xE000ED08
-    .equ    MPU_RASR, 0xE000EDA0
+    .equ    MPU_RASR, 0xE000EDA0    /* and MPU_RBAR before it */
+    .equ    RUNNING_RANK, 28        /* kernel::Selection::running_rank_ */
+    .equ    CEILING, 29             /* … ::ceiling_ */
+    .equ    BY_RANK, 32             /* … ::by_rank_ */
     .equ    ALL_WRITE, 0x1302       /* upper half of core::kMpuAllWrite */
     .equ    SECLUDED, 1 << 22       /* Context::kSecluded */
     .equ    ALL_RAM, 0x20000015     /* its base; region 5, which gives way to the stack's */
@@ -53,29 +61,52 @@ robosync_saving_core:
 
 robosync_saved:
 #if defined(ROBOSYNC_CLOCK_IS_SYSTICK) || defined(ROBOSYNC_CLOCK_IS_CALLED)
-    mov     r5, r0
-    bl      robosync_read_clock
     mov     r4, r0
-    mov     r0, r5
+    bl      robosync_read_clock
+    mov     r10, r0
+    mov     r0, r4
+#endif
+    ldr     r9, =robosync_kernel
+    ldmia   r9, {r2-r8}             /* running_ (its Context), its origin, the clock, held_, ready_ */
+#if defined(ROBOSYNC_CLOCK_IS_SYSTICK) || defined(ROBOSYNC_CLOCK_IS_CALLED)
+    mov     r4, r10
 #else
-    ldr     r4, =robosync_clock
     ldr     r4, [r4]
 #endif
-    ldr     r1, =robosync_kernel
-    ldr     r3, [r1]                /* Kernel::running_: its Context */
-    ldr     r2, [r3, #4]
-    subs    r2, r4
-    strd    r0, r2, [r3]            /* Context::sp, ::run_time */
-    bl      robosync_switch         /* (sp that was, kernel) -> Context of the next one */
+    subs    r3, r4
+    strd    r0, r3, [r2]            /* Context::sp, ::run_time */
 
-    ldrd    r1, r2, [r0]
-    add     r2, r4
-    str     r2, [r0, #4]
+    cbz     r6, 10f
+    clz     r6, r6                  /* the highest rank that is ready */
+11: cbnz    r5, 13f
+12: add     r5, r9, r6, lsl #2
+    strb    r6, [r9, #RUNNING_RANK]
+    ldr     r0, [r5, #BY_RANK]
+14: ldmia   r0, {r1-r3, r12}        /* the next one's Context: ::sp, ::run_time, ::region, ::windows */
+    adds    r2, r4
+    strd    r0, r2, [r9]            /* running_, its origin */
+    ldr     r6, =MPU_RASR
+    str     r3, [r6, #-4]
     ldmia   r1!, {r4-r11, lr}
     tst     lr, #0x10
     beq     3f
 1:  msr     psp, r1
     bx      lr
+
+10: cbz     r7, 15f                 /* none of the first word */
+    clz     r6, r7
+    adds    r6, #32
+    b       11b
+15: clz     r6, r8
+    adds    r6, #64                 /* of an empty set: 96, where the idle thread stands */
+    b       11b
+
+13: ldrb    r7, [r9, #CEILING]      /* held_: a mutex */
+    cmp     r6, r7
+    blo     12b
+    strb    r7, [r9, #RUNNING_RANK]
+    ldr     r0, [r5]                /* Mutex::owner_ */
+    b       14b
 
 2:
 robosync_saving_fpu:
@@ -86,18 +117,17 @@ robosync_saving_fpu:
     vldmia  r1!, {s16-s31}
     b       1b
 
-/* Into a thread without privileges: its window, its vector table, its rights. robosync_switch has
-   set the base of the lower region already. */
+/* Into a thread without privileges: its window, its vector table, its rights. The base of the lower region (r3) is
+   set already; r12 is Context::windows. */
 4:  tst     lr, #0x40
     beq     6f
     orr     lr, lr, #0x30
-5:  msr     psp, r1
-    ldrd    r1, r2, [r0, #8]        /* Context::region, ::windows */
-    ldr     r0, =MPU_RASR
-    addw    r3, r1, #0x201          /* 512 bytes on, and the next number */
-    movt    r12, #ALL_WRITE
-    pkhbt   r1, r2, r12
-    pkhtb   r12, r12, r2, asr #16
+    msr     psp, r1
+5:  ldr     r0, =MPU_RASR
+    movt    r2, #ALL_WRITE
+    pkhbt   r1, r12, r2
+    addw    r3, r3, #0x201          /* 512 bytes on, and the next number */
+    pkhtb   r12, r2, r12, asr #16
 9:  stmia   r0, {r1, r3, r12}
     ldr     r1, =robosync_unprivileged_vectors
     str     r1, [r0, #VTOR - MPU_RASR]
@@ -106,13 +136,12 @@ robosync_saving_fpu:
     bx      lr
 6:  vldmia  r1!, {s16-s31}
     orr     lr, lr, #0x60
-    ldr     r2, [r0, #12]           /* Context::windows */
-    tst     r2, #SECLUDED
-    beq     5b
     msr     psp, r1
+    tst     r12, #SECLUDED
+    beq     5b
     ldr     r0, =MPU_RASR
-    movt    r12, #ALL_WRITE
-    pkhbt   r1, r2, r12
+    movt    r2, #ALL_WRITE
+    pkhbt   r1, r12, r2
     ldr     r3, =ALL_RAM
     ldr     r12, =CLOSED
     b       9b

@@ -56,10 +56,14 @@ std::span<std::byte> Machine::usable(const kernel::ThreadSpec& spec) {
 }
 
 std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t argument) {
-  std::uint32_t result = 0;
-  const auto lock = kernel.lock_interrupts();
-  kernel.answer(number, argument, result);
-  return result;
+  while (true) {
+    CallFrame call(number, argument);
+    {
+      const auto lock = kernel.lock_interrupts();
+      kernel.answer(call);
+    }  // here it blocks
+    if (!call.repeats()) return call.result();
+  }
 }
 
 void panic(const char* service, const char* why) {

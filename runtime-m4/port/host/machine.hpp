@@ -47,6 +47,25 @@ struct Context {
   std::size_t stack_bytes = 0;
 };
 
+struct RunClock {};
+
+class CallFrame {
+public:
+  CallFrame(std::uint32_t number, std::uint32_t argument) : number_(number), argument_(argument) {}
+  std::uint32_t number() const { return number_; }
+  std::uint32_t argument() const { return argument_; }
+  void give(std::uint32_t result) { result_ = result; }
+  void repeat() { repeats_ = true; }
+  bool repeats() const { return repeats_; }
+  std::uint32_t result() const { return result_; }
+
+private:
+  std::uint32_t number_;
+  std::uint32_t argument_;
+  std::uint32_t result_ = 0;
+  bool repeats_ = false;
+};
+
 enum class Mode : std::uint8_t { init, thread, handler };  // there are no handlers
 enum class Held : std::uint8_t { none, switch_lock, lock };
 [[noreturn]] void panic(const char* service, const char* why);
@@ -65,7 +84,8 @@ public:
   }
   static bool may_call() { return true; }
   static std::uint32_t clock() { return 0; }
-  static std::uint32_t run_time(const Context&, bool) { return 0; }
+  static std::uint32_t run_time(const Context&, const RunClock&, bool) { return 0; }
+  static void refuse_call() {}
   void request_switch() { switch_requested_ = true; }
   void run();
   static std::span<std::byte> usable(const kernel::ThreadSpec& spec);

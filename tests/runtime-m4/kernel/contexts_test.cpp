@@ -126,10 +126,8 @@ TEST_CASE("Assertions: no thread removes itself, runs the kernel or makes time p
 TEST_CASE("Assertions: a system call holds interrupts off, as its handler does on the board") {
   Rig rig;
   Kernel& kernel = rig.kernel;
-  std::uint32_t result = 0;
-  CHECK(said_in_thread(rig, [&] {
-          kernel.answer(static_cast<std::uint32_t>(Call::wait), 1, result);
-        }) == "block: without a lock");
+  port::CallFrame call(static_cast<std::uint32_t>(Call::wait), 1);
+  CHECK(said_in_thread(rig, [&] { kernel.answer(call); }) == "block: without a lock");
 }
 
 TEST_CASE("Assertions: right calls are silent, before run() and from threads") {

@@ -8,4 +8,4 @@ robosync_elf(robosync_kernel_test_asserted kernel-test
 target_link_options(robosync_kernel_test_asserted PRIVATE -Wl,--defsym=without_arena=1)
 # Random use for hours of virtual time: build/…/kernel-stress.elf, run by tests/runtime-m4/kernel/run_stress.sh.
 robosync_elf(robosync_kernel_stress_asserted kernel-stress ${folder}/stress.cpp)
-target_link_options(robosync_kernel_stress_asserted PRIVATE -Wl,--defsym=without_arena=1 -Wl,--wrap=robosync_switch)
+target_link_options(robosync_kernel_stress_asserted PRIVATE -Wl,--defsym=without_arena=1 -Wl,--wrap=PendSV_Handler)

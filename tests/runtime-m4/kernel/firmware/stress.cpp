@@ -4,12 +4,14 @@
 // compared with a naive policy that goes over all threads; after each change of a priority the
 // order is looked at. Says "N decisions compared".
 //
-// The decision is seen by the linker's --wrap (firmware.cmake): __wrap_robosync_switch stands
-// between switch.S and the port. run_stress.sh runs it.
+// The decision is seen right behind the switch, as it is shipped: before it begins, an interrupt of its own
+// level is made pending, which is then taken before the chosen thread executes anything. So the vector table leads
+// to __wrap_PendSV_Handler, by the linker's --wrap (firmware.cmake). run_stress.sh runs it.
 #include <array>
 #include <bit>
 
 #include "runtime-m4/boards/common/firmware.hpp"
+#include "runtime-m4/boards/mps2-an386/registers.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
@@ -271,6 +273,7 @@ void adapt(void*) {
 // --- interrupts ---
 
 constexpr unsigned kTimer0Interrupt = 8;
+constexpr unsigned kJudgement = robosync::boards::mps2::kFreeInterrupt;
 struct TimerRegisters {  // CMSDK APB timer
   volatile std::uint32_t control, value, reload, interrupt;
 };
@@ -348,17 +351,20 @@ bool start() {
 
 extern "C" {
 
-const robosync::port::Context* __real_robosync_switch(std::uint32_t* sp,  // NOLINT: --wrap
-                                                      Kernel& kernel);
-const robosync::port::Context* __wrap_robosync_switch(std::uint32_t* sp, Kernel& kernel);  // NOLINT
-
-// The context switch, and then the comparison, unless an interrupt has already asked for another.
-const robosync::port::Context* __wrap_robosync_switch(std::uint32_t* sp,
-                                                      Kernel& kernel) {  // NOLINT
-  const robosync::port::Context* const next = __real_robosync_switch(sp, kernel);
-  const auto lock = kernel.lock_interrupts();
+// The comparison behind a context switch, unless an interrupt has already asked for another.
+void TestsOwn_Handler();
+void TestsOwn_Handler() {
+  const auto lock = robosync_kernel.lock_interrupts();
   if (!switch_is_pending()) compare_decision();
-  return next;
+}
+
+// Leaves lr and r4–r11 as the switch must find them.
+[[gnu::naked]] void __wrap_PendSV_Handler();  // NOLINT: --wrap
+void __wrap_PendSV_Handler() {                // NOLINT
+  asm volatile(
+      "movw r0, #0xE200\n\tmovt r0, #0xE000\n"  // NVIC_ISPR0
+      "mov.w r1, %0\n\tstr r1, [r0]\n"
+      "b __real_PendSV_Handler" ::"i"(1U << kJudgement));
 }
 
 void Timer0_Handler();
@@ -393,6 +399,7 @@ void fatal_fault(const link::Fault&) {
 int main() {
   if (!start()) semihosting::exit(2);
   core::enable_interrupt(kTimer0Interrupt);
+  core::enable_interrupt(kJudgement, core::kSwitchPriority);
   interrupt_after(1000);
   robosync_kernel.run();
 }
