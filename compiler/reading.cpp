@@ -16,7 +16,7 @@ Trees Reading::trees() const {
 
 // What the parsers had to leave out would be missed by name: better one true message than ten.
 Reading read_all(Input program, Input configuration, const ModuleReader& read_module,
-                 AlgorithmModules algorithms, SourceMap& sources, Diagnostics& diagnostics) {
+                 const AlgorithmModules& algorithms, SourceMap& sources, Diagnostics& diagnostics) {
   const FileId program_file = sources.add(std::move(program.name), std::move(program.text));
   const FileId configuration_file =
       sources.add(std::move(configuration.name), std::move(configuration.text));

@@ -24,7 +24,7 @@ struct Reading {
 
 // The texts go into `sources`, which must outlive the result.
 [[nodiscard]] Reading read_all(Input program, Input configuration, const ModuleReader& read_module,
-                               AlgorithmModules algorithms, SourceMap& sources,
+                               const AlgorithmModules& algorithms, SourceMap& sources,
                                Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

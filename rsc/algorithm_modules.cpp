@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "runtime-m4/algorithms/judge.hpp"
+#include "runtime-m4/module_files/registry.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -54,15 +55,30 @@ std::vector<compiler::AlgorithmModule> all() {
   return modules;
 }
 
+compiler::ModuleInFile in_file(const std::string& path) {
+  static compiler::AlgorithmModule last;
+  const module_files::Loaded loaded = module_files::load(path);
+  if (loaded.description == nullptr) return {nullptr, 0, loaded.why_not};
+  last = described(*loaded.description);
+  return {&last, static_cast<std::uint8_t>(loaded.number), ""};
+}
+
 }  // namespace
 
 compiler::AlgorithmModules algorithm_modules() {
   static const std::vector<compiler::AlgorithmModule> modules = all();
-  return modules;
+  return {modules, in_file};
 }
 
 analysis::Instructions module_cost(const vm::Image& image, const vm::Sensor& algorithm) {
   return algorithms::module_of(algorithm).cost(algorithms::config_of(image, algorithm));
+}
+
+std::string module_troubles() {
+  std::string text;
+  for (const std::string& trouble : module_files::troubles())
+    text += (text.empty() ? "" : "\n") + trouble;
+  return text;
 }
 
 }  // namespace robosync::tool

@@ -1,5 +1,7 @@
-// The algorithm modules of the firmware, as the compiler and the analysis want to know them: neither knows the runtime.
+// The algorithm modules of the firmware and those in files, as the compiler and the analysis want to know them: neither knows the runtime.
 #pragma once
+
+#include <string>
 
 #include "analysis/task_set.hpp"
 #include "compiler/config/algorithm_modules.hpp"
@@ -11,5 +13,8 @@ namespace robosync::tool {
 // An analysis::ModuleCost.
 [[nodiscard]] analysis::Instructions module_cost(const vm::Image& image,
                                                  const vm::Sensor& algorithm);
+
+// What has happened to modules in files since they were loaded, a line each: they failed, and the robot went on without them.
+[[nodiscard]] std::string module_troubles();
 
 }  // namespace robosync::tool

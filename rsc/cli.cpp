@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "compiler/diagnostics/nearest.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/options.hpp"
 #include "rsc/usage.hpp"
@@ -204,9 +205,12 @@ int run_command_line(int argument_count, const char* const* arguments) {
     parse(*app, argument_count, arguments);
     std::cout.flush();
     if (!std::cout) throw Failure(Exit::outside, "could not write to stdout");
+    if (const std::string troubles = module_troubles(); !troubles.empty())
+      throw Failure(Exit::program, troubles);
     return static_cast<int>(Exit::fine);
   } catch (const Failure& failure) {
     say(failure.what());
+    if (const std::string troubles = module_troubles(); troubles != failure.what()) say(troubles);
     return static_cast<int>(failure.exit());
   } catch (const std::exception& error) {
     say(error.what());

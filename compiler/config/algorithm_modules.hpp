@@ -1,4 +1,5 @@
-// What robot.json may say under "algorithms": the modules that a robot's firmware has. Who compiles hands them in.
+// What robot.json may say under "algorithms": the modules that a robot's firmware has, and those in files. Who compiles hands them
+// in.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +40,15 @@ struct AlgorithmModule {
   std::uint16_t usual_period_ms = 0;  // of an input that is fed, where robot.json says none
 };
 
-// A module's number in the image is its place in the list.
-using AlgorithmModules = std::span<const AlgorithmModule>;
+struct ModuleInFile {
+  const AlgorithmModule* module = nullptr;  // until the next file is asked for
+  std::uint8_t number = 0;                  // in the image
+  std::string why_not;                      // where there is no module
+};
+
+struct AlgorithmModules {
+  std::span<const AlgorithmModule> firmware;  // the number in the image is the place in the list
+  ModuleInFile (*in_file)(const std::string& path) = nullptr;  // null: nobody loads files
+};
 
 }  // namespace robosync::compiler

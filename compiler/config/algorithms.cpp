@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "compiler/config/entries.hpp"
@@ -14,9 +16,10 @@ namespace {
 
 class AlgorithmReader {
 public:
-  AlgorithmReader(const json::Value& value, AlgorithmModules modules, Robot& robot,
-                  Diagnostics& diagnostics)
+  AlgorithmReader(const json::Value& value, const std::string& file,
+                  const AlgorithmModules& modules, Robot& robot, Diagnostics& diagnostics)
       : fields_(value, Object::algorithm, diagnostics),
+        folder_(std::filesystem::path(file).parent_path()),
         modules_(modules),
         robot_(robot),
         diagnostics_(diagnostics) {}
@@ -24,19 +27,16 @@ public:
   bool read() {
     const auto name = read_name(fields_, "an algorithm", diagnostics_);
     if (!name || !is_on_board()) return false;
-    if (const auto* path = fields_.find("path")) {
-      report_file(*name, *path);
-      return true;
-    }
-    if (!find_module()) return false;
+    const auto* path = fields_.find("path");
+    if (path != nullptr && is_missing(*name, *path)) return true;
+    if (path != nullptr ? !load_module(*path) : !find_module()) return false;
     const SensorConfig* const input = find_input();
     if (input == nullptr || !can_read(*input)) return false;
     SensorConfig sensor;
     sensor.name = *name;
     sensor.driver = vm::DriverId::algorithm;
     sensor.period_ms = period(*input);
-    sensor.algorithm = {static_cast<std::uint8_t>(module_ - modules_.data()),
-                        static_cast<std::size_t>(input - robot_.sensors.data()),
+    sensor.algorithm = {number_, static_cast<std::size_t>(input - robot_.sensors.data()),
                         module_->inputs.size(), config(input->channels.front())};
     for (const ModuleOutput& output : module_->outputs)
       sensor.channels.push_back(channel(*name, output, *input));
@@ -64,13 +64,43 @@ private:
     return place == 0u;
   }
 
-  void report_file(const Spelled& name, const json::Value& path) {
+  std::string in_folder(const json::Value& path) const {
+    return (folder_ / path.text).lexically_normal().string();
+  }
+
+  // Somebody may be without one of a robot's files, and yet look at the rest.
+  bool is_missing(const Spelled& name, const json::Value& path) {
+    std::error_code error;
+    if (path.kind != json::Kind::string || std::filesystem::exists(in_folder(path), error))
+      return false;
     diagnostics_
-        .report(Code::W0214, "this version of rsc cannot load modules from files: " + name.shown() +
-                                 " does nothing")
+        .report(Code::W0214,
+                "there is no file " + in_folder(path) + ": " + name.shown() + " does nothing")
         .label(path.span)
-        .helps("the modules of the firmware are named with \"module\": " +
-               list_names(names_of(modules_)));
+        .helps("a module is made of its C file with a compiler (docs/algorithms.md)");
+    return true;
+  }
+
+  bool load_module(const json::Value& path) {
+    if (!read_text(path, diagnostics_)) return false;
+    if (const auto* module = fields_.find("module")) {
+      diagnostics_.report(Code::E0205, "a module is in a file, or one of the firmware's, not both")
+          .label(module->span)
+          .label(path.span, "the file", false)
+          .helps("leave one of the two out");
+      return false;
+    }
+    const std::string file = in_folder(path);
+    const ModuleInFile found = modules_.in_file != nullptr
+                                   ? modules_.in_file(file)
+                                   : ModuleInFile{nullptr, 0, "nobody here loads files"};
+    module_ = found.module;
+    number_ = found.number;
+    if (module_ == nullptr)
+      diagnostics_.report(Code::E0210, "the module " + file + " cannot be used: " + found.why_not)
+          .label(path.span)
+          .helps("`rsc module check " + file + "` looks at it closely");
+    return module_ != nullptr;
   }
 
   template <typename Named>
@@ -85,12 +115,14 @@ private:
   bool find_module() {
     const auto* value = fields_.require("module", "an algorithm");
     if (value == nullptr || !read_text(*value, diagnostics_)) return false;
-    const auto found = std::ranges::find(modules_, value->text, &AlgorithmModule::name);
-    if (found != modules_.end()) {
+    const auto& firmware = modules_.firmware;
+    const auto found = std::ranges::find(firmware, value->text, &AlgorithmModule::name);
+    if (found != firmware.end()) {
       module_ = &*found;
+      number_ = static_cast<std::uint8_t>(found - firmware.begin());
       return true;
     }
-    const std::vector<std::string> known = names_of(modules_);
+    const std::vector<std::string> known = names_of(firmware);
     Diagnostic& d =
         diagnostics_
             .report(Code::E0209, "the firmware has no algorithm module `" + value->text + "`")
@@ -263,18 +295,20 @@ private:
   }
 
   Fields fields_;
-  AlgorithmModules modules_;
+  std::filesystem::path folder_;
+  const AlgorithmModules& modules_;
   Robot& robot_;
   Diagnostics& diagnostics_;
   const AlgorithmModule* module_ = nullptr;
+  std::uint8_t number_ = 0;  // of the module
   Span input_span_;
 };
 
 }  // namespace
 
-bool read_algorithm(const json::Value& value, AlgorithmModules modules, Robot& robot,
-                    Diagnostics& diagnostics) {
-  return AlgorithmReader(value, modules, robot, diagnostics).read();
+bool read_algorithm(const json::Value& value, const std::string& file,
+                    const AlgorithmModules& modules, Robot& robot, Diagnostics& diagnostics) {
+  return AlgorithmReader(value, file, modules, robot, diagnostics).read();
 }
 
 }  // namespace robosync::compiler

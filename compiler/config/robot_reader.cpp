@@ -267,7 +267,7 @@ void for_each_entry(const Fields& fields, std::string_view key, Robot& robot,
 }  // namespace
 
 std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnostics& diagnostics,
-                                AlgorithmModules modules) {
+                                const AlgorithmModules& modules) {
   const auto tree = json::read(sources, file, diagnostics);
   if (!tree) return std::nullopt;
   const Fields fields(*tree, Object::robot, diagnostics);
@@ -293,7 +293,7 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
   for_each_entry(fields, "behaviors", robot, diagnostics,
                  [&](const json::Value& entry) { return behaviors.read(entry); });
   for_each_entry(fields, "algorithms", robot, diagnostics, [&](const json::Value& entry) {
-    return read_algorithm(entry, modules, robot, diagnostics);
+    return read_algorithm(entry, sources.file(file).name(), modules, robot, diagnostics);
   });
   if (const auto* scheduler = fields.find("scheduler"))
     robot.scheduler = read_scheduler(*scheduler, diagnostics);

@@ -10,6 +10,6 @@ namespace robosync::compiler {
 // defaults in the place of what could not be read, so that the program's names still resolve.
 [[nodiscard]] std::optional<Robot> read_robot(const SourceMap& sources, FileId file,
                                               Diagnostics& diagnostics,
-                                              AlgorithmModules modules = {});
+                                              const AlgorithmModules& modules = {});
 
 }  // namespace robosync::compiler

@@ -17,6 +17,7 @@
 #include "rsc/failure.hpp"
 #include "rsc/names.hpp"
 #include "rsc/timing.hpp"
+#include "runtime-m4/algorithms/modules.hpp"
 #include "vm/opcode.hpp"
 #include "vm/verifier.hpp"
 
@@ -259,10 +260,22 @@ void check_result(const link::ActivateResult& result, const Program& program) {
                                            describe_refusal(verdict, line)));
 }
 
+// No firmware has it: better said here than by the board, in fewer words.
+void refuse_modules_in_files(const vm::Image& image) {
+  for (const vm::Sensor& sensor : image.sensors)
+    if (policy::is_algorithm(sensor) && sensor.bus >= algorithms::kFirstInFile)
+      throw Failure(
+          Exit::program,
+          fmt::format("the algorithm {} is a module in a file, which runs on a computer only; "
+                      "docs/algorithms.md says how the firmware gets it",
+                      image.string(sensor.name)));
+}
+
 }  // namespace
 
 UploadResult upload_program(Session& session, const Program& program,
                             const UploadOptions& options) {
+  refuse_modules_in_files(program.image());
   check_board(session, program);
   if (options.replace && session.board.running != 0)
     (void)session.client.clear(session.board.image_crc);

@@ -1,7 +1,9 @@
-// rsc new FOLDER [--template NAME]
+// rsc new FOLDER [--template NAME | --module]
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <system_error>
@@ -10,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "rsc/failure.hpp"
+#include "rsc/modules/texts.hpp"
 #include "rsc/output.hpp"
 #include "rsc/templates.hpp"
 #include "rsc/verb.hpp"
@@ -21,12 +24,25 @@ namespace fs = std::filesystem;
 
 struct NewOptions {
   std::string folder;
-  std::size_t robot = 0;  // in templates()
+  std::optional<std::size_t> robot;  // in templates()
+  bool module = false;
 };
 
-void refuse_what_is_there(const fs::path& folder, const Template& robot) {
+struct NewFile {
+  std::string name, text;
+};
+using NewFiles = std::vector<NewFile>;
+
+NewFiles files_of(const Template& robot) {
+  NewFiles files;
+  for (const TemplateFile& file : robot.files)
+    files.push_back({std::string(file.name), std::string(file.text)});
+  return files;
+}
+
+void refuse_what_is_there(const fs::path& folder, const NewFiles& files) {
   std::error_code error;
-  for (const TemplateFile& file : robot.files) {
+  for (const NewFile& file : files) {
     const fs::path path = folder / file.name;
     if (fs::symlink_status(path, error).type() == fs::file_type::not_found || error) continue;
     throw Failure(
@@ -36,24 +52,31 @@ void refuse_what_is_there(const fs::path& folder, const Template& robot) {
   }
 }
 
-// All of it, or nothing: what was written goes again where the rest cannot be.
-void write_robot(const fs::path& folder, const Template& robot) {
+void make_folder(const fs::path& folder) {
   std::error_code error;
-  const bool made = fs::create_directories(folder, error);
+  fs::create_directories(folder, error);
   if (error)
     throw Failure(Exit::outside,
                   fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
+}
+
+// All of it, or nothing: what was written goes again where the rest cannot be.
+void write_files(const fs::path& folder, const NewFiles& files) {
+  std::error_code error;
+  const bool is_new = !fs::exists(folder, error);
+  make_folder(folder);
   std::vector<fs::path> written;
   try {
-    for (const TemplateFile& file : robot.files) {
+    for (const NewFile& file : files) {
       const fs::path path = folder / file.name;
+      make_folder(path.parent_path());
       write_output(path, std::as_bytes(std::span(file.text)));
       written.push_back(path);
     }
   } catch (const Failure&) {
     for (const fs::path& path : written)
       fs::remove(path, error);
-    if (made) fs::remove(folder, error);
+    if (is_new) fs::remove_all(folder, error);
     throw;
   }
 }
@@ -76,10 +99,76 @@ void report(const std::string& folder, const Template& robot) {
 }
 
 void make_robot(const NewOptions& options) {
-  const Template& robot = templates()[options.robot];
-  refuse_what_is_there(options.folder, robot);
-  write_robot(options.folder, robot);
+  const Template& robot = templates()[options.robot.value_or(0)];
+  const NewFiles files = files_of(robot);
+  refuse_what_is_there(options.folder, files);
+  write_files(options.folder, files);
   report(options.folder, robot);
+}
+
+// --- a module ---
+
+// Its functions begin with its name, and its file is called like it.
+std::string module_name(const std::string& folder) {
+  std::string name = fs::absolute(folder).lexically_normal().filename().string();
+  if (name.empty())
+    name = fs::absolute(folder).lexically_normal().parent_path().filename().string();
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  constexpr std::size_t kLongest = 40;
+  if (name.front() < 'a' || name.front() > 'z' || name.size() > kLongest ||
+      !std::ranges::all_of(name, fits))
+    throw Failure(
+        Exit::usage,
+        fmt::format(
+            "a module is called like its folder, so `{}` must be a name in C: small letters, "
+            "digits and _, {} at most",
+            name, kLongest));
+  return name;
+}
+
+NewFiles files_of_module(const std::string& name) {
+  constexpr std::string_view kIts = "heartbeat";
+  const auto named = [&](std::string text) {
+    for (std::size_t at = text.find(kIts); at != std::string::npos;
+         at = text.find(kIts, at + name.size()))
+      text.replace(at, kIts.size(), name);
+    return text;
+  };
+  NewFiles files;
+  for (const TemplateFile& file : new_module_files())
+    files.push_back({named(std::string(file.name)), named(std::string(file.text))});
+  return files;
+}
+
+void report_module(const std::string& folder, const std::string& name) {
+  std::cout << fmt::format(
+      "{0} is a robot with a module of its own, {1}. To begin with it counts the beats of a pulse "
+      "sensor.\n"
+      "  modules/{1}.c    the module: what it reads, makes of it, and says of itself\n"
+      "  CMakeLists.txt   compiles it to modules/{1}.so\n"
+      "  robot.json       names that file\n"
+      "  robot.rsl        uses what it puts out, and tests that\n"
+      "  pulse.json       a recording of a pulse, made up: pulse.csv\n"
+      "Go on with\n"
+      "  cd {0}\n"
+      "  rsc module check modules/{1}.c\n"
+      "  cmake -B build && cmake --build build\n"
+      "  rsc run robot.rsl --scenario pulse.json\n"
+      "  rsc test robot.rsl\n",
+      folder, name);
+}
+
+void make_module(const NewOptions& options) {
+  if (options.robot)
+    throw Failure(Exit::usage,
+                  "a module comes with a robot of its own: say --module or --template");
+  const std::string name = module_name(options.folder);
+  const NewFiles files = files_of_module(name);
+  refuse_what_is_there(options.folder, files);
+  write_files(options.folder, files);
+  report_module(options.folder, name);
 }
 
 std::string list_of_templates() {
@@ -101,7 +190,9 @@ void add_new(Options& options) {
   options.choice(
       "--template", names, [asked](std::size_t index) { asked->robot = index; },
       list_of_templates());
-  options.runs([asked] { make_robot(*asked); });
+  options.flag("--module", asked->module,
+               "a robot with an algorithm module of its own, called like the folder");
+  options.runs([asked] { asked->module ? make_module(*asked) : make_robot(*asked); });
 }
 
 }  // namespace robosync::tool

@@ -17,15 +17,18 @@ constexpr robosync_describe kDescribe[] = {
 #include "runtime-m4/algorithms/modules.def"
 #undef MODULE
 };
+static_assert(std::size(kModules) <= kFirstInFile);
 
 }  // namespace
 
 const robosync_module* find_module(std::size_t number) {
-  return number < std::size(kModules) ? kModules[number] : nullptr;
+  if (number < std::size(kModules)) return kModules[number];
+  const robosync_description* const in_file = find_in_file(number);
+  return in_file != nullptr ? in_file->module : nullptr;
 }
 
 const robosync_description* find_description(std::size_t number) {
-  return number < std::size(kDescribe) ? kDescribe[number](ROBOSYNC_ABI) : nullptr;
+  return number < std::size(kDescribe) ? kDescribe[number](ROBOSYNC_ABI) : find_in_file(number);
 }
 
 }  // namespace robosync::algorithms

@@ -15,6 +15,11 @@ extern "C" {
 
 namespace robosync::algorithms {
 
+// Numbers from here on are of modules in files: only a computer has any, and which they are depends on who asks
+// (module_files/registry.cpp; on a board: no_files.cpp).
+inline constexpr std::size_t kFirstInFile = 128;
+[[nodiscard]] const robosync_description* find_in_file(std::size_t number);
+
 // The module, or null.
 [[nodiscard]] const robosync_module* find_module(std::size_t number);
 

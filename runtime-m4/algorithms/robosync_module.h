@@ -48,6 +48,9 @@ typedef struct robosync_range {
   int32_t least, most;
 } robosync_range;
 
+// What process() returns when it cannot go on: the module is stopped, its outputs become unknown.
+#define ROBOSYNC_FAILED UINT32_MAX
+
 // One sample.
 typedef struct robosync_block {
   const int32_t* inputs;  // of each input, in their order; none is unknown
@@ -73,7 +76,7 @@ typedef struct robosync_module {
   uint32_t (*cost)(const int32_t* config);  // Cortex-M4 instructions of one process(), at most
 
   void (*init)(void* state, const int32_t* config, uint32_t period_ms);
-  // Returns a mask: bit i, output i has changed. Outputs that have not are not read.
+  // Returns a mask: bit i, output i has changed. Outputs that have not are not read. Or ROBOSYNC_FAILED.
   uint32_t (*process)(void* state, void* scratch, const robosync_block* block);
 } robosync_module;
 

@@ -80,6 +80,7 @@ void AlgorithmLayer::run_module(Data& data) {
     if (data.begins != 0) module.init(state, data.config, data.period_ms);
     data.begins = 0;
     data.changed = module.process(state, scratch, &block);
+    if (data.changed == ROBOSYNC_FAILED) return;
   }
 }
 

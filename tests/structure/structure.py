@@ -21,7 +21,7 @@ PART_OF = {"grammar": "compiler"}
 # Folders whose code runs on the board, and in them the ones that may know a machine.
 FREESTANDING = ("vm/", "link/", "runtime-m4/")
 MACHINE = ("runtime-m4/boards/", "runtime-m4/port/")
-HOST_ONLY = ("runtime-m4/port/host/", "runtime-m4/sim/")
+HOST_ONLY = ("runtime-m4/port/host/", "runtime-m4/sim/", "runtime-m4/module_files/")
 # Inside runtime-m4/, from the bottom up: what each part may include of it, besides itself. All of that stands further up
 # in this list, so no arrow points back. A part is a folder, but for these: the files at the top of runtime-m4/; the
 # interface of the processor (port/port.hpp, and the headers of the processor that it brings) and the sources that
@@ -29,6 +29,7 @@ HOST_ONLY = ("runtime-m4/port/host/", "runtime-m4/sim/")
 RUNTIME = {
     "policy": set(),
     "algorithms": set(),
+    "module_files": {"algorithms"},
     "port": {"policy"},
     "boards": {"policy"},
     "kernel": {"policy", "port"},
@@ -46,11 +47,12 @@ RUNTIME = {
 MAY_KNOW_THE_PROCESSOR = {"port", "port's sources", "boards/common", "a board"}
 # Inside rsc/: the same. What stands in rsc/ itself includes none of them.
 TOOL = {
-    "verbs": {"device", "trace", "dump", "timeline", "lsp"},
+    "verbs": {"device", "trace", "dump", "timeline", "lsp", "modules"},
     "device": {"trace"},
     "trace": set(),
     "timeline": {"trace"},
     "dump": set(),
+    "modules": {"device"},
     "lsp": set(),
 }
 # Inside compiler/, in the order of the passes: what each folder may include of it, besides itself.

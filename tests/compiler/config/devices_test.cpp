@@ -226,7 +226,7 @@ TEST_CASE("the schema lists the boards, types, devices, modules and units that t
     (is_sensor ? sensor_devices : actuator_devices).push_back(part);
   }
   Json& modules = list(definitions.at("algorithm"), "module");
-  for (const AlgorithmModule& module : tool::algorithm_modules())
+  for (const AlgorithmModule& module : tool::algorithm_modules().firmware)
     modules.push_back(module.name);
   Json& unit_names = list(definitions.at("channel"), "unit");
   for (const Unit& unit : units())
