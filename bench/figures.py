@@ -285,6 +285,12 @@ def link_figures():
     }
 
 
+def signature_figures():
+    """What the link thread does for each order to a robot that has an owner."""
+    [instructions] = run(BUILT / "bench_verify").spans("mark_verify_begin", "mark_verify_end")
+    return {"link/verify_signature": (instructions, "insn")}
+
+
 def kept(port):
     """Waits until the board keeps its program; gives what it says of itself."""
     give_up = time.monotonic() + rsc.TIMEOUT

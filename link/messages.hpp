@@ -8,7 +8,7 @@
 
 namespace robosync::link {
 
-inline constexpr std::uint8_t kProtocolVersion = 8;
+inline constexpr std::uint8_t kProtocolVersion = 9;
 inline constexpr std::size_t kMaxPayload = 240;
 inline constexpr std::size_t kNameLength = 16;  // NUL-padded
 using Name = std::array<char, kNameLength>;
@@ -17,6 +17,13 @@ enum class MessageType : std::uint8_t {
 #define MESSAGE(name, number, direction, doc) name = (number),
 #include "link/messages.def"
 #undef MESSAGE
+};
+
+// Whether only an owner gives the robot orders.
+enum class Pairing : std::uint8_t {
+  impossible,  // there is no store for a key, or the firmware cannot verify signatures
+  unpaired,    // whoever has the line does
+  paired
 };
 
 struct HelloReply {
@@ -36,6 +43,8 @@ struct HelloReply {
   std::uint16_t receive_window;  // bytes of data the board can take before it must reply
   std::uint8_t running;          // 1: a program runs
   std::uint8_t stopped;          // 1: a person has stopped it
+  Pairing pairing;
+  std::array<std::uint8_t, 3> reserved{};
 };
 
 struct Begin {
@@ -161,6 +170,49 @@ struct Kept {
 
 struct RollBack {
   std::uint32_t image_crc;  // to this program: the previous one, or in a trial the kept one
+};
+
+// Keys and signatures as in RFC 8032; an image's hash is the first half of the SHA-512 of its bytes.
+using PublicKey = std::array<std::uint8_t, 32>;
+using Signature = std::array<std::uint8_t, 64>;
+using BootId = std::array<std::uint8_t, 16>;
+using ImageHash = std::array<std::uint8_t, 32>;
+
+enum class Denial : std::uint8_t {
+#define DENIAL(name, doc) name,
+#include "link/denials.def"
+#undef DENIAL
+};
+
+struct Authority {
+  PublicKey key;            // the owner's; zeros: there is none
+  BootId boot;              // names this start of this board, and no other ever
+  std::uint64_t next;       // an order's number must be this or more; each is taken once
+  std::uint32_t window_ms;  // so long yet a key is taken by an unpaired board
+  std::uint32_t wait_ms;    // too_soon: so long yet no order is looked at
+  Pairing pairing;
+  Denial denial;
+  std::array<std::uint8_t, 6> reserved{};
+};
+
+struct Pair {
+  PublicKey key;
+  std::array<std::uint8_t, 16> seed;  // random, drawn by the host: what boot ids are made of
+};
+
+struct SignedOrder {    // followed by the payload of the order
+  Signature signature;  // of OrderText (order.hpp) and that payload
+  BootId boot;
+  std::uint64_t number;
+  std::uint8_t type;  // MessageType of the order
+  std::array<std::uint8_t, 7> reserved{};
+};
+inline constexpr std::size_t kMaxOrder = kMaxPayload - sizeof(SignedOrder);
+
+struct Grant {  // what a signed `begin` ends with
+  ImageHash image;
+  std::uint8_t fresh;  // as Activate's
+  std::array<std::uint8_t, 3> reserved{};
 };
 
 struct TraceOn {

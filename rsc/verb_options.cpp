@@ -23,6 +23,11 @@ void add_port_option(Options& options, std::string& port) {
                  Options::Need::required);
 }
 
+void add_key_option(Options& options, std::string& key) {
+  options.option("--key", "FILE", key,
+                 "key of the robot's owner; else robosync/key in the folder of your settings");
+}
+
 void add_config_option(Options& options, std::string& config) {
   options.option("--config", "FILE", config,
                  "configuration; else STEM.json, else robot.json beside it");

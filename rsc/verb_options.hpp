@@ -14,6 +14,8 @@ namespace robosync::tool {
 
 void add_format_option(Options& options, Format& format);
 void add_port_option(Options& options, std::string& port);
+// --key FILE, with which orders to a robot that has an owner are signed; empty when it is not given.
+void add_key_option(Options& options, std::string& key);
 void add_config_option(Options& options, std::string& config);
 // --seed N, of the random numbers; 0 when it is not given.
 void add_seed_option(Options& options, std::uint32_t& seed);

@@ -57,6 +57,10 @@ configuring=()
 build() {
   local preset=$1 log=build/$1.log
   shift
+  case "$preset" in
+    host*) ;;
+    *) signature_sources ;;
+  esac
   say "Building $preset (CMake preset; ${*:+only $*; }log: $log)"
   mkdir -p build
   if ! { cmake --preset "$preset" "${configuring[@]}" && cmake --build --preset "$preset" ${*:+--target "$@"}; } \
@@ -111,15 +115,42 @@ newer_emulator() {
   [ "$(dpkg --print-architecture)" = amd64 ] || die "needs QEMU 9.2 or newer; the one for Debian 12 is for amd64 only"
   say "Getting QEMU 10.0.2, beside the installed $version"
   mkdir -p build
-  local mirror
+  if from_mirror "$pool" "$sum" "$archive"; then
+    dpkg-deb -x "$archive" build/qemu.new && rm -rf build/qemu && mv build/qemu.new build/qemu && rm "$archive"
+    "$emulator" --version >/dev/null || die "QEMU 10.0.2 does not run here"
+    return
+  fi
+  die "QEMU 10.0.2 could not be had: no mirror has ${pool##*/}"
+}
+
+# signature_sources: what scripts/signatures says; they are then in build/tinyssh. Pool and sum are those of
+# https://deb.debian.org/debian/dists/bookworm/main/source/Sources.xz; the archive is that of upstream, which Debian does not
+# change, so it stays the same while Debian 12 lives.
+signature_sources() {
+  [ ! -d build/tinyssh ] || return 0
+  say "Getting the source package tinyssh, for Ed25519 on the board"
+  mkdir -p build
+  local archive=build/tinyssh.tar.gz
+  from_mirror pool/main/t/tinyssh/tinyssh_20230101.orig.tar.gz \
+    74a434389dd05bf421feb6b6fab241f763b78222750d21100bd81d9ba626b28c "$archive" ||
+    die "the source package tinyssh could not be had, with which a board verifies signatures: no mirror has it"
+  rm -rf build/tinyssh.new
+  mkdir build/tinyssh.new
+  tar -xzf "$archive" -C build/tinyssh.new --strip-components 1
+  mv build/tinyssh.new build/tinyssh
+  rm "$archive"
+}
+
+# from_mirror PLACE SHA256 FILE: gets what stands at that place in Debian's archive, from the mirrors of this machine first.
+from_mirror() {
+  local mirror log=$3.log
   for mirror in $(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 2>/dev/null | sort -u) \
     http://deb.debian.org/debian/; do
-    if /usr/lib/apt/apt-helper download-file "${mirror%/}/$pool" "$archive" "SHA256:$sum" >build/qemu.log 2>&1; then
-      dpkg-deb -x "$archive" build/qemu.new && rm -rf build/qemu && mv build/qemu.new build/qemu && rm "$archive"
-      "$emulator" --version >/dev/null || die "QEMU 10.0.2 does not run here"
-      return
+    if /usr/lib/apt/apt-helper download-file "${mirror%/}/$1" "$3" "SHA256:$2" >"$log" 2>&1; then
+      rm "$log"
+      return 0
     fi
   done
-  cat build/qemu.log >&2
-  die "QEMU 10.0.2 could not be had: no mirror has ${pool##*/}"
+  cat "$log" >&2
+  return 1
 }

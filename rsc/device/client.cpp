@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 
 #include "rsc/failure.hpp"
 
@@ -16,8 +17,11 @@ using std::chrono::milliseconds;
 
 // A reply takes at most 45 ms on the wire; the board verifies an image in a few.
 constexpr milliseconds kRepeatAfter{250};
+// … but for an order, whose signature may take it half a second.
+constexpr milliseconds kRepeatOrderAfter{1500};
 // What has come while this machine had no time is still read, but a board that never stops talking is not heard out.
 constexpr milliseconds kHearsOut{1000};
+constexpr milliseconds kStarts{20};
 constexpr std::size_t kMaxKept = 4096;  // unasked messages nobody has fetched
 
 bool is_unasked(MessageType type) {
@@ -81,7 +85,8 @@ std::optional<Message> Client::reply_to(std::uint8_t sequence, MessageType type,
                                         Transport::Clock::time_point until) {
   while (true) {
     while (std::optional<Message> reply = pop(replies_)) {
-      if (reply->type == type && reply->sequence == sequence) return reply;
+      const bool fits = reply->type == type || reply->type == MessageType::authority;  // denied
+      if (fits && reply->sequence == sequence) return reply;
     }
     if (!receive(until)) return std::nullopt;
   }
@@ -96,9 +101,53 @@ Reply Client::request(MessageType type, MessageType reply_type,
     const auto until = std::min(give_up, transport_.now() + kRepeatAfter);
     const std::optional<Message> answer = reply_to(sequence, reply_type, until);
     Reply reply{};
-    if (answer && link::read_payload(answer->payload, reply)) return reply;
+    if (answer && answer->type == reply_type && link::read_payload(answer->payload, reply))
+      return reply;
   }
   no_answer();
+}
+
+// Signed or not, as the board says: it denies what it wants otherwise, and says how.
+template <typename Reply>
+Reply Client::order(MessageType type, MessageType reply_type, std::span<const std::byte> payload) {
+  const auto give_up = transport_.now() + timeout_ + 2 * kRepeatOrderAfter;
+  while (transport_.now() < give_up) {
+    if (orders_.are_signed() && !orders_.know_how()) orders_.learn(authority());
+    const bool is_signed = orders_.are_signed();
+    const std::uint8_t sequence = is_signed
+                                      ? send(MessageType::signed_order, orders_.sign(type, payload))
+                                      : send(type, payload);
+    const auto until = transport_.now() + (is_signed ? kRepeatOrderAfter : kRepeatAfter);
+    const std::optional<Message> answer = reply_to(sequence, reply_type, std::min(give_up, until));
+    Reply reply{};
+    link::Authority authority{};
+    if (answer && answer->type == reply_type && link::read_payload(answer->payload, reply))
+      return reply;
+    if (answer && link::read_payload(answer->payload, authority)) heed(authority, give_up);
+  }
+  no_answer();
+}
+
+// Throws Failure when asking again is of no use before `give_up`.
+void Client::heed(const link::Authority& authority, Transport::Clock::time_point give_up) {
+  orders_.learn(authority);
+  if (const std::string why = denial_text(authority); !why.empty())
+    throw Failure(Exit::outside, why);
+  if (authority.denial == link::Denial::starting) wait(kStarts);
+  if (authority.denial != link::Denial::too_soon) return;
+  const milliseconds left(authority.wait_ms);
+  if (transport_.now() + left >= give_up)
+    throw Failure(Exit::outside,
+                  "somebody has tried to sign orders without the owner's key: the robot looks at "
+                  "none for " +
+                      std::to_string(left.count() / 1000 + 1) + " s; say this again then");
+  wait(left);
+}
+
+void Client::wait(milliseconds time) {
+  const auto until = transport_.now() + time;
+  while (receive(until)) {
+  }
 }
 
 void Client::no_answer() const {
@@ -123,9 +172,15 @@ link::HelloReply Client::hello() {
                                        std::to_string(link::kProtocolVersion) +
                                        ": flash the firmware of this release");
     }
-    if (link::read_payload(answer->payload, reply)) return reply;
+    if (!link::read_payload(answer->payload, reply)) continue;
+    orders_.learn(reply.pairing);
+    return reply;
   }
   no_answer();
+}
+
+link::Authority Client::authority() {
+  return request<link::Authority>(MessageType::get_authority, MessageType::authority);
 }
 
 link::Status Client::status() {
@@ -141,8 +196,8 @@ link::Devices Client::devices() {
 }
 
 link::Status Client::clear(std::uint32_t image_crc) {
-  return request<link::Status>(MessageType::clear, MessageType::status,
-                               link::wire_bytes(link::Clear{image_crc}));
+  return order<link::Status>(MessageType::clear, MessageType::status,
+                             link::wire_bytes(link::Clear{image_crc}));
 }
 
 link::Kept Client::kept() {
@@ -150,8 +205,8 @@ link::Kept Client::kept() {
 }
 
 link::Kept Client::roll_back(std::uint32_t to_image_crc) {
-  return request<link::Kept>(MessageType::roll_back, MessageType::kept,
-                             link::wire_bytes(link::RollBack{to_image_crc}));
+  return order<link::Kept>(MessageType::roll_back, MessageType::kept,
+                           link::wire_bytes(link::RollBack{to_image_crc}));
 }
 
 link::Status Client::stop() {
@@ -159,7 +214,41 @@ link::Status Client::stop() {
 }
 
 link::Status Client::resume() {
-  return request<link::Status>(MessageType::resume, MessageType::status);
+  return order<link::Status>(MessageType::resume, MessageType::status);
+}
+
+void Client::pair(const link::Pair& owner) {
+  const auto give_up = transport_.now() + timeout_;
+  while (transport_.now() < give_up) {
+    const auto said = request<link::Authority>(MessageType::pair, MessageType::authority,
+                                               link::wire_bytes(owner));
+    if (said.pairing == link::Pairing::paired && said.key == owner.key) return orders_.learn(said);
+    heed(said, give_up);
+  }
+  throw Failure(Exit::outside, "the board does not write the key down: does its store work?");
+}
+
+void Client::unpair() {
+  const auto give_up = transport_.now() + timeout_ + kRepeatOrderAfter;
+  while (transport_.now() < give_up) {
+    const auto said = orders_.are_signed()
+                          ? order<link::Authority>(MessageType::unpair, MessageType::authority)
+                          : authority();
+    if (said.pairing != link::Pairing::paired) return orders_.learn(said);
+    heed(said, give_up);
+  }
+  throw Failure(Exit::outside,
+                "the board does not write down that it has no owner: does its store work?");
+}
+
+// What follows it needs no signature, so a lost line costs none.
+void Client::order_upload(std::span<const std::byte> begin, std::span<const std::byte> image,
+                          bool fresh) {
+  if (!orders_.are_signed()) return;
+  std::vector<std::byte> payload(begin.begin(), begin.end());
+  const link::Grant grant = grant_of(image, fresh);
+  std::ranges::copy(link::wire_bytes(grant), std::back_inserter(payload));
+  (void)order<link::TransferStatus>(MessageType::begin, MessageType::transfer_status, payload);
 }
 
 link::Status Client::set_trace(bool on) {
@@ -168,8 +257,8 @@ link::Status Client::set_trace(bool on) {
 }
 
 link::FeedResult Client::feed(const link::Feed& feed) {
-  return request<link::FeedResult>(MessageType::feed, MessageType::feed_result,
-                                   link::wire_bytes(feed));
+  return order<link::FeedResult>(MessageType::feed, MessageType::feed_result,
+                                 link::wire_bytes(feed));
 }
 
 link::ActivateResult Client::activate(const link::Activate& what) {

@@ -12,6 +12,7 @@
 #include "link/frame.hpp"
 #include "link/messages.hpp"
 #include "link/wire.hpp"
+#include "rsc/device/orders.hpp"
 #include "rsc/device/transport.hpp"
 
 namespace robosync::tool {
@@ -48,6 +49,15 @@ public:
   std::vector<link::ThreadInfo> threads();
   std::vector<std::byte> running_image();  // empty when no program runs
 
+  // Orders to a robot with an owner are signed, by this key or, when none is named, that of default_key_file().
+  void use_key(const std::string& file) { orders_.use_key(file); }
+  link::Authority authority();  // who may give orders
+  // Both ask until it is done. Throw Failure (outside) with the reason when the board does not do it.
+  void pair(const link::Pair& owner);
+  void unpair();
+  // Lets an upload of `image`, which says `begin`, through to its activation; for a robot without an owner nothing.
+  void order_upload(std::span<const std::byte> begin, std::span<const std::byte> image, bool fresh);
+
   // For transfers, which have several requests under way: sends one frame, returns its sequence.
   std::uint8_t send(link::MessageType type, std::span<const std::byte> payload = {});
   // The next reply. Events, logs and faults that come meanwhile are kept for next_unasked().
@@ -61,13 +71,19 @@ private:
   template <typename Reply>
   Reply request(link::MessageType type, link::MessageType reply_type,
                 std::span<const std::byte> payload = {});
+  template <typename Reply>
+  Reply order(link::MessageType type, link::MessageType reply_type,
+              std::span<const std::byte> payload = {});
   std::optional<Message> reply_to(std::uint8_t sequence, link::MessageType type,
                                   Transport::Clock::time_point until);
+  void heed(const link::Authority& authority, Transport::Clock::time_point give_up);
+  void wait(Milliseconds time);
   bool receive(Transport::Clock::time_point until);
   [[noreturn]] void no_answer() const;
 
   Transport& transport_;
   Milliseconds timeout_;
+  Orders orders_;
   link::FrameDecoder decoder_;
   std::uint8_t sequence_ = 0;
   std::deque<Message> replies_;

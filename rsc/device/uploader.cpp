@@ -30,6 +30,10 @@ using std::chrono::milliseconds;
 // A window of data takes 45 ms on the wire.
 constexpr milliseconds kWindowTimeout{200};
 
+link::Begin begin_of(std::span<const std::byte> image) {
+  return {static_cast<std::uint32_t>(image.size()), vm::stated_crc32(image)};
+}
+
 class Transfer {
 public:
   Transfer(Client& client, std::uint16_t window, std::span<const std::byte> image,
@@ -74,8 +78,7 @@ private:
     under_way_.clear();
     bytes_under_way_ = 0;
     next_ = wanted_;
-    const link::Begin request{static_cast<std::uint32_t>(image_.size()), vm::stated_crc32(image_)};
-    begin_sequence_ = client_.send(MessageType::begin, link::wire_bytes(request));
+    begin_sequence_ = client_.send(MessageType::begin, link::wire_bytes(begin_of(image_)));
   }
 
   void fill_window() {
@@ -227,6 +230,7 @@ UploadResult upload(Client& client, const link::HelloReply& hello, std::span<con
   UploadResult result;
   result.bytes = image.size();
   do {
+    client.order_upload(link::wire_bytes(begin_of(image)), image, options.fresh);
     Transfer transfer(client, hello.receive_window, image, options, give_up);
     transfer.run();
     result.frames_sent += transfer.frames_sent();

@@ -89,6 +89,9 @@ void Watch::introduce() {
   std::vector<OnBus> silent;
   if (names_.image != nullptr) silent = on_buses(image_, session_.client.devices());
   std::erase_if(silent, [](const OnBus& device) { return !device.silent; });
+  link::Authority owner{};
+  owner.pairing = session_.board.pairing;
+  if (owner.pairing == link::Pairing::paired) owner = session_.client.authority();
   if (format_ == Format::json) {
     const Json line{{"event", "board"},
                     {"name", text_of(session_.board.board)},
@@ -96,12 +99,14 @@ void Watch::introduce() {
                     {"reset_reason", reset_reason(past.status)},
                     {"faults", past.status.faults},
                     {"last_fault", last_fault_json(past)},
+                    {"owner", owner_json(owner)},
                     {"silent", devices_json(silent)}};
     std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   } else {
     std::cout << fmt::format("        board  {}, up {}{}\n", text_of(session_.board.board),
                              past_text(past.status),
                              past.has_fault() ? "; last fault: " + fault_text(past.fault) : "");
+    std::cout << "        owner  " << owner_text(owner) << '\n';
     for (const OnBus& device : silent)
       std::cout << "       silent  " << silent_text(device) << '\n';
   }

@@ -1,5 +1,5 @@
 // rsc feed READING… --port P [--at TIME] [--scenario S.json] [--upload FILE [--fresh]]
-//          [--watch TIME] [--format human|json]
+//          [--watch TIME] [--format human|json] [--key FILE]
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -32,7 +32,7 @@ constexpr milliseconds kQueuePause{20};
 
 struct FeedOptions {
   std::vector<std::string> readings;
-  std::string scenario, upload, port;
+  std::string scenario, upload, port, key;
   CompileOptions how;
   std::optional<milliseconds> at, watch;
   bool fresh = false;
@@ -119,6 +119,7 @@ void feed(const FeedOptions& options) {
   std::optional<Program> program;
   if (!options.upload.empty()) program = load_program(options.upload, options.how);
   Session session(options.port);
+  session.client.use_key(options.key);
   std::optional<Watch> watch;
   if (options.watch) watch.emplace(session, options.format);
   if (program) {
@@ -146,6 +147,7 @@ void add_feed(Options& options) {
   options.arguments("READING", asked->readings, "SENSOR.CHANNEL=VALUE, as in touch.LEVEL=2",
                     Options::Need::optional);
   add_port_option(options, asked->port);
+  add_key_option(options, asked->key);
   add_duration_option(options, "--at", asked->at, "program time of the readings; else now");
   options.option("--scenario", "S.json", asked->scenario, "readings with their times");
   options.option("--upload", "FILE", asked->upload,

@@ -118,9 +118,10 @@ std::string buses_text(const Buses& buses) {
 }
 
 void print_json(const link::HelloReply& board, std::span<const std::byte> image, const Past& past,
-                const Buses& buses, const link::Kept& kept,
+                const Buses& buses, const link::Kept& kept, const link::Authority& owner,
                 const std::vector<link::ThreadInfo>& threads) {
   Json report{{"board", board_json(board, image)}, {"status", status_json(past)}};
+  report["owner"] = owner_json(owner);
   report["kept"] = keeping_json(kept);
   report["buses"] = {{"clears", buses.clears}, {"devices", devices_json(buses.devices)}};
   report["threads"] = threads_json(threads, {});
@@ -128,11 +129,12 @@ void print_json(const link::HelloReply& board, std::span<const std::byte> image,
 }
 
 void print_human(const link::HelloReply& board, std::span<const std::byte> image, const Past& past,
-                 const Buses& buses, const link::Kept& kept,
+                 const Buses& buses, const link::Kept& kept, const link::Authority& owner,
                  const std::vector<link::ThreadInfo>& threads) {
   const link::Status& status = past.status;
   std::cout << fmt::format("board     {}, firmware {}, protocol {}\n", text_of(board.board),
                            text_of(board.firmware), board.protocol);
+  std::cout << fmt::format("owner     {}\n", owner_text(owner));
   std::cout << memory_text(board, image);
   std::cout << fmt::format("takes     steps up to {} instructions\n", board.step_budget);
   if (board.running != 0) {
@@ -164,8 +166,9 @@ void info(const std::string& port, Format format) {
   const std::vector<std::byte> image = session.client.running_image();
   const Buses buses(image, session.client.devices());
   const link::Kept kept = session.client.kept();
-  format == Format::json ? print_json(session.board, image, past, buses, kept, threads)
-                         : print_human(session.board, image, past, buses, kept, threads);
+  const link::Authority owner = session.client.authority();
+  format == Format::json ? print_json(session.board, image, past, buses, kept, owner, threads)
+                         : print_human(session.board, image, past, buses, kept, owner, threads);
 }
 
 }  // namespace

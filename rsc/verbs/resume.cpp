@@ -1,4 +1,4 @@
-// rsc resume --port P: ends a stop. What SAFETY rules of the program halt stays halted.
+// rsc resume --port P [--key FILE]: ends a stop. What SAFETY rules of the program halt stays halted.
 #include <iostream>
 #include <memory>
 #include <string>
@@ -10,10 +10,15 @@
 namespace robosync::tool {
 
 void add_resume(Options& options) {
-  auto port = std::make_shared<std::string>();
-  add_port_option(options, *port);
-  options.runs([port] {
-    Session session(*port);
+  struct ResumeOptions {
+    std::string port, key;
+  };
+  auto asked = std::make_shared<ResumeOptions>();
+  add_port_option(options, asked->port);
+  add_key_option(options, asked->key);
+  options.runs([asked] {
+    Session session(asked->port);
+    session.client.use_key(asked->key);
     session.client.resume();
     std::cout << "resumed\n";
   });

@@ -1,4 +1,4 @@
-// rsc rollback --port P: the robot goes back to the program that it kept before this one.
+// rsc rollback --port P [--key FILE]: the robot goes back to the program that it kept before this one.
 #include <iostream>
 #include <memory>
 #include <string>
@@ -13,10 +13,15 @@
 namespace robosync::tool {
 
 void add_rollback(Options& options) {
-  auto port = std::make_shared<std::string>();
-  add_port_option(options, *port);
-  options.runs([port] {
-    Session session(*port);
+  struct RollBackOptions {
+    std::string port, key;
+  };
+  auto asked = std::make_shared<RollBackOptions>();
+  add_port_option(options, asked->port);
+  add_key_option(options, asked->key);
+  options.runs([asked] {
+    Session session(asked->port);
+    session.client.use_key(asked->key);
     const link::HelloReply board = roll_back(session.client);
     std::cout << fmt::format("program {:02x} runs again ({} bytes)\n",
                              fmt::join(board.program_hash, ""), board.image_bytes);

@@ -1,4 +1,4 @@
-// rsc upload FILE|X.rsb --port P [--config FILE] [--timeout TIME] [--replace] [--fresh] [--anyway]
+// rsc upload FILE|X.rsb --port P [--config FILE] [--timeout TIME] [--replace] [--fresh] [--anyway] [--key FILE]
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -26,7 +26,7 @@ using std::chrono::milliseconds;
 constexpr double kBitsPerByte = 10;  // 8N1
 
 struct SendOptions {
-  std::string file, port;
+  std::string file, port, key;
   CompileOptions how;
   std::optional<milliseconds> timeout;
   bool replace = false;
@@ -80,6 +80,7 @@ void upload(const SendOptions& options) {
   if (stderr_is_terminal()) how.progress = show_progress;
   constexpr milliseconds kAnswer{2000};
   Session session(options.port, std::min(how.timeout.value_or(kAnswer), kAnswer));
+  session.client.use_key(options.key);
   const UploadResult result = upload_program(session, program, how);
   const std::vector<OnBus> silent = silent_after_start(session.client, program.image());
   report(options, result, program, silent, session.client.kept());
@@ -91,6 +92,7 @@ void add_upload(Options& options) {
   auto asked = std::make_shared<SendOptions>();
   options.argument("FILE", asked->file, "program (.rsl) or image (.rsb)", Options::Need::required);
   add_port_option(options, asked->port);
+  add_key_option(options, asked->key);
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_duration_option(options, "--timeout", asked->timeout,

@@ -77,17 +77,18 @@ bool Server::start() {
 }
 
 void Server::run() {
+  gate_.open(board_.reset_reason() == link::ResetReason::power);
   while (true) {
     while (work()) {
     }
-    kernel_.wait(kLine | kNews, keeper_.due());
+    kernel_.wait(kLine | kNews, gate_.busy() ? gate_.due() : keeper_.due());
   }
 }
 
 bool Server::work() {
   const bool said =
       writer_.ready() && (read_line() || send_next_thread() || send_fault() || send_unasked());
-  return said || keeper_.work();
+  return said || (gate_.busy() ? gate_.work() : keeper_.work());
 }
 
 // Decodes until a request was handled. What follows it waits until its reply is written.
@@ -109,7 +110,23 @@ bool Server::read_line() {
   return true;
 }
 
-void Server::handle(const link::Frame& frame) {
+void Server::handle(const link::Frame& received) {
+  link::Frame frame = received;
+  if (!gate_.takes(frame)) return authority(frame.sequence);
+  switch (frame.type) {
+    case MessageType::get_authority:
+      return authority(frame.sequence);
+    case MessageType::pair:
+      return pair(frame);
+    case MessageType::unpair:
+      gate_.unpair();
+      return authority(frame.sequence);
+    default:
+      return answer(frame);
+  }
+}
+
+void Server::answer(const link::Frame& frame) {
   switch (frame.type) {
     case MessageType::hello:
       return hello(frame.sequence);
@@ -164,6 +181,7 @@ void Server::hello(std::uint8_t sequence) {
   answer.drivers = runtime_.limits().drivers;
   answer.receive_window = kReceiveWindow;
   answer.stopped = runtime_.stopped() ? 1 : 0;
+  answer.pairing = gate_.pairing();
   if (runtime_.running()) {
     const vm::ImageHeader& header = *runtime_.image().header;
     answer.running = 1;
@@ -177,6 +195,7 @@ void Server::hello(std::uint8_t sequence) {
 // Not before the board has done so at the sight of the frame; but another host may number its frames otherwise.
 void Server::stop(std::uint8_t sequence) {
   if (sequence == link::kStopSequence) ++stops_read_;
+  gate_.outdate();
   runtime_.stop();
   status(sequence);
 }
@@ -206,7 +225,7 @@ void Server::data(const link::Frame& frame) {
     ++bad_requests_;
     return;
   }
-  keeper_.host_sends();
+  if (receiver_.status().state != link::TransferState::idle) keeper_.host_sends();
   const link::TransferStatus answer =
       receiver_.data(head.offset, frame.payload.subspan(sizeof head));
   send(MessageType::transfer_status, frame.sequence, link::wire_bytes(answer));
@@ -220,7 +239,10 @@ void Server::activate(const link::Frame& frame) {
     ++bad_requests_;
     return;
   }
-  if (receiver_.complete() && receiver_.crc32() == request.image_crc32) {
+  const bool whole = receiver_.complete() && receiver_.crc32() == request.image_crc32;
+  if (whole && !gate_.grants(receiver_.bytes(), request.fresh != 0)) {
+    receiver_.reset();  // it is not what the owner has signed: all of it again
+  } else if (whole) {
     keeper_.host_activates(request.fresh != 0);
     last_result_ = activate_received();
     last_activated_ = request.image_crc32;
@@ -311,6 +333,22 @@ void Server::roll_back(const link::Frame& frame) {
   }
   keeper_.roll_back(request.image_crc);
   kept(frame.sequence);
+}
+
+void Server::authority(std::uint8_t sequence) {
+  link::Authority answer{};
+  gate_.fill(answer);
+  send(MessageType::authority, sequence, link::wire_bytes(answer));
+}
+
+void Server::pair(const link::Frame& frame) {
+  link::Pair owner{};
+  if (!link::read_payload(frame.payload, owner)) {
+    ++bad_requests_;
+    return;
+  }
+  gate_.pair(owner);
+  authority(frame.sequence);
 }
 
 void Server::trace_on(const link::Frame& frame) {

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "link/frame.hpp"
 #include "link/receiver.hpp"
@@ -22,6 +23,8 @@
 #include "runtime-m4/runtime.hpp"
 #include "runtime-m4/update/keeper.hpp"
 #include "runtime-m4/update/line_writer.hpp"
+#include "runtime-m4/update/open_gate.hpp"
+#include "runtime-m4/update/order_gate.hpp"
 #include "runtime-m4/update/trace_ring.hpp"
 
 namespace robosync::update {
@@ -29,6 +32,12 @@ namespace robosync::update {
 // Data the host may have under way. The UART's receive buffer must hold that many bytes: while the
 // board verifies an image it does not read the line.
 inline constexpr std::uint16_t kReceiveWindow = 2 * link::kMaxEncodedFrame;
+
+#ifdef ROBOSYNC_AUTHENTICATION
+inline constexpr bool kAuthentication = true;
+#else
+inline constexpr bool kAuthentication = false;
+#endif
 
 class Server {
 public:
@@ -39,6 +48,7 @@ public:
         runtime_(runtime),
         ring_(ring),
         writer_(board),
+        gate_(kernel, board.store()),
         keeper_(kernel, runtime, receiver_, board.store()) {}
 
   // Creates the link thread and starts the line. Once, before Kernel::run(). False when the kernel has
@@ -54,7 +64,8 @@ private:
   static constexpr kernel::Events kLine = 1;
   static constexpr kernel::Events kNews = 2;
   static constexpr std::size_t kKeptFaults = 2;
-  static constexpr std::size_t kStack = 1728;  // it verifies and loads programs
+  // It verifies and loads programs, and signatures where it can: then they need most.
+  static constexpr std::size_t kStack = kAuthentication ? 6144 : 1728;
 
   void run();
   bool work();  // one thing that is due; false when there is nothing, or the line does not take it
@@ -63,7 +74,10 @@ private:
   bool send_next_thread();
   bool send_fault();
 
-  void handle(const link::Frame& frame);
+  void handle(const link::Frame& received);
+  void answer(const link::Frame& frame);
+  void authority(std::uint8_t sequence);
+  void pair(const link::Frame& frame);
   void hello(std::uint8_t sequence);
   void begin(const link::Frame& frame);
   void data(const link::Frame& frame);
@@ -106,6 +120,7 @@ private:
   link::ActivateResult last_result_{};  // repeated when the host asks again
   std::uint32_t last_activated_ = 0;    // … the CRC-32 of the image that it is about
   bool have_result_ = false;
+  std::conditional_t<kAuthentication, OrderGate, OpenGate> gate_;
   Keeper keeper_;
 
   bool listing_threads_ = false;

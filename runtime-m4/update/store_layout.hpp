@@ -1,5 +1,6 @@
-// What stands where in a board's store: two records and two slots for programs (program_store.hpp), and a ring of records
-// of KEPT numbers (number_store.hpp). Each begins on a page of its own, so that a cut of the power spoils no other.
+// What stands where in a board's store: two records and two slots for programs (program_store.hpp), two records of the owner's
+// key (key_store.hpp), and a ring of records of KEPT numbers (number_store.hpp). Each begins on a page of its own, so that a cut
+// of the power spoils no other.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +17,29 @@ public:
   static constexpr std::uint32_t kRing = 16;
 
   static constexpr std::uint32_t kNumbersBytes = 144;  // of a record in the ring
+  static constexpr std::uint32_t kKeys = 2;
+  static constexpr std::uint32_t kKeyBytes = 64;  // of a record
 
   constexpr explicit StoreLayout(const boards::Store& store)
       : page_(store.page()),
-        numbers_((kNumbersBytes + page_ - 1) / page_ * page_),
-        first_number_(store.size() / page_ * page_ - kRing * numbers_) {}
+        numbers_(pages(kNumbersBytes)),
+        first_number_(store.size() / page_ * page_ - kRing * numbers_),
+        first_key_(first_number_ - kKeys * pages(kKeyBytes)) {}
 
   std::uint32_t record_at(std::uint32_t record) const { return record * page_; }
   std::uint32_t slot_at(std::uint32_t slot) const { return kRecords * page_ + slot * slot_bytes(); }
-  std::uint32_t slot_bytes() const { return (first_number_ / page_ - kRecords) / kSlots * page_; }
+  std::uint32_t slot_bytes() const { return (first_key_ / page_ - kRecords) / kSlots * page_; }
+  std::uint32_t key_at(std::uint32_t record) const {
+    return first_key_ + record * pages(kKeyBytes);
+  }
   std::uint32_t numbers_at(std::uint32_t place) const { return first_number_ + place * numbers_; }
 
 private:
-  std::uint32_t page_, numbers_, first_number_;
+  constexpr std::uint32_t pages(std::uint32_t bytes) const {
+    return (bytes + page_ - 1) / page_ * page_;
+  }
+
+  std::uint32_t page_, numbers_, first_number_, first_key_;
 };
 
 }  // namespace robosync::update

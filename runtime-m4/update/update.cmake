@@ -1,4 +1,18 @@
 # The board's end of the link.
+#
+# Whether it can have an owner, whose orders are signed: by default where something outlasts a loss of power, which the owner's
+# key must. Without it the firmware is some 12 KB smaller.
+set(keeps_keys ON)
+if(store_bytes EQUAL 0)
+  set(keeps_keys OFF)
+endif()
+option(ROBOSYNC_AUTHENTICATION "The board can be paired with an owner (docs/security.md)" ${keeps_keys})
+if(ROBOSYNC_AUTHENTICATION)
+  include(${CMAKE_CURRENT_LIST_DIR}/signatures.cmake)
+  list(APPEND board_definitions ROBOSYNC_AUTHENTICATION)
+  target_sources(robosync_runtime PRIVATE
+    ${CMAKE_CURRENT_LIST_DIR}/key_store.cpp ${CMAKE_CURRENT_LIST_DIR}/order_gate.cpp)
+endif()
 target_sources(robosync_runtime PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/keeper.cpp
   ${CMAKE_CURRENT_LIST_DIR}/number_store.cpp

@@ -47,6 +47,7 @@ class Tap:
                 line_free = max(line_free, time.monotonic()) + len(data) * self._seconds_per_byte
                 time.sleep(max(0.0, line_free - time.monotonic()))
                 sink.sendall(data)
+                self.note(counter, data)
                 setattr(self, counter, getattr(self, counter) + len(data))
         except OSError:
             pass  # the other end is gone
@@ -55,6 +56,9 @@ class Tap:
                 end.shutdown(socket.SHUT_RDWR)
             except OSError:
                 pass
+
+    def note(self, counter, data):
+        """What has passed, for those who want to know more than how much."""
 
     def wire_seconds(self, length):
         return length * self._seconds_per_byte

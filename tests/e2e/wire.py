@@ -32,9 +32,15 @@ def _enum_names(text):
     return set(re.findall(r"enum class (\w+) : std::uint8_t", text))
 
 
+def _read_aliases(text):
+    return dict(re.findall(r"^using (\w+) = ([\w:]+<[^;]*>);", text, re.M))
+
+
 def _field(type_name, enums):
     if type_name in enums:
         return "B"
+    if type_name not in TYPES:
+        type_name = ALIASES.get(type_name, type_name)
     if match := re.fullmatch(r"std::array<([\w:]+), (\d+)>", type_name):
         element = TYPES[match[1]]
         return f"{match[2]}s" if element == "B" else match[2] + element
@@ -56,6 +62,7 @@ MOST_PAYLOAD = int(re.search(r"kMaxPayload = (\d+)", _MESSAGES)[1])
 NUMBERS = _read_numbers()
 NAMES = {number: name for name, number in NUMBERS.items()}
 ENUMS = _read_enums(_MESSAGES)
+ALIASES = _read_aliases(_MESSAGES)
 STRUCTS = _read_structs(_MESSAGES, _enum_names(_MESSAGES))
 
 

@@ -81,7 +81,7 @@ TEST_CASE("a new store has no program, and one without answers none to keep any"
   ProgramStore store = test::opened<ProgramStore>(memory);
   CHECK(store.there());
   CHECK(store.kept().bytes == 0);
-  CHECK(store.most_bytes() == 2496);
+  CHECK(store.most_bytes() == 2432);
 
   memory.dead = true;
   ProgramStore dead(&memory);

@@ -1,0 +1,21 @@
+// Ed25519 and SHA-512 (RFC 8032), of which a board needs to verify and to hash only: it has no secret. On the board the code is
+// TinySSH's (signatures_tinyssh.cpp), on the host libsodium's.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "link/messages.hpp"
+#include "link/order.hpp"
+
+namespace robosync::update {
+
+// Of at most so many bytes.
+inline constexpr std::size_t kMaxSigned = link::kMaxOrderText;
+[[nodiscard]] bool is_signed(std::span<const std::byte> text, const link::Signature& signature,
+                             const link::PublicKey& key);
+
+// The first half of the SHA-512 of `bytes`.
+[[nodiscard]] link::ImageHash hash_of(std::span<const std::byte> bytes);
+
+}  // namespace robosync::update

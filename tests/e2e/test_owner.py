@@ -1,0 +1,158 @@
+"""A robot with an owner: the shipped firmware verifies what rsc has signed with libsodium, takes nothing from anybody else, and
+knows its owner after it was switched off. What a stranger sends, he has heard before: the line is recorded."""
+
+import os
+import re
+import stat
+import unittest
+from unittest import mock
+
+import rsc
+import wire
+from support import PROGRAMS
+from tap import Tap
+from test_store import Switched
+
+SPARE = 400  # bytes of the link's stack that no signature needs: those of an interrupt, and some more
+TRIES = 20
+FAST_LINE = 2_000_000
+DENIALS = re.findall(r"^DENIAL\((\w+),", (wire.LINK / "denials.def").read_text("utf-8"), re.M)
+
+
+class Recorder(Tap):
+    """A line that keeps what goes to the board."""
+
+    def __init__(self, folder, socket):
+        self.heard = b""
+        super().__init__(folder, socket, FAST_LINE)
+
+    def note(self, counter, data):
+        if counter == "to_board":
+            self.heard += data
+
+
+class Owner(Switched):
+    def setUp(self):
+        super().setUp()
+        settings = {name: value for name, value in os.environ.items() if name != "XDG_CONFIG_HOME"}
+        settings["XDG_CONFIG_HOME"] = str(self.folder / "settings")
+        patch = mock.patch.dict(os.environ, settings, clear=True)
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def refused(self, says, *arguments):
+        done = rsc.call(*arguments, "--port", self.board.port)
+        self.assertEqual(done.returncode, 3, (arguments, done.stdout, done.stderr))
+        self.assertIn(says, done.stderr)
+
+    def owner(self):
+        return rsc.info(self.board.port)["owner"]
+
+    def link_thread(self):
+        return next(thread for thread in rsc.info(self.board.port)["threads"] if thread["name"] == "link")
+
+    def order(self, line, name, payload=b"", **changes):
+        """A stranger's signed order, right but for the signature; gives why it is denied."""
+        said = wire.unpack("Authority", line.ask("get_authority", reply="authority"))
+        parts = {"signature": bytes(range(64)), "boot": said.boot, "number": said.next, "type": wire.NUMBERS[name],
+                 "reserved": bytes(7), **changes}
+        reply = line.ask("signed_order", wire.pack("SignedOrder", **parts) + payload, "authority")
+        return DENIALS[wire.unpack("Authority", reply).denial]
+
+    def test_from_keygen_to_unpair(self):
+        image = self.compile(PROGRAMS / "priorities.rsl")
+        self.assertEqual(self.owner(), {"pairing": "unpaired", "key": None})
+        said = rsc.run("monitor", "--port", self.board.port, "--duration", "50ms").splitlines()
+        self.assertIn("nobody: whoever has this line gives the robot orders, until `rsc pair`", said[1])
+        self.refused("there is no key: make one, rsc keygen", "pair")
+
+        key = rsc.run("keygen").split(" is your key ")[1].split()[0]
+        file = self.folder / "settings/robosync/key"
+        self.assertEqual(stat.S_IMODE(file.stat().st_mode), 0o600)
+        kept = file.read_bytes()
+        self.assertEqual(rsc.call("keygen").returncode, 3)
+        self.assertEqual(file.read_bytes(), kept)
+        self.assertIn(key, self.pair())
+        self.assertEqual(self.owner(), {"pairing": "paired", "key": key})
+
+        self.owner_and_stranger(image)
+        self.after_the_power(image)
+        rsc.run("unpair", "--port", self.board.port)
+        self.assertEqual(self.owner()["pairing"], "unpaired")
+        file.unlink()
+        self.upload(image)
+
+    def pair(self):
+        """The board's first minute is short, since its time does not wait for the host's."""
+        for _ in range(TRIES):
+            self.power_cycle()
+            done = rsc.call("pair", "--port", self.board.port)
+            if done.returncode == 0:
+                return done.stdout
+            self.assertIn("in the first minute after it was switched on", done.stderr)
+        return self.fail("never in time")
+
+    def owner_and_stranger(self, image):
+        with Recorder(self.folder, self.board.serial_path) as line:
+            rsc.run("upload", image, "--port", line.port)
+            rsc.run("stop", "--port", line.port)
+            rsc.run("resume", "--port", line.port)
+        before = rsc.info(self.board.port)
+        self.assertFalse(before["board"]["stopped"])
+        other = ("--key", self.folder / "other")
+        rsc.run("keygen", *other)
+        for arguments in (("upload", image), ("resume",), ("unpair",), ("feed", "touch.LEVEL=1")):
+            self.refused("the robot's owner has the key", *arguments, *other)
+        self.refused("has an owner already", "pair", *other)
+        self.refused("there is no key", "resume", "--key", self.folder / "none")
+        with wire.Line(self.board.serial_path) as stranger:
+            self.replay(stranger, line.heard)
+            self.forge(stranger, before["board"]["program"]["crc32"])
+        after = rsc.info(self.board.port)
+        for name in ("activations", "faults"):
+            self.assertEqual(after["status"][name], before["status"][name])
+        self.assertEqual(after["board"]["program"]["crc32"], before["board"]["program"]["crc32"])
+        rsc.run("stop", "--port", self.board.port)  # is for everybody
+        self.refused("the robot's owner has the key", "resume", *other)
+        rsc.run("resume", "--port", self.board.port)  # waits until signatures are looked at again
+        self.assertFalse(rsc.info(self.board.port)["board"]["stopped"])
+        thread = self.link_thread()
+        self.assertLess(thread["stack_used"] + SPARE, thread["stack_bytes"])
+
+    def replay(self, stranger, heard):
+        """All frames but those of `stop`, which would stop it."""
+        frames = [part + b"\0" for part in heard.split(b"\0") if part and part + b"\0" != wire.frame("stop", sequence=255)]
+        self.assertTrue(any(wire.uncobs(part[:-1])[0] == wire.NUMBERS["signed_order"] for part in frames))
+        for part in frames:
+            stranger.send_raw(part)
+        stranger.status()
+
+    def forge(self, stranger, crc32):
+        clear = wire.pack("Clear", image_crc=crc32)
+        for name, payload in (("clear", clear), ("resume", b""), ("begin", wire.pack("Begin", size=8, crc32=1))):
+            reply = wire.unpack("Authority", stranger.ask(name, payload, "authority"))
+            self.assertEqual(DENIALS[reply.denial], "unsigned_order")
+        self.assertEqual(self.order(stranger, "clear", clear, number=0), "stale")
+        self.assertEqual(self.order(stranger, "clear", clear), "bad_signature")
+        self.assertEqual(self.order(stranger, "stop"), "bad_signature")
+        stranger.send_raw(b"".join(wire.frame("signed_order", os.urandom(length)) for length in range(0, 240, 5)))
+        stranger.status()
+
+    def after_the_power(self, image):
+        self.await_kept("kept")
+        with Recorder(self.folder / "settings", self.board.serial_path) as line:
+            rsc.run("upload", image, "--port", line.port)
+        key = self.owner()["key"]
+        self.power_cycle()
+        self.await_kept("kept")
+        self.assertEqual(self.owner(), {"pairing": "paired", "key": key})
+        activations = rsc.info(self.board.port)["status"]["activations"]
+        with wire.Line(self.board.serial_path) as stranger:
+            self.replay(stranger, line.heard)
+        self.assertEqual(rsc.info(self.board.port)["status"]["activations"], activations)
+        self.upload(image)
+        self.assertEqual(rsc.info(self.board.port)["status"]["activations"], activations + 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
