@@ -55,7 +55,7 @@ void OrderGate::written() {
   const auto end =
       std::ranges::copy(std::as_bytes(std::span(record.owner.seed)), bytes.begin()).out;
   std::ranges::copy(link::wire_bytes(record.number), end);
-  std::ranges::copy_n(hash_of(bytes).begin(), boot_.size(), boot_.begin());
+  std::copy_n(hash_of(bytes).begin(), boot_.size(), boot_.begin());
   next_ = 1;
 }
 
