@@ -88,9 +88,10 @@ void Kernel::begin_era(std::uint32_t tick) {
 
 std::size_t Thread::stack_used() const {
   const auto all = stack();
-  const auto first_used =
-      std::find_if(all.begin(), all.end(), [](std::byte b) { return b != kPaint; });
-  return static_cast<std::size_t>(all.end() - first_used);
+  std::size_t never = 0;  // std::find_if is four times as large
+  while (never < all.size() && all[never] == kPaint)
+    ++never;
+  return all.size() - never;
 }
 
 void Thread::set_stack(std::span<std::byte> stack) {
