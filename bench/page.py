@@ -24,9 +24,9 @@ says: so nothing grows unnoticed. (Of the ways of a touch that this machine give
 that moment is another thing each time.) `scripts/bench --record` records what is measured now; `scripts/bench --profile NAME` says
 which functions ran while a figure was counted, and how many instructions of each.
 
-Three instructions of each switch are the time that threads ran, which no peer's figure includes. Of what misses its bar:
-`kernel/mailbox` compares with the last reading, keeps times and announces together; `kernel/lock_out_add` is while a program is
-loaded. `kernel/yield_isolated` has the second system call in it, by which the thread that was let run takes its events.
+Three instructions of each switch are the time that threads ran, which no peer's figure includes. `kernel/yield_isolated` has the
+second system call in it, by which the thread that was let run takes its events. Of what misses its bar: `kernel/mailbox` compares
+with the last reading, keeps times and announces together; `kernel/lock_out_add` is while a program is loaded.
 `path/…`: no single place is dear; of the way to the command three commands take a quarter (decoded, queued, handed over),
 threads and their switches another, the rest is the step's bookkeeping for rules. `firmware/flash`: memory
 as large as the board, laid out for each program, took one kilobyte, programs and numbers that outlast the power four, algorithms three and a half.

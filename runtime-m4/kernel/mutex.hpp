@@ -13,6 +13,7 @@
 // or removed, what it held is free.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "runtime-m4/kernel/scheduler.hpp"
@@ -24,7 +25,9 @@ class Thread;
 
 class Mutex {
 public:
-  explicit constexpr Mutex(Category highest) : highest_(highest) {}
+  explicit constexpr Mutex(Category highest) : highest_(highest) {
+    static_assert(offsetof(Mutex, owner_) == 0, "the context switch reads it (switch.S)");
+  }
   Mutex(const Mutex&) = delete;
   Mutex& operator=(const Mutex&) = delete;
 

@@ -33,16 +33,6 @@ struct SavedRegisters {
   std::array<std::uint32_t, 8> r4_r11;
   std::uint32_t exc_return;
 };
-
-// switch.S loads what stands here in one instruction, and more of it by these distances.
-using kernel::Selection;
-static_assert(std::is_standard_layout_v<Selection> && kernel::kMaxThreads == 3 * 32);
-static_assert(offsetof(Selection, running_) == 0 && offsetof(Selection, run_clock_) == 4);
-static_assert(offsetof(RunClock, origin) == 0 && sizeof(RunClock) == 8);
-static_assert(offsetof(Selection, held_) == 12 && offsetof(Selection, ready_) == 16);
-static_assert(offsetof(Selection, running_rank_) == 28 && offsetof(Selection, ceiling_) == 29);
-static_assert(offsetof(Selection, by_rank_) == 32);
-
 struct FirstFrame {
   SavedRegisters saved;
   CoreFrame stacked;
@@ -54,6 +44,15 @@ struct FirstFpuFrame {
   CoreFrame stacked;
   std::array<std::uint32_t, 18> s0_s15_fpscr;
 };
+
+// switch.S loads what stands here in one instruction, and more of it by these distances.
+using kernel::Selection;
+static_assert(std::is_standard_layout_v<Selection> && kernel::kMaxThreads == 3 * 32);
+static_assert(offsetof(Selection, running_) == 0 && offsetof(Selection, run_clock_) == 4);
+static_assert(offsetof(RunClock, origin) == 0 && sizeof(RunClock) == 8);
+static_assert(offsetof(Selection, held_) == 12 && offsetof(Selection, ready_) == 16);
+static_assert(offsetof(Selection, running_rank_) == 28 && offsetof(Selection, ceiling_) == 29);
+static_assert(offsetof(Selection, by_rank_) == 32);
 
 // The idle thread needs the frame of an interrupt and of a switch, without FPU registers.
 alignas(kGuard) std::array<std::byte, kGuard + 96> idle_stack;

@@ -5,7 +5,8 @@
    signals the others, with and without that mutex, and waits.
 
    A step is what one instruction does that others can see. The ready set stands in two words, which
-   select_next() reads one after the other: rank 0 in the first, 1 and 2 in the second.
+   select_next() reads one after the other: rank 0 in the first, 1 and 2 in the second. (The M4 reads them by one
+   instruction, which an interrupt may break off, so that it is one after the other for it, too.)
 
    What is found: an event that was signalled and is gone, or is there while its thread is blocked on
    it (a lost wake-up); a thread that is blocked until a deadline for which no timer stands; a timer
