@@ -55,8 +55,15 @@ void BehaviorLayer::begin_step(const Snapshot& snapshot) {
 
 void BehaviorLayer::take_turn(unsigned behavior, const RuleSet& rules) {
   concerned_ = &rules;
-  rule_ = kNobody;
+  task_ = Task::turn;
   release(behavior);
+}
+
+void BehaviorLayer::take_sole_turn(unsigned rule, bool goes_on) {
+  task_ = Task::sole_turn;
+  goes_on_ = goes_on;
+  rule_ = static_cast<std::uint16_t>(rule);
+  release(program_->behavior_of[rule]);
 }
 
 void BehaviorLayer::respond(unsigned rule, Side side) {
@@ -69,6 +76,7 @@ void BehaviorLayer::go_on(unsigned rule) {
 }
 
 void BehaviorLayer::release_to_run(unsigned rule, unsigned code) {
+  task_ = Task::response;
   rule_ = static_cast<std::uint16_t>(rule);
   code_ = static_cast<std::uint16_t>(code);
   release(program_->behavior_of[rule]);
@@ -77,7 +85,7 @@ void BehaviorLayer::release_to_run(unsigned rule, unsigned code) {
 // Nothing comes of one that was stopped.
 void BehaviorLayer::release(unsigned behavior) {
   workspace_.result->there = 0;
-  if (has(retired_, behavior)) return;
+  if (is_retired(behavior)) return;
   released_ = static_cast<std::uint8_t>(behavior);
   is_released_ = true;
   workspace_.finished->store(false, std::memory_order_relaxed);
@@ -92,7 +100,7 @@ bool BehaviorLayer::busy() {
 // It could say so of any rule of its own that does not cool down, as it could let it trigger.
 bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
   const Result& result = *workspace_.result;
-  if (result.there == 0) return false;
+  if (result.there != Result::kBegan) return false;
   const RuleRange rules = program_->rules_of(behavior);
   const unsigned rule = result.rule;
   if (rule < rules.first || rule >= rules.end) return false;
@@ -115,7 +123,7 @@ vm::Progress BehaviorLayer::checked_progress() const {
 void BehaviorLayer::conclude(unsigned rule) {
   Result& result = *workspace_.result;
   const unsigned behavior = program_->behavior_of[rule];
-  if (has(retired_, behavior) || result.there == 0) result = {};
+  if (is_retired(behavior) || result.there == 0) result = {};
   result.there = 0;  // it is taken
   ResumePoint& point = resume_points_[rule];
   const vm::Progress progress = checked_progress();
@@ -225,16 +233,40 @@ void BehaviorLayer::run(Unit& unit) {
   (void)kernel::calls::wait(kernel_, kReleased);
   while (true) {
     latch(unit, machine);
-    if (rule_ != kNobody) {
-      run_response(machine, rule_, Side::then, code_);
-    } else {
-      evaluate_rules(unit, machine);
-      Claim claim;
-      if (sole_claim(program_->rules_of(unit.behavior), claim))
-        run_response(machine, claim.rule, claim.side, begin_of(claim.rule, claim.side));
-    }
+    do_task(unit, machine);
     workspace_.finished->store(true, std::memory_order_relaxed);
     kernel::calls::rest(kernel_, kReleased);
+  }
+}
+
+[[gnu::always_inline]] inline void BehaviorLayer::begin_response(vm::Machine& machine,
+                                                                 const Claim& claim) {
+  run_response(machine, claim.rule, claim.side, begin_of(claim.rule, claim.side));
+}
+
+[[gnu::always_inline]] inline void BehaviorLayer::do_task(const Unit& unit, vm::Machine& machine) {
+  if (task_ == Task::sole_turn) return run_sole_turn(rule_, machine);
+  if (task_ == Task::response) return run_response(machine, rule_, Side::then, code_);
+  evaluate_rules(unit, machine);
+  if (Claim claim; sole_claim(program_->rules_of(unit.behavior), claim))
+    begin_response(machine, claim);
+}
+
+// evaluate_rules() and sole_claim(), of one rule. Who waits claims nothing unless something ends it.
+void BehaviorLayer::run_sole_turn(unsigned rule, vm::Machine& machine) {
+  layers_.triggers.begin_sole_turn(rule);
+  judge_rule(rule, machine);
+  Claim claim;
+  bool silent = false;
+  const bool claims =
+      layers_.triggers.may_want(rule) && !must_pause(rule) && claim_of(rule, claim, silent);
+  if (resume_points_[rule].pause != vm::Pause::ended) {
+    if (goes_on_ && !claims && !layers_.triggers.is_over(rule)) {
+      run_response(machine, rule, Side::then, resume_points_[rule].next);
+      workspace_.result->there = Result::kWentOn;
+    }
+  } else if (claims && layers_.arbiter.decide(claim).wins()) {
+    begin_response(machine, claim);
   }
 }
 
@@ -322,7 +354,7 @@ void BehaviorLayer::run_response(vm::Machine& machine, unsigned rule, Side side,
       .assigned = machine.assigned,
       .shifted = machine.shifted,
       .words = static_cast<std::uint16_t>(machine.output - workspace_.output.data()),
-      .there = 1,
+      .there = Result::kBegan,
       .side = static_cast<std::uint8_t>(side)};
 }
 

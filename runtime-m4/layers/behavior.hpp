@@ -59,12 +59,20 @@ public:
   // the call `rest`.
   // Its turn: it evaluates those of its rules that are in `rules`.
   void take_turn(unsigned behavior, const RuleSet& rules);
+  // … where this is the only one, and no other one of its behaviour runs or wants to; `goes_on`: its response does,
+  // unless something ends it.
+  void take_sole_turn(unsigned rule, bool goes_on);
   void respond(unsigned rule, Side side);
   void go_on(unsigned rule);
   bool busy();
   // In its turn it saw that it has one claim, that this wins, and that no other response of its runs
   // in this step; so it has run the response.
   bool sole_claim_of(unsigned behavior, Claim& claim) const;
+  // In its sole turn the response that may go on has done so.
+  bool went_on(unsigned rule) const {
+    const Result& result = *workspace_.result;
+    return goes_on_ && result.there == Result::kWentOn && result.rule == rule;
+  }
   // The response has been run: tells what it has put out, stages its commands, and notes where it
   // waits. Not before, so that the behaviours' stacks can be short.
   void conclude(unsigned rule);
@@ -88,7 +96,9 @@ public:
 
 private:
   static constexpr kernel::Events kReleased = 1;
-  static constexpr unsigned kNobody = 0xFFFF;
+  bool is_retired(unsigned behavior) const { return retired_ != 0 && has(retired_, behavior); }
+
+  enum class Task : std::uint8_t { turn, sole_turn, response };
 
   struct Unit {
     BehaviorLayer* layer = nullptr;
@@ -103,13 +113,16 @@ private:
   }
   // --- the behaviour's thread: without privileges ---
   void run(Unit& unit);
+  void do_task(const Unit& unit, vm::Machine& machine);
   void latch(const Unit& unit, vm::Machine& machine);
   void evaluate_rules(const Unit& unit, vm::Machine& machine);
   void judge_rule(unsigned rule, vm::Machine& machine);
   vm::Value evaluate_rule(unsigned rule, vm::Machine& machine);
   void evaluate_period(unsigned rule, vm::Machine& machine);
+  void run_sole_turn(unsigned rule, vm::Machine& machine);
   bool sole_claim(RuleRange rules, Claim& claim) const;
   bool waits(RuleRange rules) const;
+  void begin_response(vm::Machine& machine, const Claim& claim);
   void run_response(vm::Machine& machine, unsigned rule, Side side, unsigned code);
 
   void put_out(std::span<const vm::Word> output, ActuatorMask declared);
@@ -127,10 +140,12 @@ private:
   const Snapshot* snapshot_ = nullptr;
   const RuleSet* concerned_ = nullptr;
   BehaviorMask retired_ = 0;
-  // Who is released, and to run the response of which rule, from where; kNobody: for its turn.
+  // Who is released, and for what; of a rule, which; and from where its response goes on or begins.
   std::uint8_t released_ = 0;
   bool is_released_ = false;
-  std::uint16_t rule_ = kNobody;
+  Task task_ = Task::turn;
+  bool goes_on_ = false;  // of a sole turn
+  std::uint16_t rule_ = 0;
   std::uint16_t code_ = 0;
   RuleSet has_run_;           // see has_run(): in the millisecond …
   std::uint32_t ran_at_ = 0;  // … of the last step

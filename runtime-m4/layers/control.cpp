@@ -101,14 +101,35 @@ ActuatorMask ControlLayer::take_dropped() {
   return std::exchange(dropped_, 0);
 }
 
-void ControlLayer::cancel(ActuatorMask actuators) {
-  const auto lock = kernel_.lock();
-  cancelling_ = actuators & ~retired_;
-  for (ActuatorMask left = cancelling_; left != 0; left &= left - 1)
-    kernel_.signal(*units_[static_cast<unsigned>(std::countr_zero(left))].thread, kCancel);
+// Whose thread waits for something has nothing under way that this could come into, and while the lock is held
+// it stays so: then it need not be woken for it. A timer of its that strikes later finds nothing to go on with.
+ActuatorMask ControlLayer::cancel_first(ActuatorMask actuators) {
+  Unit& unit = first_in_rank(actuators);
+  const auto mine = bit<ActuatorMask>(unit.actuator);
+  if (has(retired_, unit.actuator)) return mine;
+  {
+    const auto lock = kernel_.lock();
+    if (kernel_.state(*unit.thread) != kernel::Thread::State::blocked) {
+      cancelling_ = mine;
+      kernel_.signal(*unit.thread, kCancel);
+      return mine;
+    }
+    put_at_rest(unit);
+  }
+  note_cancelled(unit);
+  return mine;
 }
 
-void ControlLayer::commit() {
+// Of `actuators`, which are some, the one whose thread outranks the others'.
+ControlLayer::Unit& ControlLayer::first_in_rank(ActuatorMask actuators) const {
+  Unit* first = &units_[static_cast<unsigned>(std::countr_zero(actuators))];
+  each_bit(actuators & (actuators - 1), [&](unsigned a) {
+    if (units_[a].thread->rank() < first->thread->rank()) first = &units_[a];
+  });
+  return *first;
+}
+
+void ControlLayer::commit_staged() {
   const auto lock = kernel_.lock();
   for (ActuatorMask left = std::exchange(to_commit_, 0); left != 0; left &= left - 1) {
     const auto a = static_cast<unsigned>(std::countr_zero(left));
@@ -135,12 +156,12 @@ void ControlLayer::hand_over(Unit& unit) {
   idle_ &= ~bit<ActuatorMask>(unit.actuator);
 }
 
-ActuatorMask ControlLayer::take_idle() {
+ActuatorMask ControlLayer::take_all_idle() {
   const auto lock = kernel_.lock();
   return std::exchange(idle_, 0);
 }
 
-ActuatorMask ControlLayer::take_halted() {
+ActuatorMask ControlLayer::take_newly_halted() {
   const auto lock = kernel_.lock();
   return newly_halted_.exchange(0, std::memory_order_relaxed);
 }
@@ -238,6 +259,10 @@ void ControlLayer::run(Unit& unit) {
       wake = kernel::kForever;
       continue;
     }
+    if (events == 0 && !unit.busy) {  // cancel_first()
+      wake = kernel::kForever;
+      continue;
+    }
     if (is_halted(unit)) {
       drop_all(unit);
       unit.busy = false;
@@ -298,8 +323,8 @@ void ControlLayer::begin_next(Unit& unit, Stamp stamp, kernel::Time& wake) {
     return is_halted(unit) ? drivers::kDone : next_key(unit, kernel_.now());
   }
   unit.performance.end();
-  const drivers::Order order = resolve(wiring(unit), command);
-  if (is_halted(unit) || is_void(order)) return drivers::kDone;
+  drivers::Order order;
+  if (!resolve(wiring(unit), command, order) || is_halted(unit)) return drivers::kDone;
   return drivers::driver(wiring(unit).driver).start(device(unit), order, kernel_.now());
 }
 
@@ -338,14 +363,23 @@ kernel::Time ControlLayer::keep_at(Unit& unit, kernel::Time wake, Stamp stamp) {
   return kernel::kForever;
 }
 
-void ControlLayer::finish_cancel(Unit& unit) {
+void ControlLayer::put_at_rest(Unit& unit) {
   release(unit, is_halted(unit) ? wiring(unit).safe : wiring(unit).on_release);
   unit.busy = false;
+}
+
+void ControlLayer::note_cancelled(Unit& unit) {
   trace_.emit(EventKind::cancel, trace_.step(), unit.actuator);
   const auto lock = kernel_.lock();
   pool_.clear(unit.queue);
   unit.stopping = kNoVerb;
   idle_ &= ~bit<ActuatorMask>(unit.actuator);
+}
+
+void ControlLayer::finish_cancel(Unit& unit) {
+  put_at_rest(unit);
+  note_cancelled(unit);
+  const auto lock = kernel_.lock();
   cancelling_ &= ~bit<ActuatorMask>(unit.actuator);
   kernel_.signal(step_thread_, events_.cancelled);
 }

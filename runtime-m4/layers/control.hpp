@@ -60,15 +60,21 @@ public:
   void stage(const Command& command, ActuatorMask actuators);
   ActuatorMask take_staged();   // actuators that commands were staged for since the last call
   ActuatorMask take_dropped();  // … and that a command was dropped for
-  void cancel(ActuatorMask actuators);  // begins it; done when cancelling() is false
+  // Begins it for that one of `actuators` whose thread outranks the others', and returns which; done when
+  // cancelling() is false, which mostly is at once.
+  ActuatorMask cancel_first(ActuatorMask actuators);
   bool cancelling() const { return cancelling_.load(std::memory_order_relaxed) != 0; }
-  void commit();
-  ActuatorMask take_idle();
+  void commit() {
+    if (to_commit_ != 0) commit_staged();
+  }
+  ActuatorMask take_idle() { return idle_ == 0 ? 0 : take_all_idle(); }
   [[gnu::always_inline]] ActuatorMask halted() const {
     return halted_.load(std::memory_order_relaxed);
   }
   // … and those that were halted since the last call, even if they are let go by now.
-  ActuatorMask take_halted();
+  ActuatorMask take_halted() {
+    return newly_halted_.load(std::memory_order_relaxed) == 0 ? 0 : take_newly_halted();
+  }
   void retire(unsigned actuator);  // its thread was stopped: put it into its safe state
 
   // [safety thread] Those that are halted, or not, already stay as they are.
@@ -103,6 +109,9 @@ private:
     std::uint8_t stopping = kNoVerb;     // … and `queue`: it was handed over
   };
 
+  void commit_staged();
+  ActuatorMask take_all_idle();
+  ActuatorMask take_newly_halted();
   bool stage_one(Unit& unit, const Command& command);
   [[nodiscard]] bool start_unit(unsigned actuator, ProgramThreads& threads);
   void run(Unit& unit);
@@ -114,6 +123,9 @@ private:
   kernel::Time next_key(Unit& unit, kernel::Time now);
   kernel::Time keep_at(Unit& unit, kernel::Time wake, Stamp stamp);
   void hand_over(Unit& unit);
+  Unit& first_in_rank(ActuatorMask actuators) const;
+  void put_at_rest(Unit& unit);
+  void note_cancelled(Unit& unit);
   void finish_cancel(Unit& unit);
   bool claim_next(Unit& unit);
   kernel::Time obey_stop(Unit& unit);
@@ -126,7 +138,9 @@ private:
   const vm::Actuator& wiring(const Unit& unit) const {
     return program_->image.actuators[unit.actuator];
   }
-  bool is_halted(const Unit& unit) const { return has(halted(), unit.actuator); }
+  [[gnu::always_inline]] bool is_halted(const Unit& unit) const {
+    return has(halted(), unit.actuator);
+  }
   // Its queue has to wait.
   bool is_held(const Unit& unit) const { return is_halted(unit) || unit.stopping != kNoVerb; }
   ActuatorMask all() const;

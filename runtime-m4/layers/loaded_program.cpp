@@ -11,7 +11,7 @@ void LoadedProgram::load(const vm::Image& loaded, Memory& memory) {
   image = loaded;
   inputs = memory.take<Part::behavior_inputs, InputMask>();
   reader_words_ = memory.take<Part::readers, RuleSet::Word>();
-  set_words_ = policy::set_words(static_cast<std::uint32_t>(image.rules.size()));
+  reader_stride_ = policy::reader_words(static_cast<std::uint32_t>(image.rules.size()));
   behavior_of = memory.take<Part::behavior_of, std::uint8_t>();
   truth_cell = memory.take<Part::truth_cells, std::uint8_t>();
   for (unsigned b = 0; b < image.behaviors.size(); ++b) {
@@ -33,8 +33,15 @@ void LoadedProgram::load_rules(unsigned b) {
       truth_cell[r] = static_cast<std::uint8_t>(cell++);
     if (b >= first_behavior())
       policy::each_input_of_rule(image, behavior, image.rules[r],
-                                 [&](std::uint8_t input) { readers_of(input).insert(r); });
+                                 [&](std::uint8_t input) { note_reader(input, r); });
   }
+}
+
+void LoadedProgram::note_reader(unsigned input, unsigned rule) {
+  RuleSet::Word* const words = &reader_words_[input * reader_stride_];
+  const bool several = reader_stride_ > 1;
+  RuleBits(words + (several ? 1 : 0)).insert(rule);
+  if (several) RuleBits(words).insert(rule / RuleBits::kBits);
 }
 
 BehaviorMask LoadedProgram::needing(kernel::Category category, unsigned index) const {

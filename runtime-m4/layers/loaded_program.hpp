@@ -23,9 +23,14 @@ struct LoadedProgram {
   // `image` is verified, and `memory` laid out for it.
   void load(const vm::Image& image, Memory& memory);
 
-  // The rules that read or set an input.
-  RuleBits readers_of(unsigned input) const {
-    return RuleBits(reader_words_.data() + std::size_t{input} * set_words_);
+  // Adds the rules that read or set an input.
+  void add_readers_of(unsigned input, RuleSet& rules) const {
+    RuleSet::Word* const words = reader_words_.data() + input * reader_stride_;
+    if (reader_stride_ > 1) {
+      rules.insert_all(RuleBits(words + 1), words[0]);
+    } else if (reader_stride_ != 0 && words[0] != 0) {
+      rules.insert_all(RuleBits(words), 1);
+    }
   }
 
   unsigned first_behavior() const { return policy::first_behavior(image); }
@@ -51,9 +56,10 @@ struct LoadedProgram {
 
 private:
   void load_rules(unsigned behavior);
+  void note_reader(unsigned input, unsigned rule);
 
-  std::span<RuleSet::Word> reader_words_;
-  unsigned set_words_ = 0;
+  std::span<RuleSet::Word> reader_words_;  // by input (policy::reader_words())
+  std::size_t reader_stride_ = 0;
 };
 
 // The name at `offset` of the strings, for reports; `otherwise` when there is none.

@@ -7,17 +7,15 @@
 
 namespace robosync::layers {
 
-// The parameters of `command`, inside the actuator's range (TO) and limits (AT). A parameter may be
-// kUnknown: see is_void().
-[[nodiscard]] drivers::Order resolve(const vm::Actuator& actuator, const Command& command);
+// The parameters of `command`, inside the actuator's range (TO) and limits (AT). False: one of them is kUnknown, and
+// nobody can say what the order means. It is not carried out.
+[[nodiscard]] bool resolve(const vm::Actuator& actuator, const Command& command,
+                           drivers::Order& order);
 
 // The order's own parameters inside the actuator's range and limits.
 void limit(const vm::Actuator& actuator, drivers::Order& order);
 
 // The value of a parameter inside the actuator's range (TO) and limits (AT); kUnknown stays.
 [[nodiscard]] vm::Value limited(const vm::Actuator& actuator, vm::Param param, vm::Value value);
-
-// An order with an unknown parameter is not carried out: nobody can say what it means.
-[[nodiscard]] bool is_void(const drivers::Order& order);
 
 }  // namespace robosync::layers

@@ -45,9 +45,11 @@ bool ProcessingLayer::start(const LoadedProgram& program, std::span<const KeptNu
   lost_behaviors_ = 0;
   unstarted_ = 0;
   untouched_ = 0;
+  untouched_inputs_ = 0;
   in_pass_ = false;
   for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b) {
     untouched_ |= bit<BehaviorMask>(b);
+    untouched_inputs_ |= program.inputs[b];
     if (starts_at_once(program, program.image.behaviors[b])) unstarted_ |= bit<BehaviorMask>(b);
   }
   kernel::ThreadSpec spec;
@@ -84,9 +86,14 @@ void ProcessingLayer::pass() {
   kernel::Time time = 0;
   const std::uint32_t now = read_clock(time);
   adaptation_.turn(*program_, layers_.threads, trace_, now);
-  finish_done(layers_.control.take_idle());
-  const BehaviorMask lost = std::exchange(lost_behaviors_, 0);
-  const BehaviorMask first = std::exchange(unstarted_, 0);
+  // Who finished otherwise did so at the end of a step.
+  if (const ActuatorMask idle = layers_.control.take_idle(); idle != 0) finish_done(idle);
+  BehaviorMask lost = 0;
+  BehaviorMask first = 0;
+  if ((lost_behaviors_ | unstarted_) != 0) [[unlikely]] {
+    lost = std::exchange(lost_behaviors_, 0);
+    first = std::exchange(unstarted_, 0);
+  }
   layers_.arbiter.note_halted(layers_.control.halted());
   const ActuatorMask halted = layers_.control.take_halted() & layers_.arbiter.owned();
   layers_.triggers.settle(now);
@@ -284,16 +291,25 @@ void ProcessingLayer::find_concerned(InputMask changed, BehaviorMask begins) {
   layers_.triggers.add_woken(snapshot_.milliseconds(), concerned_);
   concerned_.each(
       [this](unsigned rule) { woken_ |= bit<BehaviorMask>(program_->behavior_of[rule]); });
-  each_bit(channels_of(changed), [this](unsigned c) { concerned_ |= program_->readers_of(c); });
+  each_bit(channels_of(changed), [this](unsigned c) { program_->add_readers_of(c, concerned_); });
   each_bit(variables_of(changed),
-           [this](unsigned v) { concerned_ |= program_->readers_of(channels() + v); });
+           [this](unsigned v) { program_->add_readers_of(channels() + v, concerned_); });
   layers_.triggers.eventful().each([this](unsigned rule) {
     if (stirred(program_->behavior_of[rule])) concerned_.insert(rule);
   });
+  if ((untouched_inputs_ & changed) != 0 || (untouched_ & woken_) != 0) touch();
+}
+
+void ProcessingLayer::touch() {
+  untouched_inputs_ = 0;
   for (BehaviorMask left = untouched_; left != 0; left &= left - 1) {
     const auto behavior = static_cast<unsigned>(std::countr_zero(left));
     if (behavior >= program_->image.behaviors.size()) break;
-    if (stirred(behavior)) concern_all(behavior);
+    if (stirred(behavior)) {
+      concern_all(behavior);
+    } else {
+      untouched_inputs_ |= program_->inputs[behavior];
+    }
   }
 }
 
@@ -315,9 +331,16 @@ void ProcessingLayer::step() {
   layers_.behaviors.begin_step(snapshot_);
   cancel_interrupted();
   for (unsigned rule = next_at_work(0); rule < RuleSet::kEnd;) {
-    const RuleRange rules = program_->rules_of(program_->behavior_of[rule]);
-    take_turn(program_->behavior_of[rule], rules);
-    rule = next_at_work(rules.end);
+    const unsigned behavior = program_->behavior_of[rule];
+    const RuleRange rules = program_->rules_of(behavior);
+    const unsigned next = next_at_work(rule + 1);
+    if (has_sole_turn(rule, next, rules)) {
+      take_sole_turn(behavior, rule);
+      rule = next;
+    } else {
+      take_turn(behavior, rules);
+      rule = next_at_work(rules.end);
+    }
   }
   set_due_ = snapshot_.milliseconds() + 1;
   layers_.control.commit();
@@ -330,25 +353,56 @@ unsigned ProcessingLayer::next_at_work(unsigned rule) const {
   return RuleSet::first_of(rule, concerned_, layers_.triggers.active(), layers_.arbiter.running());
 }
 
+// Of the behaviour's rules `rule` is evaluated, and no other one wants to run, or runs; `next` is the first
+// behind it that does. So a reading mostly finds a behaviour, since most of its rules are about something else.
+bool ProcessingLayer::has_sole_turn(unsigned rule, unsigned next, RuleRange rules) const {
+  if constexpr (kernel::kAssertions)
+    if (takes_whole_turns_) return false;
+  return next >= rules.end && concerned_.has(rule);
+}
+
+// A turn in which all that take_turn() does for each rule is done for this one, without looking for others. One
+// thing it does sooner: a response that may go on is run in the same activation, as one that begins is, when
+// nothing that the rule has found out ends it.
+void ProcessingLayer::take_sole_turn(unsigned behavior, unsigned rule) {
+  const bool may_go_on = layers_.arbiter.runs(rule) && goes_on(rule);
+  layers_.behaviors.take_sole_turn(rule, may_go_on);
+  await_behavior();
+  const bool follows = layers_.triggers.follows(rule);
+  if (follows) collect(rule);
+  if (Claim claim; layers_.behaviors.sole_claim_of(behavior, claim)) {
+    serve(claim, false);
+    layers_.triggers.forget(rule);
+    cancel_interrupted();
+    if (layers_.arbiter.runs(claim.rule)) conclude(claim.rule);
+    return;
+  }
+  if (follows) arbitrate(rule);
+  cancel_interrupted();
+  if (!layers_.arbiter.runs(rule)) return;
+  if (may_go_on && !layers_.arbiter.won_now(rule) && layers_.behaviors.went_on(rule))
+    return conclude(rule);
+  run_response(rule);
+}
+
 void ProcessingLayer::take_turn(unsigned behavior, RuleRange rules) {
   if (concerned_.has_any(rules)) {
     layers_.behaviors.take_turn(behavior, concerned_);
-    await(kFinished, [this] { return layers_.behaviors.busy(); });
-    collect(rules);
-    Claim claim;
-    if (layers_.behaviors.sole_claim_of(behavior, claim)) return serve_sole(claim, rules);
+    await_behavior();
+    layers_.triggers.keep_concerned(concerned_, rules);
+    concerned_.each_in(rules, [this](unsigned rule) { collect(rule); });
+    if (Claim claim; layers_.behaviors.sole_claim_of(behavior, claim)) {
+      serve(claim, false);
+      concerned_.each_in(rules, [this](unsigned rule) { layers_.triggers.forget(rule); });
+      cancel_interrupted();
+      if (layers_.arbiter.runs(claim.rule)) conclude(claim.rule);
+      return;
+    }
   }
-  arbitrate(rules);
+  concerned_.each_in_either(layers_.triggers.active().bits(), rules,
+                            [this](unsigned rule) { arbitrate(rule); });
   cancel_interrupted();
-  run_responses(rules);
-}
-
-// The behaviour has one claim, and has run its response already.
-void ProcessingLayer::serve_sole(const Claim& claim, RuleRange rules) {
-  serve(claim, false);
-  concerned_.each_in(rules, [this](unsigned rule) { layers_.triggers.forget(rule); });
-  cancel_interrupted();
-  if (layers_.arbiter.runs(claim.rule)) conclude(claim.rule);
+  layers_.arbiter.running().each_in(rules, [this](unsigned rule) { run_response(rule); });
 }
 
 // --- interruptions that no claim is the cause of ---
@@ -369,30 +423,25 @@ void ProcessingLayer::interrupt_halted(ActuatorMask halted) {
 
 // --- claims ---
 
-// What the behaviour has found out, rule by rule. A WHILE whose condition no longer holds ends.
-void ProcessingLayer::collect(RuleRange rules) {
-  layers_.triggers.keep_concerned(concerned_, rules);
-  concerned_.each_in(rules, [this](unsigned rule) {
-    layers_.triggers.collect(rule);
-    if (layers_.triggers.take_zero_divide(rule))
-      trace_.emit(EventKind::zero_divide, trace_.step(), rule);
-    if (Side side{}; layers_.triggers.fired(rule, side)) {
-      trace_.emit(EventKind::fire, trace_.step(), rule, 0, static_cast<std::int32_t>(side));
-      adaptation_.count(*program_, program_->behavior_of[rule], snapshot_.milliseconds());
-    }
-    if (layers_.arbiter.runs(rule) && layers_.triggers.is_over(rule))
-      interrupt(rule, program_->behavior_of[rule]);
-  });
+// What the behaviour has found out of a rule. A WHILE whose condition no longer holds ends.
+void ProcessingLayer::collect(unsigned rule) {
+  layers_.triggers.collect(rule);
+  if (layers_.triggers.take_zero_divide(rule))
+    trace_.emit(EventKind::zero_divide, trace_.step(), rule);
+  if (Side side{}; layers_.triggers.fired(rule, side)) {
+    trace_.emit(EventKind::fire, trace_.step(), rule, 0, static_cast<std::int32_t>(side));
+    adaptation_.count(*program_, program_->behavior_of[rule], snapshot_.milliseconds());
+  }
+  if (layers_.arbiter.runs(rule) && layers_.triggers.is_over(rule))
+    interrupt(rule, program_->behavior_of[rule]);
 }
 
-void ProcessingLayer::arbitrate(RuleRange rules) {
-  concerned_.each_in_either(layers_.triggers.active().bits(), rules, [this](unsigned rule) {
-    Claim claim;
-    bool silent = false;
-    if (!layers_.behaviors.must_pause(rule) && layers_.behaviors.claim_of(rule, claim, silent))
-      serve(claim, silent);
-    layers_.triggers.forget(rule);
-  });
+void ProcessingLayer::arbitrate(unsigned rule) {
+  Claim claim;
+  bool silent = false;
+  if (!layers_.behaviors.must_pause(rule) && layers_.behaviors.claim_of(rule, claim, silent))
+    serve(claim, silent);
+  layers_.triggers.forget(rule);
 }
 
 void ProcessingLayer::serve(const Claim& claim, bool silent) {
@@ -450,18 +499,21 @@ bool ProcessingLayer::goes_on(unsigned rule) const {
   }
 }
 
-void ProcessingLayer::run_responses(RuleRange rules) {
-  layers_.arbiter.running().each_in(rules, [this](unsigned rule) {
-    if (layers_.arbiter.won_now(rule)) {
-      layers_.behaviors.respond(rule, layers_.arbiter.side(rule));
-    } else if (goes_on(rule)) {
-      layers_.behaviors.go_on(rule);
-    } else {
-      return;
-    }
-    await(kFinished, [this] { return layers_.behaviors.busy(); });
-    conclude(rule);
-  });
+// Of a rule that runs: when it has won, or goes on.
+void ProcessingLayer::run_response(unsigned rule) {
+  if (layers_.arbiter.won_now(rule)) {
+    layers_.behaviors.respond(rule, layers_.arbiter.side(rule));
+  } else if (goes_on(rule)) {
+    layers_.behaviors.go_on(rule);
+  } else {
+    return;
+  }
+  await_behavior();
+  conclude(rule);
+}
+
+void ProcessingLayer::await_behavior() {
+  await(kFinished, [this] { return layers_.behaviors.busy(); });
 }
 
 void ProcessingLayer::conclude(unsigned rule) {
@@ -476,9 +528,10 @@ void ProcessingLayer::conclude(unsigned rule) {
 // The old ones end before the new ones begin, and before those send commands: what the old ones had
 // in their queues takes no place from them.
 void ProcessingLayer::cancel_interrupted() {
-  if (cancelled_ == 0) return;
-  layers_.control.cancel(std::exchange(cancelled_, 0));
-  await(kCancelled, [this] { return layers_.control.cancelling(); });
+  while (cancelled_ != 0) {
+    cancelled_ &= ~layers_.control.cancel_first(cancelled_);
+    await(kCancelled, [this] { return layers_.control.cancelling(); });
+  }
 }
 
 }  // namespace robosync::layers

@@ -138,23 +138,26 @@ private:
 
   // --- what a step concerns ---
   void find_concerned(InputMask changed, BehaviorMask begins);
+  [[gnu::noinline]] void touch();
   [[gnu::cold]] void concern_all(unsigned behavior);
   bool stirred(unsigned behavior) const;
 
   // --- what happens in one ---
   void step();
   unsigned next_at_work(unsigned rule) const;
-  void take_turn(unsigned behavior, RuleRange rules);
+  bool has_sole_turn(unsigned rule, unsigned next, RuleRange rules) const;
+  void take_sole_turn(unsigned behavior, unsigned rule);
+  [[gnu::noinline]] void take_turn(unsigned behavior, RuleRange rules);
   [[gnu::cold]] void interrupt_lost(BehaviorMask lost);
   [[gnu::cold]] void interrupt_halted(ActuatorMask halted);
-  void collect(RuleRange rules);
-  void arbitrate(RuleRange rules);
-  void serve_sole(const Claim& claim, RuleRange rules);
+  void collect(unsigned rule);
+  void arbitrate(unsigned rule);
   void serve(const Claim& claim, bool silent);
-  void interrupt_by(const Claim& claim, const Decision& decision);
+  [[gnu::noinline]] void interrupt_by(const Claim& claim, const Decision& decision);
   void interrupt(unsigned rule, unsigned by);
   bool goes_on(unsigned rule) const;
-  void run_responses(RuleRange rules);
+  void run_response(unsigned rule);
+  void await_behavior();
   void conclude(unsigned rule);
   void cancel_interrupted();
   void report(const Claim& claim, link::EventKind kind, unsigned object = 0);
@@ -178,13 +181,15 @@ private:
   RuleSet concerned_;                // evaluated in this step
   InputMask changed_ = 0;            // in this step
   BehaviorMask woken_ = 0;           // have a rule whose time has come in this step
-  BehaviorMask untouched_ = 0;       // no rule of theirs was ever evaluated
+  BehaviorMask untouched_ = 0;       // no rule of theirs was ever evaluated …
+  InputMask untouched_inputs_ = 0;   // … and what they read
   std::uint32_t set_due_ = 0;        // when what is staged may take effect
   ActuatorMask cancelled_ = 0;       // whose responses were interrupted, and are still to be
   BehaviorMask lost_behaviors_ = 0;  // stopped; their responses are still to be interrupted
   BehaviorMask unstarted_ = 0;       // have something to do before the first reading
   std::atomic<std::uint32_t> passes_ = 0;
   std::atomic<bool> in_pass_ = false;
+  bool takes_whole_turns_ = false;  // in builds for tests: see has_sole_turn()
 };
 
 }  // namespace robosync::layers

@@ -28,6 +28,7 @@ public:
 
   explicit RuleBits(Word* words) : words_(words) {}
   void insert(unsigned rule) { words_[rule / kBits] |= Word{1} << rule % kBits; }
+  void erase(unsigned rule) { words_[rule / kBits] &= ~(Word{1} << rule % kBits); }
   bool has(unsigned rule) const { return (words_[rule / kBits] >> rule % kBits & 1) != 0; }
   // Empties the words in which `rules` stand: of their neighbours' bits nobody needs any then.
   void clear_around(RuleRange rules) {
@@ -75,14 +76,13 @@ public:
     for (; summary_ != 0; summary_ &= summary_ - 1)
       words_[std::countr_zero(summary_)] = 0;
   }
-  // Both of as many rules.
-  RuleSet& operator|=(RuleBits others) {
-    for (unsigned w = 0; w < count_; ++w)
-      if (others.words_[w] != 0) {
-        words_[w] |= others.words_[w];
-        summary_ |= bit(w);
-      }
-    return *this;
+  // Both of as many rules; bit w of `summary`: word w of the others is not 0.
+  void insert_all(RuleBits others, Word summary) {
+    summary_ |= summary;
+    for (; summary != 0; summary &= summary - 1) {
+      const auto w = static_cast<unsigned>(std::countr_zero(summary));
+      words_[w] |= others.words_[w];
+    }
   }
 
   // Calls take(rule) for each member, in order. Members may come and go on the way: what counts is

@@ -138,9 +138,10 @@ void Triggers::add_woken(std::uint32_t now, RuleSet& rules) const {
   });
 }
 
-void Triggers::settle(std::uint32_t now) {
+void Triggers::settle_active(std::uint32_t now) {
   active_.each([&](unsigned rule) {
     State& state = phases_[rule];
+    if (state.cooling == 0 && !state.waiting) return;
     for (const Side side : {Side::otherwise, Side::then})
       if (cools(rule, side) && reached(until(rule, side), now))
         state.cooling = static_cast<std::uint8_t>(state.cooling & ~mask_of(side)) & 3U;
@@ -197,7 +198,10 @@ void Triggers::won(unsigned rule, Side side, std::uint32_t now) {
 void Triggers::lost(unsigned rule, bool to_itself, std::uint32_t now) {
   State& state = phases_[rule];
   state.told = true;
-  if (chooses(rule)) return active_.insert(rule);
+  if (chooses(rule)) {
+    active_.insert(rule);
+    return note_active(rule);
+  }
   const std::uint32_t waiting = milliseconds_of(modifiers(rule).waiting);
   const bool triggered = judgement(rule).trigger != Trigger::none;
   if (!triggered || waiting == 0 || to_itself || is_while(rule)) return;

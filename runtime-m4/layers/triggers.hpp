@@ -43,11 +43,12 @@ public:
   void draw_period(unsigned rule, vm::Value thousandths, std::uint32_t now);
   // A turn begins: nothing follows yet.
   void begin_turn(RuleRange rules) { noted().clear_around(rules); }
+  void begin_sole_turn(unsigned rule) { noted().erase(rule); }
   // It was evaluated: its condition may change at `wake` (kNever: not by itself); it had an event, which is over in
   // the next evaluation.
   void note_past(unsigned rule, std::uint32_t wake, bool event);
   // Something follows from its evaluation.
-  void note(unsigned rule) { noted().insert(rule); }
+  [[gnu::always_inline]] void note(unsigned rule) { noted().insert(rule); }
   void note_zero_divide(unsigned rule) { judgement(rule).zero_divide = true; }
 
   // --- for the step thread ---
@@ -55,6 +56,10 @@ public:
   // of them.
   void keep_concerned(RuleSet& evaluated, RuleRange rules) const {
     evaluated.keep_in(rules, noted(), eventful_.bits(), active_.bits(), sleeping_.bits());
+  }
+  // … and would this one?
+  [[nodiscard]] bool follows(unsigned rule) const {
+    return noted().has(rule) || active_.has(rule) || eventful_.has(rule) || sleeping_.has(rule);
   }
   // It was evaluated, and its behaviour is not at work any more.
   void collect(unsigned rule);
@@ -68,7 +73,9 @@ public:
   // Adds those whose time has come.
   void add_woken(std::uint32_t now, RuleSet& rules) const;
   // Ends cooldowns and waits that are over.
-  void settle(std::uint32_t now);
+  void settle(std::uint32_t now) {
+    if (!active_.empty()) settle_active(now);
+  }
   bool take_zero_divide(unsigned rule);
   // A WHILE whose condition does not hold.
   bool is_over(unsigned rule) const;
@@ -81,7 +88,7 @@ public:
   // Its behaviour was stopped: it never triggers again.
   [[gnu::cold]] void retire(unsigned rule);
   // Its condition holds, and it is a WHILE: after a round there is another.
-  bool goes_round(unsigned rule) const {
+  [[gnu::always_inline]] bool goes_round(unsigned rule) const {
     return is_while(rule) && judgement(rule).truth == Truth::yes;
   }
   // When one that wants to run has cooled down; kNever for one that does not.
@@ -103,6 +110,9 @@ public:
   template <class Take>
   void each_wanting(RuleRange rules, Take take) const {
     active_.each_in_either(noted(), rules, take);
+  }
+  [[nodiscard]] bool may_want(unsigned rule) const {
+    return active_.has(rule) || noted().has(rule);
   }
   bool has_triggered(unsigned rule) const { return judgement(rule).trigger != Trigger::none; }
   // What it wants to run, given whether it runs now. False: nothing.
@@ -129,11 +139,14 @@ private:
   bool chooses(unsigned rule) const { return image_->rules[rule].kind == vm::RuleKind::when_else; }
   // Of a WHEN/ELSE: the chosen side was not the last to run.
   bool is_unsettled(unsigned rule, Side& side) const;
-  bool is_while(unsigned rule) const { return image_->rules[rule].kind == vm::RuleKind::while_; }
+  [[gnu::always_inline]] bool is_while(unsigned rule) const {
+    return image_->rules[rule].kind == vm::RuleKind::while_;
+  }
   const vm::Modifiers& modifiers(unsigned rule) const;
   Judgement& judgement(unsigned rule) const { return workspace_.judgements[rule]; }
   std::uint32_t due(unsigned rule) const { return workspace_.due[rule]; }
   void note_active(unsigned rule);
+  void settle_active(std::uint32_t now);
   void find_first_to_wake();
   void wake_first(unsigned rule) {
     first_to_wake_ = static_cast<std::uint16_t>(rule);

@@ -29,6 +29,9 @@ static_assert(sizeof(Judgement) == 1);
 // What came of a response that was run. All zero at first, so that it takes no flash. No bools: one
 // that somebody has set to 2 is undefined behaviour where it is read.
 struct Result {
+  static constexpr std::uint8_t kBegan = 1;
+  static constexpr std::uint8_t kWentOn = 2;  // in its behaviour's turn
+
   const vm::Word* next = nullptr;  // vm::Progress
   std::uint32_t wake = 0;
   vm::Pause pause = vm::Pause::ended;
@@ -37,7 +40,7 @@ struct Result {
   std::uint32_t assigned = 0;  // vm::Machine
   std::uint32_t shifted = 0;
   std::uint16_t words = 0;  // of the output
-  std::uint8_t there = 0;   // there is a result, since the behaviour was released
+  std::uint8_t there = 0;   // there is a result, since the behaviour was released: kBegan, kWentOn
   std::uint8_t side = 0;    // … of which side of the rule
 };
 

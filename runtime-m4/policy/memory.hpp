@@ -62,6 +62,12 @@ inline constexpr unsigned kSides = 2;  // of a rule: DO and ELSE
 constexpr std::uint32_t set_words(std::uint32_t rules) {
   return (rules + 31) / 32;
 }
+// … and of one by input, of which there are many: where it has several words, one more stands before
+// them, which says which of them are not 0.
+constexpr std::uint32_t reader_words(std::uint32_t rules) {
+  const std::uint32_t words = set_words(rules);
+  return words > 1 ? 1 + words : words;
+}
 
 // What the masks and sets of the layers can hold: bits of a word (layers/messages.hpp), and a summary
 // of so many words (layers/rule_set.hpp).
@@ -183,7 +189,7 @@ inline void count(const vm::Image& image, Counts& counts) {
   count_sensors(image, counts);
   count_variables(image, counts);
   count_behaviors(image, counts);
-  counts[Count::reader_words] = counts[Count::inputs] * counts[Count::set_words];
+  counts[Count::reader_words] = counts[Count::inputs] * reader_words(counts[Count::rules]);
   counts[Count::actuators] = static_cast<std::uint32_t>(image.actuators.size());
   counts[Count::commands] = std::min(kMaxQueued * counts[Count::actuators],
                                      kCommands + kCommandsEach * counts[Count::actuators]);

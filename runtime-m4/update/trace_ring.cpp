@@ -41,6 +41,8 @@ void TraceRing::emit(const link::Event& event) {
   const std::size_t values = std::min<std::size_t>(event.value_count, link::kMaxEventValues);
   const auto lock = kernel_.lock();
   if (!make_room(kEventHead + values)) return;
+  std::size_t end = put_;  // kept in a register, which a member is not while words are written
+  const auto put = [this, &end](Word word) { ring_[end++ % kWords] = word; };
   put(head(link::MessageType::event, values, event.subject));
   put(static_cast<Word>(event.kind) | Word{event.object} << 16);
   put(event.step);
@@ -48,6 +50,7 @@ void TraceRing::emit(const link::Event& event) {
   put(static_cast<Word>(event.time_us >> 32));
   for (std::size_t v = 0; v < values; ++v)
     put(static_cast<Word>(event.values[v]));
+  put_ = end;
 }
 
 void TraceRing::log(std::string_view line) {

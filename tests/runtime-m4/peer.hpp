@@ -9,12 +9,15 @@ namespace robosync {
 
 struct RuntimePeer {
   // In the next step all rules of a behaviour are evaluated when one of them is concerned, as in
-  // its first step; which must make no difference. SAFETY rules are looked at by the safety thread,
+  // its first step, and no turn is taken by one rule alone; which must make no difference. SAFETY rules are looked at by the safety thread,
   // never by a step.
   static void concern_all(Runtime& runtime) {
     auto all = ~layers::BehaviorMask{0};
     if (runtime.image().has_safety()) all &= ~(layers::BehaviorMask{1} << vm::kSafetyBehavior);
-    runtime.shared_.processing.untouched_ = all;
+    layers::ProcessingLayer& processing = runtime.shared_.processing;
+    processing.untouched_ = all;
+    processing.untouched_inputs_ = ~layers::InputMask{0};
+    processing.takes_whole_turns_ = true;
   }
 
   // As a behaviour could write it: the workspace is open to its thread.

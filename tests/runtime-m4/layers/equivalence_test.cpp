@@ -1,5 +1,6 @@
 // No program can tell whether a step evaluates all rules of the behaviours it stirs or only those
-// it concerns: drawn programs with drawn readings, run both ways.
+// it concerns, nor whether the turn of a behaviour of which it concerns a single rule takes the short way:
+// drawn programs with drawn readings, run both ways.
 #include <algorithm>
 #include <memory>
 #include <optional>

@@ -63,6 +63,7 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
   OwnedRuleSet other_words(kRules);
   std::vector<RuleSet::Word> bits(robosync::policy::set_words(kRules));
   RuleBits other_bits(bits.data());
+  RuleSet::Word other_summary = 0;
   RuleSet& set = *words;
   RuleSet& other = *other_words;
   std::set<unsigned> model;
@@ -84,10 +85,11 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
       case 5:
         other.put(rule, true);
         other_bits.insert(rule);
+        other_summary |= RuleSet::Word{1} << rule / RuleBits::kBits;
         other_model.insert(rule);
         break;
       case 6:
-        set |= other_bits;
+        set.insert_all(other_bits, other_summary);
         model.insert(other_model.begin(), other_model.end());
         break;
       default:
