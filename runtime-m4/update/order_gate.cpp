@@ -78,6 +78,7 @@ bool OrderGate::takes(link::Frame& frame) {
   const auto payload = frame.payload.subspan(sizeof order);
   if (!verify(order, payload)) return false;
   next_ = order.number + 1;
+  granted_.open = false;
   frame.type = type();
   frame.payload = payload;
   return frame.type != MessageType::begin || grant(frame);

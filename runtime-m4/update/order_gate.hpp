@@ -2,7 +2,7 @@
 // signed (link/order.hpp), and each counts once. `stop` does not come here: it is for everybody.
 //
 // An upload is ordered by `begin`, which names the image by the hash of its bytes: what follows needs no signature, since
-// nothing else can be activated than an image of that hash, once and within kGrant.
+// nothing else can be activated than an image of that hash, once, within kGrant and before any other order or a stop.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ class OrderGate {
 public:
   // A board that was switched on, not reset, takes a key for so long: who can do that is beside it.
   static constexpr kernel::Duration kWindow = kernel::milliseconds(60'000);
-  static constexpr kernel::Duration kGrant = kernel::milliseconds(120'000);
+  static constexpr kernel::Duration kGrant = kernel::milliseconds(300'000);
   // After a bad signature none is looked at for so long; after each further one for twice as long, up to kMostPause.
   static constexpr kernel::Duration kPause = kernel::milliseconds(250);
   static constexpr kernel::Duration kMostPause = kernel::milliseconds(8'000);
@@ -39,7 +39,10 @@ public:
   // May the image that was received be activated so? To be asked once for each.
   [[nodiscard]] bool grants(std::span<const std::byte> image, bool fresh);
   // What was signed before this does not count any more: a stop.
-  void outdate() { ++next_; }
+  void outdate() {
+    ++next_;
+    granted_.open = false;
+  }
 
   void pair(const link::Pair& owner);
   void unpair();

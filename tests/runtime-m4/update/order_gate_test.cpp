@@ -324,6 +324,12 @@ TEST_CASE("an upload is let through once, of the image that was signed, as it wa
   CHECK_FALSE(at.board.gate.grants(image, true));
   granted(true);
   CHECK(at.board.gate.grants(image, true));
+  granted(false);
+  at.board.gate.outdate();  // a stop
+  CHECK_FALSE(at.board.gate.grants(image, false));
+  granted(false);
+  REQUIRE(at.takes(clear_order(at.board, *at.keys.owner)));
+  CHECK_FALSE(at.board.gate.grants(image, false));
   // The same `begin` again goes on with it, and no other.
   granted(false);
   CHECK(at.board.takes(MessageType::begin, link::wire_bytes(begin)) == MessageType::begin);
