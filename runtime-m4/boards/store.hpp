@@ -12,15 +12,21 @@ public:
   enum class Outcome : std::uint8_t {
     done,
     taken,  // somebody with a higher rank needed the bus: nothing is certain to have happened; at once again
-    busy  // it does not answer: it is writing, which takes a few milliseconds, or it is not there
+    busy,  // it does not answer: it is writing, which takes a few milliseconds, or it is not there
+    goes_on,  // the next part of it lets all others wait, for kStall ticks at most: again where nobody is due before
+    spent  // it cannot be written there, or does not hold it
   };
   // Most bytes of one read or write: so few that a thread of the lowest rank gets them done between others.
   static constexpr std::size_t kPiece = 16;
+  static constexpr std::uint32_t kStall = 3;
 
   virtual std::uint32_t size() const = 0;  // bytes
   // Bytes that a cut of the power while one of them is written may spoil, on a boundary of that many; a
   // multiple of kPiece.
   virtual std::uint32_t page() const = 0;
+  // Flash: a write to the beginning of a page erases it, and what stands behind that is written once, from the front on. Then a
+  // cut of the power spoils a page that is being erased, or else only the piece that is being written.
+  virtual bool is_flash() const { return false; }
 
   // Both: at most kPiece bytes, on a boundary of kPiece, inside of size().  [the thread with the lowest rank]
   // Nobody may measure with sensors meanwhile.

@@ -92,12 +92,17 @@ bool Keeper::work() {
   due_ = kernel::kForever;
   if (fault_ && on_trial() && (doing_ == Doing::nothing || doing_ == Doing::writing))
     return give_up_trial();
+  if (waits_for_a_gap()) return false;
   const bool of_numbers = doing_ == Doing::opening_numbers || doing_ == Doing::writing_numbers;
   switch (of_numbers ? number_store_.work() : store_.work()) {
     case Work::some:
       return true;
     case Work::waits:
       due_ = kernel_.now() + kernel::kTick;
+      return false;
+    case Work::rests:
+      stalls_ = true;
+      due_ = kernel_.now() + kRest;
       return false;
     case Work::ended:
       ended();
@@ -106,6 +111,18 @@ bool Keeper::work() {
       break;
   }
   return judge_trial() || look_at_numbers() || start_after_all();
+}
+
+// Nobody who is to be on time, the safety thread above all, shall find the processor standing still: a piece that lets
+// it stand begins where no thread is due before it is over. What is left of the tick that has begun does not count.
+bool Keeper::waits_for_a_gap() {
+  if (!stalls_) return false;
+  if (kernel_.ticks_to_next_work() <= boards::Store::kStall) {
+    due_ = kernel_.now() + kernel::kTick;
+    return true;
+  }
+  stalls_ = false;
+  return false;
 }
 
 void Keeper::ended() {

@@ -27,6 +27,8 @@ public:
   static constexpr kernel::Duration kLook = kernel::milliseconds(1000);  // at the numbers
   // Where no program runs and no host has sent anything for so long, the kept one begins.
   static constexpr kernel::Duration kSilence = kernel::milliseconds(3000);
+  // Between two parts of an erasing, while each of which the processor may stand still: so much for all others, at least.
+  static constexpr kernel::Duration kRest = kernel::milliseconds(10);
 
   // A transfer to `receiver` that has not come to its end is given up when a program is read from the store:
   // both need the room.
@@ -88,6 +90,7 @@ private:
   void write_running();
   void read(Doing why);
   void read_the_other(Doing instead_of);
+  bool waits_for_a_gap();
   void ended();
   void start_what_was_read();
   bool judge_trial();
@@ -108,6 +111,7 @@ private:
   kernel::Time heard_ = 0;      // from the host
   std::uint32_t given_up_ = 0;  // CRC of the last program that did not stand its trial
   std::atomic<bool> fault_ = false;
+  bool stalls_ = false;  // the next piece does
 
   KeptNumbers numbers_;
   kernel::Time next_look_ = 0;

@@ -29,14 +29,14 @@ void NumberStore::read_head() {
 void NumberStore::write(std::span<const layers::KeptNumber> numbers) {
   if (store_ == nullptr) return;
   next_ = {.magic = Record::kMagic,
-           .number = record_.number + 1,
+           .number = record_.number + 1 + skipped_,
            .count = static_cast<std::uint32_t>(std::min<std::size_t>(numbers.size(), vm::kMaxKept)),
            .entries = {},
            .crc32 = 0};
   std::copy_n(numbers.begin(), next_.count, next_.entries.begin());
   next_.crc32 = vm::crc32(before_crc(next_));
   task_ = Task::write;
-  transfer_.write(layout().numbers_at(next_.number % StoreLayout::kRing),
+  transfer_.write(layout().numbers_at(next_.number % layout().ring()),
                   std::as_bytes(std::span(&next_, 1)));
 }
 
@@ -45,10 +45,17 @@ Work NumberStore::work() {
   if (work != Work::ended) return work;
   const Task task = task_;
   task_ = Task::none;
-  if (!transfer_.answered()) return Work::ended;
+  if (!transfer_.answered()) {
+    // Of flash: a cut of the power has spoiled the place. The next write goes to the one behind it.
+    if (task == Task::write) ++skipped_;
+    return Work::ended;
+  }
   if (task == Task::heads) look_at_head();
   if (task == Task::body) look_at_body();
-  if (task == Task::write) record_ = next_;
+  if (task == Task::write) {
+    record_ = next_;
+    skipped_ = 0;
+  }
   return task_ == Task::none ? Work::ended : Work::some;
 }
 
@@ -57,7 +64,7 @@ void NumberStore::look_at_head() {
     best_ = head_;
     best_place_ = place_;
   }
-  if (++place_ < StoreLayout::kRing) return read_head();
+  if (++place_ < layout().ring()) return read_head();
   if (best_.number == 0) return;
   task_ = Task::body;
   transfer_.read(layout().numbers_at(best_place_), std::as_writable_bytes(std::span(&next_, 1)));

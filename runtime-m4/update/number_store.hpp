@@ -55,11 +55,12 @@ private:
   boards::Store* store_;
   StoreTransfer transfer_;
   Task task_ = Task::none;
-  Record record_{};          // the one that counts; number 0: none
-  Record next_{};            // being read or written
-  Head head_{};              // being read
-  std::uint32_t place_ = 0;  // … of which place
-  Head best_{};              // the newest head that was seen
+  Record record_{};            // the one that counts; number 0: none
+  std::uint32_t skipped_ = 0;  // numbers behind it whose places could not be written
+  Record next_{};              // being read or written
+  Head head_{};                // being read
+  std::uint32_t place_ = 0;    // … of which place
+  Head best_{};                // the newest head that was seen
   std::uint32_t best_place_ = 0;
   std::uint32_t below_ = 0;  // newer ones are not whole
 };

@@ -1,6 +1,6 @@
 // What stands where in a board's store: two records and two slots for programs (program_store.hpp), two records of the owner's
 // key (key_store.hpp), and a ring of records of KEPT numbers (number_store.hpp). Each begins on a page of its own, so that a cut
-// of the power spoils no other.
+// of the power spoils no other; but of flash, where it does not, a page of the ring holds as many records as go in.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,8 @@ class StoreLayout {
 public:
   static constexpr std::uint32_t kRecords = 2;
   static constexpr std::uint32_t kSlots = 2;
-  // A store bears so many writes of a page. With each second a new number, 16 times a million seconds are half a year.
+  // A store bears so many writes of a page. With each second a new number, 16 times a million seconds are half a year. Of
+  // flash, whose pages bear ten thousand, the ring is a third: some hundred records, and two months.
   static constexpr std::uint32_t kRing = 16;
 
   static constexpr std::uint32_t kNumbersBytes = 144;  // of a record in the ring
@@ -23,7 +24,9 @@ public:
   constexpr explicit StoreLayout(const boards::Store& store)
       : page_(store.page()),
         numbers_(pages(kNumbersBytes)),
-        first_number_(store.size() / page_ * page_ - kRing * numbers_),
+        together_(store.is_flash() ? numbers_ / kNumbersBytes : 1),
+        ring_(store.is_flash() ? store.size() / 3 / numbers_ : kRing),
+        first_number_(store.size() / page_ * page_ - ring_ * numbers_),
         first_key_(first_number_ - kKeys * pages(kKeyBytes)) {}
 
   std::uint32_t record_at(std::uint32_t record) const { return record * page_; }
@@ -32,14 +35,21 @@ public:
   std::uint32_t key_at(std::uint32_t record) const {
     return first_key_ + record * pages(kKeyBytes);
   }
-  std::uint32_t numbers_at(std::uint32_t place) const { return first_number_ + place * numbers_; }
+  std::uint32_t ring() const { return ring_ * together_; }  // places
+  std::uint32_t numbers_at(std::uint32_t place) const {
+    return first_number_ + place / together_ * numbers_ + place % together_ * kNumbersBytes;
+  }
 
 private:
   constexpr std::uint32_t pages(std::uint32_t bytes) const {
     return (bytes + page_ - 1) / page_ * page_;
   }
 
-  std::uint32_t page_, numbers_, first_number_, first_key_;
+  std::uint32_t page_;
+  std::uint32_t numbers_;   // bytes of whole pages
+  std::uint32_t together_;  // records in them
+  std::uint32_t ring_;      // times numbers_
+  std::uint32_t first_number_, first_key_;
 };
 
 }  // namespace robosync::update

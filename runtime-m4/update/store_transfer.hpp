@@ -14,6 +14,7 @@ enum class Work : std::uint8_t {
   none,   // there is nothing to do
   some,   // a piece is done; there may be more
   waits,  // as `some`, but it makes no sense before a millisecond is over
+  rests,  // as `some`, but it lets everybody else wait: Store::Outcome::goes_on
   ended   // the last piece is done
 };
 
@@ -37,6 +38,10 @@ public:
         break;
       case boards::Store::Outcome::busy:
         return ++unanswered_ < kPatience ? Work::waits : end(false);
+      case boards::Store::Outcome::goes_on:
+        return Work::rests;
+      case boards::Store::Outcome::spent:
+        return end(false);
       case boards::Store::Outcome::done:
         unanswered_ = 0;
         done_ += std::min(boards::Store::kPiece, length() - done_);

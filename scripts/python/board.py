@@ -26,8 +26,11 @@ FIRMWARE = BUILT / "robosync.elf"
 MACHINE = BUILT / "machine"
 # What is on its buses in QEMU, and the first QEMU that has the board.
 DEVICES = {REFERENCE: ["-device", "max34451,id=touch,address=0x70"]}
-# Its store: an EEPROM whose bytes stand in a file, as many as its profile says.
-STORES = {REFERENCE: "at24c-eeprom,address=0x50,rom-size={size},drive=store"}
+# Its store, as many bytes as its profile says, which stand in a file: an EEPROM, or a piece of the flash, from that address on.
+# QEMU has no file for the flash: it is read from there at the start, and saved at the end.
+EEPROMS = {REFERENCE: "at24c-eeprom,address=0x50,rom-size={size},drive=store"}
+FLASHES = {"microbit-v2": 0x8_0000 - 221_184}
+BLANK = b"\xff"
 HAVE_WATCHDOG = {REFERENCE}  # in QEMU
 SINCE = {"b-l475e-iot01a": (9, 2), "microbit-v2": (9, 2)}
 UNPACKED = ROOT / "build/qemu/usr"  # by scripts/emulator
@@ -118,18 +121,25 @@ class Qmp:
 
 def with_store(path):
     """How QEMU is told of the board's store."""
-    if NAME not in STORES:
+    if NAME not in EEPROMS and NAME not in FLASHES:
         raise BoardError(f"{NAME} has no store in QEMU")
-    size = json.loads((ROOT / "stdlib/boards" / f"{NAME}.json").read_text("utf-8"))["store"]
+    size = store_bytes()
     try:
         with open(path, "ab") as file:
             if file.tell() not in (0, size):
                 raise BoardError(f"{path} is something else: a store has {size} bytes, this file {file.tell()}")
-            file.truncate(size)
+            if file.tell() == 0:
+                file.write(BLANK * size)
     except OSError as error:
         raise BoardError(f"{path}: {error.strerror}") from error
-    return ["-drive", f"if=none,format=raw,file={str(path).replace(',', ',,')},id=store",
-            "-device", STORES[NAME].format(size=size)]
+    name = str(path).replace(",", ",,")
+    if NAME in FLASHES:
+        return ["-device", f"loader,file={name},addr={FLASHES[NAME]:#x},force-raw=on"]
+    return ["-drive", f"if=none,format=raw,file={name},id=store", "-device", EEPROMS[NAME].format(size=size)]
+
+
+def store_bytes():
+    return json.loads((ROOT / "stdlib/boards" / f"{NAME}.json").read_text("utf-8"))["store"]
 
 
 class Board:
@@ -145,6 +155,7 @@ class Board:
         self._pty = pty
         self._tcp = NAME in NEVER_WAITS and not pty and not serial_path
         self._log = Path(self._folder.name) / "qemu.log"
+        self._flash_file = store if NAME in FLASHES else None
         self._process = self._start(elf, icount, [*extra, *(with_store(store) if store else [])])
         self.qmp = None
         try:
@@ -211,11 +222,21 @@ class Board:
 
     def cut_power(self):
         """At whatever it is."""
+        self._save_flash()
         self._process.kill()
         self._process.wait()
         self.stop()
 
+    def _save_flash(self):
+        if self._flash_file is None or self.qmp is None:
+            return
+        self.qmp.command("stop")
+        self.qmp.command("memsave", val=FLASHES[NAME], size=store_bytes(), filename=str(Path(self._flash_file).resolve()))
+        self._flash_file = None
+
     def stop(self):
+        if self.qmp and self._process.poll() is None:
+            self._save_flash()
         if self.qmp:
             self.qmp.close()
             self.qmp = None

@@ -2,12 +2,14 @@
 
 usage: microbit_emulator.py QEMU TARGET
 
-TARGET becomes a copy of the program QEMU (qemu-system-arm, x86-64) in which two numbers of that machine are others, both as
-long as before: its core is a Cortex-M4 instead of a Cortex-M0, and runs with 64 MHz instead of 16. How much memory it has is a
-property, and set at its start (board.py). QEMU itself stays as it is. Each place must be found exactly once; else nothing is
-written.
+TARGET becomes a copy of the program QEMU (qemu-system-arm, x86-64) in which some numbers of that machine are others, all as
+long as before: its core is a Cortex-M4 instead of a Cortex-M0, and runs with 64 MHz instead of 16; a page of its flash has 4 KB
+instead of 1, and is erased, completely and at once, also by the register that the nRF52833 has for erasing it in parts. How much
+memory it has is a property, and set at its start (board.py). QEMU itself stays as it is. Each place must be found exactly once;
+else nothing is written.
 """
 
+import re
 import struct
 import sys
 from pathlib import Path
@@ -21,6 +23,16 @@ MEMORY = b"\0nrf51.sram\0"
 NEAR = 1024
 LOAD_ADDRESS = b"\x48\x8d"  # `lea offset(%rip), register`, and a byte that says which
 LOAD = 1  # a segment
+# What is written to the flash's controller: `lea -0x504(%rbp), %rax; cmp $0x10, %rax; ja …`, and a jump by a table of what the
+# registers do from 0x504 on, in steps of one byte.
+FIRST_REGISTER = 0x504
+REGISTERS = re.compile(rb"\x48\x8d\x85\xfc\xfa\xff\xff\x48\x83\xf8(\x10)\x77.\x48\x8d\x15(....)\x48\x63\x04\x82\x48\x01\xd0\xff\xe0", re.S)
+ERASE, ERASE_PARTLY = 0x508, 0x518
+# … and in it, from where a page is erased on: the page that an address is in, how many bytes it has, and its last eight.
+PAGE, NEW_PAGE = 1024, 4096
+OF_A_PAGE = ((rb"\x48\x81\xe3", lambda page: -page), (rb"\x2d", lambda page: page), (rb"\xba", lambda page: page),
+             (rb"\x48\xc7\x80", lambda page: page - 8), (rb"\x8d\x88", lambda page: page))
+IT_IS_ERASED_IN = 128
 
 
 class Unknown(ValueError):
@@ -55,6 +67,16 @@ def address_of(program, at):
     raise Unknown("a place of the file is not loaded")
 
 
+def offset_of(program, address):
+    """Where in the file that is which is at that address when the program runs."""
+    headers, size, count = (*struct.unpack_from("<Q", program, 32), *struct.unpack_from("<HH", program, 54))
+    for i in range(count):
+        kind, _, offset, begin, _, length = struct.unpack_from("<IIQQQQ", program, headers + i * size)
+        if kind == LOAD and begin <= address < begin + length:
+            return address - begin + offset
+    raise Unknown("an address is not loaded")
+
+
 def loads_address(program, at, wanted):
     """Some instruction behind `at` does."""
     for place in places(program[at:at + NEAR], LOAD_ADDRESS):
@@ -63,6 +85,24 @@ def loads_address(program, at, wanted):
         if address_of(program, end) + offset == wanted:
             return True
     return False
+
+
+def patch_flash(program, changed):
+    found = only(REGISTERS.finditer(program), "the flash's controller")
+    table = address_of(program, found.end(2)) + struct.unpack("<i", found[2])[0]
+
+    def entry(register):
+        return offset_of(program, table) + 4 * (register - FIRST_REGISTER)
+
+    # Behind the table stands, and is overwritten, the name by which QEMU would complain about another register.
+    erase = program[entry(ERASE):entry(ERASE) + 4]
+    changed[entry(ERASE_PARTLY):entry(ERASE_PARTLY) + 4] = erase
+    changed[found.start(1)] = ERASE_PARTLY - FIRST_REGISTER
+    begin = offset_of(program, table + struct.unpack("<i", erase)[0])
+    for before, number in OF_A_PAGE:
+        wanted = before + re.escape(struct.pack("<i", number(PAGE)))
+        place = only(re.finditer(wanted, program[begin:begin + IT_IS_ERASED_IN]), "the size of a page")
+        changed[begin + place.end() - 4:begin + place.end()] = struct.pack("<i", number(NEW_PAGE))
 
 
 def patched(program):
@@ -74,6 +114,7 @@ def patched(program):
     changed = bytearray(program)
     changed[core:core + len(CORE)] = NEW_CORE
     changed[clock:clock + len(load_clock(HZ))] = load_clock(NEW_HZ)
+    patch_flash(program, changed)
     return bytes(changed)
 
 

@@ -39,6 +39,10 @@ class Debugger:
         self._ask("D")
         self._socket.close()
 
+    def leave(self):
+        """The board is no more."""
+        self._socket.close()
+
     def run_to(self, address, meanwhile):
         """Lets the board run until it comes to `address`; meanwhile() sees to it that it does."""
         self._expect_ok(f"Z0,{address:x},2")

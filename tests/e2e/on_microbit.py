@@ -2,7 +2,9 @@
 down. Run with ROBOSYNC_BOARD=microbit-v2."""
 
 import json
+import random
 import re
+import subprocess
 import sys
 import threading
 import time
@@ -11,7 +13,8 @@ from pathlib import Path
 
 import pins
 import rsc
-from debugger import PC, DebuggedTest
+import test_store
+from debugger import PC, DebuggedTest, Debugger
 from support import LineReader
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
@@ -100,6 +103,51 @@ BEHAVIOR interrupts PRIORITY 90
   END
 END
 """
+
+ERASES = "robosync::boards::microbit::(anonymous namespace)::erase_part("
+PROGRAMS = "robosync::boards::microbit::Flash::program("
+RUNS_IN_RAM = 0x2000_0000
+
+
+class KeptInFlash(test_store.Numbers):
+    """The numbers, as on the reference board; and programs, when the power goes at a part of an erasing, or at a word."""
+
+    def cut(self, image, place, times):
+        """While the image is written, when the firmware comes there for the so-many-th time."""
+        gdb = self.folder / f"gdb{times}"
+        self.power_cycle("-gdb", f"unix:{gdb},server=on,wait=off")
+        self.await_kept("kept")
+        uploader = threading.Thread(target=rsc.call, args=("upload", image, "--port", self.board.port))
+        debugger = Debugger(gdb)
+        debugger.run_to(place, uploader.start)
+        debugger.step()
+        debugger.register_at(place, PC, times)
+        self.board.cut_power()
+        debugger.leave()
+        uploader.join()
+        self.switch_on()
+        self.await_kept("kept")
+
+    def test_power_that_goes_at_any_write_or_erasing_leaves_a_kept_program(self):
+        other = dict(zip(reversed([*map(self.keep, images := self.images())]), images))  # by what runs
+        places = [next(at for name, at in symbols(FIRMWARE).items() if name.startswith(what)) for what in (ERASES, PROGRAMS)]
+        draw = random.Random(1)
+        for place in 2 * places:
+            # Of the image, or of the record behind it: two pages in 45 parts, and some words.
+            with self.subTest(place=place, times=(times := draw.randrange(85))):
+                self.cut(other[self.running()], place, times)
+                self.assertIn(self.running(), other)
+
+    def test_what_erases_the_flash_calls_nothing_that_is_there(self):
+        place = next(at for name, at in symbols(FIRMWARE).items() if name.startswith(ERASES))
+        self.assertGreater(place, RUNS_IN_RAM)
+        said = subprocess.run(["arm-none-eabi-objdump", "-d", f"--start-address={place & ~1:#x}", FIRMWARE, "-j", ".data"], check=True,
+                              text=True, stdout=subprocess.PIPE).stdout
+        code = said.split("\n\n")[-1].splitlines()
+        jumps = [int(at, 16) for at in re.findall(r"\sb\w*(?:\.[nw])?\s+(?:r\d+, )?([0-9a-f]{7,8}) <", "\n".join(code))]
+        self.assertGreater(len(jumps), 2)
+        self.assertEqual([hex(at) for at in jumps if at < RUNS_IN_RAM], [])
+        self.assertNotIn("blx", "\n".join(code))
 
 
 class OnMicrobit(DebuggedTest):

@@ -170,7 +170,9 @@ class Numbers(Switched):
         return [json.loads(line)["text"] for line in reader.lines if '"log"' in line]
 
     def test_kept_numbers_outlast_the_power(self):
-        (self.folder / "robot.json").write_text(COUNTING_CONFIG)
+        config = self.folder / "robot.json"
+        config.write_text(COUNTING_CONFIG)
+        self.for_board(config)
         program = self.folder / "count.rsl"
         program.write_text(COUNTING)
         self.assertEqual(rsc.call("check", program).stderr, "")

@@ -43,6 +43,27 @@ namespace flash {
 inline constexpr Register kAccess{0x4002'2000};
 inline constexpr std::uint32_t kFourWaits = 4;  // what 80 MHz need
 inline constexpr std::uint32_t kPrefetchAndCaches = 0b111U << 8;
+inline constexpr std::uint32_t kDataCache = 1U << 10;
+inline constexpr std::uint32_t kEmptyDataCache = 1U << 12;
+inline constexpr Register kKey{0x4002'2008};  // both, one after the other, unlock kControl
+inline constexpr std::uint32_t kFirstKey = 0x4567'0123;
+inline constexpr std::uint32_t kSecondKey = 0xCDEF'89AB;
+inline constexpr Register kStatus{0x4002'2010};
+inline constexpr std::uint32_t kBusy = 1U << 16;
+inline constexpr std::uint32_t kErrors = 0xC3FA;  // 1 forgets; nothing is written before that
+inline constexpr Register kControl{0x4002'2014};
+inline constexpr std::uint32_t kProgram = 1U << 0;
+inline constexpr std::uint32_t kErasePage = 1U << 1;
+constexpr std::uint32_t page_of_bank_2(std::uint32_t page) {
+  return page << 3 | 1U << 11;
+}
+inline constexpr std::uint32_t kStart = 1U << 16;
+inline constexpr std::uint32_t kLock = 1U << 31;
+inline constexpr Register kDamage{0x4002'2018};
+inline constexpr std::uint32_t kInBank2 = 1U << 19;
+inline constexpr std::uint32_t kDamaged = 1U << 31;  // more than can be corrected: NMI; 1 forgets
+inline constexpr std::uint32_t kBank2 =
+    0x0808'0000;  // its half a megabyte; the firmware is in the other one
 }  // namespace flash
 
 struct Port {  // of pins

@@ -22,7 +22,7 @@ robosync_variant(robosync_board asserted ROBOSYNC_ASSERTIONS)
 target_link_libraries(robosync_board_asserted PUBLIC robosync_runtime_asserted)
 foreach(board robosync_board robosync_board_asserted)
   target_link_options(${board} INTERFACE -L${board_common} -T${board_script}
-    -Wl,--defsym=arena_begin=${arena_begin},--defsym=arena_bytes=${arena_bytes})
+    -Wl,--defsym=arena_begin=${arena_begin},--defsym=arena_bytes=${arena_bytes},--defsym=store_bytes=${store_bytes})
   set_property(TARGET ${board} PROPERTY INTERFACE_LINK_DEPENDS ${board_script} ${board_common}/firmware.ld)
 endforeach()
 
@@ -37,7 +37,7 @@ function(robosync_elf target name)
   target_link_libraries(${target} PRIVATE robosync_board${variant} robosync_runtime${variant})
   target_link_options(${target} PRIVATE
     -flto -Os -nostartfiles --specs=nano.specs -Wl,--gc-sections -Wl,--print-memory-usage
-    -Wl,--fatal-warnings -Wl,-Map=${PROJECT_BINARY_DIR}/${name}.map)
+    -Wl,--fatal-warnings -Wl,--no-warn-rwx-segments -Wl,-Map=${PROJECT_BINARY_DIR}/${name}.map)
   set_target_properties(${target} PROPERTIES
     LINKER_LANGUAGE C OUTPUT_NAME ${name} SUFFIX .elf RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 endfunction()

@@ -120,6 +120,8 @@ void Uart0_Handler() {
   using robosync::boards::microbit::Uart0;
   auto& line = robosync::boards::microbit::board.line();
   if (Uart0::has_received()) line.on_receive();
+  if (Uart0::holds())
+    robosync::port::core::pend_interrupt(robosync::boards::microbit::uart::kInterrupt);
   if (Uart0::wants_to_send() && Uart0::can_send()) line.on_transmit();
 }
 

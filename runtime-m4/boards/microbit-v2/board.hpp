@@ -8,7 +8,9 @@
 #include <span>
 
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/common/flash_store.hpp"
 #include "runtime-m4/boards/common/serial_line.hpp"
+#include "runtime-m4/boards/microbit-v2/flash.hpp"
 #include "runtime-m4/boards/microbit-v2/i2c.hpp"
 #include "runtime-m4/boards/microbit-v2/resets.hpp"
 #include "runtime-m4/boards/microbit-v2/uart.hpp"
@@ -31,6 +33,15 @@ struct Uart0 : Uart {  // for SerialLine
 };
 using Line = SerialLine<Uart0>;
 
+struct OwnFlash : Flash {  // for FlashStore
+  // The line's handler takes what came meanwhile.
+  static Erasing erase(std::uint32_t page, unsigned call) {
+    const Erasing state = Flash::erase(page, call);
+    if (Uart::holds()) port::core::pend_interrupt(uart::kInterrupt);
+    return state;
+  }
+};
+
 class Board final : public boards::Board {
 public:
   // Starts the clock of the core and that of the kernel.
@@ -48,6 +59,7 @@ public:
   bool input(std::uint16_t pin) const override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
+  Store* store() override { return &store_; }
   void show(std::uint32_t picture) override;
   void sound(std::uint32_t hertz) override;
   std::size_t link_write(std::span<const std::byte> bytes) override { return line_.write(bytes); }
@@ -62,6 +74,8 @@ public:
 private:
   ChipReset chip_reset_;
   Line line_;
+  FlashStore<OwnFlash> store_{flash::kBytes - ROBOSYNC_STORE_BYTES,
+                              ROBOSYNC_STORE_BYTES};  // its end
   bool asks_ahead_ = false;
   // 0: of the edge connector, pins 19 and 20; 1: of what is on the board.
   std::array<I2c, 2> i2c_{I2c(kTwim1, {.clock = {0, 26}, .data = {1, 0}}),

@@ -35,6 +35,15 @@ inline constexpr std::uint32_t kLockup = 1U << 3;
 }  // namespace power
 
 namespace flash {
+inline constexpr std::uint32_t kBytes = 512 * 1024;  // from 0 on
+inline constexpr Register kReady{0x4001'E400};       // with what was begun last
+inline constexpr std::uint32_t kIsReady = 1U << 0;
+inline constexpr Register kConfiguration{0x4001'E504};
+inline constexpr std::uint32_t kReadOnly = 0;
+inline constexpr std::uint32_t kMayWrite = 1;
+inline constexpr std::uint32_t kMayErase = 2;
+inline constexpr Register kErasePartially{0x4001'E518};  // the page at that address, for kEraseMs
+inline constexpr Register kEraseMs{0x4001'E51C};
 inline constexpr Register kInstructionCache{0x4001'E540};
 inline constexpr std::uint32_t kOn = 1;
 }  // namespace flash

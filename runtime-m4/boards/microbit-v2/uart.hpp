@@ -1,6 +1,7 @@
 // UART0, which the interface chip of the board makes a serial port of USB: the link's serial line.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -42,10 +43,23 @@ public:
   }
 
   // Behind the byte that is read up to five more wait; the next one says so anew.
-  static bool has_received() { return uart::kReceived.read() != 0; }
-  static std::byte receive() {
-    forget(uart::kReceived);
-    return static_cast<std::byte>(uart::kReceive.read());
+  static bool has_received() { return holds() || uart::kReceived.read() != 0; }
+  static std::byte receive() { return holds() ? static_cast<std::byte>(held_[taken_++]) : next(); }
+
+  // While interrupts have to wait for longer than six bytes take: puts a byte that has come where receive() finds it. Part
+  // of who calls it, which may not be in the flash.
+  [[gnu::always_inline]] static void hold() {
+    if (uart::kReceived.read() == 0 || count_ == held_.size()) return;
+    uart::kReceived.write(0);
+    held_[count_] = static_cast<std::uint8_t>(uart::kReceive.read());
+    count_ = count_ + 1;
+  }
+  static bool holds() { return taken_ != count_; }
+  // Before the first hold() of several.
+  static void let_go() {
+    if (holds()) return;
+    taken_ = 0;
+    count_ = 0;
   }
 
   static void wants_to_send(bool wants) {
@@ -54,7 +68,15 @@ public:
   static bool wants_to_send() { return uart::kInterruptOn.has(uart::kWhenSent); }
 
 private:
+  static std::byte next() {
+    forget(uart::kReceived);
+    return static_cast<std::byte>(uart::kReceive.read());
+  }
+
   static inline bool sends_ = false;  // a byte is on its way
+  static inline std::array<std::uint8_t, 32> held_{};
+  static inline std::size_t count_ = 0;
+  static inline std::size_t taken_ = 0;  // of them
 };
 
 }  // namespace robosync::boards::microbit

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "runtime-m4/port/cortex-m4/core.hpp"
+
 namespace robosync::port {
 
 #if !defined(__arm__)
@@ -71,6 +73,35 @@ public:
   Alone& operator=(const Alone&) = delete;
 
 private:
+  [[maybe_unused]] std::uint32_t outer_ = 0;
+};
+
+// … and the MPU is off: flash may be written, and what stands in RAM may run.
+class Unprotected {
+public:
+#if defined(__arm__)
+  Unprotected() : outer_(Register{core::kMpuCtrl}.read()) {
+    set(0);
+  }
+  ~Unprotected() {
+    set(outer_);
+  }
+#else
+  Unprotected() = default;
+  ~Unprotected() {}
+#endif
+  Unprotected(const Unprotected&) = delete;
+  Unprotected& operator=(const Unprotected&) = delete;
+
+private:
+#if defined(__arm__)
+  static void set(std::uint32_t control) {
+    Register{core::kMpuCtrl}.write(control);
+    asm volatile("dsb\n\tisb" ::: "memory");
+  }
+#endif
+
+  Alone alone_;
   [[maybe_unused]] std::uint32_t outer_ = 0;
 };
 

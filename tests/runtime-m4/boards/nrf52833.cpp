@@ -2,8 +2,6 @@
 #include "tests/runtime-m4/boards/nrf52833.hpp"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
 namespace robosync::tests {
 namespace {
@@ -14,14 +12,6 @@ constexpr std::uintptr_t kWatchdog = 0x4001'0000, kResetReason = 0x4000'0400,
 constexpr std::uintptr_t kGpio = 0x5000'0000, kNextPort = 0x300;
 constexpr std::uint32_t kPeriodEnds = 1U << 6;
 constexpr std::uint32_t kDisconnected = 1U << 31;
-
-[[noreturn]] void no_register(std::uintptr_t address) {
-  throw std::runtime_error("the model has no register at " + std::to_string(address));
-}
-
-void demand(bool holds, const char* what) {
-  if (!holds) throw std::runtime_error(what);
-}
 
 bool is_port(std::uintptr_t address) {
   return address >= kGpio && address < kGpio + 0x1000;

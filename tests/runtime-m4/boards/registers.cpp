@@ -1,6 +1,7 @@
 #include "tests/runtime-m4/boards/registers.hpp"
 
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "runtime-m4/port/cortex-m4/register.hpp"
@@ -33,6 +34,14 @@ void robosync::port::write_register(std::uintptr_t address, std::uint32_t value)
 std::uint32_t robosync::port::bus_address(const volatile void* memory) {
   told.push_back(memory);
   return kFirst + kBetween * static_cast<std::uint32_t>(told.size() - 1);
+}
+
+void robosync::tests::no_register(std::uintptr_t address) {
+  throw std::runtime_error("the model has no register at " + std::to_string(address));
+}
+
+void robosync::tests::demand(bool holds, const char* what) {
+  if (!holds) throw std::runtime_error(what);
 }
 
 const volatile void* robosync::tests::memory_at(std::uint32_t bus_address) {

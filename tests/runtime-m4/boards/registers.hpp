@@ -16,6 +16,10 @@ public:
   virtual void write(std::uintptr_t address, std::uint32_t value) = 0;
 };
 
+// What a model says of a use that it does not know, or that is wrong: an exception.
+[[noreturn]] void no_register(std::uintptr_t address);
+void demand(bool holds, const char* what);
+
 // What the code under test has told a peripheral to read by itself: the peripheral has the address as a number of 32 bits.
 const volatile void* memory_at(std::uint32_t bus_address);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <random>
 #include <span>
@@ -21,6 +22,7 @@ public:
 
   std::uint32_t size() const override { return static_cast<std::uint32_t>(bytes.size()); }
   std::uint32_t page() const override { return kPage; }
+  bool is_flash() const override { return stalls != 0; }
 
   Outcome read(std::uint32_t at, std::span<std::byte> to) override {
     if (const auto other = in_the_way()) return *other;
@@ -34,6 +36,11 @@ public:
   Outcome write(std::uint32_t at, std::span<const std::byte> from) override {
     const auto other = in_the_way();
     if (other == Outcome::busy) return *other;
+    if (at % kPage == 0 && stalled_ < stalls) {
+      if (stalled_++ != 0) stall();
+      return Outcome::goes_on;
+    }
+    stalled_ = 0;
     for (std::size_t i = 0; i < from.size() / (other ? 2 : 1); ++i) {
       if (power_for == 0) return lose_power(at);
       if (power_for) --*power_for;
@@ -59,6 +66,8 @@ public:
   unsigned reads_take = 0;       // … after a read
   unsigned one_in_is_taken = 0;  // 0: none
   bool dead = false;             // it never answers
+  unsigned stalls = 0;           // parts, and one, in which a page is erased; 0: it is no flash
+  std::function<void()> stall;
 
 private:
   std::optional<Outcome> in_the_way() {
@@ -78,6 +87,7 @@ private:
   }
 
   unsigned busy_for_ = 0;
+  unsigned stalled_ = 0;
   std::mt19937 random_{1};
 };
 

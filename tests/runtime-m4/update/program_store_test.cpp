@@ -452,3 +452,26 @@ TEST_CASE(
   }
   CHECK(cuts > 10);
 }
+
+TEST_CASE("what lets the processor stand still is done where no thread is due before it is over") {
+  MemoryStore memory(kStoreBytes);
+  memory.stalls = 10;
+  Robot robot(boards::kMemory, &memory);
+  unsigned parts = 0;
+  kernel::Time last = 0;
+  memory.stall = [&] {
+    ++parts;
+    CHECK(robot.kernel.ticks_to_next_work() > boards::Store::kStall);
+    CHECK(robot.kernel.now() >= last + update::Keeper::kRest);
+    last = robot.kernel.now();
+  };
+  const tool::Program program =
+      test::compile("BEHAVIOR tick PRIORITY 50\nEVERY 7ms DO LOG \"tick\" END\nEND\n");
+  run_on(robot, program);
+  robot.run(kTrialMs + 4000);
+  CHECK(parts >= 9 * 4);  // some pages of the image, and that of the record
+  tool::Client client(robot);
+  CHECK(client.kept().state == Keeping::kept);
+  robot.run(2 * kLookMs);
+  CHECK(client.status().safety_late_us == 0);
+}

@@ -1,0 +1,73 @@
+// See flash.hpp. ST's RM0351, 3.3.5 to 3.3.8; DS10969: a page is erased in 25 ms at most, two words are written in 91 us.
+// ES0250: while one bank is written, the data cache may take something wrong from the other one. So it is off then, and
+// begins anew.
+#include "runtime-m4/boards/b-l475e-iot01a/flash.hpp"
+
+#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
+
+namespace robosync::boards::l475 {
+
+namespace {
+
+constexpr unsigned kMostCalls = 50;       // 10 ms each
+constexpr unsigned kMostLooks = 100'000;  // more than 5 ms at 80 MHz
+
+void begin(std::uint32_t what) {
+  flash::kAccess.clear(flash::kDataCache);
+  if (flash::kControl.has(flash::kLock)) {
+    flash::kKey.write(flash::kFirstKey);
+    flash::kKey.write(flash::kSecondKey);
+  }
+  flash::kStatus.write(flash::kErrors);
+  flash::kControl.write(what);
+}
+
+void end() {
+  flash::kControl.write(flash::kLock);
+  flash::kAccess.set(flash::kEmptyDataCache);
+  flash::kAccess.clear(flash::kEmptyDataCache);
+  flash::kAccess.set(flash::kDataCache);
+}
+
+}  // namespace
+
+bool Flash::is_busy() {
+  return flash::kStatus.has(flash::kBusy);
+}
+
+Erasing Flash::erase(std::uint32_t page, unsigned call) {
+  if (call == kMostCalls) return Erasing::failed;
+  if (is_busy()) return Erasing::goes_on;
+  const std::uint32_t which =
+      flash::kErasePage | flash::page_of_bank_2((page - flash::kBank2) / kPage);
+  if (flash::kControl.read() ==
+      which) {  // this page, and not another one that somebody has given up
+    end();
+    return Erasing::done;
+  }
+  begin(which);
+  flash::kControl.write(which | flash::kStart);
+  return Erasing::goes_on;
+}
+
+// Waits for at most as long as two words take: by the thread of the lowest rank.
+void Flash::program(std::uint32_t at, std::span<const std::uint32_t, kUnit> words) {
+  begin(flash::kProgram);
+  {
+    const port::Unprotected flash_is_open;
+    port::Register{at}.write(words[0]);
+    port::Register{at + sizeof words[0]}.write(words[1]);
+  }
+  for (unsigned i = 0; i < kMostLooks && is_busy(); ++i) {
+  }
+  end();
+}
+
+bool Flash::forgive_damage() {
+  const std::uint32_t damage = flash::kDamage.read();
+  if ((damage & flash::kDamaged) == 0 || (damage & flash::kInBank2) == 0) return false;
+  flash::kDamage.write(flash::kDamaged);
+  return true;
+}
+
+}  // namespace robosync::boards::l475

@@ -1,0 +1,94 @@
+// A piece of the chip's own flash as the board's store. Nothing is remembered of it but which page has just been erased:
+// what stands there is compared with what shall, so a write that was cut off goes on, or is found to be impossible.
+//
+// Chip says how its flash is worked:
+//   kPage              bytes that are erased together
+//   kUnit              words that are written together
+//   erase(page, call)  the next part of erasing the page at that address; calls are counted from 0. No part keeps
+//                      others waiting for longer than Store::kStall
+//   program(at, words) kUnit of them, of a page that was erased
+//   is_busy()          still with an erasing, maybe one that was given up: who reads would stand still
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "runtime-m4/boards/store.hpp"
+#include "runtime-m4/port/cortex-m4/register.hpp"
+
+namespace robosync::boards {
+
+enum class Erasing : std::uint8_t { goes_on, done, failed };
+
+template <typename Chip>
+class FlashStore final : public Store {
+public:
+  // `begin` is its address, where a page begins.
+  constexpr FlashStore(std::uint32_t begin, std::uint32_t bytes) : begin_(begin), bytes_(bytes) {}
+
+  std::uint32_t size() const override { return bytes_; }
+  std::uint32_t page() const override { return Chip::kPage; }
+  bool is_flash() const override { return true; }
+
+  Outcome read(std::uint32_t at, std::span<std::byte> bytes) override {
+    if (Chip::is_busy()) return Outcome::goes_on;
+    const Words words = words_at(at);
+    std::memcpy(bytes.data(), words.data(), std::min(bytes.size(), kPiece));
+    return Outcome::done;
+  }
+
+  // What is not given stays erased.
+  Outcome write(std::uint32_t at, std::span<const std::byte> bytes) override {
+    if (at % Chip::kPage == 0 && erased_ != at) return erase(at);
+    if (Chip::is_busy()) return Outcome::goes_on;
+    Words wanted;
+    wanted.fill(~std::uint32_t{0});
+    std::memcpy(wanted.data(), bytes.data(), std::min(bytes.size(), kPiece));
+    for (std::size_t i = 0; i < wanted.size(); i += Chip::kUnit)
+      if (!std::ranges::equal(unit(wanted, i), unit(words_at(at), i)))
+        Chip::program(begin_ + at + static_cast<std::uint32_t>(i * kWord), unit(wanted, i));
+    erased_ = kNone;  // who writes there again erases it again
+    return words_at(at) == wanted ? Outcome::done : Outcome::spent;
+  }
+
+private:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  static constexpr std::size_t kWord = sizeof(std::uint32_t);
+  using Words = std::array<std::uint32_t, kPiece / kWord>;
+
+  static std::span<const std::uint32_t, Chip::kUnit> unit(const Words& words, std::size_t at) {
+    return std::span(words).subspan(at).template first<Chip::kUnit>();
+  }
+
+  Words words_at(std::uint32_t at) const {
+    Words words;
+    for (std::size_t i = 0; i < words.size(); ++i)
+      words[i] = port::Register{begin_ + at + i * kWord}.read();
+    return words;
+  }
+
+  Outcome erase(std::uint32_t at) {
+    if (erasing_ != at) {
+      calls_ = 0;
+      erasing_ = at;
+      return Outcome::goes_on;
+    }
+    const Erasing state = Chip::erase(begin_ + at, calls_++);
+    if (state == Erasing::goes_on) return Outcome::goes_on;
+    erasing_ = kNone;
+    if (state == Erasing::failed) return Outcome::spent;
+    erased_ = at;
+    return Outcome::goes_on;
+  }
+
+  std::uint32_t begin_, bytes_;
+  std::uint32_t erasing_ = kNone;
+  unsigned calls_ = 0;
+  std::uint32_t erased_ = kNone;  // this page, completely, and nothing has been written there since
+};
+
+}  // namespace robosync::boards
