@@ -29,7 +29,8 @@ bool OrderGate::work() {
     case Work::some:
       return true;
     case Work::waits:
-    case Work::rests:  // of flash, where no board has owners yet: it would have to wait for a gap, as the keeper does
+    case Work::
+        rests:  // of flash, where no board has owners yet: it would have to wait for a gap, as the keeper does
       due_ = kernel_.now() + kernel::kTick;
       return false;
     case Work::ended:
