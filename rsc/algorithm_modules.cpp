@@ -14,7 +14,10 @@ constexpr std::uint8_t number_of(vm::Dimension dimension) {
 }
 static_assert(ROBOSYNC_NUMBER == number_of(vm::Dimension::number) &&
               ROBOSYNC_SECONDS == number_of(vm::Dimension::duration) &&
-              ROBOSYNC_G == number_of(vm::Dimension::acceleration));
+              ROBOSYNC_PERCENT == number_of(vm::Dimension::percent) &&
+              ROBOSYNC_HERTZ == number_of(vm::Dimension::frequency) &&
+              ROBOSYNC_G == number_of(vm::Dimension::acceleration) &&
+              ROBOSYNC_DECIBEL == number_of(vm::Dimension::loudness));
 static_assert(ROBOSYNC_ONE == vm::kScale && ROBOSYNC_UNKNOWN == vm::kUnknown);
 
 std::optional<vm::Dimension> dimension(std::uint8_t unit) {

@@ -22,6 +22,7 @@
 #include "rsc/trace/channels.hpp"
 #include "rsc/trace/csv.hpp"
 #include "rsc/trace/json_lines.hpp"
+#include "rsc/trace/sound.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -150,6 +151,9 @@ private:
     if (json_object_get(stimulus, "csv") != nullptr) {
       check_keys(stimulus, {"csv", "at", "sensor"});
       read_recording(stimulus);
+    } else if (json_object_get(stimulus, "sound") != nullptr) {
+      check_keys(stimulus, {"sound", "at", "sensor"});
+      read_sound(stimulus);
     } else if (json_object_get(stimulus, "ramp") != nullptr) {
       check_keys(stimulus, {"from", "to", "sensor", "channel", "ramp"});
       read_ramp(stimulus);
@@ -185,6 +189,40 @@ private:
     add_ramp(from, to, *channel, end(0), end(1));
   }
 
+  // ---- recordings of sound
+
+  std::uint64_t begin_of(json_t* recording) const {
+    json_t* const at = json_object_get(recording, "at");
+    return at == nullptr ? 0 : at_key("at", [&] { return time(at); });
+  }
+
+  std::string beside(std::string_view name) const {
+    return (std::filesystem::path(file_).parent_path() / name).string();
+  }
+
+  // The channels of a microphone that the program reads, or what it uses.
+  void read_sound(json_t* stimulus) {
+    const std::string_view sensor = need_string(stimulus, "sensor");
+    const std::string file = beside(need_string(stimulus, "sound"));
+    constexpr std::pair<const char*, vm::Value drivers::Heard::*> kChannels[] = {
+        {"LOUDNESS", &drivers::Heard::loudness},
+        {"HIGHS", &drivers::Heard::highs},
+        {"PITCH", &drivers::Heard::pitch},
+        {"CLARITY", &drivers::Heard::clarity}};
+    const std::uint64_t begin = begin_of(stimulus);
+    const std::vector<drivers::Heard> blocks = hear_file(file);
+    bool is_read = false;
+    for (const auto& [name, part] : kChannels) {
+      const auto channel =
+          at_key("sensor", [&] { return find_read_channel(program_, sensor, name); });
+      std::uint64_t at = begin;
+      for (const drivers::Heard& heard : blocks)
+        if (channel) add(at += drivers::kEarPeriodMs * std::uint64_t{1000}, *channel, heard.*part);
+      is_read = is_read || channel;
+    }
+    if (!is_read) note(file_, line_of_key("sensor"), std::string(sensor));
+  }
+
   // ---- recordings in CSV
 
   struct Column {
@@ -196,9 +234,8 @@ private:
     const std::string_view name = need_string(stimulus, "csv");
     const bool has_sensor = json_object_get(stimulus, "sensor") != nullptr;
     const std::string_view sensor = has_sensor ? need_string(stimulus, "sensor") : "";
-    json_t* const at = json_object_get(stimulus, "at");
-    const std::uint64_t begin = at == nullptr ? 0 : at_key("at", [&] { return time(at); });
-    const std::string file = (std::filesystem::path(file_).parent_path() / name).string();
+    const std::uint64_t begin = begin_of(stimulus);
+    const std::string file = beside(name);
     const CsvTable table = read_csv(file);
     std::size_t time_column = table.columns.cells.size();
     const std::vector<Column> columns = read_columns(file, table, sensor, time_column);

@@ -41,7 +41,15 @@ enum { ROBOSYNC_ONE = 1000 };
 #define ROBOSYNC_UNKNOWN INT32_MIN
 
 // What a number measures: the place of its dimension in vm/dimensions.def.
-enum { ROBOSYNC_NUMBER = 0, ROBOSYNC_SECONDS = 1, ROBOSYNC_G = 12, ROBOSYNC_AS_INPUT = 255 };
+enum {
+  ROBOSYNC_NUMBER = 0,
+  ROBOSYNC_SECONDS = 1,
+  ROBOSYNC_PERCENT = 6,
+  ROBOSYNC_HERTZ = 9,
+  ROBOSYNC_G = 12,
+  ROBOSYNC_DECIBEL = 14,
+  ROBOSYNC_AS_INPUT = 255
+};
 
 typedef struct robosync_range {
   int32_t usual;  // where robot.json says nothing

@@ -32,6 +32,7 @@ target_sources(robosync_runtime PRIVATE
   safety/monitor.cpp
   drivers/algorithm.cpp
   drivers/digital_input.cpp
+  drivers/ear.cpp
   drivers/i2c_register.cpp
   drivers/lights.cpp
   drivers/lsm303agr.cpp

@@ -57,7 +57,8 @@ class Traces(TraceTest):
         for name, units, recording, words in (
                 ("feeling", stimuli.FEELING_UNITS, stimuli.touches, {"tap", "pat", "stroke", "firm"}),
                 ("moving", stimuli.MOVING_UNITS, stimuli.motions,
-                 {"shaken", "tapped", "falling", "lifted", "left", "jerked"})):
+                 {"shaken", "tapped", "falling", "lifted", "left", "jerked"}),
+                ("hearing", stimuli.HEARING_UNITS, stimuli.sounds, {"clap", "speech", "sound", "loud"})):
             with self.subTest(name):
                 self.units = units
                 lines = self.check(PROGRAMS / f"{name}.rsl", recording(0), PROGRAMS / f"{name}.json")

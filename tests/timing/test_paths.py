@@ -304,7 +304,8 @@ class Algorithms(unittest.TestCase):
     INTERRUPTS = ("SysTick_Handler", "Uart0Receive_Handler", "Uart0Transmit_Handler")
     # The program that uses it, and its recording.
     MODULES = {"touch_levels": ("feeling", stimuli.touches, stimuli.FEELING_UNITS),
-               "imu_gestures": ("moving", stimuli.motions, stimuli.MOVING_UNITS)}
+               "imu_gestures": ("moving", stimuli.motions, stimuli.MOVING_UNITS),
+               "sound_events": ("hearing", stimuli.sounds, stimuli.HEARING_UNITS)}
     LAYER = "robosync::layers::AlgorithmLayer::"
 
     def test_every_module(self):

@@ -60,6 +60,9 @@ def drawn_wide(seed, program, count=40):
 FEELING_UNITS = {"pad.FORCE": "N"}  # of tests/e2e/programs/feeling.json
 MOVING_UNITS = {"imu.X": "g", "imu.Y": "g", "imu.Z": "g"}  # of tests/e2e/programs/moving.json
 
+HEARING_UNITS = {"microphone.LOUDNESS": "dB", "microphone.HIGHS": "dB", "microphone.PITCH": "Hz",
+                 "microphone.CLARITY": "%"}  # of tests/e2e/programs/hearing.json
+
 
 def touches(seed, rounds=2, channel="pad.FORCE"):
     """A hand on a touch sensor: taps, pats, strokes and presses, each of them trembling, with pauses."""
@@ -99,5 +102,30 @@ def motions(seed, rounds=2):
             if last.get(axis) != new:
                 readings.append(Reading(at, f"imu.{axis}", new))
             last[axis] = new
+        at += lasts
+    return readings
+
+
+# What is heard: (for how long, (loudness, high tones, pitch, clarity)).
+QUIET = (500, (32, 29, 0, 0))
+SOUNDS = [
+    [QUIET, (40, (78, 80, 0, 20)), (60, (62, 64, 0, 10))],  # a clap
+    [QUIET, *3 * [(160, (58, 44, 140, 84)), (60, (44, 47, 0, 5))]],  # speech
+    [QUIET, (300, (55, 57, 0, 20))],  # a hiss
+    [QUIET, (40, (80, 62, 0, 30)), (80, (50, 40, 0, 0))],  # a thud
+]
+
+
+def sounds(seed):
+    """A room with all these sounds, each time a little louder or softer."""
+    random_ = random.Random(f"sounds {seed}")
+    at, readings, last = 0, [], {}
+    for lasts, heard in itertools.chain(*random_.sample(SOUNDS, len(SOUNDS)), [QUIET]):
+        louder = random_.choice([-1, 0, 1, 2])
+        for channel, value in zip(HEARING_UNITS, heard):
+            new = value + louder if channel.endswith(("LOUDNESS", "HIGHS")) else value
+            if last.get(channel) != new:
+                readings.append(Reading(at, channel, new))
+            last[channel] = new
         at += lasts
     return readings

@@ -1,0 +1,86 @@
+// Read with libsndfile. May assume nothing of the file.
+#include "rsc/trace/sound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <sndfile.h>
+
+#include "rsc/failure.hpp"
+
+namespace robosync::tool {
+namespace {
+
+constexpr int kLongestHours = 1;
+
+struct CloseSound {
+  void operator()(SNDFILE* sound) const { sf_close(sound); }
+};
+
+// The mean of what falls into each sample of the ear: high tones that it could not tell from low ones are so softened.
+class Resampler {
+public:
+  explicit Resampler(int rate) : rate_(rate) {}
+
+  void take(double sample, std::vector<std::int16_t>& into) {
+    sum_ += sample;
+    ++count_;
+    phase_ += drivers::kEarRate;
+    if (phase_ < rate_) return;
+    phase_ -= rate_;
+    const double mean = std::clamp(sum_ / count_, -1.0, 1.0);
+    into.push_back(static_cast<std::int16_t>(std::lround(mean * INT16_MAX)));
+    sum_ = 0;
+    count_ = 0;
+  }
+
+private:
+  int rate_, phase_ = 0, count_ = 0;
+  double sum_ = 0;
+};
+
+std::vector<std::int16_t> read_samples(SNDFILE* sound, const SF_INFO& format) {
+  constexpr sf_count_t kFrames = 4096;
+  const auto channels = static_cast<std::size_t>(format.channels);
+  std::vector<double> frames(kFrames * channels);
+  std::vector<std::int16_t> samples;
+  Resampler resampler(format.samplerate);
+  for (sf_count_t read = 0; (read = sf_readf_double(sound, frames.data(), kFrames)) > 0;)
+    for (std::size_t f = 0; f < static_cast<std::size_t>(read); ++f) {
+      double sum = 0;
+      for (std::size_t c = 0; c < channels; ++c)
+        sum += frames[f * channels + c];
+      resampler.take(std::isfinite(sum) ? sum / format.channels : 0, samples);
+    }
+  return samples;
+}
+
+}  // namespace
+
+std::vector<drivers::Heard> hear_file(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    throw Failure(Exit::outside, fmt::format("cannot read {}: there is no such file", file));
+  SF_INFO format{};
+  const std::unique_ptr<SNDFILE, CloseSound> sound(sf_open(file.c_str(), SFM_READ, &format));
+  if (!sound)
+    throw Failure(Exit::program, fmt::format("{}: it is no sound: {}", file, sf_strerror(nullptr)));
+  if (format.samplerate < static_cast<int>(drivers::kEarRate))
+    throw Failure(Exit::program,
+                  fmt::format("{}: it has {} samples a second; it takes {} to hear something", file,
+                              format.samplerate, drivers::kEarRate));
+  if (format.frames / format.samplerate > kLongestHours * 3600)
+    throw Failure(Exit::program, fmt::format("{}: it lasts for more than an hour", file));
+  const std::vector<std::int16_t> samples = read_samples(sound.get(), format);
+  std::vector<drivers::Heard> heard;
+  drivers::Ear ear;
+  for (std::size_t at = 0; at + drivers::kEarBlock <= samples.size(); at += drivers::kEarBlock)
+    heard.push_back(ear.hear(std::span(samples).subspan(at).first<drivers::kEarBlock>()));
+  return heard;
+}
+
+}  // namespace robosync::tool

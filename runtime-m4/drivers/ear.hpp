@@ -1,0 +1,42 @@
+// What a microphone's driver makes of sound: four numbers for each 20 ms of it. Sound itself goes no further: a block of it is
+// larger than all that an algorithm's module has, and three times what the link carries. Whole numbers only, so it comes to
+// the same everywhere. No board has a microphone yet: rsc hears recordings with it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "vm/value.hpp"
+
+namespace robosync::drivers {
+
+inline constexpr unsigned kEarRate = 8000;  // samples a second, of 16 bits
+inline constexpr std::size_t kEarBlock = 160;
+inline constexpr unsigned kEarPeriodMs = 20;
+
+// In the order of the microphone's channels (stdlib/devices/microphone.json).
+struct Heard {
+  vm::Value loudness = 0;  // dB; 0 is one step of a sample, 90 as loud as there is
+  vm::Value highs = 0;    // … of the differences between samples, in which high sounds are louder
+  vm::Value pitch = 0;    // Hz, 80 to 500; 0: it has none
+  vm::Value clarity = 0;  // %, how far the sound repeats itself at that pitch
+};
+
+class Ear {
+public:
+  // Each in whole units.
+  [[nodiscard]] Heard hear(std::span<const std::int16_t, kEarBlock> block);
+
+private:
+  // Every second sample, of two blocks: a deep voice repeats itself after 12 ms, and has to do that twice.
+  static constexpr std::size_t kHalf = kEarBlock / 2;
+  void remember(std::span<const std::int16_t, kEarBlock> block);
+  void find_pitch(Heard& heard) const;
+  std::int64_t likeness(std::size_t lag) const;
+
+  std::array<std::int16_t, 2 * kHalf> past_{};
+  std::int16_t last_ = 0;
+};
+
+}  // namespace robosync::drivers

@@ -1,0 +1,102 @@
+// Recordings of sound in scenarios: what the robot hears of them.
+#include <cmath>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "tests/rsc/process.hpp"
+
+using Catch::Contains;
+using robosync::test::Folder;
+using robosync::test::Outcome;
+using robosync::test::rsc;
+
+namespace {
+
+void put(std::string& bytes, std::uint32_t value, int count) {
+  for (int i = 0; i < count; ++i)
+    bytes += static_cast<char>(value >> 8 * i);
+}
+
+// A WAV file of so many samples a second; `sound` gives that of a time in seconds, from -1 to 1.
+template <class Sound>
+std::string wav(std::uint32_t rate, std::uint16_t channels, double seconds, Sound sound) {
+  const auto frames = static_cast<std::uint32_t>(seconds * rate);
+  std::string bytes = "RIFF";
+  put(bytes, 36 + frames * channels * 2, 4);
+  bytes += "WAVEfmt ";
+  put(bytes, 16, 4);
+  put(bytes, 1, 2);
+  put(bytes, channels, 2);
+  put(bytes, rate, 4);
+  put(bytes, rate * channels * 2, 4);
+  put(bytes, channels * 2U, 2);
+  put(bytes, 16, 2);
+  bytes += "data";
+  put(bytes, frames * channels * 2, 4);
+  for (std::uint32_t i = 0; i < frames; ++i)
+    for (int c = 0; c < channels; ++c)
+      put(bytes, static_cast<std::uint32_t>(static_cast<int>(sound(double(i) / rate) * 32000)), 2);
+  return bytes;
+}
+
+std::string robot(const Folder& folder) {
+  folder.write("robot.json", R"({
+    "sensors": [{"name": "microphone", "type": "VIRTUAL", "device": "microphone"}],
+    "actuators": [{"name": "voice", "type": "VIRTUAL", "device": "speaker"}],
+    "algorithms": [{"name": "ear", "module": "sound_events", "input": "microphone"}]})");
+  folder.write("play.json", R"({"duration": "5s", "stimuli": [
+    {"sound": "room.wav", "sensor": "microphone", "at": "500ms"}]})");
+  return folder.write("robot.rsl", R"(WHEN ear EVENT IS clap
+DO SAY "clap"
+END
+WHEN ear EVENT IS speech
+DO SAY "speech"
+END
+)");
+}
+
+Outcome play(const Folder& folder) {
+  return rsc({"run", robot(folder), "--scenario", folder.path("play.json"), "--all"});
+}
+
+// A burst of noise at 1 s, for 30 ms; from 2 s on a buzz that is like a voice.
+double room(double at) {
+  static std::minstd_rand random(1);
+  const double noise = static_cast<double>(random() % 2001) / 1000 - 1;
+  if (at >= 1 && at < 1.03) return noise * 0.6;
+  if (at >= 2 && at < 3) return std::fmod(at * 150, 1) < 0.1 ? 0.4 : -0.04;
+  return noise * 0.001;
+}
+
+}  // namespace
+
+TEST_CASE("a robot hears a clap and a voice in a recording, whatever its rate and channels") {
+  for (const auto& [rate, channels] : {std::pair{8000, 1}, {16000, 2}, {44100, 1}}) {
+    INFO(rate);
+    const Folder folder;
+    folder.write("room.wav", wav(static_cast<std::uint32_t>(rate),
+                                 static_cast<std::uint16_t>(channels), 4, room));
+    const Outcome ran = play(folder);
+    INFO(ran.out << ran.err);
+    CHECK(ran.exit == 0);
+    CHECK_THAT(ran.out, Contains("SAY clap") && Contains("SAY speech"));
+    CHECK_THAT(ran.out, Contains("4.701 s  microphone LOUDNESS is unknown"));  // it ends at 4.5
+    CHECK(play(folder).out == ran.out);
+  }
+}
+
+TEST_CASE("a file that is no sound, is too coarse or is not there is said to be so") {
+  const Folder folder;
+  CHECK(play(folder).exit == 3);
+  CHECK_THAT(play(folder).err, Contains("room.wav: there is no such file"));
+  folder.write("room.wav", "no sound");
+  CHECK(play(folder).exit == 1);
+  CHECK_THAT(play(folder).err, Contains("room.wav: it is no sound: "));
+  folder.write("room.wav", wav(4000, 1, 1, [](double) { return 0; }));
+  CHECK_THAT(play(folder).err, Contains("it has 4000 samples a second; it takes 8000"));
+  const std::string program = robot(folder);
+  folder.write("play.json", R"({"stimuli": [{"sound": "room.wav", "sensor": "voice"}]})");
+  CHECK_THAT(rsc({"run", program, "--scenario", folder.path("play.json")}).err,
+             Contains("play.json:1: "));
+}

@@ -1,0 +1,82 @@
+// What the ear makes of sounds of which one knows what they are.
+#include "runtime-m4/drivers/ear.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+using namespace robosync;
+using drivers::Ear;
+using drivers::Heard;
+using drivers::kEarBlock;
+
+namespace {
+
+using Block = std::array<std::int16_t, kEarBlock>;
+
+// So many blocks of it, one after the other; what is heard of the last one.
+template <class Sound>
+Heard after(int blocks, Sound sound) {
+  Ear ear;
+  Heard heard;
+  for (int b = 0; b < blocks; ++b) {
+    Block block;
+    for (std::size_t i = 0; i < kEarBlock; ++i)
+      block[i] = static_cast<std::int16_t>(sound(static_cast<int>(b * kEarBlock + i)));
+    heard = ear.hear(block);
+  }
+  return heard;
+}
+
+Heard tone(double hertz, double height) {
+  return after(4, [=](int i) {
+    return height * std::sin(2 * std::numbers::pi * hertz * i / drivers::kEarRate);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("loudness is that of the mean square, in decibels") {
+  CHECK(after(2, [](int) { return 0; }).loudness == 0);
+  CHECK(after(2, [](int) { return 1; }).loudness == 0);
+  for (const int height : {2, 10, 100, 3000, 32767}) {
+    INFO(height);
+    const double expected = 20 * std::log10(height);
+    CHECK(
+        std::abs(after(2, [=](int i) { return i % 2 == 0 ? height : -height; }).loudness / 1000.0 -
+                 expected) <= 0.6);
+  }
+  // Twice the height is 6 dB more; a slow change has few high tones.
+  CHECK(tone(200, 2000).loudness - tone(200, 1000).loudness == 6000);
+  CHECK(tone(100, 8000).highs < tone(100, 8000).loudness - 15'000);
+}
+
+TEST_CASE("the loudest and strangest sounds are no trouble") {
+  constexpr int kLow = std::numeric_limits<std::int16_t>::min(),
+                kHigh = std::numeric_limits<std::int16_t>::max();
+  const Heard square = after(4, [](int i) { return i % 2 == 0 ? kLow : kHigh; });
+  CHECK(square.loudness == 90'000);
+  CHECK(square.highs == 96'000);
+  const Heard slow = after(4, [](int i) { return i / 20 % 2 == 0 ? kLow : kHigh; });
+  CHECK(slow.pitch == 200'000);
+  CHECK(after(4, [](int) { return kLow; }).loudness == 90'000);
+}
+
+TEST_CASE("a tone has its pitch, noise and silence have none that is clear") {
+  for (const int hertz : {100, 125, 200, 250, 400}) {
+    INFO(hertz);
+    const Heard heard = tone(hertz, 5000);
+    CHECK(std::abs(heard.pitch / 1000 - hertz) <= hertz / 20);
+    CHECK(heard.clarity >= 90'000);
+  }
+  std::minstd_rand random(1);
+  for (int i = 0; i < 20; ++i) {
+    const Heard noise = after(4, [&](int) { return static_cast<int>(random() % 8001) - 4000; });
+    CHECK(noise.clarity < 60'000);
+    CHECK(std::abs(noise.highs - noise.loudness - 3000) <= 1000);
+  }
+  CHECK(after(4, [](int i) { return i % 3; }).clarity == 0);
+}
