@@ -19,7 +19,7 @@ inline constexpr unsigned kEarPeriodMs = 20;
 struct Heard {
   vm::Value loudness = 0;  // dB; 0 is one step of a sample, 90 as loud as there is
   vm::Value highs = 0;    // … of the differences between samples, in which high sounds are louder
-  vm::Value pitch = 0;    // Hz, 80 to 500; 0: it has none
+  vm::Value pitch = 0;    // Hz, 80 to 500, to a tenth of it; 0: it has none
   vm::Value clarity = 0;  // %, how far the sound repeats itself at that pitch
 };
 

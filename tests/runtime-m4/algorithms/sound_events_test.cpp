@@ -61,12 +61,15 @@ TEST_CASE("somebody who speaks has a voice for a fifth of a second, and may paus
 TEST_CASE("a loud sound within others is no clap, nor is one with a voice in it") {
   Room busy;
   (void)busy.noise(45, 100);
-  CHECK_THAT(busy.noise(70, 40) + busy.noise(45, 40), !Catch::Contains("clap"));
+  CHECK_THAT(busy.noise(70, 40), !Catch::Contains("clap"));
+  CHECK_THAT(busy.noise(45, 40), !Catch::Contains("clap"));
   Room shout;
-  CHECK_THAT(shout.voice(70, 80) + shout.quiet(200), !Catch::Contains("clap"));
+  CHECK_THAT(shout.voice(70, 80), !Catch::Contains("clap"));
+  CHECK_THAT(shout.quiet(200), !Catch::Contains("clap"));
   Room whistle;
-  (void)whistle.hold(70, 73, 0, 0, 40);
-  CHECK_THAT(whistle.hold(70, 73, 200, 90, 40) + whistle.quiet(200), !Catch::Contains("clap"));
+  (void)whistle.noise(70, 40);
+  CHECK_THAT(whistle.hold(70, 73, 200, 90, 40), !Catch::Contains("clap"));
+  CHECK_THAT(whistle.quiet(200), !Catch::Contains("clap"));
 }
 
 TEST_CASE("what is always there is no sound any more") {

@@ -69,7 +69,7 @@ TEST_CASE("a tone has its pitch, noise and silence have none that is clear") {
   for (const int hertz : {100, 125, 200, 250, 400}) {
     INFO(hertz);
     const Heard heard = tone(hertz, 5000);
-    CHECK(std::abs(heard.pitch / 1000 - hertz) <= hertz / 20);
+    CHECK(std::abs(heard.pitch / 1000 - hertz) <= hertz / 10);
     CHECK(heard.clarity >= 90'000);
   }
   std::minstd_rand random(1);
