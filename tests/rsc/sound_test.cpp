@@ -95,6 +95,7 @@ TEST_CASE("a file that is no sound, is too coarse or is not there is said to be 
   CHECK_THAT(play(folder).err, Contains("room.wav: it is no sound: "));
   folder.write("room.wav", wav(4000, 1, 1, [](double) { return 0; }));
   CHECK_THAT(play(folder).err, Contains("it has 4000 samples a second; it takes 8000"));
+  folder.write("room.wav", wav(8000, 1, 1, [](double) { return 0; }));
   const std::string program = robot(folder);
   folder.write("play.json", R"({"stimuli": [{"sound": "room.wav", "sensor": "voice"}]})");
   CHECK_THAT(rsc({"run", program, "--scenario", folder.path("play.json")}).err,
