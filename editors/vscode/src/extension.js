@@ -1,8 +1,10 @@
-// The client: starts `rsc lsp` and hands the editor's texts to it. Everything else is the server's.
+// The client: starts `rsc lsp` and hands the editor's texts to it. Everything else is the server's, but for the buttons
+// (commands.js).
 "use strict";
 
 const vscode = require("vscode");
 const { LanguageClient } = require("vscode-languageclient/node");
+const { commands } = require("./commands");
 
 let client;
 
@@ -33,6 +35,8 @@ async function stop() {
 }
 
 exports.activate = async (context) => {
+  for (const [name, run] of Object.entries(commands))
+    context.subscriptions.push(vscode.commands.registerCommand(name, run));
   context.subscriptions.push(
     vscode.commands.registerCommand("rsl.restart", async () => {
       await stop();
