@@ -23,13 +23,14 @@ STOP_SEQUENCE = 255  # link::kStopSequence
 STOP = wire.frame("stop", sequence=STOP_SEQUENCE)
 
 
-def endless_upload():
-    """The frames of one transfer after the other; the board takes each `begin` with another checksum for a new one."""
+def endless_upload(line):
+    """The frames of one transfer after the other; the board takes each `begin` with another name for a new one."""
     most = wire.MOST_PAYLOAD - wire.layout("Data").size
-    for crc in range(1 << 32):
-        yield wire.frame("begin", wire.pack("Begin", size=len(IMAGE), crc32=crc), crc % STOP_SEQUENCE)
+    yield wire.frame("hello", line.introduction())
+    for number in range(1, 1 << 32):
+        yield wire.frame("begin", line.beginning(len(IMAGE), number.to_bytes(8, "little")), number % STOP_SEQUENCE)
         for at in range(0, len(IMAGE), most):
-            yield wire.frame("data", wire.pack("Data", offset=at) + IMAGE[at:at + most], at % STOP_SEQUENCE)
+            yield wire.frame("data", wire.piece_head(line.session, at) + IMAGE[at:at + most], at % STOP_SEQUENCE)
 
 
 class Flood(wire.Line):
@@ -41,7 +42,7 @@ class Flood(wire.Line):
         self._marks = open(marks, encoding="ascii")
         self._executed = 0
         self._cut = ""  # the beginning of a line
-        self._frames = endless_upload()
+        self._frames = endless_upload(self)
         self._said = []
         self._quiet = threading.Event()
         self._threads = []

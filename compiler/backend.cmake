@@ -1,7 +1,4 @@
 # The back end: robot.json to a typed robot, tree and robot to a typed program, program to image.
-find_package(PkgConfig REQUIRED)
-pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)  # SHA-256
-
 # What the library is made of travels inside the compiler, so that rsc works from any folder.
 #   embed(FOLDER SUFFIX HEADER TYPE FUNCTION OUT): see embed_texts.cmake
 function(embed folder suffix header type function out)
@@ -92,4 +89,4 @@ target_sources(robosync_compiler PRIVATE
   codegen/rules.cpp
   codegen/tables.cpp
   codegen/verify_image.cpp)
-target_link_libraries(robosync_compiler PRIVATE PkgConfig::SODIUM nlohmann_json::nlohmann_json)
+target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)

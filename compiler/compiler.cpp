@@ -2,9 +2,6 @@
 #include "compiler/compiler.hpp"
 
 #include <algorithm>
-#include <array>
-
-#include <sodium.h>
 
 #include "compiler/codegen/emit.hpp"
 #include "compiler/codegen/verify_image.hpp"
@@ -15,26 +12,6 @@
 
 namespace robosync::compiler {
 namespace {
-
-// Names the program: the same texts in the same order, the same hash.
-ProgramHash hash_of(const SourceMap& files) {
-  constexpr std::string_view kBetween("\0", 1);  // so that text cannot move from one to the other
-  crypto_hash_sha256_state state;
-  crypto_hash_sha256_init(&state);
-  const auto add = [&](std::string_view text) {
-    crypto_hash_sha256_update(&state, reinterpret_cast<const unsigned char*>(text.data()),
-                              text.size());
-  };
-  for (std::size_t id = 0; id < files.size(); ++id) {
-    if (id > 0) add(kBetween);
-    add(files.file(static_cast<FileId>(id)).text());
-  }
-  std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
-  crypto_hash_sha256_final(&state, digest.data());
-  ProgramHash hash{};
-  std::copy_n(digest.begin(), hash.size(), hash.begin());
-  return hash;
-}
 
 // What robot.json says about lints: allow drops them, warn and deny set their level.
 Diagnostics apply_lints(const Diagnostics& diagnostics, const Robot& robot) {
@@ -88,8 +65,8 @@ Result compile(Input program, Input configuration, const Options& options) {
     const Robot& robot = *parsed.robot;
     const ir::Program better = options.optimize ? optimize(written, robot) : written;
     Emitted emitted =
-        emit(better, written, robot, options.hash ? hash_of(result.sources) : ProgramHash{},
-             {.source_lines = options.source_lines, .seed = options.seed}, diagnostics);
+        emit(better, written, robot, {.source_lines = options.source_lines, .seed = options.seed},
+             diagnostics);
     if (diagnostics.errors() == 0 && verify_image(emitted, diagnostics)) {
       result.image = std::move(emitted.image);
       result.rules = std::move(emitted.rules);

@@ -21,7 +21,6 @@ struct Options {
   bool source_lines = true;  // keep the debug section
   bool optimize = true;
   std::uint32_t seed = 0;  // of the random numbers, in the place of the configuration's; 0: none
-  bool hash = true;        // name the program in the image; who only checks it needs no name
   ModuleReader read_module{};
   AlgorithmModules algorithms{};  // that robot.json may name
 };

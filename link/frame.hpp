@@ -17,6 +17,9 @@ namespace robosync::link {
 inline constexpr std::size_t kFrameOverhead = 2 + 2;  // type, sequence; CRC-16
 // A frame is short enough for a single COBS code byte in front; the delimiter follows.
 inline constexpr std::size_t kMaxEncodedFrame = 1 + kMaxPayload + kFrameOverhead + 1;
+// What a host may have under way at most, in bytes on the line. A board's receive buffer holds that many: while it verifies
+// an image it does not read the line.
+inline constexpr std::uint16_t kReceiveWindow = 2 * kMaxEncodedFrame;
 static_assert(kMaxPayload + kFrameOverhead < 254, "longer frames need COBS blocks");
 
 struct Frame {

@@ -12,6 +12,9 @@ inline constexpr std::uint8_t kProtocolVersion = 9;
 inline constexpr std::size_t kMaxPayload = 240;
 inline constexpr std::size_t kNameLength = 16;  // NUL-padded
 using Name = std::array<char, kNameLength>;
+using ProgramHash = std::array<std::uint8_t, 8>;  // ImageHeader::program_hash: names a program
+// A number that a host draws, not 0. What changes the robot names it first of all.
+using SessionId = std::uint32_t;
 
 enum class MessageType : std::uint8_t {
 #define MESSAGE(name, number, direction, doc) name = (number),
@@ -26,6 +29,13 @@ enum class Pairing : std::uint8_t {
   paired
 };
 
+struct Hello {
+  SessionId session;
+  std::uint8_t take;  // 1: also when another one is in the midst of a transfer
+  std::array<std::uint8_t, 3> reserved{};
+  Name host;  // for whom the board keeps waiting
+};
+
 struct HelloReply {
   std::uint8_t protocol;
   std::uint8_t image_major;  // format the firmware runs (vm/image.hpp)
@@ -37,9 +47,8 @@ struct HelloReply {
   std::uint32_t arena_used;   // by the running program, its image included
   std::uint32_t step_budget;  // M4 instructions of VM code in one step
   std::uint32_t drivers;      // bit d: driver d of vm/drivers.def is present
-  std::uint32_t image_crc;    // of the running image
-  std::uint32_t image_bytes;
-  std::array<std::uint8_t, 8> program_hash;
+  std::uint32_t image_bytes;  // of the running image
+  ProgramHash program_hash;
   std::uint16_t receive_window;  // bytes of data the board can take before it must reply
   std::uint8_t running;          // 1: a program runs
   std::uint8_t stopped;          // 1: a person has stopped it
@@ -47,17 +56,40 @@ struct HelloReply {
   std::array<std::uint8_t, 3> reserved{};
 };
 
-struct Begin {
-  std::uint32_t size;
-  std::uint32_t crc32;  // ImageHeader::crc32, names the transfer
+// A request that names a session has the reply `busy` when another one has the line, or none.
+struct Busy {
+  Name host;               // that has it; empty: say hello first
+  std::uint32_t since_ms;  // it said hello
 };
 
-struct Data {  // followed by the bytes
-  std::uint32_t offset;
+struct Begin {
+  SessionId session;
+  std::uint32_t size;
+  ProgramHash hash;  // names the transfer
+  ProgramHash base;  // pieces are taken from this one, which runs; zeros: from none
+};
+
+struct Data {             // followed by the bytes
+  std::uint16_t session;  // its lower half
+  std::uint16_t offset;
 };
 inline constexpr std::size_t kMaxData = kMaxPayload - sizeof(Data);
 
-enum class TransferState : std::uint8_t { idle, receiving, complete, too_large, no_transfer };
+// A message `pieces` begins as `data` does. Pieces follow, each followed by its `count` bytes.
+struct Piece {
+  std::uint16_t from;    // byte of the base, or behind it of what has come of this image so far …
+  std::uint16_t copied;  // … from which so many are the next ones
+  std::uint16_t count;   // of bytes that come then
+};
+
+enum class TransferState : std::uint8_t {
+  idle,
+  receiving,
+  complete,
+  too_large,
+  no_transfer,
+  other_base  // it is not that one that runs: nothing has begun
+};
 
 struct TransferStatus {
   std::uint32_t next_offset;  // too_large: how many bytes could be received
@@ -68,9 +100,12 @@ struct TransferStatus {
 inline constexpr std::uint8_t kNothingToActivate = 0xFF;
 
 struct Activate {
-  std::uint32_t image_crc32;  // as Begin: another host may have sent something else meanwhile
-  std::uint8_t fresh;         // 1: KEPT numbers begin as the program says, not with what they were
-  std::array<std::uint8_t, 3> reserved{};
+  SessionId session;
+  ProgramHash hash;        // as Begin: another host may have sent something else meanwhile
+  std::uint32_t trial_ms;  // how long it is on trial; 0: as long as usual
+  std::uint8_t goes_back;  // 1: after it back to the kept program, also when all went well
+  std::uint8_t fresh;      // 1: KEPT numbers begin as the program says, not with what they were
+  std::array<std::uint8_t, 2> reserved{};
 };
 
 struct ActivateResult {
@@ -84,9 +119,11 @@ struct ActivateResult {
 };
 
 struct Feed {
-  std::uint64_t at_us;    // program time; 0: now
+  SessionId session = 0;
   std::uint32_t channel;  // index in the running image
+  std::uint64_t at_us;    // program time; 0: now
   std::int32_t value;     // thousandths
+  std::uint32_t reserved = 0;
 };
 
 enum class FeedError : std::uint8_t {
@@ -158,18 +195,25 @@ enum class Keeping : std::uint8_t {
 };
 
 struct Kept {
-  std::uint32_t kept_bytes, kept_crc32;          // with which the robot starts; 0 bytes: none
-  std::uint32_t previous_bytes, previous_crc32;  // the one that was kept before
-  std::uint32_t most_bytes;                      // of an image, that can be kept
-  std::uint32_t trial_ms;  // on_trial: left of it; then it is kept as soon as it is written
-  std::uint32_t
-      given_up_crc32;  // of the last one since start-up that faulted in its trial; 0: none
+  std::uint32_t kept_bytes;  // of the program with which the robot starts; 0: none
+  ProgramHash kept_hash;
+  std::uint32_t previous_bytes;  // … and of the one that was kept before
+  ProgramHash previous_hash;
+  std::uint32_t most_bytes;  // of an image, that can be kept
+  std::uint32_t trial_ms;    // on_trial: left of it; then it is kept as soon as it is written
+  ProgramHash
+      given_up_hash;  // the last one since start-up that did not stand its trial; zeros: none
   Keeping state;
   std::array<std::uint8_t, 3> reserved;
 };
 
 struct RollBack {
-  std::uint32_t image_crc;  // to this program: the previous one, or in a trial the kept one
+  SessionId session;
+  ProgramHash hash;  // to this program: the previous one, or in a trial the kept one
+};
+
+struct Resume {
+  SessionId session;
 };
 
 // Keys and signatures as in RFC 8032; an image's hash is the first half of the SHA-512 of its bytes.
@@ -220,12 +264,16 @@ struct TraceOn {
 };
 
 struct Clear {
-  std::uint32_t image_crc;  // of the program that is to end: a stray frame ends none
+  SessionId session;
+  ProgramHash hash;  // of the program that is to end: a stray frame ends none
 };
 
 struct ReadImage {
   std::uint32_t offset;
 };
-// ImageData has Data's layout: the offset, then bytes.
+
+struct ImageData {  // followed by the bytes
+  std::uint32_t offset;
+};
 
 }  // namespace robosync::link

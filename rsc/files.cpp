@@ -83,6 +83,16 @@ std::vector<std::byte> read_bytes(const fs::path& path) {
   return {bytes.begin(), bytes.end()};
 }
 
+fs::path cache_folder() {
+  const char* const cache = std::getenv("XDG_CACHE_HOME");
+  const char* const home = std::getenv("HOME");
+  fs::path base;
+  if (cache != nullptr && fs::path(cache).is_absolute()) base = cache;
+  if (base.empty() && home != nullptr && fs::path(home).is_absolute())
+    base = fs::path(home) / ".cache";
+  return base.empty() ? base : (base / "robosync").lexically_normal();
+}
+
 std::string Texts::read(const fs::path& path) const {
   return read_text(path);
 }

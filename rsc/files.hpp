@@ -12,6 +12,9 @@ namespace robosync::tool {
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 [[nodiscard]] std::vector<std::byte> read_bytes(const std::filesystem::path& path);
 
+// For what can be made again, of this user; empty when there is no such place. It may have to be created.
+[[nodiscard]] std::filesystem::path cache_folder();
+
 // Where programs and configurations are read: the disk, unless somebody has newer texts (lsp/).
 class Texts {
 public:

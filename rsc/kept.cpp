@@ -14,6 +14,7 @@
 #include "rsc/files.hpp"
 #include "rsc/output.hpp"
 #include "rsc/quantity.hpp"
+#include "vm/identity.hpp"
 
 namespace robosync::tool {
 namespace {

@@ -22,6 +22,7 @@
 #include "rsc/files.hpp"
 #include "rsc/judge.hpp"
 #include "runtime-m4/algorithms/judge.hpp"
+#include "vm/identity.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -67,7 +68,6 @@ compiler::Result compile(const std::string& file, const CompileOptions& options,
                         {.source_lines = options.source_lines,
                          .optimize = options.optimize,
                          .seed = options.seed,
-                         .hash = options.hash,
                          .read_module = modules,
                          .algorithms = algorithm_modules()});
   judge(result, options.judged);
@@ -165,6 +165,8 @@ Program::Program(std::vector<std::byte> bytes, const std::string& name,
                  const policy::BoardMemory& board, Origin origin)
     : bytes_(std::move(bytes)), board_(board), origin_(std::move(origin)) {
   vm::Verdict verdict = vm::verify(bytes_, vm::Limits{}, image_);
+  if (verdict.ok() && !vm::is_named(bytes_, {}))
+    verdict = {vm::Refusal::wrong_name, vm::Section::header, 0};
   if (verdict.ok()) verdict = algorithms::judge(image_);
   if (verdict.ok()) return;
   vm::Image view;  // what is wrong may stand between good source lines

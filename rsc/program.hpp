@@ -28,7 +28,6 @@ struct CompileOptions {
   bool optimize = true;
   std::uint32_t seed = 0;  // 0: as the configuration says
   bool source_lines = true;
-  bool hash = true;  // name the program in its image
   Judged judged = Judged::by_memory;
 };
 

@@ -94,9 +94,10 @@ vm::Verdict Runtime::check(std::span<const std::byte> bytes) {
   return policy::judge(next_, memory_.board());
 }
 
-vm::Verdict Runtime::activate(std::span<const std::byte> bytes) {
+vm::Verdict Runtime::activate(std::span<const std::byte> bytes, bool named) {
   const vm::Verdict verdict = check(bytes);
   if (!verdict.ok()) return verdict;
+  if (!named) return {vm::Refusal::wrong_name, vm::Section::header, 0};
   end_program();
   if (!load(bytes) || !start_program()) {
     clear();

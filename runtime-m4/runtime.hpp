@@ -53,8 +53,9 @@ public:
 
   // Verifies `image` and, if it may run and fits, takes a copy of it in the place of the running
   // program; otherwise that goes on. Called from a thread of category `system`: it has the lowest
-  // rank, so when it runs no step is under way. Or before Kernel::run().
-  vm::Verdict activate(std::span<const std::byte> image);
+  // rank, so when it runs no step is under way. Or before Kernel::run(). `named`: its name is that of its bytes; else it is
+  // refused, if for nothing else then for that.
+  vm::Verdict activate(std::span<const std::byte> image, bool named = true);
   // Ends the running program; its actuators are released.  [as activate()]
   void clear();
 
@@ -74,6 +75,8 @@ public:
   void stop() { say(true); }  // or from an interrupt of the kernel's level
   void resume() { say(false); }
   bool stopped() const { return stopped_; }
+  // Has a SAFETY rule of the running program tripped since it began?
+  bool has_tripped() const { return safety_rules_.have_tripped(); }
 
   // A reading for a fed channel: now (at_us 0) or at a program time. Sensors are fed whose driver
   // is virtual_sensor, and those with period 0. The unknown value is a reading that failed.

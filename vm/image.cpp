@@ -94,17 +94,11 @@ std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t seed) {
   return ~crc;
 }
 
-std::uint32_t stated_crc32(std::span<const std::byte> image) {
-  std::uint32_t crc = 0;
+ProgramHash stated_name(std::span<const std::byte> image) {
+  ProgramHash name{};
   if (image.size() >= sizeof(ImageHeader))
-    std::memcpy(&crc, image.data() + offsetof(ImageHeader, crc32), sizeof crc);
-  return crc;
-}
-
-void seal(std::span<std::byte> image) {
-  constexpr std::size_t kAt = offsetof(ImageHeader, crc32);
-  const std::uint32_t crc = crc32(image.subspan(kAt + sizeof crc));
-  std::memcpy(image.data() + kAt, &crc, sizeof crc);
+    std::memcpy(name.data(), image.data() + offsetof(ImageHeader, program_hash), name.size());
+  return name;
 }
 
 }  // namespace robosync::vm

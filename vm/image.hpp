@@ -124,6 +124,8 @@ enum class TimerKind : std::uint8_t {
   count_
 };
 
+using ProgramHash = std::array<std::uint8_t, 8>;
+
 struct ImageHeader {
   std::uint32_t magic;         // kMagic
   std::uint32_t crc32;         // CRC-32 (IEEE) of everything after this field
@@ -131,9 +133,9 @@ struct ImageHeader {
   std::uint8_t format_major;
   std::uint8_t board;        // for which one it is, as a number made of its name; 0: for none
   std::uint16_t opcode_set;  // opcode_set_id() of the compiler's opcodes.def
-  std::array<std::uint8_t, 8> program_hash;  // first bytes of SHA-256 over source and configuration
-  std::uint32_t seed;                        // of RANDOM and PICK ONE; 0: the runtime takes one
-  std::uint32_t step_cost;                   // worst-case M4 instructions of VM code in one step
+  ProgramHash program_hash;  // its name (identity.hpp)
+  std::uint32_t seed;        // of RANDOM and PICK ONE; 0: the runtime takes one
+  std::uint32_t step_cost;   // worst-case M4 instructions of VM code in one step
   // Records in each section; of `inputs` and `labels` they are numbers, of `strings` bytes, of `code`
   // instruction words. Without source_lines (--strip) traces and faults name no lines.
 #define IMAGE_SECTION(records, Record, Count, check, name) Count records;
@@ -369,10 +371,8 @@ enum class Section : std::uint8_t {
 // CRC-32 (IEEE 802.3) of `bytes`, continuing from `seed` (0 to begin).
 [[nodiscard]] std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t seed = 0);
 
-// The CRC-32 in an image's header, which names the image on the line and in the store. Whether it is that of the bytes is
-// the verifier's part. 0 when there is no whole header, which verifies as too short whatever is said of its CRC.
-[[nodiscard]] std::uint32_t stated_crc32(std::span<const std::byte> image);
-// Makes it that of the bytes, after some were changed. `image` has a whole header.
-void seal(std::span<std::byte> image);
+// The name in an image's header, by which the line and the store know it. Whether it is that of the bytes: identity.hpp.
+// Zeros when there is no whole header, which verifies as too short whatever its name is.
+[[nodiscard]] ProgramHash stated_name(std::span<const std::byte> image);
 
 }  // namespace robosync::vm

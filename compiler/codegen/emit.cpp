@@ -7,6 +7,7 @@
 #include "compiler/codegen/records.hpp"
 #include "compiler/codegen/rules.hpp"
 #include "compiler/config/boards.hpp"
+#include "vm/identity.hpp"
 #include "vm/opcode.hpp"
 #include "vm/verifier.hpp"
 
@@ -20,8 +21,7 @@ public:
   Emitter(EmitOptions options, Diagnostics& diagnostics)
       : options_(options), diagnostics_(diagnostics) {}
 
-  Emitted emit(const ir::Program& program, const ir::Program& written, const Robot& robot,
-               const ProgramHash& hash) {
+  Emitted emit(const ir::Program& program, const ir::Program& written, const Robot& robot) {
     const Tables tables(written, robot, diagnostics_);
     if (diagnostics_.errors() > 0) return {};
     rules_ = make_rules(program, written, tables, strings_, diagnostics_);
@@ -30,7 +30,7 @@ public:
     if (diagnostics_.errors() > 0 || !counts_fit()) return {};
     if (options_.source_lines) lines_ = rules_.pool.lines();
     lay_out();
-    finish_header(robot, hash);
+    finish_header(robot);
     return {std::move(bytes_), std::move(rules_.pool), std::move(rules_.places)};
   }
 
@@ -40,7 +40,7 @@ private:
   void lay_out();
   vm::Image sections() const;
   void append(std::span<const std::byte> section);
-  void finish_header(const Robot& robot, const ProgramHash& hash);
+  void finish_header(const Robot& robot);
 
   EmitOptions options_;
   Diagnostics& diagnostics_;
@@ -134,12 +134,11 @@ void Emitter::lay_out() {
 #undef IMAGE_SECTION
 }
 
-void Emitter::finish_header(const Robot& robot, const ProgramHash& hash) {
+void Emitter::finish_header(const Robot& robot) {
   header_.magic = vm::kMagic;
   header_.total_length = static_cast<std::uint32_t>(bytes_.size());
   header_.format_major = vm::kFormatMajor;
   header_.opcode_set = vm::opcode_set_id();
-  header_.program_hash = hash;
   header_.seed = options_.seed != 0 ? options_.seed : robot.seed;
   header_.safety_start_ms = robot.safety_start_ms;
   header_.board = board_id(board_for(robot.board).name);
@@ -153,8 +152,8 @@ void Emitter::finish_header(const Robot& robot, const ProgramHash& hash) {
 }  // namespace
 
 Emitted emit(const ir::Program& program, const ir::Program& written, const Robot& robot,
-             const ProgramHash& hash, EmitOptions options, Diagnostics& diagnostics) {
-  return Emitter(options, diagnostics).emit(program, written, robot, hash);
+             EmitOptions options, Diagnostics& diagnostics) {
+  return Emitter(options, diagnostics).emit(program, written, robot);
 }
 
 }  // namespace robosync::compiler

@@ -1,7 +1,6 @@
 // Emits a program as an image (vm/image.hpp).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,8 +11,6 @@
 #include "compiler/ir/program.hpp"
 
 namespace robosync::compiler {
-
-using ProgramHash = std::array<std::uint8_t, 8>;
 
 struct EmitOptions {
   bool source_lines = true;  // keep the debug section
@@ -32,7 +29,6 @@ struct Emitted {
 // stays in the image, whatever the optimiser has left out: devices keep their numbers, and a
 // behaviour is evaluated in the same steps.
 [[nodiscard]] Emitted emit(const ir::Program& program, const ir::Program& written,
-                           const Robot& robot, const ProgramHash& hash, EmitOptions options,
-                           Diagnostics& diagnostics);
+                           const Robot& robot, EmitOptions options, Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

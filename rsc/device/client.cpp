@@ -6,6 +6,10 @@
 #include <array>
 #include <cstring>
 #include <iterator>
+#include <random>
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 #include "rsc/failure.hpp"
 
@@ -28,6 +32,18 @@ bool is_unasked(MessageType type) {
   return type == MessageType::event || type == MessageType::log || type == MessageType::fault;
 }
 
+// Who asks, in the board's words to another host: this computer's name.
+link::Hello introduction(bool take) {
+  link::Hello hello{};
+  std::random_device random;
+  hello.session = std::max(random(), 1U);
+  hello.take = static_cast<std::uint8_t>(take);
+  if (gethostname(hello.host.data(), hello.host.size()) != 0 || hello.host.front() == '\0')
+    hello.host.front() = '?';
+  hello.host.back() = '\0';
+  return hello;
+}
+
 std::optional<Message> pop(std::deque<Message>& queue) {
   if (queue.empty()) return std::nullopt;
   Message message = std::move(queue.front());
@@ -37,8 +53,8 @@ std::optional<Message> pop(std::deque<Message>& queue) {
 
 }  // namespace
 
-Client::Client(Transport& transport, milliseconds timeout)
-    : transport_(transport), timeout_(timeout) {
+Client::Client(Transport& transport, milliseconds timeout, bool take)
+    : transport_(transport), timeout_(timeout), introduction_(introduction(take)) {
   // Whatever half frame the last host left in the board's decoder ends here.
   transport_.write(std::array{std::byte{0}});
 }
@@ -80,12 +96,13 @@ std::optional<Message> Client::next_unasked(milliseconds timeout) {
   return pop(unasked_);
 }
 
-// Replies to earlier requests, which came too late, are dropped.
+// Replies to earlier requests, which came too late, are dropped. That of a line that is another's may come in its place.
 std::optional<Message> Client::reply_to(std::uint8_t sequence, MessageType type,
                                         Transport::Clock::time_point until) {
   while (true) {
     while (std::optional<Message> reply = pop(replies_)) {
-      const bool fits = reply->type == type || reply->type == MessageType::authority;  // denied
+      const bool fits = reply->type == type || reply->type == MessageType::authority ||  // denied
+                        reply->type == MessageType::busy;
       if (fits && reply->sequence == sequence) return reply;
     }
     if (!receive(until)) return std::nullopt;
@@ -96,13 +113,17 @@ template <typename Reply>
 Reply Client::request(MessageType type, MessageType reply_type,
                       std::span<const std::byte> payload) {
   const auto give_up = transport_.now() + timeout_;
+  bool reopened = false;
   while (transport_.now() < give_up) {
     const std::uint8_t sequence = send(type, payload);
     const auto until = std::min(give_up, transport_.now() + kRepeatAfter);
     const std::optional<Message> answer = reply_to(sequence, reply_type, until);
     Reply reply{};
-    if (answer && answer->type == reply_type && link::read_payload(answer->payload, reply))
+    if (answer && answer->type == MessageType::busy) {
+      reopen(*answer, reopened);
+    } else if (answer && answer->type == reply_type && link::read_payload(answer->payload, reply)) {
       return reply;
+    }
   }
   no_answer();
 }
@@ -111,6 +132,7 @@ Reply Client::request(MessageType type, MessageType reply_type,
 template <typename Reply>
 Reply Client::order(MessageType type, MessageType reply_type, std::span<const std::byte> payload) {
   const auto give_up = transport_.now() + timeout_ + 2 * kRepeatOrderAfter;
+  bool reopened = false;
   while (transport_.now() < give_up) {
     if (orders_.are_signed() && !orders_.know_how()) orders_.learn(authority());
     const bool is_signed = orders_.are_signed();
@@ -119,6 +141,10 @@ Reply Client::order(MessageType type, MessageType reply_type, std::span<const st
                                       : send(type, payload);
     const auto until = transport_.now() + (is_signed ? kRepeatOrderAfter : kRepeatAfter);
     const std::optional<Message> answer = reply_to(sequence, reply_type, std::min(give_up, until));
+    if (answer && answer->type == MessageType::busy) {
+      reopen(*answer, reopened);
+      continue;
+    }
     Reply reply{};
     link::Authority authority{};
     if (answer && answer->type == reply_type && link::read_payload(answer->payload, reply))
@@ -156,27 +182,60 @@ void Client::no_answer() const {
                                    "RoboSync firmware, and is no other program using the port?");
 }
 
-// Its reply may be of another protocol: only the first byte is sure to mean the same.
-link::HelloReply Client::hello() {
-  const auto give_up = transport_.now() + timeout_;
-  while (transport_.now() < give_up) {
-    const std::uint8_t sequence = send(MessageType::hello);
-    const auto until = std::min(give_up, transport_.now() + kRepeatAfter);
-    const auto answer = reply_to(sequence, MessageType::hello_reply, until);
-    link::HelloReply reply{};
-    if (!answer || answer->payload.empty()) continue;
-    const auto protocol = std::to_integer<unsigned>(answer->payload.front());
-    if (protocol != link::kProtocolVersion) {
-      throw Failure(Exit::outside, "the firmware speaks version " + std::to_string(protocol) +
-                                       " of the protocol, this rsc version " +
-                                       std::to_string(link::kProtocolVersion) +
-                                       ": flash the firmware of this release");
-    }
-    if (!link::read_payload(answer->payload, reply)) continue;
-    orders_.learn(reply.pairing);
-    return reply;
+void Client::reopen(const Message& busy, bool& tried) {
+  link::Busy by{};
+  if (!link::read_payload(busy.payload, by)) return;
+  if (tried && by.host == introduction_.host && !took_) {
+    took_ = true;
+    link::Hello taking = introduction_;
+    taking.take = 1;
+    (void)hello_answer(send(MessageType::hello, link::wire_bytes(taking)));
+    return;
   }
-  no_answer();
+  if (tried) {
+    const std::string host(by.host.begin(), std::find(by.host.begin(), by.host.end(), '\0'));
+    throw Failure(Exit::outside,
+                  fmt::format("{}: busy: {} has the line since {} s; --take takes it from there",
+                              transport_.name(), host, by.since_ms / 1000));
+  }
+  tried = true;
+  (void)hello();
+}
+
+std::uint8_t Client::send_hello() {
+  return send(MessageType::hello, link::wire_bytes(introduction_));
+}
+
+link::HelloReply Client::hello() {
+  return hello_answer(send_hello());
+}
+
+link::HelloReply Client::hello_answer(std::uint8_t sequence) {
+  const auto give_up = transport_.now() + timeout_;
+  while (true) {
+    const auto until = std::min(give_up, transport_.now() + kRepeatAfter);
+    if (const auto reply = take_hello(sequence, until)) return *reply;
+    if (transport_.now() >= give_up) no_answer();
+    sequence = send_hello();
+  }
+}
+
+// Its reply may be of another protocol: only the first byte is sure to mean the same.
+std::optional<link::HelloReply> Client::take_hello(std::uint8_t sequence,
+                                                   Transport::Clock::time_point until) {
+  const auto answer = reply_to(sequence, MessageType::hello_reply, until);
+  link::HelloReply reply{};
+  if (!answer || answer->payload.empty()) return std::nullopt;
+  const auto protocol = std::to_integer<unsigned>(answer->payload.front());
+  if (protocol != link::kProtocolVersion) {
+    throw Failure(Exit::outside, "the firmware speaks version " + std::to_string(protocol) +
+                                     " of the protocol, this rsc version " +
+                                     std::to_string(link::kProtocolVersion) +
+                                     ": flash the firmware of this release");
+  }
+  if (!link::read_payload(answer->payload, reply)) return std::nullopt;
+  orders_.learn(reply.pairing);
+  return reply;
 }
 
 link::Authority Client::authority() {
@@ -195,18 +254,18 @@ link::Devices Client::devices() {
   return request<link::Devices>(MessageType::get_devices, MessageType::devices);
 }
 
-link::Status Client::clear(std::uint32_t image_crc) {
+link::Status Client::clear(const link::ProgramHash& program) {
   return order<link::Status>(MessageType::clear, MessageType::status,
-                             link::wire_bytes(link::Clear{image_crc}));
+                             link::wire_bytes(link::Clear{session_, program}));
 }
 
 link::Kept Client::kept() {
   return request<link::Kept>(MessageType::get_kept, MessageType::kept);
 }
 
-link::Kept Client::roll_back(std::uint32_t to_image_crc) {
+link::Kept Client::roll_back(const link::ProgramHash& to) {
   return order<link::Kept>(MessageType::roll_back, MessageType::kept,
-                           link::wire_bytes(link::RollBack{to_image_crc}));
+                           link::wire_bytes(link::RollBack{session_, to}));
 }
 
 link::Status Client::stop() {
@@ -214,7 +273,8 @@ link::Status Client::stop() {
 }
 
 link::Status Client::resume() {
-  return order<link::Status>(MessageType::resume, MessageType::status);
+  return order<link::Status>(MessageType::resume, MessageType::status,
+                             link::wire_bytes(link::Resume{session_}));
 }
 
 void Client::pair(const link::Pair& owner) {
@@ -256,12 +316,14 @@ link::Status Client::set_trace(bool on) {
   return request<link::Status>(MessageType::trace_on, MessageType::status, link::wire_bytes(wish));
 }
 
-link::FeedResult Client::feed(const link::Feed& feed) {
+link::FeedResult Client::feed(link::Feed feed) {
+  feed.session = session_;
   return order<link::FeedResult>(MessageType::feed, MessageType::feed_result,
                                  link::wire_bytes(feed));
 }
 
-link::ActivateResult Client::activate(const link::Activate& what) {
+link::ActivateResult Client::activate(link::Activate what) {
+  what.session = session_;
   return request<link::ActivateResult>(MessageType::activate, MessageType::activate_result,
                                        link::wire_bytes(what));
 }
@@ -292,7 +354,7 @@ std::vector<std::byte> Client::running_image() {
     const std::uint8_t sequence = send(MessageType::read_image, link::wire_bytes(wish));
     const auto until = std::min(give_up, transport_.now() + kRepeatAfter);
     const auto answer = reply_to(sequence, MessageType::image_data, until);
-    link::Data head{};
+    link::ImageData head{};
     if (!answer || !link::read_prefix(answer->payload, head) || head.offset != image.size()) {
       continue;
     }

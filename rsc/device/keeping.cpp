@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "rsc/device/session.hpp"
 #include "rsc/failure.hpp"
 
 namespace robosync::tool {
@@ -27,9 +28,9 @@ constexpr std::array kKeepingStates = {
 #undef KEEPING
 };
 
-Json program(std::uint32_t bytes, std::uint32_t crc32) {
+Json program(std::uint32_t bytes, const link::ProgramHash& hash) {
   if (bytes == 0) return nullptr;
-  return {{"crc32", crc32}, {"bytes", bytes}};
+  return {{"hash", text_of(hash)}, {"bytes", bytes}};
 }
 
 link::Kept when_read(Client& client) {
@@ -59,10 +60,10 @@ std::string keeping_text(const link::Kept& kept) {
       return "kept: the robot starts with it after a reset";
     case Keeping::on_trial:
       return fmt::format(
-          "kept in {:.1f} s if no thread of it faults; after a reset before then, the robot {}",
+          "kept in {:.1f} s if it stands its trial; after a reset before then, the robot {}",
           kept.trial_ms / 1000.0, instead);
     case Keeping::failed:
-      return fmt::format("not kept: a thread of it has faulted; after a reset the robot {}",
+      return fmt::format("not kept: it has not stood its trial; after a reset the robot {}",
                          instead);
     case Keeping::too_large:
       return fmt::format(
@@ -75,12 +76,28 @@ std::string keeping_text(const link::Kept& kept) {
 Json keeping_json(const link::Kept& kept) {
   const auto state = static_cast<std::size_t>(kept.state);
   Json object{{"state", state < kKeepingStates.size() ? kKeepingStates[state] : "?"},
-              {"program", program(kept.kept_bytes, kept.kept_crc32)},
-              {"previous", program(kept.previous_bytes, kept.previous_crc32)},
+              {"program", program(kept.kept_bytes, kept.kept_hash)},
+              {"previous", program(kept.previous_bytes, kept.previous_hash)},
               {"most_bytes", kept.most_bytes},
               {"trial_ms", kept.trial_ms}};
-  object["given_up"] = kept.given_up_crc32 == 0 ? Json(nullptr) : Json(kept.given_up_crc32);
+  const bool none = kept.given_up_hash == link::ProgramHash{};
+  object["given_up"] = none ? Json(nullptr) : Json(text_of(kept.given_up_hash));
   return object;
+}
+
+link::Kept after_trial(Client& client) {
+  link::Kept kept = when_read(client);
+  while (kept.state == Keeping::on_trial) {
+    std::this_thread::sleep_for(kLook);
+    kept = when_read(client);
+  }
+  return kept;
+}
+
+void expect_kept_program(Client& client) {
+  if (when_read(client).kept_bytes == 0)
+    throw Failure(Exit::program,
+                  "the robot keeps no program that could come back: upload without --no-confirm");
 }
 
 link::HelloReply roll_back(Client& client) {
@@ -89,14 +106,14 @@ link::HelloReply roll_back(Client& client) {
     throw Failure(Exit::program, "this board keeps no programs: there is none to go back to");
   const bool trial = before.state != Keeping::kept;
   const std::uint32_t bytes = trial ? before.kept_bytes : before.previous_bytes;
-  const std::uint32_t crc32 = trial ? before.kept_crc32 : before.previous_crc32;
+  const link::ProgramHash& hash = trial ? before.kept_hash : before.previous_hash;
   if (bytes == 0)
     throw Failure(Exit::program,
                   "the board has kept no program before this one: upload the one you want");
-  client.roll_back(crc32);
+  client.roll_back(hash);
   when_read(client);
   const link::HelloReply board = client.hello();
-  if (board.running == 0 || board.image_crc != crc32)
+  if (board.running == 0 || board.program_hash != hash)
     throw Failure(Exit::program,
                   "the program before is not whole in the board's store: upload the one you want");
   return board;

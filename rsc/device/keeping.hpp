@@ -14,6 +14,11 @@ namespace robosync::tool {
 [[nodiscard]] std::string keeping_text(const link::Kept& kept);
 [[nodiscard]] nlohmann::ordered_json keeping_json(const link::Kept& kept);
 
+// Waits until the trial of the running program is over.
+[[nodiscard]] link::Kept after_trial(Client& client);
+// Throws Failure (program) when there is none that could come back after a trial.
+void expect_kept_program(Client& client);
+
 // Back to the program before the running one; what the board says of it when it runs. Throws Failure (program) when there
 // is none, or it cannot be started.
 link::HelloReply roll_back(Client& client);

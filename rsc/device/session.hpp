@@ -4,28 +4,55 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "rsc/device/client.hpp"
 #include "rsc/device/transport.hpp"
 
 namespace robosync::tool {
 
+enum class Greeting {
+  now,   // waits for the board's answer
+  later  // says hello only, so that more can be sent at once; then greet()
+};
+
 struct Session {
   // Opens the port and says hello. Throws Failure (outside) when there is no port, or no answer
-  // before the timeout.
+  // before the timeout. `take`: see Client.
   explicit Session(const std::string& port,
-                   std::chrono::milliseconds timeout = std::chrono::milliseconds(2000))
-      : transport(open_port(port)), client(*transport, timeout), board(client.hello()) {}
+                   std::chrono::milliseconds timeout = std::chrono::milliseconds(2000),
+                   Greeting greeting = Greeting::now, bool take = false)
+      : transport(open_port(port)), client(*transport, timeout, take) {
+    asked_ = client.send_hello();
+    if (greeting == Greeting::now) greet();
+  }
+
+  [[nodiscard]] bool greeted() const { return !asked_; }
+  // Waits for the answer, once.
+  void greet() {
+    if (asked_) board = client.hello_answer(*std::exchange(asked_, std::nullopt));
+  }
 
   std::unique_ptr<Transport> transport;
   Client client;
-  link::HelloReply board;
+  link::HelloReply board{};
+
+private:
+  std::optional<std::uint8_t> asked_;
 };
 
 // A NUL-padded name from the wire.
 [[nodiscard]] inline std::string text_of(const link::Name& name) {
   return {name.begin(), std::find(name.begin(), name.end(), '\0')};
+}
+
+// A program's name as it is shown.
+[[nodiscard]] inline std::string text_of(const link::ProgramHash& hash) {
+  return fmt::format("{:02x}", fmt::join(hash, ""));
 }
 
 }  // namespace robosync::tool

@@ -14,6 +14,7 @@
 #include "compiler/config/boards.hpp"
 #include "link/frame.hpp"
 #include "link/wire.hpp"
+#include "rsc/device/pieces.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/names.hpp"
 #include "rsc/timing.hpp"
@@ -29,43 +30,62 @@ using std::chrono::milliseconds;
 
 // A window of data takes 45 ms on the wire.
 constexpr milliseconds kWindowTimeout{200};
+constexpr std::size_t kBeside = link::kFrameOverhead + 2;  // of a frame on the wire, its payload
+// A shorter frame than this is not sent to fill a window.
+constexpr std::size_t kWorthAFrame = 64;
 
-link::Begin begin_of(std::span<const std::byte> image) {
-  return {static_cast<std::uint32_t>(image.size()), vm::stated_crc32(image)};
-}
+enum class Until { sent, there };
 
 class Transfer {
 public:
-  Transfer(Client& client, std::uint16_t window, std::span<const std::byte> image,
-           const UploadOptions& options, Transport::Clock::time_point give_up)
-      : client_(client),
-        window_(std::max<std::size_t>(window, link::kMaxEncodedFrame)),
-        image_(image),
-        options_(options),
-        give_up_(give_up) {}
+  Transfer(Client& client, std::span<const std::byte> image, const UploadOptions& options)
+      : client_(client), image_(image), options_(options), pieces_(options.base, image) {
+    if (!options.base.empty()) base_ = vm::stated_name(options.base);
+  }
 
-  // Returns when the board has all of it. The first window goes out with the request to begin:
-  // if the board wants something else, its reply says so.
-  void run() {
-    begin();
-    while (!complete_) {
-      if (client_.now() >= give_up_) {
+  // The first window goes out together with the request to begin: if the board wants something else, its reply says so.
+  // `before`: bytes of another request under way.
+  void begin(std::size_t before = 0) {
+    under_way_.clear();
+    bytes_under_way_ = before;
+    next_ = wanted_;
+    begin_sequence_ = client_.send(MessageType::begin, link::wire_bytes(request()));
+    note_sent(begin_sequence_, sizeof(link::Begin));
+    fill_window(true);
+    bytes_under_way_ -= before;
+  }
+
+  // Returns when all of it is on its way, or the board has it. After begin().
+  void run(Until until, Transport::Clock::time_point give_up) {
+    while (!complete_ && (until == Until::there || next_ < image_.size())) {
+      if (client_.now() >= give_up) {
         throw Failure(Exit::outside,
                       fmt::format("the transfer timed out after {} of {} bytes; the old program "
                                   "goes on",
                                   wanted_, image_.size()));
       }
-      fill_window();
       const std::optional<Message> reply = client_.next_reply(kWindowTimeout);
       if (!reply) {
         begin();  // resumes
       } else {
         take(*reply);
       }
+      fill_window(false);
     }
   }
 
+  // A robot with an owner takes begin() when it was ordered; of others nothing is asked.
+  void order() { client_.order_upload(link::wire_bytes(request()), image_, options_.fresh); }
+
+  // The board does not run the base.
+  void forget_base() {
+    base_ = {};
+    pieces_ = Pieces({}, image_);
+    wanted_ = 0;
+  }
+
   std::size_t frames_sent() const { return frames_sent_; }
+  std::size_t bytes_sent() const { return bytes_sent_; }
 
 private:
   struct UnderWay {
@@ -74,49 +94,61 @@ private:
     std::size_t bytes;  // on the wire
   };
 
-  void begin() {
-    under_way_.clear();
-    bytes_under_way_ = 0;
-    next_ = wanted_;
-    begin_sequence_ = client_.send(MessageType::begin, link::wire_bytes(begin_of(image_)));
+  link::Begin request() const {
+    return {client_.session(), static_cast<std::uint32_t>(image_.size()), vm::stated_name(image_),
+            base_};
   }
 
-  void fill_window() {
-    while (next_ < image_.size()) {
-      const std::size_t length = std::min(link::kMaxData, image_.size() - next_);
-      const std::size_t on_wire = length + sizeof(link::Data) + link::kFrameOverhead + 2;
-      if (bytes_under_way_ + on_wire > window_) return;
-      send_data(length, on_wire);
+  void note_sent(std::uint8_t sequence, std::size_t payload) {
+    under_way_.push_back({sequence, next_, payload + kBeside});
+    bytes_under_way_ += payload + kBeside;
+    bytes_sent_ += payload + kBeside;
+  }
+
+  std::vector<std::byte> payload_of(std::size_t most_bytes, std::size_t& end) const {
+    const link::Data head{static_cast<std::uint16_t>(client_.session()),
+                          static_cast<std::uint16_t>(next_)};
+    const auto bytes = link::wire_bytes(head);
+    std::vector<std::byte> payload(bytes.begin(), bytes.end());
+    end = pieces_.fill(next_, most_bytes, payload);
+    return payload;
+  }
+
+  // Frames as long as they can be, since each costs ten bytes more; but at the beginning the window is filled, for no reply
+  // comes before the line is idle.
+  void fill_window(bool to_the_brim) {
+    while (!complete_ && next_ < image_.size()) {
+      const std::size_t room = kWindow - std::min(kWindow, bytes_under_way_ + kBeside);
+      std::size_t end = 0;
+      std::vector<std::byte> payload = payload_of(link::kMaxPayload, end);
+      if (payload.size() > room) {
+        if (!to_the_brim || room < kWorthAFrame) return;
+        payload = payload_of(room, end);
+      }
+      next_ = end;
+      note_sent(client_.send(MessageType::pieces, payload), payload.size());
+      ++frames_sent_;
     }
   }
 
-  void send_data(std::size_t length, std::size_t on_wire) {
-    std::array<std::byte, link::kMaxPayload> payload{};
-    const link::Data head{static_cast<std::uint32_t>(next_)};
-    std::memcpy(payload.data(), &head, sizeof head);
-    std::memcpy(payload.data() + sizeof head, image_.data() + next_, length);
-    const std::uint8_t sequence =
-        client_.send(MessageType::data, std::span(payload).first(sizeof head + length));
-    next_ += length;
-    under_way_.push_back({sequence, next_, on_wire});
-    bytes_under_way_ += on_wire;
-    ++frames_sent_;
-  }
-
   void take(const Message& reply) {
+    if (reply.type == MessageType::busy) {
+      client_.reopen(reply, reopened_);
+      return begin();
+    }
     link::TransferStatus status{};
     if (reply.type != MessageType::transfer_status || !link::read_payload(reply.payload, status) ||
         status.next_offset > image_.size()) {
       return;
     }
-    if (reply.sequence == begin_sequence_) return take_begin(status);
     // Frames before the one answered have been answered as well, or that got lost.
     const auto answered = std::ranges::find(under_way_, reply.sequence, &UnderWay::sequence);
-    if (answered == under_way_.end()) return;  // from before we went back
+    if (answered == under_way_.end()) return take_late(status);
     const std::size_t end = answered->end;
     for (auto at = under_way_.begin(); at != answered + 1; ++at)
       bytes_under_way_ -= at->bytes;
     under_way_.erase(under_way_.begin(), answered + 1);
+    if (reply.sequence == begin_sequence_) return take_begin(status, end);
     note(status);
     if (status.state == link::TransferState::no_transfer) {
       wanted_ = 0;  // the board has been reset
@@ -126,7 +158,16 @@ private:
     }
   }
 
-  void take_begin(const link::TransferStatus& status) {
+  // From before we went back: it says less than what is under way, unless this line, or this computer, is that slow.
+  void take_late(const link::TransferStatus& status) {
+    const bool comes = status.state == link::TransferState::receiving ||
+                       status.state == link::TransferState::complete;
+    if (!comes || status.next_offset <= wanted_) return;
+    note(status);
+    next_ = std::max(next_, wanted_);
+  }
+
+  void take_begin(const link::TransferStatus& status, std::size_t assumed) {
     if (status.state == link::TransferState::too_large) {
       throw Failure(
           Exit::program,
@@ -135,7 +176,10 @@ private:
               "rsc upload --replace ends the running program first",
               status.next_offset, image_.size()));
     }
-    const std::size_t assumed = wanted_;
+    if (status.state == link::TransferState::other_base) {
+      forget_base();
+      return begin();
+    }
     note(status);
     if (wanted_ != assumed && !complete_) go_back();
   }
@@ -153,19 +197,49 @@ private:
     next_ = wanted_;
   }
 
+  static constexpr std::size_t kWindow = link::kReceiveWindow;
+
   Client& client_;
-  std::size_t window_;
   std::span<const std::byte> image_;
   const UploadOptions& options_;
-  Transport::Clock::time_point give_up_;
+  Pieces pieces_;
+  link::ProgramHash base_{};
   std::deque<UnderWay> under_way_;
   std::size_t bytes_under_way_ = 0;
   std::size_t next_ = 0;    // first byte not sent
   std::size_t wanted_ = 0;  // as the board said last
   std::uint8_t begin_sequence_ = 0;
   bool complete_ = false;
+  bool reopened_ = false;
   std::size_t frames_sent_ = 0;
+  std::size_t bytes_sent_ = 0;
 };
+
+// Of a transfer that has begun. The request to activate goes out behind the last piece: what got lost before it, the board says.
+// One that was reset, or that another host began a transfer with, has nothing to activate: then the rest is sent again.
+UploadResult finish(Client& client, Transfer& transfer, std::span<const std::byte> image,
+                    const UploadOptions& options, Transport::Clock::time_point start) {
+  const auto give_up = start + options.timeout.value_or(patience(image.size()));
+  const link::Activate wish{.session = client.session(),
+                            .hash = vm::stated_name(image),
+                            .trial_ms = static_cast<std::uint32_t>(options.trial.count()),
+                            .goes_back = static_cast<std::uint8_t>(!options.confirm),
+                            .fresh = static_cast<std::uint8_t>(options.fresh)};
+  UploadResult result;
+  result.bytes = image.size();
+  transfer.run(Until::sent, give_up);
+  result.activation = client.activate(wish);
+  while (result.activation.refusal == link::kNothingToActivate && client.now() < give_up) {
+    transfer.order();
+    transfer.begin();
+    transfer.run(Until::there, give_up);
+    result.activation = client.activate(wish);
+  }
+  result.frames_sent = transfer.frames_sent();
+  result.bytes_sent = transfer.bytes_sent();
+  result.time = std::chrono::duration_cast<std::chrono::microseconds>(client.now() - start);
+  return result;
+}
 
 void check_driver(const link::HelloReply& board, vm::DriverId id, std::string_view what,
                   std::string_view name, std::vector<std::string>& found) {
@@ -221,24 +295,13 @@ std::vector<std::string> obstacles(const link::HelloReply& board, const vm::Imag
   return found;
 }
 
-// A board that was reset, or that another host began a transfer with, has nothing to activate: it
-// is sent again.
-UploadResult upload(Client& client, const link::HelloReply& hello, std::span<const std::byte> image,
-                    const UploadOptions& options) {
+UploadResult upload(Client& client, const link::HelloReply& /*hello*/,
+                    std::span<const std::byte> image, const UploadOptions& options) {
   const auto start = client.now();
-  const auto give_up = start + options.timeout.value_or(patience(image.size()));
-  UploadResult result;
-  result.bytes = image.size();
-  do {
-    client.order_upload(link::wire_bytes(begin_of(image)), image, options.fresh);
-    Transfer transfer(client, hello.receive_window, image, options, give_up);
-    transfer.run();
-    result.frames_sent += transfer.frames_sent();
-    result.activation =
-        client.activate({vm::stated_crc32(image), static_cast<std::uint8_t>(options.fresh), {}});
-  } while (result.activation.refusal == link::kNothingToActivate && client.now() < give_up);
-  result.time = std::chrono::duration_cast<std::chrono::microseconds>(client.now() - start);
-  return result;
+  Transfer transfer(client, image, options);
+  transfer.order();
+  transfer.begin();
+  return finish(client, transfer, image, options, start);
 }
 
 namespace {
@@ -279,12 +342,20 @@ void refuse_modules_in_files(const vm::Image& image) {
 
 UploadResult upload_program(Session& session, const Program& program,
                             const UploadOptions& options) {
-  refuse_modules_in_files(program.image());
+  Client& client = session.client;
+  const std::vector<std::byte> image = without_source_lines(program);
+  const auto start = client.now();
+  Transfer transfer(client, image, options);
+  const bool at_once = !session.greeted() && !options.replace;
+  if (at_once) transfer.begin(sizeof(link::Hello) + kBeside);
+  session.greet();
   check_board(session, program);
-  if (options.replace && session.board.running != 0)
-    (void)session.client.clear(session.board.image_crc);
-  const UploadResult result =
-      upload(session.client, session.board, without_source_lines(program), options);
+  if (options.replace && session.board.running != 0) (void)client.clear(session.board.program_hash);
+  if (!options.base.empty() && vm::stated_name(options.base) != session.board.program_hash)
+    transfer.forget_base();
+  transfer.order();
+  if (!at_once || client.signs()) transfer.begin();
+  const UploadResult result = finish(client, transfer, image, options, start);
   check_result(result.activation, program);
   return result;
 }

@@ -1,7 +1,6 @@
 #include "rsc/lsp/library.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <span>
 #include <string>
 #include <system_error>
@@ -17,14 +16,8 @@ namespace {
 
 // Empty when this user has no place for such files.
 fs::path library_folder() {
-  const char* const cache = std::getenv("XDG_CACHE_HOME");
-  const char* const home = std::getenv("HOME");
-  fs::path base;
-  if (cache != nullptr && fs::path(cache).is_absolute()) base = cache;
-  if (base.empty() && home != nullptr && fs::path(home).is_absolute())
-    base = fs::path(home) / ".cache";
-  if (base.empty()) return {};
-  return (base / "robosync" / ("stdlib-" ROBOSYNC_VERSION)).lexically_normal();
+  const fs::path cache = cache_folder();
+  return cache.empty() ? cache : cache / ("stdlib-" ROBOSYNC_VERSION);
 }
 
 bool has_text(const fs::path& path, std::string_view text) {

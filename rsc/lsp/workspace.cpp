@@ -72,7 +72,6 @@ Checked compile_program(const std::string& program, const Texts& texts) {
   try {
     if (!is_program(program)) return Checked(alone(program, texts));
     CompileOptions how;
-    how.hash = false;
     how.judged = Judged::by_time;
     return Checked(compile_file(program, how, texts));
   } catch (const Failure& failure) {

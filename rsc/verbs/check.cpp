@@ -93,7 +93,6 @@ void add_check(Options& options) {
   add_compile_options(options, asked->how);
   add_format_option(options, asked->format);
   options.runs([asked] {
-    asked->how.hash = false;  // nobody keeps the image
     asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;
     check(*asked);
   });

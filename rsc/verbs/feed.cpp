@@ -80,7 +80,8 @@ std::string describe(link::FeedError error, const vm::Image& image, const Stimul
 void send(Session& session, const vm::Image& image, const Stimulus& stimulus) {
   const auto give_up = session.client.now() + kQueueTimeout;
   while (true) {
-    const link::Feed feed{stimulus.at_us, stimulus.channel, stimulus.value};
+    const link::Feed feed{
+        .channel = stimulus.channel, .at_us = stimulus.at_us, .value = stimulus.value};
     const link::FeedResult result = session.client.feed(feed);
     if (result.error == link::FeedError::none) return;
     if (result.error != link::FeedError::queue_full || session.client.now() >= give_up) {

@@ -25,10 +25,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string hash(const link::HelloReply& board) {
-  return fmt::format("{:02x}", fmt::join(board.program_hash, ""));
-}
-
 // What the running program takes, part by part: worked out from its image, as the board does it.
 using Shares = std::array<std::uint32_t, policy::kWhose>;
 std::optional<Shares> shares_of(const link::HelloReply& board, std::span<const std::byte> bytes) {
@@ -71,8 +67,7 @@ Json board_json(const link::HelloReply& board, std::span<const std::byte> image)
               {"stopped", board.stopped != 0},
               {"program", nullptr}};
   if (board.running != 0) {
-    object["program"] = {
-        {"hash", hash(board)}, {"crc32", board.image_crc}, {"bytes", board.image_bytes}};
+    object["program"] = {{"hash", text_of(board.program_hash)}, {"bytes", board.image_bytes}};
   }
   return object;
 }
@@ -138,15 +133,16 @@ void print_human(const link::HelloReply& board, std::span<const std::byte> image
   std::cout << memory_text(board, image);
   std::cout << fmt::format("takes     steps up to {} instructions\n", board.step_budget);
   if (board.running != 0) {
-    std::cout << fmt::format("program   {} ({} bytes), for {:.3f} s, {} steps\n", hash(board),
-                             board.image_bytes, static_cast<double>(status.program_us) / 1e6,
-                             status.steps);
+    std::cout << fmt::format("program   {} ({} bytes), for {:.3f} s, {} steps\n",
+                             text_of(board.program_hash), board.image_bytes,
+                             static_cast<double>(status.program_us) / 1e6, status.steps);
   } else {
     std::cout << "program   none\n";
   }
   std::cout << "reset     " << keeping_text(kept) << '\n';
-  if (kept.given_up_crc32 != 0)
-    std::cout << "given up  a program that was uploaded: a thread of it faulted in its trial\n";
+  if (kept.given_up_hash != link::ProgramHash{})
+    std::cout << fmt::format("given up  program {}: it did not stand its trial\n",
+                             text_of(kept.given_up_hash));
   if (board.stopped != 0)
     std::cout << "stopped   all outputs are in their safe state until `rsc resume`\n";
   std::cout << "up        " << past_text(status) << '\n';

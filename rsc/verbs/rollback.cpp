@@ -23,8 +23,8 @@ void add_rollback(Options& options) {
     Session session(asked->port);
     session.client.use_key(asked->key);
     const link::HelloReply board = roll_back(session.client);
-    std::cout << fmt::format("program {:02x} runs again ({} bytes)\n",
-                             fmt::join(board.program_hash, ""), board.image_bytes);
+    std::cout << fmt::format("program {} runs again ({} bytes)\n", text_of(board.program_hash),
+                             board.image_bytes);
   });
 }
 

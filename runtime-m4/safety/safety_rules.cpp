@@ -24,6 +24,7 @@ void SafetyRules::start(const layers::LoadedProgram& program, layers::Memory& me
   tripped_.start(memory.take<policy::Part::tripped, layers::RuleSet::Word>());
   output_ = memory.take<policy::Part::safety_output, vm::Word>();
   are_there_ = program.image.has_safety();
+  have_tripped_ = false;
   layers_.alarm.watch(are_there_ ? program.inputs[vm::kSafetyBehavior] : 0);
   if (are_there_) machine_ = layers_.frames.machine(program, vm::kSafetyBehavior);
 }
@@ -72,6 +73,7 @@ void SafetyRules::tell_zero_divide(unsigned rule) {
 
 void SafetyRules::trip(unsigned rule) {
   tripped_.insert(rule);
+  have_tripped_.store(true, std::memory_order_relaxed);
   layers_.trace.emit(EventKind::trip, layers_.trace.now(), rule);
   const vm::Image& image = program_->image;
   machine_.output = output_.data();

@@ -9,6 +9,7 @@
 // halted take no command meanwhile, nor while another tripped rule halts them.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 
@@ -48,6 +49,8 @@ public:
   // Evaluates all rules; it is `now`. Returns when a time word of theirs is due.  [safety thread]
   kernel::Time look(kernel::Time now);
 
+  bool have_tripped() const { return have_tripped_; }  // one of them, since start()  [any]
+
 private:
   void evaluate(unsigned rule, kernel::Time now);
   vm::Value truth_of(unsigned rule);
@@ -67,6 +70,7 @@ private:
   kernel::Events acted_;  // signalled when something was set
   const layers::LoadedProgram* program_ = nullptr;
   bool are_there_ = false;
+  std::atomic<bool> have_tripped_ = false;
   layers::RuleSet tripped_;
   vm::Machine machine_;
   std::span<vm::Word> output_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "vm/identity.hpp"
+
 namespace robosync::update {
 
 using link::Keeping;
@@ -16,13 +18,14 @@ void Keeper::boot(bool failed) {
 Keeper::Program Keeper::running_program() const {
   if (!runtime_.running()) return {};
   const vm::ImageHeader& header = *runtime_.image().header;
-  return {header.total_length, header.crc32};
+  return {header.total_length, header.program_hash};
 }
 
-void Keeper::activated() {
+void Keeper::activated(const link::Activate& how) {
   running_ = running_program();
   failed_ = false;
-  trial_ends_ = kernel_.now() + kTrial;
+  trial_ends_ = kernel_.now() + (how.trial_ms != 0 ? kernel::milliseconds(how.trial_ms) : kTrial);
+  goes_back_ = how.goes_back != 0;
   fault_ = false;
   next_look_ = kernel_.now() + kLook;
   write_running();
@@ -50,13 +53,14 @@ void Keeper::host_activates(bool fresh) {
   while (opens())
     if (!work()) kernel_.sleep_until(due_);
   numbers_.learn(runtime_);
+  trips_count_ = runtime_.running() && !runtime_.has_tripped();
   runtime_.begin_with(fresh ? std::span<const layers::KeptNumber>() : numbers_.all());
 }
 
-void Keeper::roll_back(std::uint32_t crc32) {
+void Keeper::roll_back(const link::ProgramHash& hash) {
   const bool trial = running_ != store_.kept();
   const Program target = trial ? store_.kept() : store_.previous();
-  if (target.bytes == 0 || target.crc32 != crc32 || opens() || reads()) return;
+  if (target.bytes == 0 || target.hash != hash || opens() || reads()) return;
   read(trial ? Doing::giving_up_trial : Doing::rolling_back);
 }
 
@@ -64,7 +68,7 @@ void Keeper::roll_back(std::uint32_t crc32) {
 void Keeper::write_running() {
   doing_ = Doing::nothing;
   store_.give_up();
-  if (!on_trial() || !fits()) return;
+  if (!on_trial() || !fits() || goes_back_) return;
   store_.write({reinterpret_cast<const std::byte*>(runtime_.image().header), running_.bytes},
                running_);
   doing_ = Doing::writing;
@@ -90,7 +94,7 @@ void Keeper::read_the_other(Doing instead_of) {
 
 bool Keeper::work() {
   due_ = kernel::kForever;
-  if (fault_ && on_trial() && (doing_ == Doing::nothing || doing_ == Doing::writing))
+  if (on_trial() && fails_trial() && (doing_ == Doing::nothing || doing_ == Doing::writing))
     return give_up_trial();
   if (waits_for_a_gap()) return false;
   const bool of_numbers = doing_ == Doing::opening_numbers || doing_ == Doing::writing_numbers;
@@ -183,7 +187,8 @@ void Keeper::start_what_was_read() {
   if (failed_) runtime_.stop();
   failed_ = false;
   const bool whole = image.size() == wanted.bytes;
-  if (whole && vm::stated_crc32(image) == wanted.crc32 && runtime_.activate(image).ok()) {
+  if (whole && vm::stated_name(image) == wanted.hash && vm::is_named(image, {}) &&
+      runtime_.activate(image).ok()) {
     running_ = wanted;
     next_look_ = kernel_.now() + kLook;
     fault_ = false;
@@ -195,36 +200,51 @@ void Keeper::start_what_was_read() {
   }
 }
 
+bool Keeper::fails_trial() const {
+  return fault_ || (trips_count_ && runtime_.has_tripped());
+}
+
 // Without a program to go back to it runs on, and is not kept.
 bool Keeper::give_up_trial() {
   fault_ = false;
-  given_up_ = running_.crc32;
+  trips_count_ = false;
+  given_up_ = running_.hash;
+  go_back();
+  return true;
+}
+
+void Keeper::go_back() {
+  goes_back_ = false;
   trial_ends_ = kernel::kForever;
   store_.give_up();
   doing_ = Doing::nothing;
   if (store_.kept().bytes != 0) read(Doing::giving_up_trial);
-  return true;
 }
 
 // True when there is something to do because it is over.
 bool Keeper::judge_trial() {
-  if (!on_trial() || doing_ != Doing::nothing || store_.written() != running_) return false;
-  if (kernel_.now() < trial_ends_) {
-    due_ = trial_ends_;
+  if (!on_trial() || doing_ != Doing::nothing) return false;
+  if (!goes_back_ && store_.written() != running_) return false;
+  if (const kernel::Time now = kernel_.now(); now < trial_ends_) {
+    due_ = trips_count_ ? std::min(trial_ends_, now + kTripSeen) : trial_ends_;
     return false;
   }
-  store_.keep_written();
-  doing_ = Doing::recording;
+  if (goes_back_) {
+    go_back();
+  } else {
+    store_.keep_written();
+    doing_ = Doing::recording;
+  }
   return true;
 }
 
 void Keeper::fill(link::Kept& answer) const {
   answer.kept_bytes = store_.kept().bytes;
-  answer.kept_crc32 = store_.kept().crc32;
+  answer.kept_hash = store_.kept().hash;
   answer.previous_bytes = store_.previous().bytes;
-  answer.previous_crc32 = store_.previous().crc32;
+  answer.previous_hash = store_.previous().hash;
   answer.most_bytes = store_.most_bytes();
-  answer.given_up_crc32 = given_up_;
+  answer.given_up_hash = given_up_;
   const kernel::Time now = kernel_.now();
   const bool swaps = doing_ == Doing::recording && running_ == store_.previous();
   if (opens() || reads() || swaps) {

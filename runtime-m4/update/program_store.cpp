@@ -53,7 +53,7 @@ void ProgramStore::swap() {
 }
 
 void ProgramStore::write_record(Program kept, Program previous, std::uint32_t slot) {
-  next_ = {Record::kMagic, record_.number + 1, kept, previous, slot, 0};
+  next_ = {Record::kMagic, record_.number + 1, kept, previous, slot, {}, 0};
   next_.crc32 = vm::crc32(std::as_bytes(std::span(&next_, 1)).first(offsetof(Record, crc32)));
   task_ = Task::record;
   transfer_.write(layout().record_at(next_.number % StoreLayout::kRecords),

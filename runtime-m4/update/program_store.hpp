@@ -4,7 +4,7 @@
 // Each stands in a slot of its own. Which is which says a record, of which there are two, on pages of their own: the
 // whole one with the higher number counts. An image is written into the slot of the program before, and after it
 // the older record; so a cut of the power at any byte leaves either the kept program of before or the new one.
-// That an image is whole is seen when it is read: its own CRC, and the verifier.
+// That an image is whole is seen when it is read: its own CRC and name, and the verifier.
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <span>
 
+#include "link/messages.hpp"
 #include "runtime-m4/update/store_layout.hpp"
 #include "runtime-m4/update/store_transfer.hpp"
 
@@ -21,7 +22,7 @@ class ProgramStore {
 public:
   struct Program {
     std::uint32_t bytes;  // 0: none
-    std::uint32_t crc32;  // ImageHeader::crc32
+    link::ProgramHash hash;
     bool operator==(const Program&) const = default;
   };
 
@@ -51,11 +52,12 @@ private:
   enum class Task : std::uint8_t { none, open, read, write, record };
 
   struct Record {
-    static constexpr std::uint32_t kMagic = 0x3150'5352;  // "RSP1"
+    static constexpr std::uint32_t kMagic = 0x3250'5352;  // "RSP2"
     std::uint32_t magic;
     std::uint32_t number;
     Program kept, previous;
-    std::uint32_t slot;   // of the kept one: 0 or 1
+    std::uint32_t slot;  // of the kept one: 0 or 1
+    std::array<std::uint32_t, 2> reserved;
     std::uint32_t crc32;  // of what stands before it
   };
   static_assert(sizeof(Record) % boards::Store::kPiece == 0);

@@ -42,11 +42,11 @@ link::ThreadInfo describe(const kernel::Kernel& kernel, const kernel::Thread& th
 // Offset, then as much of `image` from there as fits.
 std::size_t fill_image_data(std::span<const std::byte> image, std::uint32_t offset,
                             std::span<std::byte, link::kMaxPayload> payload) {
-  const link::Data head{offset};
+  const link::ImageData head{offset};
   std::memcpy(payload.data(), &head, sizeof head);
   if (offset >= image.size()) return sizeof head;
-  const auto part =
-      image.subspan(offset, std::min<std::size_t>(link::kMaxData, image.size() - offset));
+  const auto part = image.subspan(
+      offset, std::min<std::size_t>(payload.size() - sizeof head, image.size() - offset));
   std::copy(part.begin(), part.end(), payload.begin() + sizeof head);
   return sizeof head + part.size();
 }
@@ -122,17 +122,23 @@ void Server::handle(const link::Frame& received) {
       gate_.unpair();
       return authority(frame.sequence);
     default:
-      return answer(frame);
+      return session_.admits(frame) ? answer(frame) : busy(frame.sequence);
   }
+}
+
+void Server::busy(std::uint8_t sequence) {
+  const link::Busy answer = session_.busy(kernel_.now());
+  send(MessageType::busy, sequence, link::wire_bytes(answer));
 }
 
 void Server::answer(const link::Frame& frame) {
   switch (frame.type) {
     case MessageType::hello:
-      return hello(frame.sequence);
+      return hello(frame);
     case MessageType::begin:
       return begin(frame);
     case MessageType::data:
+    case MessageType::pieces:
       return data(frame);
     case MessageType::activate:
       return activate(frame);
@@ -147,7 +153,7 @@ void Server::answer(const link::Frame& frame) {
     case MessageType::stop:
       return stop(frame.sequence);
     case MessageType::resume:
-      return resume(frame.sequence);
+      return resume(frame);
     case MessageType::get_threads:
       return list_threads(frame.sequence);
     case MessageType::trace_on:
@@ -165,8 +171,11 @@ void Server::answer(const link::Frame& frame) {
   }
 }
 
-void Server::hello(std::uint8_t sequence) {
+// A host of another protocol says it otherwise, and has no session; from the answer it knows why.
+void Server::hello(const link::Frame& frame) {
   ring_.listen(false);  // a new host; it says itself what it wants to hear
+  link::Hello host{};
+  if (link::read_payload(frame.payload, host)) session_.open(host, in_transfer(), kernel_.now());
   link::HelloReply answer{};
   answer.protocol = link::kProtocolVersion;
   answer.image_major = vm::kFormatMajor;
@@ -179,17 +188,22 @@ void Server::hello(std::uint8_t sequence) {
   answer.arena_used = runtime_.needs().total;
   answer.step_budget = runtime_.limits().step_cost;
   answer.drivers = runtime_.limits().drivers;
-  answer.receive_window = kReceiveWindow;
+  answer.receive_window = link::kReceiveWindow;
   answer.stopped = runtime_.stopped() ? 1 : 0;
   answer.pairing = gate_.pairing();
   if (runtime_.running()) {
     const vm::ImageHeader& header = *runtime_.image().header;
     answer.running = 1;
     answer.program_hash = header.program_hash;
-    answer.image_crc = header.crc32;
     answer.image_bytes = header.total_length;
   }
-  send(MessageType::hello_reply, sequence, link::wire_bytes(answer));
+  send(MessageType::hello_reply, frame.sequence, link::wire_bytes(answer));
+}
+
+// A host that has gone away is not waited for.
+bool Server::in_transfer() const {
+  const link::TransferState state = receiver_.status().state;
+  return state != link::TransferState::idle && kernel_.now() < keeper_.heard() + Keeper::kSilence;
 }
 
 // Not before the board has done so at the sight of the frame; but another host may number its frames otherwise.
@@ -201,10 +215,15 @@ void Server::stop(std::uint8_t sequence) {
 }
 
 // One that was sent before the last stop must not undo it. It has no reply, so that a host that means it asks again.
-void Server::resume(std::uint8_t sequence) {
+void Server::resume(const link::Frame& frame) {
+  link::Resume request{};
+  if (!link::read_payload(frame.payload, request)) {
+    ++bad_requests_;
+    return;
+  }
   if (stops_read_ != stops_seen_.load(std::memory_order_relaxed)) return;
   runtime_.resume();
-  status(sequence);
+  status(frame.sequence);
 }
 
 void Server::begin(const link::Frame& frame) {
@@ -215,8 +234,12 @@ void Server::begin(const link::Frame& frame) {
   }
   have_result_ = false;
   keeper_.host_sends();
-  const link::TransferStatus answer = receiver_.begin(request, runtime_.room());
-  send(MessageType::transfer_status, frame.sequence, link::wire_bytes(answer));
+  const bool takes_pieces = request.base != link::ProgramHash{};
+  if (takes_pieces && vm::stated_name(running_image()) != request.base)
+    return received(frame.sequence, {0, link::TransferState::other_base});
+  received(frame.sequence,
+           receiver_.begin(request, runtime_.room(),
+                           takes_pieces ? running_image() : std::span<const std::byte>()));
 }
 
 void Server::data(const link::Frame& frame) {
@@ -226,9 +249,16 @@ void Server::data(const link::Frame& frame) {
     return;
   }
   if (receiver_.status().state != link::TransferState::idle) keeper_.host_sends();
-  const link::TransferStatus answer =
-      receiver_.data(head.offset, frame.payload.subspan(sizeof head));
-  send(MessageType::transfer_status, frame.sequence, link::wire_bytes(answer));
+  const std::span<const std::byte> bytes = frame.payload.subspan(sizeof head);
+  received(frame.sequence, frame.type == MessageType::data ? receiver_.data(head.offset, bytes)
+                                                           : receiver_.pieces(head.offset, bytes));
+}
+
+// While the rest is on its way the board works out the name of what it has.
+void Server::received(std::uint8_t sequence, link::TransferStatus answer) {
+  send(MessageType::transfer_status, sequence, link::wire_bytes(answer));
+  if (answer.next_offset == 0) identity_ = {};
+  identity_.follow(receiver_.bytes());
 }
 
 // The reply may get lost and the host ask again: then the answer is the same, and nothing is done
@@ -239,28 +269,28 @@ void Server::activate(const link::Frame& frame) {
     ++bad_requests_;
     return;
   }
-  const bool whole = receiver_.complete() && receiver_.crc32() == request.image_crc32;
+  const bool whole = receiver_.complete() && receiver_.hash() == request.hash;
   if (whole && !gate_.grants(receiver_.bytes(), request.fresh != 0)) {
     receiver_.reset();  // it is not what the owner has signed: all of it again
   } else if (whole) {
     keeper_.host_activates(request.fresh != 0);
     last_result_ = activate_received();
-    last_activated_ = request.image_crc32;
+    last_activated_ = request.hash;
     have_result_ = true;
     receiver_.reset();
-    if (last_result_.running != 0) keeper_.activated();
+    if (last_result_.running != 0) keeper_.activated(request);
     if (!runtime_.running()) keeper_.ends();
   }
   link::ActivateResult answer{};
   answer.refusal = link::kNothingToActivate;
-  if (have_result_ && last_activated_ == request.image_crc32) answer = last_result_;
+  if (have_result_ && last_activated_ == request.hash) answer = last_result_;
   send(MessageType::activate_result, frame.sequence, link::wire_bytes(answer));
 }
 
 link::ActivateResult Server::activate_received() {
   const std::span<const std::byte> bytes = receiver_.bytes();
-  vm::Verdict verdict{vm::Refusal::bad_crc, vm::Section::header, 0};
-  if (vm::stated_crc32(bytes) == receiver_.crc32()) verdict = runtime_.activate(bytes);
+  const bool named = vm::stated_name(bytes) == receiver_.hash() && vm::is_named(bytes, identity_);
+  const vm::Verdict verdict = runtime_.activate(bytes, named);
   return {.running = static_cast<std::uint8_t>(verdict.ok()),
           .refusal = static_cast<std::uint8_t>(verdict.refusal),
           .section = static_cast<std::uint8_t>(verdict.section),
@@ -300,7 +330,7 @@ void Server::clear(const link::Frame& frame) {
     ++bad_requests_;
     return;
   }
-  if (runtime_.running() && runtime_.image().header->crc32 == request.image_crc) {
+  if (runtime_.running() && vm::stated_name(running_image()) == request.hash) {
     keeper_.ends();
     runtime_.clear();
     receiver_.reset();  // the room is another
@@ -331,7 +361,7 @@ void Server::roll_back(const link::Frame& frame) {
     ++bad_requests_;
     return;
   }
-  keeper_.roll_back(request.image_crc);
+  keeper_.roll_back(request.hash);
   kept(frame.sequence);
 }
 

@@ -25,13 +25,11 @@
 #include "runtime-m4/update/line_writer.hpp"
 #include "runtime-m4/update/open_gate.hpp"
 #include "runtime-m4/update/order_gate.hpp"
+#include "runtime-m4/update/session.hpp"
 #include "runtime-m4/update/trace_ring.hpp"
+#include "vm/identity.hpp"
 
 namespace robosync::update {
-
-// Data the host may have under way. The UART's receive buffer must hold that many bytes: while the
-// board verifies an image it does not read the line.
-inline constexpr std::uint16_t kReceiveWindow = 2 * link::kMaxEncodedFrame;
 
 #ifdef ROBOSYNC_AUTHENTICATION
 inline constexpr bool kAuthentication = true;
@@ -76,15 +74,16 @@ private:
 
   void handle(const link::Frame& received);
   void answer(const link::Frame& frame);
+  void busy(std::uint8_t sequence);
   void authority(std::uint8_t sequence);
   void pair(const link::Frame& frame);
-  void hello(std::uint8_t sequence);
+  void hello(const link::Frame& frame);
   void begin(const link::Frame& frame);
   void data(const link::Frame& frame);
   void activate(const link::Frame& frame);
   void feed(const link::Frame& frame);
   void stop(std::uint8_t sequence);
-  void resume(std::uint8_t sequence);
+  void resume(const link::Frame& frame);
   void status(std::uint8_t sequence);
   void last_fault(std::uint8_t sequence);
   void devices(std::uint8_t sequence);
@@ -95,6 +94,8 @@ private:
   void kept(std::uint8_t sequence);
   void roll_back(const link::Frame& frame);
 
+  bool in_transfer() const;
+  void received(std::uint8_t sequence, link::TransferStatus answer);
   link::ActivateResult activate_received();
   std::span<const std::byte> running_image() const;
   void send(link::MessageType type, std::uint8_t sequence, std::span<const std::byte> payload) {
@@ -116,9 +117,11 @@ private:
   std::uint32_t bad_requests_ = 0;             // good frames with a payload of the wrong length
   std::uint8_t unasked_sequence_ = 0;          // of events, logs, faults
 
+  LineSession session_;
   link::Receiver receiver_;
+  vm::Identity identity_;               // of what it has received
   link::ActivateResult last_result_{};  // repeated when the host asks again
-  std::uint32_t last_activated_ = 0;    // … the CRC-32 of the image that it is about
+  link::ProgramHash last_activated_{};  // … the program that it is about
   bool have_result_ = false;
   std::conditional_t<kAuthentication, OrderGate, OpenGate> gate_;
   Keeper keeper_;

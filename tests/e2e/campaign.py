@@ -147,16 +147,17 @@ class Line(wire.Line):
         raise Violation(f"no answer to {name}")
 
     def upload(self, image):
-        size, crc = len(image), int.from_bytes(image[4:8], "little")
+        size, name = len(image), wire.name_of(image)
+        self.patient("hello", self.introduction(), "hello_reply")
         for _ in range(ATTEMPTS):
-            begun = wire.pack("Begin", size=size, crc32=crc)
+            begun = self.beginning(size, name)
             status = wire.unpack("TransferStatus", self.patient("begin", begun, "transfer_status"))
             while status.next_offset < size:
                 at = status.next_offset
-                data = wire.pack("Data", offset=at) + image[at:at + 236]
+                data = wire.piece_head(self.session, at) + image[at:at + 236]
                 status = wire.unpack("TransferStatus", self.patient("data", data, "transfer_status"))
             yield status
-            if wire.unpack("ActivateResult", self.patient("activate", wire.activation(crc), reply="activate_result")).running:
+            if wire.unpack("ActivateResult", self.patient("activate", wire.activation(self.session, name), reply="activate_result")).running:
                 return
         raise Violation("a good program is refused")
 
@@ -313,8 +314,8 @@ class Run:
         self.robot.line.send_raw(self.random.randbytes(self.random.randint(1, 600)))
 
     def cut_upload(self):
-        self.robot.line.send_raw(b"\0" + wire.frame("begin", wire.pack("Begin", size=2000, crc32=self.random.getrandbits(32))))
-        data = wire.frame("data", wire.pack("Data", offset=0) + self.random.randbytes(200))
+        self.robot.line.send_raw(b"\0" + wire.frame("begin", self.robot.line.beginning(2000, self.random.randbytes(8))))
+        data = wire.frame("data", wire.piece_head(self.robot.line.session, 0) + self.random.randbytes(200))
         self.robot.line.send_raw(data[:self.random.randrange(len(data))])
         self.to(self.random.choice(list(PLACES)))
 
@@ -352,7 +353,7 @@ class Robot:
         """(address, bytes) of what the behaviours' threads may write."""
         uploaded = self.line.upload(self.image)
         next(uploaded)
-        activate = wire.frame("activate", wire.activation(int.from_bytes(self.image[4:8], "little")))
+        activate = wire.frame("activate", wire.activation(self.line.session, wire.name_of(self.image)))
         with Control(self.gdb) as debugger:
             debugger.run_to(self.at["grant"], lambda: self.line.send_raw(activate))
             _, _, begin, size = debugger.read_words(debugger.register(1), 4)
@@ -375,7 +376,7 @@ class Robot:
             self.board.set_touch(1, channel)
         for _ in self.line.upload(self.image):
             pass
-        self.line.patient("resume", reply="status")
+        self.line.patient("resume", wire.pack("Resume", session=self.line.session), "status")
         give_up = time.monotonic() + 20
         while not all(self.pulses()[pin] for pin in (ARM, MOTOR)):
             if time.monotonic() > give_up:

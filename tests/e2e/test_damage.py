@@ -4,19 +4,13 @@ import random
 import re
 import struct
 import unittest
-import zlib
 
 import rsc
 import wire
 from support import PROGRAMS, LineReader, RobotTest
 
 REFUSALS = ["none"] + re.findall(r"^REFUSAL\((\w+),", (rsc.ROOT / "vm/refusals.def").read_text(), re.M)
-CRC_AT, BODY_AT = 4, 8  # ImageHeader: magic, CRC-32 of everything behind it
-
-
-def with_crc(image):
-    """The same bytes with the checksum put right."""
-    return image[:CRC_AT] + struct.pack("<I", zlib.crc32(image[BODY_AT:])) + image[BODY_AT:]
+BODY_AT = 8  # ImageHeader: magic, CRC-32 of everything behind it
 
 
 class Damage(RobotTest):
@@ -70,21 +64,22 @@ class Damage(RobotTest):
             damaged = bytearray(self.image)
             for _ in range(random_.choice([1, 1, 2, 5])):
                 damaged[random_.randrange(BODY_AT, len(damaged))] = random_.randrange(256)
-            seen.add(self.activate(with_crc(bytes(damaged))))
+            seen.add(self.activate(wire.sealed(bytes(damaged))))
         status = self.line.status()
         self.assertGreater(status.uptime_us, uptime)
         self.assertEqual((status.faults, status.reset_reason), (0, 0))
         self.assertGreater(len(seen - {"none"}), 5, seen)  # the verifier has seen more than the CRC
-        self.assertNotIn("bad_crc", seen)
+        self.assertFalse({"bad_crc", "wrong_name"} & seen)
         self.assertEqual(self.activate(self.image), "none")
 
     def test_reasons(self):
         def patched(offset, data):
-            return with_crc(self.image[:offset] + data + self.image[offset + len(data):])
+            return wire.sealed(self.image[:offset] + data + self.image[offset + len(data):])
 
         cases = {
             "bad_magic": b"ELF!" + self.image[4:],
             "bad_crc": self.image[:-1] + bytes([self.image[-1] ^ 1]),
+            "wrong_name": wire.with_crc(self.image[:-1] + bytes([self.image[-1] ^ 1])),
             "wrong_version": patched(12, b"\x09"),
             "wrong_opcodes": patched(14, b"\xde\xad"),
             "bad_length": patched(8, struct.pack("<I", len(self.image) - 4)),
@@ -111,8 +106,8 @@ class Damage(RobotTest):
         self.assertEqual(self.line.status().activations, activations)
 
     def test_half_a_transfer(self):
-        self.line.ask("begin", wire.pack("Begin", size=len(self.image), crc32=1), "transfer_status")
-        self.line.ask("data", wire.pack("Data", offset=0) + self.image[:100], "transfer_status")
+        self.line.ask("begin", self.line.beginning(len(self.image), bytes(7) + b"1"), "transfer_status")
+        self.line.ask("data", wire.piece_head(self.line.session, 0) + self.image[:100], "transfer_status")
         result = self.line.activate()
         self.assertEqual((result.running, result.refusal), (0, 0xFF))
         self.assert_goes_on()

@@ -107,11 +107,11 @@ class Owner(Switched):
         self.refused("there is no key", "resume", "--key", self.folder / "none")
         with wire.Line(self.board.serial_path) as stranger:
             self.replay(stranger, line.heard)
-            self.forge(stranger, before["board"]["program"]["crc32"])
+            self.forge(stranger, before["board"]["program"]["hash"])
         after = rsc.info(self.board.port)
         for name in ("activations", "faults"):
             self.assertEqual(after["status"][name], before["status"][name])
-        self.assertEqual(after["board"]["program"]["crc32"], before["board"]["program"]["crc32"])
+        self.assertEqual(after["board"]["program"]["hash"], before["board"]["program"]["hash"])
         rsc.run("stop", "--port", self.board.port)  # is for everybody
         self.refused("the robot's owner has the key", "resume", *other)
         rsc.run("resume", "--port", self.board.port)  # waits until signatures are looked at again
@@ -127,9 +127,9 @@ class Owner(Switched):
             stranger.send_raw(part)
         stranger.status()
 
-    def forge(self, stranger, crc32):
-        clear = wire.pack("Clear", image_crc=crc32)
-        for name, payload in (("clear", clear), ("resume", b""), ("begin", wire.pack("Begin", size=8, crc32=1))):
+    def forge(self, stranger, name):
+        clear = wire.pack("Clear", session=1, hash=bytes.fromhex(name))
+        for name, payload in (("clear", clear), ("resume", b""), ("begin", wire.pack("Begin", session=1, size=8, hash=bytes(8), base=bytes(8)))):
             reply = wire.unpack("Authority", stranger.ask(name, payload, "authority"))
             self.assertEqual(DENIALS[reply.denial], "unsigned_order")
         self.assertEqual(self.order(stranger, "clear", clear, number=0), "stale")

@@ -4,10 +4,10 @@ import struct
 import sys
 import time
 import unittest
-import zlib
 from pathlib import Path
 
 import rsc
+import wire
 from board import FIRMWARE
 from debugger import DebuggedTest
 
@@ -18,7 +18,6 @@ PATIENCE = 20
 PINS = 36
 ARM, MOTOR = 3, 4
 SEVENTY_PERCENT = 14_000  # us
-CRC_FROM = 8  # everything behind the checksum
 PWM_DRIVER, LIGHTS_DRIVER = 5, 9  # in vm/drivers.def
 CONFIG = """{
   "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
@@ -111,8 +110,7 @@ class Stop(DebuggedTest):
         damaged = bytearray(image.read_bytes())
         motor = damaged.index(struct.pack(form, PWM_DRIVER, 0, MOTOR))
         struct.pack_into(form, damaged, motor, *wiring)
-        struct.pack_into("<I", damaged, 4, zlib.crc32(damaged[CRC_FROM:]))
-        image.write_bytes(damaged)
+        image.write_bytes(wire.sealed(bytes(damaged)))
         done = rsc.call("upload", image, "--port", self.board.port)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn(why, done.stderr)

@@ -68,7 +68,7 @@ class Switched(RobotTest):
 
     def running(self):
         program = rsc.info(self.board.port)["board"]["program"]
-        return program and program["crc32"]
+        return program and program["hash"]
 
     def await_kept(self, state):
         give_up = time.monotonic() + PATIENCE
@@ -80,7 +80,7 @@ class Switched(RobotTest):
         self.upload(image)
         if self.icount == REAL_TIME and self.lost():
             self.upload(image)
-        return self.await_kept("kept")["program"]["crc32"]
+        return self.await_kept("kept")["program"]["hash"]
 
     def lost(self):
         """A machine that stands still for 100 ms looks to the emulated watchdog, in real time, like a firmware that hangs: the board
@@ -206,7 +206,7 @@ class Trial(Switched):
             self.assertLess(first.stat().st_size, LARGEST_SOON)
             self.assertLessEqual(status["uptime_us"] - status["program_us"], SOON_US)
         said = self.upload(second)
-        self.assertRegex(said, r"kept in [45]\.\d s if no thread of it faults; after a reset before then, the robot starts with")
+        self.assertRegex(said, r"kept in [45]\.\d s if it stands its trial; after a reset before then, the robot starts with")
         self.assertNotEqual(self.running(), kept)
         self.power_cycle()  # in its trial
         self.await_kept("kept")

@@ -4,16 +4,21 @@ COBS and the CRC are written anew; message numbers and payload layouts are read 
 they stand in one place. Read link/frame.hpp and link/messages.hpp for what the parts mean.
 """
 
+import hashlib
+import random
 import re
 import socket
 import struct
 import time
+import zlib
 from pathlib import Path
 from types import SimpleNamespace
 
 LINK = Path(__file__).resolve().parents[2] / "link"
 TYPES = {"std::uint8_t": "B", "std::int8_t": "b", "std::uint16_t": "H", "std::int16_t": "h", "std::uint32_t": "I",
-         "std::int32_t": "i", "std::uint64_t": "Q", "Name": "16s"}
+         "std::int32_t": "i", "std::uint64_t": "Q", "Name": "16s",
+         "ProgramHash": "8s", "SessionId": "I"}
+CRC_AT, NAME_AT, LINES_AT = 4, 16, 64  # ImageHeader: CRC-32 of everything behind it; program_hash; source_lines
 
 
 def _read_numbers():
@@ -51,7 +56,7 @@ def _read_structs(text, enums):
     structs = {}
     for name, body in re.findall(r"^struct (\w+) \{(.*?)^\};", text, re.M | re.S):
         fields = [(field.strip(), _field(kind, enums))
-                  for kind, names in re.findall(r"([\w:]+(?:<[^;]*>)?)\s+([\w,\s]+)(?:\{\})?;", body)
+                  for kind, names in re.findall(r"([\w:]+(?:<[^;]*>)?)\s+([\w,\s]+)(?:\{\}| = 0)?;", body)
                   for field in names.split(",")]
         structs[name] = fields
     return structs
@@ -79,8 +84,32 @@ def unpack(name, payload):
     return SimpleNamespace(**{field: value for (field, _), value in zip(STRUCTS[name], values)})
 
 
-def activation(crc32):
-    return pack("Activate", image_crc32=crc32, fresh=0, reserved=bytes(3))
+def activation(session, name):
+    return pack("Activate", session=session, hash=name, trial_ms=0, goes_back=0, fresh=0, reserved=bytes(2))
+
+
+def piece_head(session, offset):
+    """What `data` begins with, and `pieces`."""
+    return pack("Data", session=session & 0xFFFF, offset=offset)
+
+
+def name_of(image):
+    """What its header says, with which the protocol names it."""
+    return image[NAME_AT:NAME_AT + 8].ljust(8, b"\0")
+
+
+def sealed(image):
+    """The same bytes with name and checksum put right, as vm/identity.hpp says. `image` has a whole header."""
+    lines, = struct.unpack_from("<H", image, LINES_AT)
+    counted = bytearray(image[:len(image) - 4 * lines])
+    for at, length in ((CRC_AT, 8), (NAME_AT, 8), (LINES_AT, 2)):
+        counted[at:at + length] = bytes(length)
+    return with_crc(image[:NAME_AT] + hashlib.sha256(counted).digest()[:8] + image[NAME_AT + 8:])
+
+
+def with_crc(image):
+    """The same bytes with the checksum put right."""
+    return image[:CRC_AT] + struct.pack("<I", zlib.crc32(image[CRC_AT + 4:])) + image[CRC_AT + 4:]
 
 
 def crc16(data):
@@ -121,7 +150,8 @@ class Line:
         self._socket.connect(str(path))
         self._received = b""
         self._sequence = 0
-        self._image_crc32 = 0
+        self.session = random.randrange(1, 1 << 32)
+        self._name = bytes(8)
 
     def send_raw(self, data):
         self._socket.sendall(data)
@@ -167,21 +197,28 @@ class Line:
     def status(self):
         return unpack("Status", self.ask("get_status", reply="status"))
 
-    def hello(self):
-        return unpack("HelloReply", self.ask("hello", reply="hello_reply"))
+    def hello(self, take=0):
+        """Opens the session that transfer() and activate() need."""
+        return unpack("HelloReply", self.ask("hello", self.introduction(take), reply="hello_reply"))
+
+    def introduction(self, take=0):
+        return pack("Hello", session=self.session, take=take, reserved=bytes(3), host=b"wire.py")
+
+    def beginning(self, size, name):
+        return pack("Begin", session=self.session, size=size, hash=name, base=bytes(8))
 
     def transfer(self, image):
         """Sends an image as it stands; gives the last transfer_status."""
-        self._image_crc32 = struct.unpack_from("<I", image, 4)[0] if len(image) >= 8 else 0
-        reply = self.ask("begin", pack("Begin", size=len(image), crc32=self._image_crc32), "transfer_status")
+        self._name = name_of(image)
+        reply = self.ask("begin", self.beginning(len(image), self._name), "transfer_status")
         status = unpack("TransferStatus", reply)
         most = MOST_PAYLOAD - layout("Data").size
         while ENUMS["TransferState"][status.state] == "receiving":
             offset = status.next_offset
-            data = pack("Data", offset=offset) + image[offset:offset + most]
+            data = piece_head(self.session, offset) + image[offset:offset + most]
             status = unpack("TransferStatus", self.ask("data", data, "transfer_status"))
         return status
 
     def activate(self):
         """What was transferred last."""
-        return unpack("ActivateResult", self.ask("activate", activation(self._image_crc32), reply="activate_result"))
+        return unpack("ActivateResult", self.ask("activate", activation(self.session, self._name), reply="activate_result"))

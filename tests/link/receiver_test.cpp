@@ -13,7 +13,7 @@ using namespace robosync::link;
 namespace {
 
 constexpr std::size_t kSize = 1000;
-constexpr Begin kBegin{kSize, 0xC0FFEE};
+constexpr Begin kBegin{1, kSize, {0xC0, 0xFF, 0xEE}, {}};
 
 std::vector<std::byte> image() {
   std::vector<std::byte> bytes(kSize);
@@ -41,7 +41,7 @@ TEST_CASE("a transfer in order") {
   }
   CHECK(receiver.status().state == TransferState::complete);
   CHECK(holds(receiver, sent));
-  CHECK(receiver.crc32() == kBegin.crc32);
+  CHECK(receiver.hash() == kBegin.hash);
 }
 
 TEST_CASE("a transfer resumes at each offset") {
@@ -65,11 +65,11 @@ TEST_CASE("another image, or another buffer, starts from the beginning") {
   Receiver receiver;
   receiver.begin(kBegin, buffer);
   receiver.data(0, std::span(sent).first(500));
-  CHECK(receiver.begin({kSize, 1}, buffer).next_offset == 0);
+  CHECK(receiver.begin({1, kSize, {1}, {}}, buffer).next_offset == 0);
   receiver.data(0, std::span(sent).first(500));
-  CHECK(receiver.begin({kSize - 1, 1}, buffer).next_offset == 0);
+  CHECK(receiver.begin({1, kSize - 1, {1}, {}}, buffer).next_offset == 0);
   receiver.data(0, std::span(sent).first(500));
-  CHECK(receiver.begin({kSize - 1, 1}, other).next_offset == 0);
+  CHECK(receiver.begin({1, kSize - 1, {1}, {}}, other).next_offset == 0);
 }
 
 TEST_CASE("frames lost, doubled and reordered at random: the wanted offset leads to the whole") {
@@ -104,7 +104,7 @@ TEST_CASE("data that would not fit is not taken") {
   const auto buffer = std::span(guarded).first(kSize);
   const std::vector<std::byte> bytes(64, std::byte{1});
   Receiver receiver;
-  receiver.begin({100, 0}, buffer);
+  receiver.begin({1, 100, {0}, {}}, buffer);
   CHECK(receiver.data(0, bytes).next_offset == 64);
   CHECK(receiver.data(64, bytes).next_offset == 64);          // 28 too many
   CHECK(receiver.data(0xFFFFFFFF, bytes).next_offset == 64);  // wraps around
@@ -116,11 +116,11 @@ TEST_CASE("data that would not fit is not taken") {
 TEST_CASE("an image larger than the buffer is refused, and its data with it") {
   std::vector<std::byte> buffer(kSize);
   Receiver receiver;
-  CHECK(receiver.begin({kSize + 1, 0}, buffer).state == TransferState::too_large);
-  CHECK(receiver.begin({0xFFFFFFFF, 0}, buffer).state == TransferState::too_large);
+  CHECK(receiver.begin({1, kSize + 1, {0}, {}}, buffer).state == TransferState::too_large);
+  CHECK(receiver.begin({1, 0xFFFFFFFF, {0}, {}}, buffer).state == TransferState::too_large);
   CHECK(receiver.data(0, buffer).state == TransferState::no_transfer);
   CHECK_FALSE(receiver.complete());
-  CHECK(receiver.begin({kSize, 0}, buffer).state == TransferState::receiving);
+  CHECK(receiver.begin({1, kSize, {0}, {}}, buffer).state == TransferState::receiving);
 }
 
 TEST_CASE("data without a transfer is not taken") {
@@ -133,6 +133,80 @@ TEST_CASE("data without a transfer is not taken") {
 TEST_CASE("an empty image is complete at once, and has no bytes") {
   std::vector<std::byte> buffer(kSize);
   Receiver receiver;
-  CHECK(receiver.begin({0, 0}, buffer).state == TransferState::complete);
+  CHECK(receiver.begin({1, 0, {0}, {}}, buffer).state == TransferState::complete);
   CHECK(receiver.bytes().empty());
+}
+
+namespace {
+
+// A message's pieces, one after the other.
+std::vector<std::byte> pieces_of(
+    const std::vector<std::pair<Piece, std::vector<std::byte>>>& pieces) {
+  std::vector<std::byte> payload;
+  for (const auto& [piece, bytes] : pieces) {
+    const auto head = std::as_bytes(std::span(&piece, 1));
+    payload.insert(payload.end(), head.begin(), head.end());
+    payload.insert(payload.end(), bytes.begin(), bytes.end());
+  }
+  return payload;
+}
+
+const std::vector<std::byte> kTwo{std::byte{0xA1}, std::byte{0xA2}};
+
+}  // namespace
+
+TEST_CASE("pieces copy from the base, from what has come, and give bytes") {
+  const auto base = image();
+  std::vector<std::byte> buffer(kSize);
+  Receiver receiver;
+  receiver.begin({1, 20, {1}, {2}}, buffer, base);
+  // 4 of the base from 10 and 2 new ones; then what has come so far, which it reads as it writes.
+  CHECK(receiver.pieces(0, pieces_of({{{10, 4, 2}, kTwo}, {{kSize, 14, 0}, {}}})).state ==
+        TransferState::complete);
+  const auto bytes = receiver.bytes();
+  CHECK(std::ranges::equal(bytes.first(4), std::span(base).subspan(10, 4)));
+  CHECK(std::ranges::equal(bytes.subspan(4, 2), kTwo));
+  for (std::size_t i = 6; i < 20; ++i)
+    CHECK(bytes[i] == bytes[i - 6]);
+}
+
+TEST_CASE("a message of pieces is taken as a whole, or not at all") {
+  const auto base = image();
+  std::vector<std::byte> guarded(kSize + 64, std::byte{0xEE});
+  const auto buffer = std::span(guarded).first(kSize);
+  Receiver receiver;
+  receiver.begin({1, 20, {1}, {2}}, buffer, base);
+  const Piece good{0, 4, 2};
+  const std::vector<std::vector<std::byte>> wrong = {
+      pieces_of({{good, kTwo}, {{0, 15, 0}, {}}}),           // more than the image has
+      pieces_of({{good, kTwo}, {{0, 13, 2}, kTwo}}),         // … with its bytes
+      pieces_of({{good, kTwo}, {{0, 0, 3}, kTwo}}),          // bytes that are not there
+      pieces_of({{good, kTwo}, {{kSize + 6, 1, 0}, {}}}),    // what has not come yet
+      pieces_of({{good, kTwo}, {{kSize - 1, 9, 0}, {}}}),    // from the base into that
+      pieces_of({{good, kTwo}, {{0xFFFF, 0xFFFF, 0}, {}}}),  // far away
+      {std::byte{1}},                                        // half a piece
+  };
+  for (const auto& payload : wrong)
+    CHECK(receiver.pieces(0, payload).next_offset == 0);
+  CHECK(receiver.pieces(0, pieces_of({{good, kTwo}})).next_offset == 6);
+  CHECK(receiver.pieces(0, pieces_of({{good, kTwo}})).next_offset == 6);  // not wanted any more
+  CHECK(std::all_of(guarded.begin() + kSize, guarded.end(),
+                    [](std::byte byte) { return byte == std::byte{0xEE}; }));
+  Receiver none;
+  CHECK(none.pieces(0, pieces_of({{good, kTwo}})).state == TransferState::no_transfer);
+}
+
+TEST_CASE("whatever pieces say, nothing is read or written out of place") {
+  const auto base = image();
+  std::mt19937 random(9);
+  std::vector<std::byte> buffer(kSize);
+  for (unsigned round = 0; round < 20'000; ++round) {
+    Receiver receiver;
+    receiver.begin({1, static_cast<std::uint32_t>(random() % kSize), {1}, {2}}, buffer,
+                   std::span(base).first(random() % kSize));
+    std::vector<std::byte> payload(random() % 60);
+    for (std::byte& byte : payload)
+      byte = static_cast<std::byte>(random() % 3 == 0 ? random() : random() % 4);
+    (void)receiver.pieces(0, payload);  // the sanitizers look
+  }
 }

@@ -118,7 +118,7 @@ public:
     const bool in_time = Feeding(session_, readings).run();
     const bool shown = in_time && show(job, program.image(), readings.back());
     const std::uint32_t before = lost_;
-    lost_ = session_.client.clear(program.image().header->crc32).lost_events;
+    lost_ = session_.client.clear(program.image().header->program_hash).lost_events;
     if (in_time && !shown) begin_anew();
     return !in_time ? "late" : shown && lost_ == before ? "whole" : "lost";
   }

@@ -8,6 +8,7 @@
 
 #include "tests/rsc/image.hpp"
 #include "tests/rsc/process.hpp"
+#include "vm/identity.hpp"
 #include "vm/opcode.hpp"
 
 using namespace robosync;

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "vm/identity.hpp"
 #include "vm/image.hpp"
 #include "vm/opcode.hpp"
 #include "vm/timers.hpp"

@@ -20,7 +20,7 @@ robosync::Runtime runtime(robosync_kernel, robosync_board, trace,
                           {robosync_arena, ROBOSYNC_ARENA_BYTES}, robosync::boards::kMemory);
 robosync::update::Server server(robosync_kernel, robosync_board, runtime, trace);
 
-static_assert(robosync::boards::kReceiveBuffer >= robosync::update::kReceiveWindow);
+static_assert(robosync::boards::kReceiveBuffer >= robosync::link::kReceiveWindow);
 
 }  // namespace
 

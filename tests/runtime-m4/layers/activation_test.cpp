@@ -6,6 +6,7 @@
 #include "tests/runtime-m4/layers/draw.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
+#include "vm/identity.hpp"
 
 using namespace robosync;
 using robosync::test::Rig;
@@ -123,7 +124,7 @@ TEST_CASE("feeds that cannot be are refused") {
   rig.run(101);
   for (unsigned i = 0; i < policy::kFeeds; ++i) {
     const link::FeedResult result =
-        rig.runtime.feed({.at_us = (std::uint64_t{1} << 50) + i * 1000, .channel = 1, .value = 0});
+        rig.runtime.feed({.channel = 1, .at_us = (std::uint64_t{1} << 50) + i * 1000, .value = 0});
     CHECK(result.error == link::FeedError::none);
     CHECK(result.free_places == policy::kFeeds - 1 - i);
   }

@@ -61,7 +61,7 @@ tool::Program counting(const std::string& more = "REMEMBER visits = 0 KEPT\n") {
 void touch(Robot& robot, unsigned times) {
   tool::Client client(robot);
   for (unsigned i = 0; i < 2 * times; ++i) {
-    client.feed({0, 0, i % 2 == 0 ? 9000 : 0});
+    client.feed({.channel = 0, .at_us = 0, .value = i % 2 == 0 ? 9000 : 0});
     robot.run(30);
   }
 }
@@ -188,7 +188,7 @@ TEST_CASE("numbers of the last instant outlast a program that is ended before th
   tool::Client client(robot);
   run_on(robot, counting());
   touch(robot, 4);
-  client.clear(client.hello().image_crc);
+  client.clear(client.hello().program_hash);
   REQUIRE(kept(robot).empty());
   run_on(robot, counting());
   CHECK(kept(robot) == Values{4});

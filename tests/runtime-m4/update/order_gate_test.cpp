@@ -107,7 +107,7 @@ Bytes order(const Alone& board, const OwnerKey& key, MessageType type,
   return whole;
 }
 
-const link::Clear kClear{0x12345678};
+const link::Clear kClear{1, {0x12}};
 
 Bytes clear_order(const Alone& board, const OwnerKey& key, std::uint64_t ahead = 0) {
   return order(board, key, MessageType::clear, link::wire_bytes(kClear), ahead);
@@ -304,7 +304,7 @@ TEST_CASE("whatever is sent, nothing counts that was not signed") {
 TEST_CASE("an upload is let through once, of the image that was signed, as it was signed") {
   Paired at;
   Bytes image(100, std::byte{5});
-  const link::Begin begin{100, 1};
+  const link::Begin begin{1, 100, {1}, {}};
   const auto granted = [&](bool fresh) {
     const auto head = link::wire_bytes(begin);
     const link::Grant grant = tool::grant_of(image, fresh);
@@ -333,7 +333,7 @@ TEST_CASE("an upload is let through once, of the image that was signed, as it wa
   // The same `begin` again goes on with it, and no other.
   granted(false);
   CHECK(at.board.takes(MessageType::begin, link::wire_bytes(begin)) == MessageType::begin);
-  CHECK(at.board.denies(MessageType::begin, link::wire_bytes(link::Begin{101, 1})) ==
+  CHECK(at.board.denies(MessageType::begin, link::wire_bytes(link::Begin{1, 101, {1}, {}})) ==
         Denial::unsigned_order);
   Bytes other = image;
   other.back() ^= std::byte{1};
@@ -395,12 +395,12 @@ TEST_CASE("orders of an owner reach the robot, and those of others do not") {
     heard.push_back(frame);
     return frame;
   });
-  CHECK(client.feed({0, 0, 2000}).error == link::FeedError::none);
+  CHECK(client.feed({.channel = 0, .at_us = 0, .value = 2000}).error == link::FeedError::none);
   client.stop();
   client.resume();
   CHECK(client.hello().stopped == 0);
   CHECK(tool::upload(client, client.hello(), program.bytes(), {}).activation.running == 1);
-  client.clear(program.image().header->crc32);
+  client.clear(test::name_of(program));
   CHECK(client.hello().running == 0);
   CHECK(tool::upload(client, client.hello(), program.bytes(), {}).activation.running == 1);
   robot.to_board.set({});
@@ -424,10 +424,10 @@ TEST_CASE("orders of an owner reach the robot, and those of others do not") {
   const auto foreign = [&](auto&& what) {
     CHECK_THROWS_WITH(what(), Contains("name the file of the other one"));
   };
-  foreign([&] { (void)stranger.feed({0, 0, 2000}); });
-  foreign([&] { stranger.clear(program.image().header->crc32); });
+  foreign([&] { (void)stranger.feed({.channel = 0, .at_us = 0, .value = 2000}); });
+  foreign([&] { stranger.clear(test::name_of(program)); });
   foreign([&] { (void)tool::upload(stranger, stranger.hello(), program.bytes(), {}); });
-  foreign([&] { stranger.roll_back(1); });
+  foreign([&] { stranger.roll_back({1}); });
   foreign([&] { stranger.unpair(); });
   stranger.stop();
   CHECK(stranger.hello().stopped == 1);
@@ -437,7 +437,7 @@ TEST_CASE("orders of an owner reach the robot, and those of others do not") {
 
   client.unpair();
   CHECK(stranger.hello().pairing == Pairing::unpaired);
-  CHECK(stranger.feed({0, 0, 2000}).error == link::FeedError::none);
+  CHECK(stranger.feed({.channel = 0, .at_us = 0, .value = 2000}).error == link::FeedError::none);
 }
 
 TEST_CASE("what a stranger sends into the owner's upload is not run") {
@@ -451,8 +451,10 @@ TEST_CASE("what a stranger sends into the owner's upload is not run") {
   // A whole transfer of his own, before and without the owner's order.
   const auto foreign = [&] {
     for (std::uint32_t at = 0; at < program.bytes().size(); at += 100) {
-      Bytes payload(sizeof at);
-      std::memcpy(payload.data(), &at, sizeof at);
+      const link::Data head{static_cast<std::uint16_t>(client.session()),
+                            static_cast<std::uint16_t>(at)};
+      Bytes payload(sizeof head);
+      std::memcpy(payload.data(), &head, sizeof head);
       const auto part =
           program.bytes().subspan(at, std::min<std::size_t>(100, program.bytes().size() - at));
       payload.insert(payload.end(), part.begin(), part.end());
@@ -461,15 +463,21 @@ TEST_CASE("what a stranger sends into the owner's upload is not run") {
       robot.run(30);
     }
   };
-  const link::Begin begin{static_cast<std::uint32_t>(program.bytes().size()),
-                          vm::stated_crc32(program.bytes())};
+  const link::Begin begin{client.session(),
+                          static_cast<std::uint32_t>(program.bytes().size()),
+                          test::name_of(program),
+                          {}};
   client.send(MessageType::begin, link::wire_bytes(begin));
   foreign();
-  CHECK(client.activate({begin.crc32, 0, {}}).refusal == link::kNothingToActivate);
+  CHECK(
+      client.activate({.session = 0, .hash = begin.hash, .trial_ms = 0, .goes_back = 0, .fresh = 0})
+          .refusal == link::kNothingToActivate);
   // … and in the place of the owner's.
   client.order_upload(link::wire_bytes(begin), program.bytes(), false);
   foreign();
-  CHECK(client.activate({begin.crc32, 0, {}}).refusal == link::kNothingToActivate);
+  CHECK(
+      client.activate({.session = 0, .hash = begin.hash, .trial_ms = 0, .goes_back = 0, .fresh = 0})
+          .refusal == link::kNothingToActivate);
   CHECK(client.hello().running == 0);
   CHECK(tool::upload(client, client.hello(), program.bytes(), {}).activation.running == 1);
 }

@@ -5,6 +5,7 @@
 
 #include "rsc/device/keeping.hpp"
 #include "tests/runtime-m4/update/kept.hpp"
+#include "vm/identity.hpp"
 
 using namespace robosync;
 using link::Keeping;
@@ -14,6 +15,7 @@ using test::finish;
 using test::kStoreBytes;
 using test::kTrialMs;
 using test::MemoryStore;
+using test::name_of;
 using test::Robot;
 using test::run_on;
 using update::ProgramStore;
@@ -31,7 +33,7 @@ Bytes some_image(unsigned seed, std::size_t size) {
 }
 
 ProgramStore::Program named(const Bytes& image) {
-  return {static_cast<std::uint32_t>(image.size()), vm::crc32(image)};
+  return {static_cast<std::uint32_t>(image.size()), vm::name_of(vm::Identity().finish(image))};
 }
 
 void keep(ProgramStore& store, const Bytes& image) {
@@ -53,10 +55,6 @@ Bytes bytes_of(const tool::Program& program) {
   return {program.bytes().begin(), program.bytes().end()};
 }
 
-std::uint32_t crc_of(const tool::Program& program) {
-  return program.image().header->crc32;
-}
-
 // A robot that keeps `program`.
 void keep(MemoryStore& memory, const tool::Program& program) {
   Robot robot(boards::kMemory, &memory);
@@ -64,14 +62,14 @@ void keep(MemoryStore& memory, const tool::Program& program) {
   robot.run(kTrialMs + 2000);
 }
 
-// With what the robot runs soon after a reset; 0: nothing.
-std::uint32_t started(MemoryStore& memory) {
+// With what the robot runs soon after a reset; zeros: nothing.
+link::ProgramHash started(MemoryStore& memory) {
   memory.switch_on();
   Robot robot(boards::kMemory, &memory);
   robot.run(kMostMs);
   tool::Client client(robot);
   const link::HelloReply hello = client.hello();
-  return hello.running == 1 ? hello.image_crc : 0;
+  return hello.running == 1 ? hello.program_hash : link::ProgramHash{};
 }
 
 }  // namespace
@@ -135,7 +133,7 @@ TEST_CASE("a cut while programs change places leaves them as they were, or chang
     keep(store, second);
     CHECK(store.previous() == named(first));
   }
-  for (std::size_t cut = 0; cut <= 32; ++cut) {
+  for (std::size_t cut = 0; cut <= 48; ++cut) {
     CAPTURE(cut);
     MemoryStore memory = before;
     ProgramStore store = test::opened<ProgramStore>(memory);
@@ -143,8 +141,8 @@ TEST_CASE("a cut while programs change places leaves them as they were, or chang
     store.swap();
     finish(store);
     ProgramStore again = test::opened<ProgramStore>(memory);
-    REQUIRE(read_kept(again) == (cut == 32 ? first : second));
-    REQUIRE(again.previous() == named(cut == 32 ? second : first));
+    REQUIRE(read_kept(again) == (cut == 48 ? first : second));
+    REQUIRE(again.previous() == named(cut == 48 ? second : first));
   }
 }
 
@@ -166,11 +164,11 @@ TEST_CASE("whatever stands in a store, no more is read than there is room") {
   std::mt19937 random(1);
   for (unsigned i = 0; i < 2000; ++i) {
     if (i % 2 == 0) {  // a whole record with any numbers in it
-      std::array<std::uint32_t, 8> record{0x3150'5352,
-                                          static_cast<std::uint32_t>(random()) % 3 + 1};
-      for (std::size_t word = 2; word < 7; ++word)
+      std::array<std::uint32_t, 12> record{0x3250'5352,
+                                           static_cast<std::uint32_t>(random()) % 3 + 1};
+      for (std::size_t word = 2; word < record.size() - 1; ++word)
         record[word] = static_cast<std::uint32_t>(random()) >> (random() % 32);
-      record[7] = vm::crc32(std::as_bytes(std::span(record)).first(28));
+      record.back() = vm::crc32(std::as_bytes(std::span(record)).first(44));
       std::ranges::copy(std::as_bytes(std::span(record)), memory.bytes.begin());
     } else {
       std::generate_n(memory.bytes.begin(), 2 * MemoryStore::kPage,
@@ -192,9 +190,9 @@ TEST_CASE(
     "a program that has stood its trial runs soon after a reset; before, the one that was kept") {
   MemoryStore memory(kStoreBytes);
   const tool::Program first = test::program(3), second = test::program(5);
-  CHECK(started(memory) == 0);
+  CHECK(started(memory) == link::ProgramHash{});
   keep(memory, first);
-  CHECK(started(memory) == crc_of(first));
+  CHECK(started(memory) == name_of(first));
   {
     Robot robot(boards::kMemory, &memory);
     robot.run(kMostMs);
@@ -204,9 +202,9 @@ TEST_CASE(
     CHECK(client.kept().state == Keeping::on_trial);
     CHECK(client.kept().trial_ms <= 1000);
   }
-  CHECK(started(memory) == crc_of(first));
+  CHECK(started(memory) == name_of(first));
   keep(memory, second);
-  CHECK(started(memory) == crc_of(second));
+  CHECK(started(memory) == name_of(second));
 }
 
 TEST_CASE("a fault in its trial brings the kept program back, and it is said") {
@@ -222,13 +220,79 @@ TEST_CASE("a fault in its trial brings the kept program back, and it is said") {
     robot.server.report({});
     robot.run(kMostMs);
     tool::Client client(robot);
-    CHECK(client.hello().image_crc == crc_of(good));
+    CHECK(client.hello().program_hash == name_of(good));
     CHECK(client.kept().state == Keeping::kept);
-    CHECK(client.kept().given_up_crc32 == crc_of(bad));
+    CHECK(client.kept().given_up_hash == name_of(bad));
     robot.run(kTrialMs + 1000);
-    CHECK(client.kept().kept_crc32 == crc_of(good));
+    CHECK(client.kept().kept_hash == name_of(good));
   }
-  CHECK(started(memory) == crc_of(good));
+  CHECK(started(memory) == name_of(good));
+}
+
+namespace {
+
+// Its SAFETY rule trips at once, for nobody feeds the sensor.
+tool::Program tripping(int limit) {
+  return test::compile("SAFETY guard\n  WHEN touch LEVEL > " + std::to_string(limit) +
+                       "\n  DO STOP ALL\nEND\n" + test::program_text(3));
+}
+
+// What runs when the trial of `program` is over.
+link::ProgramHash after_trial(MemoryStore& memory, const tool::Program& program) {
+  Robot robot(boards::kMemory, &memory);
+  robot.run(1000);
+  run_on(robot, program);
+  robot.run(kTrialMs + 2000);
+  return tool::Client(robot).hello().program_hash;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a SAFETY rule that trips in the trial brings the kept program back, unless one had there, "
+    "too") {
+  const tool::Program calm = test::program(3), trips = tripping(4), also = tripping(5);
+  MemoryStore memory(kStoreBytes), other(kStoreBytes);
+  keep(memory, calm);
+  CHECK(after_trial(memory, trips) == name_of(calm));
+  CHECK(started(memory) == name_of(calm));
+  keep(other, trips);  // there was none before it
+  CHECK(after_trial(other, also) == name_of(also));
+  CHECK(started(other) == name_of(also));
+}
+
+TEST_CASE("the host says how long a trial is, and may only try a program") {
+  const tool::Program kept = test::program(3), next = test::program(5);
+  const auto upload = [](Robot& robot, const tool::Program& program, unsigned trial_ms,
+                         bool confirm) {
+    tool::Client client(robot);
+    tool::UploadOptions options;
+    options.trial = std::chrono::milliseconds(trial_ms);
+    options.confirm = confirm;
+    REQUIRE(tool::upload(client, client.hello(), program.bytes(), options).activation.running == 1);
+  };
+  MemoryStore memory(kStoreBytes);
+  keep(memory, kept);
+  {
+    Robot robot(boards::kMemory, &memory);
+    robot.run(kMostMs);
+    const std::size_t before = memory.written;
+    upload(robot, next, 2000, false);
+    tool::Client client(robot);
+    robot.run(1800);
+    CHECK(client.hello().program_hash == name_of(next));
+    robot.run(400);
+    CHECK(client.hello().program_hash == name_of(kept));
+    CHECK(client.kept().given_up_hash == link::ProgramHash{});
+    CHECK(memory.written == before);
+    upload(robot, next, 300, true);
+    robot.run(1000);
+    CHECK(client.kept().kept_hash == name_of(next));
+    upload(robot, kept, 9000, true);
+    robot.run(8500);
+    CHECK(client.kept().state == Keeping::on_trial);
+  }
+  CHECK(started(memory) == name_of(next));
 }
 
 TEST_CASE("a fault after its trial, or without a program to go back to, changes no program") {
@@ -239,7 +303,7 @@ TEST_CASE("a fault after its trial, or without a program to go back to, changes 
   robot.server.report({});
   robot.run(kTrialMs + 2000);
   tool::Client client(robot);
-  CHECK(client.hello().image_crc == crc_of(program));
+  CHECK(client.hello().program_hash == name_of(program));
   CHECK(client.kept().state == Keeping::failed);
   CHECK(client.kept().kept_bytes == 0);
   run_on(robot, program);
@@ -247,7 +311,7 @@ TEST_CASE("a fault after its trial, or without a program to go back to, changes 
   CHECK(client.kept().state == Keeping::kept);
   robot.server.report({});
   robot.run(kMostMs);
-  CHECK(client.hello().image_crc == crc_of(program));
+  CHECK(client.hello().program_hash == name_of(program));
 }
 
 TEST_CASE("a person goes back to the program before, and forth again") {
@@ -263,18 +327,18 @@ TEST_CASE("a person goes back to the program before, and forth again") {
     run_on(robot, second);
     robot.run(kTrialMs + 2000);
     REQUIRE(client.kept().state == Keeping::kept);
-    CHECK(tool::roll_back(client).image_crc == crc_of(first));
-    client.roll_back(crc_of(first));  // asked for twice
+    CHECK(tool::roll_back(client).program_hash == name_of(first));
+    client.roll_back(name_of(first));  // asked for twice
     robot.run(kMostMs);
-    CHECK(client.hello().image_crc == crc_of(first));
-    CHECK(tool::roll_back(client).image_crc == crc_of(second));
+    CHECK(client.hello().program_hash == name_of(first));
+    CHECK(tool::roll_back(client).program_hash == name_of(second));
     robot.run(kMostMs);
     run_on(robot, third);
-    CHECK(tool::roll_back(client).image_crc == crc_of(second));  // in its trial
+    CHECK(tool::roll_back(client).program_hash == name_of(second));  // in its trial
     robot.run(kTrialMs + 2000);
-    CHECK(client.kept().kept_crc32 == crc_of(second));
+    CHECK(client.kept().kept_hash == name_of(second));
   }
-  CHECK(started(memory) == crc_of(second));
+  CHECK(started(memory) == name_of(second));
 }
 
 TEST_CASE("a kept program that is damaged gives way to the one before, or to none") {
@@ -294,16 +358,16 @@ TEST_CASE("a kept program that is damaged gives way to the one before, or to non
     Robot robot(boards::kMemory, &memory);
     robot.run(kMostMs);
     tool::Client client(robot);
-    CHECK(client.hello().image_crc == crc_of(first));
-    CHECK(client.kept().kept_crc32 == crc_of(first));
+    CHECK(client.hello().program_hash == name_of(first));
+    CHECK(client.kept().kept_hash == name_of(first));
     CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("not whole"));
-    CHECK(client.hello().image_crc == crc_of(first));
+    CHECK(client.hello().program_hash == name_of(first));
   }
-  CHECK(started(memory) == crc_of(first));
+  CHECK(started(memory) == name_of(first));
   damage(first);
-  CHECK(started(memory) == 0);
+  CHECK(started(memory) == link::ProgramHash{});
   keep(memory, second);
-  CHECK(started(memory) == crc_of(second));
+  CHECK(started(memory) == name_of(second));
 }
 
 TEST_CASE("an upload right after a reset comes before the kept program") {
@@ -314,7 +378,7 @@ TEST_CASE("an upload right after a reset comes before the kept program") {
   run_on(robot, mine);
   robot.run(1000);
   tool::Client client(robot);
-  CHECK(client.hello().image_crc == crc_of(mine));
+  CHECK(client.hello().program_hash == name_of(mine));
   CHECK(client.kept().state == Keeping::on_trial);
 }
 
@@ -333,8 +397,8 @@ TEST_CASE(
   const std::size_t reads = memory.reads;
   robot.run(1000);
   CHECK(memory.reads == reads);
-  CHECK(client.hello().image_crc == crc_of(mine));
-  CHECK(client.kept().kept_crc32 == crc_of(kept));
+  CHECK(client.hello().program_hash == name_of(mine));
+  CHECK(client.kept().kept_hash == name_of(kept));
 }
 
 TEST_CASE("a program that is ended while it is written is written no further") {
@@ -344,7 +408,7 @@ TEST_CASE("a program that is ended while it is written is written no further") {
   run_on(robot, test::long_program());
   tool::Client client(robot);
   robot.run(100);
-  client.clear(crc_of(test::long_program()));
+  client.clear(name_of(test::long_program()));
   const std::size_t written = memory.written;
   REQUIRE(written > 0);
   REQUIRE(written < test::long_program().bytes().size());
@@ -359,15 +423,16 @@ TEST_CASE("a host that goes away in the midst of an upload leaves no robot witho
   Robot robot(boards::kMemory, &memory);
   robot.run(kMostMs);
   tool::Client client(robot);
-  client.clear(crc_of(kept));
+  client.clear(name_of(kept));
   const auto size = static_cast<std::uint32_t>(next.bytes().size());
   for (unsigned i = 0; i < 20; ++i) {  // slowly, but it is still there
-    client.send(link::MessageType::begin, link::wire_bytes(link::Begin{size, crc_of(next)}));
+    client.send(link::MessageType::begin,
+                link::wire_bytes(link::Begin{client.session(), size, name_of(next), {}}));
     robot.run(200);
   }
   CHECK(client.hello().running == 0);
   robot.run(4000);
-  CHECK(client.hello().image_crc == crc_of(kept));
+  CHECK(client.hello().program_hash == name_of(kept));
 }
 
 TEST_CASE("after a reset by a failure the kept program stands still until somebody says so") {
@@ -420,7 +485,7 @@ TEST_CASE(
   std::mt19937 random(1);
   MemoryStore memory(kStoreBytes);
   keep(memory, programs[0]);
-  std::uint32_t kept = crc_of(programs[0]);
+  link::ProgramHash kept = name_of(programs[0]);
   unsigned cuts = 0;
   for (unsigned round = 0; round < 120; ++round) {
     CAPTURE(round);
@@ -430,13 +495,13 @@ TEST_CASE(
       Robot robot(boards::kMemory, &memory);
       robot.run(kMostMs);
       tool::Client client(robot);
-      REQUIRE(client.hello().image_crc == kept);
+      REQUIRE(client.hello().program_hash == kept);
       before = client.kept();
       if (random() % 2 == 0) memory.power_for = random() % 2000;
       run_on(robot, next);
       robot.run(random() % (2 * kTrialMs));
       if (random() % 4 == 0) robot.server.report({});
-      if (random() % 4 == 0) client.roll_back(client.kept().previous_crc32);
+      if (random() % 4 == 0) client.roll_back(client.kept().previous_hash);
       robot.run(random() % 300);
       after = client.kept();
     }
@@ -444,11 +509,11 @@ TEST_CASE(
     cuts += cut ? 1 : 0;
     kept = started(memory);
     if (cut) {
-      REQUIRE((kept == before.kept_crc32 || kept == before.previous_crc32 || kept == crc_of(next)));
+      REQUIRE((kept == before.kept_hash || kept == before.previous_hash || kept == name_of(next)));
     } else {
-      REQUIRE(kept == after.kept_crc32);
+      REQUIRE(kept == after.kept_hash);
     }
-    REQUIRE(kept != 0);
+    REQUIRE(kept != link::ProgramHash{});
   }
   CHECK(cuts > 10);
 }

@@ -8,6 +8,7 @@
 
 #include "compiler/compiler.hpp"
 #include "compiler/diagnostics/render.hpp"
+#include "link/messages.hpp"
 #include "rsc/program.hpp"
 
 namespace robosync::test {
@@ -43,6 +44,10 @@ inline tool::Program compile(const std::string& text) {
 
 inline tool::Program program(int threshold) {
   return compile(program_text(threshold));
+}
+
+inline link::ProgramHash name_of(const tool::Program& program) {
+  return program.image().header->program_hash;
 }
 
 // One that needs many data frames.

@@ -71,12 +71,14 @@ TEST_CASE("hello introduces the board, without a program and with one") {
   REQUIRE(upload(client, program.bytes()).running == 1);
   board = client.hello();
   CHECK(board.running == 1);
-  CHECK(board.image_crc == program.image().header->crc32);
+  CHECK(board.program_hash == program.image().header->program_hash);
   CHECK(board.image_bytes == program.bytes().size());
   CHECK(board.arena_used == policy::needs_of(program.image(), boards::kMemory).total);
-  client.clear(board.image_crc + 1);  // another program
+  link::ProgramHash other = board.program_hash;
+  ++other[0];
+  client.clear(other);
   CHECK(client.hello().running == 1);
-  client.clear(board.image_crc);
+  client.clear(board.program_hash);
   board = client.hello();
   CHECK(board.running == 0);
   CHECK(board.arena_used == without);
@@ -119,17 +121,17 @@ TEST_CASE("a reading that is fed leads to a command, and the trace shows it") {
   tool::Client client(robot);
   REQUIRE(upload(client, test::program(3).bytes()).running == 1);
   client.set_trace(true);
-  CHECK(client.feed({0, 0, 2000}).error == link::FeedError::none);
+  CHECK(client.feed({.channel = 0, .at_us = 0, .value = 2000}).error == link::FeedError::none);
   std::vector<link::Event> list = events(client, milliseconds(200));
   CHECK(count(list, EventKind::input) == 1);
   CHECK(count(list, EventKind::fire) == 1);
   CHECK(count(list, EventKind::command) == 1);
 
   client.set_trace(false);
-  CHECK(client.feed({0, 0, 5000}).error == link::FeedError::none);
+  CHECK(client.feed({.channel = 0, .at_us = 0, .value = 5000}).error == link::FeedError::none);
   CHECK(events(client, milliseconds(200)).empty());
 
-  CHECK(client.feed({0, 9, 0}).error == link::FeedError::no_channel);
+  CHECK(client.feed({.channel = 9, .at_us = 0, .value = 0}).error == link::FeedError::no_channel);
 }
 
 TEST_CASE("a stop does not wait until somebody reads the line") {
@@ -149,15 +151,17 @@ TEST_CASE("a stop does not wait until somebody reads the line") {
 
 TEST_CASE("a resume that is older than a stop does not undo it") {
   Robot robot;
-  robot.run(10);
+  tool::Client client(robot);
+  client.hello();
   std::array<std::byte, link::kMaxEncodedFrame> resume{};
-  const std::size_t length = link::encode_frame(link::MessageType::resume, 7, {}, resume);
+  const link::Resume wish{client.session()};
+  const std::size_t length =
+      link::encode_frame(link::MessageType::resume, 7, link::wire_bytes(wish), resume);
   std::deque<std::byte>& line = robot.board.from_host;
   line.assign(resume.data(), resume.data() + length);
   line.insert(line.end(), link::kStopFrame.begin(), link::kStopFrame.end());
   robot.run(20);
   CHECK(robot.runtime.stopped());
-  tool::Client client(robot);
   const auto answers = [&](std::uint8_t sequence) {
     const auto reply = client.next_reply(std::chrono::milliseconds(50));
     return reply && reply->sequence == sequence;
@@ -186,7 +190,7 @@ TEST_CASE("hello stops the trace of an earlier host") {
   REQUIRE(upload(client, test::program(3).bytes()).running == 1);
   client.set_trace(true);
   client.hello();
-  client.feed({0, 0, 2000});
+  client.feed({.channel = 0, .at_us = 0, .value = 2000});
   CHECK(events(client, milliseconds(200)).empty());
 }
 
@@ -194,7 +198,11 @@ TEST_CASE("an activation that is asked for twice is done once") {
   Robot robot;
   tool::Client client(robot);
   const link::ActivateResult first = upload(client, test::program(3).bytes());
-  const link::ActivateResult second = client.activate({client.hello().image_crc, 0, {}});
+  const link::ActivateResult second = client.activate({.session = 0,
+                                                       .hash = client.hello().program_hash,
+                                                       .trial_ms = 0,
+                                                       .goes_back = 0,
+                                                       .fresh = 0});
   CHECK(second.running == 1);
   CHECK(second.uptime_us == first.uptime_us);
   CHECK(client.status().activations == 1);
@@ -205,14 +213,19 @@ TEST_CASE("of two hosts none starts the other one's program, and both are told t
   tool::Client client(robot);
   const tool::Program mine = test::program(3), other = test::program(5);
   const auto activate = [&](const tool::Program& program) {
-    return client.activate({program.image().header->crc32, 0, {}});
+    return client.activate({.session = 0,
+                            .hash = program.image().header->program_hash,
+                            .trial_ms = 0,
+                            .goes_back = 0,
+                            .fresh = 0});
   };
-  transfer(robot, client, mine.bytes(), mine.image().header->crc32);
-  transfer(robot, client, other.bytes(), other.image().header->crc32);
+  client.hello();
+  transfer(robot, client, mine.bytes(), mine.image().header->program_hash);
+  transfer(robot, client, other.bytes(), other.image().header->program_hash);
   CHECK(activate(mine).refusal == link::kNothingToActivate);
   CHECK(client.hello().running == 0);
   CHECK(activate(other).running == 1);
-  CHECK(client.hello().image_crc == other.image().header->crc32);
+  CHECK(client.hello().program_hash == other.image().header->program_hash);
   CHECK(activate(mine).refusal == link::kNothingToActivate);
   CHECK(activate(other).running == 1);
 }
@@ -253,7 +266,7 @@ TEST_CASE("replies are kept while the host does not read; events are dropped and
   robot.host_reads = false;
   constexpr int kFeeds = 100;
   for (int i = 0; i < kFeeds; ++i) {
-    robot.runtime.feed({0, 0, i % 2 == 0 ? 2000 : 5000});
+    robot.runtime.feed({.channel = 0, .at_us = 0, .value = i % 2 == 0 ? 2000 : 5000});
     robot.run(3);
   }
   CHECK(robot.ring.lost() > 0);
@@ -291,13 +304,13 @@ TEST_CASE("the link thread runs when there is something to do, and then only") {
   CHECK(runs_in(10'000) == 0);
   REQUIRE(upload(client, test::program(3).bytes()).running == 1);
   CHECK(runs_in(10'000) == 0);
-  robot.runtime.feed({0, 0, 2000});  // nobody listens to what happens
+  robot.runtime.feed({.channel = 0, .at_us = 0, .value = 2000});  // nobody listens to what happens
   CHECK(runs_in(1000) == 0);
 
   client.set_trace(true);
   robot.run(10'000);  // until what the reading began is done
   CHECK(runs_in(10'000) == 0);
-  robot.runtime.feed({0, 0, 5000});
+  robot.runtime.feed({.channel = 0, .at_us = 0, .value = 5000});
   const std::uint32_t runs = runs_in(1000);
   CHECK(runs > 0);
   CHECK(runs < 10);

@@ -12,14 +12,16 @@
 
 namespace robosync::test {
 
-// `crc32`: the one that is announced.
+// `hash`: the name that is announced.
 inline void transfer(Robot& robot, tool::Client& client, std::span<const std::byte> image,
-                     std::uint32_t crc32) {
-  const link::Begin begin{static_cast<std::uint32_t>(image.size()), crc32};
+                     const link::ProgramHash& hash) {
+  const link::Begin begin{client.session(), static_cast<std::uint32_t>(image.size()), hash, {}};
   client.send(link::MessageType::begin, link::wire_bytes(begin));
   for (std::uint32_t at = 0; at < image.size(); at += 200) {
-    std::vector<std::byte> payload(sizeof at);
-    std::memcpy(payload.data(), &at, sizeof at);
+    const link::Data head{static_cast<std::uint16_t>(client.session()),
+                          static_cast<std::uint16_t>(at)};
+    std::vector<std::byte> payload(sizeof head);
+    std::memcpy(payload.data(), &head, sizeof head);
     const auto part = image.subspan(at, std::min<std::size_t>(200, image.size() - at));
     payload.insert(payload.end(), part.begin(), part.end());
     client.send(link::MessageType::data, payload);

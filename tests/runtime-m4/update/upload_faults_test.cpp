@@ -12,6 +12,7 @@
 #include "tests/runtime-m4/update/programs.hpp"
 #include "tests/runtime-m4/update/robot.hpp"
 #include "tests/runtime-m4/update/transfer.hpp"
+#include "vm/identity.hpp"
 
 using namespace robosync;
 using test::Bytes;
@@ -23,28 +24,28 @@ namespace {
 class Scene {
 public:
   Scene(const tool::Program& old_program, const tool::Program& new_program)
-      : old_crc_(old_program.image().header->crc32), new_(new_program) {
+      : old_(old_program.image().header->program_hash), new_(new_program) {
     const auto first = tool::upload(client, client.hello(), old_program.bytes(), {});
     REQUIRE(first.activation.running == 1);
     robot.each_tick = [this] { watch(); };
   }
 
   tool::UploadResult upload() { return tool::upload(client, client.hello(), new_.bytes(), {}); }
-  bool runs_new() const { return running_crc() == new_.image().header->crc32; }
-  bool runs_old() const { return running_crc() == old_crc_; }
+  bool runs_new() const { return running() == new_.image().header->program_hash; }
+  bool runs_old() const { return running() == old_; }
 
   Robot robot;
   tool::Client client{robot};
 
 private:
-  std::uint32_t running_crc() const { return robot.runtime.image().header->crc32; }
+  const vm::ProgramHash& running() const { return robot.runtime.image().header->program_hash; }
   void watch() const {
     if (!robot.runtime.running() || (!runs_old() && !runs_new())) {
       FAIL("neither the old program nor the new one runs");
     }
   }
 
-  std::uint32_t old_crc_;
+  vm::ProgramHash old_;
   const tool::Program& new_;
 };
 
@@ -175,7 +176,7 @@ TEST_CASE("another host begins a transfer before the activation: the upload star
   const tool::Program old_program = test::program(3);
   const tool::Program new_program = test::program(4);
   Scene scene(old_program, new_program);
-  const link::Begin other{100, 0xBAD};
+  const link::Begin other{scene.client.session(), 100, {0xBA, 0xD0}, {}};
   std::array<std::byte, link::kMaxEncodedFrame> wire{};
   const std::size_t length =
       link::encode_frame(link::MessageType::begin, 99, link::wire_bytes(other), wire);
@@ -251,10 +252,12 @@ TEST_CASE("an image other than the one announced is refused") {
   Scene scene(old_program, new_program);
   scene.client.hello();
   const Bytes image(new_program.bytes().begin(), new_program.bytes().end());
-  test::transfer(scene.robot, scene.client, image, 0xBAD);
-  const link::ActivateResult result = scene.client.activate({0xBAD, 0, {}});
+  const link::ProgramHash other{0xBA, 0xD0};
+  test::transfer(scene.robot, scene.client, image, other);
+  const link::ActivateResult result = scene.client.activate(
+      {.session = 0, .hash = other, .trial_ms = 0, .goes_back = 0, .fresh = 0});
   CHECK(result.running == 0);
-  CHECK(result.refusal == static_cast<std::uint8_t>(vm::Refusal::bad_crc));
+  CHECK(result.refusal == static_cast<std::uint8_t>(vm::Refusal::wrong_name));
   CHECK(scene.runs_old());
 }
 
@@ -267,8 +270,7 @@ TEST_CASE("a refusal names reason, section and place") {
   const auto code = std::as_bytes(new_program.image().code);
   const auto at = static_cast<std::size_t>(code.data() - new_program.bytes().data()) + 4;
   image[at] = std::byte{0xEE};
-  const std::uint32_t crc = vm::crc32(std::span(image).subspan(8));
-  std::memcpy(image.data() + 4, &crc, sizeof crc);
+  vm::seal(image);
   const auto result = tool::upload(scene.client, scene.client.hello(), image, {}).activation;
   CHECK(result.running == 0);
   CHECK(result.refusal == static_cast<std::uint8_t>(vm::Refusal::bad_opcode));
@@ -287,7 +289,8 @@ TEST_CASE("an upload does not change what the running program does, until it is 
     client.set_trace(true);
     const std::uint64_t start = robot.kernel.now() - client.status().program_us;
     for (std::uint64_t at = 0; at < 20; ++at)
-      client.feed({1'000'000 + at * 20'000, 0, at % 2 == 0 ? 2000 : 5000});
+      client.feed(
+          {.channel = 0, .at_us = 1'000'000 + at * 20'000, .value = at % 2 == 0 ? 2000 : 5000});
     while (robot.kernel.now() < start + 990'000)
       robot.run_tick();
     const std::uint32_t checks = client.status().safety_checks;
@@ -297,7 +300,7 @@ TEST_CASE("an upload does not change what the running program does, until it is 
       damaged.back() ^= std::byte{1};
       // Not hello, which would stop the trace.
       link::HelloReply board{};
-      board.receive_window = update::kReceiveWindow;
+      board.receive_window = link::kReceiveWindow;
       REQUIRE(tool::upload(client, board, damaged, {}).activation.running == 0);
     }
     while (robot.kernel.now() < start + 1'500'000)
@@ -314,4 +317,20 @@ TEST_CASE("an upload does not change what the running program does, until it is 
   const std::vector<Bytes> quiet = trace(false);
   CHECK(quiet.size() > 40);
   CHECK(trace(true) == quiet);
+}
+
+TEST_CASE("of what the board runs already nothing travels; the host may be wrong about that") {
+  const tool::Program old_program = test::program(3);
+  const tool::Program new_program = test::program(4);
+  const tool::Program other = test::long_program();
+  for (const tool::Program* base : {&old_program, &other}) {
+    Scene scene(old_program, new_program);
+    tool::UploadOptions options;
+    options.base = base->bytes();
+    const auto hello = scene.client.hello();
+    const auto result = tool::upload(scene.client, hello, new_program.bytes(), options);
+    CHECK(result.activation.running == 1);
+    CHECK(scene.runs_new());
+    CHECK((result.bytes_sent < 120) == (base == &old_program));
+  }
 }

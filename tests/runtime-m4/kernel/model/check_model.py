@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Has spin try the model of switching and waking (switch.pml) in every order, then each of its mutants,
-in which it must find the mistake. Ends with "N passed, N failed".
+"""Has spin try the models of switching and waking (switch.pml) and of uploads and what outlasts a reset (update/model/upload.pml)
+in every order, then each of their mutants, in which it must find the mistake. Ends with "N passed, N failed".
 
 usage: tests/runtime-m4/kernel/model/check_model.py
 """
@@ -12,15 +12,16 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-MODEL = Path(__file__).resolve().parent / "switch.pml"
+HERE = Path(__file__).resolve().parent
+# With the fewest states of the model as it is: fewer would mean that it got stuck.
+MODELS = {HERE / "switch.pml": 1_000_000, HERE.parents[1] / "update/model/upload.pml": 100_000}
 DEPTH = 500_000
-FEWEST_STATES = 1_000_000  # of the model as it is: fewer would mean that it got stuck
 
 
-def search(mutant):
+def search(model, mutant):
     """(states, errors) that spin has found in all orders, or until the first error."""
     with tempfile.TemporaryDirectory(prefix="robosync-model-") as folder:
-        for command in (["spin", "-a", *([f"-D{mutant}"] if mutant else []), str(MODEL)],
+        for command in (["spin", "-a", *([f"-D{mutant}"] if mutant else []), str(model)],
                         ["gcc", "-w", "-O0", "-DSAFETY", "-DMEMLIM=1000", "-o", "pan", "pan.c"]):
             subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
         output = subprocess.run(["./pan", f"-m{DEPTH}"], cwd=folder, check=True, text=True,
@@ -32,20 +33,22 @@ def search(mutant):
     return int(states[1]), int(errors[1])
 
 
-def judge(mutant):
+def judge(job):
     """(passed, line to print)"""
-    states, errors = search(mutant)
+    model, mutant = job
+    states, errors = search(model, mutant)
     if not mutant:
-        good = errors == 0 and states >= FEWEST_STATES
-        return good, f"no mistake in {states:,} states" if good else f"{errors} errors in {states:,} states"
+        good = errors == 0 and states >= MODELS[model]
+        return good, f"{model.stem}: {'no mistake' if good else f'{errors} errors'} in {states:,} states"
     good = errors > 0
-    return good, f"{mutant.lower()}: {'found' if good else 'NOT FOUND'} after {states:,} states"
+    return good, f"{model.stem}, {mutant.lower()}: {'found' if good else 'NOT FOUND'} after {states:,} states"
 
 
 def main():
-    mutants = sorted(set(re.findall(r"\bMUTANT_[A-Z_]*[A-Z]\b", MODEL.read_text())))
+    jobs = [(model, mutant) for model in MODELS
+            for mutant in [None, *sorted(set(re.findall(r"\bMUTANT_[A-Z_]*[A-Z]\b", model.read_text())))]]
     with ThreadPoolExecutor() as pool:
-        results = list(pool.map(judge, [None, *mutants]))
+        results = list(pool.map(judge, jobs))
     for good, line in results:
         print("ok  " if good else "FAIL", line)
     failed = sum(not good for good, _ in results)

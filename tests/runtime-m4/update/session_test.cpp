@@ -1,0 +1,136 @@
+// Whose line it is: two hosts on one line, each with its own client, whose frames mix as a server of serial lines would mix
+// them; and hosts that go away, come back, or find the board started anew.
+#include "runtime-m4/update/session.hpp"
+
+#include <cstring>
+
+#include <catch2/catch.hpp>
+
+#include "rsc/device/client.hpp"
+#include "rsc/device/uploader.hpp"
+#include "rsc/failure.hpp"
+#include "tests/runtime-m4/update/programs.hpp"
+#include "tests/runtime-m4/update/robot.hpp"
+
+using namespace robosync;
+using link::MessageType;
+using std::chrono::milliseconds;
+using test::Robot;
+
+namespace {
+
+constexpr unsigned kSilenceMs = 3000;
+
+constexpr link::SessionId kDesk = 0x00770077;
+
+// Another host, `desk`, is in the midst of a transfer: it has said hello and begun.
+void desk_begins(Robot& robot, const tool::Program& program) {
+  tool::Client client(robot);
+  client.send(MessageType::hello, link::wire_bytes(link::Hello{kDesk, 0, {}, {"desk"}}));
+  REQUIRE(client.next_reply(milliseconds(100)));
+  const auto size = static_cast<std::uint32_t>(program.bytes().size());
+  const link::Begin begin{kDesk, size, test::name_of(program), {}};
+  client.send(MessageType::begin, link::wire_bytes(begin));
+  const auto reply = client.next_reply(milliseconds(100));
+  REQUIRE(reply);
+  REQUIRE(reply->type == MessageType::transfer_status);
+}
+
+bool uploads(tool::Client& client, const tool::Program& program) {
+  return tool::upload(client, client.hello(), program.bytes(), {}).activation.running == 1;
+}
+
+}  // namespace
+
+TEST_CASE("while one host uploads, another one is told who has the line, and changes nothing") {
+  Robot robot;
+  const tool::Program mine = test::program(3), other = test::program(5);
+  desk_begins(robot, mine);
+  robot.run(1200);
+  tool::Client second(robot);
+  try {
+    (void)uploads(second, other);
+    FAIL("the line was the other host's");
+  } catch (const tool::Failure& failure) {
+    CHECK(failure.exit() == tool::Exit::outside);
+    CHECK_THAT(failure.what(), Catch::Contains("busy: desk has the line") &&
+                                   Catch::Contains("since 1 s") && Catch::Contains("--take"));
+  }
+  CHECK_THROWS_AS(second.resume(), tool::Failure);
+  CHECK_THROWS_AS(second.feed({.channel = 0, .at_us = 0, .value = 1}), tool::Failure);
+  CHECK(second.status().activations == 0);
+  CHECK(second.hello().running == 0);  // hello is answered to everybody
+  CHECK(second.stop().activations == 0);
+  CHECK(robot.runtime.stopped());  // and stop obeyed
+}
+
+TEST_CASE("a host that has gone away keeps the line for three seconds, and not from who takes it") {
+  const tool::Program mine = test::program(3), other = test::program(5);
+  SECTION("gone for long") {
+    Robot robot;
+    desk_begins(robot, mine);
+    robot.run(kSilenceMs + 100);
+    tool::Client second(robot);
+    CHECK(uploads(second, other));
+  }
+  SECTION("taken") {
+    Robot robot;
+    desk_begins(robot, mine);
+    tool::Client second(robot, milliseconds(2000), true);
+    CHECK(uploads(second, other));
+    CHECK(second.hello().program_hash == other.image().header->program_hash);
+  }
+}
+
+TEST_CASE(
+    "between its requests a host has no line: others do what they want, and so does it again") {
+  Robot robot;
+  const tool::Program mine = test::program(3), other = test::program(5);
+  tool::Client first(robot), second(robot);
+  CHECK(uploads(first, mine));
+  CHECK(uploads(second, other));
+  CHECK(first.feed({.channel = 0, .at_us = 0, .value = 1000}).error == link::FeedError::none);
+  CHECK(second.feed({.channel = 0, .at_us = 0, .value = 2000}).error == link::FeedError::none);
+  CHECK(uploads(first, mine));
+}
+
+TEST_CASE("data of another session is not taken, though it is at the wanted offset") {
+  Robot robot;
+  const tool::Program mine = test::program(3);
+  desk_begins(robot, mine);
+  tool::Client other(robot);
+  std::vector<std::byte> payload(sizeof(link::Data) + 100, std::byte{0x77});
+  const link::Data head{static_cast<std::uint16_t>(kDesk + 1), 0};
+  std::memcpy(payload.data(), &head, sizeof head);
+  for (const MessageType type : {MessageType::data, MessageType::pieces}) {
+    other.send(type, payload);
+    const auto reply = other.next_reply(milliseconds(100));
+    REQUIRE(reply);
+    CHECK(reply->type == MessageType::busy);
+  }
+}
+
+TEST_CASE("what another rsc of this computer has left behind does not keep the line") {
+  Robot robot;
+  const tool::Program mine = test::program(3), other = test::program(5);
+  {
+    tool::Client gone(robot);
+    gone.hello();
+    const auto size = static_cast<std::uint32_t>(other.bytes().size());
+    const link::Begin begin{gone.session(), size, test::name_of(other), {}};
+    gone.send(MessageType::begin, link::wire_bytes(begin));
+    REQUIRE(gone.next_reply(milliseconds(100)));
+  }
+  tool::Client next(robot);
+  CHECK(uploads(next, mine));
+}
+
+TEST_CASE("a board that has started again knows no session, and is greeted again") {
+  const tool::Program mine = test::long_program();
+  Robot robot;
+  tool::Client client(robot);  // has said hello to the board as it was before
+  CHECK(tool::upload(client, {}, mine.bytes(), {}).activation.running == 1);
+  Robot again;
+  tool::Client other(again);
+  CHECK(other.feed({.channel = 0, .at_us = 0, .value = 1}).error == link::FeedError::no_program);
+}
