@@ -17,7 +17,8 @@ struct Past {
   bool has_fault() const { return fault.thread.front() != '\0'; }
 
   link::Status status;
-  link::Fault fault;  // the last one that the board has kept, also from before it started
+  link::Authority owner{};  // who gives it orders, once somebody has asked
+  link::Fault fault;        // the last one that the board has kept, also from before it started
 };
 
 [[nodiscard]] std::string_view reset_reason(const link::Status& status);

@@ -45,6 +45,17 @@ private:
   std::optional<std::uint8_t> asked_;
 };
 
+// Where a robot is, and with which key orders to it are signed (empty: the usual one).
+struct Place {
+  std::string port, key;
+};
+// Throws as Session().
+[[nodiscard]] inline std::unique_ptr<Session> open_session(const Place& place) {
+  auto session = std::make_unique<Session>(place.port);
+  session->client.use_key(place.key);
+  return session;
+}
+
 // A NUL-padded name from the wire.
 [[nodiscard]] inline std::string text_of(const link::Name& name) {
   return {name.begin(), std::find(name.begin(), name.end(), '\0')};

@@ -68,6 +68,13 @@ std::string threads_table(ThreadList now, ThreadList before) {
   return text;
 }
 
+std::optional<double> load_of(ThreadList now, ThreadList before) {
+  std::optional<double> load;
+  for (const link::ThreadInfo& thread : now)
+    if (const auto percent = share(thread, before)) load = load.value_or(0) + *percent;
+  return load;
+}
+
 Json threads_json(ThreadList now, ThreadList before) {
   Json list = Json::array();
   for (const link::ThreadInfo& thread : now) {

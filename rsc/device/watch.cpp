@@ -1,21 +1,14 @@
-// May assume nothing of what the board sends. Promises that each line is written out at once, that
-// losses are said, and that the board's trace is off again afterwards.
+// May assume nothing of what the board sends. Promises that losses are said,
+// and that the board's trace is off again afterwards.
 #include "rsc/device/watch.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <csignal>
-#include <iostream>
-#include <span>
-#include <string>
+#include <thread>
+#include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "link/events.hpp"
-#include "rsc/device/devices.hpp"
-#include "rsc/device/past.hpp"
-#include "rsc/device/threads.hpp"
 #include "rsc/failure.hpp"
 #include "vm/verifier.hpp"
 
@@ -24,13 +17,15 @@ namespace {
 
 using link::MessageType;
 using std::chrono::milliseconds;
-using Json = nlohmann::ordered_json;
 
-constexpr milliseconds kLookForLosses{1000};  // and at the threads
+constexpr milliseconds kLook{1000};  // for losses, and at the threads
+constexpr milliseconds kListen{50};  // before the viewers have their turn
+constexpr milliseconds kTryAgain{500};
 
 volatile std::sig_atomic_t interrupted = 0;
 
-// SIGINT ends the watch instead of the program, so that the board is told to stop its trace.
+// SIGINT ends the watch instead of the program, so that the board is told to
+// stop its trace.
 class Interruptible {
 public:
   Interruptible() {
@@ -54,181 +49,203 @@ private:
 
 }  // namespace
 
-Watch::Watch(Session& session, Format format, bool threads)
-    : session_(session), format_(format), threads_(threads) {
-  learn_names();
-  if (threads_) thread_list_ = session_.client.threads();
-  lost_ = session_.client.set_trace(true).lost_events;
+Watch::Watch(std::unique_ptr<Session>& session, Place place, std::vector<Viewer*> viewers,
+             bool threads)
+    : session_(session),
+      place_(std::move(place)),
+      viewers_(std::move(viewers)),
+      threads_(threads),
+      next_look_(Clock::now() + kLook) {
+  begin();
 }
 
 Watch::~Watch() {
-  if (!has_line_) return;
+  if (!has_line_ || !session_) return;
   try {
-    session_.client.set_trace(false);
+    session_->client.set_trace(false);
   } catch (const Failure&) {
     // The line is gone; the next hello stops the trace.
   }
 }
 
-void Watch::learn_names() {
-  image_bytes_ = session_.client.running_image();
+void Watch::begin() {
+  learn_program();
+  if (threads_) thread_list_ = session_->client.threads();
+  const link::Status status = session_->client.set_trace(true);
+  lost_ = status.lost_events;
+  uptime_us_ = status.uptime_us;
+}
+
+void Watch::learn_program() {
+  image_bytes_ = session_->client.running_image();
   const bool good = vm::verify(image_bytes_, vm::Limits{}, image_).ok();
   names_ = {good ? &image_ : nullptr, {}};
   learn_threads();
+  for (Viewer* const viewer : viewers_)
+    viewer->program(names_, image_bytes_);
 }
 
 void Watch::learn_threads() {
   names_.threads.clear();
-  for (const link::ThreadInfo& thread : session_.client.threads())
+  for (const link::ThreadInfo& thread : session_->client.threads())
     names_.threads.push_back(text_of(thread.name));
 }
 
 void Watch::introduce() {
-  const Past past(session_.client);
+  Past past(session_->client);
   uptime_us_ = past.status.uptime_us;
   std::vector<OnBus> silent;
-  if (names_.image != nullptr) silent = on_buses(image_, session_.client.devices());
+  if (names_.image != nullptr) silent = on_buses(image_, session_->client.devices());
   std::erase_if(silent, [](const OnBus& device) { return !device.silent; });
-  link::Authority owner{};
-  owner.pairing = session_.board.pairing;
-  if (owner.pairing == link::Pairing::paired) owner = session_.client.authority();
-  if (format_ == Format::json) {
-    const Json line{{"event", "board"},
-                    {"name", text_of(session_.board.board)},
-                    {"uptime_us", past.status.uptime_us},
-                    {"reset_reason", reset_reason(past.status)},
-                    {"faults", past.status.faults},
-                    {"last_fault", last_fault_json(past)},
-                    {"owner", owner_json(owner)},
-                    {"silent", devices_json(silent)}};
-    std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
-  } else {
-    std::cout << fmt::format("        board  {}, up {}{}\n", text_of(session_.board.board),
-                             past_text(past.status),
-                             past.has_fault() ? "; last fault: " + fault_text(past.fault) : "");
-    std::cout << "        owner  " << owner_text(owner) << '\n';
-    for (const OnBus& device : silent)
-      std::cout << "       silent  " << silent_text(device) << '\n';
-  }
-  std::cout.flush();
+  past.owner.pairing = session_->board.pairing;
+  if (past.owner.pairing == link::Pairing::paired) past.owner = session_->client.authority();
+  for (Viewer* const viewer : viewers_)
+    viewer->board(session_->board, past, silent);
+}
+
+bool Watch::goes_on() {
+  bool wanted = true;
+  for (Viewer* const viewer : viewers_)
+    wanted = viewer->work(has_line_ ? session_.get() : nullptr) && wanted;
+  return wanted && interrupted == 0 && (!until_ || Clock::now() < *until_);
 }
 
 void Watch::show(std::optional<milliseconds> duration) {
   const Interruptible interruptible;
-  const auto start = session_.client.now();
-  const auto goes_on = [&] {
-    return interrupted == 0 && (!duration || session_.client.now() - start < *duration);
-  };
-  auto next_look = start + kLookForLosses;
+  until_.reset();
+  if (duration) until_ = Clock::now() + *duration;
   while (goes_on()) {
-    if (session_.transport->wanted() && !lend(goes_on)) return;
-    const auto now = session_.client.now();
-    if (now >= next_look) {
-      look(session_.client.set_trace(true));
-      if (threads_) show_threads();
-      next_look = now + kLookForLosses;
+    if (!session_)
+      find_again();
+    else if (!step())
+      return;
+  }
+  if (!session_) throw Failure(Exit::outside, why_lost_);
+  look(session_->client.status());
+}
+
+// False when the line was lent until the end.
+bool Watch::step() {
+  try {
+    if (session_->transport->wanted() && !lend()) return false;
+    const auto now = Clock::now();
+    if (now >= next_look_) {
+      look(session_->client.set_trace(true));
+      if (threads_) tell_threads();
+      next_look_ = now + kLook;
     }
-    auto wait = milliseconds(100);
-    if (duration) {
-      const auto left = std::chrono::ceil<milliseconds>(start + *duration - now);
+    auto wait = kListen;
+    if (until_) {
+      const auto left = std::chrono::ceil<milliseconds>(*until_ - now);
       wait = std::clamp(left, milliseconds(0), wait);
     }
-    if (const auto message = session_.client.next_unasked(wait)) show(*message);
+    if (const auto message = session_->client.next_unasked(wait)) tell(*message);
+  } catch (const Failure& failure) {
+    if (failure.exit() != Exit::outside) throw;
+    lose(failure.what());
   }
-  report_losses(session_.client.status());
+  return true;
 }
 
-void Watch::show(const Message& message) {
+// Closed, so that whoever has pulled the plug may put it in again.
+void Watch::lose(const std::string& why) {
+  why_lost_ = why;
+  session_.reset();
+  next_try_ = Clock::now() + kTryAgain;
+  missed(why + "; looking for it again");
+}
+
+void Watch::find_again() {
+  std::this_thread::sleep_for(kListen);
+  if (Clock::now() < next_try_) return;
+  try {
+    session_ = open_session(place_);
+    begin();
+    missed("the line is there again; what happened meanwhile is not shown");
+    introduce();
+  } catch (const Failure& failure) {
+    if (failure.exit() != Exit::outside) throw;
+    why_lost_ = failure.what();
+    session_.reset();
+  }
+  next_try_ = Clock::now() + kTryAgain;
+}
+
+void Watch::tell(const Message& message) {
+  if (message.type == MessageType::event) {
+    tell_event(message);
+    return;
+  }
+  if (message.type == MessageType::fault) {
+    link::Fault fault{};
+    if (!link::read_payload(message.payload, fault)) return;
+    for (Viewer* const viewer : viewers_)
+      viewer->fault(fault);
+    return;
+  }
   const std::string text(reinterpret_cast<const char*>(message.payload.data()),
                          message.payload.size());
-  switch (message.type) {
-    case MessageType::event:
-      show_event(message);
-      break;
-    case MessageType::fault:
-      show_fault(message);
-      break;
-    default:
-      if (format_ == Format::json) {
-        const Json line{{"event", "log"}, {"text", text}};
-        std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
-      } else {
-        std::cout << "          log  " << text << '\n';
-      }
-  }
-  std::cout.flush();
-  if (!std::cout) throw Failure(Exit::outside, "could not write to stdout");
+  for (Viewer* const viewer : viewers_)
+    viewer->log(text);
 }
 
-void Watch::show_event(const Message& message) {
+void Watch::tell_event(const Message& message) {
   link::Event event;
   if (!link::decode_event(message.payload, event)) return;
   // Another program runs: numbers mean something else from here on.
-  if (event.kind == link::EventKind::activated) learn_names();
-  // Ranks, which is how events name threads, are others. Asked for only when one is named.
+  if (event.kind == link::EventKind::activated) learn_program();
+  // Ranks, which is how events name threads, are others. Asked for only when
+  // one is named.
   if (event.kind == link::EventKind::priority || event.kind == link::EventKind::lowered)
     names_.threads.clear();
   const bool names_thread =
       event.kind == link::EventKind::fault || event.kind == link::EventKind::deadline;
   if (names_thread && names_.threads.empty()) learn_threads();
-  std::cout << (format_ == Format::json ? trace_json(event, names_) : trace_line(event, names_))
-            << '\n';
+  for (Viewer* const viewer : viewers_)
+    viewer->event(event, names_);
 }
 
-void Watch::show_fault(const Message& message) {
-  link::Fault fault{};
-  if (!link::read_payload(message.payload, fault)) return;
-  if (format_ == Format::json) {
-    Json line;
-    line["event"] = "fault";
-    line.update(fault_json(fault));
-    std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
-    return;
-  }
-  std::cout << "        fault  " << fault_text(fault) << '\n';
-}
-
-void Watch::show_threads() {
-  const std::vector<link::ThreadInfo> now = session_.client.threads();
-  if (format_ == Format::json) {
-    const Json line{{"event", "threads"}, {"threads", threads_json(now, thread_list_)}};
-    std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
-  } else {
-    std::cout << '\n' << threads_table(now, thread_list_) << '\n';
-  }
-  std::cout.flush();
+void Watch::tell_threads() {
+  const std::vector<link::ThreadInfo> now = session_->client.threads();
+  for (Viewer* const viewer : viewers_)
+    viewer->threads(now, thread_list_);
   thread_list_ = now;
 }
 
-// A board that has started again has forgotten that somebody listens, so it is told each time.
+// A board that has started again has forgotten that somebody listens, so it is
+// told each time.
 void Watch::look(const link::Status& status) {
   if (status.uptime_us < uptime_us_) {
-    std::cerr << "rsc: the board has started again\n";
+    missed("the board has started again");
     lost_ = 0;
-    learn_names();
+    learn_program();
     introduce();
   } else {
     report_losses(status);
   }
   uptime_us_ = status.uptime_us;
+  for (Viewer* const viewer : viewers_)
+    viewer->status(status);
 }
 
-// What has come is shown first: its numbers are those of the program that has run so far. The other one's hello switches
-// the trace off anyway.
-bool Watch::lend(const std::function<bool()>& waiting) {
-  session_.client.set_trace(false);
-  while (const auto message = session_.client.next_unasked(milliseconds(0)))
-    show(*message);
-  const auto lent = session_.client.now();
-  has_line_ = session_.transport->lend(waiting);
+// What has come is told first: its numbers are those of the program that has
+// run so far. The other one's hello switches the trace off anyway.
+bool Watch::lend() {
+  session_->client.set_trace(false);
+  while (const auto message = session_->client.next_unasked(milliseconds(0)))
+    tell(*message);
+  const auto lent = Clock::now();
+  has_line_ = false;
+  has_line_ = session_->transport->lend([this] { return goes_on(); });
   if (!has_line_) return false;
-  const link::Status status = session_.client.set_trace(true);
+  const link::Status status = session_->client.set_trace(true);
   const std::vector<std::byte> before = image_bytes_;
-  learn_names();
-  std::cerr << fmt::format(
-      "rsc: another rsc has used the line for {:.1f} s{}; what happened meanwhile is not shown\n",
-      std::chrono::duration<double>(session_.client.now() - lent).count(),
-      image_bytes_ == before ? "" : ", and another program runs");
+  learn_program();
+  missed(
+      fmt::format("another rsc has used the line for {:.1f} s{}; what happened "
+                  "meanwhile is not shown",
+                  std::chrono::duration<double>(Clock::now() - lent).count(),
+                  image_bytes_ == before ? "" : ", and another program runs"));
   look(status);
   return true;
 }
@@ -237,7 +254,12 @@ void Watch::report_losses(const link::Status& status) {
   const std::uint32_t now_lost = status.lost_events - lost_;
   lost_ = status.lost_events;
   if (now_lost == 0) return;
-  std::cerr << fmt::format("rsc: {} events did not fit on the line and are not shown\n", now_lost);
+  missed(fmt::format("{} events did not fit on the line and are not shown", now_lost));
+}
+
+void Watch::missed(const std::string& why) {
+  for (Viewer* const viewer : viewers_)
+    viewer->missed(why);
 }
 
 }  // namespace robosync::tool

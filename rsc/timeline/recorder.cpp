@@ -70,6 +70,7 @@ TimelineRecorder::TimelineRecorder(const Program& program, const TraceNames& nam
       owners_(image_.actuators.size()),
       moves_(image_.actuators.size()),
       halted_(image_.actuators.size()) {
+  page_["begin_us"] = 0;
   for (const char* list : {"behaviors", "signals", "actuators", "safety", "denied", "messages"})
     page_[list] = Json::array();
   for (const vm::Behavior& behavior : image_.behaviors)
@@ -138,8 +139,17 @@ int TimelineRecorder::behavior_of(std::size_t rule) const {
   return -1;
 }
 
+// Who looks at a robot that runs already does not know what its variables are.
+void TimelineRecorder::begin(const link::Event& first) {
+  if (first.kind == EventKind::activated) return;
+  page_["begin_us"] = first.time_us;
+  for (Json& signal : page_["signals"])
+    signal["points"].clear();
+}
+
 void TimelineRecorder::see(const link::Event& event) {
   const EventReader reader(event, names_);
+  if (steps_.empty()) begin(event);
   if (steps_.empty() || steps_.back().front() != event.step)
     steps_.push_back(Json::array({event.step}));
   steps_.back().push_back(trace_words(event, names_));

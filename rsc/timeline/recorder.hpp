@@ -2,7 +2,7 @@
 // over program time.
 //
 // As JSON, which timeline.js reads; times are in microseconds, values in thousandths of their canonical unit:
-//   end_us, behaviors: [name]
+//   begin_us, end_us, behaviors: [name]
 //   signals:   [{group: "sensor"|"variable", name, unit: {name, factor, offset, divisor}, labels: [word],
 //                points: [[time, value or null]], thresholds: [{value, text, rule}]}]
 //   actuators: [{name, bars: [{from, to, behavior: index or -1, text, rule, step}], halts: [[from, to]]}]
@@ -39,6 +39,7 @@ public:
 private:
   using Json = nlohmann::ordered_json;
 
+  void begin(const link::Event& first);
   void add_signals();
   void add_rules();
   void see_value(const link::Event& event, std::size_t signal);

@@ -6,11 +6,11 @@ const run = JSON.parse(document.getElementById("run").textContent);
 const SVG = "http://www.w3.org/2000/svg";
 // Colours that people with any kind of colour vision can tell apart (Okabe and Ito); from the ninth behaviour on, dashed.
 const COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#b8a800", "#777777"];
-const END = Math.max(run.end_us, 1);
+const BEGIN = run.begin_us, END = Math.max(run.end_us, BEGIN + 1);
 const MARGIN = 8;  // pixels at both ends of a lane
 const steps = new Map(run.steps.map(([step, ...words]) => [step, words]));
 const lanes = [];
-let from = 0, to = END, chosen = null;
+let from = BEGIN, to = END, chosen = null;
 
 // ---- words
 
@@ -301,8 +301,8 @@ function buildSource() {
 // ---- hands
 
 function show(begin, end) {
-  const span = Math.min(Math.max(end - begin, 1000), END);
-  from = Math.min(Math.max(begin, 0), END - span);
+  const span = Math.min(Math.max(end - begin, 1000), END - BEGIN);
+  from = Math.min(Math.max(begin, BEGIN), END - span);
   to = from + span;
   draw();
 }
@@ -364,7 +364,7 @@ function listen() {
     drag = null;
   });
   addEventListener("resize", draw);
-  const keys = {"+": () => zoom(0.8), "=": () => zoom(0.8), "-": () => zoom(1.25), "0": () => show(0, END),
+  const keys = {"+": () => zoom(0.8), "=": () => zoom(0.8), "-": () => zoom(1.25), "0": () => show(BEGIN, END),
     "ArrowLeft": () => show(from - (to - from) / 5, to - (to - from) / 5),
     "ArrowRight": () => show(from + (to - from) / 5, to + (to - from) / 5)};
   addEventListener("keydown", event => keys[event.key]?.());

@@ -1,5 +1,5 @@
 // rsc feed READING… --port P [--at TIME] [--scenario S.json] [--upload FILE [--fresh]]
-//          [--watch TIME] [--format human|json] [--key FILE]
+//          [--watch TIME [--record R.jsonl]] [--format human|json] [--key FILE]
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -13,9 +13,12 @@
 #include <fmt/format.h>
 
 #include "rsc/console.hpp"
+#include "rsc/device/line_recorder.hpp"
+#include "rsc/device/printer.hpp"
 #include "rsc/device/uploader.hpp"
 #include "rsc/device/watch.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/output.hpp"
 #include "rsc/trace/channels.hpp"
 #include "rsc/trace/scenario.hpp"
 #include "rsc/verb.hpp"
@@ -32,7 +35,7 @@ constexpr milliseconds kQueuePause{20};
 
 struct FeedOptions {
   std::vector<std::string> readings;
-  std::string scenario, upload, port, key;
+  std::string scenario, upload, port, key, record;
   CompileOptions how;
   std::optional<milliseconds> at, watch;
   bool fresh = false;
@@ -117,23 +120,31 @@ void feed(const FeedOptions& options) {
   if (options.readings.empty() && options.scenario.empty()) {
     throw Failure(Exit::usage, "name a reading, as in touch.LEVEL=2, or a --scenario");
   }
+  if (!options.record.empty()) {
+    if (!options.watch) throw Failure(Exit::usage, "--record records what --watch TIME shows");
+    check_output(options.record, {options.scenario, options.upload});
+  }
   std::optional<Program> program;
   if (!options.upload.empty()) program = load_program(options.upload, options.how);
-  Session session(options.port);
-  session.client.use_key(options.key);
+  const Place place{options.port, options.key};
+  auto session = open_session(place);
+  Printer printer(options.format);
+  std::optional<LineRecorder> recorder;
+  std::vector<Viewer*> viewers = {&printer};
+  if (!options.record.empty()) viewers.push_back(&recorder.emplace(options.record));
   std::optional<Watch> watch;
-  if (options.watch) watch.emplace(session, options.format);
+  if (options.watch) watch.emplace(session, place, viewers);
   if (program) {
     UploadOptions how;
     how.fresh = options.fresh;
-    upload_program(session, *program, how);
+    upload_program(*session, *program, how);
   } else {
-    program = running_program(session);
+    program = running_program(*session);
   }
   const vm::Image& image = program->image();
   const std::vector<Stimulus> stimuli = wanted(options, *program);
   for (const Stimulus& stimulus : stimuli)
-    send(session, image, stimulus);
+    send(*session, image, stimulus);
   if (watch) {
     watch->show(options.watch);
   } else if (options.format == Format::human) {
@@ -156,6 +167,8 @@ void add_feed(Options& options) {
   options.flag("--fresh", asked->fresh, "with --upload: KEPT numbers begin as the program says");
   add_compile_options(options, asked->how);
   add_duration_option(options, "--watch", asked->watch, "then show what happens for so long");
+  options.option("--record", "R.jsonl", asked->record,
+                 "with --watch: write it down for rsc replay");
   add_format_option(options, asked->format);
   options.runs([asked] { feed(*asked); });
 }

@@ -1,10 +1,12 @@
-// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--html OUT.html] [--all] [--kept FILE] [--fresh] [--config FILE] [-O0] [--seed N]
+// rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--record R.jsonl] [--html OUT.html]
+//         [--watch] [--all] [--kept FILE] [--fresh] [--config FILE] [-O0] [--seed N]
 #include <chrono>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,10 +17,12 @@
 #include "rsc/kept.hpp"
 #include "rsc/output.hpp"
 #include "rsc/program.hpp"
+#include "rsc/saved_files.hpp"
 #include "rsc/timeline/page.hpp"
 #include "rsc/timeline/recorder.hpp"
 #include "rsc/timing.hpp"
 #include "rsc/trace/digest.hpp"
+#include "rsc/trace/replay_file.hpp"
 #include "rsc/trace/scenario.hpp"
 #include "rsc/trace/trace_format.hpp"
 #include "rsc/verb.hpp"
@@ -31,11 +35,12 @@ namespace {
 constexpr std::uint64_t kDefaultDurationUs = 10'000'000;
 
 struct RunOptions {
-  std::string file, scenario, trace, html, kept;
+  std::string file, scenario, trace, record, html, kept;
   CompileOptions how;
   std::optional<std::chrono::milliseconds> duration;
   bool all = false;
   bool fresh = false;
+  bool watch = false;
   Format format = Format::human;
 };
 
@@ -66,7 +71,7 @@ public:
   void see(const link::Event& event) {
     kept_.see(event);
     const std::string json = trace_json(event, names_) + "\n";
-    if (!options_.trace.empty()) trace_ += json;
+    if (!options_.trace.empty() || !options_.record.empty()) trace_ += json;
     if (!options_.html.empty()) timeline_.see(event);
     if (options_.format == Format::json)
       std::cout << json;
@@ -74,8 +79,13 @@ public:
       std::cout << trace_line(event, names_) << '\n';
   }
 
-  void write(std::uint64_t end_us) {
+  // `image`: that ran.
+  void write(std::uint64_t end_us, std::span<const std::byte> image) {
     kept_.write();
+    if (!options_.record.empty()) {
+      const std::string recording = image_line(image) + trace_;
+      write_output(options_.record, std::as_bytes(std::span(recording)));
+    }
     if (!options_.trace.empty()) write_output(options_.trace, std::as_bytes(std::span(trace_)));
     if (options_.html.empty()) return;
     const std::string page =
@@ -100,7 +110,7 @@ void run(const RunOptions& options) {
   show_notes(scenario);
 
   Kept kept(program, options.file, options.kept, options.fresh);
-  for (const std::string& output : {options.trace, options.html})
+  for (const std::string& output : {options.trace, options.record, options.html})
     if (!output.empty()) check_output(output, inputs_of(options, program, kept));
 
   std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
@@ -117,7 +127,29 @@ void run(const RunOptions& options) {
     simulator.feed(stimulus.at_us, stimulus.channel, stimulus.value);
   const std::uint64_t end_us = duration_us(options, scenario);
   simulator.run_until(end_us);
-  output.write(end_us);
+  output.write(end_us, uploaded);
+}
+
+// Until somebody ends it. What is wrong is said, and may be mended meanwhile.
+[[noreturn]] void run_again_and_again(const RunOptions& options) {
+  constexpr std::chrono::milliseconds kBetweenLooks{100};
+  SavedFiles saved;
+  while (true) {
+    std::vector<std::string> files = files_of_program(options.file, options.how);
+    files.push_back(options.scenario);
+    saved.look_at(files);
+    try {
+      run(options);
+    } catch (const Failure& failure) {
+      if (failure.exit() == Exit::usage) throw;
+      std::cerr << "rsc: " << failure.what() << '\n';
+    }
+    std::cout.flush();
+    if (!std::cout) throw Failure(Exit::outside, "could not write to stdout");
+    std::cerr << "rsc: waits until a file is saved; Ctrl-C ends it\n";
+    while (!saved.changed())
+      std::this_thread::sleep_for(kBetweenLooks);
+  }
 }
 
 }  // namespace
@@ -128,8 +160,12 @@ void add_run(Options& options) {
   options.option("--scenario", "S.json", asked->scenario, "what the sensors measure, when");
   add_duration_option(options, "--duration", asked->duration, "else the scenario's, else 10s");
   options.option("--trace", "T.jsonl", asked->trace, "write the trace as JSON lines");
+  options.option("--record", "R.jsonl", asked->record, "write it down for rsc replay");
   options.option("--html", "OUT.html", asked->html,
                  "write a page that shows the run, for a browser");
+  options.flag("--watch", asked->watch,
+               "run again whenever the program, its configuration or the "
+               "scenario is saved");
   options.flag("--all", asked->all, "show readings and what happens inside as well");
   options.option("--kept", "K.json", asked->kept,
                  "keeps the KEPT numbers; else STEM.kept.json beside the program");
@@ -137,7 +173,7 @@ void add_run(Options& options) {
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_format_option(options, asked->format);
-  options.runs([asked] { run(*asked); });
+  options.runs([asked] { asked->watch ? run_again_and_again(*asked) : run(*asked); });
 }
 
 }  // namespace robosync::tool

@@ -1,5 +1,7 @@
 // upload, info, feed and monitor: the built rsc talks over a Unix socket, TCP and a pty to a robot
 // that runs in this process (the real kernel, runtime and server).
+#include "tests/rsc/device.hpp"
+
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
@@ -17,104 +19,15 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "tests/rsc/image.hpp"
-#include "tests/rsc/process.hpp"
-#include "tests/runtime-m4/update/robot.hpp"
-
 using namespace robosync;
 using Catch::Contains;
 using nlohmann::json;
+using test::Bridge;
+using test::Device;
+using test::Folder;
+using test::listen_at;
 using test::Outcome;
 using test::RobotFolder;
-
-namespace {
-
-// Carries bytes between a file descriptor and the robot, whose time follows the clock.
-class Bridge {
-public:
-  // `accepting`: `file` is a listening socket; else the line itself.
-  Bridge(int file, bool accepting, const policy::BoardMemory& memory = boards::kMemory)
-      : file_(file), accepting_(accepting), memory_(memory) {
-    thread_ = std::thread([this] { run(); });
-  }
-  ~Bridge() {
-    stop_ = true;
-    thread_.join();
-    close(file_);
-  }
-  Bridge(const Bridge&) = delete;
-  Bridge& operator=(const Bridge&) = delete;
-
-  void wait_until_heard() const { heard_.wait(0); }
-  std::size_t bytes_heard() const { return heard_; }
-
-private:
-  void run() {
-    test::Robot robot(memory_);
-    int line = accepting_ ? -1 : file_;
-    const auto start = std::chrono::steady_clock::now();
-    while (!stop_) {
-      if (line < 0) line = accept4(file_, nullptr, nullptr, SOCK_NONBLOCK);
-      if (line >= 0 && !carry(robot, line)) {
-        if (accepting_) close(std::exchange(line, -1));
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      // Bounded, so that a busy machine does not make it run away from its line.
-      for (int i = 0;
-           i < 20 && robot.now().time_since_epoch() < std::chrono::steady_clock::now() - start;
-           ++i) {
-        robot.run_tick();
-      }
-    }
-    if (accepting_ && line >= 0) close(line);
-  }
-
-  bool carry(test::Robot& robot, int line) {
-    std::array<std::byte, 512> bytes{};
-    const ssize_t count = ::read(line, bytes.data(), bytes.size());
-    if (count > 0) {
-      robot.write(std::span(bytes).first(static_cast<std::size_t>(count)));
-      heard_ += static_cast<std::size_t>(count);
-      heard_.notify_all();
-    }
-    if (count == 0 || (count < 0 && errno != EAGAIN)) return false;
-    const std::size_t ready = robot.read(bytes, std::chrono::milliseconds(0));
-    return ready == 0 || ::write(line, bytes.data(), ready) >= 0;
-  }
-
-  int file_;
-  bool accepting_;
-  policy::BoardMemory memory_;
-  std::atomic<bool> stop_ = false;
-  std::atomic<std::size_t> heard_ = 0;
-  std::thread thread_;
-};
-
-int listen_at(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  path.copy(address.sun_path, path.size());
-  const int file = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0);
-  REQUIRE(bind(file, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
-  REQUIRE(listen(file, 1) == 0);
-  return file;
-}
-
-struct Device : RobotFolder {
-  explicit Device(std::uint32_t arena_bytes = boards::kMemory.arena_bytes)
-      : bridge(listen_at(path("line")), true,
-               {boards::kMemory.arena_begin, arena_bytes, boards::kMemory.step_budget}) {}
-
-  std::string port = "unix:" + path("line");
-  Bridge bridge;
-
-  Outcome run(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.end(), {"--port", port});
-    return test::rsc(std::move(arguments));
-  }
-};
-
-}  // namespace
 
 TEST_CASE("upload, info, feed and monitor against a running robot") {
   const Device device;
@@ -305,17 +218,78 @@ TEST_CASE("a port without firmware behind it is exit 3") {
   CHECK_THAT(outcome.err, Contains("the board does not answer") && Contains(robot.path("dumb")));
 }
 
-TEST_CASE("a line that is closed while somebody listens is exit 3") {
+TEST_CASE("a line that is closed while somebody listens, and stays so, is exit 3") {
   auto device = std::make_unique<Device>();
   Outcome outcome;
   std::thread monitor([&, port = device->port] {
-    outcome = test::rsc({"monitor", "--port", port, "--duration", "30s"});
+    outcome = test::rsc({"monitor", "--port", port, "--duration", "2500ms"});
   });
-  device->bridge.wait_until_heard();
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));  // it watches
   device.reset();
   monitor.join();
   CHECK(outcome.exit == 3);
-  CHECK_THAT(outcome.err, Contains("the other end closed the line"));
+  CHECK_THAT(outcome.err, Contains("the other end closed the line; looking for it again"));
+}
+
+TEST_CASE("a monitor finds a line again that was closed, and says so") {
+  Device device;
+  const std::string ticking = device.write("robot.rsl", "EVERY 100ms DO LOG \"tick\" END\n");
+  const Folder folder;
+  Outcome outcome;
+  std::thread monitor([&] {
+    outcome = device.run(
+        {"monitor", "--duration", "5s", "--upload", ticking, "--record", folder.path("r.jsonl")});
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(2200));
+  device.bridge.hang_up();
+  monitor.join();
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.err, Contains("looking for it again") &&
+                              Contains("the line is there again; what happened meanwhile"));
+  CHECK_THAT(outcome.out, Contains("log: tick"));
+  // The recording has a gap there, which replay respects.
+  outcome = test::rsc({"replay", folder.path("r.jsonl"), "--format", "json"});
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.exit == 0);
+  const json report = json::parse(outcome.out);
+  REQUIRE(report.at("programs").size() == 1);
+  CHECK(report.at("programs").at(0).at("events") > 0);
+  CHECK_THAT(report.at("programs").at(0).at("gap").get<std::string>(), Contains("closed the line"));
+  CHECK(report.at("not_replayed") > 0);
+}
+
+TEST_CASE("a robot that was uploaded to while it was recorded is replayed to the same commands") {
+  const Device device;
+  const std::string program =
+      device.write("robot.rsl", "EVERY 100ms DO MOVE left_arm QUICKLY TO 10deg END\n");
+  Outcome outcome;
+  std::thread monitor([&] {
+    outcome = device.run({"monitor", "--duration", "3s", "--upload", program, "--record",
+                          device.path("r.jsonl"), "--html", device.path("r.html")});
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  device.write("robot.rsl",
+               "EVERY 1h DO MOVE left_amr TO 20deg END\n");  // wrong: nothing happens
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  device.write("robot.rsl", "EVERY 150ms DO MOVE left_arm QUICKLY TO 30deg END\n");
+  monitor.join();
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.err, Contains("robot.rsl:1"));
+  outcome = test::rsc({"replay", device.path("r.jsonl"), "--format", "json"});
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.exit == 0);
+  const json report = json::parse(outcome.out);
+  REQUIRE(report.at("programs").size() == 2);
+  for (const json& one : report.at("programs")) {
+    CHECK(one.at("gap").is_null());
+    CHECK(one.at("commands") > 2);
+  }
+  // The page is that of the program that ran last.
+  CHECK_THAT(device.read("r.html"), Contains("QUICKLY TO 30") && !Contains("QUICKLY TO 10"));
+  CHECK(device.run({"monitor", "--duration", "100ms", "--record", program, "--upload", program})
+            .exit == 2);
 }
 
 TEST_CASE("to write on a line that is closed is an error, and no signal that ends the tool") {

@@ -47,10 +47,12 @@ RUNTIME = {
 MAY_KNOW_THE_PROCESSOR = {"port", "port's sources", "boards/common", "a board"}
 # Inside rsc/: the same. What stands in rsc/ itself includes none of them.
 TOOL = {
-    "verbs": {"device", "trace", "dump", "timeline", "lsp", "modules"},
+    "verbs": {"device", "trace", "dump", "timeline", "screen", "bridge", "lsp", "modules"},
     "device": {"trace"},
     "trace": set(),
-    "timeline": {"trace"},
+    "timeline": {"device", "trace"},
+    "screen": {"device", "trace"},
+    "bridge": {"device", "trace"},
     "dump": set(),
     "modules": {"device"},
     "lsp": set(),

@@ -1,0 +1,142 @@
+// See bridge.hpp.
+#include "rsc/bridge/bridge.hpp"
+
+#include <iostream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "rsc/bridge/topics.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/trace/channels.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string root_of(const std::string& name) {
+  return "robosync/" + topic_part(name) + "/";
+}
+
+std::string text_of(const Json& payload) {
+  return payload.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+constexpr const char* kAway = R"({"online":false})";
+
+}  // namespace
+
+Bridge::Bridge(const Mqtt::Place& broker, const std::string& name)
+    : root_(root_of(name)),
+      mqtt_(broker, root_of(name) + "do/#", {root_of(name) + "online", kAway, true}) {}
+
+Bridge::~Bridge() {
+  online(false);
+}
+
+void Bridge::publish(const std::string& topic, const Json& payload, bool retain) {
+  mqtt_.publish(root_ + topic, text_of(payload), retain);
+}
+
+void Bridge::online(bool is) {
+  is_online_ = is;
+  publish("online", {{"online", is}}, true);
+}
+
+void Bridge::board(const link::HelloReply& board, const Past& past,
+                   const std::vector<OnBus>& silent) {
+  publish("board",
+          {{"name", tool::text_of(board.board)},
+           {"uptime_us", past.status.uptime_us},
+           {"reset_reason", reset_reason(past.status)},
+           {"faults", past.status.faults},
+           {"last_fault", last_fault_json(past)},
+           {"owner", owner_json(past.owner)},
+           {"silent", devices_json(silent)}},
+          true);
+}
+
+void Bridge::program(const TraceNames& names, std::span<const std::byte>) {
+  image_ = names.image;
+  for (const std::string& topic : of_program_)
+    mqtt_.forget(root_ + topic);
+  of_program_.clear();
+}
+
+void Bridge::event(const link::Event& event, const TraceNames& names) {
+  const Json line = Json::parse(trace_json(event, names));
+  const Topic topic = topic_of(line);
+  if (topic.retain) of_program_.insert(topic.name);
+  publish(topic.name, line, topic.retain);
+}
+
+void Bridge::log(const std::string& text) {
+  publish("log", {{"event", "log"}, {"text", text}}, false);
+}
+
+void Bridge::fault(const link::Fault& fault) {
+  Json line{{"event", "fault"}};
+  line.update(fault_json(fault));
+  publish("faults", line, false);
+}
+
+void Bridge::missed(const std::string& why) {
+  std::cerr << "rsc: " << why << '\n';
+  publish("missed", {{"why", why}}, false);
+}
+
+bool Bridge::work(Session* session) {
+  if ((session != nullptr) != is_online_) online(session != nullptr);
+  if (const auto news = mqtt_.news()) std::cerr << "rsc: " << *news << '\n';
+  while (const auto message = mqtt_.next())
+    take(*message, session);
+  return true;
+}
+
+// What lay there before would be obeyed at each start again.
+void Bridge::take(const MqttMessage& message, Session* session) {
+  const std::string topic = message.topic.substr((root_ + "do/").size());
+  std::string why;
+  try {
+    if (message.retained) throw std::invalid_argument("it was retained: publish it without");
+    obey(topic, message.payload, session);
+    return;
+  } catch (const std::invalid_argument& error) {
+    why = error.what();
+  } catch (const Failure& failure) {
+    why = failure.what();
+  }
+  std::cerr << fmt::format("rsc: {}: {}\n", message.topic, why);
+  publish("refused", {{"topic", message.topic}, {"why", why}}, false);
+}
+
+void Bridge::obey(const std::string& topic, const std::string& payload, Session* session) {
+  if (session == nullptr) throw std::invalid_argument("the robot is away");
+  if (topic == "stop") {
+    session->client.stop();
+    publish("stopped", {{"stopped", true}}, true);
+  } else if (topic == "resume") {
+    session->client.resume();
+    publish("stopped", {{"stopped", false}}, true);
+  } else if (const auto reading = reading_of(topic, payload)) {
+    feed(*reading, *session);
+  } else {
+    throw std::invalid_argument("a robot can be told stop, resume, feed/SENSOR/CHANNEL");
+  }
+}
+
+void Bridge::feed(const std::string& reading, Session& session) {
+  if (image_ == nullptr) throw std::invalid_argument("no program runs");
+  const std::size_t equals = reading.find('=');
+  const std::uint8_t channel = find_channel(*image_, reading.substr(0, equals));
+  const vm::Value value = parse_reading(*image_, channel, reading.substr(equals + 1));
+  const link::FeedResult result = session.client.feed({0, channel, value});
+  if (result.error != link::FeedError::none)
+    throw std::invalid_argument(result.error == link::FeedError::not_virtual
+                                    ? "the board measures it; only virtual sensors can be fed"
+                                    : "the board refused the reading");
+}
+
+}  // namespace robosync::tool

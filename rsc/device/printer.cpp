@@ -1,0 +1,82 @@
+// See printer.hpp. Promises that each line is written out at once.
+#include "rsc/device/printer.hpp"
+
+#include <iostream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "rsc/failure.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void print(const Json& line) {
+  std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << std::endl;
+}
+
+}  // namespace
+
+void Printer::board(const link::HelloReply& board, const Past& past,
+                    const std::vector<OnBus>& silent) {
+  if (format_ == Format::json) {
+    print({{"event", "board"},
+           {"name", text_of(board.board)},
+           {"uptime_us", past.status.uptime_us},
+           {"reset_reason", reset_reason(past.status)},
+           {"faults", past.status.faults},
+           {"last_fault", last_fault_json(past)},
+           {"owner", owner_json(past.owner)},
+           {"silent", devices_json(silent)}});
+    return;
+  }
+  std::cout << fmt::format("        board  {}, up {}{}\n", text_of(board.board),
+                           past_text(past.status),
+                           past.has_fault() ? "; last fault: " + fault_text(past.fault) : "");
+  std::cout << "        owner  " << owner_text(past.owner) << '\n';
+  for (const OnBus& device : silent)
+    std::cout << "       silent  " << silent_text(device) << '\n';
+  std::cout.flush();
+}
+
+void Printer::event(const link::Event& event, const TraceNames& names) {
+  std::cout << (format_ == Format::json ? trace_json(event, names) : trace_line(event, names))
+            << std::endl;
+}
+
+void Printer::log(const std::string& text) {
+  if (format_ == Format::json)
+    print({{"event", "log"}, {"text", text}});
+  else
+    std::cout << "          log  " << text << std::endl;
+}
+
+void Printer::fault(const link::Fault& fault) {
+  if (format_ == Format::human) {
+    std::cout << "        fault  " << fault_text(fault) << std::endl;
+    return;
+  }
+  Json line{{"event", "fault"}};
+  line.update(fault_json(fault));
+  print(line);
+}
+
+void Printer::threads(ThreadList now, ThreadList before) {
+  if (format_ == Format::json)
+    print({{"event", "threads"}, {"threads", threads_json(now, before)}});
+  else
+    std::cout << '\n' << threads_table(now, before) << std::endl;
+}
+
+void Printer::missed(const std::string& why) {
+  std::cerr << "rsc: " << why << '\n';
+}
+
+bool Printer::work(Session*) {
+  if (!std::cout) throw Failure(Exit::outside, "could not write to stdout");
+  return true;
+}
+
+}  // namespace robosync::tool

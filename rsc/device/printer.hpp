@@ -1,0 +1,27 @@
+// What a watch sees, line by line on stdout: for people, or as JSON. What is
+// missed stands on stderr.
+#pragma once
+
+#include "rsc/console.hpp"
+#include "rsc/device/viewer.hpp"
+
+namespace robosync::tool {
+
+class Printer final : public Viewer {
+public:
+  explicit Printer(Format format) : format_(format) {}
+
+  void board(const link::HelloReply& board, const Past& past,
+             const std::vector<OnBus>& silent) override;
+  void event(const link::Event& event, const TraceNames& names) override;
+  void log(const std::string& text) override;
+  void fault(const link::Fault& fault) override;
+  void threads(ThreadList now, ThreadList before) override;
+  void missed(const std::string& why) override;
+  bool work(Session* session) override;  // throws Failure (outside) when nobody takes the lines
+
+private:
+  Format format_;
+};
+
+}  // namespace robosync::tool

@@ -1,0 +1,26 @@
+// Uploads a program to the board that is watched: first of all, and again
+// whenever one of its files is saved.
+#pragma once
+
+#include <string>
+
+#include "rsc/device/uploader.hpp"
+#include "rsc/device/viewer.hpp"
+#include "rsc/saved_files.hpp"
+
+namespace robosync::tool {
+
+class SavedUploads final : public Viewer {
+public:
+  SavedUploads(std::string file, CompileOptions how) : file_(std::move(file)), how_(how) {}
+
+  bool work(Session* session) override;
+
+private:
+  std::string file_;
+  CompileOptions how_;
+  SavedFiles saved_;
+  bool is_first_ = true;
+};
+
+}  // namespace robosync::tool

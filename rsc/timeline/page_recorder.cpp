@@ -1,0 +1,43 @@
+// See page_recorder.hpp.
+#include "rsc/timeline/page_recorder.hpp"
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "rsc/failure.hpp"
+#include "rsc/output.hpp"
+#include "rsc/timeline/page.hpp"
+
+namespace robosync::tool {
+
+// When another rsc has had the line the same program may go on, and so does its
+// page.
+void PageRecorder::program(const TraceNames& names, std::span<const std::byte> image) {
+  const bool goes_on = program_ && std::ranges::equal(program_->bytes(), image);
+  if (goes_on) return;
+  timeline_.reset();
+  program_.reset();
+  if (names.image == nullptr) return;
+  program_ = std::make_unique<Program>(std::vector<std::byte>(image.begin(), image.end()),
+                                       "the running program");
+}
+
+void PageRecorder::event(const link::Event& event, const TraceNames& names) {
+  if (!program_) return;
+  if (event.kind == link::EventKind::activated) timeline_.reset();
+  names_ = {&program_->image(), names.threads, nullptr};
+  if (!timeline_) timeline_ = std::make_unique<TimelineRecorder>(*program_, names_);
+  timeline_->see(event);
+  end_us_ = event.time_us;
+}
+
+void PageRecorder::write(const std::string& file, const std::string& title) {
+  if (!timeline_)
+    throw Failure(Exit::program, "nothing has happened that a page could show; none was written");
+  const std::string page = timeline_page(title, timeline_->finish(end_us_), {});
+  write_output(file, std::as_bytes(std::span(page)));
+  timeline_.reset();
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,267 @@
+// See replay.hpp.
+#include "rsc/trace/replay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "rsc/failure.hpp"
+#include "rsc/program.hpp"
+#include "rsc/trace/channels.hpp"
+#include "rsc/trace/time_units.hpp"
+#include "rsc/trace/trace_format.hpp"
+#include "runtime-m4/sim/simulator.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t kLongestUs = std::uint64_t{24} * 3600 * 1'000'000;
+
+// What is told to the program, and what a board tells of itself.
+bool is_compared(std::string_view kind) {
+  constexpr std::string_view kOthers[] = {"activated", "input",   "stale",  "fault",
+                                          "deadline",  "lowered", "silent", "answers"};
+  return std::ranges::find(kOthers, kind) == std::end(kOthers);
+}
+
+std::string kind_of(const Json& event) {
+  return event["event"].get<std::string>();
+}
+
+std::uint64_t time_of(const Json& event) {
+  return event["t_us"].get<std::uint64_t>();
+}
+
+// The record at `index` of a section, in the bytes that the image is a view of.
+template <typename Record>
+void change(std::vector<std::byte>& bytes, std::span<const Record> section, std::size_t index,
+            void (*how)(Record&)) {
+  const auto* const at = reinterpret_cast<const std::byte*>(&section[index]);
+  std::byte* const to = bytes.data() + (at - bytes.data());
+  Record record;
+  std::memcpy(&record, to, sizeof record);
+  how(record);
+  std::memcpy(to, &record, sizeof record);
+}
+
+// The program with sensors that are fed, whatever they were, and tell each
+// reading as it is. Those that fell silent in the recording do so again.
+std::vector<std::byte> as_fed(const Program& program, const std::set<std::uint8_t>& silent) {
+  std::vector<std::byte> bytes(program.bytes().begin(), program.bytes().end());
+  vm::Image image;
+  if (!vm::view_image(bytes, image)) return bytes;
+  for (std::size_t i = 0; i < image.sensors.size(); ++i)
+    change<vm::Sensor>(bytes, image.sensors, i, [](vm::Sensor& sensor) {
+      sensor.driver = vm::DriverId::virtual_sensor;
+      sensor.period_ms = 0;
+      sensor.first_input = 0;
+    });
+  for (std::size_t i = 0; i < image.channels.size(); ++i) {
+    change<vm::Channel>(bytes, image.channels, i, [](vm::Channel& channel) { channel.change = 0; });
+    if (!silent.contains(static_cast<std::uint8_t>(i)))
+      change<vm::Channel>(bytes, image.channels, i,
+                          [](vm::Channel& channel) { channel.stale_ms = 0; });
+  }
+  vm::seal(bytes);
+  return bytes;
+}
+
+// A reading as the trace has it: a label, or a number in the canonical unit.
+vm::Value value_of(const vm::Image& image, std::uint8_t channel, const Json& value) {
+  if (value.is_string()) return parse_reading(image, channel, value.get<std::string>());
+  if (!value.is_number()) throw std::invalid_argument("its value is no number");
+  const double thousandths = std::round(value.get<double>() * vm::kScale);
+  if (std::abs(thousandths) > vm::kValueMax) throw std::invalid_argument("its value is too large");
+  return static_cast<vm::Value>(thousandths);
+}
+
+struct Told {
+  std::uint64_t at_us = 0;
+  std::uint64_t step = 0;
+  std::uint8_t channel = 0;
+  std::optional<vm::Value> value;  // nothing: it fell silent
+};
+using Readings = std::vector<Told>;  // in their order
+
+std::uint64_t step_of(const Json& event) {
+  const auto step = event.find("step");
+  return step != event.end() && step->is_number_unsigned() ? step->get<std::uint64_t>() : 0;
+}
+
+// By its names, whatever measures it.
+std::uint8_t channel_of(const vm::Image& image, const Json& event) {
+  const std::string sensor = event.value("sensor", ""), channel = event.value("channel", "");
+  for (std::size_t i = 0; i < image.channels.size(); ++i)
+    if (image.string(image.channels[i].name) == channel &&
+        image.string(image.sensors[image.channels[i].sensor].name) == sensor)
+      return static_cast<std::uint8_t>(i);
+  throw std::invalid_argument(fmt::format("it has no channel {}.{}", sensor, channel));
+}
+
+Readings readings_of(const RecordedProgram& recorded, const vm::Image& image,
+                     const std::string& file) {
+  Readings readings;
+  for (const auto& [line, event] : recorded.events) {
+    const std::string kind = kind_of(event);
+    if (kind != "input" && kind != "stale") continue;
+    try {
+      Told told{time_of(event), step_of(event), channel_of(image, event), std::nullopt};
+      if (kind == "input")
+        told.value = value_of(image, told.channel, event.value("value", Json(nullptr)));
+      readings.push_back(told);
+    } catch (const std::exception& error) {
+      throw Failure(Exit::program, fmt::format("{}:{}: this reading is not of the program: {}",
+                                               file, line, error.what()));
+    }
+  }
+  return readings;
+}
+
+std::set<std::uint8_t> silent_ones(const Readings& readings) {
+  std::set<std::uint8_t> silent;
+  for (const Told& told : readings)
+    if (!told.value) silent.insert(told.channel);
+  return silent;
+}
+
+// Tells a simulated robot what was recorded.
+class Feeder {
+public:
+  Feeder(sim::Simulator& simulator, const RecordedProgram& recorded, const vm::Image& image)
+      : simulator_(simulator), image_(image), end_us_(time_of(recorded.events.back().event)) {
+    for (const RecordedEvent& one : recorded.events)
+      if (is_of_step(kind_of(one.event)))
+        first_step_.try_emplace(time_of(one.event), step_of(one.event));
+  }
+
+  void run(const Readings& readings, const std::set<std::uint8_t>& silent) {
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      const Told& told = readings[i];
+      // There was another step in this millisecond, which did not know of it.
+      if (first_step_.at(told.at_us) < told.step) simulator_.run_until(told.at_us);
+      if (!told.value) continue;
+      simulator_.feed(told.at_us, told.channel, *told.value);
+      if (silent.contains(told.channel)) repeat(told, next_of(readings, i));
+    }
+    simulator_.run_until(end_us_);
+  }
+
+private:
+  // What the board says at the time at which a step is made; other events come when they come.
+  static bool is_of_step(std::string_view kind) {
+    constexpr std::string_view kOfStep[] = {"input", "stale", "set", "fire", "win", "lose"};
+    return std::ranges::find(kOfStep, kind) != std::end(kOfStep);
+  }
+
+  static const Told* next_of(const Readings& readings, std::size_t i) {
+    for (std::size_t next = i + 1; next < readings.size(); ++next)
+      if (readings[next].channel == readings[i].channel) return &readings[next];
+    return nullptr;
+  }
+
+  // A channel that can fall silent is told its value again while it does not; it does so its `life` after the last time
+  // (layers/mailbox.hpp).
+  void repeat(const Told& told, const Told* next) {
+    const std::uint64_t life_us = (image_.channels[told.channel].stale_ms + 1U) * kMicroseconds;
+    const std::uint64_t again_us = std::max(life_us / 2, kMicroseconds);
+    const std::uint64_t next_us = next == nullptr ? end_us_ : next->at_us;
+    const bool falls_silent = next != nullptr && !next->value;
+    std::uint64_t until_us = next_us;
+    if (falls_silent) until_us = next_us > life_us ? next_us - life_us : 0;
+    for (std::uint64_t at = told.at_us + again_us; at < until_us; at += again_us)
+      simulator_.feed(at, told.channel, *told.value);
+    if (falls_silent && until_us > told.at_us) simulator_.feed(until_us, told.channel, *told.value);
+  }
+
+  sim::Simulator& simulator_;
+  const vm::Image& image_;
+  std::uint64_t end_us_;
+  std::map<std::uint64_t, std::uint64_t> first_step_;  // by time
+};
+
+// The numbers of steps are not compared: one in which nothing was new is one that a recording does not tell.
+bool same(Json a, Json b) {
+  a.erase("step");
+  b.erase("step");
+  return a == b;
+}
+
+// What happens within a millisecond has no order but that of its causes: of a command that is done and a step that knows of
+// a reading, either may come first. So each millisecond is compared as a whole.
+struct Millisecond {
+  std::vector<RecordedEvent> recorded;
+  std::vector<Json> replayed;
+};
+
+// The first thing that only one of the two has. `is_last`: the recording may end within it.
+std::optional<Difference> difference_in(Millisecond& both, bool is_last, Replayed& result) {
+  for (const auto& [line, event] : both.recorded) {
+    const auto found = std::ranges::find_if(
+        both.replayed, [&event = event](const Json& other) { return same(event, other); });
+    if (found == both.replayed.end())
+      return Difference{line, event.dump(),
+                        both.replayed.empty() ? "" : both.replayed.front().dump()};
+    both.replayed.erase(found);
+    ++result.events;
+    result.commands += kind_of(event) == "command" ? 1 : 0;
+  }
+  if (is_last || both.replayed.empty()) return std::nullopt;
+  return Difference{0, "", both.replayed.front().dump()};
+}
+
+Replayed compare(const std::vector<RecordedEvent>& recorded, const std::vector<Json>& replayed) {
+  std::map<std::uint64_t, Millisecond> time;
+  for (const RecordedEvent& one : recorded)
+    if (is_compared(kind_of(one.event))) time[time_of(one.event)].recorded.push_back(one);
+  for (const Json& event : replayed)
+    time[time_of(event)].replayed.push_back(event);
+  Replayed result;
+  result.until_us = time_of(recorded.back().event);
+  for (auto& [at_us, both] : time) {
+    result.difference = difference_in(both, at_us >= result.until_us, result);
+    if (result.difference) break;
+  }
+  return result;
+}
+
+std::uint32_t seed_of(const RecordedProgram& recorded) {
+  const Json seed = recorded.events.front().event.value("seed", Json(nullptr));
+  return seed.is_number_integer() ? static_cast<std::uint32_t>(seed.get<std::int64_t>()) : 0;
+}
+
+}  // namespace
+
+Replayed replay(const RecordedProgram& recorded, const std::string& file) {
+  const std::string name = fmt::format("{}:{}: the program that begins here", file, recorded.line);
+  if (time_of(recorded.events.back().event) > kLongestUs)
+    throw Failure(Exit::program, name + " ran for longer than a day, which is too long to replay");
+  const Program program(recorded.image, name);
+  const vm::Image& image = program.image();
+  const Readings readings = readings_of(recorded, image, file);
+  const TraceNames names{&image, {}, nullptr};
+  std::vector<Json> replayed;
+  const auto take = [&](const link::Event& event) {
+    Json line = Json::parse(trace_json(event, names));
+    if (is_compared(kind_of(line))) replayed.push_back(std::move(line));
+  };
+  const std::set<std::uint8_t> silent = silent_ones(readings);
+  const std::vector<std::byte> bytes = as_fed(program, silent);
+  sim::Simulator simulator(bytes, take, program.board(), seed_of(recorded));
+  if (!simulator.verdict().ok())
+    throw Failure(Exit::program, name + " does not run on this computer");
+  Feeder(simulator, recorded, image).run(readings, silent);
+  return compare(recorded.events, replayed);
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,89 @@
+// See trace_file.hpp. May assume nothing of the file.
+#include "rsc/trace/trace_file.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include "rsc/failure.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t kLatestUs = std::uint64_t{1} << 53;  // 285 years; so that sums do not wrap
+
+[[noreturn]] void fail(const std::string& file, std::size_t line, const std::string& why) {
+  throw Failure(
+      Exit::program,
+      fmt::format("{}:{}: {}; `rsc run --trace` and `rsc monitor --format json` write traces", file,
+                  line, why));
+}
+
+// Gives the lines their programs and times.
+class Counting {
+public:
+  explicit Counting(const std::string& file) : file_(file) {}
+
+  void place(TraceLine& line) {
+    if (line.event["event"] == "activated" && has_begun_) {
+      begin_us_ = at_us_;
+      ++program_;
+    }
+    if (const auto time = line.event.find("t_us"); time != line.event.end()) {
+      if (!time->is_number_unsigned() || time->get<std::uint64_t>() > kLatestUs - begin_us_)
+        fail(file_, line.number, "`t_us` is no program time");
+      at_us_ = std::max(at_us_, begin_us_ + time->get<std::uint64_t>());
+      has_begun_ = true;
+    }
+    line.program = program_;
+    line.at_us = at_us_;
+  }
+
+private:
+  const std::string& file_;
+  std::size_t program_ = 1;
+  bool has_begun_ = false;      // something of a program has been seen
+  std::uint64_t begin_us_ = 0;  // of the program that runs
+  std::uint64_t at_us_ = 0;
+};
+
+}  // namespace
+
+std::string TraceLine::text(const char* key) const {
+  const auto found = event.find(key);
+  if (found == event.end() || found->is_null()) return {};
+  return found->is_string() ? found->get<std::string>()
+                            : found->dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void read_trace(const std::string& file, const std::function<void(const TraceLine&)>& see) {
+  std::ifstream stream(file);
+  if (!stream)
+    throw Failure(Exit::outside,
+                  fmt::format("{}: there is no such file, or it cannot be read", file));
+  Counting counting(file);
+  TraceLine line;
+  for (std::string text; std::getline(stream, text);) {
+    ++line.number;
+    const bool is_cut = stream.eof();  // every whole line has its end
+    line.event = Json::parse(text, nullptr, false);
+    if (is_cut && line.event.is_discarded()) {
+      std::cerr << fmt::format("note: {}:{}: this line was cut, and is left out\n", file,
+                               line.number);
+      return;
+    }
+    if (!line.event.is_object() || !line.event.contains("event") ||
+        !line.event["event"].is_string())
+      fail(file, line.number, "this is no line of a trace");
+    counting.place(line);
+    see(line);
+  }
+  if (stream.bad() || line.number == 0)
+    throw Failure(Exit::outside, fmt::format("{}: there is nothing to read in it", file));
+}
+
+}  // namespace robosync::tool

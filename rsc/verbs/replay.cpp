@@ -1,0 +1,120 @@
+// rsc replay T.jsonl [--program FILE [--config FILE]] [--format human|json]
+#include "rsc/trace/replay.hpp"
+
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "rsc/console.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/trace/time_units.hpp"
+#include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ReplayOptions {
+  std::string file, program;
+  CompileOptions how;
+  Format format = Format::human;
+};
+
+// A trace has no program in it, a recording has.
+RecordedRun recording_of(const ReplayOptions& options) {
+  RecordedRun run = read_recording(options.file);
+  if (run.programs.empty())
+    throw Failure(Exit::program,
+                  options.file + ": no program begins in it; record from before it is uploaded on");
+  if (!options.program.empty()) {
+    const std::vector<std::byte> image =
+        without_source_lines(load_program(options.program, options.how));
+    for (RecordedProgram& one : run.programs)
+      if (one.image.empty()) one.image = image;
+  }
+  for (const RecordedProgram& one : run.programs)
+    if (one.image.empty())
+      throw Failure(Exit::usage,
+                    fmt::format("{}:{}: the program that begins here is not in it: name "
+                                "it with --program, or record with --record",
+                                options.file, one.line));
+  return run;
+}
+
+void print_human(const ReplayOptions& options, std::size_t number, const RecordedProgram& recorded,
+                 const Replayed& replayed) {
+  std::cout << fmt::format("program {}: {} events, {} of them commands, {}, until {}\n", number,
+                           replayed.events, replayed.commands,
+                           replayed.difference ? "then a difference" : "the same as recorded",
+                           seconds_text(replayed.until_us));
+  if (!recorded.gap.empty())
+    std::cout << fmt::format("  from there on the recording has a gap: {}\n", recorded.gap);
+  if (!replayed.difference) return;
+  const auto shown = [](const std::string& line) { return line.empty() ? "nothing" : line; };
+  std::cout << fmt::format(
+      "  {}{}: recorded  {}\n", options.file,
+      replayed.difference->line == 0 ? "" : fmt::format(":{}", replayed.difference->line),
+      shown(replayed.difference->recorded));
+  std::cout << fmt::format("  replayed  {}\n", shown(replayed.difference->replayed));
+}
+
+Json json_of(const RecordedProgram& recorded, const Replayed& replayed) {
+  Json report{{"line", recorded.line},
+              {"events", replayed.events},
+              {"commands", replayed.commands},
+              {"until_us", replayed.until_us},
+              {"gap", recorded.gap.empty() ? Json(nullptr) : Json(recorded.gap)},
+              {"difference", nullptr}};
+  const auto parsed = [](const std::string& line) {
+    return line.empty() ? Json(nullptr) : Json::parse(line);
+  };
+  if (replayed.difference)
+    report["difference"] = {{"line", replayed.difference->line},
+                            {"recorded", parsed(replayed.difference->recorded)},
+                            {"replayed", parsed(replayed.difference->replayed)}};
+  return report;
+}
+
+void replay_all(const ReplayOptions& options) {
+  const RecordedRun run = recording_of(options);
+  Json reports = Json::array();
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < run.programs.size(); ++i) {
+    const Replayed replayed = replay(run.programs[i], options.file);
+    differing += replayed.difference ? 1 : 0;
+    if (options.format == Format::json)
+      reports.push_back(json_of(run.programs[i], replayed));
+    else
+      print_human(options, i + 1, run.programs[i], replayed);
+  }
+  if (options.format == Format::json)
+    std::cout << Json{{"programs", reports}, {"not_replayed", run.loose}}.dump() << '\n';
+  else if (run.loose > 0)
+    std::cout << fmt::format(
+        "{} events were not replayed: the recording does "
+        "not say what led to them\n",
+        run.loose);
+  if (differing > 0) throw Failure(Exit::program, "");
+}
+
+}  // namespace
+
+void add_replay(Options& options) {
+  auto asked = std::make_shared<ReplayOptions>();
+  options.argument("FILE", asked->file, "of --record, or a trace together with --program",
+                   Options::Need::required);
+  options.option("--program", "FILE", asked->program,
+                 "what ran in a trace that has no program in it (.rsl or .rsb)");
+  add_compile_options(options, asked->how);
+  add_format_option(options, asked->format);
+  options.runs([asked] { replay_all(*asked); });
+}
+
+}  // namespace robosync::tool

@@ -1,0 +1,234 @@
+// rsc bridge: robots that run in this process, the built rsc, and Debian's mosquitto as their broker.
+#include <csignal>
+#include <functional>
+#include <map>
+#include <memory>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include "rsc/bridge/mqtt.hpp"
+#include "rsc/bridge/topics.hpp"
+#include "rsc/failure.hpp"
+#include "tests/rsc/device.hpp"
+
+using namespace robosync;
+using Catch::Contains;
+using nlohmann::json;
+using test::Device;
+using test::Outcome;
+using namespace std::chrono_literals;
+
+namespace {
+
+int free_port() {
+  const int file = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  REQUIRE(bind(file, reinterpret_cast<sockaddr*>(&address), size) == 0);
+  REQUIRE(getsockname(file, reinterpret_cast<sockaddr*>(&address), &size) == 0);
+  close(file);
+  return ntohs(address.sin_port);
+}
+
+// mosquitto, which forgets everything when it is started again.
+class Broker : public test::Folder {
+public:
+  Broker() { start(); }
+  ~Broker() { end(); }
+  Broker(const Broker&) = delete;
+  Broker& operator=(const Broker&) = delete;
+
+  void start() {
+    write("broker.conf",
+          "listener " + std::to_string(port) + " 127.0.0.1\nallow_anonymous true\nlog_dest none\n");
+    const std::string file = path("broker.conf");
+    process_ = fork();
+    if (process_ == 0) {
+      execl("/usr/sbin/mosquitto", "mosquitto", "-c", file.c_str(), nullptr);
+      _exit(127);
+    }
+  }
+  void end() {
+    kill(process_, SIGTERM);
+    waitpid(process_, nullptr, 0);
+  }
+
+  const int port = free_port();
+  std::string place = "localhost:" + std::to_string(port);
+
+private:
+  pid_t process_ = 0;
+};
+
+// Whoever listens to the broker: the latest of each topic, and how often it came.
+class Subscriber {
+public:
+  explicit Subscriber(const Broker& broker) {
+    for (int i = 0; i < 100 && !mqtt_; ++i)
+      try {
+        mqtt_ = std::make_unique<tool::Mqtt>(tool::parse_broker(broker.place), "robosync/#",
+                                             tool::MqttMessage{"test/gone", "1", true});
+      } catch (const tool::Failure&) {
+        std::this_thread::sleep_for(50ms);  // it is starting
+      }
+    REQUIRE(mqtt_);
+  }
+
+  bool wait_for(const std::function<bool(const std::map<std::string, std::string>&)>& condition) {
+    const auto give_up = std::chrono::steady_clock::now() + 15s;
+    while (!condition(latest)) {
+      if (std::chrono::steady_clock::now() > give_up) return false;
+      if (const auto message = mqtt_->next())
+        latest[message->topic] = message->payload;
+      else
+        std::this_thread::sleep_for(5ms);
+    }
+    return true;
+  }
+  bool wait_for(const std::string& topic, const std::string& part) {
+    return wait_for([&](const auto& all) {
+      const auto found = all.find(topic);
+      return found != all.end() && found->second.find(part) != std::string::npos;
+    });
+  }
+  void publish(const std::string& topic, const std::string& payload, bool retain = false) {
+    mqtt_->publish(topic, payload, retain);
+  }
+
+  std::map<std::string, std::string> latest;
+
+private:
+  std::unique_ptr<tool::Mqtt> mqtt_;
+};
+
+// rsc bridge, until the robot's line is closed for good or its time is over.
+class Running {
+public:
+  Running(const Device& device, const Broker& broker, const std::string& name,
+          const std::string& duration)
+      : thread_([this, &device, &broker, name, duration] {
+          outcome = device.run(
+              {"bridge", "--mqtt", broker.place, "--name", name, "--duration", duration});
+        }) {}
+  void join() { thread_.join(); }
+
+  Outcome outcome;
+
+private:
+  std::thread thread_;
+};
+
+}  // namespace
+
+TEST_CASE("a robot on a broker: what it does is published, and it is fed, stopped, resumed") {
+  Broker broker;
+  Subscriber subscriber(broker);
+  Device device;
+  REQUIRE(device.run({"upload", device.program}).exit == 0);
+  subscriber.publish("robosync/pet/do/stop", "now", true);  // lay there before: nobody obeys it
+  Running bridge(device, broker, "pet", "9s");
+  CHECK(subscriber.wait_for("robosync/pet/online", "true"));
+  CHECK(subscriber.wait_for("robosync/pet/board", "mps2-an386"));
+  CHECK(subscriber.wait_for("robosync/pet/refused", "it was retained"));
+
+  subscriber.publish("robosync/pet/do/feed/touch/LEVEL", "2");
+  CHECK(subscriber.wait_for("robosync/pet/sensors/touch/LEVEL", R"("value":2)"));
+  CHECK(subscriber.wait_for("robosync/pet/actuators/left_arm", R"("event":"command")"));
+  CHECK(json::parse(subscriber.latest["robosync/pet/actuators/left_arm"]).at("verb") == "MOVE");
+  subscriber.publish("robosync/pet/do/feed/proximity/DISTANCE", R"({"value":"30cm"})");
+  CHECK(subscriber.wait_for("robosync/pet/sensors/proximity/DISTANCE", R"("value":300)"));
+  subscriber.publish("robosync/pet/do/stop", "");
+  CHECK(subscriber.wait_for("robosync/pet/actuators/left_arm", "halt"));
+  subscriber.publish("robosync/pet/do/resume", "");
+  CHECK(subscriber.wait_for("robosync/pet/stopped", "false"));
+
+  for (const auto& [topic, payload] : {std::pair{"feed/touch/LEVL", "2"},
+                                       {"feed/touch/LEVEL", "x"},
+                                       {"feed/touch/LEVEL", "{}"},
+                                       {"feed/", ""},
+                                       {"jump", "now"}}) {
+    subscriber.latest.erase("robosync/pet/refused");
+    subscriber.publish(std::string("robosync/pet/do/") + topic, payload);
+    CAPTURE(topic, payload);
+    CHECK(subscriber.wait_for("robosync/pet/refused", topic));
+  }
+
+  // The broker is away and has forgotten everything; the bridge has not.
+  broker.end();
+  std::this_thread::sleep_for(200ms);
+  broker.start();
+  Subscriber late(broker);
+  CHECK(late.wait_for("robosync/pet/sensors/touch/LEVEL", R"("value":2)"));
+  CHECK(late.wait_for("robosync/pet/online", "true"));
+  // The robot is away for a moment.
+  device.bridge.hang_up();
+  CHECK(late.wait_for("robosync/pet/online", "false"));
+  CHECK(late.wait_for("robosync/pet/online", "true"));
+  bridge.join();
+  CAPTURE(bridge.outcome.err);
+  CHECK(bridge.outcome.exit == 0);
+  CHECK_THAT(bridge.outcome.err,
+             Contains("the broker is away") && Contains("looking for it again"));
+  CHECK(late.wait_for("robosync/pet/online", "false"));
+}
+
+TEST_CASE("a fleet of robots on one broker") {
+  Broker broker;
+  Subscriber subscriber(broker);
+  constexpr int kRobots = 4;
+  std::vector<std::unique_ptr<Device>> robots;
+  std::vector<std::unique_ptr<Running>> bridges;
+  for (int i = 0; i < kRobots; ++i) {
+    robots.push_back(std::make_unique<Device>());
+    REQUIRE(robots.back()->run({"upload", robots.back()->program}).exit == 0);
+    bridges.push_back(
+        std::make_unique<Running>(*robots.back(), broker, "r" + std::to_string(i), "6s"));
+  }
+  for (int i = 0; i < kRobots; ++i) {
+    const std::string root = "robosync/r" + std::to_string(i) + "/";
+    CHECK(subscriber.wait_for(root + "online", "true"));
+    subscriber.publish(root + "do/feed/touch/LEVEL", std::to_string(i));
+    CHECK(subscriber.wait_for(root + "sensors/touch/LEVEL", "\"value\":" + std::to_string(i)));
+  }
+  CHECK(subscriber.latest.count("robosync/r2/actuators/left_arm") == 1);  // 2 is below 3
+  CHECK(subscriber.latest.count("robosync/r3/actuators/left_arm") == 0);
+  for (const auto& bridge : bridges) {
+    bridge->join();
+    CHECK(bridge->outcome.exit == 0);
+  }
+}
+
+TEST_CASE("rsc bridge says what is wrong with a broker") {
+  const Device device;
+  Outcome outcome = device.run({"bridge", "--mqtt", "localhost:" + std::to_string(free_port())});
+  CHECK(outcome.exit == 3);
+  CHECK_THAT(outcome.err, Contains("is a broker running there?"));
+  for (const char* wrong :
+       {"", ":1883", "localhost:", "localhost:0", "localhost:70000", "localhost:x"}) {
+    CAPTURE(wrong);
+    CHECK(device.run({"bridge", "--mqtt", wrong}).exit == 2);
+  }
+  CHECK(tool::parse_broker("[::1]:1884").host == "::1");
+  CHECK(tool::parse_broker("[::1]").host == "::1");
+  CHECK(tool::parse_broker("broker").port == 1883);
+}
+
+TEST_CASE("every event of a trace has a topic, and no name makes one of another robot") {
+  CHECK(tool::topic_part("a/b+c#d\n") == "a_b_c_d_");
+  CHECK(tool::topic_part("") == "?");
+  CHECK(tool::topic_of({{"event", "input"}, {"sensor", "a/b"}, {"channel", 3}}).name ==
+        "sensors/a_b/3");
+  CHECK(tool::topic_of({{"event", "win"}, {"rule", 1}, {"line", 7}}).name == "behaviors/line 7");
+  CHECK(tool::topic_of({{"event", "trip"}, {"rule", 1}, {"line", 7}}).name == "safety/line 7");
+  CHECK_FALSE(tool::topic_of({{"event", "deadline"}, {"thread", "x"}}).retain);
+  CHECK(tool::topic_of({{"event", "command"}}).name == "actuators/?");
+  CHECK(tool::reading_of("feed/a/B", "20cm") == "a.B=20cm");
+  CHECK(tool::reading_of("feed/a/B", "2.5") == "a.B=2.5");
+  CHECK(tool::reading_of("feed/a/B", "\"hello\"") == "a.B=hello");
+  CHECK_FALSE(tool::reading_of("stop", ""));
+}

@@ -1,0 +1,169 @@
+// rsc replay: what was recorded runs again, to the same commands; and it says where it does not.
+#include <filesystem>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "rsc/trace/replay_file.hpp"
+#include "tests/rsc/image.hpp"
+#include "tests/rsc/process.hpp"
+
+using namespace robosync;
+using Catch::Contains;
+using nlohmann::json;
+using test::Outcome;
+using test::RobotFolder;
+namespace fs = std::filesystem;
+
+namespace {
+
+// The small robot, run with some touches.
+struct Recorded : RobotFolder {
+  Recorded() {
+    const std::string scenario = write("visit.json", R"({"duration": "6s", "stimuli": [
+      {"at": "0s", "sensor": "touch", "value": 5}, {"at": "1.003s", "sensor": "touch", "value": 2},
+      {"at": "2s", "sensor": "touch", "value": 4}, {"at": "3s", "sensor": "touch", "value": 1}]})");
+    const Outcome outcome = test::rsc({"run", program, "--scenario", scenario, "--record",
+                                       path("r.jsonl"), "--trace", path("t.jsonl")});
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.exit == 0);
+  }
+  [[nodiscard]] Outcome replay(const std::string& text,
+                               const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"replay", write("changed.jsonl", text)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return test::rsc(arguments);
+  }
+  // The recording, in which the first `what` is `by`.
+  [[nodiscard]] std::string with(const std::string& what, const std::string& by) const {
+    std::string text = read("r.jsonl");
+    const std::size_t at = text.find(what);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, what.size(), by);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("every example's run is replayed to the same") {
+  const test::Folder folder;
+  std::size_t runs = 0, commands = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(EXAMPLES)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".json" || name == "robot.json") continue;
+    const std::string program = (entry.path().parent_path() / "robot.rsl").string();
+    CAPTURE(program, name);
+    Outcome outcome =
+        test::rsc({"run", program, "--scenario", entry.path().string(), "--record",
+                   folder.path("r.jsonl"), "--kept", folder.path(name + "kept"), "--seed", "7"});
+    REQUIRE(outcome.exit == 0);
+    outcome = test::rsc({"replay", folder.path("r.jsonl"), "--format", "json"});
+    CAPTURE(outcome.out, outcome.err);
+    CHECK(outcome.exit == 0);
+    const json report = json::parse(outcome.out);
+    CHECK(report.at("not_replayed") == 0);
+    CHECK(report.at("programs").at(0).at("difference").is_null());
+    CHECK(report.at("programs").at(0).at("events") > 0);
+    commands += report.at("programs").at(0).at("commands").get<std::size_t>();
+    ++runs;
+  }
+  CHECK(runs >= 17);
+  CHECK(commands > 100);
+}
+
+TEST_CASE("replay says where a recording and its replay differ first") {
+  const Recorded robot;
+  Outcome outcome = robot.replay(robot.read("r.jsonl"));
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("the same as recorded"));
+
+  outcome = robot.replay(robot.with(R"("to":90)", R"("to":91)"));
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.out, Contains("changed.jsonl:") && Contains(R"("to":91)") &&
+                              Contains(R"("to":90)") && Contains("then a difference"));
+
+  outcome = robot.replay(robot.with(R"("value":2)", R"("value":4)"));  // no touch below 3
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.out, Contains("recorded") && Contains(R"("event":"fire")"));
+
+  // Times count to the millisecond.
+  outcome = robot.replay(robot.with(R"({"t_us":1003000,"step":2,"event":"input")",
+                                    R"({"t_us":1002000,"step":2,"event":"input")"));
+  CHECK(outcome.exit == 1);
+
+  // One that ends too early.
+  std::string text = robot.read("r.jsonl");
+  const std::size_t fire = text.find(R"("event":"fire")");
+  const std::size_t from = text.rfind('\n', fire) + 1, to = text.find('\n', fire) + 1;
+  outcome = robot.replay(text.erase(from, to - from));
+  CHECK(outcome.exit == 1);
+}
+
+TEST_CASE("a trace is replayed with the program that it was made of") {
+  const Recorded robot;
+  Outcome outcome = robot.replay(robot.read("t.jsonl"));
+  CHECK(outcome.exit == 2);
+  CHECK_THAT(outcome.err, Contains("changed.jsonl:1: ") && Contains("--program"));
+  outcome = robot.replay(robot.read("t.jsonl"), {"--program", robot.program});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 0);
+  const std::string other =
+      robot.write("other.rsl", "WHEN touch LEVEL < 2 DO MOVE left_arm SLOWLY TO 90deg END\n");
+  outcome = robot.replay(robot.read("t.jsonl"), {"--program", other});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.out, Contains("then a difference"));
+  const std::string stranger =
+      robot.write("stranger.rsl", "EVERY 1s DO MOVE left_arm SLOWLY TO 90deg END\n");
+  outcome = robot.replay(robot.read("t.jsonl"), {"--program", stranger});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("this reading is not of the program"));
+}
+
+TEST_CASE("a recording with gaps is replayed as far as it is whole, and each program by itself") {
+  const Recorded robot;
+  const std::string once = robot.read("r.jsonl");
+  const std::string gap = tool::gap_line("3 events did not fit on the line");
+  Outcome outcome =
+      robot.replay(once + gap + robot.read("t.jsonl").substr(60) + once, {"--format", "json"});
+  CAPTURE(outcome.out, outcome.err);
+  // The trace behind the gap begins within a line.
+  CHECK(outcome.exit == 1);
+  const std::string loose =
+      R"({"t_us":9000000,"step":9,"event":"command","actuator":"left_arm","verb":"MOVE"})"
+      "\n";
+  // A command that nothing led to: between the last time that it was whole and the gap.
+  outcome = robot.replay(loose + once + tool::whole_line() + loose + gap + loose + once,
+                         {"--format", "json"});
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.exit == 0);
+  const json report = json::parse(outcome.out);
+  CHECK(report.at("programs").size() == 2);
+  CHECK(report.at("programs").at(0).at("gap") == "3 events did not fit on the line");
+  CHECK(report.at("programs").at(1).at("gap").is_null());
+  CHECK(report.at("programs").at(1).at("commands") == report.at("programs").at(0).at("commands"));
+  CHECK(report.at("not_replayed") == 3);
+}
+
+TEST_CASE("what is no recording is said") {
+  const Recorded robot;
+  Outcome outcome = robot.replay(R"({"event":"board"})"
+                                 "\n");
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("no program begins in it"));
+  for (const char* hex : {"0", "0g", "00", "zz", "é"}) {
+    outcome = robot.replay(std::string(R"({"event":"image","hex":")") + hex + "\"}\n" +
+                           robot.read("t.jsonl"));
+    CAPTURE(hex, outcome.err);
+    CHECK(outcome.exit == 1);
+    CHECK_THAT(outcome.err, Contains("changed.jsonl:"));
+  }
+  for (const char* value :
+       {R"("value":1e300)", R"("value":null)", R"("value":"much")", R"("value":[2])"}) {
+    outcome = robot.replay(robot.with(R"("value":2)", value));
+    CAPTURE(value);
+    CHECK(outcome.exit == 1);
+    CHECK_THAT(outcome.err, Contains("this reading is not of the program"));
+  }
+  CHECK(robot.replay(robot.with(R"("sensor":"touch")", R"("sensor":7)")).exit == 1);
+}
