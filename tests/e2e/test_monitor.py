@@ -62,7 +62,7 @@ class Monitor(RobotTest):
     def has_ended(self, code):
         """With its terminal as it was."""
         screen = self.wait_for(f"ended {code}", missing="BEHAVIOURS")
-        self.wait_for("[$#] $")
+        self.wait_for(r"[$#]\s*$")
         before, after = ((self.folder / name).read_text() for name in ("before", "after"))
         self.assertEqual(before, after)
         return screen
@@ -105,8 +105,8 @@ class Monitor(RobotTest):
                 self.assertEqual(len(pids), 1)
                 os.kill(int(pids[0]), ending)
                 self.has_ended(code)
-                self.terminal.type("clear", "Enter")
-                self.wait_for("[$#] $", missing="ended")
+                self.terminal.type("clear", "Enter")  # for the next one
+                self.wait_for(r"[$#]\s*$", missing="ended")
 
     def test_plain_lines(self):
         self.start("--plain", "--duration", "1s")
