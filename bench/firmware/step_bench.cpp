@@ -49,7 +49,7 @@ void load() {
 }
 
 void feed(std::uint32_t channel, vm::Value reading) {
-  const link::FeedResult result = runtime.feed({.at_us = 0, .channel = channel, .value = reading});
+  const link::FeedResult result = runtime.feed({.channel = channel, .at_us = 0, .value = reading});
   if (result.error != link::FeedError::none) leave(false);
 }
 
