@@ -26,6 +26,7 @@ embed(${PROJECT_SOURCE_DIR}/stdlib rsl compiler/modules.hpp ModuleText module_te
 
 target_sources(robosync_compiler PRIVATE
   compiler.cpp
+  lints.cpp
   modules.cpp
   project.cpp
   reading.cpp

@@ -5,6 +5,7 @@
 
 #include "compiler/codegen/emit.hpp"
 #include "compiler/codegen/verify_image.hpp"
+#include "compiler/lints.hpp"
 #include "compiler/modules.hpp"
 #include "compiler/optimize/optimize.hpp"
 #include "compiler/reading.hpp"
@@ -12,20 +13,6 @@
 
 namespace robosync::compiler {
 namespace {
-
-// What robot.json says about lints: allow drops them, warn and deny set their level.
-Diagnostics apply_lints(const Diagnostics& diagnostics, const Robot& robot) {
-  Diagnostics result;
-  for (const Diagnostic& diagnostic : diagnostics.all()) {
-    const auto lint = robot.lints.find(diagnostic.code);
-    const bool configured = lint != robot.lints.end();
-    if (configured && lint->second == LintLevel::allow) continue;
-    Diagnostic& copy = result.report(diagnostic.code, diagnostic.message);
-    copy = diagnostic;
-    if (configured) copy.level = lint->second == LintLevel::deny ? Level::error : Level::warning;
-  }
-  return result;
-}
 
 // What is not there may be in a module that is not used.
 Diagnostics offer_modules(const Diagnostics& diagnostics) {
@@ -60,7 +47,7 @@ Result compile(Input program, Input configuration, const Options& options) {
     if (diagnostics.errors() == 0)
       result.tests = test_plan::plan_tests(parsed.trees(), *parsed.robot, diagnostics);
   }
-  if (parsed.robot) diagnostics = apply_lints(diagnostics, *parsed.robot);
+  apply_lints(diagnostics, result.sources, parsed.robot ? &*parsed.robot : nullptr, options.lints);
   if (parsed.complete && diagnostics.errors() == 0) {
     const Robot& robot = *parsed.robot;
     const ir::Program better = options.optimize ? optimize(written, robot) : written;
@@ -75,6 +62,7 @@ Result compile(Input program, Input configuration, const Options& options) {
         result.units.variables[variable.name] = variable.unit;
     }
   }
+  diagnostics.doubt_names(result.sources);
   diagnostics.finish();
   return result;
 }

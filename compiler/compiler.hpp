@@ -10,6 +10,7 @@
 #include "compiler/config/robot.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/input.hpp"
+#include "compiler/lints.hpp"
 #include "compiler/source/source_file.hpp"
 #include "compiler/test_plan/plan.hpp"
 
@@ -21,6 +22,7 @@ struct Options {
   bool source_lines = true;  // keep the debug section
   bool optimize = true;
   std::uint32_t seed = 0;  // of the random numbers, in the place of the configuration's; 0: none
+  LintLevels lints{};      // above what robot.json says
   ModuleReader read_module{};
   AlgorithmModules algorithms{};  // that robot.json may name
 };

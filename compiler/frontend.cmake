@@ -32,18 +32,23 @@ set_source_files_properties(
 target_sources(robosync_compiler PRIVATE
   ${generated}/grammar/rsl_grammar.cpp
   ${generated}/grammar/rsl_lexer.cpp
+  source/character_names.cpp
   source/source_file.cpp
   source/utf8.cpp
   diagnostics/diagnostic.cpp
   diagnostics/nearest.cpp
+  diagnostics/plain_text.cpp
   diagnostics/render_human.cpp
   diagnostics/render_json.cpp
+  diagnostics/sarif.cpp
   diagnostics/snippet.cpp
   syntax/blocks.cpp
   syntax/builder.cpp
   syntax/edit.cpp
+  syntax/foreign_habits.cpp
   syntax/format.cpp
   syntax/habits.cpp
+  syntax/heads.cpp
   syntax/keywords.cpp
   syntax/layout.cpp
   syntax/lexer_state.cpp
@@ -53,5 +58,5 @@ target_sources(robosync_compiler PRIVATE
   syntax/summary.cpp
   syntax/wording.cpp)
 # Public for the tests, which look at tokens. SYSTEM: warnings inside the generated header.
-target_include_directories(robosync_compiler SYSTEM PUBLIC ${generated})
+target_include_directories(robosync_compiler SYSTEM PUBLIC $<BUILD_INTERFACE:${generated}>)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)

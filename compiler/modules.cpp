@@ -54,9 +54,7 @@ private:
     }
     Diagnostic& d = diagnostics_.report(Code::E0501, "there is no module " + use.module.shown())
                         .label(use.module.span);
-    if (const auto near = nearest(use.module.text, names))
-      d.helps("did you mean `" + *near + "`?").fix(use.module.span, *near);
-    else
+    if (!did_you_mean(d, use.module.span, use.module.text, names))
       d.helps("a file of your own stands in quotes: `USE \"" + std::string(use.module.text) +
               ".rsl\"`");
     return std::nullopt;

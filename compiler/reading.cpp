@@ -14,7 +14,8 @@ Trees Reading::trees() const {
   return trees;
 }
 
-// What the parsers had to leave out would be missed by name: better one true message than ten.
+// What the parsers had to leave out would be missed by name, and what robot.json says wrongly would be measured wrongly:
+// better one true message than ten.
 Reading read_all(Input program, Input configuration, const ModuleReader& read_module,
                  const AlgorithmModules& algorithms, SourceMap& sources, Diagnostics& diagnostics) {
   const FileId program_file = sources.add(std::move(program.name), std::move(program.text));

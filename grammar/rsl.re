@@ -61,8 +61,11 @@ bool LexerState::step() {
     "!"                             { matched(); instead(Kinds::NOT, "NOT "); return true; }
     ":="                            { matched(); instead(Kinds::EQUAL, "="); return true; }
     ";"+                            { matched(); left_out("a statement ends with its line"); return true; }
-    [{}]                            { matched(); left_out("a block begins with its keyword and ends with END"); return true; }
-    "//" [^\r\n]*                   { matched(); left_out("a comment begins with # or %"); return true; }
+    [{]                             { matched(); opening_brace(); return true; }
+    [}]                             { matched(); closing_brace(); return true; }
+    "//" [^\r\n]*                   { matched(); foreign_comment(); return true; }
+    "--" [ \t]+ [A-Za-z] [^\r\n]*   { matched(); foreign_comment(); return true; }
+    "/*"                            { matched(); long_comment(); return true; }
     *                               { matched(); other(); return true; }
   */
 }

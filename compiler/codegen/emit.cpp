@@ -69,7 +69,10 @@ void Emitter::add_algorithms(const Robot& robot, const Tables& tables) {
 bool Emitter::counts_fit() {
   const auto fits = [&](std::size_t count, std::size_t limit, const char* what) {
     if (count > limit)
-      diagnostics_.report(Code::E0407, "the program has too many " + std::string(what)).label({});
+      diagnostics_
+          .report(Code::E0407, "the program has " + std::to_string(count) + " " + what +
+                                   ", and an image has room for " + std::to_string(limit))
+          .label({});
     return count <= limit;
   };
   constexpr std::size_t kMost = vm::kNoIndex - 1;

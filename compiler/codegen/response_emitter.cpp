@@ -248,7 +248,9 @@ void ResponseEmitter::emit(const ir::Halt& halt) {
 void ResponseEmitter::count_block() {
   ++open_blocks_;
   if (open_blocks_ == vm::kMaxBlocks + 1)
-    parts_.too_large("blocks are nested too deeply here for the robot", current_->span);
+    parts_.too_large(
+        "a robot takes at most " + std::to_string(vm::kMaxBlocks) + " blocks in each other",
+        current_->span);
 }
 
 std::size_t ResponseEmitter::open(Opcode opcode, Operand a, Operand b) {

@@ -136,7 +136,10 @@ void RuleWriter::reserve_limits() {
     if (variable.max < vm::kValueMax) (void)sections_.pool.constant(variable.max);
   }
   if (sections_.pool.constants().size() > kMaxConst8)
-    diagnostics_.report(Code::E0407, "the variables have too many different limits").label({});
+    diagnostics_
+        .report(Code::E0407, "the variables that a response sets have more than " +
+                                 std::to_string(kMaxConst8) + " different limits")
+        .label({});
 }
 
 void RuleWriter::add(const ir::Behavior& behavior, const std::vector<ir::Rule>& written) {

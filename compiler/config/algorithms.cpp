@@ -127,9 +127,7 @@ private:
         diagnostics_
             .report(Code::E0209, "the firmware has no algorithm module `" + value->text + "`")
             .label(value->span);
-    if (const auto near = nearest(value->text, known))
-      d.helps("did you mean `" + *near + "`?").fix(value->span, "\"" + *near + "\"");
-    else if (!known.empty())
+    if (!did_you_mean(d, value->span, value->text, known, "\"") && !known.empty())
       d.helps("it has " + list_names(known));
     return false;
   }
@@ -142,14 +140,13 @@ private:
     input_span_ = value->span;
     for (const SensorConfig& sensor : robot_.sensors)
       if (same_name(sensor.name.text, value->text)) return usable(sensor);
+    if (!robot_.complete) return nullptr;  // its entry may be what is wrong
     std::vector<std::string> known;
     for (const SensorConfig& sensor : robot_.sensors)
       if (!sensor.algorithm) known.push_back(sensor.name.text);
     Diagnostic& d = diagnostics_.report(Code::E0501, "there is no sensor `" + value->text + "`")
                         .label(value->span);
-    if (const auto near = nearest(value->text, known))
-      d.helps("did you mean `" + *near + "`?").fix(value->span, "\"" + *near + "\"");
-    else if (!known.empty())
+    if (!did_you_mean(d, value->span, value->text, known, "\"") && !known.empty())
       d.helps("sensors: " + list_names(known));
     return nullptr;
   }
@@ -252,9 +249,7 @@ private:
     Diagnostic& d =
         diagnostics_.report(Code::E0202, shown() + " has no parameter `" + member.key + "`")
             .label(member.key_span);
-    if (const auto near = nearest(member.key, known))
-      d.helps("did you mean `" + *near + "`?").fix(member.key_span, "\"" + *near + "\"");
-    else
+    if (!did_you_mean(d, member.key_span, member.key, known, "\""))
       d.helps("it can be " + list_names(known, "or"));
     return std::nullopt;
   }

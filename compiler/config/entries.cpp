@@ -41,9 +41,7 @@ void report_unknown_device(const json::Value& value, const Board& board, bool is
   if (!owner.empty() && owner != board.name)
     d.helps("it is on the board " + std::string(owner) + ", and this robot has the board " +
             board.name);
-  else if (const auto near = nearest(value.text, candidates))
-    d.helps("did you mean `" + *near + "`?").fix(value.span, "\"" + *near + "\"");
-  else
+  else if (!did_you_mean(d, value.span, value.text, candidates, "\""))
     d.helps("known devices: " + list_names(candidates));
 }
 

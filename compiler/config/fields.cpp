@@ -24,11 +24,8 @@ void report_unknown(const json::Member& member, Object object, Diagnostics& diag
     if (key.object == object) candidates.emplace_back(key.name);
   Diagnostic& d = diagnostics.report(Code::E0202, "robot.json has no key `" + member.key + "` here")
                       .label(member.key_span);
-  if (const auto near = nearest(member.key, candidates)) {
-    d.helps("did you mean `" + *near + "`?").fix(member.key_span, "\"" + *near + "\"");
-  } else {
+  if (!did_you_mean(d, member.key_span, member.key, candidates, "\""))
     d.helps("it can be " + list_names(candidates, "or"));
-  }
 }
 
 }  // namespace
@@ -47,15 +44,16 @@ Fields::Fields(const json::Value& value, Object object, Diagnostics& diagnostics
   if (!expect_kind(value, json::Kind::object, diagnostics)) return;
   report_repeated_keys(value, diagnostics);
   for (const json::Member& member : value.members)
-    check_key(member, object, diagnostics);
+    check_key(member, object);
 }
 
-void Fields::check_key(const json::Member& member, Object object, Diagnostics& diagnostics) const {
+void Fields::check_key(const json::Member& member, Object object) {
   const Key* key = find_key(object, member.key);
   if (key == nullptr) {
-    report_unknown(member, object, diagnostics);
+    has_unknown_key_ = true;
+    report_unknown(member, object, diagnostics_);
   } else if (key->use == KeyUse::later) {
-    diagnostics.report(Code::W0213, "`" + member.key + "` is not used by this version of rsc yet")
+    diagnostics_.report(Code::W0213, "`" + member.key + "` is not used by this version of rsc yet")
         .label(member.key_span, "nothing reads this");
   }
 }
@@ -68,7 +66,7 @@ const json::Value* Fields::find(std::string_view key) const {
 
 const json::Value* Fields::require(std::string_view key, std::string_view what) {
   const json::Value* found = find(key);
-  if (found == nullptr && value_.kind == json::Kind::object) {
+  if (found == nullptr && value_.kind == json::Kind::object && !has_unknown_key_) {
     diagnostics_
         .report(Code::E0206, std::string(what) + " needs the key `" + std::string(key) + "`")
         .label({value_.span.file, value_.span.begin, value_.span.begin + 1});

@@ -52,14 +52,16 @@ public:
   Fields(const json::Value& value, Object object, Diagnostics& diagnostics);
 
   [[nodiscard]] const json::Value* find(std::string_view key) const;  // nullptr when not there
-  // As find(), but reports E0206 when it is not there; `what` names the object: "a sensor".
+  // As find(), but reports E0206 when it is not there, unless a key is unknown, which it may be; `what` names the object:
+  // "a sensor".
   [[nodiscard]] const json::Value* require(std::string_view key, std::string_view what);
 
 private:
-  void check_key(const json::Member& member, Object object, Diagnostics& diagnostics) const;
+  void check_key(const json::Member& member, Object object);
 
   const json::Value& value_;
   Diagnostics& diagnostics_;
+  bool has_unknown_key_ = false;
 };
 
 // Reports a key that stands twice in `object`, whatever its keys are (channels, groups, speeds).

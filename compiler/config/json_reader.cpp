@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "compiler/diagnostics/plain_text.hpp"
+
 namespace robosync::compiler::json {
 namespace {
 
@@ -269,6 +271,7 @@ private:
 }  // namespace
 
 std::optional<Value> read(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
+  if (!is_plain_text(sources, file, Code::E0201, diagnostics)) return std::nullopt;
   const std::string_view text = sources.file(file).text();
   Builder builder(text, file, diagnostics);
   if (!nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) return std::nullopt;

@@ -154,7 +154,7 @@ struct Robot {
   std::uint32_t seed = 0;            // of the random numbers; 0: not said
   std::optional<std::size_t> board;  // its place in board_names(); nothing: not said
   std::map<Code, LintLevel> lints;
-  bool complete = true;  // false: entries are missing, for mistakes that have been reported
+  bool complete = true;  // false: something in it is wrong, which has been reported
 };
 
 // ---- the units that a program's author writes, by the names that its image has

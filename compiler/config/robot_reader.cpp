@@ -33,13 +33,12 @@ std::vector<std::string> actuator_names(const Robot& robot, bool groups) {
 
 void report_unknown_actuator(const json::Value& value, const Robot& robot, bool groups,
                              Diagnostics& diagnostics) {
+  if (!robot.complete) return;  // its entry may be what is wrong
   Diagnostic& d = diagnostics.report(Code::E0501, "there is no actuator `" + value.text + "`")
                       .label(value.span);
   if (!diagnostics.may_search(robot.actuators.size() + robot.groups.size())) return;
   const std::vector<std::string> candidates = actuator_names(robot, groups);
-  if (const auto near = nearest(value.text, candidates))
-    d.helps("did you mean `" + *near + "`?").fix(value.span, "\"" + *near + "\"");
-  else if (!candidates.empty())
+  if (!did_you_mean(d, value.span, value.text, candidates, "\"") && !candidates.empty())
     d.helps("actuators: " + list_names(candidates));
 }
 
@@ -47,10 +46,7 @@ void read_group(const json::Member& member, const NameIndex& actuators, Robot& r
                 Diagnostics& diagnostics) {
   GroupConfig group{{member.key, member.key_span}, {}};
   check_name(group.name, diagnostics);
-  if (!expect_kind(member.value, json::Kind::array, diagnostics)) {
-    robot.complete = false;
-    return;
-  }
+  if (!expect_kind(member.value, json::Kind::array, diagnostics)) return;
   if (member.value.items.empty())
     diagnostics.report(Code::E0205, "a group has at least one member").label(member.value.span);
   std::set<std::size_t> members;
@@ -70,10 +66,7 @@ void read_group(const json::Member& member, const NameIndex& actuators, Robot& r
 }
 
 void read_groups(const json::Value& value, Robot& robot, Diagnostics& diagnostics) {
-  if (!expect_kind(value, json::Kind::object, diagnostics)) {
-    robot.complete = false;
-    return;
-  }
+  if (!expect_kind(value, json::Kind::object, diagnostics)) return;
   report_repeated_keys(value, diagnostics);
   const NameIndex actuators = index_of(robot.actuators);
   std::set<std::string_view> known;
@@ -90,8 +83,8 @@ void read_groups(const json::Value& value, Robot& robot, Diagnostics& diagnostic
 class BehaviorReader {
 public:
   BehaviorReader(Robot& robot, Diagnostics& diagnostics);
-  // Adds an entry to the robot. False when it has no name.
-  [[nodiscard]] bool read(const json::Value& value);
+  // Adds an entry to the robot, if it has a name.
+  void read(const json::Value& value);
 
 private:
   Robot& robot_;
@@ -105,10 +98,10 @@ BehaviorReader::BehaviorReader(Robot& robot, Diagnostics& diagnostics)
       groups_(index_of(robot.groups)),
       diagnostics_(diagnostics) {}
 
-bool BehaviorReader::read(const json::Value& value) {
+void BehaviorReader::read(const json::Value& value) {
   Fields fields(value, Object::behavior, diagnostics_);
   const auto name = read_name(fields, "a behaviour", diagnostics_);
-  if (!name) return false;
+  if (!name) return;
   BehaviorConfig behavior;
   behavior.name = *name;
   if (const auto* priority = fields.find("priority")) {
@@ -124,7 +117,6 @@ bool BehaviorReader::read(const json::Value& value) {
       report_unknown_actuator(*action, robot_, true, diagnostics_);
   }
   robot_.behaviors.push_back(std::move(behavior));
-  return true;
 }
 
 // ---- scheduler, safety
@@ -168,10 +160,6 @@ void read_safety(const json::Value& value, Robot& robot, Diagnostics& diagnostic
 
 // ---- lints
 
-bool is_lint(Code code) {
-  return code_name(code).front() == 'W';
-}
-
 void report_unknown_lint(const json::Member& member, Diagnostics& diagnostics) {
   std::vector<std::string> names;
   for (const Code code : all_codes())
@@ -190,10 +178,8 @@ void read_lints(const json::Value& value, Robot& robot, Diagnostics& diagnostics
   constexpr std::array<std::string_view, 3> kLevels = {"allow", "warn", "deny"};
   for (const json::Member& member : value.members) {
     const auto level = read_choice(member.value, kLevels, diagnostics);
-    const std::span<const Code> codes = all_codes();
-    const auto known = std::ranges::find_if(
-        codes, [&](Code code) { return is_lint(code) && code_name(code) == member.key; });
-    if (known == codes.end())
+    const auto known = find_lint(member.key);
+    if (!known)
       report_unknown_lint(member, diagnostics);
     else if (level)
       robot.lints[*known] = static_cast<LintLevel>(*level);
@@ -254,14 +240,23 @@ void check_names(const Robot& robot, Diagnostics& diagnostics) {
 
 // ---- lists
 
-// Applies `read`, which says whether the entry could be used, to each entry of the list `key`.
-void for_each_entry(const Fields& fields, std::string_view key, Robot& robot,
-                    Diagnostics& diagnostics, const std::function<bool(const json::Value&)>& read) {
+// Applies `read` to each entry of the list `key`.
+void for_each_entry(const Fields& fields, std::string_view key, Diagnostics& diagnostics,
+                    const std::function<void(const json::Value&)>& read) {
   const auto* list = fields.find(key);
-  if (list == nullptr) return;
-  if (!expect_kind(*list, json::Kind::array, diagnostics)) robot.complete = false;
+  if (list == nullptr || !expect_kind(*list, json::Kind::array, diagnostics)) return;
   for (const json::Value& entry : list->items)
-    robot.complete = read(entry) && robot.complete;
+    read(entry);
+}
+
+// Of what was reported since there were `before`, nothing makes the program miss a name, or measure in another unit.
+bool names_and_units_are_known(const Diagnostics& diagnostics, std::size_t before) {
+  constexpr std::array kFelt = {Code::E0202, Code::E0204, Code::E0206, Code::E0208,
+                                Code::E0209, Code::E0301, Code::E0303};
+  const auto& all = diagnostics.all();
+  return std::none_of(
+      all.begin() + static_cast<std::ptrdiff_t>(before), all.end(),
+      [&](const Diagnostic& one) { return std::ranges::find(kFelt, one.code) != kFelt.end(); });
 }
 
 }  // namespace
@@ -270,30 +265,29 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
                                 const AlgorithmModules& modules) {
   const auto tree = json::read(sources, file, diagnostics);
   if (!tree) return std::nullopt;
+  const std::size_t before = diagnostics.all().size();
   const Fields fields(*tree, Object::robot, diagnostics);
   Robot robot;
-  robot.complete = tree->kind == json::Kind::object;
-  if (const auto* board = fields.find("board")) {
+  if (const auto* board = fields.find("board"))
     robot.board = read_choice(*board, board_names(), diagnostics);
-    robot.complete = robot.complete && robot.board.has_value();
-  }
   WiringReader wiring(board_for(robot.board), diagnostics);
-  for_each_entry(fields, "sensors", robot, diagnostics, [&](const json::Value& entry) {
+  for_each_entry(fields, "sensors", diagnostics, [&](const json::Value& entry) {
     auto sensor = read_sensor(entry, wiring, diagnostics);
     if (sensor) robot.sensors.push_back(std::move(*sensor));
-    return sensor.has_value();
   });
-  for_each_entry(fields, "actuators", robot, diagnostics, [&](const json::Value& entry) {
+  for_each_entry(fields, "actuators", diagnostics, [&](const json::Value& entry) {
     auto actuator = read_actuator(entry, wiring, diagnostics);
     if (actuator) robot.actuators.push_back(std::move(*actuator));
-    return actuator.has_value();
   });
+  robot.complete = names_and_units_are_known(diagnostics, before);
   if (const auto* groups = fields.find("groups")) read_groups(*groups, robot, diagnostics);
   BehaviorReader behaviors(robot, diagnostics);
-  for_each_entry(fields, "behaviors", robot, diagnostics,
-                 [&](const json::Value& entry) { return behaviors.read(entry); });
-  for_each_entry(fields, "algorithms", robot, diagnostics, [&](const json::Value& entry) {
-    return read_algorithm(entry, sources.file(file).name(), modules, robot, diagnostics);
+  for_each_entry(fields, "behaviors", diagnostics,
+                 [&](const json::Value& entry) { behaviors.read(entry); });
+  bool all_usable = true;
+  for_each_entry(fields, "algorithms", diagnostics, [&](const json::Value& entry) {
+    all_usable =
+        read_algorithm(entry, sources.file(file).name(), modules, robot, diagnostics) && all_usable;
   });
   if (const auto* scheduler = fields.find("scheduler"))
     robot.scheduler = read_scheduler(*scheduler, diagnostics);
@@ -303,6 +297,8 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
         static_cast<std::uint32_t>(read_whole(*seed, 1, kMaxSeed, diagnostics).value_or(0));
   if (const auto* lints = fields.find("lints")) read_lints(*lints, robot, diagnostics);
   check_names(robot, diagnostics);
+  robot.complete = names_and_units_are_known(diagnostics, before) && all_usable &&
+                   (fields.find("board") == nullptr || robot.board.has_value());
   return robot;
 }
 

@@ -206,9 +206,7 @@ std::optional<std::size_t> read_choice(const json::Value& value,
   const std::vector<std::string> candidates(names.begin(), names.end());
   Diagnostic& d =
       diagnostics.report(Code::E0205, "`" + *text + "` is not allowed here").label(value.span);
-  if (const auto near = nearest(*text, candidates))
-    d.helps("did you mean `" + *near + "`?").fix(value.span, "\"" + *near + "\"");
-  else
+  if (!did_you_mean(d, value.span, *text, candidates, "\""))
     d.helps("it can be " + list_names(candidates, "or"));
   return std::nullopt;
 }

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <tuple>
 #include <utility>
+
+#include "compiler/source/ascii.hpp"
 
 namespace robosync::compiler {
 
@@ -87,6 +90,14 @@ std::string_view code_title(Code code) {
 Level default_level(Code code) {
   return info(code).level;
 }
+bool is_lint(Code code) {
+  return code_name(code).front() == 'W';
+}
+std::optional<Code> find_lint(std::string_view name) {
+  const auto found = std::ranges::find_if(
+      in_order, [name](Code code) { return is_lint(code) && code_name(code) == name; });
+  return found != std::end(in_order) ? std::optional(*found) : std::nullopt;
+}
 
 Diagnostic& Diagnostic::label(Span span, std::string text, bool primary) {
   labels.push_back({span, std::move(text), primary});
@@ -144,11 +155,102 @@ void Diagnostics::found_from(Span use, const std::string& why, std::size_t befor
   }
 }
 
+namespace {
+
+void make_likely(Diagnostic& diagnostic) {
+  for (Fix& fix : diagnostic.fixes)
+    if (fix.applicability == Applicability::certain) fix.applicability = Applicability::likely;
+}
+
+bool is_word_byte(char c) {
+  return c == '_' || (static_cast<unsigned char>(c) & 0x80U) != 0 || ('0' <= c && c <= '9') ||
+         ascii::is_letter(c);
+}
+
+// How often `word` stands in the user's own programs; counts no farther than 2. What robot.json declares is right.
+std::size_t uses_of(std::string_view word, const SourceMap& sources) {
+  constexpr std::size_t enough = 2;
+  std::size_t found = 0;
+  for (std::size_t id = 0; id < sources.size() && !word.empty(); ++id) {
+    const SourceFile& file = sources.file(static_cast<FileId>(id));
+    const std::string_view text = file.text();
+    if (file.name().starts_with('<') || id == kConfigurationFile) continue;
+    for (std::size_t at = text.find(word); at != std::string_view::npos && found < enough;
+         at = text.find(word, at + 1)) {
+      const std::size_t end = at + word.size();
+      const bool whole = (at == 0 || !is_word_byte(text[at - 1])) &&
+                         (end == text.size() || !is_word_byte(text[end]));
+      if (whole) ++found;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+void Diagnostics::doubt(Span region) {
+  const auto is_there = [region](const Diagnostic& d) {
+    const Span place = anchor(d);
+    return d.level == Level::error && place.file == region.file && region.begin <= place.begin &&
+           place.begin <= region.end;
+  };
+  if (std::ranges::count_if(all_, is_there) < 2) return;
+  for (Diagnostic& diagnostic : all_)
+    if (is_there(diagnostic)) make_likely(diagnostic);
+}
+
+void Diagnostics::doubt_names(const SourceMap& sources) {
+  std::size_t searches = 20;  // each reads all of the text
+  // What else is wrong in a line may be what is wrong there in truth.
+  using Line = std::pair<FileId, std::uint32_t>;
+  const auto line_of = [&](const Diagnostic& diagnostic) {
+    const Span place = anchor(diagnostic);
+    return Line{place.file, sources.file(place.file).line_of(place.begin)};
+  };
+  std::map<Line, std::size_t> errors;
+  for (const Diagnostic& diagnostic : all_)
+    if (diagnostic.level == Level::error) ++errors[line_of(diagnostic)];
+  for (Diagnostic& diagnostic : all_) {
+    if (diagnostic.code != Code::E0501 || diagnostic.fixes.empty()) continue;
+    const Fix& fix = diagnostic.fixes.front();
+    if (fix.applicability != Applicability::certain) continue;
+    const bool sure = errors[line_of(diagnostic)] == 1 && searches > 0 &&
+                      uses_of(sources.text(fix.span), sources) == 1 &&
+                      uses_of(fix.replacement, sources) != 1;
+    if (searches > 0) --searches;
+    if (!sure) make_likely(diagnostic);
+  }
+}
+
+// A name that is misspelt where it is declared is missed wherever it is used.
+void Diagnostics::merge_repeated() {
+  constexpr std::size_t most = 4;  // places that are shown
+  std::map<std::string, std::size_t> first;
+  std::vector<Diagnostic> merged;
+  for (Diagnostic& diagnostic : all_) {
+    const auto [known, added] = first.emplace(diagnostic.message, merged.size());
+    if (diagnostic.code != Code::E0501 || added || merged[known->second].code != Code::E0501) {
+      merged.push_back(std::move(diagnostic));
+      continue;
+    }
+    Diagnostic& one = merged[known->second];
+    for (const Fix& fix : diagnostic.fixes)
+      one.fix(fix.span, fix.replacement, Applicability::likely);
+    make_likely(one);
+    if (++one.repeated < most) one.label(anchor(diagnostic), "and here", false);
+  }
+  for (Diagnostic& one : merged)
+    if (one.repeated >= most)
+      one.helps("it is in " + std::to_string(one.repeated - most + 1) + " more places");
+  all_ = std::move(merged);
+}
+
 void Diagnostics::finish() {
   std::stable_sort(all_.begin(), all_.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return sort_key(a) < sort_key(b);
   });
   all_.erase(std::unique(all_.begin(), all_.end(), same), all_.end());
+  merge_repeated();
 }
 
 }  // namespace robosync::compiler

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +29,9 @@ enum class Code : std::uint16_t {
 [[nodiscard]] std::string_view code_name(Code code);  // "E0501"
 [[nodiscard]] std::string_view code_title(Code code);
 [[nodiscard]] Level default_level(Code code);
+// May its level be chosen?
+[[nodiscard]] bool is_lint(Code code);
+[[nodiscard]] std::optional<Code> find_lint(std::string_view name);
 
 struct Label {
   Span span;
@@ -54,7 +58,8 @@ struct Diagnostic {
   std::vector<Label> labels;
   std::vector<std::string> help;  // how to mend it
   std::vector<Fix> fixes;
-  std::string unknown;  // what nothing here is called; a module that is not used may have it
+  std::size_t repeated = 0;  // how often it was said again elsewhere
+  std::string unknown;       // what nothing here is called; a module that is not used may have it
 
   // Chainable builders.
   Diagnostic& label(Span span, std::string text = {}, bool primary = true);
@@ -79,10 +84,18 @@ public:
   // while all such searches together are short, so that a text full of mistakes is read in a time
   // that goes with its length; ask before each. `names`: how many it looks at.
   [[nodiscard]] bool may_search(std::size_t names);
-  // Sorted by file and place, exact repetitions dropped. Call once before printing.
+  // Where more than one mistake is, the first guess may have been wrong: no fix of an error in there is certain.
+  void doubt(Span region);
+  // No fix of a name that nothing has is certain when the other name may be the misspelt one: when it is used nowhere
+  // else, or this one is used again.
+  void doubt_names(const SourceMap& sources);
+  // Sorted by file and place. Exact repetitions are dropped, and what has one cause is said once, with all its places.
+  // Call once before printing.
   void finish();
 
 private:
+  void merge_repeated();
+
   std::vector<Diagnostic> all_;
   std::size_t may_be_searched_ = 200'000;  // names, more than any program's mistakes need
 };

@@ -112,4 +112,30 @@ std::optional<std::string> nearest(std::string_view word, std::span<const std::s
   return best == nullptr ? std::nullopt : std::optional(*best);
 }
 
+namespace {
+
+// One slip of the hand gives `meant`, and no other candidate.
+bool is_only_slip(std::string_view word, std::string_view meant,
+                  std::span<const std::string> candidates) {
+  const auto one_slip = [word](std::string_view candidate) {
+    return !lengths_differ_too_much(word, candidate) && mistakes(word, candidate) == 1;
+  };
+  return one_slip(meant) && std::ranges::none_of(candidates, [&](const std::string& candidate) {
+           return !ascii::same(candidate, meant) && one_slip(candidate);
+         });
+}
+
+}  // namespace
+
+bool did_you_mean(Diagnostic& diagnostic, Span place, std::string_view word,
+                  std::span<const std::string> candidates, std::string_view quotes) {
+  const auto near = nearest(word, candidates);
+  if (!near) return false;
+  const std::string quote(quotes);
+  diagnostic.helps("did you mean `" + *near + "`?")
+      .fix(place, quote + *near + quote,
+           is_only_slip(word, *near, candidates) ? Applicability::certain : Applicability::likely);
+  return true;
+}
+
 }  // namespace robosync::compiler

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/diagnostics/diagnostic.hpp"
+
 namespace robosync::compiler {
 
 // Mistakes between two words: letters left out, added, changed, or two neighbours swapped
@@ -21,5 +23,10 @@ namespace robosync::compiler {
 // The nearest of the candidates that `is_near`; of equal ones the first.
 [[nodiscard]] std::optional<std::string> nearest(std::string_view word,
                                                  std::span<const std::string> candidates);
+
+// Offers the nearest candidate in the place of `word`, which stands at `place`: as help, and as a fix, between
+// `quotes`. The fix is certain when one slip of the hand gives this candidate and no other one. False when none is near.
+bool did_you_mean(Diagnostic& diagnostic, Span place, std::string_view word,
+                  std::span<const std::string> candidates, std::string_view quotes = "");
 
 }  // namespace robosync::compiler

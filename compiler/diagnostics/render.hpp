@@ -1,6 +1,7 @@
 // Prints diagnostics: for people (as rustc does) and as JSON.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "compiler/diagnostics/diagnostic.hpp"
@@ -8,8 +9,11 @@
 
 namespace robosync::compiler {
 
+// More errors than these are counted only: nobody reads them before the first ones are mended.
+inline constexpr std::size_t kMostErrors = 20;
+
 [[nodiscard]] std::string render_human(const Diagnostics& diagnostics, const SourceMap& sources,
-                                       bool color);
+                                       bool color, std::size_t most_errors = kMostErrors);
 [[nodiscard]] std::string render_json(const Diagnostics& diagnostics, const SourceMap& sources);
 
 }  // namespace robosync::compiler

@@ -142,13 +142,17 @@ private:
 
 }  // namespace
 
-std::string render_human(const Diagnostics& diagnostics, const SourceMap& sources, bool color) {
+std::string render_human(const Diagnostics& diagnostics, const SourceMap& sources, bool color,
+                         std::size_t most_errors) {
   Renderer renderer(sources, color);
   std::string text;
+  std::size_t errors = 0;
   for (const Diagnostic& diagnostic : diagnostics.all()) {
+    if (diagnostic.level == Level::error && ++errors > most_errors) continue;
     if (!text.empty()) text += '\n';
     text += renderer.render(diagnostic);
   }
+  if (errors > most_errors) text += "\nand " + std::to_string(errors - most_errors) + " more\n";
   return text;
 }
 

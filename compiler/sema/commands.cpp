@@ -149,7 +149,7 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
                       .label(first->name.span);
   if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size())) return;
   const auto candidates = names_.target_names();
-  suggest(d, first->name.span, first->name.text, candidates);
+  did_you_mean(d, first->name.span, first->name.text, candidates);
   if (d.help.empty()) d.helps("actuators: " + list_names(candidates));
 }
 
@@ -178,7 +178,7 @@ void Commands::report_unknown_verb(const ast::Command& command) {
   candidates.insert(candidates.end(), keyword_spellings().begin(), keyword_spellings().end());
   for (const std::string_view word : {kPerform, kFollow, kRestart})
     candidates.emplace_back(word);
-  suggest(d, verb.span, verb.text, candidates);
+  did_you_mean(d, verb.span, verb.text, candidates);
   if (d.help.empty() && !verbs.empty()) d.helps("it could be " + list_names(verbs));
 }
 
@@ -324,7 +324,7 @@ std::optional<Target> Commands::find_stopped(const ast::Name& name) {
     return std::nullopt;
   }
   const auto candidates = names_.target_names();
-  suggest(d, name.span, name.text, candidates);
+  did_you_mean(d, name.span, name.text, candidates);
   if (d.help.empty() && !candidates.empty()) d.helps("actuators: " + list_names(candidates));
   return std::nullopt;
 }
@@ -571,7 +571,7 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
   const auto targets = names_.target_names();
   candidates.insert(candidates.end(), targets.begin(), targets.end());
   candidates.insert(candidates.end(), keyword_spellings().begin(), keyword_spellings().end());
-  suggest(d, word.name.span, word.name.text, candidates);
+  did_you_mean(d, word.name.span, word.name.text, candidates);
   if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
 }
 
@@ -586,9 +586,7 @@ void report_unknown_text(const ActuatorConfig& actuator, const std::string& text
   std::vector<std::string> sounds;
   for (const WordConfig& word : actuator.words)
     if (word.text) sounds.push_back(word.name);
-  if (const auto near = nearest(text, sounds))
-    d.helps("did you mean \"" + *near + "\"?").fix(span, "\"" + *near + "\"");
-  else
+  if (!did_you_mean(d, span, text, sounds, "\""))
     d.helps(sounds.empty() ? "list its files under \"sounds\" in robot.json"
                            : "it has " + list_names(sounds));
 }

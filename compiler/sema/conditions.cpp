@@ -23,9 +23,7 @@ std::optional<std::size_t> find_label(Names& names, const std::vector<std::strin
       diagnostics.report(Code::E0501, "`" + std::string(owner) + "` is never " + label.shown())
           .label(label.span);
   if (!diagnostics.may_search(labels.size())) return std::nullopt;
-  if (const auto near = nearest(label.text, labels))
-    d.helps("did you mean `" + *near + "`?").fix(label.span, quoted ? "\"" + *near + "\"" : *near);
-  else
+  if (!did_you_mean(d, label.span, label.text, labels, quoted ? "\"" : ""))
     d.helps("it is " + list_names(labels, "or"));
   return std::nullopt;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/diagnostics/nearest.hpp"
 #include "compiler/sema/statements.hpp"
 #include "compiler/syntax/walk.hpp"
 
@@ -88,7 +89,7 @@ void Statements::add(const ast::Call& node, Span span, ir::Block& result) {
     return;
   }
   if (diagnostics_.may_search(names_.defines().size()))
-    suggest(d, node.name.span, node.name.text, names_.define_names());
+    did_you_mean(d, node.name.span, node.name.text, names_.define_names());
   if (d.help.empty() && names_.is_verb(node.name.text))
     d.helps(node.name.shown() + " is a verb: what it does stands behind it without WITH");
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "compiler/diagnostics/nearest.hpp"
 #include "compiler/ir/expression.hpp"
 #include "compiler/sema/expressions.hpp"
 #include "vm/arithmetic.hpp"
@@ -50,7 +51,7 @@ Typed Expressions::of(const ast::Function& node, Span span) {
       list += (list.empty() ? "" : ", ") + names.back();
     }
     names.emplace_back("RANDOM");
-    suggest(d, node.name.span, node.name.text, names);
+    did_you_mean(d, node.name.span, node.name.text, names);
     if (d.help.empty()) d.helps("functions: " + list + " and RANDOM");
     return make_nothing(span);
   }

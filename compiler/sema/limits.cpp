@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "compiler/diagnostics/nearest.hpp"
+
 namespace robosync::compiler {
 namespace {
 
@@ -37,7 +39,7 @@ void Limits::report_unknown(const ast::Limit& limit) {
         diagnostics_.report(Code::E0501, "there is no actuator " + limit.actuator.shown())
             .label(limit.actuator.span);
     if (diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size()))
-      suggest(d, limit.actuator.span, limit.actuator.text, names_.target_names());
+      did_you_mean(d, limit.actuator.span, limit.actuator.text, names_.target_names());
     return;
   }
   Diagnostic& d = diagnostics_
@@ -50,7 +52,7 @@ void Limits::report_unknown(const ast::Limit& limit) {
   if (sensor)
     for (const ChannelConfig& channel : robot_.sensors[*sensor].channels)
       candidates.push_back(channel.name.text);
-  suggest(d, limit.channel.span, limit.channel.text, candidates);
+  did_you_mean(d, limit.channel.span, limit.channel.text, candidates);
   if (d.help.empty())
     d.helps("it has " + list_names(candidates) +
             (sensor ? "" : "; for more, a sensor " + limit.actuator.shown() + " must measure it"));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/config/wiring.hpp"
+#include "compiler/diagnostics/nearest.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -72,7 +73,7 @@ bool Motions::add_columns(const ast::Motion& motion, std::vector<std::vector<std
                           .label(column.span);
       if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size())) return false;
       const auto candidates = names_.target_names();
-      suggest(d, column.span, column.text, candidates);
+      did_you_mean(d, column.span, column.text, candidates);
       if (d.help.empty()) d.helps("actuators: " + list_names(candidates));
       return false;
     }

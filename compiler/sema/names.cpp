@@ -74,7 +74,7 @@ std::optional<ChannelRef> Names::channel_of_sensor(std::size_t sensor,
                       .label(config.name.span, "the sensor", false);
   if (!diagnostics_.may_search(config.channels.size())) return std::nullopt;
   const auto candidates = channel_names(config);
-  suggest(d, operand.channel->span, operand.channel->text, candidates);
+  did_you_mean(d, operand.channel->span, operand.channel->text, candidates);
   if (d.help.empty()) d.helps("channels: " + list_names(candidates));
   return std::nullopt;
 }
@@ -113,7 +113,7 @@ void Names::report_unknown(const ast::Operand& operand) {
   if (!operand.channel)
     for (std::string& name : variable_names())
       candidates.push_back(std::move(name));
-  suggest(d, operand.name.span, operand.name.text, candidates);
+  did_you_mean(d, operand.name.span, operand.name.text, candidates);
   if (!d.help.empty()) return;
   candidates.clear();
   for (const SensorConfig& sensor : robot_.sensors)
@@ -257,12 +257,6 @@ std::vector<std::string> Names::variable_names() const {
     for (const auto& [folded, place] : own->second)
       names.emplace_back(variables_[place].name.text);
   return names;
-}
-
-void suggest(Diagnostic& diagnostic, Span span, std::string_view word,
-             const std::vector<std::string>& candidates) {
-  if (const auto near = nearest(word, candidates))
-    diagnostic.helps("did you mean `" + *near + "`?").fix(span, *near);
 }
 
 // ---- collecting the names that a program and its modules give

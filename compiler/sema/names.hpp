@@ -189,8 +189,4 @@ private:
   std::map<const std::vector<std::string>*, NameIndex> labels_;
 };
 
-// Adds "did you mean" with its fix when a candidate is near.
-void suggest(Diagnostic& diagnostic, Span span, std::string_view word,
-             const std::vector<std::string>& candidates);
-
 }  // namespace robosync::compiler

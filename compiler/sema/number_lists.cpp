@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/diagnostics/nearest.hpp"
 #include "compiler/sema/expressions.hpp"
 
 namespace robosync::compiler {
@@ -16,7 +17,7 @@ const ListName* Expressions::find_list(const ast::Name& name) {
                                             : name.shown() + " is " + kind + ", not a LIST")
           .label(name.span);
   const auto candidates = names_.list_names_given();
-  suggest(d, name.span, name.text, candidates);
+  did_you_mean(d, name.span, name.text, candidates);
   if (d.help.empty())
     d.helps(candidates.empty()
                 ? "declare it at the top: `LIST " + std::string(name.text) + ": \"one\", \"two\"`"

@@ -1,4 +1,5 @@
 // Commands, part: PERFORM. Which MOTION, how fast, how often.
+#include "compiler/diagnostics/nearest.hpp"
 #include "compiler/sema/commands.hpp"
 
 namespace robosync::compiler {
@@ -58,7 +59,7 @@ void Commands::report_no_motion(const ast::Command& command) {
     d.helps(word->name.shown() + " is a DEFINE: write it without PERFORM");
     return;
   }
-  suggest(d, word->name.span, word->name.text, candidates);
+  did_you_mean(d, word->name.span, word->name.text, candidates);
   if (d.help.empty() && !candidates.empty()) d.helps("there is " + list_names(candidates));
 }
 

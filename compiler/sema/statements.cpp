@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/diagnostics/nearest.hpp"
 #include "compiler/sema/texts.hpp"
 
 namespace robosync::compiler {
@@ -73,8 +74,10 @@ bool Statements::within_budget(Span span) {
   if (first)
     diagnostics_
         .report(Code::E0407, statements_ > kMaxStatements
-                                 ? "this response becomes too long with all its DEFINEs"
-                                 : "this program becomes too long with all its DEFINEs")
+                                 ? "with all its DEFINEs this response has more than " +
+                                       std::to_string(kMaxStatements) + " statements"
+                                 : "with all its DEFINEs this program has more than " +
+                                       std::to_string(kMaxAllStatements) + " statements")
         .label(span, "from here on");
   return false;
 }
@@ -361,7 +364,7 @@ VariableName* Statements::settable(const ast::Name& name, bool number) {
     Diagnostic& d =
         diagnostics_.report(Code::E0501, "there is no variable " + name.shown()).label(name.span);
     if (diagnostics_.may_search(names_.variables().size()))
-      suggest(d, name.span, name.text, names_.variable_names());
+      did_you_mean(d, name.span, name.text, names_.variable_names());
     if (d.help.empty())
       d.helps("declare it at the top: `REMEMBER " + std::string(name.text) + " = 0`");
     return nullptr;
@@ -463,7 +466,7 @@ void Statements::restart(const ast::Command& node, Span span, ir::Block& result)
   std::vector<std::string> timers;
   for (const VariableName& one : names_.variables())
     if (one.kind == vm::VariableKind::timer) timers.emplace_back(one.name.text);
-  if (word != nullptr) suggest(d, word->name.span, word->name.text, timers);
+  if (word != nullptr) did_you_mean(d, word->name.span, word->name.text, timers);
   if (d.help.empty())
     d.helps(timers.empty() ? "declare it at the top: `TIMER idle`"
                            : "TIMERs: " + list_names(timers));

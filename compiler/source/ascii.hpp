@@ -15,6 +15,10 @@ namespace robosync::compiler::ascii {
   return lower(a) == lower(b);
 }
 
+[[nodiscard]] constexpr bool is_letter(char c) {
+  return 'a' <= lower(c) && lower(c) <= 'z';
+}
+
 // In any case.
 [[nodiscard]] constexpr bool same(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](char x, char y) { return same(x, y); });

@@ -102,7 +102,8 @@ ast::Box<ast::Expr> Builder::truth(Span span, bool value) {
 ast::Box<ast::Expr> Builder::shallow(ast::Box<ast::Expr> made) {
   if (made->depth <= deepest_expression) return made;
   if (!too_deep_) {
-    report(Code::E0012, "this expression is nested too deeply")
+    report(Code::E0012, "this expression is nested deeper than " +
+                            std::to_string(deepest_expression) + " levels")
         .label(made->span)
         .helps("give parts of it a name with LET");
   }

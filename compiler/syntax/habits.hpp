@@ -12,8 +12,14 @@
 
 namespace robosync::compiler {
 
-// Reports the habit, and gives the change with which the grammar can go on. Nothing when there is none.
+// From one construct of RSL to the next (habits.cpp), and from other languages (foreign_habits.cpp).
+// Each reports the habit, and gives the change with which the grammar can go on. Nothing when there is none.
 [[nodiscard]] std::optional<Edit> explain_habit(const Tokens& tokens, const SourceFile& source,
                                                 const Attempt& failure, Diagnostics& diagnostics);
+
+[[nodiscard]] std::optional<Edit> explain_foreign_habit(const Tokens& tokens,
+                                                        const SourceFile& source,
+                                                        const Attempt& failure,
+                                                        Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

@@ -120,9 +120,6 @@ std::vector<Region> split_into_regions(std::span<const Token> tokens, const Sour
 
 namespace {
 
-constexpr std::size_t deepest_block = 32;
-constexpr std::size_t deepest_bracket = 64;
-
 bool is_sign(TokenKind kind) {
   return kind == Kinds::MINUS || kind == Kinds::NOT || kind == Kinds::OPEN;
 }
@@ -133,7 +130,7 @@ bool may_be_deep(std::span<const Token> tokens) {
     return is_sign(token.kind) || token.kind == Kinds::ELSE_IF ||
            (roles_of(token.kind) & role::opens) != 0;
   };
-  return std::ranges::count_if(tokens, goes_down) > static_cast<std::ptrdiff_t>(deepest_block);
+  return std::ranges::count_if(tokens, goes_down) > static_cast<std::ptrdiff_t>(kDeepestBlock);
 }
 
 // Counts what makes the grammar's stack grow: open IF, REPEAT and PICK blocks, each ELSE IF being one
@@ -145,7 +142,7 @@ public:
   bool too_deep_at(std::size_t at) {
     step_blocks(at);
     step_expression(tokens_[at].kind);
-    return blocks_ > deepest_block || brackets_ > deepest_bracket || signs_ > deepest_bracket;
+    return blocks_ > kDeepestBlock || brackets_ > kDeepestBracket || signs_ > kDeepestBracket;
   }
 
 private:

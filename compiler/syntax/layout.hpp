@@ -27,6 +27,8 @@ struct Region {
 [[nodiscard]] std::vector<Region> split_into_regions(std::span<const Token> tokens,
                                                      const SourceFile& source);
 
+inline constexpr std::size_t kDeepestBlock = 32;
+inline constexpr std::size_t kDeepestBracket = 64;  // also of signs in a row, as NOT NOT NOT
 // The first token that opens more blocks or brackets than anybody needs.
 [[nodiscard]] std::optional<std::size_t> nested_too_deeply(std::span<const Token> tokens);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compiler/source/ascii.hpp"
+#include "compiler/source/character_names.hpp"
 #include "compiler/source/utf8.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/lexer.hpp"
@@ -120,9 +121,23 @@ void LexerState::word() {
   }
   cursor_ = start_ + length;
   const Keyword* keyword = find_keyword(lexeme());
+  if (keyword == nullptr && foreign_end()) return;
   token(keyword != nullptr ? keyword->kind : Kinds::NAME);
   if (keyword != nullptr && keyword->kind == Kinds::IF) join_else_if();
   if (keyword != nullptr && keyword->kind == Kinds::OF) of();
+}
+
+// `ENDIF`, as other languages have it, where a line begins.
+bool LexerState::foreign_end() {
+  if (!tokens_.empty() && tokens_.back().kind != Kinds::NEWLINE) return false;
+  constexpr std::string_view ends[] = {"ENDIF",     "END_IF",    "ENDWHEN",     "ENDWHILE",
+                                       "ENDDEFINE", "ENDREPEAT", "ENDBEHAVIOR", "ENDDEF"};
+  if (std::ranges::none_of(ends,
+                           [this](std::string_view end) { return ascii::same(end, lexeme()); }))
+    return false;
+  report(Code::E0007, "every block of RSL ends with END").label(here()).fix(here(), "END");
+  token(Kinds::END);
+  return true;
 }
 
 // ---- words that are known by what follows: until then they are names
@@ -282,6 +297,67 @@ void LexerState::left_out(std::string_view why) {
       .label(span(start_, start_ + shown), std::string(why));
 }
 
+// The brace that other languages have for DO. In front of it stands what opens a block, perhaps on the line before.
+bool LexerState::brace_opens_a_block() {
+  std::size_t end = tokens_.size();
+  while (end > 0 && tokens_[end - 1].kind == Kinds::NEWLINE)
+    --end;
+  std::size_t first = end;
+  while (first > 0 && tokens_[first - 1].kind != Kinds::NEWLINE)
+    --first;
+  if (first == end || tokens_[end - 1].kind == Kinds::DO) return false;
+  const TokenKind kind = tokens_[first].kind;
+  const bool goes_on = kind == Kinds::ELSE || kind == Kinds::ELSE_IF;
+  if (!goes_on && (roles_of(kind) & role::opens) == 0) return false;
+  const bool asks = kind == Kinds::WHEN || kind == Kinds::WHILE || kind == Kinds::EVERY ||
+                    kind == Kinds::IF || kind == Kinds::ELSE_IF;
+  if (asks) token(Kinds::DO);
+  return true;
+}
+
+void LexerState::opening_brace() {
+  if (!has_brace_)
+    report(Code::E0002, "RSL has no braces: a block ends with END")
+        .label(here())
+        .helps(
+            "what is asked ends with DO: `WHEN touch LEVEL > 3 DO`, and then the lines, and `END`");
+  has_brace_ = true;
+  braces_.push_back(brace_opens_a_block());
+}
+
+// In front of ELSE nothing ends.
+void LexerState::closing_brace() {
+  if (braces_.empty()) {
+    left_out("a block ends with END");
+    return;
+  }
+  const bool ends = braces_.back() && !else_follows();
+  braces_.pop_back();
+  if (ends) token(Kinds::END);
+}
+
+bool LexerState::else_follows() const {
+  const std::size_t word = std::min(text_.find_first_not_of(" \t\r\n", cursor_), text_.size());
+  return ascii::same(text_.substr(word, 4), "ELSE") || ascii::same(text_.substr(word, 4), "ELIF");
+}
+
+void LexerState::foreign_comment() {
+  constexpr std::size_t shown = 2;  // of `//` or `--`
+  report(Code::E0002, "a comment of RSL begins with # or %, not with `" +
+                          std::string(lexeme().substr(0, shown)) + "`")
+      .label(span(start_, start_ + shown))
+      .fix(span(start_, start_ + shown), "#");
+}
+
+// `/* … */`, over as many lines as it takes.
+void LexerState::long_comment() {
+  const std::size_t end = text_.find("*/", cursor_);
+  cursor_ = end == std::string_view::npos ? text_.size() : end + 2;
+  report(Code::E0002, "a comment of RSL begins with # or % and goes to the end of its line")
+      .label(span(start_, start_ + 2), "this one is left out up to its end")
+      .helps("write # in front of each of its lines");
+}
+
 bool LexerState::look_alike(char32_t point) {
   const auto found = std::find_if(std::begin(look_alikes), std::end(look_alikes),
                                   [point](const LookAlike& entry) { return entry.point == point; });
@@ -317,7 +393,9 @@ void LexerState::strange(std::size_t size) {
                         std::string_view::npos;
   strange_end_ = cursor_;
   if (said) return;
-  Diagnostic& message = report(Code::E0002, "RSL does not use this character").label(here());
+  Diagnostic& message = report(Code::E0002, "RSL does not use the character " +
+                                                utf8::describe(utf8::decode(text_, start_).value))
+                            .label(here());
   if (text_[start_] == '[' || text_[start_] == ']')
     message.helps(
         "a LIST stands without brackets, `LIST words: \"one\", \"two\"`; one of it is `ITEM 1 OF "

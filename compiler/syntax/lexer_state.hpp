@@ -40,6 +40,10 @@ private:
   void comment();
   void instead(TokenKind meant, std::string_view spelling);
   void left_out(std::string_view why);
+  void opening_brace();
+  void closing_brace();
+  void foreign_comment();
+  void long_comment();
   void other();
 
   Diagnostic& report(Code code, std::string message);
@@ -47,6 +51,9 @@ private:
   bool keyword_is_stuck();
   bool curly_string(char32_t quote);
   bool look_alike(char32_t point);
+  bool foreign_end();
+  bool brace_opens_a_block();
+  bool else_follows() const;
   void strange(std::size_t size);
 
   std::string_view lexeme() const { return text_.substr(start_, cursor_ - start_); }
@@ -63,6 +70,9 @@ private:
   std::vector<Token> tokens_;
   std::size_t start_ = 0;
   std::size_t cursor_ = 0;
+  bool has_brace_ = false;  // which is said once
+  std::vector<bool>
+      braces_;  // those that are open: has one the place of a DO, so that its end is an END?
   std::size_t strange_end_ = static_cast<std::size_t>(-1);  // where the last strange bytes ended
 };
 

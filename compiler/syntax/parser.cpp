@@ -6,6 +6,8 @@
 #include <iterator>
 #include <utility>
 
+#include "compiler/diagnostics/plain_text.hpp"
+#include "compiler/syntax/heads.hpp"
 #include "compiler/syntax/layout.hpp"
 #include "compiler/syntax/lexer.hpp"
 #include "compiler/syntax/reader.hpp"
@@ -52,8 +54,12 @@ std::optional<EmptyBlock> empty_block(const Tokens& tokens) {
 
 class Parser {
 public:
-  Parser(const SourceFile& source, FileId file, Diagnostics& diagnostics)
-      : source_(source), file_(file), diagnostics_(diagnostics), reader_(source) {}
+  Parser(const SourceMap& sources, FileId file, Diagnostics& diagnostics)
+      : sources_(sources),
+        source_(sources.file(file)),
+        file_(file),
+        diagnostics_(diagnostics),
+        reader_(source_) {}
 
   ast::Tree parse() {
     if (source_.text().size() > largest_source) {
@@ -61,14 +67,19 @@ public:
           .label({file_, 0, 0});
       return {};
     }
-    const Tokens tokens = lex(source_, file_, diagnostics_);
+    if (!is_plain_text(sources_, file_, Code::E0002, diagnostics_)) return {};
+    Tokens tokens = lex(source_, file_, diagnostics_);
+    mend_heads(tokens, source_, diagnostics_);
     const std::vector<Region> regions = split_into_regions(tokens, source_);
     program_.items.reserve(regions.size());
     for (const Region& region : regions) {
       const auto begin = tokens.begin() + static_cast<std::ptrdiff_t>(region.begin);
       const auto end = tokens.begin() + static_cast<std::ptrdiff_t>(region.end);
       piece_.assign(begin, end);
-      if (!parse_piece(piece_)) break;
+      const bool goes_on = parse_piece(piece_);
+      if (diagnostics_.errors() > 0)
+        diagnostics_.doubt({file_, begin->span.begin, std::prev(end)->span.end});
+      if (!goes_on) break;
     }
     program_.labels = reader_.take_labels();
     return std::move(program_);
@@ -78,7 +89,10 @@ private:
   // False when nothing more should be read.
   bool parse_piece(Tokens& tokens) {
     if (const auto deep = nested_too_deeply(tokens)) {
-      diagnostics_.report(Code::E0012, "this is nested too deeply")
+      diagnostics_
+          .report(Code::E0012, "this is nested too deeply: " + std::to_string(kDeepestBlock) +
+                                   " blocks, and " + std::to_string(kDeepestBracket) +
+                                   " brackets or signs, are the most that rsc reads")
           .label(tokens[*deep].span)
           .helps("put the inner part into a DEFINE of its own");
       return false;
@@ -108,11 +122,17 @@ private:
   }
 
   bool give_up(const Tokens& tokens) {
-    diagnostics_.report(Code::E0013, "too many mistakes: the rest of the file was not read")
+    diagnostics_
+        .report(Code::E0013,
+                mistakes_ > most_mistakes
+                    ? "more than " + std::to_string(most_mistakes) +
+                          " mistakes: the rest of the file was not read"
+                    : "mistakes that take too long to sort out: the rest of the file was not read")
         .label(tokens.front().span);
     return false;
   }
 
+  const SourceMap& sources_;
   const SourceFile& source_;
   FileId file_;
   Diagnostics& diagnostics_;
@@ -126,7 +146,7 @@ private:
 }  // namespace
 
 ast::Tree parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
-  return Parser(sources.file(file), file, diagnostics).parse();
+  return Parser(sources, file, diagnostics).parse();
 }
 
 }  // namespace robosync::compiler

@@ -81,7 +81,9 @@ Edit last_resort(const Tokens& tokens, const Attempt& failure) {
 
 void mend(Tokens& tokens, const Attempt& failure, Reader& reader, Diagnostics& diagnostics,
           Budget& budget) {
-  if (const auto habit = explain_habit(tokens, reader.source(), failure, diagnostics)) {
+  for (const auto explain_one : {explain_foreign_habit, explain_habit}) {
+    const auto habit = explain_one(tokens, reader.source(), failure, diagnostics);
+    if (!habit) continue;
     tokens = edited(tokens, *habit);
     return;
   }

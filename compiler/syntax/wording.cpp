@@ -3,8 +3,10 @@
 
 #include <algorithm>
 
+#include "compiler/diagnostics/nearest.hpp"
 #include "compiler/source/utf8.hpp"
 #include "compiler/syntax/blocks.hpp"
+#include "compiler/syntax/keyword_roles.hpp"
 
 namespace robosync::compiler {
 
@@ -131,7 +133,17 @@ private:
     const std::string better(edit_.keyword->spelling);
     diagnostics_.report(Code::E0007, "RSL does not know the word " + quote(edit_.at) + " here")
         .label(tokens_[edit_.at].span, "did you mean `" + better + "`?")
-        .fix(tokens_[edit_.at].span, better);
+        .fix(tokens_[edit_.at].span, better,
+             is_only_slip() ? Applicability::certain : Applicability::likely);
+  }
+
+  // One slip of the hand gives this word of RSL, and no other.
+  bool is_only_slip() const {
+    const std::string_view word = source_.text(tokens_[edit_.at].span);
+    const auto one_slip = [word](const Keyword& keyword) {
+      return is_near(word, keyword.spelling) && mistakes(word, keyword.spelling) == 1;
+    };
+    return one_slip(*edit_.keyword) && std::ranges::count_if(keywords(), one_slip) == 1;
   }
 
   // The place of a missing token is behind the one before it, not at the next line's start.
@@ -155,11 +167,9 @@ private:
         Code::E0008, what + " is missing" + (first ? " before " + found(edit_.at) : where));
     message.label(gap(), first ? "" : "here");
     const bool word = kind >= Kinds::USE;
-    // With a sign behind it, something else may be meant; and the line may want another word than WHEN.
-    const bool sign = edit_.at < tokens_.size() && tokens_[edit_.at].kind == Kinds::MINUS;
-    const auto sure = sign || kind == Kinds::WHEN ? Applicability::likely : Applicability::certain;
-    if (word && !first) message.fix(gap(), " " + plain(kind), sure);
-    if (word && first) message.fix(gap(), plain(kind) + " ", sure);
+    // Another word may be missing, or more than this one.
+    if (word && !first) message.fix(gap(), " " + plain(kind), Applicability::likely);
+    if (word && first) message.fix(gap(), plain(kind) + " ", Applicability::likely);
     if (where.empty() && outside_blocks() && word) {
       message.helps("a line outside a block starts with a word such as WHEN, DEFINE or BEHAVIOR");
     }
@@ -191,6 +201,11 @@ private:
   }
 
   void line_goes_on() {
+    const bool line_over = edit_.at >= tokens_.size() || tokens_[edit_.at].kind == Kinds::NEWLINE;
+    if (line_over) {
+      diagnostics_.report(Code::E0001, "this line ends too early").label(place(edit_.at), "here");
+      return;
+    }
     diagnostics_.report(Code::E0001, found(edit_.at) + " must stand on a line of its own")
         .label(place(edit_.at), "the line should have ended before this");
   }
@@ -232,17 +247,20 @@ private:
     } else {
       message.label(token.span, "leave this out")
           .fix(token.span, "",
-               may_be_meant(edit_.at) ? Applicability::likely : Applicability::certain);
+               stands_twice(edit_.at) ? Applicability::certain : Applicability::likely);
     }
     const bool known = edit_.expected != nullptr && !edit_.expected->empty();
     if (known) message.helps("RSL expects " + summarize(*edit_.expected) + after(edit_.at));
   }
 
-  // Without its first word a line says something else; a comma may want what is missing beside it. What stands there
-  // twice is not meant twice.
-  bool may_be_meant(std::size_t at) const {
-    if (at + 1 < tokens_.size() && quote(at) == quote(at + 1)) return false;
-    return begins_line(at) || tokens_[at].kind == Kinds::COMMA;
+  // What stands there twice is not meant twice; whatever else is too much may want something beside it. Of two commas
+  // one may want what is missing between.
+  bool stands_twice(std::size_t at) const {
+    const auto same = [&](std::size_t other) {
+      return other < tokens_.size() && tokens_[other].kind == tokens_[at].kind &&
+             quote(other) == quote(at);
+    };
+    return tokens_[at].kind != Kinds::COMMA && (same(at + 1) || (at > 0 && same(at - 1)));
   }
 
   // `40 cm`: digits, a space, and a name that may be a unit.
@@ -257,7 +275,7 @@ private:
     diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here")
         .label(tokens_[edit_.at].span)
         .helps("if it is a unit, write it without a space: `" + digits + unit + "`")
-        .fix(gap, "");
+        .fix(gap, "", Applicability::likely);
     return true;
   }
 
@@ -316,12 +334,18 @@ private:
       return;
     }
     if (wanted == Kinds::IF && (roles_of(kind) & role::part) != 0) return rule_inside();
+    if (kind == Kinds::THEN && wanted == Kinds::DO) {
+      diagnostics_.report(Code::E0001, "a line that asks ends with DO in RSL, not with THEN")
+          .label(place(edit_.at))
+          .fix(place(edit_.at), "DO", Applicability::likely);  // it may begin a second condition
+      return;
+    }
     if (edit_.at == failure_.stopped_at) return unexpected();
     Diagnostic& message =
         diagnostics_.report(Code::E0001, "expected " + describe(wanted) + after(edit_.at) +
                                              ", found " + found(edit_.at));
     message.label(place(edit_.at));
-    if (wanted >= Kinds::USE) message.fix(place(edit_.at), plain(wanted));
+    if (wanted >= Kinds::USE) message.fix(place(edit_.at), plain(wanted), Applicability::likely);
   }
 
   void rule_inside() {

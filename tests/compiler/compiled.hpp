@@ -1,6 +1,7 @@
 // Programs and configurations through the whole compiler, for the tests.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -39,7 +40,7 @@ inline std::string common_robot() {
 }
 
 inline std::string messages(const Result& result) {
-  return render_human(result.diagnostics, result.sources, false);
+  return render_human(result.diagnostics, result.sources, false, SIZE_MAX);
 }
 
 inline vm::Image view(const Result& result) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -46,7 +47,7 @@ inline Parsed parse_text(std::string text, const std::string& name = "robot.rsl"
 }
 
 inline std::string messages(const Parsed& parsed) {
-  return render_human(parsed.diagnostics, parsed.sources, false);
+  return render_human(parsed.diagnostics, parsed.sources, false, SIZE_MAX);
 }
 
 }  // namespace robosync::compiler::testing

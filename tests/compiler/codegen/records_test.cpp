@@ -196,14 +196,14 @@ TEST_CASE("the seed is the one that is asked for, or the robot's, or none") {
 TEST_CASE("blocks nest as deeply as the robot allows, and no deeper") {
   CHECK(!build(program_of({when(kClose, nested(vm::kMaxBlocks, {kLeft}))})).bytes.empty());
   expect_too_large(program_of({when(kClose, nested(vm::kMaxBlocks + 1, {kLeft}))}),
-                   "nested too deeply", 1000);
+                   "blocks in each other", 1000);
   // A chain of IF … ELSE IF takes one block each, and the IF itself another.
   ir::Block chain = {kLeft};
   for (unsigned i = 0; i < vm::kMaxBlocks - 1; ++i)
     chain = {line(static_cast<std::uint16_t>(100 - i), ir::If{kClose, {kLeft}, chain})};
   CHECK(!build(program_of({when(kClose, chain)})).bytes.empty());
   expect_too_large(program_of({when(kClose, {line(5, ir::If{kClose, {kLeft}, chain})})}),
-                   "nested too deeply", 1000);
+                   "blocks in each other", 1000);
   ir::Pick many;
   for (unsigned i = 0; i < 40; ++i)
     many.options.push_back({1000, {line(7, move(i % 3))}});

@@ -1,6 +1,5 @@
-// A fix that rsc offers shall give back what was meant, or at least nothing else: the examples get
-// each of their words changed in turn, all fixes of the mistake are made, and what comes out is
-// compared with the example. Numbers are damaged as fingers do it, too.
+// A fix that is certain shall give back what was meant: the examples get each of their words changed in turn, all such
+// fixes are made, and what comes out must do what the example does. Numbers are damaged as fingers do it, too.
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -9,41 +8,19 @@
 
 #include <catch2/catch.hpp>
 
-#include "compiler/compiler.hpp"
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/syntax/lexer.hpp"
-#include "rsc/algorithm_modules.hpp"
-#include "tests/support/golden.hpp"
+#include "tests/compiler/syntax/examples.hpp"
 #include "vm/image.hpp"
 
 using namespace robosync::compiler;
+using namespace robosync::compiler::testing;
 using robosync::testing::read_file;
 
 namespace {
 
 namespace fs = std::filesystem;
 namespace vm = robosync::vm;
-
-const fs::path kExamples = fs::path(ROBOSYNC_SOURCE_DIR) / "examples";
-
-struct Example {
-  std::string name, program, robot;
-};
-
-std::vector<Example> examples() {
-  std::vector<Example> found;
-  for (const auto& entry : fs::directory_iterator(kExamples))
-    if (fs::exists(entry.path() / "robot.rsl"))
-      found.push_back({entry.path().filename().string(), read_file(entry.path() / "robot.rsl"),
-                       read_file(entry.path() / "robot.json")});
-  std::ranges::sort(found, {}, &Example::name);
-  return found;
-}
-
-Result compiled(const Example& example, const std::string& program) {
-  return compile({"robot.rsl", program}, {"robot.json", example.robot},
-                 {.source_lines = false, .algorithms = robosync::tool::algorithm_modules()});
-}
 
 // A robot with other names for its variables and their words does the same.
 void leave_out_names(std::vector<std::byte>& image, const vm::Image& view) {
@@ -163,23 +140,21 @@ struct FixTally {
 void count_fix(FixTally& tally, const Example& example, const Change& change,
                const std::vector<std::byte>& meant) {
   ++tally.programs;
-  const Result result = compiled(example, change.text);
+  const Result result = compiled(change.text, example.robot);
   if (result.diagnostics.errors() == 0) return;
   ++tally.wrong;
   const std::string mended = fixed(change.text, result);
   if (mended == change.text) return;
   ++tally.with_fix;
-  Result again = compiled(example, mended);
-  if (again.image.empty()) {
-    ++tally.still_wrong;
-  } else if (meaning(std::move(again.image)) == meant) {
+  Result again = compiled(mended, example.robot);
+  const bool wrong = again.image.empty();
+  if (!wrong && meaning(std::move(again.image)) == meant) {
     ++tally.same;
-  } else {
-    ++tally.other;
-    if (std::getenv("ROBOSYNC_SHOW_FIXES") != nullptr)
-      WARN(example.name << ", " << change.kind << ":\n"
-                        << render_human(result.diagnostics, result.sources, false));
+    return;
   }
+  ++(wrong ? tally.still_wrong : tally.other);
+  WARN(example.name << ", " << change.kind << ":\n"
+                    << render_human(result.diagnostics, result.sources, false));
 }
 
 }  // namespace
@@ -191,7 +166,7 @@ TEST_CASE("what a fix gives means what was meant", "[mutation]") {
   FixTally total;
   std::size_t number = 0;
   for (const Example& example : examples()) {
-    const std::vector<std::byte> meant = meaning(compiled(example, example.program).image);
+    const std::vector<std::byte> meant = meaning(compiled(example.program, example.robot).image);
     for (const Change& change : changes_of(example.program)) {
       if (!all && ++number % every != 0) continue;
       count_fix(tallies[change.kind], example, change, meant);
@@ -204,12 +179,12 @@ TEST_CASE("what a fix gives means what was meant", "[mutation]") {
               << tally.with_fix << " with a fix, which gives the example in " << tally.same
               << ", a program that is wrong in " << tally.still_wrong << ", another one in "
               << tally.other);
-  CHECK(total.with_fix >= 400);
-  CHECK(total.other * 100 <= total.with_fix);
+  CHECK(total.with_fix >= 300);
+  CHECK(total.same == total.with_fix);
 }
 
 TEST_CASE("a fix never changes what a number or a condition says") {
-  const Example robot{"", "", read_file(fs::path(ROBOSYNC_SOURCE_DIR) / "docs/robot.json")};
+  const std::string robot = read_file(fs::path(ROBOSYNC_SOURCE_DIR) / "docs/robot.json");
   for (const char* const program : {
            "SAFETY\n  WHEN touch IS\n LEVEL > 3 DO\n    STOP left_arm\n  END\nEND\n",
            "WHEN touch LEVEL > 3 DO\n  MOVE left_arm TO 3,5deg\nEND\n",
@@ -220,7 +195,7 @@ TEST_CASE("a fix never changes what a number or a condition says") {
            "BEHAVIOR b PRIORITY -5\n  WHEN touch LEVEL > 3 DO\n    LOG \"x\"\n  END\nEND\n",
            "BEHAVIOR b PRIORITY 5 5\n  WHEN touch LEVEL > 3 DO\n    LOG \"x\"\n  END\nEND\n",
        }) {
-    const Result result = compiled(robot, program);
+    const Result result = compiled(program, robot);
     CAPTURE(program, render_human(result.diagnostics, result.sources, false));
     CHECK(result.diagnostics.errors() > 0);
     CHECK(fixed(program, result) == program);
@@ -228,17 +203,17 @@ TEST_CASE("a fix never changes what a number or a condition says") {
 }
 
 TEST_CASE("a fix is certain only where nothing else can be meant") {
-  const Example robot{"", "", read_file(fs::path(ROBOSYNC_SOURCE_DIR) / "docs/robot.json")};
+  const std::string robot = read_file(fs::path(ROBOSYNC_SOURCE_DIR) / "docs/robot.json");
   const std::string rest = " DO\n  LOG \"x\"\nEND\n";
   for (const std::string& program :
        {"touch LEVEL > 3" + rest,                            // WHEN or WHILE
         " greetings\nWHEN touch LEVEL > 3" + rest,           // USE
         std::string("LIST words: \"one\", , \"two\"\n")}) {  // a text is missing
-    const Result result = compiled(robot, program);
+    const Result result = compiled(program, robot);
     CAPTURE(program, render_human(result.diagnostics, result.sources, false));
     CHECK(result.diagnostics.errors() == 1);
     CHECK(fixed(program, result) == program);
   }
   const std::string twice = "WHEN WHEN touch LEVEL > 3" + rest;
-  CHECK(compiled(robot, fixed(twice, compiled(robot, twice))).diagnostics.errors() == 0);
+  CHECK(compiled(fixed(twice, compiled(twice, robot)), robot).diagnostics.errors() == 0);
 }

@@ -1,6 +1,7 @@
 // See mutations.hpp.
 #include "tests/compiler/syntax/mutations.hpp"
 
+#include <cctype>
 #include <utility>
 
 #include "compiler/source/source_file.hpp"
@@ -68,8 +69,10 @@ std::string name_of(Mutation mutation) {
   return "exchange";
 }
 
-std::string mutate(const std::string& program, Mutation mutation, std::mt19937& random) {
-  const std::vector<Span> words = words_of(program);
+namespace {
+
+std::string mutate_one_of(const std::string& program, const std::vector<Span>& words,
+                          Mutation mutation, std::mt19937& random) {
   const std::size_t at = pick(words.size() - 1, random);
   const std::string word = text_of(program, words[at]);
   switch (mutation) {
@@ -82,11 +85,45 @@ std::string mutate(const std::string& program, Mutation mutation, std::mt19937& 
       return replaced(replaced(program, words[at + 1], word), words[at], next);
     }
     case Mutation::misspell:
+      if (word.front() == '"' && word.size() > 2)
+        return replaced(program, words[at],
+                        '"' + misspelt(word.substr(1, word.size() - 2), random) + '"');
       return replaced(program, words[at], misspelt(word, random));
     case Mutation::exchange:
       break;
   }
   return replaced(program, words[at], text_of(program, words[pick(words.size(), random)]));
+}
+
+bool is_json_word(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '.';
+}
+
+std::vector<Span> words_of_json(const std::string& text) {
+  std::vector<Span> words;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at + 1;
+    if (text[at] == '"') {
+      end = text.find('"', end) + 1;
+    } else if (is_json_word(text[at])) {
+      while (is_json_word(text[end]))
+        ++end;
+    }
+    if (std::isspace(static_cast<unsigned char>(text[at])) == 0)
+      words.push_back({0, static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(end)});
+    at = end;
+  }
+  return words;
+}
+
+}  // namespace
+
+std::string mutate(const std::string& program, Mutation mutation, std::mt19937& random) {
+  return mutate_one_of(program, words_of(program), mutation, random);
+}
+
+std::string mutate_json(const std::string& text, Mutation mutation, std::mt19937& random) {
+  return mutate_one_of(text, words_of_json(text), mutation, random);
 }
 
 }  // namespace robosync::compiler::testing

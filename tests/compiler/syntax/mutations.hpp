@@ -17,5 +17,8 @@ inline constexpr Mutation every_mutation[] = {Mutation::drop, Mutation::repeat, 
 // Changes one word of `program`, chosen by `random`. Texts in quotes are left alone.
 [[nodiscard]] std::string mutate(const std::string& program, Mutation mutation,
                                  std::mt19937& random);
+// Changes one string, number, word or sign of a JSON text; a string is misspelt between its quotes.
+[[nodiscard]] std::string mutate_json(const std::string& text, Mutation mutation,
+                                      std::mt19937& random);
 
 }  // namespace robosync::compiler::testing

@@ -1,0 +1,198 @@
+// Habits that people bring along from other languages. What the lexer can tell by itself (`&&`, braces, comments) is said
+// there; see habits.hpp.
+#include "compiler/syntax/habits.hpp"
+#include "compiler/syntax/keyword_roles.hpp"
+#include "compiler/syntax/mistaken_line.hpp"
+
+namespace robosync::compiler {
+
+namespace {
+
+class ForeignHabits : private MistakenLine {
+public:
+  using MistakenLine::MistakenLine;
+
+  std::optional<Edit> find() {
+    if (stop_ >= tokens_.size()) return std::nullopt;
+    using Habit = std::optional<Edit> (ForeignHabits::*)();
+    for (const Habit habit :
+         {&ForeignHabits::name_of_test, &ForeignHabits::rule_with_if, &ForeignHabits::foreign_else,
+          &ForeignHabits::set_with_sign, &ForeignHabits::assignment, &ForeignHabits::colon,
+          &ForeignHabits::end_of_what, &ForeignHabits::truth, &ForeignHabits::decimal_comma}) {
+      if (auto edit = (this->*habit)()) return edit;
+    }
+    return std::nullopt;
+  }
+
+private:
+  // `TEST who is near is greeted`
+  std::optional<Edit> name_of_test() {
+    if (!is(0, Kinds::TEST) && !is_name(0, "TEST")) return std::nullopt;
+    std::size_t end = 1;
+    while (end < tokens_.size() && !is(end, Kinds::NEWLINE))
+      ++end;
+    if (end == 1 || is(1, Kinds::STRING) || has(1, end, Kinds::STRING)) return std::nullopt;
+    const Span name = span(1, end);
+    const std::string quoted = "\"" + text(1, end) + "\"";
+    report(Code::E0001, "the name of a TEST stands in quotes", name)
+        .helps("write `TEST " + quoted + "`")
+        .fix(name, quoted);
+    return change(0, end, {{Kinds::TEST, tokens_[0].span}, {Kinds::STRING, name}});
+  }
+
+  // `IF touch LEVEL > 3 DO` outside of a rule
+  std::optional<Edit> rule_with_if() {
+    if (!is(0, Kinds::IF) || stop_ != 0) return std::nullopt;
+    report(Code::E0010, "IF asks once, inside a rule; a rule of its own begins with WHEN",
+           tokens_[0].span)
+        .helps("write `WHEN` in the place of this `IF`")
+        .fix(tokens_[0].span, "WHEN", Applicability::likely);
+    return change(0, 1, {{Kinds::WHEN, tokens_[0].span}});
+  }
+
+  // `ELIF x > 3 DO`
+  std::optional<Edit> foreign_else() {
+    const std::size_t first = statement_;
+    if (!is_any_name(first, {"ELIF", "ELSIF", "ELSEIF", "ELSE_IF"}) || first == stop_)
+      return std::nullopt;
+    report(Code::E0007, quote(first) + " is written `ELSE IF` in RSL", tokens_[first].span)
+        .fix(tokens_[first].span, "ELSE IF");
+    return change(first, 1, {{Kinds::ELSE_IF, tokens_[first].span}});
+  }
+
+  // `SET x = 5`
+  std::optional<Edit> set_with_sign() {
+    if (!begins_with(Kinds::SET) || !is(stop_, Kinds::EQUAL) || stop_ != statement_ + 2)
+      return std::nullopt;
+    report(Code::E0001, "SET has TO between the name and its value, not `=`", tokens_[stop_].span)
+        .helps("write `SET " + std::string(text(statement_ + 1)) + " TO " +
+               text(stop_ + 1, statement_end()) + "`")
+        .fix(tokens_[stop_].span, "TO");
+    return change(stop_, 1, {{Kinds::TO, tokens_[stop_].span}});
+  }
+
+  // `x = 5`, `x += 1`, `x++`
+  std::optional<Edit> assignment() {
+    const std::size_t sign = statement_ + 1;
+    const bool step = is(begin_, Kinds::AT) || is(begin_, Kinds::EXPECT);
+    const bool here = stop_ == 0 || stop_ == sign || stop_ == sign + 1;
+    if (!begins_with(Kinds::NAME) || step || !here) return std::nullopt;
+    const bool adds = is(sign, Kinds::PLUS) || is(sign, Kinds::MINUS);
+    if (is(sign, Kinds::EQUAL)) return assignment("SET ", " TO ", sign + 1);
+    if (!adds || !touches_next(sign)) return std::nullopt;
+    const std::string word = is(sign, Kinds::PLUS) ? "RAISE " : "LOWER ";
+    if (is(sign + 1, Kinds::EQUAL)) return assignment(word, " BY ", sign + 2);
+    const bool twice = tokens_[sign].kind == tokens_[sign + 1].kind && sign + 2 == statement_end();
+    return twice ? assignment(word, " BY ", sign + 2) : std::nullopt;
+  }
+
+  // In the words of RSL; the value begins at `value`, and is 1 where none is written.
+  std::optional<Edit> assignment(const std::string& word, const std::string& preposition,
+                                 std::size_t value) {
+    const std::size_t end = statement_end();
+    const std::string name(text(statement_));
+    const std::string written = value < end ? text(value, end) : "1";
+    const bool outside = statement_ == 0;
+    const std::string better =
+        outside ? "REMEMBER " + name + " = " + written : word + name + preposition + written;
+    const Span all = span(statement_, end);
+    report(Code::E0001,
+           outside ? "what is remembered is declared with REMEMBER"
+                   : "a value is changed with SET, RAISE or LOWER",
+           span(statement_ + 1, value))
+        .helps("write `" + better + "`")
+        .fix(all, better, Applicability::likely);
+    if (outside) return change(0, end, {});
+    const bool sets = word == "SET ";
+    Tokens said{missing(sets ? Kinds::SET : Kinds::RAISE, statement_), tokens_[statement_],
+                missing(sets ? Kinds::TO : Kinds::BY, statement_)};
+    if (value >= end) said.push_back(missing(Kinds::QUANTITY, statement_));
+    return change(statement_, value - statement_, std::move(said));
+  }
+
+  // `+=`, not `+ =`
+  bool touches_next(std::size_t at) const {
+    return at + 1 < tokens_.size() && tokens_[at].span.end == tokens_[at + 1].span.begin;
+  }
+
+  // `WHEN touch LEVEL > 3:`, `ELSE:`
+  std::optional<Edit> colon() {
+    if (!is(stop_, Kinds::COLON) || !is(stop_ + 1, Kinds::NEWLINE) || stop_ == begin_)
+      return std::nullopt;
+    const bool asks = begins_with(Kinds::WHEN) || begins_with(Kinds::WHILE) ||
+                      begins_with(Kinds::IF) || begins_with(Kinds::ELSE_IF) ||
+                      begins_with(Kinds::EVERY) || is(begin_, Kinds::AT);
+    const bool has_do = is(stop_ - 1, Kinds::DO) || is(stop_ + 2, Kinds::DO);
+    const Span here = tokens_[stop_].span;
+    if (!asks || has_do) {
+      report(Code::E0009, "no colon ends a line of RSL", here).fix(here, "");
+      return change(stop_, 1);
+    }
+    report(Code::E0001, "a line that asks ends with DO, not with a colon", here)
+        .helps("write `" + text(begin_, stop_) + " DO`")
+        .fix(here, " DO");
+    return change(stop_, 1, {{Kinds::DO, here}});
+  }
+
+  // `END IF`
+  std::optional<Edit> end_of_what() {
+    if (stop_ == 0 || !is(stop_ - 1, Kinds::END) || stop_ - 1 != begin_) return std::nullopt;
+    if ((roles_of(tokens_[stop_].kind) & role::opens) == 0 || stop_ + 1 != end_)
+      return std::nullopt;
+    const Span here = tokens_[stop_].span;
+    report(Code::E0009, "END does not say what it ends", here).fix(here, "");
+    return change(stop_, 1);
+  }
+
+  // `WHEN TRUE DO`
+  std::optional<Edit> truth() {
+    for (const std::size_t at : {stop_, before_}) {
+      const bool word = is(at, Kinds::TRUE) || is(at, Kinds::FALSE);
+      if (!word || at == 0 || !asks(tokens_[at - 1].kind)) continue;
+      const bool rule = is(at - 1, Kinds::WHEN) || is(at - 1, Kinds::WHILE);
+      Diagnostic& message = report(
+          Code::E0302,
+          quote(at) + " asks nothing: a condition looks at a sensor or at what is remembered",
+          tokens_[at].span);
+      if (rule)
+        message.helps(
+            "what is done again and again is `EVERY 1s DO`; what is done once, `AT START DO`");
+      else
+        message.helps("write for instance `touch LEVEL > 3`, or leave the condition out");
+      return change(
+          at, 1,
+          {missing(Kinds::QUANTITY, at), missing(Kinds::LESS, at), missing(Kinds::QUANTITY, at)});
+    }
+    return std::nullopt;
+  }
+
+  static bool asks(TokenKind kind) {
+    return is_one_of(kind, {Kinds::WHEN, Kinds::WHILE, Kinds::IF, Kinds::ELSE_IF, Kinds::AND,
+                            Kinds::OR, Kinds::NOT, Kinds::UNTIL});
+  }
+
+  // `3,5%`: nothing stands between the comma and the numbers beside it.
+  std::optional<Edit> decimal_comma() {
+    if (stop_ == 0 || !is(stop_, Kinds::COMMA)) return std::nullopt;
+    if (!is(stop_ - 1, Kinds::QUANTITY) || !is(stop_ + 1, Kinds::QUANTITY)) return std::nullopt;
+    const Span all = span(stop_ - 1, stop_ + 2);
+    const char last = text(stop_ - 1).back();
+    const bool has_unit = last < '0' || last > '9';
+    const std::size_t behind = tokens_[stop_ - 1].span.end + 1;
+    if (has_unit || tokens_[stop_ + 1].span.begin != behind) return std::nullopt;
+    const std::string better = text(stop_ - 1, stop_) + "." + text(stop_ + 1, stop_ + 2);
+    diagnostics_.report(Code::E0004, "a number has a point in front of its decimals, not a comma")
+        .label(all, "write `" + better + "`")
+        .fix(all, better, Applicability::likely);
+    return change(stop_, 2);
+  }
+};
+
+}  // namespace
+
+std::optional<Edit> explain_foreign_habit(const Tokens& tokens, const SourceFile& source,
+                                          const Attempt& failure, Diagnostics& diagnostics) {
+  return ForeignHabits(tokens, source, failure, diagnostics).find();
+}
+
+}  // namespace robosync::compiler

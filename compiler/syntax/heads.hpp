@@ -1,0 +1,14 @@
+// An END or a BEHAVIOR in the head of a BEHAVIOR would close it, or begin another one, before it has begun: then every line
+// of it would be a mistake. It is said here once, before the text is split into items (layout.hpp).
+#pragma once
+
+#include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/source/source_file.hpp"
+#include "compiler/syntax/token.hpp"
+
+namespace robosync::compiler {
+
+// Reports such words, and takes them out of the tokens.
+void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
+
+}  // namespace robosync::compiler

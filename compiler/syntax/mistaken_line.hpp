@@ -1,0 +1,161 @@
+// The line in which the grammar stopped, as those see it who know a mistake by its words (habits.cpp, foreign_habits.cpp):
+// what stands where, and how the grammar can go on.
+#pragma once
+
+#include <algorithm>
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/source/ascii.hpp"
+#include "compiler/source/source_file.hpp"
+#include "compiler/syntax/edit.hpp"
+#include "compiler/syntax/reader.hpp"
+
+namespace robosync::compiler {
+
+class MistakenLine {
+public:
+  MistakenLine(const Tokens& tokens, const SourceFile& source, const Attempt& failure,
+               Diagnostics& diagnostics)
+      : tokens_(tokens),
+        source_(source),
+        stop_(failure.stopped_at),
+        before_(failure.before),
+        diagnostics_(diagnostics) {
+    if (stop_ >= tokens_.size()) return;
+    // The end of a line in front of END is not for the grammar; what is missing is missing there.
+    if (is(stop_, Kinds::END) && before_ < stop_ && is(before_ + 1, Kinds::NEWLINE))
+      stop_ = before_ + 1;
+    for (begin_ = stop_; begin_ > 0 && !is(begin_ - 1, Kinds::NEWLINE);)
+      --begin_;
+    for (end_ = stop_; end_ < tokens_.size() && !is(end_, Kinds::NEWLINE);)
+      ++end_;
+    statement_ = stop_;
+    while (statement_ > begin_ && !begins_statement(statement_ - 1))
+      --statement_;
+  }
+
+protected:
+  // ---- what stands there
+
+  bool is(std::size_t at, TokenKind kind) const {
+    return at < tokens_.size() && tokens_[at].kind == kind;
+  }
+
+  std::string_view text(std::size_t at) const {
+    return at < tokens_.size() ? source_.text(tokens_[at].span) : std::string_view();
+  }
+
+  // As it is written, from the first token to the one before the last.
+  std::string text(std::size_t from, std::size_t to) const {
+    return from < to ? std::string(source_.text(span(from, to))) : std::string();
+  }
+
+  std::string quote(std::size_t at) const { return "`" + std::string(text(at)) + "`"; }
+
+  bool is_name(std::size_t at, std::string_view word) const {
+    return is(at, Kinds::NAME) && ascii::same(text(at), word);
+  }
+  bool is_any_name(std::size_t at, std::initializer_list<std::string_view> words) const {
+    return std::any_of(words.begin(), words.end(), [&](auto word) { return is_name(at, word); });
+  }
+
+  Span span(std::size_t from, std::size_t to) const {
+    Span all = tokens_[from].span;
+    if (to > from) all.end = tokens_[to - 1].span.end;
+    return all;
+  }
+
+  bool begins_statement(std::size_t at) const {
+    return is_one_of(tokens_[at].kind, {Kinds::DO, Kinds::ELSE, Kinds::NEWLINE, Kinds::OPTION});
+  }
+
+  bool begins_with(TokenKind kind) const { return is(statement_, kind); }
+
+  bool has(std::size_t from, std::size_t to, TokenKind kind) const {
+    for (std::size_t at = from; at < to; ++at)
+      if (is(at, kind)) return true;
+    return false;
+  }
+
+  // Behind the last token of the statement.
+  std::size_t statement_end() const {
+    std::size_t at = stop_;
+    while (at < end_ && !is_one_of(tokens_[at].kind, {Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF,
+                                                      Kinds::END, Kinds::THEN, Kinds::OPTION}))
+      ++at;
+    return at;
+  }
+
+  // Outside of brackets.
+  bool has_comma(std::size_t from, std::size_t to) const {
+    int open = 0;
+    for (std::size_t at = from; at < to; ++at) {
+      if (is(at, Kinds::OPEN)) ++open;
+      if (is(at, Kinds::CLOSE)) --open;
+      if (is(at, Kinds::COMMA) && open == 0) return true;
+    }
+    return false;
+  }
+
+  // `MIN(`, not `SLOWLY (`
+  bool is_call(std::size_t open) const {
+    return open > 0 && is(open, Kinds::OPEN) && is(open - 1, Kinds::NAME) &&
+           tokens_[open - 1].span.end == tokens_[open].span.begin;
+  }
+
+  // As many brackets are opened as closed.
+  bool is_balanced(std::size_t from, std::size_t to) const {
+    int open = 0;
+    for (std::size_t at = from; at < to && open >= 0; ++at) {
+      if (is(at, Kinds::OPEN)) ++open;
+      if (is(at, Kinds::CLOSE)) --open;
+    }
+    return open == 0;
+  }
+
+  // Of the bracket that is opened at `open`; the end of the line when it is not closed.
+  std::size_t closing(std::size_t open) const {
+    std::size_t depth = 0;
+    for (std::size_t at = open; at < end_; ++at) {
+      if (is(at, Kinds::OPEN)) ++depth;
+      if (is(at, Kinds::CLOSE) && --depth == 0) return at;
+    }
+    return end_;
+  }
+
+  // ---- how the grammar goes on
+
+  static Edit change(std::size_t at, std::size_t removed, Tokens inserted = {}) {
+    Edit edit;
+    edit.what = Edit::What::replace;
+    edit.at = at;
+    edit.removed = removed;
+    edit.inserted = std::move(inserted);
+    return edit;
+  }
+
+  // One that the text lacks: it has no width.
+  Token missing(TokenKind kind, std::size_t at) const {
+    Span place = at < tokens_.size() ? tokens_[at].span : tokens_.back().span;
+    place.end = place.begin;
+    return {kind, place};
+  }
+
+  Diagnostic& report(Code code, std::string message, Span place) {
+    Diagnostic& diagnostic = diagnostics_.report(code, std::move(message));
+    diagnostic.label(place);
+    return diagnostic;
+  }
+
+  const Tokens& tokens_;
+  const SourceFile& source_;
+  std::size_t stop_, before_;
+  std::size_t begin_ = 0, end_ = 0;  // of the line
+  std::size_t statement_ = 0;        // its first token
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace robosync::compiler
