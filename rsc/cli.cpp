@@ -43,16 +43,35 @@ void Options::option(const std::string& names, const std::string& text, std::str
       ->option_text(text);
 }
 
+namespace {
+
+// CLI11 asks for its own kind of error.
+void take_word(const Options::Take& take, const std::string& word) {
+  try {
+    take(word);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(error.what());
+  }
+}
+
+}  // namespace
+
 void Options::option(const std::string& names, const std::string& text, const Take& take,
                      const std::string& description) {
-  const auto parse = [take](const std::string& word) {
-    try {
-      take(word);
-    } catch (const std::invalid_argument& error) {
-      throw CLI::ValidationError(error.what());
-    }
+  app_.add_option_function<std::string>(
+          names, [take](const std::string& word) { take_word(take, word); }, description)
+      ->type_name(text)
+      ->option_text(text);
+}
+
+void Options::options(const std::string& names, const std::string& text, const Take& take,
+                      const std::string& description) {
+  const auto take_all = [take](const std::vector<std::string>& words) {
+    for (const std::string& word : words)
+      take_word(take, word);
   };
-  app_.add_option_function<std::string>(names, parse, description)
+  app_.add_option_function<std::vector<std::string>>(names, take_all, description)
+      ->allow_extra_args(false)
       ->type_name(text)
       ->option_text(text);
 }

@@ -1,4 +1,4 @@
-// What bash and fish need to complete the words of rsc. Values are words where an option names them ("human|json"), serial
+// What bash, fish and zsh need to complete the words of rsc. Values are words where an option names them ("human|json"), serial
 // ports after --port, files where it takes one, and nothing where it takes a number or a name.
 #include <string>
 #include <string_view>
@@ -67,6 +67,30 @@ std::string fish_option(const VerbUsage& verb, const OptionUsage& option) {
   return fmt::format("{} -d {}\n", line, in_fish(option.description));
 }
 
+// As zsh quotes within '…'; what `_arguments` and `_describe` read has marks of its own.
+std::string in_zsh(std::string_view text) {
+  return escaped(text, {{'\'', "'\\''"}, {'\\', "\\\\"}, {':', "\\:"}, {'[', "\\["}, {']', "\\]"}});
+}
+
+std::string zsh_offer(const OptionUsage& option) {
+  if (!option.names.empty() && option.names.front() == kPort) return "_rsc_ports";
+  if (is_path(option)) return "_files";
+  const std::string words = words_of(option);
+  return words.empty() ? " " : "(" + words + ")";
+}
+
+// `--name[what it does]:VALUE:offer`, and by its place `*:FILE:_files`.
+std::string zsh_option(const OptionUsage& option) {
+  if (option.names.empty()) return fmt::format("        '*:{}:_files' \\\n", in_zsh(option.value));
+  std::string lines;
+  for (const std::string& name : option.names) {
+    const std::string value =
+        option.value.empty() ? "" : fmt::format(":{}:{}", in_zsh(option.value), zsh_offer(option));
+    lines += fmt::format("        '*{}[{}]{}' \\\n", name, in_zsh(option.description), value);
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string bash_completion(const std::vector<VerbUsage>& verbs) {
@@ -118,6 +142,42 @@ std::string fish_completion(const std::vector<VerbUsage>& verbs) {
     for (const OptionUsage& option : verb.options)
       if (!option.names.empty()) text += fish_option(verb, option);
   return text;
+}
+
+std::string zsh_completion(const std::vector<VerbUsage>& verbs) {
+  std::string summaries, cases;
+  for (const VerbUsage& verb : verbs) {
+    summaries += fmt::format("    '{}:{}'\n", verb.name, in_zsh(verb.summary));
+    std::string options;
+    for (const OptionUsage& option : verb.options)
+      options += zsh_option(option);
+    const std::string names =
+        verb.name == "help" ? "_describe verb verbs" : "_arguments -s \\\n" + options;
+    cases += fmt::format("    {})\n      {}\n      ;;\n", verb.name, names);
+  }
+  return fmt::format(R"zsh(#compdef rsc
+# Completion of rsc for zsh, printed by `rsc completion zsh`.
+_rsc_ports() {{
+  local -a lines
+  lines=(${{(f)"$({})"}})
+  compadd -a lines
+}}
+_rsc() {{
+  local -a verbs
+  verbs=(
+{}  )
+  if (( CURRENT == 2 )); then
+    _describe verb verbs
+    return
+  fi
+  shift words
+  (( CURRENT-- ))
+  case $words[1] in
+{}  esac
+}}
+compdef _rsc rsc
+)zsh",
+                     kListPorts, summaries, cases);
 }
 
 }  // namespace robosync::tool

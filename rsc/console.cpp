@@ -11,7 +11,16 @@ bool stderr_is_terminal() {
   return isatty(STDERR_FILENO) == 1;
 }
 
+namespace {
+Color chosen = Color::automatic;
+}
+
+void choose_color(Color color) {
+  chosen = color;
+}
+
 bool color_on_stderr() {
+  if (chosen != Color::automatic) return chosen == Color::always;
   const char* const off = std::getenv("NO_COLOR");
   return stderr_is_terminal() && (off == nullptr || *off == '\0');
 }

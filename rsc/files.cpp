@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iostream>
 #include <span>
 #include <system_error>
 
@@ -11,8 +12,6 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include "rsc/failure.hpp"
 
 namespace robosync::tool {
 namespace fs = std::filesystem;
@@ -91,6 +90,21 @@ fs::path cache_folder() {
   if (base.empty() && home != nullptr && fs::path(home).is_absolute())
     base = fs::path(home) / ".cache";
   return base.empty() ? base : (base / "robosync").lexically_normal();
+}
+
+Exit for_each_file(const std::vector<std::string>& files,
+                   const std::function<void(const std::string&)>& work) {
+  Exit worst = Exit::fine;
+  for (const std::string& file : files) {
+    try {
+      work(file);
+    } catch (const Failure& failure) {
+      std::cout.flush();
+      if (*failure.what() != '\0') std::cerr << "rsc: " << failure.what() << '\n';
+      worst = std::max(worst, failure.exit());
+    }
+  }
+  return worst;
 }
 
 std::string Texts::read(const fs::path& path) const {

@@ -3,8 +3,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "rsc/failure.hpp"
 
 namespace robosync::tool {
 
@@ -14,6 +17,11 @@ namespace robosync::tool {
 
 // For what can be made again, of this user; empty when there is no such place. It may have to be created.
 [[nodiscard]] std::filesystem::path cache_folder();
+
+// Does `work` with each file. One that it throws a Failure for does not silence the others: that is said at once, and
+// the worst exit of all is given.
+[[nodiscard]] Exit for_each_file(const std::vector<std::string>& files,
+                                 const std::function<void(const std::string&)>& work);
 
 // Where programs and configurations are read: the disk, unless somebody has newer texts (lsp/).
 class Texts {

@@ -63,13 +63,14 @@ compiler::Result compile(const std::string& file, const CompileOptions& options,
                          const compiler::ModuleReader& modules, const Texts& texts) {
   std::string text = texts.read(file);
   const std::filesystem::path path = find_configuration(file, options.config, texts);
-  compiler::Result result =
-      compiler::compile({file, std::move(text)}, {path.string(), texts.read(path)},
-                        {.source_lines = options.source_lines,
-                         .optimize = options.optimize,
-                         .seed = options.seed,
-                         .read_module = modules,
-                         .algorithms = algorithm_modules()});
+  compiler::Result result = compiler::compile({file == "-" ? "stdin" : file, std::move(text)},
+                                              {path.string(), texts.read(path)},
+                                              {.source_lines = options.source_lines,
+                                               .optimize = options.optimize,
+                                               .seed = options.seed,
+                                               .lints = options.lints,
+                                               .read_module = modules,
+                                               .algorithms = algorithm_modules()});
   judge(result, options.judged);
   return result;
 }

@@ -28,6 +28,7 @@ struct CompileOptions {
   bool optimize = true;
   std::uint32_t seed = 0;  // 0: as the configuration says
   bool source_lines = true;
+  compiler::LintLevels lints;
   Judged judged = Judged::by_memory;
 };
 

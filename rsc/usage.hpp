@@ -22,6 +22,7 @@ struct VerbUsage {
 
 [[nodiscard]] std::string bash_completion(const std::vector<VerbUsage>& verbs);
 [[nodiscard]] std::string fish_completion(const std::vector<VerbUsage>& verbs);
+[[nodiscard]] std::string zsh_completion(const std::vector<VerbUsage>& verbs);
 // In roff, section 1.
 [[nodiscard]] std::string manual_page(const std::vector<VerbUsage>& verbs);
 

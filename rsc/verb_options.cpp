@@ -46,8 +46,43 @@ void add_seed_option(Options& options, std::uint32_t& seed) {
       "what RANDOM and PICK ONE begin with; else as robot.json says");
 }
 
+void add_color_option(Options& options) {
+  options.choice(
+      "--color", {"auto", "always", "never"},
+      [](std::size_t index) { choose_color(static_cast<Color>(index)); },
+      "colour of messages: auto (default) on a terminal, and not with NO_COLOR");
+}
+
+namespace {
+
+void add_lint_option(Options& options, const std::string& name, compiler::LintLevel level,
+                     compiler::LintLevels& lints, const std::string& description) {
+  const auto take = [level, &lints](const std::string& word) {
+    const auto code = compiler::find_lint(word);
+    if (code)
+      lints.levels[*code] = level;
+    else if (level == compiler::LintLevel::deny && word == "warnings")
+      lints.deny_warnings = true;
+    else
+      throw std::invalid_argument("`" + word + "` is not a lint; they begin with W, such as W0203");
+  };
+  options.options(name, "CODE", take, description);
+}
+
+void add_lint_options(Options& options, compiler::LintLevels& lints) {
+  using compiler::LintLevel;
+  add_lint_option(options, "--allow", LintLevel::allow, lints, "say nothing of this lint (W0203)");
+  add_lint_option(options, "--warn", LintLevel::warn, lints, "make a warning of this lint");
+  add_lint_option(options, "--deny", LintLevel::deny, lints,
+                  "make an error of this lint; warnings: of all of them");
+}
+
+}  // namespace
+
 void add_compile_options(Options& options, CompileOptions& how) {
   add_config_option(options, how.config);
+  add_color_option(options);
+  add_lint_options(options, how.lints);
   options.choice(
       "-O", {"0", "1"}, [&how](std::size_t level) { how.optimize = level > 0; },
       "1: optimise (default), 0: translate as it is written");

@@ -19,7 +19,9 @@ void add_key_option(Options& options, std::string& key);
 void add_config_option(Options& options, std::string& config);
 // --seed N, of the random numbers; 0 when it is not given.
 void add_seed_option(Options& options, std::uint32_t& seed);
-// --config, and -O0 or -O1.
+// --color, of what is said on stderr.
+void add_color_option(Options& options);
+// --config, --color, --allow, --warn and --deny, and -O0 or -O1.
 void add_compile_options(Options& options, CompileOptions& how);
 void add_duration_option(Options& options, const std::string& name,
                          std::optional<std::chrono::milliseconds>& duration,

@@ -1,6 +1,7 @@
-// rsc check FILE… [--timing] [--anyway] [--config FILE] [--format human|json]
+// rsc check FILE… [--timing] [--anyway] [--config FILE] [--format human|json|sarif]
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "analysis/report.hpp"
 #include "compiler/diagnostics/render.hpp"
+#include "compiler/diagnostics/sarif.hpp"
 #include "rsc/algorithm_modules.hpp"
 #include "rsc/board.hpp"
 #include "rsc/console.hpp"
@@ -24,20 +26,18 @@
 namespace robosync::tool {
 namespace {
 
+enum class Report : std::uint8_t { human, json, sarif };
+
 struct CheckOptions {
   std::vector<std::string> files;
   CompileOptions how;
   bool timing = false;
   bool anyway = false;
-  Format format = Format::human;
+  Report format = Report::human;
 };
 
 // Several files make one report.
 void append(nlohmann::ordered_json& all, const nlohmann::ordered_json& one) {
-  if (all.is_null()) {
-    all = one;
-    return;
-  }
   for (const auto& diagnostic : one.at("diagnostics"))
     all["diagnostics"].push_back(diagnostic);
   for (const char* const count : {"errors", "warnings"})
@@ -52,7 +52,7 @@ void report_timing(const CheckOptions& options, const std::string& file, compile
   const Timing timing = timing_of(program.image(), program.board());
   const analysis::ResponseReport responses =
       analysis::response_report(program.image(), costs, module_cost, cap_of(program.image()));
-  if (options.format == Format::json) {
+  if (options.format == Report::json) {
     auto object = timing_json(timing, file);
     object["responses"] = response_json(responses);
     report["timing"].push_back(std::move(object));
@@ -63,35 +63,75 @@ void report_timing(const CheckOptions& options, const std::string& file, compile
   }
 }
 
-void check(const CheckOptions& options) {
-  nlohmann::ordered_json report;
-  std::size_t errors = 0;
-  for (const std::string& file : options.files) {
-    compiler::Result result = compile_file(file, options.how);
-    errors += result.diagnostics.errors();
-    if (options.format == Format::json) {
-      append(report, nlohmann::ordered_json::parse(
-                         compiler::render_json(result.diagnostics, result.sources)));
-    } else {
-      std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
-      std::cout << fmt::format("{}: {}", file, summary(result.diagnostics)) << std::endl;
-    }
-    if (options.timing && !result.image.empty()) report_timing(options, file, result, report);
+// From standard input too: then robot.json is that of this folder.
+class CheckedTexts : public Texts {
+public:
+  [[nodiscard]] std::string read(const std::filesystem::path& path) const override {
+    return Texts::read(path == "-" ? "/dev/stdin" : path);
   }
-  if (options.format == Format::json) std::cout << report.dump() << '\n';
-  if (errors > 0) throw Failure(Exit::program, "");
+};
+
+class Checker {
+public:
+  explicit Checker(const CheckOptions& options) : options_(options) {}
+
+  void check(const std::string& file) {
+    compiler::Result result = compile_file(file, options_.how, CheckedTexts());
+    switch (options_.format) {
+      case Report::human:
+        std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+        std::cout << fmt::format("{}: {}", result.sources.file(compiler::kProgramFile).name(),
+                                 summary(result.diagnostics))
+                  << std::endl;
+        break;
+      case Report::json:
+        append(report_, nlohmann::ordered_json::parse(
+                            compiler::render_json(result.diagnostics, result.sources)));
+        break;
+      case Report::sarif:
+        log_.add(result.diagnostics, result.sources);
+        break;
+    }
+    if (options_.timing && !result.image.empty()) report_timing(options_, file, result, report_);
+    if (result.diagnostics.errors() > 0) throw Failure(Exit::program, "");
+  }
+
+  // When all files have been looked at.
+  void finish() const {
+    if (options_.format == Report::json) std::cout << report_.dump() << '\n';
+    if (options_.format == Report::sarif) std::cout << log_.text();
+  }
+
+private:
+  const CheckOptions& options_;
+  nlohmann::ordered_json report_ = {
+      {"diagnostics", nlohmann::ordered_json::array()}, {"errors", 0}, {"warnings", 0}};
+  compiler::SarifLog log_{ROBOSYNC_VERSION};
+};
+
+void check(const CheckOptions& options) {
+  Checker checker(options);
+  const Exit exit =
+      for_each_file(options.files, [&](const std::string& file) { checker.check(file); });
+  checker.finish();
+  if (exit != Exit::fine) throw Failure(exit, "");
 }
 
 }  // namespace
 
 void add_check(Options& options) {
   auto asked = std::make_shared<CheckOptions>();
-  options.arguments("FILE", asked->files, "programs (.rsl)", Options::Need::required);
+  options.arguments("FILE", asked->files,
+                    "programs (.rsl); -: from stdin, with the robot.json of this folder",
+                    Options::Need::required);
   options.flag("--timing", asked->timing,
                "show what a step costs, rule by rule, and the memory it takes");
   options.flag("--anyway", asked->anyway, "also when it is too much for the board of robot.json");
   add_compile_options(options, asked->how);
-  add_format_option(options, asked->format);
+  options.choice(
+      "--format", {"human", "json", "sarif"},
+      [asked](std::size_t index) { asked->format = static_cast<Report>(index); },
+      "human, json or sarif (2.1.0)");
   options.runs([asked] {
     asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;
     check(*asked);

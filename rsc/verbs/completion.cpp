@@ -1,4 +1,4 @@
-// rsc completion bash|fish
+// rsc completion bash|fish|zsh
 #include <array>
 #include <iostream>
 #include <memory>
@@ -15,21 +15,21 @@ namespace robosync::tool {
 namespace {
 
 using Script = std::string (*)(const std::vector<VerbUsage>&);
-constexpr std::array<std::pair<std::string_view, Script>, 2> kShells = {
-    {{"bash", bash_completion}, {"fish", fish_completion}}};
+constexpr std::array<std::pair<std::string_view, Script>, 3> kShells = {
+    {{"bash", bash_completion}, {"fish", fish_completion}, {"zsh", zsh_completion}}};
 
 }  // namespace
 
 void add_completion(Options& options) {
   auto shell = std::make_shared<std::string>();
-  options.argument("SHELL", *shell, "bash or fish", Options::Need::required);
+  options.argument("SHELL", *shell, "bash, fish or zsh", Options::Need::required);
   options.runs([shell] {
     for (const auto& [name, script] : kShells)
       if (name == *shell) {
         std::cout << script(all_usage());
         return;
       }
-    throw Failure(Exit::usage, fmt::format("SHELL is bash or fish, not `{}`", *shell));
+    throw Failure(Exit::usage, fmt::format("SHELL is bash, fish or zsh, not `{}`", *shell));
   });
 }
 

@@ -65,10 +65,11 @@ bool format_stdin() {
 }
 
 void format(const FormatOptions& options) {
-  bool good = true;
-  for (const std::string& file : options.files)
-    good = (file == "-" ? format_stdin() : format_file(file, options.check)) && good;
-  if (!good) throw Failure(Exit::program, "");
+  const Exit exit = for_each_file(options.files, [&](const std::string& file) {
+    const bool good = file == "-" ? format_stdin() : format_file(file, options.check);
+    if (!good) throw Failure(Exit::program, "");
+  });
+  if (exit != Exit::fine) throw Failure(exit, "");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // rsc test FILE… [--config FILE] [--format human|json]
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -146,15 +147,16 @@ void test_file(const std::string& file, const TestOptions& options, Tally& tally
 
 void test(const TestOptions& options) {
   Tally tally;
-  for (const std::string& file : options.files)
-    test_file(file, options, tally);
+  const Exit exit = for_each_file(
+      options.files, [&](const std::string& file) { test_file(file, options, tally); });
   if (options.format == Format::json) {
     const Json report{{"tests", tally.tests}, {"passed", tally.passed}, {"failed", tally.failed}};
     std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   } else {
     std::cout << fmt::format("{} passed, {} failed\n", tally.passed, tally.failed);
   }
-  if (tally.failed > 0) throw Failure(Exit::program, "");
+  const Exit worst = tally.failed > 0 ? std::max(exit, Exit::program) : exit;
+  if (worst != Exit::fine) throw Failure(worst, "");
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST_CASE("wrong usage is exit 2 and says how it goes") {
 
 TEST_CASE("an option that does not know a word says what it knows") {
   CHECK_THAT(test::rsc({"check", "robot.rsl", "--format", "yaml"}).err,
-             Contains("--format is human or json, not `yaml`"));
+             Contains("--format is human or json or sarif, not `yaml`"));
   CHECK_THAT(test::rsc({"dump", "robot.rsl", "-O3"}).err, Contains("-O is 0 or 1, not `3`"));
   CHECK_THAT(test::rsc({"upload", "robot.rsl", "--port"}).err, Contains("PORT missing"));
 }

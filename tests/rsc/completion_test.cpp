@@ -96,5 +96,5 @@ TEST_CASE("fish and the manual page have every verb, and every option of it") {
 TEST_CASE("a shell that rsc does not know is exit 2, and says which it knows") {
   const Outcome outcome = test::rsc({"completion", "csh"});
   CHECK(outcome.exit == 2);
-  CHECK_THAT(outcome.err, Contains("SHELL is bash or fish, not `csh`"));
+  CHECK_THAT(outcome.err, Contains("SHELL is bash, fish or zsh, not `csh`"));
 }

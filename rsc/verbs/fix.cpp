@@ -1,0 +1,138 @@
+// rsc fix FILE… [--likely] [--config FILE]
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "compiler/diagnostics/render.hpp"
+#include "rsc/console.hpp"
+#include "rsc/failure.hpp"
+#include "rsc/output.hpp"
+#include "rsc/program.hpp"
+#include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
+
+namespace robosync::tool {
+namespace {
+
+using compiler::Applicability, compiler::Fix;
+
+struct FixOptions {
+  std::vector<std::string> files;
+  CompileOptions how;
+  bool likely = false;
+};
+
+// The files as they are mended so far; nothing is written before the end.
+class MendedTexts : public Texts {
+public:
+  [[nodiscard]] std::string read(const std::filesystem::path& path) const override {
+    const auto found = mended_.find(path.string());
+    return found != mended_.end() ? found->second : Texts::read(path);
+  }
+  void set(const std::string& path, std::string text) { mended_[path] = std::move(text); }
+  void write() const {
+    for (const auto& [path, text] : mended_)
+      write_output(path, std::as_bytes(std::span(text)));
+  }
+
+private:
+  std::map<std::string, std::string> mended_;
+};
+
+class Mender {
+public:
+  Mender(const std::string& file, const FixOptions& options) : file_(file), options_(options) {}
+
+  void mend() {
+    constexpr int kRounds = 10;  // a mend may bring out what it hid
+    compiler::Result result = compile_file(file_, options_.how, texts_);
+    for (int round = 0; round < kRounds && apply(chosen(result), result); ++round)
+      result = compile_file(file_, options_.how, texts_);
+    texts_.write();
+    std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+    std::cout << fmt::format("{}: {} mended; {}\n", file_, mended_, summary(result.diagnostics));
+    if (result.diagnostics.errors() > 0) throw Failure(Exit::program, "");
+  }
+
+private:
+  // From the last to the first, none that overlaps another.
+  std::vector<Fix> chosen(const compiler::Result& result) {
+    std::vector<Fix> fixes;
+    for (const compiler::Diagnostic& diagnostic : result.diagnostics.all())
+      for (const Fix& fix : diagnostic.fixes)
+        if (is_wanted(diagnostic, fix, result.sources)) fixes.push_back(fix);
+    const auto place = [](const Fix& fix) { return std::pair(fix.span.file, fix.span.begin); };
+    std::ranges::sort(fixes, std::ranges::greater{}, place);
+    return fixes;
+  }
+
+  bool is_wanted(const compiler::Diagnostic& diagnostic, const Fix& fix,
+                 const compiler::SourceMap& sources) {
+    const compiler::SourceFile& file = sources.file(fix.span.file);
+    if (file.name().starts_with('<')) return false;  // a module of ours
+    if (fix.applicability == Applicability::certain)
+      return diagnostic.level == compiler::Level::error;
+    if (!options_.likely || fix.applicability != Applicability::likely) return false;
+    const std::string question = fmt::format("{}:{}: {}\n  `{}` -> `{}`? [y/N] ", file.name(),
+                                             file.position(fix.span.begin).line, diagnostic.message,
+                                             sources.text(fix.span), fix.replacement);
+    return asked_.insert(question).second && says_yes(question);
+  }
+
+  static bool says_yes(const std::string& question) {
+    std::cout << question << std::flush;
+    std::string answer;
+    std::getline(std::cin, answer);
+    return answer == "y" || answer == "Y" || answer == "yes";
+  }
+
+  // False when there was nothing to do.
+  bool apply(const std::vector<Fix>& fixes, const compiler::Result& result) {
+    std::map<compiler::FileId, std::string> changed;
+    std::map<compiler::FileId, std::uint32_t> free;  // in front of the last change
+    for (const Fix& fix : fixes) {
+      const compiler::SourceFile& file = result.sources.file(fix.span.file);
+      const auto [text, first] = changed.try_emplace(fix.span.file, file.text());
+      if (!first && fix.span.end > free[fix.span.file]) continue;
+      text->second.replace(fix.span.begin, fix.span.end - fix.span.begin, fix.replacement);
+      free[fix.span.file] = fix.span.begin;
+      ++mended_;
+    }
+    for (auto& [id, text] : changed)
+      texts_.set(result.sources.file(id).name(), std::move(text));
+    return !changed.empty();
+  }
+
+  const std::string& file_;
+  const FixOptions& options_;
+  MendedTexts texts_;
+  std::set<std::string> asked_;  // each once
+  std::size_t mended_ = 0;
+};
+
+void fix(const FixOptions& options) {
+  const Exit exit =
+      for_each_file(options.files, [&](const std::string& file) { Mender(file, options).mend(); });
+  if (exit != Exit::fine) throw Failure(exit, "");
+}
+
+}  // namespace
+
+void add_fix(Options& options) {
+  auto asked = std::make_shared<FixOptions>();
+  options.arguments("FILE", asked->files,
+                    "programs (.rsl), which are written again, as is their robot.json",
+                    Options::Need::required);
+  options.flag("--likely", asked->likely, "ask about the mends that are likely, too");
+  add_compile_options(options, asked->how);
+  options.runs([asked] { fix(*asked); });
+}
+
+}  // namespace robosync::tool
