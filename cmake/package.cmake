@@ -4,7 +4,7 @@ install(FILES README.md LICENSE NOTICE DESTINATION ${doc} COMPONENT tool)
 install(DIRECTORY docs/ DESTINATION ${doc}/docs COMPONENT tool FILES_MATCHING PATTERN "*.md")
 install(DIRECTORY examples DESTINATION ${doc} COMPONENT tool)
 install(DIRECTORY grammar/ DESTINATION share/robosync/schemas COMPONENT tool FILES_MATCHING PATTERN "*.schema.json")
-install(DIRECTORY build/package/firmware DESTINATION share/robosync COMPONENT firmware)
+install(DIRECTORY build/package/firmware DESTINATION share/robosync COMPONENT firmware OPTIONAL)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME robosync)
