@@ -2,6 +2,7 @@
 // where there is nothing to say. They throw Refusal, or what nlohmann throws when the request is not as it should be.
 #pragma once
 
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -32,6 +33,12 @@ struct Desk {
 [[nodiscard]] Json semantic_tokens(Desk desk, const Json& params);
 [[nodiscard]] Json colour_legend();  // what the numbers of semantic_tokens() mean
 [[nodiscard]] Json folding_ranges(Desk desk, const Json& params);
+[[nodiscard]] Json inlay_hints(Desk desk, const Json& params);
+[[nodiscard]] Json signature_help(Desk desk, const Json& params);
+
+// What the rules of a file cost at most, in instructions, by the line that each begins in; nothing when the program is wrong.
+[[nodiscard]] std::map<std::uint32_t, std::uint32_t> costs_by_line(const compiler::Result& result,
+                                                                   compiler::FileId file);
 
 // What a place in a text is about.
 struct Asked {

@@ -93,8 +93,13 @@ Json hover(Desk desk, const Json& params) {
                       range_json(sources_of(*asked), meant->name->span, desk.workspace.encoding()));
   }
   if (asked->file == compiler::kConfigurationFile) return nullptr;
-  const std::string rule = query::rule_in_english(project, asked->file, asked->offset);
+  std::string rule = query::rule_in_english(project, asked->file, asked->offset);
   if (rule.empty()) return nullptr;
+  const compiler::Result& result = asked->checked->result();
+  const auto costs = costs_by_line(result, asked->file);
+  const auto cost = costs.find(result.sources.file(asked->file).line_of(asked->offset));
+  if (cost != costs.end())
+    rule += fmt::format("It costs at most {} instructions in a step.\n", cost->second);
   const bool is_markdown = desk.client.markdown;
   return hover_json(is_markdown ? "```text\n" + rule + "```" : rule, is_markdown, nullptr);
 }

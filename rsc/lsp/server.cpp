@@ -162,6 +162,9 @@ const std::map<std::string_view, Server::Handler>& Server::requests() {
        [](Server& s, const Json& p) { return semantic_tokens(desk(s), p); }},
       {"textDocument/foldingRange",
        [](Server& s, const Json& p) { return folding_ranges(desk(s), p); }},
+      {"textDocument/inlayHint", [](Server& s, const Json& p) { return inlay_hints(desk(s), p); }},
+      {"textDocument/signatureHelp",
+       [](Server& s, const Json& p) { return signature_help(desk(s), p); }},
   };
   return all;
 }
@@ -213,7 +216,9 @@ Json Server::initialize(const Json& params) {
             {"renameProvider", {{"prepareProvider", true}}},
             {"documentSymbolProvider", true},
             {"semanticTokensProvider", {{"legend", colour_legend()}, {"full", true}}},
-            {"foldingRangeProvider", true}}}};
+            {"foldingRangeProvider", true},
+            {"inlayHintProvider", true},
+            {"signatureHelpProvider", {{"triggerCharacters", {" "}}}}}}};
 }
 
 // Files that change behind the editor's back: a robot.json that somebody else writes.
