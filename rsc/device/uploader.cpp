@@ -342,6 +342,7 @@ void refuse_modules_in_files(const vm::Image& image) {
 
 UploadResult upload_program(Session& session, const Program& program,
                             const UploadOptions& options) {
+  refuse_modules_in_files(program.image());
   Client& client = session.client;
   const std::vector<std::byte> image = without_source_lines(program);
   const auto start = client.now();

@@ -156,7 +156,7 @@ void Screen::force(const std::string& reading, Session* session) {
     const std::uint8_t channel = find_channel(*image_, reading.substr(0, equals));
     const vm::Value value = parse_reading(*image_, channel, reading.substr(equals + 1));
     act(session, reading, [&](Client& client) {
-      const link::FeedResult result = client.feed({0, channel, value});
+      const link::FeedResult result = client.feed({.channel = channel, .at_us = 0, .value = value});
       if (result.error == link::FeedError::not_virtual)
         throw Failure(Exit::program, "the board measures it; only virtual sensors can be forced");
       if (result.error != link::FeedError::none)

@@ -20,6 +20,7 @@
 #include "rsc/trace/time_units.hpp"
 #include "rsc/trace/trace_format.hpp"
 #include "runtime-m4/sim/simulator.hpp"
+#include "vm/identity.hpp"
 
 namespace robosync::tool {
 namespace {

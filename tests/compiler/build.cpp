@@ -190,11 +190,10 @@ ir::Variable ranged(std::string name, double min, double max) {
 }
 
 Built build(const ir::Program& program, BuildOptions options) {
-  constexpr ProgramHash kHash = {1, 2, 3, 4, 5, 6, 7, 8};
   const Robot robot = small_robot();
   Built built;
   Emitted emitted = emit(options.optimize ? optimize(program, robot) : program, program, robot,
-                         kHash, {.source_lines = options.source_lines}, built.diagnostics);
+                         {.source_lines = options.source_lines}, built.diagnostics);
   if (built.diagnostics.errors() == 0 && verify_image(emitted, built.diagnostics))
     built.bytes = std::move(emitted.image);
   if (!built.bytes.empty()) REQUIRE(vm::view_image(built.bytes, built.image));

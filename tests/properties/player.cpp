@@ -68,7 +68,10 @@ private:
   void send_next() {
     const tool::Stimulus reading = waiting_.front();
     waiting_.pop_front();
-    const link::Feed feed{reading.at_us, reading.channel, reading.value};
+    const link::Feed feed{.session = client_.session(),
+                          .channel = reading.channel,
+                          .at_us = reading.at_us,
+                          .value = reading.value};
     under_way_.push_back({client_.send(link::MessageType::feed, link::wire_bytes(feed)), reading});
   }
 

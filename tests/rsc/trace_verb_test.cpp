@@ -38,7 +38,7 @@ BEHAVIOR weak PRIORITY 20
 END
 )";
 
-constexpr const char* kRobot = R"({
+constexpr const char* kTracedRobot = R"({
   "sensors": [
     {"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}},
     {"name": "near", "type": "VIRTUAL", "channels": {"DISTANCE": {"unit": "cm", "range": [2, 400]}}}],
@@ -56,7 +56,7 @@ class Trace : public Folder {
 public:
   Trace() {
     const std::string program = write("robot.rsl", kProgram);
-    write("robot.json", kRobot);
+    write("robot.json", kTracedRobot);
     const Outcome outcome = test::rsc(
         {"run", program, "--scenario", write("visit.json", kVisit), "--trace", path("once.jsonl")});
     CAPTURE(outcome.err);

@@ -96,7 +96,7 @@ void pack(const Arguments& arguments) {
   for (const std::string& argument : arguments.programs) {
     const std::size_t colon = std::min(argument.find(':'), argument.size());
     const std::string file = argument.substr(0, colon);
-    compiler::Result result = tool::compile_file(file, {.config = arguments.config});
+    compiler::Result result = tool::compile_file(file, {.config = arguments.config, .lints = {}});
     if (result.diagnostics.errors() > 0) {
       report.push_back({{"file", file}, {"errors", errors_of(result.diagnostics)}});
       continue;

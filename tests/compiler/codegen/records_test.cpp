@@ -183,7 +183,7 @@ TEST_CASE("the seed is the one that is asked for, or the robot's, or none") {
   robot.seed = 5;
   robot.safety_start_ms = 30;
   const auto header_of = [&](EmitOptions options) {
-    const Emitted emitted = emit(program, program, robot, {}, options, diagnostics);
+    const Emitted emitted = emit(program, program, robot, options, diagnostics);
     vm::Image image;
     REQUIRE(vm::view_image(emitted.image, image));
     return *image.header;

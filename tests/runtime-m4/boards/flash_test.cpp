@@ -12,6 +12,7 @@
 #include "runtime-m4/update/program_store.hpp"
 #include "tests/runtime-m4/boards/nrf52833_flash.hpp"
 #include "tests/runtime-m4/boards/stm32_flash.hpp"
+#include "vm/identity.hpp"
 
 using namespace robosync;
 using layers::KeptNumber;
@@ -78,7 +79,7 @@ Bytes some_image(unsigned seed, std::size_t size) {
 }
 
 ProgramStore::Program named(const Bytes& image) {
-  return {static_cast<std::uint32_t>(image.size()), vm::crc32(image)};
+  return {static_cast<std::uint32_t>(image.size()), vm::name_of(vm::Identity().finish(image))};
 }
 
 template <typename Flash>
