@@ -101,13 +101,21 @@ private:
       const compiler::SourceFile& file = result.sources.file(fix.span.file);
       const auto [text, first] = changed.try_emplace(fix.span.file, file.text());
       if (!first && fix.span.end > free[fix.span.file]) continue;
-      text->second.replace(fix.span.begin, fix.span.end - fix.span.begin, fix.replacement);
+      text->second.replace(fix.span.begin, end_of(fix, text->second) - fix.span.begin,
+                           fix.replacement);
       free[fix.span.file] = fix.span.begin;
       ++mended_;
     }
     for (auto& [id, text] : changed)
       texts_.set(result.sources.file(id).name(), std::move(text));
     return !changed.empty();
+  }
+
+  // A word between two blanks that is taken out takes one of them with it.
+  static std::uint32_t end_of(const Fix& fix, const std::string& text) {
+    const auto is_blank = [&](std::size_t at) { return at < text.size() && text[at] == ' '; };
+    const bool alone = fix.span.begin == 0 || is_blank(fix.span.begin - 1);
+    return fix.span.end + (fix.replacement.empty() && alone && is_blank(fix.span.end) ? 1 : 0);
   }
 
   const std::string& file_;

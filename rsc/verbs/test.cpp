@@ -152,7 +152,7 @@ void test(const TestOptions& options) {
   if (options.format == Format::json) {
     const Json report{{"tests", tally.tests}, {"passed", tally.passed}, {"failed", tally.failed}};
     std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
-  } else {
+  } else if (exit == Exit::fine || tally.passed + tally.failed > 0) {
     std::cout << fmt::format("{} passed, {} failed\n", tally.passed, tally.failed);
   }
   const Exit worst = tally.failed > 0 ? std::max(exit, Exit::program) : exit;

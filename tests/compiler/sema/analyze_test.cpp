@@ -271,9 +271,13 @@ TEST_CASE("a module gives its names; what nobody runs of it need not fit the rob
   const Result run = with_module("USE \"own.rsl\"\n" + rule("touch LEVEL > 3", "fly"), module);
   CHECK(run.image.empty());
   CHECK(messages(run).find("own.rsl:6:2") != std::string::npos);
-  const Result changed =
+  const Result commented =
       with_module("USE \"own.rsl\"\nUSE \"own.rsl\"\n" + rule("touch LEVEL > 3", "nod WITH reach"),
                   module + "# more\n");
+  CHECK(view(good).header->program_hash == view(commented).header->program_hash);
+  const Result changed =
+      with_module("USE \"own.rsl\"\nUSE \"own.rsl\"\n" + rule("touch LEVEL > 4", "nod WITH reach"),
+                  module);
   CHECK(view(good).header->program_hash != view(changed).header->program_hash);
 }
 
