@@ -20,7 +20,7 @@ std::string root_of(const std::string& name) {
   return "robosync/" + topic_part(name) + "/";
 }
 
-std::string text_of(const Json& payload) {
+std::string as_text(const Json& payload) {
   return payload.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -37,7 +37,7 @@ Bridge::~Bridge() {
 }
 
 void Bridge::publish(const std::string& topic, const Json& payload, bool retain) {
-  mqtt_.publish(root_ + topic, text_of(payload), retain);
+  mqtt_.publish(root_ + topic, as_text(payload), retain);
 }
 
 void Bridge::online(bool is) {

@@ -3,6 +3,7 @@
 import random
 import re
 import struct
+import time
 import unittest
 
 import rsc
@@ -11,6 +12,7 @@ from support import PROGRAMS, LineReader, RobotTest
 
 REFUSALS = ["none"] + re.findall(r"^REFUSAL\((\w+),", (rsc.ROOT / "vm/refusals.def").read_text(), re.M)
 BODY_AT = 8  # ImageHeader: magic, CRC-32 of everything behind it
+SILENCE = 3.5  # s, after which a host in the midst of a transfer is gone
 
 
 class Damage(RobotTest):
@@ -79,7 +81,7 @@ class Damage(RobotTest):
         cases = {
             "bad_magic": b"ELF!" + self.image[4:],
             "bad_crc": self.image[:-1] + bytes([self.image[-1] ^ 1]),
-            "wrong_name": wire.with_crc(self.image[:-1] + bytes([self.image[-1] ^ 1])),
+            "wrong_name": wire.with_crc(self.image[:24] + bytes([self.image[24] ^ 1]) + self.image[25:]),  # of its seed
             "wrong_version": patched(12, b"\x09"),
             "wrong_opcodes": patched(14, b"\xde\xad"),
             "bad_length": patched(8, struct.pack("<I", len(self.image) - 4)),
@@ -110,6 +112,7 @@ class Damage(RobotTest):
         self.line.ask("data", wire.piece_head(self.line.session, 0) + self.image[:100], "transfer_status")
         result = self.line.activate()
         self.assertEqual((result.running, result.refusal), (0, 0xFF))
+        time.sleep(SILENCE)
         self.assert_goes_on()
 
     def test_bad_frames(self):

@@ -56,7 +56,7 @@ class Monitor(RobotTest):
 
     def start(self, *arguments):
         command = " ".join([str(rsc.TOOL), "monitor", "--port", self.board.port, *arguments])
-        self.terminal.type(f"stty -a > {self.folder}/before; {command}; echo ended $?; stty -a > {self.folder}/after",
+        self.terminal.type(f"stty -g > {self.folder}/before; {command}; echo ended $?; stty -g > {self.folder}/after",
                            "Enter")
 
     def has_ended(self, code):

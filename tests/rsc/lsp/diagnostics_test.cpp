@@ -224,7 +224,7 @@ TEST_CASE("all that is certain is mended at once") {
   Editor editor;
   editor.open("robot.rsl",
               "WHEN touch LEVL > 3 DO STOP ALL\nEND\nWHEN touch LEVE > 4 DO STOP ALL\nEND\n"
-              "WHEN touch LEVEL > 5 DO STOP left_arn\nEND\n");
+              "EVERY 5s DO STOP left_arn\nEND\n");
   const Json all = actions(editor, "robot.rsl", range(0, 0, 0), {{"only", {"source.fixAll"}}});
   REQUIRE(all.size() == 1);
   CHECK(all[0].at("edit").at("changes").at(editor.uri("robot.rsl")).size() == 3);
