@@ -132,7 +132,8 @@ void Bridge::feed(const std::string& reading, Session& session) {
   const std::size_t equals = reading.find('=');
   const std::uint8_t channel = find_channel(*image_, reading.substr(0, equals));
   const vm::Value value = parse_reading(*image_, channel, reading.substr(equals + 1));
-  const link::FeedResult result = session.client.feed({.channel = channel, .at_us = 0, .value = value});
+  const link::FeedResult result =
+      session.client.feed({.channel = channel, .at_us = 0, .value = value});
   if (result.error != link::FeedError::none)
     throw std::invalid_argument(result.error == link::FeedError::not_virtual
                                     ? "the board measures it; only virtual sensors can be fed"

@@ -24,14 +24,15 @@ constexpr int kMostPort = 65535;
 
 // What is used of the library.
 struct Library {
-#define MOSQUITTO_FUNCTIONS(F)                                                            \
-  F(lib_init)                                                                             \
-  F(lib_cleanup)                                                                          \
-  F(new)                                                                                  \
-  F(destroy)                                                                              \
-  F(will_set)                                                                             \
-  F(connect) F(disconnect) F(loop_start) F(loop_stop) F(publish) F(subscribe) F(strerror) \
-      F(reconnect_delay_set) F(connect_callback_set) F(disconnect_callback_set)           \
+#define MOSQUITTO_FUNCTIONS(F)                                                  \
+  F(lib_init)                                                                   \
+  F(lib_cleanup)                                                                \
+  F(new)                                                                        \
+  F(destroy)                                                                    \
+  F(will_set)                                                                   \
+  F(connect)                                                                    \
+  F(disconnect) F(loop_start) F(loop_stop) F(publish) F(subscribe) F(strerror)  \
+      F(reconnect_delay_set) F(connect_callback_set) F(disconnect_callback_set) \
           F(message_callback_set)
 #define FUNCTION(name) decltype(&mosquitto_##name) name##_ = nullptr;
   MOSQUITTO_FUNCTIONS(FUNCTION)

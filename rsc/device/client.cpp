@@ -194,10 +194,12 @@ void Client::reopen(const Message& busy, bool& tried) {
   }
   if (tried) {
     const std::string host(by.host.begin(), std::find(by.host.begin(), by.host.end(), '\0'));
-    throw Failure(Exit::outside,
-                  fmt::format("{}: busy: {} uploads a program, and has the line since {} s; try again in some "
-                              "seconds, or take it with rsc upload --take",
-                              transport_.name(), host, by.since_ms / 1000));
+    throw Failure(
+        Exit::outside,
+        fmt::format(
+            "{}: busy: {} uploads a program, and has the line since {} s; try again in some "
+            "seconds, or take it with rsc upload --take",
+            transport_.name(), host, by.since_ms / 1000));
   }
   tried = true;
   (void)hello();

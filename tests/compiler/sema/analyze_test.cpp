@@ -275,9 +275,8 @@ TEST_CASE("a module gives its names; what nobody runs of it need not fit the rob
       with_module("USE \"own.rsl\"\nUSE \"own.rsl\"\n" + rule("touch LEVEL > 3", "nod WITH reach"),
                   module + "# more\n");
   CHECK(view(good).header->program_hash == view(commented).header->program_hash);
-  const Result changed =
-      with_module("USE \"own.rsl\"\nUSE \"own.rsl\"\n" + rule("touch LEVEL > 4", "nod WITH reach"),
-                  module);
+  const Result changed = with_module(
+      "USE \"own.rsl\"\nUSE \"own.rsl\"\n" + rule("touch LEVEL > 4", "nod WITH reach"), module);
   CHECK(view(good).header->program_hash != view(changed).header->program_hash);
 }
 
