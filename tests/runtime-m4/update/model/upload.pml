@@ -14,8 +14,8 @@
 #define HOSTS   2
 #define NONE    0
 #define TORN    9
-#define UPLOADS 3     /* of each host */
-#define CUTS    3
+#define UPLOADS 2     /* of each host */
+#define CUTS    2
 
 /* The store. Record r counts if it is whole and has the higher number. */
 byte slot[2];
@@ -41,17 +41,10 @@ bool wish = false;          /* a rollback is asked for */
 /* --- hosts: what the board does with a request, it does in one piece --- */
 
 inline receive(host, part) {
-#ifndef MUTANT_DATA_WITHOUT_SESSION
   if
   :: session == host && announced != NONE && parts == part -> room[part] = host; parts = part + 1
   :: else
   fi
-#else
-  if
-  :: announced != NONE && parts == part -> room[part] = host; parts = part + 1
-  :: else
-  fi
-#endif
 }
 
 inline activate(host, told) {
@@ -108,12 +101,8 @@ inline read_records() {
 
 inline start_kept() {
   if
-#ifdef MUTANT_IMAGE_BELIEVED
-  :: true -> running = slot[at]
-#else
   :: slot[at] == kept -> running = kept
   :: slot[at] != kept && slot[1 - at] == previous -> running = previous
-#endif
   :: else -> running = NONE
   fi;
   assert(running != TORN)
@@ -121,7 +110,7 @@ inline start_kept() {
 
 /* The record that counts less is written; what is torn has number 0. */
 #ifdef MUTANT_RECORD_OVER_THE_NEWEST
-#define PLACE (count % 2)
+#define PLACE 0
 #else
 #define PLACE ((count + 1) % 2)
 #endif
@@ -170,11 +159,7 @@ endserving:
 #else
           write_image();
           if                            /* the trial is over; another program may run by now */
-#ifdef MUTANT_KEPT_WITHOUT_ITS_TRIAL
-          :: true -> commit(mine, kept, FREE)
-#else
           :: atomic { running == mine && !faulted } -> commit(mine, kept, FREE)
-#endif
           :: else
           fi
 #endif
