@@ -34,7 +34,7 @@ class Embedded(unittest.TestCase):
     def test_a_right_program_has_an_image(self):
         done = self.embed(PROGRAM)
         self.assertEqual(done.returncode, 0)
-        self.assertRegex(done.stdout, r"\n[1-9][0-9]+ bytes\n$")
+        self.assertRegex(done.stdout, r"(?m)^[1-9][0-9]+ bytes$")
 
     def test_a_wrong_one_is_told_what_is_wrong(self):
         done = self.embed(PROGRAM.replace("touch", "tuoch"))

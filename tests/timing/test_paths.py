@@ -38,6 +38,12 @@ def behavior(body, when="s c0 > 80", head="WHEN", priority=90, name=None):
     return "\n".join(lines) + "\n"
 
 
+def rules(body, count, when="s c0 > 80"):
+    """A behaviour of so many rules."""
+    one = behavior(body, when).split("\n", 1)
+    return one[0] + "\n" + one[1].removesuffix("END\n") * count + "END\n"
+
+
 def move(*actuators, ms=10):
     return "\n".join(f"MOVE a{actuator} TO 1% OVER {ms}ms" for actuator in actuators)
 
@@ -61,24 +67,24 @@ class Table(unittest.TestCase):
     def setUpClass(cls):
         cls.costs = paths.costs()
         cls.log = run(behavior('LOG "x"'), FIRE)
-        two_rules = behavior('LOG "x"').replace("END\nEND\n", "END\n") + behavior('LOG "x"').split("\n", 1)[1]
         condition = 14 + 15  # gt_k, ret
-        two = run(two_rules, FIRE).feeds
-        cls.quiet = two[1] - cls.log.feeds[1] - condition  # a rule from which nothing follows
+        two, three = (run(rules('LOG "x"', count), FIRE).feeds for count in (2, 3))
+        cls.quiet = three[1] - two[1] - condition  # a rule from which nothing follows
+        # A rule that is the only one of its behaviour in a step takes a shorter way; what the longer one takes more is the behaviour's.
+        longer = two[1] - cls.log.feeds[1] - cls.quiet - condition
         apart = run(behavior('LOG "x"') + behavior('LOG "x"', priority=80), FIRE).feeds[1]
-        cls.behavior = apart - cls.log.feeds[1] - cls.quiet - condition
-        cls.step = cls.log.feeds[1] - cls.quiet - condition - cls.behavior
+        alone = apart - cls.log.feeds[1] - cls.quiet - condition
+        cls.behavior = alone + longer
+        cls.step = cls.log.feeds[1] - cls.quiet - condition - alone
         # One that waits for a time: the step looks at what follows from it.
-        waits = behavior('LOG "x"', "s c0 > 5 FOR 60s")
-        both = waits.replace("END\nEND\n", "END\n") + waits.split("\n", 1)[1]
-        cls.rule = run(both, FIRE).feeds[1] - run(waits, FIRE).feeds[1] - condition - HELD
+        waiting = [run(rules('LOG "x"', count, "s c0 > 5 FOR 60s"), FIRE).feeds[1] for count in (2, 3)]
+        cls.rule = waiting[1] - waiting[0] - condition - HELD
         cls.text = fired(behavior('LOG "x"\nLOG "y"')) - cls.log.feeds[-1]
         cls.fire = cls.log.feeds[-1] - cls.log.feeds[1] - cls.text
         cls.one = fired(behavior(move(0)))
-        both = behavior(move(0)).replace("END\nEND\n", "END\n") + behavior(move(0)).split("\n", 1)[1]
-        cls.claim = fired(both) - cls.one - cls.rule - condition
+        cls.claim = fired(rules(move(0), 3)) - fired(rules(move(0), 2)) - cls.rule - condition
         # A response that is not the only one of its behaviour, and so is released for by itself.
-        cls.another = two[-1] - cls.log.feeds[-1] - cls.rule - condition - cls.text
+        cls.another = three[-1] - two[-1] - cls.rule - condition - cls.text
 
     def assert_covers(self, name, measured):
         said = self.costs[name] + VIRTUAL.get(name, 0)
