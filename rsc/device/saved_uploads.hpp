@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "rsc/device/uploader.hpp"
 #include "rsc/device/viewer.hpp"
@@ -12,7 +13,8 @@ namespace robosync::tool {
 
 class SavedUploads final : public Viewer {
 public:
-  SavedUploads(std::string file, CompileOptions how) : file_(std::move(file)), how_(how) {}
+  SavedUploads(std::string file, CompileOptions how)
+      : file_(std::move(file)), how_(std::move(how)) {}
 
   bool work(Session* session) override;
 

@@ -48,9 +48,9 @@ int attributes_of(Style style) {
     case Style::quiet:
       return A_DIM;
     case Style::good:
-      return COLOR_PAIR(1);
+      return static_cast<int>(COLOR_PAIR(1));
     case Style::bad:
-      return COLOR_PAIR(2) | A_BOLD;
+      return static_cast<int>(COLOR_PAIR(2) | A_BOLD);
     case Style::plain:
       break;
   }

@@ -67,10 +67,9 @@ public:
     begins_ += fmt::format("{} {}\n", curve.has_words ? "s" : "rnan", code);
     for (const Sample& sample : curve.samples) {
       const std::string number = sample.number ? fmt::format("{}", *sample.number) : "";
-      if (curve.has_words)
-        change(sample.at_us, word(sample.number ? number : sample.word) + " " + code);
-      else
-        change(sample.at_us, (sample.number ? "r" + number : "rnan") + " " + code);
+      const std::string value = curve.has_words ? word(sample.number ? number : sample.word)
+                                                : "r" + (sample.number ? number : "nan");
+      change(sample.at_us, fmt::format("{} {}", value, code));
     }
   }
 
@@ -91,12 +90,14 @@ private:
     std::string unique = identifier(name);
     for (int i = 2; !names_.emplace(group, unique).second; ++i)
       unique = fmt::format("{}_{}", identifier(name), i);
-    const std::string code = code_of(count_++);
+    std::string code = code_of(count_++);
     declared_[group] += fmt::format("$var {} {} {} $end\n", type, code, unique);
     return code;
   }
 
-  void change(std::uint64_t at_us, const std::string& line) { changes_[at_us] += line + "\n"; }
+  void change(std::uint64_t at_us, const std::string& line) {
+    changes_[at_us].append(line).append("\n");
+  }
 
   std::map<LaneGroup, std::string> declared_;
   std::set<std::pair<LaneGroup, std::string>> names_;

@@ -20,6 +20,7 @@ namespace robosync::tool {
 [[nodiscard]] std::string whole_line();
 [[nodiscard]] std::string gap_line(const std::string& why);
 
+// NOLINTNEXTLINE(bugprone-exception-escape): JSON ends itself with memory of its own
 struct RecordedEvent {
   std::size_t line = 0;  // of the file
   nlohmann::ordered_json event;

@@ -214,7 +214,7 @@ private:
     bool is_read = false;
     for (const auto& [name, part] : kChannels) {
       const auto channel =
-          at_key("sensor", [&] { return find_read_channel(program_, sensor, name); });
+          at_key("sensor", [&, name = name] { return find_read_channel(program_, sensor, name); });
       std::uint64_t at = begin;
       for (const drivers::Heard& heard : blocks)
         if (channel) add(at += drivers::kEarPeriodMs * std::uint64_t{1000}, *channel, heard.*part);

@@ -73,7 +73,7 @@ std::vector<drivers::Heard> hear_file(const std::string& file) {
     throw Failure(Exit::program,
                   fmt::format("{}: it has {} samples a second; it takes {} to hear something", file,
                               format.samplerate, drivers::kEarRate));
-  if (format.frames / format.samplerate > kLongestHours * 3600)
+  if (format.frames / format.samplerate > sf_count_t{3600} * kLongestHours)
     throw Failure(Exit::program, fmt::format("{}: it lasts for more than an hour", file));
   const std::vector<std::int16_t> samples = read_samples(sound.get(), format);
   std::vector<drivers::Heard> heard;

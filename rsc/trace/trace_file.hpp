@@ -10,6 +10,7 @@
 
 namespace robosync::tool {
 
+// NOLINTNEXTLINE(bugprone-exception-escape): JSON ends itself with memory of its own
 struct TraceLine {
   std::size_t number = 0;   // in the file, from 1
   std::size_t program = 0;  // 1 for the first one; a monitor may see several, one after the other

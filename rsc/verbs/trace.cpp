@@ -53,6 +53,7 @@ void add_trace(Options& options) {
   options.argument("FILE", asked->file, "of rsc run --trace, rsc monitor --format json",
                    Options::Need::required);
   std::vector<std::string> names;
+  names.reserve(std::size(kFormats));
   for (const TraceFormat& format : kFormats)
     names.emplace_back(format.name);
   options.choice(

@@ -4,6 +4,7 @@
 #include "runtime-m4/module_files/worker.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <csignal>
 #include <cstring>
 #include <span>
@@ -194,8 +195,7 @@ int close_statics(dl_phdr_info* file, std::size_t, void* base) {
     const std::uintptr_t begin = (file->dlpi_addr + part.p_vaddr) / kPage * kPage;
     const std::uintptr_t end = file->dlpi_addr + part.p_vaddr + part.p_memsz;
     self.statics = {begin, (end + kPage - 1) / kPage * kPage};
-    if (mprotect(reinterpret_cast<void*>(begin), self.statics.end - begin, PROT_READ) != 0)
-      return -1;
+    if (mprotect(std::bit_cast<void*>(begin), self.statics.end - begin, PROT_READ) != 0) return -1;
   }
   return 1;
 }

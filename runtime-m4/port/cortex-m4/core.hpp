@@ -7,7 +7,7 @@
 namespace robosync::port::core {
 
 inline volatile std::uint32_t& reg(std::uintptr_t address) {
-  return *reinterpret_cast<volatile std::uint32_t*>(address);
+  return *reinterpret_cast<volatile std::uint32_t*>(address);  // NOLINT(performance-no-int-to-ptr)
 }
 
 inline constexpr std::uintptr_t kNvicIser = 0xE000'E100;  // interrupt set-enable
@@ -70,20 +70,27 @@ inline constexpr std::uint32_t kSwitchPriority = 0xC0;
   asm volatile("msr basepri, %0\n\tdsb\n\tisb" ::"r"(kKernelPriority) : "memory");
 }
 
+// The NVIC's registers hold 32 interrupts a word; writing 0 to the others' bits changes nothing.
+inline void write_bit(std::uintptr_t registers, unsigned number) {
+  reg(registers + std::uintptr_t{4} * (number / 32)) = 1U << (number % 32);
+}
+
 // Enables interrupt `number`, at the kernel's level.
 inline void enable_interrupt(unsigned number, std::uint8_t priority = kKernelPriority) {
-  reinterpret_cast<volatile std::uint8_t*>(kNvicIpr)[number] = priority;
-  reg(kNvicIser + number / 32 * 4) = 1U << (number % 32);
+  auto* priorities =
+      reinterpret_cast<volatile std::uint8_t*>(kNvicIpr);  // NOLINT(performance-no-int-to-ptr)
+  priorities[number] = priority;
+  write_bit(kNvicIser, number);
 }
 
 // Makes interrupt `number` happen.
 inline void pend_interrupt(unsigned number) {
-  reg(kNvicIspr + number / 32 * 4) = 1U << (number % 32);
+  write_bit(kNvicIspr, number);
 }
 
 // … and takes it back.
 inline void clear_interrupt(unsigned number) {
-  reg(kNvicIcpr + number / 32 * 4) = 1U << (number % 32);
+  write_bit(kNvicIcpr, number);
 }
 
 [[noreturn]] inline void reset() {
