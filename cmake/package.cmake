@@ -18,5 +18,6 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION devel)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libsndfile1, libmosquitto1")  # loaded when they are needed
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "openocd, qemu-system-arm")
 include(CPack)

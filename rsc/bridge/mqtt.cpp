@@ -7,11 +7,11 @@
 #include <mutex>
 #include <utility>
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 #include <mosquitto.h>
 
 #include "rsc/failure.hpp"
+#include "rsc/loaded_library.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -23,46 +23,29 @@ constexpr std::size_t kMaxWaiting = 1000;  // messages for the robot; of more th
 constexpr int kMostPort = 65535;
 
 // What is used of the library.
-struct Library {
-#define MOSQUITTO_FUNCTIONS(F)                                                  \
-  F(lib_init)                                                                   \
-  F(lib_cleanup)                                                                \
-  F(new)                                                                        \
-  F(destroy)                                                                    \
-  F(will_set)                                                                   \
-  F(connect)                                                                    \
-  F(disconnect) F(loop_start) F(loop_stop) F(publish) F(subscribe) F(strerror)  \
-      F(reconnect_delay_set) F(connect_callback_set) F(disconnect_callback_set) \
-          F(message_callback_set)
+struct Mosquitto {
+// clang-format off
+#define MOSQUITTO_FUNCTIONS(F)                                                                     \
+  F(lib_init) F(lib_cleanup) F(new) F(destroy) F(will_set) F(connect) F(disconnect) F(loop_start)  \
+  F(loop_stop) F(publish) F(subscribe) F(strerror) F(reconnect_delay_set) F(connect_callback_set)  \
+  F(disconnect_callback_set) F(message_callback_set)
+// clang-format on
 #define FUNCTION(name) decltype(&mosquitto_##name) name##_ = nullptr;
   MOSQUITTO_FUNCTIONS(FUNCTION)
 #undef FUNCTION
 
-  Library() {
-    void* const handle = dlopen("libmosquitto.so.1", RTLD_NOW | RTLD_LOCAL);
-    if (handle == nullptr)
-      throw Failure(Exit::outside,
-                    "rsc bridge needs libmosquitto, which is "
-                    "not installed: on Debian, `sudo apt "
-                    "install libmosquitto1`");
-#define FUNCTION(name) load(handle, "mosquitto_" #name, name##_);
-    MOSQUITTO_FUNCTIONS(FUNCTION)
-#undef FUNCTION
-  }
-
-private:
-  template <typename Function>
-  static void load(void* handle, const char* name, Function& function) {
-    function = reinterpret_cast<Function>(dlsym(handle, name));
-    if (function == nullptr)
-      throw Failure(Exit::outside, fmt::format("this libmosquitto has no {}", name));
+  Mosquitto() {
+    const LoadedLibrary library("libmosquitto.so.1", "libmosquitto1", "rsc bridge");
+#define FIND(name) library.find("mosquitto_" #name, name##_);
+    MOSQUITTO_FUNCTIONS(FIND)
+#undef FIND
   }
 };
 
 }  // namespace
 
 struct Mqtt::State {
-  Library library;
+  Mosquitto library;
   mosquitto* client = nullptr;
   std::string filter;
   std::map<std::string, std::string> retained;  // what the broker should have

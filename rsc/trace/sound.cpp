@@ -11,14 +11,26 @@
 #include <sndfile.h>
 
 #include "rsc/failure.hpp"
+#include "rsc/loaded_library.hpp"
 
 namespace robosync::tool {
 namespace {
 
 constexpr int kLongestHours = 1;
 
-struct CloseSound {
-  void operator()(SNDFILE* sound) const { sf_close(sound); }
+// What is used of libsndfile, which brings half a dozen codecs with it.
+struct SoundFiles {
+#define SOUND_FUNCTIONS(F) F(open) F(close) F(readf_double) F(strerror)
+#define FUNCTION(name) decltype(&sf_##name) name = nullptr;
+  SOUND_FUNCTIONS(FUNCTION)
+#undef FUNCTION
+
+  SoundFiles() {
+    const LoadedLibrary library("libsndfile.so.1", "libsndfile1", "a sound in a scenario");
+#define FIND(name) library.find("sf_" #name, name);
+    SOUND_FUNCTIONS(FIND)
+#undef FIND
+  }
 };
 
 // The mean of what falls into each sample of the ear: high tones that it could not tell from low ones are so softened.
@@ -43,13 +55,14 @@ private:
   double sum_ = 0;
 };
 
-std::vector<std::int16_t> read_samples(SNDFILE* sound, const SF_INFO& format) {
+std::vector<std::int16_t> read_samples(const SoundFiles& library, SNDFILE* sound,
+                                       const SF_INFO& format) {
   constexpr sf_count_t kFrames = 4096;
   const auto channels = static_cast<std::size_t>(format.channels);
   std::vector<double> frames(kFrames * channels);
   std::vector<std::int16_t> samples;
   Resampler resampler(format.samplerate);
-  for (sf_count_t read = 0; (read = sf_readf_double(sound, frames.data(), kFrames)) > 0;)
+  for (sf_count_t read = 0; (read = library.readf_double(sound, frames.data(), kFrames)) > 0;)
     for (std::size_t f = 0; f < static_cast<std::size_t>(read); ++f) {
       double sum = 0;
       for (std::size_t c = 0; c < channels; ++c)
@@ -65,17 +78,20 @@ std::vector<drivers::Heard> hear_file(const std::string& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
     throw Failure(Exit::outside, fmt::format("cannot read {}: there is no such file", file));
+  const SoundFiles library;
   SF_INFO format{};
-  const std::unique_ptr<SNDFILE, CloseSound> sound(sf_open(file.c_str(), SFM_READ, &format));
+  const std::unique_ptr<SNDFILE, decltype(library.close)> sound(
+      library.open(file.c_str(), SFM_READ, &format), library.close);
   if (!sound)
-    throw Failure(Exit::program, fmt::format("{}: it is no sound: {}", file, sf_strerror(nullptr)));
+    throw Failure(Exit::program,
+                  fmt::format("{}: it is no sound: {}", file, library.strerror(nullptr)));
   if (format.samplerate < static_cast<int>(drivers::kEarRate))
     throw Failure(Exit::program,
                   fmt::format("{}: it has {} samples a second; it takes {} to hear something", file,
                               format.samplerate, drivers::kEarRate));
   if (format.frames / format.samplerate > sf_count_t{3600} * kLongestHours)
     throw Failure(Exit::program, fmt::format("{}: it lasts for more than an hour", file));
-  const std::vector<std::int16_t> samples = read_samples(sound.get(), format);
+  const std::vector<std::int16_t> samples = read_samples(library, sound.get(), format);
   std::vector<drivers::Heard> heard;
   drivers::Ear ear;
   for (std::size_t at = 0; at + drivers::kEarBlock <= samples.size(); at += drivers::kEarBlock)
