@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -76,8 +77,9 @@ Section behaviors(const Model& model, const View& view) {
   Section section{"BEHAVIOURS", {}};
   for (const BehaviorRow& row : model.behaviors()) {
     if (!has(row.name, view.filter)) continue;
-    const std::string raised =
-        row.priority == row.written ? "" : fmt::format("{:+}", row.priority - row.written);
+    const std::string raised = row.priority == row.written
+                                   ? ""
+                                   : fmt::format("{:+}", std::int64_t{row.priority} - row.written);
     section.lines.push_back({{cell(row.name, 24)},
                              {cell(fmt::format("{}{}", row.written, raised), 12),
                               raised.empty() ? Style::plain : Style::good},

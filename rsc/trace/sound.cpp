@@ -21,13 +21,13 @@ constexpr int kLongestHours = 1;
 // What is used of libsndfile, which brings half a dozen codecs with it.
 struct SoundFiles {
 #define SOUND_FUNCTIONS(F) F(open) F(close) F(readf_double) F(strerror)
-#define FUNCTION(name) decltype(&sf_##name) name = nullptr;
+#define FUNCTION(name) decltype(&sf_##name) name##_ = nullptr;
   SOUND_FUNCTIONS(FUNCTION)
 #undef FUNCTION
 
   SoundFiles() {
     const LoadedLibrary library("libsndfile.so.1", "libsndfile1", "a sound in a scenario");
-#define FIND(name) library.find("sf_" #name, name);
+#define FIND(name) library.find("sf_" #name, name##_);
     SOUND_FUNCTIONS(FIND)
 #undef FIND
   }
@@ -62,7 +62,7 @@ std::vector<std::int16_t> read_samples(const SoundFiles& library, SNDFILE* sound
   std::vector<double> frames(kFrames * channels);
   std::vector<std::int16_t> samples;
   Resampler resampler(format.samplerate);
-  for (sf_count_t read = 0; (read = library.readf_double(sound, frames.data(), kFrames)) > 0;)
+  for (sf_count_t read = 0; (read = library.readf_double_(sound, frames.data(), kFrames)) > 0;)
     for (std::size_t f = 0; f < static_cast<std::size_t>(read); ++f) {
       double sum = 0;
       for (std::size_t c = 0; c < channels; ++c)
@@ -80,11 +80,11 @@ std::vector<drivers::Heard> hear_file(const std::string& file) {
     throw Failure(Exit::outside, fmt::format("cannot read {}: there is no such file", file));
   const SoundFiles library;
   SF_INFO format{};
-  const std::unique_ptr<SNDFILE, decltype(library.close)> sound(
-      library.open(file.c_str(), SFM_READ, &format), library.close);
+  const std::unique_ptr<SNDFILE, decltype(library.close_)> sound(
+      library.open_(file.c_str(), SFM_READ, &format), library.close_);
   if (!sound)
     throw Failure(Exit::program,
-                  fmt::format("{}: it is no sound: {}", file, library.strerror(nullptr)));
+                  fmt::format("{}: it is no sound: {}", file, library.strerror_(nullptr)));
   if (format.samplerate < static_cast<int>(drivers::kEarRate))
     throw Failure(Exit::program,
                   fmt::format("{}: it has {} samples a second; it takes {} to hear something", file,

@@ -61,20 +61,20 @@ inline constexpr kernel::Time kDone = 0;
 
 // start: begins an order; advance: goes on with it. Both return when they want to be called again,
 // or kDone. release: what the actuator does when nobody commands it any more, from any state.
-using StartFunction = kernel::Time (*)(Device device, const Order& order, kernel::Time now);
-using AdvanceFunction = kernel::Time (*)(Device device, kernel::Time now);
-using ReleaseFunction = void (*)(Device device, vm::Release how, kernel::Time now);
+using StartFunction = kernel::Time (*)(const Device& device, const Order& order, kernel::Time now);
+using AdvanceFunction = kernel::Time (*)(const Device& device, kernel::Time now);
+using ReleaseFunction = void (*)(const Device& device, vm::Release how, kernel::Time now);
 
 #define SENSOR_DRIVER(name, ...)                                                        \
   namespace name {                                                                      \
   bool read(boards::Board& board, const vm::Sensor& sensor, const vm::Channel& channel, \
             std::int32_t& raw);                                                         \
   }
-#define ACTUATOR_DRIVER(name, ...)                                         \
-  namespace name {                                                         \
-  kernel::Time start(Device device, const Order& order, kernel::Time now); \
-  kernel::Time advance(Device device, kernel::Time now);                   \
-  void release(Device device, vm::Release how, kernel::Time now);          \
+#define ACTUATOR_DRIVER(name, ...)                                                \
+  namespace name {                                                                \
+  kernel::Time start(const Device& device, const Order& order, kernel::Time now); \
+  kernel::Time advance(const Device& device, kernel::Time now);                   \
+  void release(const Device& device, vm::Release how, kernel::Time now);          \
   }
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER

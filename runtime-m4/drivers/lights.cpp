@@ -35,7 +35,7 @@ std::uint32_t picture_of(vm::Value item) {
 }
 
 // A leg is over. The first one is dark, the last one lit.
-kernel::Time next_leg(Device device, kernel::Time now) {
+kernel::Time next_leg(const Device& device, kernel::Time now) {
   if (--device.state.legs == 0) return kDone;
   const bool dark = device.state.legs % 2 == 0;
   device.show(dark ? 0 : static_cast<std::uint32_t>(device.state.home));
@@ -43,7 +43,7 @@ kernel::Time next_leg(Device device, kernel::Time now) {
   return device.state.until;
 }
 
-kernel::Time blink(Device device, const Order& order, kernel::Time now) {
+kernel::Time blink(const Device& device, const Order& order, kernel::Time now) {
   const vm::Value times = order.get(vm::Param::times, vm::kScale) / vm::kScale;
   const auto legs = static_cast<unsigned>(2 * std::clamp(times, vm::Value{1}, kMostBlinks));
   const kernel::Duration over = duration_of(order.get(vm::Param::over, 0));
@@ -58,7 +58,7 @@ kernel::Time blink(Device device, const Order& order, kernel::Time now) {
 
 }  // namespace
 
-kernel::Time start(Device device, const Order& order, kernel::Time now) {
+kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
   device.state.legs = 0;
   if (order.action == vm::Action::play) return blink(device, order, now);
   const bool shows = order.action == vm::Action::set;
@@ -68,7 +68,7 @@ kernel::Time start(Device device, const Order& order, kernel::Time now) {
   return take_time(device, order, now);
 }
 
-kernel::Time advance(Device device, kernel::Time now) {
+kernel::Time advance(const Device& device, kernel::Time now) {
   if (now < device.state.until) return device.state.until;
   if (device.state.legs > 0) return next_leg(device, now);
   release(device, vm::Release::rest, now);
@@ -76,7 +76,7 @@ kernel::Time advance(Device device, kernel::Time now) {
 }
 
 // What holds keeps its picture, also amid a blink.
-void release(Device device, vm::Release how, kernel::Time) {
+void release(const Device& device, vm::Release how, kernel::Time) {
   device.state.legs = 0;
   if (how != vm::Release::hold) device.state.home = 0;
   device.show(static_cast<std::uint32_t>(device.state.home));

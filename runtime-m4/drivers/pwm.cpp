@@ -12,19 +12,19 @@ constexpr vm::Value kFull = 100 * vm::kScale;
 constexpr std::uint32_t kFrame = 20'000;  // microseconds
 constexpr kernel::Duration kSetpointPeriod = kernel::milliseconds(policy::kSetpointPeriodMs);
 
-void output(Device device, vm::Value percent, kernel::Time now) {
+void output(const Device& device, vm::Value percent, kernel::Time now) {
   const auto duty = static_cast<std::uint64_t>(std::clamp(percent, vm::Value{0}, kFull));
   device.drive(static_cast<std::uint32_t>(duty * kFrame / std::uint64_t{kFull}), now);
 }
 
-void jump(Device device, vm::Value percent, kernel::Time now) {
+void jump(const Device& device, vm::Value percent, kernel::Time now) {
   device.state.motion = {.from = percent, .to = percent, .begin = now, .length = 0};
   output(device, percent, now);
 }
 
 }  // namespace
 
-kernel::Time start(Device device, const Order& order, kernel::Time now) {
+kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
   const vm::Value present = device.state.motion.at(now);
   const vm::Value level = order.get(vm::Param::to, order.get(vm::Param::at, kFull));
   device.state.until = 0;
@@ -40,7 +40,7 @@ kernel::Time start(Device device, const Order& order, kernel::Time now) {
   return advance(device, now);
 }
 
-kernel::Time advance(Device device, kernel::Time now) {
+kernel::Time advance(const Device& device, kernel::Time now) {
   const Motion& motion = device.state.motion;
   output(device, motion.at(now), now);
   if (now < motion.end()) return std::min(motion.end(), now + kSetpointPeriod);
@@ -49,7 +49,7 @@ kernel::Time advance(Device device, kernel::Time now) {
   return kDone;
 }
 
-void release(Device device, vm::Release how, kernel::Time now) {
+void release(const Device& device, vm::Release how, kernel::Time now) {
   jump(device, how == vm::Release::hold ? device.state.motion.at(now) : 0, now);
 }
 

@@ -10,20 +10,20 @@ namespace {
 
 constexpr vm::Value kDefaultSpeed = 90 * vm::kScale;  // thousandths of a degree a second
 
-void output(Device device, kernel::Time now) {
+void output(const Device& device, kernel::Time now) {
   const vm::Value position =
       std::clamp(device.state.motion.at(now), device.wiring.min, device.wiring.max);
   device.drive(policy::pulse_at(device.wiring, position), now);
 }
 
-kernel::Time follow(Device device, kernel::Time now) {
+kernel::Time follow(const Device& device, kernel::Time now) {
   output(device, now);
   return std::min(device.state.motion.end(), now + way::kFrame);
 }
 
 }  // namespace
 
-kernel::Time start(Device device, const Order& order, kernel::Time now) {
+kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
   if (!device.state.placed) way::stand_at_rest(device, now);
   if (order.action == vm::Action::stop) {
     release(device, vm::Release::hold, now);
@@ -32,13 +32,13 @@ kernel::Time start(Device device, const Order& order, kernel::Time now) {
   return way::start(device, order, kDefaultSpeed, now) ? follow(device, now) : kDone;
 }
 
-kernel::Time advance(Device device, kernel::Time now) {
+kernel::Time advance(const Device& device, kernel::Time now) {
   if (now < device.state.motion.end()) return follow(device, now);
   output(device, now);
   return way::next_leg(device, now) ? follow(device, now) : kDone;
 }
 
-void release(Device device, vm::Release how, kernel::Time now) {
+void release(const Device& device, vm::Release how, kernel::Time now) {
   way::stop(device, how, now);
   if (how == vm::Release::coast) return device.drive(0, now);
   if (device.state.placed) output(device, now);  // else it was never driven: nothing to hold

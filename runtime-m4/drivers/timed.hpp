@@ -10,7 +10,7 @@ namespace robosync::drivers {
 inline constexpr kernel::Duration kDefaultDuration = kernel::milliseconds(1000);
 
 // Is done after FOR, else OVER, else kDefaultDuration. STOP is done at once, and so is following.
-inline kernel::Time take_time(Device device, const Order& order, kernel::Time now) {
+inline kernel::Time take_time(const Device& device, const Order& order, kernel::Time now) {
   if (order.action == vm::Action::stop || order.action == vm::Action::follow) return kDone;
   kernel::Duration length = kDefaultDuration;
   if (order.has(vm::Param::over)) length = duration_of(order.get(vm::Param::over, 0));
@@ -20,7 +20,7 @@ inline kernel::Time take_time(Device device, const Order& order, kernel::Time no
   return device.state.until;
 }
 
-inline kernel::Time go_on(Device device, kernel::Time now) {
+inline kernel::Time go_on(const Device& device, kernel::Time now) {
   return now >= device.state.until ? kDone : device.state.until;
 }
 

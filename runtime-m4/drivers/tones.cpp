@@ -31,25 +31,25 @@ constexpr vm::Value kLowest = 50, kHighest = 10'000;  // Hz
 
 // Of the actuator's state: `home` is the melody, `legs` the notes still to come, `until` the end of what sounds, and the
 // motion's begin the end of it all, 0 where that is the melody's.
-kernel::Time end_of_all(Device device) {
+kernel::Time end_of_all(const Device& device) {
   return device.state.motion.begin;
 }
 
-kernel::Time sound_until(Device device, std::uint32_t hertz, kernel::Time until) {
+kernel::Time sound_until(const Device& device, std::uint32_t hertz, kernel::Time until) {
   const kernel::Time end = end_of_all(device);
   device.state.until = end != 0 ? std::min(until, end) : until;
   device.sound(hertz);
   return device.state.until;
 }
 
-kernel::Time next_note(Device device, kernel::Time now) {
+kernel::Time next_note(const Device& device, kernel::Time now) {
   const std::span<const Note> melody = kMelodies[static_cast<std::size_t>(device.state.home)];
   const Note& note = melody[melody.size() - device.state.legs];
   --device.state.legs;
   return sound_until(device, note.hertz, now + kernel::milliseconds(note.milliseconds));
 }
 
-kernel::Time from_the_front(Device device, kernel::Time now) {
+kernel::Time from_the_front(const Device& device, kernel::Time now) {
   device.state.legs =
       static_cast<std::uint16_t>(kMelodies[static_cast<std::size_t>(device.state.home)].size());
   return next_note(device, now);
@@ -57,7 +57,7 @@ kernel::Time from_the_front(Device device, kernel::Time now) {
 
 }  // namespace
 
-kernel::Time start(Device device, const Order& order, kernel::Time now) {
+kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
   release(device, vm::Release::rest, now);
   if (order.action == vm::Action::stop) return kDone;
   const kernel::Duration length = duration_of(order.get(vm::Param::for_, 0));
@@ -74,7 +74,7 @@ kernel::Time start(Device device, const Order& order, kernel::Time now) {
   return from_the_front(device, now);
 }
 
-kernel::Time advance(Device device, kernel::Time now) {
+kernel::Time advance(const Device& device, kernel::Time now) {
   if (now < device.state.until) return device.state.until;
   const kernel::Time end = end_of_all(device);
   const bool over = end != 0 && now >= end;
@@ -85,7 +85,7 @@ kernel::Time advance(Device device, kernel::Time now) {
 }
 
 // Nothing holds a tone.
-void release(Device device, vm::Release, kernel::Time) {
+void release(const Device& device, vm::Release, kernel::Time) {
   device.state.legs = 0;
   device.state.placed = false;
   device.state.motion.begin = 0;

@@ -4,14 +4,14 @@
 
 namespace robosync::drivers::virtual_actuator {
 
-kernel::Time start(Device device, const Order& order, kernel::Time now) {
+kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
   return take_time(device, order, now);
 }
 
-kernel::Time advance(Device device, kernel::Time now) {
+kernel::Time advance(const Device& device, kernel::Time now) {
   return go_on(device, now);
 }
 
-void release(Device, vm::Release, kernel::Time) {}
+void release(const Device&, vm::Release, kernel::Time) {}
 
 }  // namespace robosync::drivers::virtual_actuator

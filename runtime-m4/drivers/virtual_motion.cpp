@@ -10,14 +10,15 @@
 namespace robosync::drivers::virtual_motion {
 namespace {
 
-bool moves(Device device, const Order& order) {
+bool moves(const Device& device, const Order& order) {
   if (order.action != vm::Action::move && order.action != vm::Action::follow) return false;
   const bool sweeps = device.wiring.bus == static_cast<unsigned>(vm::VirtualMotion::sweeps);
   return way::has_target(order) || sweeps;
 }
 
-// As long as it is told to take, but for the limit.
-kernel::Time move_in_time(Device device, const Order& order, kernel::Time now) {
+// As long as it is told to take, but for the limit. Never stands on the stack together with way::start().
+[[gnu::noinline]] kernel::Time move_in_time(const Device& device, const Order& order,
+                                            kernel::Time now) {
   const kernel::Time told = take_time(device, order, now);
   const vm::Value from = device.state.motion.at(now);
   const vm::Value to = way::target_of(device, order, now);
@@ -29,7 +30,7 @@ kernel::Time move_in_time(Device device, const Order& order, kernel::Time now) {
 
 }  // namespace
 
-kernel::Time start(Device device, const Order& order, kernel::Time now) {
+kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
   if (!device.state.placed) way::stand_at_rest(device, now);
   way::stop(device, vm::Release::hold, now);
   if (!moves(device, order)) return take_time(device, order, now);
@@ -43,13 +44,13 @@ kernel::Time start(Device device, const Order& order, kernel::Time now) {
   return device.state.until;
 }
 
-kernel::Time advance(Device device, kernel::Time now) {
+kernel::Time advance(const Device& device, kernel::Time now) {
   if (now < device.state.until || !way::next_leg(device, now)) return go_on(device, now);
   device.state.until = device.state.motion.end();
   return device.state.until;
 }
 
-void release(Device device, vm::Release how, kernel::Time now) {
+void release(const Device& device, vm::Release how, kernel::Time now) {
   way::stop(device, how, now);
   device.state.legs = 0;
 }

@@ -18,16 +18,17 @@ namespace robosync::drivers::way {
 inline constexpr kernel::Duration kFrame = kernel::milliseconds(policy::kSetpointPeriodMs);
 
 // It stands at `position` from now on.
-void stand(Device device, vm::Value position, kernel::Time now);
-void stand_at_rest(Device device, kernel::Time now);
+void stand(const Device& device, vm::Value position, kernel::Time now);
+void stand_at_rest(const Device& device, kernel::Time now);
 // It stands where it is, or goes to rest.
-void stop(Device device, vm::Release how, kernel::Time now);
+void stop(const Device& device, vm::Release how, kernel::Time now);
 // Is the order one that says where to?
 bool has_target(const Order& order);
-vm::Value target_of(Device device, const Order& order, kernel::Time now);
+vm::Value target_of(const Device& device, const Order& order, kernel::Time now);
 // Begins to move; `usual` is its speed where the order says none. False: it is done at once.
-[[nodiscard]] bool start(Device device, const Order& order, vm::Value usual, kernel::Time now);
+[[nodiscard]] bool start(const Device& device, const Order& order, vm::Value usual,
+                         kernel::Time now);
 // One leg is done: begins the next one. False: there is none.
-[[nodiscard]] bool next_leg(Device device, kernel::Time now);
+[[nodiscard]] bool next_leg(const Device& device, kernel::Time now);
 
 }  // namespace robosync::drivers::way

@@ -288,7 +288,7 @@ bool ControlLayer::goes_elsewhere(const Unit& unit) const {
 }
 
 // Begins commands until one needs time, or none is left. Returns when to wake.
-kernel::Time ControlLayer::work_off(Unit& unit, Stamp stamp) {
+kernel::Time ControlLayer::work_off(Unit& unit, const Stamp& stamp) {
   for (unsigned i = 0; i <= policy::kMaxQueued && claim_next(unit); ++i) {
     kernel::Time wake = 0;
     begin_next(unit, stamp, wake);
@@ -308,7 +308,7 @@ bool ControlLayer::claim_next(Unit& unit) {
 }
 
 // It is told before it is started, and both do not stand on the stack at once.
-void ControlLayer::begin_next(Unit& unit, Stamp stamp, kernel::Time& wake) {
+void ControlLayer::begin_next(Unit& unit, const Stamp& stamp, kernel::Time& wake) {
   if (trace_.listening()) [[unlikely]]
     tell_command(unit, pool_.front(unit.queue), stamp);
   unit.follows = pool_.front(unit.queue).action() == vm::Action::follow;
@@ -318,14 +318,16 @@ void ControlLayer::begin_next(Unit& unit, Stamp stamp, kernel::Time& wake) {
 }
 
 [[gnu::noinline]] kernel::Time ControlLayer::start_driver(Unit& unit, const Command& command) {
-  if (command.action() == vm::Action::perform) {
-    unit.performance.begin(program_->image, unit.actuator, command, kernel_.now());
-    return is_halted(unit) ? drivers::kDone : next_key(unit, kernel_.now());
-  }
+  if (command.action() == vm::Action::perform) return start_performance(unit, command);
   unit.performance.end();
   drivers::Order order;
   if (!resolve(wiring(unit), command, order) || is_halted(unit)) return drivers::kDone;
   return drivers::driver(wiring(unit).driver).start(device(unit), order, kernel_.now());
+}
+
+[[gnu::noinline]] kernel::Time ControlLayer::start_performance(Unit& unit, const Command& command) {
+  unit.performance.begin(program_->image, unit.actuator, command, kernel_.now());
+  return is_halted(unit) ? drivers::kDone : next_key(unit, kernel_.now());
 }
 
 kernel::Time ControlLayer::go_on(Unit& unit) {
@@ -337,7 +339,7 @@ kernel::Time ControlLayer::go_on(Unit& unit) {
 
 // Goes on with the MOTION that it performs: to its next key, or to its end. A driver that is there
 // already is not asked again before the time of a key is over.
-kernel::Time ControlLayer::next_key(Unit& unit, kernel::Time now) {
+[[gnu::noinline]] kernel::Time ControlLayer::next_key(Unit& unit, kernel::Time now) {
   Performance& performance = unit.performance;
   drivers::Order order;
   if (!performance.is_on()) return drivers::kDone;
@@ -351,7 +353,7 @@ kernel::Time ControlLayer::next_key(Unit& unit, kernel::Time now) {
 }
 
 // After every call of the driver. A halt may have come in its middle: then its last word is undone.
-kernel::Time ControlLayer::keep_at(Unit& unit, kernel::Time wake, Stamp stamp) {
+kernel::Time ControlLayer::keep_at(Unit& unit, kernel::Time wake, const Stamp& stamp) {
   if (is_halted(unit)) {
     release(unit, wiring(unit).safe);
     unit.busy = false;
@@ -414,7 +416,7 @@ void ControlLayer::drop_all(Unit& unit) {
 }
 
 // values as below, without word and parameters.
-void ControlLayer::tell_stop(const Unit& unit, unsigned verb, Stamp stamp) {
+void ControlLayer::tell_stop(const Unit& unit, unsigned verb, const Stamp& stamp) {
   link::Event event;
   Trace::begin(event, EventKind::command, stamp, unit.actuator, verb);
   event.values[0] = -1;
@@ -424,7 +426,7 @@ void ControlLayer::tell_stop(const Unit& unit, unsigned verb, Stamp stamp) {
 }
 
 // values: the word or -1, the mask of parameters the program gave, and these, limits applied.
-void ControlLayer::tell_command(const Unit& unit, const Command& command, Stamp stamp) {
+void ControlLayer::tell_command(const Unit& unit, const Command& command, const Stamp& stamp) {
   link::Event event;
   Trace::begin(event, EventKind::command, stamp, unit.actuator, command.verb());
   event.values[0] = command.word() == vm::kNoWord ? -1 : command.word();

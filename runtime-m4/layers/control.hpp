@@ -116,12 +116,13 @@ private:
   [[nodiscard]] bool start_unit(unsigned actuator, ProgramThreads& threads);
   void run(Unit& unit);
   bool goes_elsewhere(const Unit& unit) const;
-  kernel::Time work_off(Unit& unit, Stamp stamp);
-  void begin_next(Unit& unit, Stamp stamp, kernel::Time& wake);
+  kernel::Time work_off(Unit& unit, const Stamp& stamp);
+  void begin_next(Unit& unit, const Stamp& stamp, kernel::Time& wake);
   kernel::Time start_driver(Unit& unit, const Command& command);
+  kernel::Time start_performance(Unit& unit, const Command& command);
   kernel::Time go_on(Unit& unit);
   kernel::Time next_key(Unit& unit, kernel::Time now);
-  kernel::Time keep_at(Unit& unit, kernel::Time wake, Stamp stamp);
+  kernel::Time keep_at(Unit& unit, kernel::Time wake, const Stamp& stamp);
   void hand_over(Unit& unit);
   Unit& first_in_rank(ActuatorMask actuators) const;
   void put_at_rest(Unit& unit);
@@ -131,8 +132,8 @@ private:
   kernel::Time obey_stop(Unit& unit);
   [[gnu::noinline]] kernel::Time stop_driver(Unit& unit);
   void drop_all(Unit& unit);
-  [[gnu::noinline]] void tell_stop(const Unit& unit, unsigned verb, Stamp stamp);
-  [[gnu::noinline]] void tell_command(const Unit& unit, const Command& command, Stamp stamp);
+  [[gnu::noinline]] void tell_stop(const Unit& unit, unsigned verb, const Stamp& stamp);
+  [[gnu::noinline]] void tell_command(const Unit& unit, const Command& command, const Stamp& stamp);
 
   drivers::Device device(Unit& unit);
   const vm::Actuator& wiring(const Unit& unit) const {

@@ -9,11 +9,17 @@ using vm::Param;
 
 namespace {
 
+// By value: std::clamp's references put all three on the stack.
+constexpr vm::Value clamped(vm::Value value, vm::Value least, vm::Value most) {
+  if (value < least) return least;
+  return value > most ? most : value;
+}
+
 [[gnu::always_inline]] inline vm::Value within(const vm::Actuator& actuator, Param param,
                                                vm::Value value) {
   if (value == vm::kUnknown) return value;
-  if (param == Param::to) return std::clamp(value, actuator.min, actuator.max);
-  if (param == Param::at) return std::clamp(value, vm::Value{0}, actuator.speed_limit);
+  if (param == Param::to) return clamped(value, actuator.min, actuator.max);
+  if (param == Param::at) return clamped(value, 0, actuator.speed_limit);
   return value;
 }
 

@@ -63,7 +63,7 @@ private:
   static constexpr kernel::Events kNews = 2;
   static constexpr std::size_t kKeptFaults = 2;
   // It verifies and loads programs, and signatures where it can: then they need most.
-  static constexpr std::size_t kStack = kAuthentication ? 6144 : 1728;
+  static constexpr std::size_t kStack = kAuthentication ? 6144 : 1856;
 
   void run();
   bool work();  // one thing that is due; false when there is nothing, or the line does not take it

@@ -1,0 +1,156 @@
+"""The deepest that each thread of a firmware can stand on its stack, from the code that was linked.
+
+Every way from the thread's entry through the functions that it calls is added up, whether or not a test ever goes it. What
+is called by a pointer is told by CALLED_BY_POINTER; a call that nothing there fits, and recursion, raise StackError.
+tests/runtime-m4/stack_depth_test.py holds the stacks against it; `scripts/python/stack_depth.py ELF PATTERN` shows the
+deepest way of the function whose name fits, with what each on it takes.
+"""
+
+import re
+import subprocess
+import sys
+
+# Whose calls by pointer lead where: functions whose address stands in the image, by their names. The first that fits counts.
+BOARD = r"boards::(\w+::)?Board::"
+OUTPUTS = BOARD + r"(pwm_write|pwm_read|pins|show|sound)\("
+INPUTS = BOARD + r"(i2c_\w+|input)\("
+STORE = r"boards::(\w+::)?(Eeprom|Store|FlashStore<.*>|Flash)::"
+RUNTIME = r"Runtime::(began|halt|hold_to_budgets|look_at_rules|obey|progress|resting|running|tend_outputs)\("
+MODULE = r"^(state_bytes|scratch_bytes|cost|init|strength|\w+_process)\b"
+CALLED_BY_POINTER = (
+    (r"layers::Trace::", r"update::TraceRing::"),
+    (r"layers::ControlLayer::(start_driver|stop_driver|next_key)", r"drivers::\w+::start\("),
+    (r"layers::ControlLayer::release", r"drivers::\w+::release\("),
+    (r"layers::ControlLayer::start_unit", r"drivers::\w+::(advance|release)\("),  # go_on(), put_at_rest()
+    (r"layers::SensorLayer::", r"layers::DriverSampler::"),
+    (r"layers::DriverSampler::", r"drivers::\w+::read\(|" + INPUTS),
+    (r"layers::AlgorithmLayer::|algorithms::", MODULE),
+    (r"guard::", OUTPUTS),
+    (r"drivers::Device::", r"guard::OutputGuard::|" + OUTPUTS),
+    (r"drivers::", INPUTS),
+    (r"safety::Monitor::", RUNTIME + "|" + BOARD + "watchdog"),
+    (r"vm::check_records", r"vm::.*check_of<"),
+    (r"update::(Store|Keeper)", STORE),
+    (r"update::Server::", BOARD + r"(link_|name|store|reset_reason|buses|pins|input)|" + STORE),
+    (r"robosync::Runtime::|boards::", OUTPUTS + "|" + BOARD + r"(name|buses|pins|store)\(|" + STORE),
+)
+CALLS = re.compile(r"^(bl?|b(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le))(\.[nw])?$")
+LAST_ACTS = 3  # instructions between what ends a frame and the jump
+REGISTERS = re.compile(r"([rsd])(\d+)-[rsd](\d+)")
+
+
+class StackError(Exception):
+    pass
+
+
+def _listed(text):
+    """How many registers {r4-r7, lr} are."""
+    parts = text[text.index("{") + 1:text.index("}")].split(",")
+    return sum(int(m[3]) - int(m[2]) + 1 if (m := REGISTERS.search(part)) else 1 for part in parts)
+
+
+def _pushed(operation, operands):
+    """By how many bytes an instruction lowers the stack pointer."""
+    if operation.startswith("vpush"):
+        return (8 if "d" in operands else 4) * _listed(operands)
+    if operation.startswith("push") or operation.startswith("stmdb") and operands.startswith("sp!"):
+        return 4 * _listed(operands)
+    if operation.startswith("sub") and (m := re.match(r"sp, (?:sp, )?#(\d+)", operands)):
+        return int(m[1])
+    if operation.startswith("str") and (m := re.search(r"\[sp, #-(\d+)\]!", operands)):
+        return int(m[1])
+    if operation.startswith(("sub", "mov")) and operands.startswith("sp,") and "#" not in operands:
+        raise StackError(f"nobody knows by how much `{operation} {operands}` lowers the stack")
+    return 0
+
+
+def _lets_go(operation, operands):
+    return operation.startswith(("pop", "vpop")) or "sp!" in operands and operation.startswith("ldmia") or \
+        operation.startswith("add") and operands.startswith("sp, ") or re.search(r"\[sp\], #\d+", operands) is not None
+
+
+class Function:
+    def __init__(self, name):
+        self.name = name
+        self.most = 0  # bytes of its own
+        self.calls = []  # (function's address, None by pointer; bytes of its own that stand then)
+        self.uses_fpu = False
+        self._recently = 9  # instructions since the stack was let go
+
+    def add(self, operation, operands):
+        self.most += _pushed(operation, operands)
+        self.uses_fpu = self.uses_fpu or operation.startswith("v")
+        self._recently = 0 if _lets_go(operation, operands) else self._recently + 1
+        # Who jumps to another function right behind the end of his frame has none any more.
+        stands = self.most if operation.startswith("bl") or self._recently > LAST_ACTS else 0
+        if operation in ("blx", "bx") and operands != "lr":
+            self.calls.append((None, stands))
+        elif CALLS.match(operation) and (m := re.match(r"([0-9a-f]+) <", operands)):
+            self.calls.append((int(m[1], 16), stands))
+
+
+class Firmware:
+    def __init__(self, elf, tools="arm-none-eabi-"):
+        self._functions, function = {}, None
+        for line in self._objdump(tools, elf, "-d", "-C", "--no-show-raw-insn"):
+            if m := re.match(r"([0-9a-f]{8}) <(.*)>:$", line):
+                function = self._functions[int(m[1], 16)] = Function(m[2])
+            elif function and (m := re.match(r"\s+[0-9a-f]+:\s+(\S+)\s*(.*)$", line)):
+                function.add(m[1], re.split("[;@]", m[2])[0].strip())
+        words = set()
+        for line in self._objdump(tools, elf, "-s"):
+            if m := re.match(r" [0-9a-f]+ ((?:[0-9a-f]{8} ){1,4})", line):
+                words.update(int.from_bytes(bytes.fromhex(word), "little") for word in m[1].split())
+        self._pointed_to = [at for at in self._functions if at | 1 in words]
+        self._deepest = {}
+
+    @staticmethod
+    def _objdump(tools, elf, *options):
+        return subprocess.run([tools + "objdump", *options, str(elf)], check=True, text=True,
+                              stdout=subprocess.PIPE).stdout.splitlines()
+
+    def entry(self, pattern):
+        """The address of the one function whose name fits."""
+        found = [at for at, function in self._functions.items() if re.search(pattern, function.name)]
+        if len(found) != 1:
+            raise StackError(f"{len(found)} functions are named {pattern}")
+        return found[0]
+
+    def own(self, name):
+        """Bytes of this function alone."""
+        return next(function.most for function in self._functions.values() if function.name == name)
+
+    def deepest(self, at, way=()):
+        """(bytes, whether the FPU is used, the names of the functions on the way) from this function on."""
+        if at in way:
+            raise StackError("recursion: " + " → ".join(self._functions[a].name for a in (*way, at)))
+        if at not in self._deepest:
+            function = self._functions[at]
+            best, fpu = (function.most, ()), function.uses_fpu
+            for callee, stands in function.calls:
+                for target in self._pointees(function) if callee is None else [callee] if callee in self._functions else []:
+                    if target == at:
+                        continue  # a loop: the label of its begin is the function's
+                    below, uses, names = self.deepest(target, (*way, at))
+                    best, fpu = max(best, (stands + below, names)), fpu or uses
+            self._deepest[at] = (best[0], fpu, (function.name, *best[1]))
+        return self._deepest[at]
+
+    def _pointees(self, function):
+        for caller, callees in CALLED_BY_POINTER:
+            if re.search(caller, function.name.split("(")[0]):
+                return [at for at in self._pointed_to if re.search(callees, self._functions[at].name)]
+        raise StackError(f"{function.name} calls by pointer: CALLED_BY_POINTER does not say whom")
+
+
+def main():
+    firmware = Firmware(sys.argv[1])
+    for pattern in sys.argv[2:]:
+        deepest, uses_fpu, way = firmware.deepest(firmware.entry(pattern))
+        print(f"{deepest} bytes{', with FPU registers' if uses_fpu else ''}")
+        for name in way:
+            print(f"  {firmware.own(name):5} {name}")
+
+
+if __name__ == "__main__":
+    main()
