@@ -6,8 +6,8 @@ set(CMAKE_CXX_COMPILER arm-none-eabi-g++)
 set(CMAKE_ASM_COMPILER arm-none-eabi-gcc)
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 
-# soft: the product computes in integers, and the compiler would move those by the FPU's registers. A thread that has used
-# them costs 136 bytes of stack more, and twice the instructions at each switch. What links to it may use the FPU (softfp).
+# soft: the product computes in integers, and the compiler would move those by the FPU's registers, which a thread that has used
+# them must have saved at each switch. What is linked to it may use the FPU (softfp).
 set(m4_flags "-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=soft -ffunction-sections -fdata-sections")
 set(CMAKE_C_FLAGS_INIT "${m4_flags}")
 set(CMAKE_ASM_FLAGS_INIT "${m4_flags}")

@@ -41,7 +41,8 @@ bool AlgorithmLayer::start_server(ProgramThreads& threads) {
 
 // The kernel paints the stack, and leaves the data below it alone.
 bool AlgorithmLayer::start_unit(Unit& unit, ProgramThreads& threads) {
-  static_assert(sizeof(Data) % 8 == 0 && sizeof(Data) + port::kMinStack <= port::kSecludedStack);
+  static_assert(sizeof(Data) % 8 == 0 &&
+                sizeof(Data) + policy::kModuleStack <= port::kSecludedStack);
   kernel::ThreadSpec spec;
   spec.name = name_of(program_->image, wiring_of(unit).name, "algorithm");
   spec.category = kernel::Category::algorithm;

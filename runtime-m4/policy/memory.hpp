@@ -43,8 +43,9 @@ inline constexpr std::uint32_t kSensorStack = 576;
 inline constexpr std::uint32_t kStepStack = 704;
 inline constexpr std::uint32_t kBehaviorStack = 320;  // no guard
 inline constexpr std::uint32_t kControlStack = 448;
-inline constexpr std::uint32_t kAlgorithmStack =
-    512;                                         // with its module's data; a region of its own
+// Of an algorithm, with its module's data: a region of its own. So much of it is the module's stack at least.
+inline constexpr std::uint32_t kAlgorithmStack = 1024;
+inline constexpr std::uint32_t kModuleStack = 768;
 inline constexpr std::uint32_t kStackUnit = 64;  // without privileges
 
 inline constexpr std::uint32_t kMaxQueued = 8;  // commands that wait for one actuator

@@ -2,8 +2,8 @@
 
 Every way from the thread's entry through the functions that it calls is added up, whether or not a test ever goes it. What
 is called by a pointer is told by CALLED_BY_POINTER; a call that nothing there fits, and recursion, raise StackError.
-tests/runtime-m4/stack_depth_test.py holds the stacks against it; `scripts/python/stack_depth.py ELF PATTERN` shows the
-deepest way of the function whose name fits, with what each on it takes.
+tests/e2e/test_stack_depth.py holds the stacks against it; `scripts/python/stack_depth.py ELF PATTERN` shows the deepest
+way of the function whose name fits, with what each on it takes.
 """
 
 import re
@@ -34,6 +34,11 @@ CALLED_BY_POINTER = (
     (r"update::Server::", BOARD + r"(link_|name|store|reset_reason|buses|pins|input)|" + STORE),
     (r"robosync::Runtime::|boards::", OUTPUTS + "|" + BOARD + r"(name|buses|pins|store)\(|" + STORE),
 )
+# On top of a thread that is interrupted and gives way: what the core stacks, aligned to 8, and what PendSV_Handler saves
+# (switch.S). With FPU registers there are more of both.
+FRAMES = 4 + 32 + 36
+FPU_FRAMES = 4 + 104 + 100
+GUARD = 32  # port::kGuard, below the stack of a thread with privileges
 CALLS = re.compile(r"^(bl?|b(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le))(\.[nw])?$")
 LAST_ACTS = 3  # instructions between what ends a frame and the jump
 REGISTERS = re.compile(r"([rsd])(\d+)-[rsd](\d+)")
@@ -70,7 +75,8 @@ def _lets_go(operation, operands):
 
 
 class Function:
-    def __init__(self, name):
+    def __init__(self, at, name):
+        self.at = at
         self.name = name
         self.most = 0  # bytes of its own
         self.calls = []  # (function's address, None by pointer; bytes of its own that stand then)
@@ -86,7 +92,9 @@ class Function:
         if operation in ("blx", "bx") and operands != "lr":
             self.calls.append((None, stands))
         elif CALLS.match(operation) and (m := re.match(r"([0-9a-f]+) <", operands)):
-            self.calls.append((int(m[1], 16), stands))
+            target = int(m[1], 16)
+            if target != self.at or operation.startswith("bl"):  # a jump to its own beginning is a loop
+                self.calls.append((target, stands))
 
 
 class Firmware:
@@ -94,7 +102,8 @@ class Firmware:
         self._functions, function = {}, None
         for line in self._objdump(tools, elf, "-d", "-C", "--no-show-raw-insn"):
             if m := re.match(r"([0-9a-f]{8}) <(.*)>:$", line):
-                function = self._functions[int(m[1], 16)] = Function(m[2])
+                at = int(m[1], 16)
+                function = self._functions[at] = Function(at, m[2])
             elif function and (m := re.match(r"\s+[0-9a-f]+:\s+(\S+)\s*(.*)$", line)):
                 function.add(m[1], re.split("[;@]", m[2])[0].strip())
         words = set()
@@ -128,15 +137,16 @@ class Firmware:
             function = self._functions[at]
             best, fpu = (function.most, ()), function.uses_fpu
             for callee, stands in function.calls:
-                for target in self._pointees(function) if callee is None else [callee] if callee in self._functions else []:
-                    if target == at:
-                        continue  # a loop: the label of its begin is the function's
+                for target in self._targets(function, callee):
                     below, uses, names = self.deepest(target, (*way, at))
                     best, fpu = max(best, (stands + below, names)), fpu or uses
             self._deepest[at] = (best[0], fpu, (function.name, *best[1]))
         return self._deepest[at]
 
-    def _pointees(self, function):
+    def _targets(self, function, callee):
+        """Where a call leads; a jump within the function is none."""
+        if callee is not None:
+            return [callee] if callee in self._functions else []
         for caller, callees in CALLED_BY_POINTER:
             if re.search(caller, function.name.split("(")[0]):
                 return [at for at in self._pointed_to if re.search(callees, self._functions[at].name)]

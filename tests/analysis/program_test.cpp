@@ -123,8 +123,8 @@ TEST_CASE("check: algorithms take memory and time, and who asks for too much is 
   };
   const test::Outcome one = check(1, "");
   CHECK_THAT(one.out,
-             Contains("algorithms           624 of 114688 bytes") && Contains("skin0 -> a"));
-  CHECK_THAT(check(2, "").out, Contains("algorithms          1248 of 114688 bytes"));
+             Contains("algorithms          1136 of 114688 bytes") && Contains("skin0 -> a"));
+  CHECK_THAT(check(2, "").out, Contains("algorithms          2272 of 114688 bytes"));
   CHECK(check(2, R"(, "rate": "500Hz")").exit == 0);
   const test::Outcome fast = check(8, R"(, "rate": "500Hz")");
   CHECK(fast.exit == 1);

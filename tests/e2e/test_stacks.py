@@ -12,6 +12,7 @@ from pathlib import Path
 import rsc
 from board import FIRMWARE
 from debugger import DebuggedTest
+from stack_depth import FRAMES
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import of_the_board, symbols  # noqa: E402
@@ -19,7 +20,6 @@ from counting import of_the_board, symbols  # noqa: E402
 SP = 13
 HALF_BIT = "I2c::half_bit() const"
 TIMES = 1500  # some samples' worth
-FRAME, SAVED = 32, 36  # what the core stacks, and PendSV_Handler: no thread has FPU registers to save
 PAINT = 0xA5A5A5A5
 UNTOUCHED = 3  # so many painted words in a row were never used
 CONFIG = """{
@@ -59,7 +59,7 @@ class Stacks(DebuggedTest):
         thread = self.sensor()
         bottom = self.lowest_used(deepest, thread["stack_bytes"]) + thread["stack_used"] - thread["stack_bytes"]
         self.assertEqual(thread["stack_used"], self.sensor()["stack_used"], "it grew meanwhile")
-        self.assertGreaterEqual(deepest - FRAME - SAVED, bottom)
+        self.assertGreaterEqual(deepest - FRAMES, bottom)
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ inline constexpr std::size_t kMaxUnprivilegedStack =
 
 // One that has data on its stack, and nothing else: a single region, so that the other one of the
 // window can close the rest of the memory.
-inline constexpr unsigned kSecludedBits = 9;
+inline constexpr unsigned kSecludedBits = 10;
 inline constexpr std::size_t kSecludedStack = std::size_t{1} << kSecludedBits;
 
 // Alignment and guard, what the core stacks with FPU registers, and what switch.S adds.

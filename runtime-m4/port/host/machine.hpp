@@ -28,7 +28,7 @@ inline constexpr std::size_t kMinStack = 0;     // a fiber has a host-sized stac
 inline constexpr std::size_t kArenaScale = 16;  // of pointers, and of what a fiber keeps
 inline constexpr std::size_t kUnprivilegedStackAlignment = 64;  // as on the board
 inline constexpr std::size_t kMaxUnprivilegedStack = 576;
-inline constexpr std::size_t kSecludedStack = 512;
+inline constexpr std::size_t kSecludedStack = 1024;
 
 // Nothing is closed here.
 struct Areas {
