@@ -22,7 +22,7 @@ import rsc
 from board import Board
 from counting import (READING, BenchError, Marks, begin_of, ends_of, functions, of_the_board, plugin_arguments,
                       wait_for_readings)
-from flood import STOP, Flood, wire
+from flood import STOP, Flood
 from idle import code_of
 
 BYTE = "Uart0Receive_Handler"
@@ -117,7 +117,7 @@ class PersonInAFlood:
 
     def resume(self):
         self.flood.quiet()
-        self.flood.ask("resume", wire.pack("Resume", session=self.flood.session), "status")
+        self.flood.ask("resume", self.flood.resumption(), "status")
         self.flood.start()
 
     def leave(self):

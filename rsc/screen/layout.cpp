@@ -55,8 +55,8 @@ bool has(std::string_view text, std::string_view part) {
   const auto same = [](unsigned char a, unsigned char b) {
     return std::tolower(a) == std::tolower(b);
   };
-  return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end() ||
-         part.empty();
+  if (part.empty()) return true;
+  return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
 }
 
 Section sensors(const Model& model, const View& view, std::size_t columns) {

@@ -376,7 +376,7 @@ class Robot:
             self.board.set_touch(1, channel)
         for _ in self.line.upload(self.image):
             pass
-        self.line.patient("resume", wire.pack("Resume", session=self.line.session), "status")
+        self.line.patient("resume", self.line.resumption(), "status")
         give_up = time.monotonic() + 20
         while not all(self.pulses()[pin] for pin in (ARM, MOTOR)):
             if time.monotonic() > give_up:

@@ -227,9 +227,10 @@ class Trial(Switched):
             debugger.set_register(0, UART)
         self.assertTrue(reader.wait_for(lambda lines: any('"fault"' in line for line in lines[1:]), PATIENCE), reader.lines)
         reader.stop()
-        self.assertIsNotNone(self.await_kept("kept")["given_up"])
+        given_up = self.await_kept("kept")["given_up"]
+        self.assertIsNotNone(given_up)
         self.assertEqual(self.running(), kept)
-        self.assertIn("given up  program ", rsc.run("info", "--port", self.board.port))
+        self.assertIn(f"given up  program {given_up}: ", rsc.run("info", "--port", self.board.port))
 
 
 class NoStore(RobotTest):

@@ -219,6 +219,10 @@ class Line:
             status = unpack("TransferStatus", self.ask("data", data, "transfer_status"))
         return status
 
+    def resumption(self):
+        """Of what it asks with `resume`."""
+        return pack("Resume", session=self.session)
+
     def activate(self):
         """What was transferred last."""
         return unpack("ActivateResult", self.ask("activate", activation(self.session, self._name), reply="activate_result"))

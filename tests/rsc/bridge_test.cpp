@@ -2,6 +2,7 @@
 #include <csignal>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -12,6 +13,7 @@
 #include "rsc/bridge/mqtt.hpp"
 #include "rsc/bridge/topics.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/loaded_library.hpp"
 #include "tests/rsc/device.hpp"
 
 using namespace robosync;
@@ -80,8 +82,8 @@ public:
     REQUIRE(mqtt_);
   }
 
-  // A message of the topic with `part` in it, behind the one that was last waited for; empty when none comes.
-  std::string wait_for(const std::string& topic, const std::string& part) {
+  // A message of the topic with `part` in it, behind the one that was last waited for.
+  std::optional<std::string> wait_for(const std::string& topic, const std::string& part) {
     const auto give_up = std::chrono::steady_clock::now() + 15s;
     const std::vector<std::string>& payloads = came_[topic];
     for (std::size_t& next = next_[topic]; std::chrono::steady_clock::now() < give_up;) {
@@ -93,7 +95,7 @@ public:
       else
         std::this_thread::sleep_for(5ms);
     }
-    return "";
+    return std::nullopt;
   }
   [[nodiscard]] bool has(const std::string& topic) const {
     return came_.contains(topic) && !came_.at(topic).empty();
@@ -134,23 +136,23 @@ TEST_CASE("a robot on a broker: what it does is published, and it is fed, stoppe
   REQUIRE(device.run({"upload", device.program}).exit == 0);
   subscriber.publish("robosync/pet/do/stop", "now", true);  // lay there before: nobody obeys it
   Running bridge(device, broker, "pet", "9s");
-  CHECK(!subscriber.wait_for("robosync/pet/online", "true").empty());
-  CHECK(!subscriber.wait_for("robosync/pet/board", "mps2-an386").empty());
-  CHECK(!subscriber.wait_for("robosync/pet/refused", "it was retained").empty());
+  CHECK(subscriber.wait_for("robosync/pet/online", "true"));
+  CHECK(subscriber.wait_for("robosync/pet/board", "mps2-an386"));
+  CHECK(subscriber.wait_for("robosync/pet/refused", "it was retained"));
 
   subscriber.publish("robosync/pet/do/feed/touch/LEVEL", "2");
-  CHECK(!subscriber.wait_for("robosync/pet/sensors/touch/LEVEL", R"("value":2)").empty());
-  const std::string command =
+  CHECK(subscriber.wait_for("robosync/pet/sensors/touch/LEVEL", R"("value":2)"));
+  const auto command =
       subscriber.wait_for("robosync/pet/actuators/left_arm", R"("event":"command")");
-  REQUIRE(!command.empty());
-  CHECK(json::parse(command).at("verb") == "MOVE");
+  REQUIRE(command);
+  CHECK(json::parse(*command).at("verb") == "MOVE");
   subscriber.publish("robosync/pet/do/feed/proximity/DISTANCE", R"({"value":"30cm"})");
-  CHECK(!subscriber.wait_for("robosync/pet/sensors/proximity/DISTANCE", R"("value":300)").empty());
+  CHECK(subscriber.wait_for("robosync/pet/sensors/proximity/DISTANCE", R"("value":300)"));
   subscriber.publish("robosync/pet/do/stop", "");
-  CHECK(!subscriber.wait_for("robosync/pet/actuators/left_arm", "halt").empty());
-  CHECK(!subscriber.wait_for("robosync/pet/stopped", "true").empty());
+  CHECK(subscriber.wait_for("robosync/pet/actuators/left_arm", "halt"));
+  CHECK(subscriber.wait_for("robosync/pet/stopped", "true"));
   subscriber.publish("robosync/pet/do/resume", "");
-  CHECK(!subscriber.wait_for("robosync/pet/stopped", "false").empty());
+  CHECK(subscriber.wait_for("robosync/pet/stopped", "false"));
 
   for (const auto& [topic, payload] : {std::pair{"feed/touch/LEVL", "2"},
                                        {"feed/touch/LEVEL", "x"},
@@ -159,7 +161,7 @@ TEST_CASE("a robot on a broker: what it does is published, and it is fed, stoppe
                                        {"jump", "now"}}) {
     subscriber.publish(std::string("robosync/pet/do/") + topic, payload);
     CAPTURE(topic, payload);
-    CHECK(!subscriber.wait_for("robosync/pet/refused", topic).empty());
+    CHECK(subscriber.wait_for("robosync/pet/refused", topic));
   }
 
   // The broker is away and has forgotten everything; the bridge has not.
@@ -167,18 +169,18 @@ TEST_CASE("a robot on a broker: what it does is published, and it is fed, stoppe
   std::this_thread::sleep_for(200ms);
   broker.start();
   Subscriber late(broker);
-  CHECK(!late.wait_for("robosync/pet/sensors/touch/LEVEL", R"("value":2)").empty());
-  CHECK(!late.wait_for("robosync/pet/online", "true").empty());
+  CHECK(late.wait_for("robosync/pet/sensors/touch/LEVEL", R"("value":2)"));
+  CHECK(late.wait_for("robosync/pet/online", "true"));
   // The robot is away for a moment.
   device.bridge.hang_up();
-  CHECK(!late.wait_for("robosync/pet/online", "false").empty());
-  CHECK(!late.wait_for("robosync/pet/online", "true").empty());
+  CHECK(late.wait_for("robosync/pet/online", "false"));
+  CHECK(late.wait_for("robosync/pet/online", "true"));
   bridge.join();
   CAPTURE(bridge.outcome.err);
   CHECK(bridge.outcome.exit == 0);
   CHECK_THAT(bridge.outcome.err,
              Contains("the broker is away") && Contains("looking for it again"));
-  CHECK(!late.wait_for("robosync/pet/online", "false").empty());
+  CHECK(late.wait_for("robosync/pet/online", "false"));
 }
 
 TEST_CASE("a fleet of robots on one broker") {
@@ -195,12 +197,11 @@ TEST_CASE("a fleet of robots on one broker") {
   }
   for (int i = 0; i < kRobots; ++i) {
     const std::string root = "robosync/r" + std::to_string(i) + "/";
-    CHECK(!subscriber.wait_for(root + "online", "true").empty());
+    CHECK(subscriber.wait_for(root + "online", "true"));
     subscriber.publish(root + "do/feed/touch/LEVEL", std::to_string(i));
-    CHECK(!subscriber.wait_for(root + "sensors/touch/LEVEL", "\"value\":" + std::to_string(i))
-               .empty());
+    CHECK(subscriber.wait_for(root + "sensors/touch/LEVEL", "\"value\":" + std::to_string(i)));
   }
-  CHECK(subscriber.has("robosync/r2/actuators/left_arm"));  // 2 is below 3
+  CHECK(subscriber.wait_for("robosync/r2/actuators/left_arm", "command"));  // 2 is below 3
   CHECK_FALSE(subscriber.has("robosync/r3/actuators/left_arm"));
   for (const auto& bridge : bridges) {
     bridge->join();
@@ -236,4 +237,14 @@ TEST_CASE("every event of a trace has a topic, and no name makes one of another 
   CHECK(tool::reading_of("feed/a/B", "2.5") == "a.B=2.5");
   CHECK(tool::reading_of("feed/a/B", "\"hello\"") == "a.B=hello");
   CHECK_FALSE(tool::reading_of("stop", ""));
+}
+
+TEST_CASE("a library that is not installed, or is another one") {
+  CHECK_THROWS_WITH(tool::LoadedLibrary("libnone.so.7", "libnone7", "rsc none"),
+                    "rsc none needs libnone.so.7, which is not installed: on Debian, `sudo apt "
+                    "install libnone7`");
+  void (*function)() = nullptr;
+  CHECK_THROWS_WITH(tool::LoadedLibrary("libmosquitto.so.1", "libmosquitto1", "rsc bridge")
+                        .find("none", function),
+                    "this libmosquitto.so.1 has no none");
 }
