@@ -67,6 +67,17 @@ private:
     }
   }
 
+  // What `read` cannot open, this key names. What is wrong inside of the file, it says itself.
+  template <typename Read>
+  auto named_by(std::string_view key, Read read) const {
+    try {
+      return read();
+    } catch (const Failure& error) {
+      if (error.exit() != Exit::outside) throw;
+      throw Failure(Exit::outside, fmt::format("{}:{}: {}", file_, line_of_key(key), error.what()));
+    }
+  }
+
   void check_keys(json_t* object, std::initializer_list<const char*> known) const {
     const std::vector<std::string> names(known.begin(), known.end());
     const char* key = nullptr;
@@ -210,7 +221,7 @@ private:
         {"PITCH", &drivers::Heard::pitch},
         {"CLARITY", &drivers::Heard::clarity}};
     const std::uint64_t begin = begin_of(stimulus);
-    const std::vector<drivers::Heard> blocks = hear_file(file);
+    const std::vector<drivers::Heard> blocks = named_by("sound", [&] { return hear_file(file); });
     bool is_read = false;
     for (const auto& [name, part] : kChannels) {
       const auto channel =
@@ -236,7 +247,7 @@ private:
     const std::string_view sensor = has_sensor ? need_string(stimulus, "sensor") : "";
     const std::uint64_t begin = begin_of(stimulus);
     const std::string file = beside(name);
-    const CsvTable table = read_csv(file);
+    const CsvTable table = named_by("csv", [&] { return read_csv(file); });
     std::size_t time_column = table.columns.cells.size();
     const std::vector<Column> columns = read_columns(file, table, sensor, time_column);
     for (const CsvRow& row : table.rows)

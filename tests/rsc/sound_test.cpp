@@ -89,7 +89,8 @@ TEST_CASE("a robot hears a clap and a voice in a recording, whatever its rate an
 TEST_CASE("a file that is no sound, is too coarse or is not there is said to be so") {
   const Folder folder;
   CHECK(play(folder).exit == 3);
-  CHECK_THAT(play(folder).err, Contains("room.wav: there is no such file"));
+  CHECK_THAT(play(folder).err,
+             Contains("play.json:2: ") && Contains("room.wav: there is no such file"));
   folder.write("room.wav", "no sound");
   CHECK(play(folder).exit == 1);
   CHECK_THAT(play(folder).err, Contains("room.wav: it is no sound: "));
