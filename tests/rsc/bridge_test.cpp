@@ -95,6 +95,9 @@ public:
       else
         std::this_thread::sleep_for(5ms);
     }
+    for (const auto& [other, all] : came_)
+      for (const std::string& payload : all)
+        UNSCOPED_INFO(other + " " + payload);
     return std::nullopt;
   }
   [[nodiscard]] bool has(const std::string& topic) const {
@@ -119,6 +122,9 @@ public:
           outcome = device.run(
               {"bridge", "--mqtt", broker.place, "--name", name, "--duration", duration});
         }) {}
+  ~Running() {
+    if (thread_.joinable()) thread_.join();
+  }
   void join() { thread_.join(); }
 
   Outcome outcome;
@@ -135,6 +141,7 @@ TEST_CASE("a robot on a broker: what it does is published, and it is fed, stoppe
   Device device;
   REQUIRE(device.run({"upload", device.program}).exit == 0);
   subscriber.publish("robosync/pet/do/stop", "now", true);  // lay there before: nobody obeys it
+  REQUIRE(subscriber.wait_for("robosync/pet/do/stop", "now"));
   Running bridge(device, broker, "pet", "9s");
   CHECK(subscriber.wait_for("robosync/pet/online", "true"));
   CHECK(subscriber.wait_for("robosync/pet/board", "mps2-an386"));
