@@ -121,7 +121,11 @@ Mqtt::~Mqtt() {
 }
 
 void Mqtt::publish(const std::string& topic, const std::string& payload, bool retain) {
-  if (retain) state_->retained[topic] = payload;
+  if (retain) {
+    state_->retained[topic] = payload;
+    const std::scoped_lock lock(state_->mutex);
+    if (!state_->connected || state_->again) return;  // next() sends it, once
+  }
   state_->library.publish_(state_->client, nullptr, topic.c_str(), static_cast<int>(payload.size()),
                            payload.data(), retain ? kQos : 0, retain);
 }
