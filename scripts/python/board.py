@@ -37,9 +37,6 @@ UNPACKED = ROOT / "build/qemu/usr"  # by scripts/emulator
 # For whom scripts/emulator makes a QEMU of its own, and what else the machine is told: bytes of its memory.
 MADE = {"microbit-v2": ROOT / "build/qemu-microbit-v2"}
 MEMORY = {"microbit-v2": ["-global", "nrf51-soc.sram-size=131072", "-global", "nrf51-soc.flash-size=524288"]}
-# Whose UART in QEMU loses its interrupt when a byte has to wait for the reader at the other end of the line. On a Unix
-# socket that happens after some hundred bytes, on TCP after megabytes.
-NEVER_WAITS = {"microbit-v2"}
 TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
 BOOT_SECONDS = 20  # on a busy machine
 # How virtual time passes: it counts instructions, so that a firmware that is held up by a busy host
@@ -142,6 +139,17 @@ def store_bytes():
     return json.loads((ROOT / "stdlib/boards" / f"{NAME}.json").read_text("utf-8"))["store"]
 
 
+def socket_of(port):
+    """A connection to what rsc takes as --port, of the two kinds that are sockets."""
+    kind, place = port.split(":", 1)
+    if kind == "tcp":
+        host, number = place.rsplit(":", 1)
+        return socket.create_connection((host, int(number)))
+    line = socket.socket(socket.AF_UNIX)
+    line.connect(place)
+    return line
+
+
 class Board:
     """One running board. `port` is what rsc takes as --port."""
 
@@ -151,9 +159,11 @@ class Board:
             raise BoardError(f"no firmware at {elf}: build the preset {BUILT.name} first")
         self._folder = tempfile.TemporaryDirectory(prefix="robosync-")
         self.qmp_path = Path(self._folder.name) / "qmp"
-        self.serial_path = Path(serial_path or Path(self._folder.name) / "serial").resolve()
+        self._serial_path = Path(serial_path).resolve() if serial_path else None
         self._pty = pty
-        self._tcp = NAME in NEVER_WAITS and not pty and not serial_path
+        # On a Unix socket a byte has to wait for the reader after some hundred others, on TCP after megabytes. Waiting
+        # makes the board lose events of its trace, and the UART of QEMU's micro:bit loses its interrupt by it.
+        self._tcp = not pty and not serial_path
         self._log = Path(self._folder.name) / "qemu.log"
         self._flash_file = store if NAME in FLASHES else None
         self._process = self._start(elf, icount, [*extra, *(with_store(store) if store else [])])
@@ -166,7 +176,7 @@ class Board:
             raise
 
     def _start(self, elf, icount, extra):
-        line = "pty" if self._pty else f"socket,path={self.serial_path},server=on,wait=off"
+        line = "pty" if self._pty else f"socket,path={self._serial_path},server=on,wait=off"
         if self._tcp:
             line = "socket,host=127.0.0.1,port=0,server=on,wait=off,nodelay=on"
         command = [*qemu(), "-kernel", str(elf),
@@ -191,8 +201,8 @@ class Board:
         raise BoardError("QEMU does not answer on its control socket")
 
     def _find_port(self):
-        if not self._pty and not self._tcp:
-            return f"unix:{self.serial_path}"
+        if self._serial_path:
+            return f"unix:{self._serial_path}"
         for device in self.qmp.command("query-chardev"):
             if device["label"] == "line" and self._tcp:
                 return re.search(r"tcp:[\d.]+:\d+", device["filename"])[0]
@@ -247,8 +257,8 @@ class Board:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
-        if not self._pty:
-            self.serial_path.unlink(missing_ok=True)
+        if self._serial_path:
+            self._serial_path.unlink(missing_ok=True)
         self._folder.cleanup()
 
     def __enter__(self):

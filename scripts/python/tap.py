@@ -9,15 +9,17 @@ import threading
 import time
 from pathlib import Path
 
+from board import socket_of
+
 BITS_PER_BYTE = 10  # start, 8 data, stop
 CHUNK = 16  # a UART's FIFO; finer than that no time is measured
 
 
 class Tap:
-    def __init__(self, folder, board_socket, baud=115200):
+    def __init__(self, folder, board_port, baud=115200):
         self.to_board = self.to_host = 0
         self._seconds_per_byte = BITS_PER_BYTE / baud
-        self._board_socket = str(board_socket)
+        self._board_port = board_port
         path = Path(folder) / "tap"
         self.port = f"unix:{path}"
         self._listener = socket.socket(socket.AF_UNIX)
@@ -31,8 +33,7 @@ class Tap:
                 host, _ = self._listener.accept()
             except OSError:
                 return  # closed
-            board = socket.socket(socket.AF_UNIX)
-            board.connect(self._board_socket)
+            board = socket_of(self._board_port)
             back = threading.Thread(target=self._pass_on, args=(board, host, "to_host"), daemon=True)
             back.start()
             self._pass_on(host, board, "to_board")

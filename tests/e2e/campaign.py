@@ -342,7 +342,7 @@ class Robot:
         rsc.run("compile", Path(folder) / "robot.rsl", "-o", Path(folder) / "robot.rsb", "--seed", 1, "--anyway")
         self.image = (Path(folder) / "robot.rsb").read_bytes()
         self.board = Board(icount="shift=5,sleep=off", extra=["-gdb", f"unix:{self.gdb},server=on,wait=off"])
-        self.line = Line(self.board.serial_path)
+        self.line = Line(self.board.port)
         try:
             self.writable = self._find_writable()
         except BaseException:

@@ -20,7 +20,7 @@ class Damage(RobotTest):
         super().setUp()
         self.image = self.compile(PROGRAMS / "priorities.rsl").read_bytes()
         self.upload(self.compile(PROGRAMS / "paper.rsl"))
-        self.line = wire.Line(self.board.serial_path)
+        self.line = wire.Line(self.board.port)
         self.addCleanup(lambda: self.line.close())
         self.before = self.line.hello()
 
@@ -43,7 +43,7 @@ class Damage(RobotTest):
         reacted = reader.wait_for(lambda lines: any('"fire"' in line for line in lines), 20)
         errors = reader.stop()
         self.assertTrue(reacted, errors)
-        self.line = wire.Line(self.board.serial_path)
+        self.line = wire.Line(self.board.port)
 
     def test_the_undamaged_image_runs(self):
         self.assertEqual(self.activate(self.image), "none")
@@ -147,7 +147,7 @@ class Damage(RobotTest):
         done = rsc.call("upload", damaged, "--port", self.board.port)
         self.assertEqual(done.returncode, 1)
         self.assertIn("checksum", done.stderr)
-        self.line = wire.Line(self.board.serial_path)
+        self.line = wire.Line(self.board.port)
         self.assert_goes_on()
 
 

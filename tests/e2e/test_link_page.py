@@ -2,13 +2,12 @@
 program, and is told what the program does."""
 
 import re
-import socket
 import struct
 import unittest
 from pathlib import Path
 from types import SimpleNamespace
 
-from board import ROOT
+from board import ROOT, socket_of
 from support import PROGRAMS, RobotTest
 
 PAGE = (ROOT / "docs/link.md").read_text("utf-8")
@@ -71,12 +70,11 @@ def decoded(block):
 
 
 class Client:
-    def __init__(self, path):
+    def __init__(self, port):
         self.messages = messages()
         self._names = {message.number: name for name, message in self.messages.items()}
-        self._line = socket.socket(socket.AF_UNIX)
+        self._line = socket_of(port)
         self._line.settimeout(20)
-        self._line.connect(str(path))
         self._line.sendall(b"\0")
         self._received = b""
         self._sequence = 0
@@ -107,7 +105,7 @@ class Client:
 class FromThePage(RobotTest):
     def setUp(self):
         super().setUp()
-        self.client = Client(self.board.serial_path)
+        self.client = Client(self.board.port)
         self.addCleanup(self.client.close)
 
     def hello(self):

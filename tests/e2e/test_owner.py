@@ -22,9 +22,9 @@ DENIALS = re.findall(r"^DENIAL\((\w+),", (wire.LINK / "denials.def").read_text("
 class Recorder(Tap):
     """A line that keeps what goes to the board."""
 
-    def __init__(self, folder, socket):
+    def __init__(self, folder, port):
         self.heard = b""
-        super().__init__(folder, socket, FAST_LINE)
+        super().__init__(folder, port, FAST_LINE)
 
     def note(self, counter, data):
         if counter == "to_board":
@@ -93,7 +93,7 @@ class Owner(Switched):
         return self.fail("never in time")
 
     def owner_and_stranger(self, image):
-        with Recorder(self.folder, self.board.serial_path) as line:
+        with Recorder(self.folder, self.board.port) as line:
             rsc.run("upload", image, "--port", line.port)
             rsc.run("stop", "--port", line.port)
             rsc.run("resume", "--port", line.port)
@@ -105,7 +105,7 @@ class Owner(Switched):
             self.refused("the robot's owner has the key", *arguments, *other)
         self.refused("has an owner already", "pair", *other)
         self.refused("there is no key", "resume", "--key", self.folder / "none")
-        with wire.Line(self.board.serial_path) as stranger:
+        with wire.Line(self.board.port) as stranger:
             self.replay(stranger, line.heard)
             self.forge(stranger, before["board"]["program"]["hash"])
         after = rsc.info(self.board.port)
@@ -140,14 +140,14 @@ class Owner(Switched):
 
     def after_the_power(self, image):
         self.await_kept("kept")
-        with Recorder(self.folder / "settings", self.board.serial_path) as line:
+        with Recorder(self.folder / "settings", self.board.port) as line:
             rsc.run("upload", image, "--port", line.port)
         key = self.owner()["key"]
         self.power_cycle()
         self.await_kept("kept")
         self.assertEqual(self.owner(), {"pairing": "paired", "key": key})
         activations = rsc.info(self.board.port)["status"]["activations"]
-        with wire.Line(self.board.serial_path) as stranger:
+        with wire.Line(self.board.port) as stranger:
             self.replay(stranger, line.heard)
         self.assertEqual(rsc.info(self.board.port)["status"]["activations"], activations)
         self.upload(image)

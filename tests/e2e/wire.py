@@ -7,12 +7,13 @@ they stand in one place. Read link/frame.hpp and link/messages.hpp for what the 
 import hashlib
 import random
 import re
-import socket
 import struct
 import time
 import zlib
 from pathlib import Path
 from types import SimpleNamespace
+
+from board import socket_of
 
 LINK = Path(__file__).resolve().parents[2] / "link"
 TYPES = {"std::uint8_t": "B", "std::int8_t": "b", "std::uint16_t": "H", "std::int16_t": "h", "std::uint32_t": "I",
@@ -141,13 +142,12 @@ def frame(name, payload=b"", sequence=0):
 
 
 class Line:
-    """The host's end of a board's serial line (a Unix socket)."""
+    """The host's end of a board's serial line."""
 
-    def __init__(self, path, timeout=20):
+    def __init__(self, port, timeout=20):
         self._timeout = timeout
-        self._socket = socket.socket(socket.AF_UNIX)
+        self._socket = socket_of(port)
         self._socket.settimeout(timeout)
-        self._socket.connect(str(path))
         self._received = b""
         self._sequence = 0
         self.session = random.randrange(1, 1 << 32)

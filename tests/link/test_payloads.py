@@ -19,7 +19,7 @@ class Page(unittest.TestCase):
     def test_no_member_is_overlooked(self):
         """What is read of the header here, another reader of it finds, too (tests/e2e/wire.py)."""
         import sys
-        sys.path.append(str(payloads.ROOT / "tests/e2e"))
+        sys.path += [str(payloads.ROOT / "tests/e2e"), str(payloads.ROOT / "scripts/python")]
         import wire
         known = payloads.structs()
         for name, fields in wire.STRUCTS.items():

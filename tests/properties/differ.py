@@ -28,7 +28,7 @@ from boards import Boards  # noqa: E402
 SCRIPTS = 3  # of readings for each program
 TOLD = 100  # programs, and then how many it were
 # What a board's readings come later, which must be there before their time is; it does not wait for them.
-LEADS_MS = (1_500, 6_000, 24_000)
+LEADS_MS = (1_500, 6_000, 24_000, 96_000)
 ATTEMPTS = 6  # at a trace that must not lose events, if one differs
 
 

@@ -97,10 +97,12 @@ private:
   bool in_time_ = true;
 };
 
-// As a run on the host begins.
-tool::UploadOptions fresh() {
+// As a run on the host begins, and never kept: a board with a store would go back to the program that it keeps, when the one
+// after it is over, and when it does not stand its trial because it trips at once.
+tool::UploadOptions as_on_the_host() {
   tool::UploadOptions options;
   options.fresh = true;
+  options.confirm = false;
   return options;
 }
 
@@ -115,7 +117,7 @@ public:
     const std::vector<tool::Stimulus> readings = tool::read_scenario(job.scenario, program).stimuli;
     const std::vector<std::byte> image = tool::without_source_lines(program);
     const link::ActivateResult begun =
-        tool::upload(session_.client, session_.board, image, fresh()).activation;
+        tool::upload(session_.client, session_.board, image, as_on_the_host()).activation;
     if (begun.running == 0) return "refused";
     ++begun_;
     const bool in_time = Feeding(session_, readings).run();
