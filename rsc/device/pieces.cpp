@@ -37,9 +37,9 @@ public:
     std::size_t tried = 0;
     for (std::size_t from = latest_[key(at)]; from != kNowhere && tried < kMostTried;
          from = before_[from], ++tried) {
-      const auto rest = all_.subspan(at, std::min(kFarthest, all_.size() - at));
+      const auto rest = all_.subspan(at, std::min(kFarthest - from, all_.size() - at));
       const auto end = std::ranges::mismatch(rest, all_.subspan(from)).in1;
-      const auto same = std::min(static_cast<std::size_t>(end - rest.begin()), kFarthest - from);
+      const auto same = static_cast<std::size_t>(end - rest.begin());
       if (same < kShortest || same <= length) continue;
       length = same;
       best = from;
