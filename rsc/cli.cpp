@@ -65,12 +65,13 @@ void Options::option(const std::string& names, const std::string& text, const Ta
 }
 
 void Options::options(const std::string& names, const std::string& text, const Take& take,
-                      const std::string& description) {
+                      const std::string& description, Need need) {
   const auto take_all = [take](const std::vector<std::string>& words) {
     for (const std::string& word : words)
       take_word(take, word);
   };
   app_.add_option_function<std::vector<std::string>>(names, take_all, description)
+      ->required(need == Need::required)
       ->allow_extra_args(false)
       ->type_name(text)
       ->option_text(text);

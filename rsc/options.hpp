@@ -34,7 +34,7 @@ public:
               const std::string& description);
   // As often as one likes; `take` is given each.
   void options(const std::string& names, const std::string& text, const Take& take,
-               const std::string& description);
+               const std::string& description, Need need = Need::optional);
   void flag(const std::string& name, bool& value, const std::string& description);
   // One of `words`, which help shows; `take` is given its index.
   void choice(const std::string& name, const std::vector<std::string>& words,

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
+#include <mutex>
 #include <optional>
 #include <system_error>
 
@@ -117,7 +118,10 @@ void write_through(const fs::path& path, std::span<const std::byte> bytes) {
   write_in_place(path, bytes);
 }
 
+// It is asked for by changing it, and the whole process has one: two threads at once would leave it changed.
 mode_t mode_of_new_file() {
+  static std::mutex asking;
+  const std::lock_guard lock(asking);
   const mode_t mask = umask(0);
   umask(mask);
   return kNewFile & ~mask;

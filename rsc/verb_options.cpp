@@ -17,10 +17,20 @@ void add_format_option(Options& options, Format& format) {
       [&format](std::size_t index) { format = static_cast<Format>(index); }, "human or json");
 }
 
+namespace {
+constexpr const char* kWhatAPortIs =
+    "serial device, pty, unix:PATH or tcp:HOST:PORT (see `rsc ports`)";
+}
+
 void add_port_option(Options& options, std::string& port) {
-  options.option("--port", "PORT", port,
-                 "serial device, pty, unix:PATH or tcp:HOST:PORT (see `rsc ports`)",
-                 Options::Need::required);
+  options.option("--port", "PORT", port, kWhatAPortIs, Options::Need::required);
+}
+
+void add_ports_option(Options& options, std::vector<std::string>& ports) {
+  options.options(
+      "--port", "PORT", [&ports](const std::string& port) { ports.push_back(port); },
+      std::string(kWhatAPortIs) + "; several times: all these robots at once",
+      Options::Need::required);
 }
 
 void add_key_option(Options& options, std::string& key) {

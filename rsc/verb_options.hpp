@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "rsc/console.hpp"
 #include "rsc/options.hpp"
@@ -14,6 +15,8 @@ namespace robosync::tool {
 
 void add_format_option(Options& options, Format& format);
 void add_port_option(Options& options, std::string& port);
+// --port, once or as often as there are robots.
+void add_ports_option(Options& options, std::vector<std::string>& ports);
 // --key FILE, with which orders to a robot that has an owner are signed; empty when it is not given.
 void add_key_option(Options& options, std::string& key);
 void add_config_option(Options& options, std::string& config);

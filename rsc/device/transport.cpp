@@ -2,6 +2,7 @@
 #include "rsc/device/transport.hpp"
 
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 #include "rsc/device/file_transport.hpp"
@@ -9,6 +10,8 @@
 
 namespace robosync::tool {
 namespace {
+
+constexpr std::string_view kUnix = "unix:", kTcp = "tcp:";
 
 // A link to a pty counts as one.
 bool is_pty(const std::string& port) {
@@ -19,9 +22,17 @@ bool is_pty(const std::string& port) {
 
 }  // namespace
 
+std::string real_name_of(const std::string& port) {
+  if (port.starts_with(kTcp)) return port;
+  const std::string kind(port.starts_with(kUnix) ? kUnix : "");
+  std::error_code error;
+  const auto real = std::filesystem::weakly_canonical(port.substr(kind.size()), error);
+  return error ? port : kind + real.string();
+}
+
 std::unique_ptr<Transport> open_port(const std::string& port, Sharing sharing) {
-  if (port.starts_with("unix:")) return open_unix_socket(port.substr(5));
-  if (port.starts_with("tcp:")) return open_tcp_socket(port.substr(4));
+  if (port.starts_with(kUnix)) return open_unix_socket(port.substr(kUnix.size()));
+  if (port.starts_with(kTcp)) return open_tcp_socket(port.substr(kTcp.size()));
   if (is_pty(port)) return open_pty(port, sharing);
   return open_serial(port, sharing);
 }

@@ -38,6 +38,9 @@ enum class Sharing {
   at_once   // begins while it waits: the first reply may go to the other one
 };
 
+// One name for all that name the same device or socket, as far as its file tells.
+[[nodiscard]] std::string real_name_of(const std::string& port);
+
 // `port`: a serial device (115,200 baud, 8N1), a pty, unix:PATH or tcp:HOST:PORT. Throws Failure:
 // outside when it cannot be opened (and says why), usage when it is not such a name.
 [[nodiscard]] std::unique_ptr<Transport> open_port(const std::string& port,
