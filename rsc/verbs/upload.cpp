@@ -211,7 +211,7 @@ void print_table(const std::vector<Robot>& robots, const Program& program) {
     std::cout << fmt::format("{:<{}}  {:<{}}  {:>10}  {:>8}  {}\n", port, width, name, hash.size(),
                              sent, ms, state);
   };
-  row("port", "program", "bytes sent", "ms", "");
+  row("port", "program", "bytes sent", "ms", "state");
   for (const Robot& robot : robots) {
     if (!robot.uploaded) {
       row(robot.port, "-", "-", "-", in_one_line(robot.why_not));

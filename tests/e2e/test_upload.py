@@ -4,7 +4,7 @@ import json
 import unittest
 
 import rsc
-from board import NAME, ROOT
+from board import FAST, NAME, ROOT, Board
 from support import CONFIG, PROGRAMS, LineReader, RobotTest
 
 SAFETY_PERIOD_US = 10_000
@@ -49,6 +49,22 @@ class Upload(RobotTest):
     def test_source_is_compiled_and_uploaded(self):
         said = self.upload(PROGRAMS / "paper.rsl", "--config", self.for_board(CONFIG))
         self.assertRegex(said, r"bytes in [\d.]+ ms")
+
+    def test_two_robots_at_once_and_one_that_is_not_there(self):
+        image = self.compile(PROGRAMS / "priorities.rsl")
+        absent = f"unix:{self.folder}/nobody"
+        with Board(self.elf, icount=FAST) as other:
+            done = rsc.call("upload", image, "--port", self.board.port, "--port", absent, "--port", other.port,
+                            "--format", "json")
+            self.assertEqual(done.returncode, 3, done.stderr)
+            said = json.loads(done.stdout)
+            self.assertEqual([one["port"] for one in said], [self.board.port, absent, other.port])
+            self.assertIn("is the robot running?", said[1]["error"])
+            for one in (said[0], said[2]):
+                self.assertEqual(rsc.info(one["port"])["board"]["program"]["hash"], one["program"])
+            table = rsc.run("upload", image, "--port", self.board.port, "--port", other.port).splitlines()
+            self.assertEqual(len(table), 3, table)
+            self.assertTrue(all("  running; " in row for row in table[1:]), table)
 
     def test_an_image_for_another_board_is_refused(self):
         other = next(path.stem for path in (ROOT / "stdlib/boards").glob("*.json") if path.stem != NAME)

@@ -169,3 +169,22 @@ TEST_CASE("a file keeps its permissions, and nothing is left of a write that fai
   CHECK_THROWS_AS(tool::write_output(folder.path("none/file"), bytes_of(text)), tool::Failure);
   CHECK(folder.files() == 1);
 }
+
+// The mask is read by changing it: what one thread reads meanwhile must not be what stays.
+TEST_CASE("threads that write at the same time give every new file its permissions") {
+  const Folder folder;
+  const std::string text = "new";
+  const mode_t before = umask(022);
+  const auto write_many = [&](const std::string& name) {
+    for (int i = 0; i < 300; ++i)
+      tool::write_output(folder.path(name + std::to_string(i)), bytes_of(text));
+  };
+  std::vector<std::thread> threads;
+  for (const char* name : {"a", "b", "c", "d"})
+    threads.emplace_back(write_many, name);
+  for (std::thread& thread : threads)
+    thread.join();
+  CHECK(umask(before) == 022);
+  for (const auto& entry : fs::directory_iterator(folder.path(".")))
+    if (entry.status().permissions() != fs::perms{0644}) FAIL_CHECK(entry.path());
+}
