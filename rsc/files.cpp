@@ -116,18 +116,23 @@ bool Texts::has(const fs::path& path) const {
   return fs::exists(path, error);
 }
 
+std::vector<fs::path> places_of_configuration(const fs::path& program, const std::string& config) {
+  if (!config.empty()) return {config};
+  fs::path by_stem = program;
+  by_stem.replace_extension(".json");
+  return {by_stem, program.parent_path() / "robot.json"};
+}
+
 fs::path find_configuration(const fs::path& program, const std::string& config,
                             const Texts& texts) {
   if (!config.empty()) return config;
-  fs::path by_stem = program;
-  by_stem.replace_extension(".json");
-  if (texts.has(by_stem)) return by_stem;
-  fs::path common = program.parent_path() / "robot.json";
-  if (texts.has(common)) return common;
+  const std::vector<fs::path> places = places_of_configuration(program, config);
+  for (const fs::path& place : places)
+    if (texts.has(place)) return place;
   throw Failure(Exit::outside,
                 fmt::format("no configuration for {}: there is no {} and no {}; name one with "
                             "--config FILE",
-                            program.string(), by_stem.string(), common.string()));
+                            program.string(), places[0].string(), places[1].string()));
 }
 
 }  // namespace robosync::tool

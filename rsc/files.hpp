@@ -36,6 +36,10 @@ public:
   [[nodiscard]] virtual bool has(const std::filesystem::path& path) const;
 };
 
+// Where find_configuration() looks, in this order.
+[[nodiscard]] std::vector<std::filesystem::path> places_of_configuration(
+    const std::filesystem::path& program, const std::string& config);
+
 // `config` if it is not empty, else STEM.json beside `program`, else robot.json beside it. Throws
 // Failure (outside) when there is none.
 [[nodiscard]] std::filesystem::path find_configuration(const std::filesystem::path& program,

@@ -12,8 +12,9 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> files_of_program(const std::string& file, const CompileOptions& how) {
   std::vector<std::string> files = {file};
+  for (const fs::path& place : places_of_configuration(file, how.config))
+    files.push_back(place.string());
   try {
-    files.push_back(find_configuration(file, how.config).string());
     for (const std::string& name : names_of(compile_file(file, how).sources))
       files.push_back(name);
   } catch (const Failure&) {

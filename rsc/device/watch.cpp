@@ -3,13 +3,13 @@
 #include "rsc/device/watch.hpp"
 
 #include <algorithm>
-#include <csignal>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "rsc/failure.hpp"
+#include "rsc/interruptible.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::tool {
@@ -21,31 +21,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds kLook{1000};  // for losses, and at the threads
 constexpr milliseconds kListen{50};  // before the viewers have their turn
 constexpr milliseconds kTryAgain{500};
-
-volatile std::sig_atomic_t interrupted = 0;
-
-// SIGINT ends the watch instead of the program, so that the board is told to
-// stop its trace.
-class Interruptible {
-public:
-  Interruptible() {
-    interrupted = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = 1; };
-    sigaction(SIGINT, &action, &before_int_);
-    sigaction(SIGTERM, &action, &before_term_);
-  }
-  ~Interruptible() {
-    sigaction(SIGINT, &before_int_, nullptr);
-    sigaction(SIGTERM, &before_term_, nullptr);
-  }
-  Interruptible(const Interruptible&) = delete;
-  Interruptible& operator=(const Interruptible&) = delete;
-
-private:
-  struct sigaction before_int_ {};
-  struct sigaction before_term_ {};
-};
 
 }  // namespace
 
@@ -107,7 +82,7 @@ bool Watch::goes_on() {
   bool wanted = true;
   for (Viewer* const viewer : viewers_)
     wanted = viewer->work(has_line_ ? session_.get() : nullptr) && wanted;
-  return wanted && interrupted == 0 && (!until_ || Clock::now() < *until_);
+  return wanted && !Interruptible::interrupted() && (!until_ || Clock::now() < *until_);
 }
 
 void Watch::show(std::optional<milliseconds> duration) {

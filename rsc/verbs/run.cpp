@@ -14,6 +14,7 @@
 
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/interruptible.hpp"
 #include "rsc/kept.hpp"
 #include "rsc/output.hpp"
 #include "rsc/program.hpp"
@@ -130,11 +131,22 @@ void run(const RunOptions& options) {
   output.write(end_us, uploaded);
 }
 
-// Until somebody ends it. What is wrong is said, and may be mended meanwhile.
-[[noreturn]] void run_again_and_again(const RunOptions& options) {
+// False: somebody has ended it. A run that lasts is ended by the same signals, as rsc run is without --watch.
+bool waits_until_saved(SavedFiles& saved) {
   constexpr std::chrono::milliseconds kBetweenLooks{100};
+  const Interruptible waiting;
+  std::cerr << "rsc: waits until a file is saved; Ctrl-C ends it\n";
+  while (!Interruptible::interrupted()) {
+    if (saved.changed()) return true;
+    std::this_thread::sleep_for(kBetweenLooks);
+  }
+  return false;
+}
+
+// Until somebody ends it. What is wrong is said, and may be mended meanwhile.
+void run_again_and_again(const RunOptions& options) {
   SavedFiles saved;
-  while (true) {
+  do {
     std::vector<std::string> files = files_of_program(options.file, options.how);
     files.push_back(options.scenario);
     saved.look_at(files);
@@ -146,10 +158,7 @@ void run(const RunOptions& options) {
     }
     std::cout.flush();
     if (!std::cout) throw Failure(Exit::outside, "could not write to stdout");
-    std::cerr << "rsc: waits until a file is saved; Ctrl-C ends it\n";
-    while (!saved.changed())
-      std::this_thread::sleep_for(kBetweenLooks);
-  }
+  } while (waits_until_saved(saved));
 }
 
 }  // namespace

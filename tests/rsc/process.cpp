@@ -9,6 +9,7 @@
 #include <iterator>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -47,10 +48,9 @@ int wait_for(pid_t process) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-}  // namespace
-
-Outcome rsc(std::vector<std::string> arguments, const std::vector<std::string>& environment) {
-  const Folder folder;
+// It prints into `out` and `err` of the folder.
+pid_t start(std::vector<std::string> arguments, const std::vector<std::string>& environment,
+            const Folder& folder) {
   arguments.insert(arguments.begin(), "rsc");
   std::vector<std::string> variables = environment;
   for (char** variable = environ; *variable != nullptr; ++variable)
@@ -68,8 +68,48 @@ Outcome rsc(std::vector<std::string> arguments, const std::vector<std::string>& 
                                 pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw std::runtime_error("cannot start " RSC_BINARY);
-  const int exit = wait_for(process);
-  return {exit, read_all(out), read_all(err)};
+  return process;
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++count;
+  return count;
+}
+
+}  // namespace
+
+Outcome rsc(std::vector<std::string> arguments, const std::vector<std::string>& environment) {
+  const Folder folder;
+  const int exit = wait_for(start(std::move(arguments), environment, folder));
+  return {exit, folder.read("out"), folder.read("err")};
+}
+
+Running::Running(std::vector<std::string> arguments)
+    : process_(start(std::move(arguments), {}, folder_)) {}
+
+Running::~Running() {
+  if (process_ == 0) return;
+  kill(process_, SIGKILL);
+  waitpid(process_, nullptr, 0);
+}
+
+bool Running::has_said(const std::string& text, std::size_t times) {
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (count_of(err(), text) < times) {
+    const bool ended = process_ == 0 || waitpid(process_, nullptr, WNOHANG) != 0;
+    if (ended) process_ = 0;
+    if (ended || std::chrono::steady_clock::now() > give_up) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+Outcome Running::end(int signal) {
+  int exit = -1;
+  if (process_ != 0 && kill(process_, signal) == 0) exit = wait_for(std::exchange(process_, 0));
+  return {exit, out(), err()};
 }
 
 Folder::Folder() {

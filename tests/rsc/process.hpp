@@ -1,6 +1,7 @@
 // Runs the built rsc as a user would, and files for it in a folder of its own.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -33,6 +34,26 @@ public:
 
 private:
   std::filesystem::path path_;
+};
+
+// The built rsc while it runs. What it prints lies in a folder of its own.
+class Running {
+public:
+  explicit Running(std::vector<std::string> arguments);
+  ~Running();  // kills it, if it still runs
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  // Waits until it has printed `text` on stderr `times` times; false when it has ended before that, or after 60 s.
+  [[nodiscard]] bool has_said(const std::string& text, std::size_t times);
+  std::string out() const { return folder_.read("out"); }
+  std::string err() const { return folder_.read("err"); }
+  // Sends `signal`, and waits for the end.
+  [[nodiscard]] Outcome end(int signal);
+
+private:
+  Folder folder_;
+  int process_ = 0;  // 0: it has ended
 };
 
 }  // namespace robosync::test

@@ -98,7 +98,7 @@ TEST_CASE("an upload to several robots goes on without those that are not there 
                           Contains("  running; "));
 }
 
-TEST_CASE("an upload to several robots of which one is another board") {
+TEST_CASE("a program for another board than several robots are is refused for each of them") {
   const Device mine;
   json robot = json::parse(test::kRobot);
   robot["board"] = "b-l475e-iot01a";
@@ -109,7 +109,9 @@ TEST_CASE("an upload to several robots of which one is another board") {
       upload_to({mine.port, here.port}, mine.program, {"--config", config, "--format", "json"});
   CAPTURE(outcome.out, outcome.err);
   CHECK(outcome.exit == 1);
-  for (const json& one : json::parse(outcome.out)) {
+  const json list = json::parse(outcome.out);
+  CHECK(list.size() == 2);
+  for (const json& one : list) {
     CHECK(one.at("exit") == 1);
     CHECK_THAT(one.at("error").get<std::string>(),
                Contains("it is for b-l475e-iot01a, and this is mps2-an386"));

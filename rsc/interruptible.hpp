@@ -1,0 +1,38 @@
+// SIGINT and SIGTERM (Ctrl-C) end what is being waited for instead of the program: it then puts in order what it has begun, and
+// its exit code is that of a good end.
+#pragma once
+
+#include <csignal>
+
+namespace robosync::tool {
+
+// While it lives. One at a time.
+class Interruptible {
+public:
+  Interruptible() {
+    flag() = 0;
+    struct sigaction action {};
+    action.sa_handler = [](int) { flag() = 1; };
+    sigaction(SIGINT, &action, &before_int_);
+    sigaction(SIGTERM, &action, &before_term_);
+  }
+  ~Interruptible() {
+    sigaction(SIGINT, &before_int_, nullptr);
+    sigaction(SIGTERM, &before_term_, nullptr);
+  }
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+
+  static bool interrupted() { return flag() != 0; }
+
+private:
+  static volatile std::sig_atomic_t& flag() {
+    static constinit volatile std::sig_atomic_t interrupted = 0;
+    return interrupted;
+  }
+
+  struct sigaction before_int_ {};
+  struct sigaction before_term_ {};
+};
+
+}  // namespace robosync::tool
