@@ -272,7 +272,7 @@ def link_figures():
     """Uploading the paper's program over a line of 115,200 baud, from calling rsc to its end."""
     with tempfile.TemporaryDirectory() as folder, Board() as board:
         image = compile_example(folder, "--strip")
-        with Tap(folder, board.serial_path) as tap:
+        with Tap(folder, board.port) as tap:
             begin = time.monotonic()
             rsc.run("upload", image, "--port", tap.port)
             seconds = time.monotonic() - begin

@@ -103,7 +103,7 @@ class PersonInAFlood:
         threads = rsc.info(board.port)["threads"]
         if len(threads) < BUSY_THREADS:
             raise BenchError(f"{len(threads)} threads are no load")
-        self.marks, self.flood = marks, Flood(board.serial_path, marks)
+        self.marks, self.flood = marks, Flood(board.port, marks)
         begin = lines_of(marks)
         for _ in range(TIMES):
             self.flood.send_raw(b"\0")

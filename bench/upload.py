@@ -35,7 +35,7 @@ class Line:
         self._cache = Path(folder) / "cache"
         os.environ["XDG_CACHE_HOME"] = str(self._cache)
         self._board = Board()
-        self.tap = Tap(folder, self._board.serial_path)
+        self.tap = Tap(folder, self._board.port)
 
     def forget(self):
         for file in self._cache.rglob("*.rsb"):
@@ -46,7 +46,7 @@ class Line:
         begun = time.monotonic()
         rsc.run("upload", program, "--port", self.tap.port, "--anyway")
         time.sleep(0.05)  # the tap lets go of the board's socket
-        with wire.Line(self._board.serial_path) as line:
+        with wire.Line(self._board.port) as line:
             asked = time.monotonic()
             program_us = line.status().program_us
             return 1000 * ((asked + time.monotonic()) / 2 - begun) - program_us / 1000

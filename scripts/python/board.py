@@ -37,6 +37,7 @@ UNPACKED = ROOT / "build/qemu/usr"  # by scripts/emulator
 # For whom scripts/emulator makes a QEMU of its own, and what else the machine is told: bytes of its memory.
 MADE = {"microbit-v2": ROOT / "build/qemu-microbit-v2"}
 MEMORY = {"microbit-v2": ["-global", "nrf51-soc.sram-size=131072", "-global", "nrf51-soc.flash-size=524288"]}
+LOSES_INTERRUPT = {"microbit-v2"}  # of its UART, when a byte has to wait
 TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
 BOOT_SECONDS = 20  # on a busy machine
 # How virtual time passes: it counts instructions, so that a firmware that is held up by a busy host
@@ -144,7 +145,9 @@ def socket_of(port):
     kind, place = port.split(":", 1)
     if kind == "tcp":
         host, number = place.rsplit(":", 1)
-        return socket.create_connection((host, int(number)))
+        line = socket.create_connection((host, int(number)))
+        line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # a byte is sent when it is written, as on a line
+        return line
     line = socket.socket(socket.AF_UNIX)
     line.connect(place)
     return line
@@ -159,11 +162,11 @@ class Board:
             raise BoardError(f"no firmware at {elf}: build the preset {BUILT.name} first")
         self._folder = tempfile.TemporaryDirectory(prefix="robosync-")
         self.qmp_path = Path(self._folder.name) / "qmp"
-        self._serial_path = Path(serial_path).resolve() if serial_path else None
+        self._serial_path = Path(serial_path or Path(self._folder.name) / "serial").resolve()
         self._pty = pty
         # On a Unix socket a byte has to wait for the reader after some hundred others, on TCP after megabytes. Waiting
-        # makes the board lose events of its trace, and the UART of QEMU's micro:bit loses its interrupt by it.
-        self._tcp = not pty and not serial_path
+        # makes a board whose time runs ahead lose events of its trace, and QEMU's micro:bit the interrupt of its UART.
+        self._tcp = (icount == FAST or NAME in LOSES_INTERRUPT) and not pty and not serial_path
         self._log = Path(self._folder.name) / "qemu.log"
         self._flash_file = store if NAME in FLASHES else None
         self._process = self._start(elf, icount, [*extra, *(with_store(store) if store else [])])
@@ -201,7 +204,7 @@ class Board:
         raise BoardError("QEMU does not answer on its control socket")
 
     def _find_port(self):
-        if self._serial_path:
+        if not self._pty and not self._tcp:
             return f"unix:{self._serial_path}"
         for device in self.qmp.command("query-chardev"):
             if device["label"] == "line" and self._tcp:
@@ -257,7 +260,7 @@ class Board:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
-        if self._serial_path:
+        if not self._pty:
             self._serial_path.unlink(missing_ok=True)
         self._folder.cleanup()
 
