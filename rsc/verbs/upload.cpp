@@ -252,7 +252,7 @@ void expect_different_lines(const std::vector<std::string>& ports) {
     const auto [at, is_new] = seen.emplace(real_name_of(port), port);
     if (is_new) continue;
     const std::string same = at->second == port ? " is there twice" : " is " + at->second;
-    throw Failure(Exit::usage, "--port " + port + same + ": name each robot once");
+    throw Failure(Exit::usage, fmt::format("--port {}{}: name each robot once", port, same));
   }
 }
 
