@@ -171,9 +171,11 @@ void serve(Robot& robot, const SendOptions& options, const Program& program) {
 
 std::vector<Robot> serve_all(const SendOptions& options, const Program& program) {
   std::vector<Robot> robots;
+  robots.reserve(options.ports.size());
   for (const std::string& port : options.ports)
     robots.push_back({port, {}, Exit::fine, {}});
   std::vector<std::jthread> threads;
+  threads.reserve(robots.size());
   for (Robot& robot : robots)
     threads.emplace_back([&] { serve(robot, options, program); });
   threads.clear();  // each ends with its answer, or by its timeout
