@@ -1,12 +1,12 @@
 // May assume POSIX. Promises that what is there already is never left half written.
 #include "rsc/output.hpp"
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
-#include <mutex>
 #include <optional>
 #include <system_error>
 
@@ -63,11 +63,26 @@ private:
   int number_;
 };
 
+// An open file that was not there, or -1. `name` becomes its name: `target` and what no other thread or process adds to it. A
+// process that was killed may have left such a file, and another one now have its number.
+int create_beside(const fs::path& target, mode_t mode, std::string& name) {
+  static std::atomic<unsigned> count = 0;
+  constexpr int kAttempts = 100;
+  int file = -1;
+  for (int i = 0; i < kAttempts; ++i) {
+    name = fmt::format("{}.{}-{}", target.string(), getpid(), ++count);
+    file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    if (file >= 0 || errno != EEXIST) break;
+  }
+  return file;
+}
+
 // A temporary file beside the one to be written. Gone unless it was renamed.
 class Temporary {
 public:
-  explicit Temporary(const fs::path& target)
-      : target_(target), name_(target.string() + ".XXXXXX"), file_(mkstemp(name_.data())) {
+  // `mode` but for the umask of the process, as of every new file.
+  Temporary(const fs::path& target, mode_t mode)
+      : target_(target), file_(create_beside(target, mode, name_)) {
     if (file_.number() < 0) fail(target_, errno);
   }
   ~Temporary() {
@@ -78,9 +93,12 @@ public:
 
   void write(std::span<const std::byte> bytes) const { write_all(file_.number(), bytes, target_); }
 
-  void replace_target(mode_t mode) {
-    if (fchmod(file_.number(), mode) != 0 || fsync(file_.number()) != 0 ||
-        std::rename(name_.c_str(), target_.c_str()) != 0) {
+  // Whatever the umask says.
+  void set_mode(mode_t mode) const {
+    if (fchmod(file_.number(), mode) != 0) fail(target_, errno);
+  }
+  void replace_target() {
+    if (fsync(file_.number()) != 0 || std::rename(name_.c_str(), target_.c_str()) != 0) {
       fail(target_, errno);
     }
     renamed_ = true;
@@ -116,15 +134,6 @@ void write_through(const fs::path& path, std::span<const std::byte> bytes) {
     return;
   }
   write_in_place(path, bytes);
-}
-
-// It is asked for by changing it, and the whole process has one: two threads at once would leave it changed.
-mode_t mode_of_new_file() {
-  static std::mutex asking;
-  const std::lock_guard lock(asking);
-  const mode_t mask = umask(0);
-  umask(mask);
-  return kNewFile & ~mask;
 }
 
 }  // namespace
@@ -168,9 +177,11 @@ void write_output(const fs::path& path, std::span<const std::byte> bytes) {
     return;
   }
   if (facts && access(path.c_str(), W_OK) != 0) fail(path, errno);
-  Temporary file(path);
+  const mode_t mode = facts ? facts->st_mode & kPermissions : kNewFile;
+  Temporary file(path, mode);
   file.write(bytes);
-  file.replace_target(facts ? facts->st_mode & kPermissions : mode_of_new_file());
+  if (facts) file.set_mode(mode);
+  file.replace_target();
 }
 
 }  // namespace robosync::tool

@@ -93,7 +93,8 @@ def checked(command, paths):
         return []
     if len(paths) == 1:
         return [(paths[0], answer.stdout)]
-    return [found for path in paths for found in checked(command, [path])]
+    by_itself = [found for path in paths for found in checked(command, [path])]
+    return by_itself or [(paths[0], answer.stdout)]
 
 
 def run_format():

@@ -1,0 +1,85 @@
+// See robot_upload.hpp.
+#include "rsc/robot_upload.hpp"
+
+#include <algorithm>
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+#include "rsc/device/keeping.hpp"
+#include "rsc/device/known_image.hpp"
+#include "rsc/device/serial_transport.hpp"
+#include "rsc/failure.hpp"
+
+namespace robosync::tool {
+
+using std::chrono::milliseconds;
+using Json = nlohmann::ordered_json;
+
+namespace {
+constexpr double kBitsPerByte = 10;  // 8N1
+}
+
+double ms_of(const UploadResult& result) {
+  return static_cast<double>(result.time.count()) / 1000;
+}
+
+double wire_ms_of(const UploadResult& result) {
+  return static_cast<double>(result.bytes) * kBitsPerByte / kBaudRate * 1000;
+}
+
+std::string hash_of(const Program& program) {
+  return text_of(program.image().header->program_hash);
+}
+
+Json json_of(const Uploaded& uploaded, const Program& program) {
+  const UploadResult& result = uploaded.result;
+  return {{"bytes", result.bytes},
+          {"time_ms", ms_of(result)},
+          {"wire_time_ms", wire_ms_of(result)},
+          {"frames", result.frames_sent},
+          {"bytes_sent", result.bytes_sent},
+          {"program", hash_of(program)},
+          {"uptime_us", result.activation.uptime_us},
+          {"silent", devices_json(uploaded.silent)},
+          {"kept", keeping_json(uploaded.kept)}};
+}
+
+void print_json(const Json& json) {
+  std::cout << json.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+Uploaded upload_to(const std::string& port, const Program& program, const SendOptions& options,
+                   const Progress& progress) {
+  const std::vector<std::byte> base = known_image(port);
+  UploadOptions how;
+  how.timeout = options.timeout;
+  how.trial = options.trial.value_or(milliseconds(0));
+  how.confirm = !options.no_confirm;
+  how.replace = options.replace;
+  how.fresh = options.fresh;
+  if (!how.replace) how.base = base;
+  how.progress = progress;
+  constexpr milliseconds kAnswer{2000};
+  Session session(port, std::min(how.timeout.value_or(kAnswer), kAnswer), Greeting::later,
+                  options.take);
+  session.client.use_key(options.key);
+  if (options.no_confirm) expect_kept_program(session.client);
+  Uploaded uploaded;
+  uploaded.result = upload_program(session, program, how);
+  know_image(port, without_source_lines(program));
+  uploaded.silent = silent_after_start(session.client, program.image());
+  uploaded.kept = options.trial ? after_trial(session.client) : session.client.kept();
+  return uploaded;
+}
+
+void expect_trial_stood(const SendOptions& options, const Uploaded& uploaded,
+                        const Program& program) {
+  if (uploaded.kept.given_up_hash == program.image().header->program_hash)
+    throw Failure(Exit::program,
+                  options.file +
+                      " did not stand its trial: a thread of it faulted, or a SAFETY rule tripped "
+                      "that did not in the program before; that one runs again");
+}
+
+}  // namespace robosync::tool

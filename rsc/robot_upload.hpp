@@ -1,0 +1,56 @@
+// What rsc upload does with one robot, and what it says of it.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "rsc/console.hpp"
+#include "rsc/device/devices.hpp"
+#include "rsc/device/uploader.hpp"
+#include "rsc/program.hpp"
+
+namespace robosync::tool {
+
+// What the person has asked for.
+struct SendOptions {
+  std::string file, key;
+  std::vector<std::string> ports;
+  CompileOptions how;
+  std::optional<std::chrono::milliseconds> timeout, trial;
+  bool no_confirm = false;
+  bool replace = false;
+  bool fresh = false;
+  bool anyway = false;
+  bool take = false;
+  Format format = Format::human;
+};
+
+using Progress = std::function<void(std::size_t sent, std::size_t total)>;
+
+// What a robot has got, and how it stands with it.
+struct Uploaded {
+  UploadResult result;
+  std::vector<OnBus> silent;
+  link::Kept kept{};
+};
+
+[[nodiscard]] double ms_of(const UploadResult& result);
+[[nodiscard]] double wire_ms_of(const UploadResult& result);
+[[nodiscard]] std::string hash_of(const Program& program);
+[[nodiscard]] nlohmann::ordered_json json_of(const Uploaded& uploaded, const Program& program);
+void print_json(const nlohmann::ordered_json& json);
+
+// Throws Failure as Session and upload_program().
+[[nodiscard]] Uploaded upload_to(const std::string& port, const Program& program,
+                                 const SendOptions& options, const Progress& progress);
+// Throws Failure (program) when the program has been given up, for one that runs again.
+void expect_trial_stood(const SendOptions& options, const Uploaded& uploaded,
+                        const Program& program);
+
+}  // namespace robosync::tool
