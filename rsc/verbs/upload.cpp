@@ -11,10 +11,10 @@
 
 #include "rsc/console.hpp"
 #include "rsc/device/keeping.hpp"
+#include "rsc/device/robot_upload.hpp"
 #include "rsc/device/transport.hpp"
+#include "rsc/device/upload_to_several.hpp"
 #include "rsc/failure.hpp"
-#include "rsc/robot_upload.hpp"
-#include "rsc/upload_to_several.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
 

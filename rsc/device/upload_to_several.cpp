@@ -1,5 +1,5 @@
 // See upload_to_several.hpp.
-#include "rsc/upload_to_several.hpp"
+#include "rsc/device/upload_to_several.hpp"
 
 #include <algorithm>
 #include <exception>

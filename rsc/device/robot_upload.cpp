@@ -1,5 +1,5 @@
 // See robot_upload.hpp.
-#include "rsc/robot_upload.hpp"
+#include "rsc/device/robot_upload.hpp"
 
 #include <algorithm>
 #include <iostream>

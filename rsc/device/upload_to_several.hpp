@@ -1,8 +1,8 @@
 // rsc upload to several robots at the same time: a thread for each, and one table or one JSON array.
 #pragma once
 
+#include "rsc/device/robot_upload.hpp"
 #include "rsc/program.hpp"
-#include "rsc/robot_upload.hpp"
 
 namespace robosync::tool {
 
