@@ -50,10 +50,11 @@ class LastWords(DebuggedTest):
         self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
         time.sleep(3)  # it has looked how long the board is up
         board.qmp.command("system_reset")
-        self.assertTrue(reader.wait_for(lambda lines: len(lines) == 2, PATIENCE), reader.lines)
+        self.assertTrue(reader.wait_for(lambda lines: len(lines) > 1, PATIENCE), reader.lines)
         errors = reader.stop()
-        self.assertEqual([json.loads(line)["event"] for line in reader.lines], ["board", "board"])
-        self.assertIn("the board has started again", errors)
+        # Once for each start: on a busy machine QEMU's clock leaps, and the watchdog resets the board, too.
+        self.assertEqual({json.loads(line)["event"] for line in reader.lines}, {"board"})
+        self.assertEqual(errors.count("the board has started again"), len(reader.lines) - 1, errors)
 
     def test_a_fault_of_the_safety_thread_is_told_after_the_reset(self):
         self.send_safety_to(NOWHERE)
