@@ -18,7 +18,7 @@ struct LoadedProgram {
   vm::Image image;
   std::span<InputMask> inputs;          // that each behaviour reads
   std::span<std::uint8_t> behavior_of;  // by rule
-  std::span<std::uint8_t> truth_cell;   // of a WATCH: where its truth is kept
+  std::span<std::uint8_t> truth_cell;   // of a WATCH, if there is one: where its truth is kept
 
   // `image` is verified, and `memory` laid out for it.
   void load(const vm::Image& image, Memory& memory);

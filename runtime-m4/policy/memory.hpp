@@ -97,6 +97,8 @@ enum class Count : std::uint32_t {
   safety_output,
   tripped_words,
   rules,
+  watching_rules,  // all of them when one is a WATCH, otherwise none
+  delaying_rules,  // … has delays
   delays,
   set_words,
   reader_words,
@@ -169,8 +171,13 @@ inline void count_behaviors(const vm::Image& image, Counts& counts) {
   counts[Count::behavior_threads] = counts[Count::behaviors];
   counts[Count::rules] = static_cast<std::uint32_t>(image.rules.size());
   counts[Count::set_words] = set_words(counts[Count::rules]);
-  for (const vm::Rule& rule : image.rules)
+  bool watches = false;
+  for (const vm::Rule& rule : image.rules) {
+    watches |= rule.kind == vm::RuleKind::watch;
     if (has_delays(rule)) ++counts[Count::delays];
+  }
+  if (watches) counts[Count::watching_rules] = counts[Count::rules];
+  if (counts[Count::delays] != 0) counts[Count::delaying_rules] = counts[Count::rules];
   for (const vm::Behavior& behavior : image.behaviors)
     counts[Count::cells] += behavior.cells;
   for (const vm::Timer& timer : image.timers)

@@ -74,8 +74,8 @@ class Large(RobotTest):
         for thread in rsc.info(self.board.port)["threads"]:
             self.assertLess(thread["stack_used"], thread["stack_bytes"], thread)
 
-    def test_32_servos_and_40_behaviors(self):
-        self.check_reacts(40, 40, 32, (0, 17, 39))
+    def test_1000_rules_in_40_behaviors_with_32_servos(self):
+        self.check_reacts(1000, 40, 32, (0, 17, 255, 256, 517, 999))
 
     def test_1000_rules_in_50_behaviors(self):
         self.check_reacts(1000, 50, 2, (0, 255, 256, 517, 999))
