@@ -99,6 +99,17 @@ class Switched(RobotTest):
 
 
 class Store(Switched):
+    def test_several_robots_each_keep_the_program_after_its_trial(self):
+        image, _ = self.images()
+        with Board(self.elf, icount=self.icount, store=self.folder / "another") as other:
+            ports = [self.board.port, other.port]
+            said = json.loads(rsc.run("upload", image, "--trial", "200ms", "--replace", "--fresh", "--format", "json",
+                                      *(word for port in ports for word in ("--port", port))))
+            self.assertEqual([one["port"] for one in said], ports)
+            for one in said:
+                self.assertEqual((one["kept"]["state"], one["kept"]["program"]["hash"]), ("kept", one["program"]))
+            self.assertEqual(rsc.info(other.port)["board"]["program"]["hash"], said[1]["program"])
+
     def test_power_that_goes_at_any_time_leaves_a_kept_program(self):
         images = self.images()
         known = {self.keep(image) for image in images}
