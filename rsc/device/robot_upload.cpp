@@ -14,9 +14,9 @@
 namespace robosync::tool {
 
 using std::chrono::milliseconds;
-using Json = nlohmann::ordered_json;
 
 namespace {
+using Json = nlohmann::ordered_json;
 constexpr double kBitsPerByte = 10;  // 8N1
 }
 

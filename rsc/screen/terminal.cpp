@@ -50,7 +50,7 @@ int attributes_of(Style style) {
     case Style::good:
       return static_cast<int>(COLOR_PAIR(1));
     case Style::bad:
-      return static_cast<int>(COLOR_PAIR(2) | A_BOLD);
+      return static_cast<int>(static_cast<chtype>(COLOR_PAIR(2)) | A_BOLD);
     case Style::plain:
       break;
   }

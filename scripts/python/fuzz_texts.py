@@ -1,0 +1,87 @@
+"""scripts/fuzz --texts: runs libFuzzer on each target that reads texts from outside, on several cores.
+
+A target begins with the examples, what is kept of earlier findings (tests/fuzz/texts/kept) and what it has learned in
+earlier runs (build/fuzz/texts/NAME), and goes on with changes of these. Assumes that build/host-fuzz is built.
+"""
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+TEXTS = ROOT / "tests/fuzz/texts"
+BUILT = ROOT / "build/host-fuzz/tests/fuzz/texts"
+LEARNED = ROOT / "build/fuzz/texts"
+FOUND = ROOT / "build/fuzz/found"
+EXAMPLES = {"rsl": "*.rsl", "robot": "robot.json", "scenario": "*.json"}
+LONGEST = {"lsp": 20_000}  # bytes of an input; a larger one takes longer, and shows little more
+MOST_SECONDS, MOST_MEGABYTES = 10, 2048  # for one input
+
+
+def targets():
+    return re.findall(r"^TARGET\((\w+),", (TEXTS / "targets.def").read_text(), re.M)
+
+
+def words():
+    """Keywords and keys, which nobody finds by changing letters."""
+    keywords = re.findall(r"^KEYWORD\((\w+),", (ROOT / "compiler/syntax/keywords.def").read_text(), re.M)
+    keys = re.findall(r'"(\w+)"', (ROOT / "compiler/config/keys.def").read_text())
+    return sorted({*keywords, *keys})
+
+
+def starts_of(name):
+    """Copies of the examples, in a folder of their own: a corpus is a folder."""
+    folder = LEARNED / f"{name}-examples"
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in (ROOT / "examples").rglob(EXAMPLES[name]) if name in EXAMPLES else ():
+        (folder / "-".join(path.relative_to(ROOT).parts)).write_bytes(path.read_bytes())
+    return folder
+
+
+def fuzz(name, seconds, dictionary):
+    """(name, whether nothing was found, libFuzzer's last words)"""
+    learned = LEARNED / name
+    learned.mkdir(parents=True, exist_ok=True)
+    kept = [folder for folder in [TEXTS / "kept" / name] if folder.is_dir()]
+    command = [BUILT / f"fuzz_{name}", learned, starts_of(name), *kept,
+               f"-max_total_time={seconds}", f"-max_len={LONGEST.get(name, 4096)}", f"-timeout={MOST_SECONDS}",
+               f"-rss_limit_mb={MOST_MEGABYTES}", f"-dict={dictionary}", f"-artifact_prefix={FOUND}/{name}-",
+               "-print_final_stats=1"]
+    done = subprocess.run(command, check=False, text=True, errors="replace", stdin=subprocess.DEVNULL,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    return name, done.returncode == 0, done.stderr
+
+
+def number(said, name):
+    found = re.findall(rf"stat::{name}:\s+(\d+)", said)
+    return int(found[-1]) if found else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/fuzz --texts")
+    parser.add_argument("seconds", type=int)
+    parser.add_argument("targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())}; all of them")
+    wanted = parser.parse_args()
+    unknown = set(wanted.targets) - set(targets())
+    if unknown:
+        parser.error(f"no target {', '.join(sorted(unknown))}; there are: {', '.join(targets())}")
+    FOUND.mkdir(parents=True, exist_ok=True)
+    LEARNED.mkdir(parents=True, exist_ok=True)
+    dictionary = LEARNED / "words"
+    dictionary.write_text("".join(f'"{word}"\n' for word in words()))
+    failed = False
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        for name, fine, said in pool.map(lambda name: fuzz(name, wanted.seconds, dictionary), wanted.targets or targets()):
+            failed |= not fine
+            print(f"{name}: {number(said, 'number_of_executed_units')} inputs, "
+                  f"{len(list((LEARNED / name).iterdir()))} kept to go on with, " +
+                  ("nothing found" if fine else f"FOUND, see {FOUND}:\n{said[-4000:]}"), flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
