@@ -36,8 +36,10 @@ private:
     auto input = use.is_string ? find_file(use, user) : find_built_in(use);
     if (!input || !loaded_.insert(input->name).second) return;
     if (modules_.size() == kMaxModules) {
-      diagnostics_.report(Code::E0407, "a program can use at most 64 modules")
-          .label(use.module.span);
+      diagnostics_
+          .report(Code::E0407, "the program uses more than " + std::to_string(kMaxModules) +
+                                   " modules, the most that rsc reads")
+          .label(use.module.span, "this is one too many");
       return;
     }
     Module module;

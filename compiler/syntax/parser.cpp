@@ -66,7 +66,10 @@ public:
 
   ast::Tree parse() {
     if (source_.text().size() > largest_source) {
-      diagnostics_.report(Code::E0013, "this file is larger than 16 MiB, the most that rsc reads")
+      diagnostics_
+          .report(Code::E0013, "this file has " + std::to_string(source_.text().size()) +
+                                   " bytes, and rsc reads " + std::to_string(largest_source) +
+                                   ", which are 16 MiB")
           .label({file_, 0, 0});
       return {};
     }
@@ -93,11 +96,14 @@ private:
   bool parse_piece(Tokens& tokens) {
     if (const auto deep = nested_too_deeply(tokens)) {
       diagnostics_
-          .report(Code::E0012, "this is nested too deeply: " + std::to_string(kDeepestBlock) +
-                                   " blocks, and " + std::to_string(kDeepestBracket) +
-                                   " brackets or signs, are the most that rsc reads")
-          .label(tokens[*deep].span)
-          .helps("put the inner part into a DEFINE of its own");
+          .report(Code::E0012,
+                  deep->in_blocks ? "more than " + std::to_string(kDeepestBlock) +
+                                        " blocks stand in each other, the most that rsc reads"
+                                  : "more than " + std::to_string(kDeepestBracket) +
+                                        " brackets or signs are open here, the most that rsc reads")
+          .label(tokens[deep->at].span)
+          .helps(deep->in_blocks ? "put the inner part into a DEFINE of its own"
+                                 : "give parts of it a name with LET");
       return false;
     }
     if (const auto empty = empty_block(tokens)) {
@@ -130,7 +136,7 @@ private:
         .report(Code::E0013,
                 mistakes_ > most_mistakes
                     ? "more than " + std::to_string(most_mistakes) +
-                          " mistakes: the rest of the file was not read"
+                          " mistakes, the most that rsc looks for in a file: the rest was not read"
                     : "mistakes that take too long to sort out: the rest of the file was not read")
         .label(tokens.front().span);
     return false;
