@@ -39,7 +39,7 @@ std::string word(const std::string& label) {
 }
 
 std::string condition(const SensorConfig& sensor, const ChannelConfig& channel) {
-  const std::string name = written(sensor, channel);
+  std::string name = written(sensor, channel);
   if (channel.truth) return name;
   if (!channel.labels.empty()) return name + " IS " + word(channel.labels.back());
   return name + " > " + middle(channel);
@@ -84,11 +84,11 @@ std::string text_for(const ActuatorConfig& actuator, const VerbConfig& verb) {
 }
 
 // What the verb is given: a text, a picture, a direction or a place, and how fast.
-std::string arguments(const ActuatorConfig& actuator, const VerbConfig& verb) {
+std::string arguments(const ActuatorConfig& actuator, const VerbConfig& verb, bool places) {
   if (std::string text = text_for(actuator, verb); !text.empty()) return text;
   if (std::string item = word_for(actuator, verb, vm::Param::item); !item.empty()) return item;
   std::string where = word_for(actuator, verb, vm::Param::direction);
-  if (where.empty() && verb.has(vm::Param::to) && actuator.to_unit != nullptr)
+  if ((places || where.empty()) && verb.has(vm::Param::to) && actuator.to_unit != nullptr)
     where = " TO " + middle(actuator.min, actuator.max, *actuator.to_unit);
   return where + word_for(actuator, verb, vm::Param::at);
 }
@@ -113,14 +113,15 @@ std::string RobotVocabulary::of_actuator(Part part, std::string_view name) const
     if (part == Part::actuator) return actuator.name.text;
     if (part == Part::speed_limit && actuator.at_unit != nullptr)
       return actuator.name.text + " SPEED TO " +
-             format_value(vm::Value{30} * vm::kScale, *actuator.at_unit);
+             format_value(std::int64_t{30} * vm::kScale, *actuator.at_unit);
     if (part != Part::followed || actuator.to_unit == nullptr) continue;
     return actuator.name.text + " TO " + middle(actuator.min, actuator.max, *actuator.to_unit);
   }
   return {};
 }
 
-std::string RobotVocabulary::command(std::string_view verb, std::string_view name) const {
+std::string RobotVocabulary::command(std::string_view verb, std::string_view name,
+                                     bool places) const {
   const auto belongs = [&](std::size_t actuator, const GroupConfig& group) {
     return same_name(group.name.text, name) &&
            std::ranges::find(group.members, actuator) != group.members.end();
@@ -131,10 +132,13 @@ std::string RobotVocabulary::command(std::string_view verb, std::string_view nam
         robot_.groups, [&](const GroupConfig& one) { return belongs(i, one); });
     const bool of_group = group != robot_.groups.end();
     if (!of_group && !is_called(actuator.name, name)) continue;
-    for (const VerbConfig& one : actuator.verbs)
-      if (verb.empty() || same_name(one.name, verb))
-        return one.name + " " + (of_group ? group->name.text : actuator.name.text) +
-               arguments(actuator, one);
+    for (const VerbConfig& one : actuator.verbs) {
+      if (!verb.empty() && !same_name(one.name, verb)) continue;
+      const std::string how = arguments(actuator, one, places);
+      // Not every one of a group may reach that place.
+      const bool all = of_group && !how.starts_with(" TO ");
+      return one.name + " " + (all ? group->name.text : actuator.name.text) + how;
+    }
   }
   return {};
 }

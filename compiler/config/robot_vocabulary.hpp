@@ -11,7 +11,8 @@ public:
   explicit RobotVocabulary(const Robot& robot) : robot_(robot) {}  // which must outlive it
 
   [[nodiscard]] std::string part(Part part, std::string_view name) const override;
-  [[nodiscard]] std::string command(std::string_view verb, std::string_view name) const override;
+  [[nodiscard]] std::string command(std::string_view verb, std::string_view name,
+                                    bool places) const override;
 
 private:
   [[nodiscard]] std::string of_actuator(Part part, std::string_view name) const;

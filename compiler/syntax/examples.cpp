@@ -72,6 +72,9 @@ public:
   [[nodiscard]] std::string_view text(std::size_t number) const {
     return source_.text(piece_[line_[number]].span);
   }
+  [[nodiscard]] bool has(TokenKind wanted) const {
+    return std::ranges::any_of(line_, [&](std::size_t at) { return piece_[at].kind == wanted; });
+  }
   [[nodiscard]] TokenKind item() const { return piece_.front().kind; }
 
   // What `of` gives for the first name in the line for which it gives something: in a CHECK, also in its first line.
@@ -128,12 +131,13 @@ public:
   [[nodiscard]] std::string command(std::string_view verb) const {
     const auto of_robot = [&](std::string_view named) {
       return line_.of_names([&](std::string_view name) {
-        return robot_ == nullptr ? "" : robot_->command(named, name);
+        return robot_ == nullptr ? "" : robot_->command(named, name, line_.has(Kinds::TO));
       });
     };
     std::string text = of_robot(verb);
     if (text.empty() && !verb.empty()) text = of_robot("");
-    return text.empty() ? "MOVE left_arm UP SLOWLY" : text;
+    if (!text.empty()) return text;
+    return line_.has(Kinds::TO) ? "MOVE left_arm TO 60deg SLOWLY" : "MOVE left_arm UP SLOWLY";
   }
 
 private:
@@ -297,7 +301,7 @@ std::string Examples::written_like(const Tokens& piece, std::size_t at) const {
 }
 
 std::string Examples::command() const {
-  const std::string text = robot_ == nullptr ? "" : robot_->command("", "");
+  const std::string text = robot_ == nullptr ? "" : robot_->command("", "", false);
   return text.empty() ? "MOVE left_arm UP SLOWLY" : text;
 }
 

@@ -27,8 +27,10 @@ public:
   // Of the sensor, the actuator or the group of this name; without one, of the first that has such a part. Empty when
   // there is none.
   [[nodiscard]] virtual std::string part(Part part, std::string_view name) const = 0;
-  // `MOVE left_arm UP SLOWLY`: the same; without a verb, with the first one.
-  [[nodiscard]] virtual std::string command(std::string_view verb, std::string_view name) const = 0;
+  // `MOVE left_arm UP SLOWLY`: the same; without a verb, with the first one. `places`: with a place behind TO where the
+  // verb takes one, `MOVE left_arm TO 60deg SLOWLY`.
+  [[nodiscard]] virtual std::string command(std::string_view verb, std::string_view name,
+                                            bool places) const = 0;
 };
 
 }  // namespace robosync::compiler

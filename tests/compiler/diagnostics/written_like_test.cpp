@@ -50,8 +50,10 @@ std::size_t check_commands(const Robot& robot, const Vocabulary& vocabulary,
   for (const std::string& name : names_of(robot))
     for (const ActuatorConfig& actuator : robot.actuators)
       for (const VerbConfig& verb : actuator.verbs)
-        if (const std::string command = vocabulary.command(verb.name, name); !command.empty())
-          checked += check_right("AT START DO\n  " + command + "\nEND\n", configuration);
+        for (const bool places : {false, true})
+          if (const std::string command = vocabulary.command(verb.name, name, places);
+              !command.empty())
+            checked += check_right("AT START DO\n  " + command + "\nEND\n", configuration);
   return checked;
 }
 
