@@ -43,6 +43,7 @@ target_sources(robosync_compiler PRIVATE
   config/names.cpp
   config/robot.cpp
   config/robot_reader.cpp
+  config/robot_vocabulary.cpp
   config/sensors.cpp
   config/units.cpp
   config/values.cpp

@@ -45,6 +45,7 @@ target_sources(robosync_compiler PRIVATE
   syntax/blocks.cpp
   syntax/builder.cpp
   syntax/edit.cpp
+  syntax/examples.cpp
   syntax/foreign_habits.cpp
   syntax/format.cpp
   syntax/habits.cpp

@@ -14,8 +14,9 @@ constexpr std::size_t kMaxModules = 64;
 
 class Loader {
 public:
-  Loader(SourceMap& sources, const ModuleReader& read, Diagnostics& diagnostics)
-      : sources_(sources), read_(read), diagnostics_(diagnostics) {}
+  Loader(SourceMap& sources, const ModuleReader& read, Diagnostics& diagnostics,
+         const Vocabulary* robot)
+      : sources_(sources), read_(read), diagnostics_(diagnostics), robot_(robot) {}
 
   std::vector<Module> load(const ast::Tree& program) {
     add_uses(program, 0);
@@ -35,13 +36,16 @@ private:
     auto input = use.is_string ? find_file(use, user) : find_built_in(use);
     if (!input || !loaded_.insert(input->name).second) return;
     if (modules_.size() == kMaxModules) {
-      diagnostics_.report(Code::E0407, "a program can use at most 64 modules")
-          .label(use.module.span);
+      diagnostics_
+          .report(Code::E0407, "the program uses more than " + std::to_string(kMaxModules) +
+                                   " modules, the most that rsc reads")
+          .label(use.module.span, "this is one too many");
       return;
     }
     Module module;
     module.file = sources_.add(std::move(input->name), std::move(input->text));
-    module.tree = std::make_unique<const ast::Tree>(parse(sources_, module.file, diagnostics_));
+    module.tree =
+        std::make_unique<const ast::Tree>(parse(sources_, module.file, diagnostics_, robot_));
     modules_.push_back(std::move(module));
   }
 
@@ -73,6 +77,7 @@ private:
   SourceMap& sources_;
   const ModuleReader& read_;
   Diagnostics& diagnostics_;
+  const Vocabulary* robot_;
   std::vector<Module> modules_;
   std::set<std::string> loaded_;  // names of files
 };
@@ -95,8 +100,9 @@ std::string_view module_with(std::string_view name) {
 }
 
 std::vector<Module> load_modules(const ast::Tree& program, SourceMap& sources,
-                                 const ModuleReader& read, Diagnostics& diagnostics) {
-  return Loader(sources, read, diagnostics).load(program);
+                                 const ModuleReader& read, Diagnostics& diagnostics,
+                                 const Vocabulary* robot) {
+  return Loader(sources, read, diagnostics, robot).load(program);
 }
 
 }  // namespace robosync::compiler

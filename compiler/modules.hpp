@@ -10,6 +10,7 @@
 #include "compiler/input.hpp"
 #include "compiler/source/source_file.hpp"
 #include "compiler/syntax/ast.hpp"
+#include "compiler/syntax/vocabulary.hpp"
 
 namespace robosync::compiler {
 
@@ -30,6 +31,7 @@ struct Module {
 // What `program` uses, and what that uses; each module once. `read` may be empty: then there are no
 // files. What cannot be read is reported where it is used.
 [[nodiscard]] std::vector<Module> load_modules(const ast::Tree& program, SourceMap& sources,
-                                               const ModuleReader& read, Diagnostics& diagnostics);
+                                               const ModuleReader& read, Diagnostics& diagnostics,
+                                               const Vocabulary* robot = nullptr);
 
 }  // namespace robosync::compiler

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "compiler/config/robot_reader.hpp"
+#include "compiler/config/robot_vocabulary.hpp"
 #include "compiler/syntax/parser.hpp"
 
 namespace robosync::compiler {
@@ -22,10 +23,16 @@ Reading read_all(Input program, Input configuration, const ModuleReader& read_mo
   const FileId configuration_file =
       sources.add(std::move(configuration.name), std::move(configuration.text));
   Reading reading;
-  reading.tree = parse(sources, program_file, diagnostics);
-  reading.modules = load_modules(reading.tree, sources, read_module, diagnostics);
+  Diagnostics of_robot;  // its mistakes are none of the program's
+  reading.robot = read_robot(sources, configuration_file, of_robot, algorithms);
+  std::optional<RobotVocabulary> names;
+  if (reading.robot) names.emplace(*reading.robot);
+  const Vocabulary* const robot = names ? &*names : nullptr;
+  reading.tree = parse(sources, program_file, diagnostics, robot);
+  reading.modules = load_modules(reading.tree, sources, read_module, diagnostics, robot);
   const bool whole_trees = diagnostics.errors() == 0;
-  reading.robot = read_robot(sources, configuration_file, diagnostics, algorithms);
+  for (const Diagnostic& diagnostic : of_robot.all())
+    diagnostics.add(diagnostic);
   reading.complete = whole_trees && reading.robot && reading.robot->complete;
   return reading;
 }

@@ -135,10 +135,12 @@ void RuleWriter::reserve_limits() {
     if (variable.min > vm::kValueMin) (void)sections_.pool.constant(variable.min);
     if (variable.max < vm::kValueMax) (void)sections_.pool.constant(variable.max);
   }
-  if (sections_.pool.constants().size() > kMaxConst8)
+  const std::size_t limits = sections_.pool.constants().size();
+  if (limits > kMaxConst8)
     diagnostics_
-        .report(Code::E0407, "the variables that a response sets have more than " +
-                                 std::to_string(kMaxConst8) + " different limits")
+        .report(Code::E0407, "the variables that responses set have " + std::to_string(limits) +
+                                 " different limits, and a robot takes " +
+                                 std::to_string(kMaxConst8))
         .label({});
 }
 

@@ -1,6 +1,7 @@
 #include "compiler/codegen/verify_image.hpp"
 
 #include "compiler/codegen/costly_rules.hpp"
+#include "vm/timers.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::compiler {
@@ -9,12 +10,17 @@ namespace {
 // Shows which rules make the step costly. One object alone may cost more than can be counted: that
 // is `span`.
 void report_costly_step(const Emitted& emitted, Span span, Diagnostics& diagnostics) {
-  Diagnostic& report = diagnostics.report(
-      Code::E0407, "one step of the program could take too long on the robot: at most " +
-                       std::to_string(vm::Limits{}.step_cost) + " instructions may run in it");
-  report.helps(std::string(kHelpForCostlyStep));
   vm::Image image;
   const bool whole = vm::view_image(emitted.image, image);
+  const std::uint32_t cost = whole ? vm::step_cost(image) : 0;
+  const std::string most = std::to_string(vm::Limits{}.step_cost);
+  Diagnostic& report = diagnostics.report(
+      Code::E0407, cost > vm::Limits{}.step_cost
+                       ? "one step of the program could take up to " + std::to_string(cost) +
+                             " instructions on the robot, and at most " + most + " may run in it"
+                       : "one step of the program could take more than " + most +
+                             " instructions on the robot, the most that may run in it");
+  report.helps(std::string(kHelpForCostlyStep));
   bool primary = true;
   for (const CostlyRule& costly : whole ? costly_rules(image) : std::vector<CostlyRule>{}) {
     const vm::Rule& rule = image.rules[costly.rule];
@@ -30,27 +36,56 @@ void report_costly_step(const Emitted& emitted, Span span, Diagnostics& diagnost
   if (primary) report.label(span);
 }
 
+std::string too_much(std::size_t count, const std::string& of_what, std::size_t limit) {
+  return "the program needs " + std::to_string(count) + " " + of_what + ", and a robot has " +
+         std::to_string(limit);
+}
+
+// Of the three sums that only the whole image has: the one that is too large.
+std::string too_many(const Emitted& emitted) {
+  vm::Image image;
+  if (!vm::view_image(emitted.image, image)) return {};
+  constexpr vm::Limits limits;
+  std::size_t cells = 0, timer_words = 0, samples = 0;
+  for (const vm::Behavior& behavior : image.behaviors)
+    cells += behavior.cells;
+  for (const vm::Timer& timer : image.timers)
+    timer_words += vm::timer_words(timer);
+  for (const vm::Check& check : image.checks)
+    if (check.window > 1) samples += check.window;
+  if (cells > limits.frame_cells)
+    return too_much(cells, "cells for the inputs and values of its behaviours", limits.frame_cells);
+  if (timer_words > limits.timer_words)
+    return too_much(timer_words, "words of memory for its time words", limits.timer_words);
+  return samples > limits.samples ? too_much(samples, "readings to smooth over", limits.samples)
+                                  : "";
+}
+
 // What a refusal means to the writer of a program that is too large; empty for all others.
-std::string_view too_large(vm::Refusal refusal) {
+std::string too_large(vm::Refusal refusal, const Emitted& emitted) {
   switch (refusal) {
     case vm::Refusal::too_large:
-      return "the program is larger than 64 KiB";
+      return "the program has " + std::to_string(emitted.image.size()) +
+             " bytes, and a robot takes " + std::to_string(vm::Limits{}.image_bytes);
     case vm::Refusal::too_many:
-      return "the program needs more memory than a robot has";
+      return too_many(emitted);
     case vm::Refusal::too_much_output:
-      return "there are more commands here than a robot takes in one step";
+      return "the commands up to here come to more than " + std::to_string(vm::kMaxResponseOutput) +
+             " words, the most that a robot takes in one step";
     case vm::Refusal::too_deep:
-      return "blocks are nested too deeply here for the robot";
+      return "more than " + std::to_string(vm::kMaxBlocks) +
+             " blocks stand in each other here, the most that a robot takes";
     default:
       return {};
   }
 }
 
-void report_too_large(vm::Refusal refusal, std::string_view what, Span span,
-                      Diagnostics& diagnostics) {
-  Diagnostic& d = diagnostics.report(Code::E0407, std::string(what)).label(span);
+void report_too_large(vm::Refusal refusal, std::string what, Span span, Diagnostics& diagnostics) {
+  Diagnostic& d = diagnostics.report(Code::E0407, std::move(what)).label(span);
   if (refusal == vm::Refusal::too_much_output)
-    d.helps("write THEN or a WAIT between them, so that they come one step after the other");
+    d.helps(
+        "write THEN or a WAIT between them, so that they come one step after the other; a command "
+        "is one word, and two more for each number that it is given");
 }
 
 void report_refused(const vm::Verdict& verdict, Span span, Diagnostics& diagnostics) {
@@ -71,7 +106,7 @@ bool verify_image(const Emitted& emitted, Diagnostics& diagnostics) {
   if (verdict.ok()) return true;
   const bool in_code = verdict.section == vm::Section::code;
   const Span span = in_code ? emitted.code.span_of(verdict.index) : Span{};
-  const std::string_view what = too_large(verdict.refusal);
+  const std::string what = too_large(verdict.refusal, emitted);
   if (verdict.refusal == vm::Refusal::too_costly)
     report_costly_step(emitted, span, diagnostics);
   else if (!what.empty())

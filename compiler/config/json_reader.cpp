@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "compiler/config/units.hpp"
 #include "compiler/diagnostics/plain_text.hpp"
 
 namespace robosync::compiler::json {
@@ -124,7 +125,9 @@ void report_mistake(const Mistake& mistake, Diagnostics& diagnostics) {
   }
   const char c = mistake.text[wrong.begin];
   if (mentions(mistake, "number overflow")) {
-    diagnostics.report(Code::E0201, "this number is too large").label(here);
+    const std::string number(mistake.text.substr(wrong.begin, wrong.end - wrong.begin));
+    diagnostics.report(Code::E0201, no_room_for(number, canonical_unit(vm::Dimension::number)))
+        .label(here);
   } else if (wrong.previous == ',' && (c == '}' || c == ']')) {
     diagnostics.report(Code::E0201, std::string("there is a comma too many before `") + c + "`")
         .label(span(wrong.before, wrong.before + 1))
@@ -229,9 +232,10 @@ private:
   bool open(Kind kind) {
     const Span span = next_token();
     if (open_.size() == kMaxDepth) {
-      diagnostics_.report(Code::E0201, "this is nested too deeply")
-          .label(span)
-          .helps("robot.json needs no more than " + std::to_string(kMaxDepth) + " levels");
+      diagnostics_
+          .report(Code::E0201, "this is nested more than " + std::to_string(kMaxDepth) +
+                                   " levels deep, the most that rsc reads")
+          .label(span);
       return false;
     }
     open_.push_back({kind, span, {}, false, {}, {}});

@@ -65,7 +65,10 @@ void read_labels(const json::Value& value, ChannelConfig& channel, Diagnostics& 
   for (const json::Value& item : value.items)
     add_label(item, known, channel, diagnostics);
   if (value.items.size() < 2 || value.items.size() > kMaxLabels)
-    diagnostics.report(Code::E0205, "a channel has from 2 to 255 labels").label(value.span);
+    diagnostics
+        .report(Code::E0205, "a channel has from 2 to " + std::to_string(kMaxLabels) +
+                                 " labels, and this one has " + std::to_string(value.items.size()))
+        .label(value.span);
 }
 
 void read_truth(const json::Value& value, bool has_labels, ChannelConfig& channel,

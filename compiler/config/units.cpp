@@ -206,6 +206,66 @@ std::string format_value(std::int64_t value, const Unit& unit) {
   return text + std::string(unit.spelling);
 }
 
+std::string written(Decimal number) {
+  const bool negative = number.mantissa < 0;
+  std::string digits = std::to_string(number.mantissa).substr(negative ? 1 : 0);
+  if (digits.size() <= number.decimals) digits.insert(0, number.decimals + 1 - digits.size(), '0');
+  if (number.decimals > 0) digits.insert(digits.size() - number.decimals, ".");
+  return negative ? "-" + digits : digits;
+}
+
+namespace {
+
+// Without a fraction where there are digits enough without it; never farther from 0 than `value`.
+std::string toward_zero(vm::Value value, const Unit& unit) {
+  constexpr std::int64_t enough = 1000;
+  const Wide scaled = (Wide{value} * unit.divisor - unit.offset) * vm::kScale / unit.factor;
+  const auto thousandths = static_cast<std::int64_t>(scaled);
+  const std::int64_t whole = thousandths / vm::kScale;
+  const bool short_of = std::abs(whole) < enough;
+  const Decimal number{short_of ? thousandths : whole, short_of ? 3U : 0U};
+  return written(number) + std::string(unit.spelling);
+}
+
+}  // namespace
+
+std::string smallest(const Unit& unit) {
+  return toward_zero(vm::kValueMin, unit);
+}
+std::string largest(const Unit& unit) {
+  return toward_zero(vm::kValueMax, unit);
+}
+
+std::string no_room_for(std::string_view number, const Unit& unit) {
+  return "the robot has no room for `" + std::string(number) + "`: its numbers go from " +
+         smallest(unit) + " to " + largest(unit);
+}
+
+std::string too_many_digits(std::string_view text) {
+  if (text.starts_with('-')) text.remove_prefix(1);
+  const std::size_t exponent_at = std::min(text.find_first_of("eE"), text.size());
+  const auto exponent = read_exponent(text.substr(exponent_at));
+  std::string digits(text.substr(0, exponent_at));
+  const std::size_t point = std::min(digits.find('.'), digits.size());
+  if (point < digits.size()) {
+    digits.erase(point, 1);
+    while (digits.size() > point && digits.back() == '0')
+      digits.pop_back();
+  }
+  if (!exponent || digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos)
+    return {};
+  // As it would be written without an exponent.
+  const auto behind = static_cast<std::int64_t>(digits.size() - point) - *exponent;
+  const std::size_t zeros = std::min(digits.find_first_not_of('0'), digits.size());
+  const std::int64_t all =
+      static_cast<std::int64_t>(digits.size() - zeros) + std::max<std::int64_t>(-behind, 0);
+  if (all > kMaxDigits)
+    return "this number has " + std::to_string(all) + " digits, and rsc reads at most " +
+           std::to_string(kMaxDigits);
+  return "this number has " + std::to_string(behind) +
+         " digits behind the point, and rsc reads at most " + std::to_string(kMaxDecimals);
+}
+
 std::optional<ValuePlace> find_place(std::string_view text) {
   for (std::size_t begin = text.find('{'); begin != std::string_view::npos;
        begin = text.find('{', begin + 1)) {
@@ -221,23 +281,58 @@ std::string place_for(const Unit& unit) {
   return "{" + std::string(unit.spelling) + "}";
 }
 
+namespace {
+
+struct Fraction {
+  Wide numerator, denominator;
+};
+
+// Thousandths of the canonical unit for one count, as small as they can be written.
+Fraction scale_of(Decimal number, const Unit& unit) {
+  Fraction result{Wide{number.mantissa} * unit.factor,
+                  power_of_ten(number.decimals) * unit.divisor};
+  Wide divisor = result.numerator;
+  for (Wide rest = result.denominator; rest != 0;) {
+    const Wide next = divisor % rest;
+    divisor = rest;
+    rest = next;
+  }
+  if (divisor < 0) divisor = -divisor;
+  return {result.numerator / divisor, result.denominator / divisor};
+}
+
+std::string digits_of(Wide number) {
+  std::string digits;
+  const bool negative = number < 0;
+  do {
+    digits.insert(digits.begin(), static_cast<char>('0' + std::abs(static_cast<int>(number % 10))));
+    number /= 10;
+  } while (number != 0);
+  return negative ? "-" + digits : digits;
+}
+
+constexpr Wide kMostDenominator = UINT16_MAX;
+constexpr Wide kMostNumerator = INT32_MAX;
+
+}  // namespace
+
 std::optional<Scale> to_scale(Decimal number, const Unit& unit) {
-  Wide numerator = Wide{number.mantissa} * unit.factor;
-  Wide denominator = power_of_ten(number.decimals) * unit.divisor;
-  const auto wide_gcd = [](Wide a, Wide b) {
-    while (b != 0) {
-      const Wide rest = a % b;
-      a = b;
-      b = rest;
-    }
-    return a < 0 ? -a : a;
-  };
-  const Wide divisor = wide_gcd(numerator, denominator);
-  numerator /= divisor;
-  denominator /= divisor;
-  if (numerator == 0 || denominator > UINT16_MAX || numerator > INT32_MAX || -numerator > INT32_MAX)
+  const auto [numerator, denominator] = scale_of(number, unit);
+  if (numerator == 0 || denominator > kMostDenominator || numerator > kMostNumerator ||
+      -numerator > kMostNumerator)
     return std::nullopt;
   return Scale{static_cast<std::int32_t>(numerator), static_cast<std::uint16_t>(denominator)};
+}
+
+std::string why_no_scale(Decimal number, const Unit& unit) {
+  const auto [numerator, denominator] = scale_of(number, unit);
+  if (numerator == 0) return "a scale cannot be 0";
+  const std::string thousandths =
+      "in thousandths of `" + std::string(canonical_unit(unit.dimension).spelling) + "`";
+  return "this scale is " + digits_of(numerator) + "/" + digits_of(denominator) +
+         (unit.dimension == vm::Dimension::number ? " in thousandths" : " " + thousandths) +
+         ", and a robot keeps fractions up to " + digits_of(kMostNumerator) + "/" +
+         digits_of(kMostDenominator);
 }
 
 }  // namespace robosync::compiler

@@ -41,6 +41,17 @@ struct Decimal {
 // The value in `unit`, with as few decimals as say it to a thousandth: "2.5cm".
 [[nodiscard]] std::string format_value(std::int64_t value, const Unit& unit);
 
+// The decimal number as it would be written: "-0.5".
+[[nodiscard]] std::string written(Decimal number);
+
+// What a robot can hold, in `unit`: "-2147483mm" and "2147483mm", nearer to 0 by less than the last digit shown.
+[[nodiscard]] std::string smallest(const Unit& unit);
+[[nodiscard]] std::string largest(const Unit& unit);
+// Why the robot has no room for a number, as it was written, for messages.
+[[nodiscard]] std::string no_room_for(std::string_view number, const Unit& unit);
+// Why parse_decimal() gives nothing for what looks like a number, for messages; empty when that is not for its length.
+[[nodiscard]] std::string too_many_digits(std::string_view text);
+
 // A place for a value in a text that is written out: "{cm}" for a number of centimetres, "{}" for a plain
 // one. The board sends the text and the values; whoever shows them puts them together.
 struct ValuePlace {
@@ -57,5 +68,7 @@ struct Scale {
   std::uint16_t denominator = 1;
 };
 [[nodiscard]] std::optional<Scale> to_scale(Decimal number, const Unit& unit);
+// Why it gives nothing, for messages.
+[[nodiscard]] std::string why_no_scale(Decimal number, const Unit& unit);
 
 }  // namespace robosync::compiler

@@ -78,7 +78,8 @@ std::optional<Measured> read_measured(const json::Value& value, const Unit& unit
   }
   const auto decimal = parse_decimal(number);
   if (!decimal) {
-    diagnostics.report(Code::E0304, "this number has too many digits, or cannot be read")
+    const std::string why = too_many_digits(number);
+    diagnostics.report(Code::E0304, why.empty() ? "this number cannot be read" : why)
         .label(value.span);
     return std::nullopt;
   }
@@ -89,11 +90,7 @@ std::optional<Measured> read_measured(const json::Value& value, const Unit& unit
 std::optional<vm::Value> value_of(const json::Value& value, Decimal number, const Unit& unit,
                                   Diagnostics& diagnostics) {
   const auto result = to_value(number, unit);
-  if (!result)
-    diagnostics.report(Code::E0304, "this number is too large for the robot")
-        .label(value.span)
-        .helps("numbers on the robot go from -2147483 to 2147483 " +
-               std::string(canonical_unit(unit.dimension).spelling));
+  if (!result) diagnostics.report(Code::E0304, no_room_for(value.text, unit)).label(value.span);
   return result;
 }
 
@@ -121,7 +118,11 @@ std::string written_like(std::int64_t number, bool hex) {
 std::optional<std::uint16_t> milliseconds(std::int64_t ms, const json::Value& value,
                                           Diagnostics& diagnostics) {
   if (ms >= 1 && ms <= UINT16_MAX) return static_cast<std::uint16_t>(ms);
-  diagnostics.report(Code::E0205, "this must come to between 1 ms and 65535 ms").label(value.span);
+  diagnostics
+      .report(Code::E0205, "this comes to " + std::to_string(ms) +
+                               " ms, and must be from 1 ms to " + std::to_string(UINT16_MAX) +
+                               " ms")
+      .label(value.span);
   return std::nullopt;
 }
 
@@ -190,7 +191,10 @@ std::optional<Range> read_range(const json::Value& value, const Unit& unit,
 std::optional<std::uint16_t> read_rate(const json::Value& value, Diagnostics& diagnostics) {
   const auto rate = read_quantity(value, canonical_unit(vm::Dimension::frequency), diagnostics);
   if (!rate) return std::nullopt;
-  if (*rate <= 0) return milliseconds(0, value, diagnostics);
+  if (*rate <= 0) {
+    diagnostics.report(Code::E0205, "a rate must be above 0").label(value.span);
+    return std::nullopt;
+  }
   return milliseconds((1000 * vm::kScale + *rate / 2) / *rate, value, diagnostics);
 }
 
@@ -206,7 +210,7 @@ std::optional<Scale> read_scale(const json::Value& value, const Unit& unit,
   if (!measured) return std::nullopt;
   const auto scale = to_scale(measured->number, *measured->unit);
   if (!scale)
-    diagnostics.report(Code::E0304, "this scale is 0, too large, or too fine to be kept exactly")
+    diagnostics.report(Code::E0304, why_no_scale(measured->number, *measured->unit))
         .label(value.span);
   return scale;
 }

@@ -28,6 +28,7 @@ std::vector<TokenKind> behind(Tokens tokens, const SourceFile& source, std::uint
   Reader reader(source);
   Budget budget{kMendingWork};
   Diagnostics ignored;
+  const Examples examples({}, source, nullptr);  // of what nobody reads
   for (int mends = 0; mends < kMends; ++mends) {
     const Attempt attempt = reader.read(tokens, nullptr);
     if (attempt.complete || attempt.stopped_at >= tokens.size()) return {};
@@ -36,7 +37,7 @@ std::vector<TokenKind> behind(Tokens tokens, const SourceFile& source, std::uint
     if (tokens[attempt.stopped_at].kind == Kinds::NEWLINE &&
         tokens[attempt.stopped_at + 1].kind == Kinds::SIGN)
       return {};
-    mend(tokens, attempt, reader, ignored, budget);
+    mend(tokens, attempt, reader, examples, ignored, budget);
   }
   return {};
 }

@@ -22,7 +22,9 @@ void Behaviors::add(const ast::Behavior& behavior, std::vector<ir::Rule> rules) 
   const auto priority = priority_of(behavior, config);
   if (priority) claim(*priority);
   if (rules.size() > kMaxRules)
-    diagnostics_.report(Code::E0407, "a behaviour can have at most 255 rules")
+    diagnostics_
+        .report(Code::E0407, behavior.name.shown() + " has " + std::to_string(rules.size()) +
+                                 " rules, and a behaviour takes " + std::to_string(kMaxRules))
         .label(behavior.name.span);
   ir::Behavior result;
   result.priority = static_cast<std::int16_t>(priority ? priority->number : 0);
@@ -45,11 +47,17 @@ void Behaviors::add_rule(ir::Rule rule, const std::optional<ast::Name>& priority
 }
 
 void Behaviors::check_count(Span span) {
-  if (behaviors_.size() == vm::kMaxBehaviors + 1)
-    diagnostics_
-        .report(Code::E0407, "a program can have at most " + std::to_string(vm::kMaxBehaviors) +
-                                 " behaviours; a rule outside a BEHAVIOR counts as one")
-        .label(span, "this is one too many");
+  if (behaviors_.size() == vm::kMaxBehaviors + 1) one_too_many_ = span;
+}
+
+void Behaviors::report_count() {
+  if (!one_too_many_) return;
+  diagnostics_
+      .report(Code::E0407, "the program has " + std::to_string(behaviors_.size()) +
+                               " behaviours, and a robot takes " +
+                               std::to_string(vm::kMaxBehaviors) +
+                               "; a rule outside a BEHAVIOR counts as one")
+      .label(*one_too_many_, "this is one too many");
 }
 
 std::optional<Behaviors::Numbered> Behaviors::written_priority(const ast::Name& digits) {
@@ -139,6 +147,7 @@ void Behaviors::check_action(const BehaviorConfig& config, const ir::Behavior& b
 
 std::vector<ir::Behavior> Behaviors::finish() {
   report_taken();
+  report_count();
   for (const BehaviorConfig& config : robot_.behaviors)
     if (!names_.contains(fold_name(config.name.text)))
       diagnostics_.report(Code::W0216, "the program has no behaviour " + config.name.shown())

@@ -36,6 +36,7 @@ private:
   [[nodiscard]] std::optional<int> next_free(int number) const;
   void check_action(const BehaviorConfig& config, const ir::Behavior& behavior, Span name);
   void check_count(Span span);
+  void report_count();
 
   const Robot& robot_;
   NameIndex configs_;
@@ -45,6 +46,7 @@ private:
   std::map<int, Span> priorities_;
   std::vector<std::pair<Numbered, Span>> taken_;  // a second use of a priority, and the first
   std::int16_t next_unnumbered_ = 0;
+  std::optional<Span> one_too_many_;
 };
 
 }  // namespace robosync::compiler

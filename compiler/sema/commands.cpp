@@ -640,8 +640,9 @@ bool Commands::say_values(const Recipient& to, const Given& given, ir::Command& 
   }
   if (given.values.size() > vm::kTextParams.size()) {
     to.diagnostics
-        .report(Code::E0407, "a text that is said has at most " +
-                                 std::to_string(vm::kTextParams.size()) + " numbers")
+        .report(Code::E0407, "this text has " + std::to_string(given.values.size()) +
+                                 " numbers, and one that is said takes at most " +
+                                 std::to_string(vm::kTextParams.size()))
         .label(given.text_span)
         .helps("say the rest with another `" + verb + "`");
     return false;

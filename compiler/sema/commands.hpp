@@ -12,6 +12,9 @@ namespace robosync::compiler {
 inline constexpr std::string_view kFollow = "FOLLOW";
 inline constexpr std::string_view kRestart = "RESTART";
 
+// Parts of an expression that a DEFINE is given and a FOLLOW in it works out again.
+inline constexpr std::size_t kMostFollowed = 100;
+
 // A text out of a LIST, in the place of the arguments that ask for it.
 struct ChosenText {
   std::size_t at = 0, count = 0;  // which arguments

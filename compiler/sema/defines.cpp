@@ -14,8 +14,6 @@ constexpr std::size_t kMaxNestedDefines = 64;  // of DEFINEs: the translation re
 
 constexpr unsigned kMaxHandedOn = 4;
 
-constexpr std::size_t kMostFollowed = 100;  // parts of an expression
-
 std::size_t parts_of(const Expression& expression) {
   std::size_t count = 1;
   for (const Expression& operand : expression.operands)
@@ -119,7 +117,10 @@ bool Statements::may_run(const DefineName& name, Span use) {
     return false;
   }
   if (open_.size() < kMaxNestedDefines) return true;
-  diagnostics_.report(Code::E0407, "DEFINEs use each other more than 64 levels deep").label(use);
+  diagnostics_
+      .report(Code::E0407, "DEFINEs use each other more than " + std::to_string(kMaxNestedDefines) +
+                               " levels deep, the most that rsc follows")
+      .label(use);
   return false;
 }
 

@@ -67,11 +67,10 @@ Typed Expressions::of(const ast::Quantity& node, Span span) {
   const auto decimal = parse_decimal(node.digits);
   const auto value = decimal ? to_value(*decimal, *unit) : std::nullopt;
   if (!value) {
+    const std::string number = std::string(node.digits) + std::string(node.unit);
     diagnostics_
-        .report(Code::E0304, decimal ? "this number is too large for the robot"
-                                     : "this number has too many digits for the robot")
-        .label(span)
-        .helps("numbers on the robot are thousandths, from -2147483 to 2147483");
+        .report(Code::E0304, decimal ? no_room_for(number, *unit) : too_many_digits(node.digits))
+        .label(span);
     return make_nothing(span);
   }
   Typed result = make_constant(*value, *unit, span);
@@ -214,7 +213,10 @@ Typed Expressions::constant(ConstantName& name, const ast::Operand& operand, Spa
   }
   name.used = true;
   if (open_.size() == kMaxNestedLets) {
-    diagnostics_.report(Code::E0407, "LETs use each other more than 64 levels deep").label(span);
+    diagnostics_
+        .report(Code::E0407, "LETs use each other more than " + std::to_string(kMaxNestedLets) +
+                                 " levels deep, the most that rsc follows")
+        .label(span);
     return make_nothing(span);
   }
   Typed result = value_of(name);
@@ -400,7 +402,13 @@ Typed Expressions::combine(ast::ArithmeticOp op, Typed left, Typed right, const 
 Typed Expressions::fold(const Typed& left, const Typed& right, Typed result) {
   const vm::Value value = compute(result.code.operation, left.code.constant, right.code.constant);
   if (value == vm::kValueMax || value == vm::kValueMin) {
-    diagnostics_.report(Code::E0304, "the result of this is too large for the robot")
+    const Unit& unit =
+        result.unit == nullptr ? canonical_unit(vm::Dimension::number) : *result.unit;
+    diagnostics_
+        .report(Code::E0304, value > 0 ? "the result of this is above " + largest(unit) +
+                                             ", the largest number on the robot"
+                                       : "the result of this is below " + smallest(unit) +
+                                             ", the smallest number on the robot")
         .label(result.span);
     return make_nothing(result.span);
   }

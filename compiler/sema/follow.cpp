@@ -105,7 +105,8 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate_followed(const as
   if (!lost) return given;
   diagnostics_.report(Code::E0407, "what this FOLLOW follows cannot be worked out again and again")
       .label(command.verb.span)
-      .helps("what a DEFINE is given for it is too long, or a number out of a LIST");
+      .helps("what a DEFINE is given for it has more than " + std::to_string(kMostFollowed) +
+             " parts, the most that rsc copies, or is a number out of a LIST");
   return std::nullopt;
 }
 

@@ -140,7 +140,9 @@ std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span
     diagnostics_
         .report(safety_ ? Code::E0404 : Code::E0407,
                 safety_ ? "a SAFETY rule does not choose from a LIST"
-                        : "a LIST that is chosen from has at most 64 texts")
+                        : choice.list->list->name.shown() + " has " + std::to_string(count) +
+                              " texts, and a LIST that is chosen from takes " +
+                              std::to_string(kMaxTexts))
         .label(choice.span);
     return std::nullopt;
   }

@@ -99,7 +99,8 @@ void take_unit(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
   if (wanted.difference) unit.offset = 0;
   const auto value = to_value(number.bare, unit);
   if (!value) {
-    diagnostics.report(Code::E0304, "this number is too large for the robot").label(number.span);
+    const std::string digits = number.digits.empty() ? written(number.bare) : number.digits;
+    diagnostics.report(Code::E0304, no_room_for(digits, unit)).label(number.span);
     number.type = Type::nothing;
     return;
   }

@@ -45,7 +45,8 @@ ir::Block Statements::block(const ast::Block& block) {
     diagnostics_
         .report(Code::E0407, "blocks stand in each other more than " +
                                  std::to_string(vm::kMaxBlocks) +
-                                 " levels deep, those of DEFINEs included")
+                                 " levels deep, those of DEFINEs included; a robot takes " +
+                                 std::to_string(vm::kMaxBlocks))
         .label(block.front().span);
     return result;
   }
@@ -71,13 +72,14 @@ bool Statements::within_budget(Span span) {
   ++all_;
   if (statements_ <= kMaxStatements && all_ <= kMaxAllStatements) return true;
   const bool first = statements_ == kMaxStatements + 1 || all_ == kMaxAllStatements + 1;
+  const bool response = statements_ > kMaxStatements;
   if (first)
     diagnostics_
-        .report(Code::E0407, statements_ > kMaxStatements
-                                 ? "with all its DEFINEs this response has more than " +
-                                       std::to_string(kMaxStatements) + " statements"
-                                 : "with all its DEFINEs this program has more than " +
-                                       std::to_string(kMaxAllStatements) + " statements")
+        .report(Code::E0407, "with all its DEFINEs this " +
+                                 std::string(response ? "response" : "program") +
+                                 " has more than " +
+                                 std::to_string(response ? kMaxStatements : kMaxAllStatements) +
+                                 " statements, the most that rsc translates")
         .label(span, "from here on");
   return false;
 }
@@ -292,7 +294,10 @@ void Statements::add(const ast::PickOne& node, Span span, ir::Block& result) {
     pick.options.push_back(std::move(made));
   }
   if (good && sum > vm::kValueMax)
-    diagnostics_.report(Code::E0304, "the weights of these options are too large together")
+    diagnostics_
+        .report(Code::E0304,
+                "the weights of these options come to " + std::to_string(sum / vm::kScale) +
+                    " together, and a robot takes " + std::to_string(vm::kValueMax / vm::kScale))
         .label(span);
   else if (good && !pick.options.empty())
     put(std::move(pick), span, result);
@@ -494,8 +499,9 @@ void Statements::put_log(const ast::Log& node, const ChosenText* chosen, Span sp
            good;
   if (text.values().size() > kMaxValues) {
     diagnostics_
-        .report(Code::E0407, std::string(node.alert ? "an ALERT" : "a LOG") + " has at most " +
-                                 std::to_string(kMaxValues) + " numbers")
+        .report(Code::E0407, std::string(node.alert ? "this ALERT" : "this LOG") + " has " +
+                                 std::to_string(text.values().size()) +
+                                 " numbers, and takes at most " + std::to_string(kMaxValues))
         .label(span);
     return;
   }

@@ -74,14 +74,15 @@ void Variables::check_kept() {
           .label(place)
           .label(places[*kept.find(name.name.text)], "the first one", false)
           .helps("what is kept is found again by its name: give one of them another");
-    } else if (places.size() == vm::kMaxKept) {
-      diagnostics_
-          .report(Code::E0407, "at most " + std::to_string(vm::kMaxKept) + " numbers can be KEPT")
-          .label(place, "this is one too many")
-          .helps("keep what must outlast the power, and remember the rest");
     }
     places.push_back(place);
   }
+  if (places.size() <= vm::kMaxKept) return;
+  diagnostics_
+      .report(Code::E0407, "the program has " + std::to_string(places.size()) +
+                               " KEPT numbers, and a robot keeps " + std::to_string(vm::kMaxKept))
+      .label(places[vm::kMaxKept], "this is one too many")
+      .helps("keep what must outlast the power, and remember the rest");
 }
 
 void Variables::declare(const ast::State& node, VariableName& name, ir::Variable& result) {

@@ -103,7 +103,7 @@ ast::Box<ast::Expr> Builder::shallow(ast::Box<ast::Expr> made) {
   if (made->depth <= deepest_expression) return made;
   if (!too_deep_) {
     report(Code::E0012, "this expression is nested deeper than " +
-                            std::to_string(deepest_expression) + " levels")
+                            std::to_string(deepest_expression) + " levels, the most that rsc reads")
         .label(made->span)
         .helps("give parts of it a name with LET");
   }

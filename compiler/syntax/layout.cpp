@@ -142,8 +142,10 @@ public:
   bool too_deep_at(std::size_t at) {
     step_blocks(at);
     step_expression(tokens_[at].kind);
-    return blocks_ > kDeepestBlock || brackets_ > kDeepestBracket || signs_ > kDeepestBracket;
+    return in_too_many_blocks() || brackets_ > kDeepestBracket || signs_ > kDeepestBracket;
   }
+
+  [[nodiscard]] bool in_too_many_blocks() const { return blocks_ > kDeepestBlock; }
 
 private:
   bool is_statement(std::size_t at) const {
@@ -186,11 +188,11 @@ private:
 
 }  // namespace
 
-std::optional<std::size_t> nested_too_deeply(std::span<const Token> tokens) {
+std::optional<TooDeep> nested_too_deeply(std::span<const Token> tokens) {
   if (!may_be_deep(tokens)) return std::nullopt;
   Depth depth(tokens);
   for (std::size_t at = 0; at < tokens.size(); ++at) {
-    if (depth.too_deep_at(at)) return at;
+    if (depth.too_deep_at(at)) return TooDeep{at, depth.in_too_many_blocks()};
   }
   return std::nullopt;
 }

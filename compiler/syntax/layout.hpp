@@ -29,7 +29,11 @@ struct Region {
 
 inline constexpr std::size_t kDeepestBlock = 32;
 inline constexpr std::size_t kDeepestBracket = 64;  // also of signs in a row, as NOT NOT NOT
+struct TooDeep {
+  std::size_t at = 0;      // place in the tokens
+  bool in_blocks = false;  // or in brackets and signs
+};
 // The first token that opens more blocks or brackets than anybody needs.
-[[nodiscard]] std::optional<std::size_t> nested_too_deeply(std::span<const Token> tokens);
+[[nodiscard]] std::optional<TooDeep> nested_too_deeply(std::span<const Token> tokens);
 
 }  // namespace robosync::compiler

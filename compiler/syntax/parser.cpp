@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "compiler/diagnostics/plain_text.hpp"
+#include "compiler/syntax/examples.hpp"
 #include "compiler/syntax/heads.hpp"
 #include "compiler/syntax/layout.hpp"
 #include "compiler/syntax/lexer.hpp"
@@ -54,8 +56,9 @@ std::optional<EmptyBlock> empty_block(const Tokens& tokens) {
 
 class Parser {
 public:
-  Parser(const SourceMap& sources, FileId file, Diagnostics& diagnostics)
-      : sources_(sources),
+  Parser(const SourceMap& sources, FileId file, Diagnostics& diagnostics, const Vocabulary* robot)
+      : robot_(robot),
+        sources_(sources),
         source_(sources.file(file)),
         file_(file),
         diagnostics_(diagnostics),
@@ -63,18 +66,21 @@ public:
 
   ast::Tree parse() {
     if (source_.text().size() > largest_source) {
-      diagnostics_.report(Code::E0013, "this file is larger than 16 MiB, the most that rsc reads")
+      diagnostics_
+          .report(Code::E0013, "this file has " + std::to_string(source_.text().size()) +
+                                   " bytes, and rsc reads " + std::to_string(largest_source) +
+                                   ", which are 16 MiB")
           .label({file_, 0, 0});
       return {};
     }
     if (!is_plain_text(sources_, file_, Code::E0002, diagnostics_)) return {};
-    Tokens tokens = lex(source_, file_, diagnostics_);
-    mend_heads(tokens, source_, diagnostics_);
-    const std::vector<Region> regions = split_into_regions(tokens, source_);
+    tokens_ = lex(source_, file_, diagnostics_);
+    mend_heads(tokens_, source_, diagnostics_);
+    const std::vector<Region> regions = split_into_regions(tokens_, source_);
     program_.items.reserve(regions.size());
     for (const Region& region : regions) {
-      const auto begin = tokens.begin() + static_cast<std::ptrdiff_t>(region.begin);
-      const auto end = tokens.begin() + static_cast<std::ptrdiff_t>(region.end);
+      const auto begin = tokens_.begin() + static_cast<std::ptrdiff_t>(region.begin);
+      const auto end = tokens_.begin() + static_cast<std::ptrdiff_t>(region.end);
       piece_.assign(begin, end);
       const bool goes_on = parse_piece(piece_);
       if (diagnostics_.errors() > 0)
@@ -90,11 +96,14 @@ private:
   bool parse_piece(Tokens& tokens) {
     if (const auto deep = nested_too_deeply(tokens)) {
       diagnostics_
-          .report(Code::E0012, "this is nested too deeply: " + std::to_string(kDeepestBlock) +
-                                   " blocks, and " + std::to_string(kDeepestBracket) +
-                                   " brackets or signs, are the most that rsc reads")
-          .label(tokens[*deep].span)
-          .helps("put the inner part into a DEFINE of its own");
+          .report(Code::E0012,
+                  deep->in_blocks ? "more than " + std::to_string(kDeepestBlock) +
+                                        " blocks stand in each other, the most that rsc reads"
+                                  : "more than " + std::to_string(kDeepestBracket) +
+                                        " brackets or signs are open here, the most that rsc reads")
+          .label(tokens[deep->at].span)
+          .helps(deep->in_blocks ? "put the inner part into a DEFINE of its own"
+                                 : "give parts of it a name with LET");
       return false;
     }
     if (const auto empty = empty_block(tokens)) {
@@ -117,7 +126,8 @@ private:
         return true;
       }
       if (++mistakes_ > most_mistakes || budget_.work == 0) return give_up(tokens);
-      mend(tokens, attempt, reader_, diagnostics_, budget_);
+      if (!examples_) examples_.emplace(tokens_, source_, robot_);
+      mend(tokens, attempt, reader_, *examples_, diagnostics_, budget_);
     }
   }
 
@@ -126,18 +136,21 @@ private:
         .report(Code::E0013,
                 mistakes_ > most_mistakes
                     ? "more than " + std::to_string(most_mistakes) +
-                          " mistakes: the rest of the file was not read"
+                          " mistakes, the most that rsc looks for in a file: the rest was not read"
                     : "mistakes that take too long to sort out: the rest of the file was not read")
         .label(tokens.front().span);
     return false;
   }
 
+  const Vocabulary* robot_;
   const SourceMap& sources_;
   const SourceFile& source_;
   FileId file_;
   Diagnostics& diagnostics_;
   Reader reader_;
-  Tokens piece_;  // what is read now; one for all, so that its memory is
+  Tokens tokens_;
+  std::optional<Examples> examples_;  // only a program with a mistake needs them
+  Tokens piece_;                      // what is read now; one for all, so that its memory is
   ast::Tree program_;
   Budget budget_;
   std::size_t mistakes_ = 0;
@@ -145,8 +158,9 @@ private:
 
 }  // namespace
 
-ast::Tree parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
-  return Parser(sources, file, diagnostics).parse();
+ast::Tree parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics,
+                const Vocabulary* robot) {
+  return Parser(sources, file, diagnostics, robot).parse();
 }
 
 }  // namespace robosync::compiler

@@ -4,10 +4,13 @@
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
 #include "compiler/syntax/ast.hpp"
+#include "compiler/syntax/vocabulary.hpp"
 
 namespace robosync::compiler {
 
-// Always gives a tree; what could not be read is left out of it and reported.
-[[nodiscard]] ast::Tree parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics);
+// Always gives a tree; what could not be read is left out of it and reported, with examples that name what the robot has,
+// where it is known.
+[[nodiscard]] ast::Tree parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics,
+                              const Vocabulary* robot = nullptr);
 
 }  // namespace robosync::compiler

@@ -79,8 +79,8 @@ Edit last_resort(const Tokens& tokens, const Attempt& failure) {
 
 }  // namespace
 
-void mend(Tokens& tokens, const Attempt& failure, Reader& reader, Diagnostics& diagnostics,
-          Budget& budget) {
+void mend(Tokens& tokens, const Attempt& failure, Reader& reader, const Examples& examples,
+          Diagnostics& diagnostics, Budget& budget) {
   for (const auto explain_one : {explain_foreign_habit, explain_habit}) {
     const auto habit = explain_one(tokens, reader.source(), failure, diagnostics);
     if (!habit) continue;
@@ -92,7 +92,7 @@ void mend(Tokens& tokens, const Attempt& failure, Reader& reader, Diagnostics& d
   if (budget.spend(readings * tokens.size())) edits = possible_edits(tokens, failure, reader);
   const Edit* found = best_edit(edits, tokens, failure, reader, budget);
   const Edit edit = found != nullptr ? *found : last_resort(tokens, failure);
-  explain({tokens, reader.source(), failure, edit}, diagnostics);
+  explain({tokens, reader.source(), failure, edit, examples}, diagnostics);
   tokens = edited(tokens, edit);
 }
 

@@ -8,6 +8,7 @@
 
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
+#include "compiler/syntax/examples.hpp"
 #include "compiler/syntax/reader.hpp"
 
 namespace robosync::compiler {
@@ -27,7 +28,7 @@ struct Budget {
 // Mends and reports the mistake that stopped the grammar. At least one token is dropped or the
 // grammar gets farther, so calling it again and again comes to an end. When the budget is used up
 // it takes the first change that comes to hand.
-void mend(Tokens& tokens, const Attempt& failure, Reader& reader, Diagnostics& diagnostics,
-          Budget& budget);
+void mend(Tokens& tokens, const Attempt& failure, Reader& reader, const Examples& examples,
+          Diagnostics& diagnostics, Budget& budget);
 
 }  // namespace robosync::compiler

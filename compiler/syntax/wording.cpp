@@ -16,6 +16,9 @@ bool expects(const std::vector<TokenKind>& expected, TokenKind kind) {
   return std::find(expected.begin(), expected.end(), kind) != expected.end();
 }
 
+constexpr std::string_view kOutside =
+    "a line outside a block starts with a word such as WHEN, DEFINE or BEHAVIOR";
+
 class Explainer {
 public:
   Explainer(const Mistake& mistake, Diagnostics& diagnostics)
@@ -23,6 +26,7 @@ public:
         source_(mistake.source),
         failure_(mistake.failure),
         edit_(mistake.edit),
+        examples_(mistake.examples),
         diagnostics_(diagnostics) {}
 
   void explain() {
@@ -73,6 +77,12 @@ private:
   bool begins_line(std::size_t at) const {
     const std::size_t last = before(at);
     return last >= at || tokens_[last].kind == Kinds::NEWLINE;
+  }
+
+  // Also where the grammar would go on with the line before; not where that one lacks its rest.
+  bool first_in_text_line(std::size_t at) const {
+    const bool first = at < tokens_.size() && starts_line(tokens_, at);
+    return first && (roles_of(tokens_[before(at)].kind) & role::before) == 0;
   }
 
   // " after `x`", or nothing at the start of a line.
@@ -158,9 +168,7 @@ private:
     if (kind == Kinds::END) return not_closed(1);
     if (kind == Kinds::NEWLINE) return line_goes_on();
     if (kind == Kinds::TIMES && bare_brackets()) return;
-    const bool value = kind == Kinds::NAME || kind == Kinds::QUANTITY || kind == Kinds::STRING;
-    std::string what = value || kind == Kinds::LESS ? summarize(*edit_.expected) : describe(kind);
-    if (kind == Kinds::PLUS) what = "an operator";
+    const std::string what = what_is_missing(kind, *edit_.expected);
     const std::string where = after(edit_.at);
     const bool first = where.empty() && edit_.at < tokens_.size();
     Diagnostic& message = diagnostics_.report(
@@ -170,8 +178,25 @@ private:
     // Another word may be missing, or more than this one.
     if (word && !first) message.fix(gap(), " " + plain(kind), Applicability::likely);
     if (word && first) message.fix(gap(), plain(kind) + " ", Applicability::likely);
-    if (where.empty() && outside_blocks() && word) {
-      message.helps("a line outside a block starts with a word such as WHEN, DEFINE or BEHAVIOR");
+    if (!word) show_line(message, edit_.at, *edit_.expected);
+    if (where.empty() && outside_blocks() && word) message.helps(std::string(kOutside));
+  }
+
+  // How a line of this kind is written, or how one begins where these could stand.
+  void show_line(Diagnostic& message, std::size_t at,
+                 const std::vector<TokenKind>& expected) const {
+    const bool statement = expects(expected, Kinds::SET) && expects(expected, Kinds::WAIT);
+    const bool known = !statement && !first_in_text_line(at);
+    const std::string example = known ? examples_.written_like(tokens_, at) : "";
+    if (!example.empty()) {
+      message.helps(example);
+    } else if (outside_blocks()) {
+      message.helps(std::string(kOutside));
+    } else if (expects(expected, Kinds::SEED) && expects(expected, Kinds::EXPECT)) {
+      message.helps("a step begins with `AT`, `EXPECT` or `WAIT`");
+    } else if (statement) {
+      message.helps("here stands a command, such as `" + examples_.command() +
+                    "`, or a line with a word such as `SET`, `WAIT` or `IF`");
     }
   }
 
@@ -236,8 +261,10 @@ private:
     const Token& token = tokens_[edit_.at];
     if (token.kind == Kinds::END) return idle_end();
     if (token.kind == Kinds::NEWLINE) {
-      diagnostics_.report(Code::E0001, "this line ends too early" + after(edit_.at))
-          .label(place(edit_.at), "expected " + summarize(failure_.expected));
+      Diagnostic& message =
+          diagnostics_.report(Code::E0001, "this line ends too early" + after(edit_.at));
+      message.label(place(edit_.at), "here");
+      show_line(message, edit_.at, failure_.expected);
       return;
     }
     if (unit_apart() || texts_added(edit_.at)) return;
@@ -249,8 +276,7 @@ private:
           .fix(token.span, "",
                stands_twice(edit_.at) ? Applicability::certain : Applicability::likely);
     }
-    const bool known = edit_.expected != nullptr && !edit_.expected->empty();
-    if (known) message.helps("RSL expects " + summarize(*edit_.expected) + after(edit_.at));
+    if (message.fixes.empty() || !stands_twice(edit_.at)) show_line(message, edit_.at, {});
   }
 
   // What stands there twice is not meant twice; whatever else is too much may want something beside it. Of two commas
@@ -342,10 +368,10 @@ private:
     }
     if (edit_.at == failure_.stopped_at) return unexpected();
     Diagnostic& message =
-        diagnostics_.report(Code::E0001, "expected " + describe(wanted) + after(edit_.at) +
-                                             ", found " + found(edit_.at));
-    message.label(place(edit_.at));
+        diagnostics_.report(Code::E0001, found(edit_.at) + " does not fit here" + after(edit_.at));
+    message.label(place(edit_.at), what_is_missing(wanted, {}) + " would");
     if (wanted >= Kinds::USE) message.fix(place(edit_.at), plain(wanted), Applicability::likely);
+    show_line(message, edit_.at, failure_.expected);
   }
 
   void rule_inside() {
@@ -386,20 +412,27 @@ private:
       return;
     }
     if (texts_added(at)) return;
-    const std::string first = at < tokens_.size() ? after(at) : "";
-    Diagnostic& message = diagnostics_.report(
-        Code::E0001, "expected " + summarize(failure_.expected) + first + ", found " + found(at));
+    Diagnostic& message = diagnostics_.report(Code::E0001, cannot_stand(at));
     message.label(place(at));
     const bool command = at < tokens_.size() && tokens_[at].kind == Kinds::NAME;
-    if (outside_blocks() && command) {
+    if (outside_blocks() && command)
       message.helps("commands stand in a rule or in a DEFINE: `WHEN ... DO ... END`");
-    }
+    else
+      show_line(message, at, failure_.expected);
+  }
+
+  std::string cannot_stand(std::size_t at) const {
+    if (at >= tokens_.size()) return "the file ends too early";
+    if (tokens_[at].kind == Kinds::NEWLINE) return "this line ends too early" + after(at);
+    return first_in_text_line(at) ? "no line begins with " + found(at) + " here"
+                                  : found(at) + " cannot stand" + after(at);
   }
 
   const Tokens& tokens_;
   const SourceFile& source_;
   const Attempt& failure_;
   const Edit& edit_;
+  const Examples& examples_;
   Diagnostics& diagnostics_;
 };
 

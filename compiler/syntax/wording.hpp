@@ -7,6 +7,7 @@
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
 #include "compiler/syntax/edit.hpp"
+#include "compiler/syntax/examples.hpp"
 #include "compiler/syntax/reader.hpp"
 
 namespace robosync::compiler {
@@ -16,13 +17,13 @@ struct Mistake {
   const SourceFile& source;
   const Attempt& failure;
   const Edit& edit;  // what mends it
+  const Examples& examples;
 };
 
 // Reports the mistake, with its mend.
 void explain(const Mistake& mistake, Diagnostics& diagnostics);
 
-// "a value", "a comparison such as `<`", "`DO`": what could have stood there, the likely things
-// only.
-[[nodiscard]] std::string summarize(const std::vector<TokenKind>& expected);
+// "a value", "a comparison such as `<`", "`DO`": what a missing token is to the user, where these could have stood.
+[[nodiscard]] std::string what_is_missing(TokenKind kind, const std::vector<TokenKind>& expected);
 
 }  // namespace robosync::compiler

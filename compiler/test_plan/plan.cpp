@@ -57,10 +57,18 @@ private:
     if (thousandths >= 0 && static_cast<Milliseconds>(thousandths) <= kLongestTest) {
       return static_cast<Milliseconds>(thousandths);
     }
+    if (thousandths >= 0) return too_long(static_cast<std::int64_t>(thousandths), expr.span);
+    diagnostics_.report(Code::E0509, "a time in a TEST cannot be negative").label(expr.span);
+    return std::nullopt;
+  }
+
+  std::optional<Milliseconds> too_long(std::int64_t length, Span span) {
+    const Unit& second = canonical_unit(vm::Dimension::duration);
     diagnostics_
-        .report(Code::E0509, thousandths < 0 ? "a time in a TEST cannot be negative"
-                                             : "a TEST cannot be longer than an hour")
-        .label(expr.span);
+        .report(Code::E0509, "this TEST would take " + format_value(length, second) +
+                                 ", and one takes at most an hour, " +
+                                 format_value(kLongestTest, second))
+        .label(span);
     return std::nullopt;
   }
 
@@ -68,10 +76,7 @@ private:
   std::optional<Milliseconds> until(const ast::Expr& expr, const char* what) {
     const auto length = time(expr, what);
     if (!length) return std::nullopt;
-    if (now_ + *length > kLongestTest) {
-      diagnostics_.report(Code::E0509, "a TEST cannot be longer than an hour").label(expr.span);
-      return std::nullopt;
-    }
+    if (now_ + *length > kLongestTest) return too_long(now_ + *length, expr.span);
     return now_ + *length;
   }
 

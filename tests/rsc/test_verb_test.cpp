@@ -288,7 +288,7 @@ TEST_CASE("mistakes in a TEST are shown with their place, and no test runs") {
            {"AT 2s button = \"presed\"", "did you mean `pressed`?"},
            {"AT 500ms touch LEVEL = 1", "this time is over already"},
            {"WAIT 2weeks", "E0303"},
-           {"WAIT 90min", "a TEST cannot be longer than an hour"},
+           {"WAIT 90min", "this TEST would take 5400s, and one takes at most an hour, 3600s"},
            {"EXPECT MOVE leg WITHIN 1s", "E0501"},
            {"EXPECT MOVE arms TO 3N WITHIN 1s", "E0301"},
            {"EXPECT MOVE arms", "does not say how long it waits"},

@@ -1,0 +1,23 @@
+// The names of a robot.json, for lines that show how something is written.
+#pragma once
+
+#include "compiler/config/robot.hpp"
+#include "compiler/syntax/vocabulary.hpp"
+
+namespace robosync::compiler {
+
+class RobotVocabulary : public Vocabulary {
+public:
+  explicit RobotVocabulary(const Robot& robot) : robot_(robot) {}  // which must outlive it
+
+  [[nodiscard]] std::string part(Part part, std::string_view name) const override;
+  [[nodiscard]] std::string command(std::string_view verb, std::string_view name,
+                                    bool places) const override;
+
+private:
+  [[nodiscard]] std::string of_actuator(Part part, std::string_view name) const;
+
+  const Robot& robot_;
+};
+
+}  // namespace robosync::compiler
