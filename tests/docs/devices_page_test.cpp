@@ -125,7 +125,9 @@ std::string wiring_keys(const Device& device) {
   std::string rows;
   if (type->address) rows += row({"`address`", "0x08 to 0x77", "needed"});
   if (type->bus) rows += row({"`bus`", "a bus of the board", "0"});
-  if (type->pin)
+  if (vm::has_two_pins(driver_of(device)))
+    rows += row({"`pins`", "two outputs of the board: forward, back", "needed"});
+  else if (type->pin)
     rows += row(
         {"`pin`", device.is_sensor ? "an input of the board" : "an output of the board", "needed"});
   if (device.is_sensor && device.type == "GPIO")
