@@ -9,8 +9,9 @@ namespace robosync::vm {
 
 // What an actuator's driver puts out on its pin. Pulses say where to go: while they stay as they are, so does the
 // actuator. A level is power: as long as it is there, a motor runs. A picture and tones are on no pin of an actuator's own,
-// but on the lights and the speaker, which a board has once.
-enum class PinUse : std::uint8_t { nothing, pulses, level, picture, tones };
+// but on the lights and the speaker, which a board has once. Either way: a level on its pin or on a second one, which the
+// image has as its `bus`; the other pin is off then.
+enum class PinUse : std::uint8_t { nothing, pulses, level, picture, tones, either_way };
 
 constexpr PinUse pin_use(DriverId driver) {
   switch (driver) {
@@ -29,8 +30,15 @@ constexpr PinUse pin_use(DriverId driver) {
   return PinUse::nothing;
 }
 
+constexpr bool has_two_pins(DriverId driver) {
+  return pin_use(driver) == PinUse::either_way;
+}
+// What runs as long as its pin is on.
+constexpr bool gives_power(DriverId driver) {
+  return pin_use(driver) == PinUse::level || has_two_pins(driver);
+}
 constexpr bool drives_pin(DriverId driver) {
-  return pin_use(driver) == PinUse::pulses || pin_use(driver) == PinUse::level;
+  return pin_use(driver) == PinUse::pulses || gives_power(driver);
 }
 constexpr bool drives_lights(DriverId driver) {
   return pin_use(driver) == PinUse::picture;
@@ -40,7 +48,7 @@ constexpr bool drives_speaker(DriverId driver) {
 }
 // What goes on by itself as long as nobody ends it: it cannot be held in a halt.
 constexpr bool drives_on(DriverId driver) {
-  return pin_use(driver) == PinUse::level || pin_use(driver) == PinUse::tones;
+  return gives_power(driver) || pin_use(driver) == PinUse::tones;
 }
 
 // By what a driver's sensors are measured; nothing: they are fed, or it has no sensors.

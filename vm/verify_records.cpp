@@ -121,7 +121,7 @@ Refusal check_channel(Walk& walk, const Channel& channel, std::size_t index) {
                                          is_range(channel.min, channel.max) && channel.change >= 0);
 }
 
-// What an actuator has for itself alone: its pin, the lights, or the speaker.
+// What an actuator has for itself alone: its pins, the lights, or the speaker.
 constexpr std::uint32_t kNothing = UINT32_MAX;
 constexpr std::uint32_t kLights = UINT16_MAX + 1;
 constexpr std::uint32_t kSpeaker = kLights + 1;
@@ -132,19 +132,35 @@ std::uint32_t output_of(const Actuator& actuator) {
   return drives_pin(actuator.driver) ? actuator.pin : kNothing;
 }
 
+std::uint32_t second_output_of(const Actuator& actuator) {
+  return has_two_pins(actuator.driver) ? actuator.bus : kNothing;
+}
+
+bool owns(const Actuator& actuator, std::uint32_t output) {
+  return output_of(actuator) == output || second_output_of(actuator) == output;
+}
+
 bool is_read(const Image& image, std::uint32_t pin) {
   for (const Sensor& sensor : image.sensors)
     if (sensor.address == pin && is_on_pin(sensor.driver)) return true;
   return false;
 }
 
+// Is it an actuator's before this one, or read?
+bool is_taken(const Walk& walk, std::uint32_t output, std::size_t index) {
+  if (walk.reads_pins && is_read(walk.image, output)) return true;
+  for (std::size_t a = 0; a < index; ++a)
+    if (owns(walk.image.actuators[a], output)) return true;
+  return false;
+}
+
 // One output has one owner, nobody reads its pin, and whoever has a motor lets it stand still in its safe state.
 Refusal check_output(const Walk& walk, const Actuator& actuator, std::size_t index) {
   const std::uint32_t output = output_of(actuator);
+  const std::uint32_t second = second_output_of(actuator);
   if (output == kNothing) return Refusal::none;
-  if (walk.reads_pins && is_read(walk.image, output)) return Refusal::shared_pin;
-  for (std::size_t a = 0; a < index; ++a)
-    if (output_of(walk.image.actuators[a]) == output) return Refusal::shared_pin;
+  if (output == second || is_taken(walk, output, index)) return Refusal::shared_pin;
+  if (second != kNothing && is_taken(walk, second, index)) return Refusal::shared_pin;
   return good_or(Refusal::drives_on, !drives_on(actuator.driver) || actuator.safe != Release::hold);
 }
 

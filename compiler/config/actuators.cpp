@@ -153,11 +153,11 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
   actuator.range_span = name->span;
   actuator.limit_span = name->span;
   if (type != nullptr) {
-    const Wiring place = wiring.read(fields, *type, part, false);
+    const Wiring place = wiring.read_actuator(fields, *type, part, device.actuator.driver);
     actuator.bus = place.bus;
     actuator.pin = place.place;
     if (type->name == "VIRTUAL") actuator.driver = vm::DriverId::virtual_actuator;
-    if (vm::drives_pin(actuator.driver)) wiring.check_output(fields, place);
+    if (vm::drives_pin(actuator.driver)) wiring.check_output(fields, place, actuator.driver);
     if (vm::drives_lights(actuator.driver) || vm::drives_speaker(actuator.driver))
       wiring.check_part(fields, part);
   }

@@ -23,7 +23,8 @@ std::uint16_t read_pin(const json::Value& value, Diagnostics& diagnostics) {
   return static_cast<std::uint16_t>(read_whole(value, 0, UINT16_MAX - 1, diagnostics).value_or(0));
 }
 
-// [{"pins": [first, last], …}]: how far a program may go with an output is the board's own business.
+// [{"pins": [first, last], …}]: how far a program may go with an output is the board's own business. What must be known is
+// whether its pulses begin at 0, as the power of a motor does.
 std::vector<Board::Pins> read_pins(const json::Value& list, Object object,
                                    Diagnostics& diagnostics) {
   std::vector<Board::Pins> ranges;
@@ -33,8 +34,11 @@ std::vector<Board::Pins> read_pins(const json::Value& list, Object object,
     Fields fields(entry, object, diagnostics);
     const auto* pins = fields.require("pins", "a row of pins");
     if (pins == nullptr || pins->items.size() != 2) continue;
-    ranges.push_back(
-        {read_pin(pins->items[0], diagnostics), read_pin(pins->items[1], diagnostics)});
+    Board::Pins range{read_pin(pins->items[0], diagnostics), read_pin(pins->items[1], diagnostics)};
+    const auto* pulses = fields.find("pulse_us");
+    if (pulses != nullptr && !pulses->items.empty())
+      range.power = read_pin(pulses->items[0], diagnostics) == 0;
+    ranges.push_back(range);
   }
   return ranges;
 }
@@ -90,6 +94,12 @@ Board::Flash read_flash(const json::Value& value, Diagnostics& diagnostics) {
 
 bool Board::has_output(std::uint16_t pin) const {
   return is_in(outputs, pin);
+}
+
+bool Board::gives_power(std::uint16_t pin) const {
+  return std::ranges::any_of(outputs, [&](const Pins& pins) {
+    return pin >= pins.first && pin <= pins.last && pins.power;
+  });
 }
 
 bool Board::has_input(std::uint16_t pin) const {

@@ -26,6 +26,7 @@ struct Board {
   std::uint32_t step_budget = 0;  // M4 instructions of VM code in one step
   struct Pins {
     std::uint16_t first, last;
+    bool power = true;  // of outputs: false where pulses are held to those of servos
   };
   std::vector<Pins> outputs;      // pins that a program may drive
   std::vector<Pins> inputs;       // … and read; none is both
@@ -52,6 +53,7 @@ struct Board {
   std::vector<Part> parts;
 
   [[nodiscard]] bool has_output(std::uint16_t pin) const;
+  [[nodiscard]] bool gives_power(std::uint16_t pin) const;
   [[nodiscard]] bool has_input(std::uint16_t pin) const;
   [[nodiscard]] const Part* find_part(std::string_view wanted) const;  // any case
 };

@@ -230,7 +230,7 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
   sensor.name = *name;
   place_channels(sensor);
   if (type != nullptr) {
-    const Wiring place = wiring.read(fields, *type, part, true);
+    const Wiring place = wiring.read_sensor(fields, *type, part);
     sensor.bus = place.bus;
     sensor.address = place.place;
     if (type->name != "VIRTUAL" && device.has_driver) check_place(fields, sensor, wiring, place);

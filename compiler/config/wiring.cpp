@@ -1,6 +1,8 @@
 #include "compiler/config/wiring.hpp"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -76,15 +78,37 @@ void WiringReader::report_foreign(const Fields& fields, const WiringType& type) 
   check("bus", type.bus);
   check("address", type.address);
   check("pin", type.pin);
+  check("pins", type.pin);
   check("active", type.name == "GPIO");
 }
 
-std::uint16_t WiringReader::read_pin(const json::Value& value) {
-  const auto pin = read_whole(value, 0, UINT16_MAX - 1, diagnostics_);
+std::uint16_t WiringReader::read_pin(const json::Value& value, std::uint16_t last) {
+  const auto pin = read_whole(value, 0, last, diagnostics_);
   if (!pin) return 0;
   const auto number = static_cast<std::uint16_t>(*pin);
   take_pin(number, value.span);
   return number;
+}
+
+// 3; or, of what has two: [3, 4], of which the image has a byte for the second one.
+void WiringReader::read_pins(Fields& fields, bool two, const std::string& what, Wiring& wiring) {
+  const auto report = [&](const json::Value& wrong) {
+    diagnostics_.report(Code::E0205, what + (two ? " has two pins" : " has one pin"))
+        .label(wrong.span)
+        .helps(two ? "say `\"pins\": [3, 4]`: the first one drives it forward, the other one back"
+                   : "say `\"pin\": 3`");
+  };
+  if (const auto* wrong = fields.find(two ? "pin" : "pins")) return report(*wrong);
+  const auto* value = fields.require(two ? "pins" : "pin", what);
+  if (value == nullptr) return;
+  if (!two) {
+    wiring.place = read_pin(*value);
+  } else if (value->kind != json::Kind::array || value->items.size() != 2) {
+    report(*value);
+  } else {
+    wiring.place = read_pin(value->items[0]);
+    wiring.bus = static_cast<std::uint8_t>(read_pin(value->items[1], UINT8_MAX));
+  }
 }
 
 void WiringReader::take_pin(std::uint16_t pin, Span span) {
@@ -133,14 +157,28 @@ void WiringReader::check_part(const Fields& fields, const Board::Part* part) {
       .helps("boards that have one: " + boards_with(device->text));
 }
 
+Wiring WiringReader::read_sensor(Fields& fields, const WiringType& type, const Board::Part* part) {
+  Wiring wiring = read(fields, type, part, false, "a sensor of type " + std::string(type.name));
+  if (part == nullptr && type.name == "GPIO") wiring.bus = read_active(fields);
+  return wiring;
+}
+
+Wiring WiringReader::read_actuator(Fields& fields, const WiringType& type, const Board::Part* part,
+                                   vm::DriverId driver) {
+  const bool two_pins = vm::has_two_pins(driver);
+  const auto* device = fields.find("device");
+  const std::string what = two_pins && device != nullptr
+                               ? "a " + device->text
+                               : "an actuator of type " + std::string(type.name);
+  return read(fields, type, part, two_pins, what);
+}
+
 Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::Part* part,
-                          bool is_sensor) {
+                          bool two_pins, const std::string& what) {
   Wiring wiring;
   if (type.name == "VIRTUAL") return wiring;
   if (part != nullptr) return read_part(fields, *part);
   report_foreign(fields, type);
-  const std::string what =
-      std::string(is_sensor ? "a sensor" : "an actuator") + " of type " + std::string(type.name);
   if (const auto* bus = type.bus ? fields.find("bus") : nullptr)
     wiring.bus =
         static_cast<std::uint8_t>(read_whole(*bus, 0, UINT8_MAX, diagnostics_).value_or(0));
@@ -150,9 +188,8 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
           read_whole(*address, vm::kFirstAddress, vm::kLastAddress, diagnostics_)
               .value_or(vm::kFirstAddress));
   } else if (type.pin) {
-    if (const auto* pin = fields.require("pin", what)) wiring.place = read_pin(*pin);
+    read_pins(fields, two_pins, what, wiring);
   }
-  if (is_sensor && type.name == "GPIO") wiring.bus = read_active(fields);
   return wiring;
 }
 
@@ -171,29 +208,48 @@ void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
       .helps(buses);
 }
 
-void WiringReader::check_output(const Fields& fields, const Wiring& wiring) {
-  const auto* pin = fields.find("pin");
-  if (pin != nullptr && !board_.has_output(wiring.place))
-    report_no_pin(*pin, wiring, "output", board_.outputs);
+void WiringReader::check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver) {
+  const bool power = vm::gives_power(driver);
+  if (vm::has_two_pins(driver)) {
+    const auto* pins = fields.find("pins");
+    if (pins == nullptr || pins->items.size() != 2) return;
+    check_output_pin(pins->items[0], wiring.place, power);
+    check_output_pin(pins->items[1], wiring.bus, power);
+  } else if (const auto* pin = fields.find("pin")) {
+    check_output_pin(*pin, wiring.place, power);
+  }
+}
+
+// A pin that is held to the pulses of servos drives no motor (policy::can_drive()).
+void WiringReader::check_output_pin(const json::Value& value, std::uint16_t pin, bool power) {
+  if (!board_.has_output(pin))
+    return report_no_pin(value, pin, " is no output", "its outputs are the pins ", board_.outputs);
+  if (!power || board_.gives_power(pin)) return;
+  std::vector<Board::Pins> those;
+  std::ranges::copy_if(board_.outputs, std::back_inserter(those),
+                       [](const Board::Pins& pins) { return pins.power; });
+  report_no_pin(value, pin, " gives pulses for servos only, no power",
+                "those that give power are the pins ", those);
 }
 
 void WiringReader::check_input(const Fields& fields, const Wiring& wiring) {
   const auto* pin = fields.find("pin");
   if (pin != nullptr && !board_.has_input(wiring.place))
-    report_no_pin(*pin, wiring, "input", board_.inputs);
+    report_no_pin(*pin, wiring.place, " is no input", "its inputs are the pins ", board_.inputs);
 }
 
-void WiringReader::report_no_pin(const json::Value& pin, const Wiring& wiring, const char* what,
+void WiringReader::report_no_pin(const json::Value& value, std::uint16_t pin,
+                                 const std::string& is_no, const std::string& those_are,
                                  std::span<const Board::Pins> those) {
   std::vector<std::string> pins;
-  for (const auto& [first, last] : those)
-    pins.push_back(first == last ? std::to_string(first)
-                                 : std::to_string(first) + " to " + std::to_string(last));
+  for (const Board::Pins& range : those)
+    pins.push_back(range.first == range.last
+                       ? std::to_string(range.first)
+                       : std::to_string(range.first) + " to " + std::to_string(range.last));
   diagnostics_
-      .report(Code::E0205, "on the board " + board_.name + " pin " + std::to_string(wiring.place) +
-                               " is no " + what)
-      .label(pin.span)
-      .helps("its " + std::string(what) + "s are the pins " + list_names(pins, "and"));
+      .report(Code::E0205, "on the board " + board_.name + " pin " + std::to_string(pin) + is_no)
+      .label(value.span)
+      .helps(those_are + list_names(pins, "and"));
 }
 
 std::optional<std::size_t> read_choice(const json::Value& value,

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -24,7 +25,8 @@ struct WiringType {
 [[nodiscard]] const WiringType* read_type(Fields& fields, bool is_sensor, Diagnostics& diagnostics);
 
 struct Wiring {
-  std::uint8_t bus = 0;     // of a sensor of type GPIO: vm::ActiveLevel
+  std::uint8_t bus =
+      0;  // of a sensor of type GPIO: vm::ActiveLevel; of what has two pins: the second one
   std::uint16_t place = 0;  // I2C address or pin
 };
 
@@ -34,25 +36,30 @@ public:
   WiringReader(Board board, Diagnostics& diagnostics)
       : board_(std::move(board)), diagnostics_(diagnostics) {}
   // `part`: which of the board's own parts it is, which brings its wiring; or null.
-  [[nodiscard]] Wiring read(Fields& fields, const WiringType& type, const Board::Part* part,
-                            bool is_sensor);
+  [[nodiscard]] Wiring read_sensor(Fields& fields, const WiringType& type, const Board::Part* part);
+  [[nodiscard]] Wiring read_actuator(Fields& fields, const WiringType& type,
+                                     const Board::Part* part, vm::DriverId driver);
   // For those whose driver uses them: the board must have them.
   void check_bus(const Fields& fields, const Wiring& wiring);
   void check_input(const Fields& fields, const Wiring& wiring);
-  void check_output(const Fields& fields, const Wiring& wiring);
+  void check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver);
   // Lights and speakers are parts of a board, or nowhere.
   void check_part(const Fields& fields, const Board::Part* part);
   [[nodiscard]] const Board& board() const { return board_; }
 
 private:
+  [[nodiscard]] Wiring read(Fields& fields, const WiringType& type, const Board::Part* part,
+                            bool two_pins, const std::string& what);
   [[nodiscard]] Wiring read_part(const Fields& fields, const Board::Part& part);
-  std::uint16_t read_pin(const json::Value& value);
+  std::uint16_t read_pin(const json::Value& value, std::uint16_t last = UINT16_MAX - 1);
+  void read_pins(Fields& fields, bool two, const std::string& what, Wiring& wiring);
   std::uint8_t read_active(const Fields& fields);
   void take_pin(std::uint16_t pin, Span span);
   void take_part(const Board::Part& part, Span span);
   void report_foreign(const Fields& fields, const WiringType& type);
-  void report_no_pin(const json::Value& pin, const Wiring& wiring, const char* what,
-                     std::span<const Board::Pins> those);
+  void check_output_pin(const json::Value& value, std::uint16_t pin, bool power);
+  void report_no_pin(const json::Value& value, std::uint16_t pin, const std::string& is_no,
+                     const std::string& those_are, std::span<const Board::Pins> those);
 
   Board board_;
   Diagnostics& diagnostics_;

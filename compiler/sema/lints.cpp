@@ -9,6 +9,7 @@
 #include "compiler/config/units.hpp"
 #include "compiler/ir/walk.hpp"
 #include "compiler/syntax/walk.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::compiler {
 
@@ -408,7 +409,7 @@ bool takes_time(const ir::Command& command, const Names& names) {
       });
   const bool at_once = std::all_of(
       command.actuators.begin(), command.actuators.end(),
-      [&](std::size_t actuator) { return names.actuator(actuator).driver == vm::DriverId::pwm; });
+      [&](std::size_t actuator) { return vm::gives_power(names.actuator(actuator).driver); });
   return command.verb.action != vm::Action::stop && (lasts || !at_once);
 }
 

@@ -9,6 +9,7 @@
 #include "rsc/quantity.hpp"
 #include "runtime-m4/algorithms/modules.hpp"
 #include "runtime-m4/policy/threads.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -84,17 +85,23 @@ std::string verb_names(const vm::Image& image, std::uint32_t mask) {
   return fmt::format("{}", fmt::join(verbs, " "));
 }
 
+std::string place_of(const vm::Actuator& actuator) {
+  return vm::has_two_pins(actuator.driver)
+             ? fmt::format("pins {} and {}", actuator.pin, actuator.bus)
+             : fmt::format("bus {} pin {}", actuator.bus, actuator.pin);
+}
+
 std::string actuators(const vm::Image& image) {
   std::string text = "\nactuators\n";
   for (std::size_t i = 0; i < image.actuators.size(); ++i) {
     const vm::Actuator& actuator = image.actuators[i];
-    text += fmt::format(
-        "  {} {}: {} on bus {} pin {}, range {} … {}, speed limit {}, release {}, safe {}; {}\n", i,
-        image.string(actuator.name), driver_name(actuator.driver), actuator.bus, actuator.pin,
-        number(actuator.min), number(actuator.max),
-        actuator.speed_limit == vm::kValueMax ? "none" : number(actuator.speed_limit),
-        word_of(kReleases, actuator.on_release), word_of(kReleases, actuator.safe),
-        verb_names(image, actuator.verbs));
+    text +=
+        fmt::format("  {} {}: {} on {}, range {} … {}, speed limit {}, release {}, safe {}; {}\n",
+                    i, image.string(actuator.name), driver_name(actuator.driver),
+                    place_of(actuator), number(actuator.min), number(actuator.max),
+                    actuator.speed_limit == vm::kValueMax ? "none" : number(actuator.speed_limit),
+                    word_of(kReleases, actuator.on_release), word_of(kReleases, actuator.safe),
+                    verb_names(image, actuator.verbs));
   }
   for (const vm::Group& group : image.groups) {
     text += fmt::format("  group {}: {}\n", image.string(group.name),

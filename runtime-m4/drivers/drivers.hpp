@@ -53,6 +53,10 @@ struct Device {
   void drive(std::uint32_t pulse_us, kernel::Time now) const {
     outputs.drive(state.actuator, pulse_us, now);
   }
+  // Of a driver with two pins: on the second one where it is negative.
+  void drive_either(std::int32_t pulse_us, kernel::Time now) const {
+    outputs.drive_either(state.actuator, pulse_us, now);
+  }
   void show(std::uint32_t picture) const { outputs.show(state.actuator, picture); }
   void sound(std::uint32_t hertz) const { outputs.sound(state.actuator, hertz); }
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "runtime-m4/policy/pulses.hpp"
 #include "vm/drivers.hpp"
@@ -23,13 +24,28 @@ std::uint16_t within(const policy::PinLimit& limit, std::uint32_t pulse_us) {
       std::clamp<std::uint32_t>(pulse_us, limit.shortest, limit.longest));
 }
 
-bool drives(const vm::Image& image, std::uint16_t pin, vm::DriverId driver) {
-  return std::ranges::any_of(image.actuators, [&](const vm::Actuator& actuator) {
-    return actuator.pin == pin && actuator.driver == driver;
-  });
+}  // namespace
+
+// Does a driver's order reach it?
+[[gnu::always_inline]] inline bool OutputGuard::is_free(unsigned actuator) const {
+  return (free_ & bit(actuator)) != 0;
 }
 
-}  // namespace
+void OutputGuard::exchange(Slot& slot) {
+  std::swap(slot.pin, slot.other);
+  std::swap(slot.limit, slot.other_limit);
+  slot.second = !slot.second;
+}
+
+// Does the program drive what `slot` has, in the same way? Pulses for a servo are power for a motor.
+bool OutputGuard::drives(const vm::Image& image, const Slot& slot) {
+  const std::uint16_t first = slot.second ? slot.other : slot.pin;
+  const std::uint16_t second = slot.second ? slot.pin : slot.other;
+  return std::ranges::any_of(image.actuators, [&](const vm::Actuator& actuator) {
+    return actuator.pin == first && actuator.driver == slot.driver &&
+           (second == kNoPin || actuator.bus == second);
+  });
+}
 
 // Pins that `next` does not drive in the same way. Nobody drives any of them meanwhile.
 void OutputGuard::switch_off(const vm::Image* next) {
@@ -41,7 +57,7 @@ void OutputGuard::switch_off(const vm::Image* next) {
   if (speaker() != 0) board_.sound(0);
   for (Mask left = owned_ & ~(lights() | speaker()); left != 0; left &= left - 1) {
     const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
-    if (next == nullptr || !drives(*next, slot.pin, slot.driver)) board_.pwm_write(slot.pin, 0);
+    if (next == nullptr || !drives(*next, slot)) board_.pwm_write(slot.pin, 0);
   }
   owned_ = lights_ = speaker_ = 0;
 }
@@ -58,29 +74,47 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
   gradual_ = 0;
   for (unsigned a = 0; a < image.actuators.size(); ++a) {
     const vm::Actuator& actuator = image.actuators[a];
-    const policy::PinLimit* const limit = policy::limit_of(pins, actuator.pin);
     if (boards::kHasLights && vm::drives_lights(actuator.driver)) {
       own_lights(a, actuator.safe);
       owned |= bit(a);
     }
     if (boards::kHasSpeaker && vm::drives_speaker(actuator.driver)) owned |= speaker_ = bit(a);
-    if (!vm::drives_pin(actuator.driver) || limit == nullptr) continue;
-    const auto pulse = static_cast<std::uint16_t>(board_.pwm_read(actuator.pin));
-    const auto safe = policy::safe_pulse(actuator);
-    slots_[a] = {.pin = actuator.pin,
-                 .pulse = pulse,
-                 .target = pulse,
-                 .changed = 0,
-                 .safe = safe ? within(*limit, *safe) : kStays,
-                 .limit = static_cast<std::uint8_t>(limit - limits_),
-                 .driver = actuator.driver};
+    if (!vm::drives_pin(actuator.driver) || !policy::can_drive(actuator, pins)) continue;
+    slots_[a] = slot_of(actuator, pins);
     owned |= bit(a);
-    if (limit->rise != 0) gradual_ |= bit(a);
+    if (limits_[slots_[a].limit].rise != 0) gradual_ |= bit(a);
   }
   const auto lock = kernel_.lock();
   owned_ = owned;
   halted_ = halted;
   free_ = owned & ~halted;
+}
+
+// The outputs of `actuator` are the board's.
+OutputGuard::Slot OutputGuard::slot_of(const vm::Actuator& actuator,
+                                       const policy::BoardPins& pins) const {
+  const policy::PinLimit& limit = *policy::limit_of(pins, actuator.pin);
+  const auto pulse = static_cast<std::uint16_t>(board_.pwm_read(actuator.pin));
+  const auto safe = policy::safe_pulse(actuator);
+  const auto place = static_cast<std::uint8_t>(&limit - limits_);
+  Slot slot{.pin = actuator.pin,
+            .other = kNoPin,
+            .pulse = pulse,
+            .target = pulse,
+            .changed = 0,
+            .safe = safe ? within(limit, *safe) : kStays,
+            .limit = place,
+            .other_limit = place,
+            .second = false,
+            .driver = actuator.driver};
+  if (!vm::has_two_pins(actuator.driver)) return slot;
+  slot.other = actuator.bus;
+  slot.other_limit = static_cast<std::uint8_t>(policy::limit_of(pins, actuator.bus) - limits_);
+  const auto back = static_cast<std::uint16_t>(board_.pwm_read(actuator.bus));
+  if (back == 0) return slot;
+  exchange(slot);
+  slot.pulse = slot.target = back;
+  return slot;
 }
 
 void OutputGuard::own_lights(unsigned actuator, vm::Release safe) {
@@ -101,9 +135,31 @@ void OutputGuard::sound(unsigned actuator, std::uint32_t hertz) {
 [[gnu::noinline]] void OutputGuard::drive(unsigned actuator, std::uint32_t pulse_us,
                                           kernel::Time now) {
   const auto lock = kernel_.lock();
-  if ((free_ & bit(actuator)) == 0) return;
+  if (!is_free(actuator)) return;
   Slot& slot = slots_[actuator];
   settle(slot, actuator, within(limits_[slot.limit], pulse_us), now);
+}
+
+[[gnu::noinline]] void OutputGuard::drive_either(unsigned actuator, std::int32_t pulse_us,
+                                                 kernel::Time now) {
+  const auto lock = kernel_.lock();
+  if (!is_free(actuator)) return;
+  Slot& slot = slots_[actuator];
+  const bool second = pulse_us < 0;
+  std::uint32_t length = static_cast<std::uint32_t>(pulse_us);
+  if (second) length = 0 - length;
+  if (slot.other == kNoPin && second) length = 0;
+  if (length != 0 && second != slot.second) turn(slot, actuator, now);
+  settle(slot, actuator, within(limits_[slot.limit], length), now);
+}
+
+// To the other pin: this one goes off first.
+void OutputGuard::turn(Slot& slot, unsigned actuator, kernel::Time now) {
+  board_.pwm_write(slot.pin, 0);
+  exchange(slot);
+  slot.pulse = 0;
+  slot.changed = static_cast<std::uint16_t>(now / 1000);
+  limits_[slot.limit].rise != 0 ? gradual_ |= bit(actuator) : gradual_ &= ~bit(actuator);
 }
 
 // `pulse` is inside the limits.

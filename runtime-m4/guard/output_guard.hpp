@@ -7,6 +7,8 @@
 // * An actuator that is halted goes to its safe state at once, without its driver, and takes no order until it is let
 //   go. A pin that is off stays off: nothing begins to move because something is wrong.
 //
+// A motor on an H-bridge has two pins. At most one of them is on: before the other one is, it goes off.
+//
 // The lights of a board that has some are kept in the same way: who shows a picture owns them, they go dark with a halt
 // unless its safe state is to hold, and with the program. The speaker of one that has it is silent then, whatever its safe
 // state.
@@ -39,6 +41,8 @@ public:
 
   // Pulse on the actuator's pin, in microseconds of the 20 ms frame; 0: off.
   void drive(unsigned actuator, std::uint32_t pulse_us, kernel::Time now);
+  // … of one that has two pins: on its first one, or where it is negative, so long on its second one.
+  void drive_either(unsigned actuator, std::int32_t pulse_us, kernel::Time now);
   // The picture on the lights (boards::Board::show()).
   void show(unsigned actuator, std::uint32_t picture);
   // The tone of the speaker (boards::Board::sound()).
@@ -50,22 +54,32 @@ public:
   void let_go(Mask actuators);
 
 private:
+  // Of two pins, `pin` is the one that is on, or was last; the other one is off.
   struct Slot {
     std::uint16_t pin;
+    std::uint16_t other;    // kNoPin: it has one
     std::uint16_t pulse;    // what is on the pin
     std::uint16_t target;   // where it goes, as far as it may
     std::uint16_t changed;  // when it was written last, in ms; of pins with a limited rise
     std::uint16_t safe;     // the pulse of the safe state, inside the limits, or kStays
     std::uint8_t limit;     // in the board's list
+    std::uint8_t other_limit;
+    bool second;  // `pin` is the second one
     vm::DriverId driver;
   };
 
   static constexpr std::uint16_t kStays = UINT16_MAX;
+  static constexpr std::uint16_t kNoPin = UINT16_MAX;
 
   void settle(Slot& slot, unsigned actuator, std::uint16_t pulse, kernel::Time now);
   void put(unsigned actuator, kernel::Time now);
   void make_safe(unsigned actuator, kernel::Time now);
   std::uint16_t next_pulse(Slot& slot, std::uint16_t rise, bool pulses, kernel::Time now) const;
+  [[nodiscard]] bool is_free(unsigned actuator) const;
+  static void exchange(Slot& slot);
+  void turn(Slot& slot, unsigned actuator, kernel::Time now);
+  [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
+  static bool drives(const vm::Image& image, const Slot& slot);
   void switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
   // The actuator that has the lights, if any.

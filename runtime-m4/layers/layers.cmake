@@ -37,7 +37,9 @@ target_sources(robosync_runtime PRIVATE
   drivers/lights.cpp
   drivers/lsm303agr.cpp
   drivers/max34451.cpp
+  drivers/motor.cpp
   drivers/player.cpp
+  drivers/power.cpp
   drivers/pwm.cpp
   drivers/servo.cpp
   drivers/tones.cpp

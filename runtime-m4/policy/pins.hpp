@@ -56,6 +56,17 @@ constexpr vm::Refusal judge(const vm::Sensor& sensor, const BoardPins& board) {
   return vm::Refusal::none;
 }
 
+// A pin that is held to the pulses of servos gives no power: it could not be a little, nor all.
+constexpr bool can_drive(vm::DriverId driver, std::uint16_t pin, const BoardPins& board) {
+  const PinLimit* const limit = limit_of(board, pin);
+  return limit != nullptr && (limit->shortest == 0 || !vm::gives_power(driver));
+}
+
+constexpr bool can_drive(const vm::Actuator& actuator, const BoardPins& board) {
+  return can_drive(actuator.driver, actuator.pin, board) &&
+         (!vm::has_two_pins(actuator.driver) || can_drive(actuator.driver, actuator.bus, board));
+}
+
 inline vm::Verdict judge(const vm::Image& image, const BoardPins& board) {
   for (std::size_t s = 0; s < image.sensors.size(); ++s) {
     const vm::Refusal refusal = judge(image.sensors[s], board);
@@ -64,7 +75,7 @@ inline vm::Verdict judge(const vm::Image& image, const BoardPins& board) {
   }
   for (std::size_t a = 0; a < image.actuators.size(); ++a) {
     const vm::Actuator& actuator = image.actuators[a];
-    if (vm::drives_pin(actuator.driver) && limit_of(board, actuator.pin) == nullptr)
+    if (vm::drives_pin(actuator.driver) && !can_drive(actuator, board))
       return {vm::Refusal::no_pin, vm::Section::actuators, static_cast<std::uint16_t>(a)};
   }
   return {};

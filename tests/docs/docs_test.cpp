@@ -1,19 +1,19 @@
 // The programs in the documentation are what they say they are: rsc finds nothing wrong with them,
 // the robot takes them and runs, and their TESTs pass.
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
-#include "tests/rsc/process.hpp"
+#include "tests/docs/pages.hpp"
 #include "tests/support/golden.hpp"
 
 namespace {
 
+using robosync::test::check_program;
+using robosync::test::check_runs;
 using robosync::test::Folder;
 using robosync::test::Outcome;
 using robosync::test::rsc;
@@ -23,16 +23,7 @@ const std::filesystem::path kRoot = ROBOSYNC_SOURCE_DIR;
 
 // The fenced blocks of `language` in a Markdown file.
 std::vector<std::string> blocks(const std::filesystem::path& path, const std::string& language) {
-  const std::string text = read_file(path);
-  const std::string fence = "```" + language + "\n";
-  std::vector<std::string> found;
-  for (auto at = text.find(fence); at != std::string::npos; at = text.find(fence, at)) {
-    at += fence.size();
-    const auto end = text.find("```", at);
-    found.push_back(text.substr(at, end - at));
-    at = std::min(end, text.size());
-  }
-  return found;
+  return robosync::test::blocks_in(read_file(path), language);
 }
 
 // What a page says that a command prints, below its comment <!-- printed: COMMAND -->.
@@ -62,33 +53,6 @@ std::vector<std::string> quoted_rows(const std::string& text) {
     rows.push_back(row.substr(0, row.find("…")));
   }
   return rows;
-}
-
-void check_runs(const Outcome& outcome) {
-  INFO(outcome.out);
-  INFO(outcome.err);
-  CHECK(outcome.exit == 0);
-}
-
-std::size_t warnings_in(const std::string& report) {
-  const auto found = nlohmann::json::parse(report).at("diagnostics");
-  return static_cast<std::size_t>(std::count_if(
-      found.begin(), found.end(), [](const auto& one) { return one.at("level") == "warning"; }));
-}
-
-// A page is a promise: not even a warning.
-void check_program(const std::string& program, const std::string& robot) {
-  const Folder folder;
-  folder.write("robot.json", robot);
-  const std::string file = folder.write("robot.rsl", program);
-  INFO(program);
-
-  const Outcome report = rsc({"check", file, "--format", "json"});
-  INFO(report.out);
-  REQUIRE(report.exit == 0);
-  CHECK(warnings_in(report.out) == 0);
-  check_runs(rsc({"run", file, "--duration", "2s"}));
-  if (program.find("TEST \"") != std::string::npos) check_runs(rsc({"test", file}));
 }
 
 void check_page(const char* page, const std::string& robot, std::size_t at_least) {

@@ -43,6 +43,18 @@ DO
   MOVE arm TO 50deg
 END
 """
+WHEEL = """{
+  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+  "actuators": [{"name": "wheel", "type": "PWM", "pins": [0, 1], "device": "motor"}]
+}"""
+TURNS_ROUND = """
+WHEN near X > 10
+DO RUN wheel TO 70%
+END
+WHEN near X > 50
+DO RUN wheel BACKWARD AT 25%
+END
+"""
 # The lights' pins of port 0: QEMU has no second port, where column 4 is.
 ROWS, COLUMNS = (21, 22, 15, 24, 19), {0: 28, 1: 11, 2: 31, 4: 30}
 P0_OUT, LINK_REGISTER, END_OF_INTERRUPT = 0x5000_0504, 14, 0xFFFF_FFE0
@@ -171,10 +183,7 @@ class OnMicrobit(DebuggedTest):
         return rsc.run(verb, *arguments, "--port", self.board.port)
 
     def test_pins_get_their_module_with_the_first_pulse_and_lose_it_when_the_robot_is_stopped(self):
-        config, program = self.folder / "arms.json", self.folder / "arms.rsl"
-        config.write_text(ARMS)
-        program.write_text(PROGRAM)
-        self.upload(self.compile(program, config))
+        self.load(ARMS, PROGRAM)
         self.assertEqual([self.told(pin) for pin in PIN_OF_PWM0], [[], [], [], []])
         self.say("feed", "near.X=5")
         self.say("feed", "near.X=20")
@@ -183,6 +192,24 @@ class OnMicrobit(DebuggedTest):
         self.say("stop")
         self.await_told(PIN_OF_PWM0[1], NOBODY)
         self.assertEqual(self.told(PIN_OF_PWM0[2]) + self.told(PIN_OF_PWM0[3]), [])
+
+    def load(self, robot, text):
+        config, program = self.folder / "arms.json", self.folder / "arms.rsl"
+        config.write_text(robot)
+        program.write_text(text)
+        self.upload(self.compile(program, config))
+
+    def test_a_motor_that_turns_round_leaves_its_pin_for_the_other_one(self):
+        self.load(WHEEL, TURNS_ROUND)
+        self.say("feed", "near.X=5")
+        self.say("feed", "near.X=20")
+        self.await_told(PIN_OF_PWM0[0], P0_02)
+        self.assertEqual(self.told(PIN_OF_PWM0[1]), [])
+        self.say("feed", "near.X=60")
+        self.await_told(PIN_OF_PWM0[1], P0_03)
+        self.assertEqual(self.told(PIN_OF_PWM0[0])[-1], NOBODY)
+        self.say("stop")
+        self.await_told(PIN_OF_PWM0[1], NOBODY)
 
     def begin(self, body, more="", robot=FACE):
         config, program = self.folder / "face.json", self.folder / "face.rsl"

@@ -17,6 +17,7 @@ from counting import symbols  # noqa: E402
 PATIENCE = 20
 PINS = 36
 ARM, MOTOR = 3, 4
+FORWARD, BACK = 5, 6
 SEVENTY_PERCENT = 14_000  # us
 PWM_DRIVER, LIGHTS_DRIVER = 5, 9  # in vm/drivers.def
 CONFIG = """{
@@ -30,6 +31,18 @@ WHEN near X > 10
 DO
   RUN motor TO 70%
   MOVE arm TO 100deg AT 20deg/s
+END
+"""
+WHEEL = """{
+  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+  "actuators": [{"name": "wheel", "type": "PWM", "pins": [5, 6], "device": "motor"}]
+}"""
+TURNS_ROUND = """
+WHEN near X > 10
+DO RUN wheel TO 70%
+END
+WHEN near X > 50
+DO RUN wheel BACKWARD AT 25%
 END
 """
 WITHOUT_MOTOR = """
@@ -66,10 +79,11 @@ class Stop(DebuggedTest):
         for value in values:
             self.say("feed", f"near.X={value}")
 
-    def await_motor(self, pulse):
+    def await_motor(self, pulse, pin=MOTOR):
         give_up = time.monotonic() + PATIENCE
-        while self.pulses()[MOTOR] != pulse:
+        while (pulses := self.pulses())[pin] != pulse:
             self.assertLess(time.monotonic(), give_up, f"the motor never came to {pulse} us")
+        return pulses
 
     def test_stop_holds_until_resume_whatever_comes(self):
         image = self.compiled(PROGRAM)
@@ -96,6 +110,23 @@ class Stop(DebuggedTest):
         pulses = self.pulses()
         self.assertEqual(pulses[MOTOR], 0)
         self.assertEqual([pulse for pin, pulse in enumerate(pulses) if pin not in (ARM, MOTOR)], [0] * (PINS - 2))
+
+    def test_a_motor_runs_both_ways_on_one_pin_at_a_time_and_a_stop_ends_both(self):
+        (self.folder / "robot.json").write_text(WHEEL)
+        image = self.compiled(TURNS_ROUND)
+        self.say("upload", image)
+        self.feed(20)
+        self.assertEqual(self.await_motor(SEVENTY_PERCENT, FORWARD)[BACK], 0)
+        self.feed(60)
+        self.assertEqual(self.await_motor(5000, BACK)[FORWARD], 0)
+        self.say("stop")
+        self.assertEqual(self.pulses(), [0] * PINS)
+        self.say("resume")
+        self.assertEqual(self.pulses(), [0] * PINS)
+        self.feed(5, 20, 60)
+        self.await_motor(5000, BACK)
+        self.say("upload", self.compiled("WHEN near X > 10\nDO LOG \"nothing moves\"\nEND\n"))
+        self.assertEqual(self.pulses(), [0] * PINS)
 
     def test_an_image_for_a_pin_that_is_no_output_is_refused(self):
         self.refuses("<BBH", (PWM_DRIVER, 0, 65535), "does not let programs drive this pin")

@@ -131,6 +131,15 @@ TEST_CASE("dump shows names, rules and instructions with their lines") {
   }
 }
 
+TEST_CASE("dump says both pins of a motor") {
+  const RobotFolder robot;
+  const std::string config = robot.write("motor.json", R"({"actuators": [
+    {"name": "wheel", "type": "PWM", "pins": [3, 4], "device": "motor"}]})");
+  const std::string program = robot.write("runs.rsl", "AT START\nDO RUN wheel BACKWARD\nEND\n");
+  CHECK_THAT(test::rsc({"dump", program, "--config", config}).out,
+             Contains("0 wheel: motor on pins 3 and 4, range -100 … 100"));
+}
+
 TEST_CASE("dump of a program shows each line above its instructions, optimised or not") {
   const RobotFolder robot;
   const std::string program = robot.write("counts.rsl", R"(REMEMBER count = 0

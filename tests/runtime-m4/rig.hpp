@@ -49,6 +49,7 @@ public:
   bool input(std::uint16_t pin) const override { return level(pin); }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override {
     pulses[pin].push_back(pulse_us);
+    writes.emplace_back(pin, pulse_us);
   }
   std::uint32_t pwm_read(std::uint16_t pin) const override {
     const auto found = pulses.find(pin);
@@ -72,12 +73,17 @@ public:
   boards::BusState bus_state;
   std::function<bool(std::uint16_t pin)> level = [](std::uint16_t) { return true; };  // pulled up
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;                         // all, by pin
+  std::vector<std::pair<std::uint16_t, std::uint32_t>> writes;  // the same, in their order
   policy::BoardPins board_pins = boards::kPins;
   std::vector<std::uint32_t> pictures;  // all
   std::vector<std::uint32_t> sounds;    // all
   unsigned kicks = 0;
   bool watching = false;
 };
+
+inline bool has_pin(const vm::Actuator& actuator, std::uint16_t pin) {
+  return actuator.pin == pin || (vm::has_two_pins(actuator.driver) && actuator.bus == pin);
+}
 
 class Rig final : private EventSink {
 public:

@@ -235,6 +235,7 @@ class ActuatorDrivers(unittest.TestCase):
 
     SERVO = {"type": "PWM", "pin": "3", "device": "servo", "range": ["0deg", "180deg"]}
     PWM = {"type": "PWM", "pin": "3", "device": "pwm", "on_release": "hold"}
+    MOTOR = {"type": "PWM", "pins": [3, 4], "device": "motor", "on_release": "hold", "limits": {"SPEED": "98%"}}
     ELSEWHERE = {"lights", "tones"}  # the reference board has none: tests/e2e/on_microbit.py
     # Orders that take long ways through the arithmetic: long times, divisors that need more than 16 bits.
     WIRED = {
@@ -247,6 +248,9 @@ class ActuatorDrivers(unittest.TestCase):
         "pwm": (PWM, ["RUN a0 TO 33%", "RUN a0 TO 33% FOR 50ms", "RUN a0 TO 99% OVER 150ms FOR 50ms",
                       "RUN a0 TO 99% OVER 250ms\nWAIT 70ms\nRUN a0 TO 3% OVER 250ms",
                       "RUN a0 TO 99% OVER 36000s\nWAIT 70ms\nRUN a0 TO 3% OVER 36000s"]),
+        "motor": (MOTOR, ["RUN a0 TO 33%", "RUN a0 BACKWARD AT 33% FOR 50ms", "RUN a0 TO -97% OVER 150ms FOR 50ms",
+                          "RUN a0 TO 97% OVER 250ms\nWAIT 70ms\nRUN a0 TO -97% OVER 250ms", "RUN a0 TO 97%\nWAIT 1ms\nRUN a0 TO -97%",
+                          "RUN a0 TO 97% OVER 36000s\nWAIT 70ms\nRUN a0 TO -97% OVER 36000s"]),
         "servo": (SERVO, ["MOVE a0 TO 33deg OVER 50ms", "MOVE a0 2 TIMES OVER 70ms", "MOVE a0 2 TIMES OVER 5273ms",
                           "MOVE a0 TO 178deg AT 66deg/s\nWAIT 200ms\nMOVE a0 TO 1deg AT 66deg/s",
                           "MOVE a0 TO 77.7deg OVER 36000s\nWAIT 77ms\nMOVE a0 TO 1.3deg OVER 36000s"]),

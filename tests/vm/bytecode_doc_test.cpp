@@ -2,16 +2,13 @@
 // ROBOSYNC_UPDATE_GOLDEN=1 rewrites the part between the two markers.
 #include <catch2/catch.hpp>
 
-#include "tests/vm/golden.hpp"
+#include "tests/support/generated.hpp"
 #include "vm/opcode.hpp"
 #include "vm/verifier.hpp"
 
 using namespace robosync::vm;
-using namespace robosync::vm::test;
 
 namespace {
-
-constexpr std::string_view kPath = "docs/bytecode.md";
 
 // As opcodes.def spells them.
 struct Spelled {
@@ -73,28 +70,9 @@ std::string refusal_table() {
   return table;
 }
 
-// The text between the markers of `part`, and with it replaced by `wanted`.
-struct Generated {
-  std::string actual;
-  std::string replaced;
-};
-Generated find_generated(const std::string& document, const std::string& part,
-                         const std::string& wanted) {
-  const std::string begin = "<!-- generated: " + part + " -->\n";
-  const std::string end = "<!-- end of " + part + " -->\n";
-  const std::size_t start = document.find(begin);
-  const std::size_t stop = document.find(end);
-  REQUIRE(start != std::string::npos);
-  REQUIRE(stop != std::string::npos);
-  const std::size_t first = start + begin.size();
-  return {document.substr(first, stop - first),
-          document.substr(0, first) + wanted + document.substr(stop)};
-}
-
 void check_generated(const std::string& part, const std::string& wanted) {
-  const std::string path(kPath);
-  if (update_golden()) write_text(path, find_generated(read_text(path), part, wanted).replaced);
-  CHECK(find_generated(read_text(path), part, wanted).actual == wanted);
+  robosync::testing::expect_generated(
+      std::filesystem::path(ROBOSYNC_SOURCE_DIR) / "docs/bytecode.md", part, wanted);
 }
 
 }  // namespace

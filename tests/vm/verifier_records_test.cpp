@@ -182,6 +182,33 @@ TEST_CASE("actuators") {
     a[0].driver = DriverId::pwm;
     a[0].safe = Release::hold;
   });
+  // What has two pins has both for itself.
+  const auto two = [](Actuator& actuator, std::uint16_t first, unsigned second) {
+    actuator.driver = DriverId::motor;
+    actuator.pin = first;
+    actuator.bus = static_cast<std::uint8_t>(second);
+    actuator.safe = Release::coast;
+  };
+  refused(Refusal::shared_pin, 1, [&](auto& a) { two(a[1], 20, 20); });
+  refused(Refusal::shared_pin, 1, [&](auto& a) { two(a[1], 20, a[0].pin); });
+  refused(Refusal::shared_pin, 1, [&](auto& a) { two(a[1], a[0].pin, 20); });
+  refused(Refusal::shared_pin, 1, [&](auto& a) { two(a[0], 20, a[1].pin); });
+  refused(Refusal::shared_pin, 1, [&](auto& a) {
+    two(a[0], 20, 21);
+    two(a[1], 22, 21);
+  });
+  refused(Refusal::drives_on, 1, [&](auto& a) {
+    two(a[1], 20, 21);
+    a[1].safe = Release::hold;
+  });
+  check_refused(
+      [&](ImageBuilder& i) {
+        i.sensors[0].driver = DriverId::digital_input;
+        i.sensors[0].bus = 0;
+        i.sensors[0].address = 21;
+        two(i.actuators[1], 20, 21);
+      },
+      {Refusal::shared_pin, Section::actuators, 1});
   // Nor may a pin be driven that is read.
   check_refused(
       [](ImageBuilder& i) {
@@ -196,6 +223,8 @@ TEST_CASE("actuators") {
   image.actuators[0].safe = Release::hold;            // a servo may
   image.actuators[1].driver = DriverId::pwm;
   image.actuators[1].on_release = Release::hold;
+  check_accepted(image);
+  two(image.actuators[1], 20, 21);
   check_accepted(image);
 }
 

@@ -265,6 +265,24 @@ TEST_CASE("wiring travels as robot.json has it") {
   CHECK(actuator.safe == vm::Release::rest);
 }
 
+TEST_CASE("a motor's record has both pins; one that is only shown has none") {
+  const auto record = [](const std::string& wiring) {
+    const std::string robot =
+        R"({"sensors": [{"name": "near", "type": "VIRTUAL"}], "actuators": [{"name": "wheel", "device": "motor", )" +
+        wiring + "}]}";
+    const Result result = compile_text(rule("near > 2", "RUN wheel BACKWARD"), robot);
+    return view(result).actuators[0];
+  };
+  const vm::Actuator wired = record(R"("type": "PWM", "pins": ["6", 31])");
+  CHECK(wired.driver == vm::DriverId::motor);
+  CHECK(wired.pin == 6);
+  CHECK(wired.bus == 31);
+  CHECK(wired.min == -100'000);
+  CHECK(wired.safe == vm::Release::coast);
+  const vm::Actuator shown = record(R"("type": "VIRTUAL", "pins": [6, 31])");
+  CHECK(shown.driver == vm::DriverId::virtual_actuator);
+}
+
 TEST_CASE("what is fed is neither sampled nor stale") {
   const std::string robot = R"({
     "sensors": [{"name": "sonar", "type": "GPIO", "pin": 5, "device": "hc-sr04"}],

@@ -28,7 +28,7 @@ std::vector<std::uint16_t> outputs() {
   std::vector<std::uint16_t> found;
   for (std::size_t i = 0; i < compiler::board_names().size(); ++i)
     if (compiler::board_names()[i] == "b-l475e-iot01a")
-      for (const auto& [first, last] : compiler::board_at(i).outputs)
+      for (const auto& [first, last, power] : compiler::board_at(i).outputs)
         for (std::uint16_t pin = first; pin <= last; ++pin)
           found.push_back(pin);
   return found;

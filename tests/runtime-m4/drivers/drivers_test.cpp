@@ -41,6 +41,7 @@ struct Drive {
       : driver(drivers::driver(id)) {
     wiring.driver = id;
     wiring.pin = 7;
+    wiring.bus = 8;  // of what has two pins: the second one
     wiring.min = min;
     wiring.max = max;
     wiring.speed_limit = speed_limit;
@@ -60,6 +61,8 @@ struct Drive {
     }
   }
   std::uint32_t pulse() const { return board.pwm_read(7); }
+  // Of what has two pins: below 0 on the second one.
+  int power() const { return static_cast<int>(pulse()) - static_cast<int>(board.pwm_read(8)); }
   std::size_t setpoints() const {
     const auto found = board.pulses.find(7);
     return found == board.pulses.end() ? 0 : found->second.size();
@@ -284,6 +287,97 @@ TEST_CASE("pwm: a level at once, over a time, or for a time") {
   CHECK(lamp.pulse() == 20'000);
   lamp.begin(order(vm::Action::stop));
   CHECK(lamp.pulse() == 0);
+}
+
+TEST_CASE("motor: TO has the way as its sign, AT and full power that of BACKWARD") {
+  Drive motor(vm::DriverId::motor, -100 * vm::kScale, 100 * vm::kScale);
+  const auto runs = [&](std::initializer_list<std::pair<Param, Value>> params) {
+    motor.begin(order(vm::Action::set, params));
+    CHECK(motor.wake == drivers::kDone);
+    return motor.power();
+  };
+  CHECK(runs({{Param::to, 25 * vm::kScale}}) == 5000);
+  CHECK(runs({{Param::to, -25 * vm::kScale}}) == -5000);
+  CHECK(runs({{Param::to, 0}}) == 0);
+  CHECK(runs({{Param::at, 60 * vm::kScale}}) == 12'000);
+  CHECK(runs({{Param::at, 60 * vm::kScale}, {Param::direction, -vm::kScale}}) == -12'000);
+  CHECK(runs({{Param::to, -30 * vm::kScale}, {Param::direction, -vm::kScale}}) == 6000);
+  CHECK(runs({}) == 20'000);
+  CHECK(runs({{Param::direction, -vm::kScale}}) == -20'000);
+  motor.begin(order(vm::Action::stop));
+  CHECK(motor.power() == 0);
+}
+
+TEST_CASE("motor: the range holds for AT, and the limit of SPEED for TO") {
+  Drive slow(vm::DriverId::motor, -100 * vm::kScale, 100 * vm::kScale, 40 * vm::kScale);
+  slow.begin(order(vm::Action::set, {{Param::to, -90 * vm::kScale}}));
+  CHECK(slow.power() == -8000);
+  slow.begin(order(vm::Action::set));
+  CHECK(slow.power() == 8000);
+  Drive forward(vm::DriverId::motor, 0, 50 * vm::kScale);
+  forward.begin(order(vm::Action::set, {{Param::at, 70 * vm::kScale}}));
+  CHECK(forward.power() == 10'000);
+  forward.begin(order(vm::Action::set, {{Param::direction, -vm::kScale}}));
+  CHECK(forward.power() == 0);
+}
+
+TEST_CASE("motor: OVER goes through a standstill, FOR ends off, a release is off or holds") {
+  Drive motor(vm::DriverId::motor, -100 * vm::kScale, 100 * vm::kScale);
+  motor.begin(order(vm::Action::set, {{Param::to, 50 * vm::kScale}}));
+  motor.begin(order(vm::Action::set, {{Param::to, -50 * vm::kScale}, {Param::over, 1000}}));
+  motor.run(1'250'000);
+  CHECK(motor.power() == 5200);  // the last setpoint before that
+  motor.run(1'500'000);
+  CHECK(motor.power() == 0);
+  motor.run();
+  CHECK(motor.now == 2'000'000);
+  CHECK(motor.power() == -10'000);
+  motor.begin(order(vm::Action::set, {{Param::at, 20 * vm::kScale}, {Param::for_, 300}}));
+  CHECK(motor.power() == 4000);
+  motor.run();
+  CHECK(motor.now == 2'300'000);
+  CHECK(motor.power() == 0);
+  motor.begin(order(vm::Action::set, {{Param::direction, -vm::kScale}}));
+  motor.driver.release(motor.device(), vm::Release::hold, motor.now);
+  CHECK(motor.power() == -20'000);
+  motor.driver.release(motor.device(), vm::Release::coast, motor.now);
+  CHECK(motor.power() == 0);
+}
+
+TEST_CASE("motor: whatever is ordered ends, inside the frame, and never on both pins") {
+  const bool holds = rc::check("motor", [] {
+    const auto number = [] {
+      return *rc::gen::weightedOneOf<Value>(
+          {{3, rc::gen::inRange<Value>(-200'000, 200'000)},
+           {1, rc::gen::element(vm::kValueMax, vm::kValueMin, 0, 1)}});
+    };
+    const Value one = number();
+    const Value other = number();
+    Drive motor(vm::DriverId::motor, std::min(one, other), std::max(one, other),
+                std::max(number(), 0));
+    for (int i = 0; i < 4; ++i) {
+      Order what;
+      what.action = *rc::gen::element(vm::Action::set, vm::Action::stop);
+      what.given = *rc::gen::arbitrary<std::uint8_t>();
+      for (Value& param : what.params)
+        param = number();
+      motor.begin(what);
+      for (int call = 0; call < 50 && motor.wake != drivers::kDone; ++call) {
+        RC_ASSERT(motor.wake > motor.now);
+        motor.now = motor.wake;
+        motor.wake = motor.driver.advance(motor.device(), motor.now);
+      }
+      motor.driver.release(motor.device(), *rc::gen::element(vm::Release::hold, vm::Release::rest),
+                           motor.now);
+    }
+    std::map<std::uint16_t, std::uint32_t> on;
+    for (const auto& [pin, pulse] : motor.board.writes) {
+      on[pin] = pulse;
+      RC_ASSERT(pulse <= 20'000U);
+      RC_ASSERT(on[7] == 0U || on[8] == 0U);
+    }
+  });
+  CHECK(holds);
 }
 
 TEST_CASE("virtual_actuator and player: FOR, else OVER, else one second; STOP at once") {

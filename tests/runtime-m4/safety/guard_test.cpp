@@ -1,6 +1,8 @@
 // The output guard by itself, and under the whole runtime: drawn sequences of whatever can happen, against what it
 // promises. The board notes every pulse that leaves it, so nothing that was wrong for a moment is missed.
 #include <algorithm>
+#include <array>
+#include <map>
 #include <optional>
 
 #include <catch2/catch.hpp>
@@ -53,11 +55,37 @@ vm::Actuator drawn(std::uint16_t pin, test::Draw& draw) {
   return actuator;
 }
 
+vm::Actuator motor(std::uint16_t forward, std::uint8_t back) {
+  vm::Actuator actuator = on_pin(forward, vm::DriverId::motor);
+  actuator.bus = back;
+  actuator.min = -actuator.max;
+  return actuator;
+}
+
+bool may_drive(const vm::Actuator& actuator) {
+  return policy::can_drive(actuator, kPins);
+}
+
+// Actuators on some of the pins, two of which are no outputs. No pin has two.
+std::vector<vm::Actuator> drawn_robot(test::Draw& draw) {
+  constexpr std::uint16_t kPinsAndMore = 9;
+  std::vector<vm::Actuator> robot;
+  std::array<bool, kPinsAndMore> taken{};
+  for (std::uint16_t pin = 0; pin < kPinsAndMore; ++pin) {
+    if (taken[pin] || draw.one_in(2)) continue;
+    taken[pin] = true;
+    const auto second = static_cast<std::uint8_t>(draw.below(kPinsAndMore));
+    const bool two = draw.one_in(3) && !taken[second];
+    robot.push_back(two ? motor(pin, second) : drawn(pin, draw));
+    if (two) taken[second] = true;
+  }
+  return robot;
+}
+
 // Is `after` what halting the actuator makes of the pulse `before`? A servo rests at the least pulse, and may need
 // time to get there.
 bool is_safe(const vm::Actuator& actuator, std::uint32_t before, std::uint32_t after) {
-  if (actuator.driver == vm::DriverId::pwm || actuator.safe == vm::Release::coast)
-    return after == 0;
+  if (vm::gives_power(actuator.driver) || actuator.safe == vm::Release::coast) return after == 0;
   if (actuator.safe == vm::Release::hold || before == 0) return after == before;
   const policy::PinLimit& limit = *policy::limit_of(kPins, actuator.pin);
   return limit.rise != 0 ? after <= before : after == std::max<std::uint32_t>(500, limit.shortest);
@@ -208,6 +236,89 @@ TEST_CASE("a pulse that may not change at once goes on by itself, up to where it
   }
 }
 
+TEST_CASE("a motor that turns round is off for a moment: its pins are never both on") {
+  Bench bench;
+  bench.own({motor(1, 2)});
+  bench.guard.drive_either(0, 5'000, 0);
+  bench.guard.drive_either(0, -7'000, 0);
+  bench.guard.drive_either(0, 0, 0);
+  bench.guard.drive_either(0, -1, 0);
+  bench.guard.drive_either(0, INT32_MIN, 0);
+  using Writes = std::vector<std::pair<std::uint16_t, std::uint32_t>>;
+  CHECK(bench.board.writes == Writes{{1, 5'000}, {1, 0}, {2, 7'000}, {2, 0}, {2, 1}, {2, 20'000}});
+}
+
+TEST_CASE("a motor that is halted is off, whichever way it runs, and takes no order") {
+  for (const int way : {5'000, -5'000}) {
+    Bench bench;
+    bench.own({motor(1, 2)});
+    bench.guard.drive_either(0, way, 0);
+    bench.guard.halt(1, 0);
+    CHECK((bench.pulse(1) | bench.pulse(2)) == 0);
+    bench.guard.drive_either(0, way, 0);
+    bench.guard.drive_either(0, -way, 0);
+    CHECK((bench.pulse(1) | bench.pulse(2)) == 0);
+  }
+}
+
+TEST_CASE("each pin of a motor keeps its own limits") {
+  Bench bench;
+  bench.own({motor(1, 6)});  // 6: half of the power, and 50 us in a millisecond
+  bench.guard.drive_either(0, 20'000, 0);
+  CHECK(bench.pulse(1) == 20'000);
+  bench.guard.drive_either(0, -20'000, 1'000'000);
+  CHECK(bench.pulse(1) == 0);
+  CHECK(bench.pulse(6) == 0);
+  bench.guard.go_on(1'010'000);
+  CHECK(bench.pulse(6) == 500);
+  for (unsigned ms = 1'020; ms < 2'000; ms += 10)
+    bench.guard.go_on(kernel::milliseconds(ms));
+  CHECK(bench.pulse(6) == 10'000);
+  bench.guard.drive_either(0, 3'000, 2'000'000);
+  CHECK(bench.pulse(1) == 3'000);  // at once, as its pin lets it
+  bench.guard.go_on(2'010'000);
+  CHECK(bench.pulse(6) == 0);
+}
+
+TEST_CASE("a motor that runs backward runs on in a program that has it, and in no other") {
+  const auto after = [](const std::vector<vm::Actuator>& next) {
+    Bench bench;
+    bench.own({motor(1, 2)});
+    bench.guard.drive_either(0, -7'000, 0);
+    bench.own(next);
+    return bench.pulse(2);
+  };
+  CHECK(after({motor(1, 2)}) == 7'000);
+  CHECK(after({motor(2, 1)}) == 0);
+  CHECK(after({motor(1, 3)}) == 0);
+  CHECK(after({motor(3, 2)}) == 0);
+  CHECK(after({on_pin(2, vm::DriverId::pwm)}) == 0);
+  CHECK(after({}) == 0);
+  Bench bench;
+  bench.own({motor(1, 2)});
+  bench.guard.drive_either(0, -7'000, 0);
+  bench.own({motor(1, 2)});
+  bench.guard.drive_either(0, 7'000, 0);  // which way it ran is known
+  CHECK(bench.pulse(2) == 0);
+  CHECK(bench.pulse(1) == 7'000);
+}
+
+TEST_CASE("what has one pin has no other way; and a pin that is a servo's drives no motor") {
+  Bench bench;
+  bench.own({on_pin(1, vm::DriverId::pwm), motor(2, 4), motor(5, 3), on_pin(4, vm::DriverId::pwm)});
+  bench.guard.drive_either(0, 5'000, 0);
+  CHECK(bench.pulse(1) == 5'000);
+  bench.guard.drive_either(0, -5'000, 0);
+  CHECK(bench.pulse(1) == 0);
+  for (unsigned a = 1; a < 4; ++a) {
+    bench.guard.drive_either(a, 5'000, 0);
+    bench.guard.drive_either(a, -5'000, 0);
+    bench.guard.drive(a, 5'000, 0);
+  }
+  for (std::uint16_t pin = 2; pin < 6; ++pin)
+    CHECK(bench.pulse(pin) == 0);
+}
+
 // Random actuators on random pins, and random words of drivers that know no limit.
 TEST_CASE(
     "how fast a pulse may change is a matter of the pin, whatever the program before had there") {
@@ -231,7 +342,11 @@ TEST_CASE("no sequence widens a limit, nor drives a pin that no running program 
       std::array<std::uint32_t, kOutputs> before{};
       for (std::uint16_t pin = 0; pin < kOutputs; ++pin)
         before[pin] = bench->pulse(pin);
+      std::map<std::uint16_t, std::uint32_t> before_each;
+      for (std::uint16_t pin = 0; pin < kOutputs; ++pin)
+        before_each[pin] = before[pin];
       bench->board.pulses.clear();
+      bench->board.writes.clear();
       for (std::uint16_t pin = 0; pin < kOutputs; ++pin)
         if (before[pin] != 0) bench->board.pulses[pin] = {before[pin]};
       const unsigned actuator = draw.below(8);
@@ -240,10 +355,7 @@ TEST_CASE("no sequence widens a limit, nor drives a pin that no running program 
       std::uint32_t fresh = 0;  // … but those that are now
       switch (draw.below(10)) {
         case 0: {
-          std::vector<vm::Actuator> next;
-          for (std::uint16_t pin = 0; pin < 9; ++pin)  // two of them are no outputs
-            if (draw.one_in(2)) next.push_back(drawn(pin, draw));
-          bench->own(std::move(next));
+          bench->own(drawn_robot(draw));
           halted = 0;
           begins = true;
           held = false;
@@ -274,9 +386,20 @@ TEST_CASE("no sequence widens a limit, nor drives a pin that no running program 
             halted = 0;
           }
           break;
-        default:
-          bench->guard.drive(actuator, draw.one_in(3) ? draw.below(UINT32_MAX) : draw.below(25'000),
-                             now);
+        default: {
+          const std::uint32_t pulse = draw.one_in(3) ? draw.below(UINT32_MAX) : draw.below(25'000);
+          const auto either = static_cast<std::int32_t>(pulse);
+          if (draw.one_in(2))
+            bench->guard.drive(actuator, pulse, now);
+          else
+            bench->guard.drive_either(actuator, draw.one_in(2) ? either : -either, now);
+        }
+      }
+      for (const auto& [pin, pulse] : bench->board.writes) {
+        before_each[pin] = pulse;
+        for (const vm::Actuator& owner : bench->actuators)
+          if (vm::has_two_pins(owner.driver) && may_drive(owner) && !begins)
+            REQUIRE((before_each[owner.pin] == 0 || before_each[owner.bus] == 0));
       }
       for (const auto& [pin, pulses] : bench->board.pulses) {
         REQUIRE(pin < kOutputs);
@@ -286,8 +409,10 @@ TEST_CASE("no sequence widens a limit, nor drives a pin that no running program 
         REQUIRE(is_slow_enough(pin, before[pin], after,
                                static_cast<unsigned>((now - changed[pin]) / 1000)));
         if (after != before[pin]) changed[pin] = now;
-        const auto owner = std::ranges::find(bench->actuators, pin, &vm::Actuator::pin);
-        if (owner == bench->actuators.end()) {
+        const auto owner = std::ranges::find_if(
+            bench->actuators,
+            [pin = pin](const vm::Actuator& one) { return test::has_pin(one, pin); });
+        if (owner == bench->actuators.end() || !may_drive(*owner)) {
           REQUIRE(after == 0);
         } else if (const auto a = owner - bench->actuators.begin(); (fresh >> a & 1) != 0) {
           REQUIRE(is_safe(*owner, before[pin], after));

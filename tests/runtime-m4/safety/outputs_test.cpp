@@ -98,6 +98,31 @@ TEST_CASE("a pin that the board does not have is refused") {
   refused([](auto&, auto&, auto& arm, auto&) { arm.pin = 200; });
 }
 
+TEST_CASE("a motor has both of its pins for itself, and both are outputs that give power") {
+  const auto motor_on = [](std::uint16_t forward, std::uint8_t back) {
+    return [=](auto&, auto&, auto&, vm::Actuator& motor) {
+      motor.driver = vm::DriverId::motor;
+      motor.pin = forward;
+      motor.bus = back;
+    };
+  };
+  CHECK(refused(motor_on(4, 4)) == Refusal::shared_pin);
+  CHECK(refused(motor_on(4, 3)) == Refusal::shared_pin);  // the arm's
+  CHECK(refused(motor_on(3, 4)) == Refusal::shared_pin);
+  CHECK(refused(motor_on(4, 40), "button") == Refusal::shared_pin);  // the button's
+  CHECK(refused(motor_on(4, 41)) == Refusal::no_pin);
+  CHECK(refused(motor_on(65535, 4)) == Refusal::no_pin);
+  CHECK(refused(motor_on(4, 32)) == Refusal::no_pin);  // of a servo
+  CHECK(refused(motor_on(32, 4)) == Refusal::no_pin);
+  CHECK(refused([](auto&, auto&, auto&, auto& motor) { motor.pin = 33; }) == Refusal::no_pin);
+  CHECK(refused([&](auto& touch, auto& level, auto& arm, auto& motor) {
+          motor_on(4, 5)(touch, level, arm, motor);
+          motor.safe = vm::Release::hold;
+        }) == Refusal::drives_on);
+  Rig rig;
+  CHECK(rig.activate(patched(motor_on(4, 5))).ok());
+}
+
 TEST_CASE("an I2C bus and an address that cannot be are refused") {
   refused([](auto& touch, auto&, auto&, auto&) { touch.bus = 5; });
   for (const int address : {0, 7, 0x78, 0xFFFF})
@@ -157,6 +182,39 @@ TEST_CASE("a motor that the next program does not have stands still") {
   REQUIRE(rig.board.pwm_read(4) == 14'000);
   REQUIRE(rig.activate(test::compile(kWithoutMotor, kRobot)).ok());
   CHECK(rig.board.pwm_read(4) == 0);
+}
+
+TEST_CASE("a motor runs both ways through all layers, and backward is stopped as forward is") {
+  const char* const robot = R"({
+    "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+    "actuators": [{"name": "wheel", "type": "PWM", "pins": [4, 5], "device": "motor"}]})";
+  const auto bytes = test::compile(
+      "WHEN near X > 10\nDO RUN wheel TO 25%\nEND\nWHEN near X > 50\nDO RUN wheel BACKWARD "
+      "SLOWLY\nEND\n",
+      robot);
+  Rig rig;
+  REQUIRE(rig.activate(bytes).ok());
+  rig.feed(0, 20);
+  rig.run(500);
+  CHECK(rig.board.pwm_read(4) == 5'000);
+  CHECK(rig.board.pwm_read(5) == 0);
+  rig.feed(0, 60);
+  rig.run(1000);
+  CHECK(rig.board.pwm_read(4) == 0);
+  CHECK(rig.board.pwm_read(5) == 6'000);
+  rig.runtime.stop();
+  rig.run(1100);
+  CHECK(rig.board.pwm_read(5) == 0);
+  rig.runtime.resume();
+  rig.run(1500);
+  CHECK(rig.board.pwm_read(5) == 0);
+  for (const int near : {0, 20, 60}) {
+    rig.feed(0, near);
+    rig.run(rig.kernel.now() / 1000 + 100);
+  }
+  REQUIRE(rig.board.pwm_read(5) == 6'000);
+  rig.runtime.clear();
+  CHECK(rig.board.pwm_read(5) == 0);
 }
 
 TEST_CASE("nothing is driven when no program runs") {

@@ -148,7 +148,7 @@ TEST_CASE("no image, reading or stop drives what it must not") {
         REQUIRE(vm::view_image(bytes, image));
         auto& actuator = const_cast<vm::Actuator&>(image.actuators[draw.below(4)]);
         const auto any = static_cast<vm::Value>(draw.below(UINT32_MAX));
-        switch (draw.below(6)) {
+        switch (draw.below(7)) {
           case 0:
             actuator.pin = static_cast<std::uint16_t>(draw.below(40));
             break;
@@ -163,6 +163,10 @@ TEST_CASE("no image, reading or stop drives what it must not") {
             break;
           case 4:
             actuator.driver = draw.one_in(2) ? vm::DriverId::pwm : vm::DriverId::servo;
+            break;
+          case 5:
+            actuator.driver = vm::DriverId::motor;
+            actuator.bus = static_cast<std::uint8_t>(draw.below(40));
             break;
           default:
             actuator.safe = static_cast<vm::Release>(draw.below(3));
@@ -190,14 +194,15 @@ TEST_CASE("no image, reading or stop drives what it must not") {
       for (const std::uint32_t pulse : pulses)
         REQUIRE((pulse == 0 || (pulse >= limit->shortest && pulse <= limit->longest)));
       const std::uint32_t now = pulses.back();
+      const auto has_it = [pin](const vm::Actuator& actuator) {
+        return test::has_pin(actuator, pin);
+      };
       const bool owned =
-          rig.runtime.running() &&
-          std::ranges::any_of(rig.runtime.image().actuators,
-                              [&](const vm::Actuator& actuator) { return actuator.pin == pin; });
+          rig.runtime.running() && std::ranges::any_of(rig.runtime.image().actuators, has_it);
       REQUIRE((owned || now == 0));
       if (stopped && now != 0) {  // a servo that holds, and nothing else
         const auto& actuators = rig.runtime.image().actuators;
-        const auto owner = std::ranges::find(actuators, pin, &vm::Actuator::pin);
+        const auto owner = std::ranges::find_if(actuators, has_it);
         REQUIRE(owner->driver == vm::DriverId::servo);
       }
       pulses = {now};

@@ -1,0 +1,303 @@
+// docs/devices.md: a section for each device of stdlib/devices. The table in it is made of the descriptor, the profiles
+// of the boards (stdlib/boards) and the list of the drivers, and compared here; ROBOSYNC_UPDATE_GOLDEN=1 rewrites it.
+// What stands around it is written by hand: how it is wired, and an example that rsc checks and runs.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "compiler/config/boards.hpp"
+#include "compiler/config/devices.hpp"
+#include "compiler/config/units.hpp"
+#include "compiler/config/wiring.hpp"
+#include "tests/docs/pages.hpp"
+#include "tests/support/generated.hpp"
+#include "vm/drivers.hpp"
+
+namespace {
+
+using namespace robosync;
+using namespace robosync::compiler;
+
+const std::filesystem::path kDevicesPage =
+    std::filesystem::path(ROBOSYNC_SOURCE_DIR) / "docs/devices.md";
+
+// By their numbers, what vm/drivers.def, params.def and vm::Release call them.
+struct DriverText {
+  std::string_view name, doc;
+};
+#define SENSOR_DRIVER(name, sample, doc) DriverText{#name, doc},
+#define ACTUATOR_DRIVER(name, start, advance, release, ends, output, doc) DriverText{#name, doc},
+constexpr DriverText kDriverTexts[] = {
+#include "vm/drivers.def"
+};
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+constexpr std::string_view kParamTexts[] = {
+#define PARAM(name, spelling, doc) spelling,
+#include "vm/params.def"
+#undef PARAM
+};
+constexpr std::string_view kReleaseTexts[] = {"hold", "rest", "coast"};
+
+std::string code(std::string_view text) {
+  return "`" + std::string(text) + "`";
+}
+
+std::string joined(const std::vector<std::string>& parts, std::string_view between = ", ") {
+  std::string text;
+  for (const std::string& part : parts)
+    text += (text.empty() ? "" : std::string(between)) + part;
+  return text;
+}
+
+std::string row(std::initializer_list<std::string> cells) {
+  std::string text = "|";
+  for (const std::string& cell : cells)
+    text += " " + cell + " |";
+  return text + "\n";
+}
+
+bool is_virtual(const Device& device) {
+  return device.type == "VIRTUAL";
+}
+
+vm::DriverId driver_of(const Device& device) {
+  return device.is_sensor ? device.sensor.driver : device.actuator.driver;
+}
+
+// Lights and speakers are nothing that could be wired.
+bool is_only_a_part(const Device& device) {
+  return vm::drives_lights(driver_of(device)) || vm::drives_speaker(driver_of(device));
+}
+
+// Does the firmware of `board` read or drive it?
+bool runs_on(const Device& device, const Board& board) {
+  const vm::DriverId driver = driver_of(device);
+  if (is_only_a_part(device))
+    return std::ranges::any_of(board.parts,
+                               [&](const Board::Part& part) { return part.device == device.name; });
+  if (vm::is_on_i2c(driver)) return board.i2c_buses > 0;
+  if (vm::is_on_pin(driver)) return !board.inputs.empty();
+  return vm::drives_pin(driver) && !board.outputs.empty();
+}
+
+std::string boards_of(const Device& device) {
+  if (is_virtual(device)) return "all: it needs no hardware";
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < board_names().size(); ++i) {
+    const Board board = board_at(i);
+    if (!device.has_driver || !runs_on(device, board)) continue;
+    std::vector<std::string> parts;
+    for (const Board::Part& part : board.parts)
+      if (part.device == device.name) parts.push_back(code(part.name));
+    names.push_back(code(board.name) +
+                    (parts.empty() ? "" : " (on the board: " + joined(parts) + ")"));
+  }
+  if (!names.empty()) return joined(names);
+  return device.has_driver ? "none yet: its commands take their time, and nothing is sent to it"
+                           : "none yet: with `\"type\": \"VIRTUAL\"` it is fed";
+}
+
+std::string unit_of(const Unit* unit) {
+  return unit == nullptr || unit->spelling.empty() ? "–" : std::string(unit->spelling);
+}
+
+std::string range_of(vm::Value min, vm::Value max, const Unit* unit) {
+  if (unit == nullptr) return "–";
+  if (min == vm::kValueMin && max == vm::kValueMax) return "any";
+  return format_value(min, *unit) + " to " + format_value(max, *unit);
+}
+
+std::string length_of(std::uint16_t milliseconds, const std::string& never) {
+  return milliseconds == 0 ? never : std::to_string(milliseconds) + " ms";
+}
+
+std::string wiring_keys(const Device& device) {
+  const auto types = wiring_types();
+  const auto type = std::ranges::find(types, device.type, &WiringType::name);
+  REQUIRE(type != types.end());
+  if (is_virtual(device)) return "";
+  if (is_only_a_part(device))
+    return row({"`device`", "the name of the part; it is wired already", "needed"});
+  std::string rows;
+  if (type->address) rows += row({"`address`", "0x08 to 0x77", "needed"});
+  if (type->bus) rows += row({"`bus`", "a bus of the board", "0"});
+  if (vm::has_two_pins(driver_of(device)))
+    rows += row({"`pins`", "two outputs of the board: forward, back", "needed"});
+  else if (type->pin)
+    rows += row(
+        {"`pin`", device.is_sensor ? "an input of the board" : "an output of the board", "needed"});
+  if (device.is_sensor && device.type == "GPIO")
+    rows += row({"`active`", "`low`, `high`: the level that counts", "`low`"});
+  if (device.type == "I2C" && device.is_default)
+    rows += row({"`register`", "0 to " + std::to_string(device.inputs - 1), "0"});
+  return rows;
+}
+
+std::string channel_table(const Device& device) {
+  std::string table =
+      "\n| channel | input | unit | range | read every | unknown after |\n"
+      "|---|---|---|---|---|---|\n";
+  for (const ChannelConfig& channel : device.sensor.channels) {
+    const bool words = !channel.labels.empty();
+    table += row({code(channel.name.text), std::to_string(channel.input),
+                  words ? "–" : unit_of(channel.unit),
+                  words ? "the words " + joined(channel.labels)
+                        : range_of(channel.min, channel.max, channel.unit),
+                  is_virtual(device) ? "when it is fed" : length_of(channel.period_ms, "–"),
+                  length_of(channel.stale_ms, "never")});
+  }
+  return table;
+}
+
+std::string verb_row(const ActuatorConfig& actuator, const VerbConfig& verb) {
+  std::vector<std::string> takes;
+  for (unsigned p = 0; p < static_cast<unsigned>(vm::Param::count_); ++p)
+    if (verb.has(static_cast<vm::Param>(p)) && !kParamTexts[p].empty()) {
+      const auto param = static_cast<vm::Param>(p);
+      const bool amount =
+          param == vm::Param::to || param == vm::Param::by || param == vm::Param::at;
+      const std::string unit = amount ? unit_of(&param_unit(actuator, param, &verb)) : "–";
+      takes.push_back(code(kParamTexts[p]) + (unit == "–" ? "" : " (" + unit + ")"));
+    }
+  if (verb.texts == Texts::any) takes.emplace_back("a text");
+  if (verb.texts == Texts::listed) takes.emplace_back("one of its `sounds`");
+  const std::string words = joined(actuator.words_of(verb));
+  return row({code(verb.name), takes.empty() ? "–" : joined(takes), words.empty() ? "–" : words});
+}
+
+std::string verb_table(const Device& device) {
+  std::string table = "\n| verb | takes | words |\n|---|---|---|\n";
+  for (const VerbConfig& verb : device.actuator.verbs)
+    table += verb_row(device.actuator, verb);
+  return table;
+}
+
+std::string releases(bool hold) {
+  std::vector<std::string> allowed;
+  for (const std::string_view name : kReleaseTexts)
+    if (hold || name != kReleaseTexts[static_cast<std::size_t>(vm::Release::hold)])
+      allowed.push_back(code(name));
+  return joined(allowed);
+}
+
+std::string actuator_keys(const Device& device) {
+  const ActuatorConfig& actuator = device.actuator;
+  std::string rows;
+  if (actuator.to_unit != nullptr) {
+    const std::string range = range_of(actuator.min, actuator.max, actuator.to_unit);
+    rows += row({"`range`", "of `TO`, inside " + range, range});
+  }
+  if (actuator.at_unit != nullptr) {
+    const std::string above = "above " + format_value(0, *actuator.at_unit);
+    rows += row({"`speeds`", "words for `AT`, " + above, "the words above"});
+    rows += row({"`limits`: `SPEED`", "the most of `AT`, " + above, "none"});
+  }
+  if (device.has_sounds) rows += row({"`sounds`", "files, in the order of its tracks", "none"});
+  const auto release = [](vm::Release how) {
+    return code(kReleaseTexts[static_cast<std::size_t>(how)]);
+  };
+  rows += row({"`on_release`", releases(true), release(actuator.on_release)});
+  return rows + row({"`safe`", releases(!vm::drives_on(actuator.driver)), release(actuator.safe)});
+}
+
+std::string section_of(const Device& device) {
+  const DriverText& driver = kDriverTexts[static_cast<std::size_t>(driver_of(device))];
+  const std::string kind = device.is_sensor ? "sensor" : "actuator";
+  std::string text = "| | |\n|---|---|\n";
+  text += row({"kind", kind + ", `\"type\": \"" + device.type + "\"`" +
+                           (device.is_default ? "; what is meant without `device`" : "")});
+  text += row({"driver", device.has_driver ? code(driver.name) + ": " + std::string(driver.doc)
+                                           : "none yet"});
+  text += row({"boards", boards_of(device)});
+  text += device.is_sensor ? channel_table(device) : verb_table(device);
+  std::string keys = wiring_keys(device);
+  if (device.is_sensor)
+    keys += row({"`channels`",
+                 "what is to be other than above: [keys of a channel](configuration.md#sensors)",
+                 "the channels above"});
+  else
+    keys += actuator_keys(device);
+  return text + "\n| key | value | if it is not there |\n|---|---|---|\n" + keys;
+}
+
+std::string overview() {
+  std::string table = "| device | is | type | boards |\n|---|---|---|---|\n";
+  for (const DeviceText& text : device_texts()) {
+    Diagnostics diagnostics;
+    const Device device = read_device(text, diagnostics);
+    const std::string doc = nlohmann::json::parse(text.json).at("doc");
+    const std::string name(text.name);
+    table += row({"[" + code(name) + "](#" + name + ")", doc, device.type, boards_of(device)});
+  }
+  return table;
+}
+
+std::vector<std::string> sections(const std::string& page) {
+  std::vector<std::string> found;
+  for (auto at = page.find("\n## "); at != std::string::npos;) {
+    const auto next = page.find("\n## ", at + 1);
+    found.push_back(page.substr(at + 4, next == std::string::npos ? next : next - at - 4));
+    at = next;
+  }
+  return found;
+}
+
+std::string title_of(const std::string& section) {
+  return section.substr(0, section.find('\n'));
+}
+
+// By its name, by that of a part of a board, or as what is meant without `device`.
+bool means(const nlohmann::json& entry, const Device& device, const Board& board) {
+  const auto named = entry.find("device");
+  if (named == entry.end()) return device.is_default && entry.at("type") == device.type;
+  const Board::Part* const part = board.find_part(named->get<std::string>());
+  return (part != nullptr ? part->device : named->get<std::string>()) == device.name;
+}
+
+void check_example(const std::string& section, const Device& device) {
+  const auto robots = test::blocks_in(section, "json");
+  const auto programs = test::blocks_in(section, "rsl");
+  REQUIRE(robots.size() == 1);
+  REQUIRE(programs.size() == 1);
+  const auto robot = nlohmann::json::parse(robots[0]);
+  const auto names = board_names();
+  const auto named = std::ranges::find(names, robot.value("board", default_board().name));
+  REQUIRE(named != names.end());
+  const Board board = board_at(static_cast<std::size_t>(named - names.begin()));
+  const auto& entries = robot.at(device.is_sensor ? "sensors" : "actuators");
+  CHECK(std::ranges::any_of(entries, [&](const auto& one) { return means(one, device, board); }));
+  test::check_program(programs[0], robots[0]);
+}
+
+}  // namespace
+
+TEST_CASE("docs/devices.md says of each device what its descriptor and the boards do") {
+  testing::expect_generated(kDevicesPage, "devices", overview());
+  for (const DeviceText& text : device_texts()) {
+    INFO(text.name);
+    Diagnostics diagnostics;
+    testing::expect_generated(kDevicesPage, std::string(text.name),
+                              section_of(read_device(text, diagnostics)));
+  }
+}
+
+TEST_CASE(
+    "docs/devices.md has a section for each device, with an example that works, and none else") {
+  const auto found = sections(testing::read_file(kDevicesPage));
+  std::vector<std::string> titles;
+  std::ranges::transform(found, std::back_inserter(titles), title_of);
+  std::vector<std::string> names;
+  for (const DeviceText& text : device_texts())
+    names.emplace_back(text.name);
+  REQUIRE(titles == names);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    INFO(names[i]);
+    Diagnostics diagnostics;
+    CHECK(found[i].find("<!-- generated: " + names[i] + " -->") != std::string::npos);
+    check_example(found[i], read_device(device_texts()[i], diagnostics));
+  }
+}
