@@ -18,7 +18,7 @@ using std::chrono::milliseconds;
 namespace {
 using Json = nlohmann::ordered_json;
 constexpr double kBitsPerByte = 10;  // 8N1
-}
+}  // namespace
 
 double ms_of(const UploadResult& result) {
   return static_cast<double>(result.time.count()) / 1000;

@@ -383,9 +383,13 @@ class OnMicrobit(DebuggedTest):
         self.status()  # it has started
         self.assertEqual((self.told(WATCHDOG_START), self.told(WATCHDOG_RELOAD)), ([1], [A_TENTH]))
         before = len(self.told(WATCHDOG_KICK))
-        checks = self.status()["safety_checks"]
-        kicks = self.told(WATCHDOG_KICK)
-        self.assertGreater(len(kicks), before)
+        give_up = time.monotonic() + PATIENCE
+        while True:  # a board whose time runs slowly is asked twice in one period
+            checks = self.status()["safety_checks"]
+            kicks = self.told(WATCHDOG_KICK)
+            if len(kicks) > before:
+                break
+            self.assertLess(time.monotonic(), give_up, "it is kicked no more")
         self.assertEqual(set(kicks), {KICKED})
         self.assertGreaterEqual(len(kicks), checks)
 
