@@ -15,7 +15,7 @@ import pins
 import rsc
 import test_store
 from debugger import PC, DebuggedTest, Debugger
-from support import LineReader
+from support import TURNS_ROUND, LineReader, wheel_on
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from board import FIRMWARE, ROOT  # noqa: E402
@@ -41,18 +41,6 @@ WHEN near X > 10
 DO
   RUN lamp TO 70%
   MOVE arm TO 50deg
-END
-"""
-WHEEL = """{
-  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
-  "actuators": [{"name": "wheel", "type": "PWM", "pins": [0, 1], "device": "motor"}]
-}"""
-TURNS_ROUND = """
-WHEN near X > 10
-DO RUN wheel TO 70%
-END
-WHEN near X > 50
-DO RUN wheel BACKWARD AT 25%
 END
 """
 # The lights' pins of port 0: QEMU has no second port, where column 4 is.
@@ -200,7 +188,7 @@ class OnMicrobit(DebuggedTest):
         self.upload(self.compile(program, config))
 
     def test_a_motor_that_turns_round_leaves_its_pin_for_the_other_one(self):
-        self.load(WHEEL, TURNS_ROUND)
+        self.load(wheel_on(0, 1), TURNS_ROUND)
         self.say("feed", "near.X=5")
         self.say("feed", "near.X=20")
         self.await_told(PIN_OF_PWM0[0], P0_02)

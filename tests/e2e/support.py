@@ -22,6 +22,23 @@ CONFIG = PROGRAMS / "robot.json"
 SEED = 20_250_711
 PROFILE = json.loads((ROOT / f"stdlib/boards/{NAME}.json").read_text("utf-8"))
 
+# A motor that runs at 70 % when `near` is above 10, and back at 25 % when it is above 50.
+TURNS_ROUND = """
+WHEN near X > 10
+DO RUN wheel TO 70%
+END
+WHEN near X > 50
+DO RUN wheel BACKWARD AT 25%
+END
+"""
+
+
+def wheel_on(forward, back):
+    """The robot.json of it, on these two pins."""
+    return json.dumps({
+        "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+        "actuators": [{"name": "wheel", "type": "PWM", "pins": [forward, back], "device": "motor"}]})
+
 
 class RobotTest(unittest.TestCase):
     """One board for each test, and a folder that is deleted after it. Which board: ROBOSYNC_BOARD in the environment."""

@@ -10,6 +10,7 @@ import rsc
 import wire
 from board import FIRMWARE
 from debugger import DebuggedTest
+from support import TURNS_ROUND, wheel_on
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
@@ -31,18 +32,6 @@ WHEN near X > 10
 DO
   RUN motor TO 70%
   MOVE arm TO 100deg AT 20deg/s
-END
-"""
-WHEEL = """{
-  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
-  "actuators": [{"name": "wheel", "type": "PWM", "pins": [5, 6], "device": "motor"}]
-}"""
-TURNS_ROUND = """
-WHEN near X > 10
-DO RUN wheel TO 70%
-END
-WHEN near X > 50
-DO RUN wheel BACKWARD AT 25%
 END
 """
 WITHOUT_MOTOR = """
@@ -112,7 +101,7 @@ class Stop(DebuggedTest):
         self.assertEqual([pulse for pin, pulse in enumerate(pulses) if pin not in (ARM, MOTOR)], [0] * (PINS - 2))
 
     def test_a_motor_runs_both_ways_on_one_pin_at_a_time_and_a_stop_ends_both(self):
-        (self.folder / "robot.json").write_text(WHEEL)
+        (self.folder / "robot.json").write_text(wheel_on(FORWARD, BACK))
         image = self.compiled(TURNS_ROUND)
         self.say("upload", image)
         self.feed(20)

@@ -227,37 +227,49 @@ TEST_CASE("servo: hold, rest, coast; a servo never driven has nothing to hold") 
   CHECK(servo.pulse() == 1500);  // 0 deg
 }
 
+// --- orders that are drawn ---
+
+Value drawn_number() {
+  return *rc::gen::weightedOneOf<Value>(
+      {{3, rc::gen::inRange<Value>(-200'000, 200'000)},
+       {1, rc::gen::element(vm::kValueMax, vm::kValueMin, 0, 1)}});
+}
+
+Drive drawn_drive(vm::DriverId driver) {
+  const auto [min, max] = std::minmax({drawn_number(), drawn_number()});
+  return Drive(driver, min, max, std::max(drawn_number(), 0));
+}
+
+// Some orders, each of which must end. `promised` makes of what was drawn what the control layer hands on.
+template <typename Promised>
+void obey_drawn(Drive& drive, vm::Action verb, Promised promised) {
+  for (int i = 0; i < 4; ++i) {
+    Order what;
+    what.action = *rc::gen::element(verb, vm::Action::stop);
+    what.given = *rc::gen::arbitrary<std::uint8_t>();
+    for (Value& param : what.params)
+      param = drawn_number();
+    promised(what);
+    drive.begin(what);
+    for (int call = 0; call < 50 && drive.wake != drivers::kDone; ++call) {
+      RC_ASSERT(drive.wake > drive.now);
+      drive.now = drive.wake;
+      drive.wake = drive.driver.advance(drive.device(), drive.now);
+    }
+    drive.driver.release(drive.device(), *rc::gen::element(vm::Release::hold, vm::Release::rest),
+                         drive.now);
+  }
+}
+
 TEST_CASE("any order ends, and no pulse leaves the servo's range") {
   const bool holds = rc::check("servo", [] {
-    const auto number = [] {
-      return *rc::gen::weightedOneOf<Value>(
-          {{3, rc::gen::inRange<Value>(-200'000, 200'000)},
-           {1, rc::gen::element(vm::kValueMax, vm::kValueMin, 0, 1)}});
-    };
-    const Value one = number();
-    const Value other = number();
-    Drive servo(vm::DriverId::servo, std::min(one, other), std::max(one, other),
-                std::max(number(), 0));
-    for (int i = 0; i < 4; ++i) {
-      Order what;
-      what.action = *rc::gen::element(vm::Action::move, vm::Action::stop);
-      what.given = *rc::gen::arbitrary<std::uint8_t>();
-      for (Value& param : what.params)
-        param = number();
-      // What the control layer promises.
+    Drive servo = drawn_drive(vm::DriverId::servo);
+    obey_drawn(servo, vm::Action::move, [&](Order& what) {
       Value& to = what.params[static_cast<std::size_t>(Param::to)];
       to = std::clamp(to, servo.wiring.min, servo.wiring.max);
       Value& at = what.params[static_cast<std::size_t>(Param::at)];
       at = std::clamp(at, 0, servo.wiring.speed_limit);
-      servo.begin(what);
-      for (int call = 0; call < 50 && servo.wake != drivers::kDone; ++call) {
-        RC_ASSERT(servo.wake > servo.now);
-        servo.now = servo.wake;
-        servo.wake = servo.driver.advance(servo.device(), servo.now);
-      }
-      servo.driver.release(servo.device(), *rc::gen::element(vm::Release::hold, vm::Release::rest),
-                           servo.now);
-    }
+    });
     for (const std::uint32_t pulse : servo.board.pulses[7])
       RC_ASSERT(pulse >= 500U && pulse <= 2500U);
   });
@@ -346,30 +358,8 @@ TEST_CASE("motor: OVER goes through a standstill, FOR ends off, a release is off
 
 TEST_CASE("motor: whatever is ordered ends, inside the frame, and never on both pins") {
   const bool holds = rc::check("motor", [] {
-    const auto number = [] {
-      return *rc::gen::weightedOneOf<Value>(
-          {{3, rc::gen::inRange<Value>(-200'000, 200'000)},
-           {1, rc::gen::element(vm::kValueMax, vm::kValueMin, 0, 1)}});
-    };
-    const Value one = number();
-    const Value other = number();
-    Drive motor(vm::DriverId::motor, std::min(one, other), std::max(one, other),
-                std::max(number(), 0));
-    for (int i = 0; i < 4; ++i) {
-      Order what;
-      what.action = *rc::gen::element(vm::Action::set, vm::Action::stop);
-      what.given = *rc::gen::arbitrary<std::uint8_t>();
-      for (Value& param : what.params)
-        param = number();
-      motor.begin(what);
-      for (int call = 0; call < 50 && motor.wake != drivers::kDone; ++call) {
-        RC_ASSERT(motor.wake > motor.now);
-        motor.now = motor.wake;
-        motor.wake = motor.driver.advance(motor.device(), motor.now);
-      }
-      motor.driver.release(motor.device(), *rc::gen::element(vm::Release::hold, vm::Release::rest),
-                           motor.now);
-    }
+    Drive motor = drawn_drive(vm::DriverId::motor);
+    obey_drawn(motor, vm::Action::set, [](Order&) {});
     std::map<std::uint16_t, std::uint32_t> on;
     for (const auto& [pin, pulse] : motor.board.writes) {
       on[pin] = pulse;
