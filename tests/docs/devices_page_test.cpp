@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include "compiler/config/boards.hpp"
 #include "compiler/config/devices.hpp"
@@ -123,7 +124,9 @@ std::string wiring_keys(const Device& device) {
   if (is_only_a_part(device))
     return row({"`device`", "the name of the part; it is wired already", "needed"});
   std::string rows;
-  if (type->address) rows += row({"`address`", "0x08 to 0x77", "needed"});
+  if (type->address)
+    rows += row({"`address`",
+                 fmt::format("{:#04x} to {:#04x}", vm::kFirstAddress, vm::kLastAddress), "needed"});
   if (type->bus) rows += row({"`bus`", "a bus of the board", "0"});
   if (vm::has_two_pins(driver_of(device)))
     rows += row({"`pins`", "two outputs of the board: forward, back", "needed"});
