@@ -53,10 +53,10 @@ target_sources(robosync_compiler PRIVATE
   syntax/keywords.cpp
   syntax/layout.cpp
   syntax/lexer_state.cpp
+  syntax/missing.cpp
   syntax/parser.cpp
   syntax/reader.cpp
   syntax/repair.cpp
-  syntax/summary.cpp
   syntax/wording.cpp)
 # Public for the tests, which look at tokens. SYSTEM: warnings inside the generated header.
 target_include_directories(robosync_compiler SYSTEM PUBLIC $<BUILD_INTERFACE:${generated}>)

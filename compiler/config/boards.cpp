@@ -37,7 +37,7 @@ std::vector<Board::Pins> read_pins(const json::Value& list, Object object,
     Board::Pins range{read_pin(pins->items[0], diagnostics), read_pin(pins->items[1], diagnostics)};
     const auto* pulses = fields.find("pulse_us");
     if (pulses != nullptr && !pulses->items.empty())
-      range.power = read_pin(pulses->items[0], diagnostics) == 0;
+      range.power = read_whole(pulses->items[0], 0, UINT16_MAX, diagnostics) == 0;
     ranges.push_back(range);
   }
   return ranges;

@@ -25,8 +25,8 @@ struct WiringType {
 [[nodiscard]] const WiringType* read_type(Fields& fields, bool is_sensor, Diagnostics& diagnostics);
 
 struct Wiring {
-  std::uint8_t bus =
-      0;  // of a sensor of type GPIO: vm::ActiveLevel; of what has two pins: the second one
+  // Of a sensor of type GPIO: vm::ActiveLevel; of what has two pins: the second one.
+  std::uint8_t bus = 0;
   std::uint16_t place = 0;  // I2C address or pin
 };
 

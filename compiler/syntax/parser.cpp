@@ -68,8 +68,8 @@ public:
     if (source_.text().size() > largest_source) {
       diagnostics_
           .report(Code::E0013, "this file has " + std::to_string(source_.text().size()) +
-                                   " bytes, and rsc reads " + std::to_string(largest_source) +
-                                   ", which are 16 MiB")
+                                   " bytes, and rsc reads at most " +
+                                   std::to_string(largest_source))
           .label({file_, 0, 0});
       return {};
     }

@@ -59,7 +59,7 @@ std::string sensor_with(const std::string& channel) {
 }  // namespace
 
 TEST_CASE("what the parser does not read") {
-  says("this file has 16777217 bytes, and rsc reads 16777216, which are 16 MiB",
+  says("this file has 16777217 bytes, and rsc reads at most 16777216",
        std::string((16U << 20U) + 1, '\n'));
   says("more than 30 mistakes, the most that rsc looks for in a file",
        repeated(31, [](int) { return "WHEN touch LEVEL > 3 = DO\n  LOG \"x\"\nEND\n"; }));
