@@ -42,7 +42,8 @@ struct Job {
   std::uint64_t end_us() const { return end_ms * 1000; }
 };
 
-// Feeds readings, several under way. True when each came in time.
+// Feeds readings, several under way. True when each came in time. A frame that the line loses is sent again, behind others:
+// of two readings of a channel for one instant, of which the board keeps what comes last, only one is ever under way.
 class Feeding {
 public:
   Feeding(tool::Session& session, std::vector<tool::Stimulus> readings)
@@ -52,7 +53,7 @@ public:
 
   bool run() {
     while (!waiting_.empty() || !under_way_.empty()) {
-      while (!waiting_.empty() && under_way_.size() < most_)
+      while (may_send_next())
         send_next();
       take_reply();
     }
@@ -64,6 +65,14 @@ private:
     std::uint8_t sequence;
     tool::Stimulus reading;
   };
+
+  bool may_send_next() const {
+    return !waiting_.empty() && under_way_.size() < most_ &&
+           std::ranges::none_of(under_way_, [&](const UnderWay& sent) {
+             return sent.reading.channel == waiting_.front().channel &&
+                    sent.reading.at_us == waiting_.front().at_us;
+           });
+  }
 
   void send_next() {
     const tool::Stimulus reading = waiting_.front();
@@ -84,7 +93,7 @@ private:
         !link::read_payload(reply->payload, result))
       return;
     if (result.error == FeedError::queue_full)
-      waiting_.push_back(under_way_.front().reading);  // there is room as time goes on
+      waiting_.push_front(under_way_.front().reading);  // there is room as time goes on
     else
       in_time_ = in_time_ && result.error == FeedError::none;
     under_way_.pop_front();
