@@ -131,9 +131,10 @@ private:
       source.sample =
           board_.wake_by_timer + sensor.channel_count * policy::sample_cost(sensor.driver, board_) +
           (sensor.channel_count - Instructions{1}) * costs::kChannel;  // the first is in the step
-    if (asks_ahead(sensor)) {
-      source.follows = add_asking(sensor, s, source.period);
-      source.delay = instructions_in_ms(1 + policy::kBusTicks);
+    if (const Instructions asking = cost_of_asking(sensor); asking != 0) {
+      source.follows = add_asking(sensor, s, asking, source.period);
+      source.delay = instructions_in_ms(vm::is_by_echo(sensor.driver) ? policy::kEchoMs
+                                                                      : 1 + policy::kBusTicks);
     }
     if ((channels & work_.watched()).any()) source.sample += board_.wake + looks() + work_.trips();
     source.step = work_.step(rules, changed);
@@ -145,17 +146,21 @@ private:
     add_with_followers(std::move(source), rules, fire, work_.sets(fire));
   }
 
-  // Its bus works by itself, from a tick before it is sampled on (layers/sensor.cpp).
-  bool asks_ahead(const vm::Sensor& sensor) const {
-    return board_.i2c_ask != 0 && !policy::is_fed(sensor) && vm::is_on_i2c(sensor.driver);
+  // Its bus works by itself, from a tick before it is sampled on, or it waits for an echo (layers/sensor.cpp). 0: it is not
+  // asked.
+  Instructions cost_of_asking(const vm::Sensor& sensor) const {
+    if (policy::is_fed(sensor)) return 0;
+    if (vm::is_by_echo(sensor.driver)) return board_.ping;
+    return vm::is_on_i2c(sensor.driver) ? sensor.channel_count * Instructions{board_.i2c_ask} : 0;
   }
 
   // In its thread, and in the bus's interrupts; what is sampled follows.
-  std::size_t add_asking(const vm::Sensor& sensor, unsigned s, Instructions period) {
+  std::size_t add_asking(const vm::Sensor& sensor, unsigned s, Instructions cost,
+                         Instructions period) {
     Source source;
     source.name = fmt::format("asking for {}", image_.string(sensor.name));
     source.period = period;
-    source.sample = board_.wake_by_timer + sensor.channel_count * Instructions{board_.i2c_ask};
+    source.sample = board_.wake_by_timer + cost;
     place(source, s);
     set_.sources.push_back(std::move(source));
     source_of_sensor_.back() = set_.sources.size();

@@ -30,7 +30,7 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
       control_(kernel, outputs_, trace_, step_thread_,
                {.idle = layers::kIdle, .cancelled = layers::kCancelled, .halted = layers::kHalted}),
       variables_(kernel),
-      drivers_(kernel, board),
+      drivers_(kernel, board, outputs_),
       alarm_(kernel, monitor_.thread(), safety::Monitor::kNews),
       trace_(kernel, events),
       shared_(share(arena)),

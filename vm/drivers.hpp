@@ -51,14 +51,16 @@ constexpr bool drives_on(DriverId driver) {
   return gives_power(driver) || pin_use(driver) == PinUse::tones;
 }
 
-// By what a driver's sensors are measured; nothing: they are fed, or it has no sensors.
-enum class Bus : std::uint8_t { nothing, i2c, pin };
+// By what a driver's sensors are measured; nothing: they are fed, or it has no sensors. Echo: a pulse on an output, which the
+// image has as the sensor's `bus`, and how long its input is high then.
+enum class Bus : std::uint8_t { nothing, i2c, pin, echo };
 
 constexpr Bus bus_of(DriverId driver) {
   const auto fed = [] { return Bus::nothing; };
   const auto computed = [] { return Bus::nothing; };
   const auto i2c = [](unsigned, unsigned) { return Bus::i2c; };
   const auto pin = [] { return Bus::pin; };
+  const auto echo = [] { return Bus::echo; };
   switch (driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case DriverId::name:                   \
@@ -88,6 +90,17 @@ constexpr bool is_on_i2c(DriverId driver) {
 constexpr bool is_on_pin(DriverId driver) {
   return bus_of(driver) == Bus::pin;
 }
+
+constexpr bool is_by_echo(DriverId driver) {
+  return bus_of(driver) == Bus::echo;
+}
+// It says nothing when nothing answers: what it measured last grows old.
+constexpr bool may_be_silent(DriverId driver) {
+  return is_on_i2c(driver) || is_by_echo(driver);
+}
+
+// The echoes of one burst must have died away before the next one.
+inline constexpr std::uint16_t kMinEchoPeriodMs = 60;
 
 // Others are reserved by the I2C specification.
 inline constexpr std::uint16_t kFirstAddress = 0x08;

@@ -26,7 +26,7 @@ struct Walk {
   std::uint32_t next_track = 0;
   std::uint32_t next_key = 0;
   std::uint32_t last_word = 0;  // of the source lines
-  bool reads_pins = false;      // there is a sensor on a pin
+  bool reads_pins = false;      // there is a sensor on a pin, or two
 };
 
 enum class DriverKind : std::uint8_t { sensor, actuator };
@@ -91,7 +91,26 @@ Refusal check_algorithm(const Sensor& sensor) {
   return good_or(Refusal::bad_value, sensor.period_ms > 0);
 }
 
-Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t) {
+// Is it a pin of one of the first `count` sensors?
+bool is_of_sensor(const Image& image, std::uint32_t pin, std::size_t count) {
+  for (const Sensor& sensor : image.sensors.first(count)) {
+    const bool echo = is_by_echo(sensor.driver);
+    if (sensor.address == pin && (echo || is_on_pin(sensor.driver))) return true;
+    if (echo && sensor.bus == pin) return true;
+  }
+  return false;
+}
+
+// Its two pins are its own.
+Refusal check_echo(Walk& walk, const Sensor& sensor, std::size_t index) {
+  walk.reads_pins = true;
+  const bool shared = sensor.bus == sensor.address || is_of_sensor(walk.image, sensor.bus, index) ||
+                      is_of_sensor(walk.image, sensor.address, index);
+  if (shared) return Refusal::shared_pin;
+  return good_or(Refusal::bad_value, sensor.period_ms >= kMinEchoPeriodMs);
+}
+
+Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t index) {
   if (sensor.first_channel != walk.next_channel) return Refusal::bad_index;
   walk.next_channel += sensor.channel_count;
   if (walk.next_channel > walk.image.channels.size()) return Refusal::bad_index;
@@ -101,6 +120,7 @@ Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t) {
   if (sensor.driver == DriverId::algorithm) return check_algorithm(sensor);
   if (sensor.first_input != 0) return Refusal::bad_value;
   if (bus_of(sensor.driver) == Bus::nothing) return Refusal::none;
+  if (is_by_echo(sensor.driver)) return check_echo(walk, sensor, index);
   walk.reads_pins = walk.reads_pins || is_on_pin(sensor.driver);
   const bool place = is_on_pin(sensor.driver)
                          ? is_enumerator(static_cast<ActiveLevel>(sensor.bus))
@@ -140,15 +160,9 @@ bool owns(const Actuator& actuator, std::uint32_t output) {
   return output_of(actuator) == output || second_output_of(actuator) == output;
 }
 
-bool is_read(const Image& image, std::uint32_t pin) {
-  for (const Sensor& sensor : image.sensors)
-    if (sensor.address == pin && is_on_pin(sensor.driver)) return true;
-  return false;
-}
-
-// Is it an actuator's before this one, or read?
+// Is it an actuator's before this one, or a sensor's?
 bool is_taken(const Walk& walk, std::uint32_t output, std::size_t index) {
-  if (walk.reads_pins && is_read(walk.image, output)) return true;
+  if (walk.reads_pins && is_of_sensor(walk.image, output, walk.image.sensors.size())) return true;
   for (std::size_t a = 0; a < index; ++a)
     if (owns(walk.image.actuators[a], output)) return true;
   return false;
@@ -236,7 +250,7 @@ bool grows_stale(const Image& image, std::uint8_t input) {
   const Sensor& sensor = image.sensors[channel.sensor];
   const Channel& measured =
       sensor.driver == DriverId::algorithm ? image.channels[sensor.first_input] : channel;
-  return channel.stale_ms > 0 || !is_on_i2c(image.sensors[measured.sensor].driver);
+  return channel.stale_ms > 0 || !may_be_silent(image.sensors[measured.sensor].driver);
 }
 
 bool all_grow_stale(const Image& image, const Behavior& safety) {

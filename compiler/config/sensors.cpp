@@ -2,6 +2,8 @@
 // descriptor's values. Of a channel the unit comes first: everything else may be written in it.
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "compiler/config/entries.hpp"
 #include "compiler/config/fields.hpp"
 #include "compiler/config/names.hpp"
@@ -214,6 +216,23 @@ void check_place(const Fields& fields, const SensorConfig& sensor, WiringReader&
                  const Wiring& place) {
   if (vm::is_on_i2c(sensor.driver)) wiring.check_bus(fields, place);
   if (vm::is_on_pin(sensor.driver)) wiring.check_input(fields, place);
+  if (vm::is_by_echo(sensor.driver)) wiring.check_echo(fields, place);
+}
+
+// The descriptor's own rate is one that it can keep.
+void check_echo_rate(const json::Value* channels, SensorConfig& sensor, Diagnostics& diagnostics) {
+  if (channels == nullptr || sensor.period_ms >= vm::kMinEchoPeriodMs) return;
+  for (const json::Member& channel : channels->members)
+    for (const json::Member& key : channel.value.members)
+      if (key.key == "rate")
+        diagnostics
+            .report(
+                Code::E0205,
+                fmt::format(
+                    "this measures every {} ms, and the echoes of one burst take {} ms to die away",
+                    sensor.period_ms, vm::kMinEchoPeriodMs))
+            .label(key.value.span)
+            .helps(fmt::format("say a rate of {}Hz at most", 1000 / vm::kMinEchoPeriodMs));
 }
 
 }  // namespace
@@ -230,7 +249,7 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
   sensor.name = *name;
   place_channels(sensor);
   if (type != nullptr) {
-    const Wiring place = wiring.read_sensor(fields, *type, part);
+    const Wiring place = wiring.read_sensor(fields, *type, part, device.sensor.driver);
     sensor.bus = place.bus;
     sensor.address = place.place;
     if (type->name != "VIRTUAL" && device.has_driver) check_place(fields, sensor, wiring, place);
@@ -246,6 +265,7 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
   for (const ChannelConfig& channel : sensor.channels)
     if (channel.period_ms != 0 && (sensor.period_ms == 0 || channel.period_ms < sensor.period_ms))
       sensor.period_ms = channel.period_ms;
+  if (vm::is_by_echo(sensor.driver)) check_echo_rate(channels, sensor, diagnostics);
   return sensor;
 }
 

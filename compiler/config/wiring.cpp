@@ -80,6 +80,8 @@ void WiringReader::report_foreign(const Fields& fields, const WiringType& type) 
   check("pin", type.pin);
   check("pins", type.pin);
   check("active", type.name == "GPIO");
+  check("trigger", false);
+  check("echo", false);
 }
 
 std::uint16_t WiringReader::read_pin(const json::Value& value, std::uint16_t last) {
@@ -157,7 +159,29 @@ void WiringReader::check_part(const Fields& fields, const Board::Part* part) {
       .helps("boards that have one: " + boards_with(device->text));
 }
 
-Wiring WiringReader::read_sensor(Fields& fields, const WiringType& type, const Board::Part* part) {
+// Of these pins the image has a byte for the first one.
+Wiring WiringReader::read_echo(Fields& fields, const std::string& what) {
+  for (const char* key : {"pin", "bus", "address", "active"})
+    if (const auto* wrong = fields.find(key))
+      diagnostics_.report(Code::E0205, what + " has no `" + key + "`")
+          .label(wrong->span)
+          .helps(
+              "say `\"trigger\": 3, \"echo\": 40`: an output and an input, by their names on the "
+              "part");
+  Wiring wiring;
+  const bool is_other = fields.find("trigger") == nullptr && fields.find("echo") == nullptr;
+  if (is_other && fields.find("pin") != nullptr) return wiring;
+  const auto* trigger = fields.require("trigger", what);
+  const auto* echo = fields.require("echo", what);
+  if (trigger != nullptr) wiring.bus = static_cast<std::uint8_t>(read_pin(*trigger, UINT8_MAX));
+  if (echo != nullptr) wiring.place = read_pin(*echo);
+  return wiring;
+}
+
+Wiring WiringReader::read_sensor(Fields& fields, const WiringType& type, const Board::Part* part,
+                                 vm::DriverId driver) {
+  if (type.name != "VIRTUAL" && vm::is_by_echo(driver))
+    return read_echo(fields, "the device `" + fields.find("device")->text + "`");
   Wiring wiring = read(fields, type, part, false, "a sensor of type " + std::string(type.name));
   if (part == nullptr && type.name == "GPIO") wiring.bus = read_active(fields);
   return wiring;
@@ -236,6 +260,15 @@ void WiringReader::check_input(const Fields& fields, const Wiring& wiring) {
   const auto* pin = fields.find("pin");
   if (pin != nullptr && !board_.has_input(wiring.place))
     report_no_pin(*pin, wiring.place, " is no input", "its inputs are the pins ", board_.inputs);
+}
+
+void WiringReader::check_echo(const Fields& fields, const Wiring& wiring) {
+  const auto* trigger = fields.find("trigger");
+  const auto* echo = fields.find("echo");
+  if (trigger == nullptr || echo == nullptr) return;
+  check_output_pin(*trigger, wiring.bus, true);
+  if (!board_.has_input(wiring.place))
+    report_no_pin(*echo, wiring.place, " is no input", "its inputs are the pins ", board_.inputs);
 }
 
 void WiringReader::report_no_pin(const json::Value& value, std::uint16_t pin,

@@ -25,7 +25,7 @@ struct WiringType {
 [[nodiscard]] const WiringType* read_type(Fields& fields, bool is_sensor, Diagnostics& diagnostics);
 
 struct Wiring {
-  // Of a sensor of type GPIO: vm::ActiveLevel; of what has two pins: the second one.
+  // Of a sensor of type GPIO: vm::ActiveLevel, or its trigger pin; of an actuator with two pins: the second one.
   std::uint8_t bus = 0;
   std::uint16_t place = 0;  // I2C address or pin
 };
@@ -36,12 +36,14 @@ public:
   WiringReader(Board board, Diagnostics& diagnostics)
       : board_(std::move(board)), diagnostics_(diagnostics) {}
   // `part`: which of the board's own parts it is, which brings its wiring; or null.
-  [[nodiscard]] Wiring read_sensor(Fields& fields, const WiringType& type, const Board::Part* part);
+  [[nodiscard]] Wiring read_sensor(Fields& fields, const WiringType& type, const Board::Part* part,
+                                   vm::DriverId driver);
   [[nodiscard]] Wiring read_actuator(Fields& fields, const WiringType& type,
                                      const Board::Part* part, vm::DriverId driver);
   // For those whose driver uses them: the board must have them.
   void check_bus(const Fields& fields, const Wiring& wiring);
   void check_input(const Fields& fields, const Wiring& wiring);
+  void check_echo(const Fields& fields, const Wiring& wiring);
   void check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver);
   // Lights and speakers are parts of a board, or nowhere.
   void check_part(const Fields& fields, const Board::Part* part);
@@ -53,6 +55,7 @@ private:
   [[nodiscard]] Wiring read_part(const Fields& fields, const Board::Part& part);
   std::uint16_t read_pin(const json::Value& value, std::uint16_t last = UINT16_MAX - 1);
   void read_pins(Fields& fields, bool two, const std::string& what, Wiring& wiring);
+  Wiring read_echo(Fields& fields, const std::string& what);
   std::uint8_t read_active(const Fields& fields);
   void take_pin(std::uint16_t pin, Span span);
   void take_part(const Board::Part& part, Span span);

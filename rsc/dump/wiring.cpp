@@ -60,6 +60,12 @@ std::string algorithm_text(const vm::Image& image, const vm::Sensor& sensor) {
   return text;
 }
 
+std::string place_of(const vm::Sensor& sensor) {
+  return vm::is_by_echo(sensor.driver)
+             ? fmt::format("trigger {} and echo {}", sensor.bus, sensor.address)
+             : fmt::format("bus {} address 0x{:x}", sensor.bus, sensor.address);
+}
+
 std::string sensors(const vm::Image& image) {
   std::string text = "\nsensors\n";
   for (const vm::Sensor& sensor : image.sensors) {
@@ -67,8 +73,8 @@ std::string sensors(const vm::Image& image) {
       text += algorithm_text(image, sensor);
     else
       text += fmt::format(
-          "  {}: {} on bus {} address 0x{:x}, {}\n", image.string(sensor.name),
-          driver_name(sensor.driver), sensor.bus, sensor.address,
+          "  {}: {} on {}, {}\n", image.string(sensor.name), driver_name(sensor.driver),
+          place_of(sensor),
           sensor.period_ms == 0 ? "when fed" : fmt::format("every {} ms", sensor.period_ms));
     for (std::size_t i = 0; i < sensor.channel_count; ++i)
       text += channel_text(image, sensor.first_channel + i);

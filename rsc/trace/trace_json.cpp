@@ -8,6 +8,7 @@
 #include "compiler/config/units.hpp"
 #include "rsc/trace/event_reader.hpp"
 #include "rsc/trace/trace_format.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -48,6 +49,11 @@ void add_device(Json& object, const EventReader& reader) {
   object["sensor"] = reader.sensor_name();
   const vm::Sensor* const sensor = reader.sensor();
   if (sensor == nullptr) return;
+  if (vm::is_by_echo(sensor->driver)) {
+    object["trigger"] = sensor->bus;
+    object["echo"] = sensor->address;
+    return;
+  }
   object["bus"] = sensor->bus;
   object["address"] = fmt::format("0x{:02x}", sensor->address);
 }

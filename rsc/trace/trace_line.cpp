@@ -8,6 +8,7 @@
 #include "rsc/trace/event_reader.hpp"
 #include "rsc/trace/time_units.hpp"
 #include "rsc/trace/trace_format.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -107,6 +108,10 @@ std::string device_words(const EventReader& reader) {
                                ? reader.sensor_name()
                                : name_on_bus(reader.sensor_name(), sensor->address, sensor->bus);
   const bool silent = reader.event().kind == EventKind::silent;
+  if (sensor != nullptr && vm::is_by_echo(sensor->driver))
+    return fmt::format("{}, trigger {} and echo {}, {} ({} times without one so far)",
+                       reader.sensor_name(), sensor->bus, sensor->address,
+                       silent ? "hears no echo" : "hears an echo again", reader.value(0));
   return text + fmt::format(" {} ({} failed transfers so far)",
                             silent ? "does not answer" : "answers again", reader.value(0));
 }

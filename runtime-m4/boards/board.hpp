@@ -50,6 +50,12 @@ public:
   virtual bool i2c_busy() const { return false; }
   // Is the level of an input (pins()) high? Of another pin: no.
   virtual bool input(std::uint16_t pin) const = 0;
+  // Of a sensor with two pins: a pulse of 10 us or a little more goes out on `trigger`, an output, and how long `echo`, an input,
+  // is high then is measured while the processor does something else. Two edges are looked at, so that a pin that does not
+  // rest costs no more. Nobody but the output guard calls it, and the pulse ends by itself.
+  virtual void ping(std::uint16_t /*trigger*/, std::uint16_t /*echo*/) {}
+  // … how long that was, in microseconds; 0 when it was not, is still high, or was before. The measurement is over then.
+  virtual std::uint32_t take_echo(std::uint16_t /*echo*/) { return 0; }
   // Pulse width on a PWM pin in microseconds, 20 ms frame; 0 switches the output off.
   virtual void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) = 0;
   virtual std::uint32_t pwm_read(std::uint16_t pin) const = 0;

@@ -47,11 +47,28 @@ bool OutputGuard::drives(const vm::Image& image, const Slot& slot) {
   });
 }
 
+// Their pins are nobody's then.
+void OutputGuard::end_measurements() {
+  for (const vm::Sensor& sensor : sensors_)
+    if (vm::is_by_echo(sensor.driver)) static_cast<void>(board_.take_echo(sensor.address));
+  sensors_ = {};
+}
+
+void OutputGuard::ping(unsigned sensor) {
+  const auto lock = kernel_.lock();
+  if (sensor >= sensors_.size()) return;
+  const vm::Sensor& wiring = sensors_[sensor];
+  const policy::BoardPins& pins = board_.pins();
+  if (vm::is_by_echo(wiring.driver) && policy::judge(wiring, pins) == vm::Refusal::none)
+    board_.ping(wiring.bus, wiring.address);
+}
+
 // Pins that `next` does not drive in the same way. Nobody drives any of them meanwhile.
 void OutputGuard::switch_off(const vm::Image* next) {
   {
     const auto lock = kernel_.lock();
     halted_ = free_ = lagging_ = 0;
+    end_measurements();
   }
   if (lights() != 0) board_.show(0);
   if (speaker() != 0) board_.sound(0);
@@ -85,6 +102,7 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
     if (limits_[slots_[a].limit].rise != 0) gradual_ |= bit(a);
   }
   const auto lock = kernel_.lock();
+  sensors_ = image.sensors;
   owned_ = owned;
   halted_ = halted;
   free_ = owned & ~halted;

@@ -13,12 +13,16 @@
 // unless its safe state is to hold, and with the program. The speaker of one that has it is silent then, whatever its safe
 // state.
 //
+// The trigger pins of sensors are outputs, too: a pulse of some microseconds, for a sensor of the running program, which no halt
+// holds back, for nothing moves by it and SAFETY reads what comes of it.
+//
 // A check and its write are one under the kernel's lock: who is interrupted in between writes nothing old later.
 // docs/safety.md says what follows from that.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/pins.hpp"
@@ -47,6 +51,8 @@ public:
   void show(unsigned actuator, std::uint32_t picture);
   // The tone of the speaker (boards::Board::sound()).
   void sound(unsigned actuator, std::uint32_t hertz);
+  // A pulse on the trigger pin of a sensor (boards::Board::ping()).
+  void ping(unsigned sensor);
   // Pins whose pulse may not yet be where it shall go on. Called at each check of the safety monitor.
   void go_on(kernel::Time now);
 
@@ -80,6 +86,7 @@ private:
   void turn(Slot& slot, unsigned actuator, kernel::Time now);
   [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
   static bool drives(const vm::Image& image, const Slot& slot);
+  void end_measurements();
   void switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
   // The actuator that has the lights, if any.
@@ -90,6 +97,7 @@ private:
   kernel::Kernel& kernel_;
   boards::Board& board_;
   const policy::PinLimit* limits_ = nullptr;
+  std::span<const vm::Sensor> sensors_;  // of the running program
   Mask owned_ = 0;
   Mask halted_ = 0;
   Mask free_ = 0;     // owned, and not halted

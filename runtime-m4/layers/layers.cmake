@@ -33,6 +33,7 @@ target_sources(robosync_runtime PRIVATE
   drivers/algorithm.cpp
   drivers/digital_input.cpp
   drivers/ear.cpp
+  drivers/hc_sr04.cpp
   drivers/i2c_register.cpp
   drivers/lights.cpp
   drivers/lsm303agr.cpp

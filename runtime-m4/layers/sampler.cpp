@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "runtime-m4/drivers/drivers.hpp"
+#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::layers {
 
@@ -29,14 +30,19 @@ bool DriverSampler::sample(const vm::Image& image, std::uint8_t channel, vm::Val
   return true;
 }
 
-bool DriverSampler::asks_ahead(const vm::Sensor& sensor) const {
-  return board_.i2c_asks_ahead() && vm::is_on_i2c(sensor.driver);
+kernel::Duration DriverSampler::asks_ahead(const vm::Sensor& sensor) const {
+  if (vm::is_by_echo(sensor.driver)) return kernel::milliseconds(policy::kEchoMs);
+  return board_.i2c_asks_ahead() && vm::is_on_i2c(sensor.driver) ? kernel::kTick : 0;
 }
 
 // What a driver makes of no answer is nobody's.
 void DriverSampler::ask(const vm::Image& image, std::uint8_t channel) {
   const vm::Channel& wiring = image.channels[channel];
   const vm::Sensor& sensor = image.sensors[wiring.sensor];
+  if (vm::is_by_echo(sensor.driver)) {
+    if (channel == sensor.first_channel) outputs_.ping(wiring.sensor);
+    return;
+  }
   std::int32_t raw = 0;
   const kernel::MutexGuard mine(kernel_, buses_);
   board_.i2c_ask(true);

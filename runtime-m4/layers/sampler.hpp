@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/guard/output_guard.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "vm/image.hpp"
 
@@ -11,9 +12,9 @@ class Sampler {
 public:
   // One sample of a channel in thousandths of its unit. False when there is none to be had.
   virtual bool sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) = 0;
-  // Is a sensor to be asked before it is sampled? Then its channels are asked for, and sampled when nothing is awaited
-  // any more.
-  virtual bool asks_ahead(const vm::Sensor& /*sensor*/) const { return false; }
+  // How long before it is sampled a sensor is to be asked; 0: it is not. Then its channels are asked for, and sampled when
+  // nothing is awaited any more.
+  virtual kernel::Duration asks_ahead(const vm::Sensor& /*sensor*/) const { return 0; }
   virtual void ask(const vm::Image& /*image*/, std::uint8_t /*channel*/) {}
   virtual bool awaits() const { return false; }
 
@@ -25,15 +26,17 @@ protected:
 // a driver may need several transfers that belong together.
 class DriverSampler final : public Sampler {
 public:
-  DriverSampler(kernel::Kernel& kernel, boards::Board& board) : kernel_(kernel), board_(board) {}
+  DriverSampler(kernel::Kernel& kernel, boards::Board& board, guard::OutputGuard& outputs)
+      : kernel_(kernel), board_(board), outputs_(outputs) {}
   bool sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) override;
-  bool asks_ahead(const vm::Sensor& sensor) const override;
+  kernel::Duration asks_ahead(const vm::Sensor& sensor) const override;
   void ask(const vm::Image& image, std::uint8_t channel) override;
   bool awaits() const override { return board_.i2c_busy(); }
 
 private:
   kernel::Kernel& kernel_;
   boards::Board& board_;
+  guard::OutputGuard& outputs_;
   kernel::Mutex buses_{kernel::Category::sensor};
 };
 

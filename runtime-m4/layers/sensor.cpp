@@ -99,7 +99,7 @@ bool SensorLayer::start_feeds(ProgramThreads& threads) {
 void SensorLayer::run_sensor(unsigned sensor) {
   kernel_.wait(kGo);
   await_begin(sensor);
-  kernel::Time due = trace_.activated_at();
+  kernel::Time due = first_sample(sensor);
   while (true) {
     await_sample(sensor, due);
     sample(sensor);
@@ -107,16 +107,24 @@ void SensorLayer::run_sensor(unsigned sensor) {
   }
 }
 
-// Where it is to be asked before, that is a tick ahead: the answer is there when it is due. Who has come too late to ask
-// waits for the answer, not for ever.
+// When the program begins, unless it takes longer than a tick to answer: who has been asked at the last moment for SAFETY has
+// its whole period, too.
+kernel::Time SensorLayer::first_sample(unsigned sensor) const {
+  const vm::Sensor& wiring = program_->image.sensors[sensor];
+  const bool at_once = asks_ahead(sensor) <= kernel::kTick;
+  return trace_.activated_at() + (at_once ? 0 : kernel::milliseconds(wiring.period_ms));
+}
+
+// Where it is to be asked before, the answer is there when it is due. Who has come too late to ask waits for the answer, not
+// for ever.
 void SensorLayer::await_sample(unsigned sensor, kernel::Time due) {
-  const bool ahead = asks_ahead(sensor);
-  if (ahead) {
-    kernel_.sleep_until(std::max(due, kernel::kTick) - kernel::kTick);
+  const kernel::Duration ahead = asks_ahead(sensor);
+  if (ahead != 0) {
+    kernel_.sleep_until(std::max(due, ahead) - ahead);
     ask(sensor);
   }
   kernel_.sleep_until(due);
-  for (unsigned i = 0; ahead && i < policy::kBusTicks && sampler_->awaits(); ++i)
+  for (unsigned i = 0; ahead != 0 && i < policy::kBusTicks && sampler_->awaits(); ++i)
     kernel_.sleep_until(kernel_.now() + kernel::kTick);
 }
 
@@ -131,7 +139,8 @@ void SensorLayer::await_begin(unsigned sensor) {
   const kernel::Duration period = kernel::milliseconds(program_->image.sensors[sensor].period_ms);
   const bool measures = (awaited_ & made_of(sensor)) != 0;
   while (!begun_) {
-    if (measures && asks_ahead(sensor)) await_sample(sensor, kernel_.now() + kernel::kTick);
+    if (const kernel::Duration ahead = asks_ahead(sensor); measures && ahead != 0)
+      await_sample(sensor, kernel_.now() + ahead);
     if (measures) sample(sensor);
     if (measures && simulated_) note_tried(channels_of(sensor));
     kernel_.wait(kBegin, measures ? kernel_.now() + period : kernel::kForever);

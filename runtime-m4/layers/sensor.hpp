@@ -93,12 +93,13 @@ private:
   [[nodiscard]] bool start_sensor(unsigned sensor, ProgramThreads& threads);
   [[nodiscard]] bool start_feeds(ProgramThreads& threads);
   void run_sensor(unsigned sensor);
+  kernel::Time first_sample(unsigned sensor) const;
   void await_begin(unsigned sensor);
   void note_tried(ChannelMask channels);
   void signal_sensors(kernel::Events events);
   ChannelMask made_of(unsigned sensor) const;
   void run_feeds();
-  bool asks_ahead(unsigned sensor) const {
+  kernel::Duration asks_ahead(unsigned sensor) const {
     return sampler_->asks_ahead(program_->image.sensors[sensor]);
   }
   void ask(unsigned sensor);

@@ -52,6 +52,7 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
     return transfers * board.i2c_transfer + bytes * board.i2c_byte;
   };
   const auto pin = [&] { return std::uint32_t{board.input}; };
+  const auto echo = [&] { return std::uint32_t{board.echo}; };
   switch (driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case vm::DriverId::name:               \

@@ -44,11 +44,20 @@ constexpr bool is_input(const BoardPins& board, std::uint16_t pin) {
   return false;
 }
 
+// A pin that is held to the pulses of servos gives no shorter ones.
+constexpr bool can_trigger(std::uint16_t pin, const BoardPins& board) {
+  const PinLimit* const limit = limit_of(board, pin);
+  return limit != nullptr && limit->shortest == 0;
+}
+
 constexpr vm::Refusal judge(const vm::Sensor& sensor, const BoardPins& board) {
   switch (vm::bus_of(sensor.driver)) {
     case vm::Bus::i2c:
       return sensor.bus < board.i2c_buses ? vm::Refusal::none : vm::Refusal::no_bus;
     case vm::Bus::pin:
+      return is_input(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
+    case vm::Bus::echo:
+      if (!can_trigger(sensor.bus, board)) return vm::Refusal::no_pin;
       return is_input(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
     case vm::Bus::nothing:
       break;

@@ -33,6 +33,9 @@ inline constexpr std::uint32_t kSetpointPeriodMs = 20;
 // How long who has asked a bus waits at most, once the answer is due, in ticks of a millisecond.
 inline constexpr std::uint32_t kBusTicks = 2;
 
+// From the pulse that asks for an echo to the sample: who has heard nothing after 38 ms hears nothing.
+inline constexpr std::uint32_t kEchoMs = 40;
+
 // How long a row of a board's lights is on, until the next one is.
 inline constexpr std::uint32_t kRowMs = 2;
 

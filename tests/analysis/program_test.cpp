@@ -226,6 +226,23 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a sensor with an echo is asked 40 ms before: that is where its path begins") {
+  const tool::Program program = test::as_program(compiler::compile(
+      {"robot.rsl", "WHEN sonar DISTANCE < 20cm DO RUN wheel FORWARD END\n"}, {"robot.json", R"({
+        "sensors": [{"name": "sonar", "type": "GPIO", "trigger": 3, "echo": 40, "device": "hc-sr04"}],
+        "actuators": [{"name": "wheel", "type": "PWM", "pins": [4, 5], "device": "motor"}]})"}));
+  const policy::BoardCosts& board = tool::board_costs();
+  const analysis::TaskSet set = analysis::task_set_of(program.image(), board, tool::module_cost);
+  const auto asking = std::ranges::find(set.sources, "asking for sonar", &analysis::Source::name);
+  const auto sampling = std::ranges::find(set.sources, "sonar", &analysis::Source::name);
+  REQUIRE((asking != set.sources.end() && sampling != set.sources.end()));
+  CHECK(asking->sample == board.wake_by_timer + board.ping);
+  CHECK(asking->period == sampling->period);
+  CHECK(sampling->follows == static_cast<std::size_t>(asking - set.sources.begin()));
+  CHECK(sampling->delay == 40ULL * board.instructions_per_ms());
+  CHECK(sampling->sample >= board.wake_by_timer + board.echo);
+}
+
 TEST_CASE(
     "a sensor whose bus works by itself is asked a millisecond before: that is where its path "
     "begins") {

@@ -82,6 +82,7 @@ bool runs_on(const Device& device, const Board& board) {
                                [&](const Board::Part& part) { return part.device == device.name; });
   if (vm::is_on_i2c(driver)) return board.i2c_buses > 0;
   if (vm::is_on_pin(driver)) return !board.inputs.empty();
+  if (vm::is_by_echo(driver)) return !board.inputs.empty() && !board.outputs.empty();
   return vm::drives_pin(driver) && !board.outputs.empty();
 }
 
@@ -128,6 +129,9 @@ std::string wiring_keys(const Device& device) {
     rows += row({"`address`",
                  fmt::format("{:#04x} to {:#04x}", vm::kFirstAddress, vm::kLastAddress), "needed"});
   if (type->bus) rows += row({"`bus`", "a bus of the board", "0"});
+  if (vm::is_by_echo(driver_of(device)))
+    return row({"`trigger`", "an output of the board", "needed"}) +
+           row({"`echo`", "an input of the board", "needed"});
   if (vm::has_two_pins(driver_of(device)))
     rows += row({"`pins`", "two outputs of the board: forward, back", "needed"});
   else if (type->pin)

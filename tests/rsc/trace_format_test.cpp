@@ -229,6 +229,25 @@ TEST_CASE("any event of any image is shown, whatever its numbers") {
   }
 }
 
+TEST_CASE("a sensor that hears no echo is told of with its pins") {
+  const std::string robot = R"({"sensors": [
+    {"name": "sonar", "type": "GPIO", "trigger": 3, "echo": 40, "device": "hc-sr04"}]})";
+  const compiler::Result result = compiler::compile(
+      {"robot.rsl", "WHEN sonar DISTANCE < 20cm DO LOG \"near\" END\n"}, {"robot.json", robot});
+  REQUIRE_FALSE(result.image.empty());
+  const tool::Program sonar{result.image, "robot.rsl", tool::board_memory(), {}};
+  const auto line = [&](EventKind kind) {
+    return tool::trace_line(event(kind, 0, 0, {3}), {&sonar.image(), {}});
+  };
+  CHECK(line(EventKind::silent) ==
+        "   1.020 s  sonar, trigger 3 and echo 40, hears no echo (3 times without one so far)");
+  CHECK_THAT(line(EventKind::answers), Catch::Contains("hears an echo again (3 times"));
+  const json told =
+      json::parse(tool::trace_json(event(EventKind::silent, 0, 0, {3}), {&sonar.image(), {}}));
+  CHECK((told.at("trigger") == 3 && told.at("echo") == 40));
+  CHECK_FALSE(told.contains("address"));
+}
+
 TEST_CASE("a device on a bus is told of with where it is; without an image by its number") {
   const Event silent = event(EventKind::silent, 1, 0, {3});
   CHECK(as_json(silent) ==

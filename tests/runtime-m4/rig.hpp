@@ -47,6 +47,13 @@ public:
   void i2c_ask(bool ahead) override { asked_ahead = ahead; }
   bool i2c_busy() const override { return busy && busy(); }
   bool input(std::uint16_t pin) const override { return level(pin); }
+  void ping(std::uint16_t trigger, std::uint16_t echo) override {
+    pings.emplace_back(trigger, echo);
+  }
+  std::uint32_t take_echo(std::uint16_t echo) override {
+    ++takes;
+    return echo_us ? echo_us(echo) : 0;
+  }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override {
     pulses[pin].push_back(pulse_us);
     writes.emplace_back(pin, pulse_us);
@@ -72,7 +79,10 @@ public:
   std::function<bool()> busy;
   boards::BusState bus_state;
   std::function<bool(std::uint16_t pin)> level = [](std::uint16_t) { return true; };  // pulled up
-  std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;                         // all, by pin
+  std::vector<std::pair<std::uint16_t, std::uint16_t>> pings;  // trigger and echo, all
+  std::function<std::uint32_t(std::uint16_t echo)> echo_us;
+  unsigned takes = 0;
+  std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;   // all, by pin
   std::vector<std::pair<std::uint16_t, std::uint32_t>> writes;  // the same, in their order
   policy::BoardPins board_pins = boards::kPins;
   std::vector<std::uint32_t> pictures;  // all

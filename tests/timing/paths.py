@@ -46,7 +46,8 @@ def samples():
     by_i2c = {name: int(transfers) * declared["i2c_transfer"] + int(size) * declared["i2c_byte"] for
               name, transfers, size in re.findall(r"^SENSOR_DRIVER\((\w+),\s*i2c\((\d+), (\d+)\)", drivers, re.M)}
     by_pin = re.findall(r"^SENSOR_DRIVER\((\w+),\s*pin\(\)", drivers, re.M)
-    return by_i2c | {name: declared["input"] for name in by_pin}
+    by_echo = re.findall(r"^SENSOR_DRIVER\((\w+),\s*echo\(\)", drivers, re.M)
+    return by_i2c | {name: declared["input"] for name in by_pin} | {name: declared["echo"] for name in by_echo}
 
 
 def robot(actuators=4, sensors=None):

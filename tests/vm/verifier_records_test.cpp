@@ -4,6 +4,7 @@
 
 #include "tests/vm/companion.hpp"
 #include "tests/vm/refusal_checks.hpp"
+#include "vm/drivers.hpp"
 #include "vm/verifier.hpp"
 
 using namespace robosync::vm;
@@ -50,6 +51,42 @@ TEST_CASE("sensors") {
     s[0].driver = DriverId::digital_input;
     s[0].bus = 2;
   });
+  // What is measured by an echo has both pins for itself, and its time.
+  const auto by_echo = [](Sensor& sensor, unsigned trigger, unsigned echo) {
+    sensor.driver = DriverId::hc_sr04;
+    sensor.bus = static_cast<std::uint8_t>(trigger);
+    sensor.address = static_cast<std::uint16_t>(echo);
+    sensor.period_ms = kMinEchoPeriodMs;
+  };
+  refused(Refusal::shared_pin, 0, [&](auto& s) { by_echo(s[0], 20, 20); });
+  refused(Refusal::bad_value, 0, [&](auto& s) {
+    by_echo(s[0], 20, 40);
+    s[0].period_ms = kMinEchoPeriodMs - 1;
+  });
+  for (const auto& [trigger, echo] : {std::pair{20, 41}, {21, 40}, {40, 21}, {21, 20}})
+    refused(Refusal::shared_pin, 1, [&, trigger = trigger, echo = echo](auto& s) {
+      by_echo(s[0], 20, 40);
+      by_echo(s[1], static_cast<unsigned>(trigger), static_cast<unsigned>(echo));
+    });
+  refused(Refusal::shared_pin, 1, [&](auto& s) {
+    s[0].driver = DriverId::digital_input;
+    s[0].bus = 0;
+    s[0].address = 40;
+    by_echo(s[1], 20, 40);
+  });
+  {
+    ImageBuilder image = robot::make();
+    by_echo(image.sensors[0], 20, 40);
+    by_echo(image.sensors[1], 21, 41);
+    check_accepted(image);
+    const auto drives = [&](std::uint16_t pin) {
+      ImageBuilder taken = image;
+      taken.actuators[1].pin = pin;
+      return taken;
+    };
+    check_refused(drives(20), {Refusal::shared_pin, Section::actuators, 1});
+    check_refused(drives(41), {Refusal::shared_pin, Section::actuators, 1});
+  }
   for (const int address : {0x00, 0xFFFE}) {
     ImageBuilder image = robot::make();
     image.sensors[0].driver = DriverId::digital_input;

@@ -1,11 +1,15 @@
 #include "runtime-m4/boards/b-l475e-iot01a/board.hpp"
 
+#include <array>
+
 #include "runtime-m4/boards/b-l475e-iot01a/clock.hpp"
+#include "runtime-m4/boards/b-l475e-iot01a/echoes.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
 #include "runtime-m4/kernel/time.hpp"
+#include "runtime-m4/port/cortex-m4/clock.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 
@@ -14,6 +18,9 @@ namespace robosync::boards::l475 {
 namespace {
 
 constexpr std::uint32_t kWatchdogCounts = iwdg::kHz / 10;  // 100 ms
+
+constexpr std::array kEchoInterrupts{exti::kInterrupt2, exti::kInterrupt4, exti::kInterrupt5To9,
+                                     exti::kInterrupt10To15};
 
 Board board;
 
@@ -26,6 +33,9 @@ Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
   rcc::give_clock(rcc::kAhb2, rcc::kPortsAToD);
   pins::start();
   inputs::start();
+  echoes::start();
+  for (const unsigned interrupt : kEchoInterrupts)
+    port::core::enable_interrupt(interrupt);
 }
 
 // A reset by the watchdog comes without warning, so nobody could note it in memory.
@@ -40,6 +50,14 @@ bool Board::i2c_transfer(std::uint8_t /*bus*/, std::uint8_t /*address*/,
 
 bool Board::input(std::uint16_t pin) const {
   return inputs::is_high(pin);
+}
+
+void Board::ping(std::uint16_t trigger, std::uint16_t echo) {
+  echoes::ping(trigger, echo);
+}
+
+std::uint32_t Board::take_echo(std::uint16_t echo) {
+  return echoes::take(echo);
 }
 
 void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {
@@ -78,6 +96,7 @@ extern "C" {
 
 void NMI_Handler();
 void Usart1_Handler();
+void Echo_Handler();
 
 // The flash is damaged where it cannot be corrected: what runs is not what was written.
 void NMI_Handler() {
@@ -89,6 +108,11 @@ void Usart1_Handler() {
   auto& line = robosync::boards::l475::board.line();
   if (Usart1::has_received()) line.on_receive();
   if (Usart1::wants_to_send() && Usart1::can_send()) line.on_transmit();
+}
+
+// The clock counts down.
+void Echo_Handler() {
+  robosync::boards::l475::echoes::on_edge(~robosync::port::read_clock());
 }
 
 }  // extern "C"

@@ -4,9 +4,20 @@
 // They are inputs from start() on and never anything else, and pulled up: a pin that nothing is wired to reads high.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
+
 namespace robosync::boards::l475::inputs {
+
+struct Input {
+  std::uint16_t pin;  // of the header
+  Port port;
+  unsigned bit;  // no two have the same
+};
+inline constexpr std::array kInputs{Input{7, kPortA, 4}, Input{8, kPortB, 2}, Input{9, kPortA, 15},
+                                    Input{12, kPortA, 6}, Input{32, kPortC, 13}};
 
 // Their ports have their clock.
 void start();

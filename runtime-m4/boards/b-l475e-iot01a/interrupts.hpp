@@ -5,10 +5,15 @@
 #include "runtime-m4/boards/common/vectors.hpp"
 
 extern "C" void Usart1_Handler();
+extern "C" void Echo_Handler();
 
 namespace robosync::boards {
 
 inline constexpr std::size_t kInterrupts = 82;
-inline constexpr std::array kUsedInterrupts{Interrupt{l475::usart1::kInterrupt, Usart1_Handler}};
+inline constexpr std::array kUsedInterrupts{Interrupt{l475::usart1::kInterrupt, Usart1_Handler},
+                                            Interrupt{l475::exti::kInterrupt2, Echo_Handler},
+                                            Interrupt{l475::exti::kInterrupt4, Echo_Handler},
+                                            Interrupt{l475::exti::kInterrupt5To9, Echo_Handler},
+                                            Interrupt{l475::exti::kInterrupt10To15, Echo_Handler}};
 
 }  // namespace robosync::boards

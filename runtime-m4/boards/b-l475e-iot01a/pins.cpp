@@ -26,7 +26,8 @@ constexpr std::array kOutputs{
     Output{11, kPortA, 7, 2, kTimer3, 1}, Output{13, kPortA, 5, 1, kTimer2, 0}};
 constexpr std::array kTimers{kTimer2, kTimer3, kTimer4, kTimer5};
 
-constexpr std::uint32_t kFrame = 20'000;  // microseconds
+constexpr std::uint32_t kFrame = 20'000;   // microseconds
+constexpr std::uint32_t kShortPulse = 12;  // microseconds
 constexpr std::uint32_t kPerMicrosecond = kClockHz / 1'000'000;
 
 const Output* find(std::uint16_t pin) {
@@ -74,6 +75,19 @@ void write(std::uint16_t pin, std::uint32_t pulse_us) {
   if (pulse_us == 0) return low_at_once(timer, output->channel);
   timer.mode(output->channel).set_field(output->channel % 2, 8, Timer::kPulseFromNextPeriod);
   timer.compare(output->channel).write(pulse_us);
+}
+
+// High until the count is there; what waits for the next period is 0. Where the end of the period would cut it off, the
+// period ends now: what the timer's other pins give is some microseconds early, once.
+void pulse(std::uint16_t pin) {
+  const Output* const output = find(pin);
+  if (output == nullptr) return;
+  const Timer& timer = output->timer;
+  if (timer.count().read() + 2 * kShortPulse >= kFrame) timer.event().write(Timer::kUpdate);
+  timer.mode(output->channel).set_field(output->channel % 2, 8, Timer::kPulse);
+  timer.compare(output->channel).write(timer.count().read() + kShortPulse);
+  timer.mode(output->channel).set_field(output->channel % 2, 8, Timer::kPulseFromNextPeriod);
+  timer.compare(output->channel).write(0);
 }
 
 std::uint32_t read(std::uint16_t pin) {

@@ -17,6 +17,9 @@ void start();
 void write(std::uint16_t pin, std::uint32_t pulse_us);
 std::uint32_t read(std::uint16_t pin);
 
+// One pulse of 11 or 12 us, from now on; the timer ends it. [under a lock, as above]
+void pulse(std::uint16_t pin);
+
 // All of them, at once. Any state of the machine.
 void switch_off();
 

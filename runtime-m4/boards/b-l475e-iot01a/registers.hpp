@@ -28,6 +28,7 @@ inline constexpr Register kApb1{0x4002'1058};
 inline constexpr std::uint32_t kTimers2To5 = 0b1111;
 inline constexpr Register kApb2{0x4002'1060};
 inline constexpr std::uint32_t kUsart1 = 1U << 14;
+inline constexpr std::uint32_t kSystemConfiguration = 1U << 0;
 inline constexpr Register kStatus{0x4002'1094};
 inline constexpr std::uint32_t kWatchdogReset = 1U << 29;
 inline constexpr std::uint32_t kForgetReset = 1U << 23;
@@ -80,6 +81,9 @@ inline constexpr Port kPortA{0x4800'0000};
 inline constexpr Port kPortB{0x4800'0400};
 inline constexpr Port kPortC{0x4800'0800};
 inline constexpr Port kPortD{0x4800'0C00};
+constexpr std::uint32_t number_of(Port port) {  // A: 0
+  return static_cast<std::uint32_t>((port.base - kPortA.base) / (kPortB.base - kPortA.base));
+}
 inline constexpr std::uint32_t kModeOfInput = 0b00;
 inline constexpr std::uint32_t kModeOfFunction = 0b10;
 inline constexpr std::uint32_t kPullUp = 0b01;
@@ -94,6 +98,7 @@ struct Timer {
     return {base + 0x18 + std::uintptr_t{4} * (channel / 2)};
   }
   constexpr Register enable() const { return {base + 0x20}; }  // 4 bits a channel
+  constexpr Register count() const { return {base + 0x24}; }
   constexpr Register prescaler() const { return {base + 0x28}; }
   constexpr Register last() const { return {base + 0x2C}; }  // count of a period
   constexpr Register compare(unsigned channel) const {
@@ -114,6 +119,21 @@ inline constexpr Timer kTimer2{0x4000'0000};
 inline constexpr Timer kTimer3{0x4000'0400};
 inline constexpr Timer kTimer4{0x4000'0800};
 inline constexpr Timer kTimer5{0x4000'0C00};
+
+namespace exti {  // interrupts at edges of pins: a line for each number of a pin, which one port has
+inline constexpr Register port(unsigned line) {  // 4 bits a line
+  return {0x4001'0008 + std::uintptr_t{4} * (line / 4)};
+}
+inline constexpr Register kMask{0x4001'0400};  // 1: it interrupts
+inline constexpr Register kRising{0x4001'0408};
+inline constexpr Register kFalling{0x4001'040C};
+inline constexpr Register kPending{0x4001'0414};  // 1 forgets
+// Of the lines 2 and 4, 5 to 9, and 10 to 15.
+inline constexpr unsigned kInterrupt2 = 8;
+inline constexpr unsigned kInterrupt4 = 10;
+inline constexpr unsigned kInterrupt5To9 = 23;
+inline constexpr unsigned kInterrupt10To15 = 40;
+}  // namespace exti
 
 namespace usart1 {  // to the ST-Link, which is a serial port of USB
 inline constexpr unsigned kInterrupt = 37;

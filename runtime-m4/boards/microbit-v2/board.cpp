@@ -5,6 +5,7 @@
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
 #include "runtime-m4/boards/microbit-v2/clock.hpp"
+#include "runtime-m4/boards/microbit-v2/echoes.hpp"
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/lights.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
@@ -24,6 +25,8 @@ Board board;
 Board::Board() : chip_reset_(take_reset_cause()) {
   pins::start();
   inputs::start();
+  echoes::start();
+  port::core::enable_interrupt(gpiote::kInterrupt);
   lights::start();
   speaker::start();
   port::core::enable_interrupt(row_timer::kInterrupt);
@@ -73,6 +76,14 @@ bool Board::input(std::uint16_t pin) const {
   return inputs::is_high(pin);
 }
 
+void Board::ping(std::uint16_t trigger, std::uint16_t echo) {
+  echoes::ping(trigger, echo);
+}
+
+std::uint32_t Board::take_echo(std::uint16_t echo) {
+  return echoes::take(echo);
+}
+
 void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {
   pins::write(pin, pulse_us);
 }
@@ -110,6 +121,7 @@ void Row_Handler();
 void EdgeBus_Handler();
 void OwnBus_Handler();
 void Pwm_Handler();
+void Echo_Handler();
 
 // The chip has nothing that causes one.
 void NMI_Handler() {
@@ -135,6 +147,10 @@ void EdgeBus_Handler() {
 
 void OwnBus_Handler() {
   robosync::boards::microbit::board.i2c(1).on_end();
+}
+
+void Echo_Handler() {
+  robosync::boards::microbit::echoes::on_edge();
 }
 
 void Pwm_Handler() {

@@ -57,6 +57,8 @@ public:
   void i2c_ask(bool ahead) override { asks_ahead_ = ahead; }
   bool i2c_busy() const override;
   bool input(std::uint16_t pin) const override;
+  void ping(std::uint16_t trigger, std::uint16_t echo) override;
+  std::uint32_t take_echo(std::uint16_t echo) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
   Store* store() override { return &store_; }

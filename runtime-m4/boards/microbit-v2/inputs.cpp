@@ -1,21 +1,7 @@
 // See inputs.hpp. The buttons have pull-ups of their own (10 kΩ); the chip's do no harm beside them.
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 
-#include <array>
-
-#include "runtime-m4/boards/microbit-v2/registers.hpp"
-
 namespace robosync::boards::microbit::inputs {
-
-namespace {
-
-struct Input {
-  std::uint16_t pin;  // of the edge connector
-  Pin chip;
-};
-constexpr std::array kInputs{Input{5, {0, 14}}, Input{11, {0, 23}}};
-
-}  // namespace
 
 void start() {
   for (const Input& input : kInputs)

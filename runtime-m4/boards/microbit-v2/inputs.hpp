@@ -4,9 +4,18 @@
 // They are inputs from start() on and never anything else, and pulled up: a pin that nothing is wired to reads high.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "runtime-m4/boards/microbit-v2/registers.hpp"
+
 namespace robosync::boards::microbit::inputs {
+
+struct Input {
+  std::uint16_t pin;  // of the edge connector
+  Pin chip;
+};
+inline constexpr std::array kInputs{Input{5, {0, 14}}, Input{11, {0, 23}}};
 
 void start();
 // A pin that is no input: false.

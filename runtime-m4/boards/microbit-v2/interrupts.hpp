@@ -7,6 +7,7 @@
 
 extern "C" void Uart0_Handler();
 extern "C" void Pwm_Handler();
+extern "C" void Echo_Handler();
 extern "C" void Row_Handler();
 extern "C" void EdgeBus_Handler();
 extern "C" void OwnBus_Handler();
@@ -15,6 +16,7 @@ namespace robosync::boards {
 
 inline constexpr std::size_t kInterrupts = 48;
 inline constexpr std::array kUsedInterrupts{Interrupt{microbit::uart::kInterrupt, Uart0_Handler},
+                                            Interrupt{microbit::gpiote::kInterrupt, Echo_Handler},
                                             Interrupt{microbit::row_timer::kInterrupt, Row_Handler},
                                             Interrupt{microbit::kTwim0.interrupt, OwnBus_Handler},
                                             Interrupt{microbit::kTwim1.interrupt, EdgeBus_Handler},

@@ -122,6 +122,11 @@ void write(std::uint16_t pin, std::uint32_t pulse_us) {
   if (state.ended == kSettled) give(*output, state);
 }
 
+const Pin* chip_pin(std::uint16_t pin) {
+  const Output* const output = find(pin);
+  return output == nullptr ? nullptr : &output->chip;
+}
+
 std::uint32_t read(std::uint16_t pin) {
   const Output* const output = find(pin);
   return output == nullptr ? 0 : state_of(*output).wanted;

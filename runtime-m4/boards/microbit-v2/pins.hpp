@@ -6,6 +6,8 @@
 
 #include <cstdint>
 
+#include "runtime-m4/boards/microbit-v2/registers.hpp"
+
 namespace robosync::boards::microbit::pins {
 
 // All pins low.
@@ -16,6 +18,9 @@ void start();
 void write(std::uint16_t pin, std::uint32_t pulse_us);
 // What was written last.
 std::uint32_t read(std::uint16_t pin);
+
+// Which pin of the chip it is; null: none that gives pulses.
+const Pin* chip_pin(std::uint16_t pin);
 
 // All of them, at once, and for good: until start(). Any state of the machine.
 void switch_off();

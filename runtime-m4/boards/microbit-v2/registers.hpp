@@ -113,6 +113,60 @@ inline constexpr Channel kAlarm{0};
 inline constexpr Channel kReading{1};
 }  // namespace timer
 
+namespace echo_timer {  // TIMER3, whose counts are microseconds
+inline constexpr std::uintptr_t kBase = 0x4001'A000;
+inline constexpr Register kStart{kBase};
+inline constexpr Register kWidth{kBase + 0x508};
+inline constexpr Register kPrescaler{kBase + 0x510};
+inline constexpr std::uint32_t kMicroseconds = 4;  // 16 MHz / 16
+constexpr Register capture(unsigned channel) {
+  return {kBase + 0x040 + std::uintptr_t{4} * channel};
+}
+constexpr Register reached(unsigned channel) {
+  return {kBase + 0x140 + std::uintptr_t{4} * channel};
+}
+constexpr Register value(unsigned channel) {
+  return {kBase + 0x540 + std::uintptr_t{4} * channel};
+}
+}  // namespace echo_timer
+
+namespace gpiote {  // channels that drive a pin by tasks, or tell its edges as events
+inline constexpr unsigned kInterrupt = 6;
+inline constexpr std::uintptr_t kBase = 0x4000'6000;
+constexpr Register set_high(unsigned channel) {
+  return {kBase + 0x030 + std::uintptr_t{4} * channel};
+}
+constexpr Register set_low(unsigned channel) {
+  return {kBase + 0x060 + std::uintptr_t{4} * channel};
+}
+constexpr Register edge(unsigned channel) {  // event
+  return {kBase + 0x100 + std::uintptr_t{4} * channel};
+}
+inline constexpr Register kInterruptOn{kBase + 0x304};  // a bit a channel
+inline constexpr Register kInterruptOff{kBase + 0x308};
+constexpr Register configuration(unsigned channel) {
+  return {kBase + 0x510 + std::uintptr_t{4} * channel};
+}
+inline constexpr std::uint32_t kOff = 0;
+constexpr std::uint32_t edges_of(Pin pin) {
+  return 1U | pin.number() << 8 | 3U << 16;
+}
+constexpr std::uint32_t drives(Pin pin) {  // from low on
+  return 3U | pin.number() << 8;
+}
+}  // namespace gpiote
+
+namespace ppi {  // what is wired between events and tasks: no instruction is needed
+inline constexpr std::uintptr_t kBase = 0x4001'F000;
+inline constexpr Register kOn{kBase + 0x504};  // a bit a channel
+constexpr Register event(unsigned channel) {
+  return {kBase + 0x510 + std::uintptr_t{8} * channel};
+}
+constexpr Register task(unsigned channel) {
+  return {kBase + 0x514 + std::uintptr_t{8} * channel};
+}
+}  // namespace ppi
+
 namespace row_timer {  // TIMER1: when the next row of the lights is on
 inline constexpr unsigned kInterrupt = 9;
 inline constexpr Register kStart{0x4000'9000};

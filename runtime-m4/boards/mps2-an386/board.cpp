@@ -8,6 +8,8 @@
 std::array<volatile std::uint32_t, kVirtualPwmPins> robosync_virtual_pwm{};
 volatile std::uint32_t robosync_virtual_inputs = (1U << kVirtualInputs) - 1;  // as if pulled up
 
+std::array<volatile std::uint32_t, kVirtualInputs> robosync_virtual_echoes{};
+
 namespace robosync::boards::mps2 {
 
 namespace {
@@ -38,6 +40,11 @@ bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const
 bool Board::input(std::uint16_t pin) const {
   const unsigned bit = pin - unsigned{kFirstInput};
   return bit < kVirtualInputs && (robosync_virtual_inputs >> bit & 1) != 0;
+}
+
+std::uint32_t Board::take_echo(std::uint16_t echo) {
+  const unsigned place = echo - unsigned{kFirstInput};
+  return place < kVirtualInputs ? robosync_virtual_echoes[place] : 0;
 }
 
 void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {

@@ -1,7 +1,8 @@
 // The MPS2 board with AN386 (Cortex-M4, 25 MHz), as QEMU's mps2-an386 has it.
 //
 // It has no PWM and no pins that could be read. PWM pins are words in memory, `robosync_virtual_pwm`, which the
-// host reads, and input pins the bits of a word that it writes, `robosync_virtual_inputs`; everything above this
+// host reads, and input pins the bits of a word that it writes, `robosync_virtual_inputs`. Of an echo it writes how long it
+// is, `robosync_virtual_echoes`, and no trigger pin does anything; everything above this
 // file is as it would be on real pins.
 #pragma once
 
@@ -23,6 +24,8 @@ extern "C" std::array<volatile std::uint32_t, kVirtualPwmPins> robosync_virtual_
 extern "C" volatile std::uint32_t robosync_virtual_inputs;  // bit i: pin kFirstInput + i is high
 inline constexpr std::uint16_t kFirstInput = 40;
 inline constexpr std::uint16_t kVirtualInputs = 4;
+// How long each of them is high after a pulse on a trigger pin, in microseconds; 0: it says nothing.
+extern "C" std::array<volatile std::uint32_t, kVirtualInputs> robosync_virtual_echoes;
 
 namespace robosync::boards::mps2 {
 
@@ -39,6 +42,7 @@ public:
   BusState buses() const override { return i2c_.state(); }
   bool input(std::uint16_t pin) const override;
   Store* store() override { return &eeprom_; }
+  std::uint32_t take_echo(std::uint16_t echo) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
   std::size_t link_write(std::span<const std::byte> bytes) override { return uart_.write(bytes); }

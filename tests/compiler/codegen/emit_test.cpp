@@ -285,7 +285,7 @@ TEST_CASE("a motor's record has both pins; one that is only shown has none") {
 
 TEST_CASE("what is fed is neither sampled nor stale") {
   const std::string robot = R"({
-    "sensors": [{"name": "sonar", "type": "GPIO", "pin": 5, "device": "hc-sr04"}],
+    "sensors": [{"name": "sonar", "type": "VIRTUAL", "pin": 5, "device": "hc-sr04"}],
     "actuators": [{"name": "arm", "type": "VIRTUAL", "device": "servo"}]})";
   const Result result = compile_text(rule("sonar < 20cm", "MOVE arm SLOWLY"), robot);
   const vm::Image image = view(result);

@@ -123,6 +123,27 @@ TEST_CASE("a motor has both of its pins for itself, and both are outputs that gi
   CHECK(rig.activate(patched(motor_on(4, 5))).ok());
 }
 
+TEST_CASE("a sensor with an echo has an output that may give short pulses, and an input") {
+  const auto on = [](unsigned trigger, std::uint16_t echo) {
+    return [=](vm::Sensor& sensor, auto&, auto&, auto&) {
+      sensor.driver = vm::DriverId::hc_sr04;
+      sensor.bus = static_cast<std::uint8_t>(trigger);
+      sensor.address = echo;
+      sensor.period_ms = 100;
+    };
+  };
+  CHECK(refused(on(20, 20), "button") == Refusal::shared_pin);
+  CHECK(refused(on(3, 41), "button") == Refusal::shared_pin);  // the arm's
+  CHECK(refused(on(20, 3), "button") == Refusal::shared_pin);
+  CHECK(refused(on(41, 42), "button") == Refusal::no_pin);  // an input
+  CHECK(refused(on(200, 41), "button") == Refusal::no_pin);
+  CHECK(refused(on(32, 41), "button") == Refusal::no_pin);  // of servos
+  CHECK(refused(on(20, 21), "button") == Refusal::no_input);
+  CHECK(refused(on(20, 0xFFFF), "button") == Refusal::no_input);
+  Rig rig;
+  CHECK(rig.activate(patched(on(20, 41), "button")).ok());
+}
+
 TEST_CASE("an I2C bus and an address that cannot be are refused") {
   refused([](auto& touch, auto&, auto&, auto&) { touch.bus = 5; });
   for (const int address : {0, 7, 0x78, 0xFFFF})

@@ -53,7 +53,8 @@ struct Reader {
 };
 std::array<Reader, 2> readers = {
     {{.input = 3, .expected = 0x0050}, {.input = 2, .expected = 0x004B}}};
-layers::DriverSampler sampler{robosync_kernel, robosync_board};
+guard::OutputGuard outputs{robosync_kernel, robosync_board};
+layers::DriverSampler sampler{robosync_kernel, robosync_board, outputs};
 
 void read_once(Reader& reader) {
   static constexpr std::uint16_t kThermometer = 0x48;

@@ -1,0 +1,76 @@
+// See echoes.hpp. ST's RM0351, 14 (EXTI) and 9.2 (SYSCFG).
+#include "runtime-m4/boards/b-l475e-iot01a/echoes.hpp"
+
+#include <array>
+
+#include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
+#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
+#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
+#include "runtime-m4/boards/common/echo.hpp"
+
+namespace robosync::boards::l475::echoes {
+
+namespace {
+
+using inputs::kInputs;
+
+std::array<Echo, kInputs.size()> echoes;
+
+constexpr std::uint32_t line(std::size_t i) {
+  return 1U << kInputs[i].bit;
+}
+
+bool is_high(std::size_t i) {
+  return kInputs[i].port.levels().has(line(i));
+}
+
+// kInputs.size(): it is none of them.
+std::size_t find(std::uint16_t pin) {
+  std::size_t i = 0;
+  while (i < kInputs.size() && kInputs[i].pin != pin)
+    ++i;
+  return i;
+}
+
+}  // namespace
+
+void start() {
+  rcc::give_clock(rcc::kApb2, rcc::kSystemConfiguration);
+  for (const inputs::Input& input : kInputs) {
+    exti::port(input.bit).set_field(input.bit % 4, 4, number_of(input.port));
+    exti::kMask.clear(1U << input.bit);
+    exti::kRising.set(1U << input.bit);
+    exti::kFalling.set(1U << input.bit);
+  }
+}
+
+// What the pin did before is nobody's.
+void ping(std::uint16_t trigger, std::uint16_t echo) {
+  const std::size_t i = find(echo);
+  if (i == kInputs.size()) return;
+  const port::Alone alone;
+  exti::kMask.clear(line(i));
+  exti::kPending.write(line(i));
+  if (echoes[i].begin(is_high(i))) exti::kMask.set(line(i));
+  pins::pulse(trigger);
+}
+
+std::uint32_t take(std::uint16_t echo) {
+  const std::size_t i = find(echo);
+  if (i == kInputs.size()) return 0;
+  const port::Alone alone;
+  exti::kMask.clear(line(i));
+  return echoes[i].take() / (kClockHz / 1'000'000);
+}
+
+// It is forgotten before the level is read: an edge that comes in between calls again.
+void on_edge(std::uint32_t now) {
+  const std::uint32_t pending = exti::kPending.read() & exti::kMask.read();
+  for (std::size_t i = 0; i < kInputs.size(); ++i) {
+    if ((pending & line(i)) == 0) continue;
+    exti::kPending.write(line(i));
+    if (echoes[i].edge(is_high(i), now)) exti::kMask.clear(line(i));
+  }
+}
+
+}  // namespace robosync::boards::l475::echoes

@@ -1,0 +1,111 @@
+// See echoes.hpp. Nordic's nRF52833 Product Specification: GPIOTE, PPI, TIMER.
+#include "runtime-m4/boards/microbit-v2/echoes.hpp"
+
+#include <array>
+
+#include "runtime-m4/boards/common/echo.hpp"
+#include "runtime-m4/boards/microbit-v2/inputs.hpp"
+#include "runtime-m4/boards/microbit-v2/pins.hpp"
+#include "runtime-m4/boards/microbit-v2/registers.hpp"
+
+namespace robosync::boards::microbit::echoes {
+
+namespace {
+
+using inputs::kInputs;
+
+constexpr std::uint32_t kPulse = 12;  // microseconds
+
+std::array<Echo, kInputs.size()> echoes;
+
+// What input i has for itself: of GPIOTE and of PPI two channels, for its edges and for the end of the pulse; of the timer a
+// channel that keeps the time of an edge, and one that says when the pulse ends.
+constexpr unsigned edges(std::size_t i) {
+  return static_cast<unsigned>(2 * i);
+}
+constexpr unsigned pulse(std::size_t i) {
+  return static_cast<unsigned>(2 * i + 1);
+}
+constexpr unsigned time_of_edge(std::size_t i) {
+  return static_cast<unsigned>(i);
+}
+constexpr unsigned end_of_pulse(std::size_t i) {
+  return static_cast<unsigned>(kInputs.size() + i);
+}
+
+bool is_high(std::size_t i) {
+  return kInputs[i].chip.levels().has(kInputs[i].chip.mask());
+}
+
+// kInputs.size(): it is none of them.
+std::size_t find(std::uint16_t pin) {
+  std::size_t i = 0;
+  while (i < kInputs.size() && kInputs[i].pin != pin)
+    ++i;
+  return i;
+}
+
+void join(unsigned channel, Register event, Register task) {
+  ppi::event(channel).write(static_cast<std::uint32_t>(event.address));
+  ppi::task(channel).write(static_cast<std::uint32_t>(task.address));
+  ppi::kOn.write(1U << channel);
+}
+
+void ignore_edges(std::size_t i) {
+  gpiote::kInterruptOff.write(1U << edges(i));
+  gpiote::configuration(edges(i)).write(gpiote::kOff);
+  forget(gpiote::edge(edges(i)));
+}
+
+}  // namespace
+
+void start() {
+  echo_timer::kWidth.write(timer::k32Bits);
+  echo_timer::kPrescaler.write(echo_timer::kMicroseconds);
+  for (std::size_t i = 0; i < kInputs.size(); ++i) {
+    join(edges(i), gpiote::edge(edges(i)), echo_timer::capture(time_of_edge(i)));
+    join(pulse(i), echo_timer::reached(end_of_pulse(i)), gpiote::set_low(pulse(i)));
+  }
+  echo_timer::kStart.write(kDoIt);
+}
+
+// What the pin did before is nobody's. Nothing comes between the begin of the pulse and the word when it ends.
+void ping(std::uint16_t trigger, std::uint16_t echo) {
+  const std::size_t i = find(echo);
+  const Pin* const output = pins::chip_pin(trigger);
+  if (i == kInputs.size() || output == nullptr) return;
+  const port::Alone alone;
+  ignore_edges(i);
+  if (echoes[i].begin(is_high(i))) {
+    gpiote::configuration(edges(i)).write(gpiote::edges_of(kInputs[i].chip));
+    forget(gpiote::edge(edges(i)));
+    gpiote::kInterruptOn.write(1U << edges(i));
+  }
+  gpiote::configuration(pulse(i)).write(gpiote::drives(*output));
+  gpiote::set_high(pulse(i)).write(kDoIt);
+  echo_timer::capture(end_of_pulse(i)).write(kDoIt);
+  const Register end = echo_timer::value(end_of_pulse(i));
+  end.write(end.read() + kPulse);
+}
+
+// The pin of the pulse is its port's again, which has it low.
+std::uint32_t take(std::uint16_t echo) {
+  const std::size_t i = find(echo);
+  if (i == kInputs.size()) return 0;
+  const port::Alone alone;
+  ignore_edges(i);
+  gpiote::configuration(pulse(i)).write(gpiote::kOff);
+  return echoes[i].take();
+}
+
+// It is forgotten before the level is read: an edge that comes in between calls again.
+void on_edge() {
+  const port::Alone alone;
+  for (std::size_t i = 0; i < kInputs.size(); ++i) {
+    if (gpiote::edge(edges(i)).read() == 0) continue;
+    forget(gpiote::edge(edges(i)));
+    if (echoes[i].edge(is_high(i), echo_timer::value(time_of_edge(i)).read())) ignore_edges(i);
+  }
+}
+
+}  // namespace robosync::boards::microbit::echoes

@@ -1,0 +1,177 @@
+"""The ultrasonic sensor on the boards' firmware: the test is the part, and the trace shows what it was told. ROBOSYNC_BOARD
+says on which board."""
+
+import json
+import sys
+import time
+import unittest
+from pathlib import Path
+
+import pins
+import rsc
+from board import FIRMWARE, NAME
+from debugger import DebuggedTest
+from support import LineReader
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
+from counting import symbols  # noqa: E402
+
+PATIENCE = 20
+LINK_REGISTER = 14
+MM_PER_CM = 10
+US_PER_CM = 1 / 0.01715
+REFERENCE = NAME not in pins.LINES
+ECHO = pins.VIRTUAL[0] if REFERENCE else 7
+ROBOT = {"board": NAME, "actuators": [{"name": "arm", "type": "PWM", "pin": 2, "device": "servo"}],
+         "sensors": [{"name": "sonar", "type": "GPIO", "trigger": 3, "echo": ECHO, "device": "hc-sr04"}]}
+PROGRAM = """
+SAFETY wall
+  WHEN sonar DISTANCE < 30cm
+  DO
+    STOP arm
+    ALERT "stands still"
+  RESUME WHEN sonar DISTANCE > 40cm
+END
+WHEN sonar DISTANCE < 120cm
+MARGIN 5cm
+DO LOG "near"
+END
+"""
+KICK = "watchdog_kick()"  # every 10 ms, by SAFETY
+KICK_US = 10_000
+MOST_COUNTED = 4000
+
+
+class Sonar(DebuggedTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "sonar.rsl").write_text(PROGRAM)
+        (self.folder / "sonar.json").write_text(json.dumps(ROBOT))
+        self.wires = pins.Pins(self.folder)
+        self.addCleanup(self.wires.close)
+
+    def qemu_arguments(self):
+        return [*pins.arguments(self.folder), *super().qemu_arguments()]
+
+    def begin(self):
+        self.upload(self.folder / "sonar.rsl", "--config", self.folder / "sonar.json")
+        return self.listen()
+
+    def listen(self):
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
+        self.addCleanup(reader.stop)
+        self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
+        return reader
+
+    def distances(self, lines):
+        told = (json.loads(line) for line in lines)
+        return [None if event["value"] is None else event["value"] / MM_PER_CM for event in told
+                if event.get("event") == "input" and event.get("sensor") == "sonar"]
+
+    def await_event(self, reader, **wanted):
+        def came(lines):
+            return any(wanted.items() <= json.loads(line).items() for line in lines)
+        self.assertTrue(reader.wait_for(came, PATIENCE), (wanted, reader.lines[-8:]))
+
+    def await_distance(self, reader, cm, within):
+        def came(lines):
+            return any(abs(value - cm) <= within for value in self.distances(lines) if value is not None)
+        self.assertTrue(reader.wait_for(came, PATIENCE), (cm, reader.lines[-8:]))
+
+
+@unittest.skipUnless(REFERENCE, "its echoes are words of the reference board's memory")
+class OfMemory(Sonar):
+    def echo(self, us):
+        self.wires.write(symbols(FIRMWARE)["robosync_virtual_echoes"], us.to_bytes(4, "little"))
+
+    def test_echoes_are_distances_and_silence_trips_safety(self):
+        reader = self.begin()
+        for cm in (100, 350, 35):
+            self.echo(round(cm * US_PER_CM))
+            self.await_distance(reader, cm, 0.05)
+        self.await_event(reader, event="log", text="near")
+        self.assertFalse(any('"stands still"' in line for line in reader.lines[-3:]))
+        self.echo(0)
+        self.await_event(reader, event="silent")
+        self.await_event(reader, event="alert", text="stands still")
+
+
+def on_edge(prefix):
+    return next(at for name, at in symbols(FIRMWARE).items() if prefix in name)
+
+
+@unittest.skipUnless(NAME == "b-l475e-iot01a", "QEMU has no edges of pins elsewhere")
+class OfEdges(Sonar):
+    """The core stands still while the test changes a level; between two kicks of the watchdog it runs for 10 ms."""
+
+    def setUp(self):
+        super().setUp()
+        self.wires.set(ECHO, False)
+
+    def echo(self, debugger, level_changes):
+        """From the next pulse on: at each kick of the watchdog, the next level."""
+        debugger.run_to(on_edge("Board::ping("), lambda: None)
+        debugger.run_to(debugger.register(LINK_REGISTER) & ~1, lambda: None)
+        for high in level_changes:
+            debugger.run_to(on_edge(KICK), lambda: None)
+            self.wires.set(ECHO, high)
+            debugger.step()
+
+    def test_an_echo_of_ten_milliseconds_is_a_distance(self):
+        reader = self.begin()
+        with self.debugger() as debugger:
+            for _ in range(3):
+                self.echo(debugger, (True, False))
+        self.await_distance(reader, KICK_US / US_PER_CM, 2)
+        self.assertNotIn(True, [value is not None and abs(value - KICK_US / US_PER_CM) > 2 for value in self.distances(reader.lines)])
+        self.await_event(reader, event="silent")  # afterwards nobody answers
+
+    def test_an_echo_that_stays_and_edges_that_nobody_asked_for_are_no_reading(self):
+        self.upload(self.folder / "sonar.rsl", "--config", self.folder / "sonar.json")
+        with self.debugger() as debugger:
+            self.echo(debugger, (True,))
+        self.wires.set(ECHO, False)
+        before = self.status()["safety_checks"]
+        give_up = time.monotonic() + PATIENCE
+        while (status := self.status())["safety_checks"] < before + 50:
+            for high in (True, False):
+                self.wires.set(ECHO, high)
+            self.assertLess(time.monotonic(), give_up)
+        self.assertEqual((status["safety_late_us"], status["faults"]), (0, 0))
+        reader = self.listen()
+        self.assertFalse(reader.wait_for(self.distances, 1), reader.lines)
+
+    def test_what_a_measurement_costs(self):
+        """From the guard on, its pulse and both edges, and its sample: what costs.def says, and no more than 1,500 in all."""
+        self.begin()
+        listed = (rsc.ROOT / f"runtime-m4/boards/{NAME}/costs.def").read_text()
+        said = {name: int(line.split(",")[1].replace("'", "")) for name in ("ping", "echo")
+                for line in listed.splitlines() if line.startswith(f"COST({name},")}
+        with self.debugger() as debugger:
+            asked = self.counted(debugger, on_edge("Board::ping("))
+            edges = []
+            for high in (True, False):
+                debugger.run_to(on_edge(KICK), lambda: None)
+                self.wires.set(ECHO, high)
+                edges.append(self.counted(debugger, symbols(FIRMWARE)["Echo_Handler"]))
+            read = self.counted(debugger, on_edge("drivers::hc_sr04::read("))
+        print(f"\n  asked {asked}, edges {edges}, sampled {read}; said {said}")
+        self.assertGreaterEqual(said["ping"], asked + sum(edges))
+        self.assertGreaterEqual(said["echo"], read)
+        self.assertLessEqual(asked + sum(edges) + read, 1500)
+
+    def counted(self, debugger, place):
+        """Instructions from there until it returns, of which none is an interrupt's."""
+        debugger.run_to(place, lambda: None)
+        back = debugger.register(LINK_REGISTER)
+        mode, steps = debugger.mode(), 0
+        while steps < MOST_COUNTED:
+            debugger.step()
+            steps += 1
+            if debugger.register(15) == back & ~1 or (mode != 0 and debugger.mode() != mode):
+                return steps
+        self.fail("it does not return")
+
+
+if __name__ == "__main__":
+    unittest.main()
