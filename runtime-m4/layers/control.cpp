@@ -64,7 +64,7 @@ void ControlLayer::switch_off() {
 
 // --- staging, cancelling, committing: called from the step thread ---
 
-void ControlLayer::stage(const Command& command, ActuatorMask actuators) {
+[[gnu::noinline]] void ControlLayer::stage(const Command& command, ActuatorMask actuators) {
   for (ActuatorMask left = actuators; left != 0; left &= left - 1) {
     const auto actuator = static_cast<unsigned>(std::countr_zero(left));
     const auto mine = bit<ActuatorMask>(actuator);
@@ -74,7 +74,6 @@ void ControlLayer::stage(const Command& command, ActuatorMask actuators) {
   to_commit_ |= staged_;
 }
 
-// A follow behind a follow that waits is its new target, and takes no place.
 bool ControlLayer::stage_one(Unit& unit, const Command& command) {
   const auto lock = kernel_.lock();
   if (command.action() == vm::Action::stop) {
@@ -83,14 +82,20 @@ bool ControlLayer::stage_one(Unit& unit, const Command& command) {
     unit.staged_stop = command.verb();
     return true;
   }
-  const bool first = unit.staged.count == 0 && unit.staged_stop == kNoVerb;
-  CommandPool::Queue& behind = first ? unit.queue : unit.staged;
-  if (command.action() == vm::Action::follow && pool_.renews(behind)) {
-    pool_.renew(behind, command);
-    return true;
+  QueuedOrder* const place = place_of(unit, command.action());
+  if (place != nullptr) resolve(wiring(unit), command, *place);
+  return place != nullptr;
+}
+
+// A follow behind a follow that waits is its new target, and takes no new one.
+QueuedOrder* ControlLayer::place_of(Unit& unit, vm::Action action) {
+  if (action == vm::Action::follow) {
+    const bool first = unit.staged.count == 0 && unit.staged_stop == kNoVerb;
+    const CommandPool::Queue& behind = first ? unit.queue : unit.staged;
+    if (pool_.renews(behind)) return &pool_.last(behind);
   }
-  return unit.queue.count + unit.staged.count < policy::kMaxQueued &&
-         pool_.push(unit.staged, command);
+  if (unit.queue.count + unit.staged.count >= policy::kMaxQueued) return nullptr;
+  return pool_.push(unit.staged);
 }
 
 ActuatorMask ControlLayer::take_staged() {
@@ -284,7 +289,7 @@ void ControlLayer::run(Unit& unit) {
 bool ControlLayer::goes_elsewhere(const Unit& unit) const {
   const auto lock = kernel_.lock();
   return unit.follows && unit.queue.count > 0 &&
-         pool_.front(unit.queue).action() == vm::Action::follow;
+         pool_.front(unit.queue).order.action == vm::Action::follow;
 }
 
 // Begins commands until one needs time, or none is left. Returns when to wake.
@@ -309,24 +314,26 @@ bool ControlLayer::claim_next(Unit& unit) {
 
 // It is told before it is started, and both do not stand on the stack at once.
 void ControlLayer::begin_next(Unit& unit, const Stamp& stamp, kernel::Time& wake) {
+  const QueuedOrder& command = pool_.front(unit.queue);
   if (trace_.listening()) [[unlikely]]
-    tell_command(unit, pool_.front(unit.queue), stamp);
-  unit.follows = pool_.front(unit.queue).action() == vm::Action::follow;
-  wake = keep_at(unit, start_driver(unit, pool_.front(unit.queue)), stamp);
+    tell_command(unit, command, stamp);
+  unit.follows = command.order.action == vm::Action::follow;
+  wake = keep_at(unit, start_driver(unit, command), stamp);
   const auto lock = kernel_.lock();
   pool_.pop(unit.queue);
 }
 
-[[gnu::noinline]] kernel::Time ControlLayer::start_driver(Unit& unit, const Command& command) {
-  if (command.action() == vm::Action::perform) return start_performance(unit, command);
+[[gnu::noinline]] kernel::Time ControlLayer::start_driver(Unit& unit, const QueuedOrder& command) {
+  const drivers::Order& order = command.order;
+  if (order.action == vm::Action::perform) return start_performance(unit, order);
   unit.performance.end();
-  drivers::Order order;
-  if (!resolve(wiring(unit), command, order) || is_halted(unit)) return drivers::kDone;
+  if (!command.complete || is_halted(unit)) return drivers::kDone;
   return drivers::driver(wiring(unit).driver).start(device(unit), order, kernel_.now());
 }
 
-[[gnu::noinline]] kernel::Time ControlLayer::start_performance(Unit& unit, const Command& command) {
-  unit.performance.begin(program_->image, unit.actuator, command, kernel_.now());
+[[gnu::noinline]] kernel::Time ControlLayer::start_performance(Unit& unit,
+                                                               const drivers::Order& order) {
+  unit.performance.begin(program_->image, unit.actuator, order, kernel_.now());
   return is_halted(unit) ? drivers::kDone : next_key(unit, kernel_.now());
 }
 
@@ -426,19 +433,14 @@ void ControlLayer::tell_stop(const Unit& unit, unsigned verb, const Stamp& stamp
 }
 
 // values: the word or -1, the mask of parameters the program gave, and these, limits applied.
-void ControlLayer::tell_command(const Unit& unit, const Command& command, const Stamp& stamp) {
+void ControlLayer::tell_command(const Unit& unit, const QueuedOrder& command, const Stamp& stamp) {
   link::Event event;
-  Trace::begin(event, EventKind::command, stamp, unit.actuator, command.verb());
-  event.values[0] = command.word() == vm::kNoWord ? -1 : command.word();
-  event.values[1] = command.given();
+  Trace::begin(event, EventKind::command, stamp, unit.actuator, command.verb);
+  event.values[0] = command.word == vm::kNoWord ? -1 : command.word;
+  event.values[1] = command.given;
   event.value_count = 2;
-  const vm::Actuator& actuator = wiring(unit);
-  const bool is_limited = command.action() != vm::Action::perform;
-  each_bit(command.given(), [&](unsigned p) {
-    const vm::Value value = command.param(p);
-    event.values[event.value_count++] =
-        is_limited ? limited(actuator, static_cast<vm::Param>(p), value) : value;
-  });
+  each_bit(command.given,
+           [&](unsigned p) { event.values[event.value_count++] = command.order.params[p]; });
   trace_.emit(event);
 }
 

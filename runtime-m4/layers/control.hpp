@@ -112,14 +112,15 @@ private:
   void commit_staged();
   ActuatorMask take_all_idle();
   ActuatorMask take_newly_halted();
-  bool stage_one(Unit& unit, const Command& command);
+  [[nodiscard]] bool stage_one(Unit& unit, const Command& command);
+  QueuedOrder* place_of(Unit& unit, vm::Action action);
   [[nodiscard]] bool start_unit(unsigned actuator, ProgramThreads& threads);
   void run(Unit& unit);
   bool goes_elsewhere(const Unit& unit) const;
   kernel::Time work_off(Unit& unit, const Stamp& stamp);
   void begin_next(Unit& unit, const Stamp& stamp, kernel::Time& wake);
-  kernel::Time start_driver(Unit& unit, const Command& command);
-  kernel::Time start_performance(Unit& unit, const Command& command);
+  kernel::Time start_driver(Unit& unit, const QueuedOrder& command);
+  kernel::Time start_performance(Unit& unit, const drivers::Order& order);
   kernel::Time go_on(Unit& unit);
   kernel::Time next_key(Unit& unit, kernel::Time now);
   kernel::Time keep_at(Unit& unit, kernel::Time wake, const Stamp& stamp);
@@ -133,7 +134,7 @@ private:
   [[gnu::noinline]] kernel::Time stop_driver(Unit& unit);
   void drop_all(Unit& unit);
   [[gnu::noinline]] void tell_stop(const Unit& unit, unsigned verb, const Stamp& stamp);
-  [[gnu::noinline]] void tell_command(const Unit& unit, const Command& command, const Stamp& stamp);
+  [[gnu::noinline]] void tell_command(const Unit& unit, const QueuedOrder& command, const Stamp& stamp);
 
   drivers::Device device(Unit& unit);
   const vm::Actuator& wiring(const Unit& unit) const {

@@ -15,6 +15,7 @@
 
 #include "runtime-m4/kernel/time.hpp"
 #include "vm/image.hpp"
+#include "vm/output.hpp"
 
 namespace robosync::layers {
 
@@ -91,28 +92,24 @@ private:
   std::span<vm::Value> values_;
 };
 
-// What a response wants of actuators. What a word stands for is there; an actuator's limits come later.
+// What a response wants of actuators, as it has put it out. What a word stands for is there; an actuator's limits come
+// later.
 class Command {
 public:
   vm::Action action() const { return action_; }
-  std::uint8_t verb() const { return verb_; }    // index in the verb table
-  std::uint8_t word() const { return word_; }    // index in the word table, or kNoWord
-  std::uint8_t given() const { return given_; }  // bit p: the program gave param(p)
-  std::uint8_t known() const { return known_; }  // … or its word did; others are undefined
-  vm::Value param(unsigned index) const { return params_[index]; }
+  std::uint8_t verb() const { return said_.verb; }    // index in the verb table
+  std::uint8_t word() const { return said_.word; }    // index in the word table, or kNoWord
+  std::uint8_t given() const { return said_.given; }  // bit p: the program gave param(p)
+  std::uint8_t known() const { return known_; }       // … or its word did; others are undefined
+  vm::Value param(unsigned index) const { return said_.params[index]; }
 
 private:
   friend class BehaviorLayer;
-  friend class CommandPool;
-  static constexpr unsigned kParams = static_cast<unsigned>(vm::Param::count_);
   Command() = default;
 
+  vm::Output said_;
   vm::Action action_;
-  std::uint8_t verb_;
-  std::uint8_t word_;
-  std::uint8_t given_;
   std::uint8_t known_;
-  std::array<vm::Value, kParams> params_;
 };
 
 }  // namespace robosync::layers

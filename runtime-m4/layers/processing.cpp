@@ -83,28 +83,26 @@ void ProcessingLayer::run() {
 
 void ProcessingLayer::pass() {
   layers_.sensors.deliver_due();
-  kernel::Time time = 0;
-  const std::uint32_t now = read_clock(time);
+  Stamp stamp;
+  const std::uint32_t now = read_clock(stamp.time);
   adaptation_.turn(*program_, layers_.threads, trace_, now);
   // Who finished otherwise did so at the end of a step.
   if (const ActuatorMask idle = layers_.control.take_idle(); idle != 0) finish_done(idle);
-  BehaviorMask lost = 0;
-  BehaviorMask first = 0;
-  if ((lost_behaviors_ | unstarted_) != 0) [[unlikely]] {
-    lost = std::exchange(lost_behaviors_, 0);
-    first = std::exchange(unstarted_, 0);
-  }
   layers_.arbiter.note_halted(layers_.control.halted());
   const ActuatorMask halted = layers_.control.take_halted() & layers_.arbiter.owned();
   layers_.triggers.settle(now);
-  const bool anyway = lost != 0 || first != 0 || halted != 0 || is_due(now);
-  InputMask changed = 0;
-  if (!latch(time, now, anyway, changed)) return;
+  const bool lost_or_first = (lost_behaviors_ | unstarted_) != 0;
+  const bool anyway = lost_or_first || halted != 0 || is_due(now);
+  if (!latch(stamp, now, anyway)) return;
+  woken_ = 0;
   // The sensors have rung for theirs.
-  if (variables_of(changed) != 0) layers_.alarm.ring(inputs(0, variables_of(changed)));
-  if (lost != 0) interrupt_lost(lost);
+  if (variables_of(changed_) != 0) layers_.alarm.ring(inputs(0, variables_of(changed_)));
+  if (lost_or_first) [[unlikely]] {
+    interrupt_lost(std::exchange(lost_behaviors_, 0));
+    woken_ = std::exchange(unstarted_, 0);
+  }
   if (halted != 0) interrupt_halted(halted);
-  find_concerned(changed, first);
+  find_concerned();
   step();
 }
 
@@ -144,22 +142,22 @@ void ProcessingLayer::finish_if_done(unsigned rule) {
 // --- latch ---
 
 // Takes what is new into the snapshot. A step begins if there is a reading, or `anyway`.
-bool ProcessingLayer::latch(kernel::Time time, std::uint32_t now, bool anyway, InputMask& changed) {
-  const Stamp stamp{time, trace_.step().step + 1};
-  if (anyway) trace_.begin_step(stamp);
-  const ChannelMask channels = latch_channels(stamp);
-  if (!anyway && channels == 0) return false;
-  snapshot_.stamp_ = stamp;
-  snapshot_.milliseconds_ = now;
-  changed = inputs(channels, latch_variables(stamp));
-  return true;
-}
-
-ChannelMask ProcessingLayer::latch_channels(const Stamp& stamp) {
+bool ProcessingLayer::latch(Stamp& stamp, std::uint32_t now, bool anyway) {
   const ChannelMask announced = layers_.mailboxes.take_announced();
   const ChannelMask expired = layers_.mailboxes.take_expired(program_->image.channels, announced,
                                                              stamp.time + trace_.activated_at());
-  if ((announced | expired) != 0) trace_.begin_step(stamp);
+  if (!anyway && (announced | expired) == 0) return false;
+  stamp.step = trace_.step().step + 1;
+  trace_.begin_step(stamp);
+  snapshot_.stamp_ = stamp;
+  snapshot_.milliseconds_ = now;
+  latch_channels(announced, expired, stamp);
+  changed_ = inputs(announced | expired, latch_variables(stamp));
+  return true;
+}
+
+void ProcessingLayer::latch_channels(ChannelMask announced, ChannelMask expired,
+                                     const Stamp& stamp) {
   each_bit(announced | expired, [&](unsigned c) {
     if (has(expired, c)) {
       snapshot_.values_[c] = vm::kUnknown;
@@ -169,7 +167,6 @@ ChannelMask ProcessingLayer::latch_channels(const Stamp& stamp) {
       trace_.emit(EventKind::input, stamp, c, 0, snapshot_.values_[c]);
     }
   });
-  return announced | expired;
 }
 
 VariableMask ProcessingLayer::latch_variables(const Stamp& stamp) {
@@ -283,11 +280,10 @@ void ProcessingLayer::retire(const ProgramThreads::Member& member) {
 // * The first time, all rules of a behaviour are evaluated: there are conditions without inputs,
 //   and such that are known whatever their inputs are.
 //
-// `begins`: behaviours that have something to do without a reading.
-void ProcessingLayer::find_concerned(InputMask changed, BehaviorMask begins) {
+// `woken_` has the behaviours that have something to do without a reading.
+void ProcessingLayer::find_concerned() {
+  const InputMask changed = changed_;
   concerned_.clear();
-  changed_ = changed;
-  woken_ = begins;
   layers_.triggers.add_woken(snapshot_.milliseconds(), concerned_);
   concerned_.each(
       [this](unsigned rule) { woken_ |= bit<BehaviorMask>(program_->behavior_of[rule]); });
@@ -445,19 +441,21 @@ void ProcessingLayer::arbitrate(unsigned rule) {
 }
 
 void ProcessingLayer::serve(const Claim& claim, bool silent) {
+  if (!layers_.arbiter.is_free(claim) && !prevails(claim, silent)) return;
+  report(claim, EventKind::win);
+  layers_.triggers.won(claim.rule, claim.side, snapshot_.milliseconds());
+  layers_.arbiter.give(claim);
+}
+
+// Against those whose actuators it wants, and against itself.
+bool ProcessingLayer::prevails(const Claim& claim, bool silent) {
   const Decision decision = layers_.arbiter.decide(claim);
-  const bool was_running = layers_.arbiter.works(claim.rule);
-  if (was_running || (claim.actuators & layers_.arbiter.owned()) != 0)
-    interrupt_by(claim, decision);
-  if (decision.wins()) {
-    report(claim, EventKind::win);
-    layers_.triggers.won(claim.rule, claim.side, snapshot_.milliseconds());
-    layers_.arbiter.give(claim);
-    return;
-  }
+  interrupt_by(claim, decision);
+  if (decision.wins()) return true;
   if (!silent) report(claim, EventKind::lose, decision.owner);
   const bool to_itself = decision.outcome == Outcome::ignored;
   layers_.triggers.lost(claim.rule, to_itself, snapshot_.milliseconds());
+  return false;
 }
 
 void ProcessingLayer::interrupt_by(const Claim& claim, const Decision& decision) {

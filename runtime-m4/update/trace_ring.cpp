@@ -42,7 +42,9 @@ void TraceRing::emit(const link::Event& event) {
   const auto lock = kernel_.lock();
   if (!make_room(kEventHead + values)) return;
   std::size_t end = put_;  // kept in a register, which a member is not while words are written
-  const auto put = [this, &end](Word word) { ring_[end++ % kWords] = word; };
+  const auto put = [this, &end](Word word) __attribute__((always_inline)) {
+    ring_[end++ % kWords] = word;
+  };
   put(head(link::MessageType::event, values, event.subject));
   put(static_cast<Word>(event.kind) | Word{event.object} << 16);
   put(event.step);
