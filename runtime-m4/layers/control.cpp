@@ -65,29 +65,41 @@ void ControlLayer::switch_off() {
 // --- staging, cancelling, committing: called from the step thread ---
 
 [[gnu::noinline]] void ControlLayer::stage(const Command& command, ActuatorMask actuators) {
-  for (ActuatorMask left = actuators; left != 0; left &= left - 1) {
-    const auto actuator = static_cast<unsigned>(std::countr_zero(left));
-    const auto mine = bit<ActuatorMask>(actuator);
-    if (!has(program_->image.actuators[actuator].verbs, command.verb())) continue;
-    (stage_one(units_[actuator], command) ? staged_ : dropped_) |= mine;
-  }
+  const std::uint32_t verb = std::uint32_t{1} << command.verb();
+  const bool stops = command.action() == vm::Action::stop;
+  ActuatorMask dropped = 0;
+  ActuatorMask others = 0;
+  each_bit(actuators, [&](unsigned a) {
+    const vm::Actuator& actuator = program_->image.actuators[a];
+    if ((actuator.verbs & verb) == 0) {
+      others |= bit<ActuatorMask>(a);
+    } else if (stops) {
+      stage_stop(units_[a], command.verb());
+    } else if (!stage_one(units_[a], actuator, command)) {
+      dropped |= bit<ActuatorMask>(a);
+    }
+  });
+  dropped_ |= dropped;
+  staged_ |= actuators & ~(dropped | others);
   to_commit_ |= staged_;
 }
 
-bool ControlLayer::stage_one(Unit& unit, const Command& command) {
+void ControlLayer::stage_stop(Unit& unit, std::uint8_t verb) {
   const auto lock = kernel_.lock();
-  if (command.action() == vm::Action::stop) {
-    pool_.clear(unit.staged);
-    pool_.drop_waiting(unit.queue);
-    unit.staged_stop = command.verb();
-    return true;
-  }
+  pool_.clear(unit.staged);
+  pool_.drop_waiting(unit.queue);
+  unit.staged_stop = verb;
+}
+
+[[gnu::always_inline]] inline bool ControlLayer::stage_one(Unit& unit, const vm::Actuator& actuator,
+                                                           const Command& command) {
+  const auto lock = kernel_.lock();
   QueuedOrder* const place = place_of(unit, command.action());
-  if (place != nullptr) resolve(wiring(unit), command, *place);
+  if (place != nullptr) resolve(actuator, command, *place);
   return place != nullptr;
 }
 
-// A follow behind a follow that waits is its new target, and takes no new one.
+// A follow behind a follow that waits is its new target, and takes no new place.
 QueuedOrder* ControlLayer::place_of(Unit& unit, vm::Action action) {
   if (action == vm::Action::follow) {
     const bool first = unit.staged.count == 0 && unit.staged_stop == kNoVerb;
@@ -136,29 +148,39 @@ ControlLayer::Unit& ControlLayer::first_in_rank(ActuatorMask actuators) const {
 
 void ControlLayer::commit_staged() {
   const auto lock = kernel_.lock();
-  for (ActuatorMask left = std::exchange(to_commit_, 0); left != 0; left &= left - 1) {
-    const auto a = static_cast<unsigned>(std::countr_zero(left));
+  ActuatorMask all = std::exchange(to_commit_, 0);
+  if ((all & retired_) != 0) [[unlikely]]
+    drop_staged(all & retired_);
+  all &= ~retired_;
+  each_bit(all, [&](unsigned a) {
     Unit& unit = units_[a];
-    if (unit.staged.count == 0 && unit.staged_stop == kNoVerb) continue;
-    if (has(retired_, a)) {
-      pool_.clear(unit.staged);
-      unit.staged_stop = kNoVerb;
-      idle_ |= bit<ActuatorMask>(a);
-      kernel_.signal(step_thread_, events_.idle);
-      continue;
-    }
-    hand_over(unit);
-    kernel_.signal(*unit.thread, kCommit);
-  }
+    if (hand_over(unit)) kernel_.signal(*unit.thread, kCommit);
+  });
+}
+
+// Of actuators whose threads were stopped.
+[[gnu::cold]] void ControlLayer::drop_staged(ActuatorMask actuators) {
+  each_bit(actuators, [&](unsigned a) {
+    Unit& unit = units_[a];
+    pool_.clear(unit.staged);
+    unit.staged_stop = kNoVerb;
+  });
+  idle_ |= actuators;
+  kernel_.signal(step_thread_, events_.idle);
 }
 
 // Behind what the same response has sent in an earlier step; its new owner gets an actuator with an
-// empty queue. If it was idle, it is no more.
-void ControlLayer::hand_over(Unit& unit) {
-  if (unit.staged_stop != kNoVerb) unit.stopping = std::exchange(unit.staged_stop, kNoVerb);
+// empty queue. If it was idle, it is no more. False: it has a new target only.
+inline bool ControlLayer::hand_over(Unit& unit) {
+  if (unit.staged_stop != kNoVerb) {
+    unit.stopping = std::exchange(unit.staged_stop, kNoVerb);
+  } else if (unit.staged.count == 0) {
+    return false;
+  }
   pool_.append(unit.queue, unit.staged);
   unit.committed = trace_.step();
   idle_ &= ~bit<ActuatorMask>(unit.actuator);
+  return true;
 }
 
 ActuatorMask ControlLayer::take_all_idle() {
@@ -287,8 +309,9 @@ void ControlLayer::run(Unit& unit) {
 
 // It follows, and has a new target.
 bool ControlLayer::goes_elsewhere(const Unit& unit) const {
+  if (!unit.follows) return false;
   const auto lock = kernel_.lock();
-  return unit.follows && unit.queue.count > 0 &&
+  return unit.queue.count > 0 &&
          pool_.front(unit.queue).order.action == vm::Action::follow;
 }
 

@@ -112,7 +112,8 @@ private:
   void commit_staged();
   ActuatorMask take_all_idle();
   ActuatorMask take_newly_halted();
-  [[nodiscard]] bool stage_one(Unit& unit, const Command& command);
+  void stage_stop(Unit& unit, std::uint8_t verb);
+  [[nodiscard]] bool stage_one(Unit& unit, const vm::Actuator& actuator, const Command& command);
   QueuedOrder* place_of(Unit& unit, vm::Action action);
   [[nodiscard]] bool start_unit(unsigned actuator, ProgramThreads& threads);
   void run(Unit& unit);
@@ -124,7 +125,8 @@ private:
   kernel::Time go_on(Unit& unit);
   kernel::Time next_key(Unit& unit, kernel::Time now);
   kernel::Time keep_at(Unit& unit, kernel::Time wake, const Stamp& stamp);
-  void hand_over(Unit& unit);
+  void drop_staged(ActuatorMask actuators);
+  bool hand_over(Unit& unit);
   Unit& first_in_rank(ActuatorMask actuators) const;
   void put_at_rest(Unit& unit);
   void note_cancelled(Unit& unit);

@@ -45,11 +45,15 @@ constexpr bool has(Mask mask, unsigned index) {
   return (mask >> index & 1) != 0;
 }
 
-// Calls take(bit) for each bit of a mask of 32, from the lowest up.
+// Calls take(bit) for each bit of a mask of 32, from the lowest up. The loop looks at its end: where the compiler saves
+// flash, that takes two instructions less each time round.
 template <class Take>
 void each_bit(std::uint32_t mask, Take take) {
-  for (; mask != 0; mask &= mask - 1)
+  if (mask == 0) return;
+  do {
     take(static_cast<unsigned>(std::countr_zero(mask)));
+    mask &= mask - 1;
+  } while (mask != 0);
 }
 
 // A place in the program's history: what events are stamped with.
@@ -78,16 +82,15 @@ private:
 // All inputs as one step sees them; one that nobody knows is kUnknown.
 class Snapshot {
 public:
-  Stamp stamp() const { return stamp_; }
   // Of program time, as the VM counts it.
   std::uint32_t milliseconds() const { return milliseconds_; }
   vm::Value value(std::uint8_t input) const { return values_[input]; }
+  const vm::Value* values() const { return values_.data(); }  // by input
 
 private:
   friend class ProcessingLayer;
   Snapshot() = default;
 
-  Stamp stamp_;
   std::uint32_t milliseconds_ = 0;
   std::span<vm::Value> values_;
 };

@@ -32,7 +32,6 @@ bool starts_at_once(const LoadedProgram& program, const vm::Behavior& behavior) 
 bool ProcessingLayer::start(const LoadedProgram& program, std::span<const KeptNumber> kept,
                             Memory& memory) {
   program_ = &program;
-  snapshot_.stamp_ = {};
   snapshot_.milliseconds_ = 0;
   snapshot_.values_ = memory.take<policy::Part::snapshot, vm::Value>();
   std::ranges::fill(snapshot_.values_, vm::kUnknown);
@@ -149,7 +148,6 @@ bool ProcessingLayer::latch(Stamp& stamp, std::uint32_t now, bool anyway) {
   if (!anyway && (announced | expired) == 0) return false;
   stamp.step = trace_.step().step + 1;
   trace_.begin_step(stamp);
-  snapshot_.stamp_ = stamp;
   snapshot_.milliseconds_ = now;
   latch_channels(announced, expired, stamp);
   changed_ = inputs(announced | expired, latch_variables(stamp));
@@ -195,9 +193,11 @@ void ProcessingLayer::report_set(unsigned variable, const Stamp& stamp) {
 // In how many milliseconds something is; kNever for never.
 std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
   Soonest due(now);
-  if (layers_.variables.staged()) due.at(set_due_);
-  due.in(layers_.variables.next_fade(now, snapshot_.values_.subspan(channels())));
-  due.in(checks_.next(now));
+  if (layers_.variables.may_change()) {
+    if (layers_.variables.staged()) due.at(set_due_);
+    due.in(layers_.variables.next_fade(now, snapshot_.values_.subspan(channels())));
+  }
+  if (!program_->image.checks.empty()) due.in(checks_.next(now));
   due.at(layers_.triggers.next_wake());
   layers_.arbiter.running().each([&](unsigned rule) { add_waiting(rule, due); });
   layers_.triggers.active().each([&](unsigned rule) { add_wanting(rule, due, now); });
@@ -283,7 +283,6 @@ void ProcessingLayer::retire(const ProgramThreads::Member& member) {
 // `woken_` has the behaviours that have something to do without a reading.
 void ProcessingLayer::find_concerned() {
   const InputMask changed = changed_;
-  concerned_.clear();
   layers_.triggers.add_woken(snapshot_.milliseconds(), concerned_);
   concerned_.each(
       [this](unsigned rule) { woken_ |= bit<BehaviorMask>(program_->behavior_of[rule]); });
@@ -340,8 +339,9 @@ void ProcessingLayer::step() {
   }
   set_due_ = snapshot_.milliseconds() + 1;
   layers_.control.commit();
-  finish_done(0);
+  if (!layers_.arbiter.running().empty()) finish_done(0);
   layers_.arbiter.end_step();
+  concerned_.clear();  // here, where no command waits for it
 }
 
 // The first rule that is not below `rule` and is concerned, wants to run, or runs.
@@ -367,10 +367,10 @@ void ProcessingLayer::take_sole_turn(unsigned behavior, unsigned rule) {
   const bool follows = layers_.triggers.follows(rule);
   if (follows) collect(rule);
   if (Claim claim; layers_.behaviors.sole_claim_of(behavior, claim)) {
-    serve(claim, false);
+    const bool wins = serve(claim, false);
     layers_.triggers.forget(rule);
     cancel_interrupted();
-    if (layers_.arbiter.runs(claim.rule)) conclude(claim.rule);
+    if (wins) conclude(claim.rule);
     return;
   }
   if (follows) arbitrate(rule);
@@ -388,10 +388,10 @@ void ProcessingLayer::take_turn(unsigned behavior, RuleRange rules) {
     layers_.triggers.keep_concerned(concerned_, rules);
     concerned_.each_in(rules, [this](unsigned rule) { collect(rule); });
     if (Claim claim; layers_.behaviors.sole_claim_of(behavior, claim)) {
-      serve(claim, false);
+      const bool wins = serve(claim, false);
       concerned_.each_in(rules, [this](unsigned rule) { layers_.triggers.forget(rule); });
       cancel_interrupted();
-      if (layers_.arbiter.runs(claim.rule)) conclude(claim.rule);
+      if (wins) conclude(claim.rule);
       return;
     }
   }
@@ -440,11 +440,13 @@ void ProcessingLayer::arbitrate(unsigned rule) {
   layers_.triggers.forget(rule);
 }
 
-void ProcessingLayer::serve(const Claim& claim, bool silent) {
-  if (!layers_.arbiter.is_free(claim) && !prevails(claim, silent)) return;
+// Returns whether it has won.
+bool ProcessingLayer::serve(const Claim& claim, bool silent) {
+  if (!layers_.arbiter.is_free(claim) && !prevails(claim, silent)) return false;
   report(claim, EventKind::win);
   layers_.triggers.won(claim.rule, claim.side, snapshot_.milliseconds());
   layers_.arbiter.give(claim);
+  return true;
 }
 
 // Against those whose actuators it wants, and against itself.
@@ -525,7 +527,7 @@ void ProcessingLayer::conclude(unsigned rule) {
 
 // The old ones end before the new ones begin, and before those send commands: what the old ones had
 // in their queues takes no place from them.
-void ProcessingLayer::cancel_interrupted() {
+void ProcessingLayer::cancel_some() {
   while (cancelled_ != 0) {
     cancelled_ &= ~layers_.control.cancel_first(cancelled_);
     await(kCancelled, [this] { return layers_.control.cancelling(); });

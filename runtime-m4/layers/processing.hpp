@@ -152,7 +152,7 @@ private:
   [[gnu::cold]] void interrupt_halted(ActuatorMask halted);
   void collect(unsigned rule);
   void arbitrate(unsigned rule);
-  void serve(const Claim& claim, bool silent);
+  bool serve(const Claim& claim, bool silent);
   [[gnu::noinline]] bool prevails(const Claim& claim, bool silent);
   [[gnu::noinline]] void interrupt_by(const Claim& claim, const Decision& decision);
   void interrupt(unsigned rule, unsigned by);
@@ -160,7 +160,10 @@ private:
   void run_response(unsigned rule);
   void await_behavior();
   void conclude(unsigned rule);
-  void cancel_interrupted();
+  void cancel_interrupted() {
+    if (cancelled_ != 0) cancel_some();
+  }
+  [[gnu::noinline]] void cancel_some();
   void report(const Claim& claim, link::EventKind kind, unsigned object = 0);
 
   unsigned channels() const { return static_cast<unsigned>(program_->image.channels.size()); }

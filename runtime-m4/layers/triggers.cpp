@@ -158,9 +158,9 @@ void Triggers::settle_active(std::uint32_t now) {
 }
 
 bool Triggers::take_zero_divide(unsigned rule) {
-  const bool divided = judgement(rule).zero_divide;
+  if (!judgement(rule).zero_divide) return false;
   judgement(rule).zero_divide = false;
-  return divided;
+  return true;
 }
 
 bool Triggers::wish(unsigned rule, bool running, Wish& wish) const {
@@ -185,15 +185,19 @@ bool Triggers::restarting(unsigned rule) const {
 
 void Triggers::won(unsigned rule, Side side, std::uint32_t now) {
   State& state = phases_[rule];
-  const std::uint32_t cooldown = milliseconds_of(modifiers(rule).cooldown);
   state.told = false;
   state.waiting = false;
   state.last = static_cast<std::uint8_t>(mask_of(side)) & 3U;
-  if (cooldown > 0) {
-    state.cooling = static_cast<std::uint8_t>(state.cooling | mask_of(side)) & 3U;
-    until(rule, side) = now + cooldown;
-  }
+  if (policy::has_delays(image_->rules[rule])) begin_cooldown(rule, side, now);
   note_active(rule);
+}
+
+void Triggers::begin_cooldown(unsigned rule, Side side, std::uint32_t now) {
+  const std::uint32_t cooldown = milliseconds_of(modifiers(rule).cooldown);
+  if (cooldown == 0) return;
+  State& state = phases_[rule];
+  state.cooling = static_cast<std::uint8_t>(state.cooling | mask_of(side)) & 3U;
+  until(rule, side) = now + cooldown;
 }
 
 // A WHILE and a WHEN/ELSE go on wanting anyway; and who runs already does not wait for himself.

@@ -149,6 +149,7 @@ private:
   std::uint32_t due(unsigned rule) const { return workspace_.due[rule]; }
   void note_active(unsigned rule);
   void start_phase(unsigned rule);
+  void begin_cooldown(unsigned rule, Side side, std::uint32_t now);
   void settle_active(std::uint32_t now);
   void find_first_to_wake();
   void wake_first(unsigned rule) {
