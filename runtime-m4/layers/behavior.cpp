@@ -267,9 +267,8 @@ void BehaviorLayer::run_sole_turn(unsigned rule, vm::Machine& machine) {
 }
 
 void BehaviorLayer::latch(const Unit& unit, vm::Machine& machine) {
-  Frames::latch(
-      machine, program_->image, program_->image.behaviors[unit.behavior],
-      [values = snapshot_->values()](std::uint8_t input) { return values[input]; });
+  Frames::latch(machine, program_->image, program_->image.behaviors[unit.behavior],
+                [values = snapshot_->values()](std::uint8_t input) { return values[input]; });
   machine.now = snapshot_->milliseconds();
   machine.wake = kNever;
 }

@@ -13,10 +13,11 @@ namespace robosync::layers {
 // For one actuator, inside its limits: so nothing is left to be done when its time comes.
 struct QueuedOrder {
   drivers::Order order;
-  std::uint8_t verb;   // as of Command
+  std::uint8_t verb;  // as of Command
   std::uint8_t word;
   std::uint8_t given;
-  bool complete;  // no parameter is kUnknown: else nobody can say what it means, and it is not carried out
+  // No parameter is kUnknown: else nobody can say what it means, and it is not carried out.
+  bool complete;
 };
 
 class CommandPool {

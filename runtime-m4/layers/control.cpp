@@ -311,8 +311,7 @@ void ControlLayer::run(Unit& unit) {
 bool ControlLayer::goes_elsewhere(const Unit& unit) const {
   if (!unit.follows) return false;
   const auto lock = kernel_.lock();
-  return unit.queue.count > 0 &&
-         pool_.front(unit.queue).order.action == vm::Action::follow;
+  return unit.queue.count > 0 && pool_.front(unit.queue).order.action == vm::Action::follow;
 }
 
 // Begins commands until one needs time, or none is left. Returns when to wake.

@@ -2,7 +2,7 @@
 //
 // The step thread stages the commands of a step as responses end; it cancels what was interrupted
 // and waits until that is done, then commits what was staged, all at once. An actuator
-// does one command at a time and the rest of its queue (kMaxQueued) in order. Words and limits of
+// does one command at a time and the rest of its queue (kMaxQueued) in order. Limits of
 // the robot are applied here, whatever the program says.
 //
 // STOP is a command that does not wait: what stands before it in the queue is dropped, and what the
@@ -136,7 +136,8 @@ private:
   [[gnu::noinline]] kernel::Time stop_driver(Unit& unit);
   void drop_all(Unit& unit);
   [[gnu::noinline]] void tell_stop(const Unit& unit, unsigned verb, const Stamp& stamp);
-  [[gnu::noinline]] void tell_command(const Unit& unit, const QueuedOrder& command, const Stamp& stamp);
+  [[gnu::noinline]] void tell_command(const Unit& unit, const QueuedOrder& command,
+                                      const Stamp& stamp);
 
   drivers::Device device(Unit& unit);
   const vm::Actuator& wiring(const Unit& unit) const {
