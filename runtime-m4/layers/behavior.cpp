@@ -9,6 +9,7 @@
 #include "runtime-m4/kernel/calls.hpp"
 #include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/layers/report.hpp"
+#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::layers {
 
@@ -212,7 +213,7 @@ bool BehaviorLayer::claim_for(unsigned rule, Side side, bool retries, Claim& cla
            .behavior = program_->behavior_of[rule],
            .side = side,
            .actuators = program_->image.responses[response].actuators,
-           .restarting = wiring.modifiers != vm::kNoModifiers && layers_.triggers.restarting(rule),
+           .restarting = policy::modifiers_of(program_->image, wiring).restarting != 0,
            .retries = retries};
   return true;
 }
@@ -312,22 +313,20 @@ void BehaviorLayer::evaluate_period(unsigned rule, vm::Machine& machine) {
 }
 
 // Of the responses that the behaviour runs in this step there is one, which begins, and it wins. Of
-// several the step thread must see to the order, and to who has what after each.
-bool BehaviorLayer::sole_claim(RuleRange rules, Claim& claim) const {
+// several the step thread must see to the order, and to who has what after each. Not inlined, so that it is off the stack
+// while rules are evaluated.
+[[gnu::noinline]] bool BehaviorLayer::sole_claim(RuleRange rules, Claim& claim) const {
   if (waits(rules)) return false;
   unsigned found = 0;
   layers_.triggers.each_wanting(rules, [&](unsigned rule) {
     bool silent = false;
-    Claim another;
-    if (must_pause(rule) || !claim_of(rule, another, silent)) return;
-    ++found;
-    claim = another;
+    if (!must_pause(rule) && claim_of(rule, claim, silent)) ++found;
   });
   return found == 1 && layers_.arbiter.wins(claim);
 }
 
 // A response of its waits, and may go on in this step.
-bool BehaviorLayer::waits(RuleRange rules) const {
+[[gnu::noinline]] bool BehaviorLayer::waits(RuleRange rules) const {
   bool waits = false;
   layers_.arbiter.running().each_in(
       rules, [&](unsigned rule) { waits |= resume_points_[rule].pause != vm::Pause::ended; });

@@ -89,8 +89,9 @@ public:
   // What `rule` claims now, if anything; silent: that it does was told before.
   [[nodiscard]] bool claim_of(unsigned rule, Claim& claim, bool& silent) const;
   [[nodiscard]] bool claim_for(unsigned rule, Side side, bool retries, Claim& claim) const;
-  // A WHILE whose response has begun in this millisecond claims again in the next one.
-  [[nodiscard]] bool must_pause(unsigned rule) const {
+  // A WHILE whose response has begun in this millisecond claims again in the next one. Not inlined: the behaviours' stacks
+  // are short.
+  [[nodiscard, gnu::noinline]] bool must_pause(unsigned rule) const {
     return layers_.triggers.is_while(rule) && has_run(rule, ran_at_);
   }
 

@@ -179,10 +179,6 @@ bool Triggers::is_over(unsigned rule) const {
   return is_while(rule) && judgement(rule).truth != Truth::yes;
 }
 
-bool Triggers::restarting(unsigned rule) const {
-  return modifiers(rule).restarting != 0;
-}
-
 void Triggers::won(unsigned rule, Side side, std::uint32_t now) {
   State& state = phases_[rule];
   state.told = false;

@@ -80,7 +80,6 @@ public:
   [[gnu::always_inline]] bool is_while(unsigned rule) const { return phases_[rule].is_while; }
   // A WHILE whose condition does not hold.
   bool is_over(unsigned rule) const;
-  bool restarting(unsigned rule) const;
   // What became of its wish, or of its response.
   void won(unsigned rule, Side side, std::uint32_t now);
   void lost(unsigned rule, bool to_itself, std::uint32_t now);
