@@ -58,7 +58,8 @@ void TraceRing::emit(const link::Event& event) {
   if (at + kEventHead + values > kWords) [[unlikely]]
     return each_word(event, values, [this](Word word) { put(word); });
   Word* end = &ring_[at];
-  each_word(event, values, [&end](Word word) { *end++ = word; });
+  each_word(
+      event, values, [&end](Word word) __attribute__((always_inline)) { *end++ = word; });
   put_ += kEventHead + values;
 }
 
