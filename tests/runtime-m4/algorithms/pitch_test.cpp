@@ -120,6 +120,14 @@ TEST_CASE("what is too soft, not clear or out of the range is no tone") {
     CHECK_THAT(noise.hold(hertz, 40), !Catch::Contains("steady"));
 }
 
+TEST_CASE("what begins again and again is no tone") {
+  Song song;
+  for (int i = 0; i < 10; ++i) {
+    CHECK(song.hold(440, 40).empty());
+    CHECK(song.quiet(20).empty());
+  }
+}
+
 TEST_CASE("a tone that glides rises or falls, a trembling one is steady") {
   Song song;
   CHECK(song.hold(400, 400) == "40 g, 40 steady");
@@ -132,6 +140,14 @@ TEST_CASE("a tone that glides rises or falls, a trembling one is steady") {
   for (int ms = 0; ms < 400; ms += 20)
     falling += song.hold(800 * std::pow(2, ms / -400.0), 20) + " ";
   CHECK_THAT(falling, Catch::Contains("falling") && !Catch::Contains("rising"));
+  // A slow one, too, until after its end.
+  Song slow;
+  (void)slow.hold(note(-3), 400);
+  std::string slowly;
+  for (int ms = 0; ms < 400; ms += 20)
+    slowly += slow.hold(note(-3, ms * 3 / 4), 20) + " ";
+  CHECK_THAT(slowly, Catch::Contains("rising"));
+  CHECK(slow.hold(note(0), 400) == "100 steady");
   Song vibrato;
   (void)vibrato.hold(440, 200);
   for (int ms = 0; ms < 2000; ms += 20)
