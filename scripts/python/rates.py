@@ -99,13 +99,17 @@ def lay_out(files):
     return bytes(sound), places
 
 
+def write_wav(path, sound):
+    with wave.open(str(path), "wb") as file:
+        file.setparams((1, BYTES, RATE, 0, "NONE", ""))
+        file.writeframes(sound)
+
+
 def heard(sound):
     """[(time in seconds, event)] as the robot names them."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        with wave.open(str(folder / "sound.wav"), "wb") as file:
-            file.setparams((1, BYTES, RATE, 0, "NONE", ""))
-            file.writeframes(sound)
+        write_wav(folder / "sound.wav", sound)
         duration = len(sound) / BYTES / RATE
         (folder / "robot.json").write_text(json.dumps(ROBOT))
         (folder / "robot.rsl").write_text(PROGRAM)
@@ -127,11 +131,11 @@ def count(places, events, wanted):
     return sum(any(begin <= time <= end + 1 for time in times) for begin, end in places)
 
 
-def rates(half):
+def rates(which):
     """Rows: kind, of how many, then for each noise: (claps, speech)."""
     rows = []
     for kind in kinds():
-        sound, places = lay_out(kind.files[half::2])
+        sound, places = lay_out(kind.files[which::2])
         hiss = noise(len(sound))
         counts = []
         for below in NOISES_DB:
@@ -142,9 +146,11 @@ def rates(half):
     return rows
 
 
+def title(below):
+    return "in a quiet room" if below == NOISES_DB[0] else f"noise {below} dB below"
+
+
 def table(rows):
-    def title(below):
-        return "in a quiet room" if below == NOISES_DB[0] else f"noise {below} dB below"
     lines = ["| recordings | taken for | " + " | ".join(map(title, NOISES_DB)) + " |", "|---|---" + "|---" * len(NOISES_DB) + "|"]
     for kind, total, minutes, counts in rows:
         for place, event in enumerate(("clap", "speech")):
@@ -154,13 +160,21 @@ def table(rows):
     return "\n".join(lines)
 
 
-def main():
-    text = table(rates(0 if "--settings" in sys.argv else 1))
+def show(text, mark):
+    """Prints the table, and puts it into the page behind its mark where that is asked for."""
     print(text)
     if "--write" in sys.argv:
-        before, rest = PAGE.read_text().split("<!-- scripts/rates -->\n", 1)
+        before, rest = PAGE.read_text().split(f"{mark}\n", 1)
         after = rest.split("<!-- end -->", 1)[1]
-        PAGE.write_text(f"{before}<!-- scripts/rates -->\n{text}\n<!-- end -->{after}")
+        PAGE.write_text(f"{before}{mark}\n{text}\n<!-- end -->{after}")
+
+
+def half():
+    return 0 if "--settings" in sys.argv else 1
+
+
+def main():
+    show(table(rates(half())), "<!-- scripts/rates -->")
 
 
 if __name__ == "__main__":

@@ -314,7 +314,8 @@ class Algorithms(unittest.TestCase):
     # The program that uses it, and its recording.
     MODULES = {"touch_levels": ("feeling", stimuli.touches, stimuli.FEELING_UNITS),
                "imu_gestures": ("moving", stimuli.motions, stimuli.MOVING_UNITS),
-               "sound_events": ("hearing", stimuli.sounds, stimuli.HEARING_UNITS)}
+               "sound_events": ("hearing", stimuli.sounds, stimuli.HEARING_UNITS),
+               "pitch": ("singing", stimuli.songs, stimuli.HEARING_UNITS)}
     LAYER = "robosync::layers::AlgorithmLayer::"
 
     def test_every_module(self):
