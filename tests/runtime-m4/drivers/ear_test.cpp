@@ -22,10 +22,11 @@ template <class Sound>
 Heard after(int blocks, Sound sound) {
   Ear ear;
   Heard heard;
+  int at = 0;
   for (int b = 0; b < blocks; ++b) {
     Block block;
-    for (std::size_t i = 0; i < kEarBlock; ++i)
-      block[i] = static_cast<std::int16_t>(sound(static_cast<int>(b * kEarBlock + i)));
+    for (std::int16_t& value : block)
+      value = static_cast<std::int16_t>(sound(at++));
     heard = ear.hear(block);
   }
   return heard;
