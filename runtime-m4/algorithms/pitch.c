@@ -8,14 +8,13 @@
 //   TONE   rising or falling when it is higher or lower than SLIDE_SAMPLES before, or than it began, by `slide`
 #include <stddef.h>
 
-#include "runtime-m4/algorithms/robosync_module.h"
+#include "runtime-m4/algorithms/microphone.h"
 
-enum { LOUDNESS, HIGHS, HEARD, CLARITY, INPUTS };
 enum { PITCH, NOTE, CENTS, TONE, OUTPUTS };
 enum { CLEAR, LOUD, LOWEST, HIGHEST, TUNING, SLIDE, PARAMETERS };
 enum { NO_TONE, STEADY, RISING, FALLING };
 
-enum { PERIOD_MS = 20, STEADY_SAMPLES = 3, SLIDE_SAMPLES = 10 };
+enum { STEADY_SAMPLES = 3, SLIDE_SAMPLES = 10 };
 enum { TENTH = 100, PER_HZ = 10 };  // the state counts in tenths of a Hz; inputs in thousandths
 enum { NOTES = 12, C_ABOVE_A = 3, SEMITONE = 100, OCTAVE = 1200, STAY = 60 };  // cents
 enum { ALIKE = 1 << 14 };
@@ -38,11 +37,6 @@ static uint32_t state_bytes(const int32_t* config) {
   return sizeof(state);
 }
 
-static uint32_t scratch_bytes(const int32_t* config) {
-  (void)config;
-  return 0;
-}
-
 static uint32_t cost(const int32_t* config) {
   (void)config;
   return 410;
@@ -57,9 +51,10 @@ static void init(void* memory, const int32_t* config, uint32_t period_ms) {
 
 // In tenths of a Hz, or 0 where nothing is heard that may be a tone.
 static uint32_t heard(const int32_t* inputs, const int32_t* config) {
-  const int is_tone = inputs[CLARITY] >= config[CLEAR] && inputs[LOUDNESS] >= config[LOUD] &&
-                      inputs[HEARD] >= config[LOWEST] && inputs[HEARD] <= config[HIGHEST];
-  return is_tone ? (uint32_t)inputs[HEARD] / TENTH : 0;
+  const int is_tone =
+      inputs[MICROPHONE_CLARITY] >= config[CLEAR] && inputs[MICROPHONE_LOUDNESS] >= config[LOUD] &&
+      inputs[MICROPHONE_PITCH] >= config[LOWEST] && inputs[MICROPHONE_PITCH] <= config[HIGHEST];
+  return is_tone ? (uint32_t)inputs[MICROPHONE_PITCH] / TENTH : 0;
 }
 
 // Less than a whole tone apart.
@@ -156,23 +151,18 @@ static const robosync_range ranges[PARAMETERS] = {
 };
 
 const robosync_module pitch_module = {
-    .inputs = INPUTS,
+    .inputs = MICROPHONE_INPUTS,
     .outputs = OUTPUTS,
     .parameters = PARAMETERS,
-    .shortest_period_ms = PERIOD_MS,
-    .longest_period_ms = PERIOD_MS,
+    .shortest_period_ms = MICROPHONE_PERIOD_MS,
+    .longest_period_ms = MICROPHONE_PERIOD_MS,
     .ranges = ranges,
     .state_bytes = state_bytes,
-    .scratch_bytes = scratch_bytes,
+    .scratch_bytes = robosync_no_scratch,
     .cost = cost,
     .init = init,
     .process = pitch_process,
 };
-
-static const robosync_input inputs[INPUTS] = {{"LOUDNESS", ROBOSYNC_DECIBEL},
-                                              {"HIGHS", ROBOSYNC_DECIBEL},
-                                              {"PITCH", ROBOSYNC_HERTZ},
-                                              {"CLARITY", ROBOSYNC_PERCENT}};
 
 static const char* const notes[] = {"none",    "c", "c_sharp", "d", "d_sharp", "e", "f",
                                     "f_sharp", "g", "g_sharp", "a", "a_sharp", "b"};
@@ -192,7 +182,7 @@ static const robosync_parameter parameters[PARAMETERS] = {
 };
 
 static const robosync_description description = {
-    "pitch", &pitch_module, PERIOD_MS, inputs, outputs, parameters,
+    "pitch", &pitch_module, MICROPHONE_PERIOD_MS, microphone_inputs, outputs, parameters,
 };
 
 const robosync_description* pitch_describe(uint32_t abi);
