@@ -1,10 +1,9 @@
 """How often `pitch` is right about notes (scripts/rates), as a table.
 
 Notes of the instruments of a sound font, which are recordings of instruments and singers that fluidsynth plays, and tones that are computed:
-each for a second, each as loud as the others in its loudest 20 ms. A robot hears them in `rsc run`. Counted is what its PITCH is every 20 ms, from
+each for a second, as loud as rates.py makes everything. A robot hears them in `rsc run`. Counted is what its PITCH is every 20 ms, from
 160 ms after a note's begin until its end."""
 
-import json
 import math
 import subprocess
 import tempfile
@@ -19,7 +18,7 @@ with warnings.catch_warnings():
     import audioop
 
 import rates
-from rates import BLOCK, BYTES, DATA, LOUDEST, NOISES_DB, RATE, ROOT
+from rates import BYTES, DATA, NOISES_DB, RATE, RAW
 
 PACKAGE = "timgm6mb-soundfont"
 FONT = DATA / PACKAGE / "usr/share/sounds/sf2/TimGM6mb.sf2"
@@ -85,12 +84,7 @@ def computed(tones, which):
             values.append(sum(height * math.sin(n * phase + n * n) for n, height in enumerate(tones.heights, 1)
                               if n * note.hertz() < RATE * 0.45))
         most = max(map(abs, values))
-        yield note, as_loud(array("h", [round(20000 * value / most) for value in values]).tobytes())
-
-
-def as_loud(sound):
-    loudest = max(audioop.rms(sound[at:at + BLOCK], BYTES) for at in range(0, len(sound) - BLOCK + 1, BLOCK))
-    return audioop.mul(sound, BYTES, LOUDEST / loudest)
+        yield note, rates.as_loud(array("h", [round(20000 * value / most) for value in values]).tobytes())
 
 
 def track(all_notes):
@@ -119,11 +113,10 @@ def played(all_notes):
         midi.write_bytes(track(all_notes))
         subprocess.run(["fluidsynth", "-ni", "-q", "-R", "0", "-C", "0", "-g", "0.5", "-r", "32000", "-F", sound, FONT, midi],
                        capture_output=True, check=True)
-        raw = subprocess.run(["sox", "-R", sound, "-r", str(RATE), "-c", "1", "-b", "16", "-e", "signed", "-t", "raw", "-"],
-                             capture_output=True, check=True).stdout
+        raw = subprocess.run(["sox", "-R", sound, *RAW], capture_output=True, check=True).stdout
     for i, note in enumerate(all_notes):
         at = int((i * (PAUSE_S + NOTE_S) + PAUSE_S) * RATE) * BYTES
-        yield note, as_loud(raw[at:at + int(NOTE_S * RATE) * BYTES])
+        yield note, rates.as_loud(raw[at:at + int(NOTE_S * RATE) * BYTES])
 
 
 def lay_out(recordings):
@@ -131,31 +124,22 @@ def lay_out(recordings):
     pause = bytes(int(PAUSE_S * RATE) * BYTES)
     sound, places = bytearray(pause), []
     for note, recording in recordings:
-        places.append((note, round(len(sound) / BYTES / RATE * 1000)))
+        places.append((note, rates.milliseconds(sound)))
         sound += recording + pause
     return bytes(sound), places
 
 
 def heard(sound):
-    """{time in ms: PITCH in Hz, or None} of each sample, as the robot has it."""
-    with tempfile.TemporaryDirectory() as name:
-        folder, duration_ms = Path(name), round(len(sound) / BYTES / RATE * 1000)
-        rates.write_wav(folder / "sound.wav", sound)
-        (folder / "robot.json").write_text(json.dumps(ROBOT))
-        (folder / "robot.rsl").write_text(PROGRAM)
-        (folder / "play.json").write_text(json.dumps(
-            {"duration": f"{duration_ms}ms", "stimuli": [{"sound": "sound.wav", "sensor": "microphone"}]}))
-        ran = subprocess.run([ROOT / "build/host/rsc", "run", folder / "robot.rsl", "--scenario", folder / "play.json",
-                              "--all", "--format", "json"], capture_output=True, text=True, check=True)
+    """[PITCH in Hz, or None] of each millisecond, as the robot has it."""
     changes = {}
-    for event in map(json.loads, ran.stdout.splitlines()):
+    for event in rates.run(ROBOT, PROGRAM, sound, "--all"):
         if event.get("sensor") == "song":
             changes.setdefault(event["t_us"] // 1000, {})[event["channel"]] = event.get("value")
-    pitch, note, found = None, "none", {}
-    for at in range(duration_ms):
+    pitch, note, found = None, "none", []
+    for at in range(rates.milliseconds(sound)):
         pitch = changes.get(at, {}).get("PITCH", pitch)
         note = changes.get(at, {}).get("NOTE", note)
-        found[at] = None if note == "none" else pitch
+        found.append(None if note == "none" else pitch)
     return found
 
 
