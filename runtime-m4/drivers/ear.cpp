@@ -13,7 +13,6 @@ constexpr std::size_t kLongest = kEarRate / 2 / 80;  // … in those
 // How many samples are compared: at the longest lag as many as repeat themselves once and a half.
 constexpr std::size_t kCompared = 96, kComparedHalved = 80;
 constexpr vm::Value kHighest = 20'000;  // in tenths of a Hz
-constexpr std::int32_t kFineFrom = 32;  // from here on a pitch is measured finely enough
 constexpr std::int32_t kEnough =
     82;  // %, of the most that a sound is like itself: it is there again
 constexpr std::int32_t kLeastEnergy =
@@ -138,21 +137,6 @@ struct Peaks {
   std::int32_t highest = 0;
 };
 
-// Its pitch in tenths of a Hz: over twice as many repetitions each time, as long as they are like the first.
-vm::Value measure(Samples past, Peak found, std::int32_t enough) {
-  std::int32_t repeats = 1;
-  while (found.lag < kFineFrom * kPart) {
-    const auto lag = static_cast<std::size_t>((2 * found.lag + kPart / 2) / kPart);
-    Comparison comparison(past, kCompared, lag - 1);
-    const std::int32_t before = comparison.next(), there = comparison.next(),
-                       behind = comparison.next();
-    if (there < before || there < behind || there < enough) break;
-    found = between(before, there, behind, lag);
-    repeats *= 2;
-  }
-  return std::int32_t{kEarRate} * 10 * repeats * kPart / found.lag;
-}
-
 }  // namespace
 
 Heard Ear::hear(std::span<const std::int16_t, kEarBlock> block) {
@@ -190,9 +174,9 @@ void Ear::find_pitch(Heard& heard) const {
   if (enough <= 0) return;
   const Peak first = *std::find_if(peaks.all.begin(), peaks.all.end(),
                                    [&](const Peak& peak) { return peak.height >= enough; });
-  const vm::Value tenths = measure(past, first, enough);
+  const vm::Value tenths = std::int32_t{kEarRate} * 10 * kPart / first.lag;
   heard.pitch = std::min(tenths, kHighest) * (vm::kScale / 10);
-  heard.clarity = std::min(first.height, kAlike) * 100 / kAlike * vm::kScale;
+  heard.clarity = first.height * 100 / kAlike * vm::kScale;
 }
 
 }  // namespace robosync::drivers
