@@ -151,7 +151,6 @@ void ControlLayer::commit_staged() {
   ActuatorMask all = std::exchange(to_commit_, 0);
   if ((all & retired_) != 0) [[unlikely]]
     drop_staged(all & retired_);
-  all &= ~retired_;
   each_bit(all, [&](unsigned a) {
     Unit& unit = units_[a];
     if (hand_over(unit)) kernel_.signal(*unit.thread, kCommit);

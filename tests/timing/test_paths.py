@@ -15,7 +15,7 @@ from pathlib import Path
 import paths
 import rsc
 import stimuli
-from board import FAST, FIRMWARE, Board
+from board import FAST, FIRMWARE, REAL_TIME, Board
 from on_board import without_parts
 from paths import counting, feed, run, wait
 from timing import examples
@@ -343,24 +343,28 @@ class Algorithms(unittest.TestCase):
                   for i, at in enumerate(counting.ends_of(function))}
         with tempfile.TemporaryDirectory() as folder:
             scenario, out = Path(folder) / "scenario.json", Path(folder) / "marks"
-            with Board(icount=FAST, extra=counting.plugin_arguments(marks, out)) as board:
-                until_ms = self.feed(module, scenario, board)
-                counting.wait_for_readings(out, until_ms // 20, process)
+            # A board that skips its idle time may be ahead of a busy machine all the way; one that keeps to the clock
+            # of the wall is not.
+            for icount, lead_ms in ((FAST, 6_000), (REAL_TIME, 6_000), (REAL_TIME, 20_000)):
+                with Board(icount=icount, extra=counting.plugin_arguments(marks, out)) as board:
+                    until_ms, refused = self.feed(module, scenario, board, lead_ms)
+                    if not refused:
+                        counting.wait_for_readings(out, until_ms // 20, process)
+                        break
+            else:
+                self.fail(refused)
             return counting.Marks(marks, out).all
 
-    def feed(self, module, scenario, board):
-        """Later, where this machine is too busy to be in time."""
+    def feed(self, module, scenario, board, lead_ms):
+        """The time of the last reading, and what rsc says when it could not feed them all in time."""
         name, recording, units = self.MODULES[module]
         program, readings = paths.ROOT / f"tests/e2e/programs/{name}.rsl", recording(0)
-        for lead in (6_000, 20_000, 60_000):
-            scenario.write_text(json.dumps({"stimuli": [
-                {"at": f"{lead + r.at_ms}ms", "sensor": r.channel.split(".")[0], "channel": r.channel.split(".")[1],
-                 "value": f"{r.value}{units[r.channel]}"} for r in readings]}))
-            done = rsc.call("feed", "--upload", program, "--config", program.with_suffix(".json"), "--fresh",
-                            "--scenario", scenario, "--port", board.port)
-            if done.returncode == 0:
-                return lead + readings[-1].at_ms
-        self.fail(done.stderr)
+        scenario.write_text(json.dumps({"stimuli": [
+            {"at": f"{lead_ms + r.at_ms}ms", "sensor": r.channel.split(".")[0], "channel": r.channel.split(".")[1],
+             "value": f"{r.value}{units[r.channel]}"} for r in readings]}))
+        done = rsc.call("feed", "--upload", program, "--config", program.with_suffix(".json"), "--fresh",
+                        "--scenario", scenario, "--port", board.port)
+        return lead_ms + readings[-1].at_ms, done.stderr if done.returncode else ""
 
     @staticmethod
     def spans(marks, name, within=None):
