@@ -291,6 +291,11 @@ def signature_figures():
     return {"link/verify_signature": (instructions, "insn")}
 
 
+def ear_figures():
+    """What a board with a microphone would take for 20 ms of sound: the dearest of many blocks."""
+    return {"ear/block": (max(run(BUILT / "bench_ear").spans("mark_ear_begin", "mark_ear_end")), "insn")}
+
+
 def kept(port):
     """Waits until the board keeps its program; gives what it says of itself."""
     give_up = time.monotonic() + rsc.TIMEOUT

@@ -29,9 +29,10 @@ second system call in it, by which the thread that was let run takes its events.
 with the last reading, keeps times and announces together; `kernel/lock_out_add` is while a program is loaded.
 `path/…`: no single place is dear; of the way to the command three commands take a quarter (decoded, queued, handed over),
 threads and their switches another, the rest is the step's bookkeeping for rules. `firmware/flash`: memory
-as large as the board, laid out for each program, took one kilobyte, programs and numbers that outlast the power four, algorithms three and
+as large as the board, laid out for each program, took one kilobyte, programs and numbers that outlast the power four, algorithms four and
 a half, the owner's signature ten and a half.
-`firmware/power_up_to_program`: the paper's program from the board's store, until its time begins; 8,000 to 15,000, by how often the host asks meanwhile. `vm/flash` has a bar of the whole language, not of the first
+`firmware/power_up_to_program`: the paper's program from the board's store, until its time begins; 8,000 to 15,000, by how often the host asks meanwhile. `ear/block`:
+20 ms of sound, the dearest of all pitches, on a board that had a microphone. `vm/flash` has a bar of the whole language, not of the first
 design's arithmetic and commands (4,096).
 `path/smooth_sample` is `vm/W3_natural` with the largest window, 32 samples, in the order that moves most of them; its bands
 are in it. `firmware/idle_second_paper` is without what the bit-banged I2C bus executes, `…_i2c` is that alone.

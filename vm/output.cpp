@@ -31,7 +31,7 @@ bool decode(Word word, Effect effect, Output& output) {
 
 }  // namespace
 
-bool OutputReader::next(Output& output) {
+bool OutputReader::read(Output& output) {
   unsigned given = 0;
   while (!words_.empty()) {
     const Word word = words_[0];

@@ -27,9 +27,11 @@ class OutputReader {
 public:
   explicit OutputReader(std::span<const Word> words) : words_(words) {}
   // The next one; false when there is none left, or when what follows is not a response's output.
-  [[nodiscard]] bool next(Output& output);
+  [[nodiscard]] bool next(Output& output) { return !words_.empty() && read(output); }
 
 private:
+  bool read(Output& output);
+
   std::span<const Word> words_;
 };
 

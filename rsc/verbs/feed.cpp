@@ -31,7 +31,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kQueueTimeout{30000};
-constexpr milliseconds kQueuePause{20};
+constexpr milliseconds kQueuePause{5};  // a question and its answer take 4 ms of the line
 
 struct FeedOptions {
   std::vector<std::string> readings;

@@ -41,11 +41,6 @@ static uint32_t state_bytes(const int32_t* config) {
   return sizeof(state);
 }
 
-static uint32_t scratch_bytes(const int32_t* config) {
-  (void)config;
-  return 0;
-}
-
 static uint32_t cost(const int32_t* config) {
   (void)config;
   return 440;
@@ -228,7 +223,7 @@ const robosync_module imu_gestures_module = {
     .longest_period_ms = 20,
     .ranges = ranges,
     .state_bytes = state_bytes,
-    .scratch_bytes = scratch_bytes,
+    .scratch_bytes = robosync_no_scratch,
     .cost = cost,
     .init = init,
     .process = imu_gestures_process,

@@ -73,6 +73,12 @@ static inline uint32_t robosync_put(const robosync_block* block, uint32_t i, int
   return 1u << i;
 }
 
+// scratch_bytes() of a module that needs none.
+static inline uint32_t robosync_no_scratch(const int32_t* config) {
+  (void)config;
+  return 0;
+}
+
 typedef struct robosync_module {
   uint8_t inputs, outputs, parameters;  // how many
   uint16_t shortest_period_ms, longest_period_ms;

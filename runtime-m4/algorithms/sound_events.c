@@ -9,21 +9,13 @@
 //   sound   above the background by `loud`
 #include <stddef.h>
 
-#include "runtime-m4/algorithms/robosync_module.h"
+#include "runtime-m4/algorithms/microphone.h"
 
-enum { LOUDNESS, HIGHS, PITCH, CLARITY, INPUTS };
 enum { EVENT, LEVEL, OUTPUTS };
 enum { CLAP, FALL, LOUD, CLEAR, SPEECH_TIME, SHOWN_FOR, PARAMETERS };
 enum { NONE, CLAPPED, SPEECH, SOUND };
 
-enum {
-  PERIOD_MS = 20,
-  RISE_MS = 40,
-  FALL_MS = 140,
-  QUIET_MS = 160,
-  QUIETER_MS = 100,
-  LOUDER_MS = 500
-};
+enum { RISE_MS = 40, FALL_MS = 140, QUIET_MS = 160, QUIETER_MS = 100, LOUDER_MS = 500 };
 enum { LOUDEST = 100000 };
 enum { HIGH_ENOUGH = -6000 };  // dB above the loudness: noise has +3, a voice -10
 enum { LOWEST_VOICE = 80000, HIGHEST_VOICE = 400000 };  // Hz
@@ -41,11 +33,6 @@ typedef struct state {
 static uint32_t state_bytes(const int32_t* config) {
   (void)config;
   return sizeof(state);
-}
-
-static uint32_t scratch_bytes(const int32_t* config) {
-  (void)config;
-  return 0;
 }
 
 static uint32_t cost(const int32_t* config) {
@@ -66,7 +53,7 @@ static int32_t decibels(int32_t value) {
 }
 
 static uint32_t later(uint32_t since_ms) {
-  return since_ms < LONGEST_MS ? since_ms + PERIOD_MS : since_ms;
+  return since_ms < LONGEST_MS ? since_ms + MICROPHONE_PERIOD_MS : since_ms;
 }
 
 static void follow_background(state* self, int32_t loudness) {
@@ -76,16 +63,16 @@ static void follow_background(state* self, int32_t loudness) {
   }
   self->begun = 1;
   const int32_t change = loudness - self->background;
-  const int32_t most = ROBOSYNC_ONE * PERIOD_MS / LOUDER_MS;
+  const int32_t most = ROBOSYNC_ONE * MICROPHONE_PERIOD_MS / LOUDER_MS;
   if (change < 0)
-    self->background += change * PERIOD_MS / QUIETER_MS;
+    self->background += change * MICROPHONE_PERIOD_MS / QUIETER_MS;
   else
     self->background += change < most ? change : most;
 }
 
 static int is_voice(const int32_t* inputs, const int32_t* config) {
-  return inputs[CLARITY] >= config[CLEAR] && inputs[PITCH] >= LOWEST_VOICE &&
-         inputs[PITCH] <= HIGHEST_VOICE;
+  return inputs[MICROPHONE_CLARITY] >= config[CLEAR] && inputs[MICROPHONE_PITCH] >= LOWEST_VOICE &&
+         inputs[MICROPHONE_PITCH] <= HIGHEST_VOICE;
 }
 
 static int begins(const state* self, int32_t loudness, int32_t clap) {
@@ -96,13 +83,13 @@ static int begins(const state* self, int32_t loudness, int32_t clap) {
 
 // A clap is known when it is over.
 static int is_clap(state* self, const int32_t* inputs, const int32_t* config) {
-  const int32_t loudness = decibels(inputs[LOUDNESS]);
+  const int32_t loudness = decibels(inputs[MICROPHONE_LOUDNESS]);
   if (self->rising_ms == 0 && !begins(self, loudness, config[CLAP])) return 0;
   if (self->rising_ms == 0 || (loudness > self->peak && self->rising_ms < RISE_MS)) {
     self->peak = loudness;
-    self->highs = decibels(inputs[HIGHS]);
+    self->highs = decibels(inputs[MICROPHONE_HIGHS]);
   }
-  self->rising_ms += PERIOD_MS;
+  self->rising_ms += MICROPHONE_PERIOD_MS;
   const int is_over = self->peak - loudness >= config[FALL];
   const int speaks = self->rising_ms > RISE_MS && !is_over && is_voice(inputs, config);
   if (!is_over && !speaks && self->rising_ms <= FALL_MS) return 0;
@@ -112,17 +99,17 @@ static int is_clap(state* self, const int32_t* inputs, const int32_t* config) {
 
 static void note_speech(state* self, int speaks, uint32_t speech_time) {
   if (speaks && self->speech_ms < MOST_SPEECH_MS)
-    self->speech_ms += PERIOD_MS;
-  else if (!speaks && self->speech_ms >= PERIOD_MS / 2)
-    self->speech_ms -= PERIOD_MS / 2;
+    self->speech_ms += MICROPHONE_PERIOD_MS;
+  else if (!speaks && self->speech_ms >= MICROPHONE_PERIOD_MS / 2)
+    self->speech_ms -= MICROPHONE_PERIOD_MS / 2;
   if (self->speech_ms >= speech_time) self->speaks = 1;
-  if (self->speech_ms < PERIOD_MS) self->speaks = 0;
+  if (self->speech_ms < MICROPHONE_PERIOD_MS) self->speaks = 0;
 }
 
 static uint32_t sound_events_process(void* memory, void* scratch, const robosync_block* block) {
   (void)scratch;
   state* self = memory;
-  const int32_t loudness = decibels(block->inputs[LOUDNESS]);
+  const int32_t loudness = decibels(block->inputs[MICROPHONE_LOUDNESS]);
   follow_background(self, loudness);
   const int is_loud = loudness - self->background >= block->config[LOUD];
   const int clapped = is_clap(self, block->inputs, block->config);
@@ -151,23 +138,18 @@ static const robosync_range ranges[PARAMETERS] = {
 };
 
 const robosync_module sound_events_module = {
-    .inputs = INPUTS,
+    .inputs = MICROPHONE_INPUTS,
     .outputs = OUTPUTS,
     .parameters = PARAMETERS,
-    .shortest_period_ms = PERIOD_MS,
-    .longest_period_ms = PERIOD_MS,
+    .shortest_period_ms = MICROPHONE_PERIOD_MS,
+    .longest_period_ms = MICROPHONE_PERIOD_MS,
     .ranges = ranges,
     .state_bytes = state_bytes,
-    .scratch_bytes = scratch_bytes,
+    .scratch_bytes = robosync_no_scratch,
     .cost = cost,
     .init = init,
     .process = sound_events_process,
 };
-
-static const robosync_input inputs[INPUTS] = {{"LOUDNESS", ROBOSYNC_DECIBEL},
-                                              {"HIGHS", ROBOSYNC_DECIBEL},
-                                              {"PITCH", ROBOSYNC_HERTZ},
-                                              {"CLARITY", ROBOSYNC_PERCENT}};
 
 static const char* const events[] = {"none", "clap", "speech", "sound"};
 
@@ -186,8 +168,8 @@ static const robosync_parameter parameters[PARAMETERS] = {
 };
 
 static const robosync_description description = {
-    "sound_events", &sound_events_module, PERIOD_MS, inputs, outputs, parameters,
-};
+    "sound_events", &sound_events_module, MICROPHONE_PERIOD_MS, microphone_inputs, outputs,
+    parameters};
 
 const robosync_description* sound_events_describe(uint32_t abi);
 const robosync_description* sound_events_describe(uint32_t abi) {

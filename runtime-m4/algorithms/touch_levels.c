@@ -27,11 +27,6 @@ static uint32_t state_bytes(const int32_t* config) {
   return sizeof(state);
 }
 
-static uint32_t scratch_bytes(const int32_t* config) {
-  (void)config;
-  return 0;
-}
-
 static uint32_t cost(const int32_t* config) {
   (void)config;
   return 80;
@@ -103,7 +98,7 @@ const robosync_module touch_levels_module = {
     .longest_period_ms = 100,
     .ranges = ranges,
     .state_bytes = state_bytes,
-    .scratch_bytes = scratch_bytes,
+    .scratch_bytes = robosync_no_scratch,
     .cost = cost,
     .init = init,
     .process = touch_levels_process,

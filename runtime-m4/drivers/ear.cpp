@@ -1,15 +1,24 @@
 #include "runtime-m4/drivers/ear.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace robosync::drivers {
 namespace {
 
-constexpr unsigned kHalfRate = kEarRate / 2;
-constexpr std::size_t kShortest = kHalfRate / 500,
-                      kLongest = kHalfRate / 80;  // samples between repetitions
-constexpr std::int64_t kLeastEnergy =
+// Samples between two repetitions.
+constexpr std::size_t kShortest = kEarRate / 2000;
+constexpr std::size_t kMiddle = 16;  // up to here in all samples, from here on in every second one
+constexpr std::size_t kLongest = kEarRate / 2 / 80;  // … in those
+// How many samples are compared: at the longest lag as many as repeat themselves once and a half.
+constexpr std::size_t kCompared = 96, kComparedHalved = 80;
+constexpr vm::Value kHighest = 20'000;  // in tenths of a Hz
+constexpr std::int32_t kEnough =
+    82;  // %, of the most that a sound is like itself: it is there again
+constexpr std::int32_t kLeastEnergy =
     100;  // of a sample's square, on average: what is softer has no pitch
+constexpr std::int32_t kHeight =
+    1 << 11;  // below which samples are compared: then a block of squares fits
 
 // 10 lg(square), in whole dB: 3.0103 times the logarithm to base 2, which is its highest bit and, for the fraction, ten times
 // whether the square of what remains reaches 2.
@@ -33,6 +42,101 @@ vm::Value decibel(std::uint64_t square) {
   return static_cast<vm::Value>((tenths + 5) / 10) * vm::kScale;
 }
 
+using Samples = std::span<const std::int16_t>;
+
+// Until all of them are below kHeight.
+void soften(std::span<std::int16_t> samples) {
+  std::int32_t highest = 0;
+  for (const std::int32_t sample : samples)
+    highest = std::max(highest, sample < 0 ? -sample : sample);
+  int shift = 0;
+  while (highest >> shift >= kHeight)
+    ++shift;
+  for (std::int16_t& sample : samples)
+    sample = static_cast<std::int16_t>(sample >> shift);
+}
+
+// What is like itself all over.
+constexpr std::int32_t kAlike = 1 << 14;
+
+// How much of the last samples, as many as `compared`, was there already `lag` samples before, in parts of kAlike.
+// One lag after the other.
+class Comparison {
+public:
+  Comparison(Samples samples, std::size_t compared, std::size_t first_lag)
+      : latest_(samples.last(compared)),
+        begin_(latest_.data() - first_lag),
+        latest_energy_(energy(latest_)),
+        earlier_energy_(energy({begin_, compared})) {}
+
+  std::int32_t next() {
+    const std::int32_t product = products(latest_, begin_);
+    const std::int32_t energy = latest_energy_ + earlier_energy_;
+    --begin_;
+    const std::int32_t gained = begin_[0], lost = begin_[latest_.size()];
+    earlier_energy_ += gained * gained - lost * lost;
+    if (energy / 2 < kLeastEnergy * static_cast<std::int32_t>(latest_.size())) return 0;
+    // With its highest bit in the same place each time, so that 15 bits below it are exact; never 0.
+    const int room = std::countl_zero(static_cast<std::uint32_t>(energy)) - 1;
+    const std::int32_t whole = (energy << room) / (2 * kAlike);
+    return (product << room) / whole;  // NOLINT(clang-analyzer-core.DivideZero)
+  }
+
+private:
+  // Of as many as are a multiple of eight: most of the work is here.
+  static std::int32_t products(Samples some, const std::int16_t* others) {
+    std::int32_t sum = 0;
+    const std::int16_t* const end = some.data() + some.size();
+    for (const std::int16_t* one = some.data(); one != end; one += 8, others += 8) {
+      sum += one[0] * others[0] + one[1] * others[1] + one[2] * others[2] + one[3] * others[3];
+      sum += one[4] * others[4] + one[5] * others[5] + one[6] * others[6] + one[7] * others[7];
+    }
+    return sum;
+  }
+  static std::int32_t energy(Samples samples) { return products(samples, samples.data()); }
+
+  Samples latest_;
+  const std::int16_t* begin_;  // of what is compared with them
+  std::int32_t latest_energy_, earlier_energy_;
+};
+
+// Where a sound is more like itself than a little sooner and later.
+struct Peak {
+  std::int32_t lag = 0;  // in samples, in parts of kPart
+  std::int32_t height = 0;
+};
+constexpr std::int32_t kPart = 256;
+
+// That of a parabola through three neighbours, the middle one of which is the highest.
+Peak between(std::int32_t left, std::int32_t middle, std::int32_t right, std::size_t lag) {
+  const std::int32_t bend = 2 * middle - left - right, slope = right - left;
+  const std::int32_t offset = bend > 0 ? slope * (kPart / 2) / bend : 0;
+  return {static_cast<std::int32_t>(lag) * kPart + offset, middle + slope * offset / (4 * kPart)};
+}
+
+// The peaks of a sound, at shorter lags first.
+struct Peaks {
+  void find(Samples samples, std::size_t compared, std::size_t first_lag, std::size_t last_lag,
+            std::int32_t samples_each) {
+    Comparison comparison(samples, compared, first_lag);
+    std::int32_t left = comparison.next(), middle = comparison.next();
+    for (std::size_t lag = first_lag + 2; lag <= last_lag; ++lag) {
+      const std::int32_t right = comparison.next();
+      if (middle > left && middle >= right && count < all.size()) {
+        const Peak peak = between(left, middle, right, lag - 1);
+        highest = std::max(highest, peak.height);
+        all[count++] = {peak.lag * samples_each, peak.height};
+      }
+      left = middle;
+      middle = right;
+    }
+  }
+
+  std::array<Peak, 32> all;  // two lags are no peaks both
+  std::size_t count = 0;
+  std::int32_t highest = 0;
+};
+
 }  // namespace
 
 Heard Ear::hear(std::span<const std::int16_t, kEarBlock> block) {
@@ -52,40 +156,27 @@ Heard Ear::hear(std::span<const std::int16_t, kEarBlock> block) {
 }
 
 void Ear::remember(std::span<const std::int16_t, kEarBlock> block) {
-  std::copy(past_.begin() + kHalf, past_.end(), past_.begin());
-  for (std::size_t i = 0; i < kHalf; ++i)
-    past_[kHalf + i] = static_cast<std::int16_t>((block[2 * i] + block[2 * i + 1]) / 2);
+  std::copy(past_.begin() + kEarBlock, past_.end(), past_.begin());
+  std::ranges::copy(block, past_.begin() + kEarBlock);
 }
 
-// How much of it is there again so many samples later, in thousandths of what is there. What changes slowly is like itself a moment
-// later, too: so only what comes after the likeness has grown counts. The first of the highest ones is taken, not half its pitch.
+// What is there again after a while is there again after twice that, too: so the first one of the highest peaks is taken.
 void Ear::find_pitch(Heard& heard) const {
-  std::int64_t best = 0, last = vm::kScale;
-  std::size_t best_at = 0;
-  bool has_grown = false;
-  for (std::size_t lag = kShortest - 1; lag <= kLongest; ++lag) {
-    const std::int64_t share = likeness(lag);
-    has_grown = has_grown || share > last;
-    last = share;
-    if (!has_grown || share <= best + best / 10) continue;
-    best = share;
-    best_at = lag;
-  }
-  if (best_at < kShortest) return;
-  heard.pitch = static_cast<vm::Value>(kHalfRate / best_at) * vm::kScale;
-  heard.clarity = static_cast<vm::Value>(best / 10) * vm::kScale;
-}
-
-std::int64_t Ear::likeness(std::size_t lag) const {
-  constexpr std::size_t kCompared = 2 * kHalf - kLongest;
-  std::int64_t product = 0, energy = 0;
-  for (std::size_t i = 0; i < kCompared; ++i) {
-    const std::int64_t a = past_[i], b = past_[i + lag];
-    product += a * b;
-    energy += a * a + b * b;
-  }
-  if (energy / 2 < kLeastEnergy * static_cast<std::int64_t>(kCompared)) return 0;
-  return product * 2 * vm::kScale / energy;
+  std::array<std::int16_t, kPast> past = past_;
+  soften(past);
+  Peaks peaks;
+  peaks.find(past, kCompared, kShortest - 1, kMiddle + 2, 1);
+  std::array<std::int16_t, kPast / 2> halved;
+  for (std::size_t i = 0; i < halved.size(); ++i)
+    halved[i] = static_cast<std::int16_t>((past[2 * i] + past[2 * i + 1]) / 2);
+  peaks.find(halved, kComparedHalved, kMiddle / 2, kLongest + 1, 2);
+  const std::int32_t enough = peaks.highest * kEnough / 100;
+  if (enough <= 0) return;
+  const Peak first = *std::find_if(peaks.all.begin(), peaks.all.end(),
+                                   [&](const Peak& peak) { return peak.height >= enough; });
+  const vm::Value tenths = std::int32_t{kEarRate} * 10 * kPart / first.lag;
+  heard.pitch = std::min(tenths, kHighest) * (vm::kScale / 10);
+  heard.clarity = first.height * 100 / kAlike * vm::kScale;
 }
 
 }  // namespace robosync::drivers

@@ -47,7 +47,7 @@ bool Arbiter::ends(const Claim& claim, const Decision& decision, unsigned rule) 
 
 void Arbiter::give(const Claim& claim) {
   running_.insert(claim.rule);
-  resting_.erase(claim.rule);
+  if (!resting_.empty()) resting_.erase(claim.rule);
   won_.insert(claim.rule);
   thens_.put(claim.rule, claim.side == Side::then);
   owned_ |= claim.actuators;

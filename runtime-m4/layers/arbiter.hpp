@@ -32,7 +32,7 @@ struct Claim {
   std::uint8_t behavior;
   Side side;
   ActuatorMask actuators;   // all its response can ever use; it gets all or none
-  bool restarting = false;  // if it runs already on that side, it starts again
+  bool restarting = false;  // if it works already on that side, it starts again
   bool retries = false;     // it did not trigger now, but wants to run since earlier
 };
 
@@ -64,11 +64,19 @@ public:
   // The step is over: what was won in it may be lost in the next one.
   void end_step() { won_.clear(); }
 
-  // Read by the behaviours' threads as well.
+  // --- read by the behaviours' threads as well ---
+
+  // It takes nothing from anybody, as most claims: so it wins, and ends nobody.
+  [[gnu::always_inline]] bool is_free(const Claim& claim) const {
+    return has_all_free(claim) && !works(claim.rule);
+  }
+  [[nodiscard]] bool wins(const Claim& claim) const {
+    return is_free(claim) || decide(claim).wins();
+  }
   [[nodiscard]] Decision decide(const Claim& claim) const {
     const bool again = works(claim.rule) && side(claim.rule) == claim.side;
     if (again && !claim.restarting) return {.outcome = Outcome::ignored, .owner = claim.behavior};
-    if ((claim.actuators & (owned_ | halted_)) == 0) [[likely]]
+    if (has_all_free(claim)) [[likely]]
       return {};
     return decide_among_owners(claim);
   }
@@ -100,6 +108,9 @@ public:
   ActuatorMask owned() const { return owned_; }  // by all that run; each has one owner
 
 private:
+  [[gnu::always_inline]] bool has_all_free(const Claim& claim) const {
+    return (claim.actuators & (owned_ | halted_)) == 0;
+  }
   Decision decide_among_owners(const Claim& claim) const;
   bool may_take(const Claim& claim, unsigned from) const;
 

@@ -9,6 +9,7 @@
 #include "runtime-m4/kernel/calls.hpp"
 #include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/layers/report.hpp"
+#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::layers {
 
@@ -109,14 +110,13 @@ bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
          claim_for(rule, side, !layers_.triggers.has_triggered(rule), claim);
 }
 
-// A place in the code, or none.
-vm::Progress BehaviorLayer::checked_progress() const {
-  const Result& result = *workspace_.result;
-  vm::Progress progress{.pause = result.pause, .next = result.next, .wake = result.wake};
+// Whoever waits does so at a place in the code.
+vm::Pause BehaviorLayer::checked_pause(const Result& result) const {
+  if (result.pause == vm::Pause::ended || result.pause >= vm::Pause::count_)
+    return vm::Pause::ended;
   const std::span<const vm::Word> code = program_->image.code;
-  const bool inside = progress.next >= code.data() && progress.next < code.data() + code.size();
-  if (progress.pause >= vm::Pause::count_ || !inside) progress.pause = vm::Pause::ended;
-  return progress;
+  const bool inside = result.next >= code.data() && result.next < code.data() + code.size();
+  return inside ? result.pause : vm::Pause::ended;
 }
 
 // Nothing comes of a response whose behaviour was stopped meanwhile.
@@ -126,22 +126,21 @@ void BehaviorLayer::conclude(unsigned rule) {
   if (is_retired(behavior) || result.there == 0) result = {};
   result.there = 0;  // it is taken
   ResumePoint& point = resume_points_[rule];
-  const vm::Progress progress = checked_progress();
+  const vm::Pause pause = checked_pause(result);
   const bool waited = point.pause != vm::Pause::ended;
-  if (!waited || progress.pause != vm::Pause::ended) has_run_.insert(rule);
-  const bool moved = progress.pause != vm::Pause::still_polling;
+  if (!waited || pause != vm::Pause::ended) has_run_.insert(rule);
+  const bool moved = pause != vm::Pause::still_polling;
   Trace& trace = layers_.trace;
   if (waited && moved) trace.emit(EventKind::go_on, trace.step(), rule);
   if (result.zero_divide != 0) trace.emit(EventKind::zero_divide, trace.step(), rule);
-  put_out(workspace_.output.first(std::min<std::size_t>(result.words, workspace_.output.size())),
-          layers_.arbiter.holding(rule).actuators);
+  if (result.words != 0) put_out(result.words, layers_.arbiter.holding(rule).actuators);
   if ((result.assigned | result.shifted) != 0) stage_writes(behavior);
-  point = {};
-  if (progress.pause == vm::Pause::ended) return;
-  const bool for_commands = progress.pause == vm::Pause::until_done;
-  point = {.wake = for_commands ? snapshot_->milliseconds() + 1 : progress.wake,
-           .next = static_cast<std::uint16_t>(progress.next - program_->image.code.data()),
-           .pause = progress.pause};
+  if (waited) point = {};
+  if (pause == vm::Pause::ended) return;
+  const bool for_commands = pause == vm::Pause::until_done;
+  point = {.wake = for_commands ? snapshot_->milliseconds() + 1 : result.wake,
+           .next = static_cast<std::uint16_t>(result.next - program_->image.code.data()),
+           .pause = pause};
   if (moved) trace.emit(EventKind::wait, trace.step(), rule);
 }
 
@@ -153,39 +152,36 @@ void BehaviorLayer::stage_writes(unsigned behavior) {
 }
 
 // Commands reach the actuators that the response has declared, whatever its thread says.
-void BehaviorLayer::put_out(std::span<const vm::Word> output, ActuatorMask declared) {
-  vm::OutputReader reader(output);
-  vm::Output said;
-  while (reader.next(said)) {
-    if (said.kind == vm::OutputKind::command) {
-      stage(said, declared);
+[[gnu::noinline]] void BehaviorLayer::put_out(std::size_t words, ActuatorMask declared) {
+  vm::OutputReader reader(workspace_.output.first(std::min(words, workspace_.output.size())));
+  Command command;
+  while (reader.next(command.said_)) {
+    if (command.said_.kind == vm::OutputKind::command) {
+      stage(command, declared);
     } else {
-      report_text(layers_.trace, said, layers_.trace.step());
+      report_text(layers_.trace, command.said_, layers_.trace.step());
     }
   }
 }
 
 // A command to a group goes to each member.
-void BehaviorLayer::stage(const vm::Output& said, ActuatorMask declared) {
+void BehaviorLayer::stage(Command& command, ActuatorMask declared) {
   const vm::Image& image = program_->image;
-  if (said.verb >= image.verbs.size()) return;
-  if (said.word != vm::kNoWord && said.word >= image.words.size()) return;
-  Command command;
-  command.action_ = image.verbs[said.verb].action;
-  command.verb_ = said.verb;
-  command.word_ = said.word;
-  command.given_ = said.given;
-  command.known_ = said.given;
-  each_bit(said.given, [&](unsigned p) { command.params_[p] = said.params[p]; });
-  if (said.word != vm::kNoWord) add_word(image.words[said.word], command);
-  layers_.control.stage(command, image.target_mask(said.target) & declared);
+  if (command.verb() >= image.verbs.size()) return;
+  command.action_ = image.verbs[command.verb()].action;
+  command.known_ = command.given();
+  if (command.word() != vm::kNoWord) {
+    if (command.word() >= image.words.size()) return;
+    add_word(image.words[command.word()], command);
+  }
+  layers_.control.stage(command, image.target_mask(command.said_.target) & declared);
 }
 
 // The program's own parameter outweighs its word's.
 void BehaviorLayer::add_word(const vm::WordEntry& word, Command& command) {
   const auto p = static_cast<unsigned>(word.param);
   if (has<unsigned>(command.known_, p)) return;
-  command.params_[p] = word.value;
+  command.said_.params[p] = word.value;
   command.known_ = static_cast<std::uint8_t>(command.known_ | 1U << p);
 }
 
@@ -210,13 +206,14 @@ bool BehaviorLayer::claim_of(unsigned rule, Claim& claim, bool& silent) const {
 }
 
 bool BehaviorLayer::claim_for(unsigned rule, Side side, bool retries, Claim& claim) const {
-  const unsigned response = response_of(rule, side);
+  const vm::Rule& wiring = program_->image.rules[rule];
+  const unsigned response = side == Side::then ? wiring.then_response : wiring.else_response;
   if (response == vm::kNoIndex) return false;  // a behaviour can say that its rule has an ELSE
   claim = {.rule = static_cast<std::uint16_t>(rule),
            .behavior = program_->behavior_of[rule],
            .side = side,
            .actuators = program_->image.responses[response].actuators,
-           .restarting = layers_.arbiter.works(rule) && layers_.triggers.restarting(rule),
+           .restarting = policy::modifiers_of(program_->image, wiring).restarting != 0,
            .retries = retries};
   return true;
 }
@@ -265,14 +262,14 @@ void BehaviorLayer::run_sole_turn(unsigned rule, vm::Machine& machine) {
       run_response(machine, rule, Side::then, resume_points_[rule].next);
       workspace_.result->there = Result::kWentOn;
     }
-  } else if (claims && layers_.arbiter.decide(claim).wins()) {
+  } else if (claims && layers_.arbiter.wins(claim)) {
     begin_response(machine, claim);
   }
 }
 
 void BehaviorLayer::latch(const Unit& unit, vm::Machine& machine) {
   Frames::latch(machine, program_->image, program_->image.behaviors[unit.behavior],
-                [this](std::uint8_t input) { return snapshot_->value(input); });
+                [values = snapshot_->values()](std::uint8_t input) { return values[input]; });
   machine.now = snapshot_->milliseconds();
   machine.wake = kNever;
 }
@@ -316,22 +313,20 @@ void BehaviorLayer::evaluate_period(unsigned rule, vm::Machine& machine) {
 }
 
 // Of the responses that the behaviour runs in this step there is one, which begins, and it wins. Of
-// several the step thread must see to the order, and to who has what after each.
-bool BehaviorLayer::sole_claim(RuleRange rules, Claim& claim) const {
+// several the step thread must see to the order, and to who has what after each. Not inlined, so that it is off the stack
+// while rules are evaluated.
+[[gnu::noinline]] bool BehaviorLayer::sole_claim(RuleRange rules, Claim& claim) const {
   if (waits(rules)) return false;
   unsigned found = 0;
   layers_.triggers.each_wanting(rules, [&](unsigned rule) {
     bool silent = false;
-    Claim another;
-    if (must_pause(rule) || !claim_of(rule, another, silent)) return;
-    ++found;
-    claim = another;
+    if (!must_pause(rule) && claim_of(rule, claim, silent)) ++found;
   });
-  return found == 1 && layers_.arbiter.decide(claim).wins();
+  return found == 1 && layers_.arbiter.wins(claim);
 }
 
 // A response of its waits, and may go on in this step.
-bool BehaviorLayer::waits(RuleRange rules) const {
+[[gnu::noinline]] bool BehaviorLayer::waits(RuleRange rules) const {
   bool waits = false;
   layers_.arbiter.running().each_in(
       rules, [&](unsigned rule) { waits |= resume_points_[rule].pause != vm::Pause::ended; });

@@ -89,9 +89,10 @@ public:
   // What `rule` claims now, if anything; silent: that it does was told before.
   [[nodiscard]] bool claim_of(unsigned rule, Claim& claim, bool& silent) const;
   [[nodiscard]] bool claim_for(unsigned rule, Side side, bool retries, Claim& claim) const;
-  // A WHILE whose response has begun in this millisecond claims again in the next one.
-  [[nodiscard]] bool must_pause(unsigned rule) const {
-    return program_->image.rules[rule].kind == vm::RuleKind::while_ && has_run(rule, ran_at_);
+  // A WHILE whose response has begun in this millisecond claims again in the next one. Not inlined: the behaviours' stacks
+  // are short.
+  [[nodiscard, gnu::noinline]] bool must_pause(unsigned rule) const {
+    return layers_.triggers.is_while(rule) && has_run(rule, ran_at_);
   }
 
 private:
@@ -125,11 +126,11 @@ private:
   void begin_response(vm::Machine& machine, const Claim& claim);
   void run_response(vm::Machine& machine, unsigned rule, Side side, unsigned code);
 
-  void put_out(std::span<const vm::Word> output, ActuatorMask declared);
-  void stage(const vm::Output& said, ActuatorMask declared);
+  void put_out(std::size_t words, ActuatorMask declared);
+  void stage(Command& command, ActuatorMask declared);
   static void add_word(const vm::WordEntry& word, Command& command);
   void stage_writes(unsigned behavior);
-  vm::Progress checked_progress() const;
+  vm::Pause checked_pause(const Result& result) const;
   void release(unsigned behavior);
   void release_to_run(unsigned rule, unsigned code);
 

@@ -14,12 +14,11 @@ void CommandPool::start(Memory& memory) {
   }
 }
 
-bool CommandPool::push(Queue& queue, const Command& command) {
-  if (queue.count == policy::kMaxQueued || free_ == kNone) return false;
+QueuedOrder* CommandPool::push(Queue& queue) {
+  if (free_ == kNone) return nullptr;
   const std::uint8_t taken = free_;
   Node& node = nodes_[taken];
-  free_ = std::exchange(node.next, kNone);
-  copy(command, node.command);
+  free_ = node.next;
   if (queue.count == 0) {
     queue.first = taken;
   } else {
@@ -27,21 +26,7 @@ bool CommandPool::push(Queue& queue, const Command& command) {
   }
   queue.last = taken;
   ++queue.count;
-  return true;
-}
-
-void CommandPool::renew(const Queue& queue, const Command& follow) {
-  copy(follow, nodes_[queue.last].command);
-}
-
-// What is not given is not there to be copied.
-void CommandPool::copy(const Command& from, Command& to) {
-  to.action_ = from.action_;
-  to.verb_ = from.verb_;
-  to.word_ = from.word_;
-  to.given_ = from.given_;
-  to.known_ = from.known_;
-  each_bit(from.known_, [&](unsigned p) { to.params_[p] = from.params_[p]; });
+  return &node.command;
 }
 
 void CommandPool::pop(Queue& queue) {

@@ -64,33 +64,50 @@ void ControlLayer::switch_off() {
 
 // --- staging, cancelling, committing: called from the step thread ---
 
-void ControlLayer::stage(const Command& command, ActuatorMask actuators) {
-  for (ActuatorMask left = actuators; left != 0; left &= left - 1) {
-    const auto actuator = static_cast<unsigned>(std::countr_zero(left));
-    const auto mine = bit<ActuatorMask>(actuator);
-    if (!has(program_->image.actuators[actuator].verbs, command.verb())) continue;
-    (stage_one(units_[actuator], command) ? staged_ : dropped_) |= mine;
-  }
+[[gnu::noinline]] void ControlLayer::stage(const Command& command, ActuatorMask actuators) {
+  const std::uint32_t verb = std::uint32_t{1} << command.verb();
+  const bool stops = command.action() == vm::Action::stop;
+  ActuatorMask dropped = 0;
+  ActuatorMask others = 0;
+  each_bit(actuators, [&](unsigned a) {
+    const vm::Actuator& actuator = program_->image.actuators[a];
+    if ((actuator.verbs & verb) == 0) {
+      others |= bit<ActuatorMask>(a);
+    } else if (stops) {
+      stage_stop(units_[a], command.verb());
+    } else if (!stage_one(units_[a], actuator, command)) {
+      dropped |= bit<ActuatorMask>(a);
+    }
+  });
+  dropped_ |= dropped;
+  staged_ |= actuators & ~(dropped | others);
   to_commit_ |= staged_;
 }
 
-// A follow behind a follow that waits is its new target, and takes no place.
-bool ControlLayer::stage_one(Unit& unit, const Command& command) {
+void ControlLayer::stage_stop(Unit& unit, std::uint8_t verb) {
   const auto lock = kernel_.lock();
-  if (command.action() == vm::Action::stop) {
-    pool_.clear(unit.staged);
-    pool_.drop_waiting(unit.queue);
-    unit.staged_stop = command.verb();
-    return true;
+  pool_.clear(unit.staged);
+  pool_.drop_waiting(unit.queue);
+  unit.staged_stop = verb;
+}
+
+[[gnu::always_inline]] inline bool ControlLayer::stage_one(Unit& unit, const vm::Actuator& actuator,
+                                                           const Command& command) {
+  const auto lock = kernel_.lock();
+  QueuedOrder* const place = place_of(unit, command.action());
+  if (place != nullptr) resolve(actuator, command, *place);
+  return place != nullptr;
+}
+
+// A follow behind a follow that waits is its new target, and takes no new place.
+QueuedOrder* ControlLayer::place_of(Unit& unit, vm::Action action) {
+  if (action == vm::Action::follow) {
+    const bool first = unit.staged.count == 0 && unit.staged_stop == kNoVerb;
+    const CommandPool::Queue& behind = first ? unit.queue : unit.staged;
+    if (pool_.renews(behind)) return &pool_.last(behind);
   }
-  const bool first = unit.staged.count == 0 && unit.staged_stop == kNoVerb;
-  CommandPool::Queue& behind = first ? unit.queue : unit.staged;
-  if (command.action() == vm::Action::follow && pool_.renews(behind)) {
-    pool_.renew(behind, command);
-    return true;
-  }
-  return unit.queue.count + unit.staged.count < policy::kMaxQueued &&
-         pool_.push(unit.staged, command);
+  if (unit.queue.count + unit.staged.count >= policy::kMaxQueued) return nullptr;
+  return pool_.push(unit.staged);
 }
 
 ActuatorMask ControlLayer::take_staged() {
@@ -131,29 +148,38 @@ ControlLayer::Unit& ControlLayer::first_in_rank(ActuatorMask actuators) const {
 
 void ControlLayer::commit_staged() {
   const auto lock = kernel_.lock();
-  for (ActuatorMask left = std::exchange(to_commit_, 0); left != 0; left &= left - 1) {
-    const auto a = static_cast<unsigned>(std::countr_zero(left));
+  ActuatorMask all = std::exchange(to_commit_, 0);
+  if ((all & retired_) != 0) [[unlikely]]
+    drop_staged(all & retired_);
+  each_bit(all, [&](unsigned a) {
     Unit& unit = units_[a];
-    if (unit.staged.count == 0 && unit.staged_stop == kNoVerb) continue;
-    if (has(retired_, a)) {
-      pool_.clear(unit.staged);
-      unit.staged_stop = kNoVerb;
-      idle_ |= bit<ActuatorMask>(a);
-      kernel_.signal(step_thread_, events_.idle);
-      continue;
-    }
-    hand_over(unit);
-    kernel_.signal(*unit.thread, kCommit);
-  }
+    if (hand_over(unit)) kernel_.signal(*unit.thread, kCommit);
+  });
+}
+
+// Of actuators whose threads were stopped.
+[[gnu::cold]] void ControlLayer::drop_staged(ActuatorMask actuators) {
+  each_bit(actuators, [&](unsigned a) {
+    Unit& unit = units_[a];
+    pool_.clear(unit.staged);
+    unit.staged_stop = kNoVerb;
+  });
+  idle_ |= actuators;
+  kernel_.signal(step_thread_, events_.idle);
 }
 
 // Behind what the same response has sent in an earlier step; its new owner gets an actuator with an
-// empty queue. If it was idle, it is no more.
-void ControlLayer::hand_over(Unit& unit) {
-  if (unit.staged_stop != kNoVerb) unit.stopping = std::exchange(unit.staged_stop, kNoVerb);
+// empty queue. If it was idle, it is no more. False: it has a new target only.
+inline bool ControlLayer::hand_over(Unit& unit) {
+  if (unit.staged_stop != kNoVerb) {
+    unit.stopping = std::exchange(unit.staged_stop, kNoVerb);
+  } else if (unit.staged.count == 0) {
+    return false;
+  }
   pool_.append(unit.queue, unit.staged);
   unit.committed = trace_.step();
   idle_ &= ~bit<ActuatorMask>(unit.actuator);
+  return true;
 }
 
 ActuatorMask ControlLayer::take_all_idle() {
@@ -282,9 +308,9 @@ void ControlLayer::run(Unit& unit) {
 
 // It follows, and has a new target.
 bool ControlLayer::goes_elsewhere(const Unit& unit) const {
+  if (!unit.follows) return false;
   const auto lock = kernel_.lock();
-  return unit.follows && unit.queue.count > 0 &&
-         pool_.front(unit.queue).action() == vm::Action::follow;
+  return unit.queue.count > 0 && pool_.front(unit.queue).order.action == vm::Action::follow;
 }
 
 // Begins commands until one needs time, or none is left. Returns when to wake.
@@ -309,24 +335,26 @@ bool ControlLayer::claim_next(Unit& unit) {
 
 // It is told before it is started, and both do not stand on the stack at once.
 void ControlLayer::begin_next(Unit& unit, const Stamp& stamp, kernel::Time& wake) {
+  const QueuedOrder& command = pool_.front(unit.queue);
   if (trace_.listening()) [[unlikely]]
-    tell_command(unit, pool_.front(unit.queue), stamp);
-  unit.follows = pool_.front(unit.queue).action() == vm::Action::follow;
-  wake = keep_at(unit, start_driver(unit, pool_.front(unit.queue)), stamp);
+    tell_command(unit, command, stamp);
+  unit.follows = command.order.action == vm::Action::follow;
+  wake = keep_at(unit, start_driver(unit, command), stamp);
   const auto lock = kernel_.lock();
   pool_.pop(unit.queue);
 }
 
-[[gnu::noinline]] kernel::Time ControlLayer::start_driver(Unit& unit, const Command& command) {
-  if (command.action() == vm::Action::perform) return start_performance(unit, command);
+[[gnu::noinline]] kernel::Time ControlLayer::start_driver(Unit& unit, const QueuedOrder& command) {
+  const drivers::Order& order = command.order;
+  if (order.action == vm::Action::perform) return start_performance(unit, order);
   unit.performance.end();
-  drivers::Order order;
-  if (!resolve(wiring(unit), command, order) || is_halted(unit)) return drivers::kDone;
+  if (!command.complete || is_halted(unit)) return drivers::kDone;
   return drivers::driver(wiring(unit).driver).start(device(unit), order, kernel_.now());
 }
 
-[[gnu::noinline]] kernel::Time ControlLayer::start_performance(Unit& unit, const Command& command) {
-  unit.performance.begin(program_->image, unit.actuator, command, kernel_.now());
+[[gnu::noinline]] kernel::Time ControlLayer::start_performance(Unit& unit,
+                                                               const drivers::Order& order) {
+  unit.performance.begin(program_->image, unit.actuator, order, kernel_.now());
   return is_halted(unit) ? drivers::kDone : next_key(unit, kernel_.now());
 }
 
@@ -426,19 +454,14 @@ void ControlLayer::tell_stop(const Unit& unit, unsigned verb, const Stamp& stamp
 }
 
 // values: the word or -1, the mask of parameters the program gave, and these, limits applied.
-void ControlLayer::tell_command(const Unit& unit, const Command& command, const Stamp& stamp) {
+void ControlLayer::tell_command(const Unit& unit, const QueuedOrder& command, const Stamp& stamp) {
   link::Event event;
-  Trace::begin(event, EventKind::command, stamp, unit.actuator, command.verb());
-  event.values[0] = command.word() == vm::kNoWord ? -1 : command.word();
-  event.values[1] = command.given();
+  Trace::begin(event, EventKind::command, stamp, unit.actuator, command.verb);
+  event.values[0] = command.word == vm::kNoWord ? -1 : command.word;
+  event.values[1] = command.given;
   event.value_count = 2;
-  const vm::Actuator& actuator = wiring(unit);
-  const bool is_limited = command.action() != vm::Action::perform;
-  each_bit(command.given(), [&](unsigned p) {
-    const vm::Value value = command.param(p);
-    event.values[event.value_count++] =
-        is_limited ? limited(actuator, static_cast<vm::Param>(p), value) : value;
-  });
+  each_bit(command.given,
+           [&](unsigned p) { event.values[event.value_count++] = command.order.params[p]; });
   trace_.emit(event);
 }
 

@@ -2,7 +2,7 @@
 //
 // The step thread stages the commands of a step as responses end; it cancels what was interrupted
 // and waits until that is done, then commits what was staged, all at once. An actuator
-// does one command at a time and the rest of its queue (kMaxQueued) in order. Words and limits of
+// does one command at a time and the rest of its queue (kMaxQueued) in order. Limits of
 // the robot are applied here, whatever the program says.
 //
 // STOP is a command that does not wait: what stands before it in the queue is dropped, and what the
@@ -112,18 +112,21 @@ private:
   void commit_staged();
   ActuatorMask take_all_idle();
   ActuatorMask take_newly_halted();
-  bool stage_one(Unit& unit, const Command& command);
+  void stage_stop(Unit& unit, std::uint8_t verb);
+  [[nodiscard]] bool stage_one(Unit& unit, const vm::Actuator& actuator, const Command& command);
+  QueuedOrder* place_of(Unit& unit, vm::Action action);
   [[nodiscard]] bool start_unit(unsigned actuator, ProgramThreads& threads);
   void run(Unit& unit);
   bool goes_elsewhere(const Unit& unit) const;
   kernel::Time work_off(Unit& unit, const Stamp& stamp);
   void begin_next(Unit& unit, const Stamp& stamp, kernel::Time& wake);
-  kernel::Time start_driver(Unit& unit, const Command& command);
-  kernel::Time start_performance(Unit& unit, const Command& command);
+  kernel::Time start_driver(Unit& unit, const QueuedOrder& command);
+  kernel::Time start_performance(Unit& unit, const drivers::Order& order);
   kernel::Time go_on(Unit& unit);
   kernel::Time next_key(Unit& unit, kernel::Time now);
   kernel::Time keep_at(Unit& unit, kernel::Time wake, const Stamp& stamp);
-  void hand_over(Unit& unit);
+  void drop_staged(ActuatorMask actuators);
+  bool hand_over(Unit& unit);
   Unit& first_in_rank(ActuatorMask actuators) const;
   void put_at_rest(Unit& unit);
   void note_cancelled(Unit& unit);
@@ -133,7 +136,8 @@ private:
   [[gnu::noinline]] kernel::Time stop_driver(Unit& unit);
   void drop_all(Unit& unit);
   [[gnu::noinline]] void tell_stop(const Unit& unit, unsigned verb, const Stamp& stamp);
-  [[gnu::noinline]] void tell_command(const Unit& unit, const Command& command, const Stamp& stamp);
+  [[gnu::noinline]] void tell_command(const Unit& unit, const QueuedOrder& command,
+                                      const Stamp& stamp);
 
   drivers::Device device(Unit& unit);
   const vm::Actuator& wiring(const Unit& unit) const {

@@ -1,8 +1,6 @@
 // Where trace events go: the link's ring on the board, the caller of the simulator on the host.
 #pragma once
 
-#include <atomic>
-
 #include "link/events.hpp"
 
 namespace robosync {
@@ -12,7 +10,7 @@ public:
   // Nobody makes an event for a sink that does not listen: so tracing costs next to nothing until
   // somebody wants to see it.
   [[gnu::always_inline]] bool listening() const {
-    return listening_.load(std::memory_order_relaxed);
+    return __atomic_load_n(&listening_, __ATOMIC_RELAXED);
   }
 
   virtual void emit(const link::Event& event) = 0;  // never blocks
@@ -20,10 +18,10 @@ public:
 protected:
   explicit EventSink(bool listening) : listening_(listening) {}
   ~EventSink() = default;
-  void set_listening(bool on) { listening_.store(on, std::memory_order_relaxed); }
+  void set_listening(bool on) { __atomic_store_n(&listening_, on, __ATOMIC_RELAXED); }
 
 private:
-  std::atomic<bool> listening_;
+  bool listening_;  // no std::atomic, whose load() the compiler calls where it saves flash
 };
 
 }  // namespace robosync

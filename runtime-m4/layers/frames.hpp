@@ -28,8 +28,14 @@ public:
   template <class ValueOf>
   static void latch(const vm::Machine& machine, const vm::Image& image,
                     const vm::Behavior& behavior, ValueOf value) {
-    for (unsigned i = 0; i < behavior.input_count; ++i)
-      machine.frame[i] = value(image.inputs[behavior.first_input + i]);
+    // Nothing is looked up again for each, as the compiler would do after every write; and the loop looks at its end.
+    unsigned left = behavior.input_count;
+    if (left == 0) return;
+    vm::Value* cell = machine.frame;
+    const std::uint8_t* input = image.inputs.data() + behavior.first_input;
+    do {
+      *cell++ = value(*input++);
+    } while (--left != 0);
   }
 
 private:

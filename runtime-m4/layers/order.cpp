@@ -25,26 +25,27 @@ constexpr vm::Value clamped(vm::Value value, vm::Value least, vm::Value most) {
 
 }  // namespace
 
-bool resolve(const vm::Actuator& actuator, const Command& command, drivers::Order& order) {
-  order.action = command.action();
-  order.given = command.known();
-  bool is_known = true;
+void resolve(const vm::Actuator& actuator, const Command& command, QueuedOrder& queued) {
+  const bool is_limited = command.action() != vm::Action::perform;
+  queued.order.action = command.action();
+  queued.order.given = command.known();
+  queued.verb = command.verb();
+  queued.word = command.word();
+  queued.given = command.given();
+  bool complete = true;
   each_bit(command.known(), [&](unsigned p) {
-    const vm::Value value = within(actuator, static_cast<Param>(p), command.param(p));
-    order.params[p] = value;
-    is_known &= value != vm::kUnknown;
+    vm::Value value = command.param(p);
+    if (is_limited) value = within(actuator, static_cast<Param>(p), value);
+    queued.order.params[p] = value;
+    complete &= value != vm::kUnknown;
   });
-  return is_known;
+  queued.complete = complete;
 }
 
 void limit(const vm::Actuator& actuator, drivers::Order& order) {
   each_bit(order.given, [&](unsigned p) {
     order.params[p] = within(actuator, static_cast<Param>(p), order.params[p]);
   });
-}
-
-vm::Value limited(const vm::Actuator& actuator, Param param, vm::Value value) {
-  return within(actuator, param, value);
 }
 
 }  // namespace robosync::layers

@@ -25,19 +25,14 @@ const vm::Track* find_track(const vm::Image& image, std::size_t motion, unsigned
   return nullptr;
 }
 
-vm::Value param_of(const Command& command, Param param, vm::Value otherwise) {
-  const auto p = static_cast<unsigned>(param);
-  return has<unsigned>(command.known(), p) ? command.param(p) : otherwise;
-}
-
 }  // namespace
 
-void Performance::begin(const vm::Image& image, unsigned actuator, const Command& command,
+void Performance::begin(const vm::Image& image, unsigned actuator, const drivers::Order& order,
                         kernel::Time now) {
   end();
-  const vm::Value item = param_of(command, Param::item, -1);
-  const vm::Value times = param_of(command, Param::times, vm::kScale);
-  tempo_ = param_of(command, Param::at, kAsWritten);
+  const vm::Value item = order.get(Param::item, -1);
+  const vm::Value times = order.get(Param::times, vm::kScale);
+  tempo_ = order.get(Param::at, kAsWritten);
   if (item < 0 || times < vm::kScale || tempo_ <= 0) return;  // kUnknown is below 0
   const auto motion = static_cast<std::size_t>(item / vm::kScale);
   const vm::Track* const track = find_track(image, motion, actuator);

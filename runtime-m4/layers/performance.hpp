@@ -19,7 +19,8 @@ class Performance {
 public:
   // Of `actuator`, by a command whose action is perform. There is nothing to do where the motion has
   // no track for it, or a parameter is unknown or not above 0.
-  void begin(const vm::Image& image, unsigned actuator, const Command& command, kernel::Time now);
+  void begin(const vm::Image& image, unsigned actuator, const drivers::Order& order,
+             kernel::Time now);
   void end() { keys_ = 0; }
 
   // There is a way to go, or the motion's time is not over.

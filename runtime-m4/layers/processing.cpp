@@ -32,7 +32,6 @@ bool starts_at_once(const LoadedProgram& program, const vm::Behavior& behavior) 
 bool ProcessingLayer::start(const LoadedProgram& program, std::span<const KeptNumber> kept,
                             Memory& memory) {
   program_ = &program;
-  snapshot_.stamp_ = {};
   snapshot_.milliseconds_ = 0;
   snapshot_.values_ = memory.take<policy::Part::snapshot, vm::Value>();
   std::ranges::fill(snapshot_.values_, vm::kUnknown);
@@ -83,28 +82,26 @@ void ProcessingLayer::run() {
 
 void ProcessingLayer::pass() {
   layers_.sensors.deliver_due();
-  kernel::Time time = 0;
-  const std::uint32_t now = read_clock(time);
+  Stamp stamp;
+  const std::uint32_t now = read_clock(stamp.time);
   adaptation_.turn(*program_, layers_.threads, trace_, now);
   // Who finished otherwise did so at the end of a step.
   if (const ActuatorMask idle = layers_.control.take_idle(); idle != 0) finish_done(idle);
-  BehaviorMask lost = 0;
-  BehaviorMask first = 0;
-  if ((lost_behaviors_ | unstarted_) != 0) [[unlikely]] {
-    lost = std::exchange(lost_behaviors_, 0);
-    first = std::exchange(unstarted_, 0);
-  }
   layers_.arbiter.note_halted(layers_.control.halted());
   const ActuatorMask halted = layers_.control.take_halted() & layers_.arbiter.owned();
   layers_.triggers.settle(now);
-  const bool anyway = lost != 0 || first != 0 || halted != 0 || is_due(now);
-  InputMask changed = 0;
-  if (!latch(time, now, anyway, changed)) return;
+  const bool lost_or_first = (lost_behaviors_ | unstarted_) != 0;
+  const bool anyway = lost_or_first || halted != 0 || is_due(now);
+  if (!latch(stamp, now, anyway)) return;
+  woken_ = 0;
   // The sensors have rung for theirs.
-  if (variables_of(changed) != 0) layers_.alarm.ring(inputs(0, variables_of(changed)));
-  if (lost != 0) interrupt_lost(lost);
+  if (variables_of(changed_) != 0) layers_.alarm.ring(inputs(0, variables_of(changed_)));
+  if (lost_or_first) [[unlikely]] {
+    interrupt_lost(std::exchange(lost_behaviors_, 0));
+    woken_ = std::exchange(unstarted_, 0);
+  }
   if (halted != 0) interrupt_halted(halted);
-  find_concerned(changed, first);
+  find_concerned();
   step();
 }
 
@@ -144,22 +141,21 @@ void ProcessingLayer::finish_if_done(unsigned rule) {
 // --- latch ---
 
 // Takes what is new into the snapshot. A step begins if there is a reading, or `anyway`.
-bool ProcessingLayer::latch(kernel::Time time, std::uint32_t now, bool anyway, InputMask& changed) {
-  const Stamp stamp{time, trace_.step().step + 1};
-  if (anyway) trace_.begin_step(stamp);
-  const ChannelMask channels = latch_channels(stamp);
-  if (!anyway && channels == 0) return false;
-  snapshot_.stamp_ = stamp;
-  snapshot_.milliseconds_ = now;
-  changed = inputs(channels, latch_variables(stamp));
-  return true;
-}
-
-ChannelMask ProcessingLayer::latch_channels(const Stamp& stamp) {
+bool ProcessingLayer::latch(Stamp& stamp, std::uint32_t now, bool anyway) {
   const ChannelMask announced = layers_.mailboxes.take_announced();
   const ChannelMask expired = layers_.mailboxes.take_expired(program_->image.channels, announced,
                                                              stamp.time + trace_.activated_at());
-  if ((announced | expired) != 0) trace_.begin_step(stamp);
+  if (!anyway && (announced | expired) == 0) return false;
+  stamp.step = trace_.step().step + 1;
+  trace_.begin_step(stamp);
+  snapshot_.milliseconds_ = now;
+  latch_channels(announced, expired, stamp);
+  changed_ = inputs(announced | expired, latch_variables(stamp));
+  return true;
+}
+
+void ProcessingLayer::latch_channels(ChannelMask announced, ChannelMask expired,
+                                     const Stamp& stamp) {
   each_bit(announced | expired, [&](unsigned c) {
     if (has(expired, c)) {
       snapshot_.values_[c] = vm::kUnknown;
@@ -169,7 +165,6 @@ ChannelMask ProcessingLayer::latch_channels(const Stamp& stamp) {
       trace_.emit(EventKind::input, stamp, c, 0, snapshot_.values_[c]);
     }
   });
-  return announced | expired;
 }
 
 VariableMask ProcessingLayer::latch_variables(const Stamp& stamp) {
@@ -198,9 +193,11 @@ void ProcessingLayer::report_set(unsigned variable, const Stamp& stamp) {
 // In how many milliseconds something is; kNever for never.
 std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
   Soonest due(now);
-  if (layers_.variables.staged()) due.at(set_due_);
-  due.in(layers_.variables.next_fade(now, snapshot_.values_.subspan(channels())));
-  due.in(checks_.next(now));
+  if (layers_.variables.may_change()) {
+    if (layers_.variables.staged()) due.at(set_due_);
+    due.in(layers_.variables.next_fade(now, snapshot_.values_.subspan(channels())));
+  }
+  if (!program_->image.checks.empty()) due.in(checks_.next(now));
   due.at(layers_.triggers.next_wake());
   layers_.arbiter.running().each([&](unsigned rule) { add_waiting(rule, due); });
   layers_.triggers.active().each([&](unsigned rule) { add_wanting(rule, due, now); });
@@ -283,11 +280,9 @@ void ProcessingLayer::retire(const ProgramThreads::Member& member) {
 // * The first time, all rules of a behaviour are evaluated: there are conditions without inputs,
 //   and such that are known whatever their inputs are.
 //
-// `begins`: behaviours that have something to do without a reading.
-void ProcessingLayer::find_concerned(InputMask changed, BehaviorMask begins) {
-  concerned_.clear();
-  changed_ = changed;
-  woken_ = begins;
+// `woken_` has the behaviours that have something to do without a reading.
+void ProcessingLayer::find_concerned() {
+  const InputMask changed = changed_;
   layers_.triggers.add_woken(snapshot_.milliseconds(), concerned_);
   concerned_.each(
       [this](unsigned rule) { woken_ |= bit<BehaviorMask>(program_->behavior_of[rule]); });
@@ -344,8 +339,9 @@ void ProcessingLayer::step() {
   }
   set_due_ = snapshot_.milliseconds() + 1;
   layers_.control.commit();
-  finish_done(0);
+  if (!layers_.arbiter.running().empty()) finish_done(0);
   layers_.arbiter.end_step();
+  concerned_.clear();  // here, where no command waits for it
 }
 
 // The first rule that is not below `rule` and is concerned, wants to run, or runs.
@@ -371,10 +367,10 @@ void ProcessingLayer::take_sole_turn(unsigned behavior, unsigned rule) {
   const bool follows = layers_.triggers.follows(rule);
   if (follows) collect(rule);
   if (Claim claim; layers_.behaviors.sole_claim_of(behavior, claim)) {
-    serve(claim, false);
+    const bool wins = serve(claim, false);
     layers_.triggers.forget(rule);
     cancel_interrupted();
-    if (layers_.arbiter.runs(claim.rule)) conclude(claim.rule);
+    if (wins) conclude(claim.rule);
     return;
   }
   if (follows) arbitrate(rule);
@@ -392,10 +388,10 @@ void ProcessingLayer::take_turn(unsigned behavior, RuleRange rules) {
     layers_.triggers.keep_concerned(concerned_, rules);
     concerned_.each_in(rules, [this](unsigned rule) { collect(rule); });
     if (Claim claim; layers_.behaviors.sole_claim_of(behavior, claim)) {
-      serve(claim, false);
+      const bool wins = serve(claim, false);
       concerned_.each_in(rules, [this](unsigned rule) { layers_.triggers.forget(rule); });
       cancel_interrupted();
-      if (layers_.arbiter.runs(claim.rule)) conclude(claim.rule);
+      if (wins) conclude(claim.rule);
       return;
     }
   }
@@ -444,20 +440,24 @@ void ProcessingLayer::arbitrate(unsigned rule) {
   layers_.triggers.forget(rule);
 }
 
-void ProcessingLayer::serve(const Claim& claim, bool silent) {
+// Returns whether it has won.
+bool ProcessingLayer::serve(const Claim& claim, bool silent) {
+  if (!layers_.arbiter.is_free(claim) && !prevails(claim, silent)) return false;
+  report(claim, EventKind::win);
+  layers_.triggers.won(claim.rule, claim.side, snapshot_.milliseconds());
+  layers_.arbiter.give(claim);
+  return true;
+}
+
+// Against those whose actuators it wants, and against itself.
+bool ProcessingLayer::prevails(const Claim& claim, bool silent) {
   const Decision decision = layers_.arbiter.decide(claim);
-  const bool was_running = layers_.arbiter.works(claim.rule);
-  if (was_running || (claim.actuators & layers_.arbiter.owned()) != 0)
-    interrupt_by(claim, decision);
-  if (decision.wins()) {
-    report(claim, EventKind::win);
-    layers_.triggers.won(claim.rule, claim.side, snapshot_.milliseconds());
-    layers_.arbiter.give(claim);
-    return;
-  }
+  interrupt_by(claim, decision);
+  if (decision.wins()) return true;
   if (!silent) report(claim, EventKind::lose, decision.owner);
   const bool to_itself = decision.outcome == Outcome::ignored;
   layers_.triggers.lost(claim.rule, to_itself, snapshot_.milliseconds());
+  return false;
 }
 
 void ProcessingLayer::interrupt_by(const Claim& claim, const Decision& decision) {
@@ -527,7 +527,7 @@ void ProcessingLayer::conclude(unsigned rule) {
 
 // The old ones end before the new ones begin, and before those send commands: what the old ones had
 // in their queues takes no place from them.
-void ProcessingLayer::cancel_interrupted() {
+void ProcessingLayer::cancel_some() {
   while (cancelled_ != 0) {
     cancelled_ &= ~layers_.control.cancel_first(cancelled_);
     await(kCancelled, [this] { return layers_.control.cancelling(); });

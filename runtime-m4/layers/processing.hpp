@@ -125,8 +125,8 @@ private:
   void finish_if_done(unsigned rule);
   bool is_due(std::uint32_t now) const;
   std::uint32_t read_clock(kernel::Time& time) const;
-  bool latch(kernel::Time time, std::uint32_t now, bool anyway, InputMask& changed);
-  ChannelMask latch_channels(const Stamp& stamp);
+  bool latch(Stamp& stamp, std::uint32_t now, bool anyway);
+  void latch_channels(ChannelMask announced, ChannelMask expired, const Stamp& stamp);
   VariableMask latch_variables(const Stamp& stamp);
   void report_set(unsigned variable, const Stamp& stamp);
   std::uint32_t next_due(std::uint32_t now) const;
@@ -137,7 +137,7 @@ private:
   [[gnu::cold]] void retire(const ProgramThreads::Member& member);
 
   // --- what a step concerns ---
-  void find_concerned(InputMask changed, BehaviorMask begins);
+  void find_concerned();
   [[gnu::noinline]] void touch();
   [[gnu::cold]] void concern_all(unsigned behavior);
   bool stirred(unsigned behavior) const;
@@ -152,14 +152,18 @@ private:
   [[gnu::cold]] void interrupt_halted(ActuatorMask halted);
   void collect(unsigned rule);
   void arbitrate(unsigned rule);
-  void serve(const Claim& claim, bool silent);
+  bool serve(const Claim& claim, bool silent);
+  [[gnu::noinline]] bool prevails(const Claim& claim, bool silent);
   [[gnu::noinline]] void interrupt_by(const Claim& claim, const Decision& decision);
   void interrupt(unsigned rule, unsigned by);
   bool goes_on(unsigned rule) const;
   void run_response(unsigned rule);
   void await_behavior();
   void conclude(unsigned rule);
-  void cancel_interrupted();
+  void cancel_interrupted() {
+    if (cancelled_ != 0) cancel_some();
+  }
+  [[gnu::noinline]] void cancel_some();
   void report(const Claim& claim, link::EventKind kind, unsigned object = 0);
 
   unsigned channels() const { return static_cast<unsigned>(program_->image.channels.size()); }

@@ -26,14 +26,22 @@ void Triggers::start(const vm::Image& image, Memory& memory) {
   delay_of_ = memory.take<policy::Part::delay_of, std::uint16_t>();
   until_ = memory.take<policy::Part::until, std::uint32_t>();
   std::uint16_t delays = 0;
-  for (std::size_t rule = 0; rule < image.rules.size(); ++rule)
+  for (unsigned rule = 0; rule < image.rules.size(); ++rule) {
+    start_phase(rule);
     if (policy::has_delays(image.rules[rule])) delay_of_[rule] = delays++;
+  }
   const auto words = memory.take<policy::Part::trigger_sets, RuleSet::Word>();
   eventful_.start(part_of(words, policy::kTriggerSets, 0));
   active_.start(part_of(words, policy::kTriggerSets, 1));
   sleeping_.start(part_of(words, policy::kTriggerSets, 2));
   first_to_wake_ = kNobody;
   next_wake_ = kNever;
+}
+
+void Triggers::start_phase(unsigned rule) {
+  const vm::RuleKind kind = image_->rules[rule].kind;
+  phases_[rule] = {.is_while = kind == vm::RuleKind::while_,
+                   .chooses = kind == vm::RuleKind::when_else};
 }
 
 const vm::Modifiers& Triggers::modifiers(unsigned rule) const {
@@ -56,8 +64,7 @@ void Triggers::judge(unsigned rule, vm::Value condition, bool event) {
   const Truth before = state.truth;
   state.truth = truth;
   if (truth == Truth::yes && (before != Truth::yes || event)) state.trigger = Trigger::then;
-  if (truth == Truth::no && before != Truth::no &&
-      image_->rules[rule].kind == vm::RuleKind::when_else)
+  if (truth == Truth::no && before != Truth::no && chooses(rule))
     state.trigger = Trigger::otherwise;
   if (truth == Truth::no && is_while(rule)) state.trigger = Trigger::none;
 }
@@ -112,9 +119,9 @@ void Triggers::collect(unsigned rule) {
 void Triggers::note_active(unsigned rule) {
   const State& state = phases_[rule];
   bool active = state.cooling != 0 || state.waiting || goes_round(rule);
-  const bool was_active = active_.has(rule);
-  if (Side side{}; was_active && !active) active = chooses(rule) && is_unsettled(rule, side);
-  if (active || was_active) active_.put(rule, active);
+  if (!active && !active_.has(rule)) return;
+  if (Side side{}; !active) active = chooses(rule) && is_unsettled(rule, side);
+  active_.put(rule, active);
 }
 
 bool Triggers::is_unsettled(unsigned rule, Side& side) const {
@@ -151,9 +158,9 @@ void Triggers::settle_active(std::uint32_t now) {
 }
 
 bool Triggers::take_zero_divide(unsigned rule) {
-  const bool divided = judgement(rule).zero_divide;
+  if (!judgement(rule).zero_divide) return false;
   judgement(rule).zero_divide = false;
-  return divided;
+  return true;
 }
 
 bool Triggers::wish(unsigned rule, bool running, Wish& wish) const {
@@ -163,35 +170,30 @@ bool Triggers::wish(unsigned rule, bool running, Wish& wish) const {
     wish = {.side = side, .fresh = true, .silent = false};
     return true;
   }
-  switch (image_->rules[rule].kind) {
-    case vm::RuleKind::while_:
-      return goes_round(rule) && !running && !cools(rule, Side::then);
-    case vm::RuleKind::when_else:
-      return is_unsettled(rule, wish.side) && !cools(rule, wish.side);
-    default:
-      return state.waiting;
-  }
+  if (state.is_while) return goes_round(rule) && !running && !cools(rule, Side::then);
+  if (state.chooses) return is_unsettled(rule, wish.side) && !cools(rule, wish.side);
+  return state.waiting;
 }
 
 bool Triggers::is_over(unsigned rule) const {
   return is_while(rule) && judgement(rule).truth != Truth::yes;
 }
 
-bool Triggers::restarting(unsigned rule) const {
-  return modifiers(rule).restarting != 0;
-}
-
 void Triggers::won(unsigned rule, Side side, std::uint32_t now) {
   State& state = phases_[rule];
-  const std::uint32_t cooldown = milliseconds_of(modifiers(rule).cooldown);
   state.told = false;
   state.waiting = false;
   state.last = static_cast<std::uint8_t>(mask_of(side)) & 3U;
-  if (cooldown > 0) {
-    state.cooling = static_cast<std::uint8_t>(state.cooling | mask_of(side)) & 3U;
-    until(rule, side) = now + cooldown;
-  }
+  if (policy::has_delays(image_->rules[rule])) begin_cooldown(rule, side, now);
   note_active(rule);
+}
+
+void Triggers::begin_cooldown(unsigned rule, Side side, std::uint32_t now) {
+  const std::uint32_t cooldown = milliseconds_of(modifiers(rule).cooldown);
+  if (cooldown == 0) return;
+  State& state = phases_[rule];
+  state.cooling = static_cast<std::uint8_t>(state.cooling | mask_of(side)) & 3U;
+  until(rule, side) = now + cooldown;
 }
 
 // A WHILE and a WHEN/ELSE go on wanting anyway; and who runs already does not wait for himself.
@@ -213,7 +215,7 @@ void Triggers::lost(unsigned rule, bool to_itself, std::uint32_t now) {
 void Triggers::retire(unsigned rule) {
   judgement(rule) = Judgement{};
   workspace_.due[rule] = kNever;
-  phases_[rule] = State{};
+  start_phase(rule);
   eventful_.erase(rule);
   active_.erase(rule);
   sleeping_.erase(rule);

@@ -77,9 +77,9 @@ public:
     if (!active_.empty()) settle_active(now);
   }
   bool take_zero_divide(unsigned rule);
+  [[gnu::always_inline]] bool is_while(unsigned rule) const { return phases_[rule].is_while; }
   // A WHILE whose condition does not hold.
   bool is_over(unsigned rule) const;
-  bool restarting(unsigned rule) const;
   // What became of its wish, or of its response.
   void won(unsigned rule, Side side, std::uint32_t now);
   void lost(unsigned rule, bool to_itself, std::uint32_t now);
@@ -129,23 +129,26 @@ private:
     std::uint8_t last : 2 = 0;     // the side that was the last to run; none at first
     bool waiting : 1 = false;      // WAITING, for its one side
     bool told : 1 = false;         // that it wants to run and does not
+    // Of the image, where they are at hand.
+    bool is_while : 1 = false;
+    bool chooses : 1 = false;  // a WHEN/ELSE
   };
+  static_assert(sizeof(State) == 1);
   static constexpr std::uint16_t kNobody = 0xFFFF;
   static constexpr unsigned mask_of(Side side) { return 1U << static_cast<unsigned>(side); }
 
   RuleBits noted() const { return RuleBits(workspace_.noted.data()); }
   // Of a rule with modifiers: the end of its cooldown, by side; of the waiting as well, which has no other side.
   std::uint32_t& until(unsigned rule, Side side) const;
-  bool chooses(unsigned rule) const { return image_->rules[rule].kind == vm::RuleKind::when_else; }
+  bool chooses(unsigned rule) const { return phases_[rule].chooses; }
   // Of a WHEN/ELSE: the chosen side was not the last to run.
   bool is_unsettled(unsigned rule, Side& side) const;
-  [[gnu::always_inline]] bool is_while(unsigned rule) const {
-    return image_->rules[rule].kind == vm::RuleKind::while_;
-  }
   const vm::Modifiers& modifiers(unsigned rule) const;
   Judgement& judgement(unsigned rule) const { return workspace_.judgements[rule]; }
   std::uint32_t due(unsigned rule) const { return workspace_.due[rule]; }
   void note_active(unsigned rule);
+  void start_phase(unsigned rule);
+  void begin_cooldown(unsigned rule, Side side, std::uint32_t now);
   void settle_active(std::uint32_t now);
   void find_first_to_wake();
   void wake_first(unsigned rule) {

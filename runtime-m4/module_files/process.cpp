@@ -71,7 +71,7 @@ void settle_in(int line) {
   closefrom(STDERR_FILENO + 2);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-#if !defined(__SANITIZE_ADDRESS__)  // which reserves more than any computer has
+#if !defined(ROBOSYNC_SANITIZE)  // which reserves more than any computer has
   const rlimit memory{kMostMemory, kMostMemory};
   setrlimit(RLIMIT_AS, &memory);
 #endif

@@ -18,6 +18,19 @@ constexpr std::size_t count_of(std::uint32_t head) {
   return head >> 8 & 0xFF;
 }
 
+// Calls put() with the words of an event, of which so many are values.
+template <class Put>
+[[gnu::always_inline]] inline void each_word(const link::Event& event, std::size_t values,
+                                             Put put) {
+  put(head(link::MessageType::event, values, event.subject));
+  put(static_cast<std::uint32_t>(event.kind) | std::uint32_t{event.object} << 16);
+  put(event.step);
+  put(static_cast<std::uint32_t>(event.time_us));
+  put(static_cast<std::uint32_t>(event.time_us >> 32));
+  for (std::size_t v = 0; v < values; ++v)
+    put(static_cast<std::uint32_t>(event.values[v]));
+}
+
 }  // namespace
 
 void TraceRing::listen(bool on) {
@@ -41,16 +54,13 @@ void TraceRing::emit(const link::Event& event) {
   const std::size_t values = std::min<std::size_t>(event.value_count, link::kMaxEventValues);
   const auto lock = kernel_.lock();
   if (!make_room(kEventHead + values)) return;
-  std::size_t end = put_;  // kept in a register, which a member is not while words are written
-  const auto put = [this, &end](Word word) { ring_[end++ % kWords] = word; };
-  put(head(link::MessageType::event, values, event.subject));
-  put(static_cast<Word>(event.kind) | Word{event.object} << 16);
-  put(event.step);
-  put(static_cast<Word>(event.time_us));
-  put(static_cast<Word>(event.time_us >> 32));
-  for (std::size_t v = 0; v < values; ++v)
-    put(static_cast<Word>(event.values[v]));
-  put_ = end;
+  const std::size_t at = put_ % kWords;
+  if (at + kEventHead + values > kWords) [[unlikely]]
+    return each_word(event, values, [this](Word word) { put(word); });
+  Word* end = &ring_[at];
+  each_word(
+      event, values, [&end](Word word) __attribute__((always_inline)) { *end++ = word; });
+  put_ += kEventHead + values;
 }
 
 void TraceRing::log(std::string_view line) {

@@ -24,6 +24,7 @@ BLOCK = RATE // 50 * BYTES
 PAUSE_S = 1.5
 LOUDEST = 3277  # root of the mean square of the loudest block: 20 dB below the loudest tone there is
 LONGEST_S = 20  # of a recording, which is cut there
+RAW = ("-r", str(RATE), "-c", "1", "-b", "16", "-e", "signed", "-t", "raw", "-")  # how sox gives it
 NOISES_DB = (40, 20, 10, 5)  # how far the noise is below that block; 40: a quiet room
 ROBOT = {
     "sensors": [{"name": "microphone", "type": "VIRTUAL", "device": "microphone"}],
@@ -67,19 +68,20 @@ def kinds():
 
 def read(path):
     """The recording at 8,000 samples a second; None where sox cannot read it, or hears nothing."""
-    said = subprocess.run(["sox", "-R", str(path), "-r", str(RATE), "-c", "1", "-b", "16", "-e", "signed", "-t", "raw", "-"],
-                          capture_output=True, check=False)
-    sound = said.stdout[:LONGEST_S * RATE * BYTES]
+    said = subprocess.run(["sox", "-R", path, *RAW], capture_output=True, check=False)
+    return None if said.returncode != 0 else as_loud(said.stdout[:LONGEST_S * RATE * BYTES])
+
+
+def as_loud(sound):
+    """As the others in its loudest block; None when nothing is heard."""
     loudest = max((audioop.rms(sound[at:at + BLOCK], BYTES) for at in range(0, len(sound) - BLOCK + 1, BLOCK)), default=0)
-    if said.returncode != 0 or loudest == 0:
-        return None
-    return audioop.mul(sound, BYTES, LOUDEST / loudest)
+    return None if loudest == 0 else audioop.mul(sound, BYTES, LOUDEST / loudest)
 
 
 def noise(length):
     """As much of it, the same every time, as loud as the loudest block of a recording."""
-    sound = subprocess.run(["sox", "-R", "-n", "-r", str(RATE), "-c", "1", "-b", "16", "-e", "signed", "-t", "raw", "-",
-                            "synth", "20", "pinknoise", "gain", "-12"], capture_output=True, check=True).stdout
+    sound = subprocess.run(["sox", "-R", "-n", *RAW, "synth", "20", "pinknoise", "gain", "-12"],
+                           capture_output=True, check=True).stdout
     sound = audioop.mul(sound, BYTES, LOUDEST / audioop.rms(sound, BYTES))
     return (sound * (length // len(sound) + 1))[:length]
 
@@ -99,26 +101,30 @@ def lay_out(files):
     return bytes(sound), places
 
 
-def heard(sound):
-    """[(time in seconds, event)] as the robot names them."""
+def run(robot, program, sound, *options):
+    """The events of the robot that hears the sound."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         with wave.open(str(folder / "sound.wav"), "wb") as file:
             file.setparams((1, BYTES, RATE, 0, "NONE", ""))
             file.writeframes(sound)
-        duration = len(sound) / BYTES / RATE
-        (folder / "robot.json").write_text(json.dumps(ROBOT))
-        (folder / "robot.rsl").write_text(PROGRAM)
+        (folder / "robot.json").write_text(json.dumps(robot))
+        (folder / "robot.rsl").write_text(program)
         (folder / "play.json").write_text(json.dumps(
-            {"duration": f"{duration:.0f}s", "stimuli": [{"sound": "sound.wav", "sensor": "microphone"}]}))
+            {"duration": f"{milliseconds(sound)}ms", "stimuli": [{"sound": "sound.wav", "sensor": "microphone"}]}))
         ran = subprocess.run([ROOT / "build/host/rsc", "run", folder / "robot.rsl", "--scenario", folder / "play.json",
-                              "--format", "json"], capture_output=True, text=True, check=True)
-    events = []
-    for line in ran.stdout.splitlines():
-        event = json.loads(line)
-        if event.get("event") == "command" and event.get("verb") == "SAY":
-            events.append((event["t_us"] / 1e6, event["word"]))
-    return events
+                              "--format", "json", *options], capture_output=True, text=True, check=True)
+    return [json.loads(line) for line in ran.stdout.splitlines()]
+
+
+def milliseconds(sound):
+    return round(len(sound) / BYTES / RATE * 1000)
+
+
+def heard(sound):
+    """[(time in seconds, event)] as the robot names them."""
+    return [(event["t_us"] / 1e6, event["word"]) for event in run(ROBOT, PROGRAM, sound)
+            if event.get("event") == "command" and event.get("verb") == "SAY"]
 
 
 def count(places, events, wanted):
@@ -127,11 +133,11 @@ def count(places, events, wanted):
     return sum(any(begin <= time <= end + 1 for time in times) for begin, end in places)
 
 
-def rates(half):
+def rates(which):
     """Rows: kind, of how many, then for each noise: (claps, speech)."""
     rows = []
     for kind in kinds():
-        sound, places = lay_out(kind.files[half::2])
+        sound, places = lay_out(kind.files[which::2])
         hiss = noise(len(sound))
         counts = []
         for below in NOISES_DB:
@@ -142,9 +148,11 @@ def rates(half):
     return rows
 
 
+def title(below):
+    return "in a quiet room" if below == NOISES_DB[0] else f"noise {below} dB below"
+
+
 def table(rows):
-    def title(below):
-        return "in a quiet room" if below == NOISES_DB[0] else f"noise {below} dB below"
     lines = ["| recordings | taken for | " + " | ".join(map(title, NOISES_DB)) + " |", "|---|---" + "|---" * len(NOISES_DB) + "|"]
     for kind, total, minutes, counts in rows:
         for place, event in enumerate(("clap", "speech")):
@@ -154,13 +162,21 @@ def table(rows):
     return "\n".join(lines)
 
 
-def main():
-    text = table(rates(0 if "--settings" in sys.argv else 1))
+def show(text, mark):
+    """Prints the table, and puts it into the page behind its mark where that is asked for."""
     print(text)
     if "--write" in sys.argv:
-        before, rest = PAGE.read_text().split("<!-- scripts/rates -->\n", 1)
+        before, rest = PAGE.read_text().split(f"{mark}\n", 1)
         after = rest.split("<!-- end -->", 1)[1]
-        PAGE.write_text(f"{before}<!-- scripts/rates -->\n{text}\n<!-- end -->{after}")
+        PAGE.write_text(f"{before}{mark}\n{text}\n<!-- end -->{after}")
+
+
+def half():
+    return 0 if "--settings" in sys.argv else 1
+
+
+def main():
+    show(table(rates(half())), "<!-- scripts/rates -->")
 
 
 if __name__ == "__main__":

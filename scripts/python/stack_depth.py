@@ -16,7 +16,7 @@ OUTPUTS = BOARD + r"(pwm_write|pwm_read|pins|show|sound)\("
 INPUTS = BOARD + r"(i2c_\w+|input)\("
 STORE = r"boards::(\w+::)?(Eeprom|Store|FlashStore<.*>|Flash)::"
 RUNTIME = r"Runtime::(began|halt|hold_to_budgets|look_at_rules|obey|progress|resting|running|tend_outputs)\("
-MODULE = r"^(state_bytes|scratch_bytes|cost|init|strength|\w+_process)\b"
+MODULE = r"^(state_bytes|robosync_no_scratch|cost|init|strength|\w+_process)\b"
 CALLED_BY_POINTER = (
     (r"layers::Trace::", r"update::TraceRing::"),
     (r"layers::ControlLayer::(start_driver|stop_driver|next_key)", r"drivers::\w+::start\("),

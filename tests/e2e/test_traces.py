@@ -58,7 +58,9 @@ class Traces(TraceTest):
                 ("feeling", stimuli.FEELING_UNITS, stimuli.touches, {"tap", "pat", "stroke", "firm"}),
                 ("moving", stimuli.MOVING_UNITS, stimuli.motions,
                  {"shaken", "tapped", "falling", "lifted", "left", "jerked"}),
-                ("hearing", stimuli.HEARING_UNITS, stimuli.sounds, {"clap", "speech", "sound", "loud"})):
+                ("hearing", stimuli.HEARING_UNITS, stimuli.sounds, {"clap", "speech", "sound", "loud"}),
+                ("singing", stimuli.HEARING_UNITS, stimuli.songs,
+                 {"la", "whistle", "up", "down", "in tune", "melody", "silence"})):
             with self.subTest(name):
                 self.units = units
                 lines = self.check(PROGRAMS / f"{name}.rsl", recording(0), PROGRAMS / f"{name}.json")

@@ -16,7 +16,7 @@
 
 #include "tests/fuzz/campaign.hpp"
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(ROBOSYNC_SANITIZE)
 #include <sanitizer/common_interface_defs.h>
 #endif
 
@@ -149,7 +149,7 @@ int run(const Options& options) {
   Campaign campaign(seeds, options.seed, failed);
   wanted = &options;
   running = &campaign;
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(ROBOSYNC_SANITIZE)
   __sanitizer_set_death_callback(save);
 #endif
   Emitter emitter(options.emit, options.images);

@@ -75,12 +75,16 @@ def check(seed, rsc=comparison.RSC, scripts=SCRIPTS, board=None):
             return Result(refused=1)
 
 
+def delayed(readings, by_ms):
+    return [reading._replace(at_ms=reading.at_ms + by_ms) for reading in readings]
+
+
 def check_board(seed, program, readings, rsc, board):
     """What rsc, the reference and the board do with the same readings. Every other program is played as it is written."""
     text, source, images, folder = program
     image = images[seed % len(images)]
     for lead_ms in LEADS_MS:
-        later = [reading._replace(at_ms=reading.at_ms + lead_ms) for reading in readings]
+        later = delayed(readings, lead_ms)
         result = compare((text, source, [image], folder), later, rsc)
         difference, why = play(image, later, folder, rsc, board)
         if why == "refused":

@@ -86,6 +86,38 @@ TEST_CASE("a robot hears a clap and a voice in a recording, whatever its rate an
   }
 }
 
+TEST_CASE("the singing teacher nods to whoever sings its note, and comes for a whistle") {
+  // From 4 s on a voice, a G and then an A; at 9 s a whistle that rises by an octave in half a second.
+  const auto singing = [](double at) {
+    const auto voice = [&](double hertz) {
+      double sum = 0;
+      for (int n = 1; n <= 6; ++n)
+        sum += std::sin(2 * M_PI * hertz * n * at) / n;
+      return sum * 0.2;
+    };
+    if (at >= 4 && at < 5.5) return voice(196);
+    if (at >= 6 && at < 7.5) return voice(220);
+    if (at >= 9 && at < 9.5) return 0.4 * std::sin(2 * M_PI * (800 + 800 * (at - 9)) * (at - 9));
+    return 0.001 * std::sin(at * 1000);
+  };
+  const Folder folder;
+  folder.write("song.wav", wav(16000, 1, 11, singing));
+  folder.write("song.json", R"({"duration": "11s", "stimuli": [
+    {"sound": "song.wav", "sensor": "microphone"},
+    {"at": "0s", "sensor": "hand", "channel": "TOUCH", "value": "no"},
+    {"at": "1s", "sensor": "hand", "channel": "TOUCH", "value": "yes"}]})");
+  const std::string teacher = EXAMPLES "/singing_teacher/robot.rsl";
+  const Outcome ran = rsc({"run", teacher, "--scenario", folder.path("song.json")});
+  INFO(ran.out << ran.err);
+  CHECK(ran.exit == 0);
+  const std::size_t higher = ran.out.find("voice SAY Higher"), nod = ran.out.find("PERFORM nod"),
+                    yes = ran.out.find("voice SAY Yes?");
+  CHECK(higher < nod);
+  CHECK(nod < yes);
+  CHECK(yes != std::string::npos);
+  CHECK_THAT(ran.out, !Contains("Lower"));
+}
+
 TEST_CASE("a file that is no sound, is too coarse or is not there is said to be so") {
   const Folder folder;
   CHECK(play(folder).exit == 3);

@@ -15,7 +15,7 @@ from pathlib import Path
 import paths
 import rsc
 import stimuli
-from board import FAST, FIRMWARE, Board
+from board import FAST, FIRMWARE, REAL_TIME, Board
 from on_board import without_parts
 from paths import counting, feed, run, wait
 from timing import examples
@@ -119,11 +119,11 @@ class Table(unittest.TestCase):
         one, two = (run(f"REMEMBER v = 0\nREMEMBER w = 0\n{behavior(body)}", FIRE)
                     for body in ("SET v TO 1", "SET v TO 1\nSET w TO 1"))
         self.assert_covers("kSet", two.feeds[-1] - one.feeds[-1])
-        changed = max(two.ticks) - max(one.ticks)
-        self.assert_covers("kChanged", changed)
-        # Nothing but the variable and the rule that sets it is in the step that follows.
-        follows = max(one.ticks) - one.idle_tick - changed - self.quiet - self.behavior - 29
-        self.assert_covers("kTimedStep", follows)
+        # The step that follows is dear, but the program's first one may be dearer.
+        self.assert_covers("kChanged", max(two.ticks[1:]) - max(one.ticks[1:]))
+        # Nothing but the rule that sets the variable is in the first one.
+        first = one.ticks[0] - one.idle_tick - self.quiet - self.behavior - 29
+        self.assert_covers("kTimedStep", first)
 
     def test_interruptions(self):
         none, one, two = (taken_over(move(0), move(*low, ms=2000)) for low in ((1, 2), (0, 1), (0, 1, 2)))
@@ -164,8 +164,7 @@ class Table(unittest.TestCase):
         done = run(behavior(move(0, ms=13)), FIRE)
         queued = run(behavior(move(0, 0, ms=13)), FIRE)
         self.assertGreaterEqual(self.costs["kService"] + VIRTUAL["kService"], max(done.ticks) - done.idle_tick)
-        self.assertGreaterEqual(self.costs["kService"] + VIRTUAL["kService"], max(queued.ticks) - queued.idle_tick)
-        self.assertLessEqual(self.costs["kService"], LOOSEST * (max(done.ticks) - done.idle_tick) + SLACK)
+        self.assert_covers("kService", max(queued.ticks) - queued.idle_tick)  # and begins the next one
 
     def test_safety(self):
         config = paths.robot()
@@ -315,7 +314,8 @@ class Algorithms(unittest.TestCase):
     # The program that uses it, and its recording.
     MODULES = {"touch_levels": ("feeling", stimuli.touches, stimuli.FEELING_UNITS),
                "imu_gestures": ("moving", stimuli.motions, stimuli.MOVING_UNITS),
-               "sound_events": ("hearing", stimuli.sounds, stimuli.HEARING_UNITS)}
+               "sound_events": ("hearing", stimuli.sounds, stimuli.HEARING_UNITS),
+               "pitch": ("singing", stimuli.songs, stimuli.HEARING_UNITS)}
     LAYER = "robosync::layers::AlgorithmLayer::"
 
     def test_every_module(self):
@@ -343,24 +343,28 @@ class Algorithms(unittest.TestCase):
                   for i, at in enumerate(counting.ends_of(function))}
         with tempfile.TemporaryDirectory() as folder:
             scenario, out = Path(folder) / "scenario.json", Path(folder) / "marks"
-            with Board(icount=FAST, extra=counting.plugin_arguments(marks, out)) as board:
-                until_ms = self.feed(module, scenario, board)
-                counting.wait_for_readings(out, until_ms // 20, process)
+            # A board that skips its idle time may be ahead of a busy machine all the way; one that keeps to the clock
+            # of the wall is not.
+            for icount, lead_ms in ((FAST, 6_000), (REAL_TIME, 6_000), (REAL_TIME, 20_000)):
+                with Board(icount=icount, extra=counting.plugin_arguments(marks, out)) as board:
+                    until_ms, refused = self.feed(module, scenario, board, lead_ms)
+                    if not refused:
+                        counting.wait_for_readings(out, until_ms // 20, process)
+                        break
+            else:
+                self.fail(refused)
             return counting.Marks(marks, out).all
 
-    def feed(self, module, scenario, board):
-        """Later, where this machine is too busy to be in time."""
+    def feed(self, module, scenario, board, lead_ms):
+        """The time of the last reading, and what rsc says when it could not feed them all in time."""
         name, recording, units = self.MODULES[module]
         program, readings = paths.ROOT / f"tests/e2e/programs/{name}.rsl", recording(0)
-        for lead in (6_000, 20_000, 60_000):
-            scenario.write_text(json.dumps({"stimuli": [
-                {"at": f"{lead + r.at_ms}ms", "sensor": r.channel.split(".")[0], "channel": r.channel.split(".")[1],
-                 "value": f"{r.value}{units[r.channel]}"} for r in readings]}))
-            done = rsc.call("feed", "--upload", program, "--config", program.with_suffix(".json"), "--fresh",
-                            "--scenario", scenario, "--port", board.port)
-            if done.returncode == 0:
-                return lead + readings[-1].at_ms
-        self.fail(done.stderr)
+        scenario.write_text(json.dumps({"stimuli": [
+            {"at": f"{lead_ms + r.at_ms}ms", "sensor": r.channel.split(".")[0], "channel": r.channel.split(".")[1],
+             "value": f"{r.value}{units[r.channel]}"} for r in readings]}))
+        done = rsc.call("feed", "--upload", program, "--config", program.with_suffix(".json"), "--fresh",
+                        "--scenario", scenario, "--port", board.port)
+        return lead_ms + readings[-1].at_ms, done.stderr if done.returncode else ""
 
     @staticmethod
     def spans(marks, name, within=None):

@@ -44,7 +44,7 @@ TEST_CASE("short texts have the digests that were published for SHA-256") {
   // counted, are zero here.
   Bytes text(56);
   std::memcpy(text.data(), abcd.data(), text.size());
-  for (const std::size_t at : {4, 8, 16, 20})
+  for (const std::size_t at : {4U, 8U, 16U, 20U})
     std::fill_n(text.begin() + static_cast<std::ptrdiff_t>(at), 4, std::byte{0});
   CHECK(digest_of(std::span(text).first(52))[0] == 0x96205EB0);
   CHECK(digest_of(text)[0] == 0x6C554DE9);

@@ -6,7 +6,7 @@
 
 #include "runtime-m4/kernel/kernel.hpp"
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(ROBOSYNC_SANITIZE)
 #include <sanitizer/common_interface_defs.h>
 #endif
 
@@ -22,7 +22,7 @@ thread_local Machine* switching = nullptr;
 // Tells AddressSanitizer that the program moves to the stack of `to`. A null `keep` gives up the
 // stack it leaves.
 void announce_switch([[maybe_unused]] void** keep, [[maybe_unused]] const Context& to) {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(ROBOSYNC_SANITIZE)
   __sanitizer_start_switch_fiber(keep, to.stack_bottom, to.stack_bytes);
 #endif
 }
@@ -30,7 +30,7 @@ void announce_switch([[maybe_unused]] void** keep, [[maybe_unused]] const Contex
 // … and that it has arrived: `kept` is what announce_switch kept when this stack was left, null on
 // its first run. Notes where the stack lies from which it came.
 void announce_arrival([[maybe_unused]] void* kept, [[maybe_unused]] Context& came_from) {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(ROBOSYNC_SANITIZE)
   __sanitizer_finish_switch_fiber(kept, &came_from.stack_bottom, &came_from.stack_bytes);
 #endif
 }

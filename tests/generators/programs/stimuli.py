@@ -61,7 +61,7 @@ FEELING_UNITS = {"pad.FORCE": "N"}  # of tests/e2e/programs/feeling.json
 MOVING_UNITS = {"imu.X": "g", "imu.Y": "g", "imu.Z": "g"}  # of tests/e2e/programs/moving.json
 
 HEARING_UNITS = {"microphone.LOUDNESS": "dB", "microphone.HIGHS": "dB", "microphone.PITCH": "Hz",
-                 "microphone.CLARITY": "%"}  # of tests/e2e/programs/hearing.json
+                 "microphone.CLARITY": "%"}  # of tests/e2e/programs/hearing.json and singing.json
 
 
 def touches(seed, rounds=2, channel="pad.FORCE"):
@@ -118,12 +118,32 @@ SOUNDS = [
 
 def sounds(seed):
     """A room with all these sounds, each time a little louder or softer."""
-    random_ = random.Random(f"sounds {seed}")
+    return heard(random.Random(f"sounds {seed}"), SOUNDS)
+
+
+# What is sung, likewise.
+NOTES = [
+    [QUIET, (600, (62, 50, 440.2, 95))],
+    [QUIET, (200, (60, 47, 261.6, 92)), (40, (60, 48, 130.8, 90)), (300, (61, 47, 263.1, 93))],  # an octave misheard
+    [QUIET, *((100, (64, 62, 800 * 2 ** (i / 8), 96)) for i in range(8)), (400, (64, 62, 1600, 96))],  # a whistle that rises
+    [QUIET, *((100, (60, 45, 200 - 16 * i, 90)) for i in range(6)), (200, (58, 43, 100, 90))],
+    [QUIET, (200, (60, 47, 330, 95)), (200, (60, 47, 392, 95)), (200, (60, 47, 523.3, 95))],  # a melody
+    [QUIET, (300, (60, 45, 103.8, 93))],  # the note that takes longest to find
+    [QUIET, (300, (60, 55, 350, 45)), (300, (35, 25, 350, 95))],  # hoarse, then too soft
+]
+
+
+def songs(seed):
+    """All these tones, each time a little louder or softer."""
+    return heard(random.Random(f"songs {seed}"), NOTES)
+
+
+def heard(random_, sounds_):
     at, readings, last = 0, [], {}
-    for lasts, heard in itertools.chain(*random_.sample(SOUNDS, len(SOUNDS)), [QUIET]):
+    for lasts, levels in itertools.chain(*random_.sample(sounds_, len(sounds_)), [QUIET]):
         louder = random_.choice([-1, 0, 1, 2])
-        for channel, value in zip(HEARING_UNITS, heard):
-            new = value + louder if channel.endswith(("LOUDNESS", "HIGHS")) else value
+        for channel, value in zip(HEARING_UNITS, levels):
+            new = value + louder if channel.endswith(("LOUDNESS", "HIGHS")) else round(value, 1)
             if last.get(channel) != new:
                 readings.append(Reading(at, channel, new))
             last[channel] = new

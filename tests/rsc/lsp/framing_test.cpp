@@ -60,7 +60,7 @@ TEST_CASE("a header that does not say the length of a message ends the stream") 
 }
 
 TEST_CASE("a message that is too large is left out, and the next one is read") {
-  for (const std::size_t piece : {1, 3, 50, 4000}) {
+  for (const std::size_t piece : {1U, 3U, 50U, 4000U}) {
     lsp::FrameReader reader(10);
     const std::string stream = lsp::framed(std::string(1000, 'x')) + lsp::framed("{}");
     unsigned too_large = 0;

@@ -72,7 +72,7 @@ TEST_CASE("robot.json says which level is the active one; it is low where it say
                                    {R"(, "active": "low")", false},
                                    {R"(, "active": "high")", true}}) {
     Rig rig;
-    rig.board.level = [&](std::uint16_t) { return high; };
+    rig.board.level = [high = high](std::uint16_t) { return high; };
     REQUIRE(rig.activate(test::compile(kOfButton, with_button(more))).ok());
     rig.run(100);
     REQUIRE(logs(rig).size() == 1);

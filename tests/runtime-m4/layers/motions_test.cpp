@@ -72,6 +72,11 @@ TEST_CASE("TIMES goes through it again without drift, AT at another speed") {
   CHECK(fast.at(150) == "30 30");
   CHECK(fast.at(250) == "90 60");
   CHECK(fast.rig().only("done") == "250 #1 done arm\n250 #1 done head\n");
+  // That speed is the motion's, in percent: no limit of the actuator's in deg/s is meant for it.
+  Puppet slow("PERFORM wave AT 50%", "LIMIT arm SPEED TO 20deg/s\n");
+  slow.at(200);
+  CHECK(slow.rig().only("command") ==
+        "0 #1 command arm PERFORM wave at=50\n0 #1 command head PERFORM wave at=50\n");
 }
 
 TEST_CASE("an actuator that a LIMIT makes late is never faster, and catches up where it can") {

@@ -126,10 +126,13 @@ TEST_CASE("eight commands wait for an actuator, more are dropped, which is said 
   std::string program = "WHEN near X > 10\nDO\n";
   for (int i = 1; i <= 10; ++i)
     program += "MOVE a FOR " + std::to_string(i) + "ms\n";
-  Robot robot(program + "END\n");
+  // There are places enough for all of them; those of another actuator are its own.
+  Robot robot(program + "MOVE b FOR 7ms\nEND\n");
   robot.feed(0, "X", 20);
   robot.run(200);
   CHECK(robot.only("overrun") == "0 #1 overrun a\n");
+  CHECK_THAT(robot.only("done"),
+             Catch::StartsWith("1 #1 done a\n") && Catch::Contains("7 #1 done b\n"));
   CHECK(robot.only("finished") == "36 #1 finished r0\n");
 }
 
