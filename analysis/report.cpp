@@ -23,13 +23,15 @@ std::vector<Contributor> loads_of(const TaskSet& set, Instructions per_ms) {
   return loads;
 }
 
-// Of an algorithm whose input is sampled: from that on.
+// Of an algorithm whose input is sampled: from that on. Of a sensor with an echo: from its pulse on.
 ResponseTime from_the_reading(const TaskSet& set, std::size_t source, Priorities priorities) {
   ResponseTime response = response_time_of(set, source, priorities);
   const Instructions late = set.sources[source].jitter;
-  if (late == 0) return response;
-  response.time += late;
-  response.contributors.push_back({"until its input is sampled", late});
+  const Instructions measuring = set.sources[source].measuring;
+  if (late + measuring == 0) return response;
+  response.time += late + measuring;
+  if (late != 0) response.contributors.push_back({"until its input is sampled", late});
+  if (measuring != 0) response.contributors.push_back({"until its echo is there", measuring});
   std::ranges::stable_sort(response.contributors, std::ranges::greater{}, &Contributor::cost);
   return response;
 }
@@ -41,7 +43,13 @@ bool keeps_up(const ResponseTime& response, Instructions period) {
 }  // namespace
 
 bool PathTiming::in_time() const {
-  return keeps_up(base, period) && (adapted.time == 0 || keeps_up(adapted, period));
+  const Instructions next = period + measuring;
+  return keeps_up(base, next) && (adapted.time == 0 || keeps_up(adapted, next));
+}
+
+double PathTiming::share(const ResponseTime& response) const {
+  const Instructions processed = response.time - std::min(response.time, measuring);
+  return static_cast<double>(processed) / static_cast<double>(period);
 }
 
 bool ResponseReport::schedulable() const {
@@ -68,6 +76,7 @@ ResponseReport response_report(const vm::Image& image, const policy::BoardCosts&
     PathTiming path;
     path.sensor = source.name;
     path.period = source.period;
+    path.measuring = source.measuring;
     path.base = from_the_reading(base, s, Priorities::base);
     if (cap > 0) path.adapted = from_the_reading(adapted, s, Priorities::adapted);
     for (const std::string& actuator : source.actuators) {

@@ -15,9 +15,13 @@ namespace robosync::analysis {
 struct PathTiming {
   std::string sensor, actuator;
   Instructions period = 0;  // of the sensor: the reading has to be answered before the next one
+  Instructions measuring =
+      0;  // of it, before the sensor is sampled; the next measurement may begin meanwhile
   ResponseTime base;
   ResponseTime adapted;  // only where priorities adapt
   [[nodiscard]] bool in_time() const;
+  // Of the period, for which the reading is under way; 1: until the next one.
+  [[nodiscard]] double share(const ResponseTime& response) const;
 };
 
 struct ResponseReport {

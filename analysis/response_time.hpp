@@ -32,6 +32,8 @@ struct Source {
   std::size_t follows = kNone;
   Instructions delay = 0;
   Instructions jitter = 0;
+  // It is released so long after what it measures: an echo is on its way meanwhile, and costs no work.
+  Instructions measuring = 0;
   std::vector<std::string> actuators;  // that may be commanded in a step of its
 };
 

@@ -132,9 +132,13 @@ private:
           board_.wake_by_timer + sensor.channel_count * policy::sample_cost(sensor.driver, board_) +
           (sensor.channel_count - Instructions{1}) * costs::kChannel;  // the first is in the step
     if (const Instructions asking = cost_of_asking(sensor); asking != 0) {
-      source.follows = add_asking(sensor, s, asking, source.period);
-      source.delay = instructions_in_ms(vm::is_by_echo(sensor.driver) ? policy::kEchoMs
-                                                                      : 1 + policy::kBusTicks);
+      const std::size_t asked = add_asking(sensor, s, asking, source.period);
+      if (vm::is_by_echo(sensor.driver)) {
+        source.measuring = instructions_in_ms(policy::kEchoMs);
+      } else {
+        source.follows = asked;
+        source.delay = instructions_in_ms(1 + policy::kBusTicks);
+      }
     }
     if ((channels & work_.watched()).any()) source.sample += board_.wake + looks() + work_.trips();
     source.step = work_.step(rules, changed);
@@ -146,15 +150,15 @@ private:
     add_with_followers(std::move(source), rules, fire, work_.sets(fire));
   }
 
-  // Its bus works by itself, from a tick before it is sampled on, or it waits for an echo (layers/sensor.cpp). 0: it is not
-  // asked.
+  // Its bus works by itself, from a tick before it is sampled on, and is waited for; or an echo is on its way, and it is
+  // sampled when that is due, whether it is there or not (layers/sensor.cpp). 0: it is not asked.
   Instructions cost_of_asking(const vm::Sensor& sensor) const {
     if (policy::is_fed(sensor)) return 0;
     if (vm::is_by_echo(sensor.driver)) return board_.ping;
     return vm::is_on_i2c(sensor.driver) ? sensor.channel_count * Instructions{board_.i2c_ask} : 0;
   }
 
-  // In its thread, and in the bus's interrupts; what is sampled follows.
+  // In its thread, and in the interrupts of its bus or its pin.
   std::size_t add_asking(const vm::Sensor& sensor, unsigned s, Instructions cost,
                          Instructions period) {
     Source source;

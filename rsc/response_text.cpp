@@ -60,11 +60,10 @@ std::string response_text(const ResponseReport& report) {
                         "at most", "us", "every us", "share");
   for (const PathTiming& path : report.paths) {
     const ResponseTime& worst = worst_of(path);
-    const double share =
-        kPercent * static_cast<double>(worst.time) / static_cast<double>(path.period);
     text += fmt::format("        {:<36}{}{:>10}{:>8.1f} %\n",
                         fmt::format("{} -> {}", path.sensor, path.actuator),
-                        time_text(report, path.base), report.microseconds(path.period), share);
+                        time_text(report, path.base), report.microseconds(path.period),
+                        kPercent * path.share(worst));
     if (report.adapts)
       text += fmt::format("        {:<36}{}\n", "  … others adapted to P_max",
                           time_text(report, path.adapted));

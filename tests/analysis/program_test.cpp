@@ -238,9 +238,25 @@ TEST_CASE("a sensor with an echo is asked 40 ms before: that is where its path b
   REQUIRE((asking != set.sources.end() && sampling != set.sources.end()));
   CHECK(asking->sample == board.wake_by_timer + board.ping);
   CHECK(asking->period == sampling->period);
-  CHECK(sampling->follows == static_cast<std::size_t>(asking - set.sources.begin()));
-  CHECK(sampling->delay == 40ULL * board.instructions_per_ms());
+  CHECK(sampling->follows ==
+        analysis::Source::kNone);  // it is sampled in time, whenever it was asked
+  CHECK(sampling->measuring == 40ULL * board.instructions_per_ms());
   CHECK(sampling->sample >= board.wake_by_timer + board.echo);
+  const analysis::ResponseReport report =
+      analysis::response_report(program.image(), board, tool::module_cost);
+  REQUIRE(report.paths.size() == 1);
+  const analysis::PathTiming& path = report.paths.front();
+  CHECK(path.measuring == sampling->measuring);
+  CHECK(path.base.time > path.measuring);
+  CHECK(path.base.time < path.measuring + board.instructions_per_ms() * 10ULL);
+  CHECK(path.share(path.base) < 0.2);
+  CHECK(path.in_time());
+  // What the processor does may take until the next sample, not until the next pulse.
+  analysis::PathTiming slow = path;
+  slow.base.time = slow.period + slow.measuring;
+  CHECK(slow.in_time());
+  slow.base.time += 1;
+  CHECK_FALSE(slow.in_time());
 }
 
 TEST_CASE(

@@ -220,6 +220,17 @@ class Sampling(unittest.TestCase):
                 self.assertGreaterEqual(said + 2 * costs["wake_by_timer"] + costs["kMonitor"], measured)
                 self.assertLessEqual(said, LOOSEST * measured)
 
+    def test_an_echo(self):
+        """It is asked for 40 ms before its sample. The edges that follow, this board has not: tests/e2e/test_sonar.py counts them."""
+        sonar, _ = self.WIRED["hc_sr04"]
+        ticks = run('WHEN t < 30cm\nDO LOG "x"\nEND\n', [wait(200)], paths.robot(1, [{"name": "t", **sonar}]))
+        period, before = 67, 40
+        asking = {ticks.ticks[at - before] - ticks.idle_tick for at in (period, 3 * period)}
+        print(f"\n  asking for an echo: {asking}")
+        costs = paths.costs()
+        self.assertGreaterEqual(costs["ping"] + costs["wake_by_timer"], max(asking))
+        self.assertLessEqual(costs["ping"], LOOSEST * min(asking))
+
     def test_an_input_pin(self):
         """Another channel of it. The last pin is the one that takes longest."""
         switch = {"type": "GPIO", "pin": 43, "device": "switch", "channels": {"A": {}, "B": {}}}
@@ -386,6 +397,8 @@ def fed(sensor):
     """The sensor as one that is fed, whose readings the test can choose."""
     if sensor["type"] == "VIRTUAL":
         return sensor
+    if "device" in sensor and "channels" not in sensor:
+        return {"name": sensor["name"], "type": "VIRTUAL", "device": sensor["device"]}
     channels = {name: {key: value for key, value in channel.items() if key in ("unit", "range", "labels")}
                 for name, channel in sensor.get("channels", {"LEVEL": {"range": [0, 4095]}}).items()}
     return {"name": sensor["name"], "type": "VIRTUAL", "channels": channels}
