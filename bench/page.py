@@ -20,7 +20,7 @@ bars: `bench/bars.json`.
 
 Bars are the design's, and none is moved to what was measured: what misses one is shown as missed. `scripts/bench` fails
 when a figure misses a bar that it met before, and when a counted figure is more than 2 % above what `bench/recorded.json`
-says: so nothing grows unnoticed. (Of the ways of a touch that this machine gives the board, 25 or 50 % above: what else is due in
+says: so nothing grows unnoticed. (Of the ways of a touch that this machine gives the board, 5 to 50 % above: what else is due in
 that moment is another thing each time.) `scripts/bench --record` records what is measured now; `scripts/bench --profile NAME` says
 which functions ran while a figure was counted, and how many instructions of each.
 
