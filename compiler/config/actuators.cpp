@@ -147,11 +147,14 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
   const Board::Part* part = find_part(fields, wiring.board(), false);
   const WiringType* type = choose_type(fields, part, false, diagnostics);
   if (!name) return std::nullopt;
-  const Device& device = choose_device(fields, type, *name, wiring.board(), false, diagnostics);
+  const Device* const known =
+      choose_device(fields, type, *name, wiring.board(), false, diagnostics);
+  const Device& device = known != nullptr ? *known : virtual_device(false);
   ActuatorConfig actuator = device.actuator;
   actuator.name = *name;
   actuator.range_span = name->span;
   actuator.limit_span = name->span;
+  if (known == nullptr) return actuator;
   if (type != nullptr) {
     const Wiring place = wiring.read_actuator(fields, *type, part, device.actuator.driver);
     actuator.bus = place.bus;

@@ -113,13 +113,17 @@ const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_s
   return found == types.end() ? nullptr : &*found;
 }
 
-const Device& choose_device(const Fields& fields, const WiringType* type, const Spelled& name,
+const Device& virtual_device(bool is_sensor) {
+  return *default_device(kVirtual, is_sensor);
+}
+
+const Device* choose_device(const Fields& fields, const WiringType* type, const Spelled& name,
                             const Board& board, bool is_sensor, Diagnostics& diagnostics) {
-  const Device& fallback = *default_device(kVirtual, is_sensor);
+  const Device* const fallback = &virtual_device(is_sensor);
   const Device* device = nullptr;
   if (const auto* value = fields.find("device")) {
     device = named_device(*value, type, board, is_sensor, diagnostics);
-    if (device == nullptr) return fallback;
+    if (device == nullptr) return nullptr;
   } else if (type == nullptr) {
     return fallback;
   } else {
@@ -136,7 +140,7 @@ const Device& choose_device(const Fields& fields, const WiringType* type, const 
                                  "` is virtual, " + what_it_does(is_sensor))
         .label(name.span);
   }
-  return device == nullptr ? fallback : *device;
+  return device == nullptr ? fallback : device;
 }
 
 }  // namespace robosync::compiler

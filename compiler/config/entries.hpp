@@ -34,9 +34,12 @@ void read_channel(const json::Value& value, unsigned inputs, ChannelConfig& chan
                                             Diagnostics& diagnostics);
 
 // The device an entry means: the one it names, or the generic one of its type. Says what it assumed
-// (N0001) and when there is no driver (W0212). What is unknown is virtual.
-[[nodiscard]] const Device& choose_device(const Fields& fields, const WiringType* type,
+// (N0001) and when there is no driver (W0212). What has no type is virtual. Null: it names one that nobody knows, which is
+// said; what else stands in the entry may be right for the one that is meant.
+[[nodiscard]] const Device* choose_device(const Fields& fields, const WiringType* type,
                                           const Spelled& name, const Board& board, bool is_sensor,
                                           Diagnostics& diagnostics);
+// In place of that one.
+[[nodiscard]] const Device& virtual_device(bool is_sensor);
 
 }  // namespace robosync::compiler

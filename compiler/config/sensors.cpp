@@ -244,10 +244,12 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
   const Board::Part* part = find_part(fields, wiring.board(), true);
   const WiringType* type = choose_type(fields, part, true, diagnostics);
   if (!name) return std::nullopt;
-  const Device& device = choose_device(fields, type, *name, wiring.board(), true, diagnostics);
+  const Device* const known = choose_device(fields, type, *name, wiring.board(), true, diagnostics);
+  const Device& device = known != nullptr ? *known : virtual_device(true);
   SensorConfig sensor = device.sensor;
   sensor.name = *name;
   place_channels(sensor);
+  if (known == nullptr) return sensor;
   if (type != nullptr) {
     const Wiring place = wiring.read_sensor(fields, *type, part, device.sensor.driver);
     sensor.bus = place.bus;
