@@ -30,6 +30,14 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(vm::ActiveLevel:
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::count_)> kReleases = {
     "hold", "rest", "coast"};
 
+// Two pins that the board has.
+std::string help_for_echo(const Board& board) {
+  const std::string says = "an output and an input, by their names on the part";
+  if (board.outputs.empty() || board.inputs.empty()) return "say `trigger` and `echo`: " + says;
+  return "say `\"trigger\": " + std::to_string(board.outputs.front().first) +
+         ", \"echo\": " + std::to_string(board.inputs.front().first) + "`: " + says;
+}
+
 // By the names that their parts of this device have.
 std::string boards_with(std::string_view device) {
   std::vector<std::string> boards;
@@ -165,9 +173,7 @@ Wiring WiringReader::read_echo(Fields& fields, const std::string& what) {
     if (const auto* wrong = fields.find(key))
       diagnostics_.report(Code::E0205, what + " has no `" + key + "`")
           .label(wrong->span)
-          .helps(
-              "say `\"trigger\": 3, \"echo\": 40`: an output and an input, by their names on the "
-              "part");
+          .helps(help_for_echo(board_));
   Wiring wiring;
   const bool is_other = fields.find("trigger") == nullptr && fields.find("echo") == nullptr;
   if (is_other && fields.find("pin") != nullptr) return wiring;

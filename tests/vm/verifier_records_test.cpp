@@ -74,6 +74,13 @@ TEST_CASE("sensors") {
     s[0].address = 40;
     by_echo(s[1], 20, 40);
   });
+  // It may hear nothing: what SAFETY reads of it grows stale.
+  check_refused(
+      [&](ImageBuilder& image) {
+        by_echo(image.sensors[0], 20, 40);
+        image.channels[1].stale_ms = 0;
+      },
+      {Refusal::never_stale, Section::behaviors, 0});
   {
     ImageBuilder image = robot::make();
     by_echo(image.sensors[0], 20, 40);
