@@ -17,13 +17,14 @@ def without_parts(robot, kinds=("sensors", "actuators")):
             if part := parts.get(entry.get("device")):
                 entry.update(type="VIRTUAL", device=part["device"])
                 if kind == "sensors":
-                    entry["channels"] = _channels(entry, part["device"])
+                    entry["channels"] = channels_of(entry, part["device"])
     if len(kinds) == 2:
         del robot["board"]
     return robot
 
 
-def _channels(sensor, device):
+def channels_of(sensor, device):
+    """What can be fed of it: the channels that its entry names, or else all of the device."""
     known = json.loads((STDLIB / f"devices/{device}.json").read_text())["channels"]
     return {name: {key: value for key, value in {**known.get(name, {}), **said}.items() if key in KEPT}
             for name, said in sensor.get("channels", known).items()}
