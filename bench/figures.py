@@ -7,6 +7,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import kept
 import rsc
 from board import FAST, FIRMWARE, Board
 from counting import BUILT, ROOT, BenchError, return_instructions, run, symbols
@@ -296,22 +297,10 @@ def ear_figures():
     return {"ear/block": (max(run(BUILT / "bench_ear").spans("mark_ear_begin", "mark_ear_end")), "insn")}
 
 
-def kept(port):
-    """Waits until the board keeps its program; gives what it says of itself."""
-    give_up = time.monotonic() + rsc.TIMEOUT
-    while (info := rsc.info(port))["kept"]["state"] != "kept":
-        if time.monotonic() > give_up:
-            raise BenchError(f"the board does not keep its program: {info['kept']}")
-    return info
-
-
 def power_up_figures():
     """From power-up to program time 0 of the paper's program, which the board has kept."""
     with tempfile.TemporaryDirectory() as folder:
-        store = Path(folder) / "store"
+        store = kept.store_with(compile_example(folder, "--strip"), folder)
         with Board(icount=FAST, store=store) as board:
-            rsc.run("upload", compile_example(folder, "--strip"), "--port", board.port)
-            kept(board.port)
-        with Board(icount=FAST, store=store) as board:
-            status = kept(board.port)["status"]
+            status = kept.wait_until_kept(board.port)["status"]
     return {"firmware/power_up_to_program": (status["uptime_us"] - status["program_us"], "us")}

@@ -15,8 +15,9 @@ import tempfile
 import time
 from pathlib import Path
 
+import kept
 import rsc
-from board import FAST, REAL_TIME, Board
+from board import REAL_TIME, Board
 from counting import PATIENCE, READING, BenchError, Marks, ends_of, functions, plugin_arguments, wait_for_readings
 from workloads import PAPER, W3
 
@@ -64,21 +65,9 @@ def drive(board, image, pause, told):
             monitor.terminate()
 
 
-def store_with(image, store):
-    """What a board keeps of the program, once it has been on trial."""
-    with Board(icount=FAST, store=store) as board:
-        rsc.run("upload", image, "--port", board.port)
-        deadline = time.monotonic() + PATIENCE
-        while rsc.info(board.port)["kept"]["state"] != "kept":
-            if time.monotonic() > deadline:
-                raise BenchError("the board does not keep the program")
-            time.sleep(0.01)
-
-
 def power_ups(image, folder, known):
     """The marks of START_UPS power-ups with that program."""
-    store, out = folder / "store", folder / "marks-of-power-up"
-    store_with(image, store)
+    store, out = kept.store_with(image, folder), Path(folder) / "marks-of-power-up"
     for _ in range(START_UPS):
         with Board(icount=REAL_TIME, extra=plugin_arguments(known, out), store=store):
             wait_for_readings(out, BETWEEN)
@@ -159,7 +148,7 @@ def path_figures():
     with tempfile.TemporaryDirectory() as folder:
         image, out, told = (Path(folder) / name for name in ("paper.rsb", "marks", "told"))
         rsc.run("compile", PAPER, "-o", image)
-        alone = list(power_ups(image, Path(folder), known))
+        alone = list(power_ups(image, folder, known))
         with Board(icount=REAL_TIME, extra=plugin_arguments(known, out)) as board:
             drive(board, image, pacer(out), told)
         found = ways(Marks(known, out))

@@ -11,7 +11,7 @@ EXAMPLES = ROOT / "examples"
 sys.path.insert(0, str(ROOT / "tests/generators/programs"))
 
 from board import NAME  # noqa: E402
-from on_board import channels_of, without_parts  # noqa: E402
+from on_board import fed, without_parts  # noqa: E402
 from stimuli import Reading  # noqa: E402
 
 
@@ -25,8 +25,8 @@ def config(folder):
     robot = json.loads((folder / "robot.json").read_text())
     robot = without_parts(robot, ("sensors",) if robot.get("board") == NAME else ("sensors", "actuators"))
     for sensor in robot["sensors"]:
-        if "device" in sensor and "channels" not in sensor:
-            sensor["channels"] = channels_of(sensor, sensor["device"])
+        if "channels" not in sensor:
+            sensor.update(fed(sensor))
         for key in set(sensor) - {"name", "channels"}:
             del sensor[key]
         sensor["type"] = "VIRTUAL"

@@ -16,7 +16,7 @@ import paths
 import rsc
 import stimuli
 from board import FAST, FIRMWARE, REAL_TIME, Board
-from on_board import without_parts
+from on_board import fed, without_parts
 from paths import counting, feed, run, wait
 from timing import examples
 
@@ -393,17 +393,6 @@ class Algorithms(unittest.TestCase):
         return found
 
 
-def fed(sensor):
-    """The sensor as one that is fed, whose readings the test can choose."""
-    if sensor["type"] == "VIRTUAL":
-        return sensor
-    if "device" in sensor and "channels" not in sensor:
-        return {"name": sensor["name"], "type": "VIRTUAL", "device": sensor["device"]}
-    channels = {name: {key: value for key, value in channel.items() if key in ("unit", "range", "labels")}
-                for name, channel in sensor.get("channels", {"LEVEL": {"range": [0, 4095]}}).items()}
-    return {"name": sensor["name"], "type": "VIRTUAL", "channels": channels}
-
-
 def drawn_orders(channels, draw):
     """Readings at random times, many of them at the ends of the ranges; and long pauses."""
     orders = [feed(low, number) for number, low, _ in channels]
@@ -466,7 +455,7 @@ class Paths(unittest.TestCase):
 
     def check(self, program, folder):
         wiring = without_parts(json.loads(program.with_suffix(".json").read_text()))
-        wiring["sensors"] = [fed(sensor) for sensor in wiring["sensors"]]
+        wiring["sensors"] = [sensor if sensor["type"] == "VIRTUAL" else fed(sensor) for sensor in wiring["sensors"]]
         config, image = folder / "robot.json", folder / "p.rsb"
         config.write_text(json.dumps(wiring))
         paths.compiled(program, config, image)

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 STDLIB = Path(__file__).resolve().parents[3] / "stdlib"
+GENERIC = {"LEVEL": {"range": [0, 4095]}}  # of a sensor that says nothing of itself
 KEPT = ("unit", "range", "labels")  # of a channel: what is fed has no inputs and no scale
 
 
@@ -17,14 +18,21 @@ def without_parts(robot, kinds=("sensors", "actuators")):
             if part := parts.get(entry.get("device")):
                 entry.update(type="VIRTUAL", device=part["device"])
                 if kind == "sensors":
-                    entry["channels"] = channels_of(entry, part["device"])
+                    entry["channels"] = _channels(entry)
     if len(kinds) == 2:
         del robot["board"]
     return robot
 
 
-def channels_of(sensor, device):
-    """What can be fed of it: the channels that its entry names, or else all of the device."""
-    known = json.loads((STDLIB / f"devices/{device}.json").read_text())["channels"]
+def fed(sensor):
+    """The sensor as one whose readings a test can choose."""
+    return {"name": sensor["name"], "type": "VIRTUAL", "channels": _channels(sensor)}
+
+
+def _channels(sensor):
+    """Those that its entry names, or else all of its device."""
+    known = {}
+    if "device" in sensor:
+        known = json.loads((STDLIB / f"devices/{sensor['device']}.json").read_text())["channels"]
     return {name: {key: value for key, value in {**known.get(name, {}), **said}.items() if key in KEPT}
-            for name, said in sensor.get("channels", known).items()}
+            for name, said in sensor.get("channels", known or GENERIC).items()}
