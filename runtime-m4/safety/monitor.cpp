@@ -23,7 +23,7 @@ void Monitor::run() {
     if ((why & kPerson) != 0) supervised_.obey();
     const kernel::Time now = kernel_.now();
     if ((why & kProgram) != 0) {
-      due = std::min(supervised_.began(), now + kIdlePeriod);
+      due = std::min(due, supervised_.began());  // the watchdog waits for nobody's program
       rules_due = kernel::kForever;
       without_progress_ = 0;
     }
@@ -35,11 +35,11 @@ void Monitor::run() {
   }
 }
 
-// Periods that are over already are skipped, never made up for.
+// Periods are the program's, from its begin on. Those that are over already are skipped, never made up for.
 kernel::Time Monitor::next_after(kernel::Time due, kernel::Time now) const {
   if (!supervised_.running()) return now + kIdlePeriod;
   if (now < supervised_.began()) return std::min(supervised_.began(), now + kIdlePeriod);
-  const kernel::Time next = due + kPeriod;
+  const kernel::Time next = std::max(due, supervised_.began()) + kPeriod;
   return now < next ? next : next + ((now - next) / kPeriod + 1) * kPeriod;
 }
 

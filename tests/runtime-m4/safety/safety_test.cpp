@@ -1,4 +1,5 @@
 // SAFETY rules: what halts, when, for how long, and what a halted actuator means for the rest.
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -116,6 +117,25 @@ TEST_CASE("on a robot the program begins with the first reading, or when the tim
   measured.run(500);
   CHECK(measured.only("trip win lose") == "0 #1 win r2 DO\n");
   CHECK(measured.status().program_us == 500'000);
+}
+
+TEST_CASE(
+    "the watchdog is kicked in time, whenever a program comes that waits for what SAFETY reads") {
+  const auto image = robosync::test::compile(kGuarded, robosync::test::kPlainRobot);
+  for (std::uint64_t first = 1; first <= 35; ++first) {
+    Rig rig;
+    unsigned kicks = 0;
+    std::uint64_t kicked = 0, longest = 0;
+    for (std::uint64_t ms = 0; ms < 400; ++ms) {
+      if (ms == first || ms == first + 100 + first % 10) REQUIRE(rig.activate(image).ok());
+      rig.run(ms);
+      if (rig.board.kicks != kicks) kicked = ms;
+      kicks = rig.board.kicks;
+      longest = std::max(longest, ms - kicked);
+    }
+    CAPTURE(first);
+    CHECK(longest <= 30);  // its first time-out comes after 50
+  }
 }
 
 TEST_CASE("a robot begins when what is fed has come, and feeds keep their program times") {
