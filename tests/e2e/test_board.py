@@ -1,20 +1,25 @@
 """What every board must do: it boots, names itself, runs an example as the host does, and stops."""
 
 import json
+import sys
 import unittest
 
 import examples
 import pins
 import rsc
 import stimuli
-from board import NAME
+from board import FIRMWARE, NAME
 from support import PROFILE, PROGRAMS, LineReader
 from traces import TraceTest
+
+sys.path.append(str(rsc.ROOT / "bench"))
+from counting import symbols  # noqa: E402
 
 COMPANION = rsc.ROOT / "examples/touch_companion"
 SAFETY_PERIOD_US = 30_000  # without a program
 READINGS_SEED = 475
 PATIENCE = 20
+RAM = 0x1000_0000  # and up; flash is below on each board
 INPUTS = [pin for row in PROFILE["inputs"] for pin in range(row["pins"][0], row["pins"][1] + 1)]
 PARTS = PROFILE.get("on_board", {})
 BY_I2C = """{"board": "%s", "actuators": [],
@@ -117,6 +122,14 @@ class EveryBoard(TraceTest):
         wires.set(red, True)
         wires.set(green, False)
         self.await_event(reader, "release", actuator="arm")
+
+    def test_no_code_of_kernel_and_port_is_in_the_place_of_the_cores_registers(self):
+        """In 64 KB, of which QEMU keeps one page of each place at hand (boards/common/firmware.ld)."""
+        ours = {name: at for name, at in symbols(FIRMWARE).items()
+                if name.endswith("_Handler") or name.startswith(("robosync::kernel::Kernel::", "robosync::port::"))}
+        self.assertGreater(len(ours), 20)
+        there = [name for name, at in ours.items() if at < RAM and at % 0x1_0000 in range(0xE000, 0xF000)]
+        self.assertEqual(there, [])
 
     def test_each_input_is_its_own_pin(self):
         switches = [{"name": f"i{pin}", "type": "GPIO", "pin": pin, "device": "switch"} for pin in INPUTS]

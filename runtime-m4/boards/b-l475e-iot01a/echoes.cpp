@@ -7,29 +7,18 @@
 #include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
 #include "runtime-m4/boards/common/echo.hpp"
+#include "runtime-m4/boards/common/inputs.hpp"
 
 namespace robosync::boards::l475::echoes {
 
 namespace {
 
-using inputs::kInputs;
+using inputs::is_high, inputs::kInputs;
 
 std::array<Echo, kInputs.size()> echoes;
 
 constexpr std::uint32_t line(std::size_t i) {
   return 1U << kInputs[i].bit;
-}
-
-bool is_high(std::size_t i) {
-  return kInputs[i].port.levels().has(line(i));
-}
-
-// kInputs.size(): it is none of them.
-std::size_t find(std::uint16_t pin) {
-  std::size_t i = 0;
-  while (i < kInputs.size() && kInputs[i].pin != pin)
-    ++i;
-  return i;
 }
 
 }  // namespace
@@ -46,17 +35,17 @@ void start() {
 
 // What the pin did before is nobody's.
 void ping(std::uint16_t trigger, std::uint16_t echo) {
-  const std::size_t i = find(echo);
+  const std::size_t i = find_input(kInputs, echo);
   if (i == kInputs.size()) return;
   const port::Alone alone;
   exti::kMask.clear(line(i));
   exti::kPending.write(line(i));
-  if (echoes[i].begin(is_high(i))) exti::kMask.set(line(i));
+  if (echoes[i].begin(is_high(kInputs[i]))) exti::kMask.set(line(i));
   pins::pulse(trigger);
 }
 
 std::uint32_t take(std::uint16_t echo) {
-  const std::size_t i = find(echo);
+  const std::size_t i = find_input(kInputs, echo);
   if (i == kInputs.size()) return 0;
   const port::Alone alone;
   exti::kMask.clear(line(i));
@@ -69,7 +58,7 @@ void on_edge(std::uint32_t now) {
   for (std::size_t i = 0; i < kInputs.size(); ++i) {
     if ((pending & line(i)) == 0) continue;
     exti::kPending.write(line(i));
-    if (echoes[i].edge(is_high(i), now)) exti::kMask.clear(line(i));
+    if (echoes[i].edge(is_high(kInputs[i]), now)) exti::kMask.clear(line(i));
   }
 }
 

@@ -1,6 +1,8 @@
 // See inputs.hpp.
 #include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
 
+#include "runtime-m4/boards/common/inputs.hpp"
+
 namespace robosync::boards::l475::inputs {
 
 // The pull first: out of reset most pins are analog, and 9 belongs to the debugger.
@@ -12,9 +14,8 @@ void start() {
 }
 
 bool is_high(std::uint16_t pin) {
-  for (const Input& input : kInputs)
-    if (input.pin == pin) return input.port.levels().has(1U << input.bit);
-  return false;
+  const std::size_t i = find_input(kInputs, pin);
+  return i < kInputs.size() && is_high(kInputs[i]);
 }
 
 }  // namespace robosync::boards::l475::inputs

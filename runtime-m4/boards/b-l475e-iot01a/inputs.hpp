@@ -21,6 +21,9 @@ inline constexpr std::array kInputs{Input{7, kPortA, 4}, Input{8, kPortB, 2}, In
 
 // Their ports have their clock.
 void start();
+inline bool is_high(const Input& input) {
+  return input.port.levels().has(1U << input.bit);
+}
 // A pin that is no input: false.
 bool is_high(std::uint16_t pin);
 

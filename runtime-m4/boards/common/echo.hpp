@@ -10,9 +10,9 @@ namespace robosync::boards {
 
 class Echo {
 public:
-  // A pin that is high already says nothing: false.
+  // A pin that is high already says nothing: false, and its edges are not looked at.
   bool begin(bool high) {
-    state_ = high ? State::nothing : State::asked;
+    state_ = State::asked;
     return !high;
   }
   // An edge, or several, after which the pin has this level, at `now` of a counter that counts up. True: it is over.
@@ -27,11 +27,8 @@ public:
     if (fell) counts_ = now - counts_;
     return true;
   }
-  // Of the counter; 0: it was not measured. What goes on is over with that.
-  std::uint32_t take() {
-    if (state_ != State::fell) state_ = State::nothing;
-    return state_ == State::fell ? counts_ : 0;
-  }
+  // Of the counter; 0: it was not measured. Edges are looked at no more then.
+  [[nodiscard]] std::uint32_t take() const { return state_ == State::fell ? counts_ : 0; }
 
 private:
   enum class State : std::uint8_t { nothing, asked, rose, fell };

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "runtime-m4/boards/common/echo.hpp"
+#include "runtime-m4/boards/common/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
 #include "runtime-m4/boards/microbit-v2/registers.hpp"
@@ -12,7 +13,7 @@ namespace robosync::boards::microbit::echoes {
 
 namespace {
 
-using inputs::kInputs;
+using inputs::is_high, inputs::kInputs;
 
 constexpr std::uint32_t kPulse = 12;  // microseconds
 
@@ -31,18 +32,6 @@ constexpr unsigned time_of_edge(std::size_t i) {
 }
 constexpr unsigned end_of_pulse(std::size_t i) {
   return static_cast<unsigned>(kInputs.size() + i);
-}
-
-bool is_high(std::size_t i) {
-  return kInputs[i].chip.levels().has(kInputs[i].chip.mask());
-}
-
-// kInputs.size(): it is none of them.
-std::size_t find(std::uint16_t pin) {
-  std::size_t i = 0;
-  while (i < kInputs.size() && kInputs[i].pin != pin)
-    ++i;
-  return i;
 }
 
 void join(unsigned channel, Register event, Register task) {
@@ -71,12 +60,12 @@ void start() {
 
 // What the pin did before is nobody's. Nothing comes between the begin of the pulse and the word when it ends.
 void ping(std::uint16_t trigger, std::uint16_t echo) {
-  const std::size_t i = find(echo);
+  const std::size_t i = find_input(kInputs, echo);
   const Pin* const output = pins::chip_pin(trigger);
   if (i == kInputs.size() || output == nullptr) return;
   const port::Alone alone;
   ignore_edges(i);
-  if (echoes[i].begin(is_high(i))) {
+  if (echoes[i].begin(is_high(kInputs[i]))) {
     gpiote::configuration(edges(i)).write(gpiote::edges_of(kInputs[i].chip));
     forget(gpiote::edge(edges(i)));
     gpiote::kInterruptOn.write(1U << edges(i));
@@ -90,7 +79,7 @@ void ping(std::uint16_t trigger, std::uint16_t echo) {
 
 // The pin of the pulse is its port's again, which has it low.
 std::uint32_t take(std::uint16_t echo) {
-  const std::size_t i = find(echo);
+  const std::size_t i = find_input(kInputs, echo);
   if (i == kInputs.size()) return 0;
   const port::Alone alone;
   ignore_edges(i);
@@ -104,7 +93,8 @@ void on_edge() {
   for (std::size_t i = 0; i < kInputs.size(); ++i) {
     if (gpiote::edge(edges(i)).read() == 0) continue;
     forget(gpiote::edge(edges(i)));
-    if (echoes[i].edge(is_high(i), echo_timer::value(time_of_edge(i)).read())) ignore_edges(i);
+    if (echoes[i].edge(is_high(kInputs[i]), echo_timer::value(time_of_edge(i)).read()))
+      ignore_edges(i);
   }
 }
 

@@ -1,6 +1,8 @@
 // See inputs.hpp. The buttons have pull-ups of their own (10 kΩ); the chip's do no harm beside them.
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 
+#include "runtime-m4/boards/common/inputs.hpp"
+
 namespace robosync::boards::microbit::inputs {
 
 void start() {
@@ -9,9 +11,8 @@ void start() {
 }
 
 bool is_high(std::uint16_t pin) {
-  for (const Input& input : kInputs)
-    if (input.pin == pin) return input.chip.levels().has(input.chip.mask());
-  return false;
+  const std::size_t i = find_input(kInputs, pin);
+  return i < kInputs.size() && is_high(kInputs[i]);
 }
 
 }  // namespace robosync::boards::microbit::inputs

@@ -18,6 +18,9 @@ struct Input {
 inline constexpr std::array kInputs{Input{5, {0, 14}}, Input{11, {0, 23}}};
 
 void start();
+inline bool is_high(const Input& input) {
+  return input.chip.levels().has(input.chip.mask());
+}
 // A pin that is no input: false.
 bool is_high(std::uint16_t pin);
 
