@@ -65,10 +65,13 @@ def main():
     parser = argparse.ArgumentParser(prog="scripts/fuzz --texts")
     parser.add_argument("seconds", type=int)
     parser.add_argument("targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())}; all of them")
+    parser.add_argument("--dry-run", action="store_true", help="only says what is wrong with the arguments")
     wanted = parser.parse_args()
     unknown = set(wanted.targets) - set(targets())
     if unknown:
         parser.error(f"no target {', '.join(sorted(unknown))}; there are: {', '.join(targets())}")
+    if wanted.dry_run:
+        return 0
     FOUND.mkdir(parents=True, exist_ok=True)
     LEARNED.mkdir(parents=True, exist_ok=True)
     dictionary = LEARNED / "words"
