@@ -34,8 +34,10 @@ public:
   }
   // The same in whole ticks; 49 days later they begin again.
   std::uint32_t milliseconds() const {
-    const std::uint32_t tick = kernel_.tick();
-    return static_cast<std::int32_t>(tick - activated_tick_) < 0 ? 0 : tick - activated_tick_;
+    const std::uint32_t passed = kernel_.tick() - activated_tick_;
+    if (static_cast<std::int32_t>(passed) < 0) [[unlikely]]
+      return is_waiting() ? 0 : passed;
+    return passed;
   }
   const Stamp& step() const { return step_; }
   Stamp now() const { return {program_time(), step_.step}; }
@@ -60,6 +62,8 @@ public:
   void emit(const link::Event& event) { sink_.emit(event); }
 
 private:
+  // For its first tick; else half of the 49 days have passed.
+  [[gnu::noinline]] bool is_waiting() const { return kernel_.now() < activated_at_; }
   [[gnu::noinline]] void tell(link::EventKind kind, const Stamp& stamp, unsigned subject,
                               unsigned object);
   [[gnu::noinline]] void tell(link::EventKind kind, const Stamp& stamp, unsigned subject,

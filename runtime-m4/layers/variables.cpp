@@ -129,6 +129,8 @@ VariableMask Variables::enter(std::uint32_t now, std::span<vm::Value> values) {
       const std::int64_t distance = std::int64_t{fade->from} - wiring.fades_to;
       value =
           saturated(wiring.fades_to + faded(distance, wiring.fade, ticks_since(fade->since, now)));
+      // There it stays, also when 49 days later `now` comes by `since` again.
+      if (value == wiring.fades_to) fade->from = value;
     }
     Write write{};
     if (take(v, write)) {

@@ -1,0 +1,79 @@
+// Programs that run for weeks: their milliseconds have 32 bits, and begin again after 49.7 days.
+#include <catch2/catch.hpp>
+
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
+
+using namespace robosync;
+using robosync::test::Rig;
+
+namespace {
+
+constexpr std::uint32_t kHalfOfThem = 0x7FFF'FFFF;  // ticks, 24.9 days: as many as can pass at once
+
+const char* const kLongRunRobot = R"({
+  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+  "actuators": [{"name": "motor", "type": "PWM", "pin": 4, "device": "pwm", "on_release": "hold"}]
+})";
+
+struct LongRun {
+  explicit LongRun(const std::string& program) {
+    REQUIRE(rig.activate(test::compile(program, kLongRunRobot)).ok());
+    go_on(1000);
+  }
+  void go_on(unsigned ms) { rig.run(rig.kernel.now() / 1000 + ms); }
+  // As if it had run for so long.
+  void weeks_pass(std::uint32_t ticks) {
+    rig.kernel.on_tick(ticks);
+    go_on(1000);
+  }
+  void feeds(int units) {
+    rig.feed(0, units);
+    go_on(600);
+  }
+
+  Rig rig;
+};
+
+}  // namespace
+
+TEST_CASE("SAFETY, EVERY and WAIT go on for weeks") {
+  LongRun robot(
+      "SAFETY too_near\n  WHEN near X > 90 FOR 200ms\n  DO STOP motor\n  RESUME WHEN near X < "
+      "80\nEND\n"
+      "EVERY 1s\nDO\n  RUN motor TO 70%\n  WAIT 100ms\n  LOG \"again\"\nEND\n");
+  const std::uint32_t each = GENERATE(kHalfOfThem, kHalfOfThem / 2);
+  for (unsigned part = 0; part < 5; ++part) {
+    CAPTURE(part);
+    robot.feeds(20);
+    robot.go_on(2000);
+    CHECK(robot.rig.board.pulse(4) == 14'000);
+    robot.rig.lines.clear();
+    robot.go_on(5000);
+    const std::string fired = robot.rig.only("fire");
+    CHECK(std::ranges::count(fired, '\n') == 5);
+    const std::string gone_on = robot.rig.only("go_on");
+    CHECK(std::ranges::count(gone_on, '\n') == 5);
+    robot.feeds(95);
+    CHECK(robot.rig.board.pulse(4) == 0);
+    robot.feeds(20);
+    robot.weeks_pass(each);
+  }
+}
+
+TEST_CASE("a FEELING that has faded does not come back") {
+  LongRun robot(
+      "FEELING fear FROM 0% TO 100% START 90% FADES TO 0% OVER 10s\n"
+      "WHEN fear > 5% AND near X > 50\nDO RUN motor TO 70%\nEND\n");
+  robot.go_on(60'000);
+  robot.feeds(20);
+  for (unsigned part = 0; part < 8; ++part) {
+    CAPTURE(part);
+    robot.weeks_pass(0x2000'0000);  // an eighth of 49.7 days: once it begins again
+    robot.rig.lines.clear();
+    robot.feeds(60);
+    CHECK(robot.rig.board.pulse(4) == 0);
+    CHECK(robot.rig.only("set fire").empty());
+    robot.feeds(20);
+  }
+}
