@@ -49,6 +49,7 @@ bool OutputGuard::drives(const vm::Image& image, const Slot& slot) {
 
 // Their pins are nobody's then.
 void OutputGuard::end_measurements() {
+  const auto lock = kernel_.lock();
   for (const vm::Sensor& sensor : sensors_)
     if (vm::is_by_echo(sensor.driver)) static_cast<void>(board_.take_echo(sensor.address));
   sensors_ = {};
@@ -63,27 +64,35 @@ void OutputGuard::ping(unsigned sensor) {
     board_.ping(wiring.bus, wiring.address);
 }
 
-// Pins that `next` does not drive in the same way. Nobody drives any of them meanwhile.
+// Pins that `next` does not drive in the same way. Nobody drives any of them meanwhile, not even to its safe state, which
+// was that of another actuator.
 void OutputGuard::switch_off(const vm::Image* next) {
+  Mask owned = 0;
   {
     const auto lock = kernel_.lock();
-    halted_ = free_ = lagging_ = 0;
-    end_measurements();
+    owned = std::exchange(owned_, 0);
+    free_ = lagging_ = 0;
   }
   if (lights() != 0) board_.show(0);
   if (speaker() != 0) board_.sound(0);
-  for (Mask left = owned_ & ~(lights() | speaker()); left != 0; left &= left - 1) {
+  for (Mask left = owned & ~(lights() | speaker()); left != 0; left &= left - 1) {
     const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
     if (next == nullptr || !drives(*next, slot)) board_.pwm_write(slot.pin, 0);
   }
-  owned_ = lights_ = speaker_ = 0;
+  lights_ = speaker_ = 0;
 }
 
 void OutputGuard::disown() {
+  end_measurements();
   switch_off(nullptr);
 }
 
-void OutputGuard::own(const vm::Image& image, Mask halted) {
+void OutputGuard::begin_with(Mask halted) {
+  const auto lock = kernel_.lock();
+  halted_ = halted;
+}
+
+void OutputGuard::own(const vm::Image& image) {
   switch_off(&image);
   const policy::BoardPins& pins = board_.pins();
   limits_ = pins.outputs.data();
@@ -101,11 +110,22 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
     owned |= bit(a);
     if (limits_[slots_[a].limit].rise != 0) gradual_ |= bit(a);
   }
-  const auto lock = kernel_.lock();
-  sensors_ = image.sensors;
-  owned_ = owned;
-  halted_ = halted;
-  free_ = owned & ~halted;
+  {
+    const auto lock = kernel_.lock();
+    sensors_ = image.sensors;
+    owned_ = owned;
+    free_ = owned & ~halted_;
+  }
+  make_halted_safe(kernel_.now());
+}
+
+// Of a program that comes: a halt found its pins with the one before, or none at all. Lights and speaker are off.
+void OutputGuard::make_halted_safe(kernel::Time now) {
+  for (Mask left = owned_ & ~(lights() | speaker()); left != 0; left &= left - 1) {
+    const auto actuator = static_cast<unsigned>(std::countr_zero(left));
+    const auto lock = kernel_.lock();
+    if ((halted_ & bit(actuator)) != 0) make_safe(actuator, now);
+  }
 }
 
 // The outputs of `actuator` are the board's.

@@ -37,9 +37,12 @@ public:
 
   OutputGuard(kernel::Kernel& kernel, boards::Board& board) : kernel_(kernel), board_(board) {}
 
+  // Another program comes: these of its actuators are halted from its first moment, besides those that halt() names
+  // from now on.
+  void begin_with(Mask halted);
   // The actuators of `image`, which is verified and fits the board, own their pins from now on; those that are halted
-  // stay as they are. A pin that was driven in another way before, or that none of them has, goes off.
-  void own(const vm::Image& image, Mask halted);
+  // go to their safe states. A pin that was driven in another way before, or that none of them has, goes off.
+  void own(const vm::Image& image);
   // There is no program: all pins go off.
   void disown();
 
@@ -53,6 +56,9 @@ public:
   void sound(unsigned actuator, std::uint32_t hertz);
   // A pulse on the trigger pin of a sensor (boards::Board::ping()).
   void ping(unsigned sensor);
+  // No measurement goes on, and none begins until own(): before the running program's image is overwritten, which says
+  // where they are.
+  void end_measurements();
   // Pins whose pulse may not yet be where it shall go on. Called at each check of the safety monitor.
   void go_on(kernel::Time now);
 
@@ -80,13 +86,13 @@ private:
   void settle(Slot& slot, unsigned actuator, std::uint16_t pulse, kernel::Time now);
   void put(unsigned actuator, kernel::Time now);
   void make_safe(unsigned actuator, kernel::Time now);
+  void make_halted_safe(kernel::Time now);
   std::uint16_t next_pulse(Slot& slot, std::uint16_t rise, bool pulses, kernel::Time now) const;
   [[nodiscard]] bool is_free(unsigned actuator) const;
   static void exchange(Slot& slot);
   void turn(Slot& slot, unsigned actuator, kernel::Time now);
   [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
   static bool drives(const vm::Image& image, const Slot& slot);
-  void end_measurements();
   void switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
   // The actuator that has the lights, if any.

@@ -12,31 +12,41 @@ namespace robosync::layers {
 using link::EventKind;
 
 bool ControlLayer::start(const LoadedProgram& program, Memory& memory, ProgramThreads& threads) {
-  program_ = &program;
   staged_ = 0;
   to_commit_ = 0;
   dropped_ = 0;
   idle_ = 0;
   retired_ = 0;
   cancelling_ = 0;
-  by_rules_ = 0;
-  halted_ = stopped_ ? all() : 0;
-  newly_halted_ = 0;
-  outputs_.own(program.image, halted());
   units_ = memory.take<policy::Part::control_units, Unit>();
   pool_.start(memory);
   for (unsigned a = 0; a < program.image.actuators.size(); ++a)
-    if (!start_unit(a, threads)) return false;
+    if (!start_unit(program.image, a, threads)) return false;
+  take_over(program);
   return true;
 }
 
-bool ControlLayer::start_unit(unsigned actuator, ProgramThreads& threads) {
+// The person's stop comes from the safety thread, at any time. Before this it finds no program, and what it halts is
+// what the last one left; after this it finds all of the new one.
+void ControlLayer::take_over(const LoadedProgram& program) {
+  {
+    const auto lock = kernel_.lock();
+    program_ = &program;
+    by_rules_ = 0;
+    newly_halted_ = 0;
+    halted_ = stopped_ ? all() : 0;
+    outputs_.begin_with(halted());
+  }
+  outputs_.own(program.image);
+}
+
+bool ControlLayer::start_unit(const vm::Image& image, unsigned actuator, ProgramThreads& threads) {
   Unit& unit = units_[actuator];
   unit.layer = this;
   unit.actuator = static_cast<std::uint8_t>(actuator);
   unit.drive.actuator = unit.actuator;
   kernel::ThreadSpec spec;
-  spec.name = name_of(program_->image, wiring(unit).name, "actuator");
+  spec.name = name_of(image, image.actuators[actuator].name, "actuator");
   spec.category = kernel::Category::control;
   spec.entry = [](void* self) {
     auto& mine = *static_cast<Unit*>(self);
@@ -48,6 +58,7 @@ bool ControlLayer::start_unit(unsigned actuator, ProgramThreads& threads) {
 }
 
 void ControlLayer::release_all() {
+  outputs_.end_measurements();
   if (program_ == nullptr) return;
   for (unsigned a = 0; a < program_->image.actuators.size(); ++a) {
     Unit& unit = units_[a];
@@ -223,7 +234,8 @@ void ControlLayer::let_go(ActuatorMask actuators) {
 
 void ControlLayer::stop() {
   stopped_ = true;
-  if (program_ != nullptr) hold_back(all() & ~halted());
+  if (program_ == nullptr) return outputs_.halt(~ActuatorMask{0}, kernel_.now());
+  hold_back(all() & ~halted());
 }
 
 void ControlLayer::resume() {

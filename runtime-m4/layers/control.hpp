@@ -115,7 +115,8 @@ private:
   void stage_stop(Unit& unit, std::uint8_t verb);
   [[nodiscard]] bool stage_one(Unit& unit, const vm::Actuator& actuator, const Command& command);
   QueuedOrder* place_of(Unit& unit, vm::Action action);
-  [[nodiscard]] bool start_unit(unsigned actuator, ProgramThreads& threads);
+  [[nodiscard]] bool start_unit(const vm::Image& image, unsigned actuator, ProgramThreads& threads);
+  void take_over(const LoadedProgram& program);
   void run(Unit& unit);
   bool goes_elsewhere(const Unit& unit) const;
   kernel::Time work_off(Unit& unit, const Stamp& stamp);

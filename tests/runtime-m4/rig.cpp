@@ -49,6 +49,7 @@ link::Status Rig::status() const {
 }
 
 void Rig::emit(const link::Event& event) {
+  if (on_event) on_event();
   lines.push_back(describe(event, runtime.image()));
   if (concerns_all) RuntimePeer::concern_all(runtime);
 }

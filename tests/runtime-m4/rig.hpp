@@ -55,10 +55,15 @@ public:
     return echo_us ? echo_us(echo) : 0;
   }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override {
+    if (on_pin) on_pin();
     pulses[pin].push_back(pulse_us);
     writes.emplace_back(pin, pulse_us);
   }
   std::uint32_t pwm_read(std::uint16_t pin) const override {
+    if (on_pin) on_pin();
+    return pulse(pin);
+  }
+  std::uint32_t pulse(std::uint16_t pin) const {
     const auto found = pulses.find(pin);
     return found == pulses.end() ? 0 : found->second.back();
   }
@@ -84,6 +89,7 @@ public:
   unsigned takes = 0;
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;   // all, by pin
   std::vector<std::pair<std::uint16_t, std::uint32_t>> writes;  // the same, in their order
+  std::function<void()> on_pin;  // before one is written or read by the runtime
   policy::BoardPins board_pins = boards::kPins;
   std::vector<std::uint32_t> pictures;  // all
   std::vector<std::uint32_t> sounds;    // all
@@ -113,7 +119,8 @@ public:
   sim::Arena arena;
   Runtime runtime;
   std::vector<std::string> lines;
-  bool concerns_all = false;  // in every step (RuntimePeer)
+  std::function<void()> on_event;  // before it is noted
+  bool concerns_all = false;       // in every step (RuntimePeer)
 
 private:
   void emit(const link::Event& event) override;

@@ -47,7 +47,7 @@ struct Drive {
     wiring.speed_limit = speed_limit;
     vm::Image image;
     image.actuators = std::span(&wiring, 1);
-    outputs.own(image, 0);
+    outputs.own(image);
   }
 
   Device device() { return {outputs, wiring, state}; }

@@ -146,17 +146,20 @@ TEST_CASE("hc_sr04: nobody's trigger gives a pulse, and a halt holds none back")
   guard.ping(0);
   CHECK(board.pings.empty());
   REQUIRE(vm::verify(with, kEverything, image).ok());
-  guard.own(image, ~guard::OutputGuard::Mask{0});
+  guard.begin_with(~guard::OutputGuard::Mask{0});
+  guard.own(image);
   guard.ping(0);
   guard.ping(1);
   CHECK(board.pings == Pings{{7, 41}});
   const unsigned before = board.takes;
   vm::Image other;
   REQUIRE(vm::verify(without, kEverything, other).ok());
-  guard.own(other, 0);
+  guard.end_measurements();
   CHECK(board.takes == before + 1);  // what went on is over
   guard.ping(0);
-  guard.own(image, 0);
+  guard.own(other);
+  guard.ping(0);
+  guard.own(image);
   guard.disown();
   guard.ping(0);
   CHECK(board.pings.size() == 1);
@@ -172,7 +175,7 @@ TEST_CASE(
   const auto bytes = test::compile(kOfSonar, kWithSonar);
   vm::Image image;
   REQUIRE(vm::verify(bytes, kEverything, image).ok());
-  guard.own(image, 0);
+  guard.own(image);
   guard.ping(0);
   CHECK(board.pings.empty());
 }

@@ -152,7 +152,7 @@ TEST_CASE("lights: the guard shows nothing for whom it has halted, nor for who h
   vm::Image image;
   image.actuators = wiring;
   outputs.show(1, 7);  // nobody owns them yet
-  outputs.own(image, 0);
+  outputs.own(image);
   outputs.show(0, 7);
   CHECK(board.pictures.empty());
   outputs.show(1, 7);

@@ -167,7 +167,7 @@ TEST_CASE("tones: the guard sounds nothing for whom it has halted, nor for who h
   vm::Image image;
   image.actuators = wiring;
   outputs.sound(1, 440);  // nobody owns it yet
-  outputs.own(image, 0);
+  outputs.own(image);
   outputs.sound(0, 440);
   CHECK(board.sounds.empty());
   outputs.sound(1, 440);

@@ -99,7 +99,8 @@ struct Bench {
     actuators = std::move(next);
     vm::Image image;
     image.actuators = actuators;
-    guard.own(image, halted);
+    guard.begin_with(halted);
+    guard.own(image);
   }
   std::uint32_t pulse(std::uint16_t pin) const { return board.pwm_read(pin); }
 
@@ -193,10 +194,10 @@ TEST_CASE("nothing begins to move because it is halted") {
   CHECK(bench.pulse(0) == 0);  // it was never driven
   bench.guard.let_go(0b1);
   bench.guard.drive(0, 1800, 0);
-  bench.own({rests}, 0b1);  // a program that comes while all is stopped
-  CHECK(bench.pulse(0) == 1800);
+  bench.own({rests}, 0b1);  // a program that comes while all is stopped: it has a safe state of its own
+  CHECK(bench.pulse(0) == 500);
   bench.guard.drive(0, 600, 0);
-  CHECK(bench.pulse(0) == 1800);
+  CHECK(bench.pulse(0) == 500);
 }
 
 TEST_CASE("what is on its way stays where it is when it is halted") {

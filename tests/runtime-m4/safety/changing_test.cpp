@@ -1,0 +1,173 @@
+// A person's stop and resume while one program takes the place of another: whenever they come, they hold.
+#include <catch2/catch.hpp>
+
+#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/robot.hpp"
+
+using namespace robosync;
+using robosync::test::Rig;
+
+namespace {
+
+constexpr std::uint16_t kArm = 3, kMotor = 4, kSonarEcho = 41;
+constexpr kernel::Events kUpload = 1;
+
+std::string outputs_with(const std::string& safe, const std::string& sensors = "") {
+  return R"({"sensors": [)" + sensors +
+         R"({"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+    "actuators": [
+      {"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "100deg"], "safe": ")" +
+         safe + R"("},
+      {"name": "motor", "type": "PWM", "pin": 4, "device": "pwm", "on_release": "hold"}]})";
+}
+
+const char* const kChangingProgram =
+    "EVERY 50ms\nDO\n  RUN motor TO 70%\nEND\n"
+    "AT START\nDO MOVE arm TO 100deg AT 100deg/s\nEND\n";
+
+// Uploads from a thread, as the link does: so the safety thread comes in between, wherever it is called.
+struct Changing {
+  Changing() {
+    REQUIRE(kernel.add(link, {.name = "link",
+                              .category = kernel::Category::system,
+                              .priority = 0,
+                              .entry = [](void* self) { static_cast<Changing*>(self)->serve(); },
+                              .argument = this,
+                              .stack = {}}));
+    rig.on_event = board.on_pin = [this] {
+      if (++places == act_at && act) act();
+    };
+  }
+  void serve() {
+    while (true) {
+      kernel.wait(kUpload);
+      places = 0;
+      is_running = rig.activate(next).ok();
+      last = places;
+      places = 1U << 31U;  // no more of them count
+    }
+  }
+  void go_on(unsigned ms) { rig.run(kernel.now() / 1000 + ms); }
+  void upload(const std::vector<std::byte>& program) {
+    next = program;
+    kernel.signal(link, kUpload);
+    go_on(1);
+    REQUIRE(is_running);
+  }
+  bool is_off() const { return board.pulse(kArm) == 0 && board.pulse(kMotor) == 0; }
+  bool moves() const { return board.pulse(kMotor) == 14'000; }
+
+  Rig rig;
+  kernel::Kernel& kernel = rig.kernel;
+  test::NotingBoard& board = rig.board;
+  Runtime& runtime = rig.runtime;
+  kernel::Thread link;
+  std::vector<std::byte> next;
+  bool is_running = false;
+  unsigned places = 1U << 31U;  // that the board or the trace was called at, in this upload
+  unsigned last = 0;            // of the last upload
+  unsigned act_at = 0;
+  std::function<void()> act;
+};
+
+}  // namespace
+
+TEST_CASE("a stop holds at whatever moment of an upload it comes") {
+  const std::vector<std::byte> program = test::compile(kChangingProgram, outputs_with("coast"));
+  const bool after_another = GENERATE(false, true);
+  CAPTURE(after_another);
+  unsigned last = 1;
+  for (unsigned place = 1; place <= last; ++place) {
+    CAPTURE(place);
+    Changing robot;
+    if (after_another) {
+      robot.upload(program);
+      robot.go_on(2000);
+      REQUIRE((robot.moves() && robot.board.pulse(kArm) != 0));
+    }
+    robot.act_at = place;
+    robot.act = [&] { robot.runtime.stop(); };
+    robot.upload(program);
+    last = robot.last;
+    if (last < place) break;  // it did not come
+    robot.go_on(500);
+    CHECK(robot.runtime.stopped());
+    CHECK(robot.is_off());
+    robot.runtime.resume();
+    robot.go_on(500);
+    CHECK(robot.moves());
+  }
+  CHECK(last > 3);
+}
+
+TEST_CASE("a stop reaches the pins of the program that goes, at once") {
+  const std::vector<std::byte> program = test::compile(kChangingProgram, outputs_with("coast"));
+  Changing robot;
+  robot.upload(program);
+  robot.go_on(2000);
+  std::vector<std::uint32_t> seen;  // on the motor, whenever a pin is looked at or written
+  robot.board.on_pin = nullptr;
+  robot.act_at = 1;  // its only event before the next program is there: that it comes
+  robot.act = [&] {
+    robot.runtime.stop();
+    robot.rig.on_event = nullptr;
+    robot.board.on_pin = [&] { seen.push_back(robot.board.pulse(kMotor)); };
+  };
+  robot.upload(program);
+  REQUIRE_FALSE(seen.empty());
+  CHECK(seen.back() == 0);  // long before the next one has looked at its pins
+  CHECK(robot.is_off());
+}
+
+TEST_CASE("a resume holds at whatever moment of an upload it comes") {
+  const std::vector<std::byte> program = test::compile(kChangingProgram, outputs_with("coast"));
+  unsigned last = 1;
+  for (unsigned place = 1; place <= last; ++place) {
+    CAPTURE(place);
+    Changing robot;
+    robot.upload(program);
+    robot.go_on(1000);
+    robot.runtime.stop();
+    robot.go_on(10);
+    robot.act_at = place;
+    robot.act = [&] { robot.runtime.resume(); };
+    robot.upload(program);
+    last = robot.last;
+    if (last < place) break;  // it did not come
+    robot.go_on(500);
+    CHECK_FALSE(robot.runtime.stopped());
+    CHECK(robot.moves());
+  }
+}
+
+TEST_CASE("a program that comes while all is stopped has its own safe state") {
+  Changing robot;
+  robot.upload(test::compile(kChangingProgram, outputs_with("hold")));
+  robot.go_on(2000);
+  robot.runtime.stop();
+  robot.go_on(10);
+  REQUIRE(robot.board.pulse(kArm) != 0);  // it holds
+  REQUIRE(robot.board.pulse(kMotor) == 0);
+  robot.upload(test::compile(kChangingProgram, outputs_with("coast")));
+  robot.go_on(10);
+  CHECK(robot.is_off());
+}
+
+TEST_CASE("measurements end before the image that says where they are is overwritten") {
+  const std::string sonar =
+      R"({"name": "sonar", "type": "GPIO", "trigger": 7, "echo": 41, "device": "hc-sr04"}, )";
+  Changing robot;
+  robot.upload(test::compile("WHEN sonar DISTANCE < 20cm\nDO RUN motor TO 70%\nEND\n",
+                             outputs_with("coast", sonar)));
+  robot.go_on(130);
+  const unsigned before = robot.board.takes;
+  bool is_whole = true;
+  robot.board.echo_us = [&](std::uint16_t echo) {
+    is_whole = is_whole && echo == kSonarEcho;
+    return 0;
+  };
+  robot.upload(
+      test::compile("WHEN near X < 20\nDO RUN motor TO 70%\nEND\n", outputs_with("coast")));
+  CHECK(robot.board.takes > before);
+  CHECK(is_whole);
+}
