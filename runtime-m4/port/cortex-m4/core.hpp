@@ -35,6 +35,7 @@ inline constexpr std::uint32_t kIcsrPendSvSet = 1U << 28;
 inline constexpr std::uint32_t kIcsrSysTickSet = 1U << 26;
 inline constexpr std::uint32_t kCcrDivideByZeroTrap = 1U << 4;
 inline constexpr std::uint32_t kShcsrFaultHandlers = 7U << 16;  // MemManage, BusFault, UsageFault
+inline constexpr std::uint32_t kShcsrCallPending = 1U << 15;    // SVCALLPENDED
 inline constexpr std::uint32_t kCfsrDataAccess = 1U << 1;       // MemManage: address in MMFAR
 inline constexpr std::uint32_t kCfsrMemoryStacking = 1U << 4;   // MemManage: frame not stacked
 inline constexpr std::uint32_t kCfsrMmarValid = 1U << 7;

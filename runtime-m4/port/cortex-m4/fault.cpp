@@ -104,10 +104,14 @@ void make_switch_safe(kernel::Thread& thread) {
   asm volatile("msr psp, %0" ::"r"(sp) : "memory");
 }
 
-std::uint32_t basepri() {
-  std::uint32_t value = 0;
-  asm volatile("mrs %0, basepri" : "=r"(value));
-  return value;
+// Of the kernel's level, or all of them: then it is in the midst of something, and the switch that would follow a stop does
+// not come.
+bool holds_interrupts_off() {
+  std::uint32_t basepri = 0;
+  std::uint32_t primask = 0;
+  asm volatile("mrs %0, basepri" : "=r"(basepri));
+  asm volatile("mrs %0, primask" : "=r"(primask));
+  return (basepri | primask) != 0;
 }
 
 bool from_thread(const FaultEntry& entry) {
@@ -135,7 +139,7 @@ bool from_saving(const FaultEntry& entry) {
 
 // Whether the fault is the thread's own doing, in a state in which the kernel can go on without it.
 bool may_go_on(const kernel::Thread& thread, const FaultEntry& entry) {
-  return (from_thread(entry) || from_saving(entry)) && basepri() == 0 &&
+  return (from_thread(entry) || from_saving(entry)) && !holds_interrupts_off() &&
          &thread != &robosync_kernel.idle() && thread.category() != kernel::Category::safety;
 }
 
@@ -196,7 +200,7 @@ void stop_overrun(kernel::Kernel&, kernel::Thread& thread) {
   stop_and_report(thread, fault);
 }
 
-// Stops the running thread. A fault before it may have done so already: the call was still pending then.
+// Stops the running thread, unless a fault before it has done so already.
 void Machine::refuse_call() {
   kernel::Thread& thread = robosync_kernel.current();
   if (robosync_kernel.state(thread) == kernel::Thread::State::stopped) return;
@@ -229,6 +233,7 @@ std::uint32_t robosync_fault(const robosync::port::FaultEntry* entry) {
     skip_saving(*entry);
     return entry->exc_return;
   }
+  core::reg(core::kShcsr) &= ~core::kShcsrCallPending;  // it wanted to, and is not asked what any more
   make_switch_safe(thread);
   return kReturnToThread;
 }

@@ -16,7 +16,7 @@ constexpr Events kPong = 2;
 constexpr Events kOther = 4;
 constexpr std::uint32_t kNoSuchCall = 1U << 21;  // port/cortex-m4/fault.hpp
 
-enum Word : std::uint8_t { kTaken, kRounds, kSeed };
+enum Word : std::uint8_t { kTaken, kRounds, kSeed, kRanAgain };
 
 // The open area, by an address that is no variable.
 volatile std::uint32_t& open(Word word) {
@@ -157,23 +157,43 @@ void hostile_calls() {
   robosync_kernel.wait(kPong, 0);
 }
 
+void run_again() {
+  open(kRanAgain) = 1;
+  while (true) {
+  }
+}
+
+// Where the registers of a thread that was stopped are taken to stand it leaves such that its call is
+// wait(1), and that it goes on in run_again() when it is signalled.
 [[gnu::naked]] void calls_with_lost_stack(void*) {
   asm volatile(
+      "sub  r0, sp, #32     \n"
+      "movs r1, #0          \n"
+      "movs r2, #1          \n"
+      "strd r1, r2, [r0]    \n"
+      "ldr  r1, =%c0        \n"
+      "bic  r1, r1, #1      \n"
+      "mov  r2, #0x01000000 \n"
+      "strd r1, r2, [r0, #24] \n"
       "ldr  r0, =0x60000000 \n"
       "mov  sp, r0          \n"
       "movs r0, #0          \n"
       "svc  0               \n"
       "1: b 1b              \n"
-      ".ltorg               \n");
+      ".ltorg               \n" ::"i"(run_again));
 }
 
-// The call cannot be stacked: one fault, and the call comes after it for a thread that is stopped.
+// The call cannot be stacked: one fault, and the call is none any more.
 void call_without_stack() {
+  rig::granted_area()[kRanAgain] = 0;
   rig::Thread& caller = rig::start_unprivileged(kCaller, 60, calls_with_lost_stack);
   rig::sleep_ms(2);
   CHECK(rig::faults() == 1);
   CHECK((rig::last_fault().cause & 1U << 4) != 0);
   CHECK(robosync_kernel.state(caller) == rig::Thread::State::stopped);
+  robosync_kernel.signal(caller, 1);
+  rig::sleep_ms(2);
+  CHECK(rig::granted_area()[kRanAgain] == 0);
 }
 
 constexpr rig::Scenario kScenarios[] = {

@@ -122,7 +122,7 @@ void first_boot() {
   finish();
 }
 
-// Second boot: what the first one left; then the watchdog against a thread that locks up.
+// Second boot: what the first one left; then a thread's fault that its switch could not follow.
 void second_boot() {
   begin();
   CHECK(robosync_board.reset_reason() == robosync::link::ResetReason::software);
@@ -134,6 +134,17 @@ void second_boot() {
     CHECK(words->pc != 0);
   }
   end("a fault in the safety thread resets, and the next start knows of it");
+  asm volatile("cpsid i \n udf #2");
+  rig::fail("main.cpp", __LINE__, "the fault with all interrupts held off did not reset");
+  finish();
+}
+
+// Third boot: what that left; then the watchdog against a thread that locks up.
+void third_boot() {
+  begin();
+  CHECK(robosync_board.reset_reason() == robosync::link::ResetReason::software);
+  CHECK(robosync::boards::last_fault() != nullptr);
+  end("a fault with all interrupts held off resets, whoever makes it");
   begin();
   robosync_board.watchdog_start();
   for (unsigned i = 0; i < 10; ++i) {
@@ -147,7 +158,7 @@ void second_boot() {
   }
 }
 
-void third_boot() {
+void fourth_boot() {
   begin();
   robosync_kernel.remove(spinner_thread);
   rig::sleep_ms(20);
@@ -170,8 +181,11 @@ void conduct(void*) {
     case 1:
       second_boot();
       break;
-    default:
+    case 2:
       third_boot();
+      break;
+    default:
+      fourth_boot();
       break;
   }
 }
