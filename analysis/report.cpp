@@ -57,7 +57,7 @@ bool ResponseReport::schedulable() const {
 }
 
 Instructions ResponseReport::microseconds(Instructions instructions) const {
-  return (instructions * 1000 + instructions_per_ms - 1) / instructions_per_ms;
+  return ceil_div(instructions * 1000, instructions_per_ms);
 }
 
 ResponseReport response_report(const vm::Image& image, const policy::BoardCosts& board,

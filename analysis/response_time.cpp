@@ -23,10 +23,6 @@ constexpr unsigned kMostRounds = 10'000;       // of one fixed point
 constexpr Instructions kMostReleases = 1'000;  // of one busy period
 constexpr Instructions kForeverLate = Instructions{1} << 40;
 
-Instructions ceil_div(Instructions a, Instructions b) {
-  return (a + b - 1) / b;
-}
-
 double share(Instructions cost, Instructions period) {
   return static_cast<double>(cost) / static_cast<double>(period);
 }

@@ -14,6 +14,10 @@ namespace robosync::analysis {
 
 using Instructions = std::uint64_t;
 
+constexpr Instructions ceil_div(Instructions a, Instructions b) {
+  return (a + b - 1) / b;
+}
+
 // What makes steps: a sensor, or something in the program that is due by itself. It is released
 // once in `period` at most; then its thread samples, and its announcement makes a step, alone or
 // together with others.

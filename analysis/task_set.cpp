@@ -13,6 +13,7 @@
 #include "analysis/exclusive.hpp"
 #include "analysis/step_work.hpp"
 #include "runtime-m4/policy/adaptation.hpp"
+#include "runtime-m4/policy/link_share.hpp"
 #include "runtime-m4/policy/rules.hpp"
 #include "runtime-m4/policy/threads.hpp"
 #include "vm/drivers.hpp"
@@ -50,6 +51,7 @@ public:
     add_checks();
     add_firings();
     add_interferences();
+    add_link();
     set_.lost = costs::kClaim;
     set_.longest_lock = longest_lock();
     return set_;
@@ -417,6 +419,34 @@ private:
                                     instructions_in_ms(policy::kSetpointPeriodMs),
                                     costs::kService + driver.advance + driver.start});
     }
+  }
+
+  // The step thread waits for the link only when that had nothing for a period. A program that cannot fill one leaves it some.
+  void add_link() {
+    const Instructions period = instructions_in_ms(policy::kLinkPeriodMs);
+    const Instructions turn = instructions_in_ms(policy::kLinkTurnMs);
+    if (most_within(period) + turn < period) return;
+    set_.interferences.push_back({"the link's turn", period, turn});
+  }
+
+  // What the program can take of so long a time: its share, and each thing once that was released before and is not done.
+  // What follows something else comes late, by less than `time` where it matters.
+  Instructions most_within(Instructions time) const {
+    const auto most_of = [](Instructions cost, Instructions in, Instructions period) {
+      return cost + ceil_div(cost * in, period);
+    };
+    const auto released_in = [time](const Source& source) {
+      return source.follows == Source::kNone ? time : 2 * time;
+    };
+    Instructions most = 0;
+    for (const Source& source : set_.sources)
+      most += most_of(source.sample + source.step, released_in(source), source.period);
+    for (const Firing& rule : set_.firings)
+      for (const std::size_t s : rule.sources)
+        most += most_of(rule.cost, released_in(set_.sources[s]), set_.sources[s].period);
+    for (const Interference& one : set_.interferences)
+      most += most_of(one.cost, time, one.period);
+    return most;
   }
 
   const vm::Image& image_;

@@ -28,6 +28,7 @@
 #include "runtime-m4/layers/mailbox.hpp"
 #include "runtime-m4/layers/memory.hpp"
 #include "runtime-m4/layers/processing.hpp"
+#include "runtime-m4/layers/link_share.hpp"
 #include "runtime-m4/layers/program_threads.hpp"
 #include "runtime-m4/layers/sampler.hpp"
 #include "runtime-m4/layers/sensor.hpp"
@@ -75,6 +76,8 @@ public:
   void stop() { say(true); }  // or from an interrupt of the kernel's level
   void resume() { say(false); }
   bool stopped() const { return stopped_; }
+  // This thread has its share of the processor whatever the program does. Before Kernel::run().
+  void share_with(const kernel::Thread& link) { link_share_.watch(link); }
   // Has a SAFETY rule of the running program tripped since it began?
   bool has_tripped() const { return safety_rules_.have_tripped(); }
 
@@ -152,6 +155,7 @@ private:
   unsigned faults_ = 0;  // of programs that are gone
   safety::Monitor monitor_;
   layers::Budget budget_;
+  layers::LinkShare link_share_;
   kernel::Thread step_thread_;
   layers::ProgramThreads threads_;
 

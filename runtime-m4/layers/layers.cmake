@@ -13,6 +13,7 @@ target_sources(robosync_runtime PRIVATE
   layers/feed_queue.cpp
   layers/frames.cpp
   layers/kept.cpp
+  layers/link_share.cpp
   layers/mailbox.cpp
   layers/memory.cpp
   layers/median.cpp

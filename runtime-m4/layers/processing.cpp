@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runtime-m4/layers/clock.hpp"
+#include "runtime-m4/policy/link_share.hpp"
 
 namespace robosync::layers {
 
@@ -71,7 +72,8 @@ void ProcessingLayer::run() {
   kernel_.sleep_until(trace_.activated_at());
   kernel::Time next = 0;  // the first pass does not wait for news
   while (true) {
-    if ((kernel_.wait(kNews | kIdle | kStopped | kHalted, next) & kStopped) != 0) note_stops();
+    const kernel::Events why = kernel_.wait(kNews | kIdle | kStopped | kHalted | kGiveWay, next);
+    if ((why & (kStopped | kGiveWay)) != 0) attend(why);
     in_pass_.store(true, std::memory_order_relaxed);
     pass();
     passes_.store(passes_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
@@ -237,6 +239,13 @@ kernel::Time ProcessingLayer::next_time() {
 }
 
 // --- threads that were stopped ---
+
+// To the next tick but one: what is left of this one may be nothing.
+void ProcessingLayer::attend(kernel::Events events) {
+  if ((events & kStopped) != 0) note_stops();
+  if ((events & kGiveWay) != 0)
+    kernel_.sleep_until(kernel_.now() + kernel::milliseconds(policy::kLinkTurnMs));
+}
 
 void ProcessingLayer::note_stops() {
   layers_.algorithms.lower_those_over(layers_.threads);

@@ -79,8 +79,9 @@ inline constexpr kernel::Events kFinished = 4;   // a behaviour has done what it
 inline constexpr kernel::Events kCancelled = 8;  // an actuator was cancelled
 inline constexpr kernel::Events kStopped =
     16;  // a thread was stopped by a fault, or is to be lowered
-inline constexpr kernel::Events kHalted = 32;  // safety has halted, let go, or set something
-inline constexpr kernel::Events kBegin = 64;   // all threads of the program are there
+inline constexpr kernel::Events kHalted = 32;    // safety has halted, let go, or set something
+inline constexpr kernel::Events kBegin = 64;     // all threads of the program are there
+inline constexpr kernel::Events kGiveWay = 128;  // it is the link's turn
 
 class ProcessingLayer {
 public:
@@ -109,6 +110,9 @@ public:
   // … and the first step comes when its clock begins.
   void go() { kernel_.signal(thread_, kBegin); }
 
+  // It is the link's turn: the next pass waits for that.  [any]
+  void give_way() { kernel_.signal(thread_, kGiveWay); }
+
   std::uint32_t steps() const { return trace_.step().step; }
   const Snapshot& snapshot() const { return snapshot_; }
   // For whoever watches over it: is it between passes, with nothing to do? How many has it done?
@@ -133,6 +137,7 @@ private:
   void add_waiting(unsigned rule, Soonest& due) const;
   void add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const;
   kernel::Time next_time();
+  [[gnu::cold]] void attend(kernel::Events events);
   [[gnu::cold]] void note_stops();
   [[gnu::cold]] void retire(const ProgramThreads::Member& member);
 

@@ -61,6 +61,7 @@ bool Server::start() {
                              .argument = this,
                              .stack = stack_}))
     return false;
+  runtime_.share_with(thread_);
   ring_.wake(thread_, kNews);
   const auto line_ready = [](void* self) {
     auto& server = *static_cast<Server*>(self);
@@ -221,9 +222,16 @@ void Server::resume(const link::Frame& frame) {
     ++bad_requests_;
     return;
   }
-  if (stops_read_ != stops_seen_.load(std::memory_order_relaxed)) return;
-  runtime_.resume();
+  if (!resume_unless_stopped()) return;
   status(frame.sequence);
+}
+
+// No stop comes between the look and the word.
+bool Server::resume_unless_stopped() {
+  const auto lock = kernel_.lock_interrupts();
+  if (stops_read_ != stops_seen_.load(std::memory_order_relaxed)) return false;
+  runtime_.resume();
+  return true;
 }
 
 void Server::begin(const link::Frame& frame) {
@@ -270,7 +278,7 @@ void Server::activate(const link::Frame& frame) {
     return;
   }
   const bool whole = receiver_.complete() && receiver_.hash() == request.hash;
-  if (whole && !gate_.grants(receiver_.bytes(), request.fresh != 0)) {
+  if (whole && !gate_.grants(receiver_.bytes(), request)) {
     receiver_.reset();  // it is not what the owner has signed: all of it again
   } else if (whole) {
     keeper_.host_activates(request.fresh != 0);

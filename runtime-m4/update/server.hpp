@@ -84,6 +84,7 @@ private:
   void feed(const link::Frame& frame);
   void stop(std::uint8_t sequence);
   void resume(const link::Frame& frame);
+  bool resume_unless_stopped();
   void status(std::uint8_t sequence);
   void last_fault(std::uint8_t sequence);
   void devices(std::uint8_t sequence);

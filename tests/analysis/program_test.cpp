@@ -8,11 +8,13 @@
 #include "analysis/task_set.hpp"
 #include "rsc/algorithm_modules.hpp"
 #include "rsc/board.hpp"
+#include "runtime-m4/policy/link_share.hpp"
 #include "tests/analysis/simulation.hpp"
 #include "tests/rsc/process.hpp"
 #include "tests/timing/programs.hpp"
 
 using namespace robosync;
+using analysis::Instructions;
 using Catch::Contains;
 
 namespace {
@@ -175,6 +177,32 @@ TEST_CASE("a rule that starves the board is refused by check, compile and upload
     upload = test::rsc({"upload", file, "--port", robot.path("none"), "--anyway"});
     CHECK(upload.exit == 3);  // only the port is missing
   }
+}
+
+TEST_CASE("a program that may leave the link nothing waits for it, and only such a one") {
+  const auto link_of = [](const std::string& file) {
+    const tool::Program program = test::compile_example(file);
+    return analysis::task_set_of(program.image(), tool::board_costs(), tool::module_cost);
+  };
+  const auto turn_of = [](const analysis::TaskSet& set) {
+    return std::ranges::find(set.interferences, "the link's turn", &analysis::Interference::name);
+  };
+  const analysis::TaskSet light = link_of("examples/paper/robot.rsl");
+  CHECK(turn_of(light) == light.interferences.end());
+
+  const auto heavy = [&](unsigned rounds) {
+    const tool::Program program = test::compile_with_docs_robot(
+        "REMEMBER n = 0\nEVERY 7ms DO\n  REPEAT " + std::to_string(rounds) +
+        " TIMES\n    SET n TO n + 1\n  END\nEND\n");
+    return analysis::task_set_of(program.image(), tool::board_costs(), tool::module_cost);
+  };
+  const analysis::TaskSet some = heavy(200);
+  CHECK(turn_of(some) == some.interferences.end());
+  const analysis::TaskSet much = heavy(3800);
+  REQUIRE(turn_of(much) != much.interferences.end());
+  const Instructions ms = tool::board_costs().instructions_per_ms();
+  CHECK(turn_of(much)->cost == policy::kLinkTurnMs * ms);
+  CHECK(turn_of(much)->period == policy::kLinkPeriodMs * ms);
 }
 
 TEST_CASE("a program that is late on one path though the processor has time") {

@@ -44,13 +44,14 @@ class RobotTest(unittest.TestCase):
     """One board for each test, and a folder that is deleted after it. Which board: ROBOSYNC_BOARD in the environment."""
 
     elf = FIRMWARE
+    icount = FAST
     units = UNITS  # of the channels that scenarios feed
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="robosync-e2e-")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
-        self.board = Board(self.elf, icount=FAST, extra=self.qemu_arguments())
+        self.board = Board(self.elf, icount=self.icount, extra=self.qemu_arguments())
         self.addCleanup(self.board.stop)
 
     def qemu_arguments(self):

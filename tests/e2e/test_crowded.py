@@ -1,0 +1,60 @@
+"""A program that leaves the link's thread, which ranks below it, nothing of the processor: rsc reaches the robot nevertheless.
+
+`rsc` uploads such a program with --anyway only."""
+
+import unittest
+
+import rsc
+import wire
+from board import REAL_TIME
+from support import PROGRAMS, RobotTest
+
+BUSY = """REMEMBER round = 0
+EVERY 1ms
+DO
+  REPEAT 900 TIMES
+    SET round TO (round * 3 + 1) MOD 1000
+  END
+END
+"""
+
+ANSWERS = 20
+STEP_US = 1_500
+# Two turns, the first for what comes of a request before its last byte, each after 40 ms and the rest of a check's period.
+PATIENCE_US = 2 * (40_000 + 20_000)
+
+
+class Crowded(RobotTest):
+    icount = REAL_TIME  # it is never idle
+
+    def setUp(self):
+        super().setUp()
+        source = self.folder / "busy.rsl"
+        source.write_text(BUSY)
+        refused = rsc.call("check", source, "--config", self.for_board(PROGRAMS / "robot.json"))
+        self.assertIn("error[E0412]", refused.stderr)
+        self.upload(self.compile(source), "--anyway")
+
+    def test_it_answers_in_time_and_the_program_goes_on(self):
+        with wire.Line(self.board.port) as line:
+            line.hello()
+            said = [line.status() for _ in range(1 + ANSWERS)]
+        for before, after in zip(said, said[1:]):
+            self.assertLessEqual(after.uptime_us - before.uptime_us, PATIENCE_US)
+        # It has a share, and no more: of each 40 ms at least 38 are the program's, whose steps take 1.5 ms on this board.
+        passed, steps = said[-1].uptime_us - said[0].uptime_us, said[-1].steps - said[0].steps
+        self.assertGreater(steps * STEP_US, passed * 0.8)
+        self.assertEqual((said[-1].faults, said[-1].reset_reason), (0, 0))
+
+    def test_another_program_takes_its_place(self):
+        image = self.compile(PROGRAMS / "priorities.rsl")
+        self.upload(image)
+        self.assertIn(rsc.info(self.board.port)["board"]["program"]["hash"], rsc.run("dump", image))
+
+    def test_it_stops(self):
+        rsc.run("stop", "--port", self.board.port)
+        self.assertIn("stopped", rsc.run("info", "--port", self.board.port))
+
+
+if __name__ == "__main__":
+    unittest.main()
