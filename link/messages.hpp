@@ -8,7 +8,7 @@
 
 namespace robosync::link {
 
-inline constexpr std::uint8_t kProtocolVersion = 9;
+inline constexpr std::uint8_t kProtocolVersion = 10;
 inline constexpr std::size_t kMaxPayload = 240;
 inline constexpr std::size_t kNameLength = 16;  // NUL-padded
 using Name = std::array<char, kNameLength>;
@@ -255,8 +255,10 @@ inline constexpr std::size_t kMaxOrder = kMaxPayload - sizeof(SignedOrder);
 
 struct Grant {  // what a signed `begin` ends with
   ImageHash image;
-  std::uint8_t fresh;  // as Activate's
-  std::array<std::uint8_t, 3> reserved{};
+  std::uint32_t trial_ms;  // these as Activate's
+  std::uint8_t goes_back;
+  std::uint8_t fresh;
+  std::array<std::uint8_t, 2> reserved{};
 };
 
 struct TraceOn {

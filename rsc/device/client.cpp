@@ -306,10 +306,10 @@ void Client::unpair() {
 
 // What follows it needs no signature, so a lost line costs none.
 void Client::order_upload(std::span<const std::byte> begin, std::span<const std::byte> image,
-                          bool fresh) {
+                          const link::Activate& how) {
   if (!orders_.are_signed()) return;
   std::vector<std::byte> payload(begin.begin(), begin.end());
-  const link::Grant grant = grant_of(image, fresh);
+  const link::Grant grant = grant_of(image, how);
   std::ranges::copy(link::wire_bytes(grant), std::back_inserter(payload));
   (void)order<link::TransferStatus>(MessageType::begin, MessageType::transfer_status, payload);
 }

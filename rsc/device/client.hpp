@@ -60,7 +60,8 @@ public:
   void pair(const link::Pair& owner);
   void unpair();
   // Lets an upload of `image`, which says `begin`, through to its activation; for a robot without an owner nothing.
-  void order_upload(std::span<const std::byte> begin, std::span<const std::byte> image, bool fresh);
+  void order_upload(std::span<const std::byte> begin, std::span<const std::byte> image,
+                    const link::Activate& how);
   // hello() in two parts: what is sent between them does not wait for the answer.
   std::uint8_t send_hello();
   link::HelloReply hello_answer(std::uint8_t sequence);

@@ -43,13 +43,15 @@ std::vector<std::byte> Orders::sign(link::MessageType type, std::span<const std:
   return whole;
 }
 
-link::Grant grant_of(std::span<const std::byte> image, bool fresh) {
+link::Grant grant_of(std::span<const std::byte> image, const link::Activate& how) {
   std::array<unsigned char, crypto_hash_sha512_BYTES> hash{};
   crypto_hash_sha512(hash.data(), reinterpret_cast<const unsigned char*>(image.data()),
                      image.size());
   link::Grant grant{};
   std::copy_n(hash.begin(), grant.image.size(), grant.image.begin());
-  grant.fresh = fresh ? 1 : 0;
+  grant.trial_ms = how.trial_ms;
+  grant.goes_back = how.goes_back;
+  grant.fresh = how.fresh;
   return grant;
 }
 

@@ -39,7 +39,7 @@ private:
 };
 
 // What the signed `begin` of an upload ends with.
-[[nodiscard]] link::Grant grant_of(std::span<const std::byte> image, bool fresh);
+[[nodiscard]] link::Grant grant_of(std::span<const std::byte> image, const link::Activate& how);
 
 // Why the board has not taken an order, when asking again is of no use. Empty: it is.
 [[nodiscard]] std::string denial_text(const link::Authority& authority);

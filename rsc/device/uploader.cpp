@@ -75,7 +75,16 @@ public:
   }
 
   // A robot with an owner takes begin() when it was ordered; of others nothing is asked.
-  void order() { client_.order_upload(link::wire_bytes(request()), image_, options_.fresh); }
+  void order() { client_.order_upload(link::wire_bytes(request()), image_, wish()); }
+
+  // How it is to be activated.
+  link::Activate wish() const {
+    return {.session = client_.session(),
+            .hash = vm::stated_name(image_),
+            .trial_ms = static_cast<std::uint32_t>(options_.trial.count()),
+            .goes_back = static_cast<std::uint8_t>(!options_.confirm),
+            .fresh = static_cast<std::uint8_t>(options_.fresh)};
+  }
 
   // The board does not run the base.
   void forget_base() {
@@ -220,20 +229,15 @@ private:
 UploadResult finish(Client& client, Transfer& transfer, std::span<const std::byte> image,
                     const UploadOptions& options, Transport::Clock::time_point start) {
   const auto give_up = start + options.timeout.value_or(patience(image.size()));
-  const link::Activate wish{.session = client.session(),
-                            .hash = vm::stated_name(image),
-                            .trial_ms = static_cast<std::uint32_t>(options.trial.count()),
-                            .goes_back = static_cast<std::uint8_t>(!options.confirm),
-                            .fresh = static_cast<std::uint8_t>(options.fresh)};
   UploadResult result;
   result.bytes = image.size();
   transfer.run(Until::sent, give_up);
-  result.activation = client.activate(wish);
+  result.activation = client.activate(transfer.wish());
   while (result.activation.refusal == link::kNothingToActivate && client.now() < give_up) {
     transfer.order();
     transfer.begin();
     transfer.run(Until::there, give_up);
-    result.activation = client.activate(wish);
+    result.activation = client.activate(transfer.wish());
   }
   result.frames_sent = transfer.frames_sent();
   result.bytes_sent = transfer.bytes_sent();

@@ -50,10 +50,13 @@ ChannelMask Mailboxes::take_announced() {
 
 ChannelMask Mailboxes::expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,
                                   kernel::Time now) {
-  const auto lock = kernel_.lock();
   ChannelMask expired = 0;
-  next_expiry_ = kernel::kForever;
+  {
+    const auto lock = kernel_.lock();
+    next_expiry_ = kernel::kForever;
+  }
   for (unsigned c = 0; c < channels.size(); ++c) {
+    const auto lock = kernel_.lock();  // forget() may come in between
     if (!has(fresh, c) && expire(c, channels[c], now)) expired |= bit<ChannelMask>(c);
     next_expiry_ = std::min(next_expiry_, expires_at(c, channels[c]));
   }

@@ -20,7 +20,9 @@ public:
     signed_ = frame.type == link::MessageType::signed_order;
     return !signed_;
   }
-  [[nodiscard]] bool grants(std::span<const std::byte> /*image*/, bool /*fresh*/) { return true; }
+  [[nodiscard]] bool grants(std::span<const std::byte> /*image*/, const link::Activate& /*how*/) {
+    return true;
+  }
   void outdate() {}
   void pair(const link::Pair& /*owner*/) { signed_ = false; }
   void unpair() {}

@@ -125,11 +125,13 @@ bool OrderGate::goes_on(const link::Frame& begin) const {
          std::ranges::equal(begin.payload, granted);
 }
 
-bool OrderGate::grants(std::span<const std::byte> image, bool fresh) {
+bool OrderGate::grants(std::span<const std::byte> image, const link::Activate& how) {
   if (!paired()) return true;
   const bool open = granted_.open && kernel_.now() < granted_.until;
   granted_.open = false;
-  return open && fresh == (granted_.what.fresh != 0) && hash_of(image) == granted_.what.image;
+  const link::Grant& what = granted_.what;
+  return open && how.fresh == what.fresh && how.goes_back == what.goes_back &&
+         how.trial_ms == what.trial_ms && hash_of(image) == what.image;
 }
 
 void OrderGate::pair(const link::Pair& owner) {

@@ -37,7 +37,7 @@ public:
   // False when the frame is an order that does not count; fill() then says why. A signed order becomes the order itself.
   [[nodiscard]] bool takes(link::Frame& frame);
   // May the image that was received be activated so? To be asked once for each.
-  [[nodiscard]] bool grants(std::span<const std::byte> image, bool fresh);
+  [[nodiscard]] bool grants(std::span<const std::byte> image, const link::Activate& how);
   // What was signed before this does not count any more: a stop.
   void outdate() {
     ++next_;

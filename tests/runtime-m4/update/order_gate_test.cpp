@@ -305,9 +305,16 @@ TEST_CASE("an upload is let through once, of the image that was signed, as it wa
   Paired at;
   Bytes image(100, std::byte{5});
   const link::Begin begin{1, 100, {1}, {}};
+  const auto how = [](bool fresh) {
+    return link::Activate{.session = 1,
+                          .hash = {1},
+                          .trial_ms = 500,
+                          .goes_back = 0,
+                          .fresh = fresh ? std::uint8_t{1} : std::uint8_t{0}};
+  };
   const auto granted = [&](bool fresh) {
     const auto head = link::wire_bytes(begin);
-    const link::Grant grant = tool::grant_of(image, fresh);
+    const link::Grant grant = tool::grant_of(image, how(fresh));
     Bytes payload(head.begin(), head.end());
     std::ranges::copy(link::wire_bytes(grant), std::back_inserter(payload));
     link::Frame frame{MessageType::signed_order, 0, {}};
@@ -316,20 +323,28 @@ TEST_CASE("an upload is let through once, of the image that was signed, as it wa
     REQUIRE(at.board.gate.takes(frame));
     CHECK(std::ranges::equal(frame.payload, head));
   };
-  CHECK_FALSE(at.board.gate.grants(image, false));
+  CHECK_FALSE(at.board.gate.grants(image, how(false)));
   granted(false);
-  CHECK(at.board.gate.grants(image, false));
-  CHECK_FALSE(at.board.gate.grants(image, false));
+  CHECK(at.board.gate.grants(image, how(false)));
+  CHECK_FALSE(at.board.gate.grants(image, how(false)));
   granted(false);
-  CHECK_FALSE(at.board.gate.grants(image, true));
+  CHECK_FALSE(at.board.gate.grants(image, how(true)));
   granted(true);
-  CHECK(at.board.gate.grants(image, true));
+  CHECK(at.board.gate.grants(image, how(true)));
+  granted(false);
+  link::Activate otherwise = how(false);
+  otherwise.trial_ms = 1;
+  CHECK_FALSE(at.board.gate.grants(image, otherwise));
+  granted(false);
+  otherwise = how(false);
+  otherwise.goes_back = 1;
+  CHECK_FALSE(at.board.gate.grants(image, otherwise));
   granted(false);
   at.board.gate.outdate();  // a stop
-  CHECK_FALSE(at.board.gate.grants(image, false));
+  CHECK_FALSE(at.board.gate.grants(image, how(false)));
   granted(false);
   REQUIRE(at.takes(clear_order(at.board, *at.keys.owner)));
-  CHECK_FALSE(at.board.gate.grants(image, false));
+  CHECK_FALSE(at.board.gate.grants(image, how(false)));
   // The same `begin` again goes on with it, and no other.
   granted(false);
   CHECK(at.board.takes(MessageType::begin, link::wire_bytes(begin)) == MessageType::begin);
@@ -337,11 +352,11 @@ TEST_CASE("an upload is let through once, of the image that was signed, as it wa
         Denial::unsigned_order);
   Bytes other = image;
   other.back() ^= std::byte{1};
-  CHECK_FALSE(at.board.gate.grants(other, false));
+  CHECK_FALSE(at.board.gate.grants(other, how(false)));
   granted(false);
   at.board.robot.run(OrderGate::kGrant / 1000);
   CHECK(at.board.denies(MessageType::begin, link::wire_bytes(begin)) == Denial::unsigned_order);
-  CHECK_FALSE(at.board.gate.grants(image, false));
+  CHECK_FALSE(at.board.gate.grants(image, how(false)));
 }
 
 TEST_CASE(
@@ -467,17 +482,15 @@ TEST_CASE("what a stranger sends into the owner's upload is not run") {
                           static_cast<std::uint32_t>(program.bytes().size()),
                           test::name_of(program),
                           {}};
+  const link::Activate how{
+      .session = 0, .hash = begin.hash, .trial_ms = 0, .goes_back = 0, .fresh = 0};
   client.send(MessageType::begin, link::wire_bytes(begin));
   foreign();
-  CHECK(
-      client.activate({.session = 0, .hash = begin.hash, .trial_ms = 0, .goes_back = 0, .fresh = 0})
-          .refusal == link::kNothingToActivate);
+  CHECK(client.activate(how).refusal == link::kNothingToActivate);
   // … and in the place of the owner's.
-  client.order_upload(link::wire_bytes(begin), program.bytes(), false);
+  client.order_upload(link::wire_bytes(begin), program.bytes(), how);
   foreign();
-  CHECK(
-      client.activate({.session = 0, .hash = begin.hash, .trial_ms = 0, .goes_back = 0, .fresh = 0})
-          .refusal == link::kNothingToActivate);
+  CHECK(client.activate(how).refusal == link::kNothingToActivate);
   CHECK(client.hello().running == 0);
   CHECK(tool::upload(client, client.hello(), program.bytes(), {}).activation.running == 1);
 }
