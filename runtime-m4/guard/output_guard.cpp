@@ -47,11 +47,26 @@ bool OutputGuard::drives(const vm::Image& image, const Slot& slot) {
   });
 }
 
-// Their pins are nobody's then.
-void OutputGuard::end_measurements() {
-  for (const vm::Sensor& sensor : sensors_)
+bool OutputGuard::measures(const vm::Image& image, std::uint16_t pin) {
+  return std::ranges::any_of(image.sensors, [&](const vm::Sensor& sensor) {
+    return vm::is_analog(sensor.driver) && sensor.address == pin;
+  });
+}
+
+// Their pins are nobody's then, but for those that `next` measures, too.
+void OutputGuard::end_measurements(const vm::Image* next) {
+  for (const vm::Sensor& sensor : sensors_) {
     if (vm::is_by_echo(sensor.driver)) static_cast<void>(board_.take_echo(sensor.address));
+    const bool stays = next != nullptr && measures(*next, sensor.address);
+    if (vm::is_analog(sensor.driver) && !stays) board_.take_back(sensor.address);
+  }
   sensors_ = {};
+}
+
+void OutputGuard::let_pins_go(const vm::Image& image) {
+  for (const vm::Sensor& sensor : image.sensors)
+    if (vm::is_analog(sensor.driver) && policy::is_analog(board_.pins(), sensor.address))
+      board_.let_go(sensor.address);
 }
 
 void OutputGuard::ping(unsigned sensor) {
@@ -68,7 +83,7 @@ void OutputGuard::switch_off(const vm::Image* next) {
   {
     const auto lock = kernel_.lock();
     halted_ = free_ = lagging_ = 0;
-    end_measurements();
+    end_measurements(next);
   }
   if (lights() != 0) board_.show(0);
   if (speaker() != 0) board_.sound(0);
@@ -101,6 +116,7 @@ void OutputGuard::own(const vm::Image& image, Mask halted) {
     owned |= bit(a);
     if (limits_[slots_[a].limit].rise != 0) gradual_ |= bit(a);
   }
+  let_pins_go(image);
   const auto lock = kernel_.lock();
   sensors_ = image.sensors;
   owned_ = owned;

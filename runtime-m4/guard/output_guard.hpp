@@ -16,6 +16,9 @@
 // The trigger pins of sensors are outputs, too: a pulse of some microseconds, for a sensor of the running program, which no halt
 // holds back, for nothing moves by it and SAFETY reads what comes of it.
 //
+// A pin that can be an output and an analog input is let go while the running program has an analog sensor there, and low
+// otherwise. No image that the board takes drives such a pin, too.
+//
 // A check and its write are one under the kernel's lock: who is interrupted in between writes nothing old later.
 // docs/safety.md says what follows from that.
 #pragma once
@@ -86,7 +89,9 @@ private:
   void turn(Slot& slot, unsigned actuator, kernel::Time now);
   [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
   static bool drives(const vm::Image& image, const Slot& slot);
-  void end_measurements();
+  static bool measures(const vm::Image& image, std::uint16_t pin);
+  void end_measurements(const vm::Image* next);
+  void let_pins_go(const vm::Image& image);
   void switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
   // The actuator that has the lights, if any.
