@@ -7,9 +7,10 @@ import unittest
 from pathlib import Path
 
 import pins
+import rsc
 from board import FIRMWARE, NAME
+from debugger import PC, DebuggedTest
 from support import LineReader
-from traces import TraceTest
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
@@ -23,6 +24,7 @@ CLAW = 16 if NAME == "microbit-v2" else 3
 ROBOT = {"board": NAME, "actuators": [{"name": "claw", "type": "PWM", "pin": CLAW, "device": "servo"}],
          "sensors": [{"name": f"a{pin}", "type": "ADC", "pin": pin, "device": "force"} for pin in ANALOG]}
 FIRST, LAST = ANALOG[0], ANALOG[-1]
+LINK_REGISTER, MOST_COUNTED, LOOSEST = 14, 10_000, 1.3
 PROGRAM = f"""
 SAFETY soft_hand
   WHEN a{FIRST} FORCE > 70%
@@ -38,23 +40,33 @@ LOW_OUTPUT, NOT_DRIVEN = 0b11, 0b10
 PINS_OF_RINGS = {0: 2, 1: 3, 2: 4}
 
 
-class Analog(TraceTest):
+class Analog(DebuggedTest):
     def setUp(self):
         super().setUp()
+        self.readers = []
         (self.folder / "robot.json").write_text(json.dumps(ROBOT))
         self.wires = pins.Pins(self.folder)
         self.addCleanup(self.wires.close)
 
     def qemu_arguments(self):
-        return pins.arguments(self.folder)
+        return [*pins.arguments(self.folder), *super().qemu_arguments()]
 
-    def begin(self, program=PROGRAM):
+    def written(self, program):
         (self.folder / "analog.rsl").write_text(program)
-        self.upload(self.folder / "analog.rsl", "--config", self.folder / "robot.json")
-        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
-        self.addCleanup(reader.stop)
-        self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
+        return self.folder / "analog.rsl", "--config", self.folder / "robot.json"
+
+    def begin(self):
+        """Hears the program from its first reading on."""
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json", "--upload", *self.written(PROGRAM))
+        self.readers.append(reader)
+        self.addCleanup(self.end, reader)
+        self.await_event(reader, event="activated")
         return reader
+
+    def end(self, reader):
+        if reader in self.readers:
+            self.readers.remove(reader)
+            reader.stop()
 
     def await_event(self, reader, **wanted):
         def came(lines):
@@ -105,6 +117,7 @@ class WithoutConverter(Analog):
         for pin in ANALOG:
             self.await_event(reader, event="silent", sensor=f"a{pin}", pin=pin)
         self.await_event(reader, event="alert", text="lets go")
+        self.end(reader)
         status = self.status()
         self.assertEqual((status["safety_late_us"], status["faults"]), (0, 0))
         self.assertEqual(self.readings(reader, FIRST), [])
@@ -114,10 +127,27 @@ class WithoutConverter(Analog):
         def rings():
             return {ring: self.wires.word(GPIO_CONFIGURATION + WORD * bit) for ring, bit in PINS_OF_RINGS.items()}
         self.assertEqual(rings(), dict.fromkeys(ANALOG, LOW_OUTPUT))
-        self.begin()
+        self.upload(*self.written(PROGRAM))
         self.assertEqual(rings(), dict.fromkeys(ANALOG, NOT_DRIVEN))
-        self.begin(OTHER)
+        self.upload(*self.written(OTHER))
         self.assertEqual(rings(), {**dict.fromkeys(ANALOG, LOW_OUTPUT), LAST: NOT_DRIVEN})
+
+    @unittest.skipUnless(NAME == "microbit-v2", "that of the other is not up, and looked at no more")
+    def test_what_a_converter_that_does_not_answer_costs(self):
+        """No more than costs.def says, with what the driver and the sampler do besides."""
+        listed = (rsc.ROOT / f"runtime-m4/boards/{NAME}/costs.def").read_text()
+        said = next(int(line.split(",")[1].replace("'", "")) for line in listed.splitlines() if line.startswith("COST(analog,"))
+        self.upload(*self.written(OTHER))
+        place = next(at for name, at in symbols(FIRMWARE).items() if "DriverSampler::sample(" in name)
+        with self.debugger() as debugger:
+            debugger.run_to(place, lambda: None)
+            back, mode, steps = debugger.register(LINK_REGISTER) & ~1, debugger.mode(), 0
+            while steps < MOST_COUNTED and debugger.register(PC) != back:
+                debugger.step()
+                steps += debugger.mode() == mode
+        print(f"\n  a voltage that does not come: {steps}, said {said}")
+        self.assertGreaterEqual(said, steps)
+        self.assertLessEqual(said, LOOSEST * steps)
 
 
 if __name__ == "__main__":

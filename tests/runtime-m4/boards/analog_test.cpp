@@ -29,7 +29,7 @@ constexpr double kSupply = 3.3;
 // says 10 us up to 100 kΩ.
 constexpr double kLongEnoughUs = 10;
 
-enum class Breaks { nothing, everything, calibration, ends, stops };
+enum class Breaks { nothing, everything, calibration, ends, stops, late };
 
 // A converter's time: microseconds since its chip runs, and when something that goes on is over.
 struct Doing {
@@ -280,6 +280,7 @@ struct ConverterOfL475 : tests::Stm32Timers {
     if ((value & 1U) != 0 && (before & 1U) == 0) switch_on();
     if ((value & 1U << 2) != 0 && (before & 1U << 2) == 0) begin_sample();
     if ((value & 1U << 4) != 0 && (control & 1U << 2) != 0 && broken != Breaks::stops) {
+      if (broken == Breaks::late) state |= 1U << 2;
       sampling.until.reset();
       control &= ~(1U << 2);
     }
@@ -315,7 +316,7 @@ struct ConverterOfL475 : tests::Stm32Timers {
     sampled_us = cycles / adc_mhz();
     control |= 1U << 2;
     measured = channels.at(channel);
-    if (broken != Breaks::ends && broken != Breaks::stops)
+    if (broken == Breaks::nothing || broken == Breaks::calibration)
       sampling.begin(now, (cycles + 12.5) / adc_mhz());
   }
   void pass() {
@@ -367,14 +368,14 @@ TEMPLATE_TEST_CASE("analog: each pin's own voltage, as a part of the supply", ""
   for (const auto& [number, pin] : chip.pins)
     chip.apply(number, 1.0);
   for (const auto& [number, pin] : chip.pins) {
-    for (const double volts : {0.0, 0.1, 1.65, 3.0, 3.3, 3.4}) {
+    for (const double volts : {-0.005, 0.0, 0.1, 1.65, 3.0, 3.3, 3.4}) {
       chip.apply(number, volts);
       for (const auto& [read, its] : chip.pins) {
         std::uint16_t voltage = kUntouched;
         REQUIRE(TestType::measure(read, voltage));
         CAPTURE(number, read, volts);
         const double wanted = read == number ? volts : 1.0;
-        CHECK(voltage == std::min(4095L, std::lround(wanted / kSupply * 4096)));
+        CHECK(voltage == std::clamp(std::lround(wanted / kSupply * 4096), 0L, 4095L));
         CHECK(chip.sampled_us >= kLongEnoughUs);
       }
     }
@@ -442,6 +443,19 @@ TEST_CASE("analog: STM32L475: one that does not stop takes no other order, and c
   CHECK_FALSE(ConverterOfL475::measure(41, voltage));
   CHECK(chip.accesses - before == 1);
   CHECK(voltage == kUntouched);
+}
+
+TEST_CASE("analog: STM32L475: one that ends when nobody looks any more is not taken for the next one") {
+  ConverterOfL475 chip;
+  chip.apply(40, 1.0);
+  chip.apply(41, 1.65);
+  std::uint16_t voltage = kUntouched;
+  REQUIRE(ConverterOfL475::measure(40, voltage));
+  chip.broken = Breaks::late;
+  CHECK_FALSE(ConverterOfL475::measure(40, voltage));
+  chip.broken = Breaks::nothing;
+  REQUIRE(ConverterOfL475::measure(41, voltage));
+  CHECK(voltage == 2048);
 }
 
 TEST_CASE("analog: nRF52833: no pin stays connected to it, nor does it go on") {
