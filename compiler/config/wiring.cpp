@@ -288,8 +288,7 @@ void WiringReader::check_analog(const Fields& fields, const Wiring& wiring) {
   const auto* pin = fields.find("pin");
   if (pin == nullptr || board_.has_analog(wiring.place)) return;
   if (board_.analog.empty())
-    diagnostics_
-        .report(Code::E0205, "the board " + board_.name + " has no analog inputs")
+    diagnostics_.report(Code::E0205, "the board " + board_.name + " has no analog inputs")
         .label(pin->span)
         .helps("boards that have some: " + boards_with_analog());
   else

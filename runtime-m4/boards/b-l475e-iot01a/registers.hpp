@@ -79,7 +79,9 @@ struct Port {  // of pins
   constexpr Register function(unsigned pin) const {
     return {base + 0x20 + std::uintptr_t{4} * (pin / 8)};
   }
-  constexpr Register analog() const { return {base + 0x2C}; }  // a bit a pin: the converters have it
+  constexpr Register analog() const {
+    return {base + 0x2C};
+  }  // a bit a pin: the converters have it
 };
 inline constexpr Port kPortA{0x4800'0000};
 inline constexpr Port kPortB{0x4800'0400};
@@ -125,7 +127,7 @@ inline constexpr Timer kTimer3{0x4000'0400};
 inline constexpr Timer kTimer4{0x4000'0800};
 inline constexpr Timer kTimer5{0x4000'0C00};
 
-namespace adc {  // ADC1, and what it has in common with ADC2
+namespace adc {                                 // ADC1, and what it has in common with ADC2
 inline constexpr Register kState{0x5004'0000};  // 1 forgets
 inline constexpr std::uint32_t kReady = 1U << 0;
 inline constexpr std::uint32_t kEnded = 1U << 2;  // the reading of kData forgets it, too

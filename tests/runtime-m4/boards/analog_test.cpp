@@ -202,9 +202,7 @@ struct ConverterOfL475 : tests::Stm32Timers {
     return boards::l475::analog::read(pin, voltage);
   }
 
-  bool is_mine(std::uintptr_t address) const {
-    return address >= kAdc && address < kAdc + 0x400;
-  }
+  bool is_mine(std::uintptr_t address) const { return address >= kAdc && address < kAdc + 0x400; }
   bool has_clock() { return (Stm32Timers::read(0x4002'104C) >> 13 & 1) != 0; }
   std::uint32_t read(std::uintptr_t address) override {
     if (address == 0x4002'1088) return sources;
@@ -269,7 +267,8 @@ struct ConverterOfL475 : tests::Stm32Timers {
   // Bits that only software may set, and only the chip takes back; and the deep power-down and the regulator.
   void order(std::uint32_t value) {
     constexpr std::uint32_t kPower = 1U << 28 | 1U << 29;
-    tests::demand((value & ~(kPower | 1U << 31 | 0b10101U)) == 0, "an order the model does not know");
+    tests::demand((value & ~(kPower | 1U << 31 | 0b10101U)) == 0,
+                  "an order the model does not know");
     const std::uint32_t before = control;
     if ((value & 1U << 28) != 0 && (before & 1U << 28) == 0) {
       tests::demand((before & 1U << 29) == 0, "no regulator in deep power-down");
@@ -445,7 +444,8 @@ TEST_CASE("analog: STM32L475: one that does not stop takes no other order, and c
   CHECK(voltage == kUntouched);
 }
 
-TEST_CASE("analog: STM32L475: one that ends when nobody looks any more is not taken for the next one") {
+TEST_CASE(
+    "analog: STM32L475: one that ends when nobody looks any more is not taken for the next one") {
   ConverterOfL475 chip;
   chip.apply(40, 1.0);
   chip.apply(41, 1.65);

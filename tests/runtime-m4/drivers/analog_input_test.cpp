@@ -95,11 +95,12 @@ TEST_CASE("analog_input: a count is a count, of its own pin; no answer is no rea
 }
 
 TEST_CASE("analog_input: 0 to 4095 are 0 to 100 percent") {
-  for (const auto& [counts, below, above] :
-       {std::tuple{0, "0.001", "-1"}, {41, "1.002", "1"}, {2048, "50.1", "49.9"},
-        {4095, "101", "99.999"}}) {
+  for (const auto& [counts, below, above] : {std::tuple{0, "0.001", "-1"},
+                                             {41, "1.002", "1"},
+                                             {2048, "50.1", "49.9"},
+                                             {4095, "101", "99.999"}}) {
     Gripper robot(std::string("WHEN grip FORCE < ") + below + "% AND grip FORCE > " + above +
-                "% DO LOG \"it\" END\n");
+                  "% DO LOG \"it\" END\n");
     robot.counts = static_cast<std::uint16_t>(counts);
     robot.rig.run(100);
     CAPTURE(counts);
@@ -123,7 +124,9 @@ TEST_CASE("analog_input: the last bits, which are never still, are no news") {
   CHECK(robot.rig.only("input") != before);
 }
 
-TEST_CASE("analog_input: a converter that does not answer is told, unknown after a while, and SAFETY trips") {
+TEST_CASE(
+    "analog_input: a converter that does not answer is told, unknown after a while, and SAFETY "
+    "trips") {
   Gripper robot;
   robot.counts = 1000;
   robot.rig.run(1000);
@@ -148,7 +151,8 @@ TEST_CASE("analog_input: SAFETY knows before anything moves, and what presses is
   CHECK(robot.rig.only("trip").find("trip r0") != std::string::npos);
 }
 
-TEST_CASE("guard: a pin that is measured is let go for the program that measures it, and no longer") {
+TEST_CASE(
+    "guard: a pin that is measured is let go for the program that measures it, and no longer") {
   Rings rings;
   const vm::Image zero = rings.on(0), two = rings.on(2);
   const vm::Image none = rings.image(
@@ -182,7 +186,8 @@ TEST_CASE("guard: a pin that both programs measure is not driven in between") {
   CHECK(rings.handed() == Rings::Handed{{1, true}});
 }
 
-TEST_CASE("guard: a pin that is no analog input of the board is not let go, whatever the image says") {
+TEST_CASE(
+    "guard: a pin that is no analog input of the board is not let go, whatever the image says") {
   Rings rings;
   for (const int pin : {3, 5, 45, 0xFFFF})
     rings.guard.own(rings.on(static_cast<std::uint16_t>(pin)), 0);
