@@ -242,7 +242,7 @@ class Sampling(unittest.TestCase):
         self.assertLessEqual(said, LOOSEST * measured + SLACK)
 
     def test_an_analog_input(self):
-        """Another channel of it, on the pin that takes longest. What a converter takes, tests/runtime-m4/boards counts."""
+        """Another channel of it, on the pin that takes longest. What a converter takes that does not answer, tests/e2e/test_analog.py counts."""
         wired = {"type": "ADC", "pin": 47, "channels": {"A": {}, "B": {}}}
         measured = self.worst(wired, "A > 50%", "B > 50%") - self.worst(wired, "A > 50%")
         said = paths.samples()["analog_input"]
