@@ -14,10 +14,8 @@ inline constexpr bool kHasLights = ROBOSYNC_LIGHTS != 0;
 inline constexpr bool kHasSpeaker = ROBOSYNC_SPEAKER != 0;
 inline constexpr policy::PinRange kInputs[] = {ROBOSYNC_INPUTS};
 inline constexpr std::array<policy::PinRange, ROBOSYNC_ANALOG_ROWS> kAnalog = {{ROBOSYNC_ANALOG}};
-inline constexpr policy::BoardPins kPins = {.outputs = kOutputs,
-                                            .inputs = kInputs,
-                                            .analog = kAnalog,
-                                            .i2c_buses = ROBOSYNC_I2C_BUSES};
+inline constexpr policy::BoardPins kPins = {
+    .outputs = kOutputs, .inputs = kInputs, .analog = kAnalog, .i2c_buses = ROBOSYNC_I2C_BUSES};
 
 // A pin that is read is driven by nobody; an analog input alone may be an output for other programs.
 constexpr bool meet(const auto& these, const auto& those) {
