@@ -52,8 +52,8 @@ constexpr bool drives_on(DriverId driver) {
 }
 
 // By what a driver's sensors are measured; nothing: they are fed, or it has no sensors. Echo: a pulse on an output, which the
-// image has as the sensor's `bus`, and how long its input is high then.
-enum class Bus : std::uint8_t { nothing, i2c, pin, echo };
+// image has as the sensor's `bus`, and how long its input is high then. Adc: the voltage of an analog input.
+enum class Bus : std::uint8_t { nothing, i2c, pin, echo, adc };
 
 constexpr Bus bus_of(DriverId driver) {
   const auto fed = [] { return Bus::nothing; };
@@ -61,6 +61,7 @@ constexpr Bus bus_of(DriverId driver) {
   const auto i2c = [](unsigned, unsigned) { return Bus::i2c; };
   const auto pin = [] { return Bus::pin; };
   const auto echo = [] { return Bus::echo; };
+  const auto adc = [] { return Bus::adc; };
   switch (driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case DriverId::name:                   \
@@ -94,9 +95,12 @@ constexpr bool is_on_pin(DriverId driver) {
 constexpr bool is_by_echo(DriverId driver) {
   return bus_of(driver) == Bus::echo;
 }
+constexpr bool is_analog(DriverId driver) {
+  return bus_of(driver) == Bus::adc;
+}
 // It says nothing when nothing answers: what it measured last grows old.
 constexpr bool may_be_silent(DriverId driver) {
-  return is_on_i2c(driver) || is_by_echo(driver);
+  return is_on_i2c(driver) || is_by_echo(driver) || is_analog(driver);
 }
 
 // The echoes of one burst must have died away before the next one.

@@ -95,7 +95,8 @@ Refusal check_algorithm(const Sensor& sensor) {
 bool is_of_sensor(const Image& image, std::uint32_t pin, std::size_t count) {
   for (const Sensor& sensor : image.sensors.first(count)) {
     const bool echo = is_by_echo(sensor.driver);
-    if (sensor.address == pin && (echo || is_on_pin(sensor.driver))) return true;
+    const bool has_pin = echo || is_on_pin(sensor.driver) || is_analog(sensor.driver);
+    if (sensor.address == pin && has_pin) return true;
     if (echo && sensor.bus == pin) return true;
   }
   return false;
@@ -110,6 +111,13 @@ Refusal check_echo(Walk& walk, const Sensor& sensor, std::size_t index) {
   return good_or(Refusal::bad_value, sensor.period_ms >= kMinEchoPeriodMs);
 }
 
+// Nor does anybody else have its pin, which may be one that the board can drive.
+Refusal check_analog(Walk& walk, const Sensor& sensor, std::size_t index) {
+  walk.reads_pins = true;
+  if (is_of_sensor(walk.image, sensor.address, index)) return Refusal::shared_pin;
+  return good_or(Refusal::bad_value, sensor.period_ms > 0 && sensor.bus == 0);
+}
+
 Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t index) {
   if (sensor.first_channel != walk.next_channel) return Refusal::bad_index;
   walk.next_channel += sensor.channel_count;
@@ -121,6 +129,7 @@ Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t index) {
   if (sensor.first_input != 0) return Refusal::bad_value;
   if (bus_of(sensor.driver) == Bus::nothing) return Refusal::none;
   if (is_by_echo(sensor.driver)) return check_echo(walk, sensor, index);
+  if (is_analog(sensor.driver)) return check_analog(walk, sensor, index);
   walk.reads_pins = walk.reads_pins || is_on_pin(sensor.driver);
   const bool place = is_on_pin(sensor.driver)
                          ? is_enumerator(static_cast<ActiveLevel>(sensor.bus))

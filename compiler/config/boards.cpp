@@ -106,6 +106,10 @@ bool Board::has_input(std::uint16_t pin) const {
   return is_in(inputs, pin);
 }
 
+bool Board::has_analog(std::uint16_t pin) const {
+  return is_in(analog, pin);
+}
+
 const Board::Part* Board::find_part(std::string_view wanted) const {
   const auto found =
       std::ranges::find_if(parts, [&](const Part& part) { return same_name(part.name, wanted); });
@@ -126,6 +130,8 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
     board.outputs = read_pins(*outputs, Object::outputs, diagnostics);
   if (const auto* inputs = fields.require("inputs", "a board"))
     board.inputs = read_pins(*inputs, Object::inputs, diagnostics);
+  if (const auto* analog = fields.find("analog"))
+    board.analog = read_pins(*analog, Object::inputs, diagnostics);
   if (const auto* parts = fields.find("on_board")) board.parts = read_parts(*parts, diagnostics);
   if (fields.find("store") != nullptr)
     board.store_bytes = read_number(fields, "store", "a board", diagnostics);

@@ -71,8 +71,10 @@ void say_assumed(const Device& device, const Spelled& name, Diagnostics& diagnos
   if (device.is_sensor) {
     const ChannelConfig& channel = device.sensor.channels.front();
     assumed += ": one channel " + channel.name.text;
+    const std::string_view unit = channel.unit->spelling;
     if (channel.period_ms != 0)
-      assumed += ", raw counts, read every " + std::to_string(channel.period_ms) + " ms";
+      assumed += (unit.empty() ? ", raw counts" : ", in " + std::string(unit)) + ", read every " +
+                 std::to_string(channel.period_ms) + " ms";
   }
   diagnostics.report(Code::N0001, assumed)
       .label(name.span)

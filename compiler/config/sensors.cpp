@@ -217,6 +217,7 @@ void check_place(const Fields& fields, const SensorConfig& sensor, WiringReader&
   if (vm::is_on_i2c(sensor.driver)) wiring.check_bus(fields, place);
   if (vm::is_on_pin(sensor.driver)) wiring.check_input(fields, place);
   if (vm::is_by_echo(sensor.driver)) wiring.check_echo(fields, place);
+  if (vm::is_analog(sensor.driver)) wiring.check_analog(fields, place);
 }
 
 // The descriptor's own rate is one that it can keep.

@@ -55,6 +55,13 @@ std::string boards_with_i2c() {
   return list_names(boards, "and");
 }
 
+std::string boards_with_analog() {
+  std::vector<std::string> boards;
+  for (std::size_t i = 0; i < board_names().size(); ++i)
+    if (!board_at(i).analog.empty()) boards.emplace_back(board_names()[i]);
+  return list_names(boards, "and");
+}
+
 }  // namespace
 
 std::span<const WiringType> wiring_types() {
@@ -275,6 +282,18 @@ void WiringReader::check_echo(const Fields& fields, const Wiring& wiring) {
   check_output_pin(*trigger, wiring.bus, true);
   if (!board_.has_input(wiring.place))
     report_no_pin(*echo, wiring.place, " is no input", "its inputs are the pins ", board_.inputs);
+}
+
+void WiringReader::check_analog(const Fields& fields, const Wiring& wiring) {
+  const auto* pin = fields.find("pin");
+  if (pin == nullptr || board_.has_analog(wiring.place)) return;
+  if (board_.analog.empty())
+    diagnostics_.report(Code::E0205, "the board " + board_.name + " has no analog inputs")
+        .label(pin->span)
+        .helps("boards that have some: " + boards_with_analog());
+  else
+    report_no_pin(*pin, wiring.place, " is no analog input", "its analog inputs are the pins ",
+                  board_.analog);
 }
 
 void WiringReader::report_no_pin(const json::Value& value, std::uint16_t pin,

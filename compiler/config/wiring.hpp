@@ -44,6 +44,7 @@ public:
   void check_bus(const Fields& fields, const Wiring& wiring);
   void check_input(const Fields& fields, const Wiring& wiring);
   void check_echo(const Fields& fields, const Wiring& wiring);
+  void check_analog(const Fields& fields, const Wiring& wiring);
   void check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver);
   // Lights and speakers are parts of a board, or nowhere.
   void check_part(const Fields& fields, const Board::Part* part);

@@ -61,6 +61,7 @@ std::string algorithm_text(const vm::Image& image, const vm::Sensor& sensor) {
 }
 
 std::string place_of(const vm::Sensor& sensor) {
+  if (vm::is_analog(sensor.driver)) return fmt::format("analog pin {}", sensor.address);
   return vm::is_by_echo(sensor.driver)
              ? fmt::format("trigger {} and echo {}", sensor.bus, sensor.address)
              : fmt::format("bus {} address 0x{:x}", sensor.bus, sensor.address);

@@ -54,6 +54,10 @@ void add_device(Json& object, const EventReader& reader) {
     object["echo"] = sensor->address;
     return;
   }
+  if (vm::is_analog(sensor->driver)) {
+    object["pin"] = sensor->address;
+    return;
+  }
   object["bus"] = sensor->bus;
   object["address"] = fmt::format("0x{:02x}", sensor->address);
 }

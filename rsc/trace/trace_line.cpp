@@ -112,6 +112,10 @@ std::string device_words(const EventReader& reader) {
     return fmt::format("{}, trigger {} and echo {}, {} ({} times without one so far)",
                        reader.sensor_name(), sensor->bus, sensor->address,
                        silent ? "hears no echo" : "hears an echo again", reader.value(0));
+  if (sensor != nullptr && vm::is_analog(sensor->driver))
+    return fmt::format("{} on analog pin {} {} ({} times without a voltage so far)",
+                       reader.sensor_name(), sensor->address,
+                       silent ? "is not measured" : "is measured again", reader.value(0));
   return text + fmt::format(" {} ({} failed transfers so far)",
                             silent ? "does not answer" : "answers again", reader.value(0));
 }

@@ -22,6 +22,9 @@ struct LineEvents {
   void* argument = nullptr;
 };
 
+// Counts of analog inputs: 12 bits.
+inline constexpr std::uint16_t kAnalogFull = 4095;
+
 // How it stands on the I2C buses.
 struct BusState {
   std::uint16_t clears = 0;  // a device held the data line down, and was given clocks to let go
@@ -56,6 +59,13 @@ public:
   virtual void ping(std::uint16_t /*trigger*/, std::uint16_t /*echo*/) {}
   // … how long that was, in microseconds; 0 when it was not, is still high, or was before. The measurement is over then.
   virtual std::uint32_t take_echo(std::uint16_t /*echo*/) { return 0; }
+  // The voltage of an analog input (pins()), 0 to kAnalogFull, which is that of the supply. False when the converter does not
+  // answer, or for another pin. Takes some ten microseconds; as long again at most, when there is no answer.
+  virtual bool analog(std::uint16_t /*pin*/, std::uint16_t& /*voltage*/) { return false; }
+  // A pin that is an output and an analog input is let go, and nothing drives it until it is taken back: it is an output then,
+  // and low, as from the start on. Of another pin: nothing. Nobody but the output guard calls it.
+  virtual void let_go(std::uint16_t /*pin*/) {}
+  virtual void take_back(std::uint16_t /*pin*/) {}
   // Pulse width on a PWM pin in microseconds, 20 ms frame; 0 switches the output off.
   virtual void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) = 0;
   virtual std::uint32_t pwm_read(std::uint16_t pin) const = 0;

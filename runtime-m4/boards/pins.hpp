@@ -2,6 +2,9 @@
 // stdlib/boards/NAME.json, as CMake reads it (profile.cmake). It is part of the firmware: no upload changes it.
 #pragma once
 
+#include <algorithm>
+#include <array>
+
 #include "runtime-m4/policy/pins.hpp"
 
 namespace robosync::boards {
@@ -11,7 +14,19 @@ inline constexpr policy::PinLimit kOutputs[] = {ROBOSYNC_OUTPUTS};
 inline constexpr bool kHasLights = ROBOSYNC_LIGHTS != 0;
 inline constexpr bool kHasSpeaker = ROBOSYNC_SPEAKER != 0;
 inline constexpr policy::PinRange kInputs[] = {ROBOSYNC_INPUTS};
+inline constexpr std::array<policy::PinRange, ROBOSYNC_ANALOG_ROWS> kAnalog = {{ROBOSYNC_ANALOG}};
 inline constexpr policy::BoardPins kPins = {
-    .outputs = kOutputs, .inputs = kInputs, .i2c_buses = ROBOSYNC_I2C_BUSES};
+    .outputs = kOutputs, .inputs = kInputs, .analog = kAnalog, .i2c_buses = ROBOSYNC_I2C_BUSES};
+
+// A pin that is read is driven by nobody; an analog input alone may be an output for other programs.
+constexpr bool meet(const auto& these, const auto& those) {
+  for (const auto& one : these)
+    for (const auto& other : those)
+      if (one.first <= other.last && other.first <= one.last) return true;
+  return false;
+}
+static_assert(!meet(kInputs, kOutputs) && !meet(kInputs, kAnalog));
+static_assert(std::ranges::all_of(kAnalog, [](const auto& range) { return range.last < 64; }),
+              "the output guard has a bit for each");
 
 }  // namespace robosync::boards

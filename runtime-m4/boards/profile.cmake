@@ -35,6 +35,18 @@ foreach(i RANGE ${last})
   string(JSON final GET "${profile}" inputs ${i} pins 1)
   string(APPEND board_inputs "{${first},${final}},")
 endforeach()
+string(JSON analog_rows ERROR_VARIABLE any LENGTH "${profile}" analog)
+if(any)
+  set(analog_rows 0)
+endif()
+set(board_analog "")
+set(i 0)
+while(i LESS analog_rows)
+  string(JSON first GET "${profile}" analog ${i} pins 0)
+  string(JSON final GET "${profile}" analog ${i} pins 1)
+  string(APPEND board_analog "{${first},${final}},")
+  math(EXPR i "${i} + 1")
+endwhile()
 string(JSON lights ERROR_VARIABLE any GET "${profile}" lights)
 set(board_lights 1)
 if(any AND CMAKE_CROSSCOMPILING)
@@ -48,5 +60,5 @@ endif()
 set(board_definitions
   ROBOSYNC_ARENA_BEGIN=${arena_begin} ROBOSYNC_ARENA_BYTES=${arena_bytes} ROBOSYNC_STEP_BUDGET=${step_budget}
   ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_STORE_BYTES=${store_bytes} ROBOSYNC_OUTPUTS=${board_outputs}
-  ROBOSYNC_INPUTS=${board_inputs} ROBOSYNC_LIGHTS=${board_lights}
+  ROBOSYNC_INPUTS=${board_inputs} ROBOSYNC_ANALOG=${board_analog} ROBOSYNC_ANALOG_ROWS=${analog_rows} ROBOSYNC_LIGHTS=${board_lights}
   ROBOSYNC_SPEAKER=${board_speaker})

@@ -47,6 +47,26 @@ bool OutputGuard::drives(const vm::Image& image, const Slot& slot) {
   });
 }
 
+OutputGuard::Pins OutputGuard::measured_by(const vm::Image& image) const {
+  Pins pins = 0;
+  for (const vm::Sensor& sensor : image.sensors)
+    if (vm::is_analog(sensor.driver) && policy::is_analog(board_.pins(), sensor.address))
+      pins |= Pins{1} << sensor.address;
+  return pins;
+}
+
+void OutputGuard::take_back_all_but(Pins measured) {
+  for (Pins left = let_go_ & ~measured; left != 0; left &= left - 1)
+    board_.take_back(static_cast<std::uint16_t>(std::countr_zero(left)));
+  let_go_ &= measured;
+}
+
+void OutputGuard::let_go_of(Pins measured) {
+  for (Pins left = measured & ~let_go_; left != 0; left &= left - 1)
+    board_.let_go(static_cast<std::uint16_t>(std::countr_zero(left)));
+  let_go_ |= measured;
+}
+
 // Their pins are nobody's then.
 void OutputGuard::end_measurements() {
   const auto lock = kernel_.lock();
@@ -73,6 +93,7 @@ void OutputGuard::switch_off(const vm::Image* next) {
     owned = std::exchange(owned_, 0);
     free_ = lagging_ = 0;
   }
+  take_back_all_but(next != nullptr ? measured_by(*next) : 0);
   if (lights() != 0) board_.show(0);
   if (speaker() != 0) board_.sound(0);
   for (Mask left = owned & ~(lights() | speaker()); left != 0; left &= left - 1) {
@@ -110,6 +131,7 @@ void OutputGuard::own(const vm::Image& image) {
     owned |= bit(a);
     if (limits_[slots_[a].limit].rise != 0) gradual_ |= bit(a);
   }
+  let_go_of(measured_by(image));
   {
     const auto lock = kernel_.lock();
     sensors_ = image.sensors;

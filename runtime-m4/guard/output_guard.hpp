@@ -16,6 +16,9 @@
 // The trigger pins of sensors are outputs, too: a pulse of some microseconds, for a sensor of the running program, which no halt
 // holds back, for nothing moves by it and SAFETY reads what comes of it.
 //
+// A pin that can be an output and an analog input is let go while the running program has an analog sensor there, and low
+// otherwise. No image that the board takes drives such a pin, too.
+//
 // A check and its write are one under the kernel's lock: who is interrupted in between writes nothing old later.
 // docs/safety.md says what follows from that.
 #pragma once
@@ -83,6 +86,8 @@ private:
   static constexpr std::uint16_t kStays = UINT16_MAX;
   static constexpr std::uint16_t kNoPin = UINT16_MAX;
 
+  using Pins = std::uint64_t;  // bit p: pin p
+
   void settle(Slot& slot, unsigned actuator, std::uint16_t pulse, kernel::Time now);
   void put(unsigned actuator, kernel::Time now);
   void make_safe(unsigned actuator, kernel::Time now);
@@ -93,6 +98,9 @@ private:
   void turn(Slot& slot, unsigned actuator, kernel::Time now);
   [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
   static bool drives(const vm::Image& image, const Slot& slot);
+  [[nodiscard]] Pins measured_by(const vm::Image& image) const;
+  void take_back_all_but(Pins measured);
+  void let_go_of(Pins measured);
   void switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
   // The actuator that has the lights, if any.
@@ -104,6 +112,7 @@ private:
   boards::Board& board_;
   const policy::PinLimit* limits_ = nullptr;
   std::span<const vm::Sensor> sensors_;  // of the running program
+  Pins let_go_ = 0;                      // it measures them, and nothing drives them
   Mask owned_ = 0;
   Mask halted_ = 0;
   Mask free_ = 0;     // owned, and not halted

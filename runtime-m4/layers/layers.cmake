@@ -35,6 +35,7 @@ target_sources(robosync_runtime PRIVATE
   drivers/digital_input.cpp
   drivers/ear.cpp
   drivers/hc_sr04.cpp
+  drivers/analog_input.cpp
   drivers/i2c_register.cpp
   drivers/lights.cpp
   drivers/lsm303agr.cpp

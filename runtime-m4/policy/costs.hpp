@@ -53,6 +53,7 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
   };
   const auto pin = [&] { return std::uint32_t{board.input}; };
   const auto echo = [&] { return std::uint32_t{board.echo}; };
+  const auto adc = [&] { return std::uint32_t{board.analog}; };
   switch (driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case vm::DriverId::name:               \

@@ -24,10 +24,12 @@ struct PinRange {
 };
 
 // stdlib/boards/NAME.json. A pin that stands in none of `outputs` is no output, and so with inputs. On a board no pin
-// is both: what a pin is it stays, whatever image comes.
+// is both: what a pin is it stays, whatever image comes. An analog input may be an output, too: it is one, and low, but for
+// the program that has an analog sensor there (guard/output_guard.hpp).
 struct BoardPins {
   std::span<const PinLimit> outputs;
   std::span<const PinRange> inputs;
+  std::span<const PinRange> analog;
   std::uint8_t i2c_buses = 0;
 };
 
@@ -38,10 +40,18 @@ constexpr const PinLimit* limit_of(const BoardPins& board, std::uint16_t pin) {
   return nullptr;
 }
 
-constexpr bool is_input(const BoardPins& board, std::uint16_t pin) {
-  for (const PinRange& range : board.inputs)
+constexpr bool is_in(std::span<const PinRange> ranges, std::uint16_t pin) {
+  for (const PinRange& range : ranges)
     if (pin >= range.first && pin <= range.last) return true;
   return false;
+}
+
+constexpr bool is_input(const BoardPins& board, std::uint16_t pin) {
+  return is_in(board.inputs, pin);
+}
+
+constexpr bool is_analog(const BoardPins& board, std::uint16_t pin) {
+  return is_in(board.analog, pin);
 }
 
 // A pin that is held to the pulses of servos gives no shorter ones.
@@ -59,6 +69,8 @@ constexpr vm::Refusal judge(const vm::Sensor& sensor, const BoardPins& board) {
     case vm::Bus::echo:
       if (!can_trigger(sensor.bus, board)) return vm::Refusal::no_pin;
       return is_input(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
+    case vm::Bus::adc:
+      return is_analog(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
     case vm::Bus::nothing:
       break;
   }

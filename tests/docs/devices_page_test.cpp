@@ -83,6 +83,7 @@ bool runs_on(const Device& device, const Board& board) {
   if (vm::is_on_i2c(driver)) return board.i2c_buses > 0;
   if (vm::is_on_pin(driver)) return !board.inputs.empty();
   if (vm::is_by_echo(driver)) return !board.inputs.empty() && !board.outputs.empty();
+  if (vm::is_analog(driver)) return !board.analog.empty();
   return vm::drives_pin(driver) && !board.outputs.empty();
 }
 
@@ -132,6 +133,8 @@ std::string wiring_keys(const Device& device) {
   if (vm::is_by_echo(driver_of(device)))
     return row({"`trigger`", "an output of the board", "needed"}) +
            row({"`echo`", "an input of the board", "needed"});
+  if (vm::is_analog(driver_of(device)))
+    return row({"`pin`", "an analog input of the board", "needed"});
   if (vm::has_two_pins(driver_of(device)))
     rows += row({"`pins`", "two outputs of the board: forward, back", "needed"});
   else if (type->pin)

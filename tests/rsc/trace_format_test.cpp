@@ -248,6 +248,25 @@ TEST_CASE("a sensor that hears no echo is told of with its pins") {
   CHECK_FALSE(told.contains("address"));
 }
 
+TEST_CASE("a sensor whose voltage is not measured is told of with its pin") {
+  const compiler::Result result = compiler::compile(
+      {"robot.rsl", "WHEN grip FORCE > 20% DO LOG \"held\" END\n"},
+      {"robot.json",
+       R"({"sensors": [{"name": "grip", "type": "ADC", "pin": 45, "device": "force"}]})"});
+  REQUIRE_FALSE(result.image.empty());
+  const tool::Program grip{result.image, "robot.rsl", tool::board_memory(), {}};
+  const auto line = [&](EventKind kind) {
+    return tool::trace_line(event(kind, 0, 0, {3}), {&grip.image(), {}});
+  };
+  CHECK(line(EventKind::silent) ==
+        "   1.020 s  grip on analog pin 45 is not measured (3 times without a voltage so far)");
+  CHECK_THAT(line(EventKind::answers), Catch::Contains("is measured again (3 times"));
+  const json told =
+      json::parse(tool::trace_json(event(EventKind::silent, 0, 0, {3}), {&grip.image(), {}}));
+  CHECK(told.at("pin") == 45);
+  CHECK_FALSE((told.contains("address") || told.contains("bus")));
+}
+
 TEST_CASE("a device on a bus is told of with where it is; without an image by its number") {
   const Event silent = event(EventKind::silent, 1, 0, {3});
   CHECK(as_json(silent) ==

@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,6 +55,13 @@ public:
     ++takes;
     return echo_us ? echo_us(echo) : 0;
   }
+  bool analog(std::uint16_t pin, std::uint16_t& voltage) override {
+    const auto found = voltage_of ? voltage_of(pin) : std::nullopt;
+    voltage = found.value_or(0);
+    return found.has_value();
+  }
+  void let_go(std::uint16_t pin) override { handed.emplace_back(pin, true); }
+  void take_back(std::uint16_t pin) override { handed.emplace_back(pin, false); }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override {
     if (on_pin) on_pin();
     pulses[pin].push_back(pulse_us);
@@ -87,6 +95,8 @@ public:
   std::vector<std::pair<std::uint16_t, std::uint16_t>> pings;  // trigger and echo, all
   std::function<std::uint32_t(std::uint16_t echo)> echo_us;
   unsigned takes = 0;
+  std::function<std::optional<std::uint16_t>(std::uint16_t pin)> voltage_of;
+  std::vector<std::pair<std::uint16_t, bool>> handed;  // let go: true; taken back: false; all
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;   // all, by pin
   std::vector<std::pair<std::uint16_t, std::uint32_t>> writes;  // the same, in their order
   std::function<void()> on_pin;  // before one is written or read by the runtime

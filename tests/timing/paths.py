@@ -47,7 +47,9 @@ def samples():
               name, transfers, size in re.findall(r"^SENSOR_DRIVER\((\w+),\s*i2c\((\d+), (\d+)\)", drivers, re.M)}
     by_pin = re.findall(r"^SENSOR_DRIVER\((\w+),\s*pin\(\)", drivers, re.M)
     by_echo = re.findall(r"^SENSOR_DRIVER\((\w+),\s*echo\(\)", drivers, re.M)
-    return by_i2c | {name: declared["input"] for name in by_pin} | {name: declared["echo"] for name in by_echo}
+    by_adc = re.findall(r"^SENSOR_DRIVER\((\w+),\s*adc\(\)", drivers, re.M)
+    return (by_i2c | {name: declared["input"] for name in by_pin} | {name: declared["echo"] for name in by_echo}
+            | {name: declared["analog"] for name in by_adc})
 
 
 def robot(actuators=4, sensors=None):

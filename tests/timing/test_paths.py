@@ -208,7 +208,8 @@ class Sampling(unittest.TestCase):
              # In its place one that acknowledges all, and never is as it should be: it is told so again with each sample.
              "lsm303agr": ({"type": "I2C", "address": "0x19", "device": "lsm303agr"}, "X > 1g"),
              "digital_input": ({"type": "GPIO", "pin": 43, "device": "switch"}, "IS closed"),
-             "hc_sr04": ({"type": "GPIO", "trigger": 3, "echo": 43, "device": "hc-sr04"}, "< 30cm")}
+             "hc_sr04": ({"type": "GPIO", "trigger": 3, "echo": 43, "device": "hc-sr04"}, "< 30cm"),
+             "analog_input": ({"type": "ADC", "pin": 47}, "> 50%")}
 
     def test_every_driver_that_samples(self):
         costs = paths.costs()
@@ -237,6 +238,15 @@ class Sampling(unittest.TestCase):
         measured = self.worst(switch, "A IS closed", "B IS closed") - self.worst(switch, "A IS closed")
         said = paths.samples()["digital_input"]
         print(f"\n  an input pin: {measured}, said {said}")
+        self.assertGreaterEqual(said, measured)
+        self.assertLessEqual(said, LOOSEST * measured + SLACK)
+
+    def test_an_analog_input(self):
+        """Another channel of it, on the pin that takes longest. What a converter takes that does not answer, tests/e2e/test_analog.py counts."""
+        wired = {"type": "ADC", "pin": 47, "channels": {"A": {}, "B": {}}}
+        measured = self.worst(wired, "A > 50%", "B > 50%") - self.worst(wired, "A > 50%")
+        said = paths.samples()["analog_input"]
+        print(f"\n  an analog input: {measured}, said {said}")
         self.assertGreaterEqual(said, measured)
         self.assertLessEqual(said, LOOSEST * measured + SLACK)
 

@@ -94,6 +94,47 @@ TEST_CASE("sensors") {
     check_refused(drives(20), {Refusal::shared_pin, Section::actuators, 1});
     check_refused(drives(41), {Refusal::shared_pin, Section::actuators, 1});
   }
+  // What is measured as a voltage has its pin for itself, and nothing on a bus.
+  const auto voltage = [](Sensor& sensor, unsigned pin) {
+    sensor.driver = DriverId::analog_input;
+    sensor.bus = 0;
+    sensor.address = static_cast<std::uint16_t>(pin);
+    sensor.period_ms = 20;
+  };
+  refused(Refusal::bad_value, 0, [&](auto& s) {
+    voltage(s[0], 44);
+    s[0].period_ms = 0;
+  });
+  refused(Refusal::bad_value, 0, [&](auto& s) {
+    voltage(s[0], 44);
+    s[0].bus = 1;
+  });
+  refused(Refusal::shared_pin, 1, [&](auto& s) {
+    voltage(s[0], 44);
+    voltage(s[1], 44);
+  });
+  refused(Refusal::shared_pin, 1, [&](auto& s) {
+    by_echo(s[0], 20, 40);
+    voltage(s[1], 20);
+  });
+  refused(Refusal::shared_pin, 1, [&](auto& s) {
+    voltage(s[0], 20);
+    by_echo(s[1], 20, 40);
+  });
+  check_refused(
+      [&](ImageBuilder& image) {
+        voltage(image.sensors[0], 44);
+        image.channels[1].stale_ms = 0;
+      },
+      {Refusal::never_stale, Section::behaviors, 0});
+  {
+    ImageBuilder image = robot::make();
+    voltage(image.sensors[0], 44);
+    voltage(image.sensors[1], 0xFFFE);
+    check_accepted(image);
+    image.actuators[1].pin = 44;
+    check_refused(image, {Refusal::shared_pin, Section::actuators, 1});
+  }
   for (const int address : {0x00, 0xFFFE}) {
     ImageBuilder image = robot::make();
     image.sensors[0].driver = DriverId::digital_input;

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "runtime-m4/boards/b-l475e-iot01a/analog.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/clock.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/echoes.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
@@ -34,6 +35,7 @@ Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
   pins::start();
   inputs::start();
   echoes::start();
+  analog::start();
   for (const unsigned interrupt : kEchoInterrupts)
     port::core::enable_interrupt(interrupt);
 }
@@ -58,6 +60,10 @@ void Board::ping(std::uint16_t trigger, std::uint16_t echo) {
 
 std::uint32_t Board::take_echo(std::uint16_t echo) {
   return echoes::take(echo);
+}
+
+bool Board::analog(std::uint16_t pin, std::uint16_t& voltage) {
+  return analog::read(pin, voltage);
 }
 
 void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {

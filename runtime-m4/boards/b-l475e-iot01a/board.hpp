@@ -26,6 +26,7 @@ public:
   bool input(std::uint16_t pin) const override;
   void ping(std::uint16_t trigger, std::uint16_t echo) override;
   std::uint32_t take_echo(std::uint16_t echo) override;
+  bool analog(std::uint16_t pin, std::uint16_t& voltage) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
   std::size_t link_write(std::span<const std::byte> bytes) override { return line_.write(bytes); }

@@ -24,11 +24,14 @@ inline constexpr Register kPll{0x4002'100C};
 inline constexpr std::uint32_t kPllOf80MHz = 0b01U | 40U << 8 | 1U << 24;
 inline constexpr Register kAhb2{0x4002'104C};
 inline constexpr std::uint32_t kPortsAToD = 0b1111;
+inline constexpr std::uint32_t kAdc = 1U << 13;
 inline constexpr Register kApb1{0x4002'1058};
 inline constexpr std::uint32_t kTimers2To5 = 0b1111;
 inline constexpr Register kApb2{0x4002'1060};
 inline constexpr std::uint32_t kUsart1 = 1U << 14;
 inline constexpr std::uint32_t kSystemConfiguration = 1U << 0;
+inline constexpr Register kSources{0x4002'1088};
+inline constexpr std::uint32_t kAdcBySystemClock = 0b11U << 28;
 inline constexpr Register kStatus{0x4002'1094};
 inline constexpr std::uint32_t kWatchdogReset = 1U << 29;
 inline constexpr std::uint32_t kForgetReset = 1U << 23;
@@ -76,6 +79,9 @@ struct Port {  // of pins
   constexpr Register function(unsigned pin) const {
     return {base + 0x20 + std::uintptr_t{4} * (pin / 8)};
   }
+  constexpr Register analog() const {
+    return {base + 0x2C};
+  }  // a bit a pin: the converters have it
 };
 inline constexpr Port kPortA{0x4800'0000};
 inline constexpr Port kPortB{0x4800'0400};
@@ -84,6 +90,7 @@ inline constexpr Port kPortD{0x4800'0C00};
 constexpr std::uint32_t number_of(Port port) {  // A: 0
   return static_cast<std::uint32_t>((port.base - kPortA.base) / (kPortB.base - kPortA.base));
 }
+inline constexpr std::uint32_t kModeOfAnalog = 0b11;
 inline constexpr std::uint32_t kModeOfInput = 0b00;
 inline constexpr std::uint32_t kModeOfFunction = 0b10;
 inline constexpr std::uint32_t kPullUp = 0b01;
@@ -119,6 +126,34 @@ inline constexpr Timer kTimer2{0x4000'0000};
 inline constexpr Timer kTimer3{0x4000'0400};
 inline constexpr Timer kTimer4{0x4000'0800};
 inline constexpr Timer kTimer5{0x4000'0C00};
+
+namespace adc {                                 // ADC1, and what it has in common with ADC2
+inline constexpr Register kState{0x5004'0000};  // 1 forgets
+inline constexpr std::uint32_t kReady = 1U << 0;
+inline constexpr std::uint32_t kEnded = 1U << 2;  // the reading of kData forgets it, too
+inline constexpr Register kControl{0x5004'0008};  // comes out of reset in deep power-down
+inline constexpr std::uint32_t kOn = 1U << 0;
+inline constexpr std::uint32_t kStart = 1U << 2;
+inline constexpr std::uint32_t kStop = 1U << 4;
+inline constexpr std::uint32_t kRegulator = 1U << 28;
+inline constexpr std::uint32_t kCalibrate = 1U << 31;
+inline constexpr Register kConfiguration{0x5004'000C};
+// 12 bits; a value that nobody took gives way to the next one; bit 31 is as it comes out of reset.
+inline constexpr std::uint32_t kNewestOf12Bits = 1U << 12 | 1U << 31;
+inline constexpr unsigned kSampleBits = 3;
+inline constexpr unsigned kSamplesARegister = 10;
+inline constexpr Register samples(unsigned channel) {  // a field a channel
+  return {0x5004'0014 + std::uintptr_t{4} * (channel / kSamplesARegister)};
+}
+inline constexpr std::uint32_t k640Cycles = 0b111;
+inline constexpr Register kSequence{0x5004'0030};
+constexpr std::uint32_t only(unsigned channel) {
+  return channel << 6;
+}
+inline constexpr Register kData{0x5004'0040};
+inline constexpr Register kCommon{0x5004'0308};
+inline constexpr std::uint32_t kClockByTwo = 1U << 18;
+}  // namespace adc
 
 namespace exti {  // interrupts at edges of pins: a line for each number of a pin, which one port has
 inline constexpr Register port(unsigned line) {  // 4 bits a line

@@ -4,6 +4,7 @@
 
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
+#include "runtime-m4/boards/microbit-v2/analog.hpp"
 #include "runtime-m4/boards/microbit-v2/clock.hpp"
 #include "runtime-m4/boards/microbit-v2/echoes.hpp"
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
@@ -37,6 +38,7 @@ Board::Board() : chip_reset_(take_reset_cause()) {
   for (const Twim& master : {kTwim0, kTwim1})
     port::core::enable_interrupt(master.interrupt);
   if (!start_clock()) port::core::reset();
+  analog::start();
 }
 
 // A reset by the watchdog comes without warning, and one after two faults inside of each other too: nobody could note them
@@ -82,6 +84,18 @@ void Board::ping(std::uint16_t trigger, std::uint16_t echo) {
 
 std::uint32_t Board::take_echo(std::uint16_t echo) {
   return echoes::take(echo);
+}
+
+bool Board::analog(std::uint16_t pin, std::uint16_t& voltage) {
+  return analog::read(pin, voltage);
+}
+
+void Board::let_go(std::uint16_t pin) {
+  pins::let_go(pin);
+}
+
+void Board::take_back(std::uint16_t pin) {
+  pins::take_back(pin);
 }
 
 void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {

@@ -122,6 +122,14 @@ void write(std::uint16_t pin, std::uint32_t pulse_us) {
   if (state.ended == kSettled) give(*output, state);
 }
 
+void let_go(std::uint16_t pin) {
+  if (const Output* const output = find(pin)) output->chip.configuration().write(Pin::kAnalog);
+}
+
+void take_back(std::uint16_t pin) {
+  if (const Output* const output = find(pin)) output->chip.configuration().write(Pin::kOutput);
+}
+
 const Pin* chip_pin(std::uint16_t pin) {
   const Output* const output = find(pin);
   return output == nullptr ? nullptr : &output->chip;

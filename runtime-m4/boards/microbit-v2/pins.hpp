@@ -19,6 +19,10 @@ void write(std::uint16_t pin, std::uint32_t pulse_us);
 // What was written last.
 std::uint32_t read(std::uint16_t pin);
 
+// Nobody drives it until it is taken back: it is low then. It gives no pulses. What is no output is left alone.
+void let_go(std::uint16_t pin);
+void take_back(std::uint16_t pin);
+
 // Which pin of the chip it is; null: none that gives pulses.
 const Pin* chip_pin(std::uint16_t pin);
 

@@ -61,6 +61,7 @@ struct Pin {  // {0, 6} is P0.06
 
   static constexpr std::uint32_t kOutput = 0b11;  // which nobody reads
   static constexpr std::uint32_t kInputPulledUp = 0b1100;
+  static constexpr std::uint32_t kAnalog = 0b10;  // nothing drives it, and no level is read
   // Pulled up, and low or let go: S0D1. TWIM has them as inputs.
   static constexpr std::uint32_t kBusLine = 6 << 8 | 0b1100;
   static constexpr std::uint32_t kDrivenBusLine = kBusLine | 1;
@@ -166,6 +167,29 @@ constexpr Register task(unsigned channel) {
   return {kBase + 0x514 + std::uintptr_t{8} * channel};
 }
 }  // namespace ppi
+
+namespace saadc {  // measures voltages, and puts what it measures into memory by itself
+inline constexpr std::uintptr_t kBase = 0x4000'7000;
+inline constexpr Register kStart{kBase};
+inline constexpr Register kSample{kBase + 0x004};
+inline constexpr Register kStop{kBase + 0x008};
+inline constexpr Register kCalibrate{kBase + 0x00C};
+inline constexpr Register kStarted{kBase + 0x100};     // event: it knows where the results go
+inline constexpr Register kEnded{kBase + 0x104};       // event: all results are there
+inline constexpr Register kCalibrated{kBase + 0x110};  // event
+inline constexpr Register kStopped{kBase + 0x114};     // event
+inline constexpr Register kEnable{kBase + 0x500};
+inline constexpr std::uint32_t kOn = 1;
+inline constexpr Register kInput{kBase + 0x510};  // of channel 0: 1 is AIN0
+inline constexpr std::uint32_t kNoInput = 0;
+inline constexpr Register kConfiguration{kBase + 0x518};
+// A quarter of the voltage is compared with a quarter of the supply, when it was taken for 10 us: from 100 kΩ at most.
+inline constexpr std::uint32_t kPartOfSupply = 2U << 8 | 1U << 12 | 2U << 16;
+inline constexpr Register kResolution{kBase + 0x5F0};
+inline constexpr std::uint32_t k12Bits = 2;
+inline constexpr Register kResultsTo{kBase + 0x62C};
+inline constexpr Register kResultCount{kBase + 0x630};
+}  // namespace saadc
 
 namespace row_timer {  // TIMER1: when the next row of the lights is on
 inline constexpr unsigned kInterrupt = 9;

@@ -10,6 +10,8 @@ volatile std::uint32_t robosync_virtual_inputs = (1U << kVirtualInputs) - 1;  //
 
 std::array<volatile std::uint32_t, kVirtualInputs> robosync_virtual_echoes{};
 
+std::array<volatile std::uint32_t, kVirtualAnalog> robosync_virtual_analog{};
+
 namespace robosync::boards::mps2 {
 
 namespace {
@@ -45,6 +47,14 @@ bool Board::input(std::uint16_t pin) const {
 std::uint32_t Board::take_echo(std::uint16_t echo) {
   const unsigned place = echo - unsigned{kFirstInput};
   return place < kVirtualInputs ? robosync_virtual_echoes[place] : 0;
+}
+
+bool Board::analog(std::uint16_t pin, std::uint16_t& voltage) {
+  const unsigned place = pin - unsigned{kFirstAnalog};
+  if (place >= kVirtualAnalog) return false;
+  const std::uint32_t counts = robosync_virtual_analog[place];
+  voltage = static_cast<std::uint16_t>(counts);
+  return counts <= kAnalogFull;
 }
 
 void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {

@@ -2,8 +2,8 @@
 //
 // It has no PWM and no pins that could be read. PWM pins are words in memory, `robosync_virtual_pwm`, which the
 // host reads, and input pins the bits of a word that it writes, `robosync_virtual_inputs`. Of an echo it writes how long it
-// is, `robosync_virtual_echoes`, and no trigger pin does anything; everything above this
-// file is as it would be on real pins.
+// is, `robosync_virtual_echoes`, and no trigger pin does anything; of an analog input its counts, `robosync_virtual_analog`.
+// Everything above this file is as it would be on real pins.
 #pragma once
 
 #include <array>
@@ -26,6 +26,10 @@ inline constexpr std::uint16_t kFirstInput = 40;
 inline constexpr std::uint16_t kVirtualInputs = 4;
 // How long each of them is high after a pulse on a trigger pin, in microseconds; 0: it says nothing.
 extern "C" std::array<volatile std::uint32_t, kVirtualInputs> robosync_virtual_echoes;
+// The counts of each analog input, to boards::kAnalogFull; more: it does not answer.
+inline constexpr std::uint16_t kFirstAnalog = 44;
+inline constexpr std::uint16_t kVirtualAnalog = 4;
+extern "C" std::array<volatile std::uint32_t, kVirtualAnalog> robosync_virtual_analog;
 
 namespace robosync::boards::mps2 {
 
@@ -43,6 +47,7 @@ public:
   bool input(std::uint16_t pin) const override;
   Store* store() override { return &eeprom_; }
   std::uint32_t take_echo(std::uint16_t echo) override;
+  bool analog(std::uint16_t pin, std::uint16_t& voltage) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
   std::size_t link_write(std::span<const std::byte> bytes) override { return uart_.write(bytes); }

@@ -9,9 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/config/boards.hpp"
+#include "compiler/config/entries.hpp"
 #include "compiler/config/fields.hpp"
 #include "compiler/config/units.hpp"
 #include "compiler/config/wiring.hpp"
+#include "compiler/diagnostics/render.hpp"
 #include "rsc/algorithm_modules.hpp"
 #include "tests/compiler/compiled.hpp"
 #include "tests/support/golden.hpp"
@@ -179,6 +181,24 @@ TEST_CASE("there is a generic virtual device of both kinds") {
   REQUIRE(default_device("VIRTUAL", false) != nullptr);
   CHECK(default_device("VIRTUAL", true)->sensor.driver == vm::DriverId::virtual_sensor);
   CHECK(default_device("VIRTUAL", false)->actuator.driver == vm::DriverId::virtual_actuator);
+}
+
+TEST_CASE("a board without analog inputs says so, and which boards have some") {
+  SourceMap sources;
+  Diagnostics diagnostics;
+  const FileId file =
+      sources.add("robot.json", R"({"name": "grip", "type": "ADC", "pin": 3, "device": "force"})");
+  const auto entry = json::read(sources, file, diagnostics);
+  Board board = board_at(0);
+  board.name = "plain";
+  board.analog.clear();
+  WiringReader wiring(board, diagnostics);
+  REQUIRE(read_sensor(*entry, wiring, diagnostics));
+  REQUIRE(diagnostics.errors() == 1);
+  const std::string said = render_json(diagnostics, sources);
+  CHECK_THAT(said, Catch::Contains("the board plain has no analog inputs"));
+  CHECK_THAT(said, Catch::Contains(
+                       "boards that have some: `b-l475e-iot01a`, `microbit-v2` and `mps2-an386`"));
 }
 
 TEST_CASE("the schema has exactly the reader's keys") {

@@ -144,6 +144,24 @@ TEST_CASE("a sensor with an echo has an output that may give short pulses, and a
   CHECK(rig.activate(patched(on(20, 41), "button")).ok());
 }
 
+TEST_CASE("a sensor of a voltage has an analog input of the board for itself") {
+  const auto on = [](std::uint16_t pin, unsigned bus = 0) {
+    return [=](vm::Sensor& sensor, auto&, auto&, auto&) {
+      sensor.driver = vm::DriverId::analog_input;
+      sensor.bus = static_cast<std::uint8_t>(bus);
+      sensor.address = pin;
+    };
+  };
+  CHECK(refused(on(3), "button") == Refusal::shared_pin);  // the arm's
+  for (const int pin : {0, 20, 43, 48, 0xFFFF})
+    CHECK(refused(on(static_cast<std::uint16_t>(pin)), "button") == Refusal::no_input);
+  CHECK(refused(on(44, 1), "button") == Refusal::bad_value);
+  for (const int pin : {44, 47}) {
+    Rig rig;
+    CHECK(rig.activate(patched(on(static_cast<std::uint16_t>(pin)), "button")).ok());
+  }
+}
+
 TEST_CASE("an I2C bus and an address that cannot be are refused") {
   refused([](auto& touch, auto&, auto&, auto&) { touch.bus = 5; });
   for (const int address : {0, 7, 0x78, 0xFFFF})

@@ -1,0 +1,82 @@
+// See analog.hpp. Nordic's nRF52833 Product Specification, SAADC.
+//
+// A voltage takes 12 us: shorter than two switches between threads take, so it is waited for. The interrupts of others come
+// meanwhile.
+#include "runtime-m4/boards/microbit-v2/analog.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/common/inputs.hpp"
+#include "runtime-m4/boards/microbit-v2/registers.hpp"
+
+namespace robosync::boards::microbit::analog {
+
+namespace {
+
+struct Input {
+  std::uint16_t pin;       // of the edge connector
+  std::uint32_t selected;  // AIN0 is P0.02
+};
+constexpr std::array kInputs{Input{0, 1}, Input{1, 2}, Input{2, 3}};
+
+// A look takes a cycle of the peripherals' 16 MHz at least: 31 us, and 6 more until it has stopped.
+constexpr unsigned kLooks = 500;
+constexpr unsigned kLooksAtStop = 100;
+constexpr unsigned kLooksAtCalibration = 10'000;
+
+alignas(4) volatile std::int16_t result;  // a little below 0 is 0
+
+bool happens(Register event, unsigned& looks) {
+  for (; looks > 0; --looks)
+    if (event.read() != 0) return true;
+  return false;
+}
+
+// Who starts it again earlier gets what nobody knows.
+void stop() {
+  unsigned looks = kLooksAtStop;
+  forget(saadc::kStopped);
+  saadc::kStop.write(kDoIt);
+  static_cast<void>(happens(saadc::kStopped, looks));
+}
+
+}  // namespace
+
+// One that cannot be calibrated does not answer later, either.
+void start() {
+  saadc::kInput.write(saadc::kNoInput);
+  saadc::kConfiguration.write(saadc::kPartOfSupply);
+  saadc::kResolution.write(saadc::k12Bits);
+  saadc::kResultsTo.write(port::bus_address(&result));
+  saadc::kResultCount.write(1);
+  saadc::kEnable.write(saadc::kOn);
+  unsigned looks = kLooksAtCalibration;
+  forget(saadc::kCalibrated);
+  saadc::kCalibrate.write(kDoIt);
+  static_cast<void>(happens(saadc::kCalibrated, looks));
+  stop();
+}
+
+// Stopped it needs no current, and no pin stays connected.
+bool read(std::uint16_t pin, std::uint16_t& voltage) {
+  const std::size_t i = find_input(kInputs, pin);
+  if (i == kInputs.size()) return false;
+  unsigned looks = kLooks;
+  saadc::kInput.write(kInputs[i].selected);
+  forget(saadc::kStarted);
+  forget(saadc::kEnded);
+  saadc::kStart.write(kDoIt);
+  bool measured = happens(saadc::kStarted, looks);
+  if (measured) {
+    saadc::kSample.write(kDoIt);
+    measured = happens(saadc::kEnded, looks);
+  }
+  stop();
+  saadc::kInput.write(saadc::kNoInput);
+  voltage = static_cast<std::uint16_t>(std::clamp<int>(result, 0, kAnalogFull));
+  return measured;
+}
+
+}  // namespace robosync::boards::microbit::analog
