@@ -198,7 +198,7 @@ private:
     if (!robot_.complete) return nullptr;  // its entry may be what is wrong
     std::vector<std::string> known;
     for (const SensorConfig& sensor : robot_.sensors)
-      if (!sensor.algorithm) known.push_back(sensor.name.text);
+      if (!is_algorithm(sensor)) known.push_back(sensor.name.text);
     Diagnostic& d = diagnostics_.report(Code::E0501, "there is no sensor `" + value->text + "`")
                         .label(value->span);
     if (!did_you_mean(d, value->span, value->text, known, "\"") && !known.empty())
@@ -206,8 +206,12 @@ private:
     return nullptr;
   }
 
+  static bool is_algorithm(const SensorConfig& sensor) {
+    return sensor.algorithm || sensor.companion;
+  }
+
   const SensorConfig* usable(const SensorConfig& sensor) {
-    if (!sensor.algorithm) return &sensor;
+    if (!is_algorithm(sensor)) return &sensor;
     diagnostics_.report(Code::E0205, "an algorithm cannot read another algorithm")
         .label(input_span_)
         .helps("name the sensor itself");

@@ -15,8 +15,9 @@ using std::chrono::milliseconds;
 constexpr milliseconds kShortestPause{500}, kLongestPause{30'000};
 constexpr milliseconds kLivesWell{30'000};  // after so long it is started again as soon as at first
 constexpr milliseconds kFirstWord{20'000};  // until it has read its model
-constexpr milliseconds kLeastPatience{1'000};
+constexpr milliseconds kLeastPatience{3'000};
 constexpr int kPeriods = 5;       // so many without a word, and it hangs
+constexpr int kMostReads = 32;  // of what a pipe still holds after the end
 constexpr int kAskedWrongly = 2;  // an exit code (companion/worker.hpp)
 
 }  // namespace
@@ -54,8 +55,8 @@ void Worker::look(Clock::time_point now, const Accept& accept) {
     alive_ = now;
   }
   if (end) {
-    while (listen(accept)) {
-    }
+    for (int i = 0; i < kMostReads; ++i)
+      listen(accept);
     take_end(now, *end);
     return;
   }

@@ -67,7 +67,7 @@ struct Ears : Device {
     return more;
   }
   void upload() const {
-    const Outcome outcome = run({"upload", program});
+    const Outcome outcome = run({"upload", program, "--replace"});
     INFO(outcome.err);
     REQUIRE(outcome.exit == 0);
   }
@@ -83,6 +83,7 @@ bool has_put(const Running& running, const std::string& text, std::size_t times 
     if (count >= times) return true;
     std::this_thread::sleep_for(10ms);
   }
+  UNSCOPED_INFO(running.out() << running.err());
   return false;
 }
 
