@@ -42,12 +42,13 @@ void Expressions::report_word_comparison(const ast::Comparison& node, const Type
   if (node.relation == ast::Relation::not_equal) d.fix(node.relation_span, "IS NOT");
 }
 
-// A channel that learns its words takes what it has not got.
+// A channel that learns its words takes what it has not got; but who writes UNKNOWN means no word.
 std::optional<std::size_t> Expressions::place_of(const ast::Name& label, const Typed& word,
                                                  bool quoted) {
   const bool learns =
       word.code.operation == Operation::input && names_.channel(word.code.channel).learns_words;
-  if (learns && !label.text.empty() && !names_.find_label(*word.labels, label.text)) {
+  if (learns && !label.text.empty() && !same_name(label.text, "unknown") &&
+      !names_.find_label(*word.labels, label.text)) {
     const std::size_t place = names_.learn_label(word.code.channel, label.text);
     if (place < kMaxLabels) return place;
     diagnostics_

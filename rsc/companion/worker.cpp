@@ -17,7 +17,7 @@ constexpr milliseconds kLivesWell{30'000};  // after so long it is started again
 constexpr milliseconds kFirstWord{20'000};  // until it has read its model
 constexpr milliseconds kLeastPatience{3'000};
 constexpr int kPeriods = 5;       // so many without a word, and it hangs
-constexpr int kMostReads = 32;  // of what a pipe still holds after the end
+constexpr int kMostReads = 32;    // of what a pipe still holds after the end
 constexpr int kAskedWrongly = 2;  // an exit code (companion/worker.hpp)
 
 }  // namespace

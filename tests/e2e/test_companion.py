@@ -27,9 +27,6 @@ END
 WHEN voice WORD BECOMES meters
 DO SAY "Ten meters"
 END
-WHEN voice WORD IS UNKNOWN
-DO LOG "deaf"
-END
 """
 LOOKS = """
 WHEN face COUNT > 0
@@ -96,7 +93,7 @@ class Companion(RobotTest):
         self.assertEqual(said, ["silence", "forward", "silence", "meters", "silence"])
         did = [(event["actuator"], event["verb"]) for event in events if event["event"] == "command"]
         self.assertEqual(did, [("arm", "MOVE"), ("speaker", "SAY")])
-        self.assertNotIn("deaf", json.dumps(events))
+        self.assertNotIn("stale", [event["event"] for event in events])
 
     def microphone(self, samples):
         """Puts one on the PATH that hears them; when it began stands in the file that it gives."""
@@ -131,7 +128,6 @@ class Companion(RobotTest):
         stopped = sorted(after for after in late if after < BETWEEN)
         print(f"stopped {len(stopped)} of {len(VOICES)} times, after "
               + ", ".join(f"{1000 * after:.0f}" for after in stopped) + " ms", file=sys.stderr)
-        print(reader.lines[-30:], reader.stop(), file=sys.stderr)
         self.assertGreaterEqual(len(stopped), len(VOICES) - 2)
         self.assertLess(stopped[-1], LATE)
 

@@ -1,11 +1,13 @@
 // rsc companion: robots that run in this process, and programs of modules that do all that one must not.
 #include "rsc/companion/companion.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
+#include "compiler/reading.hpp"
 #include "rsc/algorithm_modules.hpp"
 #include "rsc/companion/outlet.hpp"
 #include "rsc/companion/said.hpp"
@@ -40,9 +42,6 @@ END
 WHEN voice WORD IS NOT silence AND voice WORD IS Hello
 DO LOG "again"
 END
-WHEN voice WORD IS UNKNOWN
-DO LOG "deaf"
-END
 WHEN face COUNT > 0
 DO LOG "seen"
 END
@@ -67,7 +66,7 @@ struct Ears : Device {
     return more;
   }
   void upload() const {
-    const Outcome outcome = run({"upload", program, "--replace"});
+    const Outcome outcome = run({"upload", program});
     INFO(outcome.err);
     REQUIRE(outcome.exit == 0);
   }
@@ -345,7 +344,7 @@ TEST_CASE("what the robot does about it can be shown and written down") {
   REQUIRE(has_put(companion, "heard hello"));
   std::this_thread::sleep_for(2s);  // eight times as long as a word stays known
   const std::string seen = companion.out();
-  CHECK_THAT(seen.substr(seen.find("heard hello")), !Contains("deaf"));
+  CHECK_THAT(seen.substr(seen.find("heard hello")), !Contains("stale"));
   CHECK_THAT(ears.read("day.jsonl"), Contains("heard hello"));
 }
 
@@ -355,7 +354,7 @@ TEST_CASE("a program that dies does no harm to the others, and what it said grow
   ears.works("command-words", "echo WORD silence; sleep 0.2; exit 3");
   Running companion(ears.call({"--monitor"}));
   REQUIRE(companion.has_said("voice: has ended (exit 3)", 2));
-  REQUIRE(has_put(companion, "deaf", 2));
+  REQUIRE(has_put(companion, "voice WORD is unknown", 2));
   CHECK_THAT(companion.end(SIGINT).err, !Contains("face: "));
 }
 
@@ -384,18 +383,40 @@ TEST_CASE("a robot that goes away and comes back is fed again") {
 
 TEST_CASE("another program of the robot is listened for with its own words") {
   const Ears ears;
-  ears.upload();
   ears.works("command-words", "echo \"$@\" >> " + ears.path("asked") +
                                   "; while sleep 0.05; do echo WORD silence; done");
-  Running companion(ears.call());
-  REQUIRE(has_put(companion, "voice WORD silence", 1));
-  ears.write("robot.rsl", "WHEN voice WORD IS stop\nDO LOG \"x\"\nEND\n");
-  ears.upload();
-  REQUIRE(companion.has_said("face: the program that runs on the robot does not read it", 1));
-  REQUIRE(has_put(companion, "voice WORD silence", 2));
-  CHECK(companion.end(SIGINT).exit == 0);
-  CHECK_THAT(ears.read("asked"),
-             Contains("--word hello") && Contains("--word silence --word stop\n"));
+  const compiler::Result first = compiled(kListens);
+  const compiler::Result other = compiled("WHEN voice WORD IS stop\nDO LOG \"x\"\nEND\n");
+  const vm::Image images[] = {view_of(first), view_of(other)};
+  std::vector<compiler::SensorConfig> algorithms;
+  for (const compiler::SensorConfig& sensor : first.reading->robot->sensors)
+    if (sensor.companion) algorithms.push_back(sensor);
+  tool::Companion companion(algorithms, {"", "", "", ears.path("")}, false);
+  const auto goes_on_until = [&](const std::string& words) {
+    for (int i = 0; i < 1000; ++i) {
+      if (ears.has("asked") && ears.read("asked").ends_with(words + "\n")) return true;
+      if (!companion.work(nullptr)) return false;
+      std::this_thread::sleep_for(5ms);
+    }
+    return false;
+  };
+  for (int i = 0; i < 2; ++i) {
+    companion.program({&images[0], {}}, {});
+    CHECK(goes_on_until("--word silence --word hello --word very_well"));
+  }
+  companion.program({&images[1], {}}, {});
+  CHECK(goes_on_until("--word silence --word stop"));
+  companion.program({nullptr, {}}, {});
+  CHECK(companion.work(nullptr));
+  const std::string asked = ears.read("asked");
+  CHECK(std::ranges::count(asked, '\n') == 2);  // the same again is no reason to start it again
+}
+
+TEST_CASE("who writes UNKNOWN means no word") {
+  const compiler::Result result = compiler::compile(
+      {"robot.rsl", "WHEN voice WORD IS UNKNOWN\nDO LOG \"x\"\nEND\n"}, {"robot.json", kHearing},
+      {.source_lines = false, .algorithms = tool::algorithm_modules()});
+  CHECK(result.image.empty());
 }
 
 TEST_CASE("recordings that are over end it; programs that cannot work are a failure") {
