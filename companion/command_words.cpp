@@ -24,7 +24,7 @@ constexpr const char* kQuiet = "silence";
 constexpr std::size_t kBlock =
     kSoundRate / 50;  // 20 ms: a word is not heard sooner than its last block
 // What a threshold of pocketsphinx grows with: the longer a word, the less likely is each way to say it.
-constexpr double kPerSound = 0.04;
+constexpr double kPerSound = 0.2;
 
 struct Word {
   std::string as_asked;    // by the program: `very_well`

@@ -8,7 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from recordings import TEST_DATA, as_wav, needs, run, speak  # noqa: E402
 
-USUAL = ("--period", 200, "--strict", 45, "--shown_for", 0.5)
+USUAL = ("--period", 200, "--strict", 47, "--shown_for", 0.5)
 
 
 @needs("command_words")
@@ -48,7 +48,7 @@ class CommandWords(unittest.TestCase):
 
     def test_a_word_is_shown_for_so_long(self):
         sound = as_wav(TEST_DATA / "goforward.raw", self.folder / "go.wav")
-        short, long = (self.hear(sound, "forward", how=("--period", 20, "--strict", 45, "--shown_for", shown))
+        short, long = (self.hear(sound, "forward", how=("--period", 20, "--strict", 47, "--shown_for", shown))
                        for shown in (0.1, 0.4))
         self.assertEqual(short.count("forward"), 5)
         self.assertEqual(long.count("forward"), 20)

@@ -1,5 +1,6 @@
 """rsc companion: a word in a recording, and a face in a picture, reach a program on the shipped firmware."""
 
+import functools
 import json
 import os
 import sys
@@ -11,7 +12,7 @@ from board import REAL_TIME, ROOT, Board
 from support import LineReader, RobotTest
 
 sys.path.append(str(ROOT / "tests/companion"))
-from recordings import RATE, TEST_DATA, as_wav, needs, samples_of, speak  # noqa: E402
+from recordings import RATE, TEST_DATA, as_wav, needs  # noqa: E402
 from test_face_detect import PICTURES  # noqa: E402
 
 ROBOT = {
@@ -43,7 +44,7 @@ BEHAVIOR lift PRIORITY 10
   END
 END
 SAFETY stops
-  WHEN voice WORD IS "stop"
+  WHEN voice WORD IS "forward"
   DO STOP ALL
   RESUME WHEN voice WORD IS silence
 END
@@ -60,36 +61,66 @@ for at in range(0, len(samples), 640):
     sys.stdout.buffer.flush()
 time.sleep(60)
 """
-VOICES = ("en-us", "en-gb", "en-us+f2", "en-us+m3", "en-gb+f4", "en-us+f5", "en-us+m7", "en-gb+m2")
-BETWEEN = 2.0  # seconds
+# Where the word "forward" ends in goforward.raw: so says pocketsphinx with its large language model, which knows the whole sentence.
+FORWARD_ENDS = 1.17
+TIMES = 4
+ATTEMPTS = 5
+WATCHDOG = '"reset_reason":"watchdog"'
+FORWARD = '"channel":"WORD","value":"forward"'  # the trace says it behind what SAFETY did about it
+HALT = '"event":"halt","actuator":"arm"'
+BETWEEN = 1.0  # seconds
 LATE = 1.0  # … is too late to stop
+
+
+class StoodStill(Exception):
+    """The board was reset: a machine that stands still for 50 ms looks to the emulated watchdog, in real time, like a firmware that
+    hangs."""
+
+
+def unless_it_stands_still(test):
+    """Tries again, with another board, when the machine was too busy."""
+    @functools.wraps(test)
+    def tried(self):
+        for _ in range(ATTEMPTS):
+            self.board.stop()
+            self.board = Board(self.elf, icount=REAL_TIME, extra=self.qemu_arguments())
+            try:
+                test(self)
+                return
+            except StoodStill:
+                pass
+        self.fail(f"the board was reset in each of {ATTEMPTS} attempts: the machine is too busy, or the firmware hangs")
+    return tried
 
 
 class Companion(RobotTest):
     def setUp(self):
         super().setUp()
-        self.board.stop()
-        self.board = Board(self.elf, icount=REAL_TIME, extra=self.qemu_arguments())
-        self.addCleanup(self.board.stop)
+        self.addCleanup(lambda: self.board.stop())
 
     def given(self, program, algorithm):
         (self.folder / "program.rsl").write_text(program)
         (self.folder / "wanted.json").write_text(json.dumps({**ROBOT, "algorithms": [algorithm]}))
         self.upload(self.compile(self.folder / "program.rsl", self.folder / "wanted.json"))
 
+    def beside(self, *arguments):
+        return ("companion", "--config", self.folder / "robot.json", "--port", self.board.port, "--monitor", "--format",
+                "json", *arguments)
+
     def run_beside(self, *arguments):
-        done = rsc.call("companion", "--config", self.folder / "robot.json", "--port", self.board.port,
-                        "--monitor", "--format", "json", *arguments)
+        done = rsc.call(*self.beside(*arguments))
+        if WATCHDOG in done.stdout:
+            raise StoodStill
         self.assertEqual(done.returncode, 0, done.stderr)
         return [json.loads(line) for line in done.stdout.splitlines()]
 
     @needs("command_words")
+    @unless_it_stands_still
     def test_a_word_of_a_person_moves_the_arm(self):
         self.given(LISTENS, {"name": "voice", "module": "command_words", "input": "microphone", "on": "companion"})
         sound = as_wav(TEST_DATA / "goforward.raw", self.folder / "go.wav", silence=1.0)  # "go forward ten meters"
         events = self.run_beside("--microphone", sound)
-        said = [event["value"] for event in events
-                if event["event"] == "input" and event["sensor"] == "voice"]
+        said = [event["value"] for event in events if event["event"] == "input" and event["sensor"] == "voice"]
         self.assertEqual(said, ["silence", "forward", "silence", "meters", "silence"])
         did = [(event["actuator"], event["verb"]) for event in events if event["event"] == "command"]
         self.assertEqual(did, [("arm", "MOVE"), ("speaker", "SAY")])
@@ -100,38 +131,43 @@ class Companion(RobotTest):
         (self.folder / "heard").write_bytes(samples)
         (self.folder / "arecord").write_text(MICROPHONE)
         (self.folder / "arecord").chmod(0o755)
-        before = dict(os.environ)
-        self.addCleanup(os.environ.update, before)
-        os.environ.update(PATH=f"{self.folder}:{before['PATH']}", HEARD=str(self.folder / "heard"))
-        return self.folder / "heard.began"
+        began = self.folder / "heard.began"
+        began.unlink(missing_ok=True)
+        path = os.environ["PATH"]
+        self.addCleanup(os.environ.update, {"PATH": path})
+        os.environ.update(PATH=f"{self.folder}:{path}", HEARD=str(self.folder / "heard"))
+        return began
 
     @needs("command_words")
-    def test_the_outputs_are_safe_soon_after_somebody_has_said_stop(self):
+    @unless_it_stands_still
+    def test_the_outputs_are_safe_soon_after_a_person_has_said_the_word(self):
         self.given(STOPS, {"name": "voice", "module": "command_words", "on": "companion"})
-        heard, ends = bytes(int(BETWEEN * RATE) * 2), []
-        for voice in VOICES:
-            samples = samples_of(speak("stop", self.folder / "stop.wav", voice))
-            loud = [i for i, sample in enumerate(memoryview(samples).cast("h")) if abs(sample) > 300]
-            ends.append(len(heard) / 2 / RATE + loud[-1] / RATE)
-            heard += samples + bytes(int(BETWEEN * RATE) * 2)
-        began = self.microphone(heard)
-        reader = LineReader("companion", "--config", self.folder / "robot.json", "--port", self.board.port,
-                            "--monitor", "--format", "json", "--microphone", "default")
-        self.addCleanup(reader.stop)
-        halts = []
-        until = time.monotonic() + len(heard) / 2 / RATE + 10
-        while time.monotonic() < until and len(halts) < len(VOICES):
-            count = len(halts) + 1
-            if reader.wait_for(lambda lines: sum('"event":"halt","actuator":"arm"' in line for line in lines) >= count, 1):
-                halts.append(time.monotonic() - float(began.read_text()))
-        late = [min((halt - end for halt in halts if halt > end - 0.3), default=99) for end in ends]
-        stopped = sorted(after for after in late if after < BETWEEN)
-        print(f"stopped {len(stopped)} of {len(VOICES)} times, after "
-              + ", ".join(f"{1000 * after:.0f}" for after in stopped) + " ms", file=sys.stderr)
-        self.assertGreaterEqual(len(stopped), len(VOICES) - 2)
-        self.assertLess(stopped[-1], LATE)
+        quiet = bytes(int(BETWEEN * RATE) * 2)
+        sentence = (TEST_DATA / "goforward.raw").read_bytes()
+        began = self.microphone(quiet + (sentence + quiet) * TIMES)
+        each = len(sentence + quiet) / 2 / RATE
+        reader = LineReader(*self.beside("--microphone", "default"))
+        after = []
+        try:
+            for i in range(TIMES):
+                # It may hear the word more often, or be halted since it has not heard anything yet.
+                ends = BETWEEN + i * each + FORWARD_ENDS
+                heard = reader.wait_for(lambda lines: sum(FORWARD in line for line in lines) > i, 30)
+                if any(WATCHDOG in line for line in reader.lines):
+                    raise StoodStill
+                self.assertTrue(heard, reader.lines[-5:])
+                after.append(time.monotonic() - float(began.read_text()) - ends)
+            at = [i for i, line in enumerate(reader.lines) if FORWARD in line]
+            self.assertTrue(all(HALT in "".join(reader.lines[i - 3:i]) for i in at), reader.lines)
+        finally:
+            reader.stop()
+        print("safe, after the end of the word, in " + ", ".join(f"{1000 * time_:.0f}" for time_ in after) + " ms",
+              file=sys.stderr)
+        self.assertGreater(min(after), -0.1)
+        self.assertLess(max(after), LATE)
 
     @needs("face_detect")
+    @unless_it_stands_still
     def test_a_face_is_greeted(self):
         if not PICTURES.is_dir():
             self.skipTest("there are no pictures: scripts/companion --test gets them")

@@ -329,7 +329,7 @@ TEST_CASE("what programs say reaches the robot, and stays known while they say i
   CHECK_THAT(outcome.out, Contains("voice WORD hello\n"));
   CHECK_THAT(outcome.out, !Contains("ANGLE"));  // the program does not read it
   CHECK(ears.read("asked") ==
-        "--source hw:3 --period 50 --strict 45.000 --shown_for 0.500 --word silence --word hello "
+        "--source hw:3 --period 50 --strict 47.000 --shown_for 0.500 --word silence --word hello "
         "--word very_well\n");
 }
 
