@@ -45,9 +45,8 @@ Result compile(Input program, Input configuration, const Options& options) {
   if (parsed.complete) {
     written = analyze(parsed.trees(), *parsed.robot, result.sources, diagnostics);
     for (const ir::LearnedWord& word : written.words)
-      reading->robot->sensors[word.channel.sensor]
-          .channels[word.channel.channel]
-          .add_label(word.text);
+      reading->robot->sensors[word.channel.sensor].channels[word.channel.channel].add_label(
+          word.text);
     if (diagnostics.errors() > 0) diagnostics = offer_modules(diagnostics);
     if (diagnostics.errors() == 0)
       result.tests = test_plan::plan_tests(parsed.trees(), *parsed.robot, diagnostics);
