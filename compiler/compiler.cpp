@@ -35,14 +35,18 @@ Diagnostics offer_modules(const Diagnostics& diagnostics) {
 Result compile(Input program, Input configuration, const Options& options) {
   Result result;
   Diagnostics& diagnostics = result.diagnostics;
-  result.reading = std::make_shared<const Reading>(
+  const auto reading = std::make_shared<Reading>(
       read_all(std::move(program), std::move(configuration), options.read_module,
                options.algorithms, result.sources, diagnostics));
-  const Reading& parsed = *result.reading;
+  result.reading = reading;
+  const Reading& parsed = *reading;
   result.board = board_for(parsed.robot ? parsed.robot->board : std::nullopt);
   ir::Program written;
   if (parsed.complete) {
     written = analyze(parsed.trees(), *parsed.robot, result.sources, diagnostics);
+    for (const ir::LearnedWord& word : written.words)
+      reading->robot->sensors[word.channel.sensor].channels[word.channel.channel].add_label(
+          word.text);
     if (diagnostics.errors() > 0) diagnostics = offer_modules(diagnostics);
     if (diagnostics.errors() == 0)
       result.tests = test_plan::plan_tests(parsed.trees(), *parsed.robot, diagnostics);

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "rsc/companion_modules.hpp"
 #include "runtime-m4/algorithms/judge.hpp"
 #include "runtime-m4/module_files/registry.hpp"
 
@@ -70,7 +71,7 @@ compiler::ModuleInFile in_file(const std::string& path) {
 
 compiler::AlgorithmModules algorithm_modules() {
   static const std::vector<compiler::AlgorithmModule> modules = all();
-  return {modules, in_file};
+  return {modules, in_file, companion_modules()};
 }
 
 analysis::Instructions module_cost(const vm::Image& image, const vm::Sensor& algorithm) {

@@ -1,5 +1,5 @@
-// What robot.json may say under "algorithms": the modules that a robot's firmware has, and those in files. Who compiles hands them
-// in.
+// What robot.json may say under "algorithms": the modules that a robot's firmware has, those in files, and those that run on a
+// computer beside the robot. Who compiles hands them in.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +22,7 @@ struct ModuleOutput {
   vm::Dimension dimension{};
   vm::Value min = 0, max = 0;
   std::vector<std::string> labels;  // as in ChannelConfig
+  bool learns_words = false;        // likewise
 };
 
 struct ModuleParameter {
@@ -33,11 +34,13 @@ struct ModuleParameter {
 
 struct AlgorithmModule {
   std::string name;
-  std::vector<ModuleInput> inputs;  // at least one
+  std::vector<ModuleInput> inputs;  // at least one, of a module that runs on the board
   std::vector<ModuleOutput> outputs;
   std::vector<ModuleParameter> parameters;
   std::uint16_t shortest_period_ms = 0, longest_period_ms = 0;
   std::uint16_t usual_period_ms = 0;  // of an input that is fed, where robot.json says none
+  // What it reads of the computer beside the robot, on which it runs: "camera". Empty: it runs on the board.
+  std::string device{};
 };
 
 struct ModuleInFile {
@@ -49,6 +52,7 @@ struct ModuleInFile {
 struct AlgorithmModules {
   std::span<const AlgorithmModule> firmware;  // the number in the image is the place in the list
   ModuleInFile (*in_file)(const std::string& path) = nullptr;  // null: nobody loads files
+  std::span<const AlgorithmModule> companion;                  // these have a device
 };
 
 }  // namespace robosync::compiler

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -13,6 +14,8 @@
 
 namespace robosync::compiler {
 namespace {
+
+constexpr int kStalePeriods = 5;  // of a companion's channels, as of those that are sampled
 
 class AlgorithmReader {
 public:
@@ -26,42 +29,72 @@ public:
 
   bool read() {
     const auto name = read_name(fields_, "an algorithm", diagnostics_);
-    if (!name || !is_on_board()) return false;
+    if (!name || !read_place()) return false;
     const auto* path = fields_.find("path");
     if (path != nullptr && is_missing(*name, *path)) return true;
     if (path != nullptr ? !load_module(*path) : !find_module()) return false;
+    return module_->device.empty() ? add_on_board(*name) : add_on_companion(*name);
+  }
+
+private:
+  bool add_on_board(const Spelled& name) {
     const SensorConfig* const input = find_input();
     if (input == nullptr || !can_read(*input)) return false;
     SensorConfig sensor;
-    sensor.name = *name;
+    sensor.name = name;
     sensor.driver = vm::DriverId::algorithm;
     sensor.period_ms = period(*input);
     sensor.algorithm = {number_, static_cast<std::size_t>(input - robot_.sensors.data()),
-                        module_->inputs.size(), config(input->channels.front())};
-    for (const ModuleOutput& output : module_->outputs)
-      sensor.channels.push_back(channel(*name, output, *input));
+                        module_->inputs.size(), config(*input->channels.front().unit)};
+    for (const ModuleOutput& output : module_->outputs) {
+      sensor.channels.push_back(channel(name, output));
+      sensor.channels.back().stale_ms = stale_as(*input);
+    }
     robot_.sensors.push_back(std::move(sensor));
     return true;
   }
 
-private:
+  // For the board it is a sensor that is fed.
+  bool add_on_companion(const Spelled& name) {
+    check_device();
+    SensorConfig sensor;
+    sensor.name = name;
+    sensor.driver = vm::DriverId::virtual_sensor;
+    const std::uint16_t period = period_in_range(module_->usual_period_ms, name.span);
+    sensor.companion = {module_->name, period, config(canonical_unit(vm::Dimension::number))};
+    for (const ModuleOutput& output : module_->outputs) {
+      sensor.channels.push_back(channel(name, output));
+      sensor.channels.back().stale_ms =
+          static_cast<std::uint16_t>(std::min(period * kStalePeriods, UINT16_MAX));
+    }
+    robot_.sensors.push_back(std::move(sensor));
+    return true;
+  }
+
   std::string shown() const { return "`" + module_->name + "`"; }
 
   // ---- which module
 
-  bool is_on_board() {
-    const auto* on = fields_.find("on");
-    if (on == nullptr) return true;
+  // Where it is to run, if `on` says so.
+  bool read_place() {
+    on_ = fields_.find("on");
+    if (on_ == nullptr) return true;
     constexpr std::array<std::string_view, 2> kPlaces = {"board", "companion"};
-    const auto place = read_choice(*on, kPlaces, diagnostics_);
-    if (place == 1u)
-      diagnostics_
-          .report(
-              Code::E0205,
-              "this version of rsc runs algorithms on the board only, not on a companion computer")
-          .label(on->span)
-          .helps("leave `on` out, with a module of the firmware");
-    return place == 0u;
+    const auto place = read_choice(*on_, kPlaces, diagnostics_);
+    if (place) wants_companion_ = *place == 1;
+    return place.has_value();
+  }
+
+  bool runs_where_it_should() {
+    const bool on_companion = !module_->device.empty();
+    if (!wants_companion_ || *wants_companion_ == on_companion) return true;
+    diagnostics_
+        .report(Code::E0205, shown() + (on_companion ? " runs on a companion computer only"
+                                                     : " runs on the board only"))
+        .label(on_->span)
+        .helps(on_companion ? "write \"companion\", or leave `on` out"
+                            : "leave `on` out; `rsc companion --list` says what runs there");
+    return false;
   }
 
   std::string in_folder(const json::Value& path) const {
@@ -83,6 +116,15 @@ private:
 
   bool load_module(const json::Value& path) {
     if (!read_text(path, diagnostics_)) return false;
+    if (wants_companion_.value_or(false)) {
+      diagnostics_
+          .report(Code::E0205,
+                  "a module in a file runs in rsc run and rsc test, not on a companion computer")
+          .label(on_->span)
+          .label(path.span, "the file", false)
+          .helps("leave `on` out");
+      return false;
+    }
     if (const auto* module = fields_.find("module")) {
       diagnostics_.report(Code::E0205, "a module is in a file, or one of the firmware's, not both")
           .label(module->span)
@@ -117,19 +159,32 @@ private:
     if (value == nullptr || !read_text(*value, diagnostics_)) return false;
     const auto& firmware = modules_.firmware;
     const auto found = std::ranges::find(firmware, value->text, &AlgorithmModule::name);
+    const auto beside = std::ranges::find(modules_.companion, value->text, &AlgorithmModule::name);
     if (found != firmware.end()) {
       module_ = &*found;
       number_ = static_cast<std::uint8_t>(found - firmware.begin());
-      return true;
+    } else if (beside != modules_.companion.end()) {
+      module_ = &*beside;
+    } else {
+      report_unknown_module(*value);
     }
-    const std::vector<std::string> known = names_of(firmware);
+    return module_ != nullptr && runs_where_it_should();
+  }
+
+  // Those of the place that robot.json names, or all.
+  void report_unknown_module(const json::Value& value) {
+    std::vector<std::string> known;
+    if (!wants_companion_.value_or(false)) known = names_of(modules_.firmware);
+    if (wants_companion_.value_or(true))
+      std::ranges::copy(names_of(modules_.companion), std::back_inserter(known));
+    const std::string who = !wants_companion_   ? "there is"
+                            : *wants_companion_ ? "a companion computer has"
+                                                : "the firmware has";
     Diagnostic& d =
-        diagnostics_
-            .report(Code::E0209, "the firmware has no algorithm module `" + value->text + "`")
-            .label(value->span);
-    if (!did_you_mean(d, value->span, value->text, known, "\"") && !known.empty())
-      d.helps("it has " + list_names(known));
-    return false;
+        diagnostics_.report(Code::E0209, who + " no algorithm module `" + value.text + "`")
+            .label(value.span);
+    if (!did_you_mean(d, value.span, value.text, known, "\"") && !known.empty())
+      d.helps("modules: " + list_names(known));
   }
 
   // ---- what it reads
@@ -143,7 +198,7 @@ private:
     if (!robot_.complete) return nullptr;  // its entry may be what is wrong
     std::vector<std::string> known;
     for (const SensorConfig& sensor : robot_.sensors)
-      if (!sensor.algorithm) known.push_back(sensor.name.text);
+      if (!is_algorithm(sensor)) known.push_back(sensor.name.text);
     Diagnostic& d = diagnostics_.report(Code::E0501, "there is no sensor `" + value->text + "`")
                         .label(value->span);
     if (!did_you_mean(d, value->span, value->text, known, "\"") && !known.empty())
@@ -151,8 +206,12 @@ private:
     return nullptr;
   }
 
+  static bool is_algorithm(const SensorConfig& sensor) {
+    return sensor.algorithm || sensor.companion;
+  }
+
   const SensorConfig* usable(const SensorConfig& sensor) {
-    if (!sensor.algorithm) return &sensor;
+    if (!is_algorithm(sensor)) return &sensor;
     diagnostics_.report(Code::E0205, "an algorithm cannot read another algorithm")
         .label(input_span_)
         .helps("name the sensor itself");
@@ -192,6 +251,18 @@ private:
     return false;
   }
 
+  // Of a module on a companion: what it reads there. There is one of each.
+  void check_device() {
+    const auto* value = fields_.find("input");
+    if (value == nullptr || !read_text(*value, diagnostics_)) return;
+    if (same_name(value->text, module_->device)) return;
+    diagnostics_
+        .report(Code::E0205, shown() + " reads the " + module_->device +
+                                 " of the companion computer, and no sensor of the robot")
+        .label(value->span)
+        .helps("write \"" + module_->device + "\", or leave `input` out");
+  }
+
   // ---- how often
 
   // That of its input; of one that is fed, its own.
@@ -206,14 +277,19 @@ private:
           .helps("set the rate of its channels, and leave this one out");
       return input.period_ms;
     }
-    std::uint16_t period = fed ? module_->usual_period_ms : input.period_ms;
+    return period_in_range(fed ? module_->usual_period_ms : input.period_ms, input_span_);
+  }
+
+  // `usual` at `span`, or what `rate` says.
+  std::uint16_t period_in_range(std::uint16_t period, Span span) {
+    const auto* rate = fields_.find("rate");
     if (rate != nullptr) period = read_rate(*rate, diagnostics_).value_or(period);
     if (period >= module_->shortest_period_ms && period <= module_->longest_period_ms)
       return period;
     diagnostics_
         .report(Code::E0205, shown() + " works from " + hertz(module_->longest_period_ms) + " to " +
                                  hertz(module_->shortest_period_ms) + ", not at " + hertz(period))
-        .label(rate != nullptr ? rate->span : input_span_)
+        .label(rate != nullptr ? rate->span : span)
         .helps(rate != nullptr ? "change this rate" : "change the `rate` of its channels");
     return module_->usual_period_ms;
   }
@@ -225,7 +301,8 @@ private:
 
   // ---- its parameters
 
-  std::vector<vm::Value> config(const ChannelConfig& input) {
+  // `unit`: of those that are measured in that of the input.
+  std::vector<vm::Value> config(const Unit& unit) {
     std::vector<vm::Value> values;
     for (const ModuleParameter& parameter : module_->parameters)
       values.push_back(parameter.usual);
@@ -236,7 +313,7 @@ private:
       if (const auto place = find_parameter(member)) {
         const ModuleParameter& parameter = module_->parameters[*place];
         read_parameter(member.value, parameter,
-                       parameter.dimension ? canonical_unit(*parameter.dimension) : *input.unit,
+                       parameter.dimension ? canonical_unit(*parameter.dimension) : unit,
                        values[*place]);
       }
     return values;
@@ -270,8 +347,7 @@ private:
 
   // ---- its channels
 
-  ChannelConfig channel(const Spelled& name, const ModuleOutput& output,
-                        const SensorConfig& input) const {
+  ChannelConfig channel(const Spelled& name, const ModuleOutput& output) const {
     ChannelConfig channel;
     channel.name = {output.name, name.span};
     channel.unit = &canonical_unit(output.dimension);
@@ -280,13 +356,18 @@ private:
     channel.min = output.min;
     channel.max = output.max;
     channel.labels = output.labels;
-    // It is as old as what it was made of.
+    channel.learns_words = output.learns_words;
+    return channel;
+  }
+
+  // It is as old as what it was made of.
+  std::uint16_t stale_as(const SensorConfig& input) const {
+    std::uint16_t soonest = 0;
     for (std::size_t i = 0; i < module_->inputs.size(); ++i) {
       const std::uint16_t stale = input.channels[i].stale_ms;
-      if (stale != 0 && (channel.stale_ms == 0 || stale < channel.stale_ms))
-        channel.stale_ms = stale;
+      if (stale != 0 && (soonest == 0 || stale < soonest)) soonest = stale;
     }
-    return channel;
+    return soonest;
   }
 
   Fields fields_;
@@ -296,6 +377,8 @@ private:
   Diagnostics& diagnostics_;
   const AlgorithmModule* module_ = nullptr;
   std::uint8_t number_ = 0;  // of the module
+  const json::Value* on_ = nullptr;
+  std::optional<bool> wants_companion_;  // as `on` says
   Span input_span_;
 };
 

@@ -2,6 +2,7 @@
 #include "compiler/config/robot.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace robosync::compiler {
 namespace {
@@ -13,6 +14,11 @@ auto find_in(const List& list, Predicate predicate) {
 }
 
 }  // namespace
+
+void ChannelConfig::add_label(std::string label) {
+  labels.push_back(std::move(label));
+  max = static_cast<vm::Value>(labels.size() - 1) * vm::kScale;
+}
 
 const VerbConfig* ActuatorConfig::find_verb(std::string_view verb) const {
   return find_in(verbs, [&](const VerbConfig& v) { return same_name(v.name, verb); });

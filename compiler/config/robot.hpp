@@ -16,6 +16,8 @@
 
 namespace robosync::compiler {
 
+constexpr std::size_t kMaxLabels = 255;  // of a channel
+
 struct ChannelConfig {
   Spelled name;
   const Unit* unit = nullptr;  // never null once read; bare numbers are in it
@@ -31,6 +33,10 @@ struct ChannelConfig {
   // Of a channel whose values are words: value n is label n. Its range is then 0 … labels - 1.
   std::vector<std::string> labels;
   bool truth = false;  // its two labels mean false and true: it may stand alone as a condition
+  // Its words are those that the program compares it with: they become labels, behind these, when the program is analysed.
+  bool learns_words = false;
+
+  void add_label(std::string label);  // the range grows with it
 };
 
 // What makes a sensor an algorithm: its channels are the outputs of a module.
@@ -38,6 +44,13 @@ struct AlgorithmConfig {
   std::uint8_t module = 0;        // its number (algorithm_modules.hpp)
   std::size_t input = 0;          // the sensor that it reads, a place in Robot::sensors
   std::size_t inputs = 0;         // … of which so many channels, the first ones
+  std::vector<vm::Value> config;  // its parameters, all of them
+};
+
+// What makes a fed sensor the outputs of a module that runs on a computer beside the robot.
+struct CompanionConfig {
+  std::string module;
+  std::uint16_t period_ms = 0;    // how often it says what it knows
   std::vector<vm::Value> config;  // its parameters, all of them
 };
 
@@ -50,6 +63,7 @@ struct SensorConfig {
   std::uint16_t period_ms = 0;  // of its fastest channel
   std::vector<ChannelConfig> channels;
   std::optional<AlgorithmConfig> algorithm;
+  std::optional<CompanionConfig> companion;
 };
 
 enum class Texts : std::uint8_t {

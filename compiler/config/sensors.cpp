@@ -46,8 +46,6 @@ void change_unit(const Unit& unit, Span span, ChannelConfig& channel, Diagnostic
   channel.unit = &unit;
 }
 
-constexpr std::size_t kMaxLabels = 255;
-
 void add_label(const json::Value& item, NameIndex& known, ChannelConfig& channel,
                Diagnostics& diagnostics) {
   const auto label = read_text(item, diagnostics);

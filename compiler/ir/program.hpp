@@ -234,7 +234,15 @@ struct Behavior {
   std::vector<Rule> rules;
 };
 
+// A word that the program compares a channel with that learns its words.
+struct LearnedWord {
+  ChannelRef channel;
+  std::string text;
+};
+
 struct Program {
+  // In the order of their labels, which are yet to be given to the robot's channels.
+  std::vector<LearnedWord> words;
   std::vector<Variable> variables;
   std::vector<Check> checks;
   std::vector<Motion> motions;

@@ -40,6 +40,7 @@ public:
     for (const ast::Tree* tree : trees_)
       for (const ast::Item& item : tree->items)
         add(item);
+    program_.words = names_.learned();
     program_.motions = motions_.performed();
     statements_.check_unused_defines();
     motions_.check_unused();

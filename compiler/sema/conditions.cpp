@@ -42,6 +42,24 @@ void Expressions::report_word_comparison(const ast::Comparison& node, const Type
   if (node.relation == ast::Relation::not_equal) d.fix(node.relation_span, "IS NOT");
 }
 
+// A channel that learns its words takes what it has not got; but who writes UNKNOWN means no word.
+std::optional<std::size_t> Expressions::place_of(const ast::Name& label, const Typed& word,
+                                                 bool quoted) {
+  const bool learns =
+      word.code.operation == Operation::input && names_.channel(word.code.channel).learns_words;
+  if (learns && !label.text.empty() && !same_name(label.text, "unknown") &&
+      !names_.find_label(*word.labels, label.text)) {
+    const std::size_t place = names_.learn_label(word.code.channel, label.text);
+    if (place < kMaxLabels) return place;
+    diagnostics_
+        .report(Code::E0205, "`" + word.source + "` is compared with more than " +
+                                 std::to_string(kMaxLabels - 1) + " words")
+        .label(label.span);
+    return std::nullopt;
+  }
+  return find_label(names_, *word.labels, label, word.source, diagnostics_, quoted);
+}
+
 Typed Expressions::label_test(Operation operation, const ast::Expr& value, const ast::Name& label,
                               Span span, bool quoted) {
   Typed word = any(value);
@@ -60,7 +78,7 @@ Typed Expressions::label_test(Operation operation, const ast::Expr& value, const
       d.helps("compare a number with `=`, `<` or `>`");
     return make_nothing(span);
   }
-  const auto place = find_label(names_, *word.labels, label, word.source, diagnostics_, quoted);
+  const auto place = place_of(label, word, quoted);
   if (!place) return make_nothing(span);
   return make_condition(
       make_binary(operation, std::move(word.code), make_constant_code(label_value(*place))), span);

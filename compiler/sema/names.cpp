@@ -213,6 +213,16 @@ std::optional<std::size_t> Names::find_label(const std::vector<std::string>& lab
   return index.find(label);
 }
 
+std::size_t Names::learn_label(ChannelRef ref, std::string_view label) {
+  const std::vector<std::string>& labels = channel(ref).labels;
+  std::size_t place = labels.size();
+  for (const ir::LearnedWord& word : learned_)
+    if (word.channel == ref) ++place;
+  labels_[&labels].add(label, place);
+  learned_.push_back({ref, std::string(label)});
+  return place;
+}
+
 std::string Names::channel_name(ChannelRef ref) const {
   return sensor(ref).name.text + " " + channel(ref).name.text;
 }

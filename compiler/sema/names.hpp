@@ -101,6 +101,9 @@ public:
   // The place of a label in the labels of a channel or a variable, which must outlive this.
   [[nodiscard]] std::optional<std::size_t> find_label(const std::vector<std::string>& labels,
                                                       std::string_view label);
+  // A new label of a channel that learns its words: its place behind those that there are. `label` must outlive this, too.
+  [[nodiscard]] std::size_t learn_label(ChannelRef ref, std::string_view label);
+  [[nodiscard]] const std::vector<ir::LearnedWord>& learned() const { return learned_; }
   // What a name is, for a message: "a LET", "a CHECK"; empty when nothing has it.
   [[nodiscard]] std::string kind_of(std::string_view name);
 
@@ -187,6 +190,7 @@ private:
   NameIndex verbs_, words_;
   std::vector<std::vector<std::size_t>> able_;  // actuators, by place of the verb
   std::map<const std::vector<std::string>*, NameIndex> labels_;
+  std::vector<ir::LearnedWord> learned_;
 };
 
 }  // namespace robosync::compiler

@@ -40,10 +40,41 @@ def _number(value):
     return value if isinstance(value, (int, float)) else float(re.match(r"-?[0-9.]+", value)[0])
 
 
+def _companion():
+    """The channels of each module that runs on a companion computer: NAME to its range and unit, or to its first word."""
+    text = (ROOT / "companion/modules.def").read_text()
+    units = dict(re.findall(r'^DIMENSION\((\w+), *"([^"]*)"', (ROOT / "vm/dimensions.def").read_text(), re.M))
+    modules = {}
+    for kind, arguments in re.findall(r"^(MODULE|OUTPUT|WORDS)\(([^)]*)\)", text, re.M):
+        name, *rest = (argument.strip() for argument in arguments.split(","))
+        if kind == "MODULE":
+            channels = modules[name] = {}
+        elif kind == "WORDS":
+            channels[name] = rest[0]
+        else:
+            channels[name] = (int(rest[1]) / 1000, int(rest[2]) / 1000, units[rest[0]])
+    return modules
+
+
+def _heard(folder):
+    """Of the algorithms on a companion computer, as _channels()."""
+    program = (folder / "robot.rsl").read_text().lower()
+    modules, found = _companion(), {}
+    for algorithm in config(folder).get("algorithms", []):
+        for channel, said in modules.get(algorithm.get("module"), {}).items():
+            name = algorithm["name"].lower()
+            words = re.findall(rf'{name} {channel.lower()} (?:is|becomes) (?:not )?"?(\w+)', program)
+            if isinstance(said, str):
+                found[f"{algorithm['name']}.{channel}"] = (0, 100, [said, *words], "")
+            elif f"{name} {channel.lower()}" in program:
+                found[f"{algorithm['name']}.{channel}"] = (said[0], said[1], [], said[2])
+    return found
+
+
 def _channels(folder):
     """NAME.CHANNEL to its lowest and highest value, its words and its unit, for all that is read."""
     program = (folder / "robot.rsl").read_text().lower()
-    found = {}
+    found = _heard(folder)
     for sensor in config(folder)["sensors"]:
         for name, channel in sensor.get("channels", {"LEVEL": {}}).items():
             if sensor["name"].lower() not in program:

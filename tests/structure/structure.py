@@ -47,12 +47,13 @@ RUNTIME = {
 MAY_KNOW_THE_PROCESSOR = {"port", "port's sources", "boards/common", "a board"}
 # Inside rsc/: the same. What stands in rsc/ itself includes none of them.
 TOOL = {
-    "verbs": {"device", "trace", "dump", "timeline", "screen", "bridge", "lsp", "modules"},
+    "verbs": {"device", "trace", "dump", "timeline", "screen", "bridge", "companion", "lsp", "modules"},
     "device": {"trace"},
     "trace": set(),
     "timeline": {"device", "trace"},
     "screen": {"device", "trace"},
     "bridge": {"device", "trace"},
+    "companion": {"device", "trace"},
     "dump": set(),
     "modules": {"device"},
     "lsp": set(),

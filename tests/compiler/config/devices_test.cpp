@@ -248,6 +248,8 @@ TEST_CASE("the schema lists the boards, types, devices, modules and units that t
   Json& modules = list(definitions.at("algorithm"), "module");
   for (const AlgorithmModule& module : tool::algorithm_modules().firmware)
     modules.push_back(module.name);
+  for (const AlgorithmModule& module : tool::algorithm_modules().companion)
+    modules.push_back(module.name);
   Json& unit_names = list(definitions.at("channel"), "unit");
   for (const Unit& unit : units())
     unit_names.push_back(unit.spelling);

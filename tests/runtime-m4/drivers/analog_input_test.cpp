@@ -190,10 +190,10 @@ TEST_CASE(
     "guard: a pin that is no analog input of the board is not let go, whatever the image says") {
   Rings rings;
   for (const int pin : {3, 5, 45, 0xFFFF})
-    rings.guard.own(rings.on(static_cast<std::uint16_t>(pin)), 0);
+    rings.guard.own(rings.on(static_cast<std::uint16_t>(pin)));
   for (const auto& [pin, let_go] : rings.handed())
     CHECK_FALSE(let_go);
-  rings.guard.own(rings.image(kOfGrip, kFed), 0);
+  rings.guard.own(rings.image(kOfGrip, kFed));
   for (const auto& [pin, let_go] : rings.handed())
     CHECK_FALSE(let_go);
 }

@@ -1,0 +1,93 @@
+// See worker.hpp.
+#include "rsc/companion/worker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+namespace robosync::tool {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kShortestPause{500}, kLongestPause{30'000};
+constexpr milliseconds kLivesWell{30'000};  // after so long it is started again as soon as at first
+constexpr milliseconds kFirstWord{20'000};  // until it has read its model
+constexpr milliseconds kLeastPatience{3'000};
+constexpr int kPeriods = 5;       // so many without a word, and it hangs
+constexpr int kMostReads = 32;    // of what a pipe still holds after the end
+constexpr int kAskedWrongly = 2;  // an exit code (companion/worker.hpp)
+
+}  // namespace
+
+Worker::Worker(Plan plan, Report report)
+    : plan_(std::move(plan)), report_(std::move(report)), pause_(kShortestPause) {}
+
+void Worker::start(Clock::time_point now) {
+  process_ = std::make_unique<WorkerProcess>(plan_.program, plan_.arguments);
+  started_ = now;
+  has_spoken_ = false;
+  has_babbled_ = false;
+}
+
+bool Worker::listen(const Accept& accept) {
+  bool means_something = false;
+  for (const std::string& line : process_->lines()) {
+    if (accept(line)) {
+      means_something = true;
+    } else if (!has_babbled_) {
+      has_babbled_ = true;
+      report_(fmt::format("says what is no reading: {}", printable(line)));
+    }
+  }
+  return means_something;
+}
+
+// What it has said is taken before it is judged: it may have waited in the pipe while nobody had time.
+void Worker::look(Clock::time_point now, const Accept& accept) {
+  if (is_over_ || is_given_up_ || (!process_ && now < next_start_)) return;
+  if (!process_) start(now);
+  const std::optional<int> end = process_->ended();
+  if (listen(accept)) {
+    has_spoken_ = true;
+    alive_ = now;
+  }
+  if (end) {
+    for (int i = 0; i < kMostReads; ++i)
+      listen(accept);
+    take_end(now, *end);
+    return;
+  }
+  const milliseconds patience =
+      has_spoken_ ? std::max(kLeastPatience, plan_.period * kPeriods) : kFirstWord;
+  if (now - (has_spoken_ ? alive_ : started_) > patience)
+    end_it(now, fmt::format("has not said anything for {} s: it hangs",
+                            static_cast<double>(patience.count()) / 1000));
+}
+
+void Worker::take_end(Clock::time_point now, int status) {
+  const bool by_itself = WIFEXITED(status);
+  is_over_ = by_itself && WEXITSTATUS(status) == 0;
+  is_given_up_ = by_itself && WEXITSTATUS(status) == kAskedWrongly;
+  const std::string words = process_->last_words();
+  if (is_over_ || is_given_up_) {
+    process_.reset();
+    report_(is_over_ ? std::string("is over") : words.empty() ? "cannot work" : words);
+    return;
+  }
+  end_it(now,
+         fmt::format("has ended ({}){}{}", how_it_ended(status), words.empty() ? "" : ": ", words));
+}
+
+void Worker::end_it(Clock::time_point now, const std::string& why) {
+  if (now - started_ > kLivesWell) pause_ = kShortestPause;
+  process_.reset();
+  next_start_ = now + pause_;
+  report_(fmt::format("{}; it is started again in {} s", why,
+                      static_cast<double>(pause_.count()) / 1000));
+  pause_ = std::min(pause_ * 2, kLongestPause);
+}
+
+}  // namespace robosync::tool
