@@ -120,3 +120,17 @@ TEST_CASE("thirty mistakes are enough", "[robust]") {
   CHECK(parsed.diagnostics.errors() == 31);
   CHECK(parsed.diagnostics.all().back().code == Code::E0013);
 }
+
+TEST_CASE("a program that is being written gives few messages", "[robust]") {
+  constexpr std::size_t few = 6;  // blocks that are open have one each
+  for (const auto& path : files_in("programs", ".rsl")) {
+    const std::string program = robosync::testing::read_file(path);
+    for (std::size_t end = program.find(' '); end < program.size();
+         end = program.find_first_of(" \n", end + 1)) {
+      const Parsed parsed = parse_text(program.substr(0, end));
+      if (parsed.diagnostics.errors() <= few) continue;
+      INFO(program.substr(0, end) << '\n' << messages(parsed));
+      CHECK(parsed.diagnostics.errors() <= few);
+    }
+  }
+}
