@@ -337,9 +337,9 @@ private:
 
   // `touch LEVEL more than 4`, `touch LEVEL IS less than 4`
   std::optional<Edit> more_than() {
-    for (const std::size_t back : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
-      if (back > stop_ || !is_name(stop_ - back + 1, "than")) continue;
-      const std::size_t first = stop_ - back;
+    for (const std::size_t than : {stop_ + 1, stop_, stop_ - 1, before_ - 1}) {
+      if (!is_name(than, "than") || than == 0) continue;
+      const std::size_t first = than - 1;
       const bool more = is_any_text(first, {"more", "greater", "larger", "higher", "bigger"});
       const bool less = is_any_text(first, {"less", "fewer", "smaller", "lower"});
       if (!(more || less) || first == 0 || !asks_before(first)) return std::nullopt;
