@@ -170,8 +170,8 @@ private:
     const bool foreign = is_one_of(tokens_[stop_].kind, {Kinds::COMMA, Kinds::COLON, Kinds::STRING,
                                                          Kinds::TO, Kinds::BY, Kinds::AT});
     const bool without_at = stop_ == begin_ && is(stop_, Kinds::QUANTITY);
-    const bool command =
-        stop_ == begin_ && is(stop_, Kinds::NAME) && !is(stop_ + 1, Kinds::QUANTITY);
+    const bool command = stop_ == begin_ && is(stop_, Kinds::NAME) &&
+                         !is(stop_ + 1, Kinds::QUANTITY) && !has(0, stop_, Kinds::END);
     if (!foreign && !without_at && !command) return std::nullopt;
     report(Code::E0001, "a row of a MOTION is a time and a value for each actuator",
            tokens_[stop_].span)
