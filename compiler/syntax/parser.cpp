@@ -65,11 +65,9 @@ public:
     if (farther) farthest_ = place;
     stopped_ = true;
   }
-  [[nodiscard]] bool too_long() const {
-    constexpr unsigned most_mends =
-        6;  // what a line may lack: WHEN, a condition, DO, a command, END
-    return mends_ > most_mends;
-  }
+  [[nodiscard]] bool too_long() const { return mends_ > most_mends; }
+  // Leaving out lines does not help either.
+  [[nodiscard]] bool hopeless() const { return mends_ > 4 * most_mends; }
   // Shall this be said?
   bool is_new(const Diagnostic& diagnostic) {
     if (diagnostic.labels.empty()) return true;
@@ -80,6 +78,8 @@ public:
   }
 
 private:
+  static constexpr unsigned most_mends =
+      6;  // a line may lack WHEN, a condition, DO, a command, END
   bool stopped_ = false;
   std::uint32_t farthest_ = 0;
   unsigned mends_ = 0;  // without getting farther
@@ -180,7 +180,7 @@ private:
   bool mend_one(Tokens& tokens, const Attempt& attempt, Standstill& standstill) {
     const std::size_t at = attempt.stopped_at;
     standstill.stop_at(at < tokens.size() ? tokens[at].span.begin : tokens.back().span.end);
-    if (standstill.too_long()) return leave_out_line(tokens, at);
+    if (standstill.too_long()) return !standstill.hopeless() && leave_out_line(tokens, at);
     if (!examples_) examples_.emplace(tokens_, source_, robot_);
     Diagnostics said;
     mend(tokens, attempt, reader_, *examples_, said, budget_);
