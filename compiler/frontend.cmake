@@ -53,6 +53,7 @@ target_sources(robosync_compiler PRIVATE
   syntax/keywords.cpp
   syntax/layout.cpp
   syntax/lexer_state.cpp
+  syntax/misplaced_words.cpp
   syntax/missing.cpp
   syntax/parser.cpp
   syntax/reader.cpp

@@ -56,6 +56,7 @@ private:
         return Input{"<" + std::string(module.name) + ">", std::string(module.text)};
       names.emplace_back(module.name);
     }
+    if (use.is_guess) return std::nullopt;
     Diagnostic& d = diagnostics_.report(Code::E0501, "there is no module " + use.module.shown())
                         .label(use.module.span);
     if (!did_you_mean(d, use.module.span, use.module.text, names))
@@ -67,7 +68,7 @@ private:
   std::optional<Input> find_file(const ast::Use& use, FileId user) {
     const std::string name(use.module.text);
     auto input = read_ ? read_(sources_.file(user).name(), name) : std::nullopt;
-    if (input) return input;
+    if (input || use.is_guess) return input;
     diagnostics_.report(Code::E0410, "the module \"" + name + "\" cannot be read")
         .label(use.module.span)
         .helps("its path begins where this file is");

@@ -156,6 +156,11 @@ const Unit* find_unit(std::string_view spelling) {
   return find_rate(spelling);
 }
 
+bool is_rounded(Decimal number, const Unit& unit) {
+  return unit.divisor == 1 &&
+         Wide{number.mantissa} * unit.factor % power_of_ten(number.decimals) != 0;
+}
+
 const Unit& canonical_unit(vm::Dimension dimension) {
   return kUnits[kCanonical[static_cast<std::size_t>(dimension)]];
 }

@@ -38,6 +38,9 @@ struct Decimal {
 // Rounded half away from zero. Nothing when out of range (±2,147,483.647 canonical units).
 [[nodiscard]] std::optional<vm::Value> to_value(Decimal number, const Unit& unit);
 
+// Is it written finer than a value on the robot? Only where it could be written so that it is not: never in rad or F.
+[[nodiscard]] bool is_rounded(Decimal number, const Unit& unit);
+
 // The value in `unit`, with as few decimals as say it to a thousandth: "2.5cm".
 [[nodiscard]] std::string format_value(std::int64_t value, const Unit& unit);
 

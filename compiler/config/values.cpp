@@ -9,6 +9,7 @@
 #include "compiler/config/fields.hpp"
 #include "compiler/config/names.hpp"
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/source/ascii.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -226,7 +227,25 @@ const Unit* read_unit(const json::Value& value, Diagnostics& diagnostics) {
   return unit;
 }
 
+namespace {
+
+struct ForeignUnit {
+  std::string_view spelling, one;
+};
+constexpr ForeignUnit kForeignUnits[] = {
+#define FOREIGN_UNIT(spelling, one) {spelling, one},
+#include "compiler/config/foreign_units.def"
+#undef FOREIGN_UNIT
+};
+
+}  // namespace
+
 void suggest_unit(Diagnostic& diagnostic, std::string_view written) {
+  for (const ForeignUnit& unit : kForeignUnits) {
+    if (!ascii::same(written, unit.spelling)) continue;
+    diagnostic.helps("1" + std::string(unit.spelling) + " is " + std::string(unit.one));
+    return;
+  }
   std::vector<std::string> spellings;
   std::string list;
   for (const Unit& unit : units()) {

@@ -573,6 +573,11 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
   candidates.insert(candidates.end(), keyword_spellings().begin(), keyword_spellings().end());
   did_you_mean(d, word.name.span, word.name.text, candidates);
   if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
+  if (names_.find_list(word.name.text) != nullptr)
+    d.helps("it is a LIST; write which of its texts: `ANY " + std::string(word.name.text) + "`");
+  if (d.help.empty() && to.verb.texts != Texts::none)
+    d.helps("words that are said or played stand in quotes: `\"" + std::string(word.name.text) +
+            "\"`");
 }
 
 namespace {

@@ -32,14 +32,47 @@ Diagnostic& report_word(const Typed& word, std::string_view wanted, Diagnostics&
   return diagnostics
       .report(Code::E0306, "`" + word.source + "` is a word, not " + std::string(wanted))
       .label(word.span)
-      .helps("ask for it with IS: `" + word.source + " IS " + word.labels->front() + "`");
+      .helps("ask for it with IS: it is " + list_names(*word.labels, "or"));
 }
+
+namespace {
+
+// The words that the grammar reads as a value: `very happy`.
+std::string words_of(const ast::Expr& expr) {
+  const auto* const operand = std::get_if<ast::Operand>(&expr.node);
+  if (operand == nullptr) return {};
+  std::string words(operand->name.text);
+  if (operand->channel) words.append(" ").append(operand->channel->text);
+  return words;
+}
+
+// What `= 1` and `= 0` ask of something that is true or false; empty for any other number.
+std::string truth_of(const ast::Expr& expr) {
+  const auto* const number = std::get_if<ast::Quantity>(&expr.node);
+  if (number == nullptr || !number->unit.empty()) return {};
+  if (number->digits == "1") return "TRUE";
+  return number->digits == "0" ? "FALSE" : "";
+}
+
+}  // namespace
 
 // `mood = calm`
 void Expressions::report_word_comparison(const ast::Comparison& node, const Typed& word) {
+  const bool same = node.relation == ast::Relation::equal;
+  const std::string words = node.right ? words_of(*node.right) : std::string();
+  const bool known = names_.find_label(*word.labels, words).has_value();
+  const std::string truth = word.truth && node.right ? truth_of(*node.right) : std::string();
   Diagnostic& d = report_word(word, "a number", diagnostics_);
-  if (node.relation == ast::Relation::equal) d.fix(node.relation_span, "IS");
-  if (node.relation == ast::Relation::not_equal) d.fix(node.relation_span, "IS NOT");
+  if (!same && node.relation != ast::Relation::not_equal) return;
+  const std::string is = same ? "IS" : "IS NOT";
+  if (known) {
+    d.help.back() = "ask for it with IS: `" + word.source + " " + is + " " + words + "`";
+    d.fix(node.relation_span, is);
+  } else if (!truth.empty() && same) {
+    const Span behind{node.relation_span.file, node.relation_span.begin, node.right->span.end};
+    d.help.back() = "it is true or false: `" + word.source + " IS " + truth + "`";
+    d.fix(behind, "IS " + truth, Applicability::likely);
+  }
 }
 
 // A channel that learns its words takes what it has not got; but who writes UNKNOWN means no word.

@@ -73,6 +73,7 @@ Typed Expressions::of(const ast::Quantity& node, Span span) {
         .label(span);
     return make_nothing(span);
   }
+  if (!node.unit.empty()) note_rounded(*decimal, *value, *unit, span, diagnostics_);
   Typed result = make_constant(*value, *unit, span);
   result.unit_span = node.unit_span;
   result.digits = node.digits;

@@ -94,6 +94,13 @@ Expression make_binary(Operation operation, Expression left, Expression right) {
   return result;
 }
 
+void note_rounded(Decimal number, vm::Value value, const Unit& unit, Span span,
+                  Diagnostics& diagnostics) {
+  if (!is_rounded(number, unit)) return;
+  diagnostics.report(Code::N0005, "the robot keeps this as " + format_value(value, unit))
+      .label(span, "finer than it can be kept");
+}
+
 void take_unit(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
   Unit unit = *wanted.unit;
   if (wanted.difference) unit.offset = 0;
@@ -109,6 +116,7 @@ void take_unit(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
         .report(Code::N0002,
                 "this is read as " + format_value(*value, unit) + ", the unit of " + wanted.source)
         .label(number.span);
+  note_rounded(number.bare, *value, unit, number.span, diagnostics);
   number.unit = wanted.unit;
   number.code.constant = *value;
   number.low = *value;

@@ -62,6 +62,10 @@ struct Wanted {
 // Gives a bare constant the wanted unit, with a note when it is a real one (N0002).
 void take_unit(Typed& number, const Wanted& wanted, Diagnostics& diagnostics);
 
+// Says what a number is rounded to that is written finer than the robot keeps it (N0005).
+void note_rounded(Decimal number, vm::Value value, const Unit& unit, Span span,
+                  Diagnostics& diagnostics);
+
 // Makes a literal a difference: 9F more is 5C more, wherever the scales begin.
 void make_difference(Typed& number);
 

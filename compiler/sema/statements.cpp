@@ -349,8 +349,16 @@ std::string_view why_not(vm::VariableKind kind) {
 
 }  // namespace
 
+// How a variable would be declared that is set to `value`: to a word that nothing is called, a STATE.
+std::string Statements::declaration_of(const ast::Name& name, const ast::Expr* value) {
+  const auto word = value != nullptr ? label_of(*value) : std::nullopt;
+  if (!word || !names_.kind_of(*word).empty() || names_.find_sensor(*word))
+    return "REMEMBER " + std::string(name.text) + " = 0";
+  return "STATE " + std::string(name.text) + ": " + *word + ", …";
+}
+
 // The variable that a statement may set; with `number`, one that it may calculate with.
-VariableName* Statements::settable(const ast::Name& name, bool number) {
+VariableName* Statements::settable(const ast::Name& name, bool number, const ast::Expr* value) {
   if (name.text.empty()) return nullptr;
   VariableName* variable = names_.find_variable(name.text);
   if (expressions_.find_binding(name.text) != nullptr) {
@@ -370,8 +378,7 @@ VariableName* Statements::settable(const ast::Name& name, bool number) {
         diagnostics_.report(Code::E0501, "there is no variable " + name.shown()).label(name.span);
     if (diagnostics_.may_search(names_.variables().size()))
       did_you_mean(d, name.span, name.text, names_.variable_names());
-    if (d.help.empty())
-      d.helps("declare it at the top: `REMEMBER " + std::string(name.text) + " = 0`");
+    if (d.help.empty()) d.helps("declare it at the top: `" + declaration_of(name, value) + "`");
     return nullptr;
   }
   if (const std::string_view why = why_not(variable->kind); !why.empty()) {
@@ -404,7 +411,7 @@ bool Statements::in_range(const VariableName& variable, const Typed& value) {
 }
 
 void Statements::add(const ast::Set& node, Span span, ir::Block& result) {
-  VariableName* variable = settable(node.name, false);
+  VariableName* variable = settable(node.name, false, node.value.get());
   if (variable == nullptr || node.value == nullptr || !variable->ready) return;
   if (variable->kind == vm::VariableKind::state) return set_label(node, *variable, span, result);
   Typed value = expressions_.amount(

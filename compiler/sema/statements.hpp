@@ -73,7 +73,8 @@ private:
   void add(const ast::Set& node, Span span, ir::Block& result);
   void add(const ast::Raise& node, Span span, ir::Block& result);
   void add(const ast::Signal& node, Span span, ir::Block& result);
-  VariableName* settable(const ast::Name& name, bool number);
+  VariableName* settable(const ast::Name& name, bool number, const ast::Expr* value = nullptr);
+  std::string declaration_of(const ast::Name& name, const ast::Expr* value);
   void set_label(const ast::Set& node, const VariableName& variable, Span span, ir::Block& result);
   [[nodiscard]] bool is_restart(const ast::Command& node) const;
   void restart(const ast::Command& node, Span span, ir::Block& result);

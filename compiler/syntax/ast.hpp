@@ -272,8 +272,9 @@ struct Rule {
 };
 
 struct Use {
-  Name module;
+  Name module;  // empty when this is no USE at all
   bool is_string = false;
+  bool is_guess = false;  // the word USE is missing: that a module of this name is not there, says nothing
 };
 struct Let {
   Name name;

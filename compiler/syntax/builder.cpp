@@ -5,6 +5,8 @@
 #include <charconv>
 #include <iterator>
 
+#include "compiler/diagnostics/nearest.hpp"
+
 namespace robosync::compiler {
 
 namespace {
@@ -59,6 +61,14 @@ ast::Name Builder::quoted(Span span) const {
     if (!text.empty() && text.back() == quote) text.remove_suffix(1);
   }
   return {text, span};
+}
+
+ast::Use Builder::use(Span word, ast::Use use) const {
+  const std::string_view text = text_of(word);
+  use.is_guess = text.empty();
+  // In the place of another word, such as SAY: what follows is no module.
+  if (!use.is_guess && !is_near(text, "USE")) use.module.text = {};
+  return use;
 }
 
 ast::Name Builder::longer_label(const ast::Name& label, Span next) {
@@ -192,6 +202,8 @@ void Builder::add_part(ast::Behavior& behavior, ast::Item item) {
   } else if (auto* variable = std::get_if<ast::Remember>(&item.node)) {
     behavior.variables.push_back(std::move(*variable));
   } else {
+    const auto* const use = std::get_if<ast::Use>(&item.node);
+    if (use != nullptr && use->module.text.empty()) return;  // in the place of a mistake
     const std::string_view text = text_of(item.span);
     const std::string keyword(text.substr(0, text.find_first_of(" \t\r\n")));
     const auto length = static_cast<std::uint32_t>(keyword.size());

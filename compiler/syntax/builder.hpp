@@ -33,6 +33,8 @@ public:
   // ---- leaves
   ast::Name name(Span span) const;
   ast::Name quoted(Span span) const;  // without its quotes
+  // `word` is what the text has for USE, which may be something that was mended.
+  ast::Use use(Span word, ast::Use use) const;
   ast::Name longer_label(const ast::Name& label, Span next);
   ast::Name whole_number(Span span);
   ast::Box<ast::Expr> quantity(Span span);

@@ -157,6 +157,9 @@ private:
   }
 
   void insert(std::size_t at, TokenKind kind, int price, const Expected& expected) {
+    // Where a line ends already, one more end is none.
+    const bool ends_twice = is_line_end(at) || (at > 0 && is_line_end(at - 1));
+    if (kind == Kinds::NEWLINE && ends_twice) return;
     add({Edit::What::insert, at, 0, {missing(kind, at)}, price}, nullptr, expected);
     // An end of line that was dropped in front of `at` would count after the new token.
     const bool line_dropped = at == failure_.stopped_at && failure_.before + 1 < at;

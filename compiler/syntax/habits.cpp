@@ -170,7 +170,9 @@ private:
     const bool foreign = is_one_of(tokens_[stop_].kind, {Kinds::COMMA, Kinds::COLON, Kinds::STRING,
                                                          Kinds::TO, Kinds::BY, Kinds::AT});
     const bool without_at = stop_ == begin_ && is(stop_, Kinds::QUANTITY);
-    if (!foreign && !without_at) return std::nullopt;
+    const bool command = stop_ == begin_ && is(stop_, Kinds::NAME) &&
+                         !is(stop_ + 1, Kinds::QUANTITY) && !has(0, stop_, Kinds::END);
+    if (!foreign && !without_at && !command) return std::nullopt;
     report(Code::E0001, "a row of a MOTION is a time and a value for each actuator",
            tokens_[stop_].span)
         .helps("with spaces between: `AT 0s 10deg 20deg`; `-` where an actuator is on its way");
@@ -338,6 +340,11 @@ private:
     if (open >= end_ || !is_call(open) || stop_ <= open) return std::nullopt;
     const std::size_t close = closing(open);
     const std::string values = text(open + 1, close);
+    if (is_name(statement_, "SAY")) {
+      report(Code::E0001, "what is said stands behind SAY without brackets", tokens_[open].span)
+          .helps("write `SAY " + values + "`");
+      return change(open, statement_end() - open, {missing(Kinds::STRING, open)});
+    }
     report(Code::E0001, "a DEFINE is given its values behind WITH, without brackets",
            tokens_[open].span)
         .helps("write `" + std::string(text(statement_)) +
@@ -371,7 +378,8 @@ private:
       for (std::size_t open = first + 2; open <= stop_; ++open)
         if (is_call(open)) first = open - 1;
     const std::size_t end = number_end(first, statement_end());
-    if (!worked_out_at(first) || !is_balanced(first, end)) return std::nullopt;
+    const bool gets_on = end > stop_ || stop_ >= last;
+    if (!gets_on || !worked_out_at(first) || !is_balanced(first, end)) return std::nullopt;
     const std::string number = text(first, end);
     const std::string brackets = "(" + number + ")";
     if (behind_preposition) {

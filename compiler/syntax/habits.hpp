@@ -12,7 +12,8 @@
 
 namespace robosync::compiler {
 
-// From one construct of RSL to the next (habits.cpp), and from other languages (foreign_habits.cpp).
+// From one construct of RSL to the next (habits.cpp), from other languages (foreign_habits.cpp), and words that stand
+// where they mean something else (misplaced_words.cpp).
 // Each reports the habit, and gives the change with which the grammar can go on. Nothing when there is none.
 [[nodiscard]] std::optional<Edit> explain_habit(const Tokens& tokens, const SourceFile& source,
                                                 const Attempt& failure, Diagnostics& diagnostics);
@@ -21,5 +22,10 @@ namespace robosync::compiler {
                                                         const SourceFile& source,
                                                         const Attempt& failure,
                                                         Diagnostics& diagnostics);
+
+[[nodiscard]] std::optional<Edit> explain_misplaced_word(const Tokens& tokens,
+                                                         const SourceFile& source,
+                                                         const Attempt& failure,
+                                                         Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

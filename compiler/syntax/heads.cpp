@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "compiler/source/ascii.hpp"
 #include "compiler/syntax/blocks.hpp"
+#include "compiler/syntax/keyword_roles.hpp"
 
 namespace robosync::compiler {
 
@@ -42,6 +44,54 @@ void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnosti
     tokens.erase(
         std::remove_if(first, end, [](const Token& token) { return is_misplaced(token.kind); }),
         end);
+  }
+}
+
+namespace {
+
+// What stands behind the name in the line that declares it.
+bool declares(TokenKind first, TokenKind behind) {
+  switch (first) {
+    case Kinds::REMEMBER:
+    case Kinds::LET:
+      return behind == Kinds::EQUAL;
+    case Kinds::STATE:
+    case Kinds::LIST:
+      return behind == Kinds::COLON;
+    case Kinds::FEELING:
+      return behind == Kinds::FROM;
+    case Kinds::TIMER:
+    case Kinds::DEFINE:
+      return behind == Kinds::NEWLINE || behind == Kinds::WITH;
+    case Kinds::CHECK:
+    case Kinds::MOTION:
+      return behind == Kinds::OF;
+    default:
+      return false;
+  }
+}
+
+// A word that can be no name, in small letters: RSL is mostly written in capital ones.
+bool is_reserved_name(const Token& token, const SourceFile& source) {
+  if (token.kind < Kinds::USE || (roles_of(token.kind) & role::name) != 0) return false;
+  const std::string_view text = source.text(token.span);
+  return std::ranges::none_of(text, [](char c) { return c >= 'A' && c <= 'Z'; });
+}
+
+}  // namespace
+
+void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics) {
+  for (std::size_t at = 0; at + 2 < tokens.size(); ++at) {
+    const bool declared = starts_line(tokens, at) && declares(tokens[at].kind, tokens[at + 2].kind);
+    if (!declared || !is_reserved_name(tokens[at + 1], source)) continue;
+    const Token name = tokens[at + 1];
+    const std::string_view word = source.text(name.span);
+    diagnostics
+        .report(Code::E0010, "`" + std::string(word) + "` is a word of RSL and cannot be a name")
+        .label(name.span, "choose another name");
+    // As a name from here on, no line can declare it again: at most once for each word of RSL.
+    for (Token& token : tokens)
+      if (token.kind == name.kind && source.text(token.span) == word) token.kind = Kinds::NAME;
   }
 }
 

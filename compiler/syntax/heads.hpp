@@ -11,4 +11,8 @@ namespace robosync::compiler {
 // Reports such words, and takes them out of the tokens.
 void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
 
+// `REMEMBER end = 0`: reports a word of RSL that is declared as a name. Where it is written the same way again, in small
+// letters, the name is meant: so that it is said once.
+void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
+
 }  // namespace robosync::compiler

@@ -23,6 +23,7 @@ public:
         source_(source),
         stop_(failure.stopped_at),
         before_(failure.before),
+        expected_(failure.expected),
         diagnostics_(diagnostics) {
     if (stop_ >= tokens_.size()) return;
     // The end of a line in front of END is not for the grammar; what is missing is missing there.
@@ -89,6 +90,20 @@ protected:
     return at;
   }
 
+  // Does what stands in front of `at`, back to where its statement begins, ask something?
+  bool asks_before(std::size_t at) const {
+    while (at > 0 && !is_one_of(tokens_[at - 1].kind, {Kinds::DO, Kinds::ELSE})) {
+      --at;
+      if (begins_question(tokens_[at].kind)) return true;
+      const bool goes_on = at > 0 && (roles_of(tokens_[at - 1].kind) & role::before) != 0;
+      if (is(at, Kinds::NEWLINE) && !goes_on) return false;
+    }
+    return false;
+  }
+  static bool begins_question(TokenKind kind) {
+    return is_one_of(kind, {Kinds::WHEN, Kinds::WHILE, Kinds::IF, Kinds::ELSE_IF, Kinds::UNTIL});
+  }
+
   // Outside of brackets.
   bool has_comma(std::size_t from, std::size_t to) const {
     int open = 0;
@@ -153,6 +168,7 @@ protected:
   const Tokens& tokens_;
   const SourceFile& source_;
   std::size_t stop_, before_;
+  const std::vector<TokenKind>& expected_;  // what the grammar could have gone on with
   std::size_t begin_ = 0, end_ = 0;  // of the line
   std::size_t statement_ = 0;        // its first token
   Diagnostics& diagnostics_;

@@ -54,6 +54,50 @@ std::optional<EmptyBlock> empty_block(const Tokens& tokens) {
   return std::nullopt;
 }
 
+// A message about a place that has one already is a consequence of it: the mend that was made there was not what is meant.
+// And a mend must get the grammar on; where several in a row do not, the rest of the line is left out.
+class Standstill {
+public:
+  // The grammar has stopped at this place in the text.
+  void stop_at(std::uint32_t place) {
+    const bool farther = !stopped_ || place > farthest_;
+    mends_ = farther ? 0 : mends_ + 1;
+    if (farther) farthest_ = place;
+    stopped_ = true;
+  }
+  [[nodiscard]] bool too_long() const { return mends_ > most_mends; }
+  // Leaving out lines does not help either.
+  [[nodiscard]] bool hopeless() const { return mends_ > 4 * most_mends; }
+  // Shall this be said?
+  bool is_new(const Diagnostic& diagnostic) {
+    if (diagnostic.labels.empty()) return true;
+    const Span place = diagnostic.labels.front().span;
+    const bool known = std::ranges::find(said_, place.begin) != said_.end();
+    said_.push_back(place.begin);
+    return mends_ == 0 || !known;
+  }
+
+private:
+  static constexpr unsigned most_mends =
+      6;  // a line may lack WHEN, a condition, DO, a command, END
+  bool stopped_ = false;
+  std::uint32_t farthest_ = 0;
+  unsigned mends_ = 0;  // without getting farther
+  std::vector<std::uint32_t> said_;
+};
+
+// Leaves out what the line has from `at` on; false when that is nothing that stands in the text.
+bool leave_out_line(Tokens& tokens, std::size_t at) {
+  std::size_t end = at;
+  bool written = false;
+  for (; end < tokens.size() && tokens[end].kind != Kinds::NEWLINE; ++end)
+    written = written || tokens[end].span.end > tokens[end].span.begin;
+  const auto begin = tokens.begin();
+  if (written)
+    tokens.erase(begin + static_cast<std::ptrdiff_t>(at), begin + static_cast<std::ptrdiff_t>(end));
+  return written;
+}
+
 class Parser {
 public:
   Parser(const SourceMap& sources, FileId file, Diagnostics& diagnostics, const Vocabulary* robot)
@@ -76,6 +120,7 @@ public:
     if (!is_plain_text(sources_, file_, Code::E0002, diagnostics_)) return {};
     tokens_ = lex(source_, file_, diagnostics_);
     mend_heads(tokens_, source_, diagnostics_);
+    mend_names(tokens_, source_, diagnostics_);
     const std::vector<Region> regions = split_into_regions(tokens_, source_);
     program_.items.reserve(regions.size());
     for (const Region& region : regions) {
@@ -115,6 +160,7 @@ private:
           .helps(std::string(empty->help));
       return true;
     }
+    Standstill standstill;
     for (;;) {
       // What the actions say counts only when the piece was read to its end.
       Diagnostics said;
@@ -125,16 +171,33 @@ private:
         std::move(attempt.items.begin(), attempt.items.end(), std::back_inserter(program_.items));
         return true;
       }
-      if (++mistakes_ > most_mistakes || budget_.work == 0) return give_up(tokens);
-      if (!examples_) examples_.emplace(tokens_, source_, robot_);
-      mend(tokens, attempt, reader_, *examples_, diagnostics_, budget_);
+      if (mistakes_ == most_mistakes || budget_.work == 0) return give_up(tokens);
+      if (!mend_one(tokens, attempt, standstill)) return true;
     }
+  }
+
+  // False when nothing more of the piece should be read.
+  bool mend_one(Tokens& tokens, const Attempt& attempt, Standstill& standstill) {
+    const std::size_t at = attempt.stopped_at;
+    standstill.stop_at(at < tokens.size() ? tokens[at].span.begin : tokens.back().span.end);
+    if (standstill.too_long()) return !standstill.hopeless() && leave_out_line(tokens, at);
+    if (!examples_) examples_.emplace(tokens_, source_, robot_);
+    Diagnostics said;
+    mend(tokens, attempt, reader_, *examples_, said, budget_);
+    std::size_t kept = 0;
+    for (const Diagnostic& diagnostic : said.all()) {
+      if (!standstill.is_new(diagnostic)) continue;
+      diagnostics_.add(diagnostic);
+      ++kept;
+    }
+    if (kept > 0) ++mistakes_;
+    return true;
   }
 
   bool give_up(const Tokens& tokens) {
     diagnostics_
         .report(Code::E0013,
-                mistakes_ > most_mistakes
+                mistakes_ == most_mistakes
                     ? "more than " + std::to_string(most_mistakes) +
                           " mistakes, the most that rsc looks for in a file: the rest was not read"
                     : "mistakes that take too long to sort out: the rest of the file was not read")

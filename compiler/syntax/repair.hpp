@@ -25,8 +25,8 @@ struct Budget {
   }
 };
 
-// Mends and reports the mistake that stopped the grammar. At least one token is dropped or the
-// grammar gets farther, so calling it again and again comes to an end. When the budget is used up
+// Mends and reports the mistake that stopped the grammar. Mostly the grammar gets farther then; that it does, again and
+// again, is for the caller to see. When the budget is used up
 // it takes the first change that comes to hand.
 void mend(Tokens& tokens, const Attempt& failure, Reader& reader, const Examples& examples,
           Diagnostics& diagnostics, Budget& budget);

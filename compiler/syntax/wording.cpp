@@ -269,8 +269,8 @@ private:
     }
     if (unit_apart() || texts_added(edit_.at)) return;
     Diagnostic& message = diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here");
-    if (belongs_to_number(edit_.at)) {
-      message.label(token.span);  // without it, the number would be another one
+    if (belongs_to_number(edit_.at) || (says_what_is_done(token.kind) && !stands_twice(edit_.at))) {
+      message.label(token.span);  // without it, the number or the program would say another thing
     } else {
       message.label(token.span, "leave this out")
           .fix(token.span, "",
@@ -279,14 +279,21 @@ private:
     if (message.fixes.empty() || !stands_twice(edit_.at)) show_line(message, edit_.at, {});
   }
 
+  // A word without which the line, or the block, would do something else: a mistake beside it is more likely.
+  static bool says_what_is_done(TokenKind kind) {
+    return is_one_of(kind, {Kinds::NOT, Kinds::ELSE, Kinds::RESUME, Kinds::OTHERWISE}) ||
+           (roles_of(kind) & (role::item | role::statement)) != 0;
+  }
+
   // What stands there twice is not meant twice; whatever else is too much may want something beside it. Of two commas
-  // one may want what is missing between.
+  // one may want what is missing between, and what takes out a NOT is never certain.
   bool stands_twice(std::size_t at) const {
     const auto same = [&](std::size_t other) {
       return other < tokens_.size() && tokens_[other].kind == tokens_[at].kind &&
              quote(other) == quote(at);
     };
-    return tokens_[at].kind != Kinds::COMMA && (same(at + 1) || (at > 0 && same(at - 1)));
+    const bool never = tokens_[at].kind == Kinds::COMMA || tokens_[at].kind == Kinds::NOT;
+    return !never && (same(at + 1) || (at > 0 && same(at - 1)));
   }
 
   // `40 cm`: digits, a space, and a name that may be a unit.
@@ -360,7 +367,7 @@ private:
       return;
     }
     if (wanted == Kinds::IF && (roles_of(kind) & role::part) != 0) return rule_inside();
-    if (kind == Kinds::THEN && wanted == Kinds::DO) {
+    if (kind == Kinds::THEN && wanted == Kinds::DO && asks_before(edit_.at)) {
       diagnostics_.report(Code::E0001, "a line that asks ends with DO in RSL, not with THEN")
           .label(place(edit_.at))
           .fix(place(edit_.at), "DO", Applicability::likely);  // it may begin a second condition
@@ -372,6 +379,18 @@ private:
     message.label(place(edit_.at), what_is_missing(wanted, {}) + " would");
     if (wanted >= Kinds::USE) message.fix(place(edit_.at), plain(wanted), Applicability::likely);
     show_line(message, edit_.at, failure_.expected);
+  }
+
+  // Is this still the line that asks: WHEN, WHILE, IF?
+  bool asks_before(std::size_t at) const {
+    while (at > 0 && !begins_something(tokens_[at - 1].kind))
+      --at;
+    return at > 0 &&
+           is_one_of(tokens_[at - 1].kind, {Kinds::WHEN, Kinds::WHILE, Kinds::IF, Kinds::ELSE_IF});
+  }
+  static bool begins_something(TokenKind kind) {
+    return kind == Kinds::DO || kind == Kinds::ELSE || kind == Kinds::END ||
+           (kind != Kinds::THEN && (roles_of(kind) & (role::opens | role::statement)) != 0);
   }
 
   void rule_inside() {

@@ -126,13 +126,28 @@ private:
       return std::nullopt;
     }
     if (!channel.labels.empty()) {
-      diagnostics_
-          .report(Code::E0306, "`" + names_.channel_name(ref) + "` gives words, not numbers")
-          .label(node.value->span)
-          .helps("write the word in quotes: \"" + channel.labels.front() + "\"");
+      report_bare_word(*node.value, ref);
       return std::nullopt;
     }
     return in_range(*node.value, ref);
+  }
+
+  // `AT 1s red_button = pressed`
+  void report_bare_word(const ast::Expr& value, ChannelRef ref) {
+    const std::vector<std::string>& labels = names_.channel(ref).labels;
+    const auto* const operand = std::get_if<ast::Operand>(&value.node);
+    std::string word(operand != nullptr ? operand->name.text : std::string_view());
+    if (operand != nullptr && operand->channel) word.append(" ").append(operand->channel->text);
+    Diagnostic& d =
+        diagnostics_
+            .report(Code::E0306, "`" + names_.channel_name(ref) + "` gives words, not numbers")
+            .label(value.span);
+    if (const auto place = names_.find_label(labels, word)) {
+      const std::string quoted = "\"" + labels[*place] + "\"";
+      d.helps("write the word in quotes: " + quoted).fix(value.span, quoted, Applicability::likely);
+    } else {
+      d.helps("write one of them in quotes: " + list_names(labels, "or"));
+    }
   }
 
   std::optional<vm::Value> labelled(const ast::Name& label, ChannelRef ref) {

@@ -217,3 +217,51 @@ TEST_CASE("a fix is certain only where nothing else can be meant") {
   const std::string twice = "WHEN WHEN touch LEVEL > 3" + rest;
   CHECK(compiled(fixed(twice, compiled(twice, robot)), robot).diagnostics.errors() == 0);
 }
+
+namespace {
+
+// With all fixes of the errors, whatever they are sure of.
+std::string fixed_likely(const std::string& program, const Result& result) {
+  std::string text = program;
+  const auto& all = result.diagnostics.all();
+  for (auto diagnostic = all.rbegin(); diagnostic != all.rend(); ++diagnostic)
+    if (diagnostic->level == Level::error && !diagnostic->fixes.empty())
+      text = replaced(text, diagnostic->fixes.front().span, diagnostic->fixes.front().replacement);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a fix that is likely does not leave out what says the opposite") {
+  const std::string robot = read_file(fs::path(ROBOSYNC_SOURCE_DIR) / "docs/robot.json");
+  const std::string words =
+      "STATE mood: calm, happy\nWHEN touch LEVEL > 7 DO SET mood TO happy END\n";
+  const std::string rest = " DO\n  LOG \"x\"\nEND\n";
+  const std::vector<std::pair<std::string, std::string>> meant = {
+      {"WHEN touch LEVEL NOT > 4" + rest, "WHEN touch LEVEL <= 4" + rest},
+      {"WHEN touch LEVEL NOT = 4" + rest, "WHEN touch LEVEL <> 4" + rest},
+      {words + "WHEN mood BECOMES NOT happy" + rest, words + "WHEN mood IS NOT happy" + rest},
+      {"AT START DO\n  WAIT 1s THEN LOG \"x\"\nEND\n",
+       "AT START DO\n  WAIT 1s\n  THEN\n  LOG \"x\"\nEND\n"},
+  };
+  for (const auto& [program, right] : meant) {
+    const Result result = compiled(program, robot);
+    CAPTURE(program, render_human(result.diagnostics, result.sources, false));
+    CHECK(result.diagnostics.errors() == 1);
+    const Result again = compiled(fixed_likely(program, result), robot);
+    CHECK(again.diagnostics.errors() == 0);
+    CHECK(meaning(again.image) == meaning(compiled(right, robot).image));
+  }
+  for (const std::string& program :
+       {"WHILE touch LEVEL > 3" + rest.substr(0, rest.size() - 4) + "ELSE\n  LOG \"y\"\nEND\n",
+        std::string("REMEMBER x = 0\nAT START DO\n  SET x BY 3\nEND\n"),
+        std::string("REMEMBER x = 0\nAT START DO\n  RAISE x TO 3\nEND\n"),
+        std::string("AT START DO\n  REPEAT\n    LOG \"x\"\n  END\nEND\n"),
+        std::string(
+            "SAFETY s\n  WHEN arms FORCE > 3N\n  DO STOP arms\n  RESUME AFTER 2s\nEND\n")}) {
+    const Result result = compiled(program, robot);
+    CAPTURE(program, render_human(result.diagnostics, result.sources, false));
+    CHECK(result.diagnostics.errors() == 1);
+    CHECK(fixed_likely(program, result) == program);
+  }
+}

@@ -66,6 +66,23 @@ TEST_CASE("random words", "[fuzz]") {
   CHECK(wrong > rounds / 4 * 3);
 }
 
+// Eleven words hold no thirty mistakes: who mends one must get on.
+TEST_CASE("a few words give few messages", "[fuzz]") {
+  std::mt19937 random(3);
+  const int rounds = robosync::test::share_of(40000);
+  int in_vain = 0;
+  for (int i = 0; i < rounds; ++i) {
+    const std::string text = random_words(random);
+    const Parsed parsed = parse_text(text);
+    const bool gave_up = std::ranges::any_of(
+        parsed.diagnostics.all(), [](const Diagnostic& one) { return one.code == Code::E0013; });
+    if (!gave_up && parsed.diagnostics.errors() <= 14) continue;
+    ++in_vain;
+    WARN(text << '\n' << messages(parsed));
+  }
+  CHECK(in_vain == 0);
+}
+
 TEST_CASE("huge and deep programs end soon", "[robust]") {
   const auto bytes = static_cast<std::size_t>(robosync::test::share_of(1000000));
   const std::string parts[] = {"x ",
@@ -119,4 +136,18 @@ TEST_CASE("thirty mistakes are enough", "[robust]") {
   const Parsed parsed = parse_text(repeated("LET x =\n", 1000));
   CHECK(parsed.diagnostics.errors() == 31);
   CHECK(parsed.diagnostics.all().back().code == Code::E0013);
+}
+
+TEST_CASE("a program that is being written gives few messages", "[robust]") {
+  constexpr std::size_t few = 6;  // blocks that are open have one each
+  for (const auto& path : files_in("programs", ".rsl")) {
+    const std::string program = robosync::testing::read_file(path);
+    for (std::size_t end = program.find(' '); end < program.size();
+         end = program.find_first_of(" \n", end + 1)) {
+      const Parsed parsed = parse_text(program.substr(0, end));
+      if (parsed.diagnostics.errors() <= few) continue;
+      INFO(program.substr(0, end) << '\n' << messages(parsed));
+      CHECK(parsed.diagnostics.errors() <= few);
+    }
+  }
 }

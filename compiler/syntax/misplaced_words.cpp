@@ -1,0 +1,368 @@
+// Words of RSL that stand where they say something else than is meant. To leave one of them out would often turn what the
+// program does into its opposite: each has a sentence of its own, and no mend that drops it. See habits.hpp.
+#include "compiler/diagnostics/nearest.hpp"
+#include "compiler/syntax/blocks.hpp"
+#include "compiler/syntax/habits.hpp"
+#include "compiler/syntax/mistaken_line.hpp"
+
+namespace robosync::compiler {
+
+namespace {
+
+struct Opposite {
+  TokenKind relation, kind;
+  std::string_view spelling;
+};
+
+constexpr Opposite kOpposites[] = {
+    {Kinds::LESS, Kinds::GREATER_EQUAL, ">="}, {Kinds::GREATER, Kinds::LESS_EQUAL, "<="},
+    {Kinds::LESS_EQUAL, Kinds::GREATER, ">"},  {Kinds::GREATER_EQUAL, Kinds::LESS, "<"},
+    {Kinds::EQUAL, Kinds::NOT_EQUAL, "<>"},    {Kinds::NOT_EQUAL, Kinds::EQUAL, "="},
+};
+
+class MisplacedWords : private MistakenLine {
+public:
+  using MistakenLine::MistakenLine;
+
+  std::optional<Edit> find() {
+    if (auto edit = safety_without_when()) return edit;
+    if (stop_ >= tokens_.size()) return std::nullopt;
+    using Habit = std::optional<Edit> (MisplacedWords::*)();
+    for (const Habit habit :
+         {&MisplacedWords::negation, &MisplacedWords::lonely_else, &MisplacedWords::then_in_line,
+          &MisplacedWords::rate_apart, &MisplacedWords::foreign_rate,
+          &MisplacedWords::command_in_behavior, &MisplacedWords::within,
+          &MisplacedWords::columns_of_motion, &MisplacedWords::word_with_sign,
+          &MisplacedWords::changed_wrongly, &MisplacedWords::repeat_how_often,
+          &MisplacedWords::resume_after, &MisplacedWords::modifier_behind_do,
+          &MisplacedWords::start_alone, &MisplacedWords::otherwise, &MisplacedWords::more_than}) {
+      if (auto edit = (this->*habit)()) return edit;
+    }
+    return std::nullopt;
+  }
+
+private:
+  // `SAFETY careful`, and then END, DO or nothing
+  std::optional<Edit> safety_without_when() {
+    const bool named = is(0, Kinds::SAFETY) && !is(1, Kinds::WHEN) && !text(1).empty();
+    if (!named || (tokens_.size() > 2 && !is(2, Kinds::NEWLINE))) return std::nullopt;
+    std::size_t next = 2;
+    while (is(next, Kinds::NEWLINE))
+      ++next;
+    const bool lacks = next >= tokens_.size() ||
+                       is_one_of(tokens_[next].kind, {Kinds::END, Kinds::DO, Kinds::RESUME});
+    if (!lacks || tokens_.size() < 2) return std::nullopt;
+    const Span name = tokens_[1].span;
+    Diagnostic& message =
+        report(Code::E0008, "`WHEN` is missing after " + quote(1), {name.file, name.end, name.end});
+    message.helps(
+        "a SAFETY rule asks first and acts then: `WHEN` and a condition, `DO`, `STOP ALL`, `END`");
+    return change(0, tokens_.size());
+  }
+
+  // `60 deg/s`: a space in front of the unit of a speed
+  std::optional<Edit> rate_apart() {
+    if (!is(stop_, Kinds::SLASH) || stop_ < begin_ + 2 || !is(stop_ - 1, Kinds::NAME) ||
+        !is(stop_ - 2, Kinds::QUANTITY) || !is(stop_ + 1, Kinds::NAME))
+      return std::nullopt;
+    const bool touches = tokens_[stop_ - 1].span.end == tokens_[stop_].span.begin &&
+                         tokens_[stop_].span.end == tokens_[stop_ + 1].span.begin;
+    const char last = text(stop_ - 2).back();
+    if (!touches || last < '0' || last > '9') return std::nullopt;
+    Span gap = tokens_[stop_ - 2].span;
+    gap.begin = gap.end;
+    gap.end = tokens_[stop_ - 1].span.begin;
+    report(Code::E0505, "no space stands between a number and its unit", span(stop_ - 2, stop_ + 2))
+        .helps("write `" + std::string(text(stop_ - 2)) + text(stop_ - 1, stop_ + 2) + "`")
+        .fix(gap, "", Applicability::likely);
+    return change(stop_ - 2, 4, {missing(Kinds::QUANTITY, stop_ - 2)});
+  }
+
+  // `touch LEVEL NOT > 4`, `mood BECOMES NOT happy`, `x IS NOT BETWEEN 1 AND 2`
+  std::optional<Edit> negation() {
+    if (is(stop_, Kinds::BETWEEN) && stop_ > 1 && is(stop_ - 1, Kinds::NOT)) {
+      report(Code::E0001, "NOT stands in front of the whole condition here",
+             tokens_[stop_ - 1].span)
+          .helps("write `NOT x IS BETWEEN 2 AND 5`");
+      return change(stop_ - 1, 1);
+    }
+    if (!is(stop_, Kinds::NOT) || stop_ == begin_) return std::nullopt;
+    if (is(stop_ - 1, Kinds::BECOMES)) {
+      const Span both = span(stop_ - 1, stop_ + 1);
+      report(Code::E0001, "BECOMES has no NOT behind it", tokens_[stop_].span)
+          .helps("what is no longer so is asked with `IS NOT`")
+          .fix(both, "IS NOT", Applicability::likely);
+      return change(stop_ - 1, 2,
+                    {{Kinds::IS, tokens_[stop_ - 1].span}, {Kinds::NOT, tokens_[stop_].span}});
+    }
+    for (const Opposite& one : kOpposites) {
+      if (!is(stop_ + 1, one.relation)) continue;
+      const Span both = span(stop_, stop_ + 2);
+      report(Code::E0001, "no NOT stands in front of " + quote(stop_ + 1), both)
+          .helps("the opposite of " + quote(stop_ + 1) + " is `" + std::string(one.spelling) + "`")
+          .fix(both, std::string(one.spelling), Applicability::likely);
+      return change(stop_, 2, {{one.kind, both}});
+    }
+    return std::nullopt;
+  }
+
+  // An ELSE of a WHILE, an EVERY, a REPEAT: only a WHEN and an IF have one.
+  std::optional<Edit> lonely_else() {
+    if (!is(stop_, Kinds::ELSE) || stop_ != begin_) return std::nullopt;
+    const auto block = open_block();
+    if (!block || is_one_of(tokens_[*block].kind, {Kinds::WHEN, Kinds::IF, Kinds::DEFINE}))
+      return std::nullopt;
+    Diagnostic& message =
+        report(Code::E0010, "ELSE belongs to a WHEN or an IF, and " + quote(*block) + " has none",
+               tokens_[stop_].span);
+    message.label(tokens_[*block].span, "the block begins here", false);
+    if (is(*block, Kinds::WHILE))
+      message.helps("what happens otherwise is a rule of its own, with the opposite condition");
+    return change(stop_, 1, {missing(Kinds::NEWLINE, stop_)});
+  }
+
+  // The first word of the innermost block that is open where the grammar stopped.
+  std::optional<std::size_t> open_block() const {
+    BlockWalk walk(tokens_);
+    for (std::size_t at = 0; at < stop_; ++at)
+      walk.step(at);
+    if (walk.open().empty()) return std::nullopt;
+    return walk.open().back();
+  }
+
+  // `MOVE left_arm UP THEN SAY "x"`
+  std::optional<Edit> then_in_line() {
+    const bool may_end = contains(expected_, Kinds::NEWLINE) && contains(expected_, Kinds::END);
+    if (!is(stop_, Kinds::THEN) || stop_ <= statement_ || asks_before(stop_) || !may_end)
+      return std::nullopt;
+    const std::size_t column = indentation(tokens_[begin_], source_);
+    const std::string line = "\n" + std::string(column, ' ');
+    const bool more = stop_ + 1 < end_;
+    Span place = tokens_[stop_].span;
+    place.begin = tokens_[stop_ - 1].span.end;
+    if (more) place.end = tokens_[stop_ + 1].span.begin;
+    report(Code::E0001, "THEN stands on a line of its own", tokens_[stop_].span)
+        .helps("what comes before it is done first, and then what comes after it")
+        .fix(place, line + "THEN" + (more ? line : ""), Applicability::likely);
+    return change(stop_, 1,
+                  {missing(Kinds::NEWLINE, stop_), tokens_[stop_], missing(Kinds::NEWLINE, stop_)});
+  }
+
+  // `3km/h`: the lexer ends a unit in front of what is none
+  std::optional<Edit> foreign_rate() {
+    if (!is(stop_, Kinds::SLASH) || stop_ == begin_ || !is(stop_ - 1, Kinds::QUANTITY) ||
+        !is_any_name(stop_ + 1, {"h", "hr", "hour", "min", "minute"}))
+      return std::nullopt;
+    const std::string_view number = text(stop_ - 1);
+    const std::size_t unit = number.find_first_not_of("0123456789.");
+    if (unit == std::string_view::npos) return std::nullopt;
+    Span place = span(stop_ - 1, stop_ + 2);
+    place.begin += static_cast<std::uint32_t>(unit);
+    report(Code::E0303, "there is no unit `" + std::string(source_.text(place)) + "`", place)
+        .helps("a speed is said for a second, such as `20cm/s` or `30deg/s`");
+    return change(stop_ - 1, 3, {missing(Kinds::QUANTITY, stop_ - 1)});
+  }
+
+  // `DO SAY "x"` in a BEHAVIOR that has no rule yet
+  std::optional<Edit> command_in_behavior() {
+    if (!is(0, Kinds::BEHAVIOR) || stop_ != begin_ || begin_ == 0) return std::nullopt;
+    for (std::size_t at = 0; at < begin_ && has(at, begin_, Kinds::NEWLINE); ++at)
+      if (is(at, Kinds::NEWLINE) && !is(at + 1, Kinds::NEWLINE) && at + 1 != begin_)
+        return std::nullopt;
+    const unsigned roles = roles_of(tokens_[stop_].kind);
+    const bool statement = (roles & role::statement) != 0 && (roles & role::opens) == 0;
+    const bool speaks = is(stop_, Kinds::NAME) && is(stop_ + 1, Kinds::STRING);
+    if (!statement && !speaks && !is(stop_, Kinds::DO)) return std::nullopt;
+    report(Code::E0010, quote(stop_) + " cannot stand in a BEHAVIOR", tokens_[stop_].span)
+        .helps("it stands in a rule: begin one in front of it, with `WHEN` or `AT START DO`");
+    return change(begin_, end_ - begin_,
+                  {missing(Kinds::USE, begin_), missing(Kinds::NAME, begin_)});
+  }
+
+  // `touch LEVEL > 4 3 TIMES`, `wave_detect THEN touch LEVEL > 0`, each without its WITHIN; and THEN in the place of DO
+  std::optional<Edit> within() {
+    if (!contains(expected_, Kinds::WITHIN) || is_near(text(stop_), "WITHIN")) return std::nullopt;
+    std::size_t next = before_ + 1;
+    while (is(next, Kinds::NEWLINE))
+      ++next;
+    const bool asked = is(next, Kinds::DO);
+    const Tokens lacking{missing(Kinds::WITHIN, before_ + 1),
+                         missing(Kinds::QUANTITY, before_ + 1)};
+    if (asked && is(before_, Kinds::TIMES) && before_ > 0 && is(before_ - 1, Kinds::QUANTITY)) {
+      report(Code::E0008, "this does not say in how long that is counted",
+             span(before_ - 1, before_ + 1))
+          .helps("write `" + text(before_ - 1, before_ + 1) + " WITHIN 5s`");
+      return change(before_ + 1, 0, lacking);
+    }
+    const auto then = then_before(before_);
+    if (!then) return std::nullopt;
+    if (asked) {
+      report(Code::E0008, "this does not say in how long the second thing follows the first",
+             tokens_[*then].span)
+          .helps("write it at the end of the condition: `WITHIN 5s`");
+      return change(before_ + 1, 0, lacking);
+    }
+    for (std::size_t at = *then; at < end_; ++at)  // what stands there asks, or says how long
+      if (is_relation(tokens_[at].kind) ||
+          is_one_of(tokens_[at].kind, {Kinds::IS, Kinds::WITHIN, Kinds::DO}))
+        return std::nullopt;
+    report(Code::E0001, "a line that asks ends with DO in RSL, not with THEN", tokens_[*then].span)
+        .fix(tokens_[*then].span, "DO", Applicability::likely);
+    return change(*then, 1, {{Kinds::DO, tokens_[*then].span}});
+  }
+
+  // A THEN between what asks and `at`.
+  std::optional<std::size_t> then_before(std::size_t at) const {
+    for (; at > 0 && !is_one_of(tokens_[at].kind, {Kinds::DO, Kinds::ELSE, Kinds::END}); --at)
+      if (is(at, Kinds::THEN) && asks_before(at)) return at;
+    return std::nullopt;
+  }
+
+  // `MOTION wave`
+  std::optional<Edit> columns_of_motion() {
+    if (!is(0, Kinds::MOTION) || stop_ != 2 || !is(stop_, Kinds::NEWLINE)) return std::nullopt;
+    const Span name = tokens_[1].span;
+    report(Code::E0008, "this MOTION does not say which actuators it moves", name)
+        .helps("write `MOTION " + std::string(text(1)) +
+               " OF`, and their names with commas between");
+    return change(0, tokens_.size());
+  }
+
+  // `voice WORD = "hello"`, `wave_detect = TRUE`
+  std::optional<Edit> word_with_sign() {
+    const bool text = is(stop_, Kinds::STRING);
+    const bool truth = is(stop_, Kinds::TRUE) || is(stop_, Kinds::FALSE);
+    if (!(text || truth) || stop_ < 2 || !asks_before(stop_)) return std::nullopt;
+    const Span sign = tokens_[stop_ - 1].span;
+    if (is(stop_ - 1, Kinds::EQUAL)) {
+      report(Code::E0001, "a word is asked for with IS, not with " + quote(stop_ - 1), sign)
+          .fix(sign, "IS", Applicability::likely);
+      return change(stop_ - 1, 1, {{Kinds::IS, sign}});
+    }
+    if (!is(stop_ - 1, Kinds::NOT_EQUAL) || truth) return std::nullopt;
+    report(Code::E0001, "a word is asked for with IS NOT, not with " + quote(stop_ - 1), sign)
+        .fix(sign, "IS NOT", Applicability::likely);
+    return change(stop_ - 1, 1, {{Kinds::IS, sign}, {Kinds::NOT, sign}});
+  }
+
+  // `SET x BY 3`, `RAISE x TO 3`, `RAISE x`
+  std::optional<Edit> changed_wrongly() {
+    if (stop_ != statement_ + 2) return std::nullopt;
+    const std::string name(text(statement_ + 1));
+    const Span here = tokens_[stop_].span;
+    if (begins_with(Kinds::SET) && is(stop_, Kinds::BY)) {
+      report(Code::E0001,
+             "SET gives a new value TO; what a value is changed BY is RAISEd or LOWERed", here)
+          .helps("write `SET " + name + " TO " + text(stop_ + 1, statement_end()) + "` or `RAISE " +
+                 name + " BY " + text(stop_ + 1, statement_end()) + "`");
+      return change(stop_, 1, {{Kinds::TO, here}});
+    }
+    if (!begins_with(Kinds::RAISE) && !begins_with(Kinds::LOWER)) return std::nullopt;
+    const std::string word(text(statement_));
+    if (is(stop_, Kinds::TO)) {
+      report(Code::E0001, word + " changes a value BY so much; a new value is SET", here)
+          .helps("write `" + word + " " + name + " BY " + text(stop_ + 1, statement_end()) +
+                 "` or `SET " + name + " TO " + text(stop_ + 1, statement_end()) + "`");
+      return change(stop_, 1, {{Kinds::BY, here}});
+    }
+    if (stop_ != statement_end()) return std::nullopt;
+    report(Code::E0008, "this does not say by how much " + quote(statement_ + 1) + " changes",
+           span(statement_, stop_))
+        .helps("write `" + word + " " + name + " BY 1`");
+    return change(stop_, 0, {missing(Kinds::BY, stop_), missing(Kinds::QUANTITY, stop_)});
+  }
+
+  // `REPEAT`
+  std::optional<Edit> repeat_how_often() {
+    if (!begins_with(Kinds::REPEAT) || stop_ != statement_ + 1 || !is(stop_, Kinds::NEWLINE))
+      return std::nullopt;
+    report(Code::E0008, "this does not say how often", tokens_[statement_].span)
+        .helps("write `REPEAT 3 TIMES`, `REPEAT WHILE` and a condition, or `REPEAT FOREVER`");
+    return change(stop_, 0, {missing(Kinds::QUANTITY, stop_), missing(Kinds::TIMES, stop_)});
+  }
+
+  // `RESUME AFTER 2s`
+  std::optional<Edit> resume_after() {
+    if (stop_ == 0 || !is(stop_ - 1, Kinds::RESUME)) return std::nullopt;
+    if (!is_any_name(stop_, {"AFTER", "IN"}) && !is(stop_, Kinds::QUANTITY) &&
+        !is(stop_, Kinds::FOR))
+      return std::nullopt;
+    const std::string time = is(end_ - 1, Kinds::QUANTITY) ? text(end_ - 1, end_) : "2s";
+    report(Code::E0001, "the robot goes on when a condition is met, not after a time alone",
+           span(stop_ - 1, end_))
+        .helps("write `RESUME WHEN`, a condition and `FOR " + time + "`");
+    return change(stop_, end_ - stop_,
+                  {missing(Kinds::WHEN, stop_), missing(Kinds::QUANTITY, stop_),
+                   missing(Kinds::LESS, stop_), missing(Kinds::QUANTITY, stop_)});
+  }
+
+  // COOLDOWN and the like, below DO
+  std::optional<Edit> modifier_behind_do() {
+    const bool modifier = is_one_of(
+        tokens_[stop_].kind, {Kinds::PRIORITY, Kinds::COOLDOWN, Kinds::WAITING, Kinds::RESTARTING});
+    const auto block = open_block();
+    const bool whole = is(stop_, Kinds::RESTARTING) || is(stop_ + 1, Kinds::QUANTITY);
+    if (!modifier || !whole || stop_ != begin_ || !block || !has(*block, stop_, Kinds::DO))
+      return std::nullopt;
+    report(Code::E0010, quote(stop_) + " stands in front of DO, with what the rule asks",
+           tokens_[stop_].span)
+        .label(tokens_[*block].span, "the rule begins here", false);
+    return change(stop_, end_ - stop_);
+  }
+
+  // `START DO`
+  std::optional<Edit> start_alone() {
+    if (stop_ != begin_ || !is(stop_, Kinds::START)) return std::nullopt;
+    std::size_t next = stop_ + 1;
+    while (is(next, Kinds::NEWLINE))
+      ++next;
+    if (!is(next, Kinds::DO)) return std::nullopt;
+    Span front = tokens_[stop_].span;
+    front.end = front.begin;
+    report(Code::E0008, "`AT` is missing before `START`", front)
+        .fix(front, "AT ", Applicability::likely);
+    return change(stop_, 0, {missing(Kinds::AT, stop_)});
+  }
+
+  // `OTHERWISE SAY "y"`
+  std::optional<Edit> otherwise() {
+    if (!is(stop_, Kinds::OTHERWISE) || stop_ != begin_ || is(0, Kinds::CHECK)) return std::nullopt;
+    const auto block = open_block();
+    if (!block || !(is(*block, Kinds::WHEN) || is(*block, Kinds::IF))) return std::nullopt;
+    const Span here = tokens_[stop_].span;
+    report(Code::E0007, quote(stop_) + " is written `ELSE` in a rule", here)
+        .fix(here, "ELSE", Applicability::likely);
+    return change(stop_, 1, {{Kinds::ELSE, here}});
+  }
+
+  // `touch LEVEL more than 4`, `touch LEVEL IS less than 4`
+  std::optional<Edit> more_than() {
+    for (const std::size_t than : {stop_ + 1, stop_, stop_ - 1, before_ - 1}) {
+      if (!is_name(than, "than") || than == 0) continue;
+      const std::size_t first = than - 1;
+      const bool more = is_any_text(first, {"more", "greater", "larger", "higher", "bigger"});
+      const bool less = is_any_text(first, {"less", "fewer", "smaller", "lower"});
+      if (!(more || less) || first == 0 || !asks_before(first)) return std::nullopt;
+      const std::size_t begin = is(first - 1, Kinds::IS) ? first - 1 : first;
+      const Span all = span(begin, first + 2);
+      const std::string sign = more ? ">" : "<";
+      report(Code::E0001, "`" + text(begin, first + 2) + "` is written `" + sign + "`", all)
+          .fix(all, sign, Applicability::likely);
+      return change(begin, first + 2 - begin, {{more ? Kinds::GREATER : Kinds::LESS, all}});
+    }
+    return std::nullopt;
+  }
+  bool is_any_text(std::size_t at, std::initializer_list<std::string_view> words) const {
+    return std::any_of(words.begin(), words.end(),
+                       [&](std::string_view word) { return ascii::same(text(at), word); });
+  }
+};
+
+}  // namespace
+
+std::optional<Edit> explain_misplaced_word(const Tokens& tokens, const SourceFile& source,
+                                           const Attempt& failure, Diagnostics& diagnostics) {
+  return MisplacedWords(tokens, source, failure, diagnostics).find();
+}
+
+}  // namespace robosync::compiler
