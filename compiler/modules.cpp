@@ -1,6 +1,7 @@
 #include "compiler/modules.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "compiler/config/names.hpp"
@@ -18,7 +19,9 @@ public:
          const Vocabulary* robot)
       : sources_(sources), read_(read), diagnostics_(diagnostics), robot_(robot) {}
 
+  // Who uses the program itself, as a circle of modules does, has it already.
   std::vector<Module> load(const ast::Tree& program) {
+    loaded_.insert(std::filesystem::path(sources_.file(0).name()).lexically_normal().string());
     add_uses(program, 0);
     for (std::size_t i = 0; i < modules_.size(); ++i)  // grows while it is walked
       add_uses(*modules_[i].tree, modules_[i].file);
