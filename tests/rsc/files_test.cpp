@@ -58,19 +58,3 @@ TEST_CASE("reading a file takes the memory that the file needs") {
 
 }  // namespace
 }  // namespace robosync::tool
-
-TEST_CASE("a file that uses itself, or is used by what it uses, is in the program once") {
-  const Folder folder;
-  folder.write("robot.json", R"({"actuators": []})");
-  const std::string rule = "AT START\nDO LOG \"once\"\nEND\n";
-  const std::string itself = folder.write("itself.rsl", "USE \"itself.rsl\"\n" + rule);
-  const std::string circle = folder.write("circle.rsl", "USE \"other.rsl\"\n" + rule);
-  folder.write("other.rsl", "USE \"./circle.rsl\"\nUSE \"other.rsl\"\n");
-  for (const std::string& program : {itself, circle}) {
-    const Outcome ran = rsc({"run", program, "--config", folder.path("robot.json")});
-    CHECK(ran.exit == 0);
-    const std::size_t first = ran.out.find("once");
-    REQUIRE(first != std::string::npos);
-    CHECK(ran.out.find("once", first + 1) == std::string::npos);
-  }
-}

@@ -352,3 +352,19 @@ TEST_CASE("a wrong scenario is exit 1 with file and line, a missing one exit 3")
   outcome = test::rsc({"run", robot.program, "--scenario", robot.path("none.json")});
   CHECK(outcome.exit == 3);
 }
+
+TEST_CASE("a file that uses itself, or is used by what it uses, is in the program once") {
+  const Folder folder;
+  folder.write("robot.json", R"({"actuators": []})");
+  const std::string rule = "AT START\nDO LOG \"once\"\nEND\n";
+  const std::string itself = folder.write("itself.rsl", "USE \"itself.rsl\"\n" + rule);
+  const std::string circle = folder.write("circle.rsl", "USE \"other.rsl\"\n" + rule);
+  folder.write("other.rsl", "USE \"./circle.rsl\"\nUSE \"other.rsl\"\n");
+  for (const std::string& program : {itself, circle}) {
+    const Outcome ran = rsc({"run", program, "--config", folder.path("robot.json")});
+    CHECK(ran.exit == 0);
+    const std::size_t first = ran.out.find("once");
+    REQUIRE(first != std::string::npos);
+    CHECK(ran.out.find("once", first + 1) == std::string::npos);
+  }
+}
