@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <iterator>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -261,20 +260,20 @@ std::uint32_t seed_of(const RecordedProgram& recorded) {
   return seed.is_number_integer() ? static_cast<std::uint32_t>(seed.get<std::int64_t>()) : 0;
 }
 
-std::set<std::string> channels_of(const vm::Image& image) {
-  std::set<std::string> names;
-  for (const vm::Channel& channel : image.channels)
-    names.insert(fmt::format("{}.{}", image.string(image.sensors[channel.sensor].name),
-                             image.string(channel.name)));
-  return names;
-}
-
 // A recorded image of another version of RoboSync tells nothing of its channels.
 std::vector<std::string> unrecorded(const RecordedProgram& recorded, const vm::Image& image) {
   vm::Image before;
   std::vector<std::string> names;
   if (!vm::verify(recorded.image, vm::Limits{}, before).ok()) return names;
-  std::ranges::set_difference(channels_of(image), channels_of(before), std::back_inserter(names));
+  const auto name = [](const vm::Image& of, const vm::Channel& channel) {
+    return fmt::format("{}.{}", of.string(of.sensors[channel.sensor].name),
+                       of.string(channel.name));
+  };
+  for (const vm::Channel& channel : image.channels) {
+    const std::string wanted = name(image, channel);
+    const auto is_it = [&](const vm::Channel& other) { return name(before, other) == wanted; };
+    if (std::ranges::none_of(before.channels, is_it)) names.push_back(wanted);
+  }
   return names;
 }
 
