@@ -3,6 +3,7 @@
 #include "rsc/cli.hpp"
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <functional>
 #include <iostream>
@@ -35,14 +36,6 @@ void Options::arguments(const std::string& name, std::vector<std::string>& value
   app_.add_option(name, values, description)->required(need == Need::required)->option_text("...");
 }
 
-void Options::option(const std::string& names, const std::string& text, std::string& value,
-                     const std::string& description, Need need) {
-  app_.add_option(names, value, description)
-      ->required(need == Need::required)
-      ->type_name(text)
-      ->option_text(text);
-}
-
 namespace {
 
 // CLI11 asks for its own kind of error.
@@ -54,14 +47,31 @@ void take_word(const Options::Take& take, const std::string& word) {
   }
 }
 
-}  // namespace
-
-void Options::option(const std::string& names, const std::string& text, const Take& take,
-                     const std::string& description) {
-  app_.add_option_function<std::string>(
+CLI::Option* add_named(CLI::App& app, const std::string& names, const std::string& text,
+                       const Options::Take& take, const std::string& description) {
+  return app
+      .add_option_function<std::string>(
           names, [take](const std::string& word) { take_word(take, word); }, description)
       ->type_name(text)
       ->option_text(text);
+}
+
+}  // namespace
+
+// A shell makes nothing of a variable that is not set: then a run would be recorded nowhere.
+void Options::option(const std::string& names, const std::string& text, std::string& value,
+                     const std::string& description, Need need) {
+  const auto take = [&value, name = names.substr(names.rfind(',') + 1)](const std::string& word) {
+    if (word.empty())
+      throw std::invalid_argument(name + ": it is given nothing, name a file or leave it out");
+    value = word;
+  };
+  add_named(app_, names, text, take, description)->required(need == Need::required);
+}
+
+void Options::option(const std::string& names, const std::string& text, const Take& take,
+                     const std::string& description) {
+  add_named(app_, names, text, take, description);
 }
 
 void Options::options(const std::string& names, const std::string& text, const Take& take,
@@ -140,6 +150,21 @@ std::vector<std::string> verb_names() {
                                          did_you_mean(word, verb_names())));
 }
 
+// "--seed: At Most 1 required but received 2", "--config: 1 required FILE missing". Empty: something else is wrong.
+std::string mismatch(const CLI::ParseError& error) {
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return {};
+  const std::string_view said = error.what();
+  const std::string_view name = said.substr(0, said.find(':'));
+  constexpr std::string_view kRequired = "required ", kMissing = " missing";
+  const std::size_t required = said.rfind(kRequired);
+  if (said.find("At Most") != std::string_view::npos)
+    return fmt::format("{} may be there once only", name);
+  if (required == std::string_view::npos || !said.ends_with(kMissing)) return {};
+  const std::size_t begin = required + kRequired.size();
+  return fmt::format("{} needs its {} behind it", name,
+                     said.substr(begin, said.size() - kMissing.size() - begin));
+}
+
 // CLI11 says what is wrong; a misspelt option deserves a suggestion.
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
@@ -158,6 +183,7 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
                                 did_you_mean(word.substr(0, word.find('=')), known))
                   : fmt::format("`{}` is one argument too many", word);
   }
+  if (const std::string said = mismatch(error); !said.empty()) message = said;
   const std::string help = &at == &app ? "rsc help" : "rsc help " + at.get_name();
   return fmt::format("{}\n`{}` shows how it is used", message, help);
 }
@@ -165,6 +191,12 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
 void parse(CLI::App& app, int count, const char* const* arguments) {
   const std::string_view first = count > 1 ? arguments[1] : "";
   if (first.empty()) throw Failure(Exit::usage, "say what to do\n" + app.help());
+  constexpr std::array<std::string_view, 3> kWithoutVerb = {"-h", "--help", "--version"};
+  if (first.starts_with("-") && std::ranges::find(kWithoutVerb, first) == kWithoutVerb.end())
+    throw Failure(Exit::usage,
+                  fmt::format("`{}` stands where a verb does: write rsc VERB, then its options\n"
+                              "`rsc help` lists the verbs",
+                              first));
   const std::vector<std::string> names = verb_names();
   if (!first.starts_with("-") && std::ranges::find(names, first) == names.end()) {
     unknown_verb(first);

@@ -13,6 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "rsc/file_kind.hpp"
+
 namespace robosync::tool {
 namespace fs = std::filesystem;
 namespace {
@@ -30,6 +32,8 @@ class InputFile {
 public:
   explicit InputFile(const fs::path& path)
       : path_(path), file_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (file_ < 0 && errno == ENOENT && path_ == "-")
+      throw Failure(Exit::outside, "cannot read -: only rsc check and rsc fmt read stdin");
     if (file_ < 0) fail("read", path_, errno);
   }
   ~InputFile() { close(file_); }
@@ -123,12 +127,30 @@ std::vector<fs::path> places_of_configuration(const fs::path& program, const std
   return {by_stem, program.parent_path() / "robot.json"};
 }
 
+namespace {
+
+// Its mistakes as a configuration would not say what it is.
+void refuse_what_is_none(const fs::path& place, const fs::path& program, const Texts& texts) {
+  const FileKind kind = kind_of_text(texts.read(place));
+  if (kind == FileKind::other || kind == FileKind::configuration) return;
+  throw Failure(Exit::program,
+                fmt::format("{} is {}, and was taken for the configuration of {} because of its "
+                            "name: give it another name, or name the configuration with "
+                            "--config FILE",
+                            place.string(), describe(kind), program.string()));
+}
+
+}  // namespace
+
 fs::path find_configuration(const fs::path& program, const std::string& config,
                             const Texts& texts) {
   if (!config.empty()) return config;
   const std::vector<fs::path> places = places_of_configuration(program, config);
-  for (const fs::path& place : places)
-    if (texts.has(place)) return place;
+  for (const fs::path& place : places) {
+    if (!texts.has(place)) continue;
+    refuse_what_is_none(place, program, texts);
+    return place;
+  }
   throw Failure(Exit::outside,
                 fmt::format("no configuration for {}: there is no {} and no {}; name one with "
                             "--config FILE",

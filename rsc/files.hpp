@@ -41,7 +41,7 @@ public:
     const std::filesystem::path& program, const std::string& config);
 
 // `config` if it is not empty, else STEM.json beside `program`, else robot.json beside it. Throws
-// Failure (outside) when there is none.
+// Failure (outside) when there is none, (program) when what has that name is a scenario or a trace.
 [[nodiscard]] std::filesystem::path find_configuration(const std::filesystem::path& program,
                                                        const std::string& config,
                                                        const Texts& texts = Texts());

@@ -36,7 +36,7 @@ Json entries_of(const std::string& text, const std::string& file) {
   bool texts = good;
   if (good)
     for (const auto& [name, value] : whole[kKey].items())
-      texts = texts && value.is_string();
+      texts = texts && (value.is_string() || value.is_number());
   if (!texts)
     fail(file, "this is no file of kept numbers: move it away, or name another with --kept");
   return whole[kKey];
@@ -60,7 +60,11 @@ Kept::Kept(const Program& program, const std::string& name, const std::string& f
   const auto& variables = program.image().variables;
   for (std::size_t v = 0; v < variables.size(); ++v)
     if (variables[v].kind == vm::VariableKind::kept) values_[v] = variables[v].initial;
-  if (!values_.empty() && std::filesystem::exists(file_)) read();
+  if (values_.empty()) return;
+  if (std::filesystem::exists(file_))
+    read();
+  else
+    check_output(file_, program.files());
 }
 
 void Kept::read() {
@@ -72,7 +76,7 @@ void Kept::read() {
     if (variable == kNotInImage)
       others += (others.empty() ? "`" : ", `") + entry + "`";
     else if (!fresh_)
-      begin(variable, entry, value.get<std::string>());
+      begin(variable, entry, value.is_string() ? value.get<std::string>() : value.dump());
   }
   if (!others.empty())
     std::cerr << fmt::format("note: {} keeps {} too, which the program does not; it stays there\n",
@@ -134,7 +138,7 @@ void Kept::write() {
   for (const auto& [variable, value] : values_)
     entries_[entry_of(variable)] = shown(variable, value);
   const std::string text = Json{{kKey, entries_}}.dump(2) + "\n";
-  if (text != text_) write_output(file_, std::as_bytes(std::span(text)));
+  if (text != text_) write_edited(file_, std::as_bytes(std::span(text)));
 }
 
 }  // namespace robosync::tool

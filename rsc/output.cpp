@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "rsc/failure.hpp"
+#include "rsc/file_kind.hpp"
 
 namespace robosync::tool {
 namespace fs = std::filesystem;
@@ -136,13 +137,55 @@ void write_through(const fs::path& path, std::span<const std::byte> bytes) {
   write_in_place(path, bytes);
 }
 
+[[noreturn]] void refuse(const fs::path& path, const std::string& why) {
+  throw Failure(Exit::usage,
+                fmt::format("{} {}; nothing was written: name another file", path.string(), why));
+}
+
+// Nobody would know why all programs beside it are wrong from then on.
+void refuse_name_of_configuration(const fs::path& path) {
+  std::error_code error;
+  constexpr const char* kWhy = "would be taken for the configuration of {}, because of its name";
+  if (path.extension() != ".json") return;
+  if (path.filename() == "robot.json") refuse(path, fmt::format(kWhy, "the programs beside it"));
+  fs::path program = path;
+  program.replace_extension(".rsl");
+  if (fs::exists(program, error)) refuse(path, fmt::format(kWhy, program.string()));
+}
+
+// What rsc writes can be written again.
+bool is_written_by_people(FileKind kind) {
+  return kind != FileKind::other && kind != FileKind::trace && kind != FileKind::perfetto;
+}
+
+// Also of those that are not there yet.
+fs::path whole_name(const std::string& path) {
+  std::error_code error;
+  return fs::weakly_canonical(fs::absolute(path, error), error);
+}
+
 }  // namespace
+
+void check_outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (paths[i].empty()) continue;
+    check_output(paths[i], inputs);
+    for (std::size_t other = 0; other < i; ++other)
+      if (!paths[other].empty() && whole_name(paths[other]) == whole_name(paths[i]) &&
+          !is_written_through(paths[i], facts_of(paths[i])))
+        refuse(paths[i], "is named for two outputs");
+  }
+}
 
 void check_output(const fs::path& path, const std::vector<std::string>& inputs) {
   const auto facts = facts_of(path);
-  if (!facts) return;
-  if (S_ISDIR(facts->st_mode)) fail(path, EISDIR);
-  if (!S_ISREG(facts->st_mode)) return;
+  if (facts && S_ISDIR(facts->st_mode)) fail(path, EISDIR);
+  if (facts && !S_ISREG(facts->st_mode)) return;
+  if (path == "-") refuse(path, "is no output, /dev/stdout is");
+  if (!facts) {
+    refuse_name_of_configuration(path);
+    return;
+  }
   for (const std::string& input : inputs) {
     const auto other = facts_of(input);
     if (!other || !same_file(*facts, *other)) continue;
@@ -153,6 +196,9 @@ void check_output(const fs::path& path, const std::vector<std::string>& inputs) 
                                     "written",
                                     path.string(), input));
   }
+  refuse_name_of_configuration(path);
+  if (const FileKind kind = kind_of_file(path); is_written_by_people(kind))
+    refuse(path, fmt::format("is there already, and is {}", describe(kind)));
 }
 
 bool is_stdout(const fs::path& path) {
@@ -182,6 +228,12 @@ void write_output(const fs::path& path, std::span<const std::byte> bytes) {
   file.write(bytes);
   if (facts) file.set_mode(mode);
   file.replace_target();
+}
+
+void write_edited(const fs::path& path, std::span<const std::byte> bytes) {
+  std::error_code error;
+  const fs::path file = fs::canonical(path, error);
+  write_output(error ? path : file, bytes);
 }
 
 }  // namespace robosync::tool

@@ -176,6 +176,11 @@ Program::Program(std::vector<std::byte> bytes, const std::string& name,
   throw Failure(Exit::program, fmt::format("{}: {}", name, describe_refusal(verdict, line)));
 }
 
+void print_json_errors(const compiler::Result& result, const CompileOptions& options) {
+  if (options.json && result.diagnostics.errors() > 0)
+    std::cout << compiler::render_json(result.diagnostics, result.sources);
+}
+
 Program load_program(const std::string& file, const CompileOptions& options) {
   std::vector<std::byte> bytes = read_bytes(file);
   if (is_image(file, bytes)) {
@@ -191,6 +196,7 @@ Program load_program(const std::string& file, const CompileOptions& options) {
   };
   compiler::Result result = compile(file, options, modules, texts);
   std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+  print_json_errors(result, options);
   if (result.diagnostics.errors() > 0) {
     throw Failure(Exit::program, fmt::format("{}: {}", file, summary(result.diagnostics)));
   }

@@ -28,6 +28,7 @@ struct CompileOptions {
   bool optimize = true;
   std::uint32_t seed = 0;  // 0: as the configuration says
   bool source_lines = true;
+  bool json = false;  // mistakes of the program go to stdout as JSON, too, when there are errors
   compiler::LintLevels lints;
   Judged judged = Judged::by_memory;
 };
@@ -105,6 +106,9 @@ private:
 // is not verified.
 [[nodiscard]] std::uint16_t source_line(const vm::Image& image, vm::Section section,
                                         std::uint16_t index);
+// What `rsc check --format json` says, on stdout, where `options` ask for it and there are errors.
+void print_json_errors(const compiler::Result& result, const CompileOptions& options);
+
 // "an operand is out of range (code, word 12, source line 4)".
 [[nodiscard]] std::string describe_refusal(const vm::Verdict& verdict, std::uint16_t line);
 

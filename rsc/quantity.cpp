@@ -31,6 +31,8 @@ vm::Value parse_quantity(std::string_view text, vm::Dimension dimension) {
   const auto number = compiler::parse_decimal(whole.substr(0, digits));
   if (!number) throw std::invalid_argument(fmt::format("`{}` is not a number with a unit", text));
   const std::string_view spelling = trim(whole.substr(digits));
+  if (spelling.starts_with(','))
+    throw std::invalid_argument(fmt::format("`{}` has a comma: a decimal point is a point", text));
   const compiler::Unit* const unit = compiler::find_unit(spelling);
   const compiler::Unit& canonical = compiler::canonical_unit(dimension);
   if (unit == nullptr) throw std::invalid_argument(fmt::format("there is no unit `{}`", spelling));

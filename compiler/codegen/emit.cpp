@@ -90,7 +90,7 @@ bool Emitter::counts_fit() {
          fits(constants_.size(), kMost, "different numbers") &&
          fits(rules_.pool.code().size(), kMost, "commands and conditions") &&
          fits(strings_.labels().size(), kMost, "labels") &&
-         fits(strings_.text().size(), kMost, "names and texts");
+         fits(strings_.text().size(), kMost, "bytes of names and texts");
 }
 
 vm::Image Emitter::sections() const {

@@ -97,6 +97,11 @@ bool EventReader::interrupts_itself() const {
   return object != nullptr && object == behavior_with_rule();
 }
 
+bool EventReader::is_only_rule() const {
+  const vm::Behavior* const behavior = behavior_with_rule();
+  return behavior != nullptr && behavior->rule_count == 1;
+}
+
 std::string EventReader::rule_name() const {
   const vm::Rule* const found = rule();
   if (found == nullptr) return fmt::format("rule {}", event_.subject);

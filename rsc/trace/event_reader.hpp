@@ -61,6 +61,9 @@ public:
   // The behaviour that is the object is the one of the rule that is the subject.
   bool interrupts_itself() const;
 
+  // The behaviour of the rule that is the subject has no other rule.
+  bool is_only_rule() const;
+
   std::string rule_name() const;
   std::int16_t base_priority() const;  // of the behaviour it is about, as it is written
   std::string behavior_name(std::uint16_t index) const;

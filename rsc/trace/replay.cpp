@@ -21,6 +21,7 @@
 #include "rsc/trace/trace_format.hpp"
 #include "runtime-m4/sim/simulator.hpp"
 #include "vm/identity.hpp"
+#include "vm/verifier.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -191,10 +192,25 @@ private:
   std::map<std::uint64_t, std::uint64_t> first_step_;  // by time
 };
 
+// What two programs that decide the same may tell otherwise: where their rules are written.
+enum class Lines : std::uint8_t { compared, of_another };
+
+// A rule outside a BEHAVIOR is called by its line.
+void leave_lines_out(Json& event) {
+  constexpr std::string_view kByItsLine = "the rule at ";
+  event.erase("line");
+  for (const char* const key : {"by", "behavior"})
+    if (const auto name = event.find(key); name != event.end() && name->is_string() &&
+                                           name->get<std::string>().starts_with(kByItsLine))
+      *name = kByItsLine;
+}
+
 // The numbers of steps are not compared: one in which nothing was new is one that a recording does not tell.
-bool same(Json a, Json b) {
-  a.erase("step");
-  b.erase("step");
+bool same(Json a, Json b, Lines lines) {
+  for (Json* const event : {&a, &b}) {
+    event->erase("step");
+    if (lines == Lines::of_another) leave_lines_out(*event);
+  }
   return a == b;
 }
 
@@ -206,10 +222,12 @@ struct Millisecond {
 };
 
 // The first thing that only one of the two has. `is_last`: the recording may end within it.
-std::optional<Difference> difference_in(Millisecond& both, bool is_last, Replayed& result) {
+std::optional<Difference> difference_in(Millisecond& both, bool is_last, Lines lines,
+                                        Replayed& result) {
   for (const auto& [line, event] : both.recorded) {
     const auto found = std::ranges::find_if(
-        both.replayed, [&event = event](const Json& other) { return same(event, other); });
+        both.replayed,
+        [&event = event, lines](const Json& other) { return same(event, other, lines); });
     if (found == both.replayed.end())
       return Difference{line, event.dump(),
                         both.replayed.empty() ? "" : both.replayed.front().dump()};
@@ -221,7 +239,8 @@ std::optional<Difference> difference_in(Millisecond& both, bool is_last, Replaye
   return Difference{0, "", both.replayed.front().dump()};
 }
 
-Replayed compare(const std::vector<RecordedEvent>& recorded, const std::vector<Json>& replayed) {
+Replayed compare(const std::vector<RecordedEvent>& recorded, const std::vector<Json>& replayed,
+                 Lines lines) {
   std::map<std::uint64_t, Millisecond> time;
   for (const RecordedEvent& one : recorded)
     if (is_compared(kind_of(one.event))) time[time_of(one.event)].recorded.push_back(one);
@@ -230,7 +249,7 @@ Replayed compare(const std::vector<RecordedEvent>& recorded, const std::vector<J
   Replayed result;
   result.until_us = time_of(recorded.back().event);
   for (auto& [at_us, both] : time) {
-    result.difference = difference_in(both, at_us >= result.until_us, result);
+    result.difference = difference_in(both, at_us >= result.until_us, lines, result);
     if (result.difference) break;
   }
   return result;
@@ -241,13 +260,33 @@ std::uint32_t seed_of(const RecordedProgram& recorded) {
   return seed.is_number_integer() ? static_cast<std::uint32_t>(seed.get<std::int64_t>()) : 0;
 }
 
+// A recorded image of another version of RoboSync tells nothing of its channels.
+std::vector<std::string> unrecorded(const RecordedProgram& recorded, const vm::Image& image) {
+  vm::Image before;
+  std::vector<std::string> names;
+  if (!vm::verify(recorded.image, vm::Limits{}, before).ok()) return names;
+  const auto name = [](const vm::Image& of, const vm::Channel& channel) {
+    return fmt::format("{}.{}", of.string(of.sensors[channel.sensor].name),
+                       of.string(channel.name));
+  };
+  for (const vm::Channel& channel : image.channels) {
+    const std::string wanted = name(image, channel);
+    const auto is_it = [&](const vm::Channel& other) { return name(before, other) == wanted; };
+    if (std::ranges::none_of(before.channels, is_it)) names.push_back(wanted);
+  }
+  return names;
+}
+
 }  // namespace
 
-Replayed replay(const RecordedProgram& recorded, const std::string& file) {
+Replayed replay(const RecordedProgram& recorded, const std::string& file,
+                std::span<const std::byte> in_its_place) {
   const std::string name = fmt::format("{}:{}: the program that begins here", file, recorded.line);
   if (time_of(recorded.events.back().event) > kLongestUs)
     throw Failure(Exit::program, name + " ran for longer than a day, which is too long to replay");
-  const Program program(recorded.image, name);
+  const bool is_other = !in_its_place.empty();
+  const Program program(
+      is_other ? std::vector(in_its_place.begin(), in_its_place.end()) : recorded.image, name);
   const vm::Image& image = program.image();
   const Readings readings = readings_of(recorded, image, file);
   const TraceNames names{&image, {}, nullptr};
@@ -262,7 +301,10 @@ Replayed replay(const RecordedProgram& recorded, const std::string& file) {
   if (!simulator.verdict().ok())
     throw Failure(Exit::program, name + " does not run on this computer");
   Feeder(simulator, recorded, image).run(readings, silent);
-  return compare(recorded.events, replayed);
+  Replayed result =
+      compare(recorded.events, replayed, is_other ? Lines::of_another : Lines::compared);
+  if (is_other) result.unrecorded = unrecorded(recorded, image);
+  return result;
 }
 
 }  // namespace robosync::tool

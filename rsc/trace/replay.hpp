@@ -3,9 +3,12 @@
 // are told by a feed; nothing measures, and no algorithm runs.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "rsc/trace/replay_file.hpp"
 
@@ -21,12 +24,18 @@ struct Replayed {
   std::size_t events = 0;      // that were compared, and were the same
   std::size_t commands = 0;    // … of these
   std::optional<Difference> difference;
+  // "touch.LEVEL": what a program in place of the recorded one reads and that one did not. Nobody has recorded it, so
+  // it was unknown.
+  std::vector<std::string> unrecorded;
 };
 
 // Compared is what the program decides: rules, commands, variables, safety,
 // messages; not when a thread was late or a device silent, which a recording
-// tells of its board. Throws Failure (program) when its image is none, or its
-// readings are not of it.
-[[nodiscard]] Replayed replay(const RecordedProgram& recorded, const std::string& file);
+// tells of its board. `in_its_place`: the image of a program that runs instead
+// of the recorded one, if it is not empty; the lines at which its rules stand
+// are not compared then, their numbers are. Throws Failure (program) when the
+// image that runs is none, or the readings are not of it.
+[[nodiscard]] Replayed replay(const RecordedProgram& recorded, const std::string& file,
+                              std::span<const std::byte> in_its_place = {});
 
 }  // namespace robosync::tool

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <jansson.h>
 
+#include "compiler/config/units.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/source/ascii.hpp"
 #include "rsc/failure.hpp"
@@ -252,6 +253,7 @@ private:
     const std::vector<Column> columns = read_columns(file, table, sensor, time_column);
     for (const CsvRow& row : table.rows)
       add_row({file, row, columns, time_column}, begin);
+    in_recording_ = nullptr;
   }
 
   [[noreturn]] static void fail_in(const std::string& file, std::size_t line,
@@ -267,16 +269,26 @@ private:
     return {cell.substr(0, end + 1), cell.substr(open + 1, cell.size() - open - 2)};
   }
 
+  static bool is_among(const std::vector<Column>& columns, const Column& column) {
+    return column.channel &&
+           std::ranges::find(columns, column.channel, &Column::channel) != columns.end();
+  }
+
   std::vector<Column> read_columns(const std::string& file, const CsvTable& table,
                                    std::string_view sensor, std::size_t& time_column) {
     std::vector<Column> columns;
     columns.reserve(table.columns.cells.size());
     for (const std::string& cell : table.columns.cells) {
       auto [name, unit] = name_and_unit(cell);
-      if (compiler::ascii::same(name, "time")) time_column = columns.size();
-      columns.push_back(compiler::ascii::same(name, "time")
-                            ? Column{{}, unit}
-                            : read_column(file, table.columns.line, sensor, name, unit));
+      const bool is_time = compiler::ascii::same(name, "time");
+      const Column column =
+          is_time ? Column{{}, unit} : read_column(file, table.columns.line, sensor, name, unit);
+      if (is_time ? time_column < table.columns.cells.size() : is_among(columns, column))
+        scenario_.notes.push_back(
+            fmt::format("{}:{}: note: two columns are called `{}`: of each row the last one counts",
+                        file, table.columns.line, name));
+      if (is_time) time_column = columns.size();
+      columns.push_back(column);
     }
     if (time_column == columns.size())
       fail_in(file, table.columns.line, "no column is called `time`, as in `time (s)`");
@@ -312,6 +324,7 @@ private:
   // A cell with nothing in it is no reading.
   void add_row(const Row& row, std::uint64_t begin) {
     const std::vector<std::string>& cells = row.cells.cells;
+    in_recording_ = &row;
     try {
       const std::string& unit = row.columns[row.time_column].unit;
       const std::uint64_t at_us = begin + microseconds(with_unit(cells[row.time_column], unit));
@@ -348,15 +361,35 @@ private:
     if (scenario_.stimuli.size() == kMaxStimuli) {
       fail(line_of(text_, element_.begin), "the scenario has more than a million readings");
     }
+    const vm::Channel& range = image_.channels[channel];
+    if (value < range.min || value > range.max) note_range(channel, value);
     scenario_.stimuli.push_back({at, channel, value});
+  }
+
+  // Once for each channel.
+  void note_range(std::uint8_t channel, vm::Value value) {
+    if (!out_of_range_.insert(channel).second) return;
+    const vm::Channel& range = image_.channels[channel];
+    const compiler::Unit* const written = compiler::find_unit(unit_of(program_, channel));
+    const bool fits = written != nullptr && written->dimension == range.dimension;
+    const compiler::Unit& unit = fits ? *written : compiler::canonical_unit(range.dimension);
+    const auto text = [&](vm::Value one) { return compiler::format_value(one, unit); };
+    scenario_.notes.push_back(fmt::format(
+        "{}:{}: note: {} is out of the range of {} {}, {} to {}: the robot reads {}",
+        in_recording_ == nullptr ? file_ : in_recording_->file,
+        in_recording_ == nullptr ? line_of(text_, element_.begin) : in_recording_->cells.line,
+        text(value), image_.string(image_.sensors[range.sensor].name), image_.string(range.name),
+        text(range.min), text(range.max), text(std::clamp(value, range.min, range.max))));
   }
 
   const std::string& file_;
   std::string text_;
   const Program& program_;
   const vm::Image& image_;
-  TextRange element_;             // the stimulus at hand
-  std::set<std::string> unread_;  // channels with a note
+  TextRange element_;                    // the stimulus at hand
+  const Row* in_recording_ = nullptr;    // the row at hand, while one is read
+  std::set<std::uint8_t> out_of_range_;  // channels with a note
+  std::set<std::string> unread_;         // channels with a note
   Scenario scenario_;
 };
 
@@ -364,7 +397,9 @@ Scenario ScenarioReader::read() {
   json_error_t error{};
   const std::unique_ptr<json_t, FreeJson> root(
       json_loadb(text_.data(), text_.size(), JSON_REJECT_DUPLICATES, &error));
-  if (!root) fail(static_cast<std::size_t>(std::max(error.line, 1)), error.text);
+  if (!root)
+    fail(static_cast<std::size_t>(std::max(error.line, 1)),
+         fmt::format("this is no JSON, at column {}: {}", error.column, error.text));
   element_ = {0, text_.size()};
   if (!json_is_object(root.get())) fail(1, "a scenario is an object: {\"stimuli\": […]}");
   check_keys(root.get(), {"$schema", "duration", "stimuli"});

@@ -18,8 +18,9 @@ struct Stimulus {
 
 struct Scenario {
   std::optional<std::uint64_t> duration_us;
-  std::vector<Stimulus> stimuli;   // by time; ramps are resolved into single readings
-  std::vector<std::string> notes;  // with file and line: readings that nobody reads
+  std::vector<Stimulus> stimuli;  // by time; ramps are resolved into single readings
+  std::vector<std::string>
+      notes;  // with file and line: readings that nobody reads, or out of range
 };
 
 // CSV files that it names are found beside it. Throws Failure: outside when a file cannot be read;

@@ -23,6 +23,19 @@ constexpr std::uint64_t kLatestUs = std::uint64_t{1} << 53;  // 285 years; so th
                   line, why));
 }
 
+// A device may give bytes without an end.
+bool next_line(std::ifstream& stream, std::string& text, const std::string& file,
+               std::size_t number) {
+  constexpr std::size_t kLongest = std::size_t{1024} * 1024;  // an image of 64 KB takes 128 KB
+  text.clear();
+  for (char c = 0; stream.get(c);) {
+    if (c == '\n') return true;
+    if (text.size() == kLongest) fail(file, number, "this line has more than a million characters");
+    text += c;
+  }
+  return !text.empty();
+}
+
 // Gives the lines their programs and times.
 class Counting {
 public:
@@ -67,7 +80,7 @@ void read_trace(const std::string& file, const std::function<void(const TraceLin
                   fmt::format("{}: there is no such file, or it cannot be read", file));
   Counting counting(file);
   TraceLine line;
-  for (std::string text; std::getline(stream, text);) {
+  for (std::string text; next_line(stream, text, file, line.number + 1);) {
     ++line.number;
     const bool is_cut = stream.eof();  // every whole line has its end
     line.event = Json::parse(text, nullptr, false);

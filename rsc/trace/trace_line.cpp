@@ -45,6 +45,14 @@ std::string interrupt_words(const EventReader& reader) {
                      reader.behavior_name(reader.event().object));
 }
 
+// Of a behaviour of its own, it is in its own way.
+std::string denial_words(const EventReader& reader) {
+  if (!reader.interrupts_itself())
+    return fmt::format("{} has an actuator it needs", reader.behavior_name(reader.event().object));
+  return reader.is_only_rule() ? "it is still running"
+                               : "it, or another rule of its behaviour, is still running";
+}
+
 std::string rule_words(const EventReader& reader) {
   const std::string rule = reader.rule_name();
   switch (reader.event().kind) {
@@ -53,8 +61,8 @@ std::string rule_words(const EventReader& reader) {
     case EventKind::win:
       return fmt::format("{} starts its {} side", rule, side(reader));
     case EventKind::lose:
-      return fmt::format("{} does not start its {} side: {} has an actuator it needs", rule,
-                         side(reader), reader.behavior_name(reader.event().object));
+      return fmt::format("{} does not start its {} side: {}", rule, side(reader),
+                         denial_words(reader));
     case EventKind::interrupt:
       return interrupt_words(reader);
     case EventKind::finished:
@@ -166,8 +174,18 @@ std::string trace_words(const link::Event& event, const TraceNames& names) {
   return other_words(reader);
 }
 
+// A text of the program may hold what a terminal obeys.
 std::string trace_line(const link::Event& event, const TraceNames& names) {
-  return fmt::format("{}  {}", seconds_text(event.time_us, 4), trace_words(event, names));
+  constexpr char kDelete = 0x7F;
+  std::string line = seconds_text(event.time_us, 4) + "  ";
+  for (const char c : trace_words(event, names)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < ' ' || c == kDelete)
+      line += fmt::format("\\x{:02x}", byte);
+    else
+      line += c;
+  }
+  return line;
 }
 
 }  // namespace robosync::tool

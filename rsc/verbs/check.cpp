@@ -96,6 +96,12 @@ public:
     if (result.diagnostics.errors() > 0) throw Failure(Exit::program, "");
   }
 
+  // One that cannot be read is not one without mistakes.
+  void note_failure(const std::string& file, const Failure& failure) {
+    if (*failure.what() != '\0')
+      report_["not_checked"].push_back({{"file", file}, {"why", failure.what()}});
+  }
+
   // When all files have been looked at.
   void finish() const {
     if (options_.format == Report::json) std::cout << report_.dump() << '\n';
@@ -111,8 +117,14 @@ private:
 
 void check(const CheckOptions& options) {
   Checker checker(options);
-  const Exit exit =
-      for_each_file(options.files, [&](const std::string& file) { checker.check(file); });
+  const Exit exit = for_each_file(options.files, [&](const std::string& file) {
+    try {
+      checker.check(file);
+    } catch (const Failure& failure) {
+      checker.note_failure(file, failure);
+      throw;
+    }
+  });
   checker.finish();
   if (exit != Exit::fine) throw Failure(exit, "");
 }

@@ -62,6 +62,7 @@ void compile(const OutputOptions& options) {
   const std::string output = output_name(options);
   compiler::Result result = compile_file(options.file, options.how);
   std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+  print_json_errors(result, options.how);
   if (result.diagnostics.errors() > 0) {
     throw Failure(Exit::program, fmt::format("{}: {}; nothing was written", options.file,
                                              summary(result.diagnostics)));
@@ -87,6 +88,7 @@ void add_compile(Options& options) {
   add_seed_option(options, asked->how.seed);
   add_format_option(options, asked->format);
   options.runs([asked] {
+    asked->how.json = asked->format == Format::json;
     asked->how.source_lines = !asked->strip;
     asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;
     compile(*asked);

@@ -91,6 +91,7 @@ void explain_file(const ExplainOptions& options) {
   diagnostics.finish();
   std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr());
   if (diagnostics.errors() > 0) {
+    if (options.format == Format::json) std::cout << compiler::render_json(diagnostics, sources);
     throw Failure(Exit::program, fmt::format("{}: {}", options.what, summary(diagnostics)));
   }
   const std::string text = explain::program_text(program, sources, robot ? &*robot : nullptr);

@@ -39,7 +39,7 @@ public:
   void set(const std::string& path, std::string text) { mended_[path] = std::move(text); }
   void write() const {
     for (const auto& [path, text] : mended_)
-      write_output(path, std::as_bytes(std::span(text)));
+      write_edited(path, std::as_bytes(std::span(text)));
   }
 
 private:

@@ -52,7 +52,7 @@ bool format_file(const std::string& name, bool check) {
   if (!result) return false;
   if (*result == text) return true;
   std::cout << name << '\n';
-  if (!check) write_output(name, std::as_bytes(std::span(*result)));
+  if (!check) write_edited(name, std::as_bytes(std::span(*result)));
   return !check;
 }
 

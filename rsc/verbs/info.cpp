@@ -112,9 +112,9 @@ std::string buses_text(const Buses& buses) {
   return text;
 }
 
-void print_json(const link::HelloReply& board, std::span<const std::byte> image, const Past& past,
-                const Buses& buses, const link::Kept& kept, const link::Authority& owner,
-                const std::vector<link::ThreadInfo>& threads) {
+void print_board_json(const link::HelloReply& board, std::span<const std::byte> image,
+                      const Past& past, const Buses& buses, const link::Kept& kept,
+                      const link::Authority& owner, const std::vector<link::ThreadInfo>& threads) {
   Json report{{"board", board_json(board, image)}, {"status", status_json(past)}};
   report["owner"] = owner_json(owner);
   report["kept"] = keeping_json(kept);
@@ -163,7 +163,7 @@ void info(const std::string& port, Format format) {
   const Buses buses(image, session.client.devices());
   const link::Kept kept = session.client.kept();
   const link::Authority owner = session.client.authority();
-  format == Format::json ? print_json(session.board, image, past, buses, kept, owner, threads)
+  format == Format::json ? print_board_json(session.board, image, past, buses, kept, owner, threads)
                          : print_human(session.board, image, past, buses, kept, owner, threads);
 }
 

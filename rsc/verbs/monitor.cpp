@@ -39,8 +39,7 @@ std::unique_ptr<Viewer> view_of(const MonitorOptions& options) {
 }
 
 void monitor(const MonitorOptions& options) {
-  for (const std::string& output : {options.record, options.html})
-    if (!output.empty()) check_output(output, {options.upload});
+  check_outputs({options.record, options.html}, {options.upload});
   const Place place{options.port, options.key};
   auto session = open_session(place);
   const std::unique_ptr<Viewer> view = view_of(options);

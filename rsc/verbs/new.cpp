@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "rsc/escaped.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/modules/texts.hpp"
 #include "rsc/output.hpp"
@@ -87,12 +88,22 @@ std::string_view purpose_of(const TemplateFile& file, const Template& robot) {
   return file.name == robot.scenario ? "what happens to it in `rsc run`" : "recorded readings";
 }
 
+// As a shell reads it as one name.
+std::string in_shell(const std::string& folder) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+,:@%-";
+  const std::string dash = folder.starts_with('-') ? "-- " : "";
+  if (folder.find_first_not_of(kPlain) == std::string::npos) return dash + folder;
+  return dash + "'" + escaped(folder, {{'\'', "'\\''"}}) + "'";
+}
+
 void report(const std::string& folder, const Template& robot) {
   std::cout << fmt::format("{} is a robot that {}.\n", folder, robot.summary);
   for (const TemplateFile& file : robot.files)
     std::cout << fmt::format("  {:<16}{}\n", file.name, purpose_of(file, robot));
   std::cout << "Go on with\n";
-  if (fs::path(folder).lexically_normal() != ".") std::cout << fmt::format("  cd {}\n", folder);
+  if (fs::path(folder).lexically_normal() != ".")
+    std::cout << fmt::format("  cd {}\n", in_shell(folder));
   std::cout << fmt::format(
       "  rsc check robot.rsl\n  rsc run robot.rsl --scenario {}\n  rsc test robot.rsl\n",
       robot.scenario);
@@ -152,12 +163,12 @@ void report_module(const std::string& folder, const std::string& name) {
       "  robot.rsl        uses what it puts out, and tests that\n"
       "  pulse.json       a recording of a pulse, made up: pulse.csv\n"
       "Go on with\n"
-      "  cd {0}\n"
+      "  cd {2}\n"
       "  rsc module check modules/{1}.c\n"
       "  cmake -B build && cmake --build build\n"
       "  rsc run robot.rsl --scenario pulse.json\n"
       "  rsc test robot.rsl\n",
-      folder, name);
+      folder, name, in_shell(folder));
 }
 
 void make_module(const NewOptions& options) {

@@ -1,10 +1,13 @@
 // rsc replay T.jsonl [--program FILE [--config FILE]] [--format human|json]
 #include "rsc/trace/replay.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <iostream>
 #include <memory>
-#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -33,14 +36,8 @@ RecordedRun recording_of(const ReplayOptions& options) {
   if (run.programs.empty())
     throw Failure(Exit::program,
                   options.file + ": no program begins in it; record from before it is uploaded on");
-  if (!options.program.empty()) {
-    const std::vector<std::byte> image =
-        without_source_lines(load_program(options.program, options.how));
-    for (RecordedProgram& one : run.programs)
-      if (one.image.empty()) one.image = image;
-  }
   for (const RecordedProgram& one : run.programs)
-    if (one.image.empty())
+    if (one.image.empty() && options.program.empty())
       throw Failure(Exit::usage,
                     fmt::format("{}:{}: the program that begins here is not in it: name "
                                 "it with --program, or record with --record",
@@ -48,12 +45,31 @@ RecordedRun recording_of(const ReplayOptions& options) {
   return run;
 }
 
+// That of --program runs in place of all that were recorded.
+std::vector<std::byte> image_of(const ReplayOptions& options) {
+  if (options.program.empty()) return {};
+  return without_source_lines(load_program(options.program, options.how));
+}
+
+void print_program(const ReplayOptions& options, const RecordedProgram& recorded,
+                   std::span<const std::byte> image, const Replayed& replayed) {
+  if (options.program.empty()) return;
+  std::string_view what = "ran in place of the program that was recorded";
+  if (recorded.image.empty()) what = "ran; which program was recorded is not known";
+  if (std::ranges::equal(image, recorded.image)) what = "is the program that was recorded";
+  std::cout << fmt::format("  {} {}\n", options.program, what);
+  if (!replayed.unrecorded.empty())
+    std::cout << fmt::format("  it reads {}, which was not recorded and is unknown to it\n",
+                             fmt::join(replayed.unrecorded, ", "));
+}
+
 void print_human(const ReplayOptions& options, std::size_t number, const RecordedProgram& recorded,
-                 const Replayed& replayed) {
+                 std::span<const std::byte> image, const Replayed& replayed) {
   std::cout << fmt::format("program {}: {} events, {} of them commands, {}, until {}\n", number,
                            replayed.events, replayed.commands,
                            replayed.difference ? "then a difference" : "the same as recorded",
                            seconds_text(replayed.until_us));
+  print_program(options, recorded, image, replayed);
   if (!recorded.gap.empty())
     std::cout << fmt::format("  from there on the recording has a gap: {}\n", recorded.gap);
   if (!replayed.difference) return;
@@ -65,7 +81,8 @@ void print_human(const ReplayOptions& options, std::size_t number, const Recorde
   std::cout << fmt::format("  replayed  {}\n", shown(replayed.difference->replayed));
 }
 
-Json json_of(const RecordedProgram& recorded, const Replayed& replayed) {
+Json json_of(const RecordedProgram& recorded, std::span<const std::byte> image,
+             const Replayed& replayed) {
   Json report{{"line", recorded.line},
               {"events", replayed.events},
               {"commands", replayed.commands},
@@ -75,6 +92,10 @@ Json json_of(const RecordedProgram& recorded, const Replayed& replayed) {
   const auto parsed = [](const std::string& line) {
     return line.empty() ? Json(nullptr) : Json::parse(line);
   };
+  if (!image.empty()) {
+    report["in_its_place"] = !std::ranges::equal(image, recorded.image);
+    report["unrecorded"] = replayed.unrecorded;
+  }
   if (replayed.difference)
     report["difference"] = {{"line", replayed.difference->line},
                             {"recorded", parsed(replayed.difference->recorded)},
@@ -84,15 +105,16 @@ Json json_of(const RecordedProgram& recorded, const Replayed& replayed) {
 
 void replay_all(const ReplayOptions& options) {
   const RecordedRun run = recording_of(options);
+  const std::vector<std::byte> image = image_of(options);
   Json reports = Json::array();
   std::size_t differing = 0;
   for (std::size_t i = 0; i < run.programs.size(); ++i) {
-    const Replayed replayed = replay(run.programs[i], options.file);
+    const Replayed replayed = replay(run.programs[i], options.file, image);
     differing += replayed.difference ? 1 : 0;
     if (options.format == Format::json)
-      reports.push_back(json_of(run.programs[i], replayed));
+      reports.push_back(json_of(run.programs[i], image, replayed));
     else
-      print_human(options, i + 1, run.programs[i], replayed);
+      print_human(options, i + 1, run.programs[i], image, replayed);
   }
   if (options.format == Format::json)
     std::cout << Json{{"programs", reports}, {"not_replayed", run.loose}}.dump() << '\n';
@@ -111,7 +133,7 @@ void add_replay(Options& options) {
   options.argument("FILE", asked->file, "of --record, or a trace together with --program",
                    Options::Need::required);
   options.option("--program", "FILE", asked->program,
-                 "what ran in a trace that has no program in it (.rsl or .rsb)");
+                 "runs in place of what was recorded (.rsl or .rsb); a trace has no program in it");
   add_compile_options(options, asked->how);
   add_format_option(options, asked->format);
   options.runs([asked] { replay_all(*asked); });

@@ -1,5 +1,6 @@
 // rsc run FILE|X.rsb [--scenario S.json] [--duration 10s] [--trace T.jsonl] [--record R.jsonl] [--html OUT.html]
 //         [--watch] [--all] [--kept FILE] [--fresh] [--config FILE] [-O0] [--seed N]
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -25,6 +26,7 @@
 #include "rsc/trace/digest.hpp"
 #include "rsc/trace/replay_file.hpp"
 #include "rsc/trace/scenario.hpp"
+#include "rsc/trace/time_units.hpp"
 #include "rsc/trace/trace_format.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
@@ -34,6 +36,7 @@ namespace robosync::tool {
 namespace {
 
 constexpr std::uint64_t kDefaultDurationUs = 10'000'000;
+constexpr std::uint64_t kLongestUnaskedUs = std::uint64_t{3600} * 1'000'000;
 
 struct RunOptions {
   std::string file, scenario, trace, record, html, kept;
@@ -45,9 +48,22 @@ struct RunOptions {
   Format format = Format::human;
 };
 
+// To the last reading, where nobody says how long.
 std::uint64_t duration_us(const RunOptions& options, const Scenario& scenario) {
   if (options.duration) return static_cast<std::uint64_t>(options.duration->count()) * 1000;
-  return scenario.duration_us.value_or(kDefaultDurationUs);
+  if (scenario.duration_us) return *scenario.duration_us;
+  const std::uint64_t last_us = scenario.stimuli.empty() ? 0 : scenario.stimuli.back().at_us;
+  return std::clamp(last_us, kDefaultDurationUs, kLongestUnaskedUs);
+}
+
+// Whoever names a --duration knows it.
+void note_what_is_late(const RunOptions& options, const Scenario& scenario, std::uint64_t end_us) {
+  const auto late = std::ranges::upper_bound(scenario.stimuli, end_us, {}, &Stimulus::at_us);
+  const auto count = scenario.stimuli.end() - late;
+  if (options.duration || count == 0) return;
+  std::cerr << fmt::format(
+      "{}: note: the run ends at {}: {} of {} readings come later and do nothing\n",
+      options.scenario, seconds_text(end_us), count, scenario.stimuli.size());
 }
 
 std::vector<std::string> inputs_of(const RunOptions& options, const Program& program,
@@ -111,8 +127,7 @@ void run(const RunOptions& options) {
   show_notes(scenario);
 
   Kept kept(program, options.file, options.kept, options.fresh);
-  for (const std::string& output : {options.trace, options.record, options.html})
-    if (!output.empty()) check_output(output, inputs_of(options, program, kept));
+  check_outputs({options.trace, options.record, options.html}, inputs_of(options, program, kept));
 
   std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
   kept.put_into(uploaded);
@@ -127,6 +142,7 @@ void run(const RunOptions& options) {
   for (const Stimulus& stimulus : scenario.stimuli)
     simulator.feed(stimulus.at_us, stimulus.channel, stimulus.value);
   const std::uint64_t end_us = duration_us(options, scenario);
+  note_what_is_late(options, scenario, end_us);
   simulator.run_until(end_us);
   output.write(end_us, uploaded);
 }
@@ -167,7 +183,8 @@ void add_run(Options& options) {
   auto asked = std::make_shared<RunOptions>();
   options.argument("FILE", asked->file, "program (.rsl) or image (.rsb)", Options::Need::required);
   options.option("--scenario", "S.json", asked->scenario, "what the sensors measure, when");
-  add_duration_option(options, "--duration", asked->duration, "else the scenario's, else 10s");
+  add_duration_option(options, "--duration", asked->duration,
+                      "else the scenario's, else 10s or to its last reading");
   options.option("--trace", "T.jsonl", asked->trace, "write the trace as JSON lines");
   options.option("--record", "R.jsonl", asked->record, "write it down for rsc replay");
   options.option("--html", "OUT.html", asked->html,
@@ -182,7 +199,10 @@ void add_run(Options& options) {
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_format_option(options, asked->format);
-  options.runs([asked] { asked->watch ? run_again_and_again(*asked) : run(*asked); });
+  options.runs([asked] {
+    asked->how.json = asked->format == Format::json;
+    asked->watch ? run_again_and_again(*asked) : run(*asked);
+  });
 }
 
 }  // namespace robosync::tool

@@ -36,6 +36,7 @@ struct TestOptions {
 struct Tally {
   std::size_t passed = 0, failed = 0;
   Json tests = Json::array();
+  Json diagnostics = Json::array();  // of programs that are wrong
 };
 
 // Prints one test after the other, as they end.
@@ -133,6 +134,9 @@ void test_file(const std::string& file, const TestOptions& options, Tally& tally
   compiler::Result compiled = compile_file(file, options.how);
   std::cerr << compiler::render_human(compiled.diagnostics, compiled.sources, color_on_stderr());
   if (compiled.diagnostics.errors() > 0) {
+    const Json wrong = Json::parse(compiler::render_json(compiled.diagnostics, compiled.sources));
+    for (const Json& one : wrong.at("diagnostics"))
+      tally.diagnostics.push_back(one);
     throw Failure(Exit::program,
                   fmt::format("{}: {}; no test was run", file, summary(compiled.diagnostics)));
   }
@@ -150,7 +154,10 @@ void test(const TestOptions& options) {
   const Exit exit = for_each_file(
       options.files, [&](const std::string& file) { test_file(file, options, tally); });
   if (options.format == Format::json) {
-    const Json report{{"tests", tally.tests}, {"passed", tally.passed}, {"failed", tally.failed}};
+    const Json report{{"tests", tally.tests},
+                      {"passed", tally.passed},
+                      {"failed", tally.failed},
+                      {"diagnostics", tally.diagnostics}};
     std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   } else if (exit == Exit::fine || tally.passed + tally.failed > 0) {
     std::cout << fmt::format("{} passed, {} failed\n", tally.passed, tally.failed);

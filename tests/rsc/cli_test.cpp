@@ -102,7 +102,41 @@ TEST_CASE("an option that does not know a word says what it knows") {
   CHECK_THAT(test::rsc({"check", "robot.rsl", "--format", "yaml"}).err,
              Contains("--format is human or json or sarif, not `yaml`"));
   CHECK_THAT(test::rsc({"dump", "robot.rsl", "-O3"}).err, Contains("-O is 0 or 1, not `3`"));
-  CHECK_THAT(test::rsc({"upload", "robot.rsl", "--port"}).err, Contains("PORT missing"));
+  CHECK_THAT(test::rsc({"upload", "robot.rsl", "--port"}).err,
+             Contains("--port needs its PORT behind it"));
+  CHECK_THAT(test::rsc({"run", "robot.rsl", "--seed", "1", "--seed", "2"}).err,
+             Contains("--seed may be there once only"));
+}
+
+TEST_CASE("an option in front of the verb is told where it belongs") {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"--format", "json", "check", "robot.rsl"}, {"-v"}}) {
+    const Outcome outcome = test::rsc(arguments);
+    CHECK(outcome.exit == 2);
+    CHECK_THAT(outcome.err, Contains("`" + arguments[0] + "` stands where a verb does"));
+  }
+  CHECK(test::rsc({"--version"}).exit == 0);
+  CHECK(test::rsc({"--help"}).exit == 0);
+}
+
+TEST_CASE("an option that is given nothing is refused") {
+  const InFolder here;
+  for (const char* option : {"--record", "--trace", "--html", "--scenario", "--config"}) {
+    const Outcome outcome = test::rsc({"run", "robot.rsl", option, ""});
+    CAPTURE(option, outcome.err);
+    CHECK(outcome.exit == 2);
+    CHECK_THAT(outcome.err, Contains(std::string(option) + ": it is given nothing"));
+  }
+}
+
+TEST_CASE("- is stdin for the verbs that say so, and no output") {
+  const InFolder here;
+  for (const char* verb : {"run", "test", "explain", "compile", "dump", "fix"}) {
+    const Outcome outcome = test::rsc({verb, "-"});
+    CAPTURE(verb, outcome.err);
+    CHECK(outcome.exit == 3);
+    CHECK_THAT(outcome.err, Contains("only rsc check and rsc fmt read stdin"));
+  }
 }
 
 TEST_CASE("a file that is missing is exit 3 and named") {

@@ -1,8 +1,10 @@
 // rsc fmt: which files it writes, which stay as they are, and how it ends.
 #include <cstdlib>
+#include <filesystem>
 
 #include <catch2/catch.hpp>
 
+#include "tests/rsc/image.hpp"
 #include "tests/rsc/process.hpp"
 
 using namespace robosync;
@@ -46,6 +48,22 @@ TEST_CASE("a program with a mistake stays as it is, and the others are written")
   CHECK_THAT(outcome.err, Contains("error[") && Contains("it stays as it is"));
   CHECK(folder.read("wrong.rsl") == "WHEN touch LEVEL<\n");
   CHECK(folder.read("plain.rsl") == kStyled);
+}
+
+TEST_CASE("fmt and fix change the file that a link leads to") {
+  const test::RobotFolder robot;
+  std::filesystem::create_symlink("robot.rsl", robot.path("link.rsl"));
+  const auto still_one = [&](const std::string& text) {
+    CHECK(robot.read("robot.rsl") == text);
+    CHECK(std::filesystem::is_symlink(robot.path("link.rsl")));
+  };
+  robot.write("robot.rsl", kPlain);
+  CHECK(test::rsc({"fmt", robot.path("link.rsl")}).exit == 0);
+  still_one(kStyled);
+  robot.write("robot.rsl", "WHEN tuoch LEVEL < 3\nDO\n  LOG \"x\"\nEND\n");
+  const Outcome outcome = test::rsc({"fix", robot.path("link.rsl")});
+  CAPTURE(outcome.out, outcome.err);
+  still_one(kStyled);
 }
 
 TEST_CASE("- reads stdin and writes stdout") {

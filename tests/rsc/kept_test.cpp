@@ -89,12 +89,18 @@ TEST_CASE("an image, --fresh, --kept, and a TEST") {
   CHECK(robot.kept("mine.json").at("visits") == "1");
 }
 
+TEST_CASE("a person may write a number without quotes") {
+  const Visit robot;
+  robot.write("robot.kept.json", R"({"kept": {"visits": 6, "nearest": "20cm"}})");
+  CHECK_THAT(robot.run(robot.program).out, Contains("visit 7 20cm"));
+}
+
 TEST_CASE("what cannot be read is left as it is") {
   const Visit robot;
   const std::string half = R"({"kept": {"visi)";
   for (const std::string& text :
        {half, std::string(), std::string("[1]"), std::string(R"({"sensors": []})"),
-        std::string(R"({"kept": {"visits": 3}})"), std::string(R"({"kept": {}, "more": 1})")}) {
+        std::string(R"({"kept": {"visits": true}})"), std::string(R"({"kept": {}, "more": 1})")}) {
     robot.write("robot.kept.json", text);
     for (const bool fresh : {false, true}) {
       const Outcome outcome = robot.run(

@@ -61,6 +61,14 @@ TEST_CASE("a folder that cannot be made, or written to, is named") {
   CHECK(folder.files() == 1);
 }
 
+TEST_CASE("the folder is shown as a shell reads it") {
+  const Folder folder;
+  const std::string blank = folder.path("my robot's"), dash = folder.path("d");
+  CHECK_THAT(test::rsc({"new", blank}).out,
+             Contains("  cd '" + folder.path("my robot'\\''s") + "'\n"));
+  CHECK_THAT(test::rsc({"new", "--module", dash}).out, Contains("  cd " + dash + "\n"));
+}
+
 TEST_CASE("an unknown template is answered with the known ones") {
   const Folder folder;
   const Outcome outcome = test::rsc({"new", folder.path("robot"), "--template", "kompanion"});

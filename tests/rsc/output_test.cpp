@@ -1,6 +1,7 @@
 // What verbs write: never onto what they read, never half, and into devices and pipes as they are.
 #include "rsc/output.hpp"
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -88,6 +89,53 @@ TEST_CASE("a module and an image that is run are inputs too") {
   const std::string before = read_all(image);
   refuses(robot, {"run", image, "--trace", image}, 2, "robot.rsb is an input");
   CHECK(read_all(image) == before);
+}
+
+TEST_CASE("what a person has written is no output, whatever verb is asked") {
+  const RobotFolder robot;
+  const std::string trace = robot.path("t.jsonl");
+  REQUIRE(test::rsc({"run", robot.program, "--trace", trace}).exit == 0);
+  const std::vector<std::array<std::string, 3>> kept = {
+      {"visit.json", R"({"duration": "1s", "stimuli": []})", "a scenario"},
+      {"visit.csv", "\xEF\xBB\xBFtime (s),touch.LEVEL\n0,1\n", "a recording in CSV"},
+      {"old.kept.json", R"({"kept": {"visits": "4"}})", "a file of kept numbers"},
+      {"old.json", R"({"actuators": []})", "the configuration of a robot"},
+      {"old.rsl", "# mine\n", "a program"}};
+  for (const auto& [name, text, what] : kept) {
+    const std::string file = robot.write(name, text);
+    refuses(robot, {"trace", "convert", trace, "--to", "perfetto", "-o", file}, 2, what);
+    refuses(robot, {"run", robot.program, "--html", file}, 2, "nothing was written");
+    CHECK(robot.read(name) == text);
+    fs::remove(file);
+  }
+  // What rsc has made it makes again.
+  for (const char* const name : {"a.json", "a.jsonl", "a.csv"})
+    for (const char* const to : {"perfetto", "csv", "vcd"})
+      CHECK(test::rsc({"trace", "convert", trace, "--to", to, "-o", robot.path(name)}).exit == 0);
+  for (int i = 0; i < 2; ++i)
+    CHECK(test::rsc({"run", robot.program, "--trace", robot.path("b.json")}).exit == 0);
+}
+
+TEST_CASE("nothing is written where it would be taken for a configuration") {
+  const RobotFolder robot;
+  const std::string quiz = robot.write("quiz.rsl", "AT START DO\n  LOG \"x\"\nEND\n");
+  const std::string taken = "because of its name";
+  for (const char* const option : {"--trace", "--record", "--html"})
+    refuses(robot, {"run", quiz, option, robot.path("quiz.json")}, 2, taken);
+  refuses(robot, {"compile", quiz, "-o", robot.path("quiz.json")}, 2, taken);
+  fs::create_directory(robot.path("other"));
+  refuses(robot, {"run", quiz, "--trace", robot.path("other/robot.json")}, 2, taken);
+  CHECK(test::rsc({"check", quiz}).exit == 0);
+}
+
+TEST_CASE("two outputs are two files") {
+  const RobotFolder robot;
+  const std::string file = robot.path("same.jsonl");
+  refuses(robot, {"run", robot.program, "--trace", file, "--record", robot.path("./same.jsonl")}, 2,
+          "is named for two outputs");
+  CHECK(test::rsc({"run", robot.program, "--trace", "/dev/null", "--record", "/dev/null"}).exit ==
+        0);
+  refuses(robot, {"run", robot.program, "--trace", "-"}, 2, "is no output, /dev/stdout is");
 }
 
 TEST_CASE("a folder is no output") {

@@ -78,6 +78,80 @@ TEST_CASE("the configuration: --config, else STEM.json, else robot.json") {
   CHECK(test::rsc({"check", program, "--config", folder.path("none.json")}).exit == 3);
 }
 
+TEST_CASE("a scenario or a trace with the name of a configuration is named") {
+  const RobotFolder robot;
+  const std::string quiz = robot.write("quiz.rsl", "AT START DO\n  LOG \"x\"\nEND\n");
+  const std::vector<std::pair<std::string, std::string>> others = {
+      {R"({"duration": "1s"})", "is a scenario"},
+      {R"({"t_us":0,"step":1,"event":"activated"})", "is a trace"},
+      {R"({"traceEvents": []})", "is a trace for Perfetto"},
+      {R"({"kept": {}})", "is a file of kept numbers"}};
+  for (const auto& [text, what] : others) {
+    robot.write("quiz.json", text);
+    for (const char* const verb : {"check", "run", "compile", "test"}) {
+      const Outcome outcome = test::rsc({verb, quiz});
+      CAPTURE(verb, outcome.err);
+      CHECK(outcome.exit == 1);
+      CHECK_THAT(outcome.err, Contains("quiz.json " + what +
+                                       ", and was taken for the "
+                                       "configuration of") &&
+                                  Contains("because of its name") && Contains("--config FILE"));
+    }
+    CHECK(test::rsc({"check", quiz, "--config", robot.path("robot.json")}).exit == 0);
+  }
+}
+
+TEST_CASE("--format json says what is wrong, whatever the verb") {
+  const RobotFolder robot;
+  const std::string wrong =
+      robot.write("robot.rsl", "WHEN tuoch LEVEL < 3\nDO\n  LOG \"x\"\nEND\n");
+  for (const char* const verb : {"check", "run", "compile", "test"}) {
+    const Outcome outcome = test::rsc({verb, wrong, "--format", "json"});
+    CAPTURE(verb, outcome.out, outcome.err);
+    CHECK(outcome.exit == 1);
+    const json report = json::parse(outcome.out);
+    CHECK(report.at("diagnostics").at(0).at("code") == "E0501");
+  }
+  robot.write("robot.rsl", "WHEN touch LEVEL <\n");
+  Outcome outcome = test::rsc({"explain", wrong, "--format", "json"});
+  CHECK(outcome.exit == 1);
+  CHECK(json::parse(outcome.out).at("errors") > 0);
+  outcome = test::rsc({"check", robot.path("none.rsl"), "--format", "json"});
+  CHECK(outcome.exit == 3);
+  CHECK_THAT(json::parse(outcome.out).at("not_checked").at(0).at("why").get<std::string>(),
+             Contains("cannot read"));
+}
+
+// What a terminal obeys is shown, not sent.
+TEST_CASE("run shows control characters of a text as what they are") {
+  const RobotFolder robot;
+  robot.write("robot.rsl", "AT START DO\n  LOG \"\x1B]0;title\x07\"\nEND\n");
+  const Outcome outcome = test::rsc({"run", robot.program});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("log: \\x1b]0;title\\x07"));
+}
+
+TEST_CASE("a scenario without a duration goes on to its last reading, and late ones are noted") {
+  const RobotFolder robot;
+  const auto run = [&](const std::string& duration, const std::vector<std::string>& more) {
+    const std::string scenario = robot.write("visit.json", "{" + duration + R"("stimuli": [
+      {"at": "1s", "sensor": "touch", "value": 5}, {"at": "60s", "sensor": "touch", "value": 2}]})");
+    std::vector<std::string> arguments = {"run", robot.program, "--scenario", scenario};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return test::rsc(arguments);
+  };
+  const std::string note = "the run ends at 2.000 s: 1 of 2 readings come later and do nothing";
+  Outcome outcome = run("", {});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK_THAT(outcome.out, Contains("60.000 s  left_arm MOVE SLOWLY TO 90deg"));
+  CHECK_THAT(outcome.err, !Contains("come later"));
+  outcome = run(R"("duration": "2s", )", {});
+  CHECK_THAT(outcome.out, !Contains("left_arm"));
+  CHECK_THAT(outcome.err, Contains("visit.json: note: " + note));
+  CHECK_THAT(run("", {"--duration", "2s"}).err, !Contains("come later"));
+}
+
 TEST_CASE("compile writes the image and says its size") {
   const RobotFolder robot;
   Outcome outcome = test::rsc({"compile", robot.program});

@@ -120,6 +120,70 @@ TEST_CASE("a trace is replayed with the program that it was made of") {
   CHECK_THAT(outcome.err, Contains("this reading is not of the program"));
 }
 
+TEST_CASE("--program runs in place of the program that was recorded, and the answer says so") {
+  const Recorded robot;
+  const std::string recording = robot.read("r.jsonl");
+  Outcome outcome = robot.replay(recording, {"--program", robot.program});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("robot.rsl is the program that was recorded"));
+
+  const std::string other =
+      robot.write("other.rsl",
+                  "WHEN touch LEVEL < 2 DO MOVE left_arm SLOWLY TO 90deg END\n"
+                  "WHEN proximity DISTANCE < 20cm DO MOVE left_arm QUICKLY TO 0deg END\n");
+  outcome = robot.replay(recording, {"--program", other});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.out, Contains("then a difference") &&
+                              Contains("other.rsl ran in place of the program that was recorded"));
+  outcome = robot.replay(recording, {"--program", other, "--format", "json"});
+  CHECK(outcome.exit == 1);
+  const json program = json::parse(outcome.out).at("programs").at(0);
+  CHECK(program.at("in_its_place") == true);
+  CHECK_FALSE(program.at("difference").is_null());
+  CHECK_FALSE(json::parse(robot.replay(recording, {"--format", "json"}).out)
+                  .at("programs")
+                  .at(0)
+                  .contains("in_its_place"));
+}
+
+TEST_CASE("what only the program in the place of the recorded one reads is named") {
+  const RobotFolder robot;
+  const std::string rule = "WHEN touch LEVEL < 3 DO MOVE left_arm SLOWLY TO 90deg END\n";
+  const std::string more = rule + "WHEN proximity NOISE > 60dB DO MOVE left_arm TO 9deg END\n";
+  const Outcome run = test::rsc({"run", robot.write("less.rsl", rule), "--record",
+                                 robot.path("r.jsonl"), "--config", robot.path("robot.json")});
+  REQUIRE(run.exit == 0);
+  const Outcome outcome =
+      test::rsc({"replay", robot.path("r.jsonl"), "--program", robot.write("more.rsl", more)});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("it reads proximity.NOISE, which was not recorded"));
+}
+
+// Two rules outside a BEHAVIOR, which are called by their lines, and one takes the arm from the other.
+TEST_CASE("lines at which rules are written make no difference, what they decide does") {
+  const RobotFolder robot;
+  const std::string rules =
+      "EVERY 1s DO MOVE left_arm SLOWLY TO 90deg END\n"
+      "EVERY 1s DO MOVE left_arm SLOWLY TO 9deg END\n";
+  const auto replay = [&](const std::string& recording, const std::string& text) {
+    return test::rsc({"replay", robot.path(recording), "--program", robot.write("new.rsl", text)});
+  };
+  const Outcome run = test::rsc({"run", robot.write("old.rsl", rules), "--trace",
+                                 robot.path("t.jsonl"), "--record", robot.path("r.jsonl")});
+  REQUIRE(run.exit == 0);
+  REQUIRE_THAT(robot.read("t.jsonl"), Contains(R"("by":"the rule at line )"));
+  for (const char* recording : {"t.jsonl", "r.jsonl"}) {
+    Outcome outcome = replay(recording, "# a remark\n\n" + rules);
+    CAPTURE(recording, outcome.out, outcome.err);
+    CHECK(outcome.exit == 0);
+    outcome = replay(recording, "# a remark\nEVERY 1s DO MOVE left_arm SLOWLY TO 90deg END\n");
+    CHECK(outcome.exit == 1);
+  }
+}
+
 TEST_CASE("a recording with gaps is replayed as far as it is whole, and each program by itself") {
   const Recorded robot;
   const std::string once = robot.read("r.jsonl");

@@ -95,7 +95,8 @@ TEST_CASE("a ramp over all values does not overflow, and one of too many reading
 TEST_CASE("a wrong scenario gets one message with its line") {
   using Catch::Contains;
   using Catch::StartsWith;
-  CHECK_THAT(mistake("{\"stimuli\": [\n{]}"), StartsWith("visit.json:2: "));
+  CHECK_THAT(mistake("{\"stimuli\": [\n{]}"),
+             StartsWith("visit.json:2: this is no JSON, at column 2: "));
   CHECK_THAT(mistake("[]"), StartsWith("visit.json:1: a scenario is an object"));
   CHECK_THAT(
       mistake("{\n\"durration\": \"3s\"}"),
@@ -183,12 +184,35 @@ TEST_CASE("a wrong recording gets one message with its line") {
             .starts_with("desk.csv:2: `0` is a plain number"));
   CHECK(recording_mistake("time (s),touch.LEVEL\n0,3\n1,high\n")
             .starts_with("desk.csv:3: `high` is not a number"));
+  CHECK(recording_mistake("time (s);touch.LEVEL\n0,5;3\n")
+            .starts_with("desk.csv:2: `0,5` has a comma: a decimal point is a point"));
   CHECK(recording_mistake("time (s),touch.LEVEL\n0,3\n-1,3\n")
             .starts_with("desk.csv:3: `-1s` is negative"));
   CHECK(recording_mistake("time (s),touch.LEVEL (cm)\n0,3\n")
             .starts_with("desk.csv:2: `3cm` is a distance"));
   CHECK(recording_mistake("time (s),touch.LEVEL\n0,\"3\n1,4\n").starts_with("desk.csv:3: a quote"));
   CHECK_THROWS_AS(read_recording("", R"({"csv": "none.csv"})"), tool::Failure);
+}
+
+TEST_CASE("readings out of range, and columns with one name, are notes") {
+  using Catch::EndsWith;
+  tool::Scenario scenario = read(R"({"stimuli": [
+    {"at": "1s", "sensor": "touch", "value": 10},
+    {"at": "2s", "sensor": "touch", "value": 500}, {"at": "3s", "sensor": "touch", "value": -1},
+    {"at": "2s", "sensor": "proximity", "channel": "DISTANCE", "value": "20m"}]})");
+  REQUIRE(scenario.notes.size() == 2);
+  CHECK_THAT(scenario.notes[0],
+             EndsWith("visit.json:3: note: 500 is out of the range of touch LEVEL, 0 to 10: the "
+                      "robot reads 10"));
+  CHECK_THAT(scenario.notes[1],
+             EndsWith("visit.json:4: note: 2000cm is out of the range of "
+                      "proximity DISTANCE, 2cm to 400cm: the robot reads 400cm"));
+  scenario = read_recording("time (s),touch.LEVEL,touch LEVEL,time (s)\n0,1,2,0\n1,11,1,1\n");
+  REQUIRE(scenario.notes.size() == 3);
+  CHECK_THAT(scenario.notes[0], EndsWith("desk.csv:1: note: two columns are called `touch LEVEL`: "
+                                         "of each row the last one counts"));
+  CHECK_THAT(scenario.notes[1], Catch::Contains("`time`"));
+  CHECK_THAT(scenario.notes[2], Catch::Contains("desk.csv:3: note: 11 is out of"));
 }
 
 TEST_CASE("what the robot has and the program does not read is a note") {

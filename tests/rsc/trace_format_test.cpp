@@ -64,6 +64,8 @@ TEST_CASE("rules are named by their line and behaviour") {
   CHECK(as_words(event(EventKind::lose, rule_of(plain), named, {1})) ==
         "   1.020 s  rule at line 1 does not start its DO side: behaviour shy has an actuator it "
         "needs");
+  CHECK(as_words(event(EventKind::lose, rule_of(plain), plain, {1})) ==
+        "   1.020 s  rule at line 1 does not start its DO side: it is still running");
   CHECK(as_words(event(EventKind::interrupt, rule_of(plain), plain)) ==
         "   1.020 s  rule at line 1 gives up what it was doing");
   CHECK(as_json(event(EventKind::interrupt, rule_of(named), plain)).at("by") ==

@@ -206,6 +206,12 @@ TEST_CASE("a trace as VCD is well formed, and says when what began and ended") {
   CHECK(vcd.changes["safety.arm"].size() == 1 + trace.count("halt") + trace.count("release"));
 }
 
+TEST_CASE("bytes without an end are no trace") {
+  const Outcome outcome = test::rsc({"replay", "/dev/zero"});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("/dev/zero:1: this line has more than a million characters"));
+}
+
 TEST_CASE("rsc trace: what is no trace, and what is no format, is said") {
   const Folder folder;
   const auto convert = [](const std::string& file, const std::string& format = "csv") {
