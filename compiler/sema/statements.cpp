@@ -478,7 +478,9 @@ void Statements::restart(const ast::Command& node, Span span, ir::Block& result)
   std::vector<std::string> timers;
   for (const VariableName& one : names_.variables())
     if (one.kind == vm::VariableKind::timer) timers.emplace_back(one.name.text);
-  if (word != nullptr) did_you_mean(d, word->name.span, word->name.text, timers);
+  // Not certain: it may be the TIMER's own line that is misspelt, and conditions ask for it, too.
+  if (word != nullptr && did_you_mean(d, word->name.span, word->name.text, timers))
+    d.fixes.back().applicability = Applicability::likely;
   if (d.help.empty())
     d.helps(timers.empty() ? "declare it at the top: `TIMER idle`"
                            : "TIMERs: " + list_names(timers));

@@ -140,12 +140,13 @@ void Campaign::lay_out() {
   wire();
 }
 
-// A board drawn for it may not have its pins or its bus; what it drives there is inside the limits.
+// A board drawn for it may not have its pins, analog ones too, or its bus; what it drives there is inside the limits.
 void Campaign::wire() {
   const auto first = static_cast<std::uint16_t>(random_.below(16));
   const policy::PinLimit outputs[] = {{first, 40, 500, 2500, 0}};
   const policy::PinRange inputs[] = {{first, 40}};
-  const policy::BoardPins board{outputs, inputs, static_cast<std::uint8_t>(random_.below(3))};
+  const policy::BoardPins board{outputs, inputs, inputs,
+                                static_cast<std::uint8_t>(random_.below(3))};
   const vm::Verdict verdict = policy::judge(accepted_, board);
   if (!verdict.ok()) ++totals_.verdicts[static_cast<std::size_t>(verdict.refusal)];
   compute();

@@ -183,7 +183,7 @@ TEST_CASE("guard: a pin that both programs measure is not driven in between") {
   rings.guard.own(before);
   static_cast<void>(rings.handed());
   rings.guard.own(after);
-  CHECK(rings.handed() == Rings::Handed{{1, true}});
+  CHECK(rings.handed().empty());
 }
 
 TEST_CASE(
