@@ -12,14 +12,15 @@ constexpr unsigned kLongEnough = policy::kLinkPeriodMs / policy::kSafetyPeriodMs
 }  // namespace
 
 bool LinkShare::is_due(const kernel::Kernel& kernel) {
-  Look look;
-  look.ready = link_ != nullptr && kernel.state(*link_) == kernel::Thread::State::ready;
-  if (look.ready) {  // else nobody asks for the rest
-    look.activations = link_->activations();
-    look.run_time = kernel.run_time(*link_);
-    look.clock = kernel.clock();
+  if (link_ == nullptr || kernel.state(*link_) != kernel::Thread::State::ready) {
+    without_ = 0;  // as mostly; then nobody asks for the rest
+    last_.ready = false;
+    return false;
   }
-  return is_due(look);
+  return is_due(Look{.ready = true,
+                     .activations = link_->activations(),
+                     .run_time = kernel.run_time(*link_),
+                     .clock = kernel.clock()});
 }
 
 bool LinkShare::is_due(const Look& look) {
