@@ -12,16 +12,22 @@
 
 namespace robosync::compiler {
 
+// Inside of it, so that the column `roles` of keywords.def means nothing else, whatever a unity build puts in front of this.
+namespace role {
 namespace {
-
-using namespace role;  // the column `roles` of keywords.def
-using grammar::Grammar;
-
-constexpr Keyword table[] = {
+constexpr Keyword all[] = {
 #define KEYWORD(spelling, token, roles) {#spelling, Kinds::token, roles},
 #include "compiler/syntax/keywords.def"
 #undef KEYWORD
 };
+}  // namespace
+}  // namespace role
+
+namespace {
+
+using grammar::Grammar;
+
+constexpr auto& table = role::all;
 
 constexpr std::size_t token_kinds = Grammar::YYNTOKENS;
 using RoleTable = std::array<unsigned, token_kinds>;
@@ -36,9 +42,9 @@ constexpr RoleTable make_roles() {
   for (const Keyword& keyword : table)
     roles[number_of(keyword.kind)] = keyword.roles;
   for (std::size_t kind = Kinds::LESS; kind <= Kinds::COLON; ++kind)
-    roles[kind] = after | before;
-  roles[Kinds::CLOSE] = after;
-  roles[Kinds::OPEN] = before;
+    roles[kind] = role::after | role::before;
+  roles[Kinds::CLOSE] = role::after;
+  roles[Kinds::OPEN] = role::before;
   return roles;
 }
 
