@@ -274,7 +274,8 @@ struct Rule {
 struct Use {
   Name module;  // empty when this is no USE at all
   bool is_string = false;
-  bool is_guess = false;  // the word USE is missing: that a module of this name is not there, says nothing
+  bool is_guess =
+      false;  // the word USE is missing: that a module of this name is not there, says nothing
 };
 struct Let {
   Name name;

@@ -169,8 +169,8 @@ protected:
   const SourceFile& source_;
   std::size_t stop_, before_;
   const std::vector<TokenKind>& expected_;  // what the grammar could have gone on with
-  std::size_t begin_ = 0, end_ = 0;  // of the line
-  std::size_t statement_ = 0;        // its first token
+  std::size_t begin_ = 0, end_ = 0;         // of the line
+  std::size_t statement_ = 0;               // its first token
   Diagnostics& diagnostics_;
 };
 

@@ -233,7 +233,8 @@ std::uint32_t robosync_fault(const robosync::port::FaultEntry* entry) {
     skip_saving(*entry);
     return entry->exc_return;
   }
-  core::reg(core::kShcsr) &= ~core::kShcsrCallPending;  // it wanted to, and is not asked what any more
+  core::reg(core::kShcsr) &=
+      ~core::kShcsrCallPending;  // it wanted to, and is not asked what any more
   make_switch_safe(thread);
   return kReturnToThread;
 }

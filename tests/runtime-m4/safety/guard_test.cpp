@@ -195,7 +195,8 @@ TEST_CASE("nothing begins to move because it is halted") {
   CHECK(bench.pulse(0) == 0);  // it was never driven
   bench.guard.let_go(0b1);
   bench.guard.drive(0, 1800, 0);
-  bench.own({rests}, 0b1);  // a program that comes while all is stopped: it has a safe state of its own
+  bench.own({rests},
+            0b1);  // a program that comes while all is stopped: it has a safe state of its own
   CHECK(bench.pulse(0) == 500);
   bench.guard.drive(0, 600, 0);
   CHECK(bench.pulse(0) == 500);
