@@ -164,11 +164,11 @@ void run_again() {
 }
 
 // Where the registers of a thread that was stopped are taken to stand it leaves such that its call is
-// wait(1), and that it goes on in run_again() when it is signalled.
+// rest(1), and that it goes on in run_again() when it is signalled.
 [[gnu::naked]] void calls_with_lost_stack(void*) {
   asm volatile(
       "sub  r0, sp, #32     \n"
-      "movs r1, #0          \n"
+      "movs r1, #2          \n"
       "movs r2, #1          \n"
       "strd r1, r2, [r0]    \n"
       "ldr  r1, =%c0        \n"
