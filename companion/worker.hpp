@@ -10,13 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace robosync::companion {
+#include "companion/exit.hpp"
 
-enum class Exit {
-  over = 0,
-  asked_wrongly = 2,
-  outside = 3
-};  // asked_wrongly: the same again would not help
+namespace robosync::companion {
 
 class Failure : public std::runtime_error {
 public:

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
+#include "companion/exit.hpp"
+
 namespace robosync::tool {
 namespace {
 
@@ -16,9 +18,13 @@ constexpr milliseconds kShortestPause{500}, kLongestPause{30'000};
 constexpr milliseconds kLivesWell{30'000};  // after so long it is started again as soon as at first
 constexpr milliseconds kFirstWord{20'000};  // until it has read its model
 constexpr milliseconds kLeastPatience{3'000};
-constexpr int kPeriods = 5;       // so many without a word, and it hangs
-constexpr int kMostReads = 32;    // of what a pipe still holds after the end
-constexpr int kAskedWrongly = 2;  // an exit code (companion/worker.hpp)
+constexpr int kPeriods = 5;     // so many without a word, and it hangs
+constexpr int kMostReads = 32;  // of what a pipe still holds after the end
+
+// Did it end by itself, in this way?
+bool has_ended(int status, companion::Exit how) {
+  return WIFEXITED(status) && WEXITSTATUS(status) == static_cast<int>(how);
+}
 
 }  // namespace
 
@@ -68,9 +74,8 @@ void Worker::look(Clock::time_point now, const Accept& accept) {
 }
 
 void Worker::take_end(Clock::time_point now, int status) {
-  const bool by_itself = WIFEXITED(status);
-  is_over_ = by_itself && WEXITSTATUS(status) == 0;
-  is_given_up_ = by_itself && WEXITSTATUS(status) == kAskedWrongly;
+  is_over_ = has_ended(status, companion::Exit::over);
+  is_given_up_ = has_ended(status, companion::Exit::asked_wrongly);
   const std::string words = process_->last_words();
   if (is_over_ || is_given_up_) {
     process_.reset();

@@ -70,34 +70,47 @@ struct Changing {
   std::function<void()> act;
 };
 
+// Uploads `program` into a robot that `prepare` has made ready, again and again, and has `act` happen at another place each
+// time; then `check` looks.
+template <class Prepare, class Act, class Check>
+void at_each_place(const std::vector<std::byte>& program, Prepare prepare, Act act, Check check) {
+  unsigned last = 1;
+  for (unsigned place = 1; place <= last; ++place) {
+    CAPTURE(place);
+    Changing robot;
+    prepare(robot);
+    robot.act_at = place;
+    robot.act = [&] { act(robot.runtime); };
+    robot.upload(program);
+    last = robot.last;
+    if (last < place) break;  // it did not come
+    robot.go_on(500);
+    check(robot);
+  }
+  CHECK(last > 3);
+}
+
 }  // namespace
 
 TEST_CASE("a stop holds at whatever moment of an upload it comes") {
   const std::vector<std::byte> program = test::compile(kChangingProgram, outputs_with("coast"));
   const bool after_another = GENERATE(false, true);
   CAPTURE(after_another);
-  unsigned last = 1;
-  for (unsigned place = 1; place <= last; ++place) {
-    CAPTURE(place);
-    Changing robot;
-    if (after_another) {
-      robot.upload(program);
-      robot.go_on(2000);
-      REQUIRE((robot.moves() && robot.board.pulse(kArm) != 0));
-    }
-    robot.act_at = place;
-    robot.act = [&] { robot.runtime.stop(); };
+  const auto prepare = [&](Changing& robot) {
+    if (!after_another) return;
     robot.upload(program);
-    last = robot.last;
-    if (last < place) break;  // it did not come
-    robot.go_on(500);
-    CHECK(robot.runtime.stopped());
-    CHECK(robot.is_off());
-    robot.runtime.resume();
-    robot.go_on(500);
-    CHECK(robot.moves());
-  }
-  CHECK(last > 3);
+    robot.go_on(2000);
+    REQUIRE((robot.moves() && robot.board.pulse(kArm) != 0));
+  };
+  at_each_place(
+      program, prepare, [](Runtime& runtime) { runtime.stop(); },
+      [](Changing& robot) {
+        CHECK(robot.runtime.stopped());
+        CHECK(robot.is_off());
+        robot.runtime.resume();
+        robot.go_on(500);
+        CHECK(robot.moves());
+      });
 }
 
 TEST_CASE("a stop reaches the pins of the program that goes, at once") {
@@ -121,23 +134,18 @@ TEST_CASE("a stop reaches the pins of the program that goes, at once") {
 
 TEST_CASE("a resume holds at whatever moment of an upload it comes") {
   const std::vector<std::byte> program = test::compile(kChangingProgram, outputs_with("coast"));
-  unsigned last = 1;
-  for (unsigned place = 1; place <= last; ++place) {
-    CAPTURE(place);
-    Changing robot;
+  const auto prepare = [&](Changing& robot) {
     robot.upload(program);
     robot.go_on(1000);
     robot.runtime.stop();
     robot.go_on(10);
-    robot.act_at = place;
-    robot.act = [&] { robot.runtime.resume(); };
-    robot.upload(program);
-    last = robot.last;
-    if (last < place) break;  // it did not come
-    robot.go_on(500);
-    CHECK_FALSE(robot.runtime.stopped());
-    CHECK(robot.moves());
-  }
+  };
+  at_each_place(
+      program, prepare, [](Runtime& runtime) { runtime.resume(); },
+      [](Changing& robot) {
+        CHECK_FALSE(robot.runtime.stopped());
+        CHECK(robot.moves());
+      });
 }
 
 TEST_CASE("a program that comes while all is stopped has its own safe state") {
