@@ -12,13 +12,8 @@ constexpr unsigned kLongEnough = policy::kLinkPeriodMs / policy::kSafetyPeriodMs
 }  // namespace
 
 bool LinkShare::is_due(const kernel::Kernel& kernel) {
-  if (link_ == nullptr || kernel.state(*link_) != kernel::Thread::State::ready) {
-    without_ = 0;  // as mostly; then nobody asks for the rest
-    last_.ready = false;
-    return false;
-  }
-  return is_due(Look{.ready = true,
-                     .activations = link_->activations(),
+  if (link_ == nullptr || kernel.state(*link_) != kernel::Thread::State::ready) return false;
+  return is_due(Look{.activations = link_->activations(),
                      .run_time = kernel.run_time(*link_),
                      .clock = kernel.clock()});
 }
@@ -31,8 +26,9 @@ bool LinkShare::is_due(const Look& look) {
   return true;
 }
 
+// Who has waited in between has been activated since.
 bool LinkShare::had_nothing(const Look& look) const {
-  if (!look.ready || !last_.ready || look.activations != last_.activations) return false;
+  if (look.activations != last_.activations) return false;
   return look.run_time - last_.run_time < (look.clock - last_.clock) / policy::kLinkParts;
 }
 

@@ -14,9 +14,8 @@ namespace robosync::layers {
 
 class LinkShare {
 public:
-  // How the thread stands at a check.
+  // How the thread stands at a check at which it could run.
   struct Look {
-    bool ready = false;
     std::uint32_t activations = 0;
     std::uint32_t run_time = 0;  // both in counts of Kernel::clock(), and both wrap
     std::uint32_t clock = 0;
@@ -25,15 +24,15 @@ public:
   void watch(const kernel::Thread& link) { link_ = &link; }
   // At each check: is it the link's turn?  [a thread that outranks the program]
   bool is_due(const kernel::Kernel& kernel);
-  // … as it stands now.
+  // … at each at which its thread could run.
   bool is_due(const Look& look);
 
 private:
   bool had_nothing(const Look& look) const;
 
   const kernel::Thread* link_ = nullptr;
-  Look last_;
-  unsigned without_ = 0;  // times between two checks, in a row
+  Look last_{.activations = UINT32_MAX};  // that is, none yet
+  unsigned without_ = 0;                  // times between two checks, in a row
 };
 
 }  // namespace robosync::layers
