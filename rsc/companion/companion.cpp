@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <ranges>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -59,8 +59,9 @@ std::string find_companion_program(const std::string& module, const std::string&
     const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
     places = {here, here.parent_path() / "companion/bin"};
     const char* const path = std::getenv("PATH");
-    for (const auto part : std::views::split(std::string_view(path != nullptr ? path : ""), ':'))
-      places.emplace_back(std::string_view(part.begin(), part.end()));
+    std::istringstream parts(path != nullptr ? path : "");
+    for (std::string part; std::getline(parts, part, ':');)
+      places.emplace_back(part);
   }
   for (const fs::path& place : places)
     if (!place.empty() && access((place / name).c_str(), X_OK) == 0)
