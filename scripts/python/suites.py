@@ -44,11 +44,12 @@ def count_cases(output, ok):
     return (1, 0) if ok else (0, 1)
 
 
-def run_ctest(preset):
-    """One program more at a time than there are cores: that of rsc mostly waits."""
+def run_ctest(preset, label=None):
+    """All tests, or those with this label. One program more at a time than there are cores: that of rsc mostly waits."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
-        subprocess.run(["ctest", "--preset", preset, f"-j{CORES + 1}", "--output-junit", str(report),
+        subprocess.run(["ctest", "--preset", preset, f"-j{CORES + 1}", *(["-L", label] if label else []),
+                        "--output-junit", str(report),
                         "--test-output-size-passed", "1000000", "--quiet"],
                        cwd=ROOT, check=False)
         cases = ElementTree.parse(report).getroot().findall("testcase") if report.exists() else []
@@ -192,10 +193,11 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("suite", choices=["ctest", "unittest", "format", "tidy"])
     parser.add_argument("argument", nargs="?")
+    parser.add_argument("--label", help="ctest: only tests with this label")
     parser.add_argument("--deep", action="store_true", help="tidy: the analyzer without a limit of ours")
     wanted = parser.parse_args()
     if wanted.suite == "ctest":
-        return run_ctest(wanted.argument)
+        return run_ctest(wanted.argument, wanted.label)
     if wanted.suite == "unittest":
         return run_unittest(wanted.argument)
     return run_format() if wanted.suite == "format" else run_tidy(wanted.argument, wanted.deep)
