@@ -214,12 +214,32 @@ class Sampling(unittest.TestCase):
     def test_every_driver_that_samples(self):
         costs = paths.costs()
         for driver, said in paths.samples().items():
+            if driver == "pca9685":
+                continue  # test_a_servo_chip()
             with self.subTest(driver):
                 self.assertIn(driver, self.WIRED, "nobody measures it")
                 measured = self.worst(*self.WIRED[driver])
                 # The safety monitor's periods are those of the program, and so are the sensor's.
                 self.assertGreaterEqual(said + 2 * costs["wake_by_timer"] + costs["kMonitor"], measured)
                 self.assertLessEqual(said, LOOSEST * measured)
+
+    def test_a_servo_chip(self):
+        """Its frame, in which it is asked how it stands, and told the pulses of those of its servos that move. A tick after it their
+        own threads come."""
+        costs, servo = paths.costs(), paths.actuator_drivers()["pca9685_servo"]
+        transfer = paths.samples()["pca9685"]
+        for servos in (1, 6):
+            config = paths.robot()
+            config["actuators"] = [{"name": f"a{channel}", "type": "I2C", "address": "0x4a", "channel": channel, "enable": 36,
+                                    "device": "pca9685_servo"} for channel in range(servos)]
+            moves = "".join(f"MOVE a{servo} TO 180deg AT 100deg/s\n" for servo in range(servos))
+            ticks = run(behavior(moves), [feed(10), wait(), feed(90), wait(400)], config)
+            measured = max(ticks.ticks[100:]) - ticks.idle_tick
+            said = costs["i2c_transfer"] + 4 * costs["i2c_byte"] + servos * transfer
+            print(f"\n  a frame of a chip with {servos} servos: {measured}, said {said}")
+            around = 2 * costs["wake_by_timer"] + costs["kMonitor"] + servos * (costs["kService"] + servo["advance"])
+            self.assertGreaterEqual(said + around, measured)
+            self.assertLessEqual(said, LOOSEST * measured)
 
     def test_an_echo(self):
         """It is asked for 40 ms before its sample. The edges that follow, this board has not: tests/e2e/test_sonar.py counts them."""
@@ -258,6 +278,7 @@ class ActuatorDrivers(unittest.TestCase):
     PWM = {"type": "PWM", "pin": "3", "device": "pwm", "on_release": "hold"}
     MOTOR = {"type": "PWM", "pins": [3, 4], "device": "motor", "on_release": "hold", "limits": {"SPEED": "98%"}}
     ELSEWHERE = {"lights", "tones"}  # the reference board has none: tests/e2e/on_microbit.py
+    CHIP = {"type": "I2C", "address": "0x4a", "channel": 3, "enable": 36, "device": "pca9685_servo"}
     # Orders that take long ways through the arithmetic: long times, divisors that need more than 16 bits.
     WIRED = {
         "virtual_actuator": ({"type": "VIRTUAL"}, ["MOVE a0 TO 1% OVER 13ms", "MOVE a0 TO 1% FOR 60s"]),
@@ -276,6 +297,7 @@ class ActuatorDrivers(unittest.TestCase):
                           "MOVE a0 TO 178deg AT 66deg/s\nWAIT 200ms\nMOVE a0 TO 1deg AT 66deg/s",
                           "MOVE a0 TO 77.7deg OVER 36000s\nWAIT 77ms\nMOVE a0 TO 1.3deg OVER 36000s"]),
     }
+    WIRED["pca9685_servo"] = (CHIP, WIRED["servo"][1])
 
     def calls(self, wiring, order):
         """{call: [instructions]}; what a call calls of its own driver counts with it."""
