@@ -6,7 +6,6 @@
 // OE is high its outputs are low, as MODE2 says here: a servo without pulses is limp.
 //
 // Out of a loss of power it comes asleep, with all outputs off. So MODE1 is read in each frame.
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -39,12 +38,11 @@ constexpr std::uint32_t kOscillatorMHz = 25;
 constexpr std::uint32_t kDivider = 122;  // 25 MHz / (4096 * 50 Hz), rounded
 constexpr std::byte k50Hz{kDivider - 1};
 
-constexpr unsigned kBatch = 4;  // asked for ahead at once, where the bus works by itself
 constexpr unsigned kTries = 3;
 
 struct Sent {
   std::array<std::byte, 1 + kRegistersEach> bytes;
-  std::size_t length;
+  std::uint8_t length;
   std::span<const std::byte> all() const { return std::span(bytes).first(length); }
 };
 
@@ -79,58 +77,44 @@ void await(const ChipBus& at) {
     at.kernel.sleep_until(at.kernel.now() + kernel::kTick);
 }
 
-// One after the other. Bit i of what it gives: the chip has taken writes[i].
-std::uint8_t write_once(const ChipBus& at, std::span<const Sent> writes) {
-  if (at.board.i2c_asks_ahead()) {
-    for (const Sent& write : writes)
-      static_cast<void>(transfer(at, true, write.all(), {}));
-    await(at);
+// Where the bus works by itself, what is wanted is said, and asked about when it is done.
+[[gnu::noinline]] bool exchange(const ChipBus& at, std::span<const std::byte> out,
+                                std::span<std::byte> in, unsigned tries) {
+  const bool ahead = at.board.i2c_asks_ahead();
+  for (; tries != 0; --tries) {
+    if (ahead) {
+      static_cast<void>(transfer(at, true, out, in));
+      await(at);
+    }
+    if (transfer(at, false, out, in)) return true;
   }
-  std::uint8_t taken = 0;
-  for (std::size_t i = 0; i < writes.size(); ++i)
-    if (transfer(at, false, writes[i].all(), {})) taken |= static_cast<std::uint8_t>(1U << i);
-  return taken;
-}
-
-// What is disturbed once is said again at once: until then nobody knows what the output does. All or nothing.
-bool write(const ChipBus& at, std::span<const Sent> writes) {
-  const auto all = static_cast<std::uint8_t>((1U << writes.size()) - 1);
-  for (unsigned i = 0; i < kTries; ++i)
-    if (write_once(at, writes) == all) return true;
   return false;
 }
 
+// What is disturbed once is said again at once: until then nobody knows what the output does.
+bool write(const ChipBus& at, const Sent& sent) {
+  return exchange(at, sent.all(), {}, kTries);
+}
+
 bool read_mode(const ChipBus& at, std::byte& mode) {
-  const std::array from{kMode1};
-  if (at.board.i2c_asks_ahead()) {
-    static_cast<void>(transfer(at, true, from, std::span(&mode, 1)));
-    await(at);
-  }
-  return transfer(at, false, from, std::span(&mode, 1));
+  return exchange(at, std::span(&kMode1, 1), std::span(&mode, 1), 1);
 }
 
 // The oscillator needs 0.5 ms to come up (7.3.1): the outputs go on in the next frame at the earliest.
 bool set_up(const ChipBus& at, guard::OutputGuard& outputs, unsigned sensor) {
   for (const Sent& step : kSetUp)
-    if (!write(at, std::span(&step, 1))) return false;
+    if (!write(at, step)) return false;
   outputs.note_chip_set_up(sensor);
   return true;
 }
 
-// At most kBatch of the pulses that it lacks, from actuator `from` on; `from` is behind them then.
-bool send_some(const ChipBus& at, guard::OutputGuard& outputs, unsigned sensor, unsigned& from) {
-  std::array<guard::OutputGuard::Setpoint, kBatch> setpoints;
-  std::array<Sent, kBatch> writes{};
-  std::size_t count = 0;
-  while (count < kBatch && outputs.next_setpoint(sensor, from, setpoints[count])) {
-    writes[count] = setpoint(setpoints[count]);
-    from = setpoints[count].actuator + 1U;
-    ++count;
+// The pulses that it lacks.
+bool send_all(const ChipBus& at, guard::OutputGuard& outputs, unsigned sensor) {
+  guard::OutputGuard::Setpoint next{};
+  for (unsigned from = 0; outputs.next_setpoint(sensor, from, next); from = next.actuator + 1U) {
+    if (!write(at, setpoint(next))) return false;
+    outputs.note_setpoint(next);
   }
-  if (count == 0) from = vm::kMaxActuators;
-  if (!write(at, std::span(writes).first(count))) return false;
-  for (std::size_t i = 0; i < count; ++i)
-    outputs.note_setpoint(setpoints[i]);
   return true;
 }
 
@@ -139,15 +123,13 @@ bool send_some(const ChipBus& at, guard::OutputGuard& outputs, unsigned sensor, 
 bool serve_pca9685(const ChipBus& at, guard::OutputGuard& outputs, unsigned sensor) {
   std::byte mode{};
   if (!read_mode(at, mode)) return false;
-  if (!outputs.knows_chip(sensor) || (mode & ~kRestart) != kRuns) {
+  const bool known = outputs.knows_chip(sensor);
+  if (known && (mode & ~kRestart) != kRuns) outputs.lose_chip(sensor);
+  if (!known || (mode & ~kRestart) != kRuns) return set_up(at, outputs, sensor);
+  if (!send_all(at, outputs, sensor)) {
     outputs.lose_chip(sensor);
-    return set_up(at, outputs, sensor);
+    return false;
   }
-  for (unsigned from = 0; from < vm::kMaxActuators;)
-    if (!send_some(at, outputs, sensor, from)) {
-      outputs.lose_chip(sensor);
-      return false;
-    }
   outputs.let_chip_on(sensor);
   return true;
 }

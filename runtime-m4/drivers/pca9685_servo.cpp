@@ -5,6 +5,7 @@
 namespace robosync::drivers::pca9685_servo {
 
 kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
+  device.begin_order();
   return servo::start(device, order, now);
 }
 

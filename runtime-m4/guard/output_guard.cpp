@@ -210,7 +210,7 @@ void OutputGuard::sound(unsigned actuator, std::uint32_t hertz) {
   if (!is_free(actuator)) return;
   Slot& slot = slots_[actuator];
   if (is_on_chip(actuator)) {
-    slot.pulse = within(kOnChips, pulse_us);
+    slot.pulse = (limp_ & bit(actuator)) != 0 ? std::uint16_t{0} : within(kOnChips, pulse_us);
     return;
   }
   settle(slot, actuator, within(limits_[slot.limit], pulse_us), now);
@@ -348,6 +348,7 @@ const OutputGuard::Chip* OutputGuard::chip_of(unsigned sensor) const {
 void OutputGuard::switch_chip_off(Chip& chip) {
   board_.enable(chip.enable, false);
   chip.on = false;
+  limp_ |= chip.actuators;
   for (Mask left = chip.actuators; left != 0; left &= left - 1)
     slots_[static_cast<unsigned>(std::countr_zero(left))].pulse = 0;
 }
@@ -358,6 +359,12 @@ void OutputGuard::switch_chips_off() {
   for (unsigned c = 0; c < chip_count_; ++c)
     board_.enable(chips_[c].enable, false);
   chip_count_ = 0;
+  limp_ = 0;
+}
+
+void OutputGuard::begin_order(unsigned actuator) {
+  const auto lock = kernel_.lock();
+  limp_ &= ~bit(actuator);
 }
 
 // The others of the chip go limp as well: it has one pin.

@@ -60,6 +60,8 @@ public:
 
   // Pulse on the actuator's pin, in microseconds of the 20 ms frame; 0: off.
   void drive(unsigned actuator, std::uint32_t pulse_us, kernel::Time now);
+  // A servo on a chip has a new order: it may be driven again, if it went limp.
+  void begin_order(unsigned actuator);
   // … of one that has two pins: on its first one, or where it is negative, so long on its second one.
   void drive_either(unsigned actuator, std::int32_t pulse_us, kernel::Time now);
   // The picture on the lights (boards::Board::show()).
@@ -164,6 +166,7 @@ private:
   Mask lights_ = 0;
   Mask speaker_ = 0;
   Mask on_chips_ = 0;         // of their slots: `pin` is the channel, `target` is what the chip has
+  Mask limp_ = 0;             // … that wait for their next orders
   bool lights_stay_ = false;  // in the safe state
   std::uint8_t chip_count_ = 0;
   std::array<Chip, vm::kMaxServoChips> chips_{};

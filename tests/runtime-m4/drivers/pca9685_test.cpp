@@ -338,7 +338,10 @@ TEST_CASE("pca9685: a pulse that was not taken whole is said again at once, and 
     robot.run(40);
     CHECK(disturbances == 0);
     CHECK_FALSE(robot.is_on());
-    robot.run(1000);  // the way's later setpoints come to a chip that was set up again
+    robot.run(200);  // the way under way has ended with that
+    CHECK_FALSE(robot.is_on());
+    robot.order(11);
+    robot.run(1000);
     CHECK(robot.is_on());
     CHECK(about(robot.pulse(3), 1500));
   }
@@ -358,6 +361,23 @@ TEST_CASE("pca9685: a chip that has lost its power meanwhile is set up again, an
   robot.order(31);
   robot.run(1000);
   CHECK(about(robot.pulse(3), 1000));
+}
+
+TEST_CASE("pca9685: what is under way when the chip is lost does not go on when it is back") {
+  ChipRig robot;
+  robot.begin();
+  robot.order(21);
+  robot.run(200);
+  REQUIRE(robot.is_on());
+  robot.chip().lose_power();
+  robot.run(200);
+  CHECK_FALSE(robot.is_on());
+  robot.rig.runtime.stop();
+  robot.run(20);
+  robot.rig.runtime.resume();
+  robot.order(11);
+  robot.run(1000);
+  CHECK(robot.is_on());
 }
 
 TEST_CASE("pca9685: a chip whose thread was stopped is off, and one whose program hangs, too") {
