@@ -188,7 +188,7 @@ void SensorLayer::sample(unsigned sensor) {
 }
 
 // In each frame in which it is silent: whoever gave it an order meanwhile did so in vain, and it does not come to life with that.
-void SensorLayer::serve_chip(unsigned sensor) {
+[[gnu::noinline]] void SensorLayer::serve_chip(unsigned sensor) {
   note_contact(sensor, sampler_->serve_chip(program_->image, sensor) ? 0 : 1);
   if (units_[sensor].contact.silent()) sampler_->lose_chip(sensor);
 }

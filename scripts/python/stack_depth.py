@@ -22,6 +22,8 @@ CALLED_BY_POINTER = (
     (r"layers::ControlLayer::(start_driver|stop_driver|next_key)", r"drivers::\w+::start\("),
     (r"layers::ControlLayer::release", r"drivers::\w+::release\("),
     (r"layers::ControlLayer::start_unit", r"drivers::\w+::(advance|release)\("),  # go_on(), put_at_rest()
+    (r"layers::SensorLayer::serve_chip", r"layers::DriverSampler::(serve|lose)_chip"),
+    (r"layers::SensorLayer::sample$", r"layers::DriverSampler::sample\("),
     (r"layers::SensorLayer::|layers::ProcessingLayer::note_stops", r"layers::DriverSampler::"),  # retire()
     (r"layers::DriverSampler::", r"drivers::\w+::read\(|" + INPUTS + "|" + OUTPUTS),
     (r"layers::AlgorithmLayer::|algorithms::", MODULE),
