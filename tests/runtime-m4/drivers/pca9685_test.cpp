@@ -338,7 +338,7 @@ TEST_CASE("pca9685: a pulse that was not taken whole is said again at once, and 
     robot.run(40);
     CHECK(disturbances == 0);
     CHECK_FALSE(robot.is_on());
-    robot.run(200);  // the way under way has ended with that
+    robot.run(600);  // the way under way has ended with that
     CHECK_FALSE(robot.is_on());
     robot.order(11);
     robot.run(1000);
