@@ -191,9 +191,7 @@ void WiringReader::check_part(const Fields& fields, const Board::Part* part) {
 
 // ---- servos on a chip
 
-// Without the enable input nothing but the bus could stop them.
-ChipWiring WiringReader::read_chip(Fields& fields, const WiringType&) {
-  ChipWiring wiring;
+void WiringReader::refuse_pins(const Fields& fields) {
   for (const char* key : {"pin", "pins"})
     if (const auto* wrong = fields.find(key))
       diagnostics_.report(Code::E0205, "a servo on a chip has no `" + std::string(key) + "`")
@@ -201,6 +199,12 @@ ChipWiring WiringReader::read_chip(Fields& fields, const WiringType&) {
           .helps(
               "say `\"channel\"`, which of the chip's outputs it is, and `\"enable\"`, "
               "the pin of the board at the chip's OE");
+}
+
+// Without the enable input nothing but the bus could stop them.
+ChipWiring WiringReader::read_chip(Fields& fields, const WiringType&) {
+  ChipWiring wiring;
+  refuse_pins(fields);
   const std::string what = "a " + fields.find("device")->text;
   ServoChip chip;
   if (const auto* bus = fields.find("bus"))
@@ -223,17 +227,20 @@ ChipWiring WiringReader::read_chip(Fields& fields, const WiringType&) {
   chip.enable = static_cast<std::uint8_t>(*pin);
   wiring.channel = static_cast<std::uint16_t>(*output);
   take_chip(chip, *address, *enable);
-  OnBus& known = on_buses_[{chip.bus, chip.address}];
-  if (known.chip != chip) return wiring;
+  if (on_buses_[{chip.bus, chip.address}].chip != chip) return wiring;
   wiring.chip = chip;
-  const auto [first, added] = known.channels.emplace(wiring.channel, channel->span);
-  if (!added)
-    diagnostics_
-        .report(Code::E0207, "channel " + std::to_string(wiring.channel) + " of " + name_of(chip) +
-                                 " is used twice")
-        .label(channel->span)
-        .label(first->second, "first used here", false);
+  take_channel(chip, wiring.channel, channel->span);
   return wiring;
+}
+
+void WiringReader::take_channel(const ServoChip& chip, std::uint16_t channel, Span span) {
+  const auto [first, added] = on_buses_[{chip.bus, chip.address}].channels.emplace(channel, span);
+  if (added) return;
+  diagnostics_
+      .report(Code::E0207,
+              "channel " + std::to_string(channel) + " of " + name_of(chip) + " is used twice")
+      .label(span)
+      .label(first->second, "first used here", false);
 }
 
 // Its place and its enable pin are its own: two chips at one pin could not be stopped one without the other.

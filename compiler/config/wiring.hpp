@@ -64,6 +64,8 @@ private:
                             bool two_pins, const std::string& what);
   [[nodiscard]] Wiring read_part(const Fields& fields, const Board::Part& part);
   void take_chip(const ServoChip& chip, const json::Value& address, const json::Value& enable);
+  void refuse_pins(const Fields& fields);
+  void take_channel(const ServoChip& chip, std::uint16_t channel, Span span);
   void check_enable(const json::Value& value, std::uint16_t pin);
   std::uint16_t read_pin(const json::Value& value, std::uint16_t last = UINT16_MAX - 1);
   void read_pins(Fields& fields, bool two, const std::string& what, Wiring& wiring);
