@@ -42,7 +42,7 @@ public:
 
   TaskSet build() {
     for (unsigned s = 0; s < image_.sensors.size(); ++s)
-      add_sensor(s);
+      vm::is_servo_chip(image_.sensors[s].driver) ? add_servo_chip(s) : add_sensor(s);
     for (unsigned r = 0; r < image_.rules.size(); ++r) {
       if (work_.period_ms(r) != 0) add_rule(r);
       if (work_.held_ms(r) != 0 && !work_.is_safety(r)) add_held(r);
@@ -150,6 +150,21 @@ private:
       if ((work_.actuators(fire) >> a & 1) != 0)
         source.actuators.emplace_back(image_.string(image_.actuators[a].name));
     add_with_followers(std::move(source), rules, fire, work_.sets(fire));
+  }
+
+  // Nobody reads it, so that its thread ranks below all that behaviours need.
+  void add_servo_chip(unsigned s) {
+    source_of_sensor_.push_back(set_.sources.size());
+    const auto servos = std::ranges::count_if(image_.actuators, [&](const vm::Actuator& actuator) {
+      return vm::drives_channel(actuator.driver) && actuator.bus == s;
+    });
+    Source source;
+    source.name = image_.string(image_.sensors[s].name);
+    source.period = instructions_in_ms(vm::kServoFrameMs);
+    source.sample =
+        board_.wake_by_timer + policy::frame_cost(static_cast<std::uint32_t>(servos), board_);
+    place(source, s);
+    set_.sources.push_back(std::move(source));
   }
 
   // Its bus works by itself, from a tick before it is sampled on, and is waited for; or an echo is on its way, and it is

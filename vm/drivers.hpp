@@ -10,8 +10,9 @@ namespace robosync::vm {
 // What an actuator's driver puts out on its pin. Pulses say where to go: while they stay as they are, so does the
 // actuator. A level is power: as long as it is there, a motor runs. A picture and tones are on no pin of an actuator's own,
 // but on the lights and the speaker, which a board has once. Either way: a level on its pin or on a second one, which the
-// image has as its `bus`; the other pin is off then.
-enum class PinUse : std::uint8_t { nothing, pulses, level, picture, tones, either_way };
+// image has as its `bus`; the other pin is off then. Channel: pulses, by a servo chip, which the image has among its sensors, as
+// it is a device on a bus: `bus` says where, `pin` is the chip's channel.
+enum class PinUse : std::uint8_t { nothing, pulses, level, picture, tones, either_way, channel };
 
 constexpr PinUse pin_use(DriverId driver) {
   switch (driver) {
@@ -45,6 +46,9 @@ constexpr bool drives_lights(DriverId driver) {
 }
 constexpr bool drives_speaker(DriverId driver) {
   return pin_use(driver) == PinUse::tones;
+}
+constexpr bool drives_channel(DriverId driver) {
+  return pin_use(driver) == PinUse::channel;
 }
 // What goes on by itself as long as nobody ends it: it cannot be held in a halt.
 constexpr bool drives_on(DriverId driver) {
@@ -102,6 +106,18 @@ constexpr bool is_analog(DriverId driver) {
 constexpr bool may_be_silent(DriverId driver) {
   return is_on_i2c(driver) || is_by_echo(driver) || is_analog(driver);
 }
+
+// A chip that gives servos their pulses. It has no channels of readings: it is among the sensors so that its bus has one user
+// at a time, and that whether it answers is told. `first_input` is the pin of the board at its OE input.
+constexpr bool is_servo_chip(DriverId driver) {
+  return driver == DriverId::pca9685;
+}
+inline constexpr unsigned kChipChannels = 16;
+inline constexpr unsigned kMaxServoChips = 4;  // of a program
+inline constexpr std::uint16_t kServoFrameMs = 20;
+// Where the six address pins of a PCA9685 can put it (NXP PCA9685 Rev. 4, 7.1.1); at 0x70 all of them answer at power-up (7.1.3).
+inline constexpr std::uint16_t kFirstChipAddress = 0x40;
+inline constexpr std::uint16_t kAllChipsAddress = 0x70;
 
 // The echoes of one burst must have died away before the next one.
 inline constexpr std::uint16_t kMinEchoPeriodMs = 60;

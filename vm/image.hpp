@@ -148,7 +148,8 @@ static_assert(sizeof(ImageHeader) == 68);
 
 // Of an algorithm, `bus` says which module of the firmware it is, `address` where its parameters
 // stand in the constants, `first_input` the first of the channels that it reads, which belong to a
-// sensor before it; and of its channels `input` says which of the module's outputs each is.
+// sensor before it; and of its channels `input` says which of the module's outputs each is. Of a servo chip, which has no
+// channels, `first_input` is the pin of the board at its enable input.
 struct Sensor {
   std::uint16_t name;  // offset in the strings
   DriverId driver;
@@ -157,7 +158,7 @@ struct Sensor {
   std::uint16_t period_ms;  // between two samples; 0: only when fed
   std::uint8_t first_channel;
   std::uint8_t channel_count;
-  std::uint8_t first_input;  // of an algorithm; else 0
+  std::uint8_t first_input;  // of an algorithm, or a servo chip; else 0
   std::uint8_t reserved;
 };
 static_assert(sizeof(Sensor) == 12);

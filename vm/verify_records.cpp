@@ -27,6 +27,7 @@ struct Walk {
   std::uint32_t next_key = 0;
   std::uint32_t last_word = 0;  // of the source lines
   bool reads_pins = false;      // there is a sensor on a pin, or two
+  std::uint32_t servo_chips = 0;
 };
 
 enum class DriverKind : std::uint8_t { sensor, actuator };
@@ -98,6 +99,7 @@ bool is_of_sensor(const Image& image, std::uint32_t pin, std::size_t count) {
     const bool has_pin = echo || is_on_pin(sensor.driver) || is_analog(sensor.driver);
     if (sensor.address == pin && has_pin) return true;
     if (echo && sensor.bus == pin) return true;
+    if (is_servo_chip(sensor.driver) && sensor.first_input == pin) return true;
   }
   return false;
 }
@@ -118,6 +120,23 @@ Refusal check_analog(Walk& walk, const Sensor& sensor, std::size_t index) {
   return good_or(Refusal::bad_value, sensor.period_ms > 0 && sensor.bus == 0);
 }
 
+bool answers_at(const Sensor& sensor, const Sensor& chip) {
+  return is_on_i2c(sensor.driver) && sensor.bus == chip.bus && sensor.address == chip.address;
+}
+
+// Its enable pin and its place on the bus are its own.
+Refusal check_servo_chip(Walk& walk, const Sensor& chip, std::size_t index) {
+  walk.reads_pins = true;
+  if (++walk.servo_chips > kMaxServoChips) return Refusal::too_many;
+  if (is_of_sensor(walk.image, chip.first_input, index)) return Refusal::shared_pin;
+  for (std::size_t s = 0; s < walk.image.sensors.size(); ++s)
+    if (s != index && answers_at(walk.image.sensors[s], chip)) return Refusal::bad_value;
+  const bool place = chip.address >= kFirstChipAddress && chip.address <= kLastAddress &&
+                     chip.address != kAllChipsAddress;
+  return good_or(Refusal::bad_value,
+                 place && chip.channel_count == 0 && chip.period_ms == kServoFrameMs);
+}
+
 Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t index) {
   if (sensor.first_channel != walk.next_channel) return Refusal::bad_index;
   walk.next_channel += sensor.channel_count;
@@ -126,6 +145,7 @@ Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t index) {
   const Refusal driver = check_driver(walk, sensor.driver, DriverKind::sensor);
   if (driver != Refusal::none) return driver;
   if (sensor.driver == DriverId::algorithm) return check_algorithm(sensor);
+  if (is_servo_chip(sensor.driver)) return check_servo_chip(walk, sensor, index);
   if (sensor.first_input != 0) return Refusal::bad_value;
   if (bus_of(sensor.driver) == Bus::nothing) return Refusal::none;
   if (is_by_echo(sensor.driver)) return check_echo(walk, sensor, index);
@@ -187,13 +207,31 @@ Refusal check_output(const Walk& walk, const Actuator& actuator, std::size_t ind
   return good_or(Refusal::drives_on, !drives_on(actuator.driver) || actuator.safe != Release::hold);
 }
 
+// A channel of a chip has one owner. What takes its pulses away in a halt is the chip's enable pin, which it has once: so all of
+// a chip go limp together, or hold together, and none can be brought to rest.
+Refusal check_channel_of_chip(const Walk& walk, const Actuator& servo, std::size_t index) {
+  const Image& image = walk.image;
+  if (servo.bus >= image.sensors.size() || !is_servo_chip(image.sensors[servo.bus].driver) ||
+      servo.pin >= kChipChannels)
+    return Refusal::bad_index;
+  if (servo.safe == Release::rest) return Refusal::needs_the_bus;
+  for (const Actuator& other : image.actuators.first(index)) {
+    if (!drives_channel(other.driver) || other.bus != servo.bus) continue;
+    if (other.pin == servo.pin) return Refusal::shared_pin;
+    if (other.safe != servo.safe) return Refusal::needs_the_bus;
+  }
+  return Refusal::none;
+}
+
 Refusal check_actuator(Walk& walk, const Actuator& actuator, std::size_t index) {
   if ((actuator.verbs & ~low_bits(walk.image.verbs.size())) != 0) return Refusal::bad_index;
   const bool good = is_enumerator(actuator.on_release) && is_enumerator(actuator.safe) &&
                     is_range(actuator.min, actuator.max) && actuator.speed_limit >= 0;
   if (!good) return Refusal::bad_value;
   const Refusal driver = check_driver(walk, actuator.driver, DriverKind::actuator);
-  return driver == Refusal::none ? check_output(walk, actuator, index) : driver;
+  if (driver != Refusal::none) return driver;
+  return drives_channel(actuator.driver) ? check_channel_of_chip(walk, actuator, index)
+                                         : check_output(walk, actuator, index);
 }
 
 Refusal check_group(Walk& walk, const Group& group, std::size_t) {

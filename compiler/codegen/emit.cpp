@@ -1,12 +1,14 @@
 // Lays out records and code, fills in the header, and has the verifier check the result.
 #include "compiler/codegen/emit.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <span>
 
 #include "compiler/codegen/records.hpp"
 #include "compiler/codegen/rules.hpp"
 #include "compiler/config/boards.hpp"
+#include "vm/drivers.hpp"
 #include "vm/identity.hpp"
 #include "vm/opcode.hpp"
 #include "vm/verifier.hpp"
@@ -57,6 +59,7 @@ private:
 void Emitter::add_algorithms(const Robot& robot, const Tables& tables) {
   constants_ = rules_.pool.constants();
   for (vm::Sensor& record : records_.sensors) {
+    if (vm::is_servo_chip(record.driver)) continue;
     const std::size_t place = tables.sensor_of(record.first_channel);
     const auto& algorithm = robot.sensors[place].algorithm;
     if (!algorithm) continue;
@@ -76,7 +79,10 @@ bool Emitter::counts_fit() {
     return count <= limit;
   };
   constexpr std::size_t kMost = vm::kNoIndex - 1;
-  return fits(records_.checks.size(), UINT8_MAX, "CHECKs") &&
+  const auto chips = static_cast<std::size_t>(
+      std::ranges::count_if(records_.sensors, vm::is_servo_chip, &vm::Sensor::driver));
+  return fits(chips, vm::kMaxServoChips, "servo chips") &&
+         fits(records_.checks.size(), UINT8_MAX, "CHECKs") &&
          fits(records_.bands.size(), UINT8_MAX, "bands") &&
          fits(records_.motions.size(), UINT8_MAX, "MOTIONs") &&
          fits(records_.tracks.size(), UINT8_MAX, "columns of MOTIONs") &&

@@ -1,6 +1,9 @@
 #include "compiler/codegen/records.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "vm/drivers.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -13,6 +16,8 @@ public:
 
   Records make() {
     sensors();
+    for (const auto& [place, number] : tables_.actuators())
+      if (robot_.actuators[place].chip) servo_chip(*robot_.actuators[place].chip);
     for (const auto& [ref, number] : tables_.channels())
       channel(ref);
     for (const auto& [place, number] : tables_.actuators())
@@ -42,6 +47,7 @@ public:
 
 private:
   void sensors();
+  void servo_chip(const ServoChip& chip);
   void channel(ChannelRef ref);
   void actuator(std::size_t place);
   void variable(const ir::Variable& variable);
@@ -54,7 +60,8 @@ private:
   const Tables& tables_;
   Strings& strings_;
   Records records_;
-  std::vector<std::size_t> sensor_places_;  // in Robot::sensors, of records_.sensors
+  std::vector<std::size_t> sensor_places_;                 // in Robot::sensors, of records_.sensors
+  std::vector<std::pair<ServoChip, std::uint8_t>> chips_;  // behind these, and where
 };
 
 void RecordMaker::sensors() {
@@ -67,6 +74,16 @@ void RecordMaker::sensors() {
     }
     ++records_.sensors.back().channel_count;
   }
+}
+
+void RecordMaker::servo_chip(const ServoChip& chip) {
+  if (std::ranges::find(chips_, chip, [](const auto& known) { return known.first; }) !=
+      chips_.end())
+    return;
+  chips_.emplace_back(chip, static_cast<std::uint8_t>(records_.sensors.size()));
+  records_.sensors.push_back(
+      {strings_.offset("pca9685"), vm::DriverId::pca9685, chip.bus, chip.address, vm::kServoFrameMs,
+       static_cast<std::uint8_t>(tables_.channels().size()), 0, chip.enable, 0});
 }
 
 void RecordMaker::channel(ChannelRef ref) {
@@ -118,6 +135,8 @@ void RecordMaker::actuator(std::size_t place) {
   record.driver = config.driver;
   record.bus = config.bus;
   record.pin = config.pin;
+  for (const auto& [chip, sensor] : chips_)
+    if (config.chip == chip) record.bus = sensor;
   record.on_release = config.on_release;
   record.safe = config.safe;
   record.verbs = tables_.verbs_of(config, place);

@@ -128,6 +128,15 @@ void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics
 // What moves by power alone must not hold.
 void read_safe(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
   actuator.safe = read_release(value, diagnostics).value_or(actuator.safe);
+  if (actuator.safe == vm::Release::rest && vm::drives_channel(actuator.driver)) {
+    diagnostics
+        .report(Code::E0205,
+                "a servo on a chip cannot go to rest when the robot is halted: that "
+                "would need the bus, which may be what is wrong")
+        .label(value.span)
+        .helps("`safe` can be `coast` here: limp; or `hold`");
+    actuator.safe = vm::Release::coast;
+  }
   if (actuator.safe != vm::Release::hold || !vm::drives_on(actuator.driver)) return;
   const bool sounds = vm::drives_speaker(actuator.driver);
   diagnostics
@@ -155,7 +164,11 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
   actuator.range_span = name->span;
   actuator.limit_span = name->span;
   if (known == nullptr) return actuator;
-  if (type != nullptr) {
+  if (type != nullptr && type->name != "VIRTUAL" && vm::drives_channel(actuator.driver)) {
+    const ChipWiring place = wiring.read_chip(fields, *type);
+    actuator.chip = place.chip;
+    actuator.pin = place.channel;
+  } else if (type != nullptr) {
     const Wiring place = wiring.read_actuator(fields, *type, part, device.actuator.driver);
     actuator.bus = place.bus;
     actuator.pin = place.place;
@@ -171,7 +184,10 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
   if (const auto* limits = fields.find("limits")) read_limits(*limits, actuator, diagnostics);
   if (const auto* release = fields.find("on_release"))
     actuator.on_release = read_release(*release, diagnostics).value_or(actuator.on_release);
-  if (const auto* safe = fields.find("safe")) read_safe(*safe, actuator, diagnostics);
+  const auto* safe = fields.find("safe");
+  if (safe != nullptr) read_safe(*safe, actuator, diagnostics);
+  if (actuator.chip)
+    wiring.check_safe(*actuator.chip, actuator.safe, safe != nullptr ? safe->span : name->span);
   return actuator;
 }
 

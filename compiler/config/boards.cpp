@@ -110,6 +110,10 @@ bool Board::has_analog(std::uint16_t pin) const {
   return is_in(analog, pin);
 }
 
+bool Board::has_enable(std::uint16_t pin) const {
+  return is_in(enables, pin);
+}
+
 const Board::Part* Board::find_part(std::string_view wanted) const {
   const auto found =
       std::ranges::find_if(parts, [&](const Part& part) { return same_name(part.name, wanted); });
@@ -132,6 +136,8 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
     board.inputs = read_pins(*inputs, Object::inputs, diagnostics);
   if (const auto* analog = fields.find("analog"))
     board.analog = read_pins(*analog, Object::inputs, diagnostics);
+  if (const auto* enables = fields.find("enables"))
+    board.enables = read_pins(*enables, Object::inputs, diagnostics);
   if (const auto* parts = fields.find("on_board")) board.parts = read_parts(*parts, diagnostics);
   if (fields.find("store") != nullptr)
     board.store_bytes = read_number(fields, "store", "a board", diagnostics);

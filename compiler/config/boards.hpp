@@ -31,6 +31,7 @@ struct Board {
   std::vector<Pins> outputs;      // pins that a program may drive
   std::vector<Pins> inputs;       // … and read; none is both
   std::vector<Pins> analog;       // whose voltage it may read; one may be an output, too
+  std::vector<Pins> enables;      // for the enable inputs of chips
   std::uint32_t i2c_buses = 0;    // numbered from 0
   std::uint32_t store_bytes = 0;  // that outlast a loss of power
   // How its firmware gets there; nothing: there is no such board but in an emulator.
@@ -57,6 +58,7 @@ struct Board {
   [[nodiscard]] bool gives_power(std::uint16_t pin) const;
   [[nodiscard]] bool has_input(std::uint16_t pin) const;
   [[nodiscard]] bool has_analog(std::uint16_t pin) const;
+  [[nodiscard]] bool has_enable(std::uint16_t pin) const;
   [[nodiscard]] const Part* find_part(std::string_view wanted) const;  // any case
 };
 

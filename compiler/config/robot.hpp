@@ -102,12 +102,22 @@ struct VerbConfig {
   }
 };
 
+// A chip that gives servos their pulses, by its place.
+struct ServoChip {
+  std::uint8_t bus = 0;
+  std::uint16_t address = 0;
+  std::uint8_t enable = 0;  // the board's pin at its OE input
+
+  bool operator==(const ServoChip&) const = default;
+};
+
 struct ActuatorConfig {
   Spelled name;
   std::string device;  // its descriptor in stdlib/devices/
   vm::DriverId driver{};
   std::uint8_t bus = 0;
-  std::uint16_t pin = 0;
+  std::uint16_t pin = 0;  // or channel of its chip
+  std::optional<ServoChip> chip;
   vm::Release on_release = vm::Release::hold;
   vm::Release safe = vm::Release::hold;
   const Unit* to_unit = nullptr;  // of TO and BY; null: it has no position

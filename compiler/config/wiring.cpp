@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "compiler/config/values.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 #include "vm/drivers.hpp"
@@ -46,6 +48,17 @@ std::string boards_with(std::string_view device) {
       if (same_name(part.device, device))
         boards.push_back(std::string(board_names()[i]) + "` as `\"device\": \"" + part.name + "\"");
   return list_names(boards, "and");
+}
+
+std::string boards_with_enables() {
+  std::vector<std::string> boards;
+  for (std::size_t i = 0; i < board_names().size(); ++i)
+    if (!board_at(i).enables.empty()) boards.emplace_back(board_names()[i]);
+  return list_names(boards, "and");
+}
+
+std::string name_of(const ServoChip& chip) {
+  return fmt::format("the chip at 0x{:02x} on bus {}", chip.address, chip.bus);
 }
 
 std::string boards_with_i2c() {
@@ -97,6 +110,8 @@ void WiringReader::report_foreign(const Fields& fields, const WiringType& type) 
   check("active", type.name == "GPIO");
   check("trigger", false);
   check("echo", false);
+  check("channel", false);
+  check("enable", false);
 }
 
 std::uint16_t WiringReader::read_pin(const json::Value& value, std::uint16_t last) {
@@ -174,6 +189,114 @@ void WiringReader::check_part(const Fields& fields, const Board::Part* part) {
       .helps("boards that have one: " + boards_with(device->text));
 }
 
+// ---- servos on a chip
+
+void WiringReader::refuse_pins(const Fields& fields) {
+  for (const char* key : {"pin", "pins"})
+    if (const auto* wrong = fields.find(key))
+      diagnostics_.report(Code::E0205, "a servo on a chip has no `" + std::string(key) + "`")
+          .label(wrong->span)
+          .helps(
+              "say `\"channel\"`, which of the chip's outputs it is, and `\"enable\"`, "
+              "the pin of the board at the chip's OE");
+}
+
+// Without the enable input nothing but the bus could stop them.
+ChipWiring WiringReader::read_chip(Fields& fields, const WiringType&) {
+  ChipWiring wiring;
+  refuse_pins(fields);
+  const std::string what = "a " + fields.find("device")->text;
+  ServoChip chip;
+  if (const auto* bus = fields.find("bus"))
+    chip.bus = static_cast<std::uint8_t>(read_whole(*bus, 0, UINT8_MAX, diagnostics_).value_or(0));
+  const auto* address = fields.require("address", what);
+  const auto* channel = fields.require("channel", what);
+  const auto* enable = fields.require("enable", what);
+  check_bus(fields, {chip.bus, 0});
+  if (address == nullptr || channel == nullptr || enable == nullptr) return wiring;
+  const auto place = read_whole(*address, vm::kFirstChipAddress, vm::kLastAddress, diagnostics_);
+  const auto output = read_whole(*channel, 0, vm::kChipChannels - 1, diagnostics_);
+  const auto pin = read_whole(*enable, 0, UINT8_MAX, diagnostics_);
+  if (!place || !output || !pin) return wiring;
+  if (*place == vm::kAllChipsAddress) {
+    diagnostics_.report(Code::E0205, "no PCA9685 can have this address: all of them answer at it")
+        .label(address->span);
+    return wiring;
+  }
+  chip.address = static_cast<std::uint16_t>(*place);
+  chip.enable = static_cast<std::uint8_t>(*pin);
+  wiring.channel = static_cast<std::uint16_t>(*output);
+  take_chip(chip, *address, *enable);
+  if (on_buses_[{chip.bus, chip.address}].chip != chip) return wiring;
+  wiring.chip = chip;
+  take_channel(chip, wiring.channel, channel->span);
+  return wiring;
+}
+
+void WiringReader::take_channel(const ServoChip& chip, std::uint16_t channel, Span span) {
+  const auto [first, added] = on_buses_[{chip.bus, chip.address}].channels.emplace(channel, span);
+  if (added) return;
+  diagnostics_
+      .report(Code::E0207,
+              "channel " + std::to_string(channel) + " of " + name_of(chip) + " is used twice")
+      .label(span)
+      .label(first->second, "first used here", false);
+}
+
+// Its place and its enable pin are its own: two chips at one pin could not be stopped one without the other.
+void WiringReader::take_chip(const ServoChip& chip, const json::Value& address,
+                             const json::Value& enable) {
+  const auto [entry, added] = on_buses_.emplace(std::pair(chip.bus, chip.address),
+                                                OnBus{.span = address.span, .chip = chip});
+  OnBus& known = entry->second;
+  if (added) {
+    known.enable = enable.span;
+    take_pin(chip.enable, enable.span);
+    return check_enable(enable, chip.enable);
+  }
+  if (!known.chip)
+    diagnostics_
+        .report(Code::E0207,
+                fmt::format("address 0x{:02x} on bus {} is used twice", chip.address, chip.bus))
+        .label(address.span)
+        .label(known.span, "first used here", false);
+  else if (known.chip->enable != chip.enable)
+    diagnostics_
+        .report(Code::E0205, name_of(chip) + " has its enable input at pin " +
+                                 std::to_string(known.chip->enable))
+        .label(enable.span)
+        .label(known.enable, "said here", false);
+}
+
+void WiringReader::check_enable(const json::Value& value, std::uint16_t pin) {
+  if (board_.has_enable(pin)) return;
+  if (board_.enables.empty())
+    diagnostics_
+        .report(Code::E0205,
+                "the board " + board_.name + " has no pin for the enable input of a chip")
+        .label(value.span)
+        .helps("boards that have one: " + boards_with_enables());
+  else
+    report_no_pin(value, pin, " is not for the enable input of a chip",
+                  "only a pin that is high from the start on is: ", board_.enables);
+}
+
+void WiringReader::check_safe(const ServoChip& chip, vm::Release safe, Span span) {
+  OnBus& known = on_buses_[{chip.bus, chip.address}];
+  if (!known.safe) {
+    known.safe = safe;
+    known.safe_span = span;
+  } else if (known.safe != safe) {
+    diagnostics_
+        .report(Code::E0205, "the servos of " + name_of(chip) + " have different safe states")
+        .label(span, "`" + std::string(kReleases.at(static_cast<std::size_t>(safe))) + "`")
+        .label(known.safe_span,
+               "`" + std::string(kReleases.at(static_cast<std::size_t>(*known.safe))) + "`", false)
+        .helps(
+            "its enable input, which it has once, stops all of them: say the same `safe` of each");
+  }
+}
+
 // Of these pins the image has a byte for the first one.
 Wiring WiringReader::read_echo(Fields& fields, const std::string& what) {
   for (const char* key : {"pin", "bus", "address", "active"})
@@ -224,6 +347,8 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
       wiring.place = static_cast<std::uint16_t>(
           read_whole(*address, vm::kFirstAddress, vm::kLastAddress, diagnostics_)
               .value_or(vm::kFirstAddress));
+    if (const auto* address = fields.find("address"); address != nullptr && type.name == "I2C")
+      on_buses_.emplace(std::pair(wiring.bus, wiring.place), OnBus{.span = address->span});
   } else if (type.pin) {
     read_pins(fields, two_pins, what, wiring);
   }

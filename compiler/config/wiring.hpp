@@ -30,6 +30,12 @@ struct Wiring {
   std::uint16_t place = 0;  // I2C address or pin
 };
 
+// A servo on a chip.
+struct ChipWiring {
+  std::optional<ServoChip> chip;  // nothing: what is said of it is wrong, or not all is said
+  std::uint16_t channel = 0;
+};
+
 // Reads buses, addresses and pins of one robot, which has `board`; a pin may be used once.
 class WiringReader {
 public:
@@ -40,6 +46,9 @@ public:
                                    vm::DriverId driver);
   [[nodiscard]] Wiring read_actuator(Fields& fields, const WiringType& type,
                                      const Board::Part* part, vm::DriverId driver);
+  [[nodiscard]] ChipWiring read_chip(Fields& fields, const WiringType& type);
+  // All servos of a chip have the same safe state, which is said at `span`, or else of the entry.
+  void check_safe(const ServoChip& chip, vm::Release safe, Span span);
   // For those whose driver uses them: the board must have them.
   void check_bus(const Fields& fields, const Wiring& wiring);
   void check_input(const Fields& fields, const Wiring& wiring);
@@ -54,6 +63,10 @@ private:
   [[nodiscard]] Wiring read(Fields& fields, const WiringType& type, const Board::Part* part,
                             bool two_pins, const std::string& what);
   [[nodiscard]] Wiring read_part(const Fields& fields, const Board::Part& part);
+  void take_chip(const ServoChip& chip, const json::Value& address, const json::Value& enable);
+  void refuse_pins(const Fields& fields);
+  void take_channel(const ServoChip& chip, std::uint16_t channel, Span span);
+  void check_enable(const json::Value& value, std::uint16_t pin);
   std::uint16_t read_pin(const json::Value& value, std::uint16_t last = UINT16_MAX - 1);
   void read_pins(Fields& fields, bool two, const std::string& what, Wiring& wiring);
   Wiring read_echo(Fields& fields, const std::string& what);
@@ -69,6 +82,15 @@ private:
   Diagnostics& diagnostics_;
   std::map<std::uint16_t, Span> pins_;
   std::map<const Board::Part*, Span> parts_;  // without a pin
+  struct OnBus {
+    Span span;
+    std::optional<ServoChip> chip{};
+    Span enable{};
+    std::map<std::uint16_t, Span> channels{};  // that servos have
+    std::optional<vm::Release> safe{};
+    Span safe_span{};
+  };
+  std::map<std::pair<std::uint8_t, std::uint16_t>, OnBus> on_buses_;  // by bus and address
 };
 
 // Which of `names` a string is, any case; reports E0205 with the choice when none.

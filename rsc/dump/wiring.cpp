@@ -62,6 +62,9 @@ std::string algorithm_text(const vm::Image& image, const vm::Sensor& sensor) {
 
 std::string place_of(const vm::Sensor& sensor) {
   if (vm::is_analog(sensor.driver)) return fmt::format("analog pin {}", sensor.address);
+  if (vm::is_servo_chip(sensor.driver))
+    return fmt::format("bus {} address 0x{:x}, enable pin {}", sensor.bus, sensor.address,
+                       sensor.first_input);
   return vm::is_by_echo(sensor.driver)
              ? fmt::format("trigger {} and echo {}", sensor.bus, sensor.address)
              : fmt::format("bus {} address 0x{:x}", sensor.bus, sensor.address);
@@ -93,6 +96,8 @@ std::string verb_names(const vm::Image& image, std::uint32_t mask) {
 }
 
 std::string place_of(const vm::Actuator& actuator) {
+  if (vm::drives_channel(actuator.driver))
+    return fmt::format("channel {} of sensor {}", actuator.pin, actuator.bus);
   return vm::has_two_pins(actuator.driver)
              ? fmt::format("pins {} and {}", actuator.pin, actuator.bus)
              : fmt::format("bus {} pin {}", actuator.bus, actuator.pin);

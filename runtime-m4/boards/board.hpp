@@ -70,6 +70,10 @@ public:
   virtual void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) = 0;
   virtual std::uint32_t pwm_read(std::uint16_t pin) const = 0;
 
+  // The enable input of a chip (pins()): its outputs are on from now on, which is a low pin, or off, which is a high one, as it is
+  // from the start on. At once, and of another pin: nothing. Nobody but the output guard calls it.
+  virtual void enable(std::uint16_t /*pin*/, bool /*on*/) {}
+
   // The picture on the lights from now on, for boards that have some: bit 5 * row + column, from the top left. 0: dark.
   virtual void show(std::uint32_t /*picture*/) {}
 

@@ -15,8 +15,12 @@ inline constexpr bool kHasLights = ROBOSYNC_LIGHTS != 0;
 inline constexpr bool kHasSpeaker = ROBOSYNC_SPEAKER != 0;
 inline constexpr policy::PinRange kInputs[] = {ROBOSYNC_INPUTS};
 inline constexpr std::array<policy::PinRange, ROBOSYNC_ANALOG_ROWS> kAnalog = {{ROBOSYNC_ANALOG}};
-inline constexpr policy::BoardPins kPins = {
-    .outputs = kOutputs, .inputs = kInputs, .analog = kAnalog, .i2c_buses = ROBOSYNC_I2C_BUSES};
+inline constexpr std::array<policy::PinRange, ROBOSYNC_ENABLE_ROWS> kEnables = {{ROBOSYNC_ENABLES}};
+inline constexpr policy::BoardPins kPins = {.outputs = kOutputs,
+                                            .inputs = kInputs,
+                                            .analog = kAnalog,
+                                            .enables = kEnables,
+                                            .i2c_buses = ROBOSYNC_I2C_BUSES};
 
 // A pin that is read is driven by nobody; an analog input alone may be an output for other programs.
 constexpr bool meet(const auto& these, const auto& those) {
@@ -26,6 +30,7 @@ constexpr bool meet(const auto& these, const auto& those) {
   return false;
 }
 static_assert(!meet(kInputs, kOutputs) && !meet(kInputs, kAnalog));
+static_assert(!meet(kEnables, kOutputs) && !meet(kEnables, kInputs) && !meet(kEnables, kAnalog));
 static_assert(std::ranges::all_of(kAnalog, [](const auto& range) { return range.last < 64; }),
               "the output guard has a bit for each");
 

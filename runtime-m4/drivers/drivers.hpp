@@ -53,6 +53,7 @@ struct Device {
   void drive(std::uint32_t pulse_us, kernel::Time now) const {
     outputs.drive(state.actuator, pulse_us, now);
   }
+  void begin_order() const { outputs.begin_order(state.actuator); }
   // Of a driver with two pins: on the second one where it is negative.
   void drive_either(std::int32_t pulse_us, kernel::Time now) const {
     outputs.drive_either(state.actuator, pulse_us, now);

@@ -17,6 +17,15 @@ constexpr OutputGuard::Mask bit(unsigned actuator) {
   return OutputGuard::Mask{1} << actuator;
 }
 
+// No chip is told a pulse that no servo takes.
+constexpr policy::PinLimit kOnChips{
+    .first = 0,
+    .last = vm::kChipChannels - 1,
+    .shortest = policy::kShortestPulse,
+    .longest = policy::kShortestPulse + policy::kPulseSpan,
+    .rise = 0,
+};
+
 // 0 is off, and always may be.
 std::uint16_t within(const policy::PinLimit& limit, std::uint32_t pulse_us) {
   if (pulse_us == 0) return 0;
@@ -96,11 +105,12 @@ void OutputGuard::switch_off(const vm::Image* next) {
   take_back_all_but(next != nullptr ? measured_by(*next) : 0);
   if (lights() != 0) board_.show(0);
   if (speaker() != 0) board_.sound(0);
-  for (Mask left = owned & ~(lights() | speaker()); left != 0; left &= left - 1) {
+  switch_chips_off();
+  for (Mask left = owned & ~(lights() | speaker() | on_chips_); left != 0; left &= left - 1) {
     const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
     if (next == nullptr || !drives(*next, slot)) board_.pwm_write(slot.pin, 0);
   }
-  lights_ = speaker_ = 0;
+  lights_ = speaker_ = on_chips_ = 0;
 }
 
 void OutputGuard::disown() {
@@ -131,6 +141,8 @@ void OutputGuard::own(const vm::Image& image) {
     owned |= bit(a);
     if (limits_[slots_[a].limit].rise != 0) gradual_ |= bit(a);
   }
+  own_chips(image);
+  owned |= on_chips_;
   let_go_of(measured_by(image));
   {
     const auto lock = kernel_.lock();
@@ -143,7 +155,7 @@ void OutputGuard::own(const vm::Image& image) {
 
 // Of a program that comes: a halt found its pins with the one before, or none at all. Lights and speaker are off.
 void OutputGuard::make_halted_safe(kernel::Time now) {
-  for (Mask left = owned_ & ~(lights() | speaker()); left != 0; left &= left - 1) {
+  for (Mask left = owned_ & ~(lights() | speaker() | on_chips_); left != 0; left &= left - 1) {
     const auto actuator = static_cast<unsigned>(std::countr_zero(left));
     const auto lock = kernel_.lock();
     if ((halted_ & bit(actuator)) != 0) make_safe(actuator, now);
@@ -197,13 +209,17 @@ void OutputGuard::sound(unsigned actuator, std::uint32_t hertz) {
   const auto lock = kernel_.lock();
   if (!is_free(actuator)) return;
   Slot& slot = slots_[actuator];
+  if (is_on_chip(actuator)) {
+    slot.pulse = (limp_ & bit(actuator)) != 0 ? std::uint16_t{0} : within(kOnChips, pulse_us);
+    return;
+  }
   settle(slot, actuator, within(limits_[slot.limit], pulse_us), now);
 }
 
 [[gnu::noinline]] void OutputGuard::drive_either(unsigned actuator, std::int32_t pulse_us,
                                                  kernel::Time now) {
   const auto lock = kernel_.lock();
-  if (!is_free(actuator)) return;
+  if (!is_free(actuator) || is_on_chip(actuator)) return;
   Slot& slot = slots_[actuator];
   const bool second = pulse_us < 0;
   std::uint32_t length = static_cast<std::uint32_t>(pulse_us);
@@ -272,7 +288,9 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
   free_ = owned_ & ~halted_;
   if ((fresh & lights()) != 0 && !lights_stay_) board_.show(0);
   if ((fresh & speaker()) != 0) board_.sound(0);
-  for (Mask left = fresh & ~(lights() | speaker()); left != 0; left &= left - 1)
+  if ((fresh & on_chips_) != 0) [[unlikely]]
+    halt_chips(fresh);
+  for (Mask left = fresh & ~(lights() | speaker() | on_chips_); left != 0; left &= left - 1)
     make_safe(static_cast<unsigned>(std::countr_zero(left)), now);
 }
 
@@ -281,6 +299,140 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
   if (slot.safe != kStays && slot.pulse != 0) return settle(slot, actuator, slot.safe, now);
   slot.target = slot.pulse;
   lagging_ &= ~bit(actuator);
+}
+
+// --- chips ---
+
+[[gnu::always_inline]] inline bool OutputGuard::is_on_chip(unsigned actuator) const {
+  return (on_chips_ & bit(actuator)) != 0;
+}
+
+// The image is verified and fits the board. Nobody knows what its chips do, so they are off.
+void OutputGuard::own_chips(const vm::Image& image) {
+  for (unsigned s = 0; s < image.sensors.size() && chip_count_ < chips_.size(); ++s) {
+    const vm::Sensor& sensor = image.sensors[s];
+    if (!vm::is_servo_chip(sensor.driver) || !policy::is_enable(board_.pins(), sensor.first_input))
+      continue;
+    Chip chip{.enable = sensor.first_input,
+              .sensor = static_cast<std::uint8_t>(s),
+              .on = false,
+              .known = false,
+              .holds = false,
+              .actuators = 0};
+    for (unsigned a = 0; a < image.actuators.size(); ++a) {
+      const vm::Actuator& actuator = image.actuators[a];
+      if (!vm::drives_channel(actuator.driver) || actuator.bus != s) continue;
+      slots_[a] = {};
+      slots_[a].pin = actuator.pin;
+      chip.holds = actuator.safe == vm::Release::hold;
+      chip.actuators |= bit(a);
+    }
+    on_chips_ |= chip.actuators;
+    chips_[chip_count_++] = chip;
+  }
+}
+
+OutputGuard::Chip* OutputGuard::chip_of(unsigned sensor) {
+  for (unsigned c = 0; c < chip_count_; ++c)
+    if (chips_[c].sensor == sensor) return &chips_[c];
+  return nullptr;
+}
+
+const OutputGuard::Chip* OutputGuard::chip_of(unsigned sensor) const {
+  for (unsigned c = 0; c < chip_count_; ++c)
+    if (chips_[c].sensor == sensor) return &chips_[c];
+  return nullptr;
+}
+
+// What is off stays off: each of its servos waits for its next order.
+void OutputGuard::switch_chip_off(Chip& chip) {
+  board_.enable(chip.enable, false);
+  chip.on = false;
+  limp_ |= chip.actuators;
+  for (Mask left = chip.actuators; left != 0; left &= left - 1)
+    slots_[static_cast<unsigned>(std::countr_zero(left))].pulse = 0;
+}
+
+// Of a program that goes.
+void OutputGuard::switch_chips_off() {
+  const auto lock = kernel_.lock();
+  for (unsigned c = 0; c < chip_count_; ++c)
+    board_.enable(chips_[c].enable, false);
+  chip_count_ = 0;
+  limp_ = 0;
+}
+
+void OutputGuard::begin_order(unsigned actuator) {
+  const auto lock = kernel_.lock();
+  limp_ &= ~bit(actuator);
+}
+
+// The others of the chip go limp as well: it has one pin.
+[[gnu::noinline]] void OutputGuard::halt_chips(Mask fresh) {
+  for (unsigned c = 0; c < chip_count_; ++c)
+    if ((chips_[c].actuators & fresh) != 0 && !chips_[c].holds) switch_chip_off(chips_[c]);
+}
+
+bool OutputGuard::knows_chip(unsigned sensor) const {
+  const auto lock = kernel_.lock();
+  const Chip* const chip = chip_of(sensor);
+  return chip != nullptr && chip->known;
+}
+
+void OutputGuard::lose_chip(unsigned sensor) {
+  const auto lock = kernel_.lock();
+  Chip* const chip = chip_of(sensor);
+  if (chip == nullptr) return;
+  chip->known = false;
+  switch_chip_off(*chip);
+}
+
+void OutputGuard::note_chip_set_up(unsigned sensor) {
+  const auto lock = kernel_.lock();
+  Chip* const chip = chip_of(sensor);
+  if (chip == nullptr) return;
+  chip->known = true;
+  for (Mask left = chip->actuators; left != 0; left &= left - 1)
+    slots_[static_cast<unsigned>(std::countr_zero(left))].target = 0;
+}
+
+bool OutputGuard::next_setpoint(unsigned sensor, unsigned from, Setpoint& setpoint) const {
+  const auto lock = kernel_.lock();
+  const Chip* const chip = chip_of(sensor);
+  if (chip == nullptr) return false;
+  for (Mask left = chip->actuators; left != 0; left &= left - 1) {
+    const auto actuator = static_cast<unsigned>(std::countr_zero(left));
+    const Slot& slot = slots_[actuator];
+    if (actuator < from || slot.pulse == slot.target) continue;
+    setpoint = {.actuator = static_cast<std::uint8_t>(actuator),
+                .channel = static_cast<std::uint8_t>(slot.pin),
+                .pulse = slot.pulse};
+    return true;
+  }
+  return false;
+}
+
+void OutputGuard::note_setpoint(const Setpoint& setpoint) {
+  const auto lock = kernel_.lock();
+  if (setpoint.actuator < slots_.size() && is_on_chip(setpoint.actuator))
+    slots_[setpoint.actuator].target = setpoint.pulse;
+}
+
+// A halt may have come since the chip was told its pulses: then there is something to be told again.
+void OutputGuard::let_chip_on(unsigned sensor) {
+  const auto lock = kernel_.lock();
+  Chip* const chip = chip_of(sensor);
+  if (chip == nullptr || chip->on || !chip->known) return;
+  if (!chip->holds && (chip->actuators & halted_) != 0) return;
+  bool driven = false;
+  for (Mask left = chip->actuators; left != 0; left &= left - 1) {
+    const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
+    if (slot.pulse != slot.target) return;
+    driven = driven || slot.pulse != 0;
+  }
+  if (!driven) return;
+  board_.enable(chip->enable, true);
+  chip->on = true;
 }
 
 void OutputGuard::let_go(Mask actuators) {

@@ -19,6 +19,14 @@
 // A pin that can be an output and an analog input is let go while the running program has an analog sensor there, and low
 // otherwise. No image that the board takes drives such a pin, too.
 //
+// Servos on a chip get their pulses from it, over a bus that the guard never uses: who serves the chip
+// (drivers/servo_chip.hpp) asks for what may stand on its channels. What the guard has is the chip's enable pin, and that
+// takes all its pulses away at once:
+//
+// * It is off until the chip has been set up and has all pulses that it shall have, and goes off with a halt of one of its
+//   servos (unless they hold in their safe state), with the program, and when nobody knows any more what stands on the chip.
+// * It does not go on while such a halt lasts; and what went off stays off, of all its servos, until each gets another order.
+//
 // A check and its write are one under the kernel's lock: who is interrupted in between writes nothing old later.
 // docs/safety.md says what follows from that.
 #pragma once
@@ -30,6 +38,7 @@
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/pins.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
+#include "vm/drivers.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::guard {
@@ -51,6 +60,8 @@ public:
 
   // Pulse on the actuator's pin, in microseconds of the 20 ms frame; 0: off.
   void drive(unsigned actuator, std::uint32_t pulse_us, kernel::Time now);
+  // A servo on a chip has a new order: it may be driven again, if it went limp.
+  void begin_order(unsigned actuator);
   // … of one that has two pins: on its first one, or where it is negative, so long on its second one.
   void drive_either(unsigned actuator, std::int32_t pulse_us, kernel::Time now);
   // The picture on the lights (boards::Board::show()).
@@ -59,6 +70,26 @@ public:
   void sound(unsigned actuator, std::uint32_t hertz);
   // A pulse on the trigger pin of a sensor (boards::Board::ping()).
   void ping(unsigned sensor);
+
+  // --- for who serves the servo chip that is this sensor of the image; of another one: nothing ---
+  // Has it been set up, and does everybody know what stands on its channels?
+  [[nodiscard]] bool knows_chip(unsigned sensor) const;
+  // Nobody knows what stands on it, nor that it will do as it is told: off.
+  void lose_chip(unsigned sensor);
+  // It has just been set up: all its channels are off.
+  void note_chip_set_up(unsigned sensor);
+  struct Setpoint {
+    std::uint8_t actuator;
+    std::uint8_t channel;
+    std::uint16_t pulse;  // microseconds, 0: off
+  };
+  // The first one from actuator number `from` on that the chip does not have yet. False: there is none.
+  [[nodiscard]] bool next_setpoint(unsigned sensor, unsigned from, Setpoint& setpoint) const;
+  // The chip has it.
+  void note_setpoint(const Setpoint& setpoint);
+  // It has all it shall have, and its pulses come: on, if they may.
+  void let_chip_on(unsigned sensor);
+
   // No measurement goes on, and none begins until own(): before the running program's image is overwritten, which says
   // where they are.
   void end_measurements();
@@ -83,6 +114,13 @@ private:
     vm::DriverId driver;
   };
 
+  struct Chip {
+    std::uint16_t enable;  // pin
+    std::uint8_t sensor;   // in the image
+    bool on, known, holds;
+    Mask actuators;
+  };
+
   static constexpr std::uint16_t kStays = UINT16_MAX;
   static constexpr std::uint16_t kNoPin = UINT16_MAX;
 
@@ -103,6 +141,13 @@ private:
   void let_go_of(Pins measured);
   void switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
+  void own_chips(const vm::Image& image);
+  [[nodiscard]] Chip* chip_of(unsigned sensor);
+  [[nodiscard]] const Chip* chip_of(unsigned sensor) const;
+  void switch_chip_off(Chip& chip);
+  void switch_chips_off();
+  void halt_chips(Mask fresh);
+  [[nodiscard]] bool is_on_chip(unsigned actuator) const;
   // The actuator that has the lights, if any.
   Mask lights() const { return boards::kHasLights ? lights_ : 0; }
   // … and the speaker.
@@ -120,7 +165,11 @@ private:
   Mask lagging_ = 0;  // … and is not yet where it shall be
   Mask lights_ = 0;
   Mask speaker_ = 0;
+  Mask on_chips_ = 0;         // of their slots: `pin` is the channel, `target` is what the chip has
+  Mask limp_ = 0;             // … that wait for their next orders
   bool lights_stay_ = false;  // in the safe state
+  std::uint8_t chip_count_ = 0;
+  std::array<Chip, vm::kMaxServoChips> chips_{};
   std::array<Slot, vm::kMaxActuators> slots_{};
 };
 

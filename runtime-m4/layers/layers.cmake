@@ -44,6 +44,8 @@ target_sources(robosync_runtime PRIVATE
   drivers/player.cpp
   drivers/power.cpp
   drivers/pwm.cpp
+  drivers/pca9685.cpp
+  drivers/pca9685_servo.cpp
   drivers/servo.cpp
   drivers/tones.cpp
   drivers/virtual_actuator.cpp

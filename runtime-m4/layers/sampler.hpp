@@ -12,6 +12,10 @@ class Sampler {
 public:
   // One sample of a channel in thousandths of its unit. False when there is none to be had.
   virtual bool sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) = 0;
+  // A frame of a servo chip (drivers/servo_chip.hpp), which is that sensor of the image. False when it has not answered.
+  virtual bool serve_chip(const vm::Image& /*image*/, unsigned /*sensor*/) { return true; }
+  // It is silent: what stands on it is no longer known.
+  virtual void lose_chip(unsigned /*sensor*/) {}
   // How long before it is sampled a sensor is to be asked; 0: it is not. Then its channels are asked for, and sampled when
   // nothing is awaited any more.
   virtual kernel::Duration asks_ahead(const vm::Sensor& /*sensor*/) const { return 0; }
@@ -32,6 +36,8 @@ public:
   kernel::Duration asks_ahead(const vm::Sensor& sensor) const override;
   void ask(const vm::Image& image, std::uint8_t channel) override;
   bool awaits() const override { return board_.i2c_busy(); }
+  bool serve_chip(const vm::Image& image, unsigned sensor) override;
+  void lose_chip(unsigned sensor) override { outputs_.lose_chip(sensor); }
 
 private:
   kernel::Kernel& kernel_;

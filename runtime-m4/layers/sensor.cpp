@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "runtime-m4/policy/rules.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::layers {
 namespace {
@@ -169,6 +170,7 @@ kernel::Time SensorLayer::next_sample(unsigned sensor, kernel::Time last) {
 
 void SensorLayer::sample(unsigned sensor) {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
+  if (vm::is_servo_chip(wiring.driver)) return serve_chip(sensor);
   ChannelMask news = 0;
   unsigned failed = 0;
   for (unsigned i = 0; i < wiring.channel_count; ++i) {
@@ -183,6 +185,12 @@ void SensorLayer::sample(unsigned sensor) {
   announce(news);
   if (sample_thread_ != nullptr) kernel_.signal(*sample_thread_, kSampled);
   note_contact(sensor, failed);
+}
+
+// In each frame in which it is silent: whoever gave it an order meanwhile did so in vain, and it does not come to life with that.
+[[gnu::noinline]] void SensorLayer::serve_chip(unsigned sensor) {
+  note_contact(sensor, sampler_->serve_chip(program_->image, sensor) ? 0 : 1);
+  if (units_[sensor].contact.silent()) sampler_->lose_chip(sensor);
 }
 
 // What is made up comes from no device.
@@ -283,6 +291,7 @@ void SensorLayer::retire(unsigned member_index) {
   for (unsigned s = 0; s < program_->image.sensors.size(); ++s) {
     const vm::Sensor& wiring = program_->image.sensors[s];
     if (policy::thread_of(program_->image, s) != member_index) continue;
+    if (vm::is_servo_chip(wiring.driver)) sampler_->lose_chip(s);
     for (unsigned i = 0; i < wiring.channel_count; ++i)
       mailboxes_.forget(wiring.first_channel + i);
   }

@@ -106,6 +106,7 @@ private:
   void await_sample(unsigned sensor, kernel::Time due);
   kernel::Time next_sample(unsigned sensor, kernel::Time last);
   void sample(unsigned sensor);
+  void serve_chip(unsigned sensor);
   void note_contact(unsigned sensor, unsigned failed);
   [[gnu::noinline]] void deliver();
   void tell(ChannelMask channels);

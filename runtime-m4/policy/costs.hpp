@@ -70,6 +70,15 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
   return 0;
 }
 
+// Of a servo chip a sample is its longest transfer. In a frame it is asked how it stands, and given the pulse of each of its
+// `servos`; it must be set up more rarely.
+constexpr std::uint32_t frame_cost(std::uint32_t servos, const BoardCosts& board) {
+  constexpr std::uint32_t kAsked = 4;  // bytes, with two addresses
+  const std::uint32_t waits = board.i2c_ask == 0 ? 0 : (1 + servos) * board.wake_by_timer;
+  return board.i2c_transfer + kAsked * board.i2c_byte + board.i2c_ask + waits +
+         servos * (sample_cost(vm::DriverId::pca9685, board) + board.i2c_ask);
+}
+
 constexpr ActuatorCosts actuator_costs(vm::DriverId driver) {
   constexpr bool at_once = true;
   constexpr bool later = false;

@@ -30,6 +30,9 @@ struct BoardPins {
   std::span<const PinLimit> outputs;
   std::span<const PinRange> inputs;
   std::span<const PinRange> analog;
+  // For the enable inputs of chips with outputs of their own, active low: high from the start on, and whenever such outputs are
+  // to be off. They are nothing else.
+  std::span<const PinRange> enables;
   std::uint8_t i2c_buses = 0;
 };
 
@@ -60,7 +63,13 @@ constexpr bool can_trigger(std::uint16_t pin, const BoardPins& board) {
   return limit != nullptr && limit->shortest == 0;
 }
 
+constexpr bool is_enable(const BoardPins& board, std::uint16_t pin) {
+  return is_in(board.enables, pin);
+}
+
 constexpr vm::Refusal judge(const vm::Sensor& sensor, const BoardPins& board) {
+  if (vm::is_servo_chip(sensor.driver) && !is_enable(board, sensor.first_input))
+    return vm::Refusal::no_pin;
   switch (vm::bus_of(sensor.driver)) {
     case vm::Bus::i2c:
       return sensor.bus < board.i2c_buses ? vm::Refusal::none : vm::Refusal::no_bus;

@@ -29,8 +29,9 @@ constexpr std::uint32_t pulse_at(const vm::Actuator& servo, vm::Value position) 
 // The pulse that puts an actuator on a pin into its safe state, 0 for off. None: the one that is there, with
 // which it stays where it is.
 constexpr std::optional<std::uint32_t> safe_pulse(const vm::Actuator& actuator) {
-  if (vm::pin_use(actuator.driver) != vm::PinUse::pulses || actuator.safe == vm::Release::coast)
-    return 0;
+  const vm::PinUse use = vm::pin_use(actuator.driver);
+  if (use != vm::PinUse::pulses && use != vm::PinUse::channel) return 0;
+  if (actuator.safe == vm::Release::coast) return 0;
   if (actuator.safe == vm::Release::hold) return std::nullopt;
   return pulse_at(actuator, rest_position(actuator));
 }

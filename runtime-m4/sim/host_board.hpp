@@ -34,8 +34,11 @@ public:
 
 private:
   static constexpr policy::PinRange kAny[] = {{0, UINT16_MAX}};
-  static constexpr policy::BoardPins kPins = {
-      .outputs = boards::kOutputs, .inputs = kAny, .analog = kAny, .i2c_buses = UINT8_MAX};
+  static constexpr policy::BoardPins kPins = {.outputs = boards::kOutputs,
+                                              .inputs = kAny,
+                                              .analog = kAny,
+                                              .enables = kAny,
+                                              .i2c_buses = UINT8_MAX};
 
   std::map<std::uint16_t, std::uint32_t> pulses_;
   std::uint64_t kicks_ = 0;

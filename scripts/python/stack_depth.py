@@ -12,7 +12,7 @@ import sys
 
 # Whose calls by pointer lead where: functions whose address stands in the image, by their names. The first that fits counts.
 BOARD = r"boards::(\w+::)?Board::"
-OUTPUTS = BOARD + r"(pwm_write|pwm_read|pins|show|sound)\("
+OUTPUTS = BOARD + r"(pwm_write|pwm_read|pins|enable|show|sound)\("
 INPUTS = BOARD + r"(i2c_\w+|input)\("
 STORE = r"boards::(\w+::)?(Eeprom|Store|FlashStore<.*>|Flash)::"
 RUNTIME = r"Runtime::(began|halt|hold_to_budgets|look_at_rules|obey|progress|resting|running|tend_outputs)\("
@@ -22,8 +22,10 @@ CALLED_BY_POINTER = (
     (r"layers::ControlLayer::(start_driver|stop_driver|next_key)", r"drivers::\w+::start\("),
     (r"layers::ControlLayer::release", r"drivers::\w+::release\("),
     (r"layers::ControlLayer::start_unit", r"drivers::\w+::(advance|release)\("),  # go_on(), put_at_rest()
-    (r"layers::SensorLayer::", r"layers::DriverSampler::"),
-    (r"layers::DriverSampler::", r"drivers::\w+::read\(|" + INPUTS),
+    (r"layers::SensorLayer::serve_chip", r"layers::DriverSampler::(serve|lose)_chip"),
+    (r"layers::SensorLayer::sample$", r"layers::DriverSampler::sample\("),
+    (r"layers::SensorLayer::|layers::ProcessingLayer::note_stops", r"layers::DriverSampler::"),  # retire()
+    (r"layers::DriverSampler::", r"drivers::\w+::read\(|" + INPUTS + "|" + OUTPUTS),
     (r"layers::AlgorithmLayer::|algorithms::", MODULE),
     (r"guard::", OUTPUTS),
     (r"drivers::Device::", r"guard::OutputGuard::|" + OUTPUTS),

@@ -81,6 +81,7 @@ bool runs_on(const Device& device, const Board& board) {
     return std::ranges::any_of(board.parts,
                                [&](const Board::Part& part) { return part.device == device.name; });
   if (vm::is_on_i2c(driver)) return board.i2c_buses > 0;
+  if (vm::drives_channel(driver)) return board.i2c_buses > 0 && !board.enables.empty();
   if (vm::is_on_pin(driver)) return !board.inputs.empty();
   if (vm::is_by_echo(driver)) return !board.inputs.empty() && !board.outputs.empty();
   if (vm::is_analog(driver)) return !board.analog.empty();
@@ -126,6 +127,15 @@ std::string wiring_keys(const Device& device) {
   if (is_only_a_part(device))
     return row({"`device`", "the name of the part; it is wired already", "needed"});
   std::string rows;
+  if (vm::drives_channel(driver_of(device)))
+    return row({"`address`",
+                fmt::format("{:#04x} to {:#04x}, and not {:#04x}", vm::kFirstChipAddress,
+                            vm::kLastAddress, vm::kAllChipsAddress),
+                "needed"}) +
+           row({"`bus`", "a bus of the board", "0"}) +
+           row({"`channel`", "0 to " + std::to_string(vm::kChipChannels - 1), "needed"}) +
+           row({"`enable`", "the pin of the board at OE, the same for all servos of the chip",
+                "needed"});
   if (type->address)
     rows += row({"`address`",
                  fmt::format("{:#04x} to {:#04x}", vm::kFirstAddress, vm::kLastAddress), "needed"});

@@ -35,6 +35,7 @@ public:
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override {
     transfers.push_back({bus, address, {out.begin(), out.end()}, in.size()});
+    if (on_bus) return on_bus(bus, address, out, in);
     if (on_transfer) return on_transfer(out, in);
     for (std::byte& byte : in) {
       if (answers.empty()) return false;
@@ -75,6 +76,11 @@ public:
     const auto found = pulses.find(pin);
     return found == pulses.end() ? 0 : found->second.back();
   }
+  void enable(std::uint16_t pin, bool on) override {
+    if (on_pin) on_pin();
+    enables.emplace_back(pin, on);
+    enabled[pin] = on;
+  }
   void show(std::uint32_t picture) override { pictures.push_back(picture); }
   void sound(std::uint32_t hertz) override { sounds.push_back(hertz); }
   std::size_t link_write(std::span<const std::byte> bytes) override { return bytes.size(); }
@@ -88,6 +94,9 @@ public:
   bool acknowledges = true;
   std::function<bool(std::span<const std::byte> out, std::span<std::byte> in)>
       on_transfer;  // answers in the place of `answers`
+  std::function<bool(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
+                     std::span<std::byte> in)>
+      on_bus;  // … and in the place of that
   bool asks_ahead = false, asked_ahead = false;
   std::function<bool()> busy;
   boards::BusState bus_state;
@@ -99,6 +108,8 @@ public:
   std::vector<std::pair<std::uint16_t, bool>> handed;  // let go: true; taken back: false; all
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;   // all, by pin
   std::vector<std::pair<std::uint16_t, std::uint32_t>> writes;  // the same, in their order
+  std::vector<std::pair<std::uint16_t, bool>> enables;          // all
+  std::map<std::uint16_t, bool> enabled;                        // the last, by pin
   std::function<void()> on_pin;  // before one is written or read by the runtime
   policy::BoardPins board_pins = boards::kPins;
   std::vector<std::uint32_t> pictures;  // all

@@ -106,6 +106,10 @@ std::uint32_t Board::pwm_read(std::uint16_t pin) const {
   return pins::read(pin);
 }
 
+void Board::enable(std::uint16_t pin, bool on) {
+  pins::enable(pin, on);
+}
+
 void Board::show(std::uint32_t picture) {
   lights::show(picture);
 }

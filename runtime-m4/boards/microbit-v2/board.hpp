@@ -64,6 +64,7 @@ public:
   void take_back(std::uint16_t pin) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
+  void enable(std::uint16_t pin, bool on) override;
   Store* store() override { return &store_; }
   void show(std::uint32_t picture) override;
   void sound(std::uint32_t hertz) override;

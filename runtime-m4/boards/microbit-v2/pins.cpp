@@ -21,7 +21,9 @@ struct Output {
 constexpr std::array kOutputs{Output{0, {0, 2}, 0, 0},   Output{1, {0, 3}, 0, 1},
                               Output{2, {0, 4}, 0, 2},   Output{12, {0, 12}, 0, 3},
                               Output{13, {0, 17}, 1, 0}, Output{14, {0, 1}, 1, 1},
-                              Output{15, {0, 13}, 1, 2}, Output{16, {1, 2}, 1, 3}};
+                              Output{15, {0, 13}, 1, 2}};
+constexpr std::uint16_t kEnable = 16;
+constexpr Pin kEnableChip{1, 2};
 constexpr std::array kModules{kPwm0, kPwm1};
 
 constexpr std::uint16_t kFrame = 20'000;  // microseconds
@@ -102,7 +104,10 @@ bool waits(const Output& output, State& state) {
 
 }  // namespace
 
+// High before it is an output: nothing is let on in between.
 void start() {
+  kEnableChip.set_high().write(kEnableChip.mask());
+  kEnableChip.configuration().write(Pin::kOutput);
   for (const Output& output : kOutputs) {
     output.chip.set_low().write(output.chip.mask());
     output.chip.configuration().write(Pin::kOutput);
@@ -130,6 +135,11 @@ void take_back(std::uint16_t pin) {
   if (const Output* const output = find(pin)) output->chip.configuration().write(Pin::kOutput);
 }
 
+void enable(std::uint16_t pin, bool on) {
+  if (pin != kEnable) return;
+  (on ? kEnableChip.set_low() : kEnableChip.set_high()).write(kEnableChip.mask());
+}
+
 const Pin* chip_pin(std::uint16_t pin) {
   const Output* const output = find(pin);
   return output == nullptr ? nullptr : &output->chip;
@@ -142,6 +152,7 @@ std::uint32_t read(std::uint16_t pin) {
 
 // A module that is off lets its pins go, whatever it was about.
 void switch_off() {
+  enable(kEnable, false);
   for (const Pwm& module : kModules)
     module.enable().write(0);
   for (const Output& output : kOutputs)

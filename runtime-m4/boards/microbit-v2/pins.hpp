@@ -10,7 +10,7 @@
 
 namespace robosync::boards::microbit::pins {
 
-// All pins low.
+// All pins low, but the one at an enable input (boards::Board::enable()), which is high.
 void start();
 
 // The pulse in microseconds, from the next frame on, or the one after: no frame has part of one. 0 is off, at once; who was
@@ -23,10 +23,13 @@ std::uint32_t read(std::uint16_t pin);
 void let_go(std::uint16_t pin);
 void take_back(std::uint16_t pin);
 
+// The pin at an enable input is low from now on, or high. Another one is left alone.
+void enable(std::uint16_t pin, bool on);
+
 // Which pin of the chip it is; null: none that gives pulses.
 const Pin* chip_pin(std::uint16_t pin);
 
-// All of them, at once, and for good: until start(). Any state of the machine.
+// All of them off, at once, and for good: until start(). Any state of the machine.
 void switch_off();
 
 // A module's period has ended. [its interrupt]

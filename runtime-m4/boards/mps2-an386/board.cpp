@@ -12,6 +12,8 @@ std::array<volatile std::uint32_t, kVirtualInputs> robosync_virtual_echoes{};
 
 std::array<volatile std::uint32_t, kVirtualAnalog> robosync_virtual_analog{};
 
+std::array<volatile std::uint32_t, kVirtualEnables> robosync_virtual_enables{1, 1};
+
 namespace robosync::boards::mps2 {
 
 namespace {
@@ -65,6 +67,11 @@ std::uint32_t Board::pwm_read(std::uint16_t pin) const {
   return pin < robosync_virtual_pwm.size() ? robosync_virtual_pwm[pin] : 0;
 }
 
+void Board::enable(std::uint16_t pin, bool on) {
+  const unsigned place = pin - unsigned{kFirstEnable};
+  if (place < kVirtualEnables) robosync_virtual_enables[place] = on ? 0 : 1;
+}
+
 void Board::watchdog_start() {
   watchdog().lock = kWatchdogUnlock;
   watchdog().load = kWatchdogTicks;
@@ -85,6 +92,8 @@ robosync::boards::Board& robosync_board = robosync::boards::mps2::board;
 void robosync::boards::switch_outputs_off() {
   for (volatile std::uint32_t& pulse : robosync_virtual_pwm)
     pulse = 0;
+  for (volatile std::uint32_t& level : robosync_virtual_enables)
+    level = 1;
 }
 
 const std::uint32_t robosync::port::hooks::kTickCounts =

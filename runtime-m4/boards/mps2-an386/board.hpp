@@ -31,6 +31,11 @@ inline constexpr std::uint16_t kFirstAnalog = 44;
 inline constexpr std::uint16_t kVirtualAnalog = 4;
 extern "C" std::array<volatile std::uint32_t, kVirtualAnalog> robosync_virtual_analog;
 
+// The level of each pin at an enable input: 1 is high, and off.
+inline constexpr std::uint16_t kFirstEnable = 36;
+inline constexpr std::uint16_t kVirtualEnables = 2;
+extern "C" std::array<volatile std::uint32_t, kVirtualEnables> robosync_virtual_enables;
+
 namespace robosync::boards::mps2 {
 
 class Board final : public boards::Board {
@@ -50,6 +55,7 @@ public:
   bool analog(std::uint16_t pin, std::uint16_t& voltage) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
+  void enable(std::uint16_t pin, bool on) override;
   std::size_t link_write(std::span<const std::byte> bytes) override { return uart_.write(bytes); }
   std::size_t link_read(std::span<std::byte> bytes) override { return uart_.read(bytes); }
   void link_start(const LineEvents& events) override { uart_.start(events); }

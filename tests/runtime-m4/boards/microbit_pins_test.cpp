@@ -22,6 +22,7 @@ const std::map<std::uint16_t, Nrf52833::Pin> kEdge{
     {5, {0, 14}},  {6, {1, 5}},   {7, {0, 11}},  {8, {0, 10}},  {9, {0, 9}},
     {10, {0, 30}}, {11, {0, 23}}, {12, {0, 12}}, {13, {0, 17}}, {14, {0, 1}},
     {15, {0, 13}}, {16, {1, 2}},  {19, {0, 26}}, {20, {1, 0}}};
+constexpr std::uint16_t kEnable = 16;  // of a chip: high is off
 constexpr unsigned kEdgeFrame = 20'000;
 constexpr unsigned kNewest = 2 * kEdgeFrame;  // then what was written is at work
 constexpr unsigned kBackAgain = 3 * kEdgeFrame;
@@ -45,7 +46,8 @@ struct EdgeChip : Nrf52833 {
   void write(std::uintptr_t address, std::uint32_t value) override {
     Nrf52833::write(address, value);
     for (const auto& [number, pin] : kEdge)
-      if (starting) CHECK(level(pin) != Nrf52833::Level::high);
+      if (starting)
+        CHECK(level(pin) != (number == kEnable ? Nrf52833::Level::low : Nrf52833::Level::high));
   }
   Nrf52833::Level at(std::uint16_t pin) const { return level(kEdge.at(pin)); }
   void pass(unsigned us) {
@@ -66,12 +68,12 @@ struct EdgeChip : Nrf52833 {
     }
     return time;
   }
-  // The same of each pin.
+  // The same of each pin but that of a chip.
   std::map<std::uint16_t, unsigned> high_times(unsigned us = kEdgeFrame) {
     std::map<std::uint16_t, unsigned> times;
     for (; us > 0; --us) {
       for (const auto& [number, pin] : kEdge)
-        times[number] += level(pin) == Nrf52833::Level::high ? 1U : 0U;
+        if (number != kEnable) times[number] += level(pin) == Nrf52833::Level::high ? 1U : 0U;
       pass(1);
     }
     return times;
@@ -85,7 +87,7 @@ struct EdgeChip : Nrf52833 {
 
 TEST_CASE(
     "micro:bit: each pin that the profile lets programs drive gives its pulse, no other does") {
-  REQUIRE(edge_outputs().size() == 8);
+  REQUIRE(edge_outputs().size() == 7);
   for (const std::uint16_t pin : edge_outputs()) {
     EdgeChip chip;
     edge::write(pin, 1500);
@@ -102,6 +104,7 @@ TEST_CASE("micro:bit: from reset on the pins are low, those that give no pulses 
   EdgeChip chip;
   const auto driven = edge_outputs();
   for (const auto& [number, pin] : kEdge) {
+    if (number == kEnable) continue;
     const bool is_output = std::ranges::find(driven, number) != driven.end();
     CAPTURE(number);
     CHECK(chip.at(number) == (is_output ? Nrf52833::Level::low : Nrf52833::Level::floating));
@@ -125,7 +128,7 @@ TEST_CASE("micro:bit: all pins at once, each with its own pulse; off and always 
     edge::write(12, wanted[12] = kEdgeFrame);
     edge::write(14, wanted[14] = 0);
     edge::write(0, wanted[0] = 1);
-    edge::write(16, wanted[16] = kEdgeFrame - 1);
+    edge::write(15, wanted[15] = kEdgeFrame - 1);
     chip.pass(kNewest);
     const auto times = chip.high_times();
     for (const auto& [pin, time] : wanted)
@@ -223,14 +226,36 @@ TEST_CASE("micro:bit: all off is at once, and before the start it does nothing")
   for (const std::uint16_t pin : edge_outputs())
     edge::write(pin, kEdgeFrame);
   chip.pass(kNewest);
-  REQUIRE(chip.at(16) == Nrf52833::Level::high);
+  REQUIRE(chip.at(15) == Nrf52833::Level::high);
   edge::switch_off();
   for (const auto& [number, time] : chip.high_times(2 * kEdgeFrame))
     CHECK(time == 0);
   CHECK(chip.served == 0);  // nor does a period end any more
-  edge::write(16, kEdgeFrame);
-  CHECK(chip.high_time(16, 2 * kEdgeFrame) == 0);
+  edge::write(15, kEdgeFrame);
+  CHECK(chip.high_time(15, 2 * kEdgeFrame) == 0);
   Nrf52833 fresh;
   edge::switch_off();
   CHECK(fresh.level({0, 2}) == Nrf52833::Level::floating);
+}
+
+TEST_CASE(
+    "micro:bit: the pin at a chip's enable input is high from the start on, and whenever all is "
+    "off") {
+  EdgeChip chip;
+  CHECK(chip.at(kEnable) == Nrf52833::Level::high);
+  edge::write(kEnable, 1500);  // it gives no pulses, nor is it low for a program's sake
+  edge::let_go(kEnable);
+  edge::take_back(kEnable);
+  chip.pass(kNewest);
+  CHECK(chip.at(kEnable) == Nrf52833::Level::high);
+  for (const std::uint16_t pin : edge_outputs())
+    edge::enable(pin, true);
+  CHECK(chip.at(kEnable) == Nrf52833::Level::high);
+  edge::enable(kEnable, true);
+  CHECK(chip.at(kEnable) == Nrf52833::Level::low);
+  edge::enable(kEnable, false);
+  CHECK(chip.at(kEnable) == Nrf52833::Level::high);
+  edge::enable(kEnable, true);
+  edge::switch_off();
+  CHECK(chip.at(kEnable) == Nrf52833::Level::high);
 }

@@ -22,7 +22,7 @@ constexpr policy::PinLimit kLimits[] = {
     {.first = 4, .last = 5, .shortest = 1'000, .longest = 2'000, .rise = 2},
     {.first = 6, .last = 6, .shortest = 0, .longest = 10'000, .rise = 50}};
 constexpr policy::BoardPins kPins = {
-    .outputs = kLimits, .inputs = {}, .analog = {}, .i2c_buses = 1};
+    .outputs = kLimits, .inputs = {}, .analog = {}, .enables = {}, .i2c_buses = 1};
 constexpr std::uint16_t kOutputs = 7;
 constexpr unsigned kLongestStep = 20;  // ms that one change may make up for
 

@@ -1,0 +1,20 @@
+// A hobby servo on a channel of a PCA9685: it moves as one on a pin does. What the chip is told, and when, is not its business
+// (servo_chip.hpp).
+#include "runtime-m4/drivers/drivers.hpp"
+
+namespace robosync::drivers::pca9685_servo {
+
+kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
+  device.begin_order();
+  return servo::start(device, order, now);
+}
+
+kernel::Time advance(const Device& device, kernel::Time now) {
+  return servo::advance(device, now);
+}
+
+void release(const Device& device, vm::Release how, kernel::Time now) {
+  servo::release(device, how, now);
+}
+
+}  // namespace robosync::drivers::pca9685_servo
