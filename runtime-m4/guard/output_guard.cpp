@@ -17,6 +17,16 @@ constexpr OutputGuard::Mask bit(unsigned actuator) {
   return OutputGuard::Mask{1} << actuator;
 }
 
+// Calls take(actuator) for each. The loop looks at its end.
+template <class Take>
+[[gnu::always_inline]] inline void each_of(OutputGuard::Mask actuators, Take take) {
+  if (actuators == 0) return;
+  do {
+    take(static_cast<unsigned>(std::countr_zero(actuators)));
+    actuators &= actuators - 1;
+  } while (actuators != 0);
+}
+
 // 0 is off, and always may be.
 std::uint16_t within(const policy::PinLimit& limit, std::uint32_t pulse_us) {
   if (pulse_us == 0) return 0;
@@ -118,7 +128,7 @@ void OutputGuard::own(const vm::Image& image) {
   const policy::BoardPins& pins = board_.pins();
   limits_ = pins.outputs.data();
   Mask owned = 0;
-  gradual_ = 0;
+  gradual_ = staying_ = 0;
   for (unsigned a = 0; a < image.actuators.size(); ++a) {
     const vm::Actuator& actuator = image.actuators[a];
     if (boards::kHasLights && vm::drives_lights(actuator.driver)) {
@@ -130,6 +140,7 @@ void OutputGuard::own(const vm::Image& image) {
     slots_[a] = slot_of(actuator, pins);
     owned |= bit(a);
     if (limits_[slots_[a].limit].rise != 0) gradual_ |= bit(a);
+    if (slots_[a].safe == kStays) staying_ |= bit(a);
   }
   let_go_of(measured_by(image));
   {
@@ -272,11 +283,25 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
   free_ = owned_ & ~halted_;
   if ((fresh & lights()) != 0 && !lights_stay_) board_.show(0);
   if ((fresh & speaker()) != 0) board_.sound(0);
-  for (Mask left = fresh & ~(lights() | speaker()); left != 0; left &= left - 1)
-    make_safe(static_cast<unsigned>(std::countr_zero(left)), now);
+  const Mask pins = fresh & ~(lights() | speaker());
+  const Mask others = pins & (gradual_ | staying_);
+  each_of(pins & ~others, [&](unsigned actuator) { shut(slots_[actuator]); });
+  if (others != 0) [[unlikely]]
+    make_all_safe(others, now);
 }
 
-[[gnu::always_inline]] inline void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
+// One that has a pulse for its safe state, and may change at once: so its target is its pulse. A pin that is off stays off.
+[[gnu::always_inline]] inline void OutputGuard::shut(Slot& slot) {
+  if (slot.pulse == 0) return;
+  slot.pulse = slot.target = slot.safe;
+  board_.pwm_write(slot.pin, slot.safe);
+}
+
+[[gnu::noinline]] void OutputGuard::make_all_safe(Mask actuators, kernel::Time now) {
+  each_of(actuators, [&](unsigned actuator) { make_safe(actuator, now); });
+}
+
+void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
   if (slot.safe != kStays && slot.pulse != 0) return settle(slot, actuator, slot.safe, now);
   slot.target = slot.pulse;
