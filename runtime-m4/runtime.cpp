@@ -279,12 +279,13 @@ void Runtime::halt(kernel::Duration stuck_for) {
 kernel::Time Runtime::look_at_rules(kernel::Time now) {
   if (begun_ && !sensors_.are_fed()) [[likely]]
     return safety_rules_.look(now);
-  return look_at_feeds(now);
+  return look_at_feeds();
 }
 
-// … first, and whether the program begins.
-kernel::Time Runtime::look_at_feeds(kernel::Time now) {
+// … first, and whether the program begins. It asks for the time itself, so that who does not come here keeps it where it is.
+kernel::Time Runtime::look_at_feeds() {
   if (!running_) return kernel::kForever;
+  const kernel::Time now = kernel_.now();
   sensors_.deliver_due();
   if (!begun_ && !sensors_.knows_enough()) {
     if (simulated()) return kernel::kForever;

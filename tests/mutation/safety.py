@@ -66,8 +66,6 @@ MUTANTS = (
            "if (!was_known) expires_by(expires_at(number, channel));", ""),
     Mutant("nobody knows that a channel is not measured any more", MAILBOX, "  expires_by(0);\n", ""),
     Mutant("nobody knows when others are too old, once one was", MAILBOX, "next = std::min(next, expires_at(c, channels[c]));", ""),
-    Mutant("what is fed is not delivered before the rules are looked at", RUNTIME, "if (begun_ && !sensors_.are_fed()) [[likely]]",
-           "if (begun_)"),
     Mutant("what is unknown does not trip", RULES, "danger != vm::kFalse", "danger == vm::kTrue"),
     Mutant("a rule resumes while it is in danger", RULES, "was_tripped && danger == vm::kFalse && ", "was_tripped && "),
     Mutant("a rule lets go what another one halts", RULES, "halted_by(rule) & ~still", "halted_by(rule)"),
@@ -91,9 +89,15 @@ MUTANTS = (
 
 
 def unity_of(file):
-    """The compilation that has this source among others: (its command, the source that includes them)."""
+    """The compilation that has this source among others, or alone: (its command, a source that includes them)."""
     for entry in json.loads((HOST / "compile_commands.json").read_text()):
-        if "robosync_runtime.dir" in entry["command"] and str(ROOT / file) in Path(entry["file"]).read_text():
+        if "robosync_runtime.dir" not in entry["command"]:
+            continue
+        if entry["file"] == str(ROOT / file):
+            alone = WORK / "alone.cpp"
+            alone.write_text(f'#include "{ROOT / file}"\n')
+            return shlex.split(entry["command"]), alone
+        if str(ROOT / file) in Path(entry["file"]).read_text():
             return shlex.split(entry["command"]), Path(entry["file"])
     raise LookupError(f"build/host does not compile {file}")
 
