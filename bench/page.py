@@ -37,6 +37,9 @@ design's arithmetic and commands (4,096).
 `path/smooth_sample` is `vm/W3_natural` with the largest window, 32 samples, in the order that moves most of them; its bands
 are in it. `firmware/idle_second_paper` is without what the bit-banged I2C bus executes, `…_i2c` is that alone.
 `vm/bytes_W3`: the response takes 88, the period of its EVERY, which the peers' step has not, 8 more.
+`safety/stop_frame_to_safe_loaded` is the most of 20 stops, whose moments this machine chooses and not the robot: where none comes
+while the tick, or who holds the switch off, has dozens of threads to see to, it is some 560; 1,584 is the most that was seen, and stays
+recorded.
 `vm/W1` ends when both commands are put out, as the peers' does; `vm/W1_queue` is the same rule in the shipped firmware, until both
 are in their drivers' queues: claims, two threads and their switches included. `vm/W3_staged` is W3 in the shipped firmware, until
 what it has SET is staged for the next step. `vm/ram_per_thread` is all that a behaviour takes.

@@ -40,6 +40,7 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
                      .frames = shared_.frames,
                      .variables = variables_,
                      .control = control_,
+                     .outputs = outputs_,
                      .alarm = alarm_,
                      .processing = shared_.processing},
                     step_thread_, layers::kHalted) {}
@@ -276,7 +277,15 @@ void Runtime::halt(kernel::Duration stuck_for) {
 // What is unknown when program time begins trips before the first step: no thread of the program has
 // run since.
 kernel::Time Runtime::look_at_rules(kernel::Time now) {
+  if (begun_ && !sensors_.are_fed()) [[likely]]
+    return safety_rules_.look(now);
+  return look_at_feeds();
+}
+
+// … first, and whether the program begins. It asks for the time itself, so that who does not come here keeps it where it is.
+kernel::Time Runtime::look_at_feeds() {
   if (!begun_ && !running_) return kernel::kForever;
+  const kernel::Time now = kernel_.now();
   sensors_.deliver_due();
   if (!begun_ && !sensors_.knows_enough()) {
     if (simulated()) return kernel::kForever;

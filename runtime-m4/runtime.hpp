@@ -124,6 +124,7 @@ private:
   void hold_to_budgets(bool alive) override;
   void halt(kernel::Duration stuck_for) override;
   kernel::Time look_at_rules(kernel::Time now) override;
+  [[gnu::cold, gnu::noinline]] kernel::Time look_at_feeds();
   void tend_outputs() override { outputs_.go_on(kernel_.now()); }
   void obey() override;
   kernel::Time began() const override { return trace_.activated_at(); }

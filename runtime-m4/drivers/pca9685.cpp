@@ -25,12 +25,12 @@ constexpr std::byte kAllOn{0xFA};  // ALL_LED_ON_L, ALL_LED_ON_H, ALL_LED_OFF_L,
 constexpr std::byte kAllOffHigh{0xFD};
 constexpr std::byte kPrescale{0xFE};
 
-constexpr std::byte kRuns{
-    0x20};  // MODE1: goes on from a register to the next; answers at its own address only
-constexpr std::byte kSleeps{
-    0x30};  // … and its oscillator stands still, or PRE_SCALE could not be written
-constexpr std::byte kRestart{
-    0x80};  // MODE1: it was put to sleep in the midst of pulses; what is written to an output ends that
+// MODE1. It goes on from a register to the next, and answers at its own address only …
+constexpr std::byte kRuns{0x20};
+// … and its oscillator stands still, or PRE_SCALE could not be written.
+constexpr std::byte kSleeps{0x30};
+// It was put to sleep in the midst of pulses; what is written to an output ends that.
+constexpr std::byte kRestart{0x80};
 constexpr std::byte kTotemPole{0x04};  // MODE2: outputs low while OE is high
 constexpr std::byte kOff{0x10};        // LEDn_OFF_H, ALL_LED_OFF_H: no pulses at all
 

@@ -26,6 +26,16 @@ constexpr policy::PinLimit kOnChips{
     .rise = 0,
 };
 
+// Calls take(actuator) for each. The loop looks at its end.
+template <class Take>
+[[gnu::always_inline]] inline void each_of(OutputGuard::Mask actuators, Take take) {
+  if (actuators == 0) return;
+  do {
+    take(static_cast<unsigned>(std::countr_zero(actuators)));
+    actuators &= actuators - 1;
+  } while (actuators != 0);
+}
+
 // 0 is off, and always may be.
 std::uint16_t within(const policy::PinLimit& limit, std::uint32_t pulse_us) {
   if (pulse_us == 0) return 0;
@@ -128,7 +138,7 @@ void OutputGuard::own(const vm::Image& image) {
   const policy::BoardPins& pins = board_.pins();
   limits_ = pins.outputs.data();
   Mask owned = 0;
-  gradual_ = 0;
+  gradual_ = apart_ = 0;
   for (unsigned a = 0; a < image.actuators.size(); ++a) {
     const vm::Actuator& actuator = image.actuators[a];
     if (boards::kHasLights && vm::drives_lights(actuator.driver)) {
@@ -140,9 +150,11 @@ void OutputGuard::own(const vm::Image& image) {
     slots_[a] = slot_of(actuator, pins);
     owned |= bit(a);
     if (limits_[slots_[a].limit].rise != 0) gradual_ |= bit(a);
+    if (slots_[a].safe == kStays) apart_ |= bit(a);
   }
   own_chips(image);
   owned |= on_chips_;
+  apart_ |= on_chips_;
   let_go_of(measured_by(image));
   {
     const auto lock = kernel_.lock();
@@ -288,13 +300,26 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
   free_ = owned_ & ~halted_;
   if ((fresh & lights()) != 0 && !lights_stay_) board_.show(0);
   if ((fresh & speaker()) != 0) board_.sound(0);
-  if ((fresh & on_chips_) != 0) [[unlikely]]
-    halt_chips(fresh);
-  for (Mask left = fresh & ~(lights() | speaker() | on_chips_); left != 0; left &= left - 1)
-    make_safe(static_cast<unsigned>(std::countr_zero(left)), now);
+  const Mask pins = fresh & ~(lights() | speaker());
+  const Mask others = pins & (gradual_ | apart_);
+  each_of(pins & ~others, [&](unsigned actuator) { shut(slots_[actuator]); });
+  if (others != 0) [[unlikely]]
+    make_all_safe(others, now);
 }
 
-[[gnu::always_inline]] inline void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
+// One that has a pulse for its safe state, and may change at once: so its target is its pulse. A pin that is off stays off.
+[[gnu::always_inline]] inline void OutputGuard::shut(Slot& slot) {
+  if (slot.pulse == 0) return;
+  slot.pulse = slot.target = slot.safe;
+  board_.pwm_write(slot.pin, slot.safe);
+}
+
+[[gnu::noinline]] void OutputGuard::make_all_safe(Mask actuators, kernel::Time now) {
+  if ((actuators & on_chips_) != 0) halt_chips(actuators);
+  each_of(actuators & ~on_chips_, [&](unsigned actuator) { make_safe(actuator, now); });
+}
+
+void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
   if (slot.safe != kStays && slot.pulse != 0) return settle(slot, actuator, slot.safe, now);
   slot.target = slot.pulse;

@@ -128,7 +128,9 @@ private:
 
   void settle(Slot& slot, unsigned actuator, std::uint16_t pulse, kernel::Time now);
   void put(unsigned actuator, kernel::Time now);
+  void shut(Slot& slot);
   void make_safe(unsigned actuator, kernel::Time now);
+  void make_all_safe(Mask actuators, kernel::Time now);
   void make_halted_safe(kernel::Time now);
   std::uint16_t next_pulse(Slot& slot, std::uint16_t rise, bool pulses, kernel::Time now) const;
   [[nodiscard]] bool is_free(unsigned actuator) const;
@@ -162,6 +164,8 @@ private:
   Mask halted_ = 0;
   Mask free_ = 0;     // owned, and not halted
   Mask gradual_ = 0;  // whose pulse may not change at once
+  Mask apart_ =
+      0;  // for which a halt is more than a pulse on a pin: they stay as they are, or are on a chip
   Mask lagging_ = 0;  // … and is not yet where it shall be
   Mask lights_ = 0;
   Mask speaker_ = 0;

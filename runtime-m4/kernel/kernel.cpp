@@ -59,13 +59,16 @@ Events Kernel::wait_until(Events mask, Time deadline) {
     const Events taken = self.take(mask);
     // The timer is taken back here and not by signal(), whose path it would lengthen. Until then
     // it can do no harm: it would make this thread ready, which it is.
-    const bool struck = !self.armed();
-    if (!struck) disarm(self);
-    if (taken != 0 || (last && struck)) return taken;
+    if (taken == 0 && !self.armed()) {
+      if (last) return 0;
+      continue;
+    }
+    disarm(self);
+    if (taken != 0) return taken;
   }
 }
 
-void Kernel::disarm(Thread& thread) {
+inline void Kernel::disarm(Thread& thread) {
   port::SwitchLock still(machine_);
   if (thread.armed()) TimerQueue::disarm(thread);
 }
@@ -95,8 +98,9 @@ void Kernel::make_ready(Thread& thread) {
   ReadySet::insert(thread.ready_position_);
 }
 
+// Under a Lock, so that no tick is under way.
 void Kernel::make_unready(Thread& thread) {
-  disarm(thread);
+  if (thread.armed()) TimerQueue::disarm(thread);
   release_all(thread);
   thread.wanted_ = 0;
   ReadySet::erase(thread.ready_position_);
@@ -125,11 +129,10 @@ void Kernel::stop(Thread& thread) {
 }
 
 void Kernel::report() {
-  port::Lock lock(machine_);
   if (watcher_ != nullptr) signal(*watcher_, report_events_);
 }
 
-// Its interrupts are held off.
+// Interrupts are held off.
 void Kernel::rest(Events mask) {
   running_->events_ &= ~mask;
   report();

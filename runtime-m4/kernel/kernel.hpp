@@ -234,8 +234,8 @@ private:
   void disarm(Thread& thread);
   void block(Thread& thread, Events mask);
   void take_or_block(port::CallFrame& call);
-  void report();
-  void rest(Events mask);
+  [[gnu::cold, gnu::noinline]] void report();
+  [[gnu::cold]] void rest(Events mask);
   void make_ready(Thread& thread);
   [[gnu::cold]] void make_unready(Thread& thread);
   [[gnu::noinline]] void wake_due();

@@ -13,7 +13,7 @@ public:
 
   void watch(InputMask inputs) { inputs_ = inputs; }
   // The safety thread outranks whoever calls: it has done its work when this returns.
-  void ring(InputMask changed) {
+  [[gnu::always_inline]] void ring(InputMask changed) {
     if ((changed & inputs_) != 0) kernel_.signal(thread_, news_);
   }
 

@@ -243,10 +243,6 @@ void ControlLayer::resume() {
   if (program_ != nullptr) set_free(halted() & ~by_rules_);
 }
 
-void ControlLayer::make_safe(ActuatorMask actuators, kernel::Time now) {
-  outputs_.halt(actuators, now);
-}
-
 // The pins come first. A driver that is at work now sees the mask when it is done (keep_at()).
 void ControlLayer::hold_back(ActuatorMask fresh) {
   if (fresh == 0) return;

@@ -79,8 +79,6 @@ public:
 
   // [safety thread] Those that are halted, or not, already stay as they are.
   void halt(ActuatorMask actuators);
-  // The pins alone, ahead of halt(), which must follow.
-  void make_safe(ActuatorMask actuators, kernel::Time now);
   void let_go(ActuatorMask actuators);
   // All of them, until the next program.
   void halt_for_good();

@@ -28,11 +28,16 @@ public:
   template <class ValueOf>
   static void latch(const vm::Machine& machine, const vm::Image& image,
                     const vm::Behavior& behavior, ValueOf value) {
-    // Nothing is looked up again for each, as the compiler would do after every write; and the loop looks at its end.
-    unsigned left = behavior.input_count;
+    latch(machine, image.inputs.subspan(behavior.first_input, behavior.input_count), value);
+  }
+  // Nothing is looked up again for each, as the compiler would do after every write; and the loop looks at its end.
+  template <class ValueOf>
+  static void latch(const vm::Machine& machine, std::span<const std::uint8_t> inputs,
+                    ValueOf value) {
+    std::size_t left = inputs.size();
     if (left == 0) return;
     vm::Value* cell = machine.frame;
-    const std::uint8_t* input = image.inputs.data() + behavior.first_input;
+    const std::uint8_t* input = inputs.data();
     do {
       *cell++ = value(*input++);
     } while (--left != 0);

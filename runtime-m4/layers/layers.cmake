@@ -56,3 +56,5 @@ set_source_files_properties(layers/median.cpp PROPERTIES
   COMPILE_OPTIONS "-O2;$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns>")
 # What each reading goes through, in the step thread, of which there is one: its stack has room for it.
 set_source_files_properties(layers/processing.cpp PROPERTIES COMPILE_OPTIONS "-O2")
+# The way from a reading in its mailbox to the pins in their safe state.
+set_source_files_properties(safety/safety_rules.cpp PROPERTIES COMPILE_OPTIONS "-O2")

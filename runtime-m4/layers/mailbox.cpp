@@ -6,10 +6,12 @@
 namespace robosync::layers {
 namespace {
 
+// By `least`, which is not negative, and by something.
 bool differs(vm::Value a, vm::Value b, vm::Value least) {
+  if (a == b) return false;
   const auto up = static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b);
   const std::uint32_t difference = a < b ? -up : up;
-  return difference >= static_cast<std::uint32_t>(std::max(least, vm::Value{1}));
+  return difference >= static_cast<std::uint32_t>(least);
 }
 
 }  // namespace
@@ -18,29 +20,30 @@ void Mailboxes::start(Memory& memory) {
   boxes_ = memory.take<policy::Part::mailboxes, Mailbox>();
   announced_ = 0;
   forgotten_ = 0;
-  next_expiry_ = kernel::kForever;
+  next_expiry_ = expiry_of_news_ = kernel::kForever;
 }
 
-bool Mailboxes::post(const Reading& reading, const vm::Channel& channel) {
+ChannelMask Mailboxes::post(const Reading& reading, const vm::Channel& channel) {
   const auto lock = kernel_.lock();
-  Mailbox& box = boxes_[reading.channel()];
+  const unsigned number = reading.channel();
+  Mailbox& box = boxes_[number];
   box.sample_at(reading.time());
   const bool was_known = box.is_known();
-  if (was_known && !differs(reading.value(), box.value, channel.change)) return false;
+  if (was_known && !differs(reading.value(), box.value, channel.change)) return 0;
   box.value = reading.value();
-  if (!was_known) next_expiry_ = std::min(next_expiry_, expires_at(reading.channel(), channel));
-  return true;
-}
-
-void Mailboxes::announce(ChannelMask channels) {
-  const auto lock = kernel_.lock();
-  announced_ |= channels;
+  if (!was_known) expires_by(expires_at(number, channel));
+  return bit<ChannelMask>(number);
 }
 
 void Mailboxes::forget(unsigned channel) {
   const auto lock = kernel_.lock();
   forgotten_ |= bit<ChannelMask>(channel);
-  next_expiry_ = 0;
+  expires_by(0);
+}
+
+void Mailboxes::expires_by(kernel::Time time) {
+  next_expiry_ = std::min(next_expiry_, time);
+  expiry_of_news_ = std::min(expiry_of_news_, time);
 }
 
 ChannelMask Mailboxes::take_announced() {
@@ -48,18 +51,24 @@ ChannelMask Mailboxes::take_announced() {
   return std::exchange(announced_, 0);
 }
 
+// Whoever is locked out only for one channel at a time may post and forget in between, and the safety thread may look:
+// until all are seen, nobody says that they are fresh.
 ChannelMask Mailboxes::expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,
                                   kernel::Time now) {
   ChannelMask expired = 0;
+  kernel::Time next = kernel::kForever;
   {
     const auto lock = kernel_.lock();
-    next_expiry_ = kernel::kForever;
+    next_expiry_ = 0;
+    expiry_of_news_ = kernel::kForever;
   }
   for (unsigned c = 0; c < channels.size(); ++c) {
-    const auto lock = kernel_.lock();  // forget() may come in between
+    const auto lock = kernel_.lock();
     if (!has(fresh, c) && expire(c, channels[c], now)) expired |= bit<ChannelMask>(c);
-    next_expiry_ = std::min(next_expiry_, expires_at(c, channels[c]));
+    next = std::min(next, expires_at(c, channels[c]));
   }
+  const auto lock = kernel_.lock();
+  next_expiry_ = std::min(next, expiry_of_news_);
   return expired;
 }
 

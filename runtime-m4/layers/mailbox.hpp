@@ -22,9 +22,12 @@ public:
   void start(Memory& memory);  // nothing is known
 
   // Keeps the reading if it says something new: the channel was unknown, or differs by at least
-  // channel.change. Returns whether it did; then announce it. The channel is fresh in any case.
-  [[nodiscard]] bool post(const Reading& reading, const vm::Channel& channel);
-  void announce(ChannelMask channels);
+  // channel.change. Returns the channel's bit if it did, to be announced, else 0. The channel is fresh in any case.
+  [[nodiscard, gnu::noinline]] ChannelMask post(const Reading& reading, const vm::Channel& channel);
+  void announce(ChannelMask channels) {
+    const auto lock = kernel_.lock();
+    announced_ |= channels;
+  }
   // Nobody measures the channel any more.
   void forget(unsigned channel);
 
@@ -32,8 +35,10 @@ public:
   bool has_announced() const { return announced_ != 0; }
   ChannelMask take_announced();
   vm::Value value(unsigned channel) const { return boxes_[channel].value; }
-  // For the safety thread, which does not wait for expire(): unknown as soon as it is too old. Nobody who posts
-  // interrupts it, so it needs no lock.
+  // For the safety thread, which does not wait for expire(). Nobody who posts interrupts it, so it needs no lock.
+  // All that is known is good at `now`: each value() is its fresh_value(). False also where that is not sure.
+  bool are_fresh(kernel::Time now) const { return now < next_expiry_; }
+  // Unknown as soon as it is too old.
   vm::Value fresh_value(unsigned channel, const vm::Channel& wiring, kernel::Time now) const {
     const Mailbox& box = boxes_[channel];
     if (has(forgotten_, channel)) return vm::kUnknown;
@@ -72,9 +77,9 @@ private:
     std::uint32_t sampled_high_ = 0;
   };
 
-  // Of a reading, where wiring.stale_ms is not 0.
+  // Of a reading, where wiring.stale_ms is not 0: that long, and a tick.
   static kernel::Duration life_of(const vm::Channel& wiring) {
-    return kernel::milliseconds(wiring.stale_ms) + kernel::kTick;
+    return (wiring.stale_ms + 1U) * static_cast<std::uint32_t>(kernel::kTick);
   }
   [[nodiscard]] ChannelMask expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,
                                        kernel::Time now);
@@ -83,7 +88,11 @@ private:
   kernel::Time expires_at(unsigned channel, const vm::Channel& wiring) const;
 
   kernel::Kernel& kernel_;
+  void expires_by(kernel::Time time);
+
   kernel::Time next_expiry_ = kernel::kForever;
+  // Of what was posted, or forgotten, during expire_old().
+  kernel::Time expiry_of_news_ = kernel::kForever;
   std::span<Mailbox> boxes_;
   ChannelMask announced_ = 0;
   ChannelMask forgotten_ = 0;

@@ -182,7 +182,7 @@ void SensorLayer::sample(unsigned sensor) {
       ++failed;
     }
   }
-  announce(news);
+  announce_all(news);
   if (sample_thread_ != nullptr) kernel_.signal(*sample_thread_, kSampled);
   note_contact(sensor, failed);
 }
@@ -238,7 +238,7 @@ void SensorLayer::deliver() {
     mailboxes_.announce(mine);
     news |= mine;
   }
-  tell(news);
+  if (news != 0) tell(news);
   if (awaited_ != 0 && sample_thread_ != nullptr) kernel_.signal(*sample_thread_, kSampled);
 }
 
@@ -249,19 +249,22 @@ ChannelMask SensorLayer::publish(std::uint8_t channel, vm::Value value, kernel::
     const auto lock = kernel_.lock();
     awaited_ &= ~bit<ChannelMask>(channel);
   }
-  return mailboxes_.post(reading, wiring) ? bit<ChannelMask>(channel) : 0;
+  return mailboxes_.post(reading, wiring);
 }
 
-void SensorLayer::announce(ChannelMask channels) {
+[[gnu::always_inline]] inline void SensorLayer::tell(ChannelMask channels) {
+  alarm_.ring(channels);  // safety first; what it does is part of the step with the reading
+  kernel_.signal(step_thread_, news_);
+}
+
+[[gnu::always_inline]] inline void SensorLayer::announce_all(ChannelMask channels) {
   if (channels == 0) return;
   mailboxes_.announce(channels);
   tell(channels);
 }
 
-void SensorLayer::tell(ChannelMask channels) {
-  if (channels == 0) return;
-  alarm_.ring(channels);  // safety first; what it does is part of the step with the reading
-  kernel_.signal(step_thread_, news_);
+void SensorLayer::announce(ChannelMask channels) {
+  announce_all(channels);
 }
 
 link::FeedError SensorLayer::check(const link::Feed& feed) const {

@@ -58,8 +58,10 @@ public:
   // Publishes the feeds that are due. The step and the safety thread outrank the one that serves the
   // feeds: each calls this before it asks what is known, and what is due.  [thread]
   void deliver_due() {
-    if (!feeds_.empty() && feeds_.next_due() <= kernel_.now()) deliver();
+    if (are_fed() && feeds_.next_due() <= kernel_.now()) deliver();
   }
+
+  bool are_fed() const { return !feeds_.empty(); }  // feeds wait to be delivered
 
   // Its thread was stopped: what it measures is no longer known.
   void retire(unsigned member_index);
@@ -110,6 +112,7 @@ private:
   void note_contact(unsigned sensor, unsigned failed);
   [[gnu::noinline]] void deliver();
   void tell(ChannelMask channels);
+  void announce_all(ChannelMask channels);
   link::FeedError check(const link::Feed& feed) const;
 
   kernel::Kernel& kernel_;

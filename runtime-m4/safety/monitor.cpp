@@ -20,19 +20,26 @@ void Monitor::run() {
   kernel::Time rules_due = kernel::kForever;
   while (true) {
     const kernel::Events why = kernel_.wait(kNews | kProgram | kPerson, std::min(due, rules_due));
-    if ((why & kPerson) != 0) supervised_.obey();
-    const kernel::Time now = kernel_.now();
-    if ((why & kProgram) != 0) {
-      due = std::min(due, supervised_.began());  // the watchdog waits for nobody's program
-      rules_due = kernel::kForever;
-      without_progress_ = 0;
+    if ((why & (kPerson | kProgram)) != 0) [[unlikely]] {
+      if ((why & kPerson) != 0) supervised_.obey();
+      if ((why & kProgram) != 0) {
+        due = std::min(due, supervised_.began());  // the watchdog waits for nobody's program
+        rules_due = kernel::kForever;
+        without_progress_ = 0;
+      }
     }
+    const kernel::Time now = time();
     if ((why & kNews) != 0 || now >= std::min(due, rules_due))
       rules_due = supervised_.look_at_rules(now);
     if (now < due) continue;
     check(now - due);
     due = next_after(due, now);
   }
+}
+
+inline kernel::Time Monitor::time() const {
+  const auto lock = kernel_.lock();
+  return kernel_.time();
 }
 
 // Periods are the program's, from its begin on. Those that are over already are skipped, never made up for.

@@ -71,6 +71,7 @@ private:
   static constexpr std::size_t kStack = 896;
 
   void run();
+  kernel::Time time() const;
   kernel::Time next_after(kernel::Time due, kernel::Time now) const;
   void check(kernel::Duration late);
 

@@ -35,6 +35,7 @@ public:
     layers::Frames& frames;
     layers::Variables& variables;
     layers::ControlLayer& control;
+    guard::OutputGuard& outputs;
     layers::Alarm& alarm;
     const layers::ProcessingLayer& processing;  // for the snapshot of its last step
   };
@@ -44,7 +45,7 @@ public:
       : kernel_(kernel), layers_(neighbours), step_thread_(step_thread), acted_(acted) {}
 
   // Nothing is tripped. `program` must stay until the next start().
-  void start(const layers::LoadedProgram& program, layers::Memory& memory);
+  [[gnu::cold]] void start(const layers::LoadedProgram& program, layers::Memory& memory);
 
   // Evaluates all rules; it is `now`. Returns when a time word of theirs is due.  [safety thread]
   kernel::Time look(kernel::Time now);
@@ -52,24 +53,33 @@ public:
   bool have_tripped() const { return have_tripped_; }  // one of them, since start()  [any]
 
 private:
-  void evaluate(unsigned rule, kernel::Time now);
-  vm::Value truth_of(unsigned rule);
+  void latch(kernel::Time now);
+  [[gnu::cold, gnu::noinline]] void latch_fresh(kernel::Time now);
+  [[gnu::noinline]] vm::Value value_of_variable(std::uint8_t input) const;
+  const vm::Rule* evaluate(const vm::Rule& rule, kernel::Time now);
+  vm::Value truth_of(const vm::Rule& rule);
+  void tell_zero_divide(const vm::Rule& rule);
   // What is not in a hurry takes no registers from what is.
-  [[gnu::noinline]] void tell_zero_divide(unsigned rule);
-  [[gnu::noinline]] void trip(unsigned rule);
-  [[gnu::noinline]] void resume(unsigned rule);
-  void act(const vm::Output& said);
-  layers::ActuatorMask halted_by(unsigned rule) const;
-  kernel::Time next_look(kernel::Time now) const;
+  [[gnu::cold, gnu::noinline]] void note_zero_divide(const vm::Rule& rule);
+  [[gnu::cold, gnu::noinline]] void trip(const vm::Rule& rule);
+  [[gnu::cold, gnu::noinline]] void resume(const vm::Rule& rule);
+  [[gnu::cold]] void act(const vm::Output& said);
+  layers::ActuatorMask halted_by(const vm::Rule& rule) const;
+  unsigned number_of(const vm::Rule& rule) const;
+  kernel::Time next_look(kernel::Time now);
   const layers::Snapshot& snapshot() const { return layers_.processing.snapshot(); }
-  const vm::Behavior& rules() const { return program_->image.behaviors[vm::kSafetyBehavior]; }
 
   kernel::Kernel& kernel_;
   Neighbours layers_;
   kernel::Thread& step_thread_;
   kernel::Events acted_;  // signalled when something was set
   const layers::LoadedProgram* program_ = nullptr;
-  bool are_there_ = false;
+  std::span<const std::uint8_t> inputs_;  // that they read
+  const vm::Rule* first_rule_ = nullptr;  // with those that let them go
+  const vm::Rule* end_rule_ = nullptr;
+  std::size_t channels_ = 0;        // of the image: inputs below are theirs
+  const vm::Word* code_ = nullptr;  // of the image, as …
+  const vm::Response* responses_ = nullptr;
   std::atomic<bool> have_tripped_ = false;
   layers::RuleSet tripped_;
   vm::Machine machine_;

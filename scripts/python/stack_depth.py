@@ -24,7 +24,9 @@ CALLED_BY_POINTER = (
     (r"layers::ControlLayer::start_unit", r"drivers::\w+::(advance|release)\("),  # go_on(), put_at_rest()
     (r"layers::SensorLayer::serve_chip", r"layers::DriverSampler::(serve|lose)_chip"),
     (r"layers::SensorLayer::sample$", r"layers::DriverSampler::sample\("),
-    (r"layers::SensorLayer::|layers::ProcessingLayer::note_stops", r"layers::DriverSampler::"),  # retire()
+    (r"layers::SensorLayer::retire|layers::ProcessingLayer::note_stops", r"layers::DriverSampler::lose_chip"),
+    (r"layers::SensorLayer::a(wait_sample|sks_ahead)", r"layers::DriverSampler::a(sks_ahead|sk|waits)\("),
+    (r"layers::SensorLayer::", r"layers::DriverSampler::"),
     (r"layers::DriverSampler::", r"drivers::\w+::read\(|" + INPUTS + "|" + OUTPUTS),
     (r"layers::AlgorithmLayer::|algorithms::", MODULE),
     (r"guard::", OUTPUTS),

@@ -145,8 +145,11 @@ void Campaign::wire() {
   const auto first = static_cast<std::uint16_t>(random_.below(16));
   const policy::PinLimit outputs[] = {{first, 40, 500, 2500, 0}};
   const policy::PinRange inputs[] = {{first, 40}};
-  const policy::BoardPins board{outputs, inputs, inputs,
-                                static_cast<std::uint8_t>(random_.below(3))};
+  const policy::BoardPins board{.outputs = outputs,
+                                .inputs = inputs,
+                                .analog = inputs,
+                                .enables = inputs,
+                                .i2c_buses = static_cast<std::uint8_t>(random_.below(3))};
   const vm::Verdict verdict = policy::judge(accepted_, board);
   if (!verdict.ok()) ++totals_.verdicts[static_cast<std::size_t>(verdict.refusal)];
   compute();

@@ -20,6 +20,7 @@ WORK = ROOT / "build/mutation/safety"
 TESTS = "[#guard_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test]"
 TIMEOUT = 120
 GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
+MAILBOX = "runtime-m4/layers/mailbox.cpp"
 MONITOR, CONTROL, RUNTIME = "runtime-m4/safety/monitor.cpp", "runtime-m4/layers/control.cpp", "runtime-m4/runtime.cpp"
 
 
@@ -34,8 +35,13 @@ class Mutant(NamedTuple):
 MUTANTS = (
     Mutant("a halt does not shut the pin to drivers", GUARD, "halted_ |= actuators;\n  free_ = owned_ & ~halted_;",
            "halted_ |= actuators;"),
-    Mutant("a halt leaves the pulse as it is", GUARD, "if (slot.safe != kStays && slot.pulse != 0) return", "if (false) return"),
-    Mutant("a halt makes what was off begin to move", GUARD, "slot.safe != kStays && slot.pulse != 0", "slot.safe != kStays"),
+    Mutant("a halt leaves the pulse as it is", GUARD, "slot.pulse = slot.target = slot.safe;\n  board_.pwm_write(slot.pin, slot.safe);", ""),
+    Mutant("a halt leaves a pulse that changes slowly as it is", GUARD, "if (slot.safe != kStays && slot.pulse != 0) return", "if (false) return"),
+    Mutant("a halt makes what was off begin to move", GUARD, "  if (slot.pulse == 0) return;\n", ""),
+    Mutant("a halt makes what was off, and changes slowly, begin to move", GUARD, "slot.safe != kStays && slot.pulse != 0",
+           "slot.safe != kStays"),
+    Mutant("a halt moves what shall stay", GUARD, "(gradual_ | staying_)", "gradual_"),
+    Mutant("a halt moves at once what changes slowly", GUARD, "(gradual_ | staying_)", "staying_"),
     Mutant("letting one go lets all go", GUARD, "halted_ &= ~actuators;", "halted_ = 0;"),
     Mutant("an upload ends a stop for the guard", GUARD, "halted_ = halted;", "halted_ = 0;"),
     Mutant("a program that comes while all is stopped is as it was", GUARD, "  make_halted_safe(kernel_.now());\n", ""),
@@ -49,19 +55,22 @@ MUTANTS = (
            "settle(slot, actuator, static_cast<std::uint16_t>(pulse_us), now)"),
     Mutant("no limit of the safe state's pulse", GUARD, "within(limit, *safe)", "static_cast<std::uint16_t>(*safe)"),
     Mutant("no limit of the rise", GUARD, "if ((gradual_ & bit(actuator)) != 0) [[unlikely]]", "if (false)"),
-    Mutant("a pin that may rise at once has its rise limited once another has", GUARD, "  gradual_ = 0;\n", ""),
+    Mutant("a pin that may rise at once has its rise limited once another has", GUARD, "  gradual_ = staying_ = 0;\n", "  staying_ = 0;\n"),
     Mutant("no limit of the power of a motor", GUARD, "within(limits_[slot.limit], length)", "static_cast<std::uint16_t>(length)"),
     Mutant("a motor that turns round has both pins on", GUARD, "board_.pwm_write(slot.pin, 0);\n  exchange(slot);", "exchange(slot);"),
     Mutant("a motor that turns round begins at the power of before", GUARD, "  slot.pulse = 0;\n", ""),
     Mutant("a motor's pins the other way round are the same to an upload", GUARD, "(second == kNoPin || actuator.bus == second)", "true"),
     Mutant("a motor that runs backward is not seen by the next program", GUARD, "if (back == 0) return slot;", "return slot;"),
-    Mutant("a reading is never too old", RULES, "layers_.mailboxes.fresh_value(input, image.channels[input], now)",
-           "layers_.mailboxes.value(input)"),
+    Mutant("a reading is never too old", RULES, "if (!mailboxes.are_fresh(now)) [[unlikely]]", "if (false)"),
+    Mutant("nobody knows when the first reading of a channel is too old", MAILBOX,
+           "if (!was_known) expires_by(expires_at(number, channel));", ""),
+    Mutant("nobody knows that a channel is not measured any more", MAILBOX, "  expires_by(0);\n", ""),
+    Mutant("nobody knows when others are too old, once one was", MAILBOX, "next = std::min(next, expires_at(c, channels[c]));", ""),
     Mutant("what is unknown does not trip", RULES, "danger != vm::kFalse", "danger == vm::kTrue"),
     Mutant("a rule resumes while it is in danger", RULES, "was_tripped && danger == vm::kFalse && ", "was_tripped && "),
     Mutant("a rule lets go what another one halts", RULES, "halted_by(rule) & ~still", "halted_by(rule)"),
     Mutant("the guard is told of a trip with the rest, not first", RULES,
-           "if (trips) layers_.control.make_safe(halted_by(rule), now);", "",
+           "if (trips) layers_.outputs.halt(halted_by(rule), now);", "",
            "the rule's body halts the same right behind it; the figure safety/reading_to_safe knows"),
     Mutant("a hung program is kicked for", MONITOR, "if (without_progress_ < kChecksUntilHung) {",
            "if (without_progress_ == kChecksUntilHung) supervised_.halt(kChecksUntilHung * kPeriod);\n  if (true) {"),
@@ -80,9 +89,15 @@ MUTANTS = (
 
 
 def unity_of(file):
-    """The compilation that has this source among others: (its command, the source that includes them)."""
+    """The compilation that has this source among others, or alone: (its command, a source that includes them)."""
     for entry in json.loads((HOST / "compile_commands.json").read_text()):
-        if "robosync_runtime.dir" in entry["command"] and str(ROOT / file) in Path(entry["file"]).read_text():
+        if "robosync_runtime.dir" not in entry["command"]:
+            continue
+        if entry["file"] == str(ROOT / file):
+            alone = WORK / "alone.cpp"
+            alone.write_text(f'#include "{ROOT / file}"\n')
+            return shlex.split(entry["command"]), alone
+        if str(ROOT / file) in Path(entry["file"]).read_text():
             return shlex.split(entry["command"]), Path(entry["file"])
     raise LookupError(f"build/host does not compile {file}")
 

@@ -200,6 +200,22 @@ TEST_CASE("a silent sensor trips although no step comes") {
   CHECK(rig.only("trip") == "30 #1 trip r0\n");
 }
 
+TEST_CASE("of two sensors that fall silent each trips its rule when it is too old") {
+  Rig rig;
+  REQUIRE(rig.activate(robosync::test::compile("SAFETY one\n  WHEN near X > 15\n  DO STOP a\nEND\n"
+                                               "SAFETY two\n  WHEN far Y > 15\n  DO STOP a\nEND\n",
+                                               R"({"sensors": [{"name": "near", "type": "VIRTUAL",
+                                            "channels": {"X": {"range": [0, 100], "stale_after": "20ms"}}},
+                                           {"name": "far", "type": "VIRTUAL",
+                                            "channels": {"Y": {"range": [0, 100], "stale_after": "50ms"}}}],
+                               "actuators": [{"name": "a", "type": "VIRTUAL"}]})"))
+              .ok());
+  rig.feed(0, 2);
+  rig.feed(1, 2);
+  rig.run(200);
+  CHECK(rig.only("trip") == "30 #2 trip r0\n60 #3 trip r1\n");
+}
+
 TEST_CASE("a rule stays tripped as long as it is in danger, whatever its RESUME WHEN says") {
   Robot robot(R"(
 SAFETY pinch
