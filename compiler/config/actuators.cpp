@@ -165,7 +165,7 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
   actuator.limit_span = name->span;
   if (known == nullptr) return actuator;
   if (type != nullptr && type->name != "VIRTUAL" && vm::drives_channel(actuator.driver)) {
-    const ChipWiring place = wiring.read_chip(fields, *type);
+    const ChipWiring place = wiring.read_chip(fields);
     actuator.chip = place.chip;
     actuator.pin = place.channel;
   } else if (type != nullptr) {

@@ -50,29 +50,25 @@ std::string boards_with(std::string_view device) {
   return list_names(boards, "and");
 }
 
-std::string boards_with_enables() {
+// Those that `have` is true of.
+template <class Have>
+std::string boards_that(Have have) {
   std::vector<std::string> boards;
   for (std::size_t i = 0; i < board_names().size(); ++i)
-    if (!board_at(i).enables.empty()) boards.emplace_back(board_names()[i]);
+    if (have(board_at(i))) boards.emplace_back(board_names()[i]);
   return list_names(boards, "and");
 }
 
-std::string name_of(const ServoChip& chip) {
-  return fmt::format("the chip at 0x{:02x} on bus {}", chip.address, chip.bus);
+std::string boards_with_enables() {
+  return boards_that([](const Board& board) { return !board.enables.empty(); });
 }
 
 std::string boards_with_i2c() {
-  std::vector<std::string> boards;
-  for (std::size_t i = 0; i < board_names().size(); ++i)
-    if (board_at(i).i2c_buses != 0) boards.emplace_back(board_names()[i]);
-  return list_names(boards, "and");
+  return boards_that([](const Board& board) { return board.i2c_buses != 0; });
 }
 
 std::string boards_with_analog() {
-  std::vector<std::string> boards;
-  for (std::size_t i = 0; i < board_names().size(); ++i)
-    if (!board_at(i).analog.empty()) boards.emplace_back(board_names()[i]);
-  return list_names(boards, "and");
+  return boards_that([](const Board& board) { return !board.analog.empty(); });
 }
 
 }  // namespace
@@ -191,6 +187,14 @@ void WiringReader::check_part(const Fields& fields, const Board::Part* part) {
 
 // ---- servos on a chip
 
+namespace {
+
+std::string name_of(const ServoChip& chip) {
+  return fmt::format("the chip at 0x{:02x} on bus {}", chip.address, chip.bus);
+}
+
+}  // namespace
+
 void WiringReader::refuse_pins(const Fields& fields) {
   for (const char* key : {"pin", "pins"})
     if (const auto* wrong = fields.find(key))
@@ -202,7 +206,7 @@ void WiringReader::refuse_pins(const Fields& fields) {
 }
 
 // Without the enable input nothing but the bus could stop them.
-ChipWiring WiringReader::read_chip(Fields& fields, const WiringType&) {
+ChipWiring WiringReader::read_chip(Fields& fields) {
   ChipWiring wiring;
   refuse_pins(fields);
   const std::string what = "a " + fields.find("device")->text;

@@ -46,7 +46,7 @@ public:
                                    vm::DriverId driver);
   [[nodiscard]] Wiring read_actuator(Fields& fields, const WiringType& type,
                                      const Board::Part* part, vm::DriverId driver);
-  [[nodiscard]] ChipWiring read_chip(Fields& fields, const WiringType& type);
+  [[nodiscard]] ChipWiring read_chip(Fields& fields);
   // All servos of a chip have the same safe state, which is said at `span`, or else of the entry.
   void check_safe(const ServoChip& chip, vm::Release safe, Span span);
   // For those whose driver uses them: the board must have them.

@@ -357,16 +357,12 @@ void OutputGuard::own_chips(const vm::Image& image) {
   }
 }
 
-OutputGuard::Chip* OutputGuard::chip_of(unsigned sensor) {
-  for (unsigned c = 0; c < chip_count_; ++c)
-    if (chips_[c].sensor == sensor) return &chips_[c];
-  return nullptr;
-}
-
-const OutputGuard::Chip* OutputGuard::chip_of(unsigned sensor) const {
-  for (unsigned c = 0; c < chip_count_; ++c)
-    if (chips_[c].sensor == sensor) return &chips_[c];
-  return nullptr;
+template <class Guard>
+auto* OutputGuard::chip_of(Guard& guard, unsigned sensor) {
+  auto* chip = guard.chips_.data();
+  for (unsigned left = guard.chip_count_; left != 0; --left, ++chip)
+    if (chip->sensor == sensor) return chip;
+  return static_cast<decltype(chip)>(nullptr);
 }
 
 // What is off stays off: each of its servos waits for its next order.
@@ -400,13 +396,13 @@ void OutputGuard::begin_order(unsigned actuator) {
 
 bool OutputGuard::knows_chip(unsigned sensor) const {
   const auto lock = kernel_.lock();
-  const Chip* const chip = chip_of(sensor);
+  const Chip* const chip = chip_of(*this, sensor);
   return chip != nullptr && chip->known;
 }
 
 void OutputGuard::lose_chip(unsigned sensor) {
   const auto lock = kernel_.lock();
-  Chip* const chip = chip_of(sensor);
+  Chip* const chip = chip_of(*this, sensor);
   if (chip == nullptr) return;
   chip->known = false;
   switch_chip_off(*chip);
@@ -414,7 +410,7 @@ void OutputGuard::lose_chip(unsigned sensor) {
 
 void OutputGuard::note_chip_set_up(unsigned sensor) {
   const auto lock = kernel_.lock();
-  Chip* const chip = chip_of(sensor);
+  Chip* const chip = chip_of(*this, sensor);
   if (chip == nullptr) return;
   chip->known = true;
   for (Mask left = chip->actuators; left != 0; left &= left - 1)
@@ -423,7 +419,7 @@ void OutputGuard::note_chip_set_up(unsigned sensor) {
 
 bool OutputGuard::next_setpoint(unsigned sensor, unsigned from, Setpoint& setpoint) const {
   const auto lock = kernel_.lock();
-  const Chip* const chip = chip_of(sensor);
+  const Chip* const chip = chip_of(*this, sensor);
   if (chip == nullptr) return false;
   for (Mask left = chip->actuators; left != 0; left &= left - 1) {
     const auto actuator = static_cast<unsigned>(std::countr_zero(left));
@@ -446,7 +442,7 @@ void OutputGuard::note_setpoint(const Setpoint& setpoint) {
 // A halt may have come since the chip was told its pulses: then there is something to be told again.
 void OutputGuard::let_chip_on(unsigned sensor) {
   const auto lock = kernel_.lock();
-  Chip* const chip = chip_of(sensor);
+  Chip* const chip = chip_of(*this, sensor);
   if (chip == nullptr || chip->on || !chip->known) return;
   if (!chip->holds && (chip->actuators & halted_) != 0) return;
   bool driven = false;

@@ -144,8 +144,9 @@ private:
   void switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
   void own_chips(const vm::Image& image);
-  [[nodiscard]] Chip* chip_of(unsigned sensor);
-  [[nodiscard]] const Chip* chip_of(unsigned sensor) const;
+  // Null: the sensor is none.
+  template <class Guard>
+  [[nodiscard]] static auto* chip_of(Guard& guard, unsigned sensor);
   void switch_chip_off(Chip& chip);
   void switch_chips_off();
   void halt_chips(Mask fresh);

@@ -77,7 +77,7 @@ private:
     std::uint32_t sampled_high_ = 0;
   };
 
-  // Of a reading, where wiring.stale_ms is not 0: that long, and a tick.
+  // Of a reading, where wiring.stale_ms is not 0: that long, and a tick. In 32 bits, which are enough.
   static kernel::Duration life_of(const vm::Channel& wiring) {
     return (wiring.stale_ms + 1U) * static_cast<std::uint32_t>(kernel::kTick);
   }

@@ -37,6 +37,7 @@ void Monitor::run() {
   }
 }
 
+// kernel_.now() without the call: on the way to the pins.
 inline kernel::Time Monitor::time() const {
   const auto lock = kernel_.lock();
   return kernel_.time();

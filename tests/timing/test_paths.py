@@ -184,6 +184,30 @@ class Table(unittest.TestCase):
         self.assertGreaterEqual(self.costs["kTrip"] + self.costs["kHalt"] + VIRTUAL["kHalt"],
                                 one.feeds[-1] - one.feeds[2] - (none.feeds[-1] - none.feeds[2]))
 
+    def test_safety_when_a_reading_is_too_old(self):
+        """Until all are looked through nobody knows which one: then the ages of all that SAFETY reads are looked at."""
+        old = 'BEHAVIOR b PRIORITY 50\n  WHEN old age > 5\n  DO\n    LOG "x"\n  END\nEND\n'
+        inputs = 4
+        reads = " OR ".join(f"s c{c} > 50N" for c in range(inputs))
+        rule = f"SAFETY g\n  WHEN {reads}\n  DO\n    STOP a0\nEND\n"
+
+        def ticks(text, fed, stale_ms):
+            config = paths.robot()
+            for channel in config["sensors"][0]["channels"].values():
+                channel["unit"] = "N"
+            config["sensors"].append({"name": "old", "type": "VIRTUAL",
+                                      "channels": {"age": {"range": [0, 10], "stale_after": f"{stale_ms}ms"}}})
+            measured = run(text, [*(feed(10, c) for c in range(fed)), feed(1, fed), wait(70)], config)
+            return [tick - measured.idle_tick for tick in measured.ticks[60:]]
+
+        # It grows too old in a period of the safety thread, or one tick behind one.
+        together, apart = (max(ticks(rule + old, inputs, stale_ms)) for stale_ms in (30, 31))
+        check = Counter(tick for tick in ticks(old, 0, 31) if tick > 200).most_common(1)[0][0]
+        look = together - apart - check
+        condition = inputs * (14 + 15)
+        said = self.costs["kGuard"] + inputs * self.costs["kInput"] + self.costs["kSafetyRule"] + condition
+        self.assertGreater(look, self.costs["kGuard"])  # it is in that tick
+        self.assertGreaterEqual(said, look)
 
     def test_priorities_that_adapt(self):
         config = paths.robot() | {"scheduler": {"alpha": 5, "window": "105ms", "cap": 95}}

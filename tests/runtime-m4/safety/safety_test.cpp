@@ -200,6 +200,18 @@ TEST_CASE("a silent sensor trips although no step comes") {
   CHECK(rig.only("trip") == "30 #1 trip r0\n");
 }
 
+// The safety thread outranks the one that serves what is fed, and delivers it first.
+TEST_CASE("what is fed at the moment at which it would be too old comes in time") {
+  Rig rig;
+  REQUIRE(rig.activate(guarded_with_stale_after("29ms")).ok());
+  rig.feed(1, 2);
+  rig.feed(1, 2, 30);
+  rig.run(59);
+  CHECK(rig.only("trip").empty());
+  rig.run(60);
+  CHECK(rig.only("trip") == "60 #1 trip r0\n");
+}
+
 TEST_CASE("of two sensors that fall silent each trips its rule when it is too old") {
   Rig rig;
   REQUIRE(rig.activate(robosync::test::compile("SAFETY one\n  WHEN near X > 15\n  DO STOP a\nEND\n"
