@@ -79,7 +79,8 @@ private:
 
   // Of a reading, where wiring.stale_ms is not 0: that long, and a tick. In 32 bits, which are enough.
   static kernel::Duration life_of(const vm::Channel& wiring) {
-    return (wiring.stale_ms + 1U) * static_cast<std::uint32_t>(kernel::kTick);
+    const std::uint32_t life = (wiring.stale_ms + 1U) * static_cast<std::uint32_t>(kernel::kTick);
+    return life;
   }
   [[nodiscard]] ChannelMask expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,
                                        kernel::Time now);
