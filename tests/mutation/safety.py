@@ -17,7 +17,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[2]
 HOST = ROOT / "build/host"
 WORK = ROOT / "build/mutation/safety"
-TESTS = "[#guard_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test]"
+TESTS = "[#guard_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test]"
 TIMEOUT = 120
 GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
 MAILBOX = "runtime-m4/layers/mailbox.cpp"
@@ -61,6 +61,14 @@ MUTANTS = (
     Mutant("a motor that turns round begins at the power of before", GUARD, "  slot.pulse = 0;\n", ""),
     Mutant("a motor's pins the other way round are the same to an upload", GUARD, "(second == kNoPin || actuator.bus == second)", "true"),
     Mutant("a motor that runs backward is not seen by the next program", GUARD, "if (back == 0) return slot;", "return slot;"),
+    Mutant("a halt leaves a servo chip on", GUARD, "  if ((actuators & on_chips_) != 0) halt_chips(actuators);\n", ""),
+    Mutant("a servo chip goes on during a halt", GUARD,
+           "  if (!chip->holds && (chip->actuators & halted_) != 0) return;\n", ""),
+    Mutant("what went limp with its chip goes on without an order", GUARD, "  limp_ |= chip.actuators;\n", ""),
+    Mutant("the next program finds a servo chip on", GUARD, "    board_.enable(chips_[c].enable, false);\n", "    ;\n"),
+    Mutant("a lost servo chip stays on", GUARD, "  chip->known = false;\n  switch_chip_off(*chip);", "  chip->known = false;"),
+    Mutant("what is fed is not delivered before the rules are looked at", RUNTIME, "if (begun_ && !sensors_.are_fed())",
+           "if (begun_)"),
     Mutant("a reading is never too old", RULES, "if (!mailboxes.are_fresh(now)) [[unlikely]]", "if (false)"),
     Mutant("nobody knows when the first reading of a channel is too old", MAILBOX,
            "if (!was_known) expires_by(expires_at(number, channel));", ""),
