@@ -29,6 +29,7 @@ CALLED_BY_POINTER = (
     (r"layers::SensorLayer::", r"layers::DriverSampler::"),
     (r"layers::DriverSampler::", r"drivers::\w+::read\(|" + INPUTS + "|" + OUTPUTS),
     (r"layers::AlgorithmLayer::|algorithms::", MODULE),
+    (r"guard::OutputGuard::(halt_chips|switch_chips?_off)", BOARD + r"enable\("),
     (r"guard::", OUTPUTS),
     (r"drivers::Device::", r"guard::OutputGuard::|" + OUTPUTS),
     (r"drivers::", INPUTS),
