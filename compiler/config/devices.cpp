@@ -209,4 +209,14 @@ const Device* default_device(std::string_view type, bool is_sensor) {
   });
 }
 
+std::vector<std::string> devices_with(std::string_view verb) {
+  std::vector<std::string> able;
+  for (const DeviceText& text : device_texts()) {
+    const Device* const device = text.is_sensor ? nullptr : find_device(text.name, false);
+    if (device != nullptr && device->actuator.find_verb(verb) != nullptr)
+      able.emplace_back(text.name);
+  }
+  return able;
+}
+
 }  // namespace robosync::compiler

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "compiler/config/robot.hpp"
 
@@ -36,5 +37,7 @@ struct DeviceText {  // one descriptor as built in, and what it is found by
 // A descriptor is read when it is asked for. Any case; nullptr when there is none of this kind.
 [[nodiscard]] const Device* find_device(std::string_view name, bool is_sensor);
 [[nodiscard]] const Device* default_device(std::string_view type, bool is_sensor);
+// The names of those that know `verb`, in any case. Reads every actuator's descriptor: for messages.
+[[nodiscard]] std::vector<std::string> devices_with(std::string_view verb);
 
 }  // namespace robosync::compiler

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "compiler/config/devices.hpp"
 #include "compiler/config/wiring.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/syntax/keywords.hpp"
@@ -179,7 +180,13 @@ void Commands::report_unknown_verb(const ast::Command& command) {
   for (const std::string_view word : {kPerform, kFollow, kRestart})
     candidates.emplace_back(word);
   did_you_mean(d, verb.span, verb.text, candidates);
-  if (d.help.empty() && !verbs.empty()) d.helps("it could be " + list_names(verbs));
+  if (!d.help.empty()) return;
+  // It may be one that nothing here knows: as a rule `USE` brought a file that needs more.
+  const auto devices = devices_with(verb.text);
+  if (devices.empty() && !verbs.empty()) d.helps("it could be " + list_names(verbs));
+  if (devices.empty()) return;
+  d.message = "no actuator of this robot knows the verb " + verb.shown();
+  d.helps("robot.json needs one with a device that does: " + list_names(devices, "or"));
 }
 
 // `TO person DIRECTION`: the second word would be one of the actuator's. It is reported.

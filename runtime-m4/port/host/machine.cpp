@@ -19,6 +19,20 @@ constexpr std::size_t kFiberStack = std::size_t{128} * 1024;
 // Whose switch is under way: makecontext cannot pass it to a new fiber.
 thread_local Machine* switching = nullptr;
 
+// No system call, as in swapcontext(), which keeps the signals' mask: that took half the time of a run. And no longjmp(),
+// at which AddressSanitizer forgets what must not be touched on the stack that is left. gcc's manual, "Nonlocal gotos".
+[[gnu::noinline, gnu::no_sanitize_address]] void go_on_with(Context& to) {
+  if (to.has_run) __builtin_longjmp(to.registers.data(), 1);
+  to.has_run = true;
+  setcontext(&to.begin);
+}
+
+// Comes back when somebody goes on with `from`.
+[[gnu::noinline, gnu::no_sanitize_address]] void exchange(Context& from, Context& to) {
+  from.has_run = true;
+  if (__builtin_setjmp(from.registers.data()) == 0) go_on_with(to);
+}
+
 // Tells AddressSanitizer that the program moves to the stack of `to`. A null `keep` gives up the
 // stack it leaves.
 void announce_switch([[maybe_unused]] void** keep, [[maybe_unused]] const Context& to) {
@@ -44,11 +58,12 @@ void Machine::prepare(Context& context, const kernel::ThreadSpec& spec, std::spa
   context.sanitizer_stack = nullptr;
   context.stack_bottom = context.stack.get();
   context.stack_bytes = kFiberStack;
-  getcontext(&context.registers);
-  context.registers.uc_stack.ss_sp = context.stack.get();
-  context.registers.uc_stack.ss_size = kFiberStack;
-  context.registers.uc_link = nullptr;
-  makecontext(&context.registers, &Machine::fiber_main, 0);
+  context.has_run = false;
+  getcontext(&context.begin);
+  context.begin.uc_stack.ss_sp = context.stack.get();
+  context.begin.uc_stack.ss_size = kFiberStack;
+  context.begin.uc_link = nullptr;
+  makecontext(&context.begin, &Machine::fiber_main, 0);
 }
 
 std::span<std::byte> Machine::usable(const kernel::ThreadSpec& spec) {
@@ -100,7 +115,7 @@ void Machine::switch_now() {
   from_ = &from;
   switching = this;
   announce_switch(for_good ? nullptr : &from.sanitizer_stack, to);
-  swapcontext(&from.registers, &to.registers);
+  exchange(from, to);
   announce_arrival(from.sanitizer_stack, *from_);
 }
 

@@ -7,6 +7,7 @@
 // the OS thread that runs it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -37,7 +38,11 @@ struct Areas {
 };
 
 struct Context {
-  ucontext_t registers{};
+  union {
+    ucontext_t begin{};              // until it has run
+    std::array<void*, 5> registers;  // with which it goes on
+  };
+  bool has_run = false;
   std::unique_ptr<std::byte[]> stack;
   void (*entry)(void*) = nullptr;
   void* argument = nullptr;
