@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <utility>
 
 namespace robosync::companion {
 namespace {
@@ -21,6 +22,7 @@ constexpr double kOfNearest = 0.65;  // … of what the nearest sample of anothe
 constexpr double kUsualStrict = 50;
 constexpr Distance kClearly = 10;  // another word must be further by a tenth
 constexpr Distance kAlike = 450, kTimesOwnAlike = 2;
+constexpr int kLoudest = 160;  // of a sample in a quiet room
 constexpr int kDeepest =
     90;  // halves of a decibel below the loudest, where nothing is heard any more
 
@@ -57,21 +59,51 @@ std::uint64_t liveliness(std::span<const Cepstrum> frames) {
   return sum;
 }
 
-// To the other samples of its word.
-Distance nearest_of_own(const Sample& sample, const TaughtWord& word) {
-  Distance nearest = kApart;
-  for (const Sample& other : word.samples)
-    if (&other != &sample) nearest = std::min(nearest, distance_between(sample, other));
-  return nearest;
+// Of row `i`, the places that a way with these slopes from corner to corner can come by, with two beside them; so what is
+// reached from there has been computed, too.
+std::pair<std::size_t, std::size_t> reach(std::size_t i, std::size_t rows, std::size_t columns) {
+  constexpr std::size_t kBeside = 2;
+  const std::size_t behind = rows - 1 - i, last = columns - 1;
+  const std::size_t first = std::max(i / 2, last - std::min(last, 2 * behind));
+  const std::size_t end = std::min(2 * i, last - std::min(last, behind / 2));
+  return {first - std::min(first, kBeside), std::min(end + kBeside, last) + 1};
 }
 
-void take_nearest(const Sample& sample, const TaughtWord& word, std::size_t place, Allowed& into) {
-  for (const Sample& other : word.samples) {
-    const Distance distance = distance_between(sample, other);
-    if (distance >= into.nearest) continue;
-    into.nearest = distance;
-    into.other = place;
-  }
+// A sample, in a quiet room.
+struct Known {
+  std::size_t word;
+  Cepstra cepstra;
+  Distance nearest = kApart;  // to the other samples of its word
+};
+
+std::vector<Known> all_known(const std::vector<TaughtWord>& words) {
+  std::vector<Known> known;
+  for (std::size_t word = 0; word < words.size(); ++word)
+    for (const Sample& sample : words[word].samples)
+      known.emplace_back(Known{word, {}, kApart}).cepstra.of_sample(sample, kLoudest, {});
+  return known;
+}
+
+void take_nearest(Distance distance, std::size_t other, Allowed& into) {
+  if (distance >= into.nearest) return;
+  into.nearest = distance;
+  into.other = other;
+}
+
+void compare_all(std::vector<Known>& known, std::vector<Allowed>& allowed) {
+  Warping warping;
+  for (std::size_t i = 0; i < known.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      Known &one = known[i], &other = known[j];
+      const Distance distance = warping.between(one.cepstra.frames(), other.cepstra.frames());
+      if (one.word == other.word) {
+        one.nearest = std::min(one.nearest, distance);
+        other.nearest = std::min(other.nearest, distance);
+      } else {
+        take_nearest(distance, other.word, allowed[one.word]);
+        take_nearest(distance, one.word, allowed[other.word]);
+      }
+    }
 }
 
 }  // namespace
@@ -141,19 +173,20 @@ Distance Warping::between(std::span<const Cepstrum> a, std::span<const Cepstrum>
   constexpr Distance kNever = UINT32_MAX / 4;
   for (Row& row : costs_)
     row.fill(kNever);
-  for (Row& row : local_)
-    row.fill(kNever);
+  local_[1].fill(kNever);
   for (std::size_t i = 0; i < a.size(); ++i) {
     Row& now = costs_[i % 3];
     const Row &before = costs_[(i + 2) % 3], &twice_before = costs_[(i + 1) % 3];
     Row& here = local_[i % 2];
     const Row& there = local_[(i + 1) % 2];
     now.fill(kNever);
-    for (std::size_t j = 0; j < b.size(); ++j) {
+    here.fill(kNever);
+    const auto [first, end] = reach(i, a.size(), b.size());
+    for (std::size_t j = first; j < end; ++j) {
       const std::size_t at = j + 2;
       here[at] = apart(a[i], b[j]);
       const Distance straight = (i == 0 && j == 0) ? 0 : before[at - 1];
-      const Distance wide = before[at - 2] + 2 * (j == 0 ? kNever : here[at - 1]);
+      const Distance wide = before[at - 2] + 2 * here[at - 1];
       const Distance steep = twice_before[at - 1] + 2 * there[at];
       now[at] = std::min({straight + 2 * here[at], wide < kNever ? wide + here[at] : kNever,
                           steep < kNever ? steep + here[at] : kNever, kNever});
@@ -182,7 +215,6 @@ Sample below_loudest(const Utterance& utterance) {
 }
 
 Distance distance_between(const Sample& a, const Sample& b) {
-  constexpr int kLoudest = 160;
   Cepstra one, other;
   Warping warping;
   one.of_sample(a, kLoudest, {});
@@ -192,13 +224,12 @@ Distance distance_between(const Sample& a, const Sample& b) {
 
 std::vector<Allowed> allowed_distances(const std::vector<TaughtWord>& words, double strict) {
   std::vector<Allowed> allowed(words.size());
+  std::vector<Known> known = all_known(words);
+  compare_all(known, allowed);
   for (std::size_t word = 0; word < words.size(); ++word) {
     std::uint64_t sum = 0;
-    for (const Sample& sample : words[word].samples) {
-      sum += nearest_of_own(sample, words[word]);
-      for (std::size_t other = 0; other < words.size(); ++other)
-        if (other != word) take_nearest(sample, words[other], other, allowed[word]);
-    }
+    for (const Known& one : known)
+      if (one.word == word) sum += one.nearest;
     Allowed& one = allowed[word];
     one.own = static_cast<Distance>(sum / std::max<std::size_t>(words[word].samples.size(), 1));
     const double own = std::clamp(kTimesOwn * one.own, kLeast, kMost);

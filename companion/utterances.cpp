@@ -94,7 +94,7 @@ bool Utterances::end() {
   talks_ = false;
   const std::size_t frames = loud_until_ - std::min(loud_until_, kSmooth - 2);
   was_too_long_ = frames > kMostFrames;
-  if (was_too_long_ || frames < kLeastFrames) return false;
+  if (was_too_long_ || frames < kBefore + kLeastFrames) return false;
   utterance_.levels.resize(frames);
   return true;
 }

@@ -11,7 +11,8 @@ namespace {
 constexpr std::string_view kFirstLine = "robosync words 1";
 constexpr std::string_view kFirstLineOfAny = "robosync words ";
 constexpr std::string_view kHex = "0123456789abcdef";
-constexpr std::size_t kSumDigits = 8;
+constexpr std::string_view kSum = "sum ";
+constexpr std::size_t kSumDigits = 8, kSumLine = kSum.size() + kSumDigits + 1;
 
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -30,14 +31,6 @@ std::uint32_t sum_of(std::string_view text) {
       sum = (sum >> 1U) ^ (0xEDB88320U & (0U - (sum & 1U)));
   }
   return ~sum;
-}
-
-std::string sum_line(std::string_view text) {
-  std::string digits(kSumDigits, '0');
-  std::uint32_t rest = sum_of(text);
-  for (std::size_t i = kSumDigits; i-- > 0; rest >>= 4U)
-    digits[i] = kHex[rest & 15U];
-  return "sum " + digits + "\n";
 }
 
 // The line after `key` and a space.
@@ -77,14 +70,14 @@ private:
   // The sum comes first: of what is broken nothing else is worth saying.
   void read_head() {
     const std::string_view text = rest_;
-    if (text.size() > kLargestFile) return fail("it is larger than any file of words");
     const std::string_view first = next();
+    if (text.size() > kLargestFile) return fail("it is larger than any file of words");
     if (!first.starts_with(kFirstLineOfAny))
       return fail("it is no file of words: its first line is not `" + std::string(kFirstLine) +
                   "`");
     if (first != kFirstLine) return fail("it was made by another version of RoboSync");
-    const std::size_t length = text.size() - std::min(text.size(), sum_line({}).size());
-    if (text.substr(length) != sum_line(text.substr(0, length)))
+    const std::size_t length = text.size() - std::min(text.size(), kSumLine);
+    if (with_sum(std::string(text.substr(0, length))) != text)
       return fail("it is broken or cut off: its last line is not the sum of the others");
     rest_ = rest_.substr(0, length - first.size() - 1);
   }
@@ -161,7 +154,18 @@ std::string write_words(const std::vector<TaughtWord>& words) {
       }
     }
   }
-  return text + sum_line(text);
+  return with_sum(std::move(text));
+}
+
+std::string with_sum(std::string text) {
+  std::string digits(kSumDigits, '0');
+  std::uint32_t rest = sum_of(text);
+  for (std::size_t i = kSumDigits; i-- > 0; rest >>= 4U)
+    digits[i] = kHex[rest & 15U];
+  text += kSum;
+  text += digits;
+  text += '\n';
+  return text;
 }
 
 bool can_be_word(std::string_view name) {

@@ -1,4 +1,4 @@
-// Words that somebody has taught (`rsc teach`), as they stand in a file (docs/companion.md#the-file-of-words). Their sound is
+// Words that somebody has taught (`rsc teach`), as they stand in a file (docs/algorithms.md#the-file-of-words). Their sound is
 // not in it: of each 16 ms of a sample, how loud the tones of each band were. Of the standard library alone, so that rsc, too,
 // can read it: it wants to know the names.
 #pragma once
@@ -37,6 +37,8 @@ struct ReadWords {
 // Never throws, whatever `text` is.
 [[nodiscard]] ReadWords read_words(std::string_view text);
 [[nodiscard]] std::string write_words(const std::vector<TaughtWord>& words);
+// With its last line, which tells a whole file from a broken one.
+[[nodiscard]] std::string with_sum(std::string text);
 
 // A letter or _, then letters, digits or _, all of ASCII; and not what means something else.
 [[nodiscard]] bool can_be_word(std::string_view name);

@@ -328,6 +328,7 @@ private:
     const auto found = std::ranges::find(known, member.key);
     if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
     if (is_taught()) known.emplace_back(kWordsKey);
+    has_unknown_key_ = true;
     Diagnostic& d =
         diagnostics_.report(Code::E0202, shown() + " has no parameter `" + member.key + "`")
             .label(member.key_span);
@@ -359,6 +360,7 @@ private:
 
   // Beside robot.json, and called like the algorithm, unless `words` says otherwise.
   bool add_taught_words(const Spelled& name, SensorConfig& sensor) {
+    if (words_ == nullptr && has_unknown_key_) return false;  // it may be this one
     if (words_ != nullptr && !read_text(*words_, diagnostics_)) return false;
     const std::string file = in_folder(words_ != nullptr ? words_->text : name.text + ".words");
     sensor.companion->words_file = file;
@@ -414,6 +416,7 @@ private:
   std::uint8_t number_ = 0;  // of the module
   const json::Value* on_ = nullptr;
   const json::Value* words_ = nullptr;
+  bool has_unknown_key_ = false;
   std::optional<bool> wants_companion_;  // as `on` says
   Span input_span_;
 };

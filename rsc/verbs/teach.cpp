@@ -37,7 +37,7 @@ compiler::SensorConfig algorithm_of(const TeachOptions& options) {
       Exit::program,
       known.empty()
           ? fmt::format("{} has no algorithm that is taught words: add {{\"name\": \"{}\", "
-                        "\"module\": \"own_words\"}} to its \"algorithms\" (docs/companion.md)",
+                        "\"module\": \"own_words\"}} to its \"algorithms\" (docs/algorithms.md)",
                         options.config, options.name)
           : fmt::format("{} has no `{}` that is taught words; it has {}", options.config,
                         options.name, known));
