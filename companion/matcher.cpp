@@ -14,17 +14,14 @@ constexpr double kParts = 16;             // of a decibel, in which cepstra are 
 constexpr double kHalf = 2;               // levels are halves of a decibel
 constexpr double kLoudnessCounts = 0.15;  // how loud a frame is says less than what it is made of
 constexpr int kNoiseVaries = 3;           // it was taken from where it was softest
-constexpr int kLoud =
-    5;  // above the noise, in the mean of all bands: where what is said begins and ends
+constexpr int kLoud = 5;  // above the noise, in the mean of all bands: what is said begins and ends
 // Chosen on the recordings that `scripts/rates --settings` takes.
 constexpr double kTimesOwn = 4, kLeast = 330, kMost = 550;  // how far something may be from a word
 constexpr double kOfNearest = 0.65;  // … of what the nearest sample of another word is
 constexpr double kUsualStrict = 50;
-constexpr Distance kClearly = 10;  // another word must be further by a tenth
 constexpr Distance kAlike = 450, kTimesOwnAlike = 2;
 constexpr int kLoudest = 160;  // of a sample in a quiet room
-constexpr int kDeepest =
-    90;  // halves of a decibel below the loudest, where nothing is heard any more
+constexpr int kDeepest = 90;   // halves of a decibel below the loudest: nothing is heard any more
 
 // c0 of the levels is their mean, the others how much they go up and down once, twice … over the bands.
 std::array<std::array<double, kBands>, kCepstra> waves() {
@@ -258,16 +255,15 @@ Distance Matcher::nearest(const TaughtWord& word, int loudest, const Levels& noi
 std::optional<std::size_t> Matcher::match(const Utterance& utterance) {
   heard_.of_heard(utterance.levels, utterance.noise);
   const int loudest = loudest_of(utterance.levels);
-  Distance best = kApart, second = kApart;
+  Distance best = kApart;
   std::size_t which = 0;
   for (std::size_t word = 0; word < words_.size(); ++word) {
     const Distance distance = nearest(words_[word], loudest, utterance.noise);
-    second = std::min(second, std::max(distance, best));
-    if (distance < best) which = word;
-    best = std::min(best, distance);
+    if (distance >= best) continue;
+    best = distance;
+    which = word;
   }
-  if (words_.empty() || best > allowed_[which].most || second < best + best / kClearly)
-    return std::nullopt;
+  if (words_.empty() || best > allowed_[which].most) return std::nullopt;
   return which;
 }
 

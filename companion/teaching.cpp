@@ -60,7 +60,7 @@ std::vector<TaughtWord> parsed(const std::string& file) {
 // Beside it first, so that whoever reads it, and whenever the power fails, finds the old one or the new one.
 void save(const std::string& file, const std::vector<TaughtWord>& words) {
   const std::string text = write_words(words), beside = file + ".new";
-  const int out = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int out = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
   bool fine = out >= 0;
   for (std::size_t at = 0; fine && at < text.size();) {
     const ssize_t written = write(out, text.data() + at, text.size() - at);
@@ -68,9 +68,10 @@ void save(const std::string& file, const std::vector<TaughtWord>& words) {
     at += fine ? static_cast<std::size_t>(written) : 0;
   }
   fine = fine && fsync(out) == 0;
+  const int error = errno;
   if (out >= 0) close(out);
   if (fine && std::rename(beside.c_str(), file.c_str()) == 0) return;
-  const std::string why = std::strerror(errno);
+  const std::string why = std::strerror(fine ? errno : error);
   unlink(beside.c_str());
   throw Failure(Exit::outside, "cannot write " + file + ": " + why);
 }

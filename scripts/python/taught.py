@@ -161,6 +161,7 @@ def table(all_sets):
         for one in all_sets:
             robot = Robot(Path(name), one.taught)
             columns = [counts(robot, one, below, hiss) for below in rates.NOISES_DB]
+            print(one.name, columns, file=sys.stderr, flush=True)
             for place, (what, total) in enumerate((("heard", len(one.said)), ("taken for another word", len(one.said)),
                                                    ("other sounds taken for a word", len(one.others)))):
                 if total:

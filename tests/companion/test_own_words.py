@@ -5,6 +5,7 @@ import random
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import wave
 import zlib
@@ -84,6 +85,10 @@ class WordsTest(unittest.TestCase):
         self.assertEqual((code, errors), (0, ""))
         self.assertEqual({output for output, _ in said}, {"WORD"})
         return [value for value in changes([value for _, value in said]) if value != "none"]
+
+    def write_words(self, body):
+        text = "robosync words 1\n" + body
+        self.file.write_text(f"{text}sum {zlib.crc32(text.encode()):08x}\n")
 
     def in_room(self, path, loudness=3.0):
         """With a second before it, and noise all over it."""
@@ -193,6 +198,22 @@ class Hearing(WordsTest):
             out.setparams((1, 1, RATE, 0, "NONE", ""))
             out.writeframes(bytes((sample >> 8) + 128 for sample in samples))
         self.assertEqual(self.hear(self.folder / "bytes.wav", words), ["forward"])
+
+    def test_the_largest_file_takes_a_bounded_time(self):
+        """To start, and for an utterance as long as there is."""
+        random_ = random.Random(9)
+        sample = "sample 125\n" + "".join(random_.randbytes(LEVELS).hex() + "\n" for _ in range(125))
+        self.write_words("".join(f"word w{i}\n" + sample * 8 for i in range(24)))
+        times = []
+        for said in (bytes(2), noise(RATE * 19 // 10, 3000)):
+            sound = (quiet(0.5) + array.array("h", said)) * 3 + quiet(0.5)
+            began = time.monotonic()
+            self.assertEqual(self.hear(write(self.folder / "said.wav", sound), ["w0"]), [])
+            times.append(time.monotonic() - began)
+        start, each = times[0], max(0, times[1] - times[0]) / 3
+        print(f"with the largest file: {start:.1f} s to start, {each:.2f} s an utterance", file=sys.stderr)
+        self.assertLess(start, 15)  # after 20 s without a word, it counts as one that hangs
+        self.assertLess(each, 2)
 
     def test_what_it_refuses(self):
         self.teach_all(["robot"])
@@ -308,10 +329,6 @@ class Teaching(WordsTest):
         self.write_words("".join(f"word w{i}\n{sample}\n" for i in range(24)))
         self.assertEqual(self.call("--list", "yes")[0], 0)
         self.refuse(self.teach("robot", *self.recordings("robot")), 2, "has 24 words, which is the most")
-
-    def write_words(self, body):
-        text = "robosync words 1\n" + body
-        self.file.write_text(f"{text}sum {zlib.crc32(text.encode()):08x}\n")
 
     def test_a_file_that_is_none(self):
         self.teach_all(["robot"])
