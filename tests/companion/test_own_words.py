@@ -132,6 +132,16 @@ class Hearing(WordsTest):
         self.assertEqual(wrong, 0)
         self.assertLessEqual(alarms, 1)
 
+    def test_a_robot_that_knows_one_word_does_not_hear_it_everywhere(self):
+        alarms = 0
+        for voice, (words, others) in VOICES.items():
+            self.file.unlink(missing_ok=True)
+            self.teach_all(words[:1], voice)
+            self.assertEqual(self.hear(self.in_room(self.recordings(words[0], voice, SAID)[0]), words[:1]), words[:1])
+            for word in words[1:] + others:
+                alarms += self.hear(self.in_room(self.recordings(word, voice, SAID[:1])[0]), words[:1]) != []
+        self.assertLessEqual(alarms, 1)
+
     def test_noise_alone_is_no_word(self):
         words, _ = VOICES["tr"]
         self.teach_all(words, "tr")
