@@ -68,7 +68,7 @@ def digits(package):
 def of_people(package):
     words, others = digits(package)
     sounds = (loud(sox([path])[:LONGEST]) for path in others[::4])
-    return Set(f"12 numbers, a person ({package}), other speeds and pitches",
+    return Set(f"12 numbers, a person ({package})",
                {word: [changed(path, *how) for how in TAUGHT] for word, path in words.items()},
                [(word, changed(path, *how)) for word, path in words.items() for how in SAID],
                [sound for sound in sounds if sound])
@@ -77,7 +77,7 @@ def of_people(package):
 def of_two_people(package, other):
     words, _ = digits(package)
     said, _ = digits(other)
-    return Set(f"12 numbers, taught by one person ({package}), said by another one ({other})",
+    return Set(f"12 numbers, taught by a person ({package}), said by another one ({other})",
                {word: [changed(path, *how) for how in TAUGHT] for word, path in words.items()},
                [(word, loud(sox([said[word]]))) for word in words if word in said], [])
 
@@ -88,7 +88,7 @@ def of_voice(voice):
                                 capture_output=True, check=True).stdout
         return loud(sox(["-t", "wav", "-"], input=spoken))
     words, others = (text.split() for text in SPEAKS[voice])
-    return Set(f"{len(words)} words, a synthetic voice (espeak-ng, {voice}), other speeds and pitches",
+    return Set(f"{len(words)} words, a synthetic voice (espeak-ng, {voice})",
                {word: [say(word, *how) for how in VOICE_TAUGHT] for word in words},
                [(word, say(word, *how)) for word in words for how in VOICE_SAID],
                [say(word, *how) for word in others for how in VOICE_TAUGHT])
@@ -154,19 +154,20 @@ def counts(robot, one, below, hiss):
     return hits, wrong, alarms
 
 
+def row(one, columns):
+    others = f", and {len(one.others)} other sounds" if one.others else ""
+    cells = (" · ".join(map(str, column if one.others else column[:2])) for column in columns)
+    return f"| {one.name}: said {len(one.said)} times{others} | " + " | ".join(cells) + " |"
+
+
 def table(all_sets):
-    lines = ["| taught and said | | " + " | ".join(map(rates.title, rates.NOISES_DB)) + " |", "|---|---" + "|---" * len(rates.NOISES_DB) + "|"]
+    lines = ["| said | " + " | ".join(map(rates.title, rates.NOISES_DB)) + " |", "|---" + "|---" * len(rates.NOISES_DB) + "|"]
     hiss = noise(60 * RATE * BYTES)
     with tempfile.TemporaryDirectory() as name:
         for one in all_sets:
             robot = Robot(Path(name), one.taught)
-            columns = [counts(robot, one, below, hiss) for below in rates.NOISES_DB]
-            print(one.name, columns, file=sys.stderr, flush=True)
-            for place, (what, total) in enumerate((("heard", len(one.said)), ("taken for another word", len(one.said)),
-                                                   ("other sounds taken for a word", len(one.others)))):
-                if total:
-                    cells = " | ".join(f"{column[place]} of {total}" for column in columns)
-                    lines.append(f"| {one.name if place == 0 else ''} | {what} | {cells} |")
+            lines.append(row(one, [counts(robot, one, below, hiss) for below in rates.NOISES_DB]))
+            print(lines[-1], file=sys.stderr, flush=True)
     return "\n".join(lines)
 
 
