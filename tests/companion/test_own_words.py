@@ -369,7 +369,7 @@ class Teaching(WordsTest):
         for body, line in (("word a\n", 2), ("sample 8\n" + frames + "\n", 2), (f"word a\nsample 7\n{frames}\n", 3),
                            (f"word a\nsample 126\n{frames}\n", 3), (f"word a\nsample 9\n{frames}\n", 12),
                            (f"word a\nsample 8\n{frames}0\n", 11), (f"word a\nsample 8x\n{frames}\n", 3),
-                           (f"word a\nsample 8\n{frames}\nword A\nsample 8\n{frames}\n", 12), ("word none\n", 2),
+                           (f"word a\nsample 8\n{frames}\nword A\nsample 8\n{frames}\n", 12), (f"word none\nsample 8\n{frames}\n", 2),
                            ("hello\n", 2), (f"word a\nsample 8\n{frames}\n" + f"sample 8\n{frames}\n" * 8, 75),
                            ("word a\n" + f"sample 8\n{frames}\n".replace("a0", "G0"), 4)):
             with self.subTest(body=body[:30]):
