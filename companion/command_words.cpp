@@ -12,6 +12,7 @@
 #include <pocketsphinx.h>
 #include <unistd.h>
 
+#include "companion/shown_word.hpp"
 #include "companion/sound_source.hpp"
 #include "companion/worker.hpp"
 
@@ -127,41 +128,6 @@ private:
   std::unique_ptr<ps_decoder_t, Free> decoder_;
 };
 
-// Says what is heard at once, and otherwise once a period what stays.
-class Speaker {
-public:
-  Speaker(std::vector<Word> words, long period, long shown_for)
-      : words_(std::move(words)), period_(period), shown_for_(shown_for) {
-    say("WORD", kQuiet);
-  }
-
-  void heard(const std::string& phrase) {
-    for (const Word& word : words_)
-      if (word.as_spelled == phrase) {
-        now_ = word.as_asked;
-        until_ = time_ + shown_for_;
-        tell();
-      }
-  }
-  void pass(long ms) {
-    time_ += ms;
-    const bool over = now_ != kQuiet && time_ >= until_;
-    if (over) now_ = kQuiet;
-    if (over || time_ >= told_ + period_) tell();
-  }
-
-private:
-  void tell() {
-    say("WORD", now_);
-    told_ = time_;
-  }
-
-  std::vector<Word> words_;
-  long period_, shown_for_;               // in ms, as all times here
-  long time_ = 0, until_ = 0, told_ = 0;  // in sound
-  std::string now_ = kQuiet;
-};
-
 void listen(const Arguments& arguments) {
   std::vector<Word> words;
   for (const std::string& word : arguments.words())
@@ -171,15 +137,16 @@ void listen(const Arguments& arguments) {
   const auto source = open_sound(arguments.text("source"), arguments.no_pace());
   constexpr long kBlockMs = kBlock * 1000 / kSoundRate;
   constexpr int kAfter = 500 / kBlockMs;  // of silence, in which what was said last is heard
-  Speaker speaker(words, arguments.period().count(),
-                  std::lround(arguments.number("shown_for") * 1000));
+  ShownWord shown(kQuiet, arguments);
   std::vector<std::int16_t> block(kBlock);
   for (int after = 0; after < kAfter;) {
     const std::size_t count = source->read(block);
     std::fill(block.begin() + static_cast<std::ptrdiff_t>(count), block.end(), std::int16_t{0});
     if (count < kBlock) ++after;
-    speaker.pass(kBlockMs);
-    if (const std::string phrase = decoder.hear(block); !phrase.empty()) speaker.heard(phrase);
+    shown.pass(kBlockMs);
+    const std::string phrase = decoder.hear(block);
+    for (const Word& word : words)
+      if (!phrase.empty() && word.as_spelled == phrase) shown.heard(word.as_asked);
   }
 }
 

@@ -25,23 +25,23 @@ Arguments::Arguments(int count, char** texts) {
     }
     if (!name.starts_with(kDashes) || i + 1 == count)
       throw Failure(Exit::asked_wrongly, "expected --NAME VALUE, and got " + std::string(name));
-    const std::string_view value = texts[++i];
-    if (name == "--word")
-      words_.emplace_back(value);
-    else
-      texts_[std::string(name.substr(kDashes.size()))] = value;
+    texts_[std::string(name.substr(kDashes.size()))].emplace_back(texts[++i]);
   }
 }
 
-const std::string& Arguments::text(const std::string& name) const {
+const std::vector<std::string>& Arguments::texts(const std::string& name) const {
+  static const std::vector<std::string> kNone;
   const auto found = texts_.find(name);
-  if (found == texts_.end()) throw Failure(Exit::asked_wrongly, "there is no --" + name);
-  return found->second;
+  return found == texts_.end() ? kNone : found->second;
+}
+
+const std::string& Arguments::text(const std::string& name) const {
+  if (!has(name)) throw Failure(Exit::asked_wrongly, "there is no --" + name);
+  return texts(name).back();
 }
 
 std::string Arguments::text_or(const std::string& name, const std::string& otherwise) const {
-  const auto found = texts_.find(name);
-  return found == texts_.end() ? otherwise : found->second;
+  return has(name) ? texts(name).back() : otherwise;
 }
 
 double Arguments::number(const std::string& name) const {

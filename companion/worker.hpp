@@ -23,7 +23,7 @@ private:
   Exit exit_;
 };
 
-// --NAME VALUE …, --word as often as there are words, and --no-pace.
+// --NAME VALUE …, some of them several times, and --no-pace.
 class Arguments {
 public:
   // Throws Failure (asked_wrongly), as all of these.
@@ -31,15 +31,17 @@ public:
 
   const std::string& text(const std::string& name) const;
   std::string text_or(const std::string& name, const std::string& otherwise) const;
+  // All that it was given with; none, when it was not.
+  const std::vector<std::string>& texts(const std::string& name) const;
+  bool has(const std::string& name) const { return !texts(name).empty(); }
   double number(const std::string& name) const;
   std::chrono::milliseconds period() const;  // --period, in ms
-  const std::vector<std::string>& words() const { return words_; }
+  const std::vector<std::string>& words() const { return texts("word"); }
   // Recordings are read as fast as they can be, and not in their own time.
   bool no_pace() const { return no_pace_; }
 
 private:
-  std::map<std::string, std::string> texts_;
-  std::vector<std::string> words_;
+  std::map<std::string, std::vector<std::string>> texts_;
   bool no_pace_ = false;
 };
 

@@ -1,7 +1,13 @@
 #include "rsc/algorithm_modules.hpp"
 
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+#include <utility>
 #include <vector>
 
+#include "companion/words_file.hpp"
 #include "rsc/companion_modules.hpp"
 #include "runtime-m4/algorithms/judge.hpp"
 #include "runtime-m4/module_files/registry.hpp"
@@ -67,11 +73,29 @@ compiler::ModuleInFile in_file(const std::string& path) {
   return {&last, static_cast<std::uint8_t>(loaded.number), ""};
 }
 
+compiler::WordsInFile words_in_file(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return {{}, "is not there"};
+  if (!std::filesystem::is_regular_file(path, error))
+    return {{}, "is no file"};  // a pipe, that waits
+  std::string text(companion::kLargestFile + 1, '\0');
+  const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) return {{}, "cannot be read"};
+  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+  companion::ReadWords read = companion::read_words(text);
+  if (!read.trouble.empty())
+    return {{}, "cannot be used: line " + std::to_string(read.line) + ": " + read.trouble};
+  compiler::WordsInFile found;
+  for (companion::TaughtWord& word : read.words)
+    found.words.push_back(std::move(word.name));
+  return found;
+}
+
 }  // namespace
 
 compiler::AlgorithmModules algorithm_modules() {
   static const std::vector<compiler::AlgorithmModule> modules = all();
-  return {modules, in_file, companion_modules()};
+  return {modules, in_file, companion_modules(), words_in_file};
 }
 
 analysis::Instructions module_cost(const vm::Image& image, const vm::Sensor& algorithm) {

@@ -28,6 +28,9 @@ struct Lines {
   void words(const char* name, const char* word) {
     modules.back().outputs.push_back({name, vm::Dimension::number, 0, 0, {word}, true});
   }
+  void taught(const char* name, const char* word) {
+    modules.back().outputs.push_back({name, vm::Dimension::number, 0, 0, {word}, false, true});
+  }
   void parameter(const char* name, vm::Dimension dimension, vm::Value usual, vm::Value low,
                  vm::Value high) {
     modules.back().parameters.push_back({name, dimension, usual, low, high});
@@ -40,12 +43,14 @@ std::vector<AlgorithmModule> all_modules() {
   lines.module(#name, #device, usual, shortest, longest);
 #define OUTPUT(name, dimension, low, high) lines.output(#name, vm::Dimension::dimension, low, high);
 #define WORDS(name, word) lines.words(#name, #word);
+#define TAUGHT(name, word) lines.taught(#name, #word);
 #define PARAMETER(name, dimension, usual, low, high, doc) \
   lines.parameter(#name, vm::Dimension::dimension, usual, low, high);
 #include "companion/modules.def"
 #undef MODULE
 #undef OUTPUT
 #undef WORDS
+#undef TAUGHT
 #undef PARAMETER
   return lines.modules;
 }
@@ -62,11 +67,13 @@ std::string_view doc_of_companion_module(std::string_view name) {
   if (name == #module) return doc;
 #define OUTPUT(...)
 #define WORDS(...)
+#define TAUGHT(...)
 #define PARAMETER(...)
 #include "companion/modules.def"
 #undef MODULE
 #undef OUTPUT
 #undef WORDS
+#undef TAUGHT
 #undef PARAMETER
   return {};
 }

@@ -23,6 +23,8 @@ struct ModuleOutput {
   vm::Value min = 0, max = 0;
   std::vector<std::string> labels;  // as in ChannelConfig
   bool learns_words = false;        // likewise
+  bool is_taught =
+      false;  // behind its labels come the words of a file, which robot.json names as "words"
 };
 
 struct ModuleParameter {
@@ -49,10 +51,17 @@ struct ModuleInFile {
   std::string why_not;                      // where there is no module
 };
 
+struct WordsInFile {
+  std::vector<std::string> words;
+  std::string why_not;  // where there are none: what is wrong, about the file
+};
+
 struct AlgorithmModules {
   std::span<const AlgorithmModule> firmware;  // the number in the image is the place in the list
   ModuleInFile (*in_file)(const std::string& path) = nullptr;  // null: nobody loads files
   std::span<const AlgorithmModule> companion;                  // these have a device
+  // Null: nobody reads them; then any word that a program compares with is taken for one of them.
+  WordsInFile (*words_in_file)(const std::string& path) = nullptr;
 };
 
 }  // namespace robosync::compiler

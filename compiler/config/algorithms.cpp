@@ -15,6 +15,7 @@
 namespace robosync::compiler {
 namespace {
 
+constexpr std::string_view kWordsKey = "words";
 constexpr int kStalePeriods = 5;  // of a companion's channels, as of those that are sampled
 
 class AlgorithmReader {
@@ -61,12 +62,13 @@ private:
     sensor.name = name;
     sensor.driver = vm::DriverId::virtual_sensor;
     const std::uint16_t period = period_in_range(module_->usual_period_ms, name.span);
-    sensor.companion = {module_->name, period, config(canonical_unit(vm::Dimension::number))};
+    sensor.companion = {module_->name, period, config(canonical_unit(vm::Dimension::number)), {}};
     for (const ModuleOutput& output : module_->outputs) {
       sensor.channels.push_back(channel(name, output));
       sensor.channels.back().stale_ms =
           static_cast<std::uint16_t>(std::min(period * kStalePeriods, UINT16_MAX));
     }
+    if (is_taught() && !add_taught_words(name, sensor)) return false;
     robot_.sensors.push_back(std::move(sensor));
     return true;
   }
@@ -97,18 +99,18 @@ private:
     return false;
   }
 
-  std::string in_folder(const json::Value& path) const {
-    return (folder_ / path.text).lexically_normal().string();
+  std::string in_folder(const std::string& path) const {
+    return (folder_ / path).lexically_normal().string();
   }
 
   // Somebody may be without one of a robot's files, and yet look at the rest.
   bool is_missing(const Spelled& name, const json::Value& path) {
     std::error_code error;
-    if (path.kind != json::Kind::string || std::filesystem::exists(in_folder(path), error))
+    if (path.kind != json::Kind::string || std::filesystem::exists(in_folder(path.text), error))
       return false;
     diagnostics_
         .report(Code::W0214,
-                "there is no file " + in_folder(path) + ": " + name.shown() + " does nothing")
+                "there is no file " + in_folder(path.text) + ": " + name.shown() + " does nothing")
         .label(path.span)
         .helps("a module is made of its C file with a compiler (docs/algorithms.md)");
     return true;
@@ -132,7 +134,7 @@ private:
           .helps("leave one of the two out");
       return false;
     }
-    const std::string file = in_folder(path);
+    const std::string file = in_folder(path.text);
     const ModuleInFile found = modules_.in_file != nullptr
                                    ? modules_.in_file(file)
                                    : ModuleInFile{nullptr, 0, "nobody here loads files"};
@@ -310,7 +312,9 @@ private:
     if (object == nullptr || !expect_kind(*object, json::Kind::object, diagnostics_)) return values;
     report_repeated_keys(*object, diagnostics_);
     for (const json::Member& member : object->members)
-      if (const auto place = find_parameter(member)) {
+      if (is_words_file(member)) {
+        words_ = &member.value;
+      } else if (const auto place = find_parameter(member)) {
         const ModuleParameter& parameter = module_->parameters[*place];
         read_parameter(member.value, parameter,
                        parameter.dimension ? canonical_unit(*parameter.dimension) : unit,
@@ -320,9 +324,11 @@ private:
   }
 
   std::optional<std::size_t> find_parameter(const json::Member& member) {
-    const std::vector<std::string> known = names_of(module_->parameters);
+    std::vector<std::string> known = names_of(module_->parameters);
     const auto found = std::ranges::find(known, member.key);
     if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
+    if (is_taught()) known.emplace_back(kWordsKey);
+    has_unknown_key_ = true;
     Diagnostic& d =
         diagnostics_.report(Code::E0202, shown() + " has no parameter `" + member.key + "`")
             .label(member.key_span);
@@ -343,6 +349,37 @@ private:
         .report(Code::E0205, "this must be from " + format_value(parameter.min, unit) + " to " +
                                  format_value(parameter.max, unit))
         .label(value.span);
+  }
+
+  // ---- what it was taught
+
+  bool is_taught() const { return std::ranges::any_of(module_->outputs, &ModuleOutput::is_taught); }
+  bool is_words_file(const json::Member& member) const {
+    return is_taught() && member.key == kWordsKey;
+  }
+
+  // Beside robot.json, and called like the algorithm, unless `words` says otherwise.
+  bool add_taught_words(const Spelled& name, SensorConfig& sensor) {
+    if (words_ == nullptr && has_unknown_key_) return false;  // it may be this one
+    if (words_ != nullptr && !read_text(*words_, diagnostics_)) return false;
+    const std::string file = in_folder(words_ != nullptr ? words_->text : name.text + ".words");
+    sensor.companion->words_file = file;
+    const WordsInFile found =
+        modules_.words_in_file != nullptr ? modules_.words_in_file(file) : WordsInFile{};
+    if (!found.why_not.empty()) {
+      diagnostics_
+          .report(Code::E0211, name.shown() + " has no words: " + file + " " + found.why_not)
+          .label(words_ != nullptr ? words_->span : name.span)
+          .helps("`rsc teach " + name.text + " WORD one.wav two.wav three.wav` teaches it a word");
+      return false;
+    }
+    for (ChannelConfig& channel : sensor.channels)
+      if (module_->outputs[channel.input].is_taught) {
+        channel.learns_words = modules_.words_in_file == nullptr;
+        for (const std::string& word : found.words)
+          channel.add_label(word);
+      }
+    return true;
   }
 
   // ---- its channels
@@ -378,6 +415,8 @@ private:
   const AlgorithmModule* module_ = nullptr;
   std::uint8_t number_ = 0;  // of the module
   const json::Value* on_ = nullptr;
+  const json::Value* words_ = nullptr;
+  bool has_unknown_key_ = false;
   std::optional<bool> wants_companion_;  // as `on` says
   Span input_span_;
 };

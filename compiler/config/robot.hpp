@@ -52,6 +52,7 @@ struct CompanionConfig {
   std::string module;
   std::uint16_t period_ms = 0;    // how often it says what it knows
   std::vector<vm::Value> config;  // its parameters, all of them
+  std::string words_file;         // what it was taught stands there; empty: it is not taught
 };
 
 struct SensorConfig {

@@ -11,10 +11,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "compiler/config/robot_reader.hpp"
+#include "compiler/diagnostics/render.hpp"
 #include "compiler/source/ascii.hpp"
+#include "rsc/algorithm_modules.hpp"
 #include "rsc/companion/said.hpp"
 #include "rsc/companion_modules.hpp"
+#include "rsc/console.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/files.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -67,6 +72,22 @@ std::string find_companion_program(const std::string& module, const std::string&
     if (!place.empty() && access((place / name).c_str(), X_OK) == 0)
       return fs::absolute(place / name).string();
   return {};
+}
+
+std::vector<compiler::SensorConfig> companion_algorithms(const std::string& config,
+                                                         bool reads_words) {
+  compiler::SourceMap sources;
+  compiler::Diagnostics diagnostics;
+  const compiler::FileId file = sources.add(config, read_text(config));
+  compiler::AlgorithmModules modules = algorithm_modules();
+  if (!reads_words) modules.words_in_file = nullptr;
+  auto robot = compiler::read_robot(sources, file, diagnostics, modules);
+  if (diagnostics.errors() != 0 || !robot) {
+    std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr());
+    throw Failure(Exit::program, "");
+  }
+  std::erase_if(robot->sensors, [](const auto& sensor) { return !sensor.companion; });
+  return std::move(robot->sensors);
 }
 
 Companion::Companion(std::vector<compiler::SensorConfig> algorithms, CompanionSources sources,
@@ -124,6 +145,7 @@ Worker::Plan Companion::plan_of(const Hearer& hearer) const {
   for (std::size_t i = 0; i < module.parameters.size(); ++i)
     arguments.insert(arguments.end(),
                      {"--" + module.parameters[i].name, decimal(config.config[i])});
+  if (!config.words_file.empty()) arguments.insert(arguments.end(), {"--words", config.words_file});
   if (sees && !sources_.preview.empty())
     arguments.insert(arguments.end(), {"--preview", sources_.preview});
   for (const Output& output : hearer.outputs) {

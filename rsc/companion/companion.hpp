@@ -24,6 +24,11 @@ struct CompanionSources {
 [[nodiscard]] std::string find_companion_program(const std::string& module,
                                                  const std::string& folder);
 
+// The algorithms of a robot.json that run on a companion computer. What is wrong with it is said on stderr, then Failure
+// (program) is thrown. `reads_words`: those that have been taught words must have them.
+[[nodiscard]] std::vector<compiler::SensorConfig> companion_algorithms(const std::string& config,
+                                                                       bool reads_words);
+
 class Companion final : public Viewer {
 public:
   // `algorithms`: those with `companion`. `tells`: what the robot is fed is shown, but for repetitions.

@@ -14,16 +14,11 @@
 
 #include <fmt/format.h>
 
-#include "compiler/config/robot_reader.hpp"
-#include "compiler/diagnostics/render.hpp"
-#include "rsc/algorithm_modules.hpp"
 #include "rsc/companion_modules.hpp"
-#include "rsc/console.hpp"
 #include "rsc/device/line_recorder.hpp"
 #include "rsc/device/printer.hpp"
 #include "rsc/device/watch.hpp"
 #include "rsc/failure.hpp"
-#include "rsc/files.hpp"
 #include "rsc/output.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
@@ -52,17 +47,7 @@ void list(const CompanionOptions& options) {
 
 // Of robot.json, the algorithms that run here.
 std::vector<compiler::SensorConfig> algorithms_of(const std::string& config) {
-  compiler::SourceMap sources;
-  compiler::Diagnostics diagnostics;
-  const compiler::FileId file = sources.add(config, read_text(config));
-  const auto robot = compiler::read_robot(sources, file, diagnostics, algorithm_modules());
-  if (diagnostics.errors() != 0 || !robot) {
-    std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr());
-    throw Failure(Exit::program, "");
-  }
-  std::vector<compiler::SensorConfig> found;
-  for (const compiler::SensorConfig& sensor : robot->sensors)
-    if (sensor.companion) found.push_back(sensor);
+  std::vector<compiler::SensorConfig> found = companion_algorithms(config, true);
   if (found.empty())
     throw Failure(
         Exit::program,

@@ -29,9 +29,10 @@ def run(module, source, *arguments):
     return [tuple(line.split(" ")) for line in done.stdout.splitlines()], done.stderr, done.returncode
 
 
-def speak(text, path, voice="en-us"):
+def speak(text, path, voice="en-us", speed=175, pitch=50):
     """A synthetic voice, which says `text` into a WAV file."""
-    subprocess.run(["espeak-ng", "-v", voice, "-w", path, text], check=True, stdin=subprocess.DEVNULL)
+    subprocess.run(["espeak-ng", "-v", voice, "-s", str(speed), "-p", str(pitch), "-w", path, text], check=True,
+                   stdin=subprocess.DEVNULL)
     return path
 
 

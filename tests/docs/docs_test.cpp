@@ -1,5 +1,6 @@
 // The programs in the documentation are what they say they are: rsc finds nothing wrong with them,
 // the robot takes them and runs, and their TESTs pass.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "companion/words_file.hpp"
 #include "tests/docs/pages.hpp"
 #include "tests/support/golden.hpp"
 
@@ -135,4 +137,25 @@ TEST_CASE("the robot.json in docs/configuration.md works") {
   const auto configurations = blocks(kRoot / "docs/configuration.md", "json");
   REQUIRE(configurations.size() == 1);
   check_program("WHEN touch LEVEL > 4\nDO MOVE arms QUICKLY\nEND\n", configurations.front());
+}
+
+TEST_CASE("the robot that is taught words in docs/algorithms.md works") {
+  const auto page = kRoot / "docs/algorithms.md";
+  const auto programs = blocks(page, "rsl");
+  REQUIRE(programs.size() == 1);
+  const auto robots = blocks(page, "json");
+  const auto robot = std::ranges::find_if(
+      robots, [](const std::string& text) { return text.find("own_words") != std::string::npos; });
+  REQUIRE(robot != robots.end());
+  const Folder folder;
+  folder.write("robot.json", *robot);
+  const robosync::companion::Sample sample(8);
+  folder.write("my.words",
+               robosync::companion::write_words({{"merhaba", {sample}}, {"dur", {sample}}}));
+  const std::string file = folder.write(
+      "robot.rsl", programs.front() +
+                       "TEST \"it hears\"\n  AT 0s voice WORD = \"none\"\n  AT 1s voice WORD = "
+                       "\"merhaba\"\n  EXPECT SAY \"Merhaba\" WITHIN 20ms\nEND\n");
+  check_runs(rsc({"check", file}));
+  check_runs(rsc({"test", file}));
 }

@@ -45,11 +45,11 @@ def _companion():
     text = (ROOT / "companion/modules.def").read_text()
     units = dict(re.findall(r'^DIMENSION\((\w+), *"([^"]*)"', (ROOT / "vm/dimensions.def").read_text(), re.M))
     modules = {}
-    for kind, arguments in re.findall(r"^(MODULE|OUTPUT|WORDS)\(([^)]*)\)", text, re.M):
+    for kind, arguments in re.findall(r"^(MODULE|OUTPUT|WORDS|TAUGHT)\(([^)]*)\)", text, re.M):
         name, *rest = (argument.strip() for argument in arguments.split(","))
         if kind == "MODULE":
             channels = modules[name] = {}
-        elif kind == "WORDS":
+        elif kind in ("WORDS", "TAUGHT"):
             channels[name] = rest[0]
         else:
             channels[name] = (int(rest[1]) / 1000, int(rest[2]) / 1000, units[rest[0]])

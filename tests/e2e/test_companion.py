@@ -12,7 +12,7 @@ from board import REAL_TIME, ROOT, Board
 from support import LineReader, RobotTest
 
 sys.path.append(str(ROOT / "tests/companion"))
-from recordings import RATE, TEST_DATA, as_wav, needs  # noqa: E402
+from recordings import RATE, TEST_DATA, as_wav, needs, samples_of, speak  # noqa: E402
 from test_face_detect import PICTURES  # noqa: E402
 
 ROBOT = {
@@ -35,6 +35,14 @@ DO SAY "Hello"
 END
 WHEN face ANGLE < 0deg
 DO LOG "to the left"
+END
+"""
+TAUGHT = """
+WHEN voice WORD BECOMES avance
+DO MOVE arm TO 90deg
+END
+WHEN voice WORD BECOMES merci
+DO SAY "De rien"
 END
 """
 STOPS = """
@@ -165,6 +173,26 @@ class Companion(RobotTest):
               file=sys.stderr)
         self.assertGreater(min(after), -0.1)
         self.assertLess(max(after), LATE)
+
+    @needs("own_words")
+    @unless_it_stands_still
+    def test_words_that_were_taught_move_the_arm(self):
+        """In French, by the synthetic voice that taught them, which says them at another speed."""
+        voice = {"name": "voice", "module": "own_words", "input": "microphone", "config": {"words": "my.words"}}
+        (self.folder / "wanted.json").write_text(json.dumps({**ROBOT, "algorithms": [voice]}))
+        for word in ("avance", "merci", "doucement"):
+            said = [speak(word, self.folder / f"{word}{speed}.wav", "fr+f2", speed) for speed in (150, 165, 180)]
+            done = rsc.call("teach", "voice", word, *said, "--config", self.folder / "wanted.json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.given(TAUGHT, voice)
+        sound = b"".join(bytes(2 * RATE) + samples_of(speak(word, self.folder / "said.wav", "fr+f2", 158))
+                         for word in ("avance", "fromage", "doucement", "merci"))
+        (self.folder / "said.raw").write_bytes(sound + bytes(2 * RATE))
+        events = self.run_beside("--microphone", as_wav(self.folder / "said.raw", self.folder / "said.wav"))
+        said = [event["value"] for event in events if event["event"] == "input" and event["sensor"] == "voice"]
+        self.assertEqual(said, ["none", "avance", "none", "doucement", "none", "merci", "none"])
+        did = [(event["actuator"], event["verb"]) for event in events if event["event"] == "command"]
+        self.assertEqual(did, [("arm", "MOVE"), ("speaker", "SAY")])
 
     @needs("face_detect")
     @unless_it_stands_still

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "companion/words_file.hpp"
 #include "compiler/reading.hpp"
 #include "rsc/algorithm_modules.hpp"
 #include "rsc/companion/outlet.hpp"
@@ -331,6 +332,25 @@ TEST_CASE("what programs say reaches the robot, and stays known while they say i
   CHECK(ears.read("asked") ==
         "--source hw:3 --period 50 --strict 47.000 --shown_for 0.500 --word silence --word hello "
         "--word very_well\n");
+}
+
+TEST_CASE("a program whose words were taught is told where they stand") {
+  const Ears ears;
+  ears.write("robot.json",
+             R"({"algorithms": [{"name": "voice", "module": "own_words", "rate": "20Hz"}]})");
+  ears.write("robot.rsl", "WHEN voice WORD IS hello\nDO LOG \"heard hello\"\nEND\n");
+  const companion::TaughtWord word{"hello", {companion::Sample(8)}};
+  ears.write("voice.words", companion::write_words({word}));
+  ears.upload();
+  ears.works("own-words",
+             "echo \"$@\" > " + ears.path("asked") +
+                 "; echo WORD none; sleep 0.4; while sleep 0.05; do echo WORD hello; done");
+  Running companion(ears.call());
+  REQUIRE(has_put(companion, "voice WORD hello"));
+  CHECK(companion.end(SIGINT).exit == 0);
+  CHECK(ears.read("asked") ==
+        "--source default --period 50 --strict 50.000 --shown_for 0.500 --words " +
+            ears.path("voice.words") + " --word none --word hello\n");
 }
 
 TEST_CASE("what the robot does about it can be shown and written down") {

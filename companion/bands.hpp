@@ -1,0 +1,36 @@
+// Sound as loudness in bands of tones, each as wide as an ear tells tones apart (the mel scale: S. Davis and P. Mermelstein,
+// "Comparison of parametric representations for monosyllabic word recognition", IEEE Trans. ASSP 28 (1980), section II).
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "companion/sound_source.hpp"
+#include "companion/words_file.hpp"
+
+namespace robosync::companion {
+
+constexpr std::size_t kHop = 256;  // samples: 16 ms
+constexpr long kHopMs = kHop * 1000 / kSoundRate;
+
+class Bands {
+public:
+  Bands();
+  // Of this block and the one before it, in halves of a decibel above the softest.
+  [[nodiscard]] Levels hear(std::span<const std::int16_t, kHop> block);
+
+private:
+  static constexpr std::size_t kWindow = 2 * kHop, kHalf = kWindow / 2;
+  void transform();
+
+  std::array<double, kWindow> past_{}, shape_{};
+  std::array<std::complex<double>, kWindow> tones_{};
+  std::array<std::complex<double>, kHalf> turns_{};
+  std::array<std::size_t, kBands + 2>
+      edges_{};  // of the bands, places in tones_: each reaches to the middles of its neighbours
+  double last_ = 0;
+};
+
+}  // namespace robosync::companion

@@ -1,0 +1,179 @@
+"""How often own_words is right (scripts/rates), as a table.
+
+Each word is taught with three samples, in a quiet room, and then said in other ways. What people have said they have said once: sox makes
+the samples and the ways of it, faster or slower, higher or lower. What is said is as loud as the others in its loudest 20 ms, with noise
+before, in and behind it."""
+
+import subprocess
+import sys
+import tempfile
+import warnings
+import wave
+from pathlib import Path
+from typing import NamedTuple
+
+import rates
+
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore")
+    import audioop
+
+PROGRAM = rates.ROOT / "build/companion/bin/robosync-own-words"
+RATE, BYTES = 16_000, 2
+BLOCK = RATE // 50 * BYTES
+RAW = ("-r", str(RATE), "-c", "1", "-b", "16", "-e", "signed", "-t", "raw", "-")
+# As fast, and higher by so many hundredths of a semitone.
+TAUGHT, SAID = ((1, 0), (0.93, -30), (1.07, 30)), ((0.87, 50), (1.13, -50), (0.96, 20))
+LONGEST = 4 * RATE * BYTES  # of what is none of the words
+DIGITS = tuple("1 2 3 4 5 6 7 8 9 10 20 30".split())
+# Words of a synthetic voice, and others; speed and pitch of the samples, and of what is said.
+SPEAKS = {
+    "de": ("hallo komm stopp links rechts singen tanzen schlafen", "eins zwei banane fenster himmel regen schule lampe"),
+    "cmn": ("你好 停下 过来 左边 右边 唱歌 跳舞 睡觉", "苹果 电话 学校 朋友 天气 再见 老师 水"),
+    "fi": ("hei tule seis vasen oikea laula tanssi nuku", "yksi kaksi omena ikkuna taivas sade koulu lamppu"),
+    "vi": ("xin_chào dừng_lại lại_đây bên_trái bên_phải hát nhảy ngủ", "táo điện_thoại trường bạn nước thời_tiết thầy hai"),
+    "pt-br+f3": ("olá vem pare esquerda direita canta dança dorme", "um dois banana janela chuva escola amigo água"),
+}
+VOICE_TAUGHT, VOICE_SAID = ((150, 45), (165, 50), (180, 55)), ((140, 60), (172, 40), (195, 52))
+
+
+class Set(NamedTuple):
+    name: str
+    taught: dict  # word to its samples
+    said: list  # (word, sound)
+    others: list  # sounds that are none of the words
+
+
+def sox(source, effects=(), **more):
+    return subprocess.run(["sox", "-R", *source, *RAW, *effects], capture_output=True, check=True, **more).stdout
+
+
+def loud(sound):
+    loudest = max((audioop.rms(sound[at:at + BLOCK], BYTES) for at in range(0, len(sound) - BLOCK + 1, BLOCK)), default=0)
+    return audioop.mul(sound, BYTES, rates.LOUDEST / loudest) if loudest else None
+
+
+def changed(path, tempo, cents):
+    return loud(sox([path], ["pitch", str(cents), "tempo", "-s", str(tempo)]))
+
+
+def digits(package):
+    """(word to its recording, the other ones)."""
+    found = rates.recordings(package, {".wav", ".gsm"})
+    folder = next(path.parent for path in found if path.parent.name == "digits" and path.stem == "1")
+    words = {path.stem: path for path in found if path.parent == folder and path.stem in DIGITS}
+    return words, [path for path in found if path not in words.values()]
+
+
+def of_people(package):
+    words, others = digits(package)
+    sounds = (loud(sox([path])[:LONGEST]) for path in others[::4])
+    return Set(f"12 numbers, a person ({package})",
+               {word: [changed(path, *how) for how in TAUGHT] for word, path in words.items()},
+               [(word, changed(path, *how)) for word, path in words.items() for how in SAID],
+               [sound for sound in sounds if sound])
+
+
+def of_two_people(package, other):
+    words, _ = digits(package)
+    said, _ = digits(other)
+    return Set(f"12 numbers, taught by a person ({package}), said by another one ({other})",
+               {word: [changed(path, *how) for how in TAUGHT] for word, path in words.items()},
+               [(word, loud(sox([said[word]]))) for word in words if word in said], [])
+
+
+def of_voice(voice):
+    def say(text, speed, pitch):
+        spoken = subprocess.run(["espeak-ng", "-v", voice, "-s", str(speed), "-p", str(pitch), "--stdout", text.replace("_", " ")],
+                                capture_output=True, check=True).stdout
+        return loud(sox(["-t", "wav", "-"], input=spoken))
+    words, others = (text.split() for text in SPEAKS[voice])
+    return Set(f"{len(words)} words, a synthetic voice (espeak-ng, {voice})",
+               {word: [say(word, *how) for how in VOICE_TAUGHT] for word in words},
+               [(word, say(word, *how)) for word in words for how in VOICE_SAID],
+               [say(word, *how) for word in others for how in VOICE_TAUGHT])
+
+
+def sets(settings):
+    if settings:
+        return [*(of_people(f"asterisk-core-sounds-{language}-wav") for language in ("en", "fr", "it")), of_voice("de"), of_voice("cmn")]
+    return [*(of_people(f"asterisk-core-sounds-{language}-wav") for language in ("es", "ru")),
+            of_two_people("asterisk-core-sounds-fr-wav", "asterisk-prompt-fr-armelle"), *map(of_voice, ("fi", "vi", "pt-br+f3"))]
+
+
+def write(path, sound):
+    with wave.open(str(path), "wb") as file:
+        file.setparams((1, BYTES, RATE, 0, "NONE", ""))
+        file.writeframes(sound)
+    return path
+
+
+class Robot:
+    """What has been taught the words of a set."""
+
+    def __init__(self, folder, taught):
+        self.folder = folder
+        self.file = folder / "my.words"
+        self.file.unlink(missing_ok=True)
+        self.names = {word: f"w{i}" for i, word in enumerate(taught)}  # those of a file are ASCII
+        hiss = noise(12 * RATE * BYTES)
+        for word, sounds in taught.items():
+            samples = [write(folder / f"sample{i}.wav", in_noise(sound, hiss, rates.NOISES_DB[0], 0)) for i, sound in enumerate(sounds)]
+            subprocess.run([PROGRAM, "--words", self.file, "--teach", self.names[word],
+                            *(part for path in samples for part in ("--recording", path))], check=True, stdout=subprocess.DEVNULL)
+
+    def hears(self, sound):
+        asked = [part for name in self.names.values() for part in ("--word", name)]
+        done = subprocess.run([PROGRAM, "--words", self.file, "--source", write(self.folder / "said.wav", sound), "--no-pace", "--period",
+                               "60000", "--shown_for", "0.1", "--strict", "50", *asked], check=True, text=True, stdout=subprocess.PIPE)
+        return [line.split()[1] for line in done.stdout.splitlines() if not line.endswith(" none")]
+
+
+def noise(length):
+    """Pink, the same every time, as loud as the loudest block of a recording."""
+    sound = sox(["-n"], ["synth", "20", "pinknoise", "gain", "-12"])
+    sound = audioop.mul(sound, BYTES, rates.LOUDEST / audioop.rms(sound, BYTES))
+    return (sound * (length // len(sound) + 1))[:length]
+
+
+def in_noise(sound, hiss, below, place):
+    sound = bytes(RATE * BYTES) + sound + bytes(RATE * BYTES * 3 // 4)
+    begin = place * 8_000 % (len(hiss) - len(sound)) // BYTES * BYTES
+    return audioop.add(sound, audioop.mul(hiss[begin:begin + len(sound)], BYTES, 10 ** (-below / 20)), BYTES)
+
+
+def counts(robot, one, below, hiss):
+    """(heard, taken for another word, other sounds taken for a word)."""
+    hits = wrong = alarms = 0
+    for place, (word, sound) in enumerate(one.said):
+        heard = robot.hears(in_noise(sound, hiss, below, place))
+        hits += heard == [robot.names[word]]
+        wrong += any(name != robot.names[word] for name in heard)
+    for place, sound in enumerate(one.others):
+        alarms += robot.hears(in_noise(sound, hiss, below, place)) != []
+    return hits, wrong, alarms
+
+
+def row(one, columns):
+    others = f", and {len(one.others)} other sounds" if one.others else ""
+    cells = (" · ".join(map(str, column if one.others else column[:2])) for column in columns)
+    return f"| {one.name}: said {len(one.said)} times{others} | " + " | ".join(cells) + " |"
+
+
+def table(all_sets):
+    lines = ["| said | " + " | ".join(map(rates.title, rates.NOISES_DB)) + " |", "|---" + "|---" * len(rates.NOISES_DB) + "|"]
+    hiss = noise(60 * RATE * BYTES)
+    with tempfile.TemporaryDirectory() as name:
+        for one in all_sets:
+            robot = Robot(Path(name), one.taught)
+            lines.append(row(one, [counts(robot, one, below, hiss) for below in rates.NOISES_DB]))
+            print(lines[-1], file=sys.stderr, flush=True)
+    return "\n".join(lines)
+
+
+def main():
+    rates.show(table(sets("--settings" in sys.argv)), "<!-- scripts/rates: taught -->")
+
+
+if __name__ == "__main__":
+    main()
