@@ -194,15 +194,15 @@ private:
   Mask lagging_ = 0;  // … and is not yet where it shall be
   Mask lights_ = 0;
   Mask speaker_ = 0;
-  Mask on_chips_ =
-      0;  // of their slots: `pin` is the channel, `target` is what the chip has; those of displays are empty
+  // Of their slots: `pin` is the channel, `target` is what the chip has. Displays count as chips; their slots are empty.
+  Mask on_chips_ = 0;
   Mask limp_ = 0;             // … that wait for their next orders
   bool lights_stay_ = false;  // in the safe state
   std::uint8_t chip_count_ = 0;
-  std::uint8_t display_count_ = 0;
   std::array<Chip, vm::kMaxServoChips> chips_{};
-  std::array<Display, vm::kMaxDisplays> displays_{};
   std::array<Slot, vm::kMaxActuators> slots_{};
+  std::array<Display, vm::kMaxDisplays> displays_{};
+  std::uint8_t display_count_ = 0;
 };
 
 }  // namespace robosync::guard
