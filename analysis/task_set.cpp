@@ -42,7 +42,7 @@ public:
 
   TaskSet build() {
     for (unsigned s = 0; s < image_.sensors.size(); ++s)
-      vm::is_servo_chip(image_.sensors[s].driver) ? add_servo_chip(s) : add_sensor(s);
+      vm::is_served(image_.sensors[s].driver) ? add_served(s) : add_sensor(s);
     for (unsigned r = 0; r < image_.rules.size(); ++r) {
       if (work_.period_ms(r) != 0) add_rule(r);
       if (work_.held_ms(r) != 0 && !work_.is_safety(r)) add_held(r);
@@ -153,16 +153,19 @@ private:
   }
 
   // Nobody reads it, so that its thread ranks below all that behaviours need.
-  void add_servo_chip(unsigned s) {
+  void add_served(unsigned s) {
     source_of_sensor_.push_back(set_.sources.size());
+    const vm::Sensor& sensor = image_.sensors[s];
     const auto servos = std::ranges::count_if(image_.actuators, [&](const vm::Actuator& actuator) {
       return vm::drives_channel(actuator.driver) && actuator.bus == s;
     });
     Source source;
-    source.name = image_.string(image_.sensors[s].name);
-    source.period = instructions_in_ms(vm::kServoFrameMs);
-    source.sample =
-        board_.wake_by_timer + policy::frame_cost(static_cast<std::uint32_t>(servos), board_);
+    source.name = image_.string(sensor.name);
+    source.period = instructions_in_ms(std::uint32_t{sensor.period_ms});
+    source.sample = board_.wake_by_timer +
+                    (vm::is_display(sensor.driver)
+                         ? policy::display_frame_cost(board_)
+                         : policy::frame_cost(static_cast<std::uint32_t>(servos), board_));
     place(source, s);
     set_.sources.push_back(std::move(source));
   }

@@ -11,8 +11,18 @@ namespace robosync::vm {
 // actuator. A level is power: as long as it is there, a motor runs. A picture and tones are on no pin of an actuator's own,
 // but on the lights and the speaker, which a board has once. Either way: a level on its pin or on a second one, which the
 // image has as its `bus`; the other pin is off then. Channel: pulses, by a servo chip, which the image has among its sensors, as
-// it is a device on a bus: `bus` says where, `pin` is the chip's channel.
-enum class PinUse : std::uint8_t { nothing, pulses, level, picture, tones, either_way, channel };
+// it is a device on a bus: `bus` says where, `pin` is the chip's channel. Screen: a picture, on a display, which is among the
+// sensors in the same way.
+enum class PinUse : std::uint8_t {
+  nothing,
+  pulses,
+  level,
+  picture,
+  tones,
+  either_way,
+  channel,
+  screen
+};
 
 constexpr PinUse pin_use(DriverId driver) {
   switch (driver) {
@@ -49,6 +59,9 @@ constexpr bool drives_speaker(DriverId driver) {
 }
 constexpr bool drives_channel(DriverId driver) {
   return pin_use(driver) == PinUse::channel;
+}
+constexpr bool drives_screen(DriverId driver) {
+  return pin_use(driver) == PinUse::screen;
 }
 // What goes on by itself as long as nobody ends it: it cannot be held in a halt.
 constexpr bool drives_on(DriverId driver) {
@@ -112,6 +125,19 @@ constexpr bool may_be_silent(DriverId driver) {
 constexpr bool is_servo_chip(DriverId driver) {
   return driver == DriverId::pca9685;
 }
+// A display: it stands there for the same reasons.
+constexpr bool is_display(DriverId driver) {
+  return driver == DriverId::ssd1306;
+}
+// What is told something in each of its frames, and asked for nothing.
+constexpr bool is_served(DriverId driver) {
+  return is_servo_chip(driver) || is_display(driver);
+}
+inline constexpr unsigned kMaxDisplays = 2;  // of a program
+inline constexpr std::uint16_t kDisplayFrameMs = 50;
+// Where its pin SA0 can put an SSD1306 (Solomon Systech SSD1306 Rev. 1.1, 8.1.5).
+inline constexpr std::uint16_t kFirstDisplayAddress = 0x3C;
+inline constexpr std::uint16_t kLastDisplayAddress = 0x3D;
 inline constexpr unsigned kChipChannels = 16;
 inline constexpr unsigned kMaxServoChips = 4;  // of a program
 inline constexpr std::uint16_t kServoFrameMs = 20;

@@ -28,6 +28,7 @@ struct Walk {
   std::uint32_t last_word = 0;  // of the source lines
   bool reads_pins = false;      // there is a sensor on a pin, or two
   std::uint32_t servo_chips = 0;
+  std::uint32_t displays = 0;
 };
 
 enum class DriverKind : std::uint8_t { sensor, actuator };
@@ -124,17 +125,32 @@ bool answers_at(const Sensor& sensor, const Sensor& chip) {
   return is_on_i2c(sensor.driver) && sensor.bus == chip.bus && sensor.address == chip.address;
 }
 
-// Its enable pin and its place on the bus are its own.
+// Its place on the bus is its own.
+bool is_alone(const Image& image, const Sensor& chip, std::size_t index) {
+  for (std::size_t s = 0; s < image.sensors.size(); ++s)
+    if (s != index && answers_at(image.sensors[s], chip)) return false;
+  return true;
+}
+
+// … and its enable pin.
 Refusal check_servo_chip(Walk& walk, const Sensor& chip, std::size_t index) {
   walk.reads_pins = true;
   if (++walk.servo_chips > kMaxServoChips) return Refusal::too_many;
   if (is_of_sensor(walk.image, chip.first_input, index)) return Refusal::shared_pin;
-  for (std::size_t s = 0; s < walk.image.sensors.size(); ++s)
-    if (s != index && answers_at(walk.image.sensors[s], chip)) return Refusal::bad_value;
   const bool place = chip.address >= kFirstChipAddress && chip.address <= kLastAddress &&
                      chip.address != kAllChipsAddress;
-  return good_or(Refusal::bad_value,
-                 place && chip.channel_count == 0 && chip.period_ms == kServoFrameMs);
+  return good_or(Refusal::bad_value, place && chip.channel_count == 0 &&
+                                         chip.period_ms == kServoFrameMs &&
+                                         is_alone(walk.image, chip, index));
+}
+
+Refusal check_display(Walk& walk, const Sensor& display, std::size_t index) {
+  if (++walk.displays > kMaxDisplays) return Refusal::too_many;
+  const bool place =
+      display.address >= kFirstDisplayAddress && display.address <= kLastDisplayAddress;
+  return good_or(Refusal::bad_value, place && display.channel_count == 0 &&
+                                         display.period_ms == kDisplayFrameMs &&
+                                         is_alone(walk.image, display, index));
 }
 
 Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t index) {
@@ -147,6 +163,7 @@ Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t index) {
   if (sensor.driver == DriverId::algorithm) return check_algorithm(sensor);
   if (is_servo_chip(sensor.driver)) return check_servo_chip(walk, sensor, index);
   if (sensor.first_input != 0) return Refusal::bad_value;
+  if (is_display(sensor.driver)) return check_display(walk, sensor, index);
   if (bus_of(sensor.driver) == Bus::nothing) return Refusal::none;
   if (is_by_echo(sensor.driver)) return check_echo(walk, sensor, index);
   if (is_analog(sensor.driver)) return check_analog(walk, sensor, index);
@@ -170,13 +187,15 @@ Refusal check_channel(Walk& walk, const Channel& channel, std::size_t index) {
                                          is_range(channel.min, channel.max) && channel.change >= 0);
 }
 
-// What an actuator has for itself alone: its pins, the lights, or the speaker.
+// What an actuator has for itself alone: its pins, the lights, the speaker, or a display.
 constexpr std::uint32_t kNothing = UINT32_MAX;
 constexpr std::uint32_t kLights = UINT16_MAX + 1;
 constexpr std::uint32_t kSpeaker = kLights + 1;
+constexpr std::uint32_t kDisplays = kSpeaker + 1;
 
 std::uint32_t output_of(const Actuator& actuator) {
   if (drives_lights(actuator.driver)) return kLights;
+  if (drives_screen(actuator.driver)) return kDisplays + actuator.bus;
   if (drives_speaker(actuator.driver)) return kSpeaker;
   return drives_pin(actuator.driver) ? actuator.pin : kNothing;
 }
@@ -223,6 +242,10 @@ Refusal check_channel_of_chip(const Walk& walk, const Actuator& servo, std::size
   return Refusal::none;
 }
 
+bool has_display(const Image& image, const Actuator& face) {
+  return face.bus < image.sensors.size() && is_display(image.sensors[face.bus].driver);
+}
+
 Refusal check_actuator(Walk& walk, const Actuator& actuator, std::size_t index) {
   if ((actuator.verbs & ~low_bits(walk.image.verbs.size())) != 0) return Refusal::bad_index;
   const bool good = is_enumerator(actuator.on_release) && is_enumerator(actuator.safe) &&
@@ -230,6 +253,8 @@ Refusal check_actuator(Walk& walk, const Actuator& actuator, std::size_t index) 
   if (!good) return Refusal::bad_value;
   const Refusal driver = check_driver(walk, actuator.driver, DriverKind::actuator);
   if (driver != Refusal::none) return driver;
+  if (drives_screen(actuator.driver) && !has_display(walk.image, actuator))
+    return Refusal::bad_index;
   return drives_channel(actuator.driver) ? check_channel_of_chip(walk, actuator, index)
                                          : check_output(walk, actuator, index);
 }

@@ -59,7 +59,7 @@ private:
 void Emitter::add_algorithms(const Robot& robot, const Tables& tables) {
   constants_ = rules_.pool.constants();
   for (vm::Sensor& record : records_.sensors) {
-    if (vm::is_servo_chip(record.driver)) continue;
+    if (vm::is_served(record.driver)) continue;
     const std::size_t place = tables.sensor_of(record.first_channel);
     const auto& algorithm = robot.sensors[place].algorithm;
     if (!algorithm) continue;
@@ -81,7 +81,10 @@ bool Emitter::counts_fit() {
   constexpr std::size_t kMost = vm::kNoIndex - 1;
   const auto chips = static_cast<std::size_t>(
       std::ranges::count_if(records_.sensors, vm::is_servo_chip, &vm::Sensor::driver));
+  const auto displays = static_cast<std::size_t>(
+      std::ranges::count_if(records_.sensors, vm::is_display, &vm::Sensor::driver));
   return fits(chips, vm::kMaxServoChips, "servo chips") &&
+         fits(displays, vm::kMaxDisplays, "displays") &&
          fits(records_.checks.size(), UINT8_MAX, "CHECKs") &&
          fits(records_.bands.size(), UINT8_MAX, "bands") &&
          fits(records_.motions.size(), UINT8_MAX, "MOTIONs") &&

@@ -1,6 +1,7 @@
 #include "compiler/codegen/records.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "vm/drivers.hpp"
@@ -17,7 +18,7 @@ public:
   Records make() {
     sensors();
     for (const auto& [place, number] : tables_.actuators())
-      if (robot_.actuators[place].chip) servo_chip(*robot_.actuators[place].chip);
+      served(place);
     for (const auto& [ref, number] : tables_.channels())
       channel(ref);
     for (const auto& [place, number] : tables_.actuators())
@@ -47,6 +48,7 @@ public:
 
 private:
   void sensors();
+  void served(std::size_t place);
   void servo_chip(const ServoChip& chip);
   void channel(ChannelRef ref);
   void actuator(std::size_t place);
@@ -62,6 +64,7 @@ private:
   Records records_;
   std::vector<std::size_t> sensor_places_;                 // in Robot::sensors, of records_.sensors
   std::vector<std::pair<ServoChip, std::uint8_t>> chips_;  // behind these, and where
+  std::map<std::size_t, std::uint8_t> displays_;           // by actuator, the same
 };
 
 void RecordMaker::sensors() {
@@ -74,6 +77,17 @@ void RecordMaker::sensors() {
     }
     ++records_.sensors.back().channel_count;
   }
+}
+
+// What an actuator is on, where that is a device on a bus.
+void RecordMaker::served(std::size_t place) {
+  const ActuatorConfig& config = robot_.actuators[place];
+  if (config.chip) servo_chip(*config.chip);
+  if (!vm::drives_screen(config.driver)) return;
+  displays_[place] = static_cast<std::uint8_t>(records_.sensors.size());
+  records_.sensors.push_back({strings_.offset("ssd1306"), vm::DriverId::ssd1306, config.bus,
+                              config.pin, vm::kDisplayFrameMs,
+                              static_cast<std::uint8_t>(tables_.channels().size()), 0, 0, 0});
 }
 
 void RecordMaker::servo_chip(const ServoChip& chip) {
@@ -137,6 +151,10 @@ void RecordMaker::actuator(std::size_t place) {
   record.pin = config.pin;
   for (const auto& [chip, sensor] : chips_)
     if (config.chip == chip) record.bus = sensor;
+  if (const auto display = displays_.find(place); display != displays_.end()) {
+    record.bus = display->second;
+    record.pin = 0;
+  }
   record.on_release = config.on_release;
   record.safe = config.safe;
   record.verbs = tables_.verbs_of(config, place);

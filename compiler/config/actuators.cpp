@@ -168,6 +168,10 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
     const ChipWiring place = wiring.read_chip(fields);
     actuator.chip = place.chip;
     actuator.pin = place.channel;
+  } else if (type != nullptr && type->name == "I2C" && vm::drives_screen(actuator.driver)) {
+    const Wiring place = wiring.read_display(fields, *type);
+    actuator.bus = place.bus;
+    actuator.pin = place.place;
   } else if (type != nullptr) {
     const Wiring place = wiring.read_actuator(fields, *type, part, device.actuator.driver);
     actuator.bus = place.bus;

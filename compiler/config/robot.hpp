@@ -117,7 +117,7 @@ struct ActuatorConfig {
   std::string device;  // its descriptor in stdlib/devices/
   vm::DriverId driver{};
   std::uint8_t bus = 0;
-  std::uint16_t pin = 0;  // or channel of its chip
+  std::uint16_t pin = 0;  // or channel of its chip, or address of its display
   std::optional<ServoChip> chip;
   vm::Release on_release = vm::Release::hold;
   vm::Release safe = vm::Release::hold;

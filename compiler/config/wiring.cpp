@@ -259,17 +259,41 @@ void WiringReader::take_chip(const ServoChip& chip, const json::Value& address,
     return check_enable(enable, chip.enable);
   }
   if (!known.chip)
-    diagnostics_
-        .report(Code::E0207,
-                fmt::format("address 0x{:02x} on bus {} is used twice", chip.address, chip.bus))
-        .label(address.span)
-        .label(known.span, "first used here", false);
+    report_taken(known, {chip.bus, chip.address}, address.span);
   else if (known.chip->enable != chip.enable)
     diagnostics_
         .report(Code::E0205, name_of(chip) + " has its enable input at pin " +
                                  std::to_string(known.chip->enable))
         .label(enable.span)
         .label(known.enable, "said here", false);
+}
+
+void WiringReader::report_taken(const OnBus& known, const Wiring& place, Span span) {
+  diagnostics_
+      .report(Code::E0207,
+              fmt::format("address 0x{:02x} on bus {} is used twice", place.place, place.bus))
+      .label(span)
+      .label(known.span, "first used here", false);
+}
+
+// All sensors were read before.
+Wiring WiringReader::read_display(Fields& fields, const WiringType& type) {
+  report_foreign(fields, type);
+  Wiring wiring;
+  if (const auto* bus = fields.find("bus"))
+    wiring.bus =
+        static_cast<std::uint8_t>(read_whole(*bus, 0, UINT8_MAX, diagnostics_).value_or(0));
+  check_bus(fields, wiring);
+  const auto* address = fields.require("address", "an " + fields.find("device")->text);
+  if (address == nullptr) return wiring;
+  const auto place =
+      read_whole(*address, vm::kFirstDisplayAddress, vm::kLastDisplayAddress, diagnostics_);
+  if (!place) return wiring;
+  wiring.place = static_cast<std::uint16_t>(*place);
+  const auto [entry, added] =
+      on_buses_.emplace(std::pair(wiring.bus, wiring.place), OnBus{.span = address->span});
+  if (!added) report_taken(entry->second, wiring, address->span);
+  return wiring;
 }
 
 void WiringReader::check_enable(const json::Value& value, std::uint16_t pin) {

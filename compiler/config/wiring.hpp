@@ -47,6 +47,8 @@ public:
   [[nodiscard]] Wiring read_actuator(Fields& fields, const WiringType& type,
                                      const Board::Part* part, vm::DriverId driver);
   [[nodiscard]] ChipWiring read_chip(Fields& fields);
+  // Of a display: its bus, which the board must have, and its address, which is its own.
+  [[nodiscard]] Wiring read_display(Fields& fields, const WiringType& type);
   // All servos of a chip have the same safe state, which is said at `span`, or else of the entry.
   void check_safe(const ServoChip& chip, vm::Release safe, Span span);
   // For those whose driver uses them: the board must have them.
@@ -60,9 +62,19 @@ public:
   [[nodiscard]] const Board& board() const { return board_; }
 
 private:
+  struct OnBus {
+    Span span;
+    std::optional<ServoChip> chip{};
+    Span enable{};
+    std::map<std::uint16_t, Span> channels{};  // that servos have
+    std::optional<vm::Release> safe{};
+    Span safe_span{};
+  };
+
   [[nodiscard]] Wiring read(Fields& fields, const WiringType& type, const Board::Part* part,
                             bool two_pins, const std::string& what);
   [[nodiscard]] Wiring read_part(const Fields& fields, const Board::Part& part);
+  void report_taken(const OnBus& known, const Wiring& place, Span span);
   void take_chip(const ServoChip& chip, const json::Value& address, const json::Value& enable);
   void refuse_pins(const Fields& fields);
   void take_channel(const ServoChip& chip, std::uint16_t channel, Span span);
@@ -81,15 +93,7 @@ private:
   Board board_;
   Diagnostics& diagnostics_;
   std::map<std::uint16_t, Span> pins_;
-  std::map<const Board::Part*, Span> parts_;  // without a pin
-  struct OnBus {
-    Span span;
-    std::optional<ServoChip> chip{};
-    Span enable{};
-    std::map<std::uint16_t, Span> channels{};  // that servos have
-    std::optional<vm::Release> safe{};
-    Span safe_span{};
-  };
+  std::map<const Board::Part*, Span> parts_;                          // without a pin
   std::map<std::pair<std::uint8_t, std::uint16_t>, OnBus> on_buses_;  // by bus and address
 };
 

@@ -98,6 +98,7 @@ std::string verb_names(const vm::Image& image, std::uint32_t mask) {
 std::string place_of(const vm::Actuator& actuator) {
   if (vm::drives_channel(actuator.driver))
     return fmt::format("channel {} of sensor {}", actuator.pin, actuator.bus);
+  if (vm::drives_screen(actuator.driver)) return fmt::format("sensor {}", actuator.bus);
   return vm::has_two_pins(actuator.driver)
              ? fmt::format("pins {} and {}", actuator.pin, actuator.bus)
              : fmt::format("bus {} pin {}", actuator.bus, actuator.pin);

@@ -66,7 +66,7 @@ std::vector<std::byte> as_fed(const Program& program, const std::set<std::uint8_
   if (!vm::view_image(bytes, image)) return bytes;
   for (std::size_t i = 0; i < image.sensors.size(); ++i)
     change<vm::Sensor>(bytes, image.sensors, i, [](vm::Sensor& sensor) {
-      if (vm::is_servo_chip(sensor.driver)) return;
+      if (vm::is_served(sensor.driver)) return;
       sensor.driver = vm::DriverId::virtual_sensor;
       sensor.period_ms = 0;
       sensor.first_input = 0;

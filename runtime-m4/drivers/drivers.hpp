@@ -92,9 +92,10 @@ struct Driver {
   ReleaseFunction release = nullptr;
 };
 
-// Code for lights and speakers is not there where there are none.
+// Code for lights and speakers is not there where there are none, nor that for displays where no bus is.
 constexpr bool is_present(vm::DriverId id) {
   if (vm::drives_lights(id)) return boards::kHasLights;
+  if (vm::drives_screen(id)) return boards::kPins.i2c_buses != 0;
   return boards::kHasSpeaker || !vm::drives_speaker(id);
 }
 template <vm::DriverId id>

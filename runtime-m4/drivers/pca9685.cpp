@@ -11,8 +11,8 @@
 #include <span>
 
 #include "runtime-m4/drivers/drivers.hpp"
+#include "runtime-m4/drivers/served.hpp"
 #include "runtime-m4/drivers/servo_chip.hpp"
-#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::drivers {
 namespace {
@@ -62,46 +62,17 @@ Sent setpoint(const guard::OutputGuard::Setpoint& setpoint) {
   return {{place, static_cast<std::byte>(counts & 0xFF), static_cast<std::byte>(counts >> 8)}, 3};
 }
 
-bool transfer(const ChipBus& at, bool ahead, std::span<const std::byte> out,
-              std::span<std::byte> in) {
-  const kernel::MutexGuard mine(at.kernel, at.buses);
-  if (ahead) at.board.i2c_ask(true);
-  const bool done = at.board.i2c_transfer(at.bus, at.address, out, in);
-  if (ahead) at.board.i2c_ask(false);
-  return done;
-}
-
-// Until what was asked for is there, or late.
-void await(const ChipBus& at) {
-  for (unsigned i = 0; i <= policy::kBusTicks && (i == 0 || at.board.i2c_busy()); ++i)
-    at.kernel.sleep_until(at.kernel.now() + kernel::kTick);
-}
-
-// Where the bus works by itself, what is wanted is said, and asked about when it is done.
-[[gnu::noinline]] bool exchange(const ChipBus& at, std::span<const std::byte> out,
-                                std::span<std::byte> in, unsigned tries) {
-  const bool ahead = at.board.i2c_asks_ahead();
-  for (; tries != 0; --tries) {
-    if (ahead) {
-      static_cast<void>(transfer(at, true, out, in));
-      await(at);
-    }
-    if (transfer(at, false, out, in)) return true;
-  }
-  return false;
-}
-
 // What is disturbed once is said again at once: until then nobody knows what the output does.
-bool write(const ChipBus& at, const Sent& sent) {
+bool write(const ServedBus& at, const Sent& sent) {
   return exchange(at, sent.all(), {}, kTries);
 }
 
-bool read_mode(const ChipBus& at, std::byte& mode) {
+bool read_mode(const ServedBus& at, std::byte& mode) {
   return exchange(at, std::span(&kMode1, 1), std::span(&mode, 1), 1);
 }
 
 // The oscillator needs 0.5 ms to come up (7.3.1): the outputs go on in the next frame at the earliest.
-bool set_up(const ChipBus& at, guard::OutputGuard& outputs, unsigned sensor) {
+bool set_up(const ServedBus& at, guard::OutputGuard& outputs, unsigned sensor) {
   for (const Sent& step : kSetUp)
     if (!write(at, step)) return false;
   outputs.note_chip_set_up(sensor);
@@ -109,7 +80,7 @@ bool set_up(const ChipBus& at, guard::OutputGuard& outputs, unsigned sensor) {
 }
 
 // The pulses that it lacks.
-bool send_all(const ChipBus& at, guard::OutputGuard& outputs, unsigned sensor) {
+bool send_all(const ServedBus& at, guard::OutputGuard& outputs, unsigned sensor) {
   guard::OutputGuard::Setpoint next{};
   for (unsigned from = 0; outputs.next_setpoint(sensor, from, next); from = next.actuator + 1U) {
     if (!write(at, setpoint(next))) return false;
@@ -120,7 +91,7 @@ bool send_all(const ChipBus& at, guard::OutputGuard& outputs, unsigned sensor) {
 
 }  // namespace
 
-bool serve_pca9685(const ChipBus& at, guard::OutputGuard& outputs, unsigned sensor) {
+bool serve_pca9685(const ServedBus& at, guard::OutputGuard& outputs, unsigned sensor) {
   std::byte mode{};
   if (!read_mode(at, mode)) return false;
   const bool known = outputs.knows_chip(sensor);

@@ -153,6 +153,7 @@ void OutputGuard::own(const vm::Image& image) {
     if (slots_[a].safe == kStays) apart_ |= bit(a);
   }
   own_chips(image);
+  own_displays(image);
   owned |= on_chips_;
   apart_ |= on_chips_;
   let_go_of(measured_by(image));
@@ -208,7 +209,10 @@ void OutputGuard::own_lights(unsigned actuator, vm::Release safe) {
 
 void OutputGuard::show(unsigned actuator, std::uint32_t picture) {
   const auto lock = kernel_.lock();
-  if ((free_ & lights() & bit(actuator)) != 0) board_.show(picture);
+  if (!is_free(actuator)) return;
+  if ((lights() & bit(actuator)) != 0) board_.show(picture);
+  for (Display& display : std::span(displays_).first(display_count_))
+    if (display.actuator == actuator) display.picture = picture;
 }
 
 void OutputGuard::sound(unsigned actuator, std::uint32_t hertz) {
@@ -379,7 +383,7 @@ void OutputGuard::switch_chips_off() {
   const auto lock = kernel_.lock();
   for (unsigned c = 0; c < chip_count_; ++c)
     board_.enable(chips_[c].enable, false);
-  chip_count_ = 0;
+  chip_count_ = display_count_ = 0;
   limp_ = 0;
 }
 
@@ -392,6 +396,8 @@ void OutputGuard::begin_order(unsigned actuator) {
 [[gnu::noinline]] void OutputGuard::halt_chips(Mask fresh) {
   for (unsigned c = 0; c < chip_count_; ++c)
     if ((chips_[c].actuators & fresh) != 0 && !chips_[c].holds) switch_chip_off(chips_[c]);
+  for (Display& display : std::span(displays_).first(display_count_))
+    if ((fresh & bit(display.actuator)) != 0 && !display.holds) display.picture = 0;
 }
 
 bool OutputGuard::knows_chip(unsigned sensor) const {
@@ -454,6 +460,37 @@ void OutputGuard::let_chip_on(unsigned sensor) {
   if (!driven) return;
   board_.enable(chip->enable, true);
   chip->on = true;
+}
+
+// --- displays ---
+
+// The image is verified.
+void OutputGuard::own_displays(const vm::Image& image) {
+  for (unsigned a = 0; a < image.actuators.size() && display_count_ < displays_.size(); ++a) {
+    const vm::Actuator& actuator = image.actuators[a];
+    if (!vm::drives_screen(actuator.driver)) continue;
+    slots_[a] = {};
+    on_chips_ |= bit(a);
+    displays_[display_count_++] = {.screen = {},
+                                   .picture = 0,
+                                   .sensor = actuator.bus,
+                                   .actuator = static_cast<std::uint8_t>(a),
+                                   .holds = actuator.safe == vm::Release::hold};
+  }
+}
+
+std::uint32_t OutputGuard::picture_on(unsigned sensor) const {
+  const auto lock = kernel_.lock();
+  for (const Display& display : std::span(displays_).first(display_count_))
+    if (display.sensor == sensor) return display.picture;
+  return 0;
+}
+
+OutputGuard::Screen* OutputGuard::screen_of(unsigned sensor) {
+  const auto lock = kernel_.lock();
+  for (Display& display : std::span(displays_).first(display_count_))
+    if (display.sensor == sensor) return &display.screen;
+  return nullptr;
 }
 
 void OutputGuard::let_go(Mask actuators) {

@@ -27,6 +27,9 @@
 //   servos (unless they hold in their safe state), with the program, and when nobody knows any more what stands on the chip.
 // * It does not go on while such a halt lasts; and what went off stays off, of all its servos, until each gets another order.
 //
+// A display shows a picture, which its server (drivers/screen.hpp) asks for in the same way. Of a halt it comes to know in its
+// next frame, some 50 ms later: nobody is hurt by that.
+//
 // A check and its write are one under the kernel's lock: who is interrupted in between writes nothing old later.
 // docs/safety.md says what follows from that.
 #pragma once
@@ -64,7 +67,7 @@ public:
   void begin_order(unsigned actuator);
   // … of one that has two pins: on its first one, or where it is negative, so long on its second one.
   void drive_either(unsigned actuator, std::int32_t pulse_us, kernel::Time now);
-  // The picture on the lights (boards::Board::show()).
+  // The picture on the lights (boards::Board::show()), or on the actuator's display.
   void show(unsigned actuator, std::uint32_t picture);
   // The tone of the speaker (boards::Board::sound()).
   void sound(unsigned actuator, std::uint32_t hertz);
@@ -89,6 +92,18 @@ public:
   void note_setpoint(const Setpoint& setpoint);
   // It has all it shall have, and its pulses come: on, if they may.
   void let_chip_on(unsigned sensor);
+
+  // --- for who serves the display that is this sensor of the image (drivers/screen.hpp) ---
+  // What it shall show (boards::Board::show()); of another sensor: 0.
+  [[nodiscard]] std::uint32_t picture_on(unsigned sensor) const;
+  // How far it has come. The server's own, and new with each program; null: the sensor is none.
+  struct Screen {
+    std::uint64_t stale = 0;  // bit 5 * page + column of the picture: it shows something old there
+    std::uint32_t picture = 0;  // that it was last to show
+    std::uint8_t portion = 0;   // the next one of the round
+    bool whole = false;         // it has been through a round
+  };
+  [[nodiscard]] Screen* screen_of(unsigned sensor);
 
   // No measurement goes on, and none begins until own(): before the running program's image is overwritten, which says
   // where they are.
@@ -121,6 +136,14 @@ private:
     Mask actuators;
   };
 
+  struct Display {
+    Screen screen;
+    std::uint32_t picture;
+    std::uint8_t sensor;  // in the image
+    std::uint8_t actuator;
+    bool holds;
+  };
+
   static constexpr std::uint16_t kStays = UINT16_MAX;
   static constexpr std::uint16_t kNoPin = UINT16_MAX;
 
@@ -144,6 +167,7 @@ private:
   void switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
   void own_chips(const vm::Image& image);
+  void own_displays(const vm::Image& image);
   // Null: the sensor is none.
   template <class Guard>
   [[nodiscard]] static auto* chip_of(Guard& guard, unsigned sensor);
@@ -170,12 +194,15 @@ private:
   Mask lagging_ = 0;  // … and is not yet where it shall be
   Mask lights_ = 0;
   Mask speaker_ = 0;
-  Mask on_chips_ = 0;         // of their slots: `pin` is the channel, `target` is what the chip has
+  // Of their slots: `pin` is the channel, `target` is what the chip has. Displays count as chips; their slots are empty.
+  Mask on_chips_ = 0;
   Mask limp_ = 0;             // … that wait for their next orders
   bool lights_stay_ = false;  // in the safe state
   std::uint8_t chip_count_ = 0;
   std::array<Chip, vm::kMaxServoChips> chips_{};
   std::array<Slot, vm::kMaxActuators> slots_{};
+  std::array<Display, vm::kMaxDisplays> displays_{};
+  std::uint8_t display_count_ = 0;
 };
 
 }  // namespace robosync::guard

@@ -46,7 +46,10 @@ target_sources(robosync_runtime PRIVATE
   drivers/pwm.cpp
   drivers/pca9685.cpp
   drivers/pca9685_servo.cpp
+  drivers/served.cpp
   drivers/servo.cpp
+  drivers/ssd1306.cpp
+  drivers/ssd1306_face.cpp
   drivers/tones.cpp
   drivers/virtual_actuator.cpp
   drivers/virtual_motion.cpp

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "runtime-m4/drivers/drivers.hpp"
+#include "runtime-m4/drivers/screen.hpp"
+#include "runtime-m4/drivers/served.hpp"
 #include "runtime-m4/drivers/servo_chip.hpp"
 #include "runtime-m4/policy/rules.hpp"
 
@@ -33,18 +35,25 @@ bool DriverSampler::sample(const vm::Image& image, std::uint8_t channel, vm::Val
 
 kernel::Duration DriverSampler::asks_ahead(const vm::Sensor& sensor) const {
   if (vm::is_by_echo(sensor.driver)) return kernel::milliseconds(policy::kEchoMs);
-  if (vm::is_servo_chip(sensor.driver)) return 0;  // who serves it waits for the bus itself
+  if (vm::is_served(sensor.driver)) return 0;  // who serves it waits for the bus itself
   return board_.i2c_asks_ahead() && vm::is_on_i2c(sensor.driver) ? kernel::kTick : 0;
 }
 
+drivers::ServedBus DriverSampler::bus_of(const vm::Sensor& sensor) {
+  return {.kernel = kernel_,
+          .board = board_,
+          .buses = buses_,
+          .bus = sensor.bus,
+          .address = static_cast<std::uint8_t>(sensor.address)};
+}
+
 bool DriverSampler::serve_chip(const vm::Image& image, unsigned sensor) {
-  const vm::Sensor& chip = image.sensors[sensor];
-  const drivers::ChipBus bus{.kernel = kernel_,
-                             .board = board_,
-                             .buses = buses_,
-                             .bus = chip.bus,
-                             .address = static_cast<std::uint8_t>(chip.address)};
-  return drivers::serve_pca9685(bus, outputs_, sensor);
+  if (vm::is_display(image.sensors[sensor].driver)) return serve_display(image, sensor);
+  return drivers::serve_pca9685(bus_of(image.sensors[sensor]), outputs_, sensor);
+}
+
+[[gnu::noinline]] bool DriverSampler::serve_display(const vm::Image& image, unsigned sensor) {
+  return drivers::serve_ssd1306(bus_of(image.sensors[sensor]), outputs_, sensor);
 }
 
 // What a driver makes of no answer is nobody's.

@@ -6,13 +6,18 @@
 #include "runtime-m4/kernel/kernel.hpp"
 #include "vm/image.hpp"
 
+namespace robosync::drivers {
+struct ServedBus;
+}
+
 namespace robosync::layers {
 
 class Sampler {
 public:
   // One sample of a channel in thousandths of its unit. False when there is none to be had.
   virtual bool sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) = 0;
-  // A frame of a servo chip (drivers/servo_chip.hpp), which is that sensor of the image. False when it has not answered.
+  // A frame of a servo chip (drivers/servo_chip.hpp) or a display (drivers/screen.hpp), which is that sensor of the image. False when
+  // it has not answered.
   virtual bool serve_chip(const vm::Image& /*image*/, unsigned /*sensor*/) { return true; }
   // It is silent: what stands on it is no longer known.
   virtual void lose_chip(unsigned /*sensor*/) {}
@@ -40,6 +45,9 @@ public:
   void lose_chip(unsigned sensor) override { outputs_.lose_chip(sensor); }
 
 private:
+  drivers::ServedBus bus_of(const vm::Sensor& sensor);
+  bool serve_display(const vm::Image& image, unsigned sensor);
+
   kernel::Kernel& kernel_;
   boards::Board& board_;
   guard::OutputGuard& outputs_;

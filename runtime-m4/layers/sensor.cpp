@@ -170,7 +170,7 @@ kernel::Time SensorLayer::next_sample(unsigned sensor, kernel::Time last) {
 
 void SensorLayer::sample(unsigned sensor) {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
-  if (vm::is_servo_chip(wiring.driver)) return serve_chip(sensor);
+  if (vm::is_served(wiring.driver)) return serve_chip(sensor);
   ChannelMask news = 0;
   unsigned failed = 0;
   for (unsigned i = 0; i < wiring.channel_count; ++i) {

@@ -80,7 +80,7 @@ bool runs_on(const Device& device, const Board& board) {
   if (is_only_a_part(device))
     return std::ranges::any_of(board.parts,
                                [&](const Board::Part& part) { return part.device == device.name; });
-  if (vm::is_on_i2c(driver)) return board.i2c_buses > 0;
+  if (vm::is_on_i2c(driver) || vm::drives_screen(driver)) return board.i2c_buses > 0;
   if (vm::drives_channel(driver)) return board.i2c_buses > 0 && !board.enables.empty();
   if (vm::is_on_pin(driver)) return !board.inputs.empty();
   if (vm::is_by_echo(driver)) return !board.inputs.empty() && !board.outputs.empty();
@@ -136,9 +136,13 @@ std::string wiring_keys(const Device& device) {
            row({"`channel`", "0 to " + std::to_string(vm::kChipChannels - 1), "needed"}) +
            row({"`enable`", "the pin of the board at OE, the same for all servos of the chip",
                 "needed"});
+  const bool screen = vm::drives_screen(driver_of(device));
   if (type->address)
-    rows += row({"`address`",
-                 fmt::format("{:#04x} to {:#04x}", vm::kFirstAddress, vm::kLastAddress), "needed"});
+    rows += row(
+        {"`address`",
+         fmt::format("{:#04x} to {:#04x}", screen ? vm::kFirstDisplayAddress : vm::kFirstAddress,
+                     screen ? vm::kLastDisplayAddress : vm::kLastAddress),
+         "needed"});
   if (type->bus) rows += row({"`bus`", "a bus of the board", "0"});
   if (vm::is_by_echo(driver_of(device)))
     return row({"`trigger`", "an output of the board", "needed"}) +

@@ -68,6 +68,12 @@ WAKE = bytes((0xA0, 0x67, 0, 0, 0x90))
 ASLEEP = bytes((0x07, *13 * (0,)))
 AWAKE = bytes((*WAKE[1:], 0, 0, 0, 8))  # and two bytes for each axis
 REGISTERS = len(ASLEEP)
+# A display on that bus; what is sent to it (drivers/served.hpp), and how its driver draws a picture.
+OLED = {"sensors": FACE["sensors"],
+        "actuators": [{"name": "face", "type": "I2C", "device": "ssd1306", "bus": 1, "address": "0x3c"}]}
+OLED_ADDRESS, EXCHANGE = 0x3C, "robosync::drivers::exchange("
+COMMAND, DATA, PAGE_COLUMNS, PAGES, LEFT, SIDE = 0x80, 0x40, 128, 8, 36, 12
+TRANSFERS = 400  # that are looked at, at most: a round has 98
 COST_OF_DRIVER = r"(?m)^ACTUATOR_DRIVER\({},\s*(\d+),\s*(\d+),\s*(\d+),"
 COSTS = ROOT / "runtime-m4/boards/microbit-v2/costs.def"
 COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*([\d']+),", re.M)
@@ -343,6 +349,53 @@ class OnMicrobit(DebuggedTest):
         finally:
             reader.stop()
         self.assertEqual(self.status()["safety_late_us"], held)
+
+    def test_a_face_goes_out_to_a_display_on_the_bus(self):
+        """The test is the display: it takes what the bus was told to send, and puts the dots together. Other ways to address them it has not."""
+        self.begin("SHOW face happy", robot=OLED)
+        self.say("feed", "near.X=20")
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        exchange = next(at for name, at in symbols(FIRMWARE).items() if name.startswith(EXCHANGE))
+        memory, told, taken = {}, set(), 0
+        wanted = {(x, y) for y, row in enumerate(HAPPY) for x, light in enumerate(row) if light == "#"}
+        with self.debugger() as debugger:
+            for _ in range(TRANSFERS):
+                debugger.run_to(exchange, lambda: None)
+                sent = list(zip(self.told(WRITE_FROM), self.told(WRITE_COUNT)))
+                for place, count in sent[taken:]:
+                    told.update(self.take(wires.read(place, count), memory))
+                taken = len(sent)
+                wires.interrupt(CORE, BUS_INTERRUPT)
+                debugger.step()
+                if len(memory) == PAGES * PAGE_COLUMNS and self.lights_of(memory) == wanted and (0xA6, 0xAF) in told:
+                    break
+        self.assertEqual(set(self.told(ADDRESS)), {OLED_ADDRESS})
+        self.assertEqual(self.lights_of(memory), wanted)
+        self.assertLessEqual({(0x20, 0x02), (0xA8, 0x3F), (0x8D, 0x14), (0x40, 0xA1), (0xC8, 0xA4), (0xA6, 0xAF)}, told)
+        self.assertEqual(self.status()["faults"], 0)
+
+    def take(self, sent, memory):
+        """The two commands that it is; else none, and what it writes is in {(page, column): eight dots}."""
+        commands = []
+        while sent and sent[0] == COMMAND:
+            commands.append(sent[1])
+            sent = sent[2:]
+        if not sent:
+            self.assertEqual(len(commands), 2)
+            return {tuple(commands)}
+        self.assertEqual((sent[0], [command >> 4 for command in commands]), (DATA, [0xB, 0x0, 0x1]))
+        page, column = commands[0] & 7, commands[1] & 15 | (commands[2] & 7) << 4
+        self.assertLessEqual(column + len(sent) - 1, PAGE_COLUMNS)
+        memory.update({(page, column + i): dots for i, dots in enumerate(sent[1:])})
+        return set()
+
+    def lights_of(self, memory):
+        """{(column, row)} of the lights whose dots are all on; where a light is so in part, or one beside the picture is on, none."""
+        lit = {(x, 8 * page + bit) for (page, x), dots in memory.items() for bit in range(8) if dots >> bit & 1}
+        lights = {((x - LEFT) // SIDE, y // SIDE) for x, y in lit}
+        whole = {(LEFT + SIDE * column + x, SIDE * row + y) for column, row in lights for x in range(SIDE) for y in range(SIDE)}
+        return lights if lit == whole else None
 
     def test_what_the_bus_costs(self):
         wires, read = self.begin_motion()

@@ -17,7 +17,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[2]
 HOST = ROOT / "build/host"
 WORK = ROOT / "build/mutation/safety"
-TESTS = "[#guard_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test]"
+TESTS = "[#guard_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#ssd1306_test]"
 TIMEOUT = 120
 GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
 MAILBOX = "runtime-m4/layers/mailbox.cpp"
@@ -67,6 +67,7 @@ MUTANTS = (
     Mutant("what went limp with its chip goes on without an order", GUARD, "  limp_ |= chip.actuators;\n", ""),
     Mutant("the next program finds a servo chip on", GUARD, "    board_.enable(chips_[c].enable, false);\n", "    ;\n"),
     Mutant("a lost servo chip stays on", GUARD, "  chip->known = false;\n  switch_chip_off(*chip);", "  chip->known = false;"),
+    Mutant("a halt leaves the picture on a display", GUARD, "!display.holds) display.picture = 0;", "!display.holds) display.picture += 0;"),
     Mutant("what is fed is not delivered before the rules are looked at", RUNTIME, "if (begun_ && !sensors_.are_fed())",
            "if (begun_)"),
     Mutant("a reading is never too old", RULES, "if (!mailboxes.are_fresh(now)) [[unlikely]]", "if (false)"),

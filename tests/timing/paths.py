@@ -17,8 +17,8 @@ FIRMWARE = ROOT / "build/m4/bench/path.elf"
 RUNTIME_COSTS = ROOT / "runtime-m4/policy/costs.def"
 DRIVERS = ROOT / "vm/drivers.def"
 DEVICES = ["-device", "max34451,id=touch,address=0x70", "-device", "tmp105,address=0x48", "-device", "tmp105,address=0x19",
-           # In the place of a PCA9685: it acknowledges all, and is never as it was set up.
-           "-device", "tmp105,address=0x4a"]
+           # In the place of a PCA9685, and of an SSD1306: it acknowledges all, and is never as it was set up.
+           "-device", "tmp105,address=0x4a", "-device", "tmp105,address=0x3c"]
 PAUSE = 2**31 - 1  # kPause of path.cpp
 TICK = "SysTick_Handler"
 
@@ -52,6 +52,11 @@ def samples():
     by_adc = re.findall(r"^SENSOR_DRIVER\((\w+),\s*adc\(\)", drivers, re.M)
     return (by_i2c | {name: declared["input"] for name in by_pin} | {name: declared["echo"] for name in by_echo}
             | {name: declared["analog"] for name in by_adc})
+
+
+def display_portions():
+    """The most that a display gets in a frame."""
+    return int(re.search(r"kDisplayPortions = (\d+);", (ROOT / "runtime-m4/policy/costs.hpp").read_text())[1])
 
 
 def robot(actuators=4, sensors=None):

@@ -238,8 +238,8 @@ class Sampling(unittest.TestCase):
     def test_every_driver_that_samples(self):
         costs = paths.costs()
         for driver, said in paths.samples().items():
-            if driver == "pca9685":
-                continue  # test_a_servo_chip()
+            if driver in ("pca9685", "ssd1306"):
+                continue  # test_a_servo_chip(), test_a_display()
             with self.subTest(driver):
                 self.assertIn(driver, self.WIRED, "nobody measures it")
                 measured = self.worst(*self.WIRED[driver])
@@ -260,6 +260,17 @@ class Sampling(unittest.TestCase):
         self.assertGreaterEqual(said + 2 * costs["wake_by_timer"] + costs["kMonitor"], measured)
         self.assertLessEqual(said, LOOSEST * measured)
         self.assertEqual(paths.samples()["pca9685"], costs["i2c_transfer"] + 4 * costs["i2c_byte"])
+
+    def test_a_display(self):
+        """Until all has been drawn once it gets as many portions in a frame as it ever does."""
+        costs = paths.costs()
+        config = paths.robot() | {"actuators": [{"name": "a0", **ActuatorDrivers.DISPLAY}]}
+        ticks = run(behavior("SHOW a0 happy"), [feed(10), wait(300)], config)
+        measured = max(ticks.ticks[20:]) - ticks.idle_tick
+        said = paths.display_portions() * paths.samples()["ssd1306"]
+        print(f"\n  a display that is drawn: {measured}, said {said}")
+        self.assertGreaterEqual(said + 2 * costs["wake_by_timer"] + costs["kMonitor"], measured)
+        self.assertLessEqual(said, LOOSEST * measured)
 
     def test_an_echo(self):
         """It is asked for 40 ms before its sample. The edges that follow, this board has not: tests/e2e/test_sonar.py counts them."""
@@ -299,6 +310,7 @@ class ActuatorDrivers(unittest.TestCase):
     MOTOR = {"type": "PWM", "pins": [3, 4], "device": "motor", "on_release": "hold", "limits": {"SPEED": "98%"}}
     ELSEWHERE = {"lights", "tones"}  # the reference board has none: tests/e2e/on_microbit.py
     CHIP = {"type": "I2C", "address": "0x4a", "channel": 3, "enable": 36, "device": "pca9685_servo"}
+    DISPLAY = {"type": "I2C", "address": "0x3c", "device": "ssd1306"}
     # Orders that take long ways through the arithmetic: long times, divisors that need more than 16 bits.
     WIRED = {
         "virtual_actuator": ({"type": "VIRTUAL"}, ["MOVE a0 TO 1% OVER 13ms", "MOVE a0 TO 1% FOR 60s"]),
@@ -318,6 +330,7 @@ class ActuatorDrivers(unittest.TestCase):
                           "MOVE a0 TO 77.7deg OVER 36000s\nWAIT 77ms\nMOVE a0 TO 1.3deg OVER 36000s"]),
     }
     WIRED["pca9685_servo"] = (CHIP, WIRED["servo"][1])
+    WIRED["ssd1306_face"] = (DISPLAY, ["SHOW a0 happy", "SHOW a0 sad FOR 50ms", "BLINK a0 3 TIMES OVER 133ms", "BLINK a0 700 TIMES OVER 36000s"])
 
     def calls(self, wiring, order):
         """{call: [instructions]}; what a call calls of its own driver counts with it."""

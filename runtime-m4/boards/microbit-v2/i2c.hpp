@@ -34,7 +34,7 @@ public:
   void on_end();
 
 private:
-  static constexpr std::size_t kMostWritten = 6;
+  static constexpr std::size_t kMostWritten = 19;  // a portion of a display's picture
   static constexpr std::size_t kMostRead = 16;
   static constexpr std::size_t kMostRequests = 6;
 

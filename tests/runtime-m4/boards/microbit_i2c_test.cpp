@@ -204,7 +204,7 @@ TEST_CASE("a bus: what is too long is refused, and too many requests leave those
   Bus bus;
   std::array<std::byte, 17> long_in{};
   CHECK_FALSE(bus.bus.transfer(true, 0x19, std::array{1_b}, long_in));
-  CHECK_FALSE(bus.bus.transfer(true, 0x19, std::array<std::byte, 7>{}, {}));
+  CHECK_FALSE(bus.bus.transfer(true, 0x19, std::array<std::byte, 20>{}, {}));
   CHECK_FALSE(bus.bus.transfer(true, 0x19, {}, std::span(long_in).first(2)));
   CHECK_FALSE(bus.bus.is_busy());
   for (unsigned i = 0; i < 8; ++i)
