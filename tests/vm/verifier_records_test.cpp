@@ -313,6 +313,55 @@ TEST_CASE("actuators") {
   check_accepted(image);
 }
 
+TEST_CASE("a face is on a display, which is alone at its place on the bus") {
+  const auto with_face = [](auto change) {
+    ImageBuilder image = robot::make();
+    Sensor display = image.sensors[0];
+    display.driver = DriverId::ssd1306;
+    display.address = kFirstDisplayAddress;
+    display.period_ms = kDisplayFrameMs;
+    display.first_channel = static_cast<std::uint8_t>(image.channels.size());
+    display.channel_count = 0;
+    image.sensors.push_back(display);
+    Actuator& face = image.actuators[0];
+    face.driver = DriverId::ssd1306_face;
+    face.bus = static_cast<std::uint8_t>(image.sensors.size() - 1);
+    change(image.sensors.back(), face, image);
+    return image;
+  };
+  const auto index = static_cast<std::uint16_t>(robot::make().sensors.size());
+  const auto refused = [&](Refusal refusal, auto change) {
+    check_refused(with_face(change), {refusal, Section::sensors, index});
+  };
+  check_accepted(with_face([](auto&...) {}));
+  check_accepted(with_face([](auto& display, auto&...) { display.address = kLastDisplayAddress; }));
+  refused(Refusal::bad_value, [](auto& display, auto&...) { --display.address; });
+  refused(Refusal::bad_value, [](auto& display, auto&...) { display.address = 0x3E; });
+  refused(Refusal::bad_value, [](auto& display, auto&...) { ++display.period_ms; });
+  refused(Refusal::bad_value, [](auto& display, auto&...) { display.first_input = 1; });
+  refused(Refusal::bad_value, [](auto& display, auto&, auto& image) {
+    --image.sensors[1].channel_count;
+    --display.first_channel;
+    display.channel_count = 1;
+  });
+  check_refused(with_face([&](auto& display, auto&, auto& image) {
+                  image.sensors[0].address = display.address;
+                }),
+                {Refusal::bad_value, Section::sensors, index});
+  check_refused(with_face([&](auto& display, auto&, auto& image) {
+                  const Sensor another = display;
+                  for (unsigned i = 0; i < kMaxDisplays; ++i)
+                    image.sensors.push_back(another);
+                  ++image.sensors[index].bus;
+                  image.sensors[index + 1].address = kLastDisplayAddress;
+                }),
+                {Refusal::too_many, Section::sensors, static_cast<std::uint16_t>(index + 2)});
+  for (const unsigned nowhere : {0U, index + 1U, 255U})
+    check_refused(
+        with_face([&](auto&, auto& face, auto&) { face.bus = static_cast<std::uint8_t>(nowhere); }),
+        {Refusal::bad_index, Section::actuators, 0});
+}
+
 TEST_CASE("groups, verbs, words") {
   check_refused([](auto& i) { i.groups[0].members = 0; }, {Refusal::bad_value, Section::groups, 0});
   check_refused([](auto& i) { i.groups[0].reserved = 1; },

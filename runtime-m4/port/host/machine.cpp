@@ -7,7 +7,7 @@
 #include "runtime-m4/kernel/kernel.hpp"
 
 #if defined(ROBOSYNC_SANITIZE)
-#include <sanitizer/common_interface_defs.h>
+#include <sanitizer/asan_interface.h>
 #endif
 
 namespace robosync::port {
@@ -41,6 +41,13 @@ void announce_switch([[maybe_unused]] void** keep, [[maybe_unused]] const Contex
 #endif
 }
 
+// … that nothing is on a stack any more: frames that nobody returned from are still noted there.
+void announce_empty([[maybe_unused]] const Context& context) {
+#if defined(ROBOSYNC_SANITIZE)
+  __asan_unpoison_memory_region(context.stack_bottom, context.stack_bytes);
+#endif
+}
+
 // … and that it has arrived: `kept` is what announce_switch kept when this stack was left, null on
 // its first run. Notes where the stack lies from which it came.
 void announce_arrival([[maybe_unused]] void* kept, [[maybe_unused]] Context& came_from) {
@@ -58,6 +65,7 @@ void Machine::prepare(Context& context, const kernel::ThreadSpec& spec, std::spa
   context.sanitizer_stack = nullptr;
   context.stack_bottom = context.stack.get();
   context.stack_bytes = kFiberStack;
+  announce_empty(context);
   context.has_run = false;
   getcontext(&context.begin);
   context.begin.uc_stack.ss_sp = context.stack.get();
