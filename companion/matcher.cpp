@@ -18,7 +18,6 @@ constexpr int kLoud = 5;  // above the noise, in the mean of all bands: what is 
 // Chosen on the recordings that `scripts/rates --settings` takes.
 constexpr double kTimesOwn = 4, kLeast = 330, kMost = 550;  // how far something may be from a word
 constexpr double kOfNearest = 0.65;  // … of what the nearest sample of another word is
-constexpr double kUsualStrict = 50;
 constexpr Distance kAlike = 450, kTimesOwnAlike = 2;
 constexpr int kLoudest = 160;  // of a sample in a quiet room
 constexpr int kDeepest = 90;   // halves of a decibel below the loudest: nothing is heard any more

@@ -69,7 +69,9 @@ struct Allowed {
   std::size_t other = 0;      // the place of that word
   Distance most = 0;          // what is further away is not the word
 };
-// Of each word. `strict`: 50 is usual; the higher, the less is taken for a word.
+// What `strict` is when robot.json does not say (modules.def).
+constexpr double kUsualStrict = 50;
+// Of each word. The higher `strict`, the less is taken for a word.
 [[nodiscard]] std::vector<Allowed> allowed_distances(const std::vector<TaughtWord>& words,
                                                      double strict);
 // A word and the one that is nearest to it: one of them may be taken for the other.

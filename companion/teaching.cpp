@@ -250,7 +250,7 @@ void teach(const Arguments& arguments) {
   }
   check_samples(*word, known, from);
   save(file, words);
-  const auto allowed = allowed_distances(words, 50);
+  const auto allowed = allowed_distances(words, kUsualStrict);
   print_word(*word, allowed[static_cast<std::size_t>(word - words.begin())], words);
   warn(words, allowed);
 }
@@ -265,7 +265,7 @@ void forget(const std::string& file, const std::string& name) {
 
 void list(const std::string& file) {
   const std::vector<TaughtWord> words = load_words(file);
-  const auto allowed = allowed_distances(words, 50);
+  const auto allowed = allowed_distances(words, kUsualStrict);
   for (std::size_t i = 0; i < words.size(); ++i)
     print_word(words[i], allowed[i], words);
   warn(words, allowed);
