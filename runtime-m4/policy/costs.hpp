@@ -82,7 +82,7 @@ constexpr std::uint32_t frame_cost(std::uint32_t servos, const BoardCosts& board
 // Of a display a sample is its longest transfer, of which there are kDisplayPortions in a frame at most.
 inline constexpr std::uint32_t kDisplayPortions = 8;
 constexpr std::uint32_t display_frame_cost(const BoardCosts& board) {
-  const std::uint32_t wait = board.i2c_ask == 0 ? 0 : 1 * board.wake_by_timer;
+  const std::uint32_t wait = board.i2c_ask == 0 ? 0U : std::uint32_t{board.wake_by_timer};
   return kDisplayPortions * (sample_cost(vm::DriverId::ssd1306, board) + board.i2c_ask + wait);
 }
 

@@ -2,6 +2,7 @@
 // what a Robot (robot.hpp) does not show.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -117,6 +118,17 @@ public:
   unsigned kicks = 0;
   bool watching = false;
 };
+
+// A servo on pin 7, and beside it, as actuator 1, what has no pin.
+inline std::array<vm::Actuator, 2> servo_and(vm::DriverId driver, vm::Release safe) {
+  std::array<vm::Actuator, 2> wiring{};
+  wiring[0].driver = vm::DriverId::servo;
+  wiring[0].pin = 7;
+  wiring[0].max = vm::kScale;
+  wiring[1].driver = driver;
+  wiring[1].safe = safe;
+  return wiring;
+}
 
 inline bool has_pin(const vm::Actuator& actuator, std::uint16_t pin) {
   return actuator.pin == pin || (vm::has_two_pins(actuator.driver) && actuator.bus == pin);

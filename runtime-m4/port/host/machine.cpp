@@ -19,8 +19,8 @@ constexpr std::size_t kFiberStack = std::size_t{128} * 1024;
 // Whose switch is under way: makecontext cannot pass it to a new fiber.
 thread_local Machine* switching = nullptr;
 
-// No system call, as in swapcontext(), which keeps the signals' mask: that took half the time of a run. And no longjmp(),
-// at which AddressSanitizer forgets what must not be touched on the stack that is left. gcc's manual, "Nonlocal gotos".
+// Neither swapcontext(), which makes a system call to keep the signals' mask, nor longjmp(), at which
+// AddressSanitizer forgets what must not be touched on the stack that is left: gcc's manual, "Nonlocal gotos".
 [[gnu::noinline, gnu::no_sanitize_address]] void go_on_with(Context& to) {
   if (to.has_run) __builtin_longjmp(to.registers.data(), 1);
   to.has_run = true;

@@ -143,12 +143,7 @@ TEST_CASE("lights: the guard shows nothing for whom it has halted, nor for who h
   kernel::Kernel kernel;
   test::NotingBoard board;
   guard::OutputGuard outputs(kernel, board);
-  std::array<vm::Actuator, 2> wiring{};
-  wiring[0].driver = vm::DriverId::servo;
-  wiring[0].pin = 7;
-  wiring[0].max = vm::kScale;
-  wiring[1].driver = vm::DriverId::lights;
-  wiring[1].safe = vm::Release::rest;
+  const auto wiring = test::servo_and(vm::DriverId::lights, vm::Release::rest);
   vm::Image image;
   image.actuators = wiring;
   outputs.show(1, 7);  // nobody owns them yet

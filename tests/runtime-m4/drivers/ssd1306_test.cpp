@@ -449,12 +449,7 @@ TEST_CASE("ssd1306: the guard keeps no picture for whom it has halted, nor for o
   kernel::Kernel kernel;
   test::NotingBoard board;
   guard::OutputGuard outputs(kernel, board);
-  std::array<vm::Actuator, 2> wiring{};
-  wiring[0].driver = vm::DriverId::servo;
-  wiring[0].pin = 7;
-  wiring[0].max = vm::kScale;
-  wiring[1].driver = vm::DriverId::ssd1306_face;
-  wiring[1].safe = vm::Release::rest;
+  const auto wiring = test::servo_and(vm::DriverId::ssd1306_face, vm::Release::rest);
   std::array<vm::Sensor, 1> sensors{};
   sensors[0].driver = vm::DriverId::ssd1306;
   vm::Image image;

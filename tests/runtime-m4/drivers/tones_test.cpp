@@ -158,12 +158,7 @@ TEST_CASE("tones: the guard sounds nothing for whom it has halted, nor for who h
   kernel::Kernel kernel;
   test::NotingBoard board;
   guard::OutputGuard outputs(kernel, board);
-  std::array<vm::Actuator, 2> wiring{};
-  wiring[0].driver = vm::DriverId::servo;
-  wiring[0].pin = 7;
-  wiring[0].max = vm::kScale;
-  wiring[1].driver = vm::DriverId::tones;
-  wiring[1].safe = vm::Release::hold;
+  const auto wiring = test::servo_and(vm::DriverId::tones, vm::Release::hold);
   vm::Image image;
   image.actuators = wiring;
   outputs.sound(1, 440);  // nobody owns it yet
