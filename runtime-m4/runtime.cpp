@@ -152,13 +152,15 @@ void Runtime::clear() {
 // The threads wait until all of them are there.
 bool Runtime::start_program() {
   const layers::LoadedProgram& program = shared_.program;
-  threads_.prepare(memory_);
+  threads_.take_stacks(memory_);
+  const auto safety = layers::SafetyRegion::take(memory_);
+  threads_.take_members(memory_);
   mailboxes_.start(memory_);
   const std::uint32_t seed = choose_seed(program.image.header->seed);
-  shared_.frames.start(seed, memory_);
+  shared_.frames.start(seed, safety);
   shared_.triggers.start(program.image, memory_);
   shared_.arbiter.start(program.behavior_of, memory_);
-  safety_rules_.start(program, memory_);
+  safety_rules_.start(program, safety, memory_);
   kernel_.grant(memory_.areas());
   trace_.emit(EventKind::activated, {}, 0, 0, static_cast<std::int32_t>(seed));
   if (!control_.start(program, memory_, threads_) ||
@@ -276,13 +278,13 @@ void Runtime::halt(kernel::Duration stuck_for) {
 
 // What is unknown when program time begins trips before the first step: no thread of the program has
 // run since.
-kernel::Time Runtime::look_at_rules(kernel::Time now) {
+kernel::Time Runtime::look_at_rules() {
   if (begun_ && !sensors_.are_fed()) [[likely]]
-    return safety_rules_.look(now);
+    return safety_rules_.look();
   return look_at_feeds();
 }
 
-// … first, and whether the program begins. It asks for the time itself, so that who does not come here keeps it where it is.
+// … first, and whether the program begins.
 kernel::Time Runtime::look_at_feeds() {
   if (!begun_ && !running_) return kernel::kForever;
   const kernel::Time now = kernel_.now();
@@ -292,7 +294,7 @@ kernel::Time Runtime::look_at_feeds() {
     if (now < trace_.activated_at()) return trace_.activated_at();
   }
   if (!begun_) begin();
-  return safety_rules_.look(now);
+  return safety_rules_.look();
 }
 
 }  // namespace robosync

@@ -123,7 +123,7 @@ private:
   std::uint32_t progress() const override { return shared_.processing.passes(); }
   void hold_to_budgets(bool alive) override;
   void halt(kernel::Duration stuck_for) override;
-  kernel::Time look_at_rules(kernel::Time now) override;
+  kernel::Time look_at_rules() override;
   [[gnu::cold, gnu::noinline]] kernel::Time look_at_feeds();
   void tend_outputs() override { outputs_.go_on(kernel_.now()); }
   void obey() override;

@@ -51,7 +51,7 @@ struct Progress {
 
 // The interpreter's loop. Runs the object at `code`; returns what a condition gives. When a
 // response pauses, it says so in `progress`, which a condition has none of. For evaluate() and
-// respond() only.
+// respond(), and for who must call it by its address.
 Value run(Machine& machine, const Word* code, Progress* progress);
 
 // Evaluates a condition starting at `code`: kTrue, kFalse or kUnknown; of an EVERY rule: its

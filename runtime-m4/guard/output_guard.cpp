@@ -297,7 +297,7 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
 
 // The mask comes first: from then on no driver can undo what follows. The lock holds off the switch alone, and who
 // halts several at once is the safety thread, which nobody waits for.
-[[gnu::noinline]] void OutputGuard::halt(Mask actuators, kernel::Time now) {
+[[gnu::noinline]] void OutputGuard::halt(Mask actuators) {
   const auto lock = kernel_.lock();
   const Mask fresh = actuators & owned_ & ~halted_;
   halted_ |= actuators;
@@ -308,7 +308,7 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
   const Mask others = pins & (gradual_ | apart_);
   each_of(pins & ~others, [&](unsigned actuator) { shut(slots_[actuator]); });
   if (others != 0) [[unlikely]]
-    make_all_safe(others, now);
+    make_all_safe(others, kernel_.now());
 }
 
 // One that has a pulse for its safe state, and may change at once: so its target is its pulse. A pin that is off stays off.

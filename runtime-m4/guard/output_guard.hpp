@@ -111,7 +111,7 @@ public:
   // Pins whose pulse may not yet be where it shall go on. Called at each check of the safety monitor.
   void go_on(kernel::Time now);
 
-  void halt(Mask actuators, kernel::Time now);
+  void halt(Mask actuators);
   void let_go(Mask actuators);
 
 private:

@@ -13,7 +13,8 @@ namespace robosync::kernel {
 
 namespace {
 
-constexpr std::uint32_t kLongestSleep = 0xFFFF'FFFF;  // microseconds; wait() sleeps again after it
+// Microseconds, and room to round up to a tick; wait() sleeps again after it.
+constexpr std::uint32_t kLongestSleep = UINT32_MAX - static_cast<std::uint32_t>(kTick);
 
 }  // namespace
 
@@ -25,6 +26,8 @@ Time Kernel::now() const {
 
 Events Kernel::wait_for(Events mask) {
   Thread& self = *running_;
+  if (self.armed()) [[unlikely]]
+    disarm(self);
   {
     port::Lock lock(machine_);
     if ((self.events_ & mask) == 0) block(self, mask);
@@ -42,6 +45,7 @@ Events Kernel::wait_for(Events mask) {
 // that signals in between is seen by the look under the lock.
 inline bool Kernel::block_until(Thread& thread, Events mask, Time deadline) {
   port::SwitchLock still(machine_);
+  if (thread.armed()) TimerQueue::disarm(thread);
   const Time present = time();
   if (deadline <= present) return true;
   const Duration sleep = std::min<Duration>(deadline - present, kLongestSleep);
@@ -51,24 +55,20 @@ inline bool Kernel::block_until(Thread& thread, Events mask, Time deadline) {
   return deadline - present <= kLongestSleep;
 }
 
+// The timer of a thread that an event has woken stays armed until the thread waits again: to take it back is on nobody's
+// way to what the event is about. It can do no harm meanwhile: it would make this thread ready, which it is.
 Events Kernel::wait_until(Events mask, Time deadline) {
   Thread& self = *running_;
   while (true) {
     const bool there = (self.events_ & mask) != 0;
     const bool last = !there && block_until(self, mask, deadline);
     const Events taken = self.take(mask);
-    // The timer is taken back here and not by signal(), whose path it would lengthen. Until then
-    // it can do no harm: it would make this thread ready, which it is.
-    if (taken == 0 && !self.armed()) {
-      if (last) return 0;
-      continue;
-    }
-    disarm(self);
     if (taken != 0) return taken;
+    if (last && !self.armed()) return 0;
   }
 }
 
-inline void Kernel::disarm(Thread& thread) {
+void Kernel::disarm(Thread& thread) {
   port::SwitchLock still(machine_);
   if (thread.armed()) TimerQueue::disarm(thread);
 }
@@ -76,7 +76,7 @@ inline void Kernel::disarm(Thread& thread) {
 // Under a SwitchLock: for so many microseconds, rounded up to a tick.
 void Kernel::arm(Thread& thread, std::uint32_t sleep) {
   constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);
-  const std::uint32_t ticks = sleep / kTickLength + (sleep % kTickLength != 0 ? 1 : 0);
+  const std::uint32_t ticks = (sleep + kTickLength - 1) / kTickLength;
   timers_.arm(thread, tick_ + ticks, tick_);
 }
 

@@ -41,7 +41,7 @@ struct Selection {
   std::uint8_t running_rank_ = kIdleRank;
   std::uint8_t ceiling_ = kIdleRank;  // the highest of the ceilings of what is held
   std::uint8_t count_ = 0;
-  std::array<Thread*, kMaxThreads + 1> by_rank_{};  // the last is idle
+  std::array<Thread*, kMaxThreads + 1> by_rank_;  // the last is idle; the constructor fills it
 };
 
 class Kernel : private Selection {
@@ -231,7 +231,7 @@ private:
   Events wait_until(Events mask, Time deadline);
   [[gnu::always_inline]] bool block_until(Thread& thread, Events mask, Time deadline);
   void arm(Thread& thread, std::uint32_t sleep);
-  void disarm(Thread& thread);
+  [[gnu::cold, gnu::noinline]] void disarm(Thread& thread);
   void block(Thread& thread, Events mask);
   void take_or_block(port::CallFrame& call);
   [[gnu::cold, gnu::noinline]] void report();

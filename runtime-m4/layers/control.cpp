@@ -205,7 +205,7 @@ ActuatorMask ControlLayer::take_newly_halted() {
 
 void ControlLayer::retire(unsigned actuator) {
   Unit& unit = units_[actuator];
-  outputs_.halt(bit<ActuatorMask>(actuator), kernel_.now());
+  outputs_.halt(bit<ActuatorMask>(actuator));
   release(unit, wiring(unit).safe);
   const auto lock = kernel_.lock();
   pool_.clear(unit.queue);
@@ -234,7 +234,7 @@ void ControlLayer::let_go(ActuatorMask actuators) {
 
 void ControlLayer::stop() {
   stopped_ = true;
-  if (program_ == nullptr) return outputs_.halt(~ActuatorMask{0}, kernel_.now());
+  if (program_ == nullptr) return outputs_.halt(~ActuatorMask{0});
   hold_back(all() & ~halted());
 }
 
@@ -246,7 +246,7 @@ void ControlLayer::resume() {
 // The pins come first. A driver that is at work now sees the mask when it is done (keep_at()).
 void ControlLayer::hold_back(ActuatorMask fresh) {
   if (fresh == 0) return;
-  outputs_.halt(fresh, kernel_.now());
+  outputs_.halt(fresh);
   note_halt(fresh);
 }
 

@@ -19,10 +19,10 @@ std::uint32_t seed_of(std::uint32_t program_seed, unsigned behavior) {
 
 }  // namespace
 
-void Frames::start(std::uint32_t seed, Memory& memory) {
+void Frames::start(std::uint32_t seed, const SafetyRegion& safety) {
   seed_ = seed;
-  safety_cells_ = memory.take<policy::Part::safety_cells, std::uint32_t>();
-  safety_timers_ = memory.take<policy::Part::safety_timers, std::uint32_t>();
+  safety_cells_ = safety.cells;
+  safety_timers_ = safety.timer_words;
   const auto unknown = static_cast<std::uint32_t>(vm::kUnknown);
   std::ranges::fill(safety_cells_, unknown);
   std::ranges::fill(workspace_.cells, unknown);

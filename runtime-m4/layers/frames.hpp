@@ -1,12 +1,12 @@
 // The memory that bytecode works on: the frames of all behaviours, one behind the other, and what
-// their time words remember. It stands in the workspace; what SAFETY rules work on is closed to the
-// behaviours' threads.
+// their time words remember. It stands in the workspace; what SAFETY rules work on has a region of its own.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
 #include "runtime-m4/layers/loaded_program.hpp"
+#include "runtime-m4/layers/safety_region.hpp"
 #include "runtime-m4/layers/workspace.hpp"
 #include "vm/interpreter.hpp"
 
@@ -17,7 +17,7 @@ public:
   explicit Frames(Workspace& workspace) : workspace_(workspace) {}
 
   // Nothing is known, nothing remembered; random numbers begin with `seed`. After the workspace.
-  void start(std::uint32_t seed, Memory& memory);
+  void start(std::uint32_t seed, const SafetyRegion& safety);
 
   vm::Value* frame(const LoadedProgram& program, unsigned behavior) const;
   // A machine for one behaviour. Its random numbers depend on the program's seed and on the number
@@ -28,15 +28,13 @@ public:
   template <class ValueOf>
   static void latch(const vm::Machine& machine, const vm::Image& image,
                     const vm::Behavior& behavior, ValueOf value) {
-    latch(machine, image.inputs.subspan(behavior.first_input, behavior.input_count), value);
+    latch(machine.frame, image.inputs.subspan(behavior.first_input, behavior.input_count), value);
   }
   // Nothing is looked up again for each, as the compiler would do after every write; and the loop looks at its end.
   template <class ValueOf>
-  static void latch(const vm::Machine& machine, std::span<const std::uint8_t> inputs,
-                    ValueOf value) {
+  static void latch(vm::Value* cell, std::span<const std::uint8_t> inputs, ValueOf value) {
     std::size_t left = inputs.size();
     if (left == 0) return;
-    vm::Value* cell = machine.frame;
     const std::uint8_t* input = inputs.data();
     do {
       *cell++ = value(*input++);

@@ -22,6 +22,7 @@ target_sources(robosync_runtime PRIVATE
   layers/processing.cpp
   layers/loaded_program.cpp
   layers/report.cpp
+  layers/safety_region.cpp
   layers/sampler.cpp
   layers/sensor.cpp
   layers/trace.cpp

@@ -20,7 +20,8 @@ void Mailboxes::start(Memory& memory) {
   boxes_ = memory.take<policy::Part::mailboxes, Mailbox>();
   announced_ = 0;
   forgotten_ = 0;
-  next_expiry_ = expiry_of_news_ = kernel::kForever;
+  set_next_expiry(kernel::kForever);
+  expiry_of_news_ = kernel::kForever;
 }
 
 ChannelMask Mailboxes::post(const Reading& reading, const vm::Channel& channel) {
@@ -42,8 +43,20 @@ void Mailboxes::forget(unsigned channel) {
 }
 
 void Mailboxes::expires_by(kernel::Time time) {
-  next_expiry_ = std::min(next_expiry_, time);
+  set_next_expiry(std::min(next_expiry_, time));
   expiry_of_news_ = std::min(expiry_of_news_, time);
+}
+
+// Ticks wrap, so what never expires does so half of them later: then nobody is sure any more.
+void Mailboxes::set_next_expiry(kernel::Time time) {
+  constexpr auto kTick = static_cast<std::uint32_t>(kernel::kTick);
+  const auto lock = kernel_.lock();
+  const kernel::Time now = kernel_.time();
+  const kernel::Duration left = time > now ? time - now : 0;
+  const auto ticks =
+      static_cast<std::uint32_t>(std::min<kernel::Duration>(left, INT32_MAX)) / kTick;
+  next_expiry_ = time;
+  expiry_tick_ = kernel_.tick() + (time == kernel::kForever ? INT32_MAX : ticks);
 }
 
 ChannelMask Mailboxes::take_announced() {
@@ -59,7 +72,7 @@ ChannelMask Mailboxes::expire_old(std::span<const vm::Channel> channels, Channel
   kernel::Time next = kernel::kForever;
   {
     const auto lock = kernel_.lock();
-    next_expiry_ = 0;
+    set_next_expiry(0);
     expiry_of_news_ = kernel::kForever;
   }
   for (unsigned c = 0; c < channels.size(); ++c) {
@@ -68,7 +81,7 @@ ChannelMask Mailboxes::expire_old(std::span<const vm::Channel> channels, Channel
     next = std::min(next, expires_at(c, channels[c]));
   }
   const auto lock = kernel_.lock();
-  next_expiry_ = std::min(next, expiry_of_news_);
+  set_next_expiry(std::min(next, expiry_of_news_));
   return expired;
 }
 

@@ -36,8 +36,11 @@ public:
   ChannelMask take_announced();
   vm::Value value(unsigned channel) const { return boxes_[channel].value; }
   // For the safety thread, which does not wait for expire(). Nobody who posts interrupts it, so it needs no lock.
-  // All that is known is good at `now`: each value() is its fresh_value(). False also where that is not sure.
-  bool are_fresh(kernel::Time now) const { return now < next_expiry_; }
+  // All that is known is good at this kernel::Kernel::tick(): each value() is its fresh_value(). False also where that is
+  // not sure.
+  bool are_fresh(std::uint32_t tick) const {
+    return static_cast<std::int32_t>(tick - expiry_tick_) < 0;
+  }
   // Unknown as soon as it is too old.
   vm::Value fresh_value(unsigned channel, const vm::Channel& wiring, kernel::Time now) const {
     const Mailbox& box = boxes_[channel];
@@ -90,8 +93,10 @@ private:
 
   kernel::Kernel& kernel_;
   void expires_by(kernel::Time time);
+  void set_next_expiry(kernel::Time time);
 
   kernel::Time next_expiry_ = kernel::kForever;
+  std::uint32_t expiry_tick_ = 0;  // the tick of it, or an earlier one
   // Of what was posted, or forgotten, during expire_old().
   kernel::Time expiry_of_news_ = kernel::kForever;
   std::span<Mailbox> boxes_;

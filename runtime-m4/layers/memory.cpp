@@ -42,6 +42,13 @@ std::byte* Memory::take_zeroed(Part part, std::size_t element) {
   return taken.data();
 }
 
+std::span<std::byte> Memory::take_area(Part part) {
+  const std::span<std::byte> taken =
+      take_raw(part, policy::info_of(part).bytes * port::kArenaScale);
+  std::memset(taken.data(), 0, taken.size());
+  return taken;
+}
+
 // In bytes of the board.
 std::span<std::byte> Memory::room() {
   const std::uint32_t begin = needs_.writable_begin + needs_.writable;

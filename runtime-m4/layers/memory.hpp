@@ -48,6 +48,9 @@ public:
     return take_raw(part, policy::info_of(part).bytes);
   }
 
+  // … all zero, and on the host as many times larger as the arena is: for what is laid out inside.
+  std::span<std::byte> take_area(policy::Part part);
+
   // Where the program's image stands.
   std::span<std::byte> image() { return at(needs_.open, needs_.image); }
   // Where the next one may be received: what the program leaves.

@@ -8,16 +8,22 @@ using policy::Part;
 
 // Stacks of threads without privileges come first: where the closed parts end they are aligned as
 // those must be, and those of algorithms at the very end, which is aligned to their size.
-void ProgramThreads::prepare(Memory& memory) {
+void ProgramThreads::take_stacks(Memory& memory) {
   static_assert(policy::kStackUnit % port::kUnprivilegedStackAlignment == 0);
   static_assert(policy::kBehaviorStack % port::kUnprivilegedStackAlignment == 0);
   static_assert(policy::kBehaviorStack <= port::kMaxUnprivilegedStack);
   static_assert(policy::kAlgorithmStack == port::kSecludedStack);
+  static_assert((policy::kSensorStack | policy::kControlStack | policy::kStepStack) %
+                    policy::kStackUnit ==
+                0);
   algorithms_.stacks = memory.take_bytes(Part::algorithm_stacks);
   behaviors_.stacks = memory.take_bytes(Part::behavior_stacks);
   sensors_.stacks = memory.take_bytes(Part::sensor_stacks);
   controls_.stacks = memory.take_bytes(Part::control_stacks);
   step_stack_ = memory.take_bytes(Part::step_stack);
+}
+
+void ProgramThreads::take_members(Memory& memory) {
   algorithms_.members = memory.take<Part::algorithm_threads, Member>();
   behaviors_.members = memory.take<Part::behavior_threads, Member>();
   sensors_.members = memory.take<Part::sensor_threads, Member>();

@@ -27,7 +27,8 @@ public:
   ProgramThreads& operator=(const ProgramThreads&) = delete;
 
   // No thread of a program is there. The places of `memory`'s program are the ones to fill.
-  void prepare(Memory& memory);
+  void take_stacks(Memory& memory);
+  void take_members(Memory& memory);
   // Adds a thread in a place of its category; its stack is set here. Null, and nothing changed,
   // when there is none, which no program can cause that memory is laid out for.
   [[nodiscard]] kernel::Thread* start(kernel::ThreadSpec spec, unsigned index);

@@ -33,8 +33,9 @@ public:
     return now < activated_at_ ? 0 : now - activated_at_;
   }
   // The same in whole ticks; 49 days later they begin again.
-  std::uint32_t milliseconds() const {
-    const std::uint32_t passed = kernel_.tick() - activated_tick_;
+  std::uint32_t milliseconds() const { return milliseconds(kernel_.tick()); }
+  std::uint32_t milliseconds(std::uint32_t tick) const {
+    const std::uint32_t passed = tick - activated_tick_;
     if (static_cast<std::int32_t>(passed) < 0) [[unlikely]]
       return is_waiting() ? 0 : passed;
     return passed;

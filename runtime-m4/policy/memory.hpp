@@ -47,6 +47,9 @@ inline constexpr std::uint32_t kControlStack = 448;
 inline constexpr std::uint32_t kAlgorithmStack = 1024;
 inline constexpr std::uint32_t kModuleStack = 768;
 inline constexpr std::uint32_t kStackUnit = 64;  // without privileges
+// Of SAFETY's bytecode, and the machine that runs it.
+inline constexpr std::uint32_t kSafetyStack = 160;
+inline constexpr std::uint32_t kSafetyMachine = 64;
 
 inline constexpr std::uint32_t kMaxQueued = 8;  // commands that wait for one actuator
 // … and for all: so many, and more for each actuator.
@@ -95,6 +98,7 @@ enum class Count : std::uint32_t {
   safety_cells,
   safety_timer_words,
   safety_output,
+  safety_bytes,
   tripped_words,
   rules,
   watching_rules,  // all of them when one is a WATCH, otherwise none
@@ -134,6 +138,18 @@ inline unsigned safety_timer_words(const vm::Image& image) {
       words = timer.state + vm::timer_words(timer);
     }
   return words;
+}
+
+// What SAFETY's bytecode writes is one window, behind what ends at a multiple of kStackUnit.
+constexpr regions::Fit safety_window(const Counts& counts) {
+  return regions::fit_anywhere(kSafetyStack + kSafetyMachine +
+                               4 * (counts[Count::safety_cells] +
+                                    counts[Count::safety_timer_words] +
+                                    counts[Count::safety_output]));
+}
+constexpr std::uint32_t safety_bytes(const Counts& counts) {
+  const regions::Fit window = safety_window(counts);
+  return window.bytes + std::max(window.alignment, kStackUnit) - kStackUnit;
 }
 
 inline void count_sensors(const vm::Image& image, Counts& counts) {
@@ -187,6 +203,7 @@ inline void count_behaviors(const vm::Image& image, Counts& counts) {
   counts[Count::safety_cells] = image.behaviors[vm::kSafetyBehavior].cells;
   counts[Count::safety_timer_words] = safety_timer_words(image);
   counts[Count::safety_output] = vm::kMaxResponseOutput;
+  counts[Count::safety_bytes] = safety_bytes(counts);
   counts[Count::tripped_words] = counts[Count::set_words];
   counts[Count::cells] -= counts[Count::safety_cells];
   counts[Count::timer_words] -= counts[Count::safety_timer_words];

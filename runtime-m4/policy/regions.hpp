@@ -60,6 +60,20 @@ constexpr Window finest_window(std::uint32_t begin, std::uint32_t bytes) {
   return {};
 }
 
+// How large a window for so many bytes must be, and how aligned, so that there is one wherever it begins: nine eighths
+// of a region are always in two.
+struct Fit {
+  std::uint32_t bytes;
+  std::uint32_t alignment;
+};
+constexpr Fit fit_anywhere(std::uint32_t bytes) {
+  unsigned eighth = kSmallest - kEighthBits;
+  while (bytes > (kEighths + 1) << eighth)
+    ++eighth;
+  const std::uint32_t unit = 1U << eighth;
+  return {(bytes + unit - 1) & ~(unit - 1), unit};
+}
+
 // The smallest power of two that one region over begin … end - 1 can have.
 constexpr unsigned cover_bits(std::uint32_t begin, std::uint32_t end) {
   unsigned bits = kSmallest;

@@ -12,6 +12,8 @@
 //   kSecludedStack          … and of one with data on its stack, and nothing else: bytes, and alignment.
 //   struct Areas            What threads without privileges may use besides their stacks: what is
 //                           readable and, perhaps inside of it, writable.
+//   class Sandbox           Lets the thread of the highest rank run a function without privileges: set(window, stack_top,
+//                           function), then call() with its three arguments.
 //   struct CallFrame        A system call that is being answered: number(), argument(); give(result),
 //                           or repeat(): the thread makes it again when it runs next.
 //   call(kernel, number, argument)       Makes one: Kernel::answer() from a thread without

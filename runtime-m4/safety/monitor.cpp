@@ -28,19 +28,13 @@ void Monitor::run() {
         without_progress_ = 0;
       }
     }
-    const kernel::Time now = time();
-    if ((why & kNews) != 0 || now >= std::min(due, rules_due))
-      rules_due = supervised_.look_at_rules(now);
+    if ((why & kNews) != 0 || kernel_.now() >= std::min(due, rules_due))
+      rules_due = supervised_.look_at_rules();
+    const kernel::Time now = kernel_.now();
     if (now < due) continue;
     check(now - due);
     due = next_after(due, now);
   }
-}
-
-// kernel_.now() without the call: on the way to the pins.
-inline kernel::Time Monitor::time() const {
-  const auto lock = kernel_.lock();
-  return kernel_.time();
 }
 
 // Periods are the program's, from its begin on. Those that are over already are skipped, never made up for.

@@ -38,8 +38,8 @@ public:
   virtual void tend_outputs() = 0;
   // A person has said stop, or resume.
   virtual void obey() = 0;
-  // Evaluates the safety rules; it is `now`. Returns when a time word of theirs is due.
-  virtual kernel::Time look_at_rules(kernel::Time now) = 0;
+  // Evaluates the safety rules. Returns when a time word of theirs is due.
+  virtual kernel::Time look_at_rules() = 0;
   virtual bool running() const = 0;        // is there a program?
   virtual kernel::Time began() const = 0;  // its time 0, or when that will be there at the latest
 
@@ -68,10 +68,9 @@ public:
   std::uint32_t worst_lateness() const { return late_.load(std::memory_order_relaxed); }  // us
 
 private:
-  static constexpr std::size_t kStack = 896;
+  static constexpr std::size_t kStack = 512;
 
   void run();
-  kernel::Time time() const;
   kernel::Time next_after(kernel::Time due, kernel::Time now) const;
   void check(kernel::Duration late);
 

@@ -18,12 +18,19 @@ ActuatorMask actuators_of(const vm::Image& image, std::uint8_t target) {
   return target == vm::kAllActuators ? ~ActuatorMask{0} : image.target_mask(target);
 }
 
+std::int32_t run_bytecode(void* machine, const void* code, void* progress) {
+  return vm::run(*static_cast<vm::Machine*>(machine), static_cast<const vm::Word*>(code),
+                 static_cast<vm::Progress*>(progress));
+}
+
 }  // namespace
 
-void SafetyRules::start(const layers::LoadedProgram& program, layers::Memory& memory) {
+void SafetyRules::start(const layers::LoadedProgram& program, const layers::SafetyRegion& region,
+                        layers::Memory& memory) {
   program_ = &program;
   tripped_.start(memory.take<policy::Part::tripped, layers::RuleSet::Word>());
-  output_ = memory.take<policy::Part::safety_output, vm::Word>();
+  output_ = region.output;
+  work_ = region.work.data();
   have_tripped_ = false;
   inputs_ = {};
   first_rule_ = end_rule_ = nullptr;
@@ -32,7 +39,9 @@ void SafetyRules::start(const layers::LoadedProgram& program, layers::Memory& me
   layers_.alarm.watch(are_there ? program.inputs[vm::kSafetyBehavior] : 0);
   if (!are_there) return;
   const vm::Behavior& safety = image.behaviors[vm::kSafetyBehavior];
-  machine_ = layers_.frames.machine(program, vm::kSafetyBehavior);
+  work_->machine = layers_.frames.machine(program, vm::kSafetyBehavior);
+  frame_ = work_->machine.frame;
+  sandbox_.set(region.window, region.stack_top, run_bytecode);
   inputs_ = image.inputs.subspan(safety.first_input, safety.input_count);
   channels_ = image.channels.size();
   code_ = image.code.data();
@@ -41,22 +50,23 @@ void SafetyRules::start(const layers::LoadedProgram& program, layers::Memory& me
   end_rule_ = first_rule_ + safety.rule_count;
 }
 
-kernel::Time SafetyRules::look(kernel::Time now) {
+kernel::Time SafetyRules::look() {
   if (first_rule_ == nullptr) return kernel::kForever;
-  latch(now);
-  machine_.now = layers_.trace.milliseconds();
+  const std::uint32_t tick = kernel_.tick();
+  latch(tick);
+  work_->machine.now = layers_.trace.milliseconds(tick);
   const vm::Rule* rule = first_rule_;
   do {
-    rule = evaluate(*rule, now);
+    rule = evaluate(*rule);
   } while (rule != end_rule_);
-  return next_look(now);
+  return next_look();
 }
 
-inline void SafetyRules::latch(kernel::Time now) {
+inline void SafetyRules::latch(std::uint32_t tick) {
   const layers::Mailboxes& mailboxes = layers_.mailboxes;
-  if (!mailboxes.are_fresh(now)) [[unlikely]]
-    return latch_fresh(now);
-  layers::Frames::latch(machine_, inputs_, [&](std::uint8_t input) {
+  if (!mailboxes.are_fresh(tick)) [[unlikely]]
+    return latch_fresh();
+  layers::Frames::latch(frame_, inputs_, [&](std::uint8_t input) {
     return input < channels_ ? mailboxes.value(input) : value_of_variable(input);
   });
 }
@@ -65,8 +75,9 @@ vm::Value SafetyRules::value_of_variable(std::uint8_t input) const {
   return snapshot().value(input);
 }
 
-void SafetyRules::latch_fresh(kernel::Time now) {
-  layers::Frames::latch(machine_, inputs_, [&](std::uint8_t input) {
+void SafetyRules::latch_fresh() {
+  const kernel::Time now = kernel_.now();
+  layers::Frames::latch(frame_, inputs_, [&](std::uint8_t input) {
     if (input >= channels_) return value_of_variable(input);
     return layers_.mailboxes.fresh_value(input, program_->image.channels[input], now);
   });
@@ -74,12 +85,11 @@ void SafetyRules::latch_fresh(kernel::Time now) {
 
 // Where it trips, the pins come first and all else behind them. The resume condition is evaluated in any case: it may
 // have to remember something. Returns the next rule, behind that condition.
-[[gnu::always_inline]] inline const vm::Rule* SafetyRules::evaluate(const vm::Rule& rule,
-                                                                    kernel::Time now) {
+[[gnu::always_inline]] inline const vm::Rule* SafetyRules::evaluate(const vm::Rule& rule) {
   const vm::Value danger = truth_of(rule);
   const bool was_tripped = !tripped_.empty() && tripped_.has(number_of(rule));
   const bool trips = !was_tripped && danger != vm::kFalse;
-  if (trips) layers_.outputs.halt(halted_by(rule), now);
+  if (trips) layers_.outputs.halt(halted_by(rule));
   tell_zero_divide(rule);
   const vm::Rule* next = &rule + 1;
   vm::Value safe_again = vm::kFalse;
@@ -94,16 +104,16 @@ void SafetyRules::latch_fresh(kernel::Time now) {
 }
 
 inline vm::Value SafetyRules::truth_of(const vm::Rule& rule) {
-  return vm::evaluate(machine_, code_ + rule.condition_start);
+  return sandbox_.call(&work_->machine, code_ + rule.condition_start, nullptr);
 }
 
 inline void SafetyRules::tell_zero_divide(const vm::Rule& rule) {
-  if (machine_.divided_by_zero) [[unlikely]]
+  if (work_->machine.divided_by_zero) [[unlikely]]
     note_zero_divide(rule);
 }
 
 void SafetyRules::note_zero_divide(const vm::Rule& rule) {
-  machine_.divided_by_zero = false;
+  work_->machine.divided_by_zero = false;
   layers_.trace.emit(EventKind::zero_divide, layers_.trace.now(), number_of(rule));
 }
 
@@ -112,26 +122,34 @@ void SafetyRules::trip(const vm::Rule& rule) {
   tripped_.insert(number);
   have_tripped_.store(true, std::memory_order_relaxed);
   layers_.trace.emit(EventKind::trip, layers_.trace.now(), number);
-  machine_.output = output_.data();
-  machine_.output_end = output_.data() + output_.size();
-  machine_.shifted = 0;
-  machine_.assigned = 0;
-  (void)vm::respond(machine_, code_ + responses_[rule.then_response].start);
-  const std::span<const vm::Word> output = output_;
-  vm::OutputReader reader(output.first(static_cast<std::size_t>(machine_.output - output.data())));
+  vm::OutputReader reader(run_body(rule));
   vm::Output said{};
   while (reader.next(said))
-    act(said);
-  if (machine_.written() == 0) return;
+    act(said, halted_by(rule));
+  const vm::Machine& machine = work_->machine;
+  if (machine.written() == 0) return;
   layers_.variables.stage_first(
-      {.frame = machine_.frame, .assigned = machine_.assigned, .shifted = machine_.shifted},
+      {.frame = frame_, .assigned = machine.assigned, .shifted = machine.shifted},
       program_->image.behaviors[vm::kSafetyBehavior], snapshot());
   kernel_.signal(step_thread_, acted_);
 }
 
-void SafetyRules::act(const vm::Output& said) {
+// What it has put out.
+std::span<const vm::Word> SafetyRules::run_body(const vm::Rule& rule) {
+  vm::Machine& machine = work_->machine;
+  machine.output = output_.data();
+  machine.output_end = output_.data() + output_.size();
+  machine.shifted = 0;
+  machine.assigned = 0;
+  (void)sandbox_.call(&machine, code_ + responses_[rule.then_response].start, &work_->progress);
+  const auto bytes = reinterpret_cast<std::uintptr_t>(machine.output) -
+                     reinterpret_cast<std::uintptr_t>(output_.data());
+  return output_.first(bytes <= output_.size_bytes() ? bytes / sizeof(vm::Word) : 0);
+}
+
+void SafetyRules::act(const vm::Output& said, ActuatorMask halted) {
   if (said.kind == vm::OutputKind::halt) {
-    layers_.control.halt(actuators_of(program_->image, said.target));
+    layers_.control.halt(actuators_of(program_->image, said.target) & halted);
   } else if (said.kind != vm::OutputKind::command) {
     layers::report_text(layers_.trace, said, layers_.trace.now());
   }
@@ -157,11 +175,12 @@ inline unsigned SafetyRules::number_of(const vm::Rule& rule) const {
 }
 
 // … and none is due any more, until one says so again.
-kernel::Time SafetyRules::next_look(kernel::Time now) {
-  const std::uint32_t wake = std::exchange(machine_.wake, vm::Machine::kNever);
+kernel::Time SafetyRules::next_look() {
+  vm::Machine& machine = work_->machine;
+  const std::uint32_t wake = std::exchange(machine.wake, vm::Machine::kNever);
   if (wake == vm::Machine::kNever) return kernel::kForever;
-  const std::uint32_t delay = std::max<std::uint32_t>(wake - machine_.now, 1);
-  return now + kernel::milliseconds(delay);
+  const std::uint32_t delay = std::max<std::uint32_t>(wake - machine.now, 1);
+  return kernel_.now() + kernel::milliseconds(delay);
 }
 
 }  // namespace robosync::safety

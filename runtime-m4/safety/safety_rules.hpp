@@ -7,6 +7,9 @@
 // lets that begin when the sensors had their time to measure. It stays tripped until its resume condition is true while its
 // condition is false; without a resume condition, until the next program. Actuators that it has
 // halted take no command meanwhile, nor while another tripped rule halts them.
+//
+// Its bytecode runs in a sandbox: without privileges, and with one region that it may write. If it touched anything
+// else, that would be a fault of the safety thread: outputs off, reset.
 #pragma once
 
 #include <atomic>
@@ -45,28 +48,30 @@ public:
       : kernel_(kernel), layers_(neighbours), step_thread_(step_thread), acted_(acted) {}
 
   // Nothing is tripped. `program` must stay until the next start().
-  [[gnu::cold]] void start(const layers::LoadedProgram& program, layers::Memory& memory);
+  [[gnu::cold]] void start(const layers::LoadedProgram& program, const layers::SafetyRegion& region,
+                           layers::Memory& memory);
 
-  // Evaluates all rules; it is `now`. Returns when a time word of theirs is due.  [safety thread]
-  kernel::Time look(kernel::Time now);
+  // Evaluates all rules. Returns when a time word of theirs is due.  [safety thread]
+  kernel::Time look();
 
   bool have_tripped() const { return have_tripped_; }  // one of them, since start()  [any]
 
 private:
-  void latch(kernel::Time now);
-  [[gnu::cold, gnu::noinline]] void latch_fresh(kernel::Time now);
+  void latch(std::uint32_t tick);
+  [[gnu::cold, gnu::noinline]] void latch_fresh();
   [[gnu::noinline]] vm::Value value_of_variable(std::uint8_t input) const;
-  const vm::Rule* evaluate(const vm::Rule& rule, kernel::Time now);
+  const vm::Rule* evaluate(const vm::Rule& rule);
   vm::Value truth_of(const vm::Rule& rule);
   void tell_zero_divide(const vm::Rule& rule);
   // What is not in a hurry takes no registers from what is.
   [[gnu::cold, gnu::noinline]] void note_zero_divide(const vm::Rule& rule);
   [[gnu::cold, gnu::noinline]] void trip(const vm::Rule& rule);
   [[gnu::cold, gnu::noinline]] void resume(const vm::Rule& rule);
-  [[gnu::cold]] void act(const vm::Output& said);
+  [[gnu::cold]] std::span<const vm::Word> run_body(const vm::Rule& rule);
+  [[gnu::cold]] void act(const vm::Output& said, layers::ActuatorMask halted);
   layers::ActuatorMask halted_by(const vm::Rule& rule) const;
   unsigned number_of(const vm::Rule& rule) const;
-  kernel::Time next_look(kernel::Time now);
+  kernel::Time next_look();
   const layers::Snapshot& snapshot() const { return layers_.processing.snapshot(); }
 
   kernel::Kernel& kernel_;
@@ -82,8 +87,11 @@ private:
   const vm::Response* responses_ = nullptr;
   std::atomic<bool> have_tripped_ = false;
   layers::RuleSet tripped_;
-  vm::Machine machine_;
+  port::Sandbox sandbox_;
+  layers::SafetyRegion::Work* work_ =
+      nullptr;  // what the bytecode may write, as output_ and frame_
   std::span<vm::Word> output_;
+  vm::Value* frame_ = nullptr;
 };
 
 }  // namespace robosync::safety

@@ -39,6 +39,8 @@ CALLED_BY_POINTER = (
     (r"update::Server::", BOARD + r"(link_|name|store|reset_reason|buses|pins|input)|" + STORE),
     (r"robosync::Runtime::|boards::", OUTPUTS + "|" + BOARD + r"(name|buses|pins|store)\(|" + STORE),
 )
+# What these call by pointer stands on another stack than theirs.
+ON_ANOTHER_STACK = "robosync_call_in_sandbox"
 # On top of a thread that is interrupted and gives way: what the core stacks, aligned to 8, and what PendSV_Handler saves
 # (switch.S). With FPU registers there are more of both.
 FRAMES = 4 + 32 + 36
@@ -152,6 +154,8 @@ class Firmware:
         """Where a call leads; a jump within the function is none."""
         if callee is not None:
             return [callee] if callee in self._functions else []
+        if function.name == ON_ANOTHER_STACK:
+            return []
         for caller, callees in CALLED_BY_POINTER:
             if re.search(caller, function.name.split("(")[0]):
                 return [at for at in self._pointed_to if re.search(callees, self._functions[at].name)]

@@ -16,7 +16,7 @@ PATIENCE = 20
 CONNECTED = "T02"
 PC, XPSR = 15, 25
 INTERPRETER = "robosync::vm::run("  # (machine, code, progress)
-IN_SAFETY = "robosync::Runtime::look_at_rules(unsigned long long)"
+IN_SAFETY = "robosync::Runtime::look_at_rules()"
 
 
 class Debugger:

@@ -1,8 +1,10 @@
 """A behaviour's thread that goes wild in the shipped firmware: it is stopped and reported, its actuator
-comes to rest, the others go on, and safety is never late."""
+comes to rest, the others go on, and safety is never late. What SAFETY's bytecode may touch, and what comes of it if it touched
+anything else."""
 
 import json
 import sys
+import time
 import unittest
 from pathlib import Path
 
@@ -256,6 +258,77 @@ class Algorithms(DebuggedTest):
         self.expect(event="fault", thread="skin", cause=OVERRUN, pc=endless_loop())
         self.expect(event="stale", sensor="skin")
         self.others_go_on(stopped=True, priority=LOWERED)
+
+
+SAFETY_PROGRAM = """
+SAFETY pinch
+  WHEN touch TAME > 7
+  DO STOP ALL
+  RESUME WHEN touch TAME < 2
+END
+""" + PROGRAM
+IN_SANDBOX = "robosync::safety::(anonymous namespace)::run_bytecode("  # (machine, code, progress)
+KERNEL = "robosync_kernel"
+WATCHDOG = 0x40008000
+CODE = 0x400
+
+
+class Safety(DebuggedTest):
+    """SAFETY's bytecode has its own memory and no other, though it runs in the safety thread."""
+
+    def setUp(self):
+        super().setUp()
+        self.symbols = symbols(FIRMWARE)
+        program, config = self.folder / "program.rsl", self.folder / "robot.json"
+        program.write_text(SAFETY_PROGRAM)
+        config.write_text(CONFIG)
+        self.board.set_touch(3, TAME)
+        rsc.run("upload", program, "--config", config, "--port", self.board.port)
+
+    def place(self, begin):
+        return next(at for name, at in self.symbols.items() if name.startswith(begin))
+
+    def in_sandbox(self, act):
+        """act(debugger) the next time that a SAFETY rule's bytecode begins."""
+        with self.debugger() as debugger:
+            debugger.run_to(self.place(IN_SANDBOX), lambda: None)
+            return act(debugger)
+
+    def test_what_it_can_read(self):
+        """As far as QEMU tells: it asks the MPU for the beginning of a page."""
+        def look(debugger):
+            places = {"the program": debugger.register(1), "flash": CODE, "the kernel": self.symbols[KERNEL],
+                      "the watchdog": WATCHDOG}
+            return {what for what, at in places.items() if debugger.read_words(at, 1) is not None}
+
+        self.assertEqual(self.in_sandbox(look), {"the program", "flash"})
+
+    def ends_in_a_reset(self, act, address):
+        self.in_sandbox(act)
+        give_up = time.monotonic() + PATIENCE
+        while (status := rsc.info(self.board.port)["status"])["reset_reason"] != "software":
+            self.assertLess(time.monotonic(), give_up, status)
+        fault = status["last_fault"]
+        self.assertEqual((fault["thread"], fault["cause"], fault["address"]), ("safety", NO_ACCESS, address))
+        with self.debugger() as debugger:
+            self.assertEqual(debugger.read_words(self.symbols[PWM_PULSES], 2), [0, 0])
+
+    def test_one_that_reads_what_is_not_its_own_ends_in_a_reset_with_all_outputs_off(self):
+        self.ends_in_a_reset(lambda debugger: debugger.set_register(0, UART), UART)
+
+    def test_one_that_writes_what_is_not_its_own_too(self):
+        for target in (self.symbols[KERNEL], WATCHDOG, CODE):
+            def clear(debugger):
+                debugger.set_register(0, target)
+                debugger.set_register(1, 0)
+                debugger.set_register(2, 4)
+                debugger.set_register(PC, self.symbols["memset"])
+
+            with self.subTest(hex(target)):
+                self.ends_in_a_reset(clear, target)
+                self.board.set_touch(3, TAME)
+                self.tearDown()
+                self.setUp()
 
 
 if __name__ == "__main__":

@@ -25,6 +25,7 @@ THREADS = {
     "feeds": (FRAMES + GUARD, "layers::SensorLayer::start_feeds" + LAMBDA, MEMORY, "kSensorStack"),
     "algorithms' server": (FRAMES + GUARD, "layers::AlgorithmLayer::start_server" + LAMBDA, MEMORY, "kSensorStack"),
     "behavior": (FRAMES, "layers::BehaviorLayer::start_unit" + LAMBDA, MEMORY, "kBehaviorStack"),  # without privileges
+    "SAFETY's bytecode": (FRAMES, r"safety::\(anonymous namespace\)::run_bytecode\(", MEMORY, "kSafetyStack"),  # the same
     # … and it counts as having used the FPU (switch.S).
     "algorithm": (FPU_FRAMES, "layers::AlgorithmLayer::start_unit" + LAMBDA, MEMORY, "kModuleStack"),
 }
@@ -103,6 +104,10 @@ function by_pointer
     push {lr}
     blx r3
     pop {pc}
+function robosync_call_in_sandbox
+    push {r4, lr}
+    blx r9
+    pop {r4, pc}
 function unknown
     sub sp, sp, r0
     bx lr
@@ -129,6 +134,7 @@ class Analysis(unittest.TestCase):
         self.assertEqual(deepest("caller"), (104, False, ("caller", "deep")))  # whose own 20 are gone then
         self.assertEqual(deepest("both"), (108, False, ("both", "caller", "deep")))
         self.assertEqual(deepest("computes"), (36, True, ("computes", "leaf")))
+        self.assertEqual(deepest("robosync_call_in_sandbox"), (8, False, ("robosync_call_in_sandbox",)))
         for recursive in ("itself", "there"):
             with self.assertRaisesRegex(StackError, "recursion: "):
                 deepest(recursive)

@@ -21,6 +21,7 @@ void MemManage_Handler();
 void BusFault_Handler();
 void UsageFault_Handler();
 void SVC_Handler();
+void SVC_Sandbox_Handler();
 void PendSV_Handler();
 void PendSV_Unprivileged_Handler();
 void SysTick_Handler();
@@ -60,7 +61,7 @@ constexpr Vectors<kInterrupts> vectors(std::span<const Interrupt> used, bool pri
   table[4] = handler(MemManage_Handler);
   table[5] = handler(BusFault_Handler);
   table[6] = handler(UsageFault_Handler);
-  if (!privileged) table[11] = handler(SVC_Handler);
+  table[11] = handler(privileged ? SVC_Sandbox_Handler : SVC_Handler);
   table[14] = handler(privileged ? PendSV_Handler : PendSV_Unprivileged_Handler);
   table[15] = handler(SysTick_Handler);
   for (const Interrupt& interrupt : used)

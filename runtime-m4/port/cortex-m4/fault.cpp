@@ -53,12 +53,11 @@ CoreFrame& handler_frame(const FaultEntry& entry) {
   return *reinterpret_cast<CoreFrame*>(entry.msp);
 }
 
-link::Name name_of(const kernel::Thread& thread) {
-  link::Name name{};
+// `name` is all zero.
+void put_name(const kernel::Thread& thread, link::Name& name) {
   const char* text = thread.name();
   for (std::size_t i = 0; i < name.size() && text[i] != '\0'; ++i)
     name[i] = text[i];
-  return name;
 }
 
 std::uint32_t fault_address(std::uint32_t cause) {
@@ -119,28 +118,30 @@ bool from_thread(const FaultEntry& entry) {
   return (entry.exc_return & kThread) == kThread;
 }
 
-// The handler that faulted did so there.
-bool from_place(const FaultEntry& entry, void (*place)()) {
-  return (entry.exc_return & kFromThreadMode) == 0 &&
-         handler_frame(entry).pc == (word_of(place) & ~1U);
+// Whose doing it is.
+struct Origin {
+  bool thread;               // it runs, or the switch was saving its registers on its stack
+  bool saving;               // … the latter
+  bool saving_unprivileged;  // … of a thread without privileges
+  bool no_room;              // … for which there was no room
+};
+
+Origin origin_of(const FaultEntry& entry) {
+  const bool handler = (entry.exc_return & kFromThreadMode) == 0;
+  const std::uint32_t pc = handler ? handler_frame(entry).pc | 1U : 0;
+  const auto is = [pc](void (*place)()) { return pc == (word_of(place) | 1U); };
+  Origin origin{};
+  origin.no_room = is(robosync_no_room);
+  origin.saving_unprivileged = origin.no_room || is(robosync_saving_unprivileged_fpu);
+  origin.saving = origin.saving_unprivileged || is(robosync_saving_core) || is(robosync_saving_fpu);
+  origin.thread = origin.saving || from_thread(entry);
+  return origin;
 }
 
-// True when the context switch faulted, or gave up, while it saved the registers of a thread
-// without privileges on that thread's stack.
-bool from_saving_unprivileged(const FaultEntry& entry) {
-  return from_place(entry, robosync_saving_unprivileged_fpu) || from_place(entry, robosync_no_room);
-}
-
-// … of any thread.
-bool from_saving(const FaultEntry& entry) {
-  return from_place(entry, robosync_saving_core) || from_place(entry, robosync_saving_fpu) ||
-         from_saving_unprivileged(entry);
-}
-
-// Whether the fault is the thread's own doing, in a state in which the kernel can go on without it.
-bool may_go_on(const kernel::Thread& thread, const FaultEntry& entry) {
-  return (from_thread(entry) || from_saving(entry)) && !holds_interrupts_off() &&
-         &thread != &robosync_kernel.idle() && thread.category() != kernel::Category::safety;
+// Whether the kernel can go on without the thread.
+bool may_go_on(const kernel::Thread& thread, const Origin& origin) {
+  return origin.thread && !holds_interrupts_off() && &thread != &robosync_kernel.idle() &&
+         thread.category() != kernel::Category::safety;
 }
 
 // The guard was touched, or the core found no room for a frame.
@@ -150,30 +151,30 @@ bool is_overflow(const kernel::Thread& thread, std::uint32_t cause, std::uint32_
   return (cause & core::kCfsrDataAccess) != 0 && address - guard < kGuard;
 }
 
-link::Fault describe(const kernel::Thread& thread, const FaultEntry& entry) {
-  link::Fault fault{};
-  fault.thread = name_of(thread);
+// `fault` is all zero.
+void describe(const kernel::Thread& thread, const FaultEntry& entry, const Origin& origin,
+              link::Fault& fault) {
+  put_name(thread, fault.thread);
   fault.cause = core::reg(core::kCfsr);
   fault.address = fault_address(fault.cause);
-  if (from_place(entry, robosync_no_room)) fault.cause = kCauseStackOverflow;
+  if (origin.no_room) fault.cause = kCauseStackOverflow;
   if (is_overflow(thread, fault.cause, fault.address)) fault.cause |= kCauseStackOverflow;
   std::copy(entry.r4_r11.begin(), entry.r4_r11.end(), fault.r.begin() + 4);
   // What a thread left on its own stack, even when it is the context switch that faulted.
-  if (from_thread(entry) || from_saving(entry)) {
+  if (origin.thread) {
     copy_frame_at(entry.psp, thread, fault);
   } else {
     fault.sp = entry.msp;
     copy_frame(handler_frame(entry), fault);
   }
-  return fault;
 }
 
 // Lets the context switch go on as if it had saved the thread's registers.
-void skip_saving(const FaultEntry& entry) {
+void skip_saving(const FaultEntry& entry, const Origin& origin) {
   constexpr std::uint32_t kPartOfInstruction = 0x0600'FC00;  // how far a store-multiple had come
   CoreFrame& frame = handler_frame(entry);
   frame.pc =
-      word_of(from_saving_unprivileged(entry) ? robosync_saved_unprivileged : robosync_saved) & ~1U;
+      word_of(origin.saving_unprivileged ? robosync_saved_unprivileged : robosync_saved) & ~1U;
   frame.xpsr &= ~kPartOfInstruction;
 }
 
@@ -193,7 +194,7 @@ void stop_overrun(kernel::Kernel&, kernel::Thread& thread) {
   const bool privileged = (exc_return & kMarkUnprivileged) != 0;
   const bool used_fpu = (exc_return & (privileged ? kWithoutFpu : kUnprivilegedWithoutFpu)) == 0;
   link::Fault fault{};
-  fault.thread = name_of(thread);
+  put_name(thread, fault.thread);
   fault.cause = kCauseOverrun;
   std::copy_n(saved, kExcReturn, fault.r.begin() + 4);
   copy_frame_at(word_of(saved + kExcReturn + 1 + (used_fpu ? kFpuWords : 0)), thread, fault);
@@ -205,7 +206,7 @@ void Machine::refuse_call() {
   kernel::Thread& thread = robosync_kernel.current();
   if (robosync_kernel.state(thread) == kernel::Thread::State::stopped) return;
   link::Fault fault{};
-  fault.thread = name_of(thread);
+  put_name(thread, fault.thread);
   fault.cause = kCauseNoSuchCall;
   std::uint32_t psp = 0;
   asm volatile("mrs %0, psp" : "=r"(psp));
@@ -222,15 +223,17 @@ extern "C" std::uint32_t robosync_fault(const robosync::port::FaultEntry* entry)
 std::uint32_t robosync_fault(const robosync::port::FaultEntry* entry) {
   using namespace robosync::port;
   robosync::kernel::Thread& thread = robosync_kernel.current();
-  const robosync::link::Fault fault = describe(thread, *entry);
-  if (!may_go_on(thread, *entry)) hooks::fatal_fault(fault);
+  const Origin origin = origin_of(*entry);
+  robosync::link::Fault fault{};
+  describe(thread, *entry, origin, fault);
+  if (!may_go_on(thread, origin)) hooks::fatal_fault(fault);
   core::reg(core::kCfsr) = 0xFFFF'FFFF;  // write 1 to clear
   // One instruction may make two faults: an undefined one whose frame could not be stacked either.
   if (robosync_kernel.state(thread) != robosync::kernel::Thread::State::stopped) {
     stop_and_report(thread, fault);
   }
-  if (from_saving(*entry)) {
-    skip_saving(*entry);
+  if (origin.saving) {
+    skip_saving(*entry, origin);
     return entry->exc_return;
   }
   core::reg(core::kShcsr) &=

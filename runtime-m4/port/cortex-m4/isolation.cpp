@@ -3,6 +3,7 @@
 
 #include "runtime-m4/kernel/kernel.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
+#include "runtime-m4/port/cortex-m4/sandbox.hpp"
 
 namespace robosync::port {
 
@@ -17,10 +18,14 @@ std::uint32_t word_of(const void* address) {
   return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(address));
 }
 
+std::uint32_t size_of(policy::regions::Region region, std::uint32_t access) {
+  return region.size_and_eighths == 0 ? 0 : access | region.size_and_eighths;
+}
+
 // Under a Lock: the switch sets regions, too.
 void set(RegionNumber number, policy::regions::Region region, std::uint32_t access) {
   core::reg(core::kMpuRbar) = base_of(number, region.base);
-  core::reg(core::kMpuRasr) = region.size_and_eighths == 0 ? 0 : access | region.size_and_eighths;
+  core::reg(core::kMpuRasr) = size_of(region, access);
 }
 
 }  // namespace
@@ -46,6 +51,17 @@ void Machine::grant(const Areas& areas) {
   set(RegionNumber::writable, window.lower, core::kMpuAllWrite);
   set(RegionNumber::writable_upper, window.upper, core::kMpuAllWrite);
   asm volatile("dsb\n\tisb" ::: "memory");
+}
+
+void Sandbox::set(std::span<std::byte> window, std::byte* stack_top, Function function) {
+  const policy::regions::Window regions = policy::regions::finest_window(
+      word_of(window.data()), static_cast<std::uint32_t>(window.size()));
+  lower_base_ = base_of(RegionNumber::stack, regions.lower.base);
+  lower_size_ = size_of(regions.lower, core::kMpuAllWrite);
+  upper_base_ = base_of(RegionNumber::stack_upper, regions.upper.base);
+  upper_size_ = size_of(regions.upper, core::kMpuAllWrite);
+  stack_top_ = stack_top;
+  function_ = function;
 }
 
 }  // namespace robosync::port

@@ -5,7 +5,8 @@
 //   2     Areas::readable                   … and read by others
 //   3, 4  Areas::writable                   … and written by others
 //   5, 6  stack of a thread without privileges, while it runs (later ones leave it as it was, which
-//         tells those with privileges nothing new); of a secluded one, 5 closes all RAM and 6 is its stack
+//         tells those with privileges nothing new); of a secluded one, 5 closes all RAM and 6 is its stack;
+//         of a sandbox (sandbox.hpp), its window
 //   7     guard below the stack of a thread with privileges, while it runs: nobody
 //
 // What no region covers is as without an MPU to privileged code (peripherals, external RAM), and

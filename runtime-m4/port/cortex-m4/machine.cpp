@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstring>
 #include <type_traits>
 
 #include "runtime-m4/kernel/kernel.hpp"
@@ -37,13 +38,9 @@ struct FirstFrame {
   SavedRegisters saved;
   CoreFrame stacked;
 };
-// … of one that has used the FPU.
-struct FirstFpuFrame {
-  SavedRegisters saved;
-  std::array<std::uint32_t, 16> s16_s31;
-  CoreFrame stacked;
-  std::array<std::uint32_t, 18> s0_s15_fpscr;
-};
+// … of one that has used the FPU, more between the two, and above them.
+constexpr std::uint32_t kS16ToS31 = 16 * 4;
+constexpr std::uint32_t kS0ToS15AndFpscr = 18 * 4;
 
 // switch.S loads what stands here in one instruction, and more of it by these distances.
 using kernel::Selection;
@@ -87,17 +84,20 @@ void set_secluded(Context& context, std::span<const std::byte> stack) {
   context.windows = policy::regions::size_field(kSecludedBits) | Context::kSecluded;
 }
 
-template <class Frame>
 void make_first_frame(Context& context, const kernel::ThreadSpec& spec, std::uint32_t top,
                       std::uint32_t exc_return) {
-  auto* const frame = reinterpret_cast<Frame*>(top - sizeof(Frame));
-  *frame = {};
-  frame->saved.exc_return = exc_return;
-  frame->stacked.r0 = word_of(spec.argument);
-  frame->stacked.lr = word_of(reinterpret_cast<const void*>(&thread_ended));
-  frame->stacked.pc = word_of(reinterpret_cast<const void*>(spec.entry)) & ~1U;
-  frame->stacked.xpsr = kXpsrThumb;
-  context.sp = reinterpret_cast<std::uint32_t*>(frame);
+  const bool fpu = exc_return == kReturnToSecluded;
+  const std::uint32_t bytes = sizeof(FirstFrame) + (fpu ? kS16ToS31 + kS0ToS15AndFpscr : 0);
+  auto* const saved = reinterpret_cast<SavedRegisters*>(top - bytes);
+  std::memset(saved, 0, bytes);
+  saved->exc_return = exc_return;
+  auto& stacked =
+      *reinterpret_cast<CoreFrame*>(top - bytes + sizeof(SavedRegisters) + (fpu ? kS16ToS31 : 0));
+  stacked.r0 = word_of(spec.argument);
+  stacked.lr = word_of(reinterpret_cast<const void*>(&thread_ended));
+  stacked.pc = word_of(reinterpret_cast<const void*>(spec.entry)) & ~1U;
+  stacked.xpsr = kXpsrThumb;
+  context.sp = reinterpret_cast<std::uint32_t*>(saved);
 }
 
 }  // namespace
@@ -125,12 +125,11 @@ void Machine::prepare(Context& context, const kernel::ThreadSpec& spec,
   context.run_time = 0;
   if (spec.data_bytes != 0) {
     set_secluded(context, spec.stack);
-    return make_first_frame<FirstFpuFrame>(context, spec, top, kReturnToSecluded);
+    return make_first_frame(context, spec, top, kReturnToSecluded);
   }
   context.region = guard_below(stack);
   if (!spec.privileged) set_stack_window(context, stack);
-  make_first_frame<FirstFrame>(context, spec, top,
-                               spec.privileged ? kReturnToThread : kReturnToUnprivileged);
+  make_first_frame(context, spec, top, spec.privileged ? kReturnToThread : kReturnToUnprivileged);
 }
 
 std::span<std::byte> Machine::prepare_idle(Context& context) {

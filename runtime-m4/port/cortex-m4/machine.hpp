@@ -14,6 +14,7 @@
 
 #include "runtime-m4/port/cortex-m4/clock.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
+#include "runtime-m4/port/cortex-m4/sandbox.hpp"  // IWYU pragma: export
 
 namespace robosync::kernel {
 class Kernel;

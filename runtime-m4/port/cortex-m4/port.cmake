@@ -1,5 +1,6 @@
 target_sources(robosync_runtime PRIVATE
   port/cortex-m4/machine.cpp port/cortex-m4/mode.cpp port/cortex-m4/tick.cpp port/cortex-m4/switch.S port/cortex-m4/isolation.cpp
+  port/cortex-m4/sandbox.S
   port/cortex-m4/fault.cpp port/cortex-m4/fault.S
   port/cortex-m4/memory.cpp port/cortex-m4/divide.S)
 if("ROBOSYNC_CLOCK_IS_SYSTICK" IN_LIST board_clock)

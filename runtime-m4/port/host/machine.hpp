@@ -54,6 +54,22 @@ struct Context {
 
 struct RunClock {};
 
+// A call as any other.
+class Sandbox {
+public:
+  using Function = std::int32_t (*)(void*, const void*, void*);
+
+  void set(std::span<std::byte> /*window*/, std::byte* /*stack_top*/, Function function) {
+    function_ = function;
+  }
+  std::int32_t call(void* first, const void* second, void* third) const {
+    return function_(first, second, third);
+  }
+
+private:
+  Function function_ = nullptr;
+};
+
 class CallFrame {
 public:
   CallFrame(std::uint32_t number, std::uint32_t argument) : number_(number), argument_(argument) {}

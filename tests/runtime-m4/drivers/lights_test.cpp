@@ -151,7 +151,7 @@ TEST_CASE("lights: the guard shows nothing for whom it has halted, nor for who h
   outputs.show(0, 7);
   CHECK(board.pictures.empty());
   outputs.show(1, 7);
-  outputs.halt(0b10, 0);
+  outputs.halt(0b10);
   outputs.show(1, 7);
   CHECK(board.pictures == std::vector<std::uint32_t>{7, 0});
   outputs.let_go(0b10);

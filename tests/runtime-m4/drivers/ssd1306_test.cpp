@@ -464,7 +464,7 @@ TEST_CASE("ssd1306: the guard keeps no picture for whom it has halted, nor for o
   outputs.show(1, 7);
   CHECK(outputs.picture_on(0) == 7);
   CHECK(outputs.picture_on(1) == 0);
-  outputs.halt(0b10, 0);
+  outputs.halt(0b10);
   CHECK(outputs.picture_on(0) == 0);
   outputs.show(1, 7);
   CHECK(outputs.picture_on(0) == 0);

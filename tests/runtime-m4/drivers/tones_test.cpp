@@ -166,7 +166,7 @@ TEST_CASE("tones: the guard sounds nothing for whom it has halted, nor for who h
   outputs.sound(0, 440);
   CHECK(board.sounds.empty());
   outputs.sound(1, 440);
-  outputs.halt(0b10, 0);
+  outputs.halt(0b10);
   outputs.sound(1, 440);
   CHECK(board.sounds == std::vector<std::uint32_t>{440, 0});
   outputs.let_go(0b10);

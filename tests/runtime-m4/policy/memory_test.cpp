@@ -125,7 +125,41 @@ void check_layout(const Needs& needs, const BoardMemory& board) {
   RC_ASSERT(!covers(open, board.arena_begin + needs.total - needs.closed));
 }
 
+// Wherever the stacks before it end there is a window of the MPU for what SAFETY's bytecode writes, inside of its part.
+void check_safety_window(const Counts& counts) {
+  const regions::Fit fit = safety_window(counts);
+  const std::uint32_t bytes = bytes_of(Part::safety_region, counts);
+  for (std::uint32_t end = 0x2000'4000; end < 0x2000'5000; end += kStackUnit) {
+    const std::uint32_t begin = aligned(end - bytes, fit.alignment);
+    RC_ASSERT(begin + fit.bytes <= end);
+    const regions::Window window = regions::finest_window(begin, fit.bytes);
+    RC_ASSERT(covers(window.lower, begin));
+    const std::uint32_t last = begin + fit.bytes - 1;
+    RC_ASSERT(covers(window.lower, last) || covers(window.upper, last));
+    for (const std::uint32_t outside : {begin - 1, last + 1})
+      RC_ASSERT(!covers(window.lower, outside) && !covers(window.upper, outside));
+  }
+}
+
 }  // namespace
+
+TEST_CASE("what SAFETY's bytecode writes is one window of the MPU, and fits") {
+  const bool holds = rc::check([] {
+    Counts counts;
+    counts[Count::safety_cells] = below(256);
+    counts[Count::safety_timer_words] = below(600);
+    counts[Count::safety_output] = vm::kMaxResponseOutput;
+    counts[Count::safety_bytes] = safety_bytes(counts);
+    const std::uint32_t needed =
+        kSafetyStack + kSafetyMachine +
+        4 * (counts[Count::safety_cells] + counts[Count::safety_timer_words] +
+             counts[Count::safety_output]);
+    RC_ASSERT(safety_window(counts).bytes >= needed);
+    RC_ASSERT(bytes_of(Part::safety_region, counts) <= needed + needed / 2 + kStackUnit);
+    check_safety_window(counts);
+  });
+  CHECK(holds);
+}
 
 TEST_CASE("a layout keeps apart what threads without privileges may use, and the rest") {
   const bool holds = rc::check([] {

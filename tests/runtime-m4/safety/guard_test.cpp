@@ -134,7 +134,7 @@ TEST_CASE("a safe state beside the range of its pin ends where the range does") 
   resting.safe = vm::Release::rest;  // 500 us, as the image has it
   bench.own({resting});
   bench.guard.drive(0, 1'010, 0);
-  bench.guard.halt(1, 0);
+  bench.guard.halt(1);
   for (unsigned ms = 20; ms < 1000; ms += 20)
     bench.guard.go_on(kernel::milliseconds(ms));
   CHECK(bench.pulse(4) == 1'000);
@@ -155,7 +155,7 @@ TEST_CASE("an actuator that is halted takes no order until it is let go") {
   Bench bench;
   bench.own({on_pin(0), on_pin(1)});
   bench.guard.drive(0, 1500, 0);
-  bench.guard.halt(0b01, 0);
+  bench.guard.halt(0b01);
   bench.guard.drive(0, 600, 0);
   bench.guard.drive(1, 600, 0);
   CHECK(bench.pulse(0) == 1500);
@@ -179,7 +179,7 @@ TEST_CASE("an actuator that is halted is in its safe state at once, without its 
   bench.own({rests, coasts, begins_elsewhere, on_pin(3, vm::DriverId::pwm)});
   for (unsigned a = 0; a < 4; ++a)
     bench.guard.drive(a, 1800, 0);
-  bench.guard.halt(0b1111, 0);
+  bench.guard.halt(0b1111);
   CHECK(bench.pulse(0) == kAtRest);
   CHECK(bench.pulse(1) == 0);
   CHECK(bench.pulse(2) == 1500);
@@ -191,7 +191,7 @@ TEST_CASE("nothing begins to move because it is halted") {
   rests.safe = vm::Release::rest;
   Bench bench;
   bench.own({rests});
-  bench.guard.halt(0b1, 0);
+  bench.guard.halt(0b1);
   CHECK(bench.pulse(0) == 0);  // it was never driven
   bench.guard.let_go(0b1);
   bench.guard.drive(0, 1800, 0);
@@ -207,7 +207,8 @@ TEST_CASE("what is on its way stays where it is when it is halted") {
   bench.own({on_pin(4)});
   bench.guard.drive(0, 1'000, 0);
   bench.guard.drive(0, 1'100, 1'000'000);
-  bench.guard.halt(0b1, 1'000'000);
+  bench.kernel.machine().run_until(1'000'000);
+  bench.guard.halt(0b1);
   bench.guard.go_on(2'000'000);
   CHECK(bench.pulse(4) == 1'040);
 }
@@ -256,7 +257,7 @@ TEST_CASE("a motor that is halted is off, whichever way it runs, and takes no or
     Bench bench;
     bench.own({motor(1, 2)});
     bench.guard.drive_either(0, way, 0);
-    bench.guard.halt(1, 0);
+    bench.guard.halt(1);
     CHECK((bench.pulse(1) | bench.pulse(2)) == 0);
     bench.guard.drive_either(0, way, 0);
     bench.guard.drive_either(0, -way, 0);
@@ -372,7 +373,8 @@ TEST_CASE("no sequence widens a limit, nor drives a pin that no running program 
         case 2:
           fresh = 1U << actuator & ~halted;
           halted |= 1U << actuator;
-          bench->guard.halt(1U << actuator, now);
+          bench->kernel.machine().run_until(now);
+          bench->guard.halt(1U << actuator);
           break;
         case 3:
           halted &= ~(1U << actuator);

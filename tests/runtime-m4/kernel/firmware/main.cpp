@@ -108,6 +108,7 @@ void first_boot() {
   run_all(rig::fault_scenarios());
   run_all(rig::isolation_scenarios());
   run_all(rig::call_scenarios());
+  run_all(rig::sandbox_scenarios());
   run_all(rig::device_scenarios());
   run_all(rig::division_scenarios());
   run_all(rig::context_scenarios());

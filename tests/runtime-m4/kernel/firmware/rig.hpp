@@ -32,6 +32,7 @@ std::span<const Scenario> device_scenarios();
 std::span<const Scenario> division_scenarios();
 std::span<const Scenario> isolation_scenarios();
 std::span<const Scenario> call_scenarios();
+std::span<const Scenario> sandbox_scenarios();
 std::span<const Scenario> context_scenarios();
 std::span<const Scenario> idle_scenarios();  // when no thread spins
 

@@ -9,9 +9,10 @@
    instruction, which an interrupt may break off, so that it is one after the other for it, too.)
 
    What is found: an event that was signalled and is gone, or is there while its thread is blocked on
-   it (a lost wake-up); a thread that is blocked until a deadline for which no timer stands; a timer
-   taken out that is out; a thread that runs while one that outranks it is ready; a mutex that is
-   taken while it is held; a holder overtaken at or below the ceiling (priority inversion).
+   it (a lost wake-up); a thread that is blocked until a deadline for which no timer stands, or for good, for which an
+   old timer still stands; a timer put in that is in, or taken out that is out; a thread that runs while one that
+   outranks it is ready; a mutex that is taken while it is held; a holder overtaken at or below the ceiling (priority
+   inversion).
 
    With a MUTANT_… defined the model has a mistake, which must be found: check_model.py tries all. */
 
@@ -67,7 +68,8 @@ inline check_running() {
   ((ghost[thread] & ~events[thread]) == 0 && (ready[thread] || (events[thread] & wanted[thread]) == 0))
 inline check_events() {
   assert(NONE_LOST(0) && NONE_LOST(1) && NONE_LOST(2));
-  assert(ready[1] || !timed || armed)
+  assert(ready[1] || !timed || armed);
+  assert(ready[1] || timed || !armed)
 }
 
 #define NO_SWITCH (masked || still)
@@ -183,9 +185,31 @@ inline take(me) {
 #endif
 }
 
+inline take_back(me) {
+  STEP(me, there = armed);
+  if
+  :: there -> STEP(me, assert(armed); armed = false)
+  :: else
+  fi
+}
+
+/* A timer that still stands: an event had come before. */
+inline disarm(me) {
+#ifndef MUTANT_TICK_IN_DISARM
+  STEP(me, still = true);
+#endif
+  take_back(me);
+  STEP(me, still = false)
+}
 /* Kernel::wait(A | B), without a deadline. */
 inline wait(me) {
   taken = 0;
+#ifndef MUTANT_OLD_TIMER_KEPT
+  if
+  :: me == 1 -> disarm(me)
+  :: else
+  fi;
+#endif
   do
   :: taken == 0 ->
      LOCK_BEFORE_LOOK(me);
@@ -205,13 +229,17 @@ inline wait(me) {
 inline wait_until(me) {
   taken = 0;
   reached = false;
+  STEP(me, struck = false);  /* by an old one */
   do
   :: taken == 0 && !reached ->
      STEP(me, there = ((events[me] & (A | B)) != 0));
      if
      :: !there ->
         STEP(me, still = true);
-        STEP(me, there = struck; struck = false; armed = !there; reached = true);
+#ifndef MUTANT_ARMED_TWICE
+        take_back(me);
+#endif
+        STEP(me, there = struck; assert(!armed); struck = false; armed = !there; reached = true);
 #ifdef MUTANT_TICK_BETWEEN_ARM_AND_BLOCK
         STEP(me, still = false);
 #endif
@@ -235,23 +263,10 @@ inline wait_until(me) {
      fi;
      take(me);
      STEP(me, timed = false);
-     STEP(me, reached = reached && !armed; struck = struck && !reached);
-     disarm(me)
+     STEP(me, reached = reached && !armed; struck = struck && !reached)
   :: else -> break
   od;
   reached = false
-}
-
-inline disarm(me) {
-#ifndef MUTANT_TICK_IN_DISARM
-  STEP(me, still = true);
-#endif
-  STEP(me, there = armed);
-  if
-  :: there -> STEP(me, assert(armed); armed = false)
-  :: else
-  fi;
-  STEP(me, still = false)
 }
 
 /* Kernel::signal() from a thread. */
