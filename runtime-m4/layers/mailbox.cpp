@@ -43,7 +43,7 @@ void Mailboxes::forget(unsigned channel) {
 }
 
 void Mailboxes::expires_by(kernel::Time time) {
-  set_next_expiry(std::min(next_expiry_, time));
+  if (time < next_expiry_) set_next_expiry(time);
   expiry_of_news_ = std::min(expiry_of_news_, time);
 }
 
