@@ -14,7 +14,9 @@ from support import RobotTest
 
 PATIENCE = 20
 CONNECTED = "T02"
-PC, XPSR = 15, 25
+LINK_REGISTER, PC, XPSR = 14, 15, 25
+END_OF_INTERRUPT = 0xFFFF_FFE0  # and up: no place of code
+MOST_STEPS = 4000
 INTERPRETER = "robosync::vm::run("  # (machine, code, progress)
 IN_SAFETY = "robosync::Runtime::look_at_rules(unsigned long long)"
 
@@ -64,6 +66,21 @@ class Debugger:
 
     def step(self):
         self._ask("s")
+
+    def steps_to_return(self, reads=None):
+        """How many instructions until the function or interrupt that has just begun returns. `reads` says what the ones that read
+        registers of a chip read, which QEMU has not: {address: (register, value)}."""
+        back, steps = self.register(LINK_REGISTER), 0
+        end = back & ~1
+        # Where an interrupt ends the core takes its return out of what was pushed.
+        while (at := self.register(PC)) != end and (back < END_OF_INTERRUPT or self.mode() != 0):
+            self.step()
+            if reads and at in reads:
+                self.set_register(*reads[at])
+            steps += 1
+            if steps == MOST_STEPS:
+                raise AssertionError("it does not return")
+        return steps
 
     def mode(self):
         """Which exception is handled; 0: none."""

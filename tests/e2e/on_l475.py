@@ -2,25 +2,51 @@
 and where the test plays them. Run with ROBOSYNC_BOARD=b-l475e-iot01a."""
 
 import contextlib
+import json
+import re
+import subprocess
 import sys
 import threading
 import unittest
 from pathlib import Path
 
+import pins
 import rsc
 import test_owner
 import test_store
-from debugger import PC, Debugger
-from support import PROGRAMS, RobotTest
+from debugger import LINK_REGISTER, PC, DebuggedTest, Debugger
+from support import PROGRAMS, LineReader, RobotTest
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
-from board import FIRMWARE, REAL_TIME  # noqa: E402
+from board import FIRMWARE, REAL_TIME, ROOT  # noqa: E402
 from counting import symbols  # noqa: E402
 
 FLASH = "robosync::boards::l475::Flash::"
-LINK_REGISTER, AT_BREAKPOINT = 14, "T05"
+AT_BREAKPOINT = "T05"
 PAGE, PAIR, AT_ONCE = 2048, 8, 512  # bytes of the flash; … that the debugger writes at once
 GOES_ON, DONE = 0, 1  # boards::Erasing
+# QEMU writes down what the masters of I2C and DMA1 are told.
+PATIENCE = 20
+WRITE = re.compile(r"(I2C2|DMA1): unimplemented device write \(size 4, offset 0x([0-9a-f]+), value 0x([0-9a-f]+)\)")
+TRANSFER, COUNT_4, MEMORY_4, COUNT_5, MEMORY_5 = ("I2C2", 0x04), ("DMA1", 0x48), ("DMA1", 0x50), ("DMA1", 0x5C), ("DMA1", 0x64)
+CORE, BUS_INTERRUPT = "/machine/soc/armv7m", 33
+ADDRESS, LEVEL = 0x6A, 0x12
+WROTE, STOPPED = 1 << 6, 1 << 5  # of the master's state
+BOTH_BUSES = {"board": "b-l475e-iot01a", "actuators": [{"name": "arm", "type": "PWM", "pin": 3, "device": "servo"}],
+              "sensors": [{"name": f"bus{bus}", "type": "I2C", "bus": bus, "address": hex(ADDRESS), "device": "i2c_register",
+                           "channels": {"LEVEL": {"input": LEVEL, "rate": "50Hz"}}} for bus in range(2)]}
+WATCHED = """
+SAFETY blind
+  WHEN bus1 LEVEL > 1000
+  DO
+    STOP arm
+    ALERT "stands still"
+END
+WHEN bus0 LEVEL > 500
+DO LOG "high"
+END
+"""
+LOOSEST = 1.3
 
 
 class FlashPlayer(Debugger):
@@ -106,6 +132,87 @@ class KeptInFlash(WithFlash, test_store.Numbers):
 
 class OwnerInFlash(WithFlash, test_owner.Owner):
     pass
+
+
+class Bus(DebuggedTest):
+    def qemu_arguments(self):
+        self.log = self.folder / "told"
+        return ["-d", "unimp", "-D", str(self.log), *pins.arguments(self.folder), *super().qemu_arguments()]
+
+    def begin(self):
+        config, program = self.folder / "watched.json", self.folder / "watched.rsl"
+        config.write_text(json.dumps(BOTH_BUSES))
+        program.write_text(WATCHED)
+        return program, "--config", config
+
+    def told(self, place):
+        """The values that were written there, so far."""
+        return [int(value, 16) for name, at, value in WRITE.findall(self.log.read_text()) if (name, int(at, 16)) == place]
+
+    def test_nobody_on_it_is_told_trips_safety_and_holds_nobody_up(self):
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json", "--upload", *self.begin())
+        self.addCleanup(lambda: reader and reader.stop())
+        for wanted in ({"event": "silent", "sensor": "bus0"}, {"event": "silent", "sensor": "bus1"}, {"event": "alert"}):
+            self.assertTrue(reader.wait_for(lambda lines, wanted=wanted: any(wanted.items() <= json.loads(line).items() for line in lines),
+                                            PATIENCE), (wanted, reader.lines[-8:]))
+        reader.stop()
+        reader = None
+        said = rsc.info(self.board.port)
+        self.assertEqual((said["status"]["safety_late_us"], said["status"]["faults"]), (0, 0))
+        self.assertEqual([thread["missed_deadlines"] for thread in said["threads"]], [0] * len(said["threads"]))
+        self.assertEqual([device["answers"] for device in said["buses"]["devices"]], [False, False])
+        self.assertTrue(all(device["failed"] > 0 for device in said["buses"]["devices"]))
+
+    def test_what_it_is_told_and_what_that_costs(self):
+        """The test is the master and its DMA: it says that all was written, puts what was read where it shall be, and says stop."""
+        self.upload(*self.begin())
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
+        self.addCleanup(reader.stop)
+        at = symbols(FIRMWARE)
+        ask = next(place for name, place in at.items() if name.startswith("robosync::boards::l475::Board::i2c_transfer("))
+        read, where = self.read_of_state()
+        asked, ended = [], []
+        with self.debugger() as debugger:
+            for value in (7, 260, 1234):
+                asked.append(self.ask_own_bus(debugger, ask))
+                self.assertEqual(self.told(TRANSFER)[-1], 0x1_2000 | ADDRESS << 1)
+                self.assertEqual((self.told(COUNT_4)[-1], self.told(COUNT_5)[-1]), (1, 2))
+                self.assertEqual(wires.read(self.told(MEMORY_4)[-1], 1), bytes([LEVEL]))
+                for state, memory in ((WROTE, b""), (STOPPED, value.to_bytes(2, "little"))):
+                    wires.write(self.told(MEMORY_5)[-1], memory or bytes(2))
+                    wires.interrupt(CORE, BUS_INTERRUPT)
+                    debugger.run_to(at["OwnBus_Handler"], lambda: None)
+                    ended.append(debugger.steps_to_return({read: (where, state)}))
+                self.assertEqual(self.told(TRANSFER)[-1], 0x202_2400 | ADDRESS << 1)
+        for value in (7, 260, 1234):
+            self.assertTrue(reader.wait_for(lambda lines, value=value: any(
+                '"input"' in line and json.loads(line).get("value") == value for line in lines), PATIENCE), (value, reader.lines[-8:]))
+        said = int(re.search(r"COST\(i2c_ask,\s*(\d+)", (ROOT / "runtime-m4/boards/b-l475e-iot01a/costs.def").read_text())[1])
+        # At worst the sensor is told to wake up as well: a second transfer, that begins where the first one ends.
+        measured = max(asked) + 2 * ended[0] + 2 * max(ended)
+        print(f"\n  asked {asked}, interrupts {ended}: {measured}, said {said}")
+        self.assertGreaterEqual(said, measured)
+        self.assertLessEqual(said, LOOSEST * measured)
+
+    def ask_own_bus(self, debugger, ask):
+        """Instructions of the next call that begins a transfer there."""
+        before = len(self.told(TRANSFER))
+        while True:
+            debugger.run_to(ask, lambda: None)
+            own = debugger.register(1) == 1
+            steps = debugger.steps_to_return()
+            if own and len(self.told(TRANSFER)) > before:
+                return steps
+
+    def read_of_state(self):
+        """Where the interrupt's handler reads the master's state, and into which register."""
+        place = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::boards::l475::I2cMaster::on_interrupt("))
+        said = subprocess.run(["arm-none-eabi-objdump", "-d", f"--start-address={place & ~1:#x}", f"--stop-address={(place & ~1) + 64:#x}",
+                               FIRMWARE], check=True, text=True, stdout=subprocess.PIPE).stdout
+        found = re.search(r"^\s*([0-9a-f]+):.*\sldr(?:\.w)?\s+r(\d+), \[r\d+, #24\]", said, re.M)
+        return int(found[1], 16), int(found[2])
 
 
 class WithoutFlash(RobotTest):

@@ -87,6 +87,10 @@ std::uint32_t Board::pwm_read(std::uint16_t pin) const {
   return pins::read(pin);
 }
 
+void Board::enable(std::uint16_t pin, bool on) {
+  pins::enable(pin, on);
+}
+
 // The watchdog has no interrupt: it resets the chip, and that lets all pins go. Its first period is longer, as
 // the chip takes over what is said here a few of its counts later.
 void Board::watchdog_start() {

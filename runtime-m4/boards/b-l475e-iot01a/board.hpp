@@ -36,6 +36,7 @@ public:
   bool analog(std::uint16_t pin, std::uint16_t& voltage) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
+  void enable(std::uint16_t pin, bool on) override;
   Store* store() override { return &store_; }
   std::size_t link_write(std::span<const std::byte> bytes) override { return line_.write(bytes); }
   std::size_t link_read(std::span<std::byte> bytes) override { return line_.read(bytes); }
