@@ -14,6 +14,7 @@ void set_up(const DmaChannel& channel, Register data) {
 
 void move(const DmaChannel& channel, std::uint32_t memory, std::size_t bytes,
           std::uint32_t direction) {
+  kDmaForget.write(0xFU << 4 * (channel.number - 1));
   channel.memory().write(memory);
   channel.count().write(static_cast<std::uint32_t>(bytes));
   channel.control().write(direction | DmaChannel::kOn);

@@ -178,6 +178,8 @@ struct DmaChannel {  // of DMA1
   static constexpr std::uint32_t kBytesFromMemory = 1U << 7 | 1U << 4;
   static constexpr std::uint32_t kBytesToMemory = 1U << 7;
 };
+inline constexpr Register kDmaForget{
+    0x4002'0004};  // 4 bits a channel: who has failed does nothing before
 inline constexpr Register kDmaSelect{0x4002'00A8};  // 4 bits a channel, the first one's at the end
 inline constexpr std::uint32_t kDmaForI2c = 3;
 

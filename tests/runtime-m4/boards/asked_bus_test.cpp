@@ -297,3 +297,21 @@ TEMPLATE_TEST_CASE("STM32L475: a bus error that the master sees is none", "", L4
   CHECK(bus.collect(0x10_b));
   CHECK(bus.got_from(0x10));
 }
+
+TEMPLATE_TEST_CASE("STM32L475: DMA that fails is a transfer that failed, and no more", "",
+                   L475Bus<1>, L475Bus<2>) {
+  // At what is to be written, at what is read, and at the last of it.
+  for (const unsigned after : {10U, 70U, 130U}) {
+    Bus<TestType> bus;
+    bus.ask(0x10_b);
+    bus.run(after);
+    bus.dma_fails = true;
+    bus.run(900);
+    CHECK_FALSE(bus.collect(0x10_b));
+    CHECK_FALSE(bus.bus.is_busy());
+    bus.ask(0x30_b);
+    bus.run(300);
+    CHECK(bus.collect(0x30_b));
+    CHECK(bus.got_from(0x30));
+  }
+}

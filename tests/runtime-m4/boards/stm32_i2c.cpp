@@ -1,6 +1,8 @@
 // See stm32_i2c.hpp. RM0351, 39 (I2C), 11 (DMA), 8 (GPIO).
 #include "tests/runtime-m4/boards/stm32_i2c.hpp"
 
+#include <utility>
+
 namespace robosync::tests {
 namespace {
 
@@ -62,6 +64,11 @@ bool Stm32I2c::interrupt() const {
 volatile std::byte* Stm32I2c::dma(unsigned number, bool from_memory, std::uint32_t data_register) {
   Channel& channel = channels_[number];
   if ((channel.control & 1) == 0 || channel.count == 0) return nullptr;
+  if (std::exchange(dma_fails, false)) {
+    channel.failed = true;
+    channel.control &= ~1U;
+    return nullptr;
+  }
   demand((dma_clock_ & 1) != 0, "DMA1 has no clock");
   demand((select_ >> 4 * (number - 1) & 0xF) == kRequestOfI2c, "the channel hears somebody else");
   // Bytes, the memory's address goes on, the other's does not, and nobody begins again.
@@ -133,8 +140,10 @@ void Stm32I2c::read_byte() {
   if (done_ > 0) {
     demand((control_ & kReadByDma) != 0, "nobody takes what is read");
     volatile std::byte* const byte = dma(wiring_.read_channel, false, 0x24);
-    if (byte == nullptr) return;  // the clock is held down
-    *byte = registers[place_++];
+    const bool is_last = done_ == (transfer_ >> 16 & 0xFF);
+    if (byte == nullptr && !is_last)
+      return;  // the clock is held down; the last one nobody waits for
+    if (byte != nullptr) *byte = registers[place_++];
   }
   if (done_ == (transfer_ >> 16 & 0xFF)) return end_of_bytes();
   ++done_;
@@ -225,7 +234,7 @@ void Stm32I2c::write_channel(std::uintptr_t offset, std::uint32_t value) {
   demand((offset - 8) % 20 == 0 || (channel.control & 1) == 0, "it is changed while it is on");
   switch ((offset - 8) % 20) {
     case 0:
-      channel.control = value;
+      channel.control = channel.failed ? value & ~1U : value;
       channel.moved = 0;
       return;
     case 4:
@@ -299,6 +308,9 @@ void Stm32I2c::write(std::uintptr_t at, std::uint32_t value) {
     clock_ = value;
   } else if (at == kDmaSelect) {
     select_ = value;
+  } else if (at == kDma + 0x04) {
+    for (auto& [number, channel] : channels_)
+      if ((value >> 4 * (number - 1) & 0b1001) != 0) channel.failed = false;
   } else if (at >= kDma + 0x08 && at < kDmaSelect) {
     write_channel(at - kDma, value);
   } else {

@@ -35,6 +35,7 @@ public:
 
   // --- what else may happen ---
   bool another_master = false;      // takes the bus at the next byte
+  bool dma_fails = false;           // at the next byte; the channel is off then
   bool spurious_bus_error = false;  // at the next byte (ES0250: of a master it says nothing)
 
   void pass_microsecond();
@@ -48,6 +49,7 @@ private:
   enum class Phase { idle, sending, reading, ended, stopping };
   struct Channel {
     std::uint32_t control = 0, count = 0, peripheral = 0, memory = 0, moved = 0;
+    bool failed = false;
   };
 
   bool pulls_low(unsigned pin) const;
