@@ -25,6 +25,7 @@ FLASH = "robosync::boards::l475::Flash::"
 AT_BREAKPOINT = "T05"
 PAGE, AT_ONCE = 2048, 1024  # bytes of the flash; … that the debugger writes at once
 DONE = 1  # boards::Erasing
+UPLOADS = 3
 # QEMU writes down what the masters of I2C and DMA1 are told.
 PATIENCE = 20
 WRITE = re.compile(r"(I2C2|DMA1): unimplemented device write \(size 4, offset 0x([0-9a-f]+), value 0x([0-9a-f]+)\)")
@@ -101,6 +102,13 @@ class WithFlash:
         super().switch_on("-gdb", f"unix:{gdb},server=on,wait=off", "-S", *extra)
         self.flash = FlashPlayer(gdb)
         self.addCleanup(self.end_flash)
+
+    def upload(self, program, *arguments):
+        """The debugger holds the board up, on a busy machine for longer than rsc waits."""
+        for _ in range(UPLOADS - 1):
+            with contextlib.suppress(rsc.RscError):
+                return super().upload(program, *arguments)
+        return super().upload(program, *arguments)
 
     def end_flash(self):
         if getattr(self, "flash", None):
@@ -229,6 +237,22 @@ class WithoutFlash(RobotTest):
         self.assertEqual([thread["missed_deadlines"] for thread in told["threads"]], [0] * len(told["threads"]))
         self.board.qmp.command("system_reset")
         self.assertIsNone(rsc.info(self.board.port)["board"]["program"])
+
+
+class Damage(DebuggedTest):
+    def qemu_arguments(self):
+        return [*pins.arguments(self.folder), *super().qemu_arguments()]
+
+    def test_what_the_flash_cannot_correct_ends_in_a_reset_but_in_the_store(self):
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        forgive = next(at for name, at in symbols(FIRMWARE).items() if name.startswith(FLASH + "forgive_damage("))
+        for forgiven, reason in ((1, "power"), (0, "software")):
+            with self.debugger() as debugger:
+                debugger.run_to(forgive, lambda: wires.interrupt(CORE, 0, "NMI"))
+                debugger.set_register(0, forgiven)
+                debugger.set_register(PC, debugger.register(LINK_REGISTER) & ~1)
+            self.assertEqual(self.status()["reset_reason"], reason)
 
 
 class NoOwner(RobotTest):
