@@ -139,8 +139,6 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
   if (const auto* enables = fields.find("enables"))
     board.enables = read_pins(*enables, Object::inputs, diagnostics);
   if (const auto* parts = fields.find("on_board")) board.parts = read_parts(*parts, diagnostics);
-  if (fields.find("store") != nullptr)
-    board.store_bytes = read_number(fields, "store", "a board", diagnostics);
   if (const auto* flash = fields.find("flash")) board.flash = read_flash(*flash, diagnostics);
   const auto* arena = fields.require("arena", "a board");
   if (arena == nullptr) return board;

@@ -63,10 +63,6 @@ std::string boards_with_enables() {
   return boards_that([](const Board& board) { return !board.enables.empty(); });
 }
 
-std::string boards_with_i2c() {
-  return boards_that([](const Board& board) { return board.i2c_buses != 0; });
-}
-
 std::string boards_with_analog() {
   return boards_that([](const Board& board) { return !board.analog.empty(); });
 }
@@ -387,15 +383,12 @@ void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
   if (wiring.bus < board_.i2c_buses) return;
   const auto* bus = fields.find("bus");
   if (bus == nullptr) bus = fields.find("type");
-  std::string buses = "its buses are 0 to " + std::to_string(board_.i2c_buses - 1);
-  if (board_.i2c_buses == 0)
-    buses = "its firmware drives no I2C bus yet; that of " + boards_with_i2c() + " does";
-  if (board_.i2c_buses == 1) buses = "it has one, bus 0";
   diagnostics_
       .report(Code::E0205,
               "the board " + board_.name + " has no I2C bus " + std::to_string(wiring.bus))
       .label(bus->span)
-      .helps(buses);
+      .helps(board_.i2c_buses == 1 ? "it has one, bus 0"
+                                   : "its buses are 0 to " + std::to_string(board_.i2c_buses - 1));
 }
 
 void WiringReader::check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver) {

@@ -64,7 +64,6 @@ private:
     lint_waits(input);
     lint_names(input);
     lint_robot(input);
-    lint_kept(input);
   }
 
   void add(const ast::Item& item) {

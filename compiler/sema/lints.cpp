@@ -5,7 +5,6 @@
 #include <optional>
 #include <set>
 
-#include "compiler/config/boards.hpp"
 #include "compiler/config/units.hpp"
 #include "compiler/ir/walk.hpp"
 #include "compiler/syntax/walk.hpp"
@@ -615,21 +614,6 @@ void lint_robot(const LintInput& input) {
     input.diagnostics.report(Code::W0218, "there is no rule: the robot does nothing").label({});
   lint_noise(input);
   lint_safety(input);
-}
-
-void lint_kept(const LintInput& input) {
-  std::vector<const VariableName*> kept;
-  for (const VariableName& name : input.names.variables())
-    if (name.kind == vm::VariableKind::kept) kept.push_back(&name);
-  if (kept.empty()) return;
-  const Board board = board_for(input.robot.board);
-  if (board.store_bytes != 0) return;
-  Diagnostic& d = input.diagnostics.report(
-      Code::W0220, "the board " + board.name + " cannot keep " + kept.front()->name.shown() +
-                       (kept.size() > 1 ? " and others" : "") + " when it is switched off");
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    d.label(kept[i]->name.span, "there it begins anew at each start", i == 0);
-  d.helps("`rsc run` keeps it in a file");
 }
 
 }  // namespace robosync::compiler

@@ -36,7 +36,5 @@ void lint_waits(const LintInput& input);
 void lint_names(const LintInput& input);
 // W0208, W0209, W0218: thresholds on noisy sensors; motion without SAFETY; no rule at all.
 void lint_robot(const LintInput& input);
-// W0220: KEPT numbers, which the board begins anew.
-void lint_kept(const LintInput& input);
 
 }  // namespace robosync::compiler

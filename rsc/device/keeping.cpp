@@ -50,7 +50,8 @@ std::string keeping_text(const link::Kept& kept) {
       kept.kept_bytes == 0 ? "has no program" : "starts with the program kept before";
   switch (kept.state) {
     case Keeping::no_store:
-      return "not kept: this board has no store, and no program after a reset";
+      return fmt::format(
+          "not kept: this board has no store that answers; after a reset the robot {}", instead);
     case Keeping::no_program:
       return fmt::format("after a reset the robot {}",
                          kept.kept_bytes == 0 ? instead : "starts with the kept program");

@@ -14,6 +14,7 @@ public:
     taken,  // somebody with a higher rank needed the bus: nothing is certain to have happened; at once again
     busy,  // it does not answer: it is writing, which takes a few milliseconds, or it is not there
     goes_on,  // the next part of it lets all others wait, for kStall ticks at most: again where nobody is due before
+    at_work,  // it goes on by itself, and lets nobody wait: again after a tick, and not for ever
     spent     // it cannot be written there, or does not hold it
   };
   // Most bytes of one read or write: so few that a thread of the lowest rank gets them done between others.

@@ -30,7 +30,7 @@ bool OrderGate::work() {
       return true;
     case Work::waits:
     case Work::
-        rests:  // of flash, where no board has owners yet: it would have to wait for a gap, as the keeper does
+        rests:  // of flash that stalls, where no board has owners yet: it would have to wait for a gap, as the keeper does
       due_ = kernel_.now() + kernel::kTick;
       return false;
     case Work::ended:

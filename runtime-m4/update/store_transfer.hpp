@@ -40,6 +40,8 @@ public:
         return ++unanswered_ < kPatience ? Work::waits : end(false);
       case boards::Store::Outcome::goes_on:
         return Work::rests;
+      case boards::Store::Outcome::at_work:
+        return Work::waits;
       case boards::Store::Outcome::spent:
         return end(false);
       case boards::Store::Outcome::done:

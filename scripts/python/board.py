@@ -29,14 +29,16 @@ DEVICES = {REFERENCE: ["-device", "max34451,id=touch,address=0x70"]}
 # Its store, as many bytes as its profile says, which stand in a file: an EEPROM, or a piece of the flash, from that address on.
 # QEMU has no file for the flash: it is read from there at the start, and saved at the end.
 EEPROMS = {REFERENCE: "at24c-eeprom,address=0x50,rom-size={size},drive=store"}
-FLASHES = {"microbit-v2": 0x8_0000 - 221_184}
+FLASHES = {"microbit-v2": 0x8_0000 - 221_184, "b-l475e-iot01a": 0x0808_0000}
 BLANK = b"\xff"
 HAVE_WATCHDOG = {REFERENCE}  # in QEMU
 SINCE = {"b-l475e-iot01a": (9, 2), "microbit-v2": (9, 2)}
 UNPACKED = ROOT / "build/qemu/usr"  # by scripts/emulator
-# For whom scripts/emulator makes a QEMU of its own, and what else the machine is told: bytes of its memory.
+# For whom scripts/emulator makes a QEMU of its own, and what else the machine is told: bytes of its memory, or how much may be
+# loaded into it.
 MADE = {"microbit-v2": ROOT / "build/qemu-microbit-v2"}
-MEMORY = {"microbit-v2": ["-global", "nrf51-soc.sram-size=131072", "-global", "nrf51-soc.flash-size=524288"]}
+MEMORY = {"microbit-v2": ["-global", "nrf51-soc.sram-size=131072", "-global", "nrf51-soc.flash-size=524288"],
+          "b-l475e-iot01a": ["-m", "1M"]}
 LOSES_INTERRUPT = {"microbit-v2"}  # of its UART, when a byte has to wait
 TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
 BOOT_SECONDS = 20  # on a busy machine

@@ -14,7 +14,9 @@ from support import RobotTest
 
 PATIENCE = 20
 CONNECTED = "T02"
-PC, XPSR = 15, 25
+LINK_REGISTER, PC, XPSR = 14, 15, 25
+END_OF_INTERRUPT = 0xFFFF_FFE0  # and up: no place of code
+MOST_STEPS = 4000
 INTERPRETER = "robosync::vm::run("  # (machine, code, progress)
 IN_SAFETY = "robosync::Runtime::look_at_rules()"
 
@@ -65,12 +67,32 @@ class Debugger:
     def step(self):
         self._ask("s")
 
+    def steps_to_return(self, reads=None):
+        """How many instructions until the function or interrupt that has just begun returns. `reads` says what the ones that read
+        registers of a chip read, which QEMU has not: {address: (register, value)}."""
+        back, mode, steps = self.register(LINK_REGISTER), self.mode(), 0
+        end = back & ~1
+        # Where an interrupt ends the core takes its return out of what was pushed, or another interrupt begins.
+        while (at := self.register(PC)) != end and (back < END_OF_INTERRUPT or self.mode() == mode):
+            self.step()
+            if reads and at in reads:
+                self.set_register(*reads[at])
+            steps += 1
+            if steps == MOST_STEPS:
+                raise AssertionError("it does not return")
+        return steps
+
     def mode(self):
         """Which exception is handled; 0: none."""
         return self.register(XPSR) & 0x1FF
 
     def register(self, number):
         return int.from_bytes(bytes.fromhex(self._ask(f"p{number:x}")), "little")
+
+    def core(self):
+        """What r0 to r15 hold, in one question."""
+        raw = bytes.fromhex(self._ask("g")[:8 * 16])
+        return [int.from_bytes(raw[i:i + 4], "little") for i in range(0, len(raw), 4)]
 
     def set_register(self, number, value):
         self._expect_ok(f"P{number:x}={value.to_bytes(4, 'little').hex()}")

@@ -14,7 +14,7 @@ from pathlib import Path
 import pins
 import rsc
 import test_store
-from debugger import PC, DebuggedTest, Debugger
+from debugger import LINK_REGISTER, PC, DebuggedTest, Debugger
 from support import TURNS_ROUND, LineReader, wheel_on
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
@@ -45,7 +45,7 @@ END
 """
 # The lights' pins of port 0: QEMU has no second port, where column 4 is.
 ROWS, COLUMNS = (21, 22, 15, 24, 19), {0: 28, 1: 11, 2: 31, 4: 30}
-P0_OUT, LINK_REGISTER, END_OF_INTERRUPT = 0x5000_0504, 14, 0xFFFF_FFE0
+P0_OUT = 0x5000_0504
 # Of the speaker: PSEL.OUT, and where the module fetches its values, the last of which is the period in microseconds.
 PIN_OF_SPEAKER, VALUES_OF_SPEAKER, P0_00 = 0x4002_2560, 0x4002_2520, 0
 HORN = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
@@ -269,18 +269,8 @@ class OnMicrobit(DebuggedTest):
         with self.debugger() as debugger:
             for _ in range(calls):
                 debugger.run_to(start, lambda: None)
-                counts.append(self.steps_to_return(debugger))
+                counts.append(debugger.steps_to_return())
         return max(counts)
-
-    def steps_to_return(self, debugger):
-        back, steps = debugger.register(LINK_REGISTER), 0
-        end = back & ~1
-        # Where an interrupt ends the core takes its return out of what was pushed.
-        while debugger.register(PC) != end and (back < END_OF_INTERRUPT or debugger.mode() != 0):
-            debugger.step()
-            steps += 1
-            self.assertLess(steps, LOOKS)
-        return steps
 
     def calls_of(self, driver):
         """{what: declared} of its calls."""
@@ -408,11 +398,11 @@ class OnMicrobit(DebuggedTest):
                 if self.told(READ_TO):
                     wires.write(self.told(READ_TO)[0], registers)
                 before = self.told(WRITE_COUNT).count(1)
-                count = self.steps_to_return(debugger)
+                count = debugger.steps_to_return()
                 (asked if self.told(WRITE_COUNT).count(1) > before else taken).append(count)
                 wires.interrupt(CORE, BUS_INTERRUPT)
                 debugger.run_to(handler, lambda: None)
-                ends.append(self.steps_to_return(debugger))
+                ends.append(debugger.steps_to_return())
         # At worst the sensor is told to wake up as well: a second transfer, and its end.
         for what, said, measured in (("asking", declared["i2c_ask"], max(asked) + 2 * max(ends)),
                                      ("taking", 2 * declared["i2c_transfer"] + 23 * declared["i2c_byte"], max(taken))):

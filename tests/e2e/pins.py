@@ -55,10 +55,10 @@ class Pins:
     def read(self, address, count):
         return bytes.fromhex(self._say(f"read {address:#x} {count:#x}").split()[1][2:])
 
-    def interrupt(self, controller, line):
+    def interrupt(self, controller, line, name="unnamed-gpio-in"):
         """It is asked for, once."""
         for level in (1, 0):
-            self._say(f"set_irq_in {controller} unnamed-gpio-in {line} {level}")
+            self._say(f"set_irq_in {controller} {name} {line} {level}")
 
     def _say(self, command):
         self._lines.write(command + "\n")

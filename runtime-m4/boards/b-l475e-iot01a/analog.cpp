@@ -19,8 +19,8 @@ struct Input {
   unsigned bit;       // of port C
   unsigned channel;
 };
-constexpr std::array kInputs{Input{40, 5, 14}, Input{41, 4, 13}, Input{42, 3, 4},
-                             Input{43, 2, 3},  Input{44, 1, 2},  Input{45, 0, 1}};
+constexpr std::array kInputs{Input{40, 5, 14}, Input{41, 4, 13}, Input{42, 3, 4}, Input{43, 2, 3},
+                             Input{44, 1, 2}};
 
 // A look takes four cycles of the core's 80 MHz at least: 25 us, and 50 for the regulator, which wants 20.
 constexpr unsigned kLooks = 500;

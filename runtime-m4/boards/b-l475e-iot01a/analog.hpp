@@ -1,4 +1,4 @@
-// The voltages of the Arduino header's A0 to A5, by the chip's first converter, ADC1. Here they have the numbers 40 to 45.
+// The voltages of the Arduino header's A0 to A4, by the chip's first converter, ADC1. Here they have the numbers 40 to 44.
 //
 // They are analog inputs from start() on and never anything else.
 #pragma once

@@ -36,6 +36,11 @@ Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
   inputs::start();
   echoes::start();
   analog::start();
+  for (I2c& bus : i2c_)
+    bus.start();
+  for (const I2cRegisters& master : {kI2c1, kI2c2})
+    for (const unsigned interrupt : {master.event_interrupt, master.event_interrupt + 1})
+      port::core::enable_interrupt(interrupt);
   for (const unsigned interrupt : kEchoInterrupts)
     port::core::enable_interrupt(interrupt);
 }
@@ -45,9 +50,17 @@ link::ResetReason Board::reset_reason() const {
   return watchdog_reset_ ? ResetReason::watchdog : last_reset();
 }
 
-bool Board::i2c_transfer(std::uint8_t /*bus*/, std::uint8_t /*address*/,
-                         std::span<const std::byte> /*out*/, std::span<std::byte> /*in*/) {
-  return false;
+bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
+                         std::span<std::byte> in) {
+  return bus < i2c_.size() && i2c_[bus].transfer(asks_ahead_, address, out, in);
+}
+
+bool Board::i2c_busy() const {
+  return is_any_busy(i2c_);
+}
+
+BusState Board::buses() const {
+  return state_of(i2c_);
 }
 
 bool Board::input(std::uint16_t pin) const {
@@ -72,6 +85,10 @@ void Board::pwm_write(std::uint16_t pin, std::uint32_t pulse_us) {
 
 std::uint32_t Board::pwm_read(std::uint16_t pin) const {
   return pins::read(pin);
+}
+
+void Board::enable(std::uint16_t pin, bool on) {
+  pins::enable(pin, on);
 }
 
 // The watchdog has no interrupt: it resets the chip, and that lets all pins go. Its first period is longer, as
@@ -103,9 +120,12 @@ extern "C" {
 void NMI_Handler();
 void Usart1_Handler();
 void Echo_Handler();
+void HeaderBus_Handler();
+void OwnBus_Handler();
 
-// The flash is damaged where it cannot be corrected: what runs is not what was written.
+// The flash is damaged where it cannot be corrected: what runs is not what was written, unless that is in the store.
 void NMI_Handler() {
+  if (robosync::boards::l475::Flash::forgive_damage()) return;
   robosync::boards::reset_after({});
 }
 
@@ -119,6 +139,14 @@ void Usart1_Handler() {
 // The clock counts down.
 void Echo_Handler() {
   robosync::boards::l475::echoes::on_edge(~robosync::port::read_clock());
+}
+
+void HeaderBus_Handler() {
+  robosync::boards::l475::board.i2c(0).on_interrupt();
+}
+
+void OwnBus_Handler() {
+  robosync::boards::l475::board.i2c(1).on_interrupt();
 }
 
 }  // extern "C"

@@ -2,12 +2,16 @@
 // without timers and without watchdog.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "runtime-m4/boards/b-l475e-iot01a/flash.hpp"
+#include "runtime-m4/boards/b-l475e-iot01a/i2c.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/usart.hpp"
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/common/flash_store.hpp"
 #include "runtime-m4/boards/pins.hpp"
 
 namespace robosync::boards::l475 {
@@ -22,13 +26,18 @@ public:
   const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
-  BusState buses() const override { return {}; }
+  BusState buses() const override;
+  bool i2c_asks_ahead() const override { return true; }
+  void i2c_ask(bool ahead) override { asks_ahead_ = ahead; }
+  bool i2c_busy() const override;
   bool input(std::uint16_t pin) const override;
   void ping(std::uint16_t trigger, std::uint16_t echo) override;
   std::uint32_t take_echo(std::uint16_t echo) override;
   bool analog(std::uint16_t pin, std::uint16_t& voltage) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
+  void enable(std::uint16_t pin, bool on) override;
+  Store* store() override { return &store_; }
   std::size_t link_write(std::span<const std::byte> bytes) override { return line_.write(bytes); }
   std::size_t link_read(std::span<std::byte> bytes) override { return line_.read(bytes); }
   void link_start(const LineEvents& events) override { line_.start(events); }
@@ -36,10 +45,15 @@ public:
   void watchdog_kick() override;
 
   Line& line() { return line_; }
+  I2c& i2c(unsigned bus) { return i2c_[bus]; }
 
 private:
   bool watchdog_reset_ = false;  // why the chip was reset
   Line line_;
+  static_assert(ROBOSYNC_STORE_BYTES == flash::kBytesOfBank);
+  FlashStore<Flash> store_{flash::kBank2, ROBOSYNC_STORE_BYTES};
+  bool asks_ahead_ = false;
+  std::array<I2c, 2> i2c_{I2c(i2c_master(0)), I2c(i2c_master(1))};
 };
 
 }  // namespace robosync::boards::l475

@@ -9,7 +9,8 @@ namespace robosync::boards::l475 {
 
 namespace {
 
-constexpr unsigned kMostCalls = 50;       // 10 ms each
+// A millisecond each, or as little as a byte of the line takes either way, 43 us: longer than a page takes.
+constexpr unsigned kMostCalls = 1000;
 constexpr unsigned kMostLooks = 100'000;  // more than 5 ms at 80 MHz
 
 void begin(std::uint32_t what) {
@@ -47,7 +48,9 @@ Erasing Flash::erase(std::uint32_t page, unsigned call) {
   }
   begin(which);
   flash::kControl.write(which | flash::kStart);
-  return Erasing::goes_on;
+  if ((flash::kControl.read() & ~flash::kStart) == which) return Erasing::goes_on;
+  end();  // it does not do what it is told, as in an emulator, or where it is locked until the next reset
+  return Erasing::failed;
 }
 
 // Waits for at most as long as two words take: by the thread of the lowest rank.

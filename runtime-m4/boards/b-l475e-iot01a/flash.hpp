@@ -12,6 +12,7 @@ namespace robosync::boards::l475 {
 struct Flash {
   static constexpr std::uint32_t kPage = 2048;
   static constexpr std::size_t kUnit = 2;  // what stands under one checksum of the flash
+  static constexpr bool kStalls = false;
 
   static Erasing erase(std::uint32_t page, unsigned call);
   static bool is_busy();

@@ -6,14 +6,21 @@
 
 extern "C" void Usart1_Handler();
 extern "C" void Echo_Handler();
+extern "C" void HeaderBus_Handler();
+extern "C" void OwnBus_Handler();
 
 namespace robosync::boards {
 
 inline constexpr std::size_t kInterrupts = 82;
-inline constexpr std::array kUsedInterrupts{Interrupt{l475::usart1::kInterrupt, Usart1_Handler},
-                                            Interrupt{l475::exti::kInterrupt2, Echo_Handler},
-                                            Interrupt{l475::exti::kInterrupt4, Echo_Handler},
-                                            Interrupt{l475::exti::kInterrupt5To9, Echo_Handler},
-                                            Interrupt{l475::exti::kInterrupt10To15, Echo_Handler}};
+inline constexpr std::array kUsedInterrupts{
+    Interrupt{l475::usart1::kInterrupt, Usart1_Handler},
+    Interrupt{l475::exti::kInterrupt2, Echo_Handler},
+    Interrupt{l475::exti::kInterrupt4, Echo_Handler},
+    Interrupt{l475::exti::kInterrupt5To9, Echo_Handler},
+    Interrupt{l475::exti::kInterrupt10To15, Echo_Handler},
+    Interrupt{l475::kI2c1.event_interrupt, HeaderBus_Handler},
+    Interrupt{l475::kI2c1.event_interrupt + 1, HeaderBus_Handler},
+    Interrupt{l475::kI2c2.event_interrupt, OwnBus_Handler},
+    Interrupt{l475::kI2c2.event_interrupt + 1, OwnBus_Handler}};
 
 }  // namespace robosync::boards

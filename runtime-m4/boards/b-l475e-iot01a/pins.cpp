@@ -24,6 +24,9 @@ constexpr std::array kOutputs{
     Output{4, kPortA, 3, 2, kTimer5, 3},  Output{5, kPortB, 4, 2, kTimer3, 0},
     Output{6, kPortB, 1, 2, kTimer3, 3},  Output{10, kPortA, 2, 2, kTimer5, 2},
     Output{11, kPortA, 7, 2, kTimer3, 1}, Output{13, kPortA, 5, 1, kTimer2, 0}};
+constexpr std::uint16_t kEnable = 45;
+constexpr Port kEnablePort = kPortC;
+constexpr unsigned kEnableBit = 0;
 constexpr std::array kTimers{kTimer2, kTimer3, kTimer4, kTimer5};
 
 constexpr std::uint32_t kFrame = 20'000;   // microseconds
@@ -56,8 +59,11 @@ void low_at_once(const Timer& timer, unsigned channel) {
 
 }  // namespace
 
-// The timers first: when they get their pins, these are low.
+// What a pin is to be first: when the timers get theirs, these are low.
 void start() {
+  enable(kEnable, false);
+  kEnablePort.pulls().set_field(kEnableBit, 2, 0);
+  kEnablePort.mode().set_field(kEnableBit, 2, kModeOfOutput);
   rcc::give_clock(rcc::kApb1, rcc::kTimers2To5);
   for (const Timer& timer : kTimers)
     start(timer);
@@ -90,12 +96,17 @@ void pulse(std::uint16_t pin) {
   timer.compare(output->channel).write(0);
 }
 
+void enable(std::uint16_t pin, bool on) {
+  if (pin == kEnable) kEnablePort.change().write(1U << (on ? kEnableBit + 16 : kEnableBit));
+}
+
 std::uint32_t read(std::uint16_t pin) {
   const Output* const output = find(pin);
   return output == nullptr ? 0 : output->timer.compare(output->channel).read();
 }
 
 void switch_off() {
+  enable(kEnable, false);
   for (const Timer& timer : kTimers)
     for (unsigned channel = 0; channel < Timer::kChannels; ++channel)
       low_at_once(timer, channel);

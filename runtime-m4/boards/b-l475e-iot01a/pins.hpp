@@ -3,13 +3,15 @@
 //
 // From reset until start() they are not driven. 5 alone is pulled up then, by the chip, as it belongs to the debugger: so
 // the board's profile lets it have servo pulses only.
+//
+// A5, which has the number 45 here, is for the enable input of a chip on the bus, and nothing else.
 #pragma once
 
 #include <cstdint>
 
 namespace robosync::boards::l475::pins {
 
-// All pins low. Their ports have their clock.
+// All pins low, but the one at an enable input (boards::Board::enable()), which is high. Their ports have their clock.
 void start();
 
 // The pulse in microseconds, from the next frame on: no frame has part of one. 0 is off, at once. A pin that gives no
@@ -19,6 +21,9 @@ std::uint32_t read(std::uint16_t pin);
 
 // One pulse of 11 or 12 us, from now on; the timer ends it. [under a lock, as above]
 void pulse(std::uint16_t pin);
+
+// The pin at an enable input is low from now on, or high. Another one is left alone.
+void enable(std::uint16_t pin, bool on);
 
 // All of them, at once. Any state of the machine.
 void switch_off();

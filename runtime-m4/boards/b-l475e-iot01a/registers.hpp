@@ -22,11 +22,15 @@ inline constexpr std::uint32_t kRunsOnPll = 0b11 << 2;
 inline constexpr Register kPll{0x4002'100C};
 // From MSI, which comes out of reset with 4 MHz: times 40, and half of that comes out.
 inline constexpr std::uint32_t kPllOf80MHz = 0b01U | 40U << 8 | 1U << 24;
+inline constexpr Register kAhb1{0x4002'1048};
+inline constexpr std::uint32_t kDma1 = 1U << 0;
 inline constexpr Register kAhb2{0x4002'104C};
 inline constexpr std::uint32_t kPortsAToD = 0b1111;
 inline constexpr std::uint32_t kAdc = 1U << 13;
 inline constexpr Register kApb1{0x4002'1058};
 inline constexpr std::uint32_t kTimers2To5 = 0b1111;
+inline constexpr std::uint32_t kI2c1 = 1U << 21;
+inline constexpr std::uint32_t kI2c2 = 1U << 22;
 inline constexpr Register kApb2{0x4002'1060};
 inline constexpr std::uint32_t kUsart1 = 1U << 14;
 inline constexpr std::uint32_t kSystemConfiguration = 1U << 0;
@@ -65,16 +69,20 @@ inline constexpr std::uint32_t kStart = 1U << 16;
 inline constexpr std::uint32_t kLock = 1U << 31;
 inline constexpr Register kDamage{0x4002'2018};
 inline constexpr std::uint32_t kInBank2 = 1U << 19;
-inline constexpr std::uint32_t kDamaged = 1U << 31;  // more than can be corrected: NMI; 1 forgets
-inline constexpr std::uint32_t kBank2 =
-    0x0808'0000;  // its half a megabyte; the firmware is in the other one
+inline constexpr std::uint32_t kDamaged = 1U << 31;   // more than can be corrected: NMI; 1 forgets
+inline constexpr std::uint32_t kBank2 = 0x0808'0000;  // the firmware is in the other one
+inline constexpr std::uint32_t kBytesOfBank = 512 * 1024;
 }  // namespace flash
 
 struct Port {  // of pins
   std::uintptr_t base;
   constexpr Register mode() const { return {base}; }  // 2 bits a pin
+  constexpr Register open() const {
+    return {base + 0x04};
+  }  // a bit a pin: as an output it is low, or nobody drives it
   constexpr Register pulls() const { return {base + 0x0C}; }
   constexpr Register levels() const { return {base + 0x10}; }
+  constexpr Register change() const { return {base + 0x18}; }  // 1 << pin: high; 1 << 16 + pin: low
   // 4 bits a pin, of eight pins.
   constexpr Register function(unsigned pin) const {
     return {base + 0x20 + std::uintptr_t{4} * (pin / 8)};
@@ -92,6 +100,7 @@ constexpr std::uint32_t number_of(Port port) {  // A: 0
 }
 inline constexpr std::uint32_t kModeOfAnalog = 0b11;
 inline constexpr std::uint32_t kModeOfInput = 0b00;
+inline constexpr std::uint32_t kModeOfOutput = 0b01;
 inline constexpr std::uint32_t kModeOfFunction = 0b10;
 inline constexpr std::uint32_t kPullUp = 0b01;
 
@@ -154,6 +163,59 @@ inline constexpr Register kData{0x5004'0040};
 inline constexpr Register kCommon{0x5004'0308};
 inline constexpr std::uint32_t kClockByTwo = 1U << 18;
 }  // namespace adc
+
+struct DmaChannel {  // of DMA1
+  unsigned number;   // from 1
+  constexpr Register at(std::uintptr_t offset) const {
+    return {0x4002'0008 + std::uintptr_t{20} * (number - 1) + offset};
+  }
+  constexpr Register control() const { return at(0); }
+  constexpr Register count() const { return at(4); }  // bytes that are left
+  constexpr Register peripheral() const { return at(8); }
+  constexpr Register memory() const { return at(12); }
+
+  static constexpr std::uint32_t kOn = 1U << 0;
+  static constexpr std::uint32_t kBytesFromMemory = 1U << 7 | 1U << 4;
+  static constexpr std::uint32_t kBytesToMemory = 1U << 7;
+};
+inline constexpr Register kDmaForget{
+    0x4002'0004};  // 4 bits a channel: who has failed does nothing before
+inline constexpr Register kDmaSelect{0x4002'00A8};  // 4 bits a channel, the first one's at the end
+inline constexpr std::uint32_t kDmaForI2c = 3;
+
+struct I2cRegisters {
+  std::uintptr_t base;
+  unsigned event_interrupt;  // that of errors is the next one
+  std::uint32_t clock;       // of rcc::kApb1
+  constexpr Register control() const { return {base}; }
+  constexpr Register transfer() const { return {base + 0x04}; }
+  constexpr Register timing() const { return {base + 0x10}; }
+  constexpr Register state() const { return {base + 0x18}; }
+  constexpr Register forget() const { return {base + 0x1C}; }
+  constexpr Register received() const { return {base + 0x24}; }
+  constexpr Register send() const { return {base + 0x28}; }
+
+  // Refusal, stop, what was written, and errors interrupt; bytes come and go by DMA.
+  static constexpr std::uint32_t kOn = 1U << 0 | 0b1111U << 4 | 1U << 14 | 1U << 15;
+  static constexpr std::uint32_t kRead = 1U << 10;
+  static constexpr std::uint32_t kStart = 1U << 13;
+  static constexpr std::uint32_t kStopBehind = 1U << 25;
+  static constexpr std::uint32_t to(std::uint32_t address, std::size_t bytes) {
+    return address << 1 | static_cast<std::uint32_t>(bytes) << 16;
+  }
+  // Of 80 MHz by two: low for 60, high for 36, which with what the master takes to see the clock is 390 kHz at most; data
+  // 225 ns behind the clock's edge, and 400 before the next one.
+  static constexpr std::uint32_t kAlmost400kHz = 1U << 28 | 15U << 20 | 9U << 16 | 35U << 8 | 59U;
+  static constexpr std::uint32_t kRefused = 1U << 4;
+  static constexpr std::uint32_t kStopped = 1U << 5;
+  static constexpr std::uint32_t kWritten = 1U << 6;
+  static constexpr std::uint32_t kBusError = 1U << 8;
+  static constexpr std::uint32_t kOutvoted = 1U << 9;  // another master drives the lines
+};
+inline constexpr Port kPortOfI2c = kPortB;
+inline constexpr std::uint32_t kFunctionOfI2c = 4;
+inline constexpr I2cRegisters kI2c1{0x4000'5400, 31, rcc::kI2c1};
+inline constexpr I2cRegisters kI2c2{0x4000'5800, 33, rcc::kI2c2};
 
 namespace exti {  // interrupts at edges of pins: a line for each number of a pin, which one port has
 inline constexpr Register port(unsigned line) {  // 4 bits a line

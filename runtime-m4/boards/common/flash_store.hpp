@@ -4,10 +4,12 @@
 // Chip says how its flash is worked:
 //   kPage              bytes that are erased together
 //   kUnit              words that are written together
+//   kStalls            who runs code waits while a page is erased
 //   erase(page, call)  the next part of erasing the page at that address; calls are counted from 0. No part keeps
 //                      others waiting for longer than Store::kStall
 //   program(at, words) kUnit of them, of a page that was erased
-//   is_busy()          still with an erasing, maybe one that was given up: who reads would stand still
+//   is_busy()          still with an erasing, maybe one that was given up: who reads would stand still. When that takes no end, the
+//                      store does not answer
 #pragma once
 
 #include <algorithm>
@@ -35,7 +37,8 @@ public:
   bool is_flash() const override { return true; }
 
   Outcome read(std::uint32_t at, std::span<std::byte> bytes) override {
-    if (Chip::is_busy()) return Outcome::goes_on;
+    if (Chip::is_busy()) return wait();
+    waited_ = 0;
     const Words words = words_at(at);
     std::memcpy(bytes.data(), words.data(), std::min(bytes.size(), kPiece));
     return Outcome::done;
@@ -44,7 +47,8 @@ public:
   // What is not given stays erased.
   Outcome write(std::uint32_t at, std::span<const std::byte> bytes) override {
     if (at % Chip::kPage == 0 && erased_ != at) return erase(at);
-    if (Chip::is_busy()) return Outcome::goes_on;
+    if (Chip::is_busy()) return wait();
+    waited_ = 0;
     Words wanted;
     wanted.fill(~std::uint32_t{0});
     std::memcpy(wanted.data(), bytes.data(), std::min(bytes.size(), kPiece));
@@ -56,6 +60,8 @@ public:
   }
 
 private:
+  static constexpr Outcome kGoesOn = Chip::kStalls ? Outcome::goes_on : Outcome::at_work;
+  static constexpr unsigned kMostWaits = 1000;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   static constexpr std::size_t kWord = sizeof(std::uint32_t);
   using Words = std::array<std::uint32_t, kPiece / kWord>;
@@ -75,19 +81,22 @@ private:
     if (erasing_ != at) {
       calls_ = 0;
       erasing_ = at;
-      return Outcome::goes_on;
+      return kGoesOn;
     }
     const Erasing state = Chip::erase(begin_ + at, calls_++);
-    if (state == Erasing::goes_on) return Outcome::goes_on;
+    if (state == Erasing::goes_on) return kGoesOn;
     erasing_ = kNone;
     if (state == Erasing::failed) return Outcome::spent;
     erased_ = at;
-    return Outcome::goes_on;
+    return kGoesOn;
   }
+
+  Outcome wait() { return ++waited_ < kMostWaits ? kGoesOn : Outcome::spent; }
 
   std::uint32_t begin_, bytes_;
   std::uint32_t erasing_ = kNone;
   unsigned calls_ = 0;
+  unsigned waited_ = 0;           // for the end of one that was given up
   std::uint32_t erased_ = kNone;  // this page, completely, and nothing has been written there since
 };
 

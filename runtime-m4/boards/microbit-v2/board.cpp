@@ -1,7 +1,5 @@
 #include "runtime-m4/boards/microbit-v2/board.hpp"
 
-#include <algorithm>
-
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
 #include "runtime-m4/boards/microbit-v2/analog.hpp"
@@ -61,17 +59,11 @@ bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const
 }
 
 bool Board::i2c_busy() const {
-  return std::ranges::any_of(i2c_, &I2c::is_busy);
+  return is_any_busy(i2c_);
 }
 
 BusState Board::buses() const {
-  BusState all;
-  for (std::size_t bus = 0; bus < i2c_.size(); ++bus) {
-    const BusState one = i2c_[bus].state();
-    all.clears = static_cast<std::uint16_t>(all.clears + one.clears);
-    all.held = static_cast<std::uint8_t>(all.held | one.held << bus);
-  }
-  return all;
+  return state_of(i2c_);
 }
 
 bool Board::input(std::uint16_t pin) const {
@@ -160,11 +152,11 @@ void Row_Handler() {
 }
 
 void EdgeBus_Handler() {
-  robosync::boards::microbit::board.i2c(0).on_end();
+  robosync::boards::microbit::board.i2c(0).on_interrupt();
 }
 
 void OwnBus_Handler() {
-  robosync::boards::microbit::board.i2c(1).on_end();
+  robosync::boards::microbit::board.i2c(1).on_interrupt();
 }
 
 void Echo_Handler() {

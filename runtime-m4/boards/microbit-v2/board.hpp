@@ -84,8 +84,8 @@ private:
                               ROBOSYNC_STORE_BYTES};  // its end
   bool asks_ahead_ = false;
   // 0: of the edge connector, pins 19 and 20; 1: of what is on the board.
-  std::array<I2c, 2> i2c_{I2c(kTwim1, {.clock = {0, 26}, .data = {1, 0}}),
-                          I2c(kTwim0, {.clock = {0, 8}, .data = {0, 16}})};
+  std::array<I2c, 2> i2c_{I2c({kTwim1, {.clock = {0, 26}, .data = {1, 0}}}),
+                          I2c({kTwim0, {.clock = {0, 8}, .data = {0, 16}}})};
 };
 
 }  // namespace robosync::boards::microbit

@@ -12,6 +12,7 @@ namespace robosync::boards::microbit {
 struct Flash {
   static constexpr std::uint32_t kPage = 4096;
   static constexpr std::size_t kUnit = 1;
+  static constexpr bool kStalls = true;
 
   // A page takes 85 ms. That is cut into parts of 2 ms: while one is at work nobody is served, but bytes of the line are
   // kept (Uart::hold()).

@@ -15,9 +15,7 @@ using Catch::Contains;
 
 namespace {
 
-// On a board that keeps nothing without power.
 constexpr const char* kRobot = R"({
-  "board": "b-l475e-iot01a",
   "sensors": [
     {"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}},
     {"name": "proximity", "type": "VIRTUAL",

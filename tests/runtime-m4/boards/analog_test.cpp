@@ -185,9 +185,9 @@ struct ConverterOfMicrobit : tests::Nrf52833 {
 struct ConverterOfL475 : tests::Stm32Timers {
   static constexpr const char* kName = "b-l475e-iot01a";
   static constexpr std::uintptr_t kAdc = 0x5004'0000, kSwitches = 0x4800'082C;
-  // UM2153, table 4: A0 to A5.
-  const std::map<std::uint16_t, Pin> pins{{40, {'C', 5}}, {41, {'C', 4}}, {42, {'C', 3}},
-                                          {43, {'C', 2}}, {44, {'C', 1}}, {45, {'C', 0}}};
+  // UM2153, table 4: A0 to A4.
+  const std::map<std::uint16_t, Pin> pins{
+      {40, {'C', 5}}, {41, {'C', 4}}, {42, {'C', 3}}, {43, {'C', 2}}, {44, {'C', 1}}};
   // DS10969, table 16: ADC123_IN1 to IN4, ADC12_IN13, IN14.
   const std::map<unsigned, Pin> channels{{1, {'C', 0}}, {2, {'C', 1}},  {3, {'C', 2}},
                                          {4, {'C', 3}}, {13, {'C', 4}}, {14, {'C', 5}}};

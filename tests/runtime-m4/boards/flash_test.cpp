@@ -8,6 +8,7 @@
 #include "runtime-m4/boards/microbit-v2/flash.hpp"
 #include "runtime-m4/boards/microbit-v2/uart.hpp"
 #include "runtime-m4/update/keeper.hpp"
+#include "runtime-m4/update/key_store.hpp"
 #include "runtime-m4/update/number_store.hpp"
 #include "runtime-m4/update/program_store.hpp"
 #include "tests/runtime-m4/boards/nrf52833_flash.hpp"
@@ -15,7 +16,9 @@
 #include "vm/identity.hpp"
 
 using namespace robosync;
+using boards::Store;
 using layers::KeptNumber;
+using update::KeyStore;
 using update::NumberStore;
 using update::ProgramStore;
 using update::Work;
@@ -39,7 +42,7 @@ struct L475Flash {
   L475Flash() {
     chip.nmi = [this] { forgiven = forgiven && boards::l475::Flash::forgive_damage(); };
   }
-  void rest() { chip.pass_ms(10); }
+  void rest() { chip.pass_ms(1); }
 };
 
 std::uint32_t beginning(const MicrobitFlash& flash) {
@@ -50,22 +53,22 @@ std::uint32_t beginning(const L475Flash& flash) {
 }
 
 // Ends what a ProgramStore or NumberStore was asked for. Bounded.
-template <typename Flash, typename Store>
-void finish(Flash& flash, Store& store) {
+template <typename Flash, typename Kept>
+void finish(Flash& flash, Kept& store) {
   for (unsigned i = 0; i < 10'000; ++i) {
     const Work work = store.work();
     if (work == Work::none || work == Work::ended) return;
-    if (work == Work::rests) flash.rest();
+    if (work == Work::rests || work == Work::waits) flash.rest();
   }
   FAIL("the store comes to no end");
 }
 
 // After the power has come back: what was in the memory is gone.
-template <typename Store, typename Flash>
-Store opened(Flash& flash) {
+template <typename Kept, typename Flash>
+Kept opened(Flash& flash) {
   flash.chip.restart();
   flash.store = decltype(flash.store)(beginning(flash), flash.store.size());
-  Store store(&flash.store);
+  Kept store(&flash.store);
   store.open();
   finish(flash, store);
   return store;
@@ -197,7 +200,7 @@ TEMPLATE_TEST_CASE("flash: numbers wear the pages of their ring evenly, and no o
 TEMPLATE_TEST_CASE("flash: a write that is given up for another one spoils neither", "",
                    MicrobitFlash, L475Flash) {
   const Bytes first = some_image(1, 4000), second = some_image(2, 3000);
-  for (unsigned works = 0; works < 50; ++works) {
+  for (unsigned works = 0; works < 100; ++works) {
     CAPTURE(works);
     TestType flash;
     auto programs = opened<ProgramStore>(flash);
@@ -206,7 +209,9 @@ TEMPLATE_TEST_CASE("flash: a write that is given up for another one spoils neith
     finish(flash, numbers_there);
     programs.write(first, named(first));
     for (unsigned i = 0; i < works; ++i)
-      if (programs.work() == Work::rests && i + 1 < works) flash.rest();
+      if (const Work work = programs.work();
+          (work == Work::rests || work == Work::waits) && i + 1 < works)
+        flash.rest();
     programs.give_up();
     write(flash, numbers_there, 5);
     keep(flash, programs, second);
@@ -228,7 +233,7 @@ TEST_CASE(
   };
   const Bytes piece = some_image(1, 16);
   for (const std::uint32_t page : {0U, 4096U, 8192U})
-    while (flash.store.write(page, piece) == boards::Store::Outcome::goes_on)
+    while (flash.store.write(page, piece) == Store::Outcome::goes_on)
       hear();
   hear();
   CHECK(flash.chip.erased.size() == 3);
@@ -242,15 +247,110 @@ TEST_CASE(
 TEST_CASE("B-L475E-IOT01A: damage in the flash is forgiven where the store is, and nowhere else") {
   L475Flash flash;
   Bytes piece(16);
-  CHECK(flash.store.read(0, piece) == boards::Store::Outcome::done);
+  CHECK(flash.store.read(0, piece) == Store::Outcome::done);
   CHECK(flash.chip.nmis == 0);
   CHECK_FALSE(boards::l475::Flash::forgive_damage());
   flash.chip.damage(flash.chip.kBegin + 8);
-  CHECK(flash.store.read(0, piece) == boards::Store::Outcome::done);
+  CHECK(flash.store.read(0, piece) == Store::Outcome::done);
   CHECK(flash.chip.nmis == 2);
   CHECK(flash.forgiven);
   flash.chip.of_bank_1 = true;
   flash.chip.nmi = [&] { flash.forgiven = boards::l475::Flash::forgive_damage(); };
   CHECK_THROWS(flash.store.read(0, piece));
   CHECK_FALSE(flash.forgiven);
+}
+
+namespace {
+
+link::Pair some_owner(std::uint8_t seed) {
+  link::Pair owner{};
+  owner.key.fill(seed);
+  owner.seed.fill(seed);
+  return owner;
+}
+
+void write(L475Flash& flash, KeyStore& keys, std::uint8_t owner) {
+  keys.write(true, some_owner(owner));
+  finish(flash, keys);
+}
+
+std::uint8_t owner_in(L475Flash& flash) {
+  const auto keys = opened<KeyStore>(flash);
+  CHECK(keys.there());
+  return keys.record().paired == 0 ? std::uint8_t{0} : keys.record().owner.seed[0];
+}
+
+// What the store says to the last of these calls, each so long after the one before; at most so many.
+Store::Outcome outcome_of_write(L475Flash& flash, unsigned us, unsigned& calls) {
+  const Bytes piece = some_image(1, Store::kPiece);
+  Store::Outcome outcome = Store::Outcome::at_work;
+  for (const unsigned most = std::exchange(calls, 0);
+       outcome == Store::Outcome::at_work && calls < most; ++calls) {
+    outcome = flash.store.write(0, piece);
+    flash.chip.pass_us(us);
+  }
+  return outcome;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "B-L475E-IOT01A: a cut of the power at every word leaves the owner of before, or the new one") {
+  for (unsigned cut = 0, operations = 0; cut <= operations; ++cut) {
+    CAPTURE(cut);
+    L475Flash flash;
+    auto keys = opened<KeyStore>(flash);
+    write(flash, keys, 1);
+    write(flash, keys, 2);
+    flash.chip.operations = 0;
+    if (operations != 0) flash.chip.power_for = cut;
+    write(flash, keys, 3);
+    if (operations == 0) operations = flash.chip.operations;
+    CHECK(operations == 9);  // its page, and eight times two words
+    REQUIRE(owner_in(flash) == (cut == operations || keys.written() ? 3 : 2));
+    auto again = opened<KeyStore>(flash);
+    write(flash, again, 4);
+    REQUIRE(owner_in(flash) == 4);
+  }
+}
+
+TEST_CASE("B-L475E-IOT01A: who erases lets nobody wait, however often he is asked meanwhile") {
+  // Asked as often as bytes pass the line both ways, and as seldom as the link thread gets to it.
+  for (const unsigned us : {43U, 1000U, 30'000U}) {
+    CAPTURE(us);
+    L475Flash flash;
+    unsigned calls = 1000;
+    CHECK(outcome_of_write(flash, us, calls) == Store::Outcome::done);
+    CHECK(calls >= 4);
+    CHECK(flash.chip.erased.size() == 1);
+  }
+}
+
+TEST_CASE("B-L475E-IOT01A: a flash that does nothing, or never ends, is a store that is spent") {
+  L475Flash flash;
+  Bytes piece(Store::kPiece);
+  unsigned calls = 10;
+  SECTION("its registers are not there") {
+    flash.chip.answers = false;
+    CHECK(outcome_of_write(flash, 1000, calls) == Store::Outcome::spent);
+    CHECK(calls == 2);
+    CHECK(flash.store.read(0, piece) == Store::Outcome::done);
+    flash.chip.answers = true;
+    calls = 100;
+    CHECK(outcome_of_write(flash, 1000, calls) == Store::Outcome::done);
+  }
+  SECTION("it is at work for ever") {
+    flash.chip.stuck = true;
+    calls = 1100;
+    CHECK(outcome_of_write(flash, 1000, calls) == Store::Outcome::spent);
+    CHECK(calls > 900);
+    for (calls = 0; calls < 1100; ++calls)
+      if (flash.store.read(0, piece) == Store::Outcome::spent) break;
+    CHECK(calls < 1000);
+    flash.chip.stuck = false;
+    flash.chip.pass_ms(25);
+    CHECK(flash.store.read(0, piece) == Store::Outcome::done);
+    calls = 100;
+    CHECK(outcome_of_write(flash, 1000, calls) == Store::Outcome::done);
+  }
 }

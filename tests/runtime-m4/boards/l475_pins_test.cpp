@@ -22,6 +22,7 @@ const std::map<std::uint16_t, Stm32Timers::Pin> kHeader{
     {0, {'A', 1}},  {1, {'A', 0}},  {2, {'D', 14}}, {3, {'B', 0}}, {4, {'A', 3}},
     {5, {'B', 4}},  {6, {'B', 1}},  {7, {'A', 4}},  {8, {'B', 2}}, {9, {'A', 15}},
     {10, {'A', 2}}, {11, {'A', 7}}, {12, {'A', 6}}, {13, {'A', 5}}};
+constexpr Stm32Timers::Pin kA5{'C', 0};
 constexpr unsigned kFrame = 20'000;
 
 std::vector<std::uint16_t> outputs() {
@@ -45,6 +46,7 @@ struct Chip : Stm32Timers {
     Stm32Timers::write(address, value);
     for (const auto& [number, pin] : kHeader)
       if (starting) CHECK(level(pin) != Level::high);
+    CHECK((!starting || level(kA5) != Level::low));  // a servo chip is never on by chance
   }
   Level at(std::uint16_t pin) const { return level(kHeader.at(pin)); }
   void pass(unsigned us) {
@@ -167,4 +169,24 @@ TEST_CASE("all off is at once, and before the start it does nothing") {
   Stm32Timers fresh;
   pins::switch_off();
   CHECK(fresh.level({'B', 0}) == Level::floating);
+}
+
+TEST_CASE(
+    "B-L475E: the pin at a chip's enable input is high from the start on, and whenever all is "
+    "off") {
+  constexpr std::uint16_t kEnable = 45;
+  Chip chip;
+  CHECK(chip.level(kA5) == Level::high);
+  for (std::uint16_t pin = 0; pin < kEnable; ++pin)
+    pins::enable(pin, true);
+  pins::write(kEnable, 1500);
+  chip.pass(2 * kFrame);
+  CHECK(chip.level(kA5) == Level::high);
+  pins::enable(kEnable, true);
+  CHECK(chip.level(kA5) == Level::low);
+  pins::enable(kEnable, false);
+  CHECK(chip.level(kA5) == Level::high);
+  pins::enable(kEnable, true);
+  pins::switch_off();
+  CHECK(chip.level(kA5) == Level::high);
 }

@@ -24,6 +24,9 @@ public:
 
   std::uint32_t bytes() const { return static_cast<std::uint32_t>(8 * pairs_.size()); }
   void restart();  // the power is back
+  void pass_us(unsigned us) {
+    if (!stuck) busy_us_ -= std::min(busy_us_, us);
+  }
   void pass_ms(unsigned ms) { pass_us(ms * 1000); }
   void damage(std::uint32_t address) { pairs_.at((address - kBegin) / 8).damaged = true; }
 
@@ -34,6 +37,8 @@ public:
   std::function<void()> nmi;
   unsigned nmis = 0;
   bool of_bank_1 = false;  // … says that it was
+  bool stuck = false;      // what it is at never ends
+  bool answers = true;     // else its registers are 0 and nothing happens, as in QEMU
 
   std::uint32_t read(std::uintptr_t address) override;
   void write(std::uintptr_t address, std::uint32_t value) override;
@@ -45,7 +50,6 @@ private:
     bool blank() const { return !damaged && low == ~0U && high == ~0U; }
   };
 
-  void pass_us(unsigned us) { busy_us_ -= std::min(busy_us_, us); }
   bool is_busy() const { return busy_us_ != 0; }
   bool goes_wrong();
   void write_control(std::uint32_t value);

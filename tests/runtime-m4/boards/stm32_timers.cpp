@@ -160,13 +160,24 @@ std::uint32_t Stm32Timers::read(std::uintptr_t address) {
 }
 
 // What has no clock hears nothing.
+// BSRR: who is set and reset is set.
+void Stm32Timers::write_port(std::uintptr_t address, std::uint32_t value) {
+  if ((address - kPorts) % kBetweenPorts != 0x18) {
+    *of_port(address) = value;
+    return;
+  }
+  const auto name = static_cast<char>('A' + (address - kPorts) / kBetweenPorts);
+  std::uint32_t& outputs = ports_.at(name).outputs;
+  outputs = (outputs & ~(value >> 16)) | (value & 0xFFFF);
+}
+
 void Stm32Timers::write(std::uintptr_t address, std::uint32_t value) {
   if (address == kPortClocks) {
     port_clocks_ = value;
   } else if (address == kTimerClocks) {
     timer_clocks_ = value;
   } else if (address >= kPorts) {
-    if ((port_clocks_ >> (address - kPorts) / kBetweenPorts & 1) != 0) *of_port(address) = value;
+    if ((port_clocks_ >> (address - kPorts) / kBetweenPorts & 1) != 0) write_port(address, value);
   } else {
     const auto timer = static_cast<unsigned>((address - kTimers) / kBetweenTimers);
     if (timer >= timers_.size()) unknown(address);
@@ -177,6 +188,8 @@ void Stm32Timers::write(std::uintptr_t address, std::uint32_t value) {
 Stm32Timers::Level Stm32Timers::level(Pin pin) const {
   const auto [name, bit] = pin;
   const Port& port = ports_.at(name);
+  if ((port.modes >> 2 * bit & 3) == 1)
+    return (port.outputs >> bit & 1) != 0 ? Level::high : Level::low;
   if ((port.modes >> 2 * bit & 3) != 2) return Level::floating;
   const unsigned function = port.functions[bit / 8] >> 4 * (bit % 8) & 0xF;
   const auto wired = kFunctions.find({name, bit, function});

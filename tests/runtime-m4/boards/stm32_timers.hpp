@@ -1,5 +1,5 @@
 // A model of what the pulses of an STM32L475 come from, after RM0351: the clocks of ports and timers (RCC), the functions of
-// pins and their levels (GPIO), the timers 2 to 5 counting up in PWM mode 1, with what waits for the next period. Nothing of it knows
+// pins and their levels (GPIO), outputs too, the timers 2 to 5 counting up in PWM mode 1, with what waits for the next period. Nothing of it knows
 // the driver: addresses, fields and the wiring of the pins stand here once more.
 //
 // Left out: everything else these peripherals can do. Who uses it gets an exception.
@@ -50,10 +50,12 @@ private:
   struct Port {
     std::uint32_t modes = 0, pulls = 0, speeds = 0;
     std::array<std::uint32_t, 2> functions{};
+    std::uint32_t outputs = 0;
   };
 
   bool has_clock(unsigned timer) const { return (timer_clocks_ >> timer & 1) != 0; }
   std::uint32_t* of_port(std::uintptr_t address);
+  void write_port(std::uintptr_t address, std::uint32_t value);
   std::uint32_t levels(char name) const;
 
   std::uint32_t port_clocks_ = 0, timer_clocks_ = 0;

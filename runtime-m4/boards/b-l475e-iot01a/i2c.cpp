@@ -1,0 +1,108 @@
+// See i2c.hpp. ST's RM0351, 39.4 (I2C) and 11 (DMA): the order of a transfer is that of 39.4.8 and 39.4.16.
+#include "runtime-m4/boards/b-l475e-iot01a/i2c.hpp"
+
+namespace robosync::boards::l475 {
+
+namespace {
+
+constexpr unsigned kHalfBit = 30;  // turns of a loop of four cycles: 1.5 us
+
+void set_up(const DmaChannel& channel, Register data) {
+  kDmaSelect.set_field(channel.number - 1, 4, kDmaForI2c);
+  channel.peripheral().write(static_cast<std::uint32_t>(data.address));
+}
+
+void move(const DmaChannel& channel, std::uint32_t memory, std::size_t bytes,
+          std::uint32_t direction) {
+  kDmaForget.write(0xFU << 4 * (channel.number - 1));
+  channel.memory().write(memory);
+  channel.count().write(static_cast<std::uint32_t>(bytes));
+  channel.control().write(direction | DmaChannel::kOn);
+}
+
+}  // namespace
+
+// The lines last: a master that has not begun leaves them alone.
+void I2cMaster::start() const {
+  rcc::give_clock(rcc::kAhb1, rcc::kDma1);
+  rcc::give_clock(rcc::kApb1, registers_.clock);
+  set_up(wiring_.to_send, registers_.send());
+  set_up(wiring_.to_memory, registers_.received());
+  registers_.timing().write(I2cRegisters::kAlmost400kHz);
+  registers_.control().write(I2cRegisters::kOn);
+  for (const unsigned line : {wiring_.clock, wiring_.data}) {
+    kPortOfI2c.change().write(1U << line);
+    kPortOfI2c.open().set(1U << line);
+    kPortOfI2c.pulls().set_field(line, 2, kPullUp);
+    kPortOfI2c.function(line).set_field(line % 8, 4, kFunctionOfI2c);
+    kPortOfI2c.mode().set_field(line, 2, kModeOfFunction);
+  }
+}
+
+void I2cMaster::begin(std::uint8_t address, std::span<const std::byte> out,
+                      std::span<std::byte> in) {
+  wrong_ = false;
+  reading_ = in.empty() ? 0
+                        : I2cRegisters::to(address, in.size()) | I2cRegisters::kRead |
+                              I2cRegisters::kStart | I2cRegisters::kStopBehind;
+  move(wiring_.to_send, port::bus_address(out.data()), out.size(), DmaChannel::kBytesFromMemory);
+  if (!in.empty())
+    move(wiring_.to_memory, port::bus_address(in.data()), in.size(), DmaChannel::kBytesToMemory);
+  registers_.transfer().write(I2cRegisters::to(address, out.size()) | I2cRegisters::kStart |
+                              (in.empty() ? I2cRegisters::kStopBehind : 0));
+}
+
+// Who was refused stops by himself, and has a byte left that must not be the first one of the next transfer. Who was
+// outvoted has nothing to stop. ES0250: of a master, a bus error says nothing.
+Transfer I2cMaster::on_interrupt() {
+  const std::uint32_t state = registers_.state().read();
+  registers_.forget().write(
+      state & (I2cRegisters::kRefused | I2cRegisters::kStopped | I2cRegisters::kBusError));
+  if ((state & I2cRegisters::kRefused) != 0) wrong_ = true;
+  if ((state & I2cRegisters::kWritten) != 0) registers_.transfer().write(reading_);
+  if ((state & (I2cRegisters::kStopped | I2cRegisters::kOutvoted)) == 0) return Transfer::goes_on;
+  const bool outvoted = (state & I2cRegisters::kOutvoted) != 0;
+  const bool whole =
+      !wrong_ && !outvoted && (reading_ == 0 || wiring_.to_memory.count().read() == 0);
+  if (whole) {
+    wiring_.to_send.control().write(0);
+    wiring_.to_memory.control().write(0);
+  } else {
+    let_go();
+  }
+  return whole ? Transfer::done : Transfer::failed;
+}
+
+// Off for three cycles of the bus at least, which the reading takes: what it was about is forgotten then, and its lines are free.
+void I2cMaster::switch_off() const {
+  wiring_.to_send.control().write(0);
+  wiring_.to_memory.control().write(0);
+  registers_.control().write(0);
+  static_cast<void>(registers_.control().read());
+}
+
+void I2cMaster::let_go() const {
+  switch_off();
+  registers_.control().write(I2cRegisters::kOn);
+}
+
+void I2cMaster::take_clock() const {
+  switch_off();
+  kPortOfI2c.mode().set_field(wiring_.clock, 2, kModeOfOutput);
+}
+
+void I2cMaster::give_clock_back() const {
+  kPortOfI2c.mode().set_field(wiring_.clock, 2, kModeOfFunction);
+  registers_.control().write(I2cRegisters::kOn);
+}
+
+void I2cMaster::drive_clock(bool high) const {
+  kPortOfI2c.change().write(1U << (high ? wiring_.clock : wiring_.clock + 16));
+}
+
+void I2cMaster::half_bit() {
+  for (unsigned turns = kHalfBit; turns != 0; --turns)
+    asm volatile("nop");
+}
+
+}  // namespace robosync::boards::l475

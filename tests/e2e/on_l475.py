@@ -1,0 +1,271 @@
+"""What the shipped firmware of the B-L475E-IOT01A does with those parts of its chip that QEMU does not have: where they stay silent,
+and where the test plays them. Run with ROBOSYNC_BOARD=b-l475e-iot01a."""
+
+import contextlib
+import json
+import re
+import subprocess
+import sys
+import threading
+import unittest
+from pathlib import Path
+
+import pins
+import rsc
+import test_owner
+import test_store
+from debugger import LINK_REGISTER, PC, DebuggedTest, Debugger
+from support import PROGRAMS, LineReader, RobotTest
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
+from board import FIRMWARE, REAL_TIME, ROOT  # noqa: E402
+from counting import symbols  # noqa: E402
+
+FLASH = "robosync::boards::l475::Flash::"
+AT_BREAKPOINT = "T05"
+PAGE, AT_ONCE = 2048, 1024  # bytes of the flash; … that the debugger writes at once
+DONE = 1  # boards::Erasing
+UPLOADS = 3
+# QEMU writes down what the masters of I2C and DMA1 are told.
+PATIENCE = 20
+WRITE = re.compile(r"(I2C2|DMA1): unimplemented device write \(size 4, offset 0x([0-9a-f]+), value 0x([0-9a-f]+)\)")
+TRANSFER, COUNT_4, MEMORY_4, COUNT_5, MEMORY_5 = ("I2C2", 0x04), ("DMA1", 0x48), ("DMA1", 0x50), ("DMA1", 0x5C), ("DMA1", 0x64)
+CORE, BUS_INTERRUPT = "/machine/soc/armv7m", 33
+ADDRESS, LEVEL = 0x6A, 0x12
+WROTE, STOPPED = 1 << 6, 1 << 5  # of the master's state
+BOTH_BUSES = {"board": "b-l475e-iot01a", "actuators": [{"name": "arm", "type": "PWM", "pin": 3, "device": "servo"}],
+              "sensors": [{"name": f"bus{bus}", "type": "I2C", "bus": bus, "address": hex(ADDRESS), "device": "i2c_register",
+                           "channels": {"LEVEL": {"input": LEVEL, "rate": "50Hz"}}} for bus in range(2)]}
+WATCHED = """
+SAFETY blind
+  WHEN bus1 LEVEL > 1000
+  DO
+    STOP arm
+    ALERT "stands still"
+END
+WHEN bus0 LEVEL > 500
+DO LOG "high"
+END
+"""
+LOOSEST, CALLS = 1.3, 20
+
+
+class FlashPlayer(Debugger):
+    """Is the flash, in the place of the two functions that work its registers, until the board is switched off. QEMU lets a debugger
+    write what it keeps from the firmware."""
+
+    def __init__(self, path):
+        super().__init__(path)
+        self.erased = 0
+        self.at = {next(at for name, at in symbols(FIRMWARE).items() if name.startswith(FLASH + what)): play
+                   for what, play in (("erase(", self.erase), ("program(", self.program))}
+        for place in self.at:
+            self._expect_ok(f"Z0,{place:x},2")
+        self._thread = threading.Thread(target=self.play, daemon=True)
+        self._thread.start()
+
+    def play(self):
+        with contextlib.suppress(AssertionError, OSError):  # it was switched off
+            while True:
+                self._send("c")
+                if not self._receive().startswith(AT_BREAKPOINT):
+                    return
+                core = self.core()
+                self.at[core[PC]](core)
+                self.set_register(PC, core[LINK_REGISTER] & ~1)
+
+    def erase(self, core):
+        self.erased += 1
+        for at in range(core[0], core[0] + PAGE, AT_ONCE):
+            self.write(at, b"\xff" * AT_ONCE)
+        self.set_register(0, DONE)
+
+    def program(self, core):
+        words = self.read_words(core[1], 2)
+        self.write(core[0], b"".join(word.to_bytes(4, "little") for word in words))
+
+    def write(self, at, data):
+        self._expect_ok(f"M{at:x},{len(data):x}:{data.hex()}")
+
+    def end(self):
+        self._thread.join()
+        self._socket.close()
+
+
+class WithFlash:
+    """A board that can be switched off and on, and its flash."""
+
+    def switch_on(self, *extra):
+        self.end_flash()
+        self.starts = getattr(self, "starts", 0) + 1
+        gdb = self.folder / f"gdb{self.starts}"
+        super().switch_on("-gdb", f"unix:{gdb},server=on,wait=off", "-S", *extra)
+        self.flash = FlashPlayer(gdb)
+        self.addCleanup(self.end_flash)
+
+    def upload(self, program, *arguments):
+        """The debugger holds the board up, on a busy machine for longer than rsc waits."""
+        for _ in range(UPLOADS - 1):
+            with contextlib.suppress(rsc.RscError):
+                return super().upload(program, *arguments)
+        return super().upload(program, *arguments)
+
+    def end_flash(self):
+        if getattr(self, "flash", None):
+            self.board.stop()
+            self.flash.end()
+            self.flash = None
+
+
+class KeptInFlash(WithFlash, test_store.Numbers):
+    """Numbers and programs, as on the reference board."""
+
+    test_back_and_forth = test_store.Store.test_back_and_forth
+    test_power_that_goes_at_any_time_leaves_a_kept_program = test_store.Store.test_power_that_goes_at_any_time_leaves_a_kept_program
+
+    def test_it_starts_with_the_program_that_stood_its_trial(self):
+        first, second = self.images()
+        kept = self.keep(first)
+        self.assertGreaterEqual(self.flash.erased, 2)  # one for it, one for the record
+        self.power_cycle()
+        self.await_kept("kept")
+        self.assertEqual(self.running(), kept)
+        self.assertEqual(self.flash.erased, 0)
+        self.upload(second)
+        self.assertNotEqual(self.running(), kept)
+        self.assertEqual(self.keep(second), self.running())
+
+
+class OwnerInFlash(WithFlash, test_owner.Owner):
+    pass
+
+
+class Bus(DebuggedTest):
+    def qemu_arguments(self):
+        self.log = self.folder / "told"
+        return ["-d", "unimp", "-D", str(self.log), *pins.arguments(self.folder), *super().qemu_arguments()]
+
+    def begin(self):
+        config, program = self.folder / "watched.json", self.folder / "watched.rsl"
+        config.write_text(json.dumps(BOTH_BUSES))
+        program.write_text(WATCHED)
+        return program, "--config", config
+
+    def told(self, place):
+        """The values that were written there, so far."""
+        return [int(value, 16) for name, at, value in WRITE.findall(self.log.read_text()) if (name, int(at, 16)) == place]
+
+    def test_nobody_on_it_is_told_trips_safety_and_holds_nobody_up(self):
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json", "--upload", *self.begin())
+        self.addCleanup(lambda: reader and reader.stop())
+        for wanted in ({"event": "silent", "sensor": "bus0"}, {"event": "silent", "sensor": "bus1"}, {"event": "alert"}):
+            self.assertTrue(reader.wait_for(lambda lines, wanted=wanted: any(wanted.items() <= json.loads(line).items() for line in lines),
+                                            PATIENCE), (wanted, reader.lines[-8:]))
+        reader.stop()
+        reader = None
+        said = rsc.info(self.board.port)
+        self.assertEqual((said["status"]["safety_late_us"], said["status"]["faults"]), (0, 0))
+        self.assertEqual([thread["missed_deadlines"] for thread in said["threads"]], [0] * len(said["threads"]))
+        self.assertEqual([device["answers"] for device in said["buses"]["devices"]], [False, False])
+        self.assertTrue(all(device["failed"] > 0 for device in said["buses"]["devices"]))
+
+    def test_what_it_is_told_and_what_that_costs(self):
+        """The test is the master and its DMA: it says that all was written, puts what was read where it shall be, and says stop."""
+        self.upload(*self.begin())
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        at = symbols(FIRMWARE)
+        driver = next(place for name, place in at.items() if name.startswith("robosync::drivers::i2c_register::read("))
+        read, where = self.read_of_state()
+        asked, ended = [], []
+        with self.debugger() as debugger:
+            for value in (7, 260, 1234):
+                asked.append(self.ask_own_bus(debugger, driver))
+                self.assertEqual(self.told(TRANSFER)[-1], 0x1_2000 | ADDRESS << 1)
+                self.assertEqual((self.told(COUNT_4)[-1], self.told(COUNT_5)[-1]), (1, 2))
+                self.assertEqual(wires.read(self.told(MEMORY_4)[-1], 1), bytes([LEVEL]))
+                for state, memory in ((WROTE, b"\0\0"), (STOPPED, value.to_bytes(2, "little"))):
+                    wires.write(self.told(MEMORY_5)[-1], memory)
+                    wires.interrupt(CORE, BUS_INTERRUPT)
+                    debugger.run_to(at["OwnBus_Handler"], lambda: None)
+                    ended.append(debugger.steps_to_return({read: (where, state)}))
+                self.assertEqual(self.told(TRANSFER)[-1], 0x202_2400 | ADDRESS << 1)
+                self.assertEqual(self.first_answer(debugger, driver), value)
+        said = int(re.search(r"COST\(i2c_ask,\s*(\d+)", (ROOT / "runtime-m4/boards/b-l475e-iot01a/costs.def").read_text())[1])
+        # At worst the sensor is told to wake up as well: a second transfer, that begins where the first one ends.
+        measured = max(asked) + 2 * ended[0] + 2 * max(ended)
+        print(f"\n  asked {asked}, interrupts {ended}: {measured}, said {said}")
+        self.assertGreaterEqual(said, measured)
+        self.assertLessEqual(said, LOOSEST * measured)
+
+    def ask_own_bus(self, debugger, driver):
+        """Instructions of the driver's next call that begins a transfer there."""
+        before = len(self.told(TRANSFER))
+        for _ in range(CALLS):
+            debugger.run_to(driver, lambda: None)
+            steps = debugger.steps_to_return()
+            if len(self.told(TRANSFER)) > before:
+                return steps
+        return self.fail("it is asked no more")
+
+    def first_answer(self, debugger, driver):
+        """What the driver gives at its next call that gives something."""
+        for _ in range(CALLS):
+            debugger.run_to(driver, lambda: None)
+            place = debugger.register(3)
+            debugger.run_to(debugger.register(LINK_REGISTER) & ~1, lambda: None)
+            if debugger.register(0) & 1:
+                return debugger.read_words(place, 1)[0]
+        return self.fail("nothing is read")
+
+    def read_of_state(self):
+        """Where the interrupt's handler reads the master's state, and into which register."""
+        place = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::boards::l475::I2cMaster::on_interrupt("))
+        said = subprocess.run(["arm-none-eabi-objdump", "-d", f"--start-address={place & ~1:#x}", f"--stop-address={(place & ~1) + 64:#x}",
+                               FIRMWARE], check=True, text=True, stdout=subprocess.PIPE).stdout
+        found = re.search(r"^\s*([0-9a-f]+):.*\sldr(?:\.w)?\s+r(\d+), \[r\d+, #24\]", said, re.M)
+        return int(found[1], 16), int(found[2])
+
+
+class WithoutFlash(RobotTest):
+    def test_a_flash_that_does_nothing_is_a_store_that_does_not_answer(self):
+        said = self.upload(PROGRAMS / "priorities.rsl", "--config", self.for_board(PROGRAMS / "robot.json"), "--trial", "1s")
+        self.assertIn("not kept: this board has no store that answers; after a reset the robot has no program", said)
+        told = rsc.info(self.board.port)
+        self.assertEqual((told["kept"]["state"], told["status"]["faults"], told["status"]["safety_late_us"]), ("no_store", 0, 0))
+        self.assertIsNotNone(told["board"]["program"])
+        self.assertEqual([thread["missed_deadlines"] for thread in told["threads"]], [0] * len(told["threads"]))
+        self.board.qmp.command("system_reset")
+        self.assertIsNone(rsc.info(self.board.port)["board"]["program"])
+
+
+class Damage(DebuggedTest):
+    def qemu_arguments(self):
+        return [*pins.arguments(self.folder), *super().qemu_arguments()]
+
+    def test_what_the_flash_cannot_correct_ends_in_a_reset_but_in_the_store(self):
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        forgive = next(at for name, at in symbols(FIRMWARE).items() if name.startswith(FLASH + "forgive_damage("))
+        for forgiven, reason in ((1, "power"), (0, "software")):
+            with self.debugger() as debugger:
+                debugger.run_to(forgive, lambda: wires.interrupt(CORE, 0, "NMI"))
+                debugger.set_register(0, forgiven)
+                debugger.set_register(PC, debugger.register(LINK_REGISTER) & ~1)
+            self.assertEqual(self.status()["reset_reason"], reason)
+
+
+class NoOwner(RobotTest):
+    icount = REAL_TIME  # of the minute in which it may be paired
+
+    def test_who_would_be_its_owner_is_told(self):
+        key = self.folder / "key"
+        rsc.run("keygen", "--key", key)
+        done = rsc.call("pair", "--key", key, "--port", self.board.port)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("does its store work?", done.stderr)
+        self.assertEqual(rsc.info(self.board.port)["owner"]["pairing"], "unpaired")
+
+
+if __name__ == "__main__":
+    unittest.main()

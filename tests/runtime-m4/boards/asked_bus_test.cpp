@@ -1,0 +1,317 @@
+// The I2C buses of the boards, as they are shipped, against models of their masters: what is asked for is there in
+// time and costs an interrupt or two, and whatever the device does, nobody waits for it.
+#include <array>
+
+#include <catch2/catch.hpp>
+
+#include "runtime-m4/boards/b-l475e-iot01a/i2c.hpp"
+#include "runtime-m4/boards/microbit-v2/i2c.hpp"
+#include "tests/runtime-m4/boards/nrf52833_twim.hpp"
+#include "tests/runtime-m4/boards/stm32_i2c.hpp"
+
+using namespace robosync;
+
+namespace {
+
+constexpr std::byte operator""_b(unsigned long long value) {
+  return static_cast<std::byte>(value);
+}
+
+// Nordic: TWIM0; tech.microbit.org: the internal bus is P0.08 and P0.16.
+struct MicrobitBus : tests::TwimBus {
+  static constexpr unsigned kInterrupts = 1;  // of a reading
+  MicrobitBus() : TwimBus(0x4000'3000, {0, 8}, {0, 16}) {}
+  boards::microbit::I2c bus{{boards::microbit::kTwim0, {.clock = {0, 8}, .data = {0, 16}}}};
+};
+
+// RM0351: I2C1 and I2C2 with their requests of DMA1; UM2153: PB8 and PB9 are D15 and D14, PB10 and PB11 the sensors' on the board.
+template <unsigned kNumber>
+struct L475Bus : tests::Stm32I2c {
+  static constexpr unsigned kInterrupts = 2;  // one when it is asked, and one when it has answered
+  static constexpr bool kOwn = kNumber == 2;
+  L475Bus()
+      : Stm32I2c(kOwn ? Wiring{0x4000'5800, 1U << 22, 10, 11, 4, 5}
+                      : Wiring{0x4000'5400, 1U << 21, 8, 9, 6, 7}) {}
+  boards::l475::I2c bus{boards::l475::i2c_master(kOwn ? 1 : 0)};
+};
+
+template <typename Model>
+struct Bus : Model {
+  Bus() {
+    this->bus.start();
+    for (unsigned i = 0; i < this->registers.size(); ++i)
+      this->registers[i] = static_cast<std::byte>(i ^ 0x5A);
+  }
+  void run(unsigned microseconds) {
+    for (; microseconds > 0; --microseconds) {
+      this->pass_microsecond();
+      for (unsigned i = 0; this->interrupt(); ++i) {
+        REQUIRE(i < 3);
+        ++interrupts;
+        this->bus.on_interrupt();
+      }
+    }
+  }
+  std::uint8_t device() const { return static_cast<std::uint8_t>(this->address); }
+  bool ask(std::byte from, std::size_t count = 3) { return ask_of(device(), from, count); }
+  bool ask_of(std::uint8_t who, std::byte from, std::size_t count = 3) {
+    return this->bus.transfer(true, who, std::array{from}, std::span(got).first(count));
+  }
+  bool collect(std::byte from, std::size_t count = 3) { return collect_of(device(), from, count); }
+  bool collect_of(std::uint8_t who, std::byte from, std::size_t count = 3) {
+    got.fill(0_b);
+    return this->bus.transfer(false, who, std::array{from}, std::span(got).first(count));
+  }
+  bool put(bool ahead, std::byte to, std::byte value) {
+    return this->bus.transfer(ahead, device(), std::array{to, value}, {});
+  }
+  bool got_from(unsigned first, std::size_t count = 3) const {
+    for (std::size_t i = 0; i < count; ++i)
+      if (got[i] != this->registers[first + i]) return false;
+    return true;
+  }
+
+  std::array<std::byte, 16> got{};
+  unsigned interrupts = 0;
+};
+
+}  // namespace
+
+TEMPLATE_TEST_CASE(
+    "a bus: what is asked ahead is there before a millisecond is over, by an interrupt or two", "",
+    MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  for (unsigned round = 0; round < 3; ++round) {
+    CHECK_FALSE(bus.ask(0xA0_b, 14));
+    CHECK(bus.bus.is_busy());
+    bus.run(450);
+    CHECK_FALSE(bus.bus.is_busy());
+    CHECK(bus.interrupts == bus.kInterrupts * (round + 1));
+    CHECK(bus.collect(0xA0_b, 14));
+    CHECK(bus.got_from(0x20, 14));
+    bus.registers[0x20 + round] = 0x77_b;
+  }
+  CHECK(bus.written == std::vector(3, std::vector{0xA0_b}));
+  CHECK(bus.bus.state().clears == 0);
+}
+
+TEMPLATE_TEST_CASE("a bus: who wants the same gets it together, others one after the other", "",
+                   MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  for (const std::byte from : {0x10_b, 0x10_b, 0x30_b, 0x10_b, 0x20_b})
+    CHECK_FALSE(bus.ask(from));
+  bus.run(600);
+  CHECK(bus.written == std::vector{std::vector{0x10_b}, std::vector{0x30_b}, std::vector{0x20_b}});
+  for (unsigned times = 0; times < 3; ++times) {
+    CHECK(bus.collect(0x10_b));
+    CHECK(bus.got_from(0x10));
+  }
+  CHECK(bus.collect(0x30_b));
+  CHECK(bus.got_from(0x30));
+  CHECK_FALSE(bus.collect(0x31_b));  // nobody has asked for it
+  CHECK_FALSE(bus.collect(0x30_b, 2));
+}
+
+TEMPLATE_TEST_CASE("a bus: what is asked anew is read anew, and is not there before", "",
+                   MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  bus.ask(0x10_b);
+  bus.run(300);
+  bus.registers[0x10] = 0x01_b;
+  bus.ask(0x10_b);
+  CHECK_FALSE(bus.collect(0x10_b));  // it is given up
+  bus.ask(0x10_b);
+  bus.run(300);
+  CHECK(bus.collect(0x10_b));
+  CHECK(bus.got_from(0x10));
+}
+
+TEMPLATE_TEST_CASE("a bus: what is written goes out in its order, asked ahead or not", "",
+                   MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  CHECK(bus.put(true, 0x20_b, 0x99_b));
+  CHECK_FALSE(bus.ask(0x20_b, 1));
+  bus.run(400);
+  CHECK(bus.put(false, 0x20_b, 0x99_b));  // how it went
+  CHECK(bus.collect(0x20_b, 1));
+  CHECK(bus.got[0] == 0x99_b);
+  CHECK(bus.written.size() == 2);
+  for (unsigned times = 0; times < 3; ++times)
+    CHECK(bus.put(false, 0x21_b, 0x98_b));  // by several channels
+  bus.run(200);
+  CHECK(bus.registers[0x21] == 0x98_b);
+  CHECK(bus.written.size() == 3);
+}
+
+TEMPLATE_TEST_CASE(
+    "a bus: nobody there, or one who refuses a byte, is a transfer that failed, and no more", "",
+    MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  bus.ask_of(0x33, 0x10_b);
+  bus.ask(0x10_b);
+  bus.run(500);
+  CHECK_FALSE(bus.collect_of(0x33, 0x10_b));
+  CHECK(bus.collect(0x10_b));
+  bus.refuses_after = 0;
+  bus.ask(0x10_b);
+  bus.run(500);
+  CHECK_FALSE(bus.bus.is_busy());
+  CHECK_FALSE(bus.collect(0x10_b));
+  bus.refuses_after = ~0U;
+  bus.ask(0x30_b);  // and nothing is left of what was refused
+  bus.run(500);
+  CHECK(bus.collect(0x30_b));
+  CHECK(bus.got_from(0x30));
+  CHECK(bus.written.back() == std::vector{0x30_b});
+  CHECK(bus.bus.state().held == 0);
+}
+
+TEMPLATE_TEST_CASE(
+    "a bus: a device that gains time by the clock gets it; one that never lets go is given up", "",
+    MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  bus.ask(0x10_b);
+  bus.run(50);
+  bus.holds_clock = true;
+  bus.run(700);
+  bus.holds_clock = false;
+  bus.run(300);
+  CHECK(bus.collect(0x10_b));
+  bus.ask(0x10_b);
+  bus.run(50);
+  bus.holds_clock = true;
+  bus.run(3000);
+  CHECK(bus.bus.is_busy());
+  CHECK_FALSE(bus.collect(0x10_b));
+  CHECK_FALSE(bus.bus.is_busy());
+  CHECK_FALSE(bus.ask(0x10_b));
+  CHECK_FALSE(bus.bus.is_busy());  // nobody tries while it is held
+  CHECK_FALSE(bus.collect(0x10_b));
+  CHECK(bus.bus.state().held == 1);
+  CHECK(bus.clocks == 0);
+  bus.holds_clock = false;
+  bus.ask(0x10_b);
+  bus.run(300);
+  CHECK(bus.collect(0x10_b));
+  CHECK(bus.bus.state().held == 0);
+}
+
+TEMPLATE_TEST_CASE(
+    "a bus: a write that hangs, which nobody asks about, holds up no reading for good", "",
+    MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  bus.put(false, 0x20_b, 1_b);
+  bus.run(40);
+  bus.holds_clock = true;
+  bus.ask(0x10_b);
+  bus.run(3000);
+  CHECK(bus.bus.is_busy());
+  CHECK_FALSE(bus.collect(0x10_b));
+  CHECK_FALSE(bus.bus.is_busy());
+  bus.holds_clock = false;
+  bus.ask(0x10_b);
+  bus.run(300);
+  CHECK(bus.collect(0x10_b));
+}
+
+TEMPLATE_TEST_CASE(
+    "a bus: a data line that is held down gets clocks until it is free, nine at most", "",
+    MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  for (unsigned clocks = 1; clocks <= 12; ++clocks) {
+    Bus<TestType> bus;
+    bus.holds_data = clocks;
+    bus.ask(0x10_b);
+    CHECK(bus.clocks == std::min(clocks, 9U));
+    CHECK(bus.is_on());
+    bus.run(300);
+    CHECK(bus.collect(0x10_b) == (clocks <= 9));
+    CHECK(bus.bus.state().held == (clocks <= 9 ? 0 : 1));
+    CHECK(bus.bus.state().clears == 1);
+    bus.ask(0x10_b);  // the rest of them
+    bus.run(300);
+    CHECK(bus.collect(0x10_b));
+    CHECK(bus.bus.state().clears == 1);
+  }
+}
+
+TEMPLATE_TEST_CASE(
+    "a bus: what is too long is refused, and too many requests leave those that run alone", "",
+    MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  std::array<std::byte, 17> long_in{};
+  CHECK_FALSE(bus.bus.transfer(true, bus.device(), std::array{1_b}, long_in));
+  CHECK_FALSE(bus.bus.transfer(true, bus.device(), std::array<std::byte, 20>{}, {}));
+  CHECK_FALSE(bus.bus.transfer(true, bus.device(), {}, std::span(long_in).first(2)));
+  CHECK_FALSE(bus.bus.is_busy());
+  for (unsigned i = 0; i < 8; ++i)
+    bus.ask(static_cast<std::byte>(i));
+  bus.run(3000);
+  for (unsigned i = 0; i < 8; ++i)
+    CHECK(bus.collect(static_cast<std::byte>(i)) == (i < 6));
+  for (unsigned i = 6; i < 8; ++i)  // what nobody asked about for the longest time gives way
+    bus.ask(static_cast<std::byte>(i));
+  bus.run(1000);
+  for (unsigned i = 0; i < 8; ++i)
+    CHECK(bus.collect(static_cast<std::byte>(i)) == (i >= 2));
+}
+
+TEMPLATE_TEST_CASE("STM32L475: a byte of a message that was refused is not the first of the next",
+                   "", L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  bus.refuses_after = 1;
+  CHECK(bus.bus.transfer(true, bus.device(), std::array{0x20_b, 0x77_b, 0x78_b}, {}));
+  bus.run(300);
+  CHECK_FALSE(bus.bus.is_busy());
+  CHECK_FALSE(bus.bus.transfer(false, bus.device(), std::array{0x20_b, 0x77_b, 0x78_b}, {}));
+  bus.refuses_after = ~0U;
+  CHECK(bus.put(true, 0x21_b, 0x99_b));
+  bus.run(300);
+  CHECK(bus.written.back() == std::vector{0x21_b, 0x99_b});
+  CHECK(bus.registers[0x21] == 0x99_b);
+}
+
+TEMPLATE_TEST_CASE(
+    "STM32L475: who loses the bus to another master has failed at once, and begins anew", "",
+    L475Bus<1>, L475Bus<2>) {
+  for (const unsigned after : {10U, 60U, 110U}) {
+    Bus<TestType> bus;
+    bus.ask(0x10_b);
+    bus.ask(0x30_b);
+    bus.run(after);
+    bus.another_master = true;
+    bus.run(400);
+    CHECK_FALSE(bus.bus.is_busy());
+    CHECK_FALSE(bus.collect(0x10_b));
+    CHECK(bus.collect(0x30_b));
+    CHECK(bus.got_from(0x30));
+  }
+}
+
+TEMPLATE_TEST_CASE("STM32L475: a bus error that the master sees is none", "", L475Bus<1>,
+                   L475Bus<2>) {
+  Bus<TestType> bus;
+  bus.ask(0x10_b);
+  bus.run(30);
+  bus.spurious_bus_error = true;
+  bus.run(300);
+  CHECK(bus.collect(0x10_b));
+  CHECK(bus.got_from(0x10));
+}
+
+TEMPLATE_TEST_CASE("STM32L475: DMA that fails is a transfer that failed, and no more", "",
+                   L475Bus<1>, L475Bus<2>) {
+  // At what is to be written, at what is read, and at the last of it.
+  for (const unsigned after : {10U, 70U, 130U}) {
+    Bus<TestType> bus;
+    bus.ask(0x10_b);
+    bus.run(after);
+    bus.dma_fails = true;
+    bus.run(900);
+    CHECK_FALSE(bus.collect(0x10_b));
+    CHECK_FALSE(bus.bus.is_busy());
+    bus.ask(0x30_b);
+    bus.run(300);
+    CHECK(bus.collect(0x30_b));
+    CHECK(bus.got_from(0x30));
+  }
+}
