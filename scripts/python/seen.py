@@ -7,7 +7,6 @@ import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import NamedTuple
 
 import rates
@@ -15,7 +14,7 @@ import rates
 PROGRAM = rates.ROOT / "build/companion/bin/robosync-objects"
 DRAW = rates.ROOT / "build/companion/companion/robosync-draw"
 PAGE = rates.ROOT / "docs/companion.md"
-COLUMNS, ROWS, PICTURES = 640, 480, 100
+COLUMNS, ROWS, PICTURES = 640, 480, 50
 BOXES = "boxes:12"
 NOISES = (2, 15, 30, 50)  # of 255
 USUAL = "--period 1 --view 60 --smallest 5 --vivid 50 --hue_from 0 --hue_to 360 --no-pace".split()
