@@ -14,7 +14,8 @@ MUTANTS = (
     Mutant("once loaded it may call what a loader may", CONFINE, "return allow(kAnswers, false);", "return true;"),
     Mutant("what no list names is allowed", CONFINE, "  filter.push_back(kEnd);\n", "  filter.push_back(kAllow);\n"),
     Mutant("another machine's calls are taken for this one's", CONFINE,
-           "BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kMachine, 1, 0), kEnd,", ""),
+           "BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kMachine, 1, 0), kEnd,", "",
+           "a test does, where the kernel takes calls of 32 bits; this one does not"),
     Mutant("a file may be opened to write", CONFINE, "O_WRONLY | O_RDWR | O_CREAT", "O_RDWR | O_CREAT"),
     Mutant("a file may be opened to read and write", CONFINE, "O_WRONLY | O_RDWR | O_CREAT", "O_WRONLY | O_CREAT"),
     Mutant("a file may be made", CONFINE, "O_RDWR | O_CREAT | O_TRUNC", "O_RDWR | O_TRUNC"),
@@ -103,7 +104,7 @@ MUTANTS = (
     Mutant("an empty place has a module", REGISTRY, " || module_files::places[place] == nullptr)", ")"),
 )
 
-SUITE = Suite("modules", "robosync_module_files", "tests/runtime-m4/test_module_files", "", MUTANTS)
+SUITE = Suite("robosync_module_files", "tests/runtime-m4/test_module_files", "", MUTANTS)
 
 if __name__ == "__main__":
     sys.exit(run(SUITE))

@@ -74,7 +74,7 @@ MUTANTS = (
     Mutant("the program begins before the rules know", RUNTIME, "if (!begun_ && !sensors_.knows_enough()) {", "if (false) {"),
 )
 
-SUITE = Suite("safety", "robosync_runtime", "tests/runtime-m4/test_layers", TESTS, MUTANTS)
+SUITE = Suite("robosync_runtime", "tests/runtime-m4/test_layers", TESTS, MUTANTS)
 
 if __name__ == "__main__":
     sys.exit(run(SUITE))
