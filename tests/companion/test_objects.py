@@ -113,8 +113,9 @@ class Objects(unittest.TestCase):
         self.assertEqual((seen["COUNT"], seen["COLOR"]), (1, "red"))
 
     def test_a_line_is_no_thing(self):
-        """Of the same colour as a ball, but it does not fill its box: the rim of a ball before which another one lies."""
-        self.assertEqual(self.see("ball:120:320:240:120:80", "ball:120:320:240:108:10")["COUNT"], 0)
+        """A ring, which another ball leaves of the one behind it: thick enough to be seen, it fills little of its box."""
+        self.assertEqual(self.see("ball:120:320:240:200:80", "ball:120:320:240:164:10")["COUNT"], 0)
+        self.assertEqual(self.see("ball:120:320:240:200:80", "ball:120:320:240:100:10")["COUNT"], 1)
 
     def test_the_angle_is_one_of_the_cameras_view(self):
         seen = self.see("marker:7:480:240:96:0:0", "ball:0:480:400:80:80", view=90)
