@@ -18,6 +18,7 @@ enum how {
   takes_all_memory_while_loaded,
   beyond_state,
   below_state,
+  reads_beyond_state,
   beyond_an_odd_state,
   beyond_scratch,
   below_scratch,
@@ -147,6 +148,7 @@ static void misbehave(char* own, char* scratch, const robosync_block* block) {
   if (how == crashes) *(volatile int*)8 = 1;
   if (how == beyond_state) own[STATE_BYTES] = 1;
   if (how == below_state) own[-1] = 1;
+  if (how == reads_beyond_state) zero = ((volatile char*)own)[STATE_BYTES];
   if (how == beyond_an_odd_state) own[STATE_BYTES + 1] = 1;
   if (how == beyond_scratch) scratch[SCRATCH_BYTES] = 1;
   if (how == below_scratch) scratch[-1] = 1;

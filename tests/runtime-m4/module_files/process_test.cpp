@@ -49,6 +49,7 @@ const std::map<std::string, std::string> kTroubles = {
     {"takes_all_memory_while_loaded", ""},  // it gets none
 #endif
     {"beyond_state", "it touched memory beyond its state, in process()"},
+    {"reads_beyond_state", "it touched memory beyond its state, in process()"},
     {"below_state", "it touched memory beyond its state, in process()"},
     {"beyond_an_odd_state", "it touched memory beyond its state, in process()"},
     {"beyond_scratch", "it touched memory beyond its scratch, in process()"},
