@@ -25,6 +25,14 @@ struct Lines {
   void output(const char* name, vm::Dimension dimension, vm::Value low, vm::Value high) {
     modules.back().outputs.push_back({name, dimension, low, high, {}});
   }
+  void one_of(const char* name, const char* word) {
+    modules.back().outputs.push_back({name, vm::Dimension::number, 0, 0, {word}});
+  }
+  void word(const char* word) {
+    auto& output = modules.back().outputs.back();
+    output.labels.emplace_back(word);
+    output.max += vm::kScale;
+  }
   void words(const char* name, const char* word) {
     modules.back().outputs.push_back({name, vm::Dimension::number, 0, 0, {word}, true});
   }
@@ -42,6 +50,8 @@ std::vector<AlgorithmModule> all_modules() {
 #define MODULE(name, device, usual, shortest, longest, doc) \
   lines.module(#name, #device, usual, shortest, longest);
 #define OUTPUT(name, dimension, low, high) lines.output(#name, vm::Dimension::dimension, low, high);
+#define ONE_OF(name, word) lines.one_of(#name, #word);
+#define HUE(name, from) lines.word(#name);
 #define WORDS(name, word) lines.words(#name, #word);
 #define TAUGHT(name, word) lines.taught(#name, #word);
 #define PARAMETER(name, dimension, usual, low, high, doc) \
@@ -49,6 +59,8 @@ std::vector<AlgorithmModule> all_modules() {
 #include "companion/modules.def"
 #undef MODULE
 #undef OUTPUT
+#undef ONE_OF
+#undef HUE
 #undef WORDS
 #undef TAUGHT
 #undef PARAMETER
@@ -66,12 +78,16 @@ std::string_view doc_of_companion_module(std::string_view name) {
 #define MODULE(module, device, usual, shortest, longest, doc) \
   if (name == #module) return doc;
 #define OUTPUT(...)
+#define ONE_OF(...)
+#define HUE(...)
 #define WORDS(...)
 #define TAUGHT(...)
 #define PARAMETER(...)
 #include "companion/modules.def"
 #undef MODULE
 #undef OUTPUT
+#undef ONE_OF
+#undef HUE
 #undef WORDS
 #undef TAUGHT
 #undef PARAMETER

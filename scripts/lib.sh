@@ -17,12 +17,13 @@ die() {
 # The head comment of the script that runs, for --help.
 usage() { sed -n '2,/^\. /{/^\. /d;s/^# \{0,1\}//;p}' "scripts/${0##*/}"; }
 
-# missing_packages [SECTION…]: the packages in these sections of packages.txt (all but [faces], [editor], [rates] and [fuzz], when none is named)
+# missing_packages [SECTION…]: the packages in these sections of packages.txt (all but [faces], [objects], [editor], [rates] and [fuzz], when none is
+# named)
 # that are not installed, one a line.
 missing_packages() {
   local package
   awk -v wanted=" $* " '/^\[/ { section = substr($1, 2, length($1) - 2); next }
-       /^[^#]/ && (wanted == "  " ? section !~ /^(faces|editor|rates|fuzz)$/ : index(wanted, " " section " "))' scripts/packages.txt |
+       /^[^#]/ && (wanted == "  " ? section !~ /^(faces|objects|editor|rates|fuzz)$/ : index(wanted, " " section " "))' scripts/packages.txt |
     while read -r package; do
     dpkg-query -W -f='${db:Status-Abbrev}' "$package" 2>/dev/null | grep -q '^ii' || echo "$package"
   done

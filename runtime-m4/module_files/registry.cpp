@@ -61,6 +61,8 @@ std::uint32_t process(Place& place, void* memory, const robosync_block& block) {
   const robosync_module& module = place.description.module();
   State state{};
   const std::size_t bytes = state_bytes_of(place, block.config);
+  // Of one in trouble nobody knows how much of the memory is its own.
+  if (!place.process.trouble().empty()) return ROBOSYNC_FAILED;
   auto* const own = static_cast<std::byte*>(memory);
   std::copy_n(own, bytes, state.begin());
   Inputs inputs{};

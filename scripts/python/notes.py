@@ -1,24 +1,21 @@
 """How often `pitch` is right about notes (scripts/rates), as a table.
 
 Notes of the instruments of a sound font, which are recordings of instruments and singers that fluidsynth plays, and tones that are computed:
-each for a second, as loud as rates.py makes everything. A robot hears them in `rsc run`. Counted is what its PITCH is every 20 ms, from
+each for a second, as loud as sounds.py makes everything. A robot hears them in `rsc run`. Counted is what its PITCH is every 20 ms, from
 160 ms after a note's begin until its end."""
 
 import math
 import subprocess
 import tempfile
-import warnings
 from array import array
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # Debian 12's Python still has it
-    import audioop
-
 import rates
-from rates import BYTES, DATA, NOISES_DB, RATE, RAW
+import sounds
+from rates import DATA, RATE, RAW
+from sounds import BYTES, NOISES_DB
 
 PACKAGE = "timgm6mb-soundfont"
 FONT = DATA / PACKAGE / "usr/share/sounds/sf2/TimGM6mb.sf2"
@@ -84,7 +81,7 @@ def computed(tones, which):
             values.append(sum(height * math.sin(n * phase + n * n) for n, height in enumerate(tones.heights, 1)
                               if n * note.hertz() < RATE * 0.45))
         most = max(map(abs, values))
-        yield note, rates.as_loud(array("h", [round(20000 * value / most) for value in values]).tobytes())
+        yield note, sounds.as_loud(array("h", [round(20000 * value / most) for value in values]).tobytes(), RATE)
 
 
 def track(all_notes):
@@ -116,7 +113,7 @@ def played(all_notes):
         raw = subprocess.run(["sox", "-R", sound, *RAW], capture_output=True, check=True).stdout
     for i, note in enumerate(all_notes):
         at = int((i * (PAUSE_S + NOTE_S) + PAUSE_S) * RATE) * BYTES
-        yield note, rates.as_loud(raw[at:at + int(NOTE_S * RATE) * BYTES])
+        yield note, sounds.as_loud(raw[at:at + int(NOTE_S * RATE) * BYTES], RATE)
 
 
 def lay_out(recordings):
@@ -155,10 +152,9 @@ def judged(pitch, note):
 def row(part, which):
     recordings = list(played(notes(part, which)) if isinstance(part, Part) else computed(part, which))
     sound, places = lay_out(recordings)
-    hiss, cells = rates.noise(len(sound)), []
+    hiss, cells = sounds.noise(len(sound), RATE), []
     for below in NOISES_DB:
-        mixed = audioop.add(sound, audioop.mul(hiss, BYTES, 10 ** (-below / 20)), BYTES)
-        pitches = heard(mixed)
+        pitches = heard(sounds.mixed(sound, hiss, below))
         found = [judged(pitches[begin + at], note) for note, begin in places for at in range(FIRST_MS, LAST_MS, SAMPLE_MS)]
         shares = [100 * found.count(kind) / len(found) for kind in ("right", "octave", "other", "none")]
         cells.append(" · ".join(f"{share:.1f}" for share in shares))
@@ -167,9 +163,8 @@ def row(part, which):
 
 
 def table(which):
-    head = "| notes | " + " | ".join(map(rates.title, NOISES_DB)) + " |\n|---" + "|---" * len(NOISES_DB) + "|"
     with ThreadPoolExecutor(2) as pool:
-        return "\n".join([head, *pool.map(lambda part: row(part, which), PARTS)])
+        return "\n".join([*sounds.head("notes"), *pool.map(lambda part: row(part, which), PARTS)])
 
 
 if __name__ == "__main__":

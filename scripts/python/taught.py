@@ -7,21 +7,15 @@ before, in and behind it."""
 import subprocess
 import sys
 import tempfile
-import warnings
-import wave
 from pathlib import Path
 from typing import NamedTuple
 
 import rates
-
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")
-    import audioop
+import sounds
+from sounds import BYTES, NOISES_DB
 
 PROGRAM = rates.ROOT / "build/companion/bin/robosync-own-words"
-RATE, BYTES = 16_000, 2
-BLOCK = RATE // 50 * BYTES
-RAW = ("-r", str(RATE), "-c", "1", "-b", "16", "-e", "signed", "-t", "raw", "-")
+RATE = 16_000
 # As fast, and higher by so many hundredths of a semitone.
 TAUGHT, SAID = ((1, 0), (0.93, -30), (1.07, 30)), ((0.87, 50), (1.13, -50), (0.96, 20))
 LONGEST = 4 * RATE * BYTES  # of what is none of the words
@@ -45,12 +39,11 @@ class Set(NamedTuple):
 
 
 def sox(source, effects=(), **more):
-    return subprocess.run(["sox", "-R", *source, *RAW, *effects], capture_output=True, check=True, **more).stdout
+    return subprocess.run(["sox", "-R", *source, *sounds.raw(RATE), *effects], capture_output=True, check=True, **more).stdout
 
 
 def loud(sound):
-    loudest = max((audioop.rms(sound[at:at + BLOCK], BYTES) for at in range(0, len(sound) - BLOCK + 1, BLOCK)), default=0)
-    return audioop.mul(sound, BYTES, rates.LOUDEST / loudest) if loudest else None
+    return sounds.as_loud(sound, RATE)
 
 
 def changed(path, tempo, cents):
@@ -67,11 +60,11 @@ def digits(package):
 
 def of_people(package):
     words, others = digits(package)
-    sounds = (loud(sox([path])[:LONGEST]) for path in others[::4])
+    others_loud = (loud(sox([path])[:LONGEST]) for path in others[::4])
     return Set(f"12 numbers, a person ({package})",
                {word: [changed(path, *how) for how in TAUGHT] for word, path in words.items()},
                [(word, changed(path, *how)) for word, path in words.items() for how in SAID],
-               [sound for sound in sounds if sound])
+               [sound for sound in others_loud if sound])
 
 
 def of_two_people(package, other):
@@ -102,10 +95,7 @@ def sets(settings):
 
 
 def write(path, sound):
-    with wave.open(str(path), "wb") as file:
-        file.setparams((1, BYTES, RATE, 0, "NONE", ""))
-        file.writeframes(sound)
-    return path
+    return sounds.write(path, sound, RATE)
 
 
 class Robot:
@@ -116,9 +106,9 @@ class Robot:
         self.file = folder / "my.words"
         self.file.unlink(missing_ok=True)
         self.names = {word: f"w{i}" for i, word in enumerate(taught)}  # those of a file are ASCII
-        hiss = noise(12 * RATE * BYTES)
-        for word, sounds in taught.items():
-            samples = [write(folder / f"sample{i}.wav", in_noise(sound, hiss, rates.NOISES_DB[0], 0)) for i, sound in enumerate(sounds)]
+        hiss = sounds.noise(12 * RATE * BYTES, RATE)
+        for word, samples_of_it in taught.items():
+            samples = [write(folder / f"sample{i}.wav", in_noise(sound, hiss, NOISES_DB[0], 0)) for i, sound in enumerate(samples_of_it)]
             subprocess.run([PROGRAM, "--words", self.file, "--teach", self.names[word],
                             *(part for path in samples for part in ("--recording", path))], check=True, stdout=subprocess.DEVNULL)
 
@@ -129,17 +119,10 @@ class Robot:
         return [line.split()[1] for line in done.stdout.splitlines() if not line.endswith(" none")]
 
 
-def noise(length):
-    """Pink, the same every time, as loud as the loudest block of a recording."""
-    sound = sox(["-n"], ["synth", "20", "pinknoise", "gain", "-12"])
-    sound = audioop.mul(sound, BYTES, rates.LOUDEST / audioop.rms(sound, BYTES))
-    return (sound * (length // len(sound) + 1))[:length]
-
-
 def in_noise(sound, hiss, below, place):
     sound = bytes(RATE * BYTES) + sound + bytes(RATE * BYTES * 3 // 4)
     begin = place * 8_000 % (len(hiss) - len(sound)) // BYTES * BYTES
-    return audioop.add(sound, audioop.mul(hiss[begin:begin + len(sound)], BYTES, 10 ** (-below / 20)), BYTES)
+    return sounds.mixed(sound, hiss[begin:begin + len(sound)], below)
 
 
 def counts(robot, one, below, hiss):
@@ -161,12 +144,12 @@ def row(one, columns):
 
 
 def table(all_sets):
-    lines = ["| said | " + " | ".join(map(rates.title, rates.NOISES_DB)) + " |", "|---" + "|---" * len(rates.NOISES_DB) + "|"]
-    hiss = noise(60 * RATE * BYTES)
+    lines = sounds.head("said")
+    hiss = sounds.noise(60 * RATE * BYTES, RATE)
     with tempfile.TemporaryDirectory() as name:
         for one in all_sets:
             robot = Robot(Path(name), one.taught)
-            lines.append(row(one, [counts(robot, one, below, hiss) for below in rates.NOISES_DB]))
+            lines.append(row(one, [counts(robot, one, below, hiss) for below in NOISES_DB]))
             print(lines[-1], file=sys.stderr, flush=True)
     return "\n".join(lines)
 

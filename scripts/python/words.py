@@ -1,61 +1,128 @@
-"""How often command_words is right: words that people say in Debian's pocketsphinx-testdata, of twenty that it listens for.
+"""How often command_words is right (scripts/rates), as a table.
 
-scripts/companion --rates runs it. Each word that it hears and that nobody has said is a false alarm.
-"""
+It hears people, each recording as loud as the others, with pauses between, and listens for as many words as a robot has. A word is heard
+when it is named between its recording's begin and a second after its end; whatever else it names is a false alarm."""
 
 import re
 import subprocess
 import sys
 import tempfile
-import wave
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parents[2]
-PROGRAM = ROOT / "build/companion/bin/robosync-command-words"
+import rates
+import sounds
+
+PROGRAM = rates.ROOT / "build/companion/bin/robosync-command-words"
+PAGE = rates.ROOT / "docs/companion.md"
+RATE = 16_000
+LINE_MS = 20  # what it says of itself, once in that time
+SENTENCES, WORDS = "pocketsphinx-testdata", "asterisk-core-sounds-en-g722"
 DATA = Path("/usr/share/pocketsphinx/test/data")
-WORDS = ("forward ten meters queen clubs seven eight spades hearts four "
-         "hello stop robot dance back left right music goodbye faster").split()
-USUAL = re.search(r"PARAMETER\(strict, \w+, (\d+)", (ROOT / "companion/modules.def").read_text())
+# What it listens for in sentences: words in some of them, and others.
+LISTENED_FOR = ("forward ten meters queen clubs seven eight spades hearts four "
+                "hello stop robot dance back left right music goodbye faster").split()
+# What one woman says word by word, as her recordings are called; without words of one syllable, and without "echo", which is also in her
+# sentences.
+CALLED = {f"digits/day-{i}": word for i, word in enumerate("sunday monday tuesday wednesday thursday friday saturday".split())}
+CALLED |= {f"digits/mon-{i}": word for i, word in enumerate(
+    "january february - april - - july august september october november december".split()) if word != "-"}
+CALLED |= {f"phonetic/{word[0]}_p": word for word in
+           "alpha bravo charlie delta foxtrot hotel india juliet kilo lima oscar papa quebec romeo sierra tango uniform victor "
+           "whiskey yankee zulu".split()}
+USUAL = int(re.search(r"PARAMETER\(strict, \w+, (\d+)", (rates.ROOT / "companion/modules.def").read_text())[1]) // 1000
 
 
-def recordings(folder):
-    """Each with what is said in it."""
-    wav = Path(folder) / "goforward.wav"
-    with wave.open(str(wav), "wb") as out:
-        out.setnchannels(1)
-        out.setsampwidth(2)
-        out.setframerate(16_000)
-        out.writeframes((DATA / "goforward.raw").read_bytes())
-    yield wav, "go forward ten meters"
+class Set(NamedTuple):
+    name: str
+    words: list  # that it listens for
+    said: dict  # path of each recording: the words in it, in their order
+
+
+def of_sentences(which):
+    said = {DATA / "goforward.raw": "go forward ten meters"}
     for kind, transcription in (("cards", "cards.transcription"), ("librivox", "transcription")):
-        for said, name in re.findall(r"<s> (.*?) *</s> \((.*)\)", (DATA / kind / transcription).read_text()):
-            yield DATA / kind / f"{name}.wav", said
+        for text, name in re.findall(r"<s> (.*?) *</s> \((.*)\)", (DATA / kind / transcription).read_text()):
+            said[DATA / kind / f"{name}.wav"] = text
+    chosen = sorted(said, key=lambda path: path.relative_to(DATA).as_posix())[which::2]
+    return Set(f"{len(chosen)} sentences of several people ({SENTENCES})", LISTENED_FOR,
+               {path: [word for word in said[path].split() if word in LISTENED_FOR] for path in chosen})
 
 
-def heard(recording):
-    arguments = [part for word in WORDS for part in ("--word", word)]
-    done = subprocess.run([PROGRAM, "--source", recording, "--no-pace", "--period", "60000", "--shown_for", "0.1", "--strict",
-                           str(int(USUAL[1]) / 1000), *arguments], check=True, text=True, stdout=subprocess.PIPE)
-    return [line.split()[1] for line in done.stdout.splitlines() if not line.endswith(" silence")]
+def of_words(which):
+    """What of her says none of the words is there for false alarms."""
+    paths = rates.recordings(WORDS, {".g722"})
+    words = sorted(CALLED.values())[which::2]
+    by_path = {path: CALLED.get(f"{path.parent.name}/{path.stem}") for path in paths}
+    alone = {path: [word] for path, word in by_path.items() if word in words}
+    others = {path: [] for path in [path for path in paths if path.parent.name == "en_US_f_Allison"][which::2]}
+    return [Set(f"{len(alone)} words of a woman, one by one ({WORDS})", words, alone),
+            Set(f"{len(others)} other recordings of her ({WORDS})", words, others)]
+
+
+def read(path):
+    if path.suffix == ".g722":  # which sox does not know
+        done = subprocess.run(["ffmpeg", "-v", "error", "-nostdin", "-f", "g722", "-i", path, "-f", "s16le", "-"], capture_output=True,
+                              check=True)
+        return sounds.as_loud(done.stdout, RATE)
+    how = sounds.raw(RATE)[:-1] if path.suffix == ".raw" else ()
+    return sounds.as_loud(subprocess.run(["sox", "-R", *how, path, *sounds.raw(RATE)], capture_output=True, check=True).stdout, RATE)
+
+
+def named(sound, words, strict):
+    """[(time in seconds, word)] as it names them."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = sounds.write(Path(folder) / "said.wav", sound, RATE)
+        done = subprocess.run([PROGRAM, "--source", file, "--no-pace", "--period", str(LINE_MS), "--shown_for", "0.1", "--strict", str(strict),
+                               *(part for word in words for part in ("--word", word))], check=True, text=True, stdout=subprocess.PIPE)
+    time, now, found = 0, "silence", []
+    for line in done.stdout.splitlines():
+        word = line.split()[1]
+        if word not in (now, "silence"):
+            found.append((time / 1000, word))
+        # What is heard is said at once, and after that block once more.
+        time += LINE_MS * (word == now or word == "silence")
+        now = word
+    return found
+
+
+def counts(one, places, events):
+    """(words said, heard of these, false alarms)."""
+    said, alarms = {path: list(words) for path, words in one.said.items()}, 0
+    for time, word in events:
+        here = next((path for path, begin, end in places if begin <= time <= end + 1 and word in said[path]), None)
+        if here is None:
+            alarms += 1
+        else:
+            said[here].remove(word)
+    total = sum(map(len, one.said.values()))
+    return total, total - sum(map(len, said.values())), alarms
+
+
+def row(one, strict):
+    sound, places = sounds.lay_out(one.said, read, RATE)
+    hiss, cells = sounds.noise(len(sound), RATE), []
+    for below in sounds.NOISES_DB:
+        total, heard, alarms = counts(one, places, named(sounds.mixed(sound, hiss, below), one.words, strict))
+        cells.append(f"{heard} of {total} · {alarms}" if total else f"– · {alarms}")
+    minutes = sounds.seconds(sound, RATE) / 60
+    return f"| {one.name}, {minutes:.1f} min; listens for {len(one.words)} | " + " | ".join(cells) + " |"
+
+
+def table(which, strict=USUAL):
+    sets = [of_sentences(which), *of_words(which)]
+    with ThreadPoolExecutor(2) as pool:
+        return "\n".join([*sounds.head("said"), *pool.map(lambda one: row(one, strict), sets)])
 
 
 def main():
-    said_in_all, hits, false_alarms, seconds = 0, 0, 0, 0.0
-    with tempfile.TemporaryDirectory(prefix="robosync-words-") as folder:
-        for recording, said in recordings(folder):
-            with wave.open(str(recording)) as file:
-                seconds += file.getnframes() / file.getframerate()
-            words = heard(recording)
-            for word in said.split():
-                if word in WORDS:
-                    said_in_all += 1
-                    if word in words:
-                        words.remove(word)
-                        hits += 1
-            false_alarms += len(words)
-    print(f"{hits} of {said_in_all} words heard, {false_alarms} false alarms in {seconds:.0f} s "
-          f"({len(WORDS)} words, pocketsphinx-testdata)")
+    if "--settings" in sys.argv:
+        for strict in (45, 47, 49):
+            print(f"strict {strict}\n{table(rates.half(), strict)}")
+    else:
+        rates.show(table(rates.half()), "<!-- scripts/rates: words -->", PAGE)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

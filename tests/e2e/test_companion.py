@@ -1,4 +1,4 @@
-"""rsc companion: a word in a recording, and a face in a picture, reach a program on the shipped firmware."""
+"""rsc companion: a word in a recording, a face and a marker in a picture, reach a program on the shipped firmware."""
 
 import functools
 import json
@@ -14,6 +14,7 @@ from support import LineReader, RobotTest
 sys.path.append(str(ROOT / "tests/companion"))
 from recordings import RATE, TEST_DATA, as_wav, needs, samples_of, speak  # noqa: E402
 from test_face_detect import PICTURES  # noqa: E402
+from test_objects import draw  # noqa: E402
 
 ROBOT = {
     "actuators": [{"name": "arm", "type": "VIRTUAL", "device": "joint", "range": ["0deg", "90deg"]},
@@ -35,6 +36,17 @@ DO SAY "Hello"
 END
 WHEN face ANGLE < 0deg
 DO LOG "to the left"
+END
+"""
+FOLLOWS = """
+WHEN eyes MARKER = 7
+DO MOVE arm TO 90deg
+END
+WHEN eyes COLOR IS green AND eyes ANGLE > 10deg
+DO SAY "On the right"
+END
+WHEN eyes COLOR IS red
+DO SAY "Red"
 END
 """
 TAUGHT = """
@@ -204,6 +216,22 @@ class Companion(RobotTest):
         self.assertIn(("speaker", "SAY"), [(event["actuator"], event["verb"]) for event in events
                                            if event["event"] == "command"])
         self.assertIn("to the left", json.dumps(events))
+
+    @needs("objects")
+    @unless_it_stands_still
+    def test_a_marker_held_before_the_camera_moves_the_arm(self):
+        self.given(FOLLOWS, {"name": "eyes", "module": "objects", "on": "companion", "config": {"view": "53deg"}})
+        before = draw(self.folder / "seen.png", "marker:7:160:240:96:20:20", "ball:120:500:300:80:80")
+        reader = LineReader(*self.beside("--camera", before))
+        try:
+            did = reader.wait_for(lambda lines: all(any(what in line for line in lines) for what in ('"verb":"MOVE"', "On the right")), 30)
+            lines = list(reader.lines)
+        finally:
+            reader.stop()
+        if any(WATCHDOG in line for line in lines):
+            raise StoodStill
+        self.assertTrue(did, lines[-5:])
+        self.assertNotIn("Red", "".join(lines))
 
 
 if __name__ == "__main__":

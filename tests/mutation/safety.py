@@ -1,36 +1,14 @@
-"""scripts/mutate safety: the safety monitor, its rules and the output guard, broken on purpose, one promise at a time.
+"""scripts/mutate safety: the safety monitor, its rules and the output guard, broken on purpose, one promise at a time (changes.py); of the
+tests of the layers those run that are about safety."""
 
-Each mutant is a small change of one source. It is built as build/host builds the original, linked to the tests of the layers,
-and those that are about safety run. Prints each mutant with the first test that notices; one that none notices, though it could,
-is a survivor.
-Assumes that build/host is built. The last line is "N passed, N failed": mutants noticed, and survivors.
-"""
-
-import json
-import re
-import shlex
-import subprocess
 import sys
-from pathlib import Path
-from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parents[2]
-HOST = ROOT / "build/host"
-WORK = ROOT / "build/mutation/safety"
+from changes import Mutant, Suite, run
+
 TESTS = "[#guard_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#ssd1306_test]"
-TIMEOUT = 120
 GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
 MAILBOX = "runtime-m4/layers/mailbox.cpp"
 MONITOR, CONTROL, RUNTIME = "runtime-m4/safety/monitor.cpp", "runtime-m4/layers/control.cpp", "runtime-m4/runtime.cpp"
-
-
-class Mutant(NamedTuple):
-    what: str
-    file: str
-    is_there: str
-    instead: str
-    unseen: str = ""  # why no test can notice
-
 
 MUTANTS = (
     Mutant("a halt does not shut the pin to drivers", GUARD, "halted_ |= actuators;\n  free_ = owned_ & ~halted_;",
@@ -96,71 +74,7 @@ MUTANTS = (
     Mutant("the program begins before the rules know", RUNTIME, "if (!begun_ && !sensors_.knows_enough()) {", "if (false) {"),
 )
 
-
-def unity_of(file):
-    """The compilation that has this source among others, or alone: (its command, a source that includes them)."""
-    for entry in json.loads((HOST / "compile_commands.json").read_text()):
-        if "robosync_runtime.dir" not in entry["command"]:
-            continue
-        if entry["file"] == str(ROOT / file):
-            alone = WORK / "alone.cpp"
-            alone.write_text(f'#include "{ROOT / file}"\n')
-            return shlex.split(entry["command"]), alone
-        if str(ROOT / file) in Path(entry["file"]).read_text():
-            return shlex.split(entry["command"]), Path(entry["file"])
-    raise LookupError(f"build/host does not compile {file}")
-
-
-def compile_mutant(mutant):
-    text = (ROOT / mutant.file).read_text()
-    if text.count(mutant.is_there) != 1:
-        raise LookupError(f"{mutant.file} does not have `{mutant.is_there}` once: bring the mutant up to date")
-    changed = WORK / Path(mutant.file).name
-    changed.write_text(text.replace(mutant.is_there, mutant.instead))
-    words, unity = unity_of(mutant.file)
-    source, target = WORK / "unity.cpp", WORK / "mutant.o"
-    source.write_text(unity.read_text().replace(str(ROOT / mutant.file), str(changed)))
-    words[words.index("-o") + 1] = str(target)
-    words[words.index("-c") + 1] = str(source)
-    subprocess.run([*words, "-O1", "-Wno-error", "-w"], cwd=HOST, check=True)
-    return target
-
-
-def link(target):
-    """The tests as build/host links them; what the mutant's object has, the library is not asked for."""
-    said = subprocess.run(["ninja", "-C", str(HOST), "-t", "commands", "tests/runtime-m4/test_layers"], check=True, text=True,
-                          stdout=subprocess.PIPE).stdout.splitlines()
-    words = shlex.split(next(line for line in reversed(said) if "-o tests/runtime-m4/test_layers" in line)
-                        .removeprefix(": && ").split(" && ")[0])
-    at = words.index("-o")
-    words[at + 1] = str(WORK / "test_layers")
-    subprocess.run([*words[:at], str(target), *words[at:]], cwd=HOST, check=True)
-
-
-def noticed_by():
-    """The first test that fails; None: all pass."""
-    try:
-        done = subprocess.run([WORK / "test_layers", "--abort", "--filenames-as-tags", "--reporter", "xml", TESTS], check=False,
-                              timeout=TIMEOUT, cwd=WORK, text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    except subprocess.TimeoutExpired:
-        return "it never ends"
-    if done.returncode == 0:
-        return None
-    return re.findall(r'<TestCase name="([^"]*)"', done.stdout)[-1]
-
-
-def main():
-    WORK.mkdir(parents=True, exist_ok=True)
-    survivors = 0
-    for mutant in MUTANTS:
-        link(compile_mutant(mutant))
-        test = noticed_by()
-        survivors += test is None and not mutant.unseen
-        nobody = f"nobody: {mutant.unseen}" if mutant.unseen else "NOBODY notices"
-        print(f"{mutant.what} ({Path(mutant.file).name}): {test or nobody}", flush=True)
-    print(f"{len(MUTANTS) - survivors} passed, {survivors} failed")
-    return 1 if survivors else 0
-
+SUITE = Suite("robosync_runtime", "tests/runtime-m4/test_layers", TESTS, MUTANTS)
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(SUITE))

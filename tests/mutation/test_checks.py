@@ -2,7 +2,9 @@
 
 import unittest
 
+import changes
 import checks
+import modules
 import safety
 
 
@@ -48,11 +50,11 @@ class Instrument(unittest.TestCase):
         self.assertIn("return (mutant(7) || ((mutant(8) || (a < 3)) && (mutant(9) || (b < 4))));", text)
 
 
-class Safety(unittest.TestCase):
+class Changes(unittest.TestCase):
     def test_what_a_mutant_changes_is_there_once(self):
-        for mutant in safety.MUTANTS:
+        for mutant in (*safety.MUTANTS, *modules.MUTANTS):
             with self.subTest(mutant.what):
-                self.assertEqual((safety.ROOT / mutant.file).read_text().count(mutant.is_there), 1)
+                self.assertEqual((changes.ROOT / mutant.file).read_text().count(mutant.is_there), 1)
 
 
 if __name__ == "__main__":

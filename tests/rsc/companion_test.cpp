@@ -48,6 +48,11 @@ DO LOG "seen"
 END
 )";
 
+constexpr const char* kSeeing = R"({
+  "actuators": [{"name": "speaker", "type": "VIRTUAL", "device": "speaker"}],
+  "algorithms": [{"name": "eyes", "module": "objects", "config": {"vivid": "40%"}}]
+})";
+
 // A robot.json and a program on it, and programs of modules, which are shell scripts.
 struct Ears : Device {
   Ears() {
@@ -131,6 +136,47 @@ TEST_CASE("one word, or none, is enough") {
   const compiler::Result quiet = compiled("WHEN voice WORD IS silence\nDO LOG \"q\"\nEND\n");
   CHECK(labels_of(view_of(quiet), view_of(quiet).channels[0]) ==
         std::vector<std::string>{"silence"});
+}
+
+TEST_CASE("a channel that is one of some words has all of them, in their order") {
+  const Folder folder;
+  folder.write("robot.json", kSeeing);
+  const std::string program =
+      folder.write("robot.rsl",
+                   "WHEN eyes COLOR BECOMES red\nDO LOG \"red\"\nEND\n"
+                   "TEST \"it sees\"\n  AT 0s eyes COLOR = \"none\"\n  AT 1s eyes COLOR = \"red\"\n"
+                   "  EXPECT LOG \"red\" WITHIN 20ms\nEND\n");
+  CHECK(test::rsc({"test", program}).exit == 0);
+  const auto result = compiler::compile(
+      {"robot.rsl", "WHEN eyes COLOR IS green AND eyes MARKER = 7\nDO LOG \"g\"\nEND\n"},
+      {"robot.json", kSeeing}, {.source_lines = false, .algorithms = tool::algorithm_modules()});
+  const vm::Image image = view_of(result);
+  const vm::Channel& color = image.channels[0];
+  CHECK(labels_of(image, color) ==
+        std::vector<std::string>{"none", "orange", "yellow", "green", "blue", "purple", "red"});
+  CHECK(color.max == 6 * vm::kScale);
+  CHECK(tool::parse_value(image, color, "red") == 6 * vm::kScale);
+  CHECK(!tool::parse_value(image, color, "pink"));
+  CHECK(tool::parse_value(image, image.channels[1], "-1.000") == -vm::kScale);
+  CHECK(!tool::parse_value(image, image.channels[1], "1000"));
+}
+
+TEST_CASE("a colour that there is not, and a parameter out of its range, is one clear error") {
+  const Folder folder;
+  const auto check = [&](const std::string& config, const std::string& program) {
+    folder.write("robot.json", config);
+    return test::rsc({"check", folder.write("robot.rsl", program)});
+  };
+  const std::string red = "WHEN eyes COLOR IS red\nDO LOG \"red\"\nEND\n";
+  CHECK(check(kSeeing, red).exit == 0);
+  const Outcome color = check(kSeeing, "WHEN eyes COLOR IS gren\nDO LOG \"red\"\nEND\n");
+  CHECK(color.exit == 1);
+  CHECK_THAT(color.err, Contains("gren") && Contains("did you mean `green`?"));
+  std::string pale = kSeeing;
+  pale.replace(pale.find("40%"), 3, "5%");
+  const Outcome vivid = check(pale, red);
+  CHECK(vivid.exit == 1);
+  CHECK_THAT(vivid.err, Contains("this must be from 10% to 100%"));
 }
 
 TEST_CASE("TESTs and scenarios feed a companion's channels as any sensor's") {
