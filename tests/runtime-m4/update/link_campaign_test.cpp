@@ -182,9 +182,15 @@ private:
     if (memory_.dead) return std::nullopt;
     robot_.run(4500);  // also what a host has left behind: no program, or half of one
     tool::Client client(robot_);
-    const link::Kept kept = client.kept();
+    link::Kept kept = client.kept();
+    // A trial may end while the reply that says so is on its way.
+    for (unsigned asked = 1; asked < 10 && kept.state == link::Keeping::on_trial; ++asked) {
+      robot_.run(kept.trial_ms + 500);
+      kept = client.kept();
+    }
     if (memory_.dead) return std::nullopt;
     REQUIRE(kept.state != link::Keeping::reading);
+    REQUIRE(kept.state != link::Keeping::on_trial);
     REQUIRE(client.hello().running == 1);
     return kept;
   }
