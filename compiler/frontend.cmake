@@ -47,6 +47,7 @@ target_sources(robosync_compiler PRIVATE
   syntax/edit.cpp
   syntax/examples.cpp
   syntax/foreign_habits.cpp
+  syntax/foreign_units.cpp
   syntax/format.cpp
   syntax/habits.cpp
   syntax/heads.cpp

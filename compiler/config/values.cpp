@@ -9,7 +9,7 @@
 #include "compiler/config/fields.hpp"
 #include "compiler/config/names.hpp"
 #include "compiler/diagnostics/nearest.hpp"
-#include "compiler/source/ascii.hpp"
+#include "compiler/syntax/foreign_units.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -227,23 +227,9 @@ const Unit* read_unit(const json::Value& value, Diagnostics& diagnostics) {
   return unit;
 }
 
-namespace {
-
-struct ForeignUnit {
-  std::string_view spelling, one;
-};
-constexpr ForeignUnit kForeignUnits[] = {
-#define FOREIGN_UNIT(spelling, one) {spelling, one},
-#include "compiler/config/foreign_units.def"
-#undef FOREIGN_UNIT
-};
-
-}  // namespace
-
 void suggest_unit(Diagnostic& diagnostic, std::string_view written) {
-  for (const ForeignUnit& unit : kForeignUnits) {
-    if (!ascii::same(written, unit.spelling)) continue;
-    diagnostic.helps("1" + std::string(unit.spelling) + " is " + std::string(unit.one));
+  if (const std::string_view ours = foreign_unit(written); !ours.empty()) {
+    diagnostic.helps(std::string(ours));
     return;
   }
   std::vector<std::string> spellings;

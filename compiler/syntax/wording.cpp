@@ -6,6 +6,7 @@
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/source/utf8.hpp"
 #include "compiler/syntax/blocks.hpp"
+#include "compiler/syntax/foreign_units.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 
 namespace robosync::compiler {
@@ -305,9 +306,13 @@ private:
     if (digits.empty() || digits.back() < '0' || digits.back() > '9') return false;
     const Span gap{number.span.file, number.span.end, tokens_[edit_.at].span.begin};
     const std::string unit(source_.text(tokens_[edit_.at].span));
-    diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here")
-        .label(tokens_[edit_.at].span)
-        .helps("if it is a unit, write it without a space: `" + digits + unit + "`")
+    Diagnostic& message = diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here")
+                              .label(tokens_[edit_.at].span);
+    if (const std::string_view ours = foreign_unit(unit); !ours.empty()) {
+      message.helps("RSL does not have this unit: " + std::string(ours));
+      return true;
+    }
+    message.helps("if it is a unit, write it without a space: `" + digits + unit + "`")
         .fix(gap, "", Applicability::likely);
     return true;
   }

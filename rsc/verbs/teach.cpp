@@ -51,6 +51,10 @@ std::vector<std::string> task(const TeachOptions& options) {
                   "name a word to teach, or --list, or --forget a word: one of the three");
   if (options.list) return {"--list", "yes"};
   if (!teaches) return {"--forget", options.forget};
+  if (options.word.find_first_of("./") != std::string::npos)
+    throw Failure(Exit::usage,
+                  fmt::format("`{0}` stands where the word does: write rsc teach {1} WORD {0}",
+                              options.word, options.name));
   if (options.recordings.empty() == options.microphone.empty())
     throw Failure(Exit::usage, "give recordings of the word, or --microphone");
   std::vector<std::string> arguments = {"--teach", options.word};

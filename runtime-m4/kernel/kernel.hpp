@@ -41,7 +41,7 @@ struct Selection {
   std::uint8_t running_rank_ = kIdleRank;
   std::uint8_t ceiling_ = kIdleRank;  // the highest of the ceilings of what is held
   std::uint8_t count_ = 0;
-  std::array<Thread*, kMaxThreads + 1> by_rank_;  // the last is idle; the constructor fills it
+  std::array<Thread*, kMaxThreads + 1> by_rank_{};  // the last is idle
 };
 
 class Kernel : private Selection {

@@ -34,8 +34,7 @@ SafetyRegion SafetyRegion::take(Memory& memory) {
   region.window = bytes.subspan(begin, fit.bytes * port::kArenaScale);
   std::span<std::byte> left = region.window.subspan(policy::kSafetyStack);
   region.stack_top = left.data();
-  region.work = take_front<Work>(left, 1);
-  new (region.work.data()) Work();
+  region.work = new (take_front<Work>(left, 1).data()) Work();
   region.output = take_front<vm::Word>(left, counts[Count::safety_output]);
   region.timer_words = take_front<std::uint32_t>(left, counts[Count::safety_timer_words]);
   region.cells = take_front<std::uint32_t>(left, counts[Count::safety_cells]);

@@ -24,7 +24,7 @@ struct SafetyRegion {
 
   std::span<std::byte> window;  // all of it, and nothing else
   std::byte* stack_top = nullptr;
-  std::span<Work> work;  // one
+  Work* work = nullptr;
   std::span<vm::Word> output;
   std::span<std::uint32_t> timer_words;
   std::span<std::uint32_t> cells;

@@ -1,11 +1,12 @@
 #include "runtime-m4/module_files/confine.hpp"
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <span>
-#include <vector>
 
 #include <fcntl.h>
 #include <linux/audit.h>
@@ -46,9 +47,21 @@ constexpr sock_filter is(long value, std::uint8_t skipped) {
   return BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(value), 0, skipped);
 }
 
+// A program for the kernel. In no memory that would be given back when the calls for that are forbidden already:
+// AddressSanitizer makes some then.
+class Filter {
+public:
+  void push_back(sock_filter statement) { statements_[count_++] = statement; }
+  sock_fprog program() { return {static_cast<unsigned short>(count_), statements_.data()}; }
+
+private:
+  std::array<sock_filter, 2 * std::size(kLoading) + 16> statements_;
+  std::size_t count_ = 0;
+};
+
 // openat() whose flags (the lower half of the third argument: both machines are little-endian) ask for reading alone.
 // What writes is refused, not ended: libraries look for files that they may write.
-void add_opening(std::vector<sock_filter>& filter) {
+void add_opening(Filter& filter) {
   constexpr std::uint32_t kWriting = O_WRONLY | O_RDWR | O_CREAT | O_TRUNC | O_APPEND;
   filter.push_back(is(SYS_openat, 4));
   filter.push_back(load(offsetof(seccomp_data, args) + 2 * sizeof(std::uint64_t)));
@@ -58,17 +71,19 @@ void add_opening(std::vector<sock_filter>& filter) {
 }
 
 bool allow(std::span<const long> calls, bool opening) {
+  Filter filter;
   // Another machine's numbers mean other calls.
-  std::vector<sock_filter> filter = {load(offsetof(seccomp_data, arch)),
-                                     BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kMachine, 1, 0), kEnd,
-                                     load(offsetof(seccomp_data, nr))};
+  filter.push_back(load(offsetof(seccomp_data, arch)));
+  filter.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kMachine, 1, 0));
+  filter.push_back(kEnd);
+  filter.push_back(load(offsetof(seccomp_data, nr)));
   for (const long call : calls) {
     filter.push_back(is(call, 1));
     filter.push_back(kAllow);
   }
   if (opening) add_opening(filter);
   filter.push_back(kEnd);
-  const sock_fprog program = {static_cast<unsigned short>(filter.size()), filter.data()};
+  const sock_fprog program = filter.program();
   return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
          prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0;
 }

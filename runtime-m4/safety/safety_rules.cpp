@@ -30,7 +30,7 @@ void SafetyRules::start(const layers::LoadedProgram& program, const layers::Safe
   program_ = &program;
   tripped_.start(memory.take<policy::Part::tripped, layers::RuleSet::Word>());
   output_ = region.output;
-  work_ = region.work.data();
+  work_ = region.work;
   have_tripped_ = false;
   inputs_ = {};
   first_rule_ = end_rule_ = nullptr;

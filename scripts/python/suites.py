@@ -121,7 +121,9 @@ def compiled_together(path):
 
 
 ON_THE_BOARD = ("vm", "link", "runtime-m4")
-TOGETHER = 24  # sources at a time: the headers are looked at once for all of them
+# Sources at a time: the headers are looked at once for all of them. On the board it is the sources that take the time, so
+# they are fewer, and come first: nobody waits for the last ones then.
+TOGETHER, TOGETHER_ON_THE_BOARD = 24, 8
 # How many states of a function of the host the analyzer of clang looks at, at most; 225,000 is what it does by itself. A
 # function that uses up its states has, as a rule, a std::find_if or a std::visit in it, of which all ways through the
 # standard library are followed. On the board there is none of that, and all states are looked at.
@@ -134,8 +136,8 @@ def starts_with(source, folders):
 
 
 def product_batches(preset):
-    """What the preset compiles of the product, sources with the same flags together: [(flags, sources)], the largest
-    first. What is compiled more than once is there once."""
+    """What the preset compiles of the product, sources with the same flags together: [(flags, sources)], those that take
+    longest first. What is compiled more than once is there once."""
     product = [folder for folder in OURS if folder not in ("tests", "bench")]
     batches, seen = [], set()
     for command in json.loads((ROOT / "build" / preset / "compile_commands.json").read_text()):
@@ -145,11 +147,16 @@ def product_batches(preset):
         sources = [source for source in compiled_together(command["file"])
                    if starts_with(source, product) and source not in seen]
         seen.update(sources)
-        if sources and batches and batches[-1][0] == flags and len(batches[-1][1]) + len(sources) <= TOGETHER:
-            batches[-1][1].extend(sources)
-        elif sources:
-            batches.append((flags, sources))
-    return sorted(batches, key=lambda batch: -sum(Path(source).stat().st_size for source in batch[1]))
+        for source in sources:
+            most = TOGETHER_ON_THE_BOARD if starts_with(source, ON_THE_BOARD) else TOGETHER
+            if batches and batches[-1][0] == flags and len(batches[-1][1]) < most:
+                batches[-1][1].append(source)
+            else:
+                batches.append((flags, [source]))
+
+    def weight(batch):
+        return not starts_with(batch[1][0], ON_THE_BOARD), -sum(Path(source).stat().st_size for source in batch[1])
+    return sorted(batches, key=weight)
 
 
 def run_tidy(preset, deep):

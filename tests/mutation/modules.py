@@ -12,9 +12,9 @@ DESCRIPTION, REGISTRY = FOLDER + "description.cpp", FOLDER + "registry.cpp"
 MUTANTS = (
     Mutant("while it is loaded it may call what it likes", CONFINE, "return allow(kLoading, true);", "return true;"),
     Mutant("once loaded it may call what a loader may", CONFINE, "return allow(kAnswers, false);", "return true;"),
-    Mutant("what no list names is allowed", CONFINE, "  filter.push_back(kEnd);\n", "  filter.push_back(kAllow);\n"),
+    Mutant("what no list names is allowed", CONFINE, "  filter.push_back(kEnd);\n  const", "  filter.push_back(kAllow);\n  const"),
     Mutant("another machine's calls are taken for this one's", CONFINE,
-           "BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kMachine, 1, 0), kEnd,", "",
+           "  filter.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kMachine, 1, 0));\n  filter.push_back(kEnd);\n", "",
            "a test does, where the kernel takes calls of 32 bits; this one does not"),
     Mutant("a file may be opened to write", CONFINE, "O_WRONLY | O_RDWR | O_CREAT", "O_RDWR | O_CREAT"),
     Mutant("a file may be opened to read and write", CONFINE, "O_WRONLY | O_RDWR | O_CREAT", "O_WRONLY | O_CREAT"),

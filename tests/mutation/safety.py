@@ -62,7 +62,7 @@ MUTANTS = (
     Mutant("a hung program is kicked for", MONITOR, "if (without_progress_ < kChecksUntilHung) {",
            "if (without_progress_ == kChecksUntilHung) supervised_.halt(kChecksUntilHung * kPeriod);\n  if (true) {"),
     Mutant("a hung program is not halted", MONITOR, "supervised_.halt(kChecksUntilHung * kPeriod);", ";"),
-    Mutant("rules are not looked at when nothing is new", MONITOR, "(why & kNews) != 0 || now >= std::min(due, rules_due)",
+    Mutant("rules are not looked at when nothing is new", MONITOR, "(why & kNews) != 0 || kernel_.now() >= std::min(due, rules_due)",
            "(why & kNews) != 0"),
     Mutant("a person's stop is not heard", MONITOR, "if ((why & kPerson) != 0) supervised_.obey();", ""),
     Mutant("slow changes do not go on", MONITOR, "supervised_.tend_outputs();", ""),

@@ -245,6 +245,8 @@ TEST_CASE("what rsc teach was asked wrongly is said before anything begins") {
   fails({"voice", "hello", "one.wav", "--list"}, 2, "one of the three");
   fails({"voice", "hello", "one.wav", "--forget", "stop"}, 2, "one of the three");
   fails({"voice", "hello"}, 2, "give recordings of the word");
+  fails({"voice", "one.wav"}, 2,
+        "`one.wav` stands where the word does: write rsc teach voice WORD one.wav");
   fails({"voice", "hello", "one.wav", "--microphone", "default"}, 2, "give recordings of the word");
   fails({"voise", "--list"}, 1, "has no `voise` that is taught words; it has voice");
   std::filesystem::remove(robot.path("robosync-own-words"));

@@ -11,6 +11,7 @@
 
 #include <catch2/catch.hpp>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "runtime-m4/algorithms/modules.hpp"
 #include "runtime-m4/module_files/description.hpp"
@@ -267,14 +268,17 @@ TEST_CASE("there is room for so many files, and no number is another one's") {
   using algorithms::find_in_file, algorithms::kFirstInFile;
   CHECK(module_files::load(".").why_not == "it is not a file");
   CHECK(find_in_file(kFirstInFile + module_files::kMostFiles - 1) == nullptr);  // yet
+  const auto folders =
+      std::filesystem::temp_directory_path() / ("robosync-files-" + std::to_string(getpid()));
   std::string why_not;
   for (std::size_t i = 0; i <= module_files::kMostFiles && why_not.empty(); ++i) {
-    const std::filesystem::path folder = "file" + std::to_string(i);
-    std::filesystem::create_directory(folder);
+    const std::filesystem::path folder = folders / std::to_string(i);
+    std::filesystem::create_directories(folder);
     std::filesystem::copy_file(hostile("well"), folder / "well.so",
                                std::filesystem::copy_options::overwrite_existing);
     why_not = module_files::load(folder / "well.so").why_not;
   }
+  std::filesystem::remove_all(folders);
   CHECK(why_not == "there are " + std::to_string(module_files::kMostFiles) + " others already");
   CHECK(find_in_file(kFirstInFile + module_files::kMostFiles) == nullptr);
   CHECK(find_in_file(kFirstInFile + module_files::kMostFiles - 1) != nullptr);
