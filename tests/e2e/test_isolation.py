@@ -49,11 +49,19 @@ END
 """
 
 
-class Isolation(DebuggedTest):
+class FirmwareTest(DebuggedTest):
     def setUp(self):
         super().setUp()
         self.symbols = symbols(FIRMWARE)
 
+    def upload(self, text, config_text):
+        program, config = self.folder / "program.rsl", self.folder / "robot.json"
+        program.write_text(text)
+        config.write_text(config_text)
+        rsc.run("upload", program, "--config", config, "--port", self.board.port)
+
+
+class Isolation(FirmwareTest):
     def expect(self, reader, **wanted):
         def came(lines):
             found = [json.loads(line) for line in lines]
@@ -94,10 +102,7 @@ class Isolation(DebuggedTest):
         self.stops(self.make_endless, cause=OVERRUN, pc=endless_loop())
 
     def stops(self, make_wild, **report):
-        program, config = self.folder / "program.rsl", self.folder / "robot.json"
-        program.write_text(PROGRAM)
-        config.write_text(CONFIG)
-        rsc.run("upload", program, "--config", config, "--port", self.board.port)
+        self.upload(PROGRAM, CONFIG)
         reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
         try:
             for value in [1, 2] * 50:  # until it listens
@@ -156,18 +161,14 @@ TICK = "SysTick_Handler"
 LOWERED = 9  # below the last behaviour
 
 
-class Algorithms(DebuggedTest):
+class Algorithms(FirmwareTest):
     """A module that goes wild: it is lowered or stopped, its outputs become unknown, and all others go on."""
 
     def setUp(self):
         super().setUp()
-        self.symbols = symbols(FIRMWARE)
-        program, config = self.folder / "program.rsl", self.folder / "robot.json"
-        program.write_text(SKIN_PROGRAM)
-        config.write_text(SKIN_CONFIG)
         self.board.set_touch(0, 0)
         self.board.set_touch(0, 1)
-        rsc.run("upload", program, "--config", config, "--port", self.board.port)
+        self.upload(SKIN_PROGRAM, SKIN_CONFIG)
         self.reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
         for value in [1, 2] * 50:  # until it listens
             self.board.set_touch(value, 1)
@@ -273,17 +274,13 @@ WATCHDOG = 0x40008000
 CODE = 0x400
 
 
-class Safety(DebuggedTest):
+class Safety(FirmwareTest):
     """SAFETY's bytecode has its own memory and no other, though it runs in the safety thread."""
 
     def setUp(self):
         super().setUp()
-        self.symbols = symbols(FIRMWARE)
-        program, config = self.folder / "program.rsl", self.folder / "robot.json"
-        program.write_text(SAFETY_PROGRAM)
-        config.write_text(CONFIG)
         self.board.set_touch(3, TAME)
-        rsc.run("upload", program, "--config", config, "--port", self.board.port)
+        self.upload(SAFETY_PROGRAM, CONFIG)
 
     def place(self, begin):
         return next(at for name, at in self.symbols.items() if name.startswith(begin))
