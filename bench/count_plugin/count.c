@@ -8,11 +8,13 @@
  * " ADDRESS:COUNT" for each instruction that ran since the line before: where it stands, and how often it did.
  * Assumes one CPU. An instruction that an exception breaks off and that starts again counts twice.
  *
- * Debian does not package qemu-plugin.h, so the few functions used are declared here (API version
- * 1, QEMU 7.2).
+ * Debian does not package qemu-plugin.h, so the few functions used are declared here. QEMU 7.2 (API version 1) adds to any
+ * number in memory; QEMU 9 and newer (API version 2 on) only to one on a scoreboard, which has one of them for each CPU. What a
+ * QEMU has not stays null.
  */
 #include <inttypes.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,37 +32,72 @@ uint64_t qemu_plugin_insn_vaddr(const struct qemu_plugin_insn* insn);
 void qemu_plugin_register_vcpu_insn_exec_cb(struct qemu_plugin_insn* insn,
                                             void (*callback)(unsigned cpu, void* data),
                                             enum callback_flags flags, void* data);
-void qemu_plugin_register_vcpu_insn_exec_inline(struct qemu_plugin_insn* insn,
-                                                enum inline_operation operation, void* counter,
-                                                uint64_t amount);
+struct qemu_plugin_scoreboard;
+struct on_scoreboard {
+  struct qemu_plugin_scoreboard* board;
+  size_t offset;
+};
+#define IF_THERE __attribute__((weak))
+IF_THERE void qemu_plugin_register_vcpu_insn_exec_inline(struct qemu_plugin_insn* insn,
+                                                         enum inline_operation operation,
+                                                         void* counter, uint64_t amount);
+IF_THERE void qemu_plugin_register_vcpu_insn_exec_inline_per_vcpu(struct qemu_plugin_insn* insn,
+                                                                  enum inline_operation operation,
+                                                                  struct on_scoreboard counter,
+                                                                  uint64_t amount);
+IF_THERE struct qemu_plugin_scoreboard* qemu_plugin_scoreboard_new(size_t bytes);
+IF_THERE void* qemu_plugin_scoreboard_find(struct qemu_plugin_scoreboard* board, unsigned cpu);
 void qemu_plugin_register_atexit_cb(plugin_id id, void (*callback)(plugin_id, void*), void* data);
 
 #define EXPORT __attribute__((visibility("default")))
 EXPORT int qemu_plugin_version = 1;
+
+// Read by QEMU before it calls anything here.
+__attribute__((constructor)) static void choose_version(void) {
+  if (qemu_plugin_scoreboard_new) qemu_plugin_version = 2;
+}
 
 enum { MAX_MARKERS = 256, MAX_RANGES = 32, MAX_PLACES = 1 << 18 };
 static uint64_t markers[MAX_MARKERS];
 static size_t marker_count;
 static struct range { uint64_t begin, end; } ranges[MAX_RANGES];
 static size_t range_count;
-static uint64_t executed;
-static uint64_t executed_apart;
 static FILE* out;
 static bool profiles;
-static struct place { uint64_t address, executed; } places[MAX_PLACES];
+static uint64_t places[MAX_PLACES];  // addresses
 static size_t place_count;
+static struct qemu_plugin_scoreboard* board;
+static struct counters { uint64_t executed, apart, at_place[]; } * counters;
+
+// Once there is a CPU.
+static void make_counters(void) {
+  size_t bytes = sizeof(struct counters) + (profiles ? sizeof places : 0);
+  if (qemu_plugin_scoreboard_new) {
+    board = qemu_plugin_scoreboard_new(bytes);
+    counters = qemu_plugin_scoreboard_find(board, 0);
+  } else {
+    counters = calloc(1, bytes);
+  }
+}
+
+static void add_one(struct qemu_plugin_insn* insn, uint64_t* counter) {
+  if (!board) return qemu_plugin_register_vcpu_insn_exec_inline(insn, ADD_U64, counter, 1);
+  struct on_scoreboard place = {board, (size_t)((char*)counter - (char*)counters)};
+  qemu_plugin_register_vcpu_insn_exec_inline_per_vcpu(insn, ADD_U64, place, 1);
+}
 
 static void write_profile(void) {
   for (size_t i = 0; i < place_count; i++) {
-    if (places[i].executed == 0) continue;
-    fprintf(out, " %" PRIx64 ":%" PRIu64, places[i].address, places[i].executed);
-    places[i].executed = 0;
+    if (counters->at_place[i] == 0) continue;
+    fprintf(out, " %" PRIx64 ":%" PRIu64, places[i], counters->at_place[i]);
+    counters->at_place[i] = 0;
   }
 }
 
 static void at_marker(unsigned cpu, void* marker) {
   (void)cpu;
-  fprintf(out, "%" PRIx64 " %" PRIu64 " %" PRIu64, *(uint64_t*)marker, executed, executed_apart);
+  fprintf(out, "%" PRIx64 " %" PRIu64 " %" PRIu64, *(uint64_t*)marker, counters->executed,
+          counters->apart);
   write_profile();
   fputc('\n', out);
   fflush(out);  // the bench waits for what it says
@@ -69,8 +106,8 @@ static void at_marker(unsigned cpu, void* marker) {
 /* An instruction may be translated more than once: each time it has another place. */
 static uint64_t* new_place(uint64_t address) {
   if (!profiles || place_count == MAX_PLACES) return NULL;
-  places[place_count] = (struct place){address, 0};
-  return &places[place_count++].executed;
+  places[place_count] = address;
+  return &counters->at_place[place_count++];
 }
 
 static uint64_t* find_marker(uint64_t address) {
@@ -82,22 +119,23 @@ static uint64_t* find_marker(uint64_t address) {
 
 static uint64_t* counter_of(uint64_t address) {
   for (size_t i = 0; i < range_count; i++) {
-    if (ranges[i].begin <= address && address < ranges[i].end) return &executed_apart;
+    if (ranges[i].begin <= address && address < ranges[i].end) return &counters->apart;
   }
-  return &executed;
+  return &counters->executed;
 }
 
 static void translate(plugin_id id, struct qemu_plugin_tb* block) {
   (void)id;
+  if (!counters) make_counters();
   size_t count = qemu_plugin_tb_n_insns(block);
   for (size_t i = 0; i < count; i++) {
     struct qemu_plugin_insn* insn = qemu_plugin_tb_get_insn(block, i);
     uint64_t address = qemu_plugin_insn_vaddr(insn);
     uint64_t* marker = find_marker(address);
     if (marker) qemu_plugin_register_vcpu_insn_exec_cb(insn, at_marker, NO_REGISTERS, marker);
-    qemu_plugin_register_vcpu_insn_exec_inline(insn, ADD_U64, counter_of(address), 1);
+    add_one(insn, counter_of(address));
     uint64_t* place = new_place(address);
-    if (place) qemu_plugin_register_vcpu_insn_exec_inline(insn, ADD_U64, place, 1);
+    if (place) add_one(insn, place);
   }
 }
 
