@@ -158,17 +158,19 @@ def socket_of(port):
 class Board:
     """One running board. `port` is what rsc takes as --port."""
 
-    def __init__(self, elf=FIRMWARE, pty=False, serial_path=None, icount=REAL_TIME, extra=(), store=None):
-        """`store`: a file with what the board keeps without power, made when it is not there; else it keeps nothing."""
+    def __init__(self, elf=FIRMWARE, pty=False, serial_path=None, icount=REAL_TIME, extra=(), store=None, line=None):
+        """`store`: a file with what the board keeps without power, made when it is not there; else it keeps nothing. `line`: of
+        QEMU's character devices, in the place of one that rsc can use; there is no `port` then."""
         if not Path(elf).is_file():
             raise BoardError(f"no firmware at {elf}: build the preset {BUILT.name} first")
         self._folder = tempfile.TemporaryDirectory(prefix="robosync-")
         self.qmp_path = Path(self._folder.name) / "qmp"
         self._serial_path = Path(serial_path or Path(self._folder.name) / "serial").resolve()
         self._pty = pty
+        self._line = line
         # On a Unix socket a byte has to wait for the reader after some hundred others, on TCP after megabytes. Waiting
         # makes a board whose time runs ahead lose events of its trace, and QEMU's micro:bit the interrupt of its UART.
-        self._tcp = (icount == FAST or NAME in LOSES_INTERRUPT) and not pty and not serial_path
+        self._tcp = (icount == FAST or NAME in LOSES_INTERRUPT) and not pty and not serial_path and not line
         self._log = Path(self._folder.name) / "qemu.log"
         self._flash_file = store if NAME in FLASHES else None
         self._process = self._start(elf, icount, [*extra, *(with_store(store) if store else [])])
@@ -184,6 +186,7 @@ class Board:
         line = "pty" if self._pty else f"socket,path={self._serial_path},server=on,wait=off"
         if self._tcp:
             line = "socket,host=127.0.0.1,port=0,server=on,wait=off,nodelay=on"
+        line = self._line or line
         command = [*qemu(), "-kernel", str(elf),
                    "-chardev", f"{line},id=line", "-serial", "chardev:line",
                    *DEVICES.get(NAME, []),
@@ -206,6 +209,8 @@ class Board:
         raise BoardError("QEMU does not answer on its control socket")
 
     def _find_port(self):
+        if self._line:
+            return None
         if not self._pty and not self._tcp:
             return f"unix:{self._serial_path}"
         for device in self.qmp.command("query-chardev"):

@@ -13,7 +13,7 @@ from board import FIRMWARE
 from support import RobotTest
 
 PATIENCE = 20
-CONNECTED = "T02"
+CONNECTED, AT_BREAKPOINT = "T02", "T05"
 LINK_REGISTER, PC, XPSR = 14, 15, 25
 END_OF_INTERRUPT = 0xFFFF_FFE0  # and up: no place of code
 MOST_STEPS = 4000
@@ -47,13 +47,22 @@ class Debugger:
 
     def run_to(self, address, meanwhile):
         """Lets the board run until it comes to `address`; meanwhile() sees to it that it does."""
-        self._expect_ok(f"Z0,{address:x},2")
+        self.stop_at(address)
         self._send("c")
         meanwhile()
         stopped = self._receive()
-        if not stopped.startswith(("T05", "S05")):
+        if not stopped.startswith((AT_BREAKPOINT, "S05")):
             raise AssertionError(f"the board stopped for another reason: {stopped}")
         self._expect_ok(f"z0,{address:x},2")
+
+    def stop_at(self, address):
+        """Each time, from now on."""
+        self._expect_ok(f"Z0,{address:x},2")
+
+    def go_on(self):
+        """To the next place at which it shall stop; False when it has stopped for another reason."""
+        self._send("c")
+        return self._receive().startswith(AT_BREAKPOINT)
 
     def register_at(self, address, number, times):
         """What the register holds each time that the board comes to `address`."""
@@ -96,6 +105,9 @@ class Debugger:
 
     def set_register(self, number, value):
         self._expect_ok(f"P{number:x}={value.to_bytes(4, 'little').hex()}")
+
+    def write(self, at, data):
+        self._expect_ok(f"M{at:x},{len(data):x}:{data.hex()}")
 
     def read_words(self, address, count):
         """None while a thread runs that may not read them: QEMU asks the MPU."""

@@ -6,7 +6,6 @@ import json
 import re
 import subprocess
 import sys
-import threading
 import unittest
 from pathlib import Path
 
@@ -14,17 +13,14 @@ import pins
 import rsc
 import test_owner
 import test_store
-from debugger import LINK_REGISTER, PC, DebuggedTest, Debugger
+from debugger import LINK_REGISTER, PC, DebuggedTest
+from player import FLASH, FlashPlayer
 from support import PROGRAMS, LineReader, RobotTest
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from board import FIRMWARE, REAL_TIME, ROOT  # noqa: E402
 from counting import symbols  # noqa: E402
 
-FLASH = "robosync::boards::l475::Flash::"
-AT_BREAKPOINT = "T05"
-PAGE, AT_ONCE = 2048, 1024  # bytes of the flash; … that the debugger writes at once
-DONE = 1  # boards::Erasing
 UPLOADS = 3
 # QEMU writes down what the masters of I2C and DMA1 are told.
 PATIENCE = 20
@@ -48,48 +44,6 @@ DO LOG "high"
 END
 """
 LOOSEST, CALLS = 1.3, 20
-
-
-class FlashPlayer(Debugger):
-    """Is the flash, in the place of the two functions that work its registers, until the board is switched off. QEMU lets a debugger
-    write what it keeps from the firmware."""
-
-    def __init__(self, path):
-        super().__init__(path)
-        self.erased = 0
-        self.at = {next(at for name, at in symbols(FIRMWARE).items() if name.startswith(FLASH + what)): play
-                   for what, play in (("erase(", self.erase), ("program(", self.program))}
-        for place in self.at:
-            self._expect_ok(f"Z0,{place:x},2")
-        self._thread = threading.Thread(target=self.play, daemon=True)
-        self._thread.start()
-
-    def play(self):
-        with contextlib.suppress(AssertionError, OSError):  # it was switched off
-            while True:
-                self._send("c")
-                if not self._receive().startswith(AT_BREAKPOINT):
-                    return
-                core = self.core()
-                self.at[core[PC]](core)
-                self.set_register(PC, core[LINK_REGISTER] & ~1)
-
-    def erase(self, core):
-        self.erased += 1
-        for at in range(core[0], core[0] + PAGE, AT_ONCE):
-            self.write(at, b"\xff" * AT_ONCE)
-        self.set_register(0, DONE)
-
-    def program(self, core):
-        words = self.read_words(core[1], 2)
-        self.write(core[0], b"".join(word.to_bytes(4, "little") for word in words))
-
-    def write(self, at, data):
-        self._expect_ok(f"M{at:x},{len(data):x}:{data.hex()}")
-
-    def end(self):
-        self._thread.join()
-        self._socket.close()
 
 
 class WithFlash:
