@@ -12,6 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import boards
 import compile_figures
 import figures
 import growth
@@ -33,14 +34,15 @@ GROUPS = (workloads.workload_figures, figures.opcode_figures, figures.image_figu
           figures.kernel_figures, figures.size_figures, memory.memory_figures, growth.growth_figures,
           figures.link_figures, upload.upload_figures, figures.signature_figures, figures.power_up_figures, figures.ear_figures,
           path.path_figures, safety.safety_figures, idle.idle_figures, compile_figures.compile_figures,
-          figures.tool_figures)
+          figures.tool_figures, boards.board_figures)
+BY_NAME = {group.__name__.removesuffix("_figures"): group for group in GROUPS}
 
 
-def measure():
-    """Every figure as {"name", "value", "unit", "bar"}; what could not be measured raises."""
-    for group in GROUPS:
+def measure(groups):
+    """Every figure of them as {"name", "value", "unit", "bar"}; what could not be measured raises."""
+    for group in groups:
         for name, (value, unit) in group().items():
-            yield {"name": name, "value": value, "unit": unit, "bar": BARS.get(name)}
+            yield {"name": name, "value": value, "unit": unit, "bar": BARS.get(boards.whose_bar(name))}
 
 
 def as_line(figure, grew):
@@ -75,10 +77,10 @@ def fails(figure, before):
     return before is None or page.verdict(figure | {"value": before}) != page.MISSED
 
 
-def measure_all(show, comparison):
+def measure_all(groups, show, comparison):
     """(figures measured, how many of them failed); shows each as it comes."""
     found, failed = [], 0
-    for figure in measure():
+    for figure in measure(groups):
         grew = not comparison.add(figure)
         failed += grew or fails(figure, comparison.before(figure))
         found.append(figure)
@@ -86,9 +88,16 @@ def measure_all(show, comparison):
     return found, failed
 
 
+def what_is_gone(found, comparison):
+    gone = BARS.keys() - {figure["name"] for figure in found}
+    yield from (f"nothing measures {name}, which has a bar" for name in sorted(gone))
+    yield from (f"nothing measures {name}, which is recorded" for name in comparison.missing())
+
+
 def arguments():
     parser = argparse.ArgumentParser(prog="scripts/bench")
     parser.add_argument("--record", action="store_true")
+    parser.add_argument("--only", choices=BY_NAME, metavar="GROUP")
     style = parser.add_mutually_exclusive_group()
     style.add_argument("--json", action="store_true")
     style.add_argument("--markdown", action="store_true")
@@ -110,19 +119,19 @@ def main():
         if wanted.profile:
             profiled.show(wanted.profile)
             return 0
-        found, failed = measure_all(show, comparison)
+        groups = GROUPS if wanted.only is None else [BY_NAME[wanted.only]]
+        found, failed = measure_all(groups, show, comparison)
     except (BenchError, BoardError, RscError, OSError, subprocess.SubprocessError) as error:
         print(f"bench: {error}", file=sys.stderr)
         return 1
     passed = len(found) - failed
     if wanted.record:
-        recorded.save(found)
+        recorded.save(found, before=recorded.load() if wanted.only else {})
     if wanted.markdown:
-        print(page.page(found))
+        print("\n".join(map(page.as_row, found)) if wanted.only else page.page(found))
     complain(comparison.grown + comparison.shrunk)
-    gone = BARS.keys() - {figure["name"] for figure in found}
-    failed += complain(f"nothing measures {name}, which has a bar" for name in sorted(gone))
-    failed += complain(f"nothing measures {name}, which is recorded" for name in comparison.missing())
+    if not wanted.only:
+        failed += complain(what_is_gone(found, comparison))
     if not wanted.json and not wanted.markdown:
         print(f"{passed} passed, {failed} failed")
     return 1 if failed else 0

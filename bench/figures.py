@@ -250,12 +250,17 @@ def flash_of(map_file, names):
                and re.sub(r".*[/(](.*?)\.obj\)?$", r"\1", path) in names)
 
 
-def size_figures():
+def firmware_flash():
+    """What a board is flashed with."""
     if not FIRMWARE.exists():
-        raise BenchError(f"no {FIRMWARE}: build the preset m4 first")
+        raise BenchError(f"no {FIRMWARE}: build the preset {FIRMWARE.parent.name} first")
     listing = subprocess.run(["arm-none-eabi-size", str(FIRMWARE)], check=True, text=True,
                              stdout=subprocess.PIPE).stdout
     text, data = (int(word) for word in listing.splitlines()[1].split()[:2])
+    return text + data
+
+
+def size_figures():
     link_map = FIRMWARE.with_suffix(".map")
     vm = sources_in("vm")
     verifier = {name for name in vm if name.startswith("verif") or name in ("image.cpp", "opcode_traits.cpp")}
@@ -265,7 +270,7 @@ def size_figures():
         "vm/flash_verifier": (flash_of(link_map, verifier), "B"),
         "vm/flash": (flash_of(link_map, vm), "B"),
         "kernel/flash": (flash_of(link_map, kernel), "B"),
-        "firmware/flash": (text + data, "B"),
+        "firmware/flash": (firmware_flash(), "B"),
     }
 
 

@@ -70,12 +70,16 @@ def used(*program_arguments):
     return memory["used"]
 
 
+def firmware_ram():
+    """Of a board without a program."""
+    return fixed_bytes() + used()
+
+
 def memory_figures():
-    fixed = fixed_bytes()
     behavior = one_more("behaviors")
     return {
-        "firmware/ram_fixed": (fixed + used(), "B"),
-        "firmware/ram_paper": (fixed + used(PAPER), "B"),
+        "firmware/ram_fixed": (firmware_ram(), "B"),
+        "firmware/ram_paper": (fixed_bytes() + used(PAPER), "B"),
         "memory/behavior": (behavior, "B"),
         "vm/ram_per_thread": (behavior, "B"),  # all that one takes, not the interpreter's part alone
         "memory/sensor": (one_more("sensors"), "B"),

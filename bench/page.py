@@ -13,10 +13,10 @@ MISSED = "MISSED"
 HEAD = """# Measurements
 
 Printed by `scripts/bench --markdown`. `insn` are executed Cortex-M4 instructions, counted exactly by a plugin in
-QEMU 7.2 (`bench/count_plugin/`); they are not cycles. Bytes are what the linker kept. Times are wall clock, of
-`compile/…` CPU time, on the machine that printed this page. What each figure means: `bench/figures.py`,
-`bench/workloads.py`, `bench/growth.py`, `bench/idle.py` and `bench/compile_figures.py`;
-bars: `bench/bars.json`.
+QEMU 7.2 (`bench/count_plugin/`), those of other boards than `mps2-an386` in QEMU 10.0; they are not cycles. Bytes are what the linker kept.
+Times are wall clock, of `compile/…` CPU time, on the machine that printed this page. What each figure means: `bench/figures.py`,
+`bench/workloads.py`, `bench/growth.py`, `bench/idle.py`, `bench/compile_figures.py` and `bench/boards.py`;
+bars: `bench/bars.json`. `scripts/bench --only GROUP` measures one group, such as `board`.
 
 Bars are the design's, and none is moved to what was measured: what misses one is shown as missed. `scripts/bench` fails
 when a figure misses a bar that it met before, and when a counted figure is more than 2 % above what `bench/recorded.json`
@@ -46,6 +46,13 @@ what it has SET is staged for the next step. `vm/ram_per_thread` is all that a b
 `vm/verify_per_word` is of
 the paper's image, most of which is wiring and names; `vm/verify_64k` is of 1,000 rules in 64 behaviours at the format's
 limit of 64 KB (`image/largest_bytes`), nearly all of it rules and code, of which a word costs more.
+
+`b-l475e-iot01a/…` and `microbit-v2/…` are of the shipped firmware of these boards, and have the bars of the reference board's; flash and RAM have none there. QEMU
+has no I2C bus of theirs: the touch sensor is played, through QEMU's debugger port, in the place of its driver's function, before the
+reading is in its mailbox; all that is counted is the firmware. Readings, and the bytes of `rsc monitor`'s first messages, come when
+the firmware has come to a certain place, so each of these figures is the same in each run, to the instruction. `power_up_to_first_step`: from reset, in the
+emulator's time, 16 ns an instruction, until the first step begins of the paper's program, which the firmware itself has kept in its flash. Of
+`b-l475e-iot01a` QEMU only reads the flash: while the program was kept, before, a debugger played what erases and writes it.
 
 `compile/…` is CPU time of `rsc check` on that machine, start included (`bench/compile_figures.py`). `lines_per_second`: a
 program of 100,000 lines that compiles: 2,500 lines of rules of every kind, about as many as an image holds, and TEST

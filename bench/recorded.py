@@ -30,8 +30,9 @@ def load(path=FILE):
     return json.loads(Path(path).read_text()) if Path(path).exists() else {}
 
 
-def save(figures, path=FILE):
-    counted = {figure["name"]: figure["value"] for figure in figures if is_counted(figure)}
+def save(figures, path=FILE, before=()):
+    """`before` stays where no figure has its name."""
+    counted = {**dict(before), **{figure["name"]: figure["value"] for figure in figures if is_counted(figure)}}
     Path(path).write_text(json.dumps(counted, indent=2, sort_keys=True) + "\n")
 
 

@@ -7,9 +7,12 @@ import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench"))
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "scripts/python")]
 
 import recorded
+from board import REFERENCE
+from boards import BARS, others
 
 
 def figure(name, value, unit="insn"):
@@ -19,9 +22,6 @@ def figure(name, value, unit="insn"):
 def compared(before, *figures):
     comparison = recorded.Comparison(before)
     return comparison, [comparison.add(one) for one in figures]
-
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 class Pages(unittest.TestCase):
@@ -42,7 +42,24 @@ class Pages(unittest.TestCase):
         self.check("README.md", r"^\| .* \| (?P<value>[\d,.]+) [^|]* \| [^|]* \| `(?P<name>[a-z0-9_]+/\w+)` \|$")
 
     def test_measurements(self):
-        self.check("docs/measurements.md", r"^\| `(?P<name>[a-z0-9_]+/\w+)` \| (?P<value>[\d.]+) \| ")
+        self.check("docs/measurements.md", r"^\| `(?P<name>[a-z0-9_-]+/\w+)` \| (?P<value>[\d.]+) \| ")
+
+    def test_boards(self):
+        """The reference board's figures stand under other names."""
+        known, bars = (json.loads((ROOT / f"bench/{name}.json").read_text()) for name in ("recorded", "bars"))
+        text = (ROOT / "docs/boards.md").read_text()
+        names = re.search(r"^\| figure \|(.*)\| bar \|$", text, re.MULTILINE)[1]
+        boards = re.findall(r"`([\w-]+)`", names)
+        self.assertEqual(boards, [REFERENCE, *others()])
+        rows = re.findall(r"^\| `(\w+)`[^|]*\|((?: [\d,]+ \|)+) ([\d,]+)[^|]*\|$", text, re.MULTILINE)
+        said = {row: [int(number.replace(",", "")) for number in (*values.split("|")[:-1], bar)] for row, values, bar in rows}
+        figures = {name.split("/")[1] for name in known if name.startswith(f"{boards[1]}/")}
+        self.assertEqual(set(said), figures)
+        for row, values in said.items():
+            of_reference = BARS.get(row, f"firmware/{row}")
+            with self.subTest(row):
+                self.assertEqual(values, [known[name] for name in (of_reference, *(f"{board}/{row}" for board in boards[1:]))]
+                                 + [bars[of_reference]])
 
 
 class Growth(unittest.TestCase):
@@ -92,6 +109,13 @@ class Lists(unittest.TestCase):
         comparison, passed = compared({}, figure("vm/new", 5))
         self.assertEqual(passed, [False])
         self.assertIn("vm/new (5 insn) was never recorded", comparison.grown[0])
+
+    def test_one_group_leaves_what_is_recorded_of_others(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "recorded.json"
+            recorded.save([figure("vm/W1", 69), figure("vm/W2", 59)], path)
+            recorded.save([figure("vm/W2", 60)], path, before=recorded.load(path))
+            self.assertEqual(recorded.load(path), {"vm/W1": 69, "vm/W2": 60})
 
     def test_a_record_that_nothing_measures_is_told(self):
         comparison, _ = compared({"vm/W1": 1, "vm/gone": 2}, figure("vm/W1", 1))

@@ -1,0 +1,137 @@
+"""What the shipped firmware takes on each board but the reference one, on which everything else is measured: NAME/….
+
+flash, ram_fixed          as firmware/flash and firmware/ram_fixed
+power_up_to_first_step    from reset until the first step begins of the paper's program, which the board has kept: the
+                          instructions until the kernel's clock begins, each of which takes the time that QEMU gives it, and
+                          then what that clock says, which goes in milliseconds
+reading_to_command…       the three conditions of path.py; the first reading after power-up once
+idle_second               as firmware/idle_second
+
+All of it is counted in QEMU, and nothing comes by the clock of this machine (played.py): it is the same in each run. Each board is
+measured by a process of its own, since ROBOSYNC_BOARD says which one that is.
+"""
+
+import functools
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import figures
+import idle
+import memory
+import path
+import rsc
+from board import NAME, REFERENCE, ROOT
+from counting import BenchError, Marks, functions, plugin_arguments
+from played import INSTRUCTION_NS, TouchedBoard, hello, store_with
+from workloads import PAPER
+
+sys.path.append(str(ROOT / "tests/e2e"))
+import wire  # noqa: E402
+from support import wired_as_it_can  # noqa: E402
+
+STEP = "robosync::layers::Mailboxes::take_announced("  # by which each step begins
+CLOCK_BEGINS = "robosync::port::start_tick("
+# Whose bar a figure has that has none of its own.
+BARS = {"power_up_to_first_step": "firmware/power_up_to_program", "idle_second": "firmware/idle_second",
+        **{name: f"path/{name}" for name in ("reading_to_command", "reading_to_command_busy", "reading_to_command_monitored")}}
+
+
+@functools.cache
+def others():
+    return sorted(file.stem for file in (ROOT / "stdlib/boards").glob("*.json") if file.stem != REFERENCE)
+
+
+def whose_bar(name):
+    board, _, what = name.partition("/")
+    return BARS.get(what, name) if board in others() else name
+
+
+def paper_for_this_board(folder):
+    """The paper's program, on pins that the board has."""
+    robot = json.loads(PAPER.with_name("robot.json").read_text())
+    wired_as_it_can(robot["actuators"])
+    config, image = folder / "robot.json", folder / "paper.rsb"
+    config.write_text(json.dumps({**robot, "board": NAME}))
+    rsc.run("compile", PAPER, "--config", config, "-o", image)
+    return image
+
+
+def begin_of_monitor():
+    """What `rsc monitor` says to a board."""
+    return b"\0" + wire.frame("hello", hello(), 1) + wire.frame("trace_on", wire.pack("TraceOn", on=1), 2)
+
+
+def touch_again_and_again(board):
+    def pause(raw):
+        for _ in range(path.BETWEEN):
+            board.give(raw)
+
+    for change in range(path.AWAKE + path.CHANGES):
+        pause((path.FIRM, path.LIGHT)[change % 2])
+
+
+def drive(board):
+    """From power-up to the end of what path.py does with the reference board: gives the time of the first step by the kernel's clock."""
+    board.run_to(functions(STEP)[STEP])
+    first_step = board.uptime_us()
+    for _ in range(path.BETWEEN):
+        board.give(path.LIGHT)
+    touch_again_and_again(board)
+    for byte in begin_of_monitor():
+        board.say(bytes([byte]))
+        board.give(path.LIGHT)
+    before = len(board.messages("event"))
+    touch_again_and_again(board)
+    if len(board.messages("event")) < before + path.CHANGES:
+        raise BenchError("the board tells nothing to who monitors it")
+    return first_step
+
+
+def time_of_first_step(marks, by_the_clock):
+    [before] = [count for name, count in marks.all if name == CLOCK_BEGINS]
+    return round(before * INSTRUCTION_NS / 1000) + by_the_clock
+
+
+def conditions(marks):
+    """The most of each of path.py's three."""
+    found = path.ways(marks)
+    (first, *_), busy, monitored = found[:1], found[1 + path.AWAKE:][:path.CHANGES], found[-path.CHANGES:]
+    if len(found) != 1 + 2 * (path.AWAKE + path.CHANGES) or first[1] or not all(stopped for _, stopped in busy + monitored):
+        raise BenchError(f"not every touch led to a command, or the arms stood still: {found}")
+    return {"": first[0], "_busy": max(count for count, _ in busy), "_monitored": max(count for count, _ in monitored)}
+
+
+def touched_figures():
+    known = functions(*path.WAY, CLOCK_BEGINS)
+    with tempfile.TemporaryDirectory(prefix="robosync-bench-") as folder:
+        folder = Path(folder)
+        out = folder / "marks"
+        store = store_with(paper_for_this_board(folder), folder / "fed")
+        with TouchedBoard(folder / "touched", store, plugin_arguments(known, out)) as board:
+            by_the_clock = drive(board)
+        marks = Marks(known, out)
+    return {"power_up_to_first_step": (time_of_first_step(marks, by_the_clock), "us"),
+            **{f"reading_to_command{name}": (count, "insn") for name, count in conditions(marks).items()}}
+
+
+def figures_of_this_board():
+    return {"flash": (figures.firmware_flash(), "B"), "ram_fixed": (memory.firmware_ram(), "B"), **touched_figures(),
+            "idle_second": (idle.idle_alone(), "insn")}
+
+
+def board_figures():
+    asked = {name: subprocess.Popen([sys.executable, __file__], env={**os.environ, "ROBOSYNC_BOARD": name}, text=True,
+                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE) for name in others()}
+    said = {name: process.communicate()[0] for name, process in asked.items()}
+    failed = [name for name, process in asked.items() if process.returncode != 0]
+    if failed:
+        raise BenchError(f"no figures of {', '.join(failed)}")
+    return {f"{name}/{what}": figure for name, found in said.items() for what, figure in json.loads(found).items()}
+
+
+if __name__ == "__main__":
+    print(json.dumps(figures_of_this_board()))
