@@ -587,13 +587,22 @@ void lint_noise(const LintInput& input) {
   }
 }
 
+// PERFORM and FOLLOW are no verbs of their actuators, and they light lamps, too.
+bool moves_one(const ir::Command& command, const Robot& robot) {
+  if (command.verb.action != vm::Action::perform && command.verb.action != vm::Action::follow)
+    return command.verb.action == vm::Action::move;
+  return std::ranges::any_of(command.actuators, [&](std::size_t actuator) {
+    return std::ranges::any_of(robot.actuators[actuator].verbs, [](const VerbConfig& verb) {
+      return verb.action == vm::Action::move;
+    });
+  });
+}
+
 // A few rules without a BEHAVIOR are a first try, which needs no sermon.
 void lint_safety(const LintInput& input) {
   const ir::Program& program = input.program;
   if (!program.safety.empty() || !program.speed_limits.empty()) return;
-  const auto moves = [](const ir::Command& command) {
-    return command.verb.action == vm::Action::move;
-  };
+  const auto moves = [&](const ir::Command& command) { return moves_one(command, input.robot); };
   for (const ir::Behavior& behavior : program.behaviors) {
     for (const ir::Rule& rule : behavior.rules) {
       const bool found = !behavior.name.empty() && (any_command(rule.then_response, moves) ||

@@ -8,6 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
+MOST_COUNTED = 8  # more than an example tells apart
 sys.path.insert(0, str(ROOT / "tests/generators/programs"))
 
 from board import NAME  # noqa: E402
@@ -45,11 +46,11 @@ def _companion():
     text = (ROOT / "companion/modules.def").read_text()
     units = dict(re.findall(r'^DIMENSION\((\w+), *"([^"]*)"', (ROOT / "vm/dimensions.def").read_text(), re.M))
     modules = {}
-    for kind, arguments in re.findall(r"^(MODULE|OUTPUT|WORDS|TAUGHT)\(([^)]*)\)", text, re.M):
+    for kind, arguments in re.findall(r"^(MODULE|OUTPUT|WORDS|TAUGHT|ONE_OF)\(([^)]*)\)", text, re.M):
         name, *rest = (argument.strip() for argument in arguments.split(","))
         if kind == "MODULE":
             channels = modules[name] = {}
-        elif kind in ("WORDS", "TAUGHT"):
+        elif kind in ("WORDS", "TAUGHT", "ONE_OF"):
             channels[name] = rest[0]
         else:
             channels[name] = (int(rest[1]) / 1000, int(rest[2]) / 1000, units[rest[0]])
@@ -67,8 +68,13 @@ def _heard(folder):
             if isinstance(said, str):
                 found[f"{algorithm['name']}.{channel}"] = (0, 100, [said, *words], "")
             elif f"{name} {channel.lower()}" in program:
-                found[f"{algorithm['name']}.{channel}"] = (said[0], said[1], [], said[2])
+                found[f"{algorithm['name']}.{channel}"] = (said[0], said[1], _counted(*said), said[2])
     return found
+
+
+def _counted(low, high, unit):
+    """The first few and the last of what is counted or numbered; nothing of what is measured."""
+    return [] if unit else [*range(int(low), int(low) + MOST_COUNTED), int(high)]
 
 
 def _channels(folder):

@@ -525,16 +525,15 @@ class Paths(unittest.TestCase):
         config.write_text(json.dumps(wiring))
         paths.compiled(program, config, image)
         said = self.said(program, config)
-        sensor, channels, names = None, [], {}
+        sensor, waits, channels, names = None, False, [], {}
         for line in subprocess.run([paths.RSC, "dump", image], check=True, capture_output=True, text=True,
                                    ).stdout.partition("\nactuators")[0].splitlines():
             if found := re.match(r"  (\w+): ", line):
-                sensor = found[1]
-            if found := re.match(r"    channel (\d+) .*range (-?[\d.]+)\S* … (-?[\d.]+)", line):
+                sensor, waits = found[1], line.endswith("when fed")  # others are made by algorithms
+            found = re.match(r"    channel (\d+) .*range (-?[\d.]+)\S* … (-?[\d.]+)", line)
+            if found and waits:
                 channels.append((int(found[1]), float(found[2]), float(found[3])))
                 names[int(found[1])] = sensor
-        made = {algorithm["name"] for algorithm in wiring.get("algorithms", [])}  # nobody can feed them
-        channels = [channel for channel in channels if names[channel[0]] not in made]
         orders = drawn_orders(channels, random.Random(1))
         measured = paths.Run(image, orders)
         readings = [channel for channel, value in orders if value != paths.PAUSE]
