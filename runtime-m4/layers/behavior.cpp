@@ -128,8 +128,8 @@ void BehaviorLayer::conclude(unsigned rule) {
   ResumePoint& point = resume_points_[rule];
   const vm::Pause pause = checked_pause(result);
   const bool waited = point.pause != vm::Pause::ended;
-  if (!waited || pause != vm::Pause::ended) has_run_.insert(rule);
   const bool moved = pause != vm::Pause::still_polling;
+  if (moved && (!waited || pause != vm::Pause::ended)) has_run_.insert(rule);
   Trace& trace = layers_.trace;
   if (waited && moved) trace.emit(EventKind::go_on, trace.step(), rule);
   if (result.zero_divide != 0) trace.emit(EventKind::zero_divide, trace.step(), rule);

@@ -80,7 +80,8 @@ public:
   void forget_resume_point(unsigned rule) { resume_points_[rule] = {}; }
   [[gnu::cold]] void retire(unsigned behavior);  // its thread was stopped
   // The rule's response began in this millisecond, or went on and waits again: it must not do either
-  // once more. One that went on to its end may begin again.
+  // once more. One that went on to its end may begin again; one that has looked and waits on looks at each reading, also
+  // at a second one in this millisecond.
   bool has_run(unsigned rule, std::uint32_t now) const {
     return now == ran_at_ && has_run_.has(rule);
   }

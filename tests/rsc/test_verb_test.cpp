@@ -322,6 +322,40 @@ TEST_CASE("a program without tests says so") {
   CHECK(outcome.out == "0 passed, 0 failed\n");
 }
 
+// A reading may come in the millisecond in which the wait has looked, and after that.
+TEST_CASE("a WAIT UNTIL and a FOLLOW see a reading, in whichever millisecond they begin") {
+  const Folder folder;
+  folder.write("robot.json", R"({
+    "sensors": [
+      {"name": "sonar", "type": "GPIO", "trigger": 3, "echo": 40, "device": "hc-sr04"},
+      {"name": "go", "type": "VIRTUAL", "channels": {"ON": {"truth": true}}}],
+    "actuators": [{"name": "head", "type": "PWM", "pin": 10, "device": "servo"}]})");
+  std::string program =
+      "BEHAVIOR waits PRIORITY 20\n"
+      "  WHEN go\n"
+      "  DO\n"
+      "    WAIT UNTIL sonar DISTANCE < 80cm WITHIN 3s\n"
+      "    LOG \"there\"\n"
+      "  END\n"
+      "END\n"
+      "BEHAVIOR looks PRIORITY 10\n"
+      "  WHILE go\n"
+      "  DO FOLLOW head TO (sonar DISTANCE / 1cm * 1deg)\n"
+      "  END\n"
+      "END\n";
+  for (int at = 1000; at < 1070; ++at) {
+    program += "TEST \"at " + std::to_string(at) + "\"\n  AT 1s sonar DISTANCE = 70cm\n  AT " +
+               std::to_string(at) +
+               "ms go = \"yes\"\n"
+               "  EXPECT LOG \"there\" WITHIN 70ms\n"
+               "  EXPECT FOLLOW head TO 70deg WITHIN 70ms\nEND\n";
+  }
+  const Outcome outcome = test::rsc({"test", folder.write("robot.rsl", program)});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("70 passed, 0 failed"));
+}
+
 TEST_CASE("run takes the words of a channel, and shows what safety does in words") {
   const TestFolder robot("");
   const std::string scenario = robot.write("visit.json", R"({"duration": "4s", "stimuli": [

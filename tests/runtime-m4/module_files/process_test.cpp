@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -91,9 +92,30 @@ const std::map<std::string, std::string> kMistakes = {
     {"crashes_while_loaded", "it touched memory that is not its own, while it was loaded"},
 };
 
+// A working directory of the test's own, until it ends: what a module writes into, and may not, has a name without one.
+class Elsewhere {
+public:
+  Elsewhere() : before_(std::filesystem::current_path()) {
+    std::string name = (std::filesystem::temp_directory_path() / "modules-XXXXXX").string();
+    REQUIRE(mkdtemp(name.data()) != nullptr);
+    std::filesystem::current_path(name);
+  }
+  ~Elsewhere() {
+    const std::filesystem::path own = std::filesystem::current_path();
+    std::filesystem::current_path(before_);
+    std::filesystem::remove_all(own);
+  }
+  Elsewhere(const Elsewhere&) = delete;
+  Elsewhere& operator=(const Elsewhere&) = delete;
+
+private:
+  std::filesystem::path before_;
+};
+
 }  // namespace
 
 TEST_CASE("whatever a module does, its process ends and says what it was") {
+  const Elsewhere elsewhere;
   std::ofstream("hostile.out") << "whole";
   for (const auto& [how, trouble] : kTroubles) {
     INFO(how);
@@ -103,6 +125,7 @@ TEST_CASE("whatever a module does, its process ends and says what it was") {
 }
 
 TEST_CASE("a file that is no module says so") {
+  const Elsewhere elsewhere;
   Process missing("no_such_file.so");
   CHECK_THAT(missing.trouble(), Catch::StartsWith("it cannot be loaded: "));
   const std::string text = "text.so";
