@@ -36,7 +36,7 @@ std::uint32_t Checks::next(std::uint32_t now) const {
   for (unsigned c = 0; c < wiring_.size(); ++c) {
     // Once what is held is the median, more of it changes nothing.
     if (windows_[c].held == windows_[c].median) continue;
-    next.at(windows_[c].newest + policy::sample_period_ms(wiring_[c]));
+    next.at(windows_[c].newest + policy::sample_period_ms(wiring_[c]) + 1);
   }
   return next.delay();
 }
@@ -55,18 +55,19 @@ vm::Value Checks::smoothed(Window& window, const vm::Check& wiring, std::uint32_
                        window.samples);
   const std::uint32_t period_ms = policy::sample_period_ms(wiring);
   const std::uint32_t since = now - window.newest;
-  if (window.samples.count == 0 || since == period_ms) {
+  if (window.samples.count == 0 || (since == period_ms && value != window.held)) {
     window.newest = now;
     samples.push(value);
   } else if (since == 0) {
     samples.replace_newest(value);
-  } else if (const std::uint32_t instants = since / period_ms; instants > 0) {
-    const std::uint32_t last = instants * period_ms;
-    const bool now_is_one = since == last;
-    for (std::uint32_t i = std::min<std::uint32_t>(instants - now_is_one, size); i > 0; --i)
+  } else if (const std::uint32_t over = (since - 1) / period_ms; over > 0) {
+    for (std::uint32_t i = std::min<std::uint32_t>(over, size); i > 0; --i)
       samples.push(window.held);
-    if (now_is_one) samples.push(value);
-    window.newest += last;
+    window.newest += over * period_ms;
+    if (now - window.newest == period_ms && value != window.held) {
+      window.newest = now;
+      samples.push(value);
+    }
   } else {
     window.held = value;
     return window.median;

@@ -2,7 +2,8 @@
 //
 // SMOOTH takes the median of the samples in a window. A sample is what the input is at an instant
 // of a fixed raster, which begins with the first known value; between two readings it keeps its
-// value. So the median goes on changing after the last reading, until the window holds nothing
+// value, and that it has kept it at an instant is known when the millisecond is over: a reading of it may come
+// last, and a wrong one before it would count twice until then. So the median goes on changing after the last reading, until the window holds nothing
 // else; next() says when. Until the window is full the median is that of the samples there are; of
 // an even number of samples it is the lower middle one. An unknown value empties the window, and
 // its band is unknown.

@@ -356,6 +356,30 @@ TEST_CASE("a WAIT UNTIL and a FOLLOW see a reading, in whichever millisecond the
   CHECK_THAT(outcome.out, Contains("70 passed, 0 failed"));
 }
 
+// Its samples come in the milliseconds of the window's, behind what is due in them by time.
+TEST_CASE(
+    "a single wrong reading does nothing behind SMOOTH, however many readings that looks at") {
+  const Folder folder;
+  folder.write("robot.json", R"({
+    "sensors": [{"name": "sonar", "type": "GPIO", "trigger": 3, "echo": 40, "device": "hc-sr04"}],
+    "actuators": [{"name": "lamp", "type": "VIRTUAL"}]})");
+  for (const std::string over : {"200ms", "250ms", "300ms", "350ms", "400ms"}) {
+    std::string program =
+        "CHECK nearness OF sonar DISTANCE\n  near BELOW 80cm\n  away OTHERWISE\n"
+        "  SMOOTH OVER " +
+        over + "\nEND\nWHEN nearness IS near\nDO LOG \"near\"\nEND\n";
+    for (const std::string at : {"1000", "1020", "1040", "1060"}) {
+      program += "TEST \"at " + at + "\"\n  AT 0s sonar DISTANCE = 200cm\n  AT " + at +
+                 "ms sonar DISTANCE = 20cm\n  EXPECT NO LOG \"near\" WITHIN 2s\n  AT " +
+                 std::to_string(std::stoi(at) + 60) + "ms sonar DISTANCE = 200cm\nEND\n";
+    }
+    const Outcome outcome = test::rsc({"test", folder.write("robot.rsl", program)});
+    CAPTURE(over, outcome.out, outcome.err);
+    CHECK(outcome.exit == 0);
+    CHECK_THAT(outcome.out, Contains("4 passed, 0 failed"));
+  }
+}
+
 TEST_CASE("run takes the words of a channel, and shows what safety does in words") {
   const TestFolder robot("");
   const std::string scenario = robot.write("visit.json", R"({"duration": "4s", "stimuli": [

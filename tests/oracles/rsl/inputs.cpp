@@ -129,13 +129,21 @@ Number Inputs::smoothed(const compiler::ir::Check& check, Smoothing& smoothing, 
     smoothing.samples.clear();
     return std::nullopt;
   }
-  if (now == smoothing.sampled && !smoothing.samples.empty()) {
-    smoothing.samples.back() = *value;
-  } else if (smoothing.samples.empty() || now >= smoothing.sampled + check.sample_ms) {
-    smoothing.sampled = now;
-    smoothing.samples.push_back(*value);
+  const auto sample = [&](std::int64_t it, Millis at) {
+    smoothing.sampled = at;
+    smoothing.samples.push_back(it);
     if (smoothing.samples.size() > check.window) smoothing.samples.pop_front();
+  };
+  if (smoothing.samples.empty()) {
+    sample(*value, now);
+  } else if (now == smoothing.sampled) {
+    smoothing.samples.back() = *value;
+  } else {
+    // What it has kept at an instant counts when that millisecond is over.
+    if (now > smoothing.sampled + check.sample_ms) sample(smoothing.held, now - 1);
+    if (now == smoothing.sampled + check.sample_ms && *value != smoothing.held) sample(*value, now);
   }
+  smoothing.held = *value;
   std::vector<std::int64_t> sorted(smoothing.samples.begin(), smoothing.samples.end());
   std::sort(sorted.begin(), sorted.end());
   return sorted[(sorted.size() - 1) / 2];

@@ -49,6 +49,7 @@ private:
   struct Smoothing {
     std::deque<std::int64_t> samples;
     Millis sampled = 0;
+    std::int64_t held = 0;
     std::size_t band = SIZE_MAX;
   };
 
