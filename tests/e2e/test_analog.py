@@ -126,6 +126,7 @@ class WithoutConverter(Analog):
     def test_a_ring_is_let_go_for_the_program_that_measures_it(self):
         def rings():
             return {ring: self.wires.word(GPIO_CONFIGURATION + WORD * bit) for ring, bit in PINS_OF_RINGS.items()}
+        self.status()  # it has started
         self.assertEqual(rings(), dict.fromkeys(ANALOG, LOW_OUTPUT))
         self.upload(*self.written(PROGRAM))
         self.assertEqual(rings(), dict.fromkeys(ANALOG, NOT_DRIVEN))
