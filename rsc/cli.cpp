@@ -116,7 +116,8 @@ constexpr std::string_view kEpilogue =
     "trouble.\n"
     "`rsc help VERB` explains a verb.";
 
-std::unique_ptr<CLI::App> make_parser() {
+// Of all verbs, or of the one that is named: two fifths of a short compilation would go into the options of the others.
+std::unique_ptr<CLI::App> make_parser(const Verb* only = nullptr) {
   auto app = std::make_unique<CLI::App>("RoboSync: programs for social robots.", "rsc");
   app->set_version_flag("--version", std::string("rsc ") + ROBOSYNC_VERSION);
   app->footer(std::string(kEpilogue));
@@ -124,6 +125,7 @@ std::unique_ptr<CLI::App> make_parser() {
   app->get_formatter()->label("SUBCOMMAND", "VERB");
   app->get_formatter()->label("Subcommands", "Verbs");
   for (const Verb& verb : kVerbs) {
+    if (only != nullptr && &verb != only) continue;
     CLI::App* sub = app->add_subcommand(std::string(verb.name), std::string(verb.summary));
     sub->footer(fmt::format("Example:\n  {}", verb.example));
     Options options(*sub);
@@ -135,6 +137,11 @@ std::unique_ptr<CLI::App> make_parser() {
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
   const auto near = compiler::nearest(word, candidates);
   return near ? fmt::format("; did you mean `{}`?", *near) : std::string();
+}
+
+const Verb* find_verb(std::string_view name) {
+  const auto* verb = std::ranges::find(kVerbs, name, &Verb::name);
+  return verb == kVerbs.end() ? nullptr : verb;
 }
 
 std::vector<std::string> verb_names() {
@@ -170,9 +177,10 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const CLI::App& at = chosen.empty() ? app : *chosen.front();
   std::string message = error.what();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-    const std::vector<std::string> extras = at.remaining(true);
-    const std::string word = extras.empty() ? std::string() : extras.front();
+  const std::vector<std::string> extras = at.remaining(true);
+  const std::string word = extras.empty() ? std::string() : extras.front();
+  // A misspelt option comes before a file that is missing, which CLI11 says first.
+  if (word.starts_with("-") || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     std::vector<std::string> known;
     for (const CLI::Option* option : at.get_options()) {
       for (const std::string& name : option->get_lnames())
@@ -197,10 +205,7 @@ void parse(CLI::App& app, int count, const char* const* arguments) {
                   fmt::format("`{}` stands where a verb does: write rsc VERB, then its options\n"
                               "`rsc help` lists the verbs",
                               first));
-  const std::vector<std::string> names = verb_names();
-  if (!first.starts_with("-") && std::ranges::find(names, first) == names.end()) {
-    unknown_verb(first);
-  }
+  if (!first.starts_with("-") && find_verb(first) == nullptr) unknown_verb(first);
   try {
     app.parse(count, const_cast<char**>(arguments));  // CLI11 reads them only
   } catch (const CLI::CallForHelp&) {
@@ -221,8 +226,7 @@ void print_help(const char* verb) {
     std::cout << app->help();
     return;
   }
-  const std::vector<std::string> names = verb_names();
-  if (std::ranges::find(names, verb) == names.end()) unknown_verb(verb);
+  if (find_verb(verb) == nullptr) unknown_verb(verb);
   std::cout << app->get_subcommand(verb)->help(app->get_name());
 }
 
@@ -253,7 +257,7 @@ int run_command_line(int argument_count, const char* const* arguments) {
     if (!message.empty()) std::cerr << "rsc: " << message << '\n';
   };
   try {
-    const auto app = make_parser();
+    const auto app = make_parser(argument_count > 1 ? find_verb(arguments[1]) : nullptr);
     parse(*app, argument_count, arguments);
     std::cout.flush();
     if (!std::cout) throw Failure(Exit::outside, "could not write to stdout");

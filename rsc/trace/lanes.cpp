@@ -11,8 +11,8 @@
 namespace robosync::tool {
 namespace {
 
-constexpr std::array<std::string_view, kLaneGroups> kNames = {"robot",     "safety",    "behaviors",
-                                                              "actuators", "variables", "sensors"};
+constexpr std::array<std::string_view, kLaneGroups> kLaneNames = {
+    "robot", "safety", "behaviors", "actuators", "variables", "sensors"};
 constexpr const char* kProgram = "program";
 
 std::string name_of_rule(const TraceLine& line) {
@@ -54,7 +54,7 @@ bool is_one_of(std::string_view kind, std::initializer_list<std::string_view> ki
 }  // namespace
 
 std::string_view name_of(LaneGroup group) {
-  return kNames.at(static_cast<std::size_t>(group));
+  return kLaneNames.at(static_cast<std::size_t>(group));
 }
 
 Lane& Lanes::lane(LaneGroup group, const std::string& name) {

@@ -74,6 +74,11 @@ TEST_CASE("a misspelt verb or option gets a suggestion, and exit 2") {
   CHECK_THAT(outcome.err, Contains("there is no option `--stirp`; did you mean `--strip`?") &&
                               Contains("rsc help compile"));
 
+  // Without a file, too: the word that is wrong is what the user can mend.
+  outcome = test::rsc({"check", "--verbos"});
+  CHECK(outcome.exit == 2);
+  CHECK_THAT(outcome.err, Contains("there is no option `--verbos`"));
+
   outcome = test::rsc({"help", "uplaod"});
   CHECK(outcome.exit == 2);
   CHECK_THAT(outcome.err, Contains("did you mean `upload`?"));
