@@ -66,24 +66,24 @@ def begin_of_monitor():
 
 
 def touch_again_and_again(board):
-    def pause(raw):
+    def pause():
         for _ in range(path.BETWEEN):
-            board.give(raw)
+            board.give()
 
-    for change in range(path.AWAKE + path.CHANGES):
-        pause((path.FIRM, path.LIGHT)[change % 2])
+    path.touch_again_and_again(board, pause, path.AWAKE + path.CHANGES)
 
 
 def drive(board):
     """From power-up to the end of what path.py does with the reference board: gives the time of the first step by the kernel's clock."""
     board.run_to(functions(STEP)[STEP])
     first_step = board.uptime_us()
+    board.set_touch(path.LIGHT)
     for _ in range(path.BETWEEN):
-        board.give(path.LIGHT)
+        board.give()
     touch_again_and_again(board)
     for byte in begin_of_monitor():
         board.say(bytes([byte]))
-        board.give(path.LIGHT)
+        board.give()
     before = len(board.messages("event"))
     touch_again_and_again(board)
     if len(board.messages("event")) < before + path.CHANGES:
@@ -99,10 +99,12 @@ def time_of_first_step(marks, by_the_clock):
 def conditions(marks):
     """The most of each of path.py's three."""
     found = path.ways(marks)
-    (first, *_), busy, monitored = found[:1], found[1 + path.AWAKE:][:path.CHANGES], found[-path.CHANGES:]
-    if len(found) != 1 + 2 * (path.AWAKE + path.CHANGES) or first[1] or not all(stopped for _, stopped in busy + monitored):
-        raise BenchError(f"not every touch led to a command, or the arms stood still: {found}")
-    return {"": first[0], "_busy": max(count for count, _ in busy), "_monitored": max(count for count, _ in monitored)}
+    if len(found) != 1 + 2 * (path.AWAKE + path.CHANGES):
+        raise BenchError(f"not every touch led to a command: {found}")
+    (free, moved_before), busy, monitored = found[0], found[1 + path.AWAKE:][:path.CHANGES], found[-path.CHANGES:]
+    if moved_before or not all(stopped for _, stopped in busy + monitored):
+        raise BenchError(f"the arms moved too soon, or stood still: {found}")
+    return {"": free, "_busy": max(count for count, _ in busy), "_monitored": max(count for count, _ in monitored)}
 
 
 def touched_figures():

@@ -21,7 +21,7 @@ from workloads import PAPER
 KICK = "Board::watchdog_kick("
 BUS = ("I2c::",)  # code of the board
 SECONDS = 10  # measured, at the end of the run
-THOUSANDS, A_MINUTE = 100_000, 50_000  # bytes of marks, a kick's has some twenty
+BYTES_OF_THOUSANDS, BYTES_OF_A_MINUTE = 100_000, 50_000  # the mark of a kick has some twenty
 STARTED = 2  # kicks after which the firmware has
 PATIENCE = 30  # seconds until so many have passed: the core's sleep takes no time
 
@@ -66,7 +66,7 @@ def kicks(bytes_of_marks, program=None):
 
 def idle_second(period, program):
     """The costliest of some seconds, which have kicks every `period` milliseconds: (instructions, apart)."""
-    marks = kicks(THOUSANDS, program)
+    marks = kicks(BYTES_OF_THOUSANDS, program)
     second = 1000 // period
     last = range(len(marks.all) - SECONDS * second, len(marks.all), second)
     return max((marks.all[i - 1][1] - marks.all[i - 1 - second][1],
@@ -77,7 +77,7 @@ def idle_alone():
     """Of a board without a program, the costliest of those of its first minute, in which the kernel looks once at timers that are far off:
     it is the same in each run."""
     second = 1000 // period_ms("runtime-m4/safety/period.hpp", "kIdlePeriodMs")
-    counts = [count for _, count in kicks(A_MINUTE).all][STARTED:60 * second]
+    counts = [count for _, count in kicks(BYTES_OF_A_MINUTE).all][STARTED:60 * second]
     if len(counts) != 60 * second - STARTED:
         raise BenchError("the watchdog was not kicked for a minute")
     return max(end - begin for begin, end in zip(counts, counts[second:]))

@@ -67,7 +67,7 @@ class BoardOnAFile:
 
 
 class FedBoard(BoardOnAFile):
-    """Takes a program, at whatever pace: what it keeps is the same."""
+    """Takes a program, at whatever pace: what it keeps is the same. Not by rsc, which gives a board up that a debugger holds up."""
 
     def __init__(self, folder, store):
         gdb = folder / "gdb"
@@ -123,11 +123,14 @@ class TouchedBoard(BoardOnAFile):
             self._player.set_register(register, core[register])
         return now
 
-    def give(self, raw):
-        """Until the sensor has given that as a reading."""
+    def set_touch(self, raw):
         if self._raw is None:
             self._player.play(self._read, self._answer)
-        self._raw, self._caller = raw, 0
+        self._raw = raw
+
+    def give(self):
+        """Until the sensor has given the touch as a reading."""
+        self._caller = 0
         while not self._sample[0] <= self._caller < self._sample[1]:
             if self._player.play_next() is None:
                 raise BenchError("the board has stopped")

@@ -116,7 +116,7 @@ constexpr std::string_view kEpilogue =
     "trouble.\n"
     "`rsc help VERB` explains a verb.";
 
-// Of all verbs, or of the one that is named: two fifths of a short compilation would go into the options of the others.
+// Of all verbs, or of the one that is named: building the options of the others takes as long as a short compilation.
 std::unique_ptr<CLI::App> make_parser(const Verb* only = nullptr) {
   auto app = std::make_unique<CLI::App>("RoboSync: programs for social robots.", "rsc");
   app->set_version_flag("--version", std::string("rsc ") + ROBOSYNC_VERSION);

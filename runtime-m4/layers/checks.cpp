@@ -55,6 +55,7 @@ vm::Value Checks::smoothed(Window& window, const vm::Check& wiring, std::uint32_
                        window.samples);
   const std::uint32_t period_ms = policy::sample_period_ms(wiring);
   const std::uint32_t since = now - window.newest;
+  // The ordinary case first: a new reading in each period.
   if (window.samples.count == 0 || (since == period_ms && value != window.held)) {
     window.newest = now;
     samples.push(value);

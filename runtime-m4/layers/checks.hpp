@@ -2,11 +2,14 @@
 //
 // SMOOTH takes the median of the samples in a window. A sample is what the input is at an instant
 // of a fixed raster, which begins with the first known value; between two readings it keeps its
-// value, and that it has kept it at an instant is known when the millisecond is over: a reading of it may come
-// last, and a wrong one before it would count twice until then. So the median goes on changing after the last reading, until the window holds nothing
-// else; next() says when. Until the window is full the median is that of the samples there are; of
-// an even number of samples it is the lower middle one. An unknown value empties the window, and
-// its band is unknown.
+// value. A new value at an instant is a sample at once. One that was kept is when that millisecond
+// is over: a reading may come in it after a step that time alone was the cause of, and until then
+// the value before it would count twice.
+//
+// So the median goes on changing after the last reading, until the window holds nothing else;
+// next() says when. Until the window is full the median is that of the samples there are; of an
+// even number of samples it is the lower middle one. An unknown value empties the window, and its
+// band is unknown.
 #pragma once
 
 #include <cstdint>

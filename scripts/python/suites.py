@@ -124,8 +124,8 @@ ON_THE_BOARD = ("vm", "link", "runtime-m4")
 # Sources at a time: the headers are looked at once for all of them. On the board it is the sources that take the time, so
 # they are fewer, and come first: nobody waits for the last ones then.
 TOGETHER, TOGETHER_ON_THE_BOARD = 24, 8
-# How many states of a function the analyzer of clang looks at, at most, without --deep; 225,000 is what it does by itself, and
-# takes up to five times as long for. On the host a function that uses up its states has, as a rule, a std::find_if
+# How many states of a function the analyzer of clang looks at, at most, without --deep; by itself it looks at 225,000, and
+# takes several times as long. On the host a function that uses up its states has, as a rule, a std::find_if
 # or a std::visit in it, of which all ways through the standard library are followed.
 STATES_ON_THE_HOST, STATES_ON_THE_BOARD = 5_000, 20_000
 GCC_ALONE = ("-fno-tree-loop-distribute-patterns", "--param=")  # begin options that clang takes for errors

@@ -75,9 +75,9 @@ TEST_CASE("a misspelt verb or option gets a suggestion, and exit 2") {
                               Contains("rsc help compile"));
 
   // Without a file, too: the word that is wrong is what the user can mend.
-  outcome = test::rsc({"check", "--verbos"});
+  outcome = test::rsc({"check", "--formt"});
   CHECK(outcome.exit == 2);
-  CHECK_THAT(outcome.err, Contains("there is no option `--verbos`"));
+  CHECK_THAT(outcome.err, Contains("there is no option `--formt`; did you mean `--format`?"));
 
   outcome = test::rsc({"help", "uplaod"});
   CHECK(outcome.exit == 2);

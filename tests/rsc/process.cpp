@@ -1,12 +1,8 @@
 // Without a shell: posix_spawn, and files for what it prints.
 #include "tests/rsc/process.hpp"
 
-#include <array>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -20,11 +16,6 @@ extern char** environ;
 
 namespace robosync::test {
 namespace {
-
-std::string read_all(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 std::vector<char*> pointers(std::vector<std::string>& strings) {
   std::vector<char*> list;
@@ -110,31 +101,6 @@ Outcome Running::end(int signal) {
   int exit = -1;
   if (process_ != 0 && kill(process_, signal) == 0) exit = wait_for(std::exchange(process_, 0));
   return {exit, out(), err()};
-}
-
-Folder::Folder() {
-  std::string name = (std::filesystem::temp_directory_path() / "rsc-test-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  path_ = name;
-}
-
-Folder::~Folder() {
-  std::error_code error;
-  std::filesystem::remove_all(path_, error);
-}
-
-std::string Folder::write(const std::string& name, const std::string& text) const {
-  std::ofstream(path_ / name, std::ios::binary) << text;
-  return path(name);
-}
-
-std::string Folder::read(const std::string& name) const {
-  return read_all(path_ / name);
-}
-
-std::size_t Folder::files() const {
-  const std::filesystem::directory_iterator all(path_);
-  return static_cast<std::size_t>(std::distance(begin(all), end(all)));
 }
 
 }  // namespace robosync::test

@@ -1,10 +1,12 @@
-// Runs the built rsc as a user would, and files for it in a folder of its own.
+// Runs the built rsc as a user would.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "tests/support/folder.hpp"
 
 namespace robosync::test {
 
@@ -16,25 +18,6 @@ struct Outcome {
 // `environment`: additions, as NAME=VALUE. Ends after 60 s with exit -1.
 [[nodiscard]] Outcome rsc(std::vector<std::string> arguments,
                           const std::vector<std::string>& environment = {});
-
-// A folder that goes away with the object.
-class Folder {
-public:
-  Folder();
-  ~Folder();
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  // Path of a file in it, as a string for the command line.
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
-  std::string write(const std::string& name, const std::string& text) const;
-  std::string read(const std::string& name) const;
-  bool has(const std::string& name) const { return std::filesystem::exists(path_ / name); }
-  std::size_t files() const;
-
-private:
-  std::filesystem::path path_;
-};
 
 // The built rsc while it runs. What it prints lies in a folder of its own.
 class Running {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -17,6 +16,7 @@
 #include "runtime-m4/algorithms/modules.hpp"
 #include "runtime-m4/module_files/description.hpp"
 #include "runtime-m4/module_files/registry.hpp"
+#include "tests/support/folder.hpp"
 
 using namespace robosync;
 using module_files::Process;
@@ -96,19 +96,14 @@ const std::map<std::string, std::string> kMistakes = {
 class Elsewhere {
 public:
   Elsewhere() : before_(std::filesystem::current_path()) {
-    std::string name = (std::filesystem::temp_directory_path() / "modules-XXXXXX").string();
-    REQUIRE(mkdtemp(name.data()) != nullptr);
-    std::filesystem::current_path(name);
+    std::filesystem::current_path(own_.path());
   }
-  ~Elsewhere() {
-    const std::filesystem::path own = std::filesystem::current_path();
-    std::filesystem::current_path(before_);
-    std::filesystem::remove_all(own);
-  }
+  ~Elsewhere() { std::filesystem::current_path(before_); }
   Elsewhere(const Elsewhere&) = delete;
   Elsewhere& operator=(const Elsewhere&) = delete;
 
 private:
+  test::Folder own_;
   std::filesystem::path before_;
 };
 

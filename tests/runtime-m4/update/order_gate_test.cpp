@@ -15,6 +15,7 @@
 #include "rsc/device/orders.hpp"
 #include "rsc/failure.hpp"
 #include "tests/runtime-m4/update/kept.hpp"
+#include "tests/support/folder.hpp"
 
 using namespace robosync;
 using Catch::Contains;
@@ -31,20 +32,8 @@ using update::OrderGate;
 
 namespace {
 
-class Folder {
-public:
-  Folder() { REQUIRE(mkdtemp(name_.data()) != nullptr); }
-  ~Folder() { std::filesystem::remove_all(name_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string path(const std::string& file) const { return name_ + "/" + file; }
-
-private:
-  std::string name_ = std::filesystem::temp_directory_path() / "robosync-keys-XXXXXX";
-};
-
 struct Keys {
-  Folder folder;
+  test::Folder folder;
   std::string file = folder.path("key"), other_file = folder.path("other");
   std::unique_ptr<const OwnerKey> owner = OwnerKey::make(file),
                                   stranger = OwnerKey::make(other_file);
