@@ -44,8 +44,11 @@ TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
 BOOT_SECONDS = 20  # on a busy machine
 # How virtual time passes: it counts instructions, so that a firmware that is held up by a busy host
 # does not miss its deadlines. While the firmware idles,
-REAL_TIME = "shift=5,sleep=on"  # 32 ns each (about 25 MHz): it follows the host's clock;
+REAL_TIME = "shift=5,sleep=on"  # 32 ns each (about 25 MHz): it follows the host's clock, without its jumps;
 FAST = "shift=4,sleep=off"  # 16 ns each (an STM32F401's 84 MHz): idle time is skipped.
+
+
+STEADY_CLOCK = ROOT / "build/host/libsteady_clock.so"  # scripts/steady_clock
 
 
 class BoardError(RuntimeError):
@@ -192,9 +195,14 @@ class Board:
                    *DEVICES.get(NAME, []),
                    "-qmp", f"unix:{self.qmp_path},server=on,wait=off",
                    "-icount", icount, *extra]
+        environment = {**os.environ}
+        if str(UNPACKED / "share/qemu") in command:
+            environment["QEMU_MODULE_DIR"] = str(UNPACKED / "lib/x86_64-linux-gnu/qemu")  # those of its own build
+        if icount == REAL_TIME:
+            if not STEADY_CLOCK.is_file():  # ld.so would only warn
+                raise BoardError(f"no {STEADY_CLOCK}: build rsc of the preset host first")
+            environment["LD_PRELOAD"] = str(STEADY_CLOCK)
         with open(self._log, "wb") as log:
-            modules = {"QEMU_MODULE_DIR": str(UNPACKED / "lib/x86_64-linux-gnu/qemu")}  # those of its own build
-            environment = {**os.environ, **(modules if str(UNPACKED / "share/qemu") in command else {})}
             return subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                     start_new_session=True)
 
@@ -230,6 +238,14 @@ class Board:
 
     def wait(self):
         return self._process.wait()
+
+    def hold_up(self, seconds):
+        """As a host does that has something else to do for so long."""
+        self._process.send_signal(signal.SIGSTOP)
+        try:
+            time.sleep(seconds)
+        finally:
+            self._process.send_signal(signal.SIGCONT)
 
     def set_touch(self, raw, channel=0):
         """What the touch sensor's input measures from now on, as its raw 16-bit number."""

@@ -8,8 +8,8 @@ import examples
 import pins
 import rsc
 import stimuli
-from board import FIRMWARE, NAME
-from support import PROFILE, PROGRAMS, LineReader
+from board import FIRMWARE, NAME, REAL_TIME
+from support import PROFILE, PROGRAMS, LineReader, RobotTest
 from traces import TraceTest
 
 sys.path.append(str(rsc.ROOT / "bench"))
@@ -17,6 +17,7 @@ from counting import symbols  # noqa: E402
 
 COMPANION = rsc.ROOT / "examples/touch_companion"
 SAFETY_PERIOD_US = 30_000  # without a program
+MOST_LATE_US = 20_000
 READINGS_SEED = 475
 PATIENCE = 20
 RAM = 0x1000_0000  # and up; flash is below on each board
@@ -157,6 +158,17 @@ class EveryBoard(TraceTest):
         done = rsc.call("check", program, "--config", config)
         self.assertEqual(done.returncode, 1)
         self.assertIn(f"the board {NAME} has no I2C bus {PROFILE['i2c_buses']}", done.stderr)
+
+
+class AtThePaceOfTheHost(RobotTest):
+    icount = REAL_TIME
+
+    def test_a_busy_host_makes_it_slow_and_not_late(self):
+        self.upload(self.compile(COMPANION / "robot.rsl", COMPANION / "robot.json"))
+        self.board.hold_up(0.3)
+        status = rsc.info(self.board.port)["status"]
+        self.assertEqual(status["activations"], 1)
+        self.assertLessEqual(status["safety_late_us"], MOST_LATE_US)
 
 
 if __name__ == "__main__":

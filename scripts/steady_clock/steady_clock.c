@@ -1,0 +1,45 @@
+// The clock of a QEMU that runs at the pace of the host (LD_PRELOAD, by scripts/python/board.py): one that does not jump.
+//
+// While the emulated processor idles, its time is that of the host's clock. When the host has something else to do, the time
+// that QEMU had to wait would pass for the robot at once, without an instruction executed: its watchdog would reset it, and
+// all of its deadlines would be missed. So between two looks at this clock pass at most MOST_NS: a busy host makes the robot
+// slow, as anything that counts instructions is.
+#include <dlfcn.h>
+#include <pthread.h>
+#include <stdint.h>
+#include <time.h>
+
+// What a firmware may sleep, which is a period of its safety thread (10 ms), and what it takes to wake QEMU. One that sleeps
+// longer is woken later, by a few looks at the clock.
+#define MOST_NS INT64_C(12000000)
+#define SECOND_NS INT64_C(1000000000)
+
+typedef int Look(clockid_t clock, struct timespec* now);
+
+static Look* look;
+static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+static int64_t last_ns, left_out_ns;
+
+__attribute__((constructor)) static void find_the_host_s(void) {
+  look = (Look*)dlsym(RTLD_NEXT, "clock_gettime");
+}
+
+static int64_t without_jumps(int64_t host_ns) {
+  pthread_mutex_lock(&mutex);
+  const int64_t passed = host_ns - last_ns;
+  if (last_ns != 0 && passed > MOST_NS) left_out_ns += passed - MOST_NS;
+  if (passed > 0) last_ns = host_ns;  // another thread may have looked later, and be here sooner
+  const int64_t steady_ns = host_ns - left_out_ns;
+  pthread_mutex_unlock(&mutex);
+  return steady_ns;
+}
+
+int clock_gettime(clockid_t clock, struct timespec* now) {
+  if (look == NULL) find_the_host_s();  // called by the constructor of another library
+  const int failed = look(clock, now);
+  if (failed != 0 || clock != CLOCK_MONOTONIC) return failed;
+  const int64_t ns = without_jumps(now->tv_sec * SECOND_NS + now->tv_nsec);
+  now->tv_sec = ns / SECOND_NS;
+  now->tv_nsec = ns % SECOND_NS;
+  return 0;
+}
