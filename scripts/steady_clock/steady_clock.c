@@ -14,14 +14,14 @@
 #define MOST_NS INT64_C(12000000)
 #define SECOND_NS INT64_C(1000000000)
 
-typedef int Look(clockid_t clock, struct timespec* now);
+typedef int ClockGettime(clockid_t clock, struct timespec* now);
 
-static Look* look;
+static ClockGettime* host_clock_gettime;
 static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 static int64_t last_ns, left_out_ns;
 
-__attribute__((constructor)) static void find_the_host_s(void) {
-  look = (Look*)dlsym(RTLD_NEXT, "clock_gettime");
+__attribute__((constructor)) static void find_host_clock(void) {
+  host_clock_gettime = (ClockGettime*)dlsym(RTLD_NEXT, "clock_gettime");
 }
 
 static int64_t without_jumps(int64_t host_ns) {
@@ -35,8 +35,9 @@ static int64_t without_jumps(int64_t host_ns) {
 }
 
 int clock_gettime(clockid_t clock, struct timespec* now) {
-  if (look == NULL) find_the_host_s();  // called by the constructor of another library
-  const int failed = look(clock, now);
+  if (host_clock_gettime == NULL)
+    find_host_clock();  // called by the constructor of another library
+  const int failed = host_clock_gettime(clock, now);
   if (failed != 0 || clock != CLOCK_MONOTONIC) return failed;
   const int64_t ns = without_jumps(now->tv_sec * SECOND_NS + now->tv_nsec);
   now->tv_sec = ns / SECOND_NS;
