@@ -55,6 +55,7 @@ target_sources(robosync_compiler PRIVATE
   sema/behaviors.cpp
   sema/commands.cpp
   sema/misread.cpp
+  sema/unknown_verbs.cpp
   sema/conditions.cpp
   sema/defines.cpp
   sema/expressions.cpp

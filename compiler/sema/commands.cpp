@@ -44,6 +44,14 @@ bool is_given(const ir::Command& command, vm::Param param) {
                      [&](const ir::Argument& argument) { return argument.param == param; });
 }
 
+std::vector<std::string> verb_names(const ActuatorConfig& actuator) {
+  std::vector<std::string> names;
+  names.reserve(actuator.verbs.size());
+  for (const VerbConfig& verb : actuator.verbs)
+    names.push_back(verb.name);
+  return names;
+}
+
 void report_twice(Span span, const std::string& what, Diagnostics& diagnostics) {
   diagnostics.report(Code::E0505, what + " is given twice").label(span);
 }
@@ -154,41 +162,6 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
   if (d.help.empty()) d.helps("actuators: " + list_names(candidates));
 }
 
-void suggest_perform(Diagnostic& diagnostic, const ast::Name& motion) {
-  const std::string better = std::string(kPerform) + " " + std::string(motion.text);
-  diagnostic.helps(motion.shown() + " is a MOTION: write `" + better + "`")
-      .fix(motion.span, better, Applicability::likely);
-}
-
-void Commands::report_unknown_verb(const ast::Command& command) {
-  const ast::Name& verb = command.verb;
-  const std::string what = command.arguments.empty() ? "DEFINE or verb " : "verb ";
-  Diagnostic& d =
-      diagnostics_.report(Code::E0501, "there is no " + what + verb.shown()).label(verb.span);
-  if (names_.find_motion(verb.text) != nullptr) return suggest_perform(d, verb);
-  if (command.arguments.empty()) d.unknown = verb.text;
-  if (names_.find_define(verb.text) != nullptr) {
-    d.helps(verb.shown() + " is a DEFINE: what it is given stands behind WITH, with commas");
-    return;
-  }
-  if (!diagnostics_.may_search(robot_.actuators.size() + names_.defines().size())) return;
-  auto candidates = names_.verb_names();
-  const auto defines = names_.define_names();
-  candidates.insert(candidates.end(), defines.begin(), defines.end());
-  const auto verbs = candidates;
-  candidates.insert(candidates.end(), keyword_spellings().begin(), keyword_spellings().end());
-  for (const std::string_view word : {kPerform, kFollow, kRestart})
-    candidates.emplace_back(word);
-  did_you_mean(d, verb.span, verb.text, candidates);
-  if (!d.help.empty()) return;
-  // It may be one that nothing here knows: as a rule `USE` brought a file that needs more.
-  const auto devices = devices_with(verb.text);
-  if (devices.empty() && !verbs.empty()) d.helps("it could be " + list_names(verbs));
-  if (devices.empty()) return;
-  d.message = "no actuator of this robot knows the verb " + verb.shown();
-  d.helps("robot.json needs one with a device that does: " + list_names(devices, "or"));
-}
-
 // `TO person DIRECTION`: the second word would be one of the actuator's. It is reported.
 bool Commands::lacks_brackets(const ast::Command& command, std::size_t place) {
   const ast::Argument& first = command.arguments[place];
@@ -220,8 +193,10 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Comman
   bool good = true;
   const std::size_t first_part = command.arguments.size() - command.parts;
   if (named_by == first_part) {
-    diagnostics_.report(Code::E0505, "no comma stands behind the actuator")
-        .label(command.arguments[named_by].span);
+    Diagnostic& d = diagnostics_.report(Code::E0505, "no comma stands behind the actuator")
+                        .label(command.arguments[named_by].span);
+    if (!std::holds_alternative<ast::Text>(command.arguments[named_by + 1].value))
+      d.helps("write a command for each actuator, or give them a group in robot.json");
     return std::nullopt;
   }
   for (std::size_t i = 0; i < command.arguments.size(); ++i) {
@@ -390,14 +365,6 @@ vm::Value words_of(std::string_view text) {
   return static_cast<vm::Value>(std::max<std::size_t>(words, 1));
 }
 
-std::vector<std::string> verb_names(const ActuatorConfig& actuator) {
-  std::vector<std::string> names;
-  names.reserve(actuator.verbs.size());
-  for (const VerbConfig& verb : actuator.verbs)
-    names.push_back(verb.name);
-  return names;
-}
-
 // Is a number that is known now one that the actuator can do?
 bool check_value(const ActuatorConfig& actuator, vm::Param param, const Typed& number,
                  Diagnostics& diagnostics) {
@@ -494,8 +461,11 @@ std::optional<ir::Command> Commands::for_actuator(std::size_t actuator, const as
   result.verb = {verb->name, verb->action, verb->carries()};
   const Recipient to{config, *verb, command, diagnostics};
   bool good = true;
-  for (const Given& one : given)
-    good = add(to, one, result) && good;
+  for (const Given& one : given) {
+    if (add(to, one, result)) continue;
+    good = false;
+    if (!one.is_number && !one.text) break;  // an unknown word: what follows is part of it
+  }
   if (!good) return std::nullopt;
   return result;
 }
@@ -578,6 +548,8 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
   const auto targets = names_.target_names();
   candidates.insert(candidates.end(), targets.begin(), targets.end());
   candidates.insert(candidates.end(), keyword_spellings().begin(), keyword_spellings().end());
+  // What stands there already: a word of RSL, or another actuator, in the wrong place.
+  std::erase_if(candidates, [&](const auto& one) { return same_name(one, word.name.text); });
   did_you_mean(d, word.name.span, word.name.text, candidates);
   if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
   if (names_.find_list(word.name.text) != nullptr)
@@ -670,15 +642,33 @@ bool Commands::say_values(const Recipient& to, const Given& given, ir::Command& 
   return true;
 }
 
+// A number alone would be BY: it is not that, which the user has not written, but its word that is missing.
+void Commands::report_not_taken(const Recipient& to, const Given& given) {
+  const Span span = given.argument->span;
+  const std::string verb = "`" + to.verb.name + "`";
+  const bool alone =
+      given.argument->preposition == ast::Preposition::none && given.param == vm::Param::by;
+  Diagnostic& d =
+      to.diagnostics
+          .report(Code::E0505, alone ? "the word in front of this number is missing"
+                                     : verb + " does not take `" + spelling(given.param) + "`")
+          .label(span);
+  const bool place =
+      alone && to.verb.has(vm::Param::to) && !given.number.is_bare() &&
+      given.number.dimension() == param_unit(to.actuator, vm::Param::to, &to.verb).dimension;
+  if (place)
+    d.helps(verb + " takes a place or a strength with `TO`")
+        .fix({span.file, span.begin, span.begin}, "TO ", Applicability::likely);
+  else
+    d.helps(taken_by(to.verb));
+}
+
 bool Commands::add_number(const Recipient& to, const Given& given, ir::Command& result) const {
   const ActuatorConfig& actuator = to.actuator;
   Diagnostics& diagnostics = to.diagnostics;
   const Span span = given.argument->span;
   if (!to.verb.has(given.param)) {
-    diagnostics
-        .report(Code::E0505, "`" + to.verb.name + "` does not take `" + spelling(given.param) + "`")
-        .label(span)
-        .helps(taken_by(to.verb));
+    report_not_taken(to, given);
     return false;
   }
   if (given.param == vm::Param::for_ && takes_its_words(result))

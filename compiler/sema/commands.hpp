@@ -25,6 +25,7 @@ struct ChosenText {
 // What its parts share. The word that an argument is, without a preposition; nullptr: none.
 [[nodiscard]] const ast::Word* plain_word(const ast::Argument& argument);
 [[nodiscard]] bool is_given(const ir::Command& command, vm::Param param);
+[[nodiscard]] std::vector<std::string> verb_names(const ActuatorConfig& actuator);
 void report_twice(Span span, const std::string& what, Diagnostics& diagnostics);
 
 // FOLLOW of one actuator, or of a group whose members all do it alike.
@@ -88,7 +89,11 @@ private:
   std::optional<Target> only_target(const ast::Command& command);
   bool is_given_another(const ast::Command& command);
   void report_no_target(const ast::Command& command, const std::vector<std::size_t>& able);
+  // What is no verb (unknown_verbs.cpp).
   void report_unknown_verb(const ast::Command& command);
+  bool begins_with_actuator(const ast::Command& command);
+  bool calls_define(const ast::Command& command);
+  bool is_foreign(const ast::Command& command);
   std::optional<std::vector<Given>> evaluate(const ast::Command& command, std::size_t named_by);
   Given evaluate(const ast::Argument& argument);
   // The text whose parts begin at `first`; its text is nothing after a mistake.
@@ -97,6 +102,8 @@ private:
   bool lacks_brackets(const ast::Command& command, std::size_t place);
   // Arguments that are something else together (misread.cpp).
   bool is_misread(const ast::Command& command, std::size_t place);
+  bool is_second_command(const ast::Command& command, std::size_t place);
+  bool is_foreign_preposition(const ast::Command& command, std::size_t place);
   bool is_reading(const ast::Command& command, std::size_t place);
   bool lacks_comma(const ast::Command& command, std::size_t place);
   bool lacks_list(const ast::Command& command, std::size_t place);
@@ -132,6 +139,7 @@ private:
   bool add_text(const Recipient& to, const Given& given, ir::Command& result) const;
   bool say_values(const Recipient& to, const Given& given, ir::Command& result) const;
   bool add_number(const Recipient& to, const Given& given, ir::Command& result) const;
+  static void report_not_taken(const Recipient& to, const Given& given);
   static void report_foreign_word(const Recipient& to, const WordConfig& word, Span span);
   void report_unknown_word(const Recipient& to, const ast::Word& word) const;
 

@@ -9,6 +9,16 @@ namespace robosync::compiler {
 
 namespace {
 
+// How other languages, and people, call what RSL has a preposition for.
+struct ForeignPreposition {
+  std::string_view spelling, meant;
+};
+constexpr ForeignPreposition kForeignPrepositions[] = {
+    {"IN", "OVER"},
+    {"DURING", "OVER"},
+    {"SPEED", "AT"},
+};
+
 bool is_text(const ast::Argument& argument) {
   return argument.preposition == ast::Preposition::none &&
          std::holds_alternative<ast::Text>(argument.value);
@@ -22,13 +32,46 @@ Span both(const ast::Argument& first, const ast::Argument& second) {
 
 // Is the argument, with the next one, something else than two arguments? It is reported.
 bool Commands::is_misread(const ast::Command& command, std::size_t place) {
-  if (lacks_brackets(command, place)) return true;
+  if (is_second_command(command, place) || lacks_brackets(command, place)) return true;
   const std::size_t next = place + 1;
   const std::size_t first_part = command.arguments.size() - command.parts;
   if (next >= command.arguments.size() || is_chosen(place) || is_chosen(next)) return false;
   if (lacks_list(command, place)) return true;
-  return next < first_part && (is_reading(command, place) || lacks_comma(command, place) ||
-                               is_unit_apart(command, place));
+  return next < first_part &&
+         (is_foreign_preposition(command, place) || is_reading(command, place) ||
+          lacks_comma(command, place) || is_unit_apart(command, place));
+}
+
+// `SAY "Hello" MOVE head LEFT`
+bool Commands::is_second_command(const ast::Command& command, std::size_t place) {
+  const ast::Word* const word = is_chosen(place) ? nullptr : plain_word(command.arguments[place]);
+  if (word == nullptr || !names_.is_verb(word->name.text) || is_known_word(word->name.text))
+    return false;
+  const Span before = place == 0 ? command.verb.span : command.arguments[place - 1].span;
+  diagnostics_.report(Code::E0505, word->name.shown() + " begins a second command in this line")
+      .label(word->name.span)
+      .helps("each command stands on a line of its own")
+      .fix({before.file, before.end, word->name.span.begin}, "\n", Applicability::likely);
+  return true;
+}
+
+// `MOVE head TO 30deg IN 2s`
+bool Commands::is_foreign_preposition(const ast::Command& command, std::size_t place) {
+  const ast::Word* const word = plain_word(command.arguments[place]);
+  const ast::Argument& next = command.arguments[place + 1];
+  if (word == nullptr || is_known_word(word->name.text) ||
+      next.preposition != ast::Preposition::none ||
+      !std::holds_alternative<ast::Amount>(next.value))
+    return false;
+  for (const ForeignPreposition& one : kForeignPrepositions) {
+    if (!same_name(one.spelling, word->name.text)) continue;
+    const std::string meant(one.meant);
+    diagnostics_.report(Code::E0505, word->name.shown() + " is written `" + meant + "` in RSL")
+        .label(word->name.span)
+        .fix(word->name.span, meant, Applicability::likely);
+    return true;
+  }
+  return false;
 }
 
 // `SAY touch LEVEL`

@@ -17,6 +17,7 @@ public:
     using Habit = std::optional<Edit> (ForeignHabits::*)();
     for (const Habit habit :
          {&ForeignHabits::name_of_test, &ForeignHabits::rule_with_if, &ForeignHabits::foreign_else,
+          &ForeignHabits::declaration, &ForeignHabits::definition, &ForeignHabits::text_in_brackets,
           &ForeignHabits::set_with_sign, &ForeignHabits::assignment, &ForeignHabits::colon,
           &ForeignHabits::end_of_what, &ForeignHabits::truth, &ForeignHabits::decimal_comma}) {
       if (auto edit = (this->*habit)()) return edit;
@@ -40,14 +41,20 @@ private:
     return change(0, end, {{Kinds::TEST, tokens_[0].span}, {Kinds::STRING, name}});
   }
 
-  // `IF touch LEVEL > 3 DO` outside of a rule
+  // `IF touch LEVEL > 3 DO` outside of a rule; `ON touch LEVEL > 3 DO`
   std::optional<Edit> rule_with_if() {
-    if (!is(0, Kinds::IF) || stop_ != 0) return std::nullopt;
-    report(Code::E0010, "IF asks once, inside a rule; a rule of its own begins with WHEN",
-           tokens_[0].span)
-        .helps("write `WHEN` in the place of this `IF`")
-        .fix(tokens_[0].span, "WHEN", Applicability::likely);
-    return change(0, 1, {{Kinds::WHEN, tokens_[0].span}});
+    const auto block = open_block();
+    const bool outside = stop_ == begin_ && (!block || is(*block, Kinds::BEHAVIOR));
+    const bool foreign = is_any_name(stop_, {"ON", "WHENEVER", "UPON", "ONCE"}) &&
+                         (has(stop_, end_, Kinds::DO) || is(end_ + 1, Kinds::DO));
+    if (!outside || !(is(stop_, Kinds::IF) || foreign)) return std::nullopt;
+    report(Code::E0010,
+           foreign ? "a rule begins with WHEN, not with " + quote(stop_)
+                   : "IF asks once, inside a rule; a rule of its own begins with WHEN",
+           tokens_[stop_].span)
+        .helps("write `WHEN` in the place of this " + quote(stop_))
+        .fix(tokens_[stop_].span, "WHEN", Applicability::likely);
+    return change(stop_, 1, {{Kinds::WHEN, tokens_[stop_].span}});
   }
 
   // `ELIF x > 3 DO`
@@ -58,6 +65,75 @@ private:
     report(Code::E0007, quote(first) + " is written `ELSE IF` in RSL", tokens_[first].span)
         .fix(tokens_[first].span, "ELSE IF");
     return change(first, 1, {{Kinds::ELSE_IF, tokens_[first].span}});
+  }
+
+  // `VAR count = 0`
+  std::optional<Edit> declaration() {
+    const std::size_t name = statement_ + 1, sign = statement_ + 2;
+    const bool named =
+        is_any_name(statement_, {"VAR", "VARIABLE", "INT", "INTEGER", "FLOAT", "DOUBLE", "NUMBER",
+                                 "BOOL", "BOOLEAN", "DIM", "LOCAL", "GLOBAL", "DECLARE", "CONST"});
+    if (!named || !is(name, Kinds::NAME) || !is(sign, Kinds::EQUAL)) return std::nullopt;
+    const bool fixed = is_name(statement_, "CONST");
+    const std::string word = fixed ? "LET" : "REMEMBER";
+    Diagnostic& d = report(Code::E0001,
+                           fixed ? "a number with a name is declared with LET"
+                                 : "what is remembered is declared with REMEMBER",
+                           tokens_[statement_].span);
+    const std::string better = word + " " + text(name, statement_end());
+    if (open_block()) {
+      d.helps("write `" + better + "` at the top, outside of all blocks");
+      return change(statement_, statement_end() - statement_, nothing_to_do());
+    }
+    d.helps("write `" + better + "`").fix(tokens_[statement_].span, word, Applicability::likely);
+    return change(statement_, statement_end() - statement_);
+  }
+
+  Tokens nothing_to_do() const {
+    return {missing(Kinds::LOG, statement_), missing(Kinds::STRING, statement_)};
+  }
+
+  // `FUNCTION wave`
+  std::optional<Edit> definition() {
+    const std::size_t first = begin_, name = first + 1, open = first + 2;
+    const bool named = stop_ == first && !open_block() && is(name, Kinds::NAME) &&
+                       is_any_name(first, {"FUNCTION", "FUNC", "FUN", "FN", "DEF", "PROCEDURE",
+                                           "PROC", "SUB", "VOID"});
+    if (!named) return std::nullopt;
+    Tokens head{{Kinds::DEFINE, tokens_[first].span}, tokens_[name]};
+    std::string better = "DEFINE " + std::string(text(name));
+    const std::size_t values = open + 1, close = is(open, Kinds::OPEN) ? closing(open) : open;
+    if (close > values) {
+      better += " WITH " + text(values, close);
+      head.push_back({Kinds::WITH, tokens_[open].span});
+      head.insert(head.end(), token_at(values), token_at(close));
+    }
+    report(Code::E0001, "commands get a name with DEFINE, not with " + quote(first),
+           tokens_[first].span)
+        .helps("write `" + better + "`")
+        .fix(span(first, end_), better, Applicability::likely);
+    return change(first, end_ - first, std::move(head));
+  }
+
+  Tokens::const_iterator token_at(std::size_t at) const {
+    return tokens_.begin() + static_cast<std::ptrdiff_t>(at);
+  }
+
+  // `print("x")`, `SAY voice ("x")`
+  std::optional<Edit> text_in_brackets() {
+    const std::size_t open = is(stop_, Kinds::OPEN) ? stop_ : stop_ - 1;
+    if (stop_ == 0 || !begins_with(Kinds::NAME) || !is(open, Kinds::OPEN) ||
+        !is(open + 1, Kinds::STRING))
+      return std::nullopt;
+    const std::size_t close = closing(open), end = std::min(close + 1, end_);
+    const bool prints = is_name(statement_, "PRINT");
+    const std::string command = prints ? "LOG" : text(statement_, open);
+    const std::string better = command + " " + text(open + 1, close);
+    report(Code::E0001, "no brackets stand around a text", tokens_[open].span)
+        .helps("write `" + better + "`")
+        .fix(span(statement_, end), better, Applicability::likely);
+    Tokens said(token_at(open + 1), token_at(close));
+    return change(open, end - open, std::move(said));
   }
 
   // `SET x = 5`

@@ -121,7 +121,7 @@ void LexerState::word() {
   }
   cursor_ = start_ + length;
   const Keyword* keyword = find_keyword(lexeme());
-  if (keyword == nullptr && foreign_end()) return;
+  if (foreign_loop() || (keyword == nullptr && foreign_end())) return;
   token(keyword != nullptr ? keyword->kind : Kinds::NAME);
   if (keyword != nullptr && keyword->kind == Kinds::IF) join_else_if();
   if (keyword != nullptr && keyword->kind == Kinds::OF) of();
@@ -137,6 +137,34 @@ bool LexerState::foreign_end() {
     return false;
   report(Code::E0007, "every block of RSL ends with END").label(here()).fix(here(), "END");
   token(Kinds::END);
+  return true;
+}
+
+// `LOOP 3 TIMES`, `FOR 3 TIMES`, `FOR i = 1 TO 3`, where a line begins: a block, whose END would close another one.
+bool LexerState::foreign_loop() {
+  const bool loop = ascii::same(lexeme(), "LOOP"), each = ascii::same(lexeme(), "FOR");
+  if (!(loop || each) || (!tokens_.empty() && tokens_.back().kind != Kinds::NEWLINE)) return false;
+  const std::size_t line_end = std::min(text_.find_first_of("\r\n", cursor_), text_.size());
+  const std::string_view line = text_.substr(cursor_, line_end - cursor_);
+  const std::size_t word = std::min(line.find_first_not_of(" \t"), line.size());
+  const bool digit = word < line.size() && line[word] >= '0' && line[word] <= '9';
+  const bool counts =
+      digit && (loop || ascii::same(line.substr(line.find_last_of(" \t") + 1), "TIMES"));
+  const bool counts_up = each && word < line.size() && word_length(line.substr(word)) > 0 &&
+                         !digit && line.find('=') != std::string_view::npos;
+  if (!counts && !counts_up) return false;
+  Diagnostic& message =
+      report(Code::E0007, "`" + std::string(lexeme()) + "` is written `REPEAT` in RSL")
+          .label(here());
+  token(Kinds::REPEAT);
+  if (counts) {
+    message.fix(here(), "REPEAT");
+    return true;
+  }
+  message.helps("write `REPEAT 3 TIMES`; what is counted meanwhile is a REMEMBER");
+  cursor_ = line_end;
+  tokens_.push_back({Kinds::QUANTITY, span(cursor_, cursor_)});
+  tokens_.push_back({Kinds::TIMES, span(cursor_, cursor_)});
   return true;
 }
 
@@ -256,7 +284,19 @@ void LexerState::string() {
   token(Kinds::STRING);
 }
 
+// `WHEN touch LEVEL > 3 DO SAY "x END`: the END is that of the rule which begins in the same line.
+void LexerState::leave_end_to_its_block() {
+  constexpr std::string_view end = " END";
+  const std::string_view text = lexeme();
+  std::size_t first = tokens_.size();
+  while (first > 0 && tokens_[first - 1].kind != Kinds::NEWLINE)
+    --first;
+  const bool opens = first < tokens_.size() && (roles_of(tokens_[first].kind) & role::opens) != 0;
+  if (opens && text.size() > end.size() && text.ends_with(end)) cursor_ -= end.size();
+}
+
 void LexerState::open_string() {
+  leave_end_to_its_block();
   const std::string quote(lexeme().substr(0, 1));
   report(Code::E0003, "this text is not closed")
       .label(here(), "it ends with its line, without a " + quote)
@@ -385,6 +425,33 @@ bool LexerState::curly_string(char32_t quote) {
   return false;
 }
 
+// `touch.LEVEL`, `hello.wav`
+bool LexerState::dotted() {
+  const bool between = text_[start_] == '.' && !tokens_.empty() &&
+                       tokens_.back().kind == Kinds::NAME && tokens_.back().span.end == start_ &&
+                       word_length(text_.substr(cursor_)) > 0;
+  if (!between) return false;
+  constexpr std::string_view sounds[] = {"wav", "mp3", "ogg", "flac"};
+  const std::string_view behind = text_.substr(cursor_, word_length(text_.substr(cursor_)));
+  if (std::ranges::none_of(sounds,
+                           [behind](std::string_view one) { return ascii::same(one, behind); })) {
+    report(Code::E0002, "words of RSL have a space between them, no point")
+        .label(here())
+        .helps("write a space, as in `touch LEVEL` or `SAY voice`")
+        .fix(here(), " ", Applicability::likely);
+    return true;
+  }
+  start_ = tokens_.back().span.begin;
+  cursor_ += behind.size();
+  tokens_.pop_back();
+  const std::string quoted = "\"" + std::string(lexeme()) + "\"";
+  report(Code::E0002, "the name of a file stands in quotes")
+      .label(here())
+      .fix(here(), quoted, Applicability::likely);
+  token(Kinds::STRING);
+  return true;
+}
+
 // Strange bytes make one message a line: who writes one of them often writes more.
 void LexerState::strange(std::size_t size) {
   cursor_ = start_ + size;
@@ -406,7 +473,7 @@ void LexerState::other() {
   const utf8::CodePoint point = utf8::decode(text_, start_);
   cursor_ = start_ + point.size;
   const bool blank = point.value == no_break_space || point.value == byte_order_mark;
-  if (blank || look_alike(point.value) || curly_string(point.value)) return;
+  if (blank || look_alike(point.value) || curly_string(point.value) || dotted()) return;
   strange(point.size);
 }
 

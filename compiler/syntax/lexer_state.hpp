@@ -52,8 +52,11 @@ private:
   bool curly_string(char32_t quote);
   bool look_alike(char32_t point);
   bool foreign_end();
+  bool foreign_loop();
   bool brace_opens_a_block();
   bool else_follows() const;
+  bool dotted();
+  void leave_end_to_its_block();
   void strange(std::size_t size);
 
   std::string_view lexeme() const { return text_.substr(start_, cursor_ - start_); }

@@ -1,8 +1,8 @@
 // Words of RSL that stand where they say something else than is meant. To leave one of them out would often turn what the
 // program does into its opposite: each has a sentence of its own, and no mend that drops it. See habits.hpp.
 #include "compiler/diagnostics/nearest.hpp"
-#include "compiler/syntax/blocks.hpp"
 #include "compiler/syntax/habits.hpp"
+#include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/mistaken_line.hpp"
 
 namespace robosync::compiler {
@@ -30,12 +30,14 @@ public:
     using Habit = std::optional<Edit> (MisplacedWords::*)();
     for (const Habit habit :
          {&MisplacedWords::negation, &MisplacedWords::lonely_else, &MisplacedWords::then_in_line,
-          &MisplacedWords::rate_apart, &MisplacedWords::foreign_rate,
-          &MisplacedWords::command_in_behavior, &MisplacedWords::within,
-          &MisplacedWords::columns_of_motion, &MisplacedWords::word_with_sign,
-          &MisplacedWords::changed_wrongly, &MisplacedWords::repeat_how_often,
-          &MisplacedWords::resume_after, &MisplacedWords::modifier_behind_do,
-          &MisplacedWords::start_alone, &MisplacedWords::otherwise, &MisplacedWords::more_than}) {
+          &MisplacedWords::commands_with_and, &MisplacedWords::commands_with_comma,
+          &MisplacedWords::second_statement, &MisplacedWords::rate_apart,
+          &MisplacedWords::foreign_rate, &MisplacedWords::command_in_behavior,
+          &MisplacedWords::within, &MisplacedWords::columns_of_motion,
+          &MisplacedWords::word_with_sign, &MisplacedWords::changed_wrongly,
+          &MisplacedWords::repeat_how_often, &MisplacedWords::resume_after,
+          &MisplacedWords::modifier_behind_do, &MisplacedWords::start_alone,
+          &MisplacedWords::otherwise, &MisplacedWords::more_than}) {
       if (auto edit = (this->*habit)()) return edit;
     }
     return std::nullopt;
@@ -121,15 +123,6 @@ private:
     return change(stop_, 1, {missing(Kinds::NEWLINE, stop_)});
   }
 
-  // The first word of the innermost block that is open where the grammar stopped.
-  std::optional<std::size_t> open_block() const {
-    BlockWalk walk(tokens_);
-    for (std::size_t at = 0; at < stop_; ++at)
-      walk.step(at);
-    if (walk.open().empty()) return std::nullopt;
-    return walk.open().back();
-  }
-
   // `MOVE left_arm UP THEN SAY "x"`
   std::optional<Edit> then_in_line() {
     const bool may_end = contains(expected_, Kinds::NEWLINE) && contains(expected_, Kinds::END);
@@ -148,6 +141,56 @@ private:
                   {missing(Kinds::NEWLINE, stop_), tokens_[stop_], missing(Kinds::NEWLINE, stop_)});
   }
 
+  // Does a command, and nothing that asks, stand in this statement up to where the grammar stopped?
+  bool is_command() const {
+    const auto block = open_block();
+    return statement_ < stop_ && begins_with(Kinds::NAME) && !asks_before(stop_) && block &&
+           !is_one_of(tokens_[*block].kind,
+                      {Kinds::CHECK, Kinds::MOTION, Kinds::TEST, Kinds::BEHAVIOR, Kinds::SAFETY});
+  }
+  bool is_whole_command() const { return is_command() && contains(expected_, Kinds::NEWLINE); }
+
+  // `MOVE head LEFT AND SAY "x"`
+  std::optional<Edit> commands_with_and() {
+    if (!is(stop_, Kinds::AND) || !is_whole_command()) return std::nullopt;
+    report(Code::E0001, "AND joins conditions, not commands", tokens_[stop_].span)
+        .helps("write each command on a line of its own: they begin together")
+        .helps("several actuators that do the same are a group in robot.json");
+    return change(stop_, end_of_command(stop_) - stop_);
+  }
+
+  // `MOVE head LEFT, SAY "x"`: the grammar has taken what stands behind the comma for parts of a text.
+  std::optional<Edit> commands_with_comma() {
+    if (!is_command() || has(statement_, stop_, Kinds::WITH)) return std::nullopt;
+    for (std::size_t at = statement_; at < stop_ && !is(at, Kinds::STRING); ++at) {
+      if (!is(at, Kinds::COMMA) || !is(at + 1, Kinds::NAME)) continue;
+      report(Code::E0001, "no comma stands between two commands", tokens_[at].span)
+          .helps("write each command on a line of its own: they begin together");
+      return change(at, end_of_command(at) - at);
+    }
+    return std::nullopt;
+  }
+
+  // `SAY "x" WAIT 2s`
+  std::optional<Edit> second_statement() {
+    const unsigned roles = roles_of(tokens_[stop_].kind);
+    if ((roles & role::statement) == 0 || (roles & role::opens) != 0 || !is_whole_command())
+      return std::nullopt;
+    Span gap = tokens_[stop_ - 1].span;
+    gap.begin = gap.end;
+    gap.end = tokens_[stop_].span.begin;
+    report(Code::E0001, quote(stop_) + " begins a second command in this line", tokens_[stop_].span)
+        .helps("each command stands on a line of its own")
+        .fix(gap, "\n", Applicability::likely);
+    return change(stop_, end_of_command(stop_) - stop_);
+  }
+
+  std::size_t end_of_command(std::size_t at) const {
+    while (at < end_ && !is_one_of(tokens_[at].kind, {Kinds::ELSE, Kinds::END}))
+      ++at;
+    return at;
+  }
+
   // `3km/h`: the lexer ends a unit in front of what is none
   std::optional<Edit> foreign_rate() {
     if (!is(stop_, Kinds::SLASH) || stop_ == begin_ || !is(stop_ - 1, Kinds::QUANTITY) ||
@@ -163,20 +206,50 @@ private:
     return change(stop_ - 1, 3, {missing(Kinds::QUANTITY, stop_ - 1)});
   }
 
-  // `DO SAY "x"` in a BEHAVIOR that has no rule yet
+  // `SAY voice "x"` in a BEHAVIOR, outside of its rules
   std::optional<Edit> command_in_behavior() {
-    if (!is(0, Kinds::BEHAVIOR) || stop_ != begin_ || begin_ == 0) return std::nullopt;
-    for (std::size_t at = 0; at < begin_ && has(at, begin_, Kinds::NEWLINE); ++at)
-      if (is(at, Kinds::NEWLINE) && !is(at + 1, Kinds::NEWLINE) && at + 1 != begin_)
-        return std::nullopt;
-    const unsigned roles = roles_of(tokens_[stop_].kind);
-    const bool statement = (roles & role::statement) != 0 && (roles & role::opens) == 0;
-    const bool speaks = is(stop_, Kinds::NAME) && is(stop_ + 1, Kinds::STRING);
-    if (!statement && !speaks && !is(stop_, Kinds::DO)) return std::nullopt;
-    report(Code::E0010, quote(stop_) + " cannot stand in a BEHAVIOR", tokens_[stop_].span)
-        .helps("it stands in a rule: begin one in front of it, with `WHEN` or `AT START DO`");
-    return change(begin_, end_ - begin_,
+    if (!is(0, Kinds::BEHAVIOR) || stop_ != begin_ || begin_ == 0 || open_block() != 0)
+      return std::nullopt;
+    if (!begins_command(stop_) && !is(stop_, Kinds::DO)) return std::nullopt;
+    report(Code::E0010, quote(stop_) + " cannot stand in a BEHAVIOR outside of its rules",
+           tokens_[stop_].span)
+        .helps("begin a rule in front of it, with `WHEN` or `AT START DO`, and end it with `END`");
+    return change(begin_, end_of_commands() - begin_,
                   {missing(Kinds::USE, begin_), missing(Kinds::NAME, begin_)});
+  }
+
+  // A line that commands, and is no question that has lost its WHEN.
+  bool begins_command(std::size_t at) const {
+    const unsigned roles = roles_of(tokens_[at].kind);
+    constexpr unsigned kBeginsLine = role::item | role::part | role::after;
+    const bool statement = (roles & role::statement) != 0 && (roles & role::opens) == 0;
+    const bool named = is(at, Kinds::NAME) && !is(at + 1, Kinds::EQUAL) &&
+                       nearest_keyword(text(at), kBeginsLine) == nullptr;
+    if (!(statement || named) || is(at + 1, Kinds::NEWLINE)) return false;
+    std::size_t next = at + 1;
+    for (; next < tokens_.size() && !is(next, Kinds::NEWLINE); ++next)
+      if (asks(tokens_[next].kind)) return false;
+    return is(next + 1, Kinds::END) || next + 1 >= tokens_.size() ||
+           (roles_of(tokens_[next + 1].kind) & role::after) == 0;
+  }
+  static bool asks(TokenKind kind) {
+    return is_relation(kind) || (roles_of(kind) & role::opens) != 0 ||
+           is_one_of(kind, {Kinds::IS, Kinds::BECOMES, Kinds::CHANGES, Kinds::DO});
+  }
+
+  // Up to the line in which a rule begins or the block ends.
+  std::size_t end_of_commands() const {
+    std::size_t last = end_;
+    while (last + 1 < tokens_.size()) {
+      const TokenKind next = tokens_[last + 1].kind;
+      const bool goes_on =
+          next == Kinds::NAME || next == Kinds::NEWLINE ||
+          ((roles_of(next) & role::statement) != 0 && (roles_of(next) & role::opens) == 0);
+      if (!goes_on) break;
+      for (++last; last < tokens_.size() && !is(last, Kinds::NEWLINE);)
+        ++last;
+    }
+    return std::min(last, tokens_.size());
   }
 
   // `touch LEVEL > 4 3 TIMES`, `wave_detect THEN touch LEVEL > 0`, each without its WITHIN; and THEN in the place of DO

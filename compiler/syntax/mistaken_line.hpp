@@ -10,6 +10,7 @@
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/ascii.hpp"
 #include "compiler/source/source_file.hpp"
+#include "compiler/syntax/blocks.hpp"
 #include "compiler/syntax/edit.hpp"
 #include "compiler/syntax/reader.hpp"
 
@@ -139,6 +140,15 @@ protected:
       if (is(at, Kinds::CLOSE) && --depth == 0) return at;
     }
     return end_;
+  }
+
+  // The first word of the innermost block that is open where the grammar stopped.
+  std::optional<std::size_t> open_block() const {
+    BlockWalk walk(tokens_);
+    for (std::size_t at = 0; at < stop_; ++at)
+      walk.step(at);
+    if (walk.open().empty()) return std::nullopt;
+    return walk.open().back();
   }
 
   // ---- how the grammar goes on

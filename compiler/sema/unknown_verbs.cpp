@@ -1,0 +1,125 @@
+// Commands, part: what stands where a verb should, and is none that the robot knows.
+#include <array>
+#include <string_view>
+
+#include "compiler/config/devices.hpp"
+#include "compiler/diagnostics/nearest.hpp"
+#include "compiler/sema/commands.hpp"
+#include "compiler/syntax/keyword_roles.hpp"
+
+namespace robosync::compiler {
+
+namespace {
+
+// How other languages call what RSL has, too.
+struct ForeignVerb {
+  std::string_view spelling, meant, help;
+};
+constexpr ForeignVerb kForeignVerbs[] = {
+    {"PRINT", "LOG", "a line for you to read is written with LOG"},
+    {"ECHO", "LOG", "a line for you to read is written with LOG"},
+    {"WRITE", "LOG", "a line for you to read is written with LOG"},
+    {"SLEEP", "WAIT", "a pause is made with WAIT"},
+    {"DELAY", "WAIT", "a pause is made with WAIT"},
+    {"PAUSE", "WAIT", "a pause is made with WAIT"},
+};
+
+// What may begin a line, or go on with the one before.
+std::vector<std::string> keywords_of_lines() {
+  constexpr unsigned kBegins = role::item | role::part | role::statement | role::after;
+  std::vector<std::string> found;
+  for (const Keyword& keyword : keywords())
+    if ((keyword.roles & kBegins) != 0) found.emplace_back(keyword.spelling);
+  return found;
+}
+
+}  // namespace
+
+void suggest_perform(Diagnostic& diagnostic, const ast::Name& motion) {
+  const std::string better = std::string(kPerform) + " " + std::string(motion.text);
+  diagnostic.helps(motion.shown() + " is a MOTION: write `" + better + "`")
+      .fix(motion.span, better, Applicability::likely);
+}
+
+// `voice SAY "Hello"`
+bool Commands::begins_with_actuator(const ast::Command& command) {
+  const ast::Name& name = command.verb;
+  const auto target = names_.find_target(name.text);
+  if (!target || target->actuators.empty()) return false;
+  Diagnostic& d = diagnostics_
+                      .report(Code::E0501, name.shown() +
+                                               " is an actuator, and no verb: a command "
+                                               "begins with what is done")
+                      .label(name.span);
+  const ast::Word* const first = first_word(command);
+  if (first != nullptr && names_.is_verb(first->name.text)) {
+    const std::string better = std::string(first->name.text) + " " + std::string(name.text);
+    d.helps("write `" + better + "`")
+        .fix({name.span.file, name.span.begin, first->name.span.end}, better,
+             Applicability::likely);
+    return true;
+  }
+  d.helps(name.shown() + " knows " +
+          list_names(verb_names(robot_.actuators[target->actuators.front()])));
+  return true;
+}
+
+// `CALL wave`
+bool Commands::calls_define(const ast::Command& command) {
+  const ast::Word* const first = first_word(command);
+  if (first == nullptr || names_.find_define(first->name.text) == nullptr) return false;
+  const Span verb = command.verb.span;
+  diagnostics_
+      .report(Code::E0501,
+              "there is no verb " + command.verb.shown() + ": a DEFINE is done by its name alone")
+      .label(verb)
+      .helps("write `" + std::string(first->name.text) + "`")
+      .fix({verb.file, verb.begin, first->name.span.begin}, "", Applicability::likely);
+  return true;
+}
+
+// `PRINT "here"`
+bool Commands::is_foreign(const ast::Command& command) {
+  for (const ForeignVerb& foreign : kForeignVerbs) {
+    if (!same_name(foreign.spelling, command.verb.text)) continue;
+    diagnostics_.report(Code::E0501, "there is no verb " + command.verb.shown())
+        .label(command.verb.span)
+        .helps(std::string(foreign.help))
+        .fix(command.verb.span, std::string(foreign.meant), Applicability::likely);
+    return true;
+  }
+  return false;
+}
+
+void Commands::report_unknown_verb(const ast::Command& command) {
+  if (begins_with_actuator(command) || calls_define(command) || is_foreign(command)) return;
+  const ast::Name& verb = command.verb;
+  const std::string what = command.arguments.empty() ? "DEFINE or verb " : "verb ";
+  Diagnostic& d =
+      diagnostics_.report(Code::E0501, "there is no " + what + verb.shown()).label(verb.span);
+  if (names_.find_motion(verb.text) != nullptr) return suggest_perform(d, verb);
+  if (command.arguments.empty()) d.unknown = verb.text;
+  if (names_.find_define(verb.text) != nullptr) {
+    d.helps(verb.shown() + " is a DEFINE: what it is given stands behind WITH, with commas");
+    return;
+  }
+  if (!diagnostics_.may_search(robot_.actuators.size() + names_.defines().size())) return;
+  auto candidates = names_.verb_names();
+  const auto defines = names_.define_names();
+  candidates.insert(candidates.end(), defines.begin(), defines.end());
+  const auto verbs = candidates;
+  const auto keywords = keywords_of_lines();
+  candidates.insert(candidates.end(), keywords.begin(), keywords.end());
+  for (const std::string_view word : {kPerform, kFollow, kRestart})
+    candidates.emplace_back(word);
+  did_you_mean(d, verb.span, verb.text, candidates);
+  if (!d.help.empty()) return;
+  // It may be one that nothing here knows: as a rule `USE` brought a file that needs more.
+  const auto devices = devices_with(verb.text);
+  if (devices.empty() && !verbs.empty()) d.helps("it could be " + list_names(verbs));
+  if (devices.empty()) return;
+  d.message = "no actuator of this robot knows the verb " + verb.shown();
+  d.helps("robot.json needs one with a device that does: " + list_names(devices, "or"));
+}
+
+}  // namespace robosync::compiler
