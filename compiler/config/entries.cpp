@@ -101,17 +101,18 @@ const Board::Part* find_part(const Fields& fields, const Board& board, bool is_s
   return part != nullptr && is_kind(*part, is_sensor) ? part : nullptr;
 }
 
-// A part of another board is wired as well: that it is not here is said by choose_device().
+// Without "type" it is that of the device. A part of another board is wired as well: that it is not here is said by
+// choose_device().
 const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_sensor,
                               Diagnostics& diagnostics) {
-  const auto* device = fields.find("device");
-  const bool typeless = fields.find("type") == nullptr;
-  if (typeless && part == nullptr && device != nullptr && !owner_of(device->text).empty())
-    return nullptr;
-  if (part == nullptr || !typeless) return read_type(fields, is_sensor, diagnostics);
-  const std::string& of_part = find_device(part->device, is_sensor)->type;
+  const auto* named = fields.find("device");
+  if (fields.find("type") != nullptr || named == nullptr)
+    return read_type(fields, is_sensor, diagnostics);
+  const Device* device = find_device(part != nullptr ? part->device : named->text, is_sensor);
+  if (device == nullptr && !owner_of(named->text).empty()) return nullptr;
+  if (device == nullptr) return read_type(fields, is_sensor, diagnostics);
   const auto types = wiring_types();
-  const auto found = std::ranges::find(types, of_part, &WiringType::name);
+  const auto found = std::ranges::find(types, device->type, &WiringType::name);
   return found == types.end() ? nullptr : &*found;
 }
 

@@ -85,12 +85,15 @@ void report_repeated_keys(const json::Value& object, Diagnostics& diagnostics) {
   }
 }
 
-bool expect_kind(const json::Value& value, json::Kind kind, Diagnostics& diagnostics) {
+bool expect_kind(const json::Value& value, json::Kind kind, Diagnostics& diagnostics,
+                 std::string_view example) {
   if (value.kind == kind) return true;
-  diagnostics
-      .report(Code::E0204, "this must be " + std::string(json::kind_phrase(kind)) + ", not " +
-                               std::string(json::kind_phrase(value.kind)))
-      .label(value.span);
+  Diagnostic& d =
+      diagnostics
+          .report(Code::E0204, "this must be " + std::string(json::kind_phrase(kind)) + ", not " +
+                                   std::string(json::kind_phrase(value.kind)))
+          .label(value.span);
+  if (!example.empty()) d.helps("such as `" + std::string(example) + "`");
   return false;
 }
 

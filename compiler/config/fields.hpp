@@ -67,6 +67,7 @@ private:
 // Reports a key that stands twice in `object`, whatever its keys are (channels, groups, speeds).
 void report_repeated_keys(const json::Value& object, Diagnostics& diagnostics);
 // True if `value` has the kind; reports E0204 otherwise.
-[[nodiscard]] bool expect_kind(const json::Value& value, json::Kind kind, Diagnostics& diagnostics);
+[[nodiscard]] bool expect_kind(const json::Value& value, json::Kind kind, Diagnostics& diagnostics,
+                               std::string_view example = {});
 
 }  // namespace robosync::compiler

@@ -46,7 +46,8 @@ void read_group(const json::Member& member, const NameIndex& actuators, Robot& r
                 Diagnostics& diagnostics) {
   GroupConfig group{{member.key, member.key_span}, {}};
   check_name(group.name, diagnostics);
-  if (!expect_kind(member.value, json::Kind::array, diagnostics)) return;
+  const std::string example = "\"" + member.key + "\": [\"left_arm\", \"right_arm\"]";
+  if (!expect_kind(member.value, json::Kind::array, diagnostics, example)) return;
   if (member.value.items.empty())
     diagnostics.report(Code::E0205, "a group has at least one member").label(member.value.span);
   std::set<std::size_t> members;
@@ -244,19 +245,30 @@ void check_names(const Robot& robot, Diagnostics& diagnostics) {
 void for_each_entry(const Fields& fields, std::string_view key, Diagnostics& diagnostics,
                     const std::function<void(const json::Value&)>& read) {
   const auto* list = fields.find(key);
-  if (list == nullptr || !expect_kind(*list, json::Kind::array, diagnostics)) return;
+  const std::string example = "\"" + std::string(key) + "\": [{\"name\": \"…\"}]";
+  if (list == nullptr || !expect_kind(*list, json::Kind::array, diagnostics, example)) return;
   for (const json::Value& entry : list->items)
     read(entry);
+}
+
+bool has_any(const Diagnostics& diagnostics, std::size_t from, std::span<const Code> codes) {
+  const auto& all = diagnostics.all();
+  return std::any_of(
+      all.begin() + static_cast<std::ptrdiff_t>(from), all.end(),
+      [&](const Diagnostic& one) { return std::ranges::find(codes, one.code) != codes.end(); });
 }
 
 // Of what was reported since there were `before`, nothing makes the program miss a name, or measure in another unit.
 bool names_and_units_are_known(const Diagnostics& diagnostics, std::size_t before) {
   constexpr std::array kFelt = {Code::E0202, Code::E0204, Code::E0206, Code::E0208,
                                 Code::E0209, Code::E0301, Code::E0303};
-  const auto& all = diagnostics.all();
-  return std::none_of(
-      all.begin() + static_cast<std::ptrdiff_t>(before), all.end(),
-      [&](const Diagnostic& one) { return std::ranges::find(kFelt, one.code) != kFelt.end(); });
+  return !has_any(diagnostics, before, kFelt);
+}
+
+// The program must call what has such a name in another way.
+bool names_can_be_written(const Diagnostics& diagnostics, std::size_t before) {
+  constexpr std::array kFelt = {Code::E0103};
+  return !has_any(diagnostics, before, kFelt);
 }
 
 }  // namespace
@@ -297,7 +309,8 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
         static_cast<std::uint32_t>(read_whole(*seed, 1, kMaxSeed, diagnostics).value_or(0));
   if (const auto* lints = fields.find("lints")) read_lints(*lints, robot, diagnostics);
   check_names(robot, diagnostics);
-  robot.complete = names_and_units_are_known(diagnostics, before) && all_usable &&
+  robot.complete = names_and_units_are_known(diagnostics, before) &&
+                   names_can_be_written(diagnostics, before) && all_usable &&
                    (fields.find("board") == nullptr || robot.board.has_value());
   return robot;
 }

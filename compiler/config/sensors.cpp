@@ -172,7 +172,8 @@ void check_channel_names(const std::vector<ChannelConfig>& channels, Diagnostics
 
 void read_channels(const json::Value& value, const Device& device, SensorConfig& sensor,
                    Diagnostics& diagnostics) {
-  if (!expect_kind(value, json::Kind::object, diagnostics)) return;
+  constexpr std::string_view example = "\"channels\": {\"LEVEL\": {\"range\": [0, 10]}}";
+  if (!expect_kind(value, json::Kind::object, diagnostics, example)) return;
   report_repeated_keys(value, diagnostics);
   if (value.members.empty()) {
     diagnostics.report(Code::E0205, "a sensor has at least one channel").label(value.span);

@@ -174,7 +174,8 @@ std::optional<vm::Value> read_difference(const json::Value& value, const Unit& u
 
 std::optional<Range> read_range(const json::Value& value, const Unit& unit,
                                 Diagnostics& diagnostics) {
-  if (!expect_kind(value, json::Kind::array, diagnostics)) return std::nullopt;
+  if (!expect_kind(value, json::Kind::array, diagnostics, "\"range\": [0, 10]"))
+    return std::nullopt;
   if (value.items.size() != 2) {
     diagnostics.report(Code::E0204, "a range is a list of two: the lowest and the highest value")
         .label(value.span);

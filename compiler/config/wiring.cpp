@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/config/devices.hpp"
 #include "compiler/config/values.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 #include "vm/drivers.hpp"
@@ -79,6 +80,16 @@ const WiringType* read_type(Fields& fields, bool is_sensor, Diagnostics& diagnos
   std::vector<std::string_view> names;
   for (const WiringType& type : kTypes)
     if (is_sensor ? type.for_sensors : type.for_actuators) names.push_back(type.name);
+  const bool known = std::ranges::any_of(
+      names, [&](std::string_view name) { return same_name(name, value->text); });
+  if (!known && value->kind == json::Kind::string &&
+      find_device(value->text, is_sensor) != nullptr) {
+    diagnostics
+        .report(Code::E0204, "this must be how it is wired, and `" + value->text + "` is a device")
+        .label(value->span)
+        .helps("write `\"device\": \"" + value->text + "\"`; it says the type, too");
+    return nullptr;
+  }
   const auto choice = read_choice(*value, names, diagnostics);
   if (!choice) return nullptr;
   for (const WiringType& type : kTypes)

@@ -183,6 +183,19 @@ TEST_CASE("there is a generic virtual device of both kinds") {
   CHECK(default_device("VIRTUAL", false)->actuator.driver == vm::DriverId::virtual_actuator);
 }
 
+TEST_CASE("a device says how it is wired: \"type\" need not") {
+  const auto robot = [](const std::string& sensor_type, const std::string& actuator_type) {
+    return compile_text("WHEN knob POSITION IS pressed\nDO MOVE arm TO 10deg\nEND\n",
+                        R"({"sensors": [{"name": "knob", )" + sensor_type +
+                            R"("pin": 40, "device": "button"}], "actuators": [{"name": "arm", )" +
+                            actuator_type + R"("pin": 3, "device": "servo"}]})");
+  };
+  const auto with = robot(R"("type": "GPIO", )", R"("type": "PWM", )");
+  const auto without = robot("", "");
+  REQUIRE(!with.image.empty());
+  CHECK(without.image == with.image);
+}
+
 TEST_CASE("a board without analog inputs says so, and which boards have some") {
   SourceMap sources;
   Diagnostics diagnostics;
