@@ -175,7 +175,7 @@ private:
   Instructions cost_of_asking(const vm::Sensor& sensor) const {
     if (policy::is_fed(sensor)) return 0;
     if (vm::is_by_echo(sensor.driver)) return board_.ping;
-    return vm::is_on_i2c(sensor.driver) ? sensor.channel_count * Instructions{board_.i2c_ask} : 0;
+    return sensor.channel_count * Instructions{policy::ask_cost(sensor.driver, board_)};
   }
 
   // In its thread, and in the interrupts of its bus or its pin.

@@ -2,7 +2,7 @@
 #include <array>
 
 #include "runtime-m4/drivers/drivers.hpp"
-#include "runtime-m4/drivers/i2c_word.hpp"
+#include "runtime-m4/drivers/i2c_registers.hpp"
 
 namespace robosync::drivers::max34451 {
 namespace {

@@ -33,6 +33,7 @@ target_sources(robosync_runtime PRIVATE
   safety/safety_rules.cpp
   safety/monitor.cpp
   drivers/algorithm.cpp
+  drivers/axes.cpp
   drivers/digital_input.cpp
   drivers/ear.cpp
   drivers/hc_sr04.cpp
@@ -40,8 +41,10 @@ target_sources(robosync_runtime PRIVATE
   drivers/i2c_register.cpp
   drivers/lights.cpp
   drivers/lsm303agr.cpp
+  drivers/lsm6dsl.cpp
   drivers/max34451.cpp
   drivers/motor.cpp
+  drivers/mpu6050.cpp
   drivers/player.cpp
   drivers/power.cpp
   drivers/pwm.cpp
@@ -49,6 +52,7 @@ target_sources(robosync_runtime PRIVATE
   drivers/pca9685_servo.cpp
   drivers/served.cpp
   drivers/servo.cpp
+  drivers/six_axes.cpp
   drivers/ssd1306.cpp
   drivers/ssd1306_face.cpp
   drivers/tones.cpp

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "runtime-m4/policy/threads.hpp"
+#include "vm/drivers.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::policy {
@@ -68,6 +69,14 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
       break;
   }
   return 0;
+}
+
+// Its transfers, asked for ahead.
+constexpr std::uint32_t ask_cost(vm::DriverId driver, const BoardCosts& board) {
+  BoardCosts asking = board;
+  asking.i2c_transfer = board.i2c_ask;
+  asking.i2c_byte = 0;
+  return vm::is_on_i2c(driver) ? sample_cost(driver, asking) : 0;
 }
 
 // Of a servo chip a sample is its longest transfer. In a frame it is asked how it stands, and given the pulse of each of its

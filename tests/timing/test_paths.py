@@ -231,6 +231,8 @@ class Sampling(unittest.TestCase):
              "i2c_register": ({"type": "I2C", "address": "0x48"}, "> 5"),
              # In its place one that acknowledges all, and never is as it should be: it is told so again with each sample.
              "lsm303agr": ({"type": "I2C", "address": "0x19", "device": "lsm303agr"}, "X > 1g"),
+             "lsm6dsl": ({"type": "I2C", "address": "0x6a", "device": "lsm6dsl"}, "X > 1g"),
+             "mpu6050": ({"type": "I2C", "address": "0x6a", "device": "mpu6050"}, "X > 1g"),
              "digital_input": ({"type": "GPIO", "pin": 43, "device": "switch"}, "IS closed"),
              "hc_sr04": ({"type": "GPIO", "trigger": 3, "echo": 43, "device": "hc-sr04"}, "< 30cm"),
              "analog_input": ({"type": "ADC", "pin": 47}, "> 50%")}

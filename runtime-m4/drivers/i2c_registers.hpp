@@ -1,0 +1,36 @@
+// What I2C drivers share: registers of 8 bits, or commands, and what is read behind them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "runtime-m4/boards/board.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::drivers {
+
+inline bool read_registers(boards::Board& board, const vm::Sensor& sensor, std::byte first,
+                           std::span<std::byte> in) {
+  const std::array out{first};
+  return board.i2c_transfer(sensor.bus, static_cast<std::uint8_t>(sensor.address), out, in);
+}
+
+// `out` begins with the first register. Whether that was done, the next sample tells, which reads them again.
+inline void write_registers(boards::Board& board, const vm::Sensor& sensor,
+                            std::span<const std::byte> out) {
+  static_cast<void>(
+      board.i2c_transfer(sensor.bus, static_cast<std::uint8_t>(sensor.address), out, {}));
+}
+
+// One word of 16 bits, its low byte first.
+inline bool read_word(boards::Board& board, const vm::Sensor& sensor, std::byte command,
+                      std::int32_t& raw) {
+  std::array<std::byte, 2> in{};
+  if (!read_registers(board, sensor, command, in)) return false;
+  raw = std::to_integer<std::int32_t>(in[0]) | std::to_integer<std::int32_t>(in[1]) << 8;
+  return true;
+}
+
+}  // namespace robosync::drivers
