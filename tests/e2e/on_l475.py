@@ -44,13 +44,17 @@ DO LOG "high"
 END
 """
 LOOSEST, CALLS = 1.3, 20
-SIX_AXES = "robosync::drivers::read_six_axes("
 READS, STOPS_BEHIND = 1 << 10, 1 << 25  # of what the master is told
 # The motion sensor on that bus: its registers out of a loss of power, what it is told, and where it measures turning about Z.
-MOTION = {"board": "b-l475e-iot01a", "actuators": [], "sensors": [{"name": "motion", "device": "motion"}]}
-TURNED = 'WHEN motion TURN_Z > 90deg/s MARGIN 10deg/s\nDO LOG "turned"\nEND\n'
+LAMP, LIT_US, PWM_WRITE = 13, 14_000, "robosync::boards::l475::Board::pwm_write("
+MOTION = {"board": "b-l475e-iot01a", "actuators": [{"name": "lamp", "type": "PWM", "pin": LAMP, "device": "pwm"}],
+          "sensors": [{"name": "motion", "device": "motion"}]}
+TURNED = "WHEN motion TURN_Z > 90deg/s MARGIN 10deg/s\nDO RUN lamp TO 70%\nEND\n"
 WITHOUT_POWER = {0x0F: 0x6A, 0x12: 0x04}
-SETTING, TOLD, TURN_Z, COUNTS_EACH = 0x10, bytes((0x58, 0x54, 0x44)), 0x26, 1 / 0.0175
+SETTING, TOLD, OUTPUT, OUTPUTS, TURN_Z, Z, COUNTS_EACH = 0x10, bytes((0x58, 0x54, 0x44)), 0x22, 12, 0x26, 0x2C, 1 / 0.0175
+WHOLE = {SETTING: len(TOLD), OUTPUT: OUTPUTS}
+COSTS = ROOT / "runtime-m4/boards/b-l475e-iot01a/costs.def"
+COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*(\d+),", re.M)
 
 
 class WithFlash:
@@ -152,13 +156,13 @@ class Bus(DebuggedTest):
                     ended.append(debugger.steps_to_return({read: (where, state)}))
                 self.assertEqual(self.told(TRANSFER)[-1], 0x202_2400 | ADDRESS << 1)
                 self.assertEqual(self.first_answer(debugger, driver), value)
-        said = int(re.search(r"COST\(i2c_ask,\s*(\d+)", (ROOT / "runtime-m4/boards/b-l475e-iot01a/costs.def").read_text())[1])
+        said = int(dict(COST_OF_BUS.findall(COSTS.read_text()))["i2c_ask"])
         measured = max(asked) + ended[0] + max(ended)
         print(f"\n  asked {asked}, interrupts {ended}: {measured}, said {said}")
         self.assertGreaterEqual(said, measured)
         self.assertLessEqual(said, LOOSEST * measured)
 
-    def test_the_motion_sensor_on_the_board_is_told_and_read(self):
+    def test_the_motion_sensor_on_the_board_is_told_and_read_and_what_that_costs(self):
         """The test is the master, its DMA, and the sensor's registers."""
         config, program = self.folder / "motion.json", self.folder / "motion.rsl"
         config.write_text(json.dumps(MOTION))
@@ -169,38 +173,52 @@ class Bus(DebuggedTest):
         registers = bytearray(128)
         for at, value in WITHOUT_POWER.items():
             registers[at] = value
-        self.played = len(self.told(TRANSFER))
-        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
-        try:
-            self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
-            with self.debugger() as debugger:
-                self.sample(debugger, wires, registers, lambda: registers[SETTING:SETTING + len(TOLD)] == TOLD)
-                self.assertEqual(registers[SETTING:SETTING + len(TOLD)], TOLD)
-                for turn in (80, 100):
-                    registers[TURN_Z:TURN_Z + 2] = round(turn * COUNTS_EACH).to_bytes(2, "little")
-                    self.assertFalse(any('"turned"' in line for line in reader.lines))
-                    read = self.sample(debugger, wires, registers)
-                self.assertEqual(read, {SETTING: len(TOLD), 0x22: 12})
-            self.assertTrue(reader.wait_for(lambda lines: any('"turned"' in line for line in lines), PATIENCE), reader.lines[-8:])
-        finally:
-            reader.stop()
+        self.asked, self.taken = [], []
+        self.assertEqual(self.turn(wires, registers, 80, -100, 100), [80, -100, 100])
+        self.assertEqual(registers[SETTING:SETTING + len(TOLD)], TOLD)
+        costs = {name: int(value) for name, value in COST_OF_BUS.findall(COSTS.read_text())}
+        for what, said, measured in (("asking", 3 * costs["i2c_ask"], max(self.asked)),
+                                     ("taking", 3 * costs["i2c_transfer"] + 26 * costs["i2c_byte"], max(self.taken))):
+            print(f"\n  {what}: {measured}, said {said}")
+            self.assertGreaterEqual(said, measured)
         self.assertEqual((self.status()["safety_late_us"], self.status()["faults"]), (0, 0))
 
-    def sample(self, debugger, wires, registers, enough=lambda: False):
-        """Some calls of the driver, or until it is enough; {register: how many from there on} that were read."""
-        driver = next(at for name, at in symbols(FIRMWARE).items() if name.startswith(SIX_AXES))
-        read = {}
+    def turn(self, wires, registers, *speeds):
+        """What the driver gives of each, while the board lies still."""
+        registers[Z:Z + 2] = round(1 / 0.000122).to_bytes(2, "little")
+        given = []
+        with self.debugger() as debugger:
+            self.played = len(self.told(TRANSFER))
+            for speed in speeds:
+                registers[TURN_Z:TURN_Z + 2] = round(speed * COUNTS_EACH).to_bytes(2, "little", signed=True)
+                given.append(self.reading(debugger, wires, registers))
+            # Of the last one comes what the program wants of it.
+            debugger.run_to(next(at for name, at in symbols(FIRMWARE).items() if name.startswith(PWM_WRITE)), lambda: None)
+            self.assertEqual([debugger.register(1), debugger.register(2)], [LAMP, LIT_US])
+        return [round(count / COUNTS_EACH) for count in given]
+
+    def reading(self, debugger, wires, registers):
+        """The next one. Of calls that ask, instructions are counted with the interrupts that come of it; of the others without: what they
+        tell the sensor is asked then."""
+        driver = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::drivers::lsm6dsl::read("))
         for _ in range(CALLS):
             debugger.run_to(driver, lambda: None)
-            debugger.run_to(debugger.register(LINK_REGISTER) & ~1, lambda: None)
-            read |= self.play(debugger, wires, registers)
-            if enough():
-                return read
-        return read
+            place = debugger.register(3)
+            steps = debugger.steps_to_return()
+            given = debugger.register(0) & 1
+            ended, read = self.play(debugger, wires, registers)
+            if read == WHOLE:
+                self.asked.append(steps + ended)
+            elif not read:
+                self.taken.append(steps)
+            self.assertLessEqual(read.items(), WHOLE.items())  # at the start one may be under way
+            if given:
+                return int.from_bytes(debugger.read_words(place, 1)[0].to_bytes(4, "little"), "little", signed=True)
+        return self.fail("nothing is read")
 
     def play(self, debugger, wires, registers):
-        """All that the master was told comes to pass."""
-        handler, (read, where), place, found = symbols(FIRMWARE)["OwnBus_Handler"], self.read_of_state(), None, {}
+        """All that the master was told comes to pass: what the interrupts took, and {register: how many from there on} that were read."""
+        handler, (state, where), steps, place, found = symbols(FIRMWARE)["OwnBus_Handler"], self.read_of_state(), 0, None, {}
         while self.played < len(told := self.told(TRANSFER)):
             order = told[self.played]
             self.assertEqual(order >> 1 & 0x7F, ADDRESS)
@@ -213,8 +231,8 @@ class Bus(DebuggedTest):
             self.played += 1
             wires.interrupt(CORE, BUS_INTERRUPT)
             debugger.run_to(handler, lambda: None)
-            debugger.steps_to_return({read: (where, STOPPED if order & STOPS_BEHIND else WROTE)})
-        return found
+            steps += debugger.steps_to_return({state: (where, STOPPED if order & STOPS_BEHIND else WROTE)})
+        return steps, found
 
     def ask_own_bus(self, debugger, driver):
         """Instructions of the driver's next call that begins a transfer there."""
