@@ -1,5 +1,4 @@
 // Commands, part: what stands where a verb should, and is none that the robot knows.
-#include <array>
 #include <string_view>
 
 #include "compiler/config/devices.hpp"
