@@ -8,9 +8,6 @@
 namespace robosync::drivers {
 namespace {
 
-constexpr unsigned kTurning = kAxes + 1;  // the first input of these
-constexpr unsigned kInputs = kTurning + kAxes;
-
 // Until it has measured, all it has measured is 0. That it measures 0 six times over, to the last bit of its noise, is nothing to
 // wait for.
 bool has_measured(AxisRegisters acceleration, AxisRegisters turning) {
@@ -20,31 +17,27 @@ bool has_measured(AxisRegisters acceleration, AxisRegisters turning) {
 
 }  // namespace
 
-bool read_six_axes(boards::Board& board, const vm::Sensor& sensor, const vm::Channel& channel,
-                   const SixAxes& chip, std::int32_t& raw) {
-  if (channel.input >= kInputs) return false;
-  std::array<std::byte, SixAxes::kSettings> setting{};
-  std::array<std::byte, SixAxes::kMostOutputs> output{};
-  // Both are asked for, whatever comes of the first one: where the bus works by itself nothing has come of it yet.
-  const bool has_setting = read_registers(board, sensor, chip.setting[0], setting);
+// Both are asked for, whatever comes of the first one: where the bus works by itself nothing has come of it yet.
+bool fetch(boards::Board& board, const vm::Sensor& sensor, const SixAxes& chip,
+           SixAxesSample& sample) {
+  const bool has_setting = read_registers(board, sensor, chip.setting[0], sample.setting);
   const bool has_output =
-      read_registers(board, sensor, chip.output, std::span(output).first(chip.outputs));
-  if (!has_setting || !has_output) return false;
+      read_registers(board, sensor, chip.output, std::span(sample.output).first(chip.outputs));
+  return has_setting && has_output;
+}
 
-  const AxisRegisters acceleration_bytes(output.data() + chip.acceleration, kAxesBytes);
-  const AxisRegisters turning_bytes(output.data() + chip.turning, kAxesBytes);
+SixAxesVerdict judge(const SixAxesSample& sample, const SixAxes& chip, unsigned input,
+                     std::int32_t& raw) {
+  const AxisRegisters acceleration_bytes(sample.output.data() + chip.acceleration, kAxesBytes);
+  const AxisRegisters turning_bytes(sample.output.data() + chip.turning, kAxesBytes);
   const bool measures = has_measured(acceleration_bytes, turning_bytes);
-  if (!measures && chip.wake[1] != std::byte{0}) {
-    write_registers(board, sensor, chip.wake);
-  } else if (!std::ranges::equal(setting, std::span(chip.setting).subspan<1>())) {
-    write_registers(board, sensor, chip.setting);
-  } else if (measures) {
-    raw = channel.input < kTurning
-              ? acceleration(axes_of(acceleration_bytes, chip.order), channel.input)
-              : axes_of(turning_bytes, chip.order)[channel.input - kTurning];
-    return true;
-  }
-  return false;
+  if (!measures && chip.wake[1] != std::byte{0}) return SixAxesVerdict::sleeps;
+  if (!std::ranges::equal(sample.setting, std::span(chip.setting).subspan<1>()))
+    return SixAxesVerdict::was_not_told;
+  if (!measures) return SixAxesVerdict::not_yet;
+  raw = input < SixAxes::kTurning ? acceleration(axes_of(acceleration_bytes, chip.order), input)
+                                  : axes_of(turning_bytes, chip.order)[input - SixAxes::kTurning];
+  return SixAxesVerdict::measured;
 }
 
 }  // namespace robosync::drivers

@@ -9,11 +9,14 @@
 
 #include "runtime-m4/drivers/axes.hpp"
 #include "runtime-m4/drivers/drivers.hpp"
+#include "runtime-m4/drivers/i2c_registers.hpp"
 
 namespace robosync::drivers {
 
 struct SixAxes {
   static constexpr std::size_t kSettings = 3, kMostOutputs = 14;
+  static constexpr unsigned kTurning = kAxes + 1;  // the first input of these
+  static constexpr unsigned kInputs = kTurning + kAxes;
 
   std::array<std::byte, 1 + kSettings>
       setting;                         // a register, and what it and the next ones are to hold
@@ -24,9 +27,32 @@ struct SixAxes {
   std::endian order;                   // of the two bytes of a count
 };
 
+struct SixAxesSample {
+  std::array<std::byte, SixAxes::kSettings> setting{};
+  std::array<std::byte, SixAxes::kMostOutputs> output{};
+};
+
+enum class SixAxesVerdict : std::uint8_t { measured, sleeps, was_not_told, not_yet };
+
+// Its parts, each with a stack of its own: a sensor's thread has little.
+bool fetch(boards::Board& board, const vm::Sensor& sensor, const SixAxes& chip,
+           SixAxesSample& sample);
+// `raw` is that input, of those below SixAxes::kInputs, when it was measured.
+SixAxesVerdict judge(const SixAxesSample& sample, const SixAxes& chip, unsigned input,
+                     std::int32_t& raw);
+
 // As a ReadFunction. What it is told to do is read with each sample: out of a loss of power it has forgotten that, and is told
 // again, one thing with each sample, which is none then.
-bool read_six_axes(boards::Board& board, const vm::Sensor& sensor, const vm::Channel& channel,
-                   const SixAxes& chip, std::int32_t& raw);
+[[gnu::always_inline]] inline bool read_six_axes(boards::Board& board, const vm::Sensor& sensor,
+                                                 const vm::Channel& channel, const SixAxes& chip,
+                                                 std::int32_t& raw) {
+  if (channel.input >= SixAxes::kInputs) return false;
+  SixAxesSample sample;
+  if (!fetch(board, sensor, chip, sample)) return false;
+  const SixAxesVerdict verdict = judge(sample, chip, channel.input, raw);
+  if (verdict == SixAxesVerdict::sleeps) write_registers(board, sensor, chip.wake);
+  if (verdict == SixAxesVerdict::was_not_told) write_registers(board, sensor, chip.setting);
+  return verdict == SixAxesVerdict::measured;
+}
 
 }  // namespace robosync::drivers
