@@ -12,8 +12,8 @@
 namespace robosync::drivers {
 
 // Without a frame of its own: a sensor's thread has no stack to spare for one.
-[[gnu::always_inline]] inline bool read_registers(boards::Board& board, const vm::Sensor& sensor, std::byte first,
-                           std::span<std::byte> in) {
+[[gnu::always_inline]] inline bool read_registers(boards::Board& board, const vm::Sensor& sensor,
+                                                  std::byte first, std::span<std::byte> in) {
   const std::array out{first};
   return board.i2c_transfer(sensor.bus, static_cast<std::uint8_t>(sensor.address), out, in);
 }
