@@ -121,19 +121,18 @@ private:
 
   // `print("x")`, `SAY voice ("x")`
   std::optional<Edit> text_in_brackets() {
-    const std::size_t open = is(stop_, Kinds::OPEN) ? stop_ : stop_ - 1;
-    if (stop_ == 0 || !begins_with(Kinds::NAME) || !is(open, Kinds::OPEN) ||
-        !is(open + 1, Kinds::STRING))
-      return std::nullopt;
+    if (stop_ == 0 || !begins_with(Kinds::NAME)) return std::nullopt;
+    const bool says = is_name(statement_, "SAY") && is_call(statement_ + 1);
+    const std::size_t open = says ? statement_ + 1 : is(stop_, Kinds::OPEN) ? stop_ : stop_ - 1;
+    if (!is(open, Kinds::OPEN) || !(says || is(open + 1, Kinds::STRING))) return std::nullopt;
     const std::size_t close = closing(open), end = std::min(close + 1, end_);
     const bool prints = is_name(statement_, "PRINT");
     const std::string command = prints ? "LOG" : text(statement_, open);
     const std::string better = command + " " + text(open + 1, close);
-    report(Code::E0001, "no brackets stand around a text", tokens_[open].span)
+    report(Code::E0001, "no brackets stand around what is said", tokens_[open].span)
         .helps("write `" + better + "`")
         .fix(span(statement_, end), better, Applicability::likely);
-    Tokens said(token_at(open + 1), token_at(close));
-    return change(open, end - open, std::move(said));
+    return change(open, end - open, Tokens(token_at(open + 1), token_at(close)));
   }
 
   // `SET x = 5`

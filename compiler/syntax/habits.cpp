@@ -340,11 +340,6 @@ private:
     if (open >= end_ || !is_call(open) || stop_ <= open) return std::nullopt;
     const std::size_t close = closing(open);
     const std::string values = text(open + 1, close);
-    if (is_name(statement_, "SAY")) {
-      report(Code::E0001, "what is said stands behind SAY without brackets", tokens_[open].span)
-          .helps("write `SAY " + values + "`");
-      return change(open, statement_end() - open, {missing(Kinds::STRING, open)});
-    }
     report(Code::E0001, "a DEFINE is given its values behind WITH, without brackets",
            tokens_[open].span)
         .helps("write `" + std::string(text(statement_)) +

@@ -20,6 +20,13 @@ constexpr Opposite kOpposites[] = {
     {Kinds::EQUAL, Kinds::NOT_EQUAL, "<>"},    {Kinds::NOT_EQUAL, Kinds::EQUAL, "="},
 };
 
+// A statement of one line, such as SET or WAIT.
+bool is_plain_statement(TokenKind kind) {
+  return (roles_of(kind) & role::statement) != 0 && (roles_of(kind) & role::opens) == 0;
+}
+
+constexpr const char* kOwnLine = "write each command on a line of its own: they begin together";
+
 class MisplacedWords : private MistakenLine {
 public:
   using MistakenLine::MistakenLine;
@@ -154,7 +161,7 @@ private:
   std::optional<Edit> commands_with_and() {
     if (!is(stop_, Kinds::AND) || !is_whole_command()) return std::nullopt;
     report(Code::E0001, "AND joins conditions, not commands", tokens_[stop_].span)
-        .helps("write each command on a line of its own: they begin together")
+        .helps(kOwnLine)
         .helps("several actuators that do the same are a group in robot.json");
     return change(stop_, end_of_command(stop_) - stop_);
   }
@@ -164,8 +171,7 @@ private:
     if (!is_command() || has(statement_, stop_, Kinds::WITH)) return std::nullopt;
     for (std::size_t at = statement_; at < stop_ && !is(at, Kinds::STRING); ++at) {
       if (!is(at, Kinds::COMMA) || !is(at + 1, Kinds::NAME)) continue;
-      report(Code::E0001, "no comma stands between two commands", tokens_[at].span)
-          .helps("write each command on a line of its own: they begin together");
+      report(Code::E0001, "no comma stands between two commands", tokens_[at].span).helps(kOwnLine);
       return change(at, end_of_command(at) - at);
     }
     return std::nullopt;
@@ -173,9 +179,7 @@ private:
 
   // `SAY "x" WAIT 2s`
   std::optional<Edit> second_statement() {
-    const unsigned roles = roles_of(tokens_[stop_].kind);
-    if ((roles & role::statement) == 0 || (roles & role::opens) != 0 || !is_whole_command())
-      return std::nullopt;
+    if (!is_plain_statement(tokens_[stop_].kind) || !is_whole_command()) return std::nullopt;
     Span gap = tokens_[stop_ - 1].span;
     gap.begin = gap.end;
     gap.end = tokens_[stop_].span.begin;
@@ -220,12 +224,11 @@ private:
 
   // A line that commands, and is no question that has lost its WHEN.
   bool begins_command(std::size_t at) const {
-    const unsigned roles = roles_of(tokens_[at].kind);
     constexpr unsigned kBeginsLine = role::item | role::part | role::after;
-    const bool statement = (roles & role::statement) != 0 && (roles & role::opens) == 0;
     const bool named = is(at, Kinds::NAME) && !is(at + 1, Kinds::EQUAL) &&
                        nearest_keyword(text(at), kBeginsLine) == nullptr;
-    if (!(statement || named) || is(at + 1, Kinds::NEWLINE)) return false;
+    if (!(named || is_plain_statement(tokens_[at].kind)) || is(at + 1, Kinds::NEWLINE))
+      return false;
     std::size_t next = at + 1;
     for (; next < tokens_.size() && !is(next, Kinds::NEWLINE); ++next)
       if (asks(tokens_[next].kind)) return false;
@@ -243,8 +246,7 @@ private:
     while (last + 1 < tokens_.size()) {
       const TokenKind next = tokens_[last + 1].kind;
       const bool goes_on =
-          next == Kinds::NAME || next == Kinds::NEWLINE ||
-          ((roles_of(next) & role::statement) != 0 && (roles_of(next) & role::opens) == 0);
+          next == Kinds::NAME || next == Kinds::NEWLINE || is_plain_statement(next);
       if (!goes_on) break;
       for (++last; last < tokens_.size() && !is(last, Kinds::NEWLINE);)
         ++last;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "runtime-m4/drivers/i2c_registers.hpp"
-
 namespace robosync::drivers {
 namespace {
 
@@ -18,26 +16,24 @@ bool has_measured(AxisRegisters acceleration, AxisRegisters turning) {
 }  // namespace
 
 // Both are asked for, whatever comes of the first one: where the bus works by itself nothing has come of it yet.
-bool fetch(boards::Board& board, const vm::Sensor& sensor, const SixAxes& chip,
-           SixAxesSample& sample) {
-  const bool has_setting = read_registers(board, sensor, chip.setting[0], sample.setting);
+bool SixAxes::fetch(boards::Board& board, const vm::Sensor& sensor, Sample& sample) const {
+  const bool has_setting = read_registers(board, sensor, setting[0], sample.setting);
   const bool has_output =
-      read_registers(board, sensor, chip.output, std::span(sample.output).first(chip.outputs));
+      read_registers(board, sensor, output, std::span(sample.output).first(outputs));
   return has_setting && has_output;
 }
 
-SixAxesVerdict judge(const SixAxesSample& sample, const SixAxes& chip, unsigned input,
-                     std::int32_t& raw) {
-  const AxisRegisters acceleration_bytes(sample.output.data() + chip.acceleration, kAxesBytes);
-  const AxisRegisters turning_bytes(sample.output.data() + chip.turning, kAxesBytes);
-  const bool measures = has_measured(acceleration_bytes, turning_bytes);
-  if (!measures && chip.wake[1] != std::byte{0}) return SixAxesVerdict::sleeps;
-  if (!std::ranges::equal(sample.setting, std::span(chip.setting).subspan<1>()))
-    return SixAxesVerdict::was_not_told;
-  if (!measures) return SixAxesVerdict::not_yet;
-  raw = input < SixAxes::kTurning ? acceleration(axes_of(acceleration_bytes, chip.order), input)
-                                  : axes_of(turning_bytes, chip.order)[input - SixAxes::kTurning];
-  return SixAxesVerdict::measured;
+SixAxes::Verdict SixAxes::judge(const Sample& sample, unsigned input, std::int32_t& raw) const {
+  const AxisRegisters along(sample.output.data() + acceleration, kAxesBytes);
+  const AxisRegisters about(sample.output.data() + turning, kAxesBytes);
+  const bool measures = has_measured(along, about);
+  if (!measures && wake[1] != std::byte{0}) return Verdict::sleeps;
+  if (!std::ranges::equal(sample.setting, std::span(setting).subspan<1>()))
+    return Verdict::was_not_told;
+  if (!measures) return Verdict::not_yet;
+  raw = input < kTurning ? drivers::acceleration(axes_of(along, order), input)
+                         : axes_of(about, order)[input - kTurning];
+  return Verdict::measured;
 }
 
 }  // namespace robosync::drivers

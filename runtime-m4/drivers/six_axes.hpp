@@ -18,6 +18,17 @@ struct SixAxes {
   static constexpr unsigned kTurning = kAxes + 1;  // the first input of these
   static constexpr unsigned kInputs = kTurning + kAxes;
 
+  struct Sample {
+    std::array<std::byte, kSettings> setting{};
+    std::array<std::byte, kMostOutputs> output{};
+  };
+  enum class Verdict : std::uint8_t { measured, sleeps, was_not_told, not_yet };
+
+  // False when not all of it has come.
+  bool fetch(boards::Board& board, const vm::Sensor& sensor, Sample& sample) const;
+  // `raw` is that input, below kInputs, when it was measured.
+  Verdict judge(const Sample& sample, unsigned input, std::int32_t& raw) const;
+
   std::array<std::byte, 1 + kSettings>
       setting;                         // a register, and what it and the next ones are to hold
   std::array<std::byte, 2> wake;       // a register, and what ends its sleep; 0: the setting does
@@ -27,32 +38,19 @@ struct SixAxes {
   std::endian order;                   // of the two bytes of a count
 };
 
-struct SixAxesSample {
-  std::array<std::byte, SixAxes::kSettings> setting{};
-  std::array<std::byte, SixAxes::kMostOutputs> output{};
-};
-
-enum class SixAxesVerdict : std::uint8_t { measured, sleeps, was_not_told, not_yet };
-
-// Its parts, each with a stack of its own: a sensor's thread has little.
-bool fetch(boards::Board& board, const vm::Sensor& sensor, const SixAxes& chip,
-           SixAxesSample& sample);
-// `raw` is that input, of those below SixAxes::kInputs, when it was measured.
-SixAxesVerdict judge(const SixAxesSample& sample, const SixAxes& chip, unsigned input,
-                     std::int32_t& raw);
-
 // As a ReadFunction. What it is told to do is read with each sample: out of a loss of power it has forgotten that, and is told
-// again, one thing with each sample, which is none then.
+// again, one thing with each sample, which is none then. It has no stack frame of its own, and its parts have theirs one after
+// the other: a sensor's thread has few bytes left (tests/e2e/test_stack_depth.py).
 [[gnu::always_inline]] inline bool read_six_axes(boards::Board& board, const vm::Sensor& sensor,
                                                  const vm::Channel& channel, const SixAxes& chip,
                                                  std::int32_t& raw) {
   if (channel.input >= SixAxes::kInputs) return false;
-  SixAxesSample sample;
-  if (!fetch(board, sensor, chip, sample)) return false;
-  const SixAxesVerdict verdict = judge(sample, chip, channel.input, raw);
-  if (verdict == SixAxesVerdict::sleeps) write_registers(board, sensor, chip.wake);
-  if (verdict == SixAxesVerdict::was_not_told) write_registers(board, sensor, chip.setting);
-  return verdict == SixAxesVerdict::measured;
+  SixAxes::Sample sample;
+  if (!chip.fetch(board, sensor, sample)) return false;
+  const SixAxes::Verdict verdict = chip.judge(sample, channel.input, raw);
+  if (verdict == SixAxes::Verdict::sleeps) write_registers(board, sensor, chip.wake);
+  if (verdict == SixAxes::Verdict::was_not_told) write_registers(board, sensor, chip.setting);
+  return verdict == SixAxes::Verdict::measured;
 }
 
 }  // namespace robosync::drivers
