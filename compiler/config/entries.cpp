@@ -45,21 +45,20 @@ void report_unknown_device(const json::Value& value, const Board& board, bool is
     d.helps("known devices: " + list_names(candidates));
 }
 
-// The device that "device" names, if there is one of this kind and type.
-const Device* named_device(const json::Value& value, const WiringType* type, const Board& board,
-                           bool is_sensor, Diagnostics& diagnostics) {
+// The device that "device" names, if there is one of this kind.
+const Device* named_device(const json::Value& value, const Board& board, bool is_sensor,
+                           Diagnostics& diagnostics) {
   if (!read_text(value, diagnostics)) return nullptr;
   const Board::Part* part = board.find_part(value.text);
   const Device* device = find_device(part != nullptr ? part->device : value.text, is_sensor);
-  if (device == nullptr) {
-    report_unknown_device(value, board, is_sensor, diagnostics);
-  } else if (type != nullptr && type->name != kVirtual && type->name != device->type) {
-    diagnostics
-        .report(Code::E0205, "a " + device->name + " is wired by " + device->type + ", not by " +
-                                 std::string(type->name))
-        .label(value.span);
-  }
+  if (device == nullptr) report_unknown_device(value, board, is_sensor, diagnostics);
   return device;
+}
+
+const WiringType* type_of(const Device& device) {
+  const auto types = wiring_types();
+  const auto found = std::ranges::find(types, device.type, &WiringType::name);
+  return found == types.end() ? nullptr : &*found;
 }
 
 std::string what_it_does(bool is_sensor) {
@@ -106,14 +105,22 @@ const Board::Part* find_part(const Fields& fields, const Board& board, bool is_s
 const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_sensor,
                               Diagnostics& diagnostics) {
   const auto* named = fields.find("device");
-  if (fields.find("type") != nullptr || named == nullptr)
-    return read_type(fields, is_sensor, diagnostics);
-  const Device* device = find_device(part != nullptr ? part->device : named->text, is_sensor);
-  if (device == nullptr && !owner_of(named->text).empty()) return nullptr;
-  if (device == nullptr) return read_type(fields, is_sensor, diagnostics);
-  const auto types = wiring_types();
-  const auto found = std::ranges::find(types, device->type, &WiringType::name);
-  return found == types.end() ? nullptr : &*found;
+  const Device* device = named == nullptr
+                             ? nullptr
+                             : find_device(part != nullptr ? part->device : named->text, is_sensor);
+  if (fields.find("type") == nullptr && named != nullptr) {
+    if (device != nullptr) return type_of(*device);
+    if (!owner_of(named->text).empty()) return nullptr;
+  }
+  const WiringType* type = read_type(fields, is_sensor, diagnostics);
+  if (device == nullptr || type == nullptr || type->name == kVirtual || type->name == device->type)
+    return type;
+  diagnostics
+      .report(Code::E0205, "a " + device->name + " is wired by " + device->type + ", not by " +
+                               std::string(type->name))
+      .label(named->span)
+      .helps("its `type` can be left out");
+  return nullptr;  // whose keys these are, nobody knows
 }
 
 const Device& virtual_device(bool is_sensor) {
@@ -125,7 +132,7 @@ const Device* choose_device(const Fields& fields, const WiringType* type, const 
   const Device* const fallback = &virtual_device(is_sensor);
   const Device* device = nullptr;
   if (const auto* value = fields.find("device")) {
-    device = named_device(*value, type, board, is_sensor, diagnostics);
+    device = named_device(*value, board, is_sensor, diagnostics);
     if (device == nullptr) return nullptr;
   } else if (type == nullptr) {
     return fallback;
