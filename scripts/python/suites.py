@@ -48,10 +48,10 @@ def run_ctest(preset, label=None):
     """All tests, or those with this label. One program more at a time than there are cores: that of rsc mostly waits."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
-        subprocess.run(["ctest", "--preset", preset, f"-j{CORES + 1}", *(["-L", label] if label else []),
-                        "--output-junit", str(report),
-                        "--test-output-size-passed", "1000000", "--quiet"],
-                       cwd=ROOT, check=False)
+        said = subprocess.run(["ctest", "--preset", preset, f"-j{CORES + 1}", *(["-L", label] if label else []),
+                               "--output-junit", str(report),
+                               "--test-output-size-passed", "1000000"],
+                              cwd=ROOT, check=False, text=True, errors="replace", stdout=subprocess.PIPE).stdout
         cases = ElementTree.parse(report).getroot().findall("testcase") if report.exists() else []
     passed = failed = 0
     for case in cases:
@@ -64,6 +64,8 @@ def run_ctest(preset, label=None):
         if bad:
             print(output)
         passed, failed = passed + good, failed + bad
+    # How each of them ended: the report does not have the signal of a program that printed nothing.
+    print(said.rpartition("The following tests FAILED:")[2] if failed else "", end="")
     return close(passed, failed)
 
 

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <span>
 #include <string>
 #include <thread>
 #include <utility>
@@ -73,7 +74,13 @@ private:
     }
     if (count == 0 || (count < 0 && errno != EAGAIN)) return false;
     const std::size_t ready = robot.read(bytes, std::chrono::milliseconds(0));
-    return ready == 0 || ::write(line, bytes.data(), ready) >= 0;
+    return ready == 0 || write(line, std::span(bytes).first(ready)) >= 0;
+  }
+
+  // Whoever listened may have hung up since it was read: an error, and no signal that ends this process.
+  [[nodiscard]] ssize_t write(int line, std::span<const std::byte> bytes) const {
+    return accepting_ ? send(line, bytes.data(), bytes.size(), MSG_NOSIGNAL)
+                      : ::write(line, bytes.data(), bytes.size());
   }
 
   int file_;
