@@ -1,5 +1,6 @@
 // Diagnostics for people. See render.hpp.
 #include <algorithm>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,9 @@ public:
     const std::vector<Label> labels = in_reading_order(diagnostic.labels);
     measure_gutter(labels);
     for (std::size_t i = 0; i < labels.size(); ++i) {
-      write_label(labels[i], i > 0 ? &labels[i - 1] : nullptr);
+      const bool same_file = i > 0 && labels[i - 1].span.file == labels[i].span.file;
+      if (!same_file) write_place(head_of_file(labels, i));
+      write_label(labels[i], same_file ? &labels[i - 1] : nullptr);
     }
     for (const std::string& help : diagnostic.help)
       write_help(help);
@@ -80,6 +83,14 @@ private:
     return labels;
   }
 
+  // Whoever follows the place of a message gets to what is wrong, not to what else belongs to it.
+  static const Label& head_of_file(const std::vector<Label>& labels, std::size_t first) {
+    const FileId file = labels[first].span.file;
+    for (const Label& label : std::span(labels).subspan(first))
+      if (label.primary && label.span.file == file) return label;
+    return labels[first];
+  }
+
   Position place(Span span) const { return sources_.file(span.file).position(span.begin); }
 
   void measure_gutter(const std::vector<Label>& labels) {
@@ -101,12 +112,11 @@ private:
     write(style_.quiet, std::string(gutter_ - number.size(), ' ') + std::string(number) + " | ");
   }
 
+  // `previous`: of the same file, or null.
   void write_label(const Label& label, const Label* previous) {
     const std::uint32_t line = place(label.span).line;
-    const bool same_file = previous != nullptr && previous->span.file == label.span.file;
-    const std::uint32_t line_before = same_file ? place(previous->span).line : 0;
-    if (!same_file) write_place(label);
-    if (same_file && line > line_before + 1) {
+    const std::uint32_t line_before = previous != nullptr ? place(previous->span).line : 0;
+    if (previous != nullptr && line > line_before + 1) {
       write(style_.quiet, std::string(gutter_ - 1, ' ') + "...\n");
     }
     const SourceFile& file = sources_.file(label.span.file);
@@ -115,7 +125,7 @@ private:
         make_snippet(file.line(line), label.span.begin - start,
                      std::max(label.span.end, label.span.begin) - start, label.primary ? '^' : '-');
     // Shown again when a long line was cut somewhere else for this label.
-    if (!same_file || line != line_before || snippet.source != shown_) {
+    if (previous == nullptr || line != line_before || snippet.source != shown_) {
       write_gutter(std::to_string(line));
       text_ += snippet.source + '\n';
     }
