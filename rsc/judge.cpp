@@ -1,18 +1,26 @@
 // By the functions that the board itself and `rsc check --timing` use.
 #include "rsc/judge.hpp"
 
-#include <fmt/format.h>
+#include <algorithm>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "analysis/bus_load.hpp"
 #include "analysis/report.hpp"
 #include "compiler/codegen/costly_rules.hpp"
+#include "compiler/reading.hpp"
 #include "rsc/algorithm_modules.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/timing.hpp"
+#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::tool {
 namespace {
 
 using compiler::Code, compiler::Diagnostic;
+
+const std::string kCannotKeepUp = "the board cannot keep up with the program: ";
 
 analysis::ResponseReport responses_of(const vm::Image& image, const policy::BoardCosts& board) {
   return analysis::response_report(image, board, module_cost, cap_of(image),
@@ -55,12 +63,54 @@ void judge_step(const vm::Image& image, const compiler::Result& compiled,
   report.helps(std::string(compiler::kHelpForCostlyStep));
 }
 
+std::string ms_text(std::uint32_t us) {
+  return fmt::format("{:.2f} ms", us / 1000.0);
+}
+
+Overload overload_by(const vm::Image& image, const analysis::BusLoad& load) {
+  std::vector<std::string> parts;
+  for (const auto& [sensor, us] : load.shares)
+    parts.push_back(fmt::format("{} {}", image.string(image.sensors[sensor].name), ms_text(us)));
+  return {
+      fmt::format("all that is asked of I2C bus {} at once takes it {}, and there are {}", load.bus,
+                  ms_text(load.us), ms_text(policy::kBusWindowUs)),
+      {fmt::format("sensors are asked together at the start, and whenever their periods meet: {}",
+                   fmt::join(parts, ", ")),
+       "leave out channels or sensors of this bus"}};
+}
+
+// Shows what robot.json says of its sensors. A display and a servo chip are none of those.
+void label_sensors(Diagnostic& report, const vm::Image& image, const analysis::BusLoad& load,
+                   const std::vector<compiler::SensorConfig>& sensors) {
+  bool primary = true;
+  for (const auto& [number, us] : load.shares) {
+    const std::string_view name = image.string(image.sensors[number].name);
+    const auto sensor = std::ranges::find_if(
+        sensors, [&](const compiler::SensorConfig& one) { return one.name.text == name; });
+    if (sensor == sensors.end()) continue;
+    report.label(sensor->name.span, ms_text(us) + " of it", primary);
+    primary = false;
+  }
+  if (primary) report.label(compiler::Span{});
+}
+
+void judge_buses(const vm::Image& image, const compiler::Result& compiled,
+                 compiler::Diagnostics& diagnostics) {
+  for (const analysis::BusLoad& load :
+       analysis::overloaded_buses(image, costs_of(compiled.board))) {
+    const Overload overload = overload_by(image, load);
+    Diagnostic& report = diagnostics.report(Code::E0412, kCannotKeepUp + overload.what);
+    label_sensors(report, image, load, compiled.reading->robot->sensors);
+    for (const std::string& reason : overload.why)
+      report.helps(reason);
+  }
+}
+
 void judge_time(const vm::Image& image, const compiler::Result& compiled,
                 compiler::Diagnostics& diagnostics) {
   const Overload overload = overload_of(responses_of(image, costs_of(compiled.board)));
   if (overload.what.empty()) return;
-  Diagnostic& report = diagnostics.report(
-      Code::E0412, "the board cannot keep up with the program: " + overload.what);
+  Diagnostic& report = diagnostics.report(Code::E0412, kCannotKeepUp + overload.what);
   label_rules(report, image, compiled.rules);
   for (const std::string& reason : overload.why)
     report.helps(reason);
@@ -77,18 +127,21 @@ void judge(compiler::Result& result, Judged judged) {
   judge_memory(image, memory_of(result.board), result.diagnostics);
   if (judged == Judged::by_memory) return;
   judge_step(image, result, result.diagnostics);
+  judge_buses(image, result, result.diagnostics);
   if (result.diagnostics.errors() == 0) judge_time(image, result, result.diagnostics);
 }
 
 void judge_time(const Program& program, const std::string& name) {
-  const auto board = board_of(*program.image().header);
+  const vm::Image& image = program.image();
+  const auto board = board_of(*image.header);
+  const policy::BoardCosts& costs = board ? costs_of(*board) : board_costs();
+  const auto buses = analysis::overloaded_buses(image, costs);
   const Overload overload =
-      overload_of(responses_of(program.image(), board ? costs_of(*board) : board_costs()));
+      buses.empty() ? overload_of(responses_of(image, costs)) : overload_by(image, buses.front());
   if (overload.what.empty()) return;
   throw Failure(Exit::program,
-                fmt::format("{}: the board cannot keep up with the program: {}\n  {}\n  --anyway "
-                            "uploads it nevertheless",
-                            name, overload.what, fmt::join(overload.why, "\n  ")));
+                fmt::format("{}: {}{}\n  {}\n  --anyway uploads it nevertheless", name,
+                            kCannotKeepUp, overload.what, fmt::join(overload.why, "\n  ")));
 }
 
 }  // namespace robosync::tool

@@ -76,6 +76,7 @@ constexpr Bus bus_of(DriverId driver) {
   const auto fed = [] { return Bus::nothing; };
   const auto computed = [] { return Bus::nothing; };
   const auto i2c = [](unsigned, unsigned) { return Bus::i2c; };
+  const auto i2c_once = i2c;
   const auto pin = [] { return Bus::pin; };
   const auto echo = [] { return Bus::echo; };
   const auto adc = [] { return Bus::adc; };
@@ -93,6 +94,28 @@ constexpr Bus bus_of(DriverId driver) {
       break;
   }
   return Bus::nothing;
+}
+
+// All channels of such a sensor are made of the same answers of its device.
+constexpr bool is_asked_once(DriverId driver) {
+  const auto fed = [] { return false; };
+  const auto computed = fed, pin = fed, echo = fed, adc = fed;
+  const auto i2c = [](unsigned, unsigned) { return false; };
+  const auto i2c_once = [](unsigned, unsigned) { return true; };
+  switch (driver) {
+#define SENSOR_DRIVER(name, sample, doc) \
+  case DriverId::name:                   \
+    return sample;
+#define ACTUATOR_DRIVER(name, ...) \
+  case DriverId::name:             \
+    return false;
+#include "vm/drivers.def"
+#undef SENSOR_DRIVER
+#undef ACTUATOR_DRIVER
+    case DriverId::count_:
+      break;
+  }
+  return false;
 }
 
 // No sensor's driver is taken for that of an actuator next to it in the list, nor the other way round.

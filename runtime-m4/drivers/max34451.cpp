@@ -16,10 +16,9 @@ constexpr std::uint8_t kInputs = 16;
 bool read(boards::Board& board, const vm::Sensor& sensor, const vm::Channel& channel,
           std::int32_t& raw) {
   if (channel.input >= kInputs) return false;
-  const std::array select{kPage, std::byte{channel.input}};
+  const std::array page{kPage, std::byte{channel.input}};
   const auto address = static_cast<std::uint8_t>(sensor.address);
-  return board.i2c_transfer(sensor.bus, address, select, {}) &&
-         read_word(board, sensor, kReadVout, raw);
+  return board.i2c_select(sensor.bus, address, page) && read_word(board, sensor, kReadVout, raw);
 }
 
 }  // namespace robosync::drivers::max34451

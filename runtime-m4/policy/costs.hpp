@@ -52,6 +52,7 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
   const auto i2c = [&](std::uint32_t transfers, std::uint32_t bytes) {
     return transfers * board.i2c_transfer + bytes * board.i2c_byte;
   };
+  const auto i2c_once = i2c;
   const auto pin = [&] { return std::uint32_t{board.input}; };
   const auto echo = [&] { return std::uint32_t{board.echo}; };
   const auto adc = [&] { return std::uint32_t{board.analog}; };
@@ -77,6 +78,17 @@ constexpr std::uint32_t ask_cost(vm::DriverId driver, const BoardCosts& board) {
   asking.i2c_transfer = board.i2c_ask;
   asking.i2c_byte = 0;
   return vm::is_on_i2c(driver) ? sample_cost(driver, asking) : 0;
+}
+
+// How long the transfers of one sample keep their bus busy, in microseconds, where it works by itself; else 0. Of what is served
+// it is one transfer: it asks for the next one when that is over.
+constexpr std::uint32_t bus_us(const vm::Sensor& sensor, const BoardCosts& board) {
+  if (!vm::is_on_i2c(sensor.driver)) return 0;
+  BoardCosts times = board;
+  times.i2c_transfer = board.i2c_message_us;
+  times.i2c_byte = board.i2c_byte_us;
+  const bool once = vm::is_asked_once(sensor.driver) || vm::is_served(sensor.driver);
+  return sample_cost(sensor.driver, times) * (once ? 1 : sensor.channel_count);
 }
 
 // Of a servo chip a sample is its longest transfer. In a frame it is asked how it stands, and given the pulse of each of its

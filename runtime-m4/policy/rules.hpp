@@ -33,6 +33,10 @@ inline constexpr std::uint32_t kSetpointPeriodMs = 20;
 // How long who has asked a bus waits at most, once the answer is due, in ticks of a millisecond.
 inline constexpr std::uint32_t kBusTicks = 2;
 
+// In what all that is asked of a bus at once must be over, in microseconds: it is asked a tick ahead. The rest is for what the
+// processor does first.
+inline constexpr std::uint32_t kBusWindowUs = (1 + kBusTicks) * 1000 - 100;
+
 // From the pulse that asks for an echo to the sample: who has heard nothing after 38 ms hears nothing.
 inline constexpr std::uint32_t kEchoMs = 40;
 

@@ -3,7 +3,9 @@
 #include <random>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
+#include "analysis/bus_load.hpp"
 #include "analysis/report.hpp"
 #include "analysis/task_set.hpp"
 #include "rsc/algorithm_modules.hpp"
@@ -152,6 +154,84 @@ TEST_CASE("check: a sensor that is read too often is refused, and why") {
   CHECK(with_table.exit == 1);
   check_says(with_table.err);
   CHECK_THAT(with_table.out, Contains("the processor, all of it"));
+}
+
+TEST_CASE("check: more than an I2C bus carries at once is refused, where it is asked ahead") {
+  const auto robot_of = [](const std::string& board, int inputs) {
+    std::string channels;
+    for (int i = 0; i < inputs; ++i)
+      channels += fmt::format(R"({}"C{}": {{"input": {}}})", i == 0 ? "" : ", ", i, i);
+    return R"({"board": ")" + board + R"(", "actuators": [],
+  "sensors": [
+    {"name": "imu", "type": "I2C", "address": "0x6a", "device": "lsm6dsl",
+     "channels": {"STRENGTH": {}, "TURN_Z": {}}},
+    {"name": "pads", "type": "I2C", "address": "0x70", "device": "max34451",
+     "channels": {)" +
+           channels + "}}]}";
+  };
+  const auto program_of = [](int inputs) {
+    std::string program = "WHEN imu STRENGTH > 2g OR imu TURN_Z > 9deg/s DO LOG \"moved\" END\n";
+    for (int i = 0; i < inputs; ++i)
+      program += fmt::format("WHEN pads C{} > 3 DO LOG \"{}\" END\n", i, i);
+    return program;
+  };
+  const auto check = [&](const std::string& board, int inputs) {
+    const test::Folder folder;
+    folder.write("robot.json", robot_of(board, inputs));
+    return test::rsc({"check", folder.write("robot.rsl", program_of(inputs))});
+  };
+  for (const std::string board : {"b-l475e-iot01a", "microbit-v2"}) {
+    const test::Outcome fits = check(board, 8);
+    CAPTURE(board, fits.err);
+    CHECK(fits.exit == 0);
+    const test::Outcome refused = check(board, 9);
+    CHECK(refused.exit == 1);
+    CHECK_THAT(refused.err, Contains("error[E0412]") &&
+                                Contains("I2C bus 0 at once takes it 2.98 ms") &&
+                                Contains("there are 2.90 ms") && Contains("robot.json:5") &&
+                                Contains("pads 2.27 ms, imu 0.71 ms"));
+  }
+  CHECK(check("mps2-an386", 8).exit == 0);  // the processor waits for its bus
+
+  // An image that was compiled nevertheless.
+  const test::Folder folder;
+  folder.write("robot.json", robot_of("b-l475e-iot01a", 12));
+  const std::string program = folder.write("robot.rsl", program_of(12));
+  const std::string image = folder.path("robot.rsb");
+  REQUIRE(test::rsc({"compile", program, "-o", image, "--anyway"}).exit == 0);
+  const test::Outcome upload = test::rsc({"upload", image, "--port", folder.path("none")});
+  CHECK(upload.exit == 1);
+  CHECK_THAT(upload.err, Contains("I2C bus 0") && Contains("--anyway"));
+}
+
+TEST_CASE(
+    "what a bus carries counts for each of its sensors: as often as it is asked, once for what is "
+    "shared") {
+  const auto us_of = [](vm::DriverId driver, std::uint8_t channels, std::uint16_t period_ms,
+                        const std::string& board) {
+    vm::Sensor sensor{};
+    sensor.driver = driver;
+    sensor.channel_count = channels;
+    sensor.period_ms = period_ms;
+    const std::vector<vm::Sensor> sensors(20, sensor);
+    vm::Image image;
+    image.sensors = sensors;
+    const auto names = compiler::board_names();
+    const auto place = std::ranges::find(names, std::string_view(board)) - names.begin();
+    const auto loads = analysis::overloaded_buses(
+        image, tool::costs_of(compiler::board_at(static_cast<std::size_t>(place))));
+    return loads.empty() ? 0U : loads.front().shares.front().us;
+  };
+  const std::string board = "microbit-v2";
+  CHECK(us_of(vm::DriverId::lsm6dsl, 1, 20, board) == 3 * 30 + 26 * 24);
+  CHECK(us_of(vm::DriverId::lsm6dsl, 7, 20, board) == 3 * 30 + 26 * 24);
+  CHECK(us_of(vm::DriverId::i2c_register, 7, 20, board) == 7 * (30 + 5 * 24));
+  CHECK(us_of(vm::DriverId::i2c_register, 7, 3, board) == 7 * (30 + 5 * 24));
+  CHECK(us_of(vm::DriverId::i2c_register, 7, 2, board) == 2 * 7 * (30 + 5 * 24));
+  CHECK(us_of(vm::DriverId::i2c_register, 7, 1, board) == 3 * 7 * (30 + 5 * 24));
+  CHECK(us_of(vm::DriverId::ssd1306, 0, 50, board) == 30 + 20 * 24);
+  CHECK(us_of(vm::DriverId::digital_input, 1, 20, board) == 0);
+  CHECK(us_of(vm::DriverId::lsm6dsl, 1, 20, "mps2-an386") == 0);
 }
 
 TEST_CASE("a rule that starves the board is refused by check, compile and upload") {

@@ -47,7 +47,7 @@ def samples():
     """{driver: instructions of one sample of one channel}, of the drivers that sample."""
     declared, drivers = costs(), DRIVERS.read_text()
     by_i2c = {name: int(transfers) * declared["i2c_transfer"] + int(size) * declared["i2c_byte"] for
-              name, transfers, size in re.findall(r"^SENSOR_DRIVER\((\w+),\s*i2c\((\d+), (\d+)\)", drivers, re.M)}
+              name, transfers, size in re.findall(r"^SENSOR_DRIVER\((\w+),\s*i2c(?:_once)?\((\d+), (\d+)\)", drivers, re.M)}
     by_pin = re.findall(r"^SENSOR_DRIVER\((\w+),\s*pin\(\)", drivers, re.M)
     by_echo = re.findall(r"^SENSOR_DRIVER\((\w+),\s*echo\(\)", drivers, re.M)
     by_adc = re.findall(r"^SENSOR_DRIVER\((\w+),\s*adc\(\)", drivers, re.M)

@@ -55,6 +55,12 @@ bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const
   return bus < i2c_.size() && i2c_[bus].transfer(asks_ahead_, address, out, in);
 }
 
+// Of whom it is for, the transfer tells.
+bool Board::i2c_select(std::uint8_t bus, std::uint8_t /*address*/,
+                       std::span<const std::byte> page) {
+  return bus < i2c_.size() && i2c_[bus].select(page);
+}
+
 bool Board::i2c_busy() const {
   return is_any_busy(i2c_);
 }

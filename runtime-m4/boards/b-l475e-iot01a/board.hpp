@@ -27,6 +27,7 @@ public:
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
   BusState buses() const override;
+  bool i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> page) override;
   bool i2c_asks_ahead() const override { return true; }
   void i2c_ask(bool ahead) override { asks_ahead_ = ahead; }
   bool i2c_busy() const override;

@@ -12,8 +12,9 @@ void set_up(const DmaChannel& channel, Register data) {
   channel.peripheral().write(static_cast<std::uint32_t>(data.address));
 }
 
-void move(const DmaChannel& channel, std::uint32_t memory, std::size_t bytes,
-          std::uint32_t direction) {
+// Without a frame of its own: a sensor's thread has no stack to spare for one.
+[[gnu::always_inline]] inline void move(const DmaChannel& channel, std::uint32_t memory,
+                                        std::size_t bytes, std::uint32_t direction) {
   kDmaForget.write(0xFU << 4 * (channel.number - 1));
   channel.memory().write(memory);
   channel.count().write(static_cast<std::uint32_t>(bytes));

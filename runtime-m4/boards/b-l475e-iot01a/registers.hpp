@@ -166,10 +166,11 @@ inline constexpr std::uint32_t kClockByTwo = 1U << 18;
 
 struct DmaChannel {  // of DMA1
   unsigned number;   // from 1
-  constexpr Register at(std::uintptr_t offset) const {
+  // Inlined, so that beginning a transfer is no call deep: a sensor's thread has no stack to spare for one.
+  [[gnu::always_inline]] constexpr Register at(std::uintptr_t offset) const {
     return {0x4002'0008 + std::uintptr_t{20} * (number - 1) + offset};
   }
-  constexpr Register control() const { return at(0); }
+  [[gnu::always_inline]] constexpr Register control() const { return at(0); }
   constexpr Register count() const { return at(4); }  // bytes that are left
   constexpr Register peripheral() const { return at(8); }
   constexpr Register memory() const { return at(12); }

@@ -21,6 +21,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/port/cortex-m4/register.hpp"
@@ -37,6 +38,7 @@ public:
   void start() { master_.start(); }
   // As boards::Board says, with `ahead` as it was asked last. What is longer than a request can be fails.
   //  [one thread at a time]
+  bool select(std::span<const std::byte> page);
   bool transfer(bool ahead, std::uint8_t address, std::span<const std::byte> out,
                 std::span<std::byte> in);
   bool is_busy() const { return running_ != nullptr; }
@@ -44,18 +46,22 @@ public:
   // [its interrupt]
   void on_interrupt();
 
+  // More than there is time for (policy::kBusWindowUs).
+  static constexpr std::size_t kMostRequests = 20;
+
 private:
   static constexpr std::size_t kMostWritten = 19;  // a portion of a display's picture
   static constexpr std::size_t kMostRead = 16;
-  static constexpr std::size_t kMostRequests = 6;
   static constexpr unsigned kMostClocks = 9;  // a byte, and its acknowledgement
 
   // The master reads and writes these, so they stay where they are.
   struct Request {
     enum class State : std::uint8_t { none, waits, runs, done, failed };
     State state = State::none;
-    std::uint8_t address = 0, written = 0, read = 0;
+    bool ahead = false;
+    std::uint8_t address = 0, selected = 0, written = 0, read = 0;
     std::uint32_t turn = 0;
+    std::array<std::byte, kMostSelected> page{};
     std::array<std::byte, kMostWritten> out{};
     std::array<std::byte, kMostRead> in{};
 
@@ -63,45 +69,66 @@ private:
   };
   using State = typename Request::State;
 
+  std::span<Request> used() { return std::span(requests_).first(used_); }
   Request* find(std::uint8_t address, std::span<const std::byte> out, std::size_t read);
   Request* place();
-  bool ask(Request* request, std::uint8_t address, std::span<const std::byte> out,
+  bool ask(Request* request, bool ahead, std::uint8_t address, std::span<const std::byte> out,
            std::size_t read);
   bool collect(Request& request, std::span<std::byte> in);
   Request* next();
   void go_on();
   void begin(Request& request);
+  void send(Request& request);
   void end(State how);
   bool free_lines();
   void clock_out();
 
   Master master_;
   std::array<Request, kMostRequests> requests_{};
+  std::size_t used_ = 0;  // of them, from the first on
   Request* running_ = nullptr;
+  bool selecting_ = false;  // … its page
+  std::array<std::byte, kMostSelected> page_{};
+  std::uint8_t selected_ = 0;  // bytes of it, for the next transfer
   std::uint32_t turn_ = 0;
   std::uint16_t clears_ = 0;
   bool held_ = false;
 };
 
 template <typename Master>
+bool AskedBus<Master>::select(std::span<const std::byte> page) {
+  if (page.size() > kMostSelected) return false;
+  std::copy_n(page.begin(), page.size(), page_.begin());
+  selected_ = static_cast<std::uint8_t>(page.size());
+  return true;
+}
+
+// What is written without being asked for ahead goes out as well, each time.
+template <typename Master>
 bool AskedBus<Master>::transfer(bool ahead, std::uint8_t address, std::span<const std::byte> out,
                                 std::span<std::byte> in) {
-  if (out.size() > kMostWritten || in.size() > kMostRead || out.empty()) return false;
-  const port::Alone alone;
-  Request* const request = find(address, out, in.size());
-  // What is written without being asked for ahead goes out as well.
-  if (ahead || (request == nullptr && in.empty())) return ask(request, address, out, in.size());
-  return request != nullptr && collect(*request, in);
+  bool done = false;
+  if (out.size() <= kMostWritten && in.size() <= kMostRead && !out.empty()) {
+    const port::Alone alone;
+    Request* const request = find(address, out, in.size());
+    if (ahead || (in.empty() && (request == nullptr || !request->ahead)))
+      done = ask(request, ahead, address, out, in.size());
+    else
+      done = request != nullptr && collect(*request, in);
+  }
+  selected_ = 0;
+  return done;
 }
 
 template <typename Master>
 typename AskedBus<Master>::Request* AskedBus<Master>::find(std::uint8_t address,
                                                            std::span<const std::byte> out,
                                                            std::size_t read) {
-  for (Request& request : requests_)
+  const auto page = std::span(page_).first(selected_);
+  for (Request& request : used())
     if (request.state != State::none && request.address == address && request.read == read &&
-        request.written == out.size() &&
-        std::ranges::equal(out, std::span(request.out).first(out.size())))
+        std::ranges::equal(out, std::span(request.out).first(request.written)) &&
+        std::ranges::equal(page, std::span(request.page).first(request.selected)))
       return &request;
   return nullptr;
 }
@@ -110,27 +137,30 @@ typename AskedBus<Master>::Request* AskedBus<Master>::find(std::uint8_t address,
 template <typename Master>
 typename AskedBus<Master>::Request* AskedBus<Master>::place() {
   Request* oldest = nullptr;
-  for (Request& request : requests_) {
+  for (Request& request : used()) {
     if (request.state == State::none) return &request;
     if (!request.under_way() && (oldest == nullptr || request.turn < oldest->turn))
       oldest = &request;
   }
-  return oldest;
+  return used_ < requests_.size() ? &requests_[used_++] : oldest;
 }
 
 // Two that want the same get it together.
 template <typename Master>
-bool AskedBus<Master>::ask(Request* request, std::uint8_t address, std::span<const std::byte> out,
-                           std::size_t read) {
+bool AskedBus<Master>::ask(Request* request, bool ahead, std::uint8_t address,
+                           std::span<const std::byte> out, std::size_t read) {
   const bool nothing_to_read = read == 0;
   if (request != nullptr && request->under_way()) return nothing_to_read;
   if (request == nullptr) request = place();
   if (request == nullptr) return false;
+  request->ahead = ahead;
   request->address = address;
+  request->selected = selected_;
+  request->page = page_;
   request->written = static_cast<std::uint8_t>(out.size());
   request->read = static_cast<std::uint8_t>(read);
   request->turn = ++turn_;
-  std::ranges::copy(out, request->out.begin());
+  std::copy_n(out.begin(), out.size(), request->out.begin());
   request->state = State::waits;
   go_on();
   return nothing_to_read;
@@ -155,7 +185,7 @@ bool AskedBus<Master>::collect(Request& request, std::span<std::byte> in) {
 template <typename Master>
 typename AskedBus<Master>::Request* AskedBus<Master>::next() {
   Request* first = nullptr;
-  for (Request& request : requests_)
+  for (Request& request : used())
     if (request.state == State::waits && (first == nullptr || request.turn < first->turn))
       first = &request;
   return first;
@@ -176,9 +206,17 @@ template <typename Master>
 void AskedBus<Master>::begin(Request& request) {
   request.state = State::runs;
   running_ = &request;
+  selecting_ = request.selected != 0;
+  send(request);
+}
+
+// Its page, or what comes behind it. Without a frame of its own: a sensor's thread has no stack to spare for one.
+template <typename Master>
+[[gnu::always_inline]] inline void AskedBus<Master>::send(Request& request) {
+  const std::byte* const out = selecting_ ? request.page.data() : request.out.data();
   asm volatile("" ::: "memory");  // the master reads it from there
-  master_.begin(request.address, std::span(request.out).first(request.written),
-                std::span(request.in).first(request.read));
+  master_.begin(request.address, std::span(out, selecting_ ? request.selected : request.written),
+                std::span(request.in).first(selecting_ ? 0U : request.read));
 }
 
 template <typename Master>
@@ -187,6 +225,7 @@ void AskedBus<Master>::on_interrupt() {
   const Transfer state = master_.on_interrupt();
   if (state == Transfer::goes_on || running_ == nullptr) return;
   asm volatile("" ::: "memory");  // it has written there
+  if (std::exchange(selecting_, false) && state == Transfer::done) return send(*running_);
   end(state == Transfer::done ? State::done : State::failed);
 }
 

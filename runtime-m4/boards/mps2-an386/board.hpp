@@ -48,6 +48,7 @@ public:
   const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
+  bool i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> page) override;
   BusState buses() const override { return i2c_.state(); }
   bool input(std::uint16_t pin) const override;
   Store* store() override { return &eeprom_; }

@@ -6,6 +6,8 @@
 
 #include "runtime-m4/boards/b-l475e-iot01a/i2c.hpp"
 #include "runtime-m4/boards/microbit-v2/i2c.hpp"
+#include "runtime-m4/policy/costs.hpp"
+#include "runtime-m4/policy/rules.hpp"
 #include "tests/runtime-m4/boards/nrf52833_twim.hpp"
 #include "tests/runtime-m4/boards/stm32_i2c.hpp"
 
@@ -13,12 +15,22 @@ using namespace robosync;
 
 namespace {
 
+#define COST(name, value, note) .name = (value),
+constexpr policy::BoardCosts kMicrobitCosts = {
+#include "runtime-m4/boards/microbit-v2/costs.def"
+};
+constexpr policy::BoardCosts kL475Costs = {
+#include "runtime-m4/boards/b-l475e-iot01a/costs.def"
+};
+#undef COST
+
 constexpr std::byte operator""_b(unsigned long long value) {
   return static_cast<std::byte>(value);
 }
 
 // Nordic: TWIM0; tech.microbit.org: the internal bus is P0.08 and P0.16.
 struct MicrobitBus : tests::TwimBus {
+  static constexpr const policy::BoardCosts& kCosts = kMicrobitCosts;
   static constexpr unsigned kInterrupts = 1;  // of a reading
   MicrobitBus() : TwimBus(0x4000'3000, {0, 8}, {0, 16}) {}
   boards::microbit::I2c bus{{boards::microbit::kTwim0, {.clock = {0, 8}, .data = {0, 16}}}};
@@ -27,6 +39,7 @@ struct MicrobitBus : tests::TwimBus {
 // RM0351: I2C1 and I2C2 with their requests of DMA1; UM2153: PB8 and PB9 are D15 and D14, PB10 and PB11 the sensors' on the board.
 template <unsigned kNumber>
 struct L475Bus : tests::Stm32I2c {
+  static constexpr const policy::BoardCosts& kCosts = kL475Costs;
   static constexpr unsigned kInterrupts = 2;  // one when it is asked, and one when it has answered
   static constexpr bool kOwn = kNumber == 2;
   L475Bus()
@@ -35,6 +48,11 @@ struct L475Bus : tests::Stm32I2c {
   boards::l475::I2c bus{boards::l475::i2c_master(kOwn ? 1 : 0)};
 };
 
+// Of a device with pages: what stands in the one register depends on the other.
+constexpr unsigned kPage = 0x00;
+constexpr unsigned kPaged = 0x0B;
+constexpr std::byte kPageMark = 0x40_b;
+
 template <typename Model>
 struct Bus : Model {
   Bus() {
@@ -42,15 +60,23 @@ struct Bus : Model {
     for (unsigned i = 0; i < this->registers.size(); ++i)
       this->registers[i] = static_cast<std::byte>(i ^ 0x5A);
   }
-  void run(unsigned microseconds) {
+  // The processor comes to an interrupt `latency` microseconds late.
+  void run(unsigned microseconds, unsigned latency = 0) {
+    unsigned waits = 0;
     for (; microseconds > 0; --microseconds) {
       this->pass_microsecond();
+      this->registers[kPaged] = this->registers[kPage] ^ kPageMark;
+      if (this->interrupt() && waits++ < latency) continue;
+      waits = 0;
       for (unsigned i = 0; this->interrupt(); ++i) {
         REQUIRE(i < 3);
         ++interrupts;
         this->bus.on_interrupt();
       }
     }
+  }
+  void select(std::byte page) {
+    CHECK(this->bus.select(std::array{static_cast<std::byte>(kPage), page}));
   }
   std::uint8_t device() const { return static_cast<std::uint8_t>(this->address); }
   bool ask(std::byte from, std::size_t count = 3) { return ask_of(device(), from, count); }
@@ -243,16 +269,90 @@ TEMPLATE_TEST_CASE(
   CHECK_FALSE(bus.bus.transfer(true, bus.device(), std::array<std::byte, 20>{}, {}));
   CHECK_FALSE(bus.bus.transfer(true, bus.device(), {}, std::span(long_in).first(2)));
   CHECK_FALSE(bus.bus.is_busy());
-  for (unsigned i = 0; i < 8; ++i)
+  constexpr unsigned kMost = decltype(bus.bus)::kMostRequests;
+  for (unsigned i = 0; i < kMost + 2; ++i)
     bus.ask(static_cast<std::byte>(i));
-  bus.run(3000);
-  for (unsigned i = 0; i < 8; ++i)
-    CHECK(bus.collect(static_cast<std::byte>(i)) == (i < 6));
-  for (unsigned i = 6; i < 8; ++i)  // what nobody asked about for the longest time gives way
+  bus.run(5000);
+  for (unsigned i = 0; i < kMost + 2; ++i)
+    CHECK(bus.collect(static_cast<std::byte>(i)) == (i < kMost));
+  for (unsigned i = kMost; i < kMost + 2; ++i)  // what was asked the longest time ago gives way
     bus.ask(static_cast<std::byte>(i));
   bus.run(1000);
-  for (unsigned i = 0; i < 8; ++i)
+  for (unsigned i = 0; i < kMost + 2; ++i)
     CHECK(bus.collect(static_cast<std::byte>(i)) == (i >= 2));
+}
+
+TEMPLATE_TEST_CASE("a bus: of a device with pages each reading is of its own page", "", MicrobitBus,
+                   L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  const auto read = [&](bool ahead, std::byte page) {
+    bus.select(page);
+    return ahead ? bus.ask(static_cast<std::byte>(kPaged), 1)
+                 : bus.collect(static_cast<std::byte>(kPaged), 1);
+  };
+  for (unsigned round = 0; round < 2; ++round) {
+    bus.written.clear();
+    for (const std::byte page : {3_b, 1_b, 7_b, 3_b})
+      CHECK_FALSE(read(true, page));
+    bus.run(2000);
+    CHECK(bus.written.size() == 6);
+    for (const std::byte page : {1_b, 7_b, 3_b, 1_b}) {
+      CHECK(read(false, page));
+      CHECK(bus.got[0] == (page ^ kPageMark));
+    }
+  }
+  CHECK_FALSE(bus.collect(static_cast<std::byte>(kPaged),
+                          1));  // of whatever page: nobody has asked for that
+  CHECK_FALSE(read(false, 2_b));
+  bus.refuses_after = 1;  // the page is not taken, so nothing is read
+  read(true, 3_b);
+  bus.run(500);
+  bus.refuses_after = ~0U;
+  CHECK_FALSE(bus.bus.is_busy());
+  CHECK_FALSE(read(false, 3_b));
+  const std::array<std::byte, boards::kMostSelected + 1> too_long{};
+  CHECK_FALSE(bus.bus.select(too_long));
+}
+
+TEMPLATE_TEST_CASE("a bus: what is written each time goes out each time", "", MicrobitBus,
+                   L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  for (unsigned times = 1; times <= 3; ++times) {
+    CHECK(bus.put(false, 0x20_b, 0x77_b));
+    bus.run(300);
+    CHECK(bus.written.size() == times);
+  }
+}
+
+// By the boards' own figures, as analysis/bus_load.cpp has them; each interrupt comes 12 us late.
+TEMPLATE_TEST_CASE("a bus: what rsc lets be asked at once is there in time", "", MicrobitBus,
+                   L475Bus<1>, L475Bus<2>) {
+  const policy::BoardCosts& board = TestType::kCosts;
+  const auto as_many_as_fit = [&](unsigned messages, unsigned bytes) {
+    return policy::kBusWindowUs / (messages * board.i2c_message_us + bytes * board.i2c_byte_us);
+  };
+  const auto check = [&](unsigned count, auto call) {
+    Bus<TestType> bus;
+    CAPTURE(count);
+    REQUIRE(count <= decltype(bus.bus)::kMostRequests);
+    for (unsigned i = 0; i < count; ++i)
+      CHECK_FALSE(call(bus, true, i));
+    bus.run(policy::kBusWindowUs, 12);
+    for (unsigned i = 0; i < count; ++i)
+      CHECK(call(bus, false, i));
+  };
+  const auto read = [](auto& bus, bool ahead, unsigned i, std::size_t bytes) {
+    const auto from = static_cast<std::byte>(i);
+    return ahead ? bus.ask(from, bytes) : bus.collect(from, bytes);
+  };
+  check(as_many_as_fit(1, 5),
+        [&](auto& bus, bool ahead, unsigned i) { return read(bus, ahead, i, 2); });
+  check(as_many_as_fit(1, 17),
+        [&](auto& bus, bool ahead, unsigned i) { return read(bus, ahead, i, 14); });
+  check(as_many_as_fit(2, 8), [&](auto& bus, bool ahead, unsigned i) {
+    bus.select(static_cast<std::byte>(i));
+    return read(bus, ahead, kPaged, 2);
+  });
 }
 
 TEMPLATE_TEST_CASE("STM32L475: a byte of a message that was refused is not the first of the next",
