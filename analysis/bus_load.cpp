@@ -2,9 +2,6 @@
 #include "analysis/bus_load.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <map>
-#include <utility>
 
 #include "runtime-m4/policy/rules.hpp"
 
@@ -20,23 +17,18 @@ std::uint32_t times_in_window(const vm::Sensor& sensor) {
 }  // namespace
 
 std::vector<BusLoad> overloaded_buses(const vm::Image& image, const policy::BoardCosts& board) {
-  std::map<std::uint8_t, BusLoad> loads;
+  std::vector<BusLoad> loads;
   for (unsigned s = 0; s < image.sensors.size(); ++s) {
     const vm::Sensor& sensor = image.sensors[s];
     const std::uint32_t us = policy::bus_us(sensor, board) * times_in_window(sensor);
     if (us == 0) continue;
-    BusLoad& load = loads[sensor.bus];
-    load.bus = sensor.bus;
-    load.us += us;
-    load.shares.push_back({s, us});
+    auto load = std::ranges::find(loads, sensor.bus, &BusLoad::bus);
+    if (load == loads.end()) load = loads.insert(loads.end(), BusLoad{.bus = sensor.bus});
+    load->us += us;
+    load->shares.push_back({s, us});
   }
-  std::vector<BusLoad> overloaded;
-  for (auto& [bus, load] : loads) {
-    if (load.us <= policy::kBusWindowUs) continue;
-    std::ranges::stable_sort(load.shares, std::greater(), &BusLoad::Share::us);
-    overloaded.push_back(std::move(load));
-  }
-  return overloaded;
+  std::erase_if(loads, [](const BusLoad& load) { return load.us <= policy::kBusWindowUs; });
+  return loads;
 }
 
 }  // namespace robosync::analysis

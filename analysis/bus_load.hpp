@@ -18,8 +18,8 @@ struct BusLoad {
     std::uint32_t us;  // what it asks for keeps the bus busy
   };
   std::uint8_t bus = 0;
-  std::uint32_t us = 0;       // of them all
-  std::vector<Share> shares;  // the greatest first
+  std::uint32_t us = 0;  // of them all
+  std::vector<Share> shares{};
 };
 
 // Of a verified image: the buses that have not the time for what is asked of them at once (policy::kBusWindowUs).

@@ -79,19 +79,20 @@ Overload overload_by(const vm::Image& image, const analysis::BusLoad& load) {
        "leave out channels or sensors of this bus"}};
 }
 
-// Shows what robot.json says of its sensors. A display and a servo chip are none of those.
+// Shows what robot.json says of its sensors, the one that takes most as the place of the mistake. A display and a servo chip are
+// none of those.
 void label_sensors(Diagnostic& report, const vm::Image& image, const analysis::BusLoad& load,
                    const std::vector<compiler::SensorConfig>& sensors) {
-  bool primary = true;
+  const auto most = std::ranges::max(load.shares, {}, &analysis::BusLoad::Share::us);
   for (const auto& [number, us] : load.shares) {
     const std::string_view name = image.string(image.sensors[number].name);
-    const auto sensor = std::ranges::find_if(
-        sensors, [&](const compiler::SensorConfig& one) { return one.name.text == name; });
-    if (sensor == sensors.end()) continue;
-    report.label(sensor->name.span, ms_text(us) + " of it", primary);
-    primary = false;
+    for (const compiler::SensorConfig& sensor : sensors)
+      if (sensor.name.text == name)
+        report.label(sensor.name.span, ms_text(us) + " of it", number == most.sensor);
   }
-  if (primary) report.label(compiler::Span{});
+  if (report.labels.empty()) report.label(compiler::Span{});
+  if (std::ranges::none_of(report.labels, &compiler::Label::primary))
+    report.labels.front().primary = true;
 }
 
 void judge_buses(const vm::Image& image, const compiler::Result& compiled,

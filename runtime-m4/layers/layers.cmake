@@ -39,6 +39,7 @@ target_sources(robosync_runtime PRIVATE
   drivers/hc_sr04.cpp
   drivers/analog_input.cpp
   drivers/i2c_register.cpp
+  drivers/i2c_word.cpp
   drivers/lights.cpp
   drivers/lsm303agr.cpp
   drivers/lsm6dsl.cpp

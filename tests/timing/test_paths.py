@@ -229,6 +229,7 @@ class Sampling(unittest.TestCase):
     WIRED = {"max34451": ({"type": "I2C", "address": "0x70", "device": "max34451",
                            "channels": {"L": {"input": 0, "range": [0, 10], "rate": "50Hz"}}}, "L > 5"),
              "i2c_register": ({"type": "I2C", "address": "0x48"}, "> 5"),
+             "i2c_word": ({"type": "I2C", "address": "0x48", "device": "tmp105"}, "> 5C"),
              # In its place one that acknowledges all, and never is as it should be: it is told so again with each sample.
              "lsm303agr": ({"type": "I2C", "address": "0x19", "device": "lsm303agr"}, "X > 1g"),
              "lsm6dsl": ({"type": "I2C", "address": "0x6a", "device": "lsm6dsl"}, "X > 1g"),

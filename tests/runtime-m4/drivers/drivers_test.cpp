@@ -108,6 +108,34 @@ TEST_CASE("max34451: the page is the input, the count is READ_VOUT") {
   CHECK_FALSE(drivers::driver(vm::DriverId::max34451).read(board, sensor, channel, raw));
 }
 
+TEST_CASE("i2c_word: writes the register's number, reads two bytes, high first, with their sign") {
+  test::NotingBoard board;
+  vm::Sensor sensor{};
+  sensor.bus = 1;
+  sensor.address = 0x48;
+  vm::Channel channel{};
+  channel.input = 1;
+  const auto read = [&](unsigned high, unsigned low) {
+    board.answers = {static_cast<std::byte>(high), static_cast<std::byte>(low)};
+    std::int32_t raw = 99;
+    REQUIRE(drivers::driver(vm::DriverId::i2c_word).read(board, sensor, channel, raw));
+    return raw;
+  };
+  CHECK(read(0x19, 0x80) == 0x1980);
+  CHECK(read(0x7F, 0xFF) == 32767);
+  CHECK(read(0xE7, 0x00) == -25 * 256);
+  CHECK(read(0x80, 0x00) == -32768);
+  CHECK(board.transfers.back().bus == 1);
+  CHECK(board.transfers.back().address == 0x48);
+  CHECK(board.transfers.back().out == bytes({1}));
+  CHECK(board.transfers.back().in == 2);
+  board.acknowledges = false;
+  board.answers = {std::byte{1}, std::byte{1}};
+  std::int32_t raw = 99;
+  CHECK_FALSE(drivers::driver(vm::DriverId::i2c_word).read(board, sensor, channel, raw));
+  CHECK(raw == 99);
+}
+
 TEST_CASE("i2c_register: writes the register's number, reads two bytes, low first") {
   test::NotingBoard board;
   vm::Sensor sensor{};
