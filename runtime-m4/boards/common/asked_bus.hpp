@@ -1,6 +1,7 @@
 // An I2C bus by a master with memory access of its own. The processor says what is wanted, and is told by an interrupt when it is
 // there: nobody waits. So it is asked ahead (boards::Board::i2c_ask()). What is wanted stands in requests, which run one after the
-// other, in the order in which they were asked.
+// other, in the order in which they were asked. A request may begin with a page to be selected, a message of its own (select()):
+// whoever else asks comes before both or after both.
 //
 // Bounded: who is not acknowledged, or does not get the clock, has failed. A transfer that is not over when its answer is due
 // is given up, and the bus let go. A data line found held down gets clocks, nine at most, before a transfer; while a line stays
@@ -36,7 +37,7 @@ public:
   constexpr explicit AskedBus(Master master) : master_(master) {}
 
   void start() { master_.start(); }
-  // As boards::Board says, with `ahead` as it was asked last. What is longer than a request can be fails.
+  // Both as boards::Board says, with `ahead` as it was asked last. What is longer than a request can be fails.
   //  [one thread at a time]
   bool select(std::span<const std::byte> page);
   bool transfer(bool ahead, std::uint8_t address, std::span<const std::byte> out,
