@@ -93,3 +93,8 @@ target_sources(robosync_compiler PRIVATE
   codegen/tables.cpp
   codegen/verify_image.cpp)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
+# As of the front end's, what is said of what is wrong.
+if(NOT ROBOSYNC_SANITIZE)
+  set_source_files_properties(sema/misread.cpp sema/unknown_verbs.cpp
+    PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
+endif()

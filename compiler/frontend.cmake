@@ -67,6 +67,5 @@ target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
 if(NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(
     syntax/examples.cpp syntax/foreign_habits.cpp syntax/habits.cpp syntax/misplaced_words.cpp syntax/wording.cpp
-    sema/misread.cpp sema/unknown_verbs.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
 endif()

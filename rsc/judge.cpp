@@ -63,11 +63,18 @@ void judge_step(const vm::Image& image, const compiler::Result& compiled,
   report.helps(std::string(compiler::kHelpForCostlyStep));
 }
 
+Diagnostic& report_overload(const Overload& overload, compiler::Diagnostics& diagnostics) {
+  Diagnostic& report = diagnostics.report(Code::E0412, kCannotKeepUp + overload.what);
+  for (const std::string& reason : overload.why)
+    report.helps(reason);
+  return report;
+}
+
 std::string ms_text(std::uint32_t us) {
   return fmt::format("{:.2f} ms", us / 1000.0);
 }
 
-Overload overload_by(const vm::Image& image, const analysis::BusLoad& load) {
+Overload overload_of_bus(const vm::Image& image, const analysis::BusLoad& load) {
   std::vector<std::string> parts;
   for (const auto& [sensor, us] : load.shares)
     parts.push_back(fmt::format("{} {}", image.string(image.sensors[sensor].name), ms_text(us)));
@@ -99,11 +106,8 @@ void judge_buses(const vm::Image& image, const compiler::Result& compiled,
                  compiler::Diagnostics& diagnostics) {
   for (const analysis::BusLoad& load :
        analysis::overloaded_buses(image, costs_of(compiled.board))) {
-    const Overload overload = overload_by(image, load);
-    Diagnostic& report = diagnostics.report(Code::E0412, kCannotKeepUp + overload.what);
+    Diagnostic& report = report_overload(overload_of_bus(image, load), diagnostics);
     label_sensors(report, image, load, compiled.reading->robot->sensors);
-    for (const std::string& reason : overload.why)
-      report.helps(reason);
   }
 }
 
@@ -111,10 +115,7 @@ void judge_time(const vm::Image& image, const compiler::Result& compiled,
                 compiler::Diagnostics& diagnostics) {
   const Overload overload = overload_of(responses_of(image, costs_of(compiled.board)));
   if (overload.what.empty()) return;
-  Diagnostic& report = diagnostics.report(Code::E0412, kCannotKeepUp + overload.what);
-  label_rules(report, image, compiled.rules);
-  for (const std::string& reason : overload.why)
-    report.helps(reason);
+  label_rules(report_overload(overload, diagnostics), image, compiled.rules);
 }
 
 }  // namespace
@@ -137,8 +138,8 @@ void judge_time(const Program& program, const std::string& name) {
   const auto board = board_of(*image.header);
   const policy::BoardCosts& costs = board ? costs_of(*board) : board_costs();
   const auto buses = analysis::overloaded_buses(image, costs);
-  const Overload overload =
-      buses.empty() ? overload_of(responses_of(image, costs)) : overload_by(image, buses.front());
+  const Overload overload = buses.empty() ? overload_of(responses_of(image, costs))
+                                          : overload_of_bus(image, buses.front());
   if (overload.what.empty()) return;
   throw Failure(Exit::program,
                 fmt::format("{}: {}{}\n  {}\n  --anyway uploads it nevertheless", name,

@@ -72,50 +72,40 @@ constexpr bool drives_on(DriverId driver) {
 // image has as the sensor's `bus`, and how long its input is high then. Adc: the voltage of an analog input.
 enum class Bus : std::uint8_t { nothing, i2c, pin, echo, adc };
 
-constexpr Bus bus_of(DriverId driver) {
-  const auto fed = [] { return Bus::nothing; };
-  const auto computed = [] { return Bus::nothing; };
-  const auto i2c = [](unsigned, unsigned) { return Bus::i2c; };
-  const auto i2c_once = i2c;
-  const auto pin = [] { return Bus::pin; };
-  const auto echo = [] { return Bus::echo; };
-  const auto adc = [] { return Bus::adc; };
+struct Sampling {
+  Bus bus = Bus::nothing;
+  bool once = false;  // all channels of a sensor are made of the same answers of its device
+};
+
+constexpr Sampling sampling_of(DriverId driver) {
+  const auto fed = [] { return Sampling{}; };
+  const auto computed = [] { return Sampling{}; };
+  const auto i2c = [](unsigned, unsigned) { return Sampling{Bus::i2c}; };
+  const auto i2c_once = [](unsigned, unsigned) { return Sampling{Bus::i2c, true}; };
+  const auto pin = [] { return Sampling{Bus::pin}; };
+  const auto echo = [] { return Sampling{Bus::echo}; };
+  const auto adc = [] { return Sampling{Bus::adc}; };
   switch (driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case DriverId::name:                   \
     return sample;
 #define ACTUATOR_DRIVER(name, ...) \
   case DriverId::name:             \
-    return Bus::nothing;
+    return Sampling{};
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER
 #undef ACTUATOR_DRIVER
     case DriverId::count_:
       break;
   }
-  return Bus::nothing;
+  return Sampling{};
 }
 
-// All channels of such a sensor are made of the same answers of its device.
+constexpr Bus bus_of(DriverId driver) {
+  return sampling_of(driver).bus;
+}
 constexpr bool is_asked_once(DriverId driver) {
-  const auto fed = [] { return false; };
-  const auto computed = fed, pin = fed, echo = fed, adc = fed;
-  const auto i2c = [](unsigned, unsigned) { return false; };
-  const auto i2c_once = [](unsigned, unsigned) { return true; };
-  switch (driver) {
-#define SENSOR_DRIVER(name, sample, doc) \
-  case DriverId::name:                   \
-    return sample;
-#define ACTUATOR_DRIVER(name, ...) \
-  case DriverId::name:             \
-    return false;
-#include "vm/drivers.def"
-#undef SENSOR_DRIVER
-#undef ACTUATOR_DRIVER
-    case DriverId::count_:
-      break;
-  }
-  return false;
+  return sampling_of(driver).once;
 }
 
 // No sensor's driver is taken for that of an actuator next to it in the list, nor the other way round.

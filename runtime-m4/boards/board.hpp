@@ -45,12 +45,11 @@ public:
   // down for good, as long only once.
   virtual bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                             std::span<std::byte> in) = 0;
-  // What goes to the same device right before the next transfer, in a message of its own: for devices with pages. No other
+  // What goes to the same device right before the next transfer, in one of its own: for devices with pages. No other
   // transfer comes in between, nor does the next one happen when this has not been acknowledged. At most kMostSelected bytes.
   // False: it is known already that the device does not acknowledge.
-  virtual bool i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> page) {
-    return i2c_transfer(bus, address, page, {});
-  }
+  virtual bool i2c_select(std::uint8_t bus, std::uint8_t address,
+                          std::span<const std::byte> page) = 0;
   virtual BusState buses() const = 0;
   // Buses with hardware of their own work while the processor does something else, so they are asked twice. While they
   // are asked ahead (i2c_ask(true)), i2c_transfer() only notes what is wanted and has it begin: it gives true where

@@ -1,6 +1,6 @@
 // What things cost on the board, from the lists that declare it: the runtime (costs.def), the board
 // (board_costs.def and boards/NAME/costs.def), the drivers (vm/drivers.def). All are executed
-// Cortex-M4 instructions. What is not declared does not compile.
+// Cortex-M4 instructions, but for microseconds (_us). What is not declared does not compile.
 #pragma once
 
 #include <cstdint>
@@ -85,7 +85,7 @@ constexpr std::uint32_t ask_cost(vm::DriverId driver, const BoardCosts& board) {
 constexpr std::uint32_t bus_us(const vm::Sensor& sensor, const BoardCosts& board) {
   if (!vm::is_on_i2c(sensor.driver)) return 0;
   BoardCosts times = board;
-  times.i2c_transfer = board.i2c_message_us;
+  times.i2c_transfer = board.i2c_transfer_us;
   times.i2c_byte = board.i2c_byte_us;
   const bool once = vm::is_asked_once(sensor.driver) || vm::is_served(sensor.driver);
   return sample_cost(sensor.driver, times) * (once ? 1 : sensor.channel_count);

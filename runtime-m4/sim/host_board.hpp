@@ -19,6 +19,7 @@ public:
 
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
+  bool i2c_select(std::uint8_t, std::uint8_t, std::span<const std::byte>) override { return false; }
   boards::BusState buses() const override { return {}; }
   bool input(std::uint16_t) const override { return false; }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override { pulses_[pin] = pulse_us; }

@@ -45,6 +45,10 @@ public:
     }
     return acknowledges;
   }
+  bool i2c_select(std::uint8_t bus, std::uint8_t address,
+                  std::span<const std::byte> page) override {
+    return i2c_transfer(bus, address, page, {});
+  }
   boards::BusState buses() const override { return bus_state; }
   bool i2c_asks_ahead() const override { return asks_ahead; }
   void i2c_ask(bool ahead) override { asked_ahead = ahead; }

@@ -1,6 +1,6 @@
 // An I2C bus by a master with memory access of its own. The processor says what is wanted, and is told by an interrupt when it is
 // there: nobody waits. So it is asked ahead (boards::Board::i2c_ask()). What is wanted stands in requests, which run one after the
-// other, in the order in which they were asked. A request may begin with a page to be selected, a message of its own (select()):
+// other, in the order in which they were asked. A request may begin with a page to be selected, in a transfer of its own (select()):
 // whoever else asks comes before both or after both.
 //
 // Bounded: who is not acknowledged, or does not get the clock, has failed. A transfer that is not over when its answer is due

@@ -41,7 +41,6 @@ bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const
   return bus == 0 && i2c_.transfer(address, out, in);
 }
 
-// As the inherited one does, by a call of known depth (scripts/python/stack_depth.py).
 bool Board::i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> page) {
   return bus == 0 && i2c_.transfer(address, page, {});
 }

@@ -49,8 +49,8 @@ struct L475Bus : tests::Stm32I2c {
 };
 
 // Of a device with pages: what stands in the one register depends on the other.
-constexpr unsigned kPage = 0x00;
-constexpr unsigned kPaged = 0x0B;
+constexpr std::byte kPage = 0x00_b;
+constexpr std::byte kPaged = 0x0B_b;
 constexpr std::byte kPageMark = 0x40_b;
 
 template <typename Model>
@@ -65,7 +65,7 @@ struct Bus : Model {
     unsigned waits = 0;
     for (; microseconds > 0; --microseconds) {
       this->pass_microsecond();
-      this->registers[kPaged] = this->registers[kPage] ^ kPageMark;
+      at(kPaged) = at(kPage) ^ kPageMark;
       if (this->interrupt() && waits++ < latency) continue;
       waits = 0;
       for (unsigned i = 0; this->interrupt(); ++i) {
@@ -75,9 +75,8 @@ struct Bus : Model {
       }
     }
   }
-  void select(std::byte page) {
-    CHECK(this->bus.select(std::array{static_cast<std::byte>(kPage), page}));
-  }
+  std::byte& at(std::byte number) { return this->registers[std::to_integer<unsigned>(number)]; }
+  void select(std::byte page) { CHECK(this->bus.select(std::array{kPage, page})); }
   std::uint8_t device() const { return static_cast<std::uint8_t>(this->address); }
   bool ask(std::byte from, std::size_t count = 3) { return ask_of(device(), from, count); }
   bool ask_of(std::uint8_t who, std::byte from, std::size_t count = 3) {
@@ -287,8 +286,7 @@ TEMPLATE_TEST_CASE("a bus: of a device with pages each reading is of its own pag
   Bus<TestType> bus;
   const auto read = [&](bool ahead, std::byte page) {
     bus.select(page);
-    return ahead ? bus.ask(static_cast<std::byte>(kPaged), 1)
-                 : bus.collect(static_cast<std::byte>(kPaged), 1);
+    return ahead ? bus.ask(kPaged, 1) : bus.collect(kPaged, 1);
   };
   for (unsigned round = 0; round < 2; ++round) {
     bus.written.clear();
@@ -301,8 +299,7 @@ TEMPLATE_TEST_CASE("a bus: of a device with pages each reading is of its own pag
       CHECK(bus.got[0] == (page ^ kPageMark));
     }
   }
-  CHECK_FALSE(bus.collect(static_cast<std::byte>(kPaged),
-                          1));  // of whatever page: nobody has asked for that
+  CHECK_FALSE(bus.collect(kPaged, 1));  // of whatever page: nobody has asked for that
   CHECK_FALSE(read(false, 2_b));
   bus.refuses_after = 1;  // the page is not taken, so nothing is read
   read(true, 3_b);
@@ -328,29 +325,28 @@ TEMPLATE_TEST_CASE("a bus: what is written each time goes out each time", "", Mi
 TEMPLATE_TEST_CASE("a bus: what rsc lets be asked at once is there in time", "", MicrobitBus,
                    L475Bus<1>, L475Bus<2>) {
   const policy::BoardCosts& board = TestType::kCosts;
-  const auto as_many_as_fit = [&](unsigned messages, unsigned bytes) {
-    return policy::kBusWindowUs / (messages * board.i2c_message_us + bytes * board.i2c_byte_us);
+  const auto as_many_as_fit = [&](unsigned transfers, unsigned bytes) {
+    return policy::kBusWindowUs / (transfers * board.i2c_transfer_us + bytes * board.i2c_byte_us);
   };
   const auto check = [&](unsigned count, auto call) {
     Bus<TestType> bus;
     CAPTURE(count);
     REQUIRE(count <= decltype(bus.bus)::kMostRequests);
     for (unsigned i = 0; i < count; ++i)
-      CHECK_FALSE(call(bus, true, i));
+      CHECK_FALSE(call(bus, true, static_cast<std::byte>(i)));
     bus.run(policy::kBusWindowUs, 12);
     for (unsigned i = 0; i < count; ++i)
-      CHECK(call(bus, false, i));
+      CHECK(call(bus, false, static_cast<std::byte>(i)));
   };
-  const auto read = [](auto& bus, bool ahead, unsigned i, std::size_t bytes) {
-    const auto from = static_cast<std::byte>(i);
+  const auto read = [](auto& bus, bool ahead, std::byte from, std::size_t bytes) {
     return ahead ? bus.ask(from, bytes) : bus.collect(from, bytes);
   };
   check(as_many_as_fit(1, 5),
-        [&](auto& bus, bool ahead, unsigned i) { return read(bus, ahead, i, 2); });
+        [&](auto& bus, bool ahead, std::byte i) { return read(bus, ahead, i, 2); });
   check(as_many_as_fit(1, 17),
-        [&](auto& bus, bool ahead, unsigned i) { return read(bus, ahead, i, 14); });
-  check(as_many_as_fit(2, 8), [&](auto& bus, bool ahead, unsigned i) {
-    bus.select(static_cast<std::byte>(i));
+        [&](auto& bus, bool ahead, std::byte i) { return read(bus, ahead, i, 14); });
+  check(as_many_as_fit(2, 8), [&](auto& bus, bool ahead, std::byte i) {
+    bus.select(i);
     return read(bus, ahead, kPaged, 2);
   });
 }

@@ -78,77 +78,76 @@ struct Drive {
   kernel::Time wake = 0;
 };
 
+// A sensor with a channel, on a bus whose answers the test gives.
+struct OnBus {
+  OnBus(vm::DriverId id, std::uint16_t address, std::uint8_t input) : driver(drivers::driver(id)) {
+    sensor.bus = 1;
+    sensor.address = address;
+    channel.input = input;
+  }
+  bool read(std::initializer_list<int> answers) {
+    const std::vector<std::byte> given = bytes(answers);
+    board.answers.assign(given.begin(), given.end());
+    return driver.read(board, sensor, channel, raw);
+  }
+
+  const drivers::Driver& driver;
+  test::NotingBoard board;
+  vm::Sensor sensor{};
+  vm::Channel channel{};
+  std::int32_t raw = 99;
+};
+
 }  // namespace
 
 TEST_CASE("max34451: the page is the input, the count is READ_VOUT") {
-  test::NotingBoard board;
-  vm::Sensor sensor{};
-  sensor.bus = 1;
-  sensor.address = 0x70;
-  vm::Channel channel{};
-  channel.input = 5;
-  board.answers = {std::byte{0x34}, std::byte{0xF2}};
-  std::int32_t raw = 0;
-  REQUIRE(drivers::driver(vm::DriverId::max34451).read(board, sensor, channel, raw));
-  CHECK(raw == 0xF234);
-  REQUIRE(board.transfers.size() == 2);
-  CHECK(board.transfers[0].bus == 1);
-  CHECK(board.transfers[0].address == 0x70);
-  CHECK(board.transfers[0].out == bytes({0x00, 5}));
-  CHECK(board.transfers[0].in == 0);
-  CHECK(board.transfers[1].out == bytes({0x8B}));
-  CHECK(board.transfers[1].in == 2);
+  OnBus chip(vm::DriverId::max34451, 0x70, 5);
+  REQUIRE(chip.read({0x34, 0xF2}));
+  CHECK(chip.raw == 0xF234);
+  const auto& transfers = chip.board.transfers;
+  REQUIRE(transfers.size() == 2);
+  CHECK(transfers[0].bus == 1);
+  CHECK(transfers[0].address == 0x70);
+  CHECK(transfers[0].out == bytes({0x00, 5}));
+  CHECK(transfers[0].in == 0);
+  CHECK(transfers[1].out == bytes({0x8B}));
+  CHECK(transfers[1].in == 2);
 
-  CHECK_FALSE(drivers::driver(vm::DriverId::max34451).read(board, sensor, channel, raw));
-  board.acknowledges = false;
-  CHECK_FALSE(drivers::driver(vm::DriverId::max34451).read(board, sensor, channel, raw));
-  board.acknowledges = true;
-  channel.input = 16;
-  board.answers = {std::byte{1}, std::byte{1}};
-  CHECK_FALSE(drivers::driver(vm::DriverId::max34451).read(board, sensor, channel, raw));
+  CHECK_FALSE(chip.read({}));
+  chip.board.acknowledges = false;
+  CHECK_FALSE(chip.read({1, 1}));
+  chip.board.acknowledges = true;
+  chip.channel.input = 16;
+  CHECK_FALSE(chip.read({1, 1}));
 }
 
 TEST_CASE("i2c_word: writes the register's number, reads two bytes, high first, with their sign") {
-  test::NotingBoard board;
-  vm::Sensor sensor{};
-  sensor.bus = 1;
-  sensor.address = 0x48;
-  vm::Channel channel{};
-  channel.input = 1;
-  const auto read = [&](unsigned high, unsigned low) {
-    board.answers = {static_cast<std::byte>(high), static_cast<std::byte>(low)};
-    std::int32_t raw = 99;
-    REQUIRE(drivers::driver(vm::DriverId::i2c_word).read(board, sensor, channel, raw));
-    return raw;
+  OnBus chip(vm::DriverId::i2c_word, 0x48, 1);
+  const auto read = [&](int high, int low) {
+    REQUIRE(chip.read({high, low}));
+    return chip.raw;
   };
   CHECK(read(0x19, 0x80) == 0x1980);
   CHECK(read(0x7F, 0xFF) == 32767);
   CHECK(read(0xE7, 0x00) == -25 * 256);
   CHECK(read(0x80, 0x00) == -32768);
-  CHECK(board.transfers.back().bus == 1);
-  CHECK(board.transfers.back().address == 0x48);
-  CHECK(board.transfers.back().out == bytes({1}));
-  CHECK(board.transfers.back().in == 2);
-  board.acknowledges = false;
-  board.answers = {std::byte{1}, std::byte{1}};
-  std::int32_t raw = 99;
-  CHECK_FALSE(drivers::driver(vm::DriverId::i2c_word).read(board, sensor, channel, raw));
-  CHECK(raw == 99);
+  const auto& last = chip.board.transfers.back();
+  CHECK(last.bus == 1);
+  CHECK(last.address == 0x48);
+  CHECK(last.out == bytes({1}));
+  CHECK(last.in == 2);
+  chip.board.acknowledges = false;
+  CHECK_FALSE(chip.read({1, 1}));
+  CHECK(chip.raw == -32768);
 }
 
 TEST_CASE("i2c_register: writes the register's number, reads two bytes, low first") {
-  test::NotingBoard board;
-  vm::Sensor sensor{};
-  sensor.address = 0x48;
-  vm::Channel channel{};
-  channel.input = 0xA2;
-  board.answers = {std::byte{0x01}, std::byte{0x80}};
-  std::int32_t raw = 0;
-  REQUIRE(drivers::driver(vm::DriverId::i2c_register).read(board, sensor, channel, raw));
-  CHECK(raw == 0x8001);
-  REQUIRE(board.transfers.size() == 1);
-  CHECK(board.transfers[0].address == 0x48);
-  CHECK(board.transfers[0].out == bytes({0xA2}));
+  OnBus chip(vm::DriverId::i2c_register, 0x48, 0xA2);
+  REQUIRE(chip.read({0x01, 0x80}));
+  CHECK(chip.raw == 0x8001);
+  REQUIRE(chip.board.transfers.size() == 1);
+  CHECK(chip.board.transfers[0].address == 0x48);
+  CHECK(chip.board.transfers[0].out == bytes({0xA2}));
 }
 
 TEST_CASE("a count becomes a value: scaled, rounded half away from zero, saturating") {

@@ -46,6 +46,7 @@ public:
                     std::span<std::byte>) override {
     return false;
   }
+  bool i2c_select(std::uint8_t, std::uint8_t, std::span<const std::byte>) override { return false; }
   // On its bus nobody answers, since a line is held down.
   boards::BusState buses() const override { return {.clears = 2, .held = 1}; }
   bool input(std::uint16_t) const override { return true; }
