@@ -75,15 +75,19 @@ std::string ms_text(std::uint32_t us) {
 }
 
 Overload overload_of_bus(const vm::Image& image, const analysis::BusLoad& load) {
+  Overload overload{
+      fmt::format("all that is asked of I2C bus {} at once takes it {}, and there are {}", load.bus,
+                  ms_text(load.us), ms_text(policy::kBusWindowUs)),
+      {"leave out channels or sensors of this bus"}};
+  if (load.shares.size() == 1) return overload;
   std::vector<std::string> parts;
   for (const auto& [sensor, us] : load.shares)
     parts.push_back(fmt::format("{} {}", image.string(image.sensors[sensor].name), ms_text(us)));
-  return {
-      fmt::format("all that is asked of I2C bus {} at once takes it {}, and there are {}", load.bus,
-                  ms_text(load.us), ms_text(policy::kBusWindowUs)),
-      {fmt::format("sensors are asked together at the start, and whenever their periods meet: {}",
-                   fmt::join(parts, ", ")),
-       "leave out channels or sensors of this bus"}};
+  overload.why.insert(
+      overload.why.begin(),
+      fmt::format("sensors are asked together at the start, and whenever their periods meet: {}",
+                  fmt::join(parts, ", ")));
+  return overload;
 }
 
 // Shows what robot.json says of its sensors, the one that takes most as the place of the mistake. A display and a servo chip are

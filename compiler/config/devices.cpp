@@ -139,8 +139,8 @@ void read_actuator_device(const Fields& fields, Device& device, Diagnostics& dia
 
 void read_sensor_device(const Fields& fields, Device& device, Diagnostics& diagnostics) {
   if (const auto* inputs = fields.find("inputs"))
-    device.inputs =
-        static_cast<unsigned>(read_whole(*inputs, 1, 256, diagnostics).value_or(device.inputs));
+    device.inputs = static_cast<unsigned>(
+        read_whole(*inputs, 1, kRegisters, diagnostics).value_or(device.inputs));
   const auto* channels = fields.find("channels");
   if (channels == nullptr) return;
   for (const json::Member& member : channels->members) {

@@ -10,6 +10,8 @@
 
 namespace robosync::compiler {
 
+inline constexpr unsigned kRegisters = 256;
+
 struct Device {
   std::string name;
   bool is_sensor = false;
@@ -20,6 +22,9 @@ struct Device {
   bool has_sounds = false;
   SensorConfig sensor;  // what robot.json's entry starts from, by kind
   ActuatorConfig actuator;
+
+  // Any register of it may be read: robot.json says which.
+  [[nodiscard]] bool has_registers() const { return inputs == kRegisters; }
 };
 
 struct DeviceText {  // one descriptor as built in, and what it is found by

@@ -188,6 +188,20 @@ void read_channels(const json::Value& value, const Device& device, SensorConfig&
   check_channel_names(sensor.channels, diagnostics);
 }
 
+// Of one that has other inputs all channels would be the same one.
+void read_register(const json::Value& value, const Device& device, SensorConfig& sensor,
+                   Diagnostics& diagnostics) {
+  if (!device.has_registers()) {
+    diagnostics.report(Code::E0205, "a " + device.name + " has no `register`")
+        .label(value.span)
+        .helps("leave it out; `input` of a channel says what that reads");
+    return;
+  }
+  for (ChannelConfig& channel : sensor.channels)
+    channel.input =
+        static_cast<std::uint8_t>(read_whole(value, 0, kRegisters - 1, diagnostics).value_or(0));
+}
+
 // What is fed is not sampled: it has no period, and is stale only if robot.json says so.
 void make_fed(SensorConfig& sensor, const json::Value* channels, Diagnostics& diagnostics) {
   sensor.driver = vm::DriverId::virtual_sensor;
@@ -257,9 +271,7 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
     if (type->name != "VIRTUAL" && device.has_driver) check_place(fields, sensor, wiring, place);
   }
   if (const auto* number = fields.find("register"))
-    for (ChannelConfig& channel : sensor.channels)
-      channel.input = static_cast<std::uint8_t>(
-          read_whole(*number, 0, device.inputs - 1, diagnostics).value_or(0));
+    read_register(*number, device, sensor, diagnostics);
   const auto* channels = fields.find("channels");
   if (channels != nullptr) read_channels(*channels, device, sensor, diagnostics);
   const bool is_virtual = type != nullptr && type->name == "VIRTUAL";

@@ -156,7 +156,7 @@ std::string wiring_keys(const Device& device) {
         {"`pin`", device.is_sensor ? "an input of the board" : "an output of the board", "needed"});
   if (device.is_sensor && device.type == "GPIO")
     rows += row({"`active`", "`low`, `high`: the level that counts", "`low`"});
-  if (device.type == "I2C" && device.is_default)
+  if (device.type == "I2C" && device.has_registers())
     rows += row({"`register`", "0 to " + std::to_string(device.inputs - 1), "0"});
   return rows;
 }
