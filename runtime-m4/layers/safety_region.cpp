@@ -41,4 +41,11 @@ SafetyRegion SafetyRegion::take(Memory& memory) {
   return region;
 }
 
+std::span<const vm::Word> SafetyRegion::put_out(std::span<const vm::Word> output,
+                                                const vm::Word* end) {
+  const auto bytes =
+      reinterpret_cast<std::uintptr_t>(end) - reinterpret_cast<std::uintptr_t>(output.data());
+  return output.first(bytes <= output.size_bytes() ? bytes / sizeof(vm::Word) : 0);
+}
+
 }  // namespace robosync::layers

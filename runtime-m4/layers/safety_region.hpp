@@ -22,6 +22,9 @@ struct SafetyRegion {
   // it has no SAFETY rules.
   static SafetyRegion take(Memory& memory);
 
+  // The words that `end`, the machine's, says were put out; none of them where it is not in `output`.
+  static std::span<const vm::Word> put_out(std::span<const vm::Word> output, const vm::Word* end);
+
   std::span<std::byte> window;  // all of it, and nothing else
   std::byte* stack_top = nullptr;
   Work* work = nullptr;

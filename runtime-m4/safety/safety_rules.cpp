@@ -142,9 +142,7 @@ std::span<const vm::Word> SafetyRules::run_body(const vm::Rule& rule) {
   machine.shifted = 0;
   machine.assigned = 0;
   (void)sandbox_.call(&machine, code_ + responses_[rule.then_response].start, &work_->progress);
-  const auto bytes = reinterpret_cast<std::uintptr_t>(machine.output) -
-                     reinterpret_cast<std::uintptr_t>(output_.data());
-  return output_.first(bytes <= output_.size_bytes() ? bytes / sizeof(vm::Word) : 0);
+  return layers::SafetyRegion::put_out(output_, machine.output);
 }
 
 void SafetyRules::act(const vm::Output& said, ActuatorMask halted) {

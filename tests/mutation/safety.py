@@ -7,7 +7,7 @@ from changes import Mutant, Suite, run
 
 TESTS = "[#guard_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#ssd1306_test]"
 GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
-MAILBOX = "runtime-m4/layers/mailbox.cpp"
+MAILBOX, REGION = "runtime-m4/layers/mailbox.cpp", "runtime-m4/layers/safety_region.cpp"
 MONITOR, CONTROL, RUNTIME = "runtime-m4/safety/monitor.cpp", "runtime-m4/layers/control.cpp", "runtime-m4/runtime.cpp"
 
 MUTANTS = (
@@ -56,6 +56,10 @@ MUTANTS = (
     Mutant("what is unknown does not trip", RULES, "danger != vm::kFalse", "danger == vm::kTrue"),
     Mutant("a rule resumes while it is in danger", RULES, "was_tripped && danger == vm::kFalse && ", "was_tripped && "),
     Mutant("a rule lets go what another one halts", RULES, "halted_by(rule) & ~still", "halted_by(rule)"),
+    Mutant("a rule stops what its damaged code says", RULES, "actuators_of(program_->image, said.target) & halted",
+           "actuators_of(program_->image, said.target)"),
+    Mutant("the end of what SAFETY's bytecode puts out is believed", REGION, "bytes <= output.size_bytes() ? bytes / sizeof(vm::Word) : 0",
+           "bytes / sizeof(vm::Word)"),
     Mutant("the guard is told of a trip with the rest, not first", RULES,
            "if (trips) layers_.outputs.halt(halted_by(rule));", "",
            "the rule's body halts the same right behind it; the figure safety/reading_to_safe knows"),

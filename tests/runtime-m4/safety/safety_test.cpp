@@ -1,13 +1,20 @@
 // SAFETY rules: what halts, when, for how long, and what a halted actuator means for the rest.
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
+#include "runtime-m4/layers/safety_region.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 
+namespace vm = robosync::vm;
+using robosync::layers::SafetyRegion;
 using robosync::test::Rig;
 using robosync::test::Robot;
 
@@ -359,4 +366,56 @@ END
     if (line.find(" set ") != std::string::npos || line.find(" log ") != std::string::npos)
       seen += line.substr(0, 4) + line.substr(line.find(' ', line.find('#')) + 1) + ", ";
   CHECK(seen == "500 set mood 1, 500 log \"scared\", ");
+}
+
+namespace {
+
+// The word of a rule's body that halts, in memory.
+vm::Word& halt_of(const vm::Image& image, unsigned rule) {
+  const vm::Response& body = image.responses[image.rules[rule].then_response];
+  for (const vm::Word& word : image.code.subspan(body.start, body.length))
+    if (vm::opcode_of(word) == vm::Opcode::halt) return const_cast<vm::Word&>(word);
+  FAIL("it halts nothing");
+  return const_cast<vm::Word&>(image.code[0]);
+}
+
+}  // namespace
+
+// What SAFETY's bytecode puts out is not believed either: what a rule halts was counted when it was verified. Here its
+// code is damaged afterwards.
+TEST_CASE("a tripped rule halts nothing that the verified one did not") {
+  Rig rig;
+  REQUIRE(rig.activate(robosync::test::compile("SAFETY one\n  WHEN near X > 15\n  DO STOP a\nEND\n"
+                                               "SAFETY two\n  WHEN far Y > 15\n  DO STOP b\nEND\n"
+                                               "WHEN near X > 10\nDO MOVE b\nEND\n",
+                                               robosync::test::kPlainRobot))
+              .ok());
+  vm::Word& first = halt_of(rig.runtime.image(), 0);
+  const vm::Word second = halt_of(rig.runtime.image(), 1);
+  REQUIRE(first != second);
+  first = second;
+  rig.feed(0, 2);
+  rig.feed(1, 2);
+  rig.run(100);
+  rig.feed(0, 20);
+  rig.run(200);
+  CHECK(rig.only("trip halt win") == "100 #1 trip r0\n100 #2 win r2 DO\n");
+}
+
+TEST_CASE("only what stands in its output was put out by a safety rule's body") {
+  const std::array<vm::Word, 6> memory{1, 2, 3, 4, 5, 6};
+  const std::span<const vm::Word> output = std::span(memory).subspan(1, 4);
+  const auto put_out = [output](std::ptrdiff_t bytes) {
+    const auto end =
+        reinterpret_cast<std::uintptr_t>(output.data()) + static_cast<std::uintptr_t>(bytes);
+    const auto words = SafetyRegion::put_out(output, reinterpret_cast<const vm::Word*>(end));
+    return std::vector<vm::Word>(words.begin(), words.end());
+  };
+  CHECK(put_out(0).empty());
+  CHECK(put_out(8) == std::vector<vm::Word>{2, 3});
+  CHECK(put_out(16) == std::vector<vm::Word>{2, 3, 4, 5});
+  CHECK(put_out(10) == std::vector<vm::Word>{2, 3});
+  CHECK(put_out(17).empty());
+  CHECK(put_out(20).empty());
+  CHECK(put_out(-4).empty());
 }
