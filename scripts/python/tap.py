@@ -4,6 +4,7 @@ Listens on a Unix socket, passes each byte on after the time it takes on the wir
 counts the bytes of both directions.
 """
 
+import select
 import socket
 import threading
 import time
@@ -42,10 +43,17 @@ class Tap:
             board.close()
 
     def _pass_on(self, source, sink, counter):
-        line_free = 0.0
+        line_free = time.monotonic()
         try:
-            while data := source.recv(CHUNK):
-                line_free = max(line_free, time.monotonic()) + len(data) * self._seconds_per_byte
+            while True:
+                # What waits already goes out right behind the last byte, as from a UART: that this thread woke late is no time
+                # of the line's.
+                waits = bool(select.select([source], [], [], 0)[0])
+                data = source.recv(CHUNK)
+                if not data:
+                    break
+                begins = line_free if waits else max(line_free, time.monotonic())
+                line_free = begins + len(data) * self._seconds_per_byte
                 time.sleep(max(0.0, line_free - time.monotonic()))
                 sink.sendall(data)
                 self.note(counter, data)

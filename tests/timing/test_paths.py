@@ -471,6 +471,13 @@ def drawn_orders(channels, draw):
     return orders
 
 
+def measured_apart(rows):
+    """A table's rows without what was measured, and that."""
+    cells = r"(?m)^(\| \S+ \| )([\d,]+)( \| [\d,]+ \|)$"
+    measured = [int(number.replace(",", "")) for _, number, _ in re.findall(cells, rows)]
+    return re.sub(cells, r"\1\3", rows), measured
+
+
 class Paths(unittest.TestCase):
     """Of every example, with all its sensors fed: no reading takes longer than is said until all that it causes in
     its step is done."""
@@ -485,14 +492,17 @@ class Paths(unittest.TestCase):
         self.assert_shown("".join(row for _, row in sorted(rows)))
 
     def assert_shown(self, table):
-        """ROBOSYNC_UPDATE_GOLDEN=1 rewrites what the page shows."""
+        """ROBOSYNC_UPDATE_GOLDEN=1 rewrites what the page shows. What is measured may differ by a twentieth, as the page says: which
+        readings come together at random times changes with every few instructions of the firmware."""
         page = PAGE.read_text()
         before, head, rest = page.partition("| example | measured | said |\n|---|---|---|\n")
         shown, _, after = rest.partition("\n\n")
         if "ROBOSYNC_UPDATE_GOLDEN" in os.environ:
             PAGE.write_text(before + head + table + "\n" + after)
         else:
-            self.assertEqual(shown + "\n", table)
+            self.assertEqual(*(measured_apart(rows)[0] for rows in (shown + "\n", table)))
+            for before, now in zip(*(measured_apart(rows)[1] for rows in (shown, table))):
+                self.assertAlmostEqual(before, now, delta=now / 20)
 
     def test_with_sampling(self):
         """From the tick at which the sensor on the bus is due."""
