@@ -7,6 +7,7 @@ at 100 kHz whoever waits. So all that the code of the bus (I2c of the board's i2
 counted apart, by its addresses: what interrupts it is not.
 """
 
+import math
 import re
 import subprocess
 import tempfile
@@ -14,14 +15,15 @@ import time
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, Board
+from board import FAST, FIRMWARE, NAME, Board
 from counting import ROOT, BenchError, Marks, functions, of_the_board, plugin_arguments
 from workloads import PAPER
 
 KICK = "Board::watchdog_kick("
 BUS = ("I2c::",)  # code of the board
 SECONDS = 10  # measured, at the end of the run
-BYTES_OF_THOUSANDS, BYTES_OF_A_MINUTE = 100_000, 50_000  # the mark of a kick has some twenty
+BYTES_OF_MARK = 24  # of a kick, at most
+BYTES_OF_THOUSANDS = 100_000
 STARTED = 2  # kicks after which the firmware has
 PATIENCE = 30  # seconds until so many have passed: the core's sleep takes no time
 
@@ -32,6 +34,14 @@ def period_ms(source, constant):
     if not found:
         raise BenchError(f"{source} has no {constant}")
     return int(found[1])
+
+
+def idle_period_ms():
+    """What safety::idle_period() makes of the time of the board's watchdog."""
+    share = re.search(r"watchdog_ms \* (\d+) / (\d+)\)", (ROOT / "runtime-m4/safety/period.hpp").read_text())
+    if not share:
+        raise BenchError("the idle period of the safety monitor is not what it was")
+    return period_ms(f"runtime-m4/boards/{NAME}/board.hpp", "kWatchdogMs") * int(share[1]) // int(share[2])
 
 
 def code_of(prefixes):
@@ -75,12 +85,14 @@ def idle_second(period, program):
 
 def idle_alone():
     """Of a board without a program, the costliest of those of its first minute, in which the kernel looks once at timers that are far off:
-    it is the same in each run."""
-    second = 1000 // period_ms("runtime-m4/safety/period.hpp", "kIdlePeriodMs")
-    counts = [count for _, count in kicks(BYTES_OF_A_MINUTE).all][STARTED:60 * second]
-    if len(counts) != 60 * second - STARTED:
+    it is the same in each run. Counted over the periods that a second begins, and taken down to it."""
+    period = idle_period_ms()
+    second, minute = math.ceil(1000 / period), math.ceil(60_000 / period)
+    counts = [count for _, count in kicks(BYTES_OF_MARK * minute).all][STARTED:minute]
+    if len(counts) != minute - STARTED:
         raise BenchError("the watchdog was not kicked for a minute")
-    return max(end - begin for begin, end in zip(counts, counts[second:]))
+    most = max(end - begin for begin, end in zip(counts, counts[second:]))
+    return math.ceil(most * 1000 / (second * period))
 
 
 def idle_figures():

@@ -96,9 +96,11 @@ public:
   // Starts the line, so that nobody ever has to look.
   virtual void link_start(const LineEvents& events) = 0;
 
-  // Starts the watchdog, and keeps it from resetting the board for another period (100 ms).
+  // Starts the watchdog, and keeps it from resetting the board for another period.
   virtual void watchdog_start() = 0;
   virtual void watchdog_kick() = 0;
+  // From a kick to its first time-out, in ms.
+  virtual std::uint32_t watchdog_ms() const = 0;
 
 protected:
   ~Board() = default;

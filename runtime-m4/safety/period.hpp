@@ -2,6 +2,8 @@
 // The periods are those of program time.
 #pragma once
 
+#include <cstdint>
+
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/policy/rules.hpp"
 
@@ -9,9 +11,9 @@ namespace robosync::safety {
 
 inline constexpr kernel::Duration kPeriod = kernel::milliseconds(policy::kSafetyPeriodMs);
 
-// … and when no program runs: then there is nothing but the watchdog to look after, whose first
-// time-out comes after 50 ms.
-inline constexpr std::uint32_t kIdlePeriodMs = 30;
-inline constexpr kernel::Duration kIdlePeriod = kernel::milliseconds(kIdlePeriodMs);
+// … and when no program runs: then there is nothing but the watchdog to look after. Its oscillator may be a tenth too fast.
+constexpr kernel::Duration idle_period(std::uint32_t watchdog_ms) {
+  return kernel::milliseconds(watchdog_ms * 3 / 5);
+}
 
 }  // namespace robosync::safety

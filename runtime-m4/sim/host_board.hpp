@@ -31,6 +31,7 @@ public:
 
   void watchdog_start() override {}
   void watchdog_kick() override { ++kicks_; }
+  std::uint32_t watchdog_ms() const override { return 50; }
   std::uint64_t kicks() const { return kicks_; }
 
 private:

@@ -93,6 +93,7 @@ public:
   void link_start(const boards::LineEvents&) override {}
   void watchdog_start() override { watching = true; }
   void watchdog_kick() override { ++kicks; }
+  std::uint32_t watchdog_ms() const override { return first_time_out_ms; }
 
   std::vector<Transfer> transfers;
   std::deque<std::byte> answers;  // bytes the next reads get; none left: no acknowledge
@@ -120,6 +121,7 @@ public:
   std::vector<std::uint32_t> pictures;  // all
   std::vector<std::uint32_t> sounds;    // all
   unsigned kicks = 0;
+  std::uint32_t first_time_out_ms = 50;
   bool watching = false;
 };
 

@@ -18,7 +18,7 @@ namespace robosync::boards::l475 {
 
 namespace {
 
-constexpr std::uint32_t kWatchdogCounts = iwdg::kHz / 10;  // 100 ms
+constexpr std::uint32_t kWatchdogCounts = iwdg::kHz * Board::kWatchdogMs / 1000;
 
 constexpr std::array kEchoInterrupts{exti::kInterrupt2, exti::kInterrupt4, exti::kInterrupt5To9,
                                      exti::kInterrupt10To15};

@@ -18,6 +18,8 @@ namespace robosync::boards::l475 {
 
 class Board final : public boards::Board {
 public:
+  static constexpr std::uint32_t kWatchdogMs = 100;
+
   // Starts the clock of the core.
   Board();
 
@@ -44,6 +46,7 @@ public:
   void link_start(const LineEvents& events) override { line_.start(events); }
   void watchdog_start() override;
   void watchdog_kick() override;
+  std::uint32_t watchdog_ms() const override { return kWatchdogMs; }
 
   Line& line() { return line_; }
   I2c& i2c(unsigned bus) { return i2c_[bus]; }

@@ -44,6 +44,8 @@ struct OwnFlash : Flash {  // for FlashStore
 
 class Board final : public boards::Board {
 public:
+  static constexpr std::uint32_t kWatchdogMs = 100;
+
   // Starts the clock of the core and that of the kernel.
   Board();
 
@@ -72,8 +74,9 @@ public:
   std::size_t link_write(std::span<const std::byte> bytes) override { return line_.write(bytes); }
   std::size_t link_read(std::span<std::byte> bytes) override { return line_.read(bytes); }
   void link_start(const LineEvents& events) override { line_.start(events); }
-  void watchdog_start() override { start_watchdog(); }
+  void watchdog_start() override { start_watchdog(kWatchdogMs); }
   void watchdog_kick() override { kick_watchdog(); }
+  std::uint32_t watchdog_ms() const override { return kWatchdogMs; }
 
   Line& line() { return line_; }
   I2c& i2c(unsigned bus) { return i2c_[bus]; }

@@ -15,9 +15,9 @@ ChipReset take_reset_cause() {
 }
 
 // It may run already, as a reset by the core may leave it alone: then it does not hear what is said here, but the kick.
-void start_watchdog() {
+void start_watchdog(std::uint32_t ms) {
   watchdog::kConfiguration.write(watchdog::kRunsInSleep);
-  watchdog::kReload.write(watchdog::kHz / 10 - 1);
+  watchdog::kReload.write(watchdog::kHz * ms / 1000 - 1);
   watchdog::kKicksAsked.write(watchdog::kFirst);
   watchdog::kStart.write(kDoIt);
   kick_watchdog();

@@ -5,6 +5,8 @@
 // something that the reset does not do, so nobody asks for it. The reset lets all pins go.
 #pragma once
 
+#include <cstdint>
+
 namespace robosync::boards::microbit {
 
 enum class ChipReset { other, watchdog, lockup };
@@ -12,8 +14,8 @@ enum class ChipReset { other, watchdog, lockup };
 // What was noted in the chip, which is forgotten there: the next reset adds to it.
 ChipReset take_reset_cause();
 
-// Of 100 ms.
-void start_watchdog();
+// `ms`: from the last kick to the reset.
+void start_watchdog(std::uint32_t ms);
 void kick_watchdog();
 
 }  // namespace robosync::boards::microbit

@@ -18,8 +18,7 @@ namespace robosync::boards::mps2 {
 
 namespace {
 
-// First time-out after 50 ms: NMI, outputs off. Second, 100 ms after the last kick: reset.
-constexpr std::uint32_t kWatchdogTicks = kClockHz / 20;
+constexpr std::uint32_t kWatchdogTicks = kClockHz / 1000 * Board::kWatchdogMs;
 
 Board board;
 

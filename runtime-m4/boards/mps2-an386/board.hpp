@@ -40,6 +40,9 @@ namespace robosync::boards::mps2 {
 
 class Board final : public boards::Board {
 public:
+  // First time-out: NMI, outputs off. The second one, as long again after the last kick: reset.
+  static constexpr std::uint32_t kWatchdogMs = 50;
+
   // Starts the clock of the kernel.
   Board();
 
@@ -62,6 +65,7 @@ public:
   void link_start(const LineEvents& events) override { uart_.start(events); }
   void watchdog_start() override;
   void watchdog_kick() override;
+  std::uint32_t watchdog_ms() const override { return kWatchdogMs; }
 
   Uart& uart() { return uart_; }
 

@@ -21,7 +21,7 @@ TEST_CASE(
     "micro:bit: the watchdog resets the chip 100 ms after the last kick, and runs while the core "
     "sleeps") {
   Nrf52833 chip;
-  microbit::start_watchdog();
+  microbit::start_watchdog(100);
   CHECK(chip.watchdog().runs);
   CHECK(chip.watchdog().configuration == 1);  // in sleep, and not while a debugger halts
   for (unsigned i = 0; i < 50; ++i) {
@@ -37,9 +37,9 @@ TEST_CASE(
 
 TEST_CASE("micro:bit: a watchdog that runs already is kicked when it is started") {
   Nrf52833 chip;
-  microbit::start_watchdog();
+  microbit::start_watchdog(100);
   chip.pass_slow_counts(3200);
-  microbit::start_watchdog();
+  microbit::start_watchdog(100);
   chip.pass_slow_counts(3200);
   CHECK_FALSE(chip.watchdog().expired);
 }

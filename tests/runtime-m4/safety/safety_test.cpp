@@ -145,6 +145,26 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("without a program the watchdog is kicked as often as it needs, with a third to spare") {
+  for (const std::uint32_t first_time_out_ms : {50U, 100U}) {
+    Rig rig;
+    rig.board.first_time_out_ms = first_time_out_ms;
+    std::uint64_t kicked = 0, longest = 0, shortest = first_time_out_ms;
+    unsigned kicks = 0;
+    for (std::uint64_t ms = 0; ms < 1000; ++ms) {
+      rig.run(ms);
+      if (rig.board.kicks == kicks) continue;
+      kicks = rig.board.kicks;
+      longest = std::max(longest, ms - kicked);
+      if (kicked != 0) shortest = std::min(shortest, ms - kicked);
+      kicked = ms;
+    }
+    CAPTURE(first_time_out_ms);
+    CHECK(longest * 3 <= first_time_out_ms * 2);
+    CHECK(shortest * 2 >= first_time_out_ms);
+  }
+}
+
 TEST_CASE("a robot begins when what is fed has come, and feeds keep their program times") {
   const auto image = robosync::test::compile(kGuarded, robosync::test::kPlainRobot);
   Rig rig;

@@ -55,6 +55,7 @@ public:
   boards::Store* store() override { return store_; }
   void watchdog_start() override {}
   void watchdog_kick() override {}
+  std::uint32_t watchdog_ms() const override { return 50; }
 
   std::size_t link_write(std::span<const std::byte> bytes) override {
     const std::size_t count = std::min(bytes.size(), kRing - to_host.size());
