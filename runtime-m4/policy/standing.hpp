@@ -11,8 +11,9 @@ namespace robosync::policy {
 inline constexpr unsigned kMaxThreads = 96;
 
 // The paper's four categories with that of algorithms, and the two kinds of threads around them. Inside one behaviour's
-// priority, a later category of the five ranks higher: a decision reaches the actuator before new
-// data is gathered. `safety` ranks above everything, `system` (the link) below everything.
+// priority, a later category ranks higher. `safety` ranks above everything, `system` (the link) below everything, and
+// `control` above the rest of a program, whatever its behaviour's priority: what an actuator has done at a time is known to
+// the step of that time, or what the robot does would depend on which other behaviours there are.
 enum class Category : std::uint8_t {
   system,
   sensor,
@@ -38,7 +39,7 @@ struct Priority {
 // A thread's place in the order as one number, below 2^kStandingBits: the higher outranks. Equals
 // rank by age. What it was made of can be had of it again.
 //
-//   bits 22–21: 2 safety, 0 system, else 1 | 18–11: now + 128 | 10–3: base + 128 | 2–0: category
+//   bits 22–21: 3 safety, 2 control, 0 system, else 1 | 18–11: now + 128 | 10–3: base + 128 | 2–0: category
 using Standing = std::uint32_t;
 inline constexpr unsigned kStandingBits = 24;
 constexpr Standing with_priority(Standing standing, Priority priority) {
@@ -47,9 +48,20 @@ constexpr Standing with_priority(Standing standing, Priority priority) {
   const auto base = static_cast<unsigned>(priority.base + 128);
   return (standing & ~kPriorityBits) | now << 11 | base << 3;
 }
+constexpr unsigned beyond(Category category) {
+  switch (category) {
+    case Category::safety:
+      return 3;
+    case Category::control:
+      return 2;
+    case Category::system:
+      return 0;
+    default:
+      return 1;
+  }
+}
 constexpr Standing standing(Category category, Priority priority) {
-  const unsigned beyond = category == Category::safety ? 2 : category == Category::system ? 0 : 1;
-  return with_priority(beyond << 21 | static_cast<unsigned>(category), priority);
+  return with_priority(beyond(category) << 21 | static_cast<unsigned>(category), priority);
 }
 constexpr Standing standing(Category category, std::int8_t priority) {
   return standing(category, Priority{priority, priority});

@@ -2,12 +2,10 @@
 
 Compared is, for every millisecond, which events there are, and in which order each actuator gets its
 commands. Not compared: the numbers of steps and rules; zero_divide, which depends on how often a
-condition is looked at; that a WHILE tries in vain again (`lose` without `fire`); whether an actuator
-was just done when it is cancelled (`done` beside `cancel`): that is a matter of the threads' ranks.
+condition is looked at; that a WHILE tries in vain again (`lose` without `fire`).
 
-A *tie* is a millisecond in which rsc makes several steps, or a step while an actuator is done: which
-of them sees what is a matter of ranks, too, and not of the language. A difference that begins in a tie
-ends the comparison of that script, and is counted.
+A *tie* is a millisecond in which rsc makes several steps: which of them sees what is a matter of the threads' ranks, and not of
+the language. A difference that begins in a tie ends the comparison of that script, and is counted.
 """
 
 import functools
@@ -32,7 +30,6 @@ SEED = 20_250_711  # of what programs draw: the board must not take one of its o
 LEVELS = [("-O0",), ("-O1",)]  # of rsc compile, each of which must give the same
 IGNORED = {"activated", "zero_divide"}
 WITHOUT_STEP = {"done", "trip", "halt", "resume", "release"}  # come between steps
-IN_STEP = {"input", "fire", "win", "lose", "interrupt", "go_on", "set"}
 
 
 class Refused(Exception):
@@ -126,10 +123,7 @@ def by_millisecond(lines):
 
 
 def is_incidental(event, others):
-    def beside(kind, key):
-        return any(o["event"] == kind and o.get(key) == event[key] for o in others)
-    return (event["event"] == "done" and beside("cancel", "actuator")
-            or event["event"] == "lose" and not beside("fire", "line"))
+    return event["event"] == "lose" and not any(o["event"] == "fire" and o.get("line") == event["line"] for o in others)
 
 
 def commands(events):
@@ -149,11 +143,10 @@ def is_tie(lines, at_ms):
     events = [e for e in trace if e["t_us"] // 1000 == at_ms]
     kinds = {e["event"] for e in events}
     steps = {e["step"] for e in events if e["event"] not in WITHOUT_STEP}
-    apart = bool(kinds & WITHOUT_STEP) and bool(kinds & IN_STEP)
     before = max((e["step"] for e in trace if e["t_us"] // 1000 < at_ms), default=0)
     # A step without events, of a WAIT UNTIL that looks in vain: it may have been in this millisecond.
     hidden = "input" in kinds and min(steps) > before + 1
-    return len(steps) > 1 or apart or hidden
+    return len(steps) > 1 or hidden
 
 
 def first_difference(rsc_lines, reference_lines):

@@ -22,7 +22,7 @@ Interpreter::Interpreter(const compiler::ir::Program& program, const compiler::R
       no_chance_(seed, 0),
       inputs_(program, robot, trace),
       actuators_(program, robot, trace),
-      important_(robot.actuators.size()) {
+      actuator_count_(robot.actuators.size()) {
   const std::uint32_t first = program.safety.empty() ? 0 : 1;
   for (std::size_t rank = 0; rank < program.behaviors.size(); ++rank) {
     chances_.emplace_back(seed, first + static_cast<std::uint32_t>(rank));
@@ -33,10 +33,6 @@ Interpreter::Interpreter(const compiler::ir::Program& program, const compiler::R
       made.rank = rank;
       made.then_actuators = actuators_of(rule.then_response);
       made.else_actuators = actuators_of(rule.else_response);
-      if (rank == 0)
-        for (const auto* set : {&made.then_actuators, &made.else_actuators})
-          for (const std::size_t actuator : *set)
-            important_[actuator] = true;
       rules_.push_back(std::move(made));
     }
   }
@@ -57,10 +53,8 @@ void Interpreter::run(const std::vector<Reading>& readings, Millis end) {
     trace_.set_time(now_.at);
     feed(readings, next);
     guard(now_.at % kGuardEvery == 0);
-    advance_actuators(true);
+    advance_actuators();
     step();
-    if (somebody_could_start()) step();
-    advance_actuators(false);
     while (somebody_could_go_on() || somebody_could_start())
       step();
   }
@@ -77,9 +71,10 @@ void Interpreter::feed(const std::vector<Reading>& readings, std::size_t& next) 
   if (!news.empty()) guard(false, news);
 }
 
-void Interpreter::advance_actuators(bool important) {
-  for (std::size_t actuator = 0; actuator < important_.size(); ++actuator)
-    if (important_[actuator] == important) actuators_.advance(actuator, now_.at);
+// "What an actuator has done at a time is over before anything else of that time."
+void Interpreter::advance_actuators() {
+  for (std::size_t actuator = 0; actuator < actuator_count_; ++actuator)
+    actuators_.advance(actuator, now_.at);
   end_responses();
 }
 

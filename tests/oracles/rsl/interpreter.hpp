@@ -72,7 +72,7 @@ private:
     Millis looked_at = 0;  // when it looked last whether they still report
   };
 
-  void advance_actuators(bool important);
+  void advance_actuators();
   void end_responses();
   [[nodiscard]] bool somebody_could_start() const;
   [[nodiscard]] bool somebody_could_go_on();
@@ -116,7 +116,7 @@ private:
   Actuators actuators_;
   std::vector<Rule> rules_;
   std::vector<Guard> guards_;
-  std::vector<bool> important_;  // by actuator: the most important behaviour commands it
+  std::size_t actuator_count_;
   Moment now_;
   Moment guard_now_;
 };

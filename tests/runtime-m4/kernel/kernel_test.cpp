@@ -26,11 +26,11 @@ TEST_CASE("threads run in the order of their ranks, equals in the order of their
   rig.add("t", Category::sensor, 1, body);
   rig.add("h", Category::sensor, 2, body);
   rig.add("!", Category::safety, 0, body);
-  CHECK(rig.names() == "!hcstl");
+  CHECK(rig.names() == "!chstl");
   for (std::size_t rank = 0; rank < 6; ++rank)
     CHECK(rig.kernel.threads()[rank]->rank() == rank);
   rig.kernel.run();
-  CHECK(rig.log == "! h c s t l");
+  CHECK(rig.log == "! c h s t l");
 }
 
 TEST_CASE("a signal to a higher thread runs it at once, to a lower one later") {

@@ -13,9 +13,9 @@ constexpr Events kGo = 1;
 constexpr std::int16_t kPriority = 60;
 
 // By rank: high, middle, between, low.
-constexpr auto kHigh = Category::control;
-constexpr auto kMiddle = Category::behavior;
-constexpr auto kBetween = Category::processing;
+constexpr auto kHigh = Category::behavior;
+constexpr auto kMiddle = Category::processing;
+constexpr auto kBetween = Category::algorithm;
 constexpr auto kLow = Category::sensor;
 
 Mutex of_high{kHigh};

@@ -44,7 +44,7 @@ TEST_CASE("without a program there is a safety thread and nothing to feed") {
   CHECK(rig.feed(0, 1) == link::FeedError::no_program);
 }
 
-TEST_CASE("a program gets a thread for each part of it, ranked as the paper says") {
+TEST_CASE("a program gets a thread for each part of it, each in its rank") {
   Rig rig;
   REQUIRE(rig.activate(test::compile(
                            test::high_and_low(test::when_far("MOVE a"), test::when_near("MOVE b")),
@@ -53,8 +53,8 @@ TEST_CASE("a program gets a thread for each part of it, ranked as the paper says
   std::string order;
   for (const kernel::Thread* thread : rig.kernel.threads())
     order += std::string(thread->name()) + ":" + std::to_string(thread->priority().now) + " ";
-  // Priority(T) = max over the behaviours that need T; then control, behaviour, processing, sensor.
-  CHECK(order == "safety:0 a:20 high:20 step:20 feeds:20 b:10 low:10 ");
+  // Actuators first; Priority(T) = max over the behaviours that need T; then behaviour, processing, sensor.
+  CHECK(order == "safety:0 a:20 b:10 high:20 step:20 feeds:20 low:10 ");
 }
 
 TEST_CASE("a new program takes the place of the running one, and the safety thread goes on") {
