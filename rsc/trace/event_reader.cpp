@@ -185,6 +185,11 @@ std::string EventReader::word_name() const {
   });
   return filled_in(written_word(), values);
 }
+bool EventReader::is_carried_out() const {
+  bool known = event_.kind == link::EventKind::command;
+  for_each_param([&](std::size_t, vm::Value given) { known = known && given != vm::kUnknown; });
+  return known;
+}
 std::string EventReader::thread_name() const {
   return event_.subject < names_.threads.size() ? names_.threads[event_.subject]
                                                 : fmt::format("thread {}", event_.subject);

@@ -95,6 +95,8 @@ public:
   // The unit in which robot.json gives it; null when that is not known.
   const compiler::Unit* unit_of(vm::Param param) const;
 
+  // Is it a command, and one that its actuator does: none that says an unknown value.
+  bool is_carried_out() const;
   // Calls use(parameter, value) for each parameter of a command.
   template <typename Use>
   void for_each_param(Use use) const {

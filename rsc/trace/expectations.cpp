@@ -88,8 +88,9 @@ public:
   }
 
   std::optional<std::string> judge(const ExpectedSilence&) const {
-    const link::Event* const found = find(
-        [](const link::Event& event, const Playback&) { return event.kind == EventKind::command; });
+    const link::Event* const found = find([this](const link::Event& event, const Playback&) {
+      return EventReader(event, names_).is_carried_out();
+    });
     if (found == nullptr) return std::nullopt;
     return fmt::format("there was a command at {}: {}", seconds_text(found->time_us),
                        trace_words(*found, names_));
@@ -194,9 +195,8 @@ private:
 
   bool is_command(const link::Event& event, const Playback& playback, const std::string& actuator,
                   const ExpectedCommand& expected) const {
-    if (event.kind != EventKind::command) return false;
     const EventReader reader(event, names_);
-    if (reader.actuator_name() != actuator ||
+    if (!reader.is_carried_out() || reader.actuator_name() != actuator ||
         !compiler::ascii::same(reader.verb_name(), expected.verb) ||
         (!expected.word.empty() && !compiler::ascii::same(reader.word_name(), expected.word))) {
       return false;

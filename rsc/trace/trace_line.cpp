@@ -29,7 +29,7 @@ std::string command_words(const EventReader& reader) {
     if (spelling.empty() || reader.is_said(param)) return;  // its word says it
     text += fmt::format(" {} {}", spelling, reader.shown(param, given));
   });
-  return text;
+  return reader.is_carried_out() ? text : text + " (not done: a value is unknown)";
 }
 
 // Only a rule with ELSE has two sides to tell apart.
