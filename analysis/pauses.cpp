@@ -58,7 +58,7 @@ Pauses pauses_of(const vm::Image& image, const vm::Behavior& behavior, const vm:
         pauses.least_ms = 1;
         ++pauses.at_once;
         again[at] = waited[at] + 1;
-        if (walk.cells()[vm::operand_a(code[at])].low <= 0)
+        if (pauses.line == Pauses::kNoLine && walk.cells()[vm::operand_a(code[at])].low <= 0)
           pauses.line = line_of(image, response.start + at);
       }
     }
