@@ -10,13 +10,13 @@ namespace {
 std::vector<Contributor> loads_of(const TaskSet& set, Instructions per_ms) {
   std::vector<Contributor> loads;
   const auto add = [&](const std::string& name, Instructions cost, Instructions period) {
-    loads.push_back({name, cost * per_ms / period});
+    add_share(loads, name, cost * per_ms / period);
   };
   for (const Source& source : set.sources)
     add(source.name, source.sample + source.step, source.period);
   for (const Firing& rule : set.firings)
-    loads.push_back({rule.name, static_cast<Instructions>(utilization(set, rule) *
-                                                          static_cast<double>(per_ms))});
+    add_share(loads, rule.name,
+              static_cast<Instructions>(utilization(set, rule) * static_cast<double>(per_ms)));
   for (const Interference& one : set.interferences)
     add(one.name, one.cost, one.period);
   std::ranges::stable_sort(loads, std::ranges::greater{}, &Contributor::cost);
@@ -67,6 +67,7 @@ ResponseReport response_report(const vm::Image& image, const policy::BoardCosts&
   report.instructions_per_ms = board.instructions_per_ms();
   report.utilization = utilization(base);
   report.adapts = cap > 0;
+  report.short_wait = base.short_wait;
   report.loads = loads_of(base, report.instructions_per_ms);
   if (depth == Depth::until_refused && report.utilization > 1) return report;
   const TaskSet adapted = cap > 0 ? task_set_of(image, board, module_cost, cap) : TaskSet{};

@@ -29,7 +29,8 @@ struct ResponseReport {
   double utilization = 0;
   bool adapts = false;
   std::vector<PathTiming> paths;
-  std::vector<Contributor> loads;  // for each millisecond, the largest first
+  std::vector<Contributor> loads;          // for each millisecond, the largest first
+  unsigned short_wait = TaskSet::kNoWait;  // as there
   [[nodiscard]] bool schedulable() const;
   // Rounded up.
   [[nodiscard]] Instructions microseconds(Instructions instructions) const;

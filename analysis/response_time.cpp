@@ -227,9 +227,8 @@ private:
 
   std::vector<Contributor> contributors(const Window& window) const {
     std::vector<Contributor> list{{"a step that is under way, or a lock", blocking_}};
-    each_share(window, [&](const std::string& name, Instructions cost) {
-      list.push_back({name, cost});
-    });
+    each_share(window,
+               [&](const std::string& name, Instructions cost) { add_share(list, name, cost); });
     std::erase_if(list, [](const Contributor& one) { return one.cost == 0; });
     std::ranges::stable_sort(list, std::ranges::greater{}, &Contributor::cost);
     return list;
@@ -299,6 +298,14 @@ void settle(TaskSet& set, Priorities priorities) {
   }
   for (Source& source : set.sources)
     if (source.follows != Source::kNone) source.jitter = kForeverLate;
+}
+
+void add_share(std::vector<Contributor>& shares, const std::string& name, Instructions cost) {
+  const auto same = std::ranges::find(shares, name, &Contributor::name);
+  if (same == shares.end())
+    shares.push_back({name, cost});
+  else
+    same->cost += cost;
 }
 
 double utilization(const TaskSet& set, const Firing& rule) {

@@ -70,6 +70,10 @@ struct TaskSet {
   Instructions lost = 0;  // of a rule that fires and loses; no firing costs less
   std::vector<Interference> interferences;
   Instructions longest_lock = 0;  // the longest critical section of a thread below them
+  // Line of a WAIT that may take no time, for which a source comes as often as that; 0: the line is
+  // not known.
+  static constexpr unsigned kNoWait = ~0U;
+  unsigned short_wait = kNoWait;
 };
 
 enum class Priorities : std::uint8_t {
@@ -82,6 +86,9 @@ struct Contributor {
   std::string name;
   Instructions cost = 0;
 };
+
+// What has one name is one thing for who reads of it.
+void add_share(std::vector<Contributor>& shares, const std::string& name, Instructions cost);
 
 struct ResponseTime {
   Instructions time = 0;  // from the release of the source to the command; when unbounded, so far

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "analysis/costs.hpp"
-#include "runtime-m4/policy/rules.hpp"
 #include "vm/opcode.hpp"
 
 namespace robosync::analysis {
@@ -11,7 +10,6 @@ namespace {
 
 using vm::Effect;
 using vm::Flow;
-using vm::Opcode;
 
 const vm::OpcodeInfo& info_of(vm::Word word) {
   return vm::info_of(vm::opcode_of(word));
@@ -51,22 +49,6 @@ std::vector<Instructions> turns_of(const vm::Image& image, std::span<const vm::W
   return turns;
 }
 
-// In milliseconds; a wait of a length that is worked out may be as short as one.
-std::uint32_t wait_ms(const vm::Image& image, std::span<const vm::Word> code, std::size_t at) {
-  const std::uint8_t cell = vm::operand_a(code[at]);
-  for (std::size_t i = at; i-- > 0;) {
-    if (vm::operand_a(code[i]) != cell) continue;
-    if (vm::opcode_of(code[i]) != Opcode::load) return 1;
-    return static_cast<std::uint32_t>(std::max(image.constants[vm::operand_wide(code[i])], 1));
-  }
-  return 1;
-}
-
-void note_pause(ResponseWork& work, std::uint32_t ms) {
-  work.pauses = true;
-  work.shortest_wait_ms = work.shortest_wait_ms == 0 ? ms : std::min(work.shortest_wait_ms, ms);
-}
-
 // What stands between two pauses: one step does it.
 struct Part {
   explicit Part(std::size_t actuators) : commands(actuators), busy(actuators) {}
@@ -89,7 +71,7 @@ public:
     for (std::size_t i = 0; i < code_.size(); ++i) {
       take(i, turns[i]);
       if (pauses(code_[i])) end_part();
-      if (work_.pauses && is_loop_end(code_[i])) go_round(i, turns);
+      if (paused_ && is_loop_end(code_[i])) go_round(i, turns);
     }
     end_part();
     limit();
@@ -118,7 +100,7 @@ private:
 
   void take(std::size_t at, Instructions turns) {
     const vm::Word word = code_[at];
-    note_flow(at);
+    note_flow(word);
     switch (info_of(word).effect) {
       case Effect::command:
         work_.follows = work_.follows || follows(word);
@@ -140,20 +122,15 @@ private:
     }
   }
 
-  // A pause that reads a duration lasts as long as that; any other may be over when the step thread
-  // looks again.
-  void note_flow(std::size_t at) {
-    const vm::OpcodeInfo& info = info_of(code_[at]);
-    if (!vm::always_pauses(info.flow)) return;
-    if (info.flow == Flow::poll_begin) work_.polls = true;
-    const bool timed = info.operands[0] == vm::Operand::read;
-    note_pause(work_, timed ? wait_ms(image_, code_, at) : policy::kSetpointPeriodMs);
+  void note_flow(vm::Word word) {
+    paused_ = paused_ || pauses(word);
+    if (info_of(word).flow == Flow::poll_begin) work_.polls = true;
   }
 
   void set(std::size_t input, Instructions turns) {
     part_.other += turns * costs::kSet;
     work_.sets.set(input);
-    if (work_.pauses) work_.later_sets.set(input);
+    if (paused_) work_.later_sets.set(input);
   }
 
   // Of the next command. Nobody knows what a computed one comes to: the order may be void.
@@ -222,16 +199,20 @@ private:
   std::span<const vm::Word> code_;
   ResponseWork work_;
   Part part_;
+  bool paused_ = false;
   bool takes_time_ = true;  // the next command, as far as its parameters say
 };
 
 }  // namespace
 
-ResponseWork work_of(const vm::Image& image, const vm::Behavior& behavior, std::uint16_t response) {
+ResponseWork work_of(const vm::Image& image, const vm::Behavior& behavior, std::uint16_t response,
+                     const Ranges& inputs) {
   ResponseWork nothing;
   nothing.by_actuator.resize(image.actuators.size());
   if (response == vm::kNoIndex) return nothing;
-  return Reader(image, behavior, image.responses[response]).read();
+  ResponseWork work = Reader(image, behavior, image.responses[response]).read();
+  work.pauses = pauses_of(image, behavior, image.responses[response], inputs);
+  return work;
 }
 
 }  // namespace robosync::analysis

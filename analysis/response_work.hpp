@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "analysis/pauses.hpp"
 #include "analysis/response_time.hpp"
 #include "vm/image.hpp"
 
@@ -18,15 +19,14 @@ struct ResponseWork {
   Instructions other = 0;                 // all but its commands
   std::vector<Instructions> by_actuator;  // its commands
   Inputs sets;
-  Inputs later_sets;  // … after a pause
-  bool pauses = false;
-  bool follows = false;                // FOLLOW: may command whenever it looks
-  bool polls = false;                  // WAIT UNTIL: looks again whenever something changes
-  std::uint32_t shortest_wait_ms = 0;  // 0: it does not pause
+  Inputs later_sets;     // … after a pause
+  bool follows = false;  // FOLLOW: may command whenever it looks
+  bool polls = false;    // WAIT UNTIL: looks again whenever something changes
+  Pauses pauses;
 };
 
-// `response`: its index, or vm::kNoIndex.
+// `response`: its index, or vm::kNoIndex; `inputs`: what they may be, by number.
 [[nodiscard]] ResponseWork work_of(const vm::Image& image, const vm::Behavior& behavior,
-                                   std::uint16_t response);
+                                   std::uint16_t response, const Ranges& inputs);
 
 }  // namespace robosync::analysis

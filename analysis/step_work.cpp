@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "analysis/costs.hpp"
+#include "analysis/variable_ranges.hpp"
+#include "analysis/walk.hpp"
 #include "runtime-m4/policy/concern.hpp"
 #include "runtime-m4/policy/rules.hpp"
 #include "runtime-m4/policy/threads.hpp"
@@ -51,20 +53,19 @@ ResponseWork worst_of(const ResponseWork& a, const ResponseWork& b) {
                     .by_actuator = a.by_actuator,
                     .sets = a.sets | b.sets,
                     .later_sets = a.later_sets | b.later_sets,
-                    .pauses = a.pauses || b.pauses,
                     .follows = a.follows || b.follows,
                     .polls = a.polls || b.polls,
-                    .shortest_wait_ms = std::min(a.shortest_wait_ms, b.shortest_wait_ms)};
+                    .pauses = a.pauses};
+  both.pauses.note(b.pauses);
   for (std::size_t i = 0; i < both.by_actuator.size(); ++i)
     both.by_actuator[i] = std::max(a.by_actuator[i], b.by_actuator[i]);
-  if (both.shortest_wait_ms == 0)
-    both.shortest_wait_ms = std::max(a.shortest_wait_ms, b.shortest_wait_ms);
   return both;
 }
 
 }  // namespace
 
-StepWork::StepWork(const vm::Image& image) : image_(image), costs_(image.rules.size()) {
+StepWork::StepWork(const vm::Image& image)
+    : image_(image), costs_(image.rules.size()), ranges_(ranges_of_inputs(image)) {
   if (!vm::rule_costs(image, costs_)) costs_.assign(costs_.size(), {});  // it is verified
   behavior_of_.resize(image.rules.size());
   condition_reads_.resize(image.rules.size());
@@ -102,8 +103,8 @@ void StepWork::load_rule(unsigned r, const vm::Behavior& behavior) {
       note_held(r, static_cast<std::uint32_t>(image_.timers[vm::operand_c(word)].duration));
     if (vm::info_of(op).effect == vm::Effect::division) divides_[r] = true;
   }
-  worst_[r] = worst_of(work_of(image_, behavior, rule.then_response),
-                       work_of(image_, behavior, rule.else_response));
+  worst_[r] = worst_of(work_of(image_, behavior, rule.then_response, ranges_),
+                       work_of(image_, behavior, rule.else_response, ranges_));
   sets_[r] = worst_[r].sets;
 }
 
@@ -199,7 +200,7 @@ Instructions StepWork::firing(unsigned rule) const {
 }
 
 Instructions StepWork::by_itself(unsigned rule) const {
-  const Instructions goes_on = worst_[rule].pauses ? costs::kGoOn + output(rule) : 0;
+  const Instructions goes_on = worst_[rule].pauses.any() ? costs::kGoOn + output(rule) : 0;
   const bool starts = wants_on(rule) || image_.rules[rule].kind == RuleKind::every;
   return std::max(goes_on, starts ? firing(rule) : 0);
 }
@@ -296,7 +297,7 @@ Instructions StepWork::running() const {
     for (const std::uint16_t side : {image_.rules[r].then_response, image_.rules[r].else_response})
       if (side != vm::kNoIndex && image_.responses[side].actuators != 0)
         left.push_back(image_.responses[side].actuators);
-    if (actuators({r}) == 0 && worst_[r].pauses) ++count;
+    if (actuators({r}) == 0 && worst_[r].pauses.any()) ++count;
   }
   for (; !left.empty(); ++count) {
     const unsigned most = most_wanted(left);
@@ -343,29 +344,26 @@ Instructions StepWork::trips() const {
 
 // --- what is due by itself ---
 
-// The time of an EVERY, or the shortest that RANDOM gives; one that is worked out otherwise may be
-// as short as a millisecond.
+// As often as the least number that the code of an EVERY may come to.
 std::uint32_t StepWork::every_ms(unsigned r) const {
   const vm::Rule& rule = image_.rules[r];
   const auto code = image_.code.subspan(rule.condition_start, rule.condition_length);
-  const bool drawn = code.size() == 4 && vm::opcode_of(code[2]) == Opcode::random;
-  if (code.size() != 2 && !drawn) return 1;
-  vm::Value least = vm::kValueMax;
-  for (const vm::Word word : code.first(drawn ? 2 : 1)) {
-    if (vm::opcode_of(word) != Opcode::load) return 1;
-    least = std::min(least, image_.constants[vm::operand_wide(word)]);
-  }
-  return policy::period_ms(least);
+  Interval period;
+  for (Walk walk(image_, image_.behaviors[behavior_of_[r]], code, ranges_); walk.next(); walk.run())
+    if (vm::info_of(vm::opcode_of(walk.word())).flow == vm::Flow::end)
+      period = walk.cells()[vm::operand_a(walk.word())];
+  return policy::period_ms(period.low);
 }
 
-std::uint32_t StepWork::period_ms(unsigned r) const {
+Pauses StepWork::turns(unsigned r) const {
   const RuleKind kind = image_.rules[r].kind;
-  if (is_safety(r)) return 0;
-  if (kind == RuleKind::every)
-    return worst_[r].pauses ? std::min(every_ms(r), worst_[r].shortest_wait_ms) : every_ms(r);
-  if (worst_[r].pauses) return worst_[r].shortest_wait_ms;
-  if (!wants_on(r) || (kind == RuleKind::when_else && !may_lose(r))) return 0;
-  return kind != RuleKind::while_ || actuators({r}) != 0 ? policy::kSetpointPeriodMs : 1;
+  if (is_safety(r)) return {};
+  Pauses turns = worst_[r].pauses;
+  if (kind == RuleKind::every) turns.note(every_ms(r));
+  if (turns.any() || !wants_on(r) || (kind == RuleKind::when_else && !may_lose(r))) return turns;
+  const bool at_once = kind == RuleKind::while_ && actuators({r}) == 0;
+  turns.note(at_once ? 1 : policy::kSetpointPeriodMs);
+  return turns;
 }
 
 }  // namespace robosync::analysis

@@ -43,7 +43,7 @@ public:
   // … when it goes on after a pause, or starts because of nothing but the time.
   [[nodiscard]] Instructions by_itself(unsigned rule) const;
   // It fires when its condition becomes true, and for nothing else: never twice without being
-  // evaluated as false between. A WHILE also starts again, which period_ms() is about.
+  // evaluated as false between. A WHILE also starts again, which turns() is about.
   [[nodiscard]] bool alternates(unsigned rule) const;
   // It fires once, and then not before this is over: FOR as its last word; 0: not known.
   [[nodiscard]] std::uint32_t gap_ms(unsigned rule) const;
@@ -69,9 +69,9 @@ public:
   [[nodiscard]] bool fires_after_event(unsigned rule) const;
   // The shortest time between two evaluations that a FOR asks for; 0: it has none.
   [[nodiscard]] std::uint32_t held_ms(unsigned rule) const { return held_ms_[rule]; }
-  // The shortest time between two turns of a response that waits or a rule that starts again, and
-  // of an EVERY; 0: the rule is never due by itself again and again.
-  [[nodiscard]] std::uint32_t period_ms(unsigned rule) const;
+  // How often a response that waits goes on, a rule starts again, an EVERY comes round; not any():
+  // the rule is never due by itself again and again.
+  [[nodiscard]] Pauses turns(unsigned rule) const;
 
 private:
   [[nodiscard]] vm::Word last_word(unsigned rule) const;
@@ -93,6 +93,7 @@ private:
 
   const vm::Image& image_;
   std::vector<vm::RuleCost> costs_;
+  Ranges ranges_;
   std::vector<unsigned> behavior_of_;
   std::vector<Inputs> condition_reads_;  // by rule
   std::vector<Inputs> reads_;            // … and its responses

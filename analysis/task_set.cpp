@@ -44,7 +44,7 @@ public:
     for (unsigned s = 0; s < image_.sensors.size(); ++s)
       vm::is_served(image_.sensors[s].driver) ? add_served(s) : add_sensor(s);
     for (unsigned r = 0; r < image_.rules.size(); ++r) {
-      if (work_.period_ms(r) != 0) add_rule(r);
+      if (work_.turns(r).any()) add_turns(r);
       if (work_.held_ms(r) != 0 && !work_.is_safety(r)) add_held(r);
     }
     add_fading();
@@ -350,12 +350,22 @@ private:
               fires ? Rules{r} : Rules{}, work_.sets({r}));
   }
 
-  void add_rule(unsigned r) {
+  void add_turns(unsigned r) {
+    const Pauses turns = work_.turns(r);
+    const bool apart = turns.better_apart();
+    if (!apart || turns.others_ms != Pauses::kNever)
+      add_rule(r, apart ? turns.others_ms : turns.least_ms);
+    for (unsigned i = 0; apart && i < turns.at_once; ++i)
+      add_rule(r, turns.again_ms);
+    const bool often = !apart || turns.again_ms <= policy::kSetpointPeriodMs;
+    if (often && set_.short_wait == TaskSet::kNoWait) set_.short_wait = turns.line;
+  }
+
+  void add_rule(unsigned r, std::uint32_t period_ms) {
     // A response that goes on evaluates nothing.
     const bool evaluated = image_.rules[r].kind == vm::RuleKind::every;
-    add_timed(fmt::format("{}, by itself", name_of(r)), work_.period_ms(r),
-              evaluated ? Rules{r} : Rules{}, {}, {r},
-              evaluated ? work_.sets({r}) : work_.later_sets(r));
+    add_timed(fmt::format("{}, by itself", name_of(r)), period_ms, evaluated ? Rules{r} : Rules{},
+              {}, {r}, evaluated ? work_.sets({r}) : work_.later_sets(r));
     // What it says of triggers does not hold for what goes on.
     auto& triggers = triggered_by_[r];
     goes_on_[r].push_back(std::exchange(by_itself_, 0));

@@ -37,6 +37,23 @@ std::string first_of(const std::vector<Contributor>& contributors) {
   return text;
 }
 
+std::string share_text(const PathTiming& path, const ResponseTime& response) {
+  if (!response.bounded) return fmt::format("{:>8} %", "> 100");
+  return fmt::format("{:>8.1f} %", kPercent * path.share(response));
+}
+
+// Where a WAIT is the reason, no sensor is.
+std::string mend_of(const ResponseReport& report) {
+  if (report.short_wait == analysis::TaskSet::kNoWait)
+    return "give a sensor a lower rate in robot.json, let rules run less often or fewer read it, "
+           "or "
+           "make those that cost most cheaper";
+  return fmt::format(
+      "{} may be 0 s, as far as can be said here: write a number, RANDOM of numbers or MAX(1s, a "
+      "variable), or a WAIT 1s before it",
+      report.short_wait == 0 ? "a WAIT" : fmt::format("the WAIT at line {}", report.short_wait));
+}
+
 std::string late_text(const ResponseReport& report, const PathTiming& path) {
   const ResponseTime& worst = worst_of(path);
   const std::string name = fmt::format("{} -> {}", path.sensor, path.actuator);
@@ -60,10 +77,9 @@ std::string response_text(const ResponseReport& report) {
                         "at most", "us", "every us", "share");
   for (const PathTiming& path : report.paths) {
     const ResponseTime& worst = worst_of(path);
-    text += fmt::format("        {:<36}{}{:>10}{:>8.1f} %\n",
-                        fmt::format("{} -> {}", path.sensor, path.actuator),
-                        time_text(report, path.base), report.microseconds(path.period),
-                        kPercent * path.share(worst));
+    text += fmt::format(
+        "        {:<36}{}{:>10}{}\n", fmt::format("{} -> {}", path.sensor, path.actuator),
+        time_text(report, path.base), report.microseconds(path.period), share_text(path, worst));
     if (report.adapts)
       text += fmt::format("        {:<36}{}\n", "  … others adapted to P_max",
                           time_text(report, path.adapted));
@@ -109,10 +125,7 @@ Overload overload_of(const ResponseReport& report) {
       overload.why.push_back(
           fmt::format("most of its {} instructions: {}", worst.time, first_of(worst.contributors)));
   }
-  overload.why.emplace_back(
-      "give a sensor a lower rate in robot.json, let rules run less often or fewer read it, or "
-      "make "
-      "those that cost most cheaper");
+  overload.why.push_back(mend_of(report));
   return overload;
 }
 

@@ -1,0 +1,24 @@
+// Between which values a number lies, whatever happens. An unknown is less than all that is known
+// (vm/value.hpp): what may be unknown begins there.
+#pragma once
+
+#include <span>
+
+#include "vm/image.hpp"
+
+namespace robosync::analysis {
+
+struct Interval {
+  vm::Value low = vm::kUnknown, high = vm::kValueMax;
+  [[nodiscard]] bool may_be_unknown() const { return low == vm::kUnknown; }
+  bool operator==(const Interval&) const = default;
+};
+
+[[nodiscard]] Interval hull(Interval a, Interval b);
+// What it is once it is known.
+[[nodiscard]] Interval known(Interval a);
+// What an instruction without blocks, waits or output writes into its cell A.
+[[nodiscard]] Interval result_of(const vm::Image& image, vm::Word word,
+                                 std::span<const Interval> cells);
+
+}  // namespace robosync::analysis

@@ -1,0 +1,63 @@
+// One pass over a code object: before each word, what the cells of the frame may hold on whichever
+// way it is reached, and how long the response has waited at least. Images must be verified: blocks
+// nest, jumps go ahead or around loops (vm/verify_blocks.hpp).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "analysis/interval.hpp"
+
+namespace robosync::analysis {
+
+using Ranges = std::array<Interval, std::size_t{2} * vm::kMaxInputs>;  // of inputs, by number
+
+// How long a pause takes at least: a WAIT as long as its number, and at least until the next step;
+// any other may be over when the step thread looks again.
+[[nodiscard]] std::uint32_t least_wait_ms(vm::Word word, std::span<const Interval> cells);
+// Does it write a number or a truth into its cell A?
+[[nodiscard]] bool writes(vm::Word word);
+
+class Walk {
+public:
+  Walk(const vm::Image& image, const vm::Behavior& behavior, std::span<const vm::Word> code,
+       const Ranges& inputs);
+
+  // Comes to the next word; false: there is none.
+  bool next();
+  // … and what is before it is run.
+  [[nodiscard]] std::size_t at() const { return at_; }
+  [[nodiscard]] vm::Word word() const { return code_[at_]; }
+  [[nodiscard]] std::span<const Interval> cells() const { return now_.cells; }
+  [[nodiscard]] std::uint64_t waited_ms() const { return now_.waited_ms; }
+  void run();
+
+private:
+  struct State {
+    void join(const State& other);
+    std::array<Interval, vm::kMaxCells + 1> cells;
+    std::uint64_t waited_ms = 0;
+  };
+  // How it is where a jump goes to; at 0: nowhere.
+  struct Coming {
+    std::size_t at = 0;
+    State state;
+  };
+  Coming& coming_to(std::size_t at);
+  void latch(bool also_as_it_was);
+  void jump(std::size_t words_ahead);
+  void begin_loop();
+
+  const vm::Image& image_;
+  std::span<const vm::Word> code_;
+  std::span<const std::uint8_t> numbers_;  // of its inputs
+  const Ranges& inputs_;
+  std::size_t at_ = static_cast<std::size_t>(-1);
+  State now_;
+  bool reached_ = true;                            // by the word before
+  std::array<Coming, vm::kMaxBlocks + 2> coming_;  // one for each open IF, and the ELSE to come
+};
+
+}  // namespace robosync::analysis
