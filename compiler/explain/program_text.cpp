@@ -181,7 +181,7 @@ private:
 
   void add(ActuatorNames& names, const ast::Rule& rule) const {
     const auto block = [&](const ast::Block& body) {
-      names.merge(actuators_of(body, defines_, robot_));
+      names.merge(actuators_of(body, program_, defines_, robot_));
     };
     if (const auto* when = std::get_if<ast::WhenRule>(&rule.node)) {
       block(when->then_block);

@@ -214,3 +214,20 @@ TEST_CASE("a DEFINE that runs itself is told and ends") {
   CHECK_THAT(told("WHEN a > 1 DO b\nEND\nDEFINE b\n  c\nEND\nDEFINE c\n  b\nEND"),
              Contains("do b (see DEFINE b)"));
 }
+
+TEST_CASE("PERFORM uses the actuators of its MOTION, and interrupts who has one of them") {
+  const std::string motion = "MOTION w OF arms, lamp\n  AT 1s 9deg -\nEND\n";
+  const std::string rules =
+      "BEHAVIOR arm PRIORITY 50\n  WHEN a > 1 DO PERFORM W 2 TIMES\n  END\nEND\n"
+      "BEHAVIOR shine PRIORITY 30\n  WHEN a > 2 DO MOVE left_arm TO 0deg\n  END\nEND\n";
+  const std::string robot = R"({
+    "sensors": [{"name": "a", "type": "VIRTUAL", "channels": {"X": {}}}],
+    "actuators": [{"name": "left_arm", "type": "VIRTUAL", "device": "joint", "range": ["0deg", "90deg"]},
+                  {"name": "right_arm", "type": "VIRTUAL", "device": "joint", "range": ["0deg", "90deg"]},
+                  {"name": "lamp", "type": "VIRTUAL", "device": "joint", "range": ["0deg", "90deg"]}],
+    "groups": {"arms": ["left_arm", "right_arm"]}})";
+  CHECK_THAT(told(motion + rules, robot), Contains("It uses lamp, left_arm and right_arm.\n"
+                                                   "  It interrupts shine (priority 30).\n"));
+  CHECK_THAT(told(motion + rules), Contains("priority 50:\n  It uses arms and lamp.\n"));
+  CHECK_THAT(told(rules), Contains("priority 50:\n  It uses W.\n"));
+}
