@@ -231,3 +231,9 @@ TEST_CASE("PERFORM uses the actuators of its MOTION, and interrupts who has one 
   CHECK_THAT(told(motion + rules), Contains("priority 50:\n  It uses arms and lamp.\n"));
   CHECK_THAT(told(rules), Contains("priority 50:\n  It uses W.\n"));
 }
+
+TEST_CASE("a LIST is one of texts or of numbers") {
+  CHECK_THAT(told("LIST n: 1, 2, 3\n"), Contains("n is a list of 3 numbers.\n"));
+  CHECK_THAT(told("LIST n: 1\n"), Contains("n is a list of 1 number.\n"));
+  CHECK_THAT(told("LIST n: \"a\", \"b\"\n"), Contains("n is a list of 2 texts.\n"));
+}
