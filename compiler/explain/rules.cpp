@@ -22,9 +22,13 @@ public:
     say(0, "As soon as that is no longer true:");
     body(*rule.else_block);
     say(kRuleIndent,
+    has_else_ = true;
         "Each side interrupts the other. At start, as soon as it is known which side is "
         "right, that side is done once.");
   }
+    say(kRuleIndent,
+        "If something more important is using what a side needs, that side is done as soon "
+        "as all of it is free, if it is still the right one.");
   void write(const ast::WhileRule& rule) {
     title(while_true(*rule.condition));
     body(rule.body);
@@ -59,7 +63,7 @@ public:
           "If it becomes true again while this is still going on, it starts again from "
           "the top.");
     }
-    if (modifiers.waiting) {
+    if (modifiers.waiting && !has_else_) {  // a side waits anyway, as long as it takes
       say(kRuleIndent,
           fmt::format("If something more important is using what it needs, it waits for "
                       "that, but at most {}.",
@@ -111,3 +115,6 @@ std::string safety_text(const ast::Safety& safety, const Defines& defines, std::
 }
 
 }  // namespace robosync::compiler::explain
+  bool has_else_ = false;
+  bool one_comparison_ = false;  // the condition is nothing else, but for its FOR
+  bool has_not_ = false;

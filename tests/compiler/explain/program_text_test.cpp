@@ -237,3 +237,13 @@ TEST_CASE("a LIST is one of texts or of numbers") {
   CHECK_THAT(told("LIST n: 1\n"), Contains("n is a list of 1 number.\n"));
   CHECK_THAT(told("LIST n: \"a\", \"b\"\n"), Contains("n is a list of 2 texts.\n"));
 }
+
+TEST_CASE("a side of a rule with ELSE waits as long as it takes, whatever WAITING says") {
+  for (const std::string waiting : {"", "WAITING 1s"}) {
+    const std::string text =
+        told("WHEN a > 1 " + waiting + " DO\n  SHOW face\nELSE\n  HIDE face\nEND");
+    CHECK_THAT(text, !Contains("at most 1s") &&
+                         Contains("that side is done as soon as all of it is free, if it is still "
+                                  "the right one.\n"));
+  }
+}
