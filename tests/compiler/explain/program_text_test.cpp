@@ -247,3 +247,18 @@ TEST_CASE("a side of a rule with ELSE waits as long as it takes, whatever WAITIN
                                   "the right one.\n"));
   }
 }
+
+TEST_CASE("a MARGIN belongs to the comparisons, and NOT turns round what they give") {
+  const auto margin = [](const std::string& condition) {
+    return told("WHEN " + condition + " MARGIN 10cm DO\n  SHOW face\nEND");
+  };
+  for (const char* const one : {"a < 50cm", "a < 50cm FOR 1s", "a IS BETWEEN 1cm AND 50cm"})
+    CHECK_THAT(margin(one), Contains("  Once true, it stays true until the value is 10cm back past "
+                                     "its limit, so that it does not flicker.\n"));
+  const std::string each =
+      "  Each comparison in it, once true, stays true until the value is 10cm back past its limit, "
+      "so that it does not flicker";
+  CHECK_THAT(margin("a < 50cm AND b < 3cm"), Contains(each + ".\n"));
+  for (const char* const turned : {"NOT (a < 50cm)", "a < 50cm AND NOT b"})
+    CHECK_THAT(margin(turned), Contains(each + "; NOT turns round what that gives.\n"));
+}
