@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <optional>
 
 #include "compiler/sema/commands.hpp"
@@ -187,14 +188,15 @@ private:
   }
 
   // A whole number that a step counts with.
-  std::optional<std::uint32_t> whole(const ast::Name& digits, std::uint32_t least) {
+  std::optional<std::uint32_t> whole(const ast::Name& digits, std::uint32_t least,
+                                     std::uint32_t most) {
     std::uint32_t number = 0;
     const char* const last = digits.text.data() + digits.text.size();
     const auto [end, error] = std::from_chars(digits.text.data(), last, number);
-    if (error == std::errc() && end == last && number >= least) return number;
+    if (error == std::errc() && end == last && number >= least && number <= most) return number;
     diagnostics_
-        .report(Code::E0509,
-                "this must be a whole number from " + std::to_string(least) + " to 4294967295")
+        .report(Code::E0509, "this must be a whole number from " + std::to_string(least) + " to " +
+                                 std::to_string(most))
         .label(digits.span);
     return std::nullopt;
   }
@@ -208,7 +210,8 @@ private:
       return;
     }
     std::optional<std::uint32_t> times;
-    if (node.times && !(times = whole(*node.times, 0))) return;
+    if (node.times && !(times = whole(*node.times, 0, std::numeric_limits<std::uint32_t>::max())))
+      return;
     const auto end = within(node.within);
     if (stopped && times) {
       diagnostics_.report(Code::E0409, "`STOPPED` is not counted").label(node.times->span);
@@ -261,7 +264,7 @@ private:
     if (test_.seed)
       diagnostics_.report(Code::E0011, "this TEST has a `SEED` already").label(span);
     else
-      test_.seed = whole(node.number, 1);
+      test_.seed = whole(node.number, 1, kMaxSeed);
   }
 
   void add(const ast::ExpectNothing& node, Span span) {
