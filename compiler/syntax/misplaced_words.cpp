@@ -57,6 +57,7 @@ public:
                               &MisplacedWords::resume_after,
                               &MisplacedWords::modifier_behind_do,
                               &MisplacedWords::start_alone,
+                              &MisplacedWords::start_modified,
                               &MisplacedWords::otherwise,
                               &MisplacedWords::more_than}) {
       if (auto edit = (this->*habit)()) return edit;
@@ -499,6 +500,20 @@ private:
     report(Code::E0008, "`AT` is missing before `START`", front)
         .fix(front, "AT ", Applicability::likely);
     return change(stop_, 0, {missing(Kinds::AT, stop_)});
+  }
+
+  // `AT START COOLDOWN 3s DO`
+  std::optional<Edit> start_modified() {
+    if (!is(before_, Kinds::START) ||
+        !is_one_of(tokens_[stop_].kind, {Kinds::COOLDOWN, Kinds::MARGIN, Kinds::RESTARTING,
+                                         Kinds::WAITING, Kinds::PRIORITY}))
+      return std::nullopt;
+    std::size_t last = stop_;
+    while (last < end_ && !is(last, Kinds::DO))
+      ++last;
+    report(Code::E0010, quote(stop_) + " does not go with AT START, which happens once",
+           span(stop_, last));
+    return change(stop_, last - stop_);
   }
 
   // `OTHERWISE SAY "y"`
