@@ -188,8 +188,9 @@ private:
   }
 
   // A whole number that a step counts with.
-  std::optional<std::uint32_t> whole(const ast::Name& digits, std::uint32_t least,
-                                     std::uint32_t most) {
+  std::optional<std::uint32_t> whole(
+      const ast::Name& digits, std::uint32_t least,
+      std::uint32_t most = std::numeric_limits<std::uint32_t>::max()) {
     std::uint32_t number = 0;
     const char* const last = digits.text.data() + digits.text.size();
     const auto [end, error] = std::from_chars(digits.text.data(), last, number);
@@ -210,8 +211,7 @@ private:
       return;
     }
     std::optional<std::uint32_t> times;
-    if (node.times && !(times = whole(*node.times, 0, std::numeric_limits<std::uint32_t>::max())))
-      return;
+    if (node.times && !(times = whole(*node.times, 0))) return;
     const auto end = within(node.within);
     if (stopped && times) {
       diagnostics_.report(Code::E0409, "`STOPPED` is not counted").label(node.times->span);
