@@ -54,6 +54,7 @@ target_sources(robosync_compiler PRIVATE
   syntax/keywords.cpp
   syntax/layout.cpp
   syntax/lexer_state.cpp
+  syntax/lost_heads.cpp
   syntax/misplaced_words.cpp
   syntax/missing.cpp
   syntax/parser.cpp
@@ -66,6 +67,7 @@ target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
 # What is said of a line that is wrong is worked out seldom, and is long: small code is worth more there.
 if(NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(
-    syntax/examples.cpp syntax/foreign_habits.cpp syntax/habits.cpp syntax/misplaced_words.cpp syntax/wording.cpp
+    syntax/examples.cpp syntax/foreign_habits.cpp syntax/habits.cpp syntax/lost_heads.cpp syntax/misplaced_words.cpp
+    syntax/wording.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
 endif()

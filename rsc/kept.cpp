@@ -85,7 +85,9 @@ void Kept::read() {
 
 void Kept::begin(std::size_t variable, const std::string& entry, const std::string& text) {
   try {
-    values_[variable] = parse_quantity(text, program_.image().variables[variable].dimension);
+    const compiler::Unit* const unit = unit_of(variable);
+    values_[variable] = parse_quantity(text, program_.image().variables[variable].dimension,
+                                       unit != nullptr ? unit->spelling : std::string_view());
   } catch (const std::invalid_argument& error) {
     fail(file_, fmt::format("`{}`: {}; give the REMEMBER another name, or begin anew with --fresh",
                             entry, error.what()));
@@ -94,13 +96,18 @@ void Kept::begin(std::size_t variable, const std::string& entry, const std::stri
                            shown(variable, values_[variable]), file_);
 }
 
+const compiler::Unit* Kept::unit_of(std::size_t variable) const {
+  const auto& units = program_.origin().units.variables;
+  const auto& name = program_.image().variables[variable].name;
+  const auto written = units.find(std::string(program_.image().string(name)));
+  return written == units.end() ? nullptr : written->second;
+}
+
 // In the unit of the program, if that says it exactly.
 std::string Kept::shown(std::size_t variable, vm::Value value) const {
   const vm::Variable& record = program_.image().variables[variable];
-  const auto& units = program_.origin().units.variables;
-  const auto written = units.find(std::string(program_.image().string(record.name)));
-  if (written != units.end() && written->second != nullptr) {
-    std::string text = compiler::format_value(value, *written->second);
+  if (const compiler::Unit* const unit = unit_of(variable); unit != nullptr) {
+    std::string text = compiler::format_value(value, *unit);
     if (parse_quantity(text, record.dimension) == value) return text;
   }
   return format_quantity(value, record.dimension);

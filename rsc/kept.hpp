@@ -34,6 +34,8 @@ public:
 private:
   void read();
   void begin(std::size_t variable, const std::string& entry, const std::string& text);
+  // In which the program writes the number; null: that is not known.
+  [[nodiscard]] const compiler::Unit* unit_of(std::size_t variable) const;
   [[nodiscard]] std::string shown(std::size_t variable, vm::Value value) const;
   [[nodiscard]] std::string entry_of(std::size_t variable) const;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -22,9 +23,24 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
+// "; write it as 20cm" for a number alone whose unit is certain: its own, or the only one that there is. Else the units
+// that fit, and no number: 20 may have been meant in any of them.
+std::string way_out(std::string_view number, vm::Dimension dimension, std::string_view own) {
+  std::vector<std::string_view> fitting;
+  for (const compiler::Unit& unit : compiler::units())
+    if (unit.dimension == dimension) fitting.push_back(unit.spelling);
+  if (fitting.front().empty()) return {};
+  if (own.empty() && fitting.size() == 1) own = fitting.front();
+  if (!number.empty() && !own.empty()) return fmt::format("; write it as {}{}", number, own);
+  const std::string_view last = fitting.back();
+  fitting.pop_back();
+  return fmt::format("; it takes a number with {}{}{}", fmt::join(fitting, ", "),
+                     fitting.empty() ? "" : " or ", last);
+}
+
 }  // namespace
 
-vm::Value parse_quantity(std::string_view text, vm::Dimension dimension) {
+vm::Value parse_quantity(std::string_view text, vm::Dimension dimension, std::string_view own) {
   const std::string_view whole = trim(text);
   const auto unit_at = std::ranges::find_if_not(whole, is_number_part);
   const auto digits = static_cast<std::size_t>(unit_at - whole.begin());
@@ -34,15 +50,12 @@ vm::Value parse_quantity(std::string_view text, vm::Dimension dimension) {
   if (spelling.starts_with(','))
     throw std::invalid_argument(fmt::format("`{}` has a comma: a decimal point is a point", text));
   const compiler::Unit* const unit = compiler::find_unit(spelling);
-  const compiler::Unit& canonical = compiler::canonical_unit(dimension);
   if (unit == nullptr) throw std::invalid_argument(fmt::format("there is no unit `{}`", spelling));
   if (unit->dimension != dimension) {
     throw std::invalid_argument(fmt::format(
         "`{}` is {}, but this is {}{}", text, compiler::dimension_phrase(unit->dimension),
         compiler::dimension_phrase(dimension),
-        canonical.spelling.empty()
-            ? ""
-            : fmt::format("; write it as {}{}", whole.substr(0, digits), canonical.spelling)));
+        way_out(spelling.empty() ? whole : std::string_view(), dimension, own)));
   }
   const std::optional<vm::Value> value = compiler::to_value(*number, *unit);
   if (!value) throw std::invalid_argument(fmt::format("`{}` is too large for the robot", text));

@@ -10,8 +10,10 @@
 namespace robosync::tool {
 
 // Throws std::invalid_argument with what is wrong: not a number, no such unit, a unit of another
-// dimension, or none where one is needed.
-[[nodiscard]] vm::Value parse_quantity(std::string_view text, vm::Dimension dimension);
+// dimension, or none where one is needed. `own`: the unit that robot.json or the program writes what is measured in, if
+// that is known, which a number without one may be offered.
+[[nodiscard]] vm::Value parse_quantity(std::string_view text, vm::Dimension dimension,
+                                       std::string_view own = {});
 
 [[nodiscard]] std::string format_quantity(vm::Value value, vm::Dimension dimension);
 

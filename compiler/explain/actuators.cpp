@@ -18,7 +18,8 @@ using Given = std::map<std::string, std::string>;  // names, by the parameter th
 
 class Walk {
 public:
-  Walk(const Defines& defines, const Robot* robot) : defines_(defines), robot_(robot) {}
+  Walk(const ast::Tree& program, const Defines& defines, const Robot* robot)
+      : program_(program), defines_(defines), robot_(robot) {}
 
   void block(const ast::Block& block) {
     for (const ast::Stmt& stmt : block)
@@ -32,6 +33,7 @@ private:
     for (const ast::Argument& argument : node.arguments) {
       const auto* const word = std::get_if<ast::Word>(&argument.value);
       if (word == nullptr || argument.preposition != ast::Preposition::none) continue;
+      if (ascii::same(node.verb.text, "PERFORM") && add_motion(word->name.text)) return;
       if (add(word->name.text)) return;
     }
     add_by_verb(node.verb.text);
@@ -96,6 +98,18 @@ private:
     return false;
   }
 
+  // All of its columns: PERFORM claims them at once.
+  bool add_motion(std::string_view name) {
+    for (const ast::Item& item : program_.items) {
+      const auto* const motion = std::get_if<ast::Motion>(&item.node);
+      if (motion == nullptr || !ascii::same(motion->name.text, name)) continue;
+      for (const ast::Name& column : motion->columns)
+        add(column.text);
+      return true;
+    }
+    return false;
+  }
+
   // SAY "…" names none: it is the one that knows the verb.
   void add_by_verb(std::string_view verb) {
     if (robot_ == nullptr) return;
@@ -108,6 +122,7 @@ private:
     }
   }
 
+  const ast::Tree& program_;
   const Defines& defines_;
   const Robot* robot_;
   Given given_;
@@ -126,8 +141,9 @@ bool share(const Party& a, const Party& b) {
 
 }  // namespace
 
-ActuatorNames actuators_of(const ast::Block& block, const Defines& defines, const Robot* robot) {
-  Walk walk(defines, robot);
+ActuatorNames actuators_of(const ast::Block& block, const ast::Tree& program,
+                           const Defines& defines, const Robot* robot) {
+  Walk walk(program, defines, robot);
   walk.block(block);
   return std::move(walk.names);
 }

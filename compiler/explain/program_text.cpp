@@ -1,6 +1,7 @@
 // May assume any tree of the parser. Promises the program's own order inside each part.
 #include "compiler/explain/program_text.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include <fmt/format.h>
@@ -94,7 +95,12 @@ private:
                        node.name.text);
   }
   static std::string remembered(const ast::List& node) {
-    return fmt::format("  {} is a list of {} texts.\n", node.name.text, node.items.size());
+    const std::size_t count = node.items.size();
+    const bool texts = std::ranges::any_of(node.items, [](const ast::Argument& item) {
+      return std::holds_alternative<ast::Text>(item.value);
+    });
+    return fmt::format("  {} is a list of {} {}{}.\n", node.name.text, count,
+                       texts ? "text" : "number", count == 1 ? "" : "s");
   }
   static std::string remembered(const ast::Feeling& node) {
     std::string text = fmt::format("  {} is a feeling from {} to {}, {} at first.", node.name.text,
@@ -181,7 +187,7 @@ private:
 
   void add(ActuatorNames& names, const ast::Rule& rule) const {
     const auto block = [&](const ast::Block& body) {
-      names.merge(actuators_of(body, defines_, robot_));
+      names.merge(actuators_of(body, program_, defines_, robot_));
     };
     if (const auto* when = std::get_if<ast::WhenRule>(&rule.node)) {
       block(when->then_block);

@@ -16,16 +16,22 @@ public:
       : defines_(defines), line_(line), indent_(indent) {}
 
   void write(const ast::WhenRule& rule) {
+    see(*rule.condition);
     title(as_soon_as(*rule.condition));
     body(rule.then_block);
     if (!rule.else_block) return;
     say(0, "As soon as that is no longer true:");
     body(*rule.else_block);
+    has_else_ = true;
     say(kRuleIndent,
         "Each side interrupts the other. At start, as soon as it is known which side is "
         "right, that side is done once.");
+    say(kRuleIndent,
+        "If something more important is using what a side needs, that side is done as soon "
+        "as all of it is free, if it is still the right one.");
   }
   void write(const ast::WhileRule& rule) {
+    see(*rule.condition);
     title(while_true(*rule.condition));
     body(rule.body);
     say(kRuleIndent,
@@ -46,9 +52,11 @@ public:
 
   void write(const ast::Modifiers& modifiers) {
     if (modifiers.margin) {
-      say(kRuleIndent, fmt::format("Once true, it stays true until the value is {} back past its "
-                                   "limit, so that it does not flicker.",
-                                   number(*modifiers.margin)));
+      say(kRuleIndent, fmt::format("{}nce true, {}stays true until the value is {} back past its "
+                                   "limit, so that it does not flicker{}.",
+                                   one_comparison_ ? "O" : "Each comparison in it, o",
+                                   one_comparison_ ? "it " : "", number(*modifiers.margin),
+                                   has_not_ ? "; NOT turns round what that gives" : ""));
     }
     if (modifiers.cooldown) {
       say(kRuleIndent, fmt::format("After it has started, it does not start again for {}.",
@@ -59,7 +67,7 @@ public:
           "If it becomes true again while this is still going on, it starts again from "
           "the top.");
     }
-    if (modifiers.waiting) {
+    if (modifiers.waiting && !has_else_) {  // a side waits anyway, as long as it takes
       say(kRuleIndent,
           fmt::format("If something more important is using what it needs, it waits for "
                       "that, but at most {}.",
@@ -68,6 +76,7 @@ public:
   }
 
   void write(const ast::Safety& safety) {
+    see(*safety.condition);
     const std::string condition = while_true(*safety.condition);
     say(0, fmt::format("{}, and also while it is not known:", condition));
     body(safety.body);
@@ -79,6 +88,20 @@ public:
   std::string text;
 
 private:
+  void see(const ast::Expr& condition) {
+    const auto* const held = std::get_if<ast::For>(&condition.node);
+    const auto& node = (held != nullptr ? *held->condition : condition).node;
+    one_comparison_ = std::holds_alternative<ast::Comparison>(node) ||
+                      std::holds_alternative<ast::IsBetween>(node);
+    has_not_ = has_not(condition);
+  }
+  static bool has_not(const ast::Expr& condition) {
+    if (const auto* const held = std::get_if<ast::For>(&condition.node))
+      return has_not(*held->condition);
+    const auto* const both = std::get_if<ast::Logic>(&condition.node);
+    if (both != nullptr) return has_not(*both->left) || has_not(*both->right);
+    return std::holds_alternative<ast::Not>(condition.node);
+  }
   static std::string lower_first(std::string words) {
     if (!words.empty() && words.front() == 'A') words.front() = 'a';
     return words;
@@ -92,6 +115,9 @@ private:
   const Defines& defines_;
   std::size_t line_;
   std::size_t indent_;
+  bool has_else_ = false;
+  bool one_comparison_ = false;  // the condition is nothing else, but for its FOR
+  bool has_not_ = false;
 };
 
 }  // namespace

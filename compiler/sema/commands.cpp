@@ -466,6 +466,16 @@ std::optional<ir::Command> Commands::for_actuator(std::size_t actuator, const as
     good = false;
     if (!one.is_number && !one.text) break;  // an unknown word: what follows is part of it
   }
+  if (good && verb->action == vm::Action::move && is_given(result, vm::Param::at) &&
+      is_given(result, vm::Param::over)) {
+    const auto over = std::ranges::find(given, vm::Param::over, &Given::param);
+    diagnostics.report(Code::E0505, "how fast this goes is given twice")
+        .label(over != given.end() ? over->argument->span : command.verb.span)
+        .helps(
+            "`OVER` says how long the way takes, `AT` and words such as SLOWLY how fast it is: "
+            "leave one of them out");
+    good = false;
+  }
   if (!good) return std::nullopt;
   return result;
 }

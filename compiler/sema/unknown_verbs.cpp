@@ -77,8 +77,22 @@ bool Commands::calls_define(const ast::Command& command) {
   return true;
 }
 
-// `PRINT "here"`
+// `PRINT "here"`, `RESET idle`
 bool Commands::is_foreign(const ast::Command& command) {
+  const ast::Word* const first = first_word(command);
+  const VariableName* const reset = first != nullptr && same_name("RESET", command.verb.text)
+                                        ? names_.find_variable(first->name.text)
+                                        : nullptr;
+  if (reset != nullptr) {
+    const bool timer = reset->kind == vm::VariableKind::timer;
+    Diagnostic& d = diagnostics_
+                        .report(Code::E0501, "there is no verb " + command.verb.shown() + ": " +
+                                                 (timer ? "a TIMER begins at 0 again with RESTART"
+                                                        : "a variable has a new value with SET"))
+                        .label(command.verb.span);
+    if (timer) d.fix(command.verb.span, "RESTART", Applicability::likely);
+    return true;
+  }
   for (const ForeignVerb& foreign : kForeignVerbs) {
     if (!same_name(foreign.spelling, command.verb.text)) continue;
     diagnostics_.report(Code::E0501, "there is no verb " + command.verb.shown())

@@ -204,6 +204,12 @@ void give_way(const std::vector<vm::Band>& earlier, vm::Band& band) {
   }
 }
 
+// What is fed, or no sensor at all, has none that could be lower.
+bool has_rate(const Typed& input, const Names& names) {
+  return input.code.operation == Operation::input &&
+         names.channel(input.code.channel).period_ms != 0;
+}
+
 std::uint16_t sample_period(const Typed& input, const Names& names) {
   if (input.code.operation != Operation::input) return vm::kFadeTickMs;
   const std::uint16_t period = names.channel(input.code.channel).period_ms;
@@ -314,7 +320,7 @@ void Variables::smooth(const ast::Check& node, const Typed& input, ir::Check& re
       .label(node.smooth->span)
       .label(input.span, "a sample every " + format_value(period, second), false)
       .helps("smooth over at most " + format_value(period * vm::kMaxWindow, second) +
-             ", or give the sensor a lower rate");
+             (has_rate(input, names_) ? ", or give the sensor a lower rate" : ""));
 }
 
 }  // namespace robosync::compiler

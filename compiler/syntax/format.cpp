@@ -25,12 +25,17 @@ bool is_spaced(TokenKind kind) {
   return is_relation(kind) || is_one_of(kind, {Kinds::PLUS, Kinds::STAR, Kinds::SLASH});
 }
 
+// A word that calculates or decides, as an operator does.
+bool is_word_between(TokenKind kind) {
+  return is_one_of(kind, {Kinds::AND, Kinds::OR, Kinds::MOD});
+}
+
 // Between two words of a line, of which the writer had put something in between, or nothing.
 bool is_space_between(TokenKind left, TokenKind right, bool written) {
   if (is_one_of(right, {Kinds::COMMA, Kinds::CLOSE, Kinds::COLON}) || left == Kinds::OPEN)
     return false;
   return written || is_one_of(left, {Kinds::COMMA, Kinds::COLON}) || is_spaced(left) ||
-         is_spaced(right);
+         is_spaced(right) || left == Kinds::CLOSE || is_word_between(left);
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -123,6 +128,17 @@ bool begins_cell(Table table, const Tokens& tokens, std::size_t at) {
   const bool signed_number =
       tokens[at - 1].kind == Kinds::MINUS && touch(tokens[at - 1], tokens[at]);
   return table == Table::motion && at > 1 && !signed_number;
+}
+
+// A minus that takes away from what stands in front of it, and is no sign: as it is written, but inside of brackets,
+// where no two values stand side by side.
+bool is_operator(Table table, const Tokens& tokens, std::size_t at, int depth) {
+  if (tokens[at].kind != Kinds::MINUS || at == 0 || at + 1 == tokens.size() ||
+      (table == Table::motion && depth == 0))
+    return false;
+  const Token& left = tokens[at - 1];
+  return is_one_of(left.kind, {Kinds::CLOSE, Kinds::QUANTITY, Kinds::NAME}) &&
+         (depth > 0 || touch(left, tokens[at]) || !touch(tokens[at], tokens[at + 1]));
 }
 
 class Formatter {
@@ -238,7 +254,9 @@ private:
       if (depth == 0 && begins_cell(table, tokens, i)) {
         cells.emplace_back(text_of(right));
       } else {
-        if (is_space_between(left.kind, right.kind, !touch(left, right))) cells.back() += ' ';
+        if (is_space_between(left.kind, right.kind, !touch(left, right)) ||
+            is_operator(table, tokens, i, depth) || is_operator(table, tokens, i - 1, depth))
+          cells.back() += ' ';
         cells.back() += text_of(right);
       }
       depth += (right.kind == Kinds::OPEN ? 1 : 0) - (right.kind == Kinds::CLOSE ? 1 : 0);

@@ -215,7 +215,24 @@ private:
     if (end == tokens_.size() || !rule) return std::nullopt;
     report(Code::E0001, "ELSE IF belongs to an IF; a rule has one ELSE", tokens_[stop_].span)
         .helps("write two rules, or `ELSE` and an IF with its own END");
-    return change(stop_, end - stop_ + 1, {{Kinds::ELSE, tokens_[stop_].span}});
+    return if_in_else();
+  }
+
+  // Read as `ELSE`, and an IF that ends in front of the END of the rule: it may have an ELSE of its own.
+  Edit if_in_else() const {
+    const Span here = tokens_[stop_].span;
+    BlockWalk walk(tokens_);
+    std::size_t last = 0;
+    for (; last < tokens_.size(); ++last) {
+      walk.step(last);
+      if (last > stop_ && walk.open().empty()) break;
+    }
+    Tokens inserted{{Kinds::ELSE, here}, {Kinds::IF, here}};
+    for (std::size_t at = stop_ + 1; at < last; ++at)
+      inserted.push_back(tokens_[at]);
+    inserted.push_back(missing(Kinds::END, last));
+    inserted.push_back(missing(Kinds::NEWLINE, last));
+    return change(stop_, last - stop_, std::move(inserted));
   }
 
   // `x IS 30s`, `x IS > 3`

@@ -15,4 +15,7 @@ void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnosti
 // letters, the name is meant: so that it is said once.
 void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
 
+// Rows of a CHECK, a MOTION or a TEST that have lost their first line: reports it, and puts one there.
+void mend_lost_heads(Tokens& tokens, Diagnostics& diagnostics);
+
 }  // namespace robosync::compiler

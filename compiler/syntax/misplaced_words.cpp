@@ -35,16 +35,31 @@ public:
     if (auto edit = safety_without_when()) return edit;
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Habit = std::optional<Edit> (MisplacedWords::*)();
-    for (const Habit habit :
-         {&MisplacedWords::negation, &MisplacedWords::lonely_else, &MisplacedWords::then_in_line,
-          &MisplacedWords::commands_with_and, &MisplacedWords::commands_with_comma,
-          &MisplacedWords::second_statement, &MisplacedWords::rate_apart,
-          &MisplacedWords::foreign_rate, &MisplacedWords::command_in_behavior,
-          &MisplacedWords::within, &MisplacedWords::columns_of_motion,
-          &MisplacedWords::word_with_sign, &MisplacedWords::changed_wrongly,
-          &MisplacedWords::repeat_how_often, &MisplacedWords::resume_after,
-          &MisplacedWords::modifier_behind_do, &MisplacedWords::start_alone,
-          &MisplacedWords::otherwise, &MisplacedWords::more_than}) {
+    for (const Habit habit : {&MisplacedWords::negation,
+                              &MisplacedWords::lonely_else,
+                              &MisplacedWords::then_in_line,
+                              &MisplacedWords::commands_with_and,
+                              &MisplacedWords::commands_with_comma,
+                              &MisplacedWords::second_statement,
+                              &MisplacedWords::second_stopped,
+                              &MisplacedWords::goes_on_above,
+                              &MisplacedWords::times_of_name,
+                              &MisplacedWords::counted_text,
+                              &MisplacedWords::set_of_channel,
+                              &MisplacedWords::rate_apart,
+                              &MisplacedWords::foreign_rate,
+                              &MisplacedWords::command_in_behavior,
+                              &MisplacedWords::within,
+                              &MisplacedWords::columns_of_motion,
+                              &MisplacedWords::word_with_sign,
+                              &MisplacedWords::changed_wrongly,
+                              &MisplacedWords::repeat_how_often,
+                              &MisplacedWords::resume_after,
+                              &MisplacedWords::modifier_behind_do,
+                              &MisplacedWords::start_alone,
+                              &MisplacedWords::start_modified,
+                              &MisplacedWords::otherwise,
+                              &MisplacedWords::more_than}) {
       if (auto edit = (this->*habit)()) return edit;
     }
     return std::nullopt;
@@ -177,9 +192,22 @@ private:
     return std::nullopt;
   }
 
-  // `SAY "x" WAIT 2s`
+  // Has the line begun with a statement such as LOG or WAIT, which is whole?
+  bool is_behind_statement() const {
+    const auto block = open_block();
+    return statement_ < stop_ && is_plain_statement(tokens_[statement_].kind) &&
+           !asks_before(stop_) && contains(expected_, Kinds::NEWLINE) && block &&
+           !is_one_of(tokens_[*block].kind,
+                      {Kinds::CHECK, Kinds::MOTION, Kinds::TEST, Kinds::BEHAVIOR, Kinds::SAFETY});
+  }
+
+  // `SAY "x" WAIT 2s`, `WAIT 2s SAY "x"`, `THEN SAY "x"`
   std::optional<Edit> second_statement() {
-    if (!is_plain_statement(tokens_[stop_].kind) || !is_whole_command()) return std::nullopt;
+    const bool plain = is_plain_statement(tokens_[stop_].kind);
+    const bool named = is(stop_, Kinds::NAME) && stop_ + 1 < end_ && !is(statement_, Kinds::STOP) &&
+                       (is_one_of(tokens_[stop_ + 1].kind, {Kinds::NAME, Kinds::STRING}));
+    if (!(plain && is_whole_command()) && !((plain || named) && is_behind_statement()))
+      return std::nullopt;
     Span gap = tokens_[stop_ - 1].span;
     gap.begin = gap.end;
     gap.end = tokens_[stop_].span.begin;
@@ -187,6 +215,81 @@ private:
         .helps("each command stands on a line of its own")
         .fix(gap, "\n", Applicability::likely);
     return change(stop_, end_of_command(stop_) - stop_);
+  }
+
+  // `STOP arms head`
+  std::optional<Edit> second_stopped() {
+    if (!is(statement_, Kinds::STOP) || stop_ != statement_ + 2 || !is(stop_, Kinds::NAME) ||
+        !is_behind_statement())
+      return std::nullopt;
+    report(Code::E0001, "one name stands behind STOP", tokens_[stop_].span)
+        .helps("write a STOP for each, on a line of its own, or give them a group in robot.json");
+    return change(stop_, end_of_command(stop_) - stop_);
+  }
+
+  // `BY 2` or `FOR 3s` on the line below what it belongs to
+  std::optional<Edit> goes_on_above() {
+    const std::size_t at = is(stop_, Kinds::NEWLINE) ? stop_ + 1 : stop_;
+    if (at < 2 || at + 1 >= tokens_.size() || !is(at - 1, Kinds::NEWLINE) ||
+        !is_one_of(tokens_[at].kind,
+                   {Kinds::BY, Kinds::FOR, Kinds::OVER, Kinds::TO, Kinds::WITHIN}) ||
+        !is_one_of(tokens_[at - 2].kind, {Kinds::NAME, Kinds::QUANTITY, Kinds::STRING, Kinds::CLOSE,
+                                          Kinds::CHANGES, Kinds::TIMES}))
+      return std::nullopt;
+    std::size_t above = at - 2;
+    while (above > 0 && !is(above - 1, Kinds::NEWLINE))
+      --above;
+    if (is_one_of(tokens_[above].kind, {Kinds::PRIORITY, Kinds::COOLDOWN, Kinds::MARGIN,
+                                        Kinds::RESTARTING, Kinds::WAITING}))
+      return std::nullopt;
+    Span gap = tokens_[at - 2].span;
+    gap.begin = gap.end;
+    gap.end = tokens_[at].span.begin;
+    Diagnostic& message =
+        report(Code::E0001, "`" + text(at, at + 2) + "` belongs to the end of the line above",
+               span(at, at + 2));
+    if (source_.text(gap).find_first_of("#%") == std::string_view::npos)
+      message.fix(gap, " ", Applicability::likely);
+    return change(at - 1, 1);
+  }
+
+  // `PERFORM wave k TIMES`
+  std::optional<Edit> times_of_name() {
+    if (!is(stop_, Kinds::TIMES) || stop_ < statement_ + 2 || !is(stop_ - 1, Kinds::NAME) ||
+        !is_command())
+      return std::nullopt;
+    const Token name = tokens_[stop_ - 1];
+    const std::string better = "(" + std::string(text(stop_ - 1)) + ")";
+    report(Code::E0505, "a number that has a name stands in brackets here", name.span)
+        .helps("write `" + better + " TIMES`")
+        .fix(name.span, better, Applicability::likely);
+    return change(stop_ - 1, 1, {{Kinds::QUANTITY, name.span}});
+  }
+
+  // `EXPECT 5 TIMES LOG "x" WITHIN 10s`
+  std::optional<Edit> counted_text() {
+    if (!(is(stop_, Kinds::LOG) || is(stop_, Kinds::ALERT)) || !is(begin_, Kinds::EXPECT) ||
+        stop_ != begin_ + 3 || !is(stop_ - 1, Kinds::TIMES))
+      return std::nullopt;
+    report(Code::E0001, "a TEST counts commands, and " + quote(stop_) + " is none",
+           span(stop_ - 2, stop_ + 1))
+        .helps("write `EXPECT " + text(stop_, end_) +
+               "`, or count with a REMEMBER and ask for it with `EXPECT THAT`");
+    return change(stop_ - 2, 2);
+  }
+
+  // `SET touch LEVEL TO 3`
+  std::optional<Edit> set_of_channel() {
+    const bool by = begins_with(Kinds::RAISE) || begins_with(Kinds::LOWER);
+    if (!(by || begins_with(Kinds::SET)) || stop_ != statement_ + 2 || !is(stop_, Kinds::NAME) ||
+        !is(stop_ + 1, by ? Kinds::BY : Kinds::TO))
+      return std::nullopt;
+    report(Code::E0001, "`" + text(stop_ - 1, stop_ + 1) + "` is two words, and a variable has one",
+           span(stop_ - 1, stop_ + 1))
+        .helps(
+            "what a sensor measures cannot be SET, RAISEd or LOWERed: only what a REMEMBER, a "
+            "FEELING or a STATE has declared");
+    return change(stop_, 1);
   }
 
   std::size_t end_of_command(std::size_t at) const {
@@ -397,6 +500,20 @@ private:
     report(Code::E0008, "`AT` is missing before `START`", front)
         .fix(front, "AT ", Applicability::likely);
     return change(stop_, 0, {missing(Kinds::AT, stop_)});
+  }
+
+  // `AT START COOLDOWN 3s DO`
+  std::optional<Edit> start_modified() {
+    if (!is(before_, Kinds::START) ||
+        !is_one_of(tokens_[stop_].kind, {Kinds::COOLDOWN, Kinds::MARGIN, Kinds::RESTARTING,
+                                         Kinds::WAITING, Kinds::PRIORITY}))
+      return std::nullopt;
+    std::size_t last = stop_;
+    while (last < end_ && !is(last, Kinds::DO))
+      ++last;
+    report(Code::E0010, quote(stop_) + " does not go with AT START, which happens once",
+           span(stop_, last));
+    return change(stop_, last - stop_);
   }
 
   // `OTHERWISE SAY "y"`

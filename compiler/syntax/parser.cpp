@@ -121,6 +121,7 @@ public:
     tokens_ = lex(source_, file_, diagnostics_);
     mend_heads(tokens_, source_, diagnostics_);
     mend_names(tokens_, source_, diagnostics_);
+    mend_lost_heads(tokens_, diagnostics_);
     const std::vector<Region> regions = split_into_regions(tokens_, source_);
     program_.items.reserve(regions.size());
     for (const Region& region : regions) {

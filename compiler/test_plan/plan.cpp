@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <optional>
 
 #include "compiler/sema/commands.hpp"
@@ -187,14 +188,16 @@ private:
   }
 
   // A whole number that a step counts with.
-  std::optional<std::uint32_t> whole(const ast::Name& digits, std::uint32_t least) {
+  std::optional<std::uint32_t> whole(
+      const ast::Name& digits, std::uint32_t least,
+      std::uint32_t most = std::numeric_limits<std::uint32_t>::max()) {
     std::uint32_t number = 0;
     const char* const last = digits.text.data() + digits.text.size();
     const auto [end, error] = std::from_chars(digits.text.data(), last, number);
-    if (error == std::errc() && end == last && number >= least) return number;
+    if (error == std::errc() && end == last && number >= least && number <= most) return number;
     diagnostics_
-        .report(Code::E0509,
-                "this must be a whole number from " + std::to_string(least) + " to 4294967295")
+        .report(Code::E0509, "this must be a whole number from " + std::to_string(least) + " to " +
+                                 std::to_string(most))
         .label(digits.span);
     return std::nullopt;
   }
@@ -261,7 +264,7 @@ private:
     if (test_.seed)
       diagnostics_.report(Code::E0011, "this TEST has a `SEED` already").label(span);
     else
-      test_.seed = whole(node.number, 1);
+      test_.seed = whole(node.number, 1, kMaxSeed);
   }
 
   void add(const ast::ExpectNothing& node, Span span) {

@@ -108,9 +108,10 @@ std::string_view unit_of(const Program& program, std::uint8_t channel) {
   return found->second->spelling;
 }
 
-vm::Value parse_reading(const vm::Image& image, std::uint8_t channel, std::string_view text) {
+vm::Value parse_reading(const vm::Image& image, std::uint8_t channel, std::string_view text,
+                        std::string_view unit) {
   const vm::Channel& record = image.channels[channel];
-  if (record.label_count == 0) return parse_quantity(text, record.dimension);
+  if (record.label_count == 0) return parse_quantity(text, record.dimension, unit);
   std::vector<std::string> labels;
   for (std::size_t i = 0; i < record.label_count; ++i) {
     labels.emplace_back(image.string(image.labels[record.first_label + i]));

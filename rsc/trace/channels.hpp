@@ -28,8 +28,8 @@ namespace robosync::tool {
 
 // What a channel measures, as a person writes it: "20cm", or the label of a channel with words. A
 // channel with two labels takes true and false as well, if it has no labels of these names. Throws
-// std::invalid_argument.
+// std::invalid_argument, which may offer `unit`, the channel's own.
 [[nodiscard]] vm::Value parse_reading(const vm::Image& image, std::uint8_t channel,
-                                      std::string_view text);
+                                      std::string_view text, std::string_view unit = {});
 
 }  // namespace robosync::tool

@@ -100,7 +100,9 @@ private:
 
   // A number is good for channels without a unit; others say theirs, or one of their words.
   vm::Value reading(json_t* value, std::uint8_t channel) const {
-    const auto parse = [&](std::string_view text) { return parse_reading(image_, channel, text); };
+    const auto parse = [&](std::string_view text) {
+      return parse_reading(image_, channel, text, unit_of(program_, channel));
+    };
     if (json_is_string(value)) return parse(json_string_value(value));
     if (json_is_boolean(value) && image_.channels[channel].label_count > 0)
       return parse(json_is_true(value) ? "true" : "false");
@@ -334,7 +336,8 @@ private:
         const bool words = image_.channels[*channel].label_count > 0;
         add(at_us, *channel,
             parse_reading(image_, *channel,
-                          words ? cells[i] : with_unit(cells[i], row.columns[i].unit)));
+                          words ? cells[i] : with_unit(cells[i], row.columns[i].unit),
+                          unit_of(program_, *channel)));
       }
     } catch (const std::invalid_argument& error) {
       fail_in(row.file, row.cells.line, error.what());

@@ -95,6 +95,14 @@ TEST_CASE("a person may write a number without quotes") {
   CHECK_THAT(robot.run(robot.program).out, Contains("visit 7 20cm"));
 }
 
+TEST_CASE("a number without a unit is offered the one of the program") {
+  const Visit robot;
+  robot.write("robot.kept.json", R"({"kept": {"visits": "6", "nearest": "5"}})");
+  CHECK_THAT(robot.run(robot.program).err, Contains("this is a distance; write it as 5cm;"));
+  robot.write("robot.kept.json", R"({"kept": {"visits": "6", "nearest": "5s"}})");
+  CHECK_THAT(robot.run(robot.program).err, Contains("it takes a number with mm, cm or m;"));
+}
+
 TEST_CASE("what cannot be read is left as it is") {
   const Visit robot;
   const std::string half = R"({"kept": {"visi)";

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 using namespace robosync;
+using Catch::EndsWith;
 using tool::parse_quantity;
 using vm::Dimension;
 
@@ -23,7 +24,15 @@ TEST_CASE("what is not a quantity of the dimension is said") {
   CHECK_THROWS_WITH(parse_quantity("", Dimension::number), Contains("not a number"));
   CHECK_THROWS_WITH(parse_quantity("far", Dimension::length), Contains("`far` is not a number"));
   CHECK_THROWS_WITH(parse_quantity("5parsec", Dimension::length), Contains("no unit `parsec`"));
-  CHECK_THROWS_WITH(parse_quantity("5", Dimension::length), Contains("write it as 5mm"));
+  CHECK_THROWS_WITH(parse_quantity("5", Dimension::length),
+                    EndsWith("; it takes a number with mm, cm or m"));
+  CHECK_THROWS_WITH(parse_quantity("5", Dimension::length, "cm"), EndsWith("; write it as 5cm"));
+  CHECK_THROWS_WITH(parse_quantity("20deg", Dimension::length, "cm"),
+                    EndsWith("; it takes a number with mm, cm or m"));
+  CHECK_THROWS_WITH(parse_quantity("5", Dimension::force), EndsWith("; write it as 5N"));
+  CHECK_THROWS_WITH(parse_quantity("5s", Dimension::force), EndsWith("; it takes a number with N"));
+  CHECK_THROWS_WITH(parse_quantity("1m", Dimension::duration),
+                    EndsWith("; it takes a number with ms, s, min or h"));
   CHECK_THROWS_WITH(parse_quantity("5s", Dimension::length), Contains("a time"));
   CHECK_THROWS_WITH(parse_quantity("5cm", Dimension::number), Contains("a plain number"));
   CHECK_THROWS_WITH(parse_quantity("3000000", Dimension::number), Contains("too large"));

@@ -232,3 +232,24 @@ TEST_CASE("what the robot has and the program does not read is a note") {
   CHECK_THAT(scenario.notes[1],
              Catch::Contains("visit.json:4: note: the program does not read proximity DISTANCE,"));
 }
+
+TEST_CASE("a reading without a unit is offered the one of robot.json") {
+  using Catch::Contains;
+  const test::Folder folder;
+  const std::string program =
+      folder.write("robot.rsl", "WHEN near DISTANCE < 80cm\nDO LOG \"x\"\nEND\n");
+  folder.write("robot.json", R"({"sensors": [{"name": "near", "type": "VIRTUAL", "channels":
+      {"DISTANCE": {"unit": "cm", "range": [2, 400]}}}], "actuators": []})");
+  const auto message = [&](const std::string& stimulus) {
+    const std::string scenario =
+        folder.write("visit.json", "{\"stimuli\": [{" + stimulus + ", \"sensor\": \"near\"}]}");
+    return test::rsc({"run", program, "--scenario", scenario}).err;
+  };
+  CHECK_THAT(message(R"("at": "1s", "value": 20)"), Contains("; write it as 20cm\n"));
+  CHECK_THAT(message(R"("from": "1s", "to": "2s", "ramp": ["10cm", "20"])"),
+             Contains("; write it as 20cm\n"));
+  CHECK_THAT(message(R"("at": "1s", "value": "20deg")"),
+             Contains("; it takes a number with mm, cm or m\n"));
+  CHECK_THAT(message(R"("at": "1m", "value": "20cm")"),
+             Contains("; it takes a number with ms, s, min or h\n"));
+}

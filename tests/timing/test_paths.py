@@ -104,7 +104,7 @@ class Table(unittest.TestCase):
     def test_commands(self):
         self.assert_covers("kCommand", fired(behavior(move(0, 1))) - self.one)
         self.assert_covers("kQueued", fired(behavior(move(0, 0))) - self.one)
-        self.assert_covers("kArgument", (fired(behavior("MOVE a0 TO 1% AT 5% OVER 10ms")) - self.one))
+        self.assert_covers("kArgument", (fired(behavior("MOVE a0 TO 1% OVER 10ms 1 TIMES")) - self.one))
         stop = fired(behavior("STOP a0\nSTOP a1")) - fired(behavior("STOP a0"))
         done = self.costs["kCommand"] + DRIVER["start"] + self.costs["kDone"]
         self.assertGreaterEqual(done, stop)

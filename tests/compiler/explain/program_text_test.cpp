@@ -214,3 +214,51 @@ TEST_CASE("a DEFINE that runs itself is told and ends") {
   CHECK_THAT(told("WHEN a > 1 DO b\nEND\nDEFINE b\n  c\nEND\nDEFINE c\n  b\nEND"),
              Contains("do b (see DEFINE b)"));
 }
+
+TEST_CASE("PERFORM uses the actuators of its MOTION, and interrupts who has one of them") {
+  const std::string motion = "MOTION w OF arms, lamp\n  AT 1s 9deg -\nEND\n";
+  const std::string rules =
+      "BEHAVIOR arm PRIORITY 50\n  WHEN a > 1 DO PERFORM W 2 TIMES\n  END\nEND\n"
+      "BEHAVIOR shine PRIORITY 30\n  WHEN a > 2 DO MOVE left_arm TO 0deg\n  END\nEND\n";
+  const std::string robot = R"({
+    "sensors": [{"name": "a", "type": "VIRTUAL", "channels": {"X": {}}}],
+    "actuators": [{"name": "left_arm", "type": "VIRTUAL", "device": "joint", "range": ["0deg", "90deg"]},
+                  {"name": "right_arm", "type": "VIRTUAL", "device": "joint", "range": ["0deg", "90deg"]},
+                  {"name": "lamp", "type": "VIRTUAL", "device": "joint", "range": ["0deg", "90deg"]}],
+    "groups": {"arms": ["left_arm", "right_arm"]}})";
+  CHECK_THAT(told(motion + rules, robot), Contains("It uses lamp, left_arm and right_arm.\n"
+                                                   "  It interrupts shine (priority 30).\n"));
+  CHECK_THAT(told(motion + rules), Contains("priority 50:\n  It uses arms and lamp.\n"));
+  CHECK_THAT(told(rules), Contains("priority 50:\n  It uses W.\n"));
+}
+
+TEST_CASE("a LIST is one of texts or of numbers") {
+  CHECK_THAT(told("LIST n: 1, 2, 3\n"), Contains("n is a list of 3 numbers.\n"));
+  CHECK_THAT(told("LIST n: 1\n"), Contains("n is a list of 1 number.\n"));
+  CHECK_THAT(told("LIST n: \"a\", \"b\"\n"), Contains("n is a list of 2 texts.\n"));
+}
+
+TEST_CASE("a side of a rule with ELSE waits as long as it takes, whatever WAITING says") {
+  for (const std::string waiting : {"", "WAITING 1s"}) {
+    const std::string text =
+        told("WHEN a > 1 " + waiting + " DO\n  SHOW face\nELSE\n  HIDE face\nEND");
+    CHECK_THAT(text, !Contains("at most 1s") &&
+                         Contains("that side is done as soon as all of it is free, if it is still "
+                                  "the right one.\n"));
+  }
+}
+
+TEST_CASE("a MARGIN belongs to the comparisons, and NOT turns round what they give") {
+  const auto margin = [](const std::string& condition) {
+    return told("WHEN " + condition + " MARGIN 10cm DO\n  SHOW face\nEND");
+  };
+  for (const char* const one : {"a < 50cm", "a < 50cm FOR 1s", "a IS BETWEEN 1cm AND 50cm"})
+    CHECK_THAT(margin(one), Contains("  Once true, it stays true until the value is 10cm back past "
+                                     "its limit, so that it does not flicker.\n"));
+  const std::string each =
+      "  Each comparison in it, once true, stays true until the value is 10cm back past its limit, "
+      "so that it does not flicker";
+  CHECK_THAT(margin("a < 50cm AND b < 3cm"), Contains(each + ".\n"));
+  for (const char* const turned : {"NOT (a < 50cm)", "a < 50cm AND NOT b"})
+    CHECK_THAT(margin(turned), Contains(each + "; NOT turns round what that gives.\n"));
+}

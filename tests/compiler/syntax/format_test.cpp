@@ -79,6 +79,25 @@ TEST_CASE("each kind of line has its place") {
   robosync::testing::expect_golden(folder / "after.rsl", after);
 }
 
+TEST_CASE("one space around what calculates, whatever stood there") {
+  const auto line = [](const std::string& text) {
+    const std::string all = styled("AT START DO\n" + text + "\nEND\n");
+    const std::size_t begin = all.find('\n') + 3;
+    return all.substr(begin, all.find('\n', begin) - begin);
+  };
+  CHECK(line("TURN head TO (voice direction / 2)over 2seconds") ==
+        "TURN head TO (voice direction / 2) over 2seconds");
+  CHECK(line("SET n TO 1-(2-3)") == "SET n TO 1 - (2 - 3)");
+  CHECK(line("SET n TO (a -1)*n- 2") == "SET n TO (a - 1) * n - 2");
+  CHECK(line("SET n TO (n)MOD(3)") == "SET n TO (n) MOD (3)");
+  CHECK(line("SET n TO -3") == "SET n TO -3");
+  CHECK(line("SET n TO MAX(-3 ,-(a-b))") == "SET n TO MAX(-3, -(a - b))");
+  CHECK(line("MOVE head BY -30deg") == "MOVE head BY -30deg");
+  CHECK(line("nod WITH 3,-5") == "nod WITH 3, -5");
+  CHECK(line("WAIT UNTIL (a > 1)AND(b > 2)OR NOT(c)") ==
+        "WAIT UNTIL (a > 1) AND (b > 2) OR NOT(c)");
+}
+
 TEST_CASE("the library and the examples are in the one style") {
   REQUIRE(programs().size() > 20);
   for (const fs::path& path : programs()) {
