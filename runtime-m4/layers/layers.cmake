@@ -38,6 +38,7 @@ target_sources(robosync_runtime PRIVATE
   drivers/ear.cpp
   drivers/hc_sr04.cpp
   drivers/analog_input.cpp
+  drivers/hts221.cpp
   drivers/i2c_register.cpp
   drivers/i2c_word.cpp
   drivers/lights.cpp
@@ -60,6 +61,7 @@ target_sources(robosync_runtime PRIVATE
   drivers/virtual_actuator.cpp
   drivers/virtual_motion.cpp
   drivers/virtual_sensor.cpp
+  drivers/vl53l0x.cpp
   drivers/way.cpp)
 set_source_files_properties(layers/median.cpp PROPERTIES
   COMPILE_OPTIONS "-O2;$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns>")
