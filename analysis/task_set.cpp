@@ -142,6 +142,8 @@ private:
         source.delay = instructions_in_ms(1 + policy::kBusTicks);
       }
     }
+    // What a sample takes was begun with the one before.
+    if (vm::measures_when_told(sensor.driver)) source.measuring = source.period;
     if ((channels & work_.watched()).any()) source.sample += board_.wake + looks() + work_.trips();
     source.step = work_.step(rules, changed);
     place(source, s);

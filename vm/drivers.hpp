@@ -128,6 +128,10 @@ constexpr bool is_by_echo(DriverId driver) {
 constexpr bool is_analog(DriverId driver) {
   return bus_of(driver) == Bus::adc;
 }
+// It measures once, for a while, when a sample tells it to, and may find nothing.
+constexpr bool measures_when_told(DriverId driver) {
+  return driver == DriverId::vl53l0x;
+}
 // It says nothing when nothing answers: what it measured last grows old.
 constexpr bool may_be_silent(DriverId driver) {
   return is_on_i2c(driver) || is_by_echo(driver) || is_analog(driver);
@@ -160,6 +164,14 @@ inline constexpr std::uint16_t kAllChipsAddress = 0x70;
 
 // The echoes of one burst must have died away before the next one.
 inline constexpr std::uint16_t kMinEchoPeriodMs = 60;
+// A VL53L0X takes some 33 ms from one result to the next, and has some more for that.
+inline constexpr std::uint16_t kMinRangingPeriodMs = 50;
+
+// Who is sampled more often than that gets no readings; 0: nobody is.
+constexpr std::uint16_t min_period_ms(DriverId driver) {
+  if (is_by_echo(driver)) return kMinEchoPeriodMs;
+  return measures_when_told(driver) ? kMinRangingPeriodMs : 0;
+}
 
 // Others are reserved by the I2C specification.
 inline constexpr std::uint16_t kFirstAddress = 0x08;

@@ -234,19 +234,20 @@ void check_place(const Fields& fields, const SensorConfig& sensor, WiringReader&
 }
 
 // The descriptor's own rate is one that it can keep.
-void check_echo_rate(const json::Value* channels, SensorConfig& sensor, Diagnostics& diagnostics) {
-  if (channels == nullptr || sensor.period_ms >= vm::kMinEchoPeriodMs) return;
+void check_rate(const json::Value* channels, const SensorConfig& sensor, Diagnostics& diagnostics) {
+  const std::uint16_t shortest = vm::min_period_ms(sensor.driver);
+  if (channels == nullptr || sensor.period_ms >= shortest) return;
+  const bool by_echo = vm::is_by_echo(sensor.driver);
   for (const json::Member& channel : channels->members)
     for (const json::Member& key : channel.value.members)
       if (key.key == "rate")
         diagnostics
-            .report(
-                Code::E0205,
-                fmt::format(
-                    "this measures every {} ms, and the echoes of one burst take {} ms to die away",
-                    sensor.period_ms, vm::kMinEchoPeriodMs))
+            .report(Code::E0205,
+                    fmt::format("this measures every {} ms, and {} {} ms{}", sensor.period_ms,
+                                by_echo ? "the echoes of one burst take" : "each time takes",
+                                shortest, by_echo ? " to die away" : ""))
             .label(key.value.span)
-            .helps(fmt::format("say a rate of {}Hz at most", 1000 / vm::kMinEchoPeriodMs));
+            .helps(fmt::format("say a rate of {}Hz at most", 1000 / shortest));
 }
 
 }  // namespace
@@ -279,7 +280,7 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
   for (const ChannelConfig& channel : sensor.channels)
     if (channel.period_ms != 0 && (sensor.period_ms == 0 || channel.period_ms < sensor.period_ms))
       sensor.period_ms = channel.period_ms;
-  if (vm::is_by_echo(sensor.driver)) check_echo_rate(channels, sensor, diagnostics);
+  check_rate(channels, sensor, diagnostics);
   return sensor;
 }
 

@@ -3,6 +3,9 @@
 //
 // A device that has not answered yet is silent with its first round. From then on it takes kRounds in a row that say
 // otherwise, so that one that answers now and then is not told of in every round.
+//
+// A device that measures when it is told to may have a result from before the program, of any age. That is nobody's, so its first
+// round does not count.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +19,15 @@ public:
 
   enum class News : std::uint8_t { none, silent, answers };
 
+  void expect_old_result() { standing_ = Standing::has_old_result; }
+  bool has_old_result() const { return standing_ == Standing::has_old_result; }
+
   // A round is over in which so many transfers failed.  [sensor's thread]
   News note(unsigned failed) {
+    if (has_old_result()) {
+      standing_ = Standing::not_asked;
+      return News::none;
+    }
     failed_ = static_cast<std::uint16_t>(std::min(failed_ + failed, unsigned{UINT16_MAX}));
     const Standing now = failed == 0 ? Standing::answers : Standing::silent;
     if (now == standing_) {
@@ -32,13 +42,13 @@ public:
     return first ? News::none : News::answers;
   }
 
-  bool asked() const { return standing_ != Standing::not_asked; }
+  bool asked() const { return standing_ == Standing::answers || silent(); }
   bool silent() const { return standing_ == Standing::silent; }
   // Transfers so far; UINT16_MAX: that many or more.
   std::uint16_t failed() const { return failed_; }
 
 private:
-  enum class Standing : std::uint8_t { not_asked, answers, silent };
+  enum class Standing : std::uint8_t { not_asked, has_old_result, answers, silent };
 
   std::uint16_t failed_ = 0;
   std::uint8_t otherwise_ = 0;  // rounds in a row

@@ -38,6 +38,7 @@ target_sources(robosync_runtime PRIVATE
   drivers/ear.cpp
   drivers/hc_sr04.cpp
   drivers/analog_input.cpp
+  drivers/hts221.cpp
   drivers/i2c_register.cpp
   drivers/i2c_word.cpp
   drivers/lights.cpp
@@ -60,7 +61,17 @@ target_sources(robosync_runtime PRIVATE
   drivers/virtual_actuator.cpp
   drivers/virtual_motion.cpp
   drivers/virtual_sensor.cpp
+  drivers/vl53l0x.cpp
   drivers/way.cpp)
+# In rsc nobody waits for what drives hardware, which a simulated robot has not: small code is worth more there.
+if(NOT CMAKE_CROSSCOMPILING AND NOT ROBOSYNC_SANITIZE)
+  set_source_files_properties(
+    drivers/axes.cpp drivers/hts221.cpp drivers/lights.cpp drivers/lsm303agr.cpp drivers/lsm6dsl.cpp drivers/max34451.cpp
+    drivers/motor.cpp drivers/mpu6050.cpp drivers/pca9685.cpp drivers/pca9685_servo.cpp drivers/power.cpp drivers/pwm.cpp
+    drivers/served.cpp drivers/servo.cpp drivers/six_axes.cpp drivers/ssd1306.cpp drivers/ssd1306_face.cpp drivers/tones.cpp
+    drivers/vl53l0x.cpp
+    PROPERTIES COMPILE_OPTIONS -Os)
+endif()
 set_source_files_properties(layers/median.cpp PROPERTIES
   COMPILE_OPTIONS "-O2;$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns>")
 # What each reading goes through, in the step thread, of which there is one: its stack has room for it.

@@ -37,6 +37,8 @@ bool SensorLayer::start(const LoadedProgram& program, Sampler& sampler, bool sim
 bool SensorLayer::start_sensor(unsigned sensor, ProgramThreads& threads) {
   Unit& unit = units_[sensor];
   unit = {.layer = this, .thread = nullptr, .contact = {}};
+  if (vm::measures_when_told(program_->image.sensors[sensor].driver))
+    unit.contact.expect_old_result();
   const auto entry = [](void* self) {
     const auto& mine = *static_cast<Unit*>(self);
     mine.layer->run_sensor(static_cast<unsigned>(&mine - mine.layer->units_.data()));
@@ -108,11 +110,13 @@ void SensorLayer::run_sensor(unsigned sensor) {
   }
 }
 
-// When the program begins, unless it takes longer than a tick to answer: who has been asked at the last moment for SAFETY has
-// its whole period, too.
+// When the program begins, unless it takes longer than a tick to answer, or measures already: who has been asked at the last moment
+// for SAFETY has its whole period, too.
 kernel::Time SensorLayer::first_sample(unsigned sensor) const {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
-  const bool at_once = asks_ahead(sensor) <= kernel::kTick;
+  const bool measures =
+      vm::measures_when_told(wiring.driver) && !units_[sensor].contact.has_old_result();
+  const bool at_once = asks_ahead(sensor) <= kernel::kTick && !measures;
   return trace_.activated_at() + (at_once ? 0 : kernel::milliseconds(wiring.period_ms));
 }
 
@@ -176,10 +180,10 @@ void SensorLayer::sample(unsigned sensor) {
   for (unsigned i = 0; i < wiring.channel_count; ++i) {
     const auto channel = static_cast<std::uint8_t>(wiring.first_channel + i);
     vm::Value value = 0;
-    if (sampler_->sample(program_->image, channel, value)) {
-      news |= publish(channel, value, kernel_.now());
-    } else {
+    if (!sampler_->sample(program_->image, channel, value)) {
       ++failed;
+    } else if (!units_[sensor].contact.has_old_result()) {
+      news |= publish(channel, value, kernel_.now());
     }
   }
   announce_all(news);

@@ -211,6 +211,20 @@ TEST_CASE("check: more than an I2C bus carries at once is refused, where it is a
   CHECK_THAT(upload.err, Contains("I2C bus 0") && Contains("--anyway"));
 }
 
+TEST_CASE("all the sensors on the B-L475E-IOT01A at once are not too much for their bus") {
+  const test::Folder folder;
+  folder.write("robot.json", R"({"board": "b-l475e-iot01a", "sensors": [
+    {"name": "moved", "device": "motion"}, {"name": "front", "device": "distance"},
+    {"name": "air", "device": "climate"}]})");
+  const test::Outcome all = test::rsc(
+      {"check",
+       folder.write("robot.rsl",
+                    "WHEN moved STRENGTH > 2g OR front DISTANCE < 20cm DO LOG \"a\" END\n"
+                    "WHEN air HUMIDITY > 60% OR air TEMPERATURE > 30C DO LOG \"b\" END\n")});
+  CAPTURE(all.err);
+  CHECK(all.exit == 0);
+}
+
 TEST_CASE(
     "what a bus carries counts for each of its sensors: as often as it is asked, once for what is "
     "shared") {
@@ -239,6 +253,8 @@ TEST_CASE(
       CHECK(us_of(board, 20, i2c_register, 7, static_cast<std::uint16_t>(period_ms)) ==
             static_cast<unsigned>(times) * 7 * us(1, 5));
     CHECK(us_of(board, 20, ssd1306, 0, 50) == us(1, 20));
+    CHECK(us_of(board, 20, vl53l0x, 1, 50) == us(4, 27));
+    CHECK(us_of(board, 20, hts221, 2, 200) == us(4, 41));
     CHECK(us_of(board, 20, digital_input, 1, 20) == 0);
     // As docs/boards.md says.
     CHECK(us_of(board, 4, lsm6dsl, 7, 20) == 0);
@@ -346,6 +362,26 @@ TEST_CASE(
       CHECK(costs.clock_hz == tool::board_costs().clock_hz);
     if (board.name == "b-l475e-iot01a") CHECK(costs.clock_hz == 80'000'000);
     if (board.name == "microbit-v2") CHECK(costs.clock_hz == 64'000'000);
+  }
+}
+
+TEST_CASE("what is told to measure began with the sample before: that is where its path begins") {
+  for (const std::string_view name : {"mps2-an386", "b-l475e-iot01a"}) {
+    CAPTURE(name);
+    const tool::Program program = test::as_program(compiler::compile(
+        {"robot.rsl", "WHEN front DISTANCE < 20cm DO RUN wheel FORWARD END\n"}, {"robot.json", R"({
+        "sensors": [{"name": "front", "type": "I2C", "address": "0x29", "device": "vl53l0x"}],
+        "actuators": [{"name": "wheel", "type": "PWM", "pins": [4, 6], "device": "motor"}]})"}));
+    const policy::BoardCosts& board = costs_of_board(name);
+    const analysis::ResponseReport report =
+        analysis::response_report(program.image(), board, tool::module_cost);
+    REQUIRE(report.paths.size() == 1);
+    const analysis::PathTiming& path = report.paths.front();
+    CHECK(path.measuring == 50ULL * board.instructions_per_ms());
+    CHECK(path.measuring == path.period);
+    CHECK(path.base.time > path.measuring);
+    CHECK(path.share(path.base) < 0.5);
+    CHECK(path.in_time());
   }
 }
 

@@ -4,6 +4,7 @@ and where the test plays them. Run with ROBOSYNC_BOARD=b-l475e-iot01a."""
 import contextlib
 import json
 import re
+import struct
 import subprocess
 import sys
 import unittest
@@ -53,6 +54,14 @@ TURNED = "WHEN motion TURN_Z > 90deg/s MARGIN 10deg/s\nDO RUN lamp TO 70%\nEND\n
 WITHOUT_POWER = {0x0F: 0x6A, 0x12: 0x04}
 SETTING, TOLD, OUTPUT, OUTPUTS, TURN_Z, Z, COUNTS_EACH = 0x10, bytes((0x58, 0x54, 0x44)), 0x22, 12, 0x26, 0x2C, 1 / 0.0175
 WHOLE = {SETTING: len(TOLD), OUTPUT: OUTPUTS}
+# The distance sensor there, and the one of the air, whose registers go on where bit 7 is set.
+FRONT, FRONT_ADDRESS, FRONT_WHOLE, XSHUT = "front", 0x29, {0xC0: 1, 0x13: 13}, 6
+AIR, AIR_ADDRESS, GOES_ON, AIR_WHOLE = "air", 0x5F, 0x80, {0x0F: 1, 0xA0: 12, 0xB0: 16}
+PORT_C = 0x4800_0800
+DISTANCE = MOTION | {"sensors": [{"name": FRONT, "device": "distance"}]}
+NEAR = f"WHEN {FRONT} DISTANCE < 20cm MARGIN 1cm\nDO RUN lamp TO 70%\nEND\n"
+CLIMATE = MOTION | {"sensors": [{"name": AIR, "device": "climate"}]}
+DAMP = f"WHEN {AIR} HUMIDITY > 60% MARGIN 2%\nDO RUN lamp TO 70%\nEND\n"
 COSTS = ROOT / "runtime-m4/boards/b-l475e-iot01a/costs.def"
 COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*(\d+),", re.M)
 
@@ -183,6 +192,58 @@ class Bus(DebuggedTest):
             self.assertGreaterEqual(said, measured)
         self.assertEqual((self.status()["safety_late_us"], self.status()["faults"]), (0, 0))
 
+    def start(self, config, program):
+        (self.folder / "part.json").write_text(json.dumps(config))
+        (self.folder / "part.rsl").write_text(program)
+        self.upload(self.folder / "part.rsl", "--config", self.folder / "part.json")
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        self.asked, self.taken = [], []
+        return wires
+
+    def assert_lamp_is_lit(self, debugger):
+        debugger.run_to(next(at for name, at in symbols(FIRMWARE).items() if name.startswith(PWM_WRITE)), lambda: None)
+        self.assertEqual([debugger.register(1), debugger.register(2)], [LAMP, LIT_US])
+
+    def assert_costs(self, transfers, size):
+        """What it tells the part with a sample is asked for while it takes what has come."""
+        costs = {name: int(value) for name, value in COST_OF_BUS.findall(COSTS.read_text())}
+        said = transfers * (costs["i2c_ask"] + costs["i2c_transfer"]) + size * costs["i2c_byte"]
+        print(f"\n  asking and taking: {max(self.asked)} and {max(self.taken)}, said {said}")
+        self.assertGreaterEqual(said, max(self.asked) + max(self.taken))
+        self.assertEqual((self.status()["safety_late_us"], self.status()["faults"]), (0, 0))
+
+    def test_the_distance_sensor_on_the_board_is_awake_and_has_it_measure_with_each_sample(self):
+        """The test is the master, its DMA, and the sensor's registers."""
+        wires, registers = self.start(DISTANCE, NEAR), bytearray(256)
+        registers[0xC0] = 0xEE
+        with self.debugger() as debugger:
+            mode, output = debugger.read_words(PORT_C, 1)[0], debugger.read_words(PORT_C + 0x14, 1)[0]
+            self.assertEqual((mode >> 2 * XSHUT & 3, output >> XSHUT & 1), (1, 1))
+            self.played = len(self.told(TRANSFER))
+            for millimetres in (800, 1999, 150):
+                registers[0x00], registers[0x0B] = 0, 0
+                registers[0x13], registers[0x14] = 4, 11 << 3 | 1
+                registers[0x1E:0x20] = millimetres.to_bytes(2, "big")
+                self.assertEqual(self.reading(debugger, wires, registers, "vl53l0x", FRONT_ADDRESS, FRONT_WHOLE), millimetres)
+                self.assertEqual((registers[0x0A], registers[0x0B], registers[0x00]), (4, 1, 1))
+            self.assert_lamp_is_lit(debugger)
+        self.assert_costs(4, 27)
+
+    def test_the_sensor_of_the_air_on_the_board_is_told_and_read(self):
+        wires, registers = self.start(CLIMATE, DAMP), bytearray(64)
+        registers[0x0F] = 0xBC
+        registers[0x30:0x40] = struct.pack("<BBBBBBhhhhh", 40, 160, 80, 280 & 0xFF, 0, 280 >> 8 << 2, -4000, 0, 6000, 300, 700)
+        with self.debugger() as debugger:
+            self.played = len(self.told(TRANSFER))
+            for percent in (50, 20, 80):
+                registers[0x28:0x2C] = struct.pack("<hh", round(-4000 + (percent - 20) * 10_000 / 60), 460)
+                given = self.reading(debugger, wires, registers, "hts221", AIR_ADDRESS, AIR_WHOLE, GOES_ON)
+                self.assertAlmostEqual(given, 1000 * percent, delta=4)
+                self.assertEqual(registers[0x20], 0x87)
+            self.assert_lamp_is_lit(debugger)
+        self.assert_costs(4, 41)
+
     def turn(self, wires, registers, *speeds):
         """What the driver gives of each, while the board lies still."""
         registers[Z:Z + 2] = round(1 / 0.000122).to_bytes(2, "little")
@@ -191,40 +252,40 @@ class Bus(DebuggedTest):
             self.played = len(self.told(TRANSFER))
             for speed in speeds:
                 registers[TURN_Z:TURN_Z + 2] = round(speed * COUNTS_EACH).to_bytes(2, "little", signed=True)
-                given.append(self.reading(debugger, wires, registers))
-            # Of the last one comes what the program wants of it.
-            debugger.run_to(next(at for name, at in symbols(FIRMWARE).items() if name.startswith(PWM_WRITE)), lambda: None)
-            self.assertEqual([debugger.register(1), debugger.register(2)], [LAMP, LIT_US])
+                given.append(self.reading(debugger, wires, registers, "lsm6dsl", ADDRESS, WHOLE))
+            self.assert_lamp_is_lit(debugger)  # which the program makes of the last one
         return [round(count / COUNTS_EACH) for count in given]
 
-    def reading(self, debugger, wires, registers):
+    def reading(self, debugger, wires, registers, name, address, whole, goes_on=0):
         """The next one. Of calls that ask, instructions are counted with the interrupts that come of it; of the others without: what they
         tell the sensor is asked then."""
-        driver = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::drivers::lsm6dsl::read("))
+        driver = next(at for symbol, at in symbols(FIRMWARE).items() if symbol.startswith(f"robosync::drivers::{name}::read("))
         for _ in range(CALLS):
             debugger.run_to(driver, lambda: None)
             place = debugger.register(3)
             steps = debugger.steps_to_return()
             given = debugger.register(0) & 1
-            ended, read = self.play(debugger, wires, registers)
-            if read == WHOLE:
+            ended, read = self.play(debugger, wires, registers, address, goes_on)
+            if read == whole:
                 self.asked.append(steps + ended)
             elif not read:
                 self.taken.append(steps)
-            self.assertLessEqual(read.items(), WHOLE.items())  # at the start one may be under way
+            self.assertLessEqual(read.items(), whole.items())  # at the start one may be under way
             if given:
                 return int.from_bytes(debugger.read_words(place, 1)[0].to_bytes(4, "little"), "little", signed=True)
         return self.fail("nothing is read")
 
-    def play(self, debugger, wires, registers):
-        """All that the master was told comes to pass: what the interrupts took, and {register: how many from there on} that were read."""
+    def play(self, debugger, wires, registers, address, goes_on):
+        """All that the master was told comes to pass: what the interrupts took, and {register: how many from there on} that were read.
+        `goes_on` is what the register's number has besides."""
         handler, (state, where), steps, place, found = symbols(FIRMWARE)["OwnBus_Handler"], self.read_of_state(), 0, None, {}
         while self.played < len(told := self.told(TRANSFER)):
             order = told[self.played]
-            self.assertEqual(order >> 1 & 0x7F, ADDRESS)
+            self.assertEqual(order >> 1 & 0x7F, address)
             if order & READS:
                 found[place] = order >> 16 & 0xFF
-                wires.write(self.told(MEMORY_5)[-1], bytes(registers[place:place + found[place]]))
+                first = place & ~goes_on
+                wires.write(self.told(MEMORY_5)[-1], bytes(registers[first:first + found[place]]))
             else:
                 place, *values = wires.read(self.told(MEMORY_4)[-1], self.told(COUNT_4)[-1])
                 registers[place:place + len(values)] = bytes(values)

@@ -250,6 +250,22 @@ TEST_CASE("a sensor that hears no echo is told of with its pins") {
   CHECK_FALSE(told.contains("address"));
 }
 
+TEST_CASE("a sensor that sees nothing is told of with its place on the bus") {
+  const std::string robot = R"({"sensors": [
+    {"name": "front", "type": "I2C", "address": "0x29", "device": "vl53l0x"}]})";
+  const compiler::Result result = compiler::compile(
+      {"robot.rsl", "WHEN front DISTANCE < 20cm DO LOG \"near\" END\n"}, {"robot.json", robot});
+  REQUIRE_FALSE(result.image.empty());
+  const tool::Program front{result.image, "robot.rsl", tool::board_memory(), {}};
+  const auto line = [&](EventKind kind) {
+    return tool::trace_line(event(kind, 0, 0, {3}), {&front.image(), {}});
+  };
+  CHECK_THAT(line(EventKind::silent),
+             Catch::Contains("front") && Catch::Contains("0x29") &&
+                 Catch::EndsWith(" sees nothing (3 times without a distance so far)"));
+  CHECK_THAT(line(EventKind::answers), Catch::Contains("sees something again (3 times"));
+}
+
 TEST_CASE("a sensor whose voltage is not measured is told of with its pin") {
   const compiler::Result result = compiler::compile(
       {"robot.rsl", "WHEN grip FORCE > 20% DO LOG \"held\" END\n"},

@@ -63,6 +63,18 @@ TEST_CASE("sensors") {
     by_echo(s[0], 20, 40);
     s[0].period_ms = kMinEchoPeriodMs - 1;
   });
+  // What is told to measure has its time, too.
+  const auto by_light = [](Sensor& sensor, std::uint16_t period_ms) {
+    sensor.driver = DriverId::vl53l0x;
+    sensor.address = 0x29;
+    sensor.period_ms = period_ms;
+  };
+  refused(Refusal::bad_value, 0, [&](auto& s) { by_light(s[0], kMinRangingPeriodMs - 1); });
+  {
+    ImageBuilder image = robot::make();
+    by_light(image.sensors[0], kMinRangingPeriodMs);
+    check_accepted(image);
+  }
   for (const auto& [trigger, echo] : {std::pair{20, 41}, {21, 40}, {40, 21}, {21, 20}})
     refused(Refusal::shared_pin, 1, [&, trigger = trigger, echo = echo](auto& s) {
       by_echo(s[0], 20, 40);

@@ -27,6 +27,9 @@ constexpr std::array kOutputs{
 constexpr std::uint16_t kEnable = 45;
 constexpr Port kEnablePort = kPortC;
 constexpr unsigned kEnableBit = 0;
+// What holds the distance sensor of the board (VL53L0X) in its standby while it is low: XSHUT.
+constexpr Port kAwakePort = kPortC;
+constexpr unsigned kAwakeBit = 6;
 constexpr std::array kTimers{kTimer2, kTimer3, kTimer4, kTimer5};
 
 constexpr std::uint32_t kFrame = 20'000;   // microseconds
@@ -57,6 +60,13 @@ void low_at_once(const Timer& timer, unsigned channel) {
   timer.compare(channel).write(0);
 }
 
+// High before it is an output.
+void wake_distance_sensor() {
+  kAwakePort.change().write(1U << kAwakeBit);
+  kAwakePort.pulls().set_field(kAwakeBit, 2, 0);
+  kAwakePort.mode().set_field(kAwakeBit, 2, kModeOfOutput);
+}
+
 }  // namespace
 
 // What a pin is to be first: when the timers get theirs, these are low.
@@ -64,6 +74,7 @@ void start() {
   enable(kEnable, false);
   kEnablePort.pulls().set_field(kEnableBit, 2, 0);
   kEnablePort.mode().set_field(kEnableBit, 2, kModeOfOutput);
+  wake_distance_sensor();
   rcc::give_clock(rcc::kApb1, rcc::kTimers2To5);
   for (const Timer& timer : kTimers)
     start(timer);

@@ -5,13 +5,16 @@
 // the board's profile lets it have servo pulses only.
 //
 // A5, which has the number 45 here, is for the enable input of a chip on the bus, and nothing else.
+//
+// PC6, which no program knows, is at the XSHUT pin of the distance sensor that is soldered to the board (UM2153): high from
+// the start on, and it stays so, whatever is switched off.
 #pragma once
 
 #include <cstdint>
 
 namespace robosync::boards::l475::pins {
 
-// All pins low, but the one at an enable input (boards::Board::enable()), which is high. Their ports have their clock.
+// All pins low, but PC6, and the one at an enable input (boards::Board::enable()), which is high. Their ports have their clock.
 void start();
 
 // The pulse in microseconds, from the next frame on: no frame has part of one. 0 is off, at once. A pin that gives no

@@ -23,6 +23,7 @@ const std::map<std::uint16_t, Stm32Timers::Pin> kHeader{
     {5, {'B', 4}},  {6, {'B', 1}},  {7, {'A', 4}},  {8, {'B', 2}}, {9, {'A', 15}},
     {10, {'A', 2}}, {11, {'A', 7}}, {12, {'A', 6}}, {13, {'A', 5}}};
 constexpr Stm32Timers::Pin kA5{'C', 0};
+constexpr Stm32Timers::Pin kDistanceSensor{'C', 6};  // UM2153: its XSHUT
 constexpr unsigned kFrame = 20'000;
 
 std::vector<std::uint16_t> outputs() {
@@ -47,6 +48,7 @@ struct Chip : Stm32Timers {
     for (const auto& [number, pin] : kHeader)
       if (starting) CHECK(level(pin) != Level::high);
     CHECK((!starting || level(kA5) != Level::low));  // a servo chip is never on by chance
+    CHECK((!starting || level(kDistanceSensor) != Level::low));
   }
   Level at(std::uint16_t pin) const { return level(kHeader.at(pin)); }
   void pass(unsigned us) {
@@ -189,4 +191,17 @@ TEST_CASE(
   pins::enable(kEnable, true);
   pins::switch_off();
   CHECK(chip.level(kA5) == Level::high);
+}
+
+TEST_CASE("B-L475E: the distance sensor on the board is awake from the start on, whatever is off") {
+  Chip chip;
+  CHECK(chip.level(kDistanceSensor) == Level::high);
+  for (std::uint16_t pin = 0; pin < 64; ++pin) {
+    pins::write(pin, 0);
+    pins::enable(pin, true);
+  }
+  CHECK(chip.level(kDistanceSensor) == Level::high);
+  pins::switch_off();
+  chip.pass(2 * kFrame);
+  CHECK(chip.level(kDistanceSensor) == Level::high);
 }

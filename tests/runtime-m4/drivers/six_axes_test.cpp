@@ -10,10 +10,13 @@
 #include "runtime-m4/drivers/axes.hpp"
 #include "runtime-m4/drivers/drivers.hpp"
 #include "tests/runtime-m4/drivers/six_axes_chips.hpp"
+#include "tests/runtime-m4/drivers/transfers.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 
 using namespace robosync;
+using test::Transfers;
+using test::writes_of;
 
 namespace {
 
@@ -35,13 +38,6 @@ std::unique_ptr<test::SixAxesChip> make() {
 constexpr KnownChip kChips[] = {{"lsm6dsl", "lsm6dsl", vm::DriverId::lsm6dsl, make<test::Lsm6dsl>},
                                 {"mpu6050", "mpu6050", vm::DriverId::mpu6050, make<test::Mpu6050>},
                                 {"mpu6500", "mpu6050", vm::DriverId::mpu6050, make<test::Mpu6500>}};
-
-using Transfers = std::vector<test::NotingBoard::Transfer>;
-
-std::size_t writes_of(const Transfers& transfers) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(transfers, [](const auto& one) { return one.in == 0; }));
-}
 
 struct Reader {
   explicit Reader(const KnownChip& known) : chip(known.make()), driver(known.driver) {
