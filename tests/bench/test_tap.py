@@ -1,10 +1,15 @@
 """The serial line of the benchmarks and tests: no byte gets through it sooner than on a wire."""
 
 import socket
+import sys
 import tempfile
 import threading
 import time
 import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "scripts/python")]
 
 from tap import BITS_PER_BYTE, Tap
 
