@@ -137,7 +137,7 @@ TEST_CASE("vl53l0x: no answer is no reading, be it to the first question or to t
     std::size_t asked = 0;
     reader.board.on_bus = [&](std::uint8_t, std::uint8_t, std::span<const std::byte> out,
                               std::span<std::byte> in) {
-      return asked++ != silent_at && reader.chip.transfer(out, in);
+      return reader.chip.transfer(out, in) && asked++ != silent_at;
     };
     CHECK_FALSE(reader.read());
     CHECK(asked == kLightReads);
