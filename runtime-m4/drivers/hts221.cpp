@@ -1,5 +1,5 @@
 // ST HTS221, a hygrometer and a thermometer (DocID026333). Its counts mean something by two points only, which each part has been
-// given in the factory (section 8): the value between them and beyond is on the straight line through both. What the driver gives
+// given in the factory: the value between them and beyond is on the straight line through both. What the driver gives
 // is a thousandth of a percent or of a degree.
 //
 // Out of a loss of power it is switched off. So what it is told to do is read with each sample, and so are its two points, as a
@@ -37,7 +37,7 @@ struct Line {
   std::int32_t low, high;              // of both points
   std::int32_t low_count, high_count;  // what it counts there
   std::int32_t step;                   // thousandths
-  std::int32_t least, most;            // thousandths: what it can measure (section 3)
+  std::int32_t least, most;            // thousandths: what it can measure
 };
 
 std::int32_t byte_at(const Sample& sample, std::size_t place) {

@@ -1,5 +1,5 @@
 // ST VL53L0X, which measures a distance by the time that light takes (DocID029104). A count is a millimetre. The data sheet says of
-// its registers only what 0xC0 is (3.2); the others are those of ST's API for it (UM2039), by their names there.
+// its registers only what 0xC0 is; the others are those of ST's API for it (UM2039), by their names there.
 //
 // It measures once when it is told to, in some 33 ms: each sample takes the last result, and has the next one measured. What it
 // needs for that is told with it each time, so a part that was without power measures again from the next sample on. Without
