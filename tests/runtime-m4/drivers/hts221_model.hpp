@@ -1,6 +1,6 @@
-// An HTS221 as public drivers of it describe ST's data sheet (DocID026333), which was not at hand, without a look at our driver: registers and their values at power-up,
-// auto-increment by bit 7 of the register's number, power-down and the rates of CTRL_REG1, BDU, the data-available bits of
-// STATUS_REG, and the two points of its calibration, which outlast a loss of power.
+// An HTS221 as public drivers of it describe ST's data sheet (DocID026333), which was not at hand, without a look at our driver:
+// registers and their values at power-up, auto-increment by bit 7 of the register's number, power-down and the rates of
+// CTRL_REG1, BDU, the data-available bits of STATUS_REG, and the two points of its calibration, which outlast a loss of power.
 #pragma once
 
 #include <array>

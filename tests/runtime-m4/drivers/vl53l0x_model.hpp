@@ -1,5 +1,5 @@
-// A VL53L0X as public drivers of it describe its data sheet (DocID029104) and ST's API (UM2039), which were not at hand, without a look at our driver:
-// boot after a loss of power or XSHUT, reference registers, single ranging, and the result's interrupt.
+// A VL53L0X as public drivers of it describe its data sheet (DocID029104) and ST's API (UM2039), which were not at hand, without a
+// look at our driver: boot after a loss of power or XSHUT, reference registers, single ranging, and the result's interrupt.
 //
 // Where neither says what happens, the worst comes: a new result shows only if it was asked for by SYSTEM_INTERRUPT_CONFIG_GPIO, a
 // start in the midst of a measurement begins it anew, and the last result stands there meanwhile.
