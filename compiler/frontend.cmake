@@ -64,9 +64,10 @@ target_sources(robosync_compiler PRIVATE
 # Public for the tests, which look at tokens. SYSTEM: warnings inside the generated header.
 target_include_directories(robosync_compiler SYSTEM PUBLIC $<BUILD_INTERFACE:${generated}>)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
-# What is said of a line that is wrong is worked out seldom, and is long: small code is worth more there.
+# What is said of a line that is wrong is worked out seldom, printed at most 20 times, and is long: small code is worth more there.
 if(NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(
+    diagnostics/render_human.cpp diagnostics/render_json.cpp diagnostics/sarif.cpp diagnostics/snippet.cpp
     syntax/examples.cpp syntax/foreign_habits.cpp syntax/habits.cpp syntax/lost_heads.cpp syntax/misplaced_words.cpp
     syntax/wording.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)

@@ -175,20 +175,34 @@ kernel::Time SensorLayer::next_sample(unsigned sensor, kernel::Time last) {
 void SensorLayer::sample(unsigned sensor) {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
   if (vm::is_served(wiring.driver)) return serve_chip(sensor);
+  if (units_[sensor].contact.has_old_result()) [[unlikely]]
+    return drop_old_result(sensor);
   ChannelMask news = 0;
   unsigned failed = 0;
   for (unsigned i = 0; i < wiring.channel_count; ++i) {
     const auto channel = static_cast<std::uint8_t>(wiring.first_channel + i);
     vm::Value value = 0;
-    if (!sampler_->sample(program_->image, channel, value)) {
-      ++failed;
-    } else if (!units_[sensor].contact.has_old_result()) {
+    if (sampler_->sample(program_->image, channel, value)) {
       news |= publish(channel, value, kernel_.now());
+    } else {
+      ++failed;
     }
   }
   announce_all(news);
   if (sample_thread_ != nullptr) kernel_.signal(*sample_thread_, kSampled);
   note_contact(sensor, failed);
+}
+
+// It is told to measure by that.
+void SensorLayer::drop_old_result(unsigned sensor) {
+  const vm::Sensor& wiring = program_->image.sensors[sensor];
+  for (unsigned i = 0; i < wiring.channel_count; ++i) {
+    vm::Value value = 0;
+    (void)sampler_->sample(program_->image, static_cast<std::uint8_t>(wiring.first_channel + i),
+                           value);
+  }
+  if (sample_thread_ != nullptr) kernel_.signal(*sample_thread_, kSampled);
+  note_contact(sensor, 0);
 }
 
 // In each frame in which it is silent: whoever gave it an order meanwhile did so in vain, and it does not come to life with that.
