@@ -105,7 +105,7 @@ void SensorLayer::run_sensor(unsigned sensor) {
   kernel::Time due = first_sample(sensor);
   while (true) {
     await_sample(sensor, due);
-    sample(sensor);
+    measure(sensor);
     due = next_sample(sensor, due);
   }
 }
@@ -146,7 +146,7 @@ void SensorLayer::await_begin(unsigned sensor) {
   while (!begun_) {
     if (const kernel::Duration ahead = asks_ahead(sensor); measures && ahead != 0)
       await_sample(sensor, kernel_.now() + ahead);
-    if (measures) sample(sensor);
+    if (measures) measure(sensor);
     if (measures && simulated_) note_tried(channels_of(sensor));
     kernel_.wait(kBegin, measures ? kernel_.now() + period : kernel::kForever);
   }
@@ -172,11 +172,13 @@ kernel::Time SensorLayer::next_sample(unsigned sensor, kernel::Time last) {
   return next + ((now - next) / period + 1) * period;
 }
 
+void SensorLayer::measure(unsigned sensor) {
+  units_[sensor].contact.has_old_result() ? drop_old_result(sensor) : sample(sensor);
+}
+
 void SensorLayer::sample(unsigned sensor) {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
   if (vm::is_served(wiring.driver)) return serve_chip(sensor);
-  if (units_[sensor].contact.has_old_result()) [[unlikely]]
-    return drop_old_result(sensor);
   ChannelMask news = 0;
   unsigned failed = 0;
   for (unsigned i = 0; i < wiring.channel_count; ++i) {

@@ -16,7 +16,7 @@ bool Monitor::start() {
 
 void Monitor::run() {
   board_.watchdog_start();
-  idle_period_ = idle_period(board_.watchdog_ms());
+  idle_us_ = static_cast<std::uint32_t>(idle_period(board_.watchdog_ms()));
   kernel::Time due = kernel_.now();
   kernel::Time rules_due = kernel::kForever;
   while (true) {
@@ -40,8 +40,8 @@ void Monitor::run() {
 
 // Periods are the program's, from its begin on. Those that are over already are skipped, never made up for.
 kernel::Time Monitor::next_after(kernel::Time due, kernel::Time now) const {
-  if (!supervised_.running()) return now + idle_period_;
-  if (now < supervised_.began()) return std::min(supervised_.began(), now + idle_period_);
+  if (!supervised_.running()) return now + idle_us_;
+  if (now < supervised_.began()) return std::min(supervised_.began(), now + idle_us_);
   const kernel::Time next = std::max(due, supervised_.began()) + kPeriod;
   return now < next ? next : next + ((now - next) / kPeriod + 1) * kPeriod;
 }

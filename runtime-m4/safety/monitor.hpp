@@ -81,7 +81,7 @@ private:
   std::atomic<std::uint32_t> late_ = 0;
   std::uint32_t last_progress_ = 0;
   unsigned without_progress_ = 0;  // checks in a row
-  kernel::Duration idle_period_ = 0;
+  std::uint32_t idle_us_ = 0;
   kernel::Thread thread_;
   alignas(port::kStackAlignment) std::array<std::byte, kStack> stack_{};
 };
