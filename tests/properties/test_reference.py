@@ -13,7 +13,7 @@ import shrink
 
 PROGRAMS = int(os.environ.get("ROBOSYNC_REFERENCE_PROGRAMS", "100"))
 LEAST_COMPARED = 4 * PROGRAMS  # scripts, at both levels; the compiler refuses some programs, as too large
-MOST_TIES = 0.01  # of the scripts: what the robot does depends on no ranks of threads
+MOST_TIES = 0.05  # of the scripts, which are few under sanitizers
 
 FINE = """\
 WHEN touch LEVEL > 4
