@@ -105,7 +105,7 @@ void SensorLayer::run_sensor(unsigned sensor) {
   kernel::Time due = first_sample(sensor);
   while (true) {
     await_sample(sensor, due);
-    measure(sensor);
+    sample(sensor);
     due = next_sample(sensor, due);
   }
 }
@@ -146,7 +146,7 @@ void SensorLayer::await_begin(unsigned sensor) {
   while (!begun_) {
     if (const kernel::Duration ahead = asks_ahead(sensor); measures && ahead != 0)
       await_sample(sensor, kernel_.now() + ahead);
-    if (measures) measure(sensor);
+    if (measures) sample(sensor);
     if (measures && simulated_) note_tried(channels_of(sensor));
     kernel_.wait(kBegin, measures ? kernel_.now() + period : kernel::kForever);
   }
@@ -172,10 +172,6 @@ kernel::Time SensorLayer::next_sample(unsigned sensor, kernel::Time last) {
   return next + ((now - next) / period + 1) * period;
 }
 
-void SensorLayer::measure(unsigned sensor) {
-  units_[sensor].contact.has_old_result() ? drop_old_result(sensor) : sample(sensor);
-}
-
 void SensorLayer::sample(unsigned sensor) {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
   if (vm::is_served(wiring.driver)) return serve_chip(sensor);
@@ -184,27 +180,15 @@ void SensorLayer::sample(unsigned sensor) {
   for (unsigned i = 0; i < wiring.channel_count; ++i) {
     const auto channel = static_cast<std::uint8_t>(wiring.first_channel + i);
     vm::Value value = 0;
-    if (sampler_->sample(program_->image, channel, value)) {
-      news |= publish(channel, value, kernel_.now());
-    } else {
+    if (!sampler_->sample(program_->image, channel, value)) {
       ++failed;
+    } else if (!units_[sensor].contact.has_old_result()) {
+      news |= publish(channel, value, kernel_.now());
     }
   }
   announce_all(news);
   if (sample_thread_ != nullptr) kernel_.signal(*sample_thread_, kSampled);
   note_contact(sensor, failed);
-}
-
-// It is told to measure by that.
-void SensorLayer::drop_old_result(unsigned sensor) {
-  const vm::Sensor& wiring = program_->image.sensors[sensor];
-  for (unsigned i = 0; i < wiring.channel_count; ++i) {
-    vm::Value value = 0;
-    (void)sampler_->sample(program_->image, static_cast<std::uint8_t>(wiring.first_channel + i),
-                           value);
-  }
-  if (sample_thread_ != nullptr) kernel_.signal(*sample_thread_, kSampled);
-  note_contact(sensor, 0);
 }
 
 // In each frame in which it is silent: whoever gave it an order meanwhile did so in vain, and it does not come to life with that.

@@ -107,9 +107,7 @@ private:
   void ask(unsigned sensor);
   void await_sample(unsigned sensor, kernel::Time due);
   kernel::Time next_sample(unsigned sensor, kernel::Time last);
-  void measure(unsigned sensor);
   void sample(unsigned sensor);
-  [[gnu::cold, gnu::noinline]] void drop_old_result(unsigned sensor);
   void serve_chip(unsigned sensor);
   void note_contact(unsigned sensor, unsigned failed);
   [[gnu::noinline]] void deliver();

@@ -8,7 +8,7 @@ import examples
 import pins
 import rsc
 import stimuli
-from board import FIRMWARE, NAME, REAL_TIME
+from board import FIRMWARE, NAME, REAL_TIME, REFERENCE
 from support import PROFILE, PROGRAMS, LineReader, RobotTest
 from traces import TraceTest
 
@@ -16,7 +16,7 @@ sys.path.append(str(rsc.ROOT / "bench"))
 from counting import symbols  # noqa: E402
 
 COMPANION = rsc.ROOT / "examples/touch_companion"
-SAFETY_PERIOD_US = 30_000  # without a program
+SAFETY_PERIOD_US = 30_000 if NAME == REFERENCE else 60_000  # without a program: three fifths of the time of its watchdog
 MOST_LATE_US = 20_000
 READINGS_SEED = 475
 PATIENCE = 20
