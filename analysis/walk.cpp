@@ -18,17 +18,7 @@ Flow flow_of(vm::Word word) {
 }  // namespace
 
 bool writes(vm::Word word) {
-  switch (vm::info_of(vm::opcode_of(word)).operands[0]) {
-    case Operand::write:
-    case Operand::write_truth:
-    case Operand::write_same:
-    case Operand::update_truth:
-    case Operand::local:
-    case Operand::variable:
-      return true;
-    default:
-      return false;
-  }
+  return vm::is_written(vm::info_of(vm::opcode_of(word)).operands[0]);
 }
 
 std::uint32_t least_wait_ms(vm::Word word, std::span<const Interval> cells) {

@@ -14,9 +14,10 @@ import tempfile
 import time
 from pathlib import Path
 
+import periods
 import rsc
-from board import FAST, FIRMWARE, NAME, Board
-from counting import ROOT, BenchError, Marks, functions, of_the_board, plugin_arguments
+from board import FAST, FIRMWARE, Board
+from counting import BenchError, Marks, functions, of_the_board, plugin_arguments
 from workloads import PAPER
 
 KICK = "Board::watchdog_kick("
@@ -26,22 +27,6 @@ BYTES_OF_MARK = 24  # of a kick, at most
 BYTES_OF_THOUSANDS = 100_000
 STARTED = 2  # kicks after which the firmware has
 PATIENCE = 30  # seconds until so many have passed: the core's sleep takes no time
-
-
-def period_ms(source, constant):
-    """A period of the runtime that is written down in milliseconds."""
-    found = re.search(rf"{constant} = (\d+);", (ROOT / source).read_text())
-    if not found:
-        raise BenchError(f"{source} has no {constant}")
-    return int(found[1])
-
-
-def idle_period_ms():
-    """What safety::idle_period() makes of the time of the board's watchdog."""
-    share = re.search(r"watchdog_ms \* (\d+) / (\d+)\)", (ROOT / "runtime-m4/safety/period.hpp").read_text())
-    if not share:
-        raise BenchError("the idle period of the safety monitor is not what it was")
-    return period_ms(f"runtime-m4/boards/{NAME}/board.hpp", "kWatchdogMs") * int(share[1]) // int(share[2])
 
 
 def code_of(prefixes):
@@ -86,7 +71,7 @@ def idle_second(period, program):
 def idle_alone():
     """Of a board without a program, the costliest of those of its first minute, in which the kernel looks once at timers that are far off:
     it is the same in each run. Counted over the periods that a second begins, and taken down to it."""
-    period = idle_period_ms()
+    period = periods.idle_ms()
     second, minute = math.ceil(1000 / period), math.ceil(60_000 / period)
     counts = [count for _, count in kicks(BYTES_OF_MARK * minute).all][STARTED:minute]
     if len(counts) != minute - STARTED:
@@ -96,7 +81,7 @@ def idle_alone():
 
 
 def idle_figures():
-    paper, transfers = idle_second(period_ms("runtime-m4/policy/rules.hpp", "kSafetyPeriodMs"), PAPER)
+    paper, transfers = idle_second(periods.safety_ms(), PAPER)
     return {"firmware/idle_second": (idle_alone(), "insn"),
             "firmware/idle_second_paper": (paper, "insn"),
             "firmware/idle_second_paper_i2c": (transfers, "insn")}

@@ -103,6 +103,11 @@ constexpr bool is_wide(Operand kind) {
   return kind == Operand::const16 || kind == Operand::count16 || kind == Operand::ahead ||
          kind == Operand::back || kind == Operand::string;
 }
+// Is it a cell that the instruction writes a number or a truth into?
+constexpr bool is_written(Operand kind) {
+  return kind == Operand::write || kind == Operand::write_truth || kind == Operand::write_same ||
+         kind == Operand::update_truth || kind == Operand::local || kind == Operand::variable;
+}
 // Is it a cell that may be an input, which is read or set?
 constexpr bool may_be_input(Operand kind) {
   return kind == Operand::read || kind == Operand::read_truth || kind == Operand::variable;

@@ -13,6 +13,7 @@ import threading
 import time
 from pathlib import Path
 
+import periods
 import rsc
 from board import Board, BoardError, end_on_signals, machine
 
@@ -23,7 +24,7 @@ BEFORE = 9  # what is touched while a program starts, so that reading 0 is a cha
 HOLD_SECONDS = 0.5  # how long each reading lasts after the robot has noticed it
 PATIENCE_SECONDS = 15
 LEAST_CHECKS = 0.95  # of those that were due; a check that the computer was too busy for is left out
-SAFETY_PERIOD_US = 10_000  # runtime-m4/safety/monitor.hpp
+SAFETY_PERIOD_US = 1000 * periods.safety_ms()
 OLD, NEW = "LEVEL < 3", "LEVEL < 5"
 GENTLE, HARSH = "greeting.wav", "warning.wav"  # the sounds tell the two responses apart
 RESPONSES = {GENTLE: "gentle_response", HARSH: "aggressive_response"}

@@ -5,10 +5,11 @@ import sys
 import unittest
 
 import examples
+import periods
 import pins
 import rsc
 import stimuli
-from board import FIRMWARE, NAME, REAL_TIME, REFERENCE
+from board import FIRMWARE, NAME, REAL_TIME
 from support import PROFILE, PROGRAMS, LineReader, RobotTest
 from traces import TraceTest
 
@@ -16,7 +17,6 @@ sys.path.append(str(rsc.ROOT / "bench"))
 from counting import symbols  # noqa: E402
 
 COMPANION = rsc.ROOT / "examples/touch_companion"
-SAFETY_PERIOD_US = 30_000 if NAME == REFERENCE else 60_000  # without a program: three fifths of the time of its watchdog
 MOST_LATE_US = 20_000
 READINGS_SEED = 475
 PATIENCE = 20
@@ -86,7 +86,7 @@ class EveryBoard(TraceTest):
         checks = statuses[-1]["safety_checks"] - statuses[0]["safety_checks"]
         self.assertGreater(passed, 0)
         self.assertEqual(sorted(s["uptime_us"] for s in statuses), [s["uptime_us"] for s in statuses])
-        self.assertAlmostEqual(checks, passed / SAFETY_PERIOD_US, delta=2)
+        self.assertAlmostEqual(checks, passed / (1000 * periods.idle_ms()), delta=2)
         self.assertEqual(statuses[-1]["safety_late_us"], 0)
 
     def test_the_companion_does_what_it_does_on_the_host(self):

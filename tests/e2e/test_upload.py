@@ -3,11 +3,12 @@
 import json
 import unittest
 
+import periods
 import rsc
 from board import FAST, NAME, ROOT, Board
 from support import CONFIG, PROGRAMS, LineReader, RobotTest
 
-SAFETY_PERIOD_US = 10_000
+SAFETY_PERIOD_US = 1000 * periods.safety_ms()
 
 
 class Upload(RobotTest):
