@@ -180,10 +180,11 @@ void SensorLayer::sample(unsigned sensor) {
   for (unsigned i = 0; i < wiring.channel_count; ++i) {
     const auto channel = static_cast<std::uint8_t>(wiring.first_channel + i);
     vm::Value value = 0;
-    if (!sampler_->sample(program_->image, channel, value)) {
+    if (sampler_->sample(program_->image, channel, value)) {
+      if (!units_[sensor].contact.has_old_result())
+        news |= publish(channel, value, kernel_.now());
+    } else {
       ++failed;
-    } else if (!units_[sensor].contact.has_old_result()) {
-      news |= publish(channel, value, kernel_.now());
     }
   }
   announce_all(news);
