@@ -14,6 +14,7 @@
 #include "analysis/step_work.hpp"
 #include "runtime-m4/policy/adaptation.hpp"
 #include "runtime-m4/policy/link_share.hpp"
+#include "runtime-m4/policy/player.hpp"
 #include "runtime-m4/policy/rules.hpp"
 #include "runtime-m4/policy/threads.hpp"
 #include "vm/drivers.hpp"
@@ -413,6 +414,11 @@ private:
     return costs::kLongestLock + (on_bus > 1 ? longest : 0);
   }
 
+  bool any_actuator(bool (*is)(vm::DriverId)) const {
+    return std::ranges::any_of(image_.actuators,
+                               [is](const vm::Actuator& actuator) { return is(actuator.driver); });
+  }
+
   void add_interferences() {
     const Instructions period = instructions_in_ms(policy::kSafetyPeriodMs);
     set_.interferences.push_back(
@@ -420,10 +426,11 @@ private:
     set_.interferences.push_back({"the serial line",
                                   instructions_in_ms(1000) / board_.line_bytes_per_second,
                                   Instructions{board_.receive} + board_.send});
-    if (std::ranges::any_of(image_.actuators, [](const vm::Actuator& actuator) {
-          return vm::drives_lights(actuator.driver);
-        }))
+    if (any_actuator(vm::drives_lights))
       set_.interferences.push_back({"the lights", instructions_in_ms(policy::kRowMs), board_.row});
+    if (any_actuator(vm::drives_player))
+      set_.interferences.push_back(
+          {"the sound player", instructions_in_ms(policy::kPlayerGapMs), board_.say});
     set_.interferences.push_back(
         {"the safety thread", period, board_.wake_by_timer + costs::kMonitor + looks()});
     if (work_.trips() != 0)

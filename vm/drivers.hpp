@@ -12,7 +12,7 @@ namespace robosync::vm {
 // but on the lights and the speaker, which a board has once. Either way: a level on its pin or on a second one, which the
 // image has as its `bus`; the other pin is off then. Channel: pulses, by a servo chip, which the image has among its sensors, as
 // it is a device on a bus: `bus` says where, `pin` is the chip's channel. Screen: a picture, on a display, which is among the
-// sensors in the same way.
+// sensors in the same way. Line: commands to a sound player, on a serial line of the board, which the image has as the `bus`.
 enum class PinUse : std::uint8_t {
   nothing,
   pulses,
@@ -21,7 +21,8 @@ enum class PinUse : std::uint8_t {
   tones,
   either_way,
   channel,
-  screen
+  screen,
+  line
 };
 
 constexpr PinUse pin_use(DriverId driver) {
@@ -63,9 +64,12 @@ constexpr bool drives_channel(DriverId driver) {
 constexpr bool drives_screen(DriverId driver) {
   return pin_use(driver) == PinUse::screen;
 }
+constexpr bool drives_player(DriverId driver) {
+  return pin_use(driver) == PinUse::line;
+}
 // What goes on by itself as long as nobody ends it: it cannot be held in a halt.
 constexpr bool drives_on(DriverId driver) {
-  return gives_power(driver) || pin_use(driver) == PinUse::tones;
+  return gives_power(driver) || drives_speaker(driver) || drives_player(driver);
 }
 
 // By what a driver's sensors are measured; nothing: they are fed, or it has no sensors. Echo: a pulse on an output, which the

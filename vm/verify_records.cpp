@@ -188,16 +188,18 @@ Refusal check_channel(Walk& walk, const Channel& channel, std::size_t index) {
                                          is_range(channel.min, channel.max) && channel.change >= 0);
 }
 
-// What an actuator has for itself alone: its pins, the lights, the speaker, or a display.
+// What an actuator has for itself alone: its pins, the lights, the speaker, a display, or a serial line.
 constexpr std::uint32_t kNothing = UINT32_MAX;
 constexpr std::uint32_t kLights = UINT16_MAX + 1;
 constexpr std::uint32_t kSpeaker = kLights + 1;
 constexpr std::uint32_t kDisplays = kSpeaker + 1;
+constexpr std::uint32_t kLines = kDisplays + UINT8_MAX + 1;
 
 std::uint32_t output_of(const Actuator& actuator) {
   if (drives_lights(actuator.driver)) return kLights;
   if (drives_screen(actuator.driver)) return kDisplays + actuator.bus;
   if (drives_speaker(actuator.driver)) return kSpeaker;
+  if (drives_player(actuator.driver)) return kLines + actuator.bus;
   return drives_pin(actuator.driver) ? actuator.pin : kNothing;
 }
 

@@ -138,7 +138,7 @@ void read_safe(const json::Value& value, ActuatorConfig& actuator, Diagnostics& 
     actuator.safe = vm::Release::coast;
   }
   if (actuator.safe != vm::Release::hold || !vm::drives_on(actuator.driver)) return;
-  const bool sounds = vm::drives_speaker(actuator.driver);
+  const bool sounds = vm::drives_speaker(actuator.driver) || vm::drives_player(actuator.driver);
   diagnostics
       .report(Code::E0205, std::string(sounds ? "a tone that is held sounds"
                                               : "a motor that holds what it does runs") +
@@ -178,6 +178,7 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
     actuator.pin = place.place;
     if (type->name == "VIRTUAL") actuator.driver = vm::DriverId::virtual_actuator;
     if (vm::drives_pin(actuator.driver)) wiring.check_output(fields, place, actuator.driver);
+    if (vm::drives_player(actuator.driver)) wiring.check_line(fields, place);
     if (vm::drives_lights(actuator.driver) || vm::drives_speaker(actuator.driver))
       wiring.check_part(fields, part);
   }

@@ -130,6 +130,7 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
   Fields fields(*tree, Object::board, diagnostics);
   board.step_budget = read_number(fields, "step_budget", "a board", diagnostics);
   board.i2c_buses = read_number(fields, "i2c_buses", "a board", diagnostics);
+  board.serial_lines = read_number(fields, "serial_lines", "a board", diagnostics);
   if (const auto* outputs = fields.require("outputs", "a board"))
     board.outputs = read_pins(*outputs, Object::outputs, diagnostics);
   if (const auto* inputs = fields.require("inputs", "a board"))

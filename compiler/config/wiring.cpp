@@ -27,6 +27,8 @@ constexpr std::array<WiringType, 7> kTypes = {{
     {"VIRTUAL", true, true, true, true, true},  // keys of the real thing may stay
 }};
 
+constexpr std::uint8_t kFirstLine = 1;  // 0 is the link's
+
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::ActiveLevel::count_)> kLevels =
     {"low", "high"};
 
@@ -374,9 +376,10 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
   if (type.name == "VIRTUAL") return wiring;
   if (part != nullptr) return read_part(fields, *part);
   report_foreign(fields, type);
+  if (type.name == "UART") wiring.bus = kFirstLine;
   if (const auto* bus = type.bus ? fields.find("bus") : nullptr)
-    wiring.bus =
-        static_cast<std::uint8_t>(read_whole(*bus, 0, UINT8_MAX, diagnostics_).value_or(0));
+    wiring.bus = static_cast<std::uint8_t>(
+        read_whole(*bus, 0, UINT8_MAX, diagnostics_).value_or(wiring.bus));
   if (type.address) {
     if (const auto* address = fields.require("address", what))
       wiring.place = static_cast<std::uint16_t>(
@@ -400,6 +403,26 @@ void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
       .label(bus->span)
       .helps(board_.i2c_buses == 1 ? "it has one, bus 0"
                                    : "its buses are 0 to " + std::to_string(board_.i2c_buses - 1));
+}
+
+// Each line leads to one player.
+void WiringReader::check_line(const Fields& fields, const Wiring& wiring) {
+  const auto* bus = fields.find("bus");
+  const Span span = (bus != nullptr ? bus : fields.find("device"))->span;
+  const std::string line = "serial line " + std::to_string(wiring.bus);
+  if (wiring.bus < kFirstLine || wiring.bus > board_.serial_lines) {
+    diagnostics_
+        .report(Code::E0205, "the board " + board_.name + " has no " + line + " for a player")
+        .label(span)
+        .helps(board_.serial_lines == 1 ? "it has one, `\"bus\": 1`"
+                                        : "they are 1 to " + std::to_string(board_.serial_lines));
+    return;
+  }
+  const auto [first, added] = lines_.emplace(wiring.bus, span);
+  if (added) return;
+  diagnostics_.report(Code::E0207, line + " is used twice")
+      .label(span)
+      .label(first->second, "first used here", false);
 }
 
 void WiringReader::check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver) {

@@ -56,6 +56,8 @@ public:
   void check_input(const Fields& fields, const Wiring& wiring);
   void check_echo(const Fields& fields, const Wiring& wiring);
   void check_analog(const Fields& fields, const Wiring& wiring);
+  // Of a sound player.
+  void check_line(const Fields& fields, const Wiring& wiring);
   void check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver);
   // Lights and speakers are parts of a board, or nowhere.
   void check_part(const Fields& fields, const Board::Part* part);
@@ -93,6 +95,7 @@ private:
   Board board_;
   Diagnostics& diagnostics_;
   std::map<std::uint16_t, Span> pins_;
+  std::map<std::uint8_t, Span> lines_;
   std::map<const Board::Part*, Span> parts_;                          // without a pin
   std::map<std::pair<std::uint8_t, std::uint16_t>, OnBus> on_buses_;  // by bus and address
 };

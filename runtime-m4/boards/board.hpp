@@ -32,6 +32,8 @@ struct BusState {
 };
 
 inline constexpr std::size_t kMostSelected = 2;
+inline constexpr std::size_t kMostSaid = 10;
+inline constexpr std::uint8_t kPlayerLine = 1;  // the first serial line that is not the link's
 
 class Board {
 public:
@@ -86,6 +88,11 @@ public:
 
   // The tone of the speaker from now on, for boards that have one, in Hz. 0: silent, at once.
   virtual void sound(std::uint32_t /*hertz*/) {}
+
+  // A command to a sound player on one of the board's serial lines (pins()), at 9,600 baud while the processor does something
+  // else. What has not left of the command before is given up. At most kMostSaid bytes; on another line: nothing. Nobody but the
+  // output guard calls it.
+  virtual void say(std::uint8_t /*line*/, std::span<const std::byte> /*command*/) {}
 
   // What outlasts a reset; nullptr where the board has nothing for it.
   virtual Store* store() { return nullptr; }

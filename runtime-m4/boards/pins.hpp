@@ -20,7 +20,8 @@ inline constexpr policy::BoardPins kPins = {.outputs = kOutputs,
                                             .inputs = kInputs,
                                             .analog = kAnalog,
                                             .enables = kEnables,
-                                            .i2c_buses = ROBOSYNC_I2C_BUSES};
+                                            .i2c_buses = ROBOSYNC_I2C_BUSES,
+                                            .serial_lines = ROBOSYNC_SERIAL_LINES};
 
 // A pin that is read is driven by nobody; an analog input alone may be an output for other programs.
 constexpr bool meet(const auto& these, const auto& those) {

@@ -7,6 +7,7 @@ string(JSON arena_begin GET "${profile}" arena begin)
 string(JSON arena_bytes GET "${profile}" arena bytes)
 string(JSON step_budget GET "${profile}" step_budget)
 string(JSON i2c_buses GET "${profile}" i2c_buses)
+string(JSON serial_lines GET "${profile}" serial_lines)
 string(JSON store_bytes ERROR_VARIABLE any GET "${profile}" store)
 if(any)
   set(store_bytes 0)
@@ -65,4 +66,4 @@ set(board_definitions
   ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_STORE_BYTES=${store_bytes} ROBOSYNC_OUTPUTS=${board_outputs}
   ROBOSYNC_INPUTS=${board_inputs} ROBOSYNC_ANALOG=${board_analog} ROBOSYNC_ANALOG_ROWS=${analog_rows}
   ROBOSYNC_ENABLES=${board_enables} ROBOSYNC_ENABLE_ROWS=${enables_rows} ROBOSYNC_LIGHTS=${board_lights}
-  ROBOSYNC_SPEAKER=${board_speaker})
+  ROBOSYNC_SPEAKER=${board_speaker} ROBOSYNC_SERIAL_LINES=${serial_lines})

@@ -60,6 +60,7 @@ struct Device {
   }
   void show(std::uint32_t picture) const { outputs.show(state.actuator, picture); }
   void sound(std::uint32_t hertz) const { outputs.sound(state.actuator, hertz); }
+  void play(std::uint16_t sound) const { outputs.play(state.actuator, sound); }
 };
 
 inline constexpr kernel::Time kDone = 0;
@@ -92,10 +93,11 @@ struct Driver {
   ReleaseFunction release = nullptr;
 };
 
-// Code for lights and speakers is not there where there are none, nor that for displays where no bus is.
+// Code for lights and speakers is not there where there are none, nor that for displays and players where they could not be.
 constexpr bool is_present(vm::DriverId id) {
   if (vm::drives_lights(id)) return boards::kHasLights;
   if (vm::drives_screen(id)) return boards::kPins.i2c_buses != 0;
+  if (vm::drives_player(id)) return boards::kPins.serial_lines != 0;
   return boards::kHasSpeaker || !vm::drives_speaker(id);
 }
 template <vm::DriverId id>

@@ -1,18 +1,25 @@
-// A sound player: a track plays for FOR, one second when its length is not given. The board
-// interface has no line to a player module yet, so what is real here is the time a track occupies
-// the player, and that it can be cut short; the track's number is seen in the trace.
+// A sound player with numbered tracks. A track plays for FOR, else for the length that robot.json gives it, else a second, and is
+// ended then: how long its file is nobody here knows.
 #include "runtime-m4/drivers/timed.hpp"
 
 namespace robosync::drivers::player {
 
 kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
-  return take_time(device, order, now);
+  const kernel::Time end = take_time(device, order, now);
+  const vm::Value track = order.get(vm::Param::item, 0) / vm::kScale;
+  device.play(end == kDone ? std::uint16_t{0} : static_cast<std::uint16_t>(track));
+  return end;
 }
 
 kernel::Time advance(const Device& device, kernel::Time now) {
-  return go_on(device, now);
+  const kernel::Time end = go_on(device, now);
+  if (end == kDone) device.play(0);
+  return end;
 }
 
-void release(const Device&, vm::Release, kernel::Time) {}
+// Nothing holds a sound.
+void release(const Device& device, vm::Release, kernel::Time) {
+  device.play(0);
+}
 
 }  // namespace robosync::drivers::player

@@ -5,6 +5,7 @@
 #include <bit>
 #include <utility>
 
+#include "runtime-m4/policy/player.hpp"
 #include "runtime-m4/policy/pulses.hpp"
 #include "vm/drivers.hpp"
 
@@ -61,7 +62,8 @@ bool OutputGuard::drives(const vm::Image& image, const Slot& slot) {
   const std::uint16_t first = slot.second ? slot.other : slot.pin;
   const std::uint16_t second = slot.second ? slot.pin : slot.other;
   return std::ranges::any_of(image.actuators, [&](const vm::Actuator& actuator) {
-    return actuator.pin == first && actuator.driver == slot.driver &&
+    const std::uint16_t place = vm::drives_player(actuator.driver) ? actuator.bus : actuator.pin;
+    return place == first && actuator.driver == slot.driver &&
            (second == kNoPin || actuator.bus == second);
   });
 }
@@ -118,9 +120,16 @@ void OutputGuard::switch_off(const vm::Image* next) {
   switch_chips_off();
   for (Mask left = owned & ~(lights() | speaker() | on_chips_); left != 0; left &= left - 1) {
     const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
-    if (next == nullptr || !drives(*next, slot)) board_.pwm_write(slot.pin, 0);
+    if (next == nullptr || !drives(*next, slot)) switch_off(slot);
   }
   lights_ = speaker_ = on_chips_ = 0;
+}
+
+void OutputGuard::switch_off(const Slot& slot) {
+  if (!vm::drives_player(slot.driver)) return board_.pwm_write(slot.pin, 0);
+  Slot silent = slot;
+  silent.target = 0;
+  tell(silent);
 }
 
 void OutputGuard::disown() {
@@ -146,6 +155,10 @@ void OutputGuard::own(const vm::Image& image) {
       owned |= bit(a);
     }
     if (boards::kHasSpeaker && vm::drives_speaker(actuator.driver)) owned |= speaker_ = bit(a);
+    if (vm::drives_player(actuator.driver) && policy::is_line(pins, actuator.bus)) {
+      own_player(a, actuator.bus);
+      owned |= bit(a);
+    }
     if (!vm::drives_pin(actuator.driver) || !policy::can_drive(actuator, pins)) continue;
     slots_[a] = slot_of(actuator, pins);
     owned |= bit(a);
@@ -220,6 +233,14 @@ void OutputGuard::sound(unsigned actuator, std::uint32_t hertz) {
   if ((free_ & speaker() & bit(actuator)) != 0) board_.sound(hertz);
 }
 
+void OutputGuard::play(unsigned actuator, std::uint16_t sound) {
+  const auto lock = kernel_.lock();
+  Slot& slot = slots_[actuator];
+  if (!is_free(actuator) || !vm::drives_player(slot.driver)) return;
+  slot.target = sound;
+  lagging_ |= bit(actuator);
+}
+
 [[gnu::noinline]] void OutputGuard::drive(unsigned actuator, std::uint32_t pulse_us,
                                           kernel::Time now) {
   const auto lock = kernel_.lock();
@@ -274,6 +295,7 @@ void OutputGuard::go_on(kernel::Time now) {
 // As far towards the target as the pin may change by now.
 [[gnu::noinline]] void OutputGuard::put(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
+  if (vm::drives_player(slot.driver)) return tell_player(slot, actuator, now);
   const policy::PinLimit& limit = limits_[slot.limit];
   slot.pulse = next_pulse(slot, limit.rise, limit.shortest != 0, now);
   slot.pulse == slot.target ? lagging_ &= ~bit(actuator) : lagging_ |= bit(actuator);
@@ -325,6 +347,11 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
 
 void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
+  if (vm::drives_player(slot.driver)) {
+    slot.target = 0;
+    lagging_ |= bit(actuator);
+    return;
+  }
   if (slot.safe != kStays && slot.pulse != 0) return settle(slot, actuator, slot.safe, now);
   slot.target = slot.pulse;
   lagging_ &= ~bit(actuator);
@@ -491,6 +518,32 @@ OutputGuard::Screen* OutputGuard::screen_of(unsigned sensor) {
   for (Display& display : std::span(displays_).first(display_count_))
     if (display.sensor == sensor) return &display.screen;
   return nullptr;
+}
+
+// --- players ---
+
+// Nobody knows what it plays: it is silent, unless it gets something to play before it is told.
+void OutputGuard::own_player(unsigned actuator, std::uint8_t line) {
+  const auto now = static_cast<std::uint16_t>(kernel_.now() / 1000);
+  slots_[actuator] = {};
+  slots_[actuator].pin = line;
+  slots_[actuator].other = kNoPin;
+  slots_[actuator].changed = now;
+  slots_[actuator].driver = vm::DriverId::player;
+  lagging_ |= bit(actuator);
+  apart_ |= bit(actuator);
+}
+
+void OutputGuard::tell_player(Slot& slot, unsigned actuator, kernel::Time now) {
+  const auto at = static_cast<std::uint16_t>(now / 1000);
+  if (static_cast<std::uint16_t>(at - slot.changed) < policy::kPlayerGapMs) return;
+  slot.changed = at;
+  lagging_ &= ~bit(actuator);
+  tell(slot);
+}
+
+void OutputGuard::tell(const Slot& player) {
+  board_.say(static_cast<std::uint8_t>(player.pin), policy::player_command(player.target));
 }
 
 void OutputGuard::let_go(Mask actuators) {

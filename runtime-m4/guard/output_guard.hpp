@@ -30,6 +30,9 @@
 // A display shows a picture, which its server (drivers/screen.hpp) asks for in the same way. Of a halt it comes to know in its
 // next frame, some 50 ms later: nobody is hurt by that.
 //
+// A sound player is told on its serial line what to play, at the next check of the safety monitor, and silence in a halt, whatever
+// its safe state; between two commands there is the time that it needs (policy/player.hpp). Only the last order counts.
+//
 // A check and its write are one under the kernel's lock: who is interrupted in between writes nothing old later.
 // docs/safety.md says what follows from that.
 #pragma once
@@ -71,6 +74,8 @@ public:
   void show(unsigned actuator, std::uint32_t picture);
   // The tone of the speaker (boards::Board::sound()).
   void sound(unsigned actuator, std::uint32_t hertz);
+  // The sound that the player on the actuator's line is to play, from 1 on; 0: none.
+  void play(unsigned actuator, std::uint16_t sound);
   // A pulse on the trigger pin of a sensor (boards::Board::ping()).
   void ping(unsigned sensor);
 
@@ -115,7 +120,8 @@ public:
   void let_go(Mask actuators);
 
 private:
-  // Of two pins, `pin` is the one that is on, or was last; the other one is off.
+  // Of two pins, `pin` is the one that is on, or was last; the other one is off. Of a player, `pin` is its line, `target` the sound
+  // that it shall play, and `changed` when it was told something last.
   struct Slot {
     std::uint16_t pin;
     std::uint16_t other;    // kNoPin: it has one
@@ -159,6 +165,10 @@ private:
   [[nodiscard]] bool is_free(unsigned actuator) const;
   static void exchange(Slot& slot);
   void turn(Slot& slot, unsigned actuator, kernel::Time now);
+  void own_player(unsigned actuator, std::uint8_t line);
+  void tell_player(Slot& slot, unsigned actuator, kernel::Time now);
+  void tell(const Slot& player);
+  void switch_off(const Slot& slot);
   [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
   static bool drives(const vm::Image& image, const Slot& slot);
   [[nodiscard]] Pins measured_by(const vm::Image& image) const;
@@ -190,8 +200,8 @@ private:
   Mask free_ = 0;     // owned, and not halted
   Mask gradual_ = 0;  // whose pulse may not change at once
   Mask apart_ =
-      0;  // for which a halt is more than a pulse on a pin: they stay as they are, or are on a chip
-  Mask lagging_ = 0;  // … and is not yet where it shall be
+      0;  // for which a halt is more than a pulse on a pin: they stay as they are, or are on a chip or a line
+  Mask lagging_ = 0;  // … and is not yet where it shall be; or a player that was not told yet
   Mask lights_ = 0;
   Mask speaker_ = 0;
   // Of their slots: `pin` is the channel, `target` is what the chip has. Displays count as chips; their slots are empty.

@@ -34,6 +34,7 @@ struct BoardPins {
   // to be off. They are nothing else.
   std::span<const PinRange> enables;
   std::uint8_t i2c_buses = 0;
+  std::uint8_t serial_lines = 0;  // from 1 on: 0 is the link's
 };
 
 // Null: no output.
@@ -65,6 +66,10 @@ constexpr bool can_trigger(std::uint16_t pin, const BoardPins& board) {
 
 constexpr bool is_enable(const BoardPins& board, std::uint16_t pin) {
   return is_in(board.enables, pin);
+}
+
+constexpr bool is_line(const BoardPins& board, std::uint8_t line) {
+  return line != 0 && line <= board.serial_lines;
 }
 
 constexpr vm::Refusal judge(const vm::Sensor& sensor, const BoardPins& board) {
@@ -107,6 +112,8 @@ inline vm::Verdict judge(const vm::Image& image, const BoardPins& board) {
     const vm::Actuator& actuator = image.actuators[a];
     if (vm::drives_pin(actuator.driver) && !can_drive(actuator, board))
       return {vm::Refusal::no_pin, vm::Section::actuators, static_cast<std::uint16_t>(a)};
+    if (vm::drives_player(actuator.driver) && !is_line(board, actuator.bus))
+      return {vm::Refusal::no_bus, vm::Section::actuators, static_cast<std::uint16_t>(a)};
   }
   return {};
 }

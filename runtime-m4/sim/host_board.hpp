@@ -40,7 +40,8 @@ private:
                                               .inputs = kAny,
                                               .analog = kAny,
                                               .enables = kAny,
-                                              .i2c_buses = UINT8_MAX};
+                                              .i2c_buses = UINT8_MAX,
+                                              .serial_lines = UINT8_MAX};
 
   std::map<std::uint16_t, std::uint32_t> pulses_;
   std::uint64_t kicks_ = 0;

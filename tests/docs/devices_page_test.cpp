@@ -81,6 +81,7 @@ bool runs_on(const Device& device, const Board& board) {
     return std::ranges::any_of(board.parts,
                                [&](const Board::Part& part) { return part.device == device.name; });
   if (vm::is_on_i2c(driver) || vm::drives_screen(driver)) return board.i2c_buses > 0;
+  if (vm::drives_player(driver)) return board.serial_lines > 0;
   if (vm::drives_channel(driver)) return board.i2c_buses > 0 && !board.enables.empty();
   if (vm::is_on_pin(driver)) return !board.inputs.empty();
   if (vm::is_by_echo(driver)) return !board.inputs.empty() && !board.outputs.empty();
@@ -143,6 +144,8 @@ std::string wiring_keys(const Device& device) {
          fmt::format("{:#04x} to {:#04x}", screen ? vm::kFirstDisplayAddress : vm::kFirstAddress,
                      screen ? vm::kLastDisplayAddress : vm::kLastAddress),
          "needed"});
+  if (vm::drives_player(driver_of(device)))
+    return row({"`bus`", "a serial line of the board", "1"});
   if (type->bus) rows += row({"`bus`", "a bus of the board", "0"});
   if (vm::is_by_echo(driver_of(device)))
     return row({"`trigger`", "an output of the board", "needed"}) +

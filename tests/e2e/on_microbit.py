@@ -52,6 +52,15 @@ HORN = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"rang
         "actuators": [{"name": "face", "device": "beeper"}]}
 SOUND = "robosync::boards::microbit::Board::sound("
 NOTES = re.compile(r"NOTE\((\d+),")
+# Of the serial line to a sound player: PSEL.TXD, BAUDRATE, TXD.PTR and TXD.MAXCNT of UARTE1, and what it is told.
+UARTE1 = 0x4002_8000
+PLAYER = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+          "actuators": [{"name": "face", "type": "UART", "device": "dfplayer", "sounds": ["one.wav", "two.wav"]}]}
+PLAYER_PIN, PLAYER_BAUD, PLAYER_FROM, PLAYER_COUNT = (UARTE1 + at for at in (0x50C, 0x524, 0x544, 0x548))
+P0_13, AT_9600 = 13, 0x0027_5000  # pin 15
+PLAYS_TWO = bytes.fromhex("7eff0612000002fee7ef")
+STOPS = bytes.fromhex("7eff0616000000fee5ef")
+TELL = "robosync::guard::OutputGuard::put("
 FACE = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
         "actuators": [{"name": "face", "device": "lights"}]}
 SHOWS = "WHEN near X > 10\nDO\n  {}\nEND\n"
@@ -77,6 +86,7 @@ TRANSFERS = 400  # that are looked at, at most: a round has 98
 COST_OF_DRIVER = r"(?m)^ACTUATOR_DRIVER\({},\s*(\d+),\s*(\d+),\s*(\d+),"
 COSTS = ROOT / "runtime-m4/boards/microbit-v2/costs.def"
 COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*([\d']+),", re.M)
+COST_OF_SAYING = re.compile(r"^COST\(say,\s*(\d+),", re.M)
 COST_OF_ROW = re.compile(r"^COST\(row,\s*(\d+),", re.M)
 # Pictures, blinks, and others that take the lights away.
 BLINKS = """
@@ -262,6 +272,22 @@ class OnMicrobit(DebuggedTest):
             self.assertLess(time.monotonic(), give_up, "no note of it is heard")  # it begins with silence
         self.say("stop")
         self.await_told(PIN_OF_SPEAKER, NOBODY)
+
+    def test_a_sound_player_is_told_what_to_play_until_the_robot_is_stopped(self):
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        self.assertEqual((self.told(PLAYER_PIN), self.told(PLAYER_BAUD)), ([P0_13], [AT_9600]))
+        self.begin('PLAY face "two.wav" FOR 60s', "", PLAYER)
+        for say, wanted in ((("feed", "near.X=20"), PLAYS_TWO), (("stop",), STOPS)):
+            self.say(*say)
+            give_up = time.monotonic() + PATIENCE
+            while (said := wires.read(self.told(PLAYER_FROM)[-1], len(wanted)) if self.told(PLAYER_FROM) else b"") != wanted:
+                self.assertLess(time.monotonic(), give_up, said.hex())
+        self.assertEqual(set(self.told(PLAYER_COUNT)), {len(STOPS)})
+
+    def test_what_a_command_to_a_sound_player_costs(self):
+        self.begin('PLAY face "two.wav" FOR 60s', "EVERY 100ms DO PLAY face \"one.wav\" FOR 50ms END\n", PLAYER)
+        self.compare_costs({TELL: int(COST_OF_SAYING.search(COSTS.read_text())[1])})
 
     def counted(self, start, calls=6):
         """Instructions from there until it returns, of its next calls at most."""

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "tests/vm/image_builder.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::vm::test::companion {
 
@@ -49,7 +50,8 @@ inline void add_robot(ImageBuilder& image) {
   add_sensors(image);
   const auto actuator = [&](std::string_view name, DriverId driver, std::uint32_t verbs) {
     const auto pin = static_cast<std::uint16_t>(3 + image.actuators.size());
-    image.actuators.push_back({image.name(name), driver, 0, pin, Release::rest, Release::coast,
+    const std::uint8_t line = drives_player(driver) ? 1 : 0;
+    image.actuators.push_back({image.name(name), driver, line, pin, Release::rest, Release::coast,
                                verbs, -90 * kScale, 90 * kScale, kValueMax});
   };
   actuator("left_arm", DriverId::servo, 1 << move_verb);

@@ -128,7 +128,9 @@ TEST_CASE("the format's own limits hold whatever the board says") {
   generous.actuators = generous.behaviors = 255;
   SECTION("actuators") {
     ImageBuilder image = robot::make();
-    image.actuators.resize(kMaxActuators, image.actuators[2]);  // it has no pin
+    image.actuators.resize(kMaxActuators, image.actuators[2]);  // it has no pin, but a line
+    for (std::size_t a = 3; a < kMaxActuators; ++a)
+      image.actuators[a].bus = static_cast<std::uint8_t>(a);
     // STOP ALL means all of them.
     image.responses[robot::stop].actuators = image.behaviors[0].actuators = 0xFFFFFFFF;
     check_accepted(image, generous);

@@ -97,6 +97,15 @@ void Board::enable(std::uint16_t pin, bool on) {
   pins::enable(pin, on);
 }
 
+void Board::link_start(const LineEvents& events) {
+  line_.start(events);
+  Player::start();
+}
+
+void Board::say(std::uint8_t line, std::span<const std::byte> command) {
+  if (line == kPlayerLine) player_.say(command);
+}
+
 // The watchdog has no interrupt: it resets the chip, and that lets all pins go. Its first period is longer, as
 // the chip takes over what is said here a few of its counts later.
 void Board::watchdog_start() {
@@ -125,6 +134,7 @@ extern "C" {
 
 void NMI_Handler();
 void Usart1_Handler();
+void Uart4_Handler();
 void Echo_Handler();
 void HeaderBus_Handler();
 void OwnBus_Handler();
@@ -140,6 +150,10 @@ void Usart1_Handler() {
   auto& line = robosync::boards::l475::board.line();
   if (Usart1::has_received()) line.on_receive();
   if (Usart1::wants_to_send() && Usart1::can_send()) line.on_transmit();
+}
+
+void Uart4_Handler() {
+  robosync::boards::l475::board.player().on_transmit();
 }
 
 // The clock counts down.

@@ -43,17 +43,20 @@ public:
   Store* store() override { return &store_; }
   std::size_t link_write(std::span<const std::byte> bytes) override { return line_.write(bytes); }
   std::size_t link_read(std::span<std::byte> bytes) override { return line_.read(bytes); }
-  void link_start(const LineEvents& events) override { line_.start(events); }
+  void link_start(const LineEvents& events) override;
+  void say(std::uint8_t line, std::span<const std::byte> command) override;
   void watchdog_start() override;
   void watchdog_kick() override;
   std::uint32_t watchdog_ms() const override { return kWatchdogMs; }
 
   Line& line() { return line_; }
+  Player& player() { return player_; }
   I2c& i2c(unsigned bus) { return i2c_[bus]; }
 
 private:
   bool watchdog_reset_ = false;  // why the chip was reset
   Line line_;
+  Player player_;
   static_assert(ROBOSYNC_STORE_BYTES == flash::kBytesOfBank);
   FlashStore<Flash> store_{flash::kBank2, ROBOSYNC_STORE_BYTES};
   bool asks_ahead_ = false;

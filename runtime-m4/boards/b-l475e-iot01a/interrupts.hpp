@@ -5,6 +5,7 @@
 #include "runtime-m4/boards/common/vectors.hpp"
 
 extern "C" void Usart1_Handler();
+extern "C" void Uart4_Handler();
 extern "C" void Echo_Handler();
 extern "C" void HeaderBus_Handler();
 extern "C" void OwnBus_Handler();
@@ -14,6 +15,7 @@ namespace robosync::boards {
 inline constexpr std::size_t kInterrupts = 82;
 inline constexpr std::array kUsedInterrupts{
     Interrupt{l475::usart1::kInterrupt, Usart1_Handler},
+    Interrupt{l475::uart4::kInterrupt, Uart4_Handler},
     Interrupt{l475::exti::kInterrupt2, Echo_Handler},
     Interrupt{l475::exti::kInterrupt4, Echo_Handler},
     Interrupt{l475::exti::kInterrupt5To9, Echo_Handler},

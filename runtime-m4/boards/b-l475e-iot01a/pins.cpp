@@ -19,11 +19,11 @@ struct Output {
 };
 
 constexpr std::array kOutputs{
-    Output{0, kPortA, 1, 2, kTimer5, 1},  Output{1, kPortA, 0, 2, kTimer5, 0},
-    Output{2, kPortD, 14, 2, kTimer4, 2}, Output{3, kPortB, 0, 2, kTimer3, 2},
-    Output{4, kPortA, 3, 2, kTimer5, 3},  Output{5, kPortB, 4, 2, kTimer3, 0},
-    Output{6, kPortB, 1, 2, kTimer3, 3},  Output{10, kPortA, 2, 2, kTimer5, 2},
-    Output{11, kPortA, 7, 2, kTimer3, 1}, Output{13, kPortA, 5, 1, kTimer2, 0}};
+    Output{0, kPortA, 1, 2, kTimer5, 1},  Output{2, kPortD, 14, 2, kTimer4, 2},
+    Output{3, kPortB, 0, 2, kTimer3, 2},  Output{4, kPortA, 3, 2, kTimer5, 3},
+    Output{5, kPortB, 4, 2, kTimer3, 0},  Output{6, kPortB, 1, 2, kTimer3, 3},
+    Output{10, kPortA, 2, 2, kTimer5, 2}, Output{11, kPortA, 7, 2, kTimer3, 1},
+    Output{13, kPortA, 5, 1, kTimer2, 0}};
 constexpr std::uint16_t kEnable = 45;
 constexpr Port kEnablePort = kPortC;
 constexpr unsigned kEnableBit = 0;

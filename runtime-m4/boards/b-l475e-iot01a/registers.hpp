@@ -29,6 +29,7 @@ inline constexpr std::uint32_t kPortsAToD = 0b1111;
 inline constexpr std::uint32_t kAdc = 1U << 13;
 inline constexpr Register kApb1{0x4002'1058};
 inline constexpr std::uint32_t kTimers2To5 = 0b1111;
+inline constexpr std::uint32_t kUart4 = 1U << 19;
 inline constexpr std::uint32_t kI2c1 = 1U << 21;
 inline constexpr std::uint32_t kI2c2 = 1U << 22;
 inline constexpr Register kApb2{0x4002'1060};
@@ -253,6 +254,20 @@ inline constexpr std::uint32_t kEmpty = 1U << 7;
 inline constexpr Register kReceive{0x4001'3824};
 inline constexpr Register kTransmit{0x4001'3828};
 }  // namespace usart1
+
+namespace uart4 {  // to a sound player: its transmitter alone, on D1 of the Arduino header
+inline constexpr unsigned kInterrupt = 52;
+inline constexpr Port kPort = kPortA;
+inline constexpr unsigned kTransmitPin = 0;
+inline constexpr std::uint32_t kFunction = 8;
+inline constexpr Register kControl{0x4000'4C00};
+inline constexpr std::uint32_t kOn = 1U << 0 | 1U << 3;
+inline constexpr std::uint32_t kInterruptWhenEmpty = 1U << 7;
+inline constexpr Register kBaudDivider{0x4000'4C0C};
+inline constexpr Register kState{0x4000'4C1C};
+inline constexpr std::uint32_t kEmpty = 1U << 7;
+inline constexpr Register kTransmit{0x4000'4C28};
+}  // namespace uart4
 
 namespace iwdg {  // the independent watchdog, on an oscillator of its own of 32 kHz
 inline constexpr Register kKey{0x4000'3000};

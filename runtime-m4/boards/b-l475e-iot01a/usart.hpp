@@ -1,9 +1,10 @@
-// USART1, which the ST-Link of the board makes a serial port of USB: the link's serial line.
+// USART1, which the ST-Link of the board makes a serial port of USB: the link's serial line. UART4: the one to a sound player.
 #pragma once
 
 #include <cstddef>
 
 #include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
+#include "runtime-m4/boards/common/player_line.hpp"
 #include "runtime-m4/boards/common/serial_line.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 
@@ -37,5 +38,23 @@ struct Usart1 {  // for SerialLine
   static bool wants_to_send() { return usart1::kControl.has(usart1::kInterruptWhenEmpty); }
 };
 using Line = SerialLine<Usart1>;
+
+struct Uart4 {  // for PlayerLine
+  static void start() {
+    rcc::give_clock(rcc::kApb1, rcc::kUart4);
+    uart4::kPort.function(uart4::kTransmitPin)
+        .set_field(uart4::kTransmitPin % 8, 4, uart4::kFunction);
+    uart4::kPort.mode().set_field(uart4::kTransmitPin, 2, kModeOfFunction);
+    uart4::kBaudDivider.write((kClockHz + kPlayerBaud / 2) / kPlayerBaud);
+    uart4::kControl.write(uart4::kOn);
+    port::core::enable_interrupt(uart4::kInterrupt);
+  }
+
+  static bool can_send() { return uart4::kState.has(uart4::kEmpty); }
+  static void send(std::byte byte) { uart4::kTransmit.write(std::to_integer<std::uint32_t>(byte)); }
+  static void begin_to_send() { uart4::kControl.set(uart4::kInterruptWhenEmpty); }
+  static void nothing_to_send() { uart4::kControl.clear(uart4::kInterruptWhenEmpty); }
+};
+using Player = PlayerLine<Uart4>;
 
 }  // namespace robosync::boards::l475

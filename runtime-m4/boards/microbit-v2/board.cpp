@@ -8,6 +8,7 @@
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/lights.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
+#include "runtime-m4/boards/microbit-v2/player.hpp"
 #include "runtime-m4/boards/microbit-v2/speaker.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
@@ -28,6 +29,7 @@ Board::Board() : chip_reset_(take_reset_cause()) {
   port::core::enable_interrupt(gpiote::kInterrupt);
   lights::start();
   speaker::start();
+  player::start();
   port::core::enable_interrupt(row_timer::kInterrupt);
   for (const Pwm& module : {kPwm0, kPwm1})
     port::core::enable_interrupt(module.interrupt);
@@ -114,6 +116,10 @@ void Board::show(std::uint32_t picture) {
 
 void Board::sound(std::uint32_t hertz) {
   speaker::sound(hertz);
+}
+
+void Board::say(std::uint8_t line, std::span<const std::byte> command) {
+  if (line == kPlayerLine) player::say(command);
 }
 
 }  // namespace robosync::boards::microbit

@@ -20,8 +20,7 @@ struct Output {
 };
 constexpr std::array kOutputs{Output{0, {0, 2}, 0, 0},   Output{1, {0, 3}, 0, 1},
                               Output{2, {0, 4}, 0, 2},   Output{12, {0, 12}, 0, 3},
-                              Output{13, {0, 17}, 1, 0}, Output{14, {0, 1}, 1, 1},
-                              Output{15, {0, 13}, 1, 2}};
+                              Output{13, {0, 17}, 1, 0}, Output{14, {0, 1}, 1, 1}};
 constexpr std::uint16_t kEnable = 16;
 constexpr Pin kEnableChip{1, 2};
 constexpr std::array kModules{kPwm0, kPwm1};

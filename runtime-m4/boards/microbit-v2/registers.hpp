@@ -93,6 +93,19 @@ inline constexpr Register kBaudRate{0x4000'2524};
 inline constexpr std::uint32_t k115200 = 0x01D7'E000;
 }  // namespace uart
 
+namespace player_uart {  // UARTE1, which fetches what it sends from memory: to a sound player, on pin 15 of the edge connector
+inline constexpr std::uintptr_t kBase = 0x4002'8000;
+inline constexpr Pin kTransmitPin{0, 13};
+inline constexpr Register kStartTransmitting{kBase + 0x008};
+inline constexpr Register kEnable{kBase + 0x500};
+inline constexpr std::uint32_t kOn = 8;
+inline constexpr Register kTransmitPinSelect{kBase + 0x50C};
+inline constexpr Register kBaudRate{kBase + 0x524};
+inline constexpr std::uint32_t k9600 = 0x0027'5000;
+inline constexpr Register kSendFrom{kBase + 0x544};
+inline constexpr Register kSendCount{kBase + 0x548};
+}  // namespace player_uart
+
 namespace timer {  // TIMER0, which counts while the core sleeps; SysTick does not
 inline constexpr unsigned kInterrupt = 8;
 inline constexpr std::uint32_t kHz = 16'000'000;

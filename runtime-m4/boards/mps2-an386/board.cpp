@@ -75,6 +75,15 @@ void Board::enable(std::uint16_t pin, bool on) {
   if (place < kVirtualEnables) robosync_virtual_enables[place] = on ? 0 : 1;
 }
 
+void Board::link_start(const LineEvents& events) {
+  uart_.start(events);
+  Player::start();
+}
+
+void Board::say(std::uint8_t line, std::span<const std::byte> command) {
+  if (line == kPlayerLine) player_.say(command);
+}
+
 void Board::watchdog_start() {
   watchdog().lock = kWatchdogUnlock;
   watchdog().load = kWatchdogTicks;
@@ -107,6 +116,7 @@ extern "C" {
 void NMI_Handler();
 void Uart0Receive_Handler();
 void Uart0Transmit_Handler();
+void Uart1Transmit_Handler();
 
 // The watchdog was not kicked in time. It cannot be masked, so the outputs go off whatever hangs;
 // then the second time-out resets.
@@ -125,6 +135,11 @@ void Uart0Receive_Handler() {
 void Uart0Transmit_Handler() {
   robosync::boards::mps2::Uart0::clear_transmitted();
   robosync::boards::mps2::board.uart().on_transmit();
+}
+
+void Uart1Transmit_Handler() {
+  robosync::boards::mps2::Uart1::clear_transmitted();
+  robosync::boards::mps2::board.player().on_transmit();
 }
 
 }  // extern "C"

@@ -62,15 +62,18 @@ public:
   void enable(std::uint16_t pin, bool on) override;
   std::size_t link_write(std::span<const std::byte> bytes) override { return uart_.write(bytes); }
   std::size_t link_read(std::span<std::byte> bytes) override { return uart_.read(bytes); }
-  void link_start(const LineEvents& events) override { uart_.start(events); }
+  void link_start(const LineEvents& events) override;
+  void say(std::uint8_t line, std::span<const std::byte> command) override;
   void watchdog_start() override;
   void watchdog_kick() override;
   std::uint32_t watchdog_ms() const override { return kWatchdogMs; }
 
   Uart& uart() { return uart_; }
+  Player& player() { return player_; }
 
 private:
   Uart uart_;
+  Player player_;
   I2c i2c_{kI2c0};
   Eeprom eeprom_{i2c_};
 };

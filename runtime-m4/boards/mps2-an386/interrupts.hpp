@@ -7,6 +7,7 @@
 extern "C" {
 void Uart0Receive_Handler();
 void Uart0Transmit_Handler();
+void Uart1Transmit_Handler();
 // Nobody's in the firmware; the kernel's tests have them (mps2_an386.ld).
 void Timer0_Handler();
 void TestsOwn_Handler();
@@ -18,6 +19,7 @@ inline constexpr std::size_t kInterrupts = 32;
 inline constexpr std::array kUsedInterrupts{
     Interrupt{mps2::kUart0ReceiveInterrupt, Uart0Receive_Handler},
     Interrupt{mps2::kUart0TransmitInterrupt, Uart0Transmit_Handler},
+    Interrupt{mps2::kUart1TransmitInterrupt, Uart1Transmit_Handler},
     Interrupt{mps2::kTimer0Interrupt, Timer0_Handler},
     Interrupt{mps2::kFreeInterrupt, TestsOwn_Handler}};
 

@@ -19,9 +19,12 @@ struct UartRegisters {  // CMSDK APB UART
 inline constexpr std::uintptr_t kUart0 = 0x4000'4000;
 inline constexpr unsigned kUart0ReceiveInterrupt = 0;
 inline constexpr unsigned kUart0TransmitInterrupt = 1;
+inline constexpr std::uintptr_t kUart1 = 0x4000'5000;
+inline constexpr unsigned kUart1TransmitInterrupt = 3;
 inline constexpr std::uint32_t kUartStateTransmitFull = 1U << 0;
 inline constexpr std::uint32_t kUartStateReceiveFull = 1U << 1;
 inline constexpr std::uint32_t kUartControlOn = 0b1111;  // transmitter, receiver, their interrupts
+inline constexpr std::uint32_t kUartSendsOnly = 0b0101;  // transmitter, its interrupt
 inline constexpr std::uint32_t kUartTransmitted = 1U << 0;
 inline constexpr std::uint32_t kUartReceived = 1U << 1;
 

@@ -331,7 +331,7 @@ TEST_CASE("the boards are read without a mistake") {
 TEST_CASE("mistakes in a board's profile are reported") {
   Diagnostics missing;
   (void)read_board({"none", R"({"name": "none", "arena": {"begin": 0}})"}, missing);
-  CHECK(missing.errors() == 5);  // no bytes, step_budget, buses, outputs, inputs
+  CHECK(missing.errors() == 6);  // no bytes, step_budget, buses, lines, outputs, inputs
   Diagnostics misspelt;          // what nobody knows may be one of those, but for the bytes
   (void)read_board({"none", R"({"name": "none", "arena": {"begin": 0}, "flesh": 1})"}, misspelt);
   CHECK(misspelt.errors() == 2);

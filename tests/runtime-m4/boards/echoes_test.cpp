@@ -95,8 +95,8 @@ struct EdgesOfL475 : tests::Stm32Timers {
 
 // GPIOTE, PPI and TIMER3.
 struct EdgesOfMicrobit : tests::Nrf52833 {
-  static constexpr std::uint16_t kTrigger = 0, kEcho = 5, kOtherTrigger = 15, kOther = 11;
-  const std::map<std::uint16_t, Pin> pins{{0, {0, 2}}, {15, {0, 13}}, {5, {0, 14}}, {11, {0, 23}}};
+  static constexpr std::uint16_t kTrigger = 0, kEcho = 5, kOtherTrigger = 14, kOther = 11;
+  const std::map<std::uint16_t, Pin> pins{{0, {0, 2}}, {14, {0, 1}}, {5, {0, 14}}, {11, {0, 23}}};
   static constexpr std::uintptr_t kGpiote = 0x4000'6000, kPpi = 0x4001'F000, kTimer = 0x4001'A000;
 
   EdgesOfMicrobit() {

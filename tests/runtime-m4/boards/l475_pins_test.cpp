@@ -81,7 +81,7 @@ struct Chip : Stm32Timers {
 }  // namespace
 
 TEST_CASE("each pin that the profile lets programs drive gives its pulse, and no other pin does") {
-  REQUIRE(outputs().size() == 10);
+  REQUIRE(outputs().size() == 9);
   for (const std::uint16_t pin : outputs()) {
     Chip chip;
     pins::write(pin, 1500);

@@ -87,7 +87,7 @@ struct EdgeChip : Nrf52833 {
 
 TEST_CASE(
     "micro:bit: each pin that the profile lets programs drive gives its pulse, no other does") {
-  REQUIRE(edge_outputs().size() == 7);
+  REQUIRE(edge_outputs().size() == 6);
   for (const std::uint16_t pin : edge_outputs()) {
     EdgeChip chip;
     edge::write(pin, 1500);
@@ -128,7 +128,7 @@ TEST_CASE("micro:bit: all pins at once, each with its own pulse; off and always 
     edge::write(12, wanted[12] = kEdgeFrame);
     edge::write(14, wanted[14] = 0);
     edge::write(0, wanted[0] = 1);
-    edge::write(15, wanted[15] = kEdgeFrame - 1);
+    edge::write(13, wanted[13] = kEdgeFrame - 1);
     chip.pass(kNewest);
     const auto times = chip.high_times();
     for (const auto& [pin, time] : wanted)
@@ -226,13 +226,13 @@ TEST_CASE("micro:bit: all off is at once, and before the start it does nothing")
   for (const std::uint16_t pin : edge_outputs())
     edge::write(pin, kEdgeFrame);
   chip.pass(kNewest);
-  REQUIRE(chip.at(15) == Nrf52833::Level::high);
+  REQUIRE(chip.at(14) == Nrf52833::Level::high);
   edge::switch_off();
   for (const auto& [number, time] : chip.high_times(2 * kEdgeFrame))
     CHECK(time == 0);
   CHECK(chip.served == 0);  // nor does a period end any more
-  edge::write(15, kEdgeFrame);
-  CHECK(chip.high_time(15, 2 * kEdgeFrame) == 0);
+  edge::write(14, kEdgeFrame);
+  CHECK(chip.high_time(14, 2 * kEdgeFrame) == 0);
   Nrf52833 fresh;
   edge::switch_off();
   CHECK(fresh.level({0, 2}) == Nrf52833::Level::floating);

@@ -1,0 +1,36 @@
+// See player.hpp. The module fetches a command from memory while the processor does something else, and nobody is interrupted.
+#include "runtime-m4/boards/microbit-v2/player.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/microbit-v2/registers.hpp"
+
+namespace robosync::boards::microbit::player {
+
+namespace {
+
+std::array<std::byte, kMostSaid> bytes;
+
+}  // namespace
+
+// The pin is high, as a line is where nobody speaks, before the module has it.
+void start() {
+  player_uart::kTransmitPin.set_high().write(player_uart::kTransmitPin.mask());
+  player_uart::kTransmitPin.configuration().write(Pin::kOutput);
+  player_uart::kTransmitPinSelect.write(player_uart::kTransmitPin.number());
+  player_uart::kBaudRate.write(player_uart::k9600);
+  player_uart::kEnable.write(player_uart::kOn);
+}
+
+void say(std::span<const std::byte> command) {
+  const std::size_t count = std::min(command.size(), bytes.size());
+  std::copy_n(command.begin(), count, bytes.begin());
+  asm volatile("" ::: "memory");  // the module reads it from there
+  player_uart::kSendFrom.write(port::bus_address(bytes.data()));
+  player_uart::kSendCount.write(static_cast<std::uint32_t>(count));
+  player_uart::kStartTransmitting.write(kDoIt);
+}
+
+}  // namespace robosync::boards::microbit::player
