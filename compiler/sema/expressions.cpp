@@ -6,7 +6,7 @@
 
 #include "compiler/config/values.hpp"
 #include "compiler/ir/expression.hpp"
-#include "compiler/sema/lints.hpp"
+#include "compiler/sema/condition_lints.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -259,7 +259,7 @@ Typed Expressions::of(const ast::Comparison& node, Span span) {
   if (!left.is_number() || !right.is_number()) return make_nothing(span);
   if (!unify(left, right, "this compares {} with {}", false, diagnostics_))
     return make_nothing(span);
-  lint_comparison(node.relation, left, right, span, diagnostics_);
+  if (!is_given()) lint_comparison(node.relation, left, right, span, diagnostics_);
   if (reads_time(left.code) || reads_time(right.code))
     return time_comparison(node.relation, std::move(left), std::move(right), span);
   return make_condition(compare(node.relation, std::move(left), std::move(right)), span);
@@ -278,6 +278,7 @@ Typed Expressions::of(const ast::Logic& node, Span span) {
   const auto operation =
       node.op == ast::LogicOp::and_ ? Operation::logical_and : Operation::logical_or;
   return make_condition(make_binary(operation, std::move(left.code), std::move(right.code)), span);
+  if (!is_given()) lint_logic(node.op, left.code, right.code, span, names_, diagnostics_);
 }
 
 // ---- sums, products and RANDOM: their units, their ranges, and constants worked out
