@@ -179,6 +179,7 @@ Typed Expressions::channel(ChannelRef ref, Span span) {
 }
 
 Typed Expressions::variable(VariableName& name, Span span) {
+  if (name.taken) return make_nothing(span);
   Expression code;
   code.operation = Operation::variable;
   code.index = name.index;

@@ -368,6 +368,7 @@ VariableName* Statements::settable(const ast::Name& name, bool number, const ast
   }
   if (variable == nullptr) {
     const std::string kind = names_.kind_of(name.text);
+  if (variable != nullptr && variable->taken) return nullptr;
     if (!kind.empty()) {
       diagnostics_.report(Code::E0508, name.shown() + " is " + kind + ", which cannot be set")
           .label(name.span)
