@@ -278,8 +278,8 @@ Typed Expressions::of(const ast::Logic& node, Span span) {
   if (left.type != Type::condition || right.type != Type::condition) return make_nothing(span);
   const auto operation =
       node.op == ast::LogicOp::and_ ? Operation::logical_and : Operation::logical_or;
-  return make_condition(make_binary(operation, std::move(left.code), std::move(right.code)), span);
   if (!is_given()) lint_logic(node.op, left.code, right.code, span, names_, diagnostics_);
+  return make_condition(make_binary(operation, std::move(left.code), std::move(right.code)), span);
 }
 
 // ---- sums, products and RANDOM: their units, their ranges, and constants worked out
