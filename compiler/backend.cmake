@@ -57,6 +57,7 @@ target_sources(robosync_compiler PRIVATE
   sema/misread.cpp
   sema/unknown_verbs.cpp
   sema/conditions.cpp
+  sema/condition_lints.cpp
   sema/defines.cpp
   sema/expressions.cpp
   sema/follow.cpp

@@ -1,5 +1,7 @@
 #include "compiler/reading.hpp"
 
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "compiler/config/robot_reader.hpp"
@@ -15,6 +17,31 @@ Trees Reading::trees() const {
   return trees;
 }
 
+namespace {
+
+// `rsc run robot.json`: as a program, each of its lines would be a mistake. No line of RSL begins with a bracket.
+bool is_configuration(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
+  constexpr std::string_view kSpaces = " \t\r\n";
+  constexpr std::string_view kJson = ".json";
+  const std::string_view text = sources.file(file).text();
+  const std::size_t begin = text.find_first_not_of(kSpaces);
+  if (begin == std::string_view::npos || text[begin] != '{') return false;
+  const std::size_t next = text.find_first_not_of(kSpaces, begin + 1);
+  if (next == std::string_view::npos || (text[next] != '"' && text[next] != '}')) return false;
+  std::string name = sources.file(file).name();
+  const bool is_json = name.ends_with(kJson);
+  if (is_json) name.replace(name.size() - kJson.size(), kJson.size(), ".rsl");
+  const auto place = static_cast<std::uint32_t>(begin);
+  diagnostics.report(Code::E0001, "this is a configuration in JSON, and no program")
+      .label({file, place, place + 1})
+      .helps(is_json ? "name the program, such as `" + name +
+                           "`: what describes its robot is found by itself"
+                     : "what describes the robot stands in a file of its own, robot.json");
+  return true;
+}
+
+}  // namespace
+
 // What the parsers had to leave out would be missed by name, and what robot.json says wrongly would be measured wrongly:
 // better one true message than ten.
 Reading read_all(Input program, Input configuration, const ModuleReader& read_module,
@@ -28,6 +55,7 @@ Reading read_all(Input program, Input configuration, const ModuleReader& read_mo
   std::optional<RobotVocabulary> names;
   if (reading.robot) names.emplace(*reading.robot);
   const Vocabulary* const robot = names ? &*names : nullptr;
+  if (is_configuration(sources, program_file, diagnostics)) return reading;
   reading.tree = parse(sources, program_file, diagnostics, robot);
   reading.modules = load_modules(reading.tree, sources, read_module, diagnostics, robot);
   const bool whole_trees = diagnostics.errors() == 0;

@@ -21,6 +21,8 @@ struct BoardText {  // one profile as built in
 
 struct Board {
   std::string name;
+  // By robot.json: of a board that it does not name well, its parts and pins are not missed.
+  enum class Named : std::uint8_t { well, not_at_all, wrongly } named = Named::well;
   std::uint32_t arena_begin = 0;  // address of its memory for programs
   std::uint32_t arena_bytes = 0;
   std::uint32_t step_budget = 0;  // M4 instructions of VM code in one step

@@ -32,12 +32,35 @@ std::string_view owner_of(std::string_view part) {
   return {};
 }
 
+// A part of a board where none is named, which is said once, or a wrong one, which has been said.
+void report_no_board(const json::Value& value, std::string_view owner, const Board& board,
+                     Diagnostics& diagnostics) {
+  const std::string message = "robot.json does not say which board this robot has";
+  const bool said = std::ranges::any_of(
+      diagnostics.all(), [&](const Diagnostic& one) { return one.message == message; });
+  if (said || board.named == Board::Named::wrongly) return;
+  diagnostics.report(Code::E0206, message)
+      .label(value.span, "a part of a board")
+      .helps("`" + value.text + "` is on this one: `\"board\": \"" + std::string(owner) + "\"`");
+}
+
 void report_unknown_device(const json::Value& value, const Board& board, bool is_sensor,
                            Diagnostics& diagnostics) {
+  const std::string_view owner = owner_of(value.text);
+  if (!owner.empty() && board.named != Board::Named::well)
+    return report_no_board(value, owner, board, diagnostics);
+  if (find_device(value.text, !is_sensor) != nullptr) {
+    const std::string list = is_sensor ? "actuators" : "sensors";
+    diagnostics
+        .report(Code::E0208, "a `" + value.text + "` is " +
+                                 (is_sensor ? "an actuator, no sensor" : "a sensor, no actuator"))
+        .label(value.span)
+        .helps("it stands in the list `\"" + list + "\"`");
+    return;
+  }
   const std::vector<std::string> candidates = device_names(board, is_sensor);
   Diagnostic& d =
       diagnostics.report(Code::E0208, "rsc knows no device `" + value.text + "`").label(value.span);
-  const std::string_view owner = owner_of(value.text);
   if (!owner.empty() && owner != board.name)
     d.helps("it is on the board " + std::string(owner) + ", and this robot has the board " +
             board.name);
@@ -108,10 +131,9 @@ const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_s
   const Device* device = named == nullptr
                              ? nullptr
                              : find_device(part != nullptr ? part->device : named->text, is_sensor);
-  if (fields.find("type") == nullptr && named != nullptr) {
-    if (device != nullptr) return type_of(*device);
-    if (!owner_of(named->text).empty()) return nullptr;
-  }
+  // What is no device is said by choose_device().
+  if (fields.find("type") == nullptr && named != nullptr)
+    return device != nullptr ? type_of(*device) : nullptr;
   const WiringType* type = read_type(fields, is_sensor, diagnostics);
   if (device == nullptr || type == nullptr || type->name == kVirtual || type->name == device->type)
     return type;

@@ -2,6 +2,7 @@
 #include "compiler/config/json_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string>
 
@@ -9,6 +10,9 @@
 
 #include "compiler/config/units.hpp"
 #include "compiler/diagnostics/plain_text.hpp"
+#include "compiler/source/ascii.hpp"
+#include "compiler/source/character_names.hpp"
+#include "compiler/source/utf8.hpp"
 
 namespace robosync::compiler::json {
 namespace {
@@ -103,7 +107,9 @@ std::string describe_word(std::string_view word) {
 std::string describe_character(const Mistake& mistake, const WrongText& wrong) {
   const char c = mistake.text[wrong.begin];
   const auto byte = static_cast<unsigned char>(c);
-  if (byte >= 0x80) return "this is not UTF-8 text";
+  if (byte >= 0x80)
+    return "JSON does not use " + utf8::describe(utf8::decode(mistake.text, wrong.begin).value) +
+           " outside of strings";
   if (c == '\'') return "JSON strings stand in double quotes";
   if (c == '/' || c == '#' || c == '%') return "JSON has no comments";
   if (byte < 0x20)
@@ -113,16 +119,96 @@ std::string describe_character(const Mistake& mistake, const WrongText& wrong) {
   return "this is not JSON here";
 }
 
+// ---- mistakes that can be mended
+
+Span span_of(const Mistake& mistake, std::size_t begin, std::size_t end) {
+  return {mistake.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+}
+
+constexpr std::array<char32_t, 8> kCurlyQuotes = {0x2018, 0x2019, 0x201A, 0x201C,
+                                                  0x201D, 0x201E, 0xAB,   0xBB};
+
+bool is_curly(char32_t point) {
+  return std::ranges::find(kCurlyQuotes, point) != kCurlyQuotes.end();
+}
+
+// A string in curly quotes, as far as the second one in its line.
+bool is_in_curly_quotes(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const utf8::CodePoint opening = utf8::decode(mistake.text, wrong.begin);
+  if (!is_curly(opening.value)) return false;
+  Diagnostic& d =
+      diagnostics.report(Code::E0201, "JSON strings stand in straight quotes, not in curly ones")
+          .label(span_of(mistake, wrong.begin, wrong.begin + opening.size));
+  const std::size_t inner = wrong.begin + opening.size;
+  for (std::size_t at = inner; at < mistake.text.size();) {
+    const utf8::CodePoint point = utf8::decode(mistake.text, at);
+    const bool straight = point.value == '"';
+    if (point.value == '\n' || point.value == '\\') break;
+    if (straight || is_curly(point.value)) {
+      d.fix(span_of(mistake, wrong.begin, at + point.size),
+            "\"" + std::string(mistake.text.substr(inner, at - inner)) + "\"");
+      break;
+    }
+    at += point.size;
+  }
+  return true;
+}
+
+// `True`, as Python has it.
+bool is_foreign_word(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const std::string word(mistake.text.substr(wrong.begin, wrong.end - wrong.begin));
+  const Span here = span_of(mistake, wrong.begin, wrong.end);
+  const bool in_list = mistake.open_span && mistake.text[mistake.open_span->begin] == '[';
+  const bool is_value =
+      wrong.previous == ':' || (in_list && (wrong.previous == '[' || wrong.previous == ','));
+  if (!is_value) return false;
+  for (const std::string_view known : {"true", "false"}) {
+    if (!ascii::same(word, known) || word == known) continue;
+    diagnostics
+        .report(Code::E0201, "`" + word + "` is written `" + std::string(known) + "` in JSON")
+        .label(here)
+        .fix(here, std::string(known));
+    return true;
+  }
+  if (word != "None" && (!ascii::same(word, "null") || word == "null")) return false;
+  diagnostics.report(Code::E0201, "JSON does not know `" + word + "`")
+      .label(here)
+      .helps("what is not there is left out, with its key");
+  return true;
+}
+
+// `"name": "cars, "type": …`: the text goes on to the quote that should begin the next one.
+bool is_unclosed_string(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const std::string_view text = mistake.text;
+  const bool touches = wrong.previous == '"' && wrong.before + 1 == wrong.begin && wrong.begin >= 2;
+  if (!touches || std::isalpha(static_cast<unsigned char>(text[wrong.begin])) == 0) return false;
+  const std::size_t opening = text.rfind('"', wrong.before - 1);
+  if (opening == std::string_view::npos) return false;
+  Diagnostic& d = diagnostics.report(Code::E0201, "this text has no quote at its end")
+                      .label(span_of(mistake, opening, wrong.before));
+  const std::size_t last = text.find_last_not_of(" \t", wrong.before - 1);
+  if (last > opening + 1 && (text[last] == ',' || text[last] == ':'))
+    d.fix(span_of(mistake, last, last), "\"", Applicability::likely);
+  return true;
+}
+
+bool is_mended(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  return is_in_curly_quotes(mistake, wrong, diagnostics) ||
+         is_unclosed_string(mistake, wrong, diagnostics) ||
+         (is_word(mistake.text[wrong.begin]) && is_foreign_word(mistake, wrong, diagnostics));
+}
+
 void report_mistake(const Mistake& mistake, Diagnostics& diagnostics) {
   const WrongText wrong = find_wrong_text(mistake);
   const auto span = [&](std::size_t begin, std::size_t end) {
-    return Span{mistake.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    return span_of(mistake, begin, end);
   };
   const Span here = span(wrong.begin, wrong.end);
   if (wrong.begin >= mistake.text.size()) {
     at_end(mistake, diagnostics).label(here);
     return;
   }
+  if (is_mended(mistake, wrong, diagnostics)) return;
   const char c = mistake.text[wrong.begin];
   if (mentions(mistake, "number overflow")) {
     const std::string number(mistake.text.substr(wrong.begin, wrong.end - wrong.begin));
@@ -134,9 +220,11 @@ void report_mistake(const Mistake& mistake, Diagnostics& diagnostics) {
         .fix(span(wrong.before, wrong.before + 1), "");
   } else if (mentions(mistake, "object separator") && wrong.previous == '"' && !is_space(c) &&
              c != ',') {
-    diagnostics.report(Code::E0201, "a colon is missing between the key and its value")
+    diagnostics
+        .report(Code::E0201, c == '=' ? "a colon stands between a key and its value, no `=`"
+                                      : "a colon is missing between the key and its value")
         .label(here)
-        .fix(span(wrong.before + 1, wrong.before + 1), ":");
+        .fix(c == '=' ? here : span(wrong.before + 1, wrong.before + 1), ":");
   } else if (mistake.open_span && ends_value(wrong.previous) &&
              (c == '"' || c == '{' || c == '[') && wrong.before + 1 == mistake.good_until) {
     diagnostics.report(Code::E0201, "a comma is missing before this")

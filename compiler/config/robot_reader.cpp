@@ -282,7 +282,11 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
   Robot robot;
   if (const auto* board = fields.find("board"))
     robot.board = read_choice(*board, board_names(), diagnostics);
-  WiringReader wiring(board_for(robot.board), diagnostics);
+  Board of_robot = board_for(robot.board);
+  if (!robot.board)
+    of_robot.named =
+        fields.find("board") == nullptr ? Board::Named::not_at_all : Board::Named::wrongly;
+  WiringReader wiring(std::move(of_robot), diagnostics);
   for_each_entry(fields, "sensors", diagnostics, [&](const json::Value& entry) {
     auto sensor = read_sensor(entry, wiring, diagnostics);
     if (sensor) robot.sensors.push_back(std::move(*sensor));

@@ -267,14 +267,21 @@ void WiringReader::take_chip(const ServoChip& chip, const json::Value& address,
     take_pin(chip.enable, enable.span);
     return check_enable(enable, chip.enable);
   }
-  if (!known.chip)
-    report_taken(known, {chip.bus, chip.address}, address.span);
-  else if (known.chip->enable != chip.enable)
+  if (!known.chip) return report_taken(known, {chip.bus, chip.address}, address.span);
+  if (known.chip->enable == chip.enable) return;
+  if (board_.has_enable(known.chip->enable)) {
     diagnostics_
         .report(Code::E0205, name_of(chip) + " has its enable input at pin " +
                                  std::to_string(known.chip->enable))
         .label(enable.span)
         .label(known.enable, "said here", false);
+    return;
+  }
+  // The first one was wrong, which has been reported: it says nothing of this one.
+  known.chip = chip;
+  known.enable = enable.span;
+  take_pin(chip.enable, enable.span);
+  check_enable(enable, chip.enable);
 }
 
 void WiringReader::report_taken(const OnBus& known, const Wiring& place, Span span) {
@@ -394,7 +401,7 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
 }
 
 void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
-  if (wiring.bus < board_.i2c_buses) return;
+  if (wiring.bus < board_.i2c_buses || board_.named == Board::Named::wrongly) return;
   const auto* bus = fields.find("bus");
   if (bus == nullptr) bus = fields.find("type");
   diagnostics_
@@ -479,6 +486,10 @@ void WiringReader::check_analog(const Fields& fields, const Wiring& wiring) {
 void WiringReader::report_no_pin(const json::Value& value, std::uint16_t pin,
                                  const std::string& is_no, const std::string& those_are,
                                  std::span<const Board::Pins> those) {
+  // A value that is no pin has been reported, and of a board that nobody knows nothing can be said.
+  Diagnostics said;
+  if (board_.named == Board::Named::wrongly || read_whole(value, 0, UINT16_MAX, said) != pin)
+    return;
   std::vector<std::string> pins;
   for (const Board::Pins& range : those)
     pins.push_back(range.first == range.last

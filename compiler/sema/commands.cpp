@@ -154,8 +154,12 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
     d.helps(list_names(names) + " know " + command.verb.shown());
     return;
   }
-  Diagnostic& d = diagnostics_.report(Code::E0501, "there is no actuator " + first->name.shown())
-                      .label(first->name.span);
+  const bool sensor = names_.find_sensor(first->name.text).has_value();
+  Diagnostic& d =
+      diagnostics_
+          .report(Code::E0501, sensor ? first->name.shown() + " is a sensor, no actuator"
+                                      : "there is no actuator " + first->name.shown())
+          .label(first->name.span);
   if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size())) return;
   const auto candidates = names_.target_names();
   did_you_mean(d, first->name.span, first->name.text, candidates);
@@ -466,17 +470,7 @@ std::optional<ir::Command> Commands::for_actuator(std::size_t actuator, const as
     good = false;
     if (!one.is_number && !one.text) break;  // an unknown word: what follows is part of it
   }
-  if (good && verb->action == vm::Action::move && is_given(result, vm::Param::at) &&
-      is_given(result, vm::Param::over)) {
-    const auto over = std::ranges::find(given, vm::Param::over, &Given::param);
-    diagnostics.report(Code::E0505, "how fast this goes is given twice")
-        .label(over != given.end() ? over->argument->span : command.verb.span)
-        .helps(
-            "`OVER` says how long the way takes, `AT` and words such as SLOWLY how fast it is: "
-            "leave one of them out");
-    good = false;
-  }
-  if (!good) return std::nullopt;
+  if (!good || says_twice(to, given, result)) return std::nullopt;
   return result;
 }
 
@@ -545,6 +539,7 @@ void Commands::report_foreign_word(const Recipient& to, const WordConfig& word, 
 }
 
 void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) const {
+  if (is_sensor_meant(to, word, names_)) return;
   Diagnostic& d = to.diagnostics
                       .report(Code::E0501, to.actuator.name.shown() + " does not know the word " +
                                                word.name.shown())

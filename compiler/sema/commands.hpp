@@ -53,6 +53,11 @@ public:
   [[nodiscard]] std::vector<ir::Command> translate(const ast::Command& command,
                                                    const ChosenText* chosen = nullptr);
 
+  // Is there nothing that it would say, play or show? It is reported. `span` is that of its statement.
+  bool lacks_content(const ir::Command& command, Span span);
+  // Is it more than the limit of a motor? It is reported. `node` is what it was made of.
+  bool gives_too_much(const ast::Command& node, const ir::Command& command);
+
   // Is it FOLLOW, which no robot has a verb of?
   [[nodiscard]] bool is_follow(const ast::Command& command) const;
   // Nothing after a mistake, which has then been reported.
@@ -108,6 +113,11 @@ private:
   bool lacks_comma(const ast::Command& command, std::size_t place);
   bool lacks_list(const ast::Command& command, std::size_t place);
   bool is_unit_apart(const ast::Command& command, std::size_t place);
+  // Parts that one of the others leaves nothing to say; a way and a place, of which one must go (misread.cpp).
+  static bool says_twice(const Recipient& to, const std::vector<Given>& given,
+                         const ir::Command& result);
+  static bool goes_two_ways(const Recipient& to, const std::vector<Given>& given);
+  static bool is_sensor_meant(const Recipient& to, const ast::Word& word, const Names& names);
   Typed evaluate_number(const ast::Argument& argument);
   [[nodiscard]] bool is_known_word(std::string_view word) const;  // of any actuator
   [[nodiscard]] bool names_a_number(const ast::Name& name) const;

@@ -2,8 +2,8 @@
 #include <array>
 
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/sema/condition_lints.hpp"
 #include "compiler/sema/expressions.hpp"
-#include "compiler/sema/lints.hpp"
 #include "vm/arithmetic.hpp"
 
 namespace robosync::compiler {
@@ -212,6 +212,7 @@ bool Expressions::takes_margin(const Typed& left, const Typed& right) {
 
 Expression Expressions::compare(ast::Relation relation, Typed left, Typed right) {
   const bool sticks = is_order(relation) && takes_margin(left, right);
+  if (sticks && !is_given()) lint_margin(relation, left, right, margin_->value, diagnostics_);
   Expression enter =
       make_binary(operation_of(relation), std::move(left.code), std::move(right.code));
   if (!sticks) return enter;
@@ -233,8 +234,7 @@ Typed Expressions::of(const ast::IsBetween& node, Span span) {
         .label(span);
     return make_nothing(span);
   }
-  lint_comparison(ast::Relation::greater_equal, value, low, span, diagnostics_);
-  lint_comparison(ast::Relation::less_equal, same, high, span, diagnostics_);
+  if (!is_given()) lint_between(value, low, high, span, diagnostics_);
   if (reads_time(value.code) || reads_time(low.code) || reads_time(high.code))
     return time_between(std::move(value), std::move(low), std::move(high), span);
   Expression above = compare(ast::Relation::greater_equal, std::move(value), std::move(low));
@@ -262,6 +262,7 @@ Typed Expressions::of(const ast::Changes& node, Span span) {
       diagnostics_.report(Code::E0509, "CHANGES BY must be above 0").label(node.by->span);
       return make_nothing(span);
     }
+    if (!is_given()) lint_step(value, *by, diagnostics_);
   }
   return make_condition(time_word(Operation::changed, std::move(value.code), least), span);
 }
@@ -270,6 +271,7 @@ Typed Expressions::of(const ast::For& node, Span span) {
   Typed inner = condition(*node.condition);
   const auto duration = constant_duration(*node.duration, "FOR");
   if (inner.type != Type::condition || !duration) return make_nothing(span);
+  lint_held(*node.condition, inner.code, diagnostics_);
   return make_condition(time_word(Operation::held, std::move(inner.code), *duration), span);
 }
 

@@ -6,7 +6,7 @@
 
 #include "compiler/config/values.hpp"
 #include "compiler/ir/expression.hpp"
-#include "compiler/sema/lints.hpp"
+#include "compiler/sema/condition_lints.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -179,6 +179,7 @@ Typed Expressions::channel(ChannelRef ref, Span span) {
 }
 
 Typed Expressions::variable(VariableName& name, Span span) {
+  if (name.taken) return make_nothing(span);
   Expression code;
   code.operation = Operation::variable;
   code.index = name.index;
@@ -259,7 +260,7 @@ Typed Expressions::of(const ast::Comparison& node, Span span) {
   if (!left.is_number() || !right.is_number()) return make_nothing(span);
   if (!unify(left, right, "this compares {} with {}", false, diagnostics_))
     return make_nothing(span);
-  lint_comparison(node.relation, left, right, span, diagnostics_);
+  if (!is_given()) lint_comparison(node.relation, left, right, span, diagnostics_);
   if (reads_time(left.code) || reads_time(right.code))
     return time_comparison(node.relation, std::move(left), std::move(right), span);
   return make_condition(compare(node.relation, std::move(left), std::move(right)), span);
@@ -277,6 +278,7 @@ Typed Expressions::of(const ast::Logic& node, Span span) {
   if (left.type != Type::condition || right.type != Type::condition) return make_nothing(span);
   const auto operation =
       node.op == ast::LogicOp::and_ ? Operation::logical_and : Operation::logical_or;
+  if (!is_given()) lint_logic(node.op, left.code, right.code, span, names_, diagnostics_);
   return make_condition(make_binary(operation, std::move(left.code), std::move(right.code)), span);
 }
 

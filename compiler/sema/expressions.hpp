@@ -129,6 +129,8 @@ private:
   Typed of(const ast::ThenWithin& node, Span span);
   Typed of(const ast::TimesWithin& node, Span span);
 
+  // Are there parameters? What is certain of one that it is given need not be so of the next.
+  [[nodiscard]] bool is_given() const { return bindings_ != nullptr && !bindings_->empty(); }
   Typed constant(ConstantName& name, const ast::Operand& operand, Span span);
   const Typed& value_of(ConstantName& name);
   Typed channel(ChannelRef ref, Span span);

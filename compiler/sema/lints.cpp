@@ -71,53 +71,9 @@ bool implies(const Expression& condition, const Expression& consequence) {
          narrow->high <= wide->high;
 }
 
-// ---- single conditions, while they are translated
+// ---- W0203: the two rules that wait for a change
 
 namespace {
-
-// Whether left < right is decided by what the sides can be, and how.
-std::optional<bool> decided_less(const Typed& left, const Typed& right) {
-  if (left.high < right.low) return true;
-  if (left.low >= right.high) return false;
-  return std::nullopt;
-}
-
-std::optional<bool> opposite(std::optional<bool> decided) {
-  if (decided) return !*decided;
-  return std::nullopt;
-}
-
-std::optional<bool> decided_equal(const Typed& left, const Typed& right) {
-  if (left.high < right.low || right.high < left.low) return false;
-  if (left.low == left.high && right.low == right.high) return true;
-  return std::nullopt;
-}
-
-std::optional<bool> decided(ast::Relation relation, const Typed& left, const Typed& right) {
-  switch (relation) {
-    case ast::Relation::less:
-      return decided_less(left, right);
-    case ast::Relation::greater:
-      return decided_less(right, left);
-    case ast::Relation::less_equal:
-      return opposite(decided_less(right, left));
-    case ast::Relation::greater_equal:
-      return opposite(decided_less(left, right));
-    case ast::Relation::equal:
-      return decided_equal(left, right);
-    case ast::Relation::not_equal:
-      return opposite(decided_equal(left, right));
-  }
-  return std::nullopt;
-}
-
-void label_range(Diagnostic& diagnostic, const Typed& side) {
-  if (side.source.empty() || side.is_constant()) return;
-  diagnostic.label(side.span,
-                   "goes from " + format_value(side.low, *side.unit) + " to " +
-                       format_value(side.high, *side.unit),
-                   false);
-}
 
 std::string_view opposite_sign(ast::Relation relation) {
   switch (relation) {
@@ -170,17 +126,6 @@ std::optional<TwoRules> rules_without_start(const ast::WhenRule& when, const Nam
 
 }  // namespace
 
-void lint_comparison(ast::Relation relation, const Typed& left, const Typed& right, Span span,
-                     Diagnostics& diagnostics) {
-  const auto result = decided(relation, left, right);
-  if (!result) return;
-  Diagnostic& d =
-      diagnostics.report(Code::W0210, *result ? "this is always true" : "this is never true")
-          .label(span);
-  label_range(d, left);
-  label_range(d, right);
-}
-
 void lint_start(const ast::Rule& rule, const ast::WhenRule& when, const Names& names,
                 const Typed& condition, const SourceMap& sources, Diagnostics& diagnostics) {
   Diagnostic& d =
@@ -225,9 +170,31 @@ bool overlaps(const std::vector<Interval>& ranges, const Interval& wanted) {
 
 }  // namespace
 
+namespace {
+
+// W0210: a band that holds on to every value once it has one.
+void lint_hold(const ast::Check& node, const ir::Check& check, const Typed& input,
+               Diagnostics& diagnostics) {
+  for (std::size_t i = 0; i < check.bands.size() && node.margin; ++i) {
+    const vm::Band& band = check.bands[i];
+    const bool has_all = band.low <= input.low && band.high >= input.high;
+    const bool has_some = band.low <= input.high && band.high >= input.low;
+    if (has_all || !has_some || band.stay_low > input.low || band.stay_high < input.high) continue;
+    diagnostics
+        .report(Code::W0210, "once " + node.name.shown() + " is " + node.bands[i].label.shown() +
+                                 ", it stays so: nothing is past its border by the MARGIN")
+        .label(node.margin->span)
+        .label(node.bands[i].span, "this band", false);
+    return;
+  }
+}
+
+}  // namespace
+
 void lint_bands(const ast::Check& node, const ir::Check& check, const Typed& input,
                 Diagnostics& diagnostics) {
   const Unit& unit = input.unit != nullptr ? *input.unit : canonical_unit(vm::Dimension::number);
+  lint_hold(node, check, input, diagnostics);
   std::vector<Interval> left{{input.low, input.high}};
   for (std::size_t i = 0; i < check.bands.size(); ++i) {
     const Interval band{check.bands[i].low, check.bands[i].high};

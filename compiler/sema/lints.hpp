@@ -6,10 +6,6 @@
 
 namespace robosync::compiler {
 
-// W0210: what the sides can be decides the comparison.
-void lint_comparison(ast::Relation relation, const Typed& left, const Typed& right, Span span,
-                     Diagnostics& diagnostics);
-
 // W0203: a WHEN/ELSE acts at start. `condition` is its translation; the fix is made from the text
 // of the rule.
 void lint_start(const ast::Rule& rule, const ast::WhenRule& when, const Names& names,

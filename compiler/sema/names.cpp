@@ -377,6 +377,8 @@ void Names::add(const ast::Behavior& behavior) {
 void Names::add_variable(VariableName variable, Places& places) {
   variable.index = variables_.size();
   variable.in_module = in_module_;
+  variable.taken = !std::holds_alternative<std::monostate>(variable.declared) &&
+                   names_a_channel(variable.name.text);
   places.emplace(fold_name(variable.name.text), variable.index);
   variables_.push_back(std::move(variable));
 }

@@ -49,6 +49,7 @@ struct VariableName {
   vm::VariableKind kind = vm::VariableKind::signal;
   std::vector<std::string> labels;  // of state and band
   bool in_module = false;
+  bool taken = false;  // it is a sensor's name, too, which has been reported: say no more of it
   // Known only when it has been declared (Variables).
   bool ready = false;
   const Unit* unit = nullptr;

@@ -1,5 +1,6 @@
 #include "compiler/sema/rules.hpp"
 
+#include "compiler/sema/condition_lints.hpp"
 #include "compiler/sema/lints.hpp"
 
 namespace robosync::compiler {
@@ -28,8 +29,10 @@ void Rules::translate(const ast::Rule& rule, const ast::WhenRule& node, ir::Rule
 
 void Rules::translate(const ast::Rule& rule, const ast::WhileRule& node, ir::Rule& result) {
   result.kind = vm::RuleKind::while_;
-  if (node.condition)
+  if (node.condition) {
     result.condition = expressions_.condition(*node.condition, rule.modifiers.margin.get()).code;
+    lint_while(rule, *node.condition, result.condition, diagnostics_);
+  }
   result.then_response = statements_.response(node.body);
 }
 

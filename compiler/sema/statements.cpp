@@ -126,8 +126,10 @@ void Statements::add(const ast::Command& node, Span span, ir::Block& result) {
     };
     return choose(*choice, span, say, result);
   }
-  for (ir::Command& command : commands_.translate(node))
+  for (ir::Command& command : commands_.translate(node)) {
+    if (commands_.lacks_content(command, span) || commands_.gives_too_much(node, command)) return;
     put(std::move(command), span, result);
+  }
 }
 
 void Statements::add(const ast::Wait& node, Span span, ir::Block& result) {
@@ -366,6 +368,7 @@ VariableName* Statements::settable(const ast::Name& name, bool number, const ast
         .label(name.span);
     return nullptr;
   }
+  if (variable != nullptr && variable->taken) return nullptr;
   if (variable == nullptr) {
     const std::string kind = names_.kind_of(name.text);
     if (!kind.empty()) {
@@ -462,6 +465,21 @@ bool Statements::is_restart(const ast::Command& node) const {
   return same_name(node.verb.text, kRestart) && !names_.is_verb(kRestart);
 }
 
+// `RESTART idle TO 5s`
+bool Statements::restarts_at(const ast::Command& node) {
+  const ast::Word* const word =
+      node.arguments.size() < 2 ? nullptr : plain_word(node.arguments.front());
+  const VariableName* const timer =
+      word != nullptr ? names_.find_variable(word->name.text) : nullptr;
+  if (timer == nullptr || timer->kind != vm::VariableKind::timer) return false;
+  const Span rest{word->name.span.file, word->name.span.end, node.arguments.back().span.end};
+  diagnostics_.report(Code::E0513, "RESTART sets a TIMER back to 0, and to nothing else")
+      .label({rest.file, node.arguments[1].span.begin, rest.end})
+      .helps("write `RESTART " + std::string(word->name.text) + "`")
+      .fix(rest, "", Applicability::likely);
+  return true;
+}
+
 void Statements::restart(const ast::Command& node, Span span, ir::Block& result) {
   const auto* const word =
       node.arguments.size() == 1 ? std::get_if<ast::Word>(&node.arguments.front().value) : nullptr;
@@ -472,6 +490,7 @@ void Statements::restart(const ast::Command& node, Span span, ir::Block& result)
     now.operation = Operation::now;
     return put(ir::Set{timer->index, std::move(now), false}, span, result);
   }
+  if (restarts_at(node)) return;
   Diagnostic& d =
       diagnostics_.report(Code::E0513, "RESTART sets a TIMER back to 0, and this is none")
           .label(word != nullptr ? word->name.span : span);

@@ -78,6 +78,7 @@ private:
   void set_label(const ast::Set& node, const VariableName& variable, Span span, ir::Block& result);
   [[nodiscard]] bool is_restart(const ast::Command& node) const;
   void restart(const ast::Command& node, Span span, ir::Block& result);
+  bool restarts_at(const ast::Command& node);
   bool in_range(const VariableName& variable, const Typed& value);
   void add(const ast::Log& node, Span span, ir::Block& result);
   void put_log(const ast::Log& node, const ChosenText* chosen, Span span, ir::Block& result);

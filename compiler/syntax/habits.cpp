@@ -76,11 +76,45 @@ private:
     const bool holds = begins_with(Kinds::REMEMBER) || begins_with(Kinds::LET);
     if (!is(stop_, Kinds::STRING) || !(holds || begins_with(Kinds::SET))) return std::nullopt;
     if (!is(stop_ - 1, holds ? Kinds::EQUAL : Kinds::TO)) return std::nullopt;
+    if (!holds && is_word_of_state(stop_ - 2, stop_)) return word_in_quotes();
     const std::string what = holds ? "a " + std::string(text(statement_)) + " holds" : "SET takes";
     report(Code::E0306, what + " a number, and this is a text", tokens_[stop_].span)
         .helps("texts to choose from are a LIST: `LIST words: " + std::string(text(stop_)) + "`")
         .helps("one of several words is a STATE: `STATE mood: calm, happy`, `SET mood TO happy`");
     return change(stop_, 1, {missing(Kinds::QUANTITY, stop_)});
+  }
+
+  // Does a line of the file declare the name at `name` as a STATE with the word that stands in quotes at `word`? The
+  // tokens are those of this item only.
+  bool is_word_of_state(std::size_t name, std::size_t word) const {
+    constexpr std::string_view kBetween = " \t\r,:";
+    const std::string_view quoted = text(word);
+    if (quoted.size() < 3) return false;
+    for (std::uint32_t line = 1; line <= source_.lines(); ++line) {
+      std::string_view rest = source_.line(line);
+      const auto next = [&](std::string_view ends) {
+        rest.remove_prefix(std::min(rest.find_first_not_of(kBetween), rest.size()));
+        std::string_view found = rest.substr(0, rest.find_first_of(ends));
+        rest.remove_prefix(found.size());
+        return found.substr(0, found.find_last_not_of(kBetween) + 1);
+      };
+      if (!ascii::same(next(kBetween), "STATE") || !ascii::same(next(kBetween), text(name)))
+        continue;
+      for (std::string_view label = next(",%#"); !label.empty(); label = next(",%#"))
+        if (ascii::same(label, quoted.substr(1, quoted.size() - 2))) return true;
+    }
+    return false;
+  }
+
+  // `SET mood TO "happy"`
+  Edit word_in_quotes() {
+    Span word = tokens_[stop_].span;
+    report(Code::E0306, "a word of a STATE stands without quotes behind SET", word)
+        .helps("write `" + std::string(text(stop_).substr(1, text(stop_).size() - 2)) + "`")
+        .fix(word, std::string(text(stop_).substr(1, text(stop_).size() - 2)));
+    ++word.begin;
+    --word.end;
+    return change(stop_, 1, {{Kinds::NAME, word}});
   }
 
   // `LIST words = "a"`, `LIST words "a"`, `LIST words: ("a", "b")`, one text a line

@@ -1,0 +1,383 @@
+// See condition_lints.hpp. What is said here is certain: where a sensor is unknown, no condition is true or false
+// anyway.
+#include "compiler/sema/condition_lints.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "compiler/config/units.hpp"
+
+namespace robosync::compiler {
+
+// ---- W0210: one comparison, by what its sides can be
+
+namespace {
+
+// Whether left < right is decided by what the sides can be, and how.
+std::optional<bool> decided_less(const Typed& left, const Typed& right) {
+  if (left.high < right.low) return true;
+  if (left.low >= right.high) return false;
+  return std::nullopt;
+}
+
+std::optional<bool> opposite(std::optional<bool> decided) {
+  if (decided) return !*decided;
+  return std::nullopt;
+}
+
+std::optional<bool> decided_equal(const Typed& left, const Typed& right) {
+  if (left.high < right.low || right.high < left.low) return false;
+  if (left.low == left.high && right.low == right.high) return true;
+  return std::nullopt;
+}
+
+std::optional<bool> decided(ast::Relation relation, const Typed& left, const Typed& right) {
+  switch (relation) {
+    case ast::Relation::less:
+      return decided_less(left, right);
+    case ast::Relation::greater:
+      return decided_less(right, left);
+    case ast::Relation::less_equal:
+      return opposite(decided_less(right, left));
+    case ast::Relation::greater_equal:
+      return opposite(decided_less(left, right));
+    case ast::Relation::equal:
+      return decided_equal(left, right);
+    case ast::Relation::not_equal:
+      return opposite(decided_equal(left, right));
+  }
+  return std::nullopt;
+}
+
+void label_range(Diagnostic& diagnostic, const Typed& side) {
+  if (side.source.empty() || side.is_constant()) return;
+  diagnostic.label(side.span,
+                   "goes from " + format_value(side.low, *side.unit) + " to " +
+                       format_value(side.high, *side.unit),
+                   false);
+}
+
+Diagnostic& report_decided(bool always, Span span, Diagnostics& diagnostics) {
+  return diagnostics.report(Code::W0210, always ? "this is always true" : "this is never true")
+      .label(span);
+}
+
+bool is_below(ast::Relation relation) {
+  return relation == ast::Relation::less || relation == ast::Relation::less_equal;
+}
+
+}  // namespace
+
+void lint_comparison(ast::Relation relation, const Typed& left, const Typed& right, Span span,
+                     Diagnostics& diagnostics) {
+  const auto result = decided(relation, left, right);
+  if (!result) return;
+  Diagnostic& d = report_decided(*result, span, diagnostics);
+  label_range(d, left);
+  label_range(d, right);
+}
+
+void lint_between(const Typed& value, const Typed& low, const Typed& high, Span span,
+                  Diagnostics& diagnostics) {
+  const auto above = decided(ast::Relation::greater_equal, value, low);
+  const auto below = decided(ast::Relation::less_equal, value, high);
+  const bool never = !above.value_or(true) || !below.value_or(true);
+  if (!never && !(above && below)) return;
+  label_range(report_decided(!never, span, diagnostics), value);
+}
+
+void lint_margin(ast::Relation relation, const Typed& left, const Typed& right, const Typed& margin,
+                 Diagnostics& diagnostics) {
+  if (decided(relation, left, right)) return;
+  const std::int64_t by = margin.code.constant;
+  const bool stays = is_below(relation) ? left.high <= right.low + by : left.low >= right.high - by;
+  if (!stays) return;
+  Diagnostic& d =
+      diagnostics
+          .report(Code::W0210, "once this is true, it stays true: nothing is past it by the MARGIN")
+          .label(margin.span);
+  label_range(d, left);
+  label_range(d, right);
+}
+
+void lint_step(const Typed& value, const Typed& by, Diagnostics& diagnostics) {
+  if (value.high - value.low >= by.code.constant) return;
+  label_range(diagnostics.report(Code::W0210, "this is never true: it cannot change by so much")
+                  .label(by.span),
+              value);
+}
+
+// ---- W0210: AND and OR of comparisons of one thing with constants
+
+namespace {
+
+struct Interval {
+  std::int64_t low = vm::kValueMin, high = vm::kValueMax;  // both included
+};
+using Ranges = std::vector<Interval>;
+
+Ranges both(const Ranges& a, const Ranges& b) {
+  Ranges result;
+  for (const Interval& one : a)
+    for (const Interval& other : b)
+      if (std::max(one.low, other.low) <= std::min(one.high, other.high))
+        result.push_back({std::max(one.low, other.low), std::min(one.high, other.high)});
+  return result;
+}
+
+Ranges without(Ranges left, const Ranges& taken) {
+  for (const Interval& hole : taken) {
+    Ranges rest;
+    for (const Interval& range : left) {
+      if (range.low < hole.low) rest.push_back({range.low, std::min(range.high, hole.low - 1)});
+      if (range.high > hole.high) rest.push_back({std::max(range.low, hole.high + 1), range.high});
+    }
+    left = std::move(rest);
+  }
+  return left;
+}
+
+Ranges together(Ranges a, const Ranges& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+// A condition that asks one thing only: for which of its values it may be true, and for which it is.
+struct Asked {
+  const Expression* side = nullptr;
+  Ranges may, must;
+};
+
+// Are they few enough, and about the same?
+constexpr std::size_t kMostRanges = 64;
+bool same_side(const std::optional<Asked>& a, const std::optional<Asked>& b) {
+  return a && b && a->may.size() + b->may.size() <= kMostRanges &&
+         a->must.size() + b->must.size() <= kMostRanges && *a->side == *b->side;
+}
+
+bool draws(const Expression& expression) {
+  return expression.operation == Operation::random ||
+         std::ranges::any_of(expression.operands, draws);
+}
+
+std::optional<Ranges> ranges_of(Operation comparison, std::int64_t number) {
+  switch (comparison) {
+    case Operation::less:
+      return Ranges{{vm::kValueMin, number - 1}};
+    case Operation::less_equal:
+      return Ranges{{vm::kValueMin, number}};
+    case Operation::greater:
+      return Ranges{{number + 1, vm::kValueMax}};
+    case Operation::greater_equal:
+      return Ranges{{number, vm::kValueMax}};
+    case Operation::equal:
+      return Ranges{{number, number}};
+    case Operation::not_equal:
+      return without({{}}, {{number, number}});
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<Asked> comparison_of(const Expression& condition) {
+  if (!is_comparison(condition.operation)) return std::nullopt;
+  const Expression& left = condition.operands[0];
+  const Expression& right = condition.operands[1];
+  const bool turned = left.operation == Operation::constant;
+  if (turned == (right.operation == Operation::constant)) return std::nullopt;
+  const Expression& side = turned ? right : left;
+  const auto ranges = ranges_of(turned ? mirrored(condition.operation) : condition.operation,
+                                (turned ? left : right).constant);
+  if (!ranges || draws(side)) return std::nullopt;
+  return Asked{&side, *ranges, *ranges};
+}
+
+std::optional<Asked> asked(const Expression& condition);
+
+// A MARGIN: true from where it enters, perhaps as far as it stays.
+std::optional<Asked> asked_by_two(const Expression& condition) {
+  auto first = asked(condition.operands[0]);
+  const auto second = asked(condition.operands[1]);
+  if (!same_side(first, second)) return std::nullopt;
+  if (condition.operation == Operation::logical_and)
+    return Asked{first->side, both(first->may, second->may), both(first->must, second->must)};
+  const bool sticks = condition.operation == Operation::latch;
+  return Asked{first->side, together(first->may, second->may),
+               sticks ? first->must : together(first->must, second->must)};
+}
+
+std::optional<Asked> asked(const Expression& condition) {
+  switch (condition.operation) {
+    case Operation::logical_and:
+    case Operation::logical_or:
+    case Operation::latch:
+      return asked_by_two(condition);
+    case Operation::logical_not: {
+      const auto inner = asked(condition.operands[0]);
+      if (!inner) return std::nullopt;
+      return Asked{inner->side, without({{}}, inner->must), without({{}}, inner->may)};
+    }
+    case Operation::held:
+    case Operation::rose: {
+      auto inner = asked(condition.operands[0]);
+      if (inner) inner->must.clear();
+      return inner;
+    }
+    default:
+      return comparison_of(condition);
+  }
+}
+
+void collect(Operation op, const Expression& condition, std::vector<Asked>& result) {
+  if (condition.operation == op) {
+    for (const Expression& operand : condition.operands)
+      collect(op, operand, result);
+  } else if (auto one = asked(condition)) {
+    result.push_back(std::move(*one));
+  }
+}
+
+// What it can be at all. A channel that learns its words may be another one tomorrow.
+Ranges possible(const Expression& side, Names& names) {
+  const auto of = [](const std::vector<std::string>& labels, std::int64_t low, std::int64_t high) {
+    if (labels.empty()) return Ranges{{low, high}};
+    Ranges words;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      const auto word = static_cast<std::int64_t>(i) * vm::kScale;
+      words.push_back({word, word});
+    }
+    return words;
+  };
+  if (side.operation == Operation::variable) {
+    const VariableName& variable = names.variables()[side.index];
+    return of(variable.labels, variable.low, variable.high);
+  }
+  if (side.operation != Operation::input) return {{}};
+  const ChannelConfig& channel = names.channel(side.channel);
+  if (channel.learns_words) return {{}};
+  return of(channel.labels, channel.min, channel.max);
+}
+
+std::string name_of(const Expression& side, Names& names) {
+  if (side.operation == Operation::input) return "`" + names.channel_name(side.channel) + "`";
+  if (side.operation == Operation::variable) return names.variables()[side.index].name.shown();
+  return "it";
+}
+
+// What is left of `ranges` when all of `parts` that are about this side are true, or false.
+Ranges left_by(const std::vector<Asked>& parts, const Expression& side, bool are_true,
+               Ranges ranges) {
+  for (const Asked& part : parts) {
+    if (*part.side != side || ranges.size() > kMostRanges) continue;
+    ranges = are_true ? both(ranges, part.may) : without(std::move(ranges), part.must);
+  }
+  return ranges;
+}
+
+}  // namespace
+
+void lint_logic(ast::LogicOp op, const Expression& left, const Expression& right, Span span,
+                Names& names, Diagnostics& diagnostics) {
+  const bool all = op == ast::LogicOp::and_;
+  const Operation operation = all ? Operation::logical_and : Operation::logical_or;
+  std::vector<Asked> first, second;
+  collect(operation, right, second);
+  if (second.empty()) return;
+  collect(operation, left, first);
+  for (const Asked& part : second) {
+    const Expression& side = *part.side;
+    const Ranges range = possible(side, names);
+    const Ranges by_first = left_by(first, side, all, range);
+    if (by_first.empty() || left_by(second, side, all, range).empty()) continue;  // said before
+    if (!left_by(second, side, all, by_first).empty()) continue;
+    const std::string name = name_of(side, names);
+    Diagnostic& d =
+        diagnostics
+            .report(Code::W0210,
+                    all ? "this is never true: " + name + " is never all of this at once"
+                        : "this is always true: " + name + " is always one of these")
+            .label(span);
+    if (all)
+      d.helps("to ask whether it is one of them, write OR");
+    else if (!left_by(second, side, true, left_by(first, side, true, range)).empty())
+      d.helps("to ask whether it is all of them, write AND");
+    return;
+  }
+}
+
+// ---- W0220: moments
+
+namespace {
+
+bool is_moment(const Expression& condition) {
+  switch (condition.operation) {
+    case Operation::rose:
+    case Operation::changed:
+    case Operation::counted:
+    case Operation::sequence:
+      return true;
+    case Operation::logical_and:
+      return std::ranges::any_of(condition.operands, is_moment);
+    case Operation::logical_or:
+      return std::ranges::all_of(condition.operands, is_moment);
+    default:
+      return false;
+  }
+}
+
+// The words that the grammar reads as a value; empty when it is more than that.
+std::string words_of(const ast::Box<ast::Expr>& value) {
+  const auto* const operand = value ? std::get_if<ast::Operand>(&value->node) : nullptr;
+  if (operand == nullptr) return {};
+  std::string words(operand->name.text);
+  if (operand->channel) words.append(" ").append(operand->channel->text);
+  return words;
+}
+
+// `mood BECOMES happy` was meant as `mood IS happy`.
+bool offer_is(const ast::Expr& condition, Diagnostic& diagnostic) {
+  const auto* const becomes = std::get_if<ast::Becomes>(&condition.node);
+  const std::string words = becomes != nullptr ? words_of(becomes->value) : "";
+  if (words.empty()) return false;
+  const Span between{condition.span.file, becomes->value->span.end, becomes->label.span.begin};
+  diagnostic
+      .helps("IS asks what it is as long as it lasts: `" + words + " IS " +
+             std::string(becomes->label.text) + "`")
+      .fix(between, " IS ", Applicability::likely);
+  return true;
+}
+
+}  // namespace
+
+void lint_held(const ast::Expr& condition, const Expression& code, Diagnostics& diagnostics) {
+  if (!is_moment(code)) return;
+  Diagnostic& d =
+      diagnostics
+          .report(Code::W0220, "this is true for a moment only, and FOR asks whether it has lasted")
+          .label(condition.span);
+  if (offer_is(condition, d)) return;
+  const auto* const changes = std::get_if<ast::Changes>(&condition.node);
+  const std::string words = changes != nullptr ? words_of(changes->value) : "";
+  if (!words.empty())
+    d.helps("to ask whether it has stayed the same, write NOT in front: `NOT (" + words +
+            " CHANGES) FOR …`");
+  d.helps("to do something later, leave FOR out, and begin the response with a WAIT");
+}
+
+void lint_while(const ast::Rule& rule, const ast::Expr& condition, const Expression& code,
+                Diagnostics& diagnostics) {
+  if (!is_moment(code)) return;
+  Diagnostic& d =
+      diagnostics
+          .report(Code::W0220, "this is true for a moment only: WHILE ends its response at once")
+          .label(condition.span);
+  const bool offered = offer_is(condition, d);
+  d.helps("WHEN runs the whole response at each such moment");
+  constexpr std::uint32_t kLength = 5;  // of WHILE
+  if (!offered)
+    d.fix({rule.span.file, rule.span.begin, rule.span.begin + kLength}, "WHEN",
+          Applicability::likely);
+}
+
+}  // namespace robosync::compiler
