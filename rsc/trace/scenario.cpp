@@ -197,6 +197,11 @@ private:
       fail(line_of_key("ramp"), "`ramp` is [first reading, last reading]");
     }
     if (!channel) return;
+    if (image_.channels[*channel].label_count > 0)
+      fail(line_of_key("ramp"),
+           fmt::format("{} has words, and there is nothing between two words: write a stimulus "
+                       "with `at` and `value` for each",
+                       image_.string(image_.channels[*channel].name)));
     const auto end = [&](std::size_t which) {
       return at_key("ramp", [&] { return reading(json_array_get(ramp, which), *channel); });
     };
