@@ -204,7 +204,9 @@ struct Kept {
   ProgramHash
       given_up_hash;  // the last one since start-up that did not stand its trial; zeros: none
   Keeping state;
-  std::array<std::uint8_t, 3> reserved;
+  std::uint8_t
+      goes_back;  // on_trial: 1: after it back to the kept program, also when all goes well
+  std::array<std::uint8_t, 2> reserved;
 };
 
 struct RollBack {

@@ -3,6 +3,8 @@
 
 #include <iostream>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -24,13 +26,31 @@ std::string as_text(const Json& payload) {
   return payload.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+constexpr std::string_view kDo = "do/";
+constexpr const char* kProgram = "program";
+
+std::vector<std::string> topics_of_a_program(const std::string& root) {
+  std::vector<std::string> filters{root + kProgram, root + "alerts"};
+  for (const char* const folder :
+       {"sensors", "variables", "actuators", "behaviors", "priorities", "safety"})
+    filters.push_back(root + folder + "/#");
+  return filters;
+}
+
+Json program_json(const vm::Image* image) {
+  if (image == nullptr) return nullptr;
+  return tool::text_of(image->header->program_hash);
+}
+
 constexpr const char* kAway = R"({"online":false})";
 
 }  // namespace
 
 Bridge::Bridge(const Mqtt::Place& broker, const std::string& name)
     : root_(root_of(name)),
-      mqtt_(broker, root_of(name) + "do/#", {root_of(name) + "online", kAway, true}) {}
+      mqtt_(broker, root_of(name) + "do/#", {root_of(name) + "online", kAway, true}) {
+  mqtt_.look_at(topics_of_a_program(root_));
+}
 
 Bridge::~Bridge() {
   online(false);
@@ -63,12 +83,16 @@ void Bridge::program(const TraceNames& names, std::span<const std::byte>) {
   for (const std::string& topic : of_program_)
     mqtt_.forget(root_ + topic);
   of_program_.clear();
+  publish(kProgram, {{"event", "program"}, {"program", program_json(image_)}}, true);
 }
 
 void Bridge::event(const link::Event& event, const TraceNames& names) {
-  const Json line = Json::parse(trace_json(event, names));
+  Json line = Json::parse(trace_json(event, names));
   const Topic topic = topic_of(line);
-  if (topic.retain) of_program_.insert(topic.name);
+  if (topic.name == kProgram)
+    line["program"] = program_json(image_);
+  else if (topic.retain)
+    of_program_.insert(topic.name);
   publish(topic.name, line, topic.retain);
 }
 
@@ -95,9 +119,20 @@ bool Bridge::work(Session* session) {
   return true;
 }
 
+// An earlier bridge may have left things of a program that runs no more, and of this one what nobody knows now. What is
+// published here comes behind all that.
+void Bridge::see_what_was_left(const std::string& topic, const MqttMessage& message) {
+  if (message.retained)
+    mqtt_.clear(message.topic);
+  else if (topic == kProgram)
+    mqtt_.look_no_more();
+}
+
 // What lay there before would be obeyed at each start again.
 void Bridge::take(const MqttMessage& message, Session* session) {
-  const std::string topic = message.topic.substr((root_ + "do/").size());
+  std::string topic = message.topic.substr(root_.size());
+  if (!topic.starts_with(kDo)) return see_what_was_left(topic, message);
+  topic = topic.substr(kDo.size());
   std::string why;
   try {
     if (message.retained) throw std::invalid_argument("it was retained: publish it without");

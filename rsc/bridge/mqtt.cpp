@@ -27,7 +27,7 @@ struct Mosquitto {
 // clang-format off
 #define MOSQUITTO_FUNCTIONS(F)                                                                     \
   F(lib_init) F(lib_cleanup) F(new) F(destroy) F(will_set) F(connect) F(disconnect) F(loop_start)  \
-  F(loop_stop) F(publish) F(subscribe) F(strerror) F(reconnect_delay_set) F(connect_callback_set)  \
+  F(loop_stop) F(publish) F(subscribe) F(unsubscribe) F(strerror) F(reconnect_delay_set) F(connect_callback_set)  \
   F(disconnect_callback_set) F(message_callback_set)
 // clang-format on
 #define FUNCTION(name) decltype(&mosquitto_##name) name##_ = nullptr;
@@ -54,6 +54,7 @@ struct Mqtt::State {
   std::deque<MqttMessage> came;
   std::optional<std::string> news;
   bool connected = false, again = false;
+  std::vector<std::string> looks_at;
 
   void connects(int code) {
     const std::scoped_lock lock(mutex);
@@ -65,6 +66,8 @@ struct Mqtt::State {
     again = true;
     news = "connected to the broker";
     library.subscribe_(client, nullptr, filter.c_str(), kQos);
+    for (const std::string& looked_at : looks_at)
+      library.subscribe_(client, nullptr, looked_at.c_str(), kQos);
   }
   void disconnects(int code) {
     const std::scoped_lock lock(mutex);
@@ -133,6 +136,26 @@ void Mqtt::publish(const std::string& topic, const std::string& payload, bool re
 // An empty one takes the place of what was retained.
 void Mqtt::forget(const std::string& topic) {
   if (state_->retained.erase(topic) > 0)
+    state_->library.publish_(state_->client, nullptr, topic.c_str(), 0, nullptr, kQos, true);
+}
+
+void Mqtt::look_at(const std::vector<std::string>& filters) {
+  const std::scoped_lock lock(state_->mutex);
+  state_->looks_at = filters;
+  if (!state_->connected) return;  // connects() does it
+  for (const std::string& filter : filters)
+    state_->library.subscribe_(state_->client, nullptr, filter.c_str(), kQos);
+}
+
+void Mqtt::look_no_more() {
+  const std::scoped_lock lock(state_->mutex);
+  for (const std::string& filter : state_->looks_at)
+    state_->library.unsubscribe_(state_->client, nullptr, filter.c_str());
+  state_->looks_at.clear();
+}
+
+void Mqtt::clear(const std::string& topic) {
+  if (!state_->retained.contains(topic))
     state_->library.publish_(state_->client, nullptr, topic.c_str(), 0, nullptr, kQos, true);
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace robosync::tool {
 
@@ -33,6 +34,11 @@ public:
   void publish(const std::string& topic, const std::string& payload, bool retain);
   // Forgets what was retained there, here and in the broker.
   void forget(const std::string& topic);
+  // From now on next() has what is retained there, and then what is published: until look_no_more().
+  void look_at(const std::vector<std::string>& filters);
+  void look_no_more();
+  // Takes away what somebody else has left there.
+  void clear(const std::string& topic);
   // The next that came for `filter`.
   [[nodiscard]] std::optional<MqttMessage> next();
   // The connection came or went since it was asked last: a sentence.

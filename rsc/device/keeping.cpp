@@ -60,6 +60,9 @@ std::string keeping_text(const link::Kept& kept) {
     case Keeping::kept:
       return "kept: the robot starts with it after a reset";
     case Keeping::on_trial:
+      if (kept.goes_back != 0)
+        return fmt::format("only tried: in {:.1f} s the kept program comes back",
+                           kept.trial_ms / 1000.0);
       return fmt::format(
           "kept in {:.1f} s if it stands its trial; after a reset before then, the robot {}",
           kept.trial_ms / 1000.0, instead);
@@ -74,13 +77,32 @@ std::string keeping_text(const link::Kept& kept) {
   return "?";
 }
 
+// The board says `kept` of what runs, which is the kept program then.
+bool has_gone_back(const link::Kept& kept, const link::ProgramHash& uploaded) {
+  return kept.state == Keeping::kept && kept.kept_hash != uploaded;
+}
+
+// One that has failed before may run again, and stand it this time.
+bool has_failed_trial(const link::Kept& kept, const link::ProgramHash& uploaded) {
+  return kept.given_up_hash == uploaded && kept.state != Keeping::on_trial &&
+         !(kept.state == Keeping::kept && kept.kept_hash == uploaded);
+}
+
+std::string keeping_text(const link::Kept& kept, const link::ProgramHash& uploaded) {
+  if (!has_gone_back(kept, uploaded)) return keeping_text(kept);
+  return fmt::format(
+      "not kept: {}; the program kept before runs again",
+      has_failed_trial(kept, uploaded) ? "it has not stood its trial" : "its trial is over");
+}
+
 Json keeping_json(const link::Kept& kept) {
   const auto state = static_cast<std::size_t>(kept.state);
   Json object{{"state", state < kKeepingStates.size() ? kKeepingStates[state] : "?"},
               {"program", program(kept.kept_bytes, kept.kept_hash)},
               {"previous", program(kept.previous_bytes, kept.previous_hash)},
               {"most_bytes", kept.most_bytes},
-              {"trial_ms", kept.trial_ms}};
+              {"trial_ms", kept.trial_ms},
+              {"goes_back", kept.goes_back != 0}};
   const bool none = kept.given_up_hash == link::ProgramHash{};
   object["given_up"] = none ? Json(nullptr) : Json(text_of(kept.given_up_hash));
   return object;

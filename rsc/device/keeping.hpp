@@ -12,6 +12,12 @@ namespace robosync::tool {
 
 // How it stands with the running program: "kept: the robot starts with it", or why not.
 [[nodiscard]] std::string keeping_text(const link::Kept& kept);
+// … and with the one that has been uploaded, which may run no more.
+[[nodiscard]] std::string keeping_text(const link::Kept& kept, const link::ProgramHash& uploaded);
+// The kept program runs again in its place.
+[[nodiscard]] bool has_gone_back(const link::Kept& kept, const link::ProgramHash& uploaded);
+// A thread of it faulted, or a SAFETY rule tripped.
+[[nodiscard]] bool has_failed_trial(const link::Kept& kept, const link::ProgramHash& uploaded);
 [[nodiscard]] nlohmann::ordered_json keeping_json(const link::Kept& kept);
 
 // Waits until the trial of the running program is over.

@@ -49,7 +49,7 @@ void print_json(const nlohmann::ordered_json& json);
 // Throws Failure as Session and upload_program().
 [[nodiscard]] Uploaded upload_to(const std::string& port, const Program& program,
                                  const SendOptions& options, const Progress& progress);
-// Throws Failure (program) when the program has been given up, for one that runs again.
+// Throws Failure (program) when the program has not stood its trial.
 void expect_trial_stood(const SendOptions& options, const Uploaded& uploaded,
                         const Program& program);
 

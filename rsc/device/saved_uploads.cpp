@@ -13,12 +13,19 @@ bool SavedUploads::work(Session* session) {
   is_first_ = false;
   saved_.look_at(files_of_program(file_, how_));
   try {
-    upload_program(*session, load_program(file_, how_), {});
+    programs_.push_back(load_program(file_, how_));
+    upload_program(*session, programs_.back(), {});
   } catch (const Failure& failure) {
     if (failure.exit() != Exit::program) throw;
     std::cerr << "rsc: " << failure.what() << '\n';
   }
   return true;
+}
+
+const Program* SavedUploads::uploaded(const link::ProgramHash& hash) const {
+  for (const Program& program : programs_)
+    if (program.image().header->program_hash == hash) return &program;
+  return nullptr;
 }
 
 }  // namespace robosync::tool

@@ -2,6 +2,7 @@
 // whenever one of its files is saved.
 #pragma once
 
+#include <list>
 #include <string>
 #include <utility>
 
@@ -17,11 +18,14 @@ public:
       : file_(std::move(file)), how_(std::move(how)) {}
 
   bool work(Session* session) override;
+  [[nodiscard]] const Program* uploaded(const link::ProgramHash& hash) const override;
 
 private:
   std::string file_;
   CompileOptions how_;
   SavedFiles saved_;
+  std::list<Program>
+      programs_;  // that were uploaded so far, one for each time that a file was saved
   bool is_first_ = true;
 };
 

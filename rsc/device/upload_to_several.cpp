@@ -79,6 +79,11 @@ std::string in_one_line(const std::string& text) {
   return line;
 }
 
+std::string state_of(const link::Kept& kept, const Program& program) {
+  const link::ProgramHash& hash = program.image().header->program_hash;
+  return (has_gone_back(kept, hash) ? "" : "running; ") + keeping_text(kept, hash);
+}
+
 void print_table(const std::vector<Robot>& robots, const Program& program) {
   std::size_t width = std::string_view("port").size();
   for (const Robot& robot : robots)
@@ -97,7 +102,7 @@ void print_table(const std::vector<Robot>& robots, const Program& program) {
     }
     const UploadResult& result = robot.uploaded->result;
     row(robot.port, hash, fmt::to_string(result.bytes_sent), fmt::format("{:.1f}", ms_of(result)),
-        robot.exit == Exit::fine ? "running; " + keeping_text(robot.uploaded->kept)
+        robot.exit == Exit::fine ? state_of(robot.uploaded->kept, program)
                                  : in_one_line(robot.why_not));
   }
   std::cout.flush();

@@ -13,6 +13,7 @@
 #include "rsc/device/past.hpp"
 #include "rsc/device/session.hpp"
 #include "rsc/device/threads.hpp"
+#include "rsc/program.hpp"
 #include "rsc/trace/trace_format.hpp"
 
 namespace robosync::tool {
@@ -39,6 +40,12 @@ public:
   virtual void status(const link::Status& /*status*/) {}  // once a second
   // Why something that has happened is not shown.
   virtual void missed(const std::string& /*why*/) {}
+
+  // A program that it has uploaded, with what its source says of it; null when it has not. `hash`: which one is asked for.
+  // It stays.
+  [[nodiscard]] virtual const Program* uploaded(const link::ProgramHash& /*hash*/) const {
+    return nullptr;
+  }
 
   // Often. What the viewer wants of the board, and whether it wants to go on;
   // `session`: null while the line is lost or lent. What it throws ends the

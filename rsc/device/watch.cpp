@@ -54,10 +54,18 @@ void Watch::begin() {
 void Watch::learn_program() {
   image_bytes_ = session_->client.running_image();
   const bool good = vm::verify(image_bytes_, vm::Limits{}, image_).ok();
-  names_ = {good ? &image_ : nullptr, {}};
+  names_ = {good ? &image_ : nullptr, {}, nullptr};
+  if (good) learn_source();
   learn_threads();
   for (Viewer* const viewer : viewers_)
     viewer->program(names_, image_bytes_);
+}
+
+// The board has no units; who has uploaded the program may have its configuration.
+void Watch::learn_source() {
+  for (const Viewer* const viewer : viewers_)
+    if (const Program* const program = viewer->uploaded(image_.header->program_hash))
+      names_.origin = &program->origin();
 }
 
 void Watch::learn_threads() {

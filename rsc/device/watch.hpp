@@ -39,6 +39,7 @@ private:
 
   void begin();
   void learn_program();
+  void learn_source();
   void learn_threads();
   bool goes_on();
   bool step();

@@ -200,7 +200,13 @@ private:
     const auto end = [&](std::size_t which) {
       return at_key("ramp", [&] { return reading(json_array_get(ramp, which), *channel); });
     };
-    add_ramp(from, to, *channel, end(0), end(1));
+    const vm::Value first = end(0), last = end(1);
+    if (first != last && image_.channels[*channel].label_count > 0)
+      fail(line_of_key("ramp"),
+           fmt::format("{} has words, and there is nothing between two words: write a stimulus "
+                       "with `at` and `value` for each",
+                       image_.string(image_.channels[*channel].name)));
+    add_ramp(from, to, *channel, first, last);
   }
 
   // ---- recordings of sound

@@ -32,6 +32,8 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kQueueTimeout{30000};
 constexpr milliseconds kQueuePause{5};  // a question and its answer take 4 ms of the line
+constexpr std::uint64_t kFirstMomentsUs = 1'000'000;
+constexpr std::uint64_t kLeadUs = 50'000;  // for a dozen readings, before the first is due
 
 struct FeedOptions {
   std::vector<std::string> readings;
@@ -79,31 +81,114 @@ std::string describe(link::FeedError error, const vm::Image& image, const Stimul
   return fmt::format("the board refused the reading of {}", name);
 }
 
-// A full queue empties as time goes on.
-void send(Session& session, const vm::Image& image, const Stimulus& stimulus) {
-  const auto give_up = session.client.now() + kQueueTimeout;
-  while (true) {
+// Hands readings over, each in time if the line lets it.
+class Feeder {
+public:
+  Feeder(Session& session, const vm::Image& image) : session_(session), image_(image) {}
+
+  // Times of the scenario count from `from_us` of the program, which may be a moment ago: what is due in the first moments
+  // of a program cannot be there in time, so it comes as soon as it can.
+  void play(const std::vector<Stimulus>& scenario, std::uint64_t from_us) {
+    read_clock();
+    for (Stimulus stimulus : scenario) {
+      const bool is_early = stimulus.at_us <= kFirstMomentsUs;
+      stimulus.at_us += from_us;
+      last_due_us_ = std::max(last_due_us_, stimulus.at_us);
+      if (is_early && hand_over_early(stimulus)) continue;
+      if (!hand_over(stimulus))
+        throw Failure(Exit::program,
+                      describe(link::FeedError::in_the_past, image_, stimulus) +
+                          ": the scenario has more readings than the line takes in that time");
+    }
+  }
+
+  // For the time that a person has named, or for now.
+  void feed(const Stimulus& stimulus) {
+    last_due_us_ = std::max(last_due_us_, stimulus.at_us);
+    if (!hand_over(stimulus))
+      throw Failure(Exit::program,
+                    describe(link::FeedError::in_the_past, image_, stimulus) +
+                        ": --at is a time of the program; without it they are for now");
+  }
+
+  void note_late() const {
+    if (late_ == 0) return;
+    std::cerr << fmt::format(
+        "note: {} reading{} of the first moments came a little later than due, as soon as the line "
+        "took {}\n",
+        late_, late_ == 1 ? "" : "s", late_ == 1 ? "it" : "them");
+  }
+
+  // Until the last one is due.
+  milliseconds rest() {
+    if (last_due_us_ == 0) return milliseconds(0);
+    read_clock();
+    return milliseconds(last_due_us_ > program_us_ ? (last_due_us_ - program_us_) / 1000 : 0);
+  }
+
+private:
+  void read_clock() {
+    program_us_ = session_.client.status().program_us;
+    read_at_ = session_.client.now();
+  }
+
+  std::uint64_t program_us() const {
+    const auto passed = session_.client.now() - read_at_;
+    return program_us_ + static_cast<std::uint64_t>(
+                             std::chrono::duration_cast<std::chrono::microseconds>(passed).count());
+  }
+
+  // Always true: whether in its time or not.
+  bool hand_over_early(const Stimulus& stimulus) {
+    if (stimulus.at_us > program_us() && hand_over(stimulus)) return true;
+    if (stimulus.at_us != 0) ++late_;
+    return hand_over({0, stimulus.channel, stimulus.value});
+  }
+
+  // False when its time is over. A full queue empties as time goes on.
+  bool hand_over(const Stimulus& stimulus) {
+    const auto give_up = session_.client.now() + kQueueTimeout;
     const link::Feed feed{
         .channel = stimulus.channel, .at_us = stimulus.at_us, .value = stimulus.value};
-    const link::FeedResult result = session.client.feed(feed);
-    if (result.error == link::FeedError::none) return;
-    if (result.error != link::FeedError::queue_full || session.client.now() >= give_up) {
-      throw Failure(Exit::program, describe(result.error, image, stimulus));
+    while (true) {
+      const link::FeedResult result = session_.client.feed(feed);
+      if (result.error == link::FeedError::none) return true;
+      if (result.error == link::FeedError::in_the_past) return false;
+      if (result.error != link::FeedError::queue_full || session_.client.now() >= give_up)
+        throw Failure(Exit::program, describe(result.error, image_, stimulus));
+      std::this_thread::sleep_for(kQueuePause);
     }
-    std::this_thread::sleep_for(kQueuePause);
   }
-}
 
-std::vector<Stimulus> wanted(const FeedOptions& options, const Program& program) {
-  Scenario scenario;
-  if (!options.scenario.empty()) scenario = read_scenario(options.scenario, program);
-  show_notes(scenario);
-  std::vector<Stimulus> stimuli = std::move(scenario.stimuli);
+  Session& session_;
+  const vm::Image& image_;
+  std::uint64_t program_us_ = 0, last_due_us_ = 0;
+  Transport::Clock::time_point read_at_;
+  std::size_t late_ = 0;
+};
+
+struct Wanted {
+  std::vector<Stimulus> scenario, readings;
+};
+
+Wanted wanted(const FeedOptions& options, const Program& program) {
+  Wanted wanted;
+  if (!options.scenario.empty()) {
+    Scenario scenario = read_scenario(options.scenario, program);
+    show_notes(scenario);
+    wanted.scenario = std::move(scenario.stimuli);
+  }
   const auto at_us =
       static_cast<std::uint64_t>(options.at.value_or(milliseconds(0)).count()) * 1000;
   for (const std::string& text : options.readings)
-    stimuli.push_back(parse_stimulus(text, at_us, program.image()));
-  return stimuli;
+    wanted.readings.push_back(parse_stimulus(text, at_us, program.image()));
+  return wanted;
+}
+
+// To a program that begins, by its own time; to one that runs already, from now on.
+std::uint64_t begin_of_scenario(const FeedOptions& options, Session& session) {
+  if (!options.upload.empty()) return 0;
+  return session.client.status().program_us / 1000 * 1000 + kLeadUs;
 }
 
 Program running_program(Session& session) {
@@ -116,21 +201,42 @@ Program running_program(Session& session) {
   return {std::move(bytes), "the running program"};
 }
 
-void feed(const FeedOptions& options) {
+// What was uploaded, for those who show what it does.
+class Source final : public Viewer {
+public:
+  explicit Source(const std::optional<Program>& program) : program_(program) {}
+  [[nodiscard]] const Program* uploaded(const link::ProgramHash& hash) const override {
+    return program_ && program_->image().header->program_hash == hash ? &*program_ : nullptr;
+  }
+
+private:
+  const std::optional<Program>& program_;
+};
+
+void check_what_is_asked(const FeedOptions& options) {
   if (options.readings.empty() && options.scenario.empty()) {
     throw Failure(Exit::usage, "name a reading, as in touch.LEVEL=2, or a --scenario");
   }
-  if (!options.record.empty()) {
-    if (!options.watch) throw Failure(Exit::usage, "--record records what --watch TIME shows");
-    check_output(options.record, {options.scenario, options.upload});
-  }
+  if (options.record.empty()) return;
+  if (!options.watch) throw Failure(Exit::usage, "--record records what --watch TIME shows");
+  check_output(options.record, {options.scenario, options.upload});
+}
+
+// What is wrong with a scenario is said before anything is uploaded.
+void feed(const FeedOptions& options) {
+  check_what_is_asked(options);
   std::optional<Program> program;
-  if (!options.upload.empty()) program = load_program(options.upload, options.how);
+  Wanted stimuli;
+  if (!options.upload.empty()) {
+    program = load_program(options.upload, options.how);
+    stimuli = wanted(options, *program);
+  }
   const Place place{options.port, options.key};
   auto session = open_session(place);
   Printer printer(options.format);
   std::optional<LineRecorder> recorder;
-  std::vector<Viewer*> viewers = {&printer};
+  Source source(program);
+  std::vector<Viewer*> viewers = {&source, &printer};
   if (!options.record.empty()) viewers.push_back(&recorder.emplace(options.record));
   std::optional<Watch> watch;
   if (options.watch) watch.emplace(session, place, viewers);
@@ -140,15 +246,19 @@ void feed(const FeedOptions& options) {
     upload_program(*session, *program, how);
   } else {
     program = running_program(*session);
+    stimuli = wanted(options, *program);
   }
-  const vm::Image& image = program->image();
-  const std::vector<Stimulus> stimuli = wanted(options, *program);
-  for (const Stimulus& stimulus : stimuli)
-    send(*session, image, stimulus);
+  Feeder feeder(*session, program->image());
+  if (!stimuli.scenario.empty())
+    feeder.play(stimuli.scenario, begin_of_scenario(options, *session));
+  for (const Stimulus& stimulus : stimuli.readings)
+    feeder.feed(stimulus);
+  feeder.note_late();
+  const std::size_t count = stimuli.scenario.size() + stimuli.readings.size();
   if (watch) {
-    watch->show(options.watch);
+    watch->show(*options.watch + feeder.rest());
   } else if (options.format == Format::human) {
-    std::cout << fmt::format("{} reading{} fed\n", stimuli.size(), stimuli.size() == 1 ? "" : "s");
+    std::cout << fmt::format("{} reading{} fed\n", count, count == 1 ? "" : "s");
   }
 }
 
@@ -161,12 +271,14 @@ void add_feed(Options& options) {
   add_port_option(options, asked->port);
   add_key_option(options, asked->key);
   add_duration_option(options, "--at", asked->at, "program time of the readings; else now");
-  options.option("--scenario", "S.json", asked->scenario, "readings with their times");
+  options.option("--scenario", "S.json", asked->scenario,
+                 "readings with their times: of the program with --upload, else from now");
   options.option("--upload", "FILE", asked->upload,
                  "upload this program (.rsl or .rsb) first; --watch shows all it does");
   options.flag("--fresh", asked->fresh, "with --upload: KEPT numbers begin as the program says");
   add_compile_options(options, asked->how);
-  add_duration_option(options, "--watch", asked->watch, "then show what happens for so long");
+  add_duration_option(options, "--watch", asked->watch,
+                      "show what happens, until so long after the last reading is due");
   options.option("--record", "R.jsonl", asked->record,
                  "with --watch: write it down for rsc replay");
   add_format_option(options, asked->format);

@@ -30,12 +30,15 @@
 #include "rsc/trace/trace_format.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
+#include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/sim/simulator.hpp"
 
 namespace robosync::tool {
 namespace {
 
 constexpr std::uint64_t kDefaultDurationUs = 10'000'000;
+// What the last step has set is there when the next one begins; of that only the KEPT numbers are seen.
+constexpr std::uint64_t kTakesEffectUs = kernel::kTick;
 constexpr std::uint64_t kLongestUnaskedUs = std::uint64_t{3600} * 1'000'000;
 
 struct RunOptions {
@@ -77,16 +80,18 @@ std::vector<std::string> inputs_of(const RunOptions& options, const Program& pro
 // What a run shows while it goes on, and leaves behind.
 class RunOutput {
 public:
-  RunOutput(const RunOptions& options, const Program& program, Kept& kept)
+  RunOutput(const RunOptions& options, const Program& program, Kept& kept, std::uint64_t end_us)
       : options_(options),
         program_(program),
         kept_(kept),
+        end_us_(end_us),
         names_{&program.image(), {}, &program.origin()},
         digest_(program.image()),
         timeline_(program, names_) {}
 
   void see(const link::Event& event) {
     kept_.see(event);
+    if (event.time_us > end_us_) return;
     const std::string json = trace_json(event, names_) + "\n";
     if (!options_.trace.empty() || !options_.record.empty()) trace_ += json;
     if (!options_.html.empty()) timeline_.see(event);
@@ -97,7 +102,7 @@ public:
   }
 
   // `image`: that ran.
-  void write(std::uint64_t end_us, std::span<const std::byte> image) {
+  void write(std::span<const std::byte> image) {
     kept_.write();
     if (!options_.record.empty()) {
       const std::string recording = image_line(image) + trace_;
@@ -106,7 +111,7 @@ public:
     if (!options_.trace.empty()) write_output(options_.trace, std::as_bytes(std::span(trace_)));
     if (options_.html.empty()) return;
     const std::string page =
-        timeline_page(options_.file, timeline_.finish(end_us), program_.source());
+        timeline_page(options_.file, timeline_.finish(end_us_), program_.source());
     write_output(options_.html, std::as_bytes(std::span(page)));
   }
 
@@ -114,6 +119,7 @@ private:
   const RunOptions& options_;
   const Program& program_;
   Kept& kept_;
+  std::uint64_t end_us_;
   TraceNames names_;
   Digest digest_;
   std::string trace_;
@@ -131,7 +137,8 @@ void run(const RunOptions& options) {
 
   std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
   kept.put_into(uploaded);
-  RunOutput output(options, program, kept);
+  const std::uint64_t end_us = duration_us(options, scenario);
+  RunOutput output(options, program, kept, end_us);
   const auto see = [&](const link::Event& event) { output.see(event); };
   sim::Simulator simulator(uploaded, see, program.board(), options.how.seed);
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
@@ -141,10 +148,9 @@ void run(const RunOptions& options) {
   }
   for (const Stimulus& stimulus : scenario.stimuli)
     simulator.feed(stimulus.at_us, stimulus.channel, stimulus.value);
-  const std::uint64_t end_us = duration_us(options, scenario);
   note_what_is_late(options, scenario, end_us);
-  simulator.run_until(end_us);
-  output.write(end_us, uploaded);
+  simulator.run_until(end_us + kTakesEffectUs);
+  output.write(uploaded);
 }
 
 // False: somebody has ended it. A run that lasts is ended by the same signals, as rsc run is without --watch.

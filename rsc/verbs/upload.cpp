@@ -35,7 +35,7 @@ void report(const SendOptions& options, const Uploaded& uploaded, const Program&
       "runs since {:.3f} s after start-up\n",
       options.file, result.bytes, ms_of(result), result.bytes_sent, wire_ms_of(result),
       hash_of(program), static_cast<double>(result.activation.uptime_us) / 1e6);
-  std::cout << keeping_text(uploaded.kept) << '\n';
+  std::cout << keeping_text(uploaded.kept, program.image().header->program_hash) << '\n';
   for (const OnBus& device : uploaded.silent)
     std::cerr << "warning: " << silent_text(device) << '\n';
 }

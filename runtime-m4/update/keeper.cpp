@@ -23,6 +23,7 @@ Keeper::Program Keeper::running_program() const {
 
 void Keeper::activated(const link::Activate& how) {
   running_ = running_program();
+  if (given_up_ == running_.hash) given_up_ = {};  // it has begun again, and may stand it now
   failed_ = false;
   trial_ends_ = kernel_.now() + (how.trial_ms != 0 ? kernel::milliseconds(how.trial_ms) : kTrial);
   goes_back_ = how.goes_back != 0;
@@ -261,6 +262,7 @@ void Keeper::fill(link::Kept& answer) const {
     answer.state = Keeping::failed;
   } else {
     answer.state = Keeping::on_trial;
+    answer.goes_back = static_cast<std::uint8_t>(goes_back_);
     answer.trial_ms =
         trial_ends_ <= now ? 0 : static_cast<std::uint32_t>((trial_ends_ - now) / 1000);
   }

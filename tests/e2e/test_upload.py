@@ -51,6 +51,14 @@ class Upload(RobotTest):
         said = self.upload(PROGRAMS / "paper.rsl", "--config", self.for_board(CONFIG))
         self.assertRegex(said, r"bytes in [\d.]+ ms")
 
+    def test_what_was_uploaded_from_its_source_is_shown_in_its_units(self):
+        program, config = self.folder / "near.rsl", self.for_board(CONFIG)
+        program.write_text("WHEN proximity DISTANCE < 30cm\nDO MOVE left_arm TO 40deg\nEND\n")
+        said = rsc.run("feed", "proximity.DISTANCE=25cm", "--upload", program, "--config", config, "--watch", "1s", "--port",
+                       self.board.port)
+        self.assertIn("proximity DISTANCE = 25cm", said)
+        self.assertIn("left_arm MOVE TO 40deg", said)
+
     def test_two_robots_at_once_and_one_that_is_not_there(self):
         image = self.compile(PROGRAMS / "priorities.rsl")
         absent = f"unix:{self.folder}/nobody"

@@ -206,6 +206,44 @@ TEST_CASE("a robot on a broker: what it does is published, and it is fed, stoppe
   CHECK(late.wait_for("robosync/pet/online", "false"));
 }
 
+TEST_CASE("a broker knows which program runs, and has nothing of one that ran before") {
+  Broker broker;
+  Subscriber subscriber(broker);
+  const Device device;
+  const auto hash = [&] {
+    return json::parse(device.run({"info", "--format", "json"}).out)
+        .at("board")
+        .at("program")
+        .at("hash")
+        .get<std::string>();
+  };
+  REQUIRE(device.run({"upload", device.program}).exit == 0);
+  // A bridge was here before, with another program.
+  for (const char* const topic :
+       {"safety/line 12", "behaviors/beta", "sensors/gone/LEVEL", "program", "mine"})
+    subscriber.publish(std::string("robosync/pet/") + topic, "old", true);
+  REQUIRE(subscriber.wait_for("robosync/pet/mine", "old"));
+  const std::string first = hash();
+  {
+    const RunningBridge bridge(device, broker, "pet", "2s");
+    CHECK(subscriber.wait_for("robosync/pet/program", first));
+  }
+  const std::string other =
+      device.write("other.rsl", "WHEN touch LEVEL > 8 DO\n  MOVE left_arm TO 1deg\nEND\n");
+  REQUIRE(device.run({"upload", other, "--config", device.path("robot.json")}).exit == 0);
+  const std::string second = hash();
+  CHECK(first != second);
+  RunningBridge bridge(device, broker, "pet", "3s");
+  CHECK(subscriber.wait_for("robosync/pet/program", second));
+  Subscriber late(broker);
+  CHECK(late.wait_for("robosync/pet/program", second));
+  CHECK(late.wait_for("robosync/pet/mine", "old"));
+  for (const char* const topic : {"safety/line 12", "behaviors/beta", "sensors/gone/LEVEL"})
+    CHECK_FALSE(late.has(std::string("robosync/pet/") + topic));
+  bridge.join();
+  CHECK(bridge.outcome.exit == 0);
+}
+
 TEST_CASE("a fleet of robots on one broker") {
   Broker broker;
   Subscriber subscriber(broker);

@@ -197,6 +197,12 @@ TEST_CASE("TESTs and scenarios feed a companion's channels as any sensor's") {
   CHECK(run.exit == 0);
   CHECK_THAT(run.out, Contains("heard well"));
   CHECK_THAT(run.out, !Contains("heard hello"));
+  folder.write("s.json", R"({"stimuli": [
+    {"from": "1s", "to": "2s", "sensor": "voice", "ramp": ["silence", "very_well"]}]})");
+  const Outcome ramp = test::rsc({"run", program, "--scenario", scenario});
+  CHECK(ramp.exit == 1);
+  CHECK_THAT(ramp.err, Contains("s.json:2: WORD has words, and there is nothing between two words: "
+                                "write a stimulus with `at` and `value` for each"));
 }
 
 // ---- what is said

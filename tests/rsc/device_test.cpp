@@ -73,6 +73,61 @@ TEST_CASE("upload, info, feed and monitor against a running robot") {
   CHECK(outcome.exit == 0);
 }
 
+namespace {
+
+// The readings of touch that a watch has shown, thousandths.
+std::vector<double> touches(const std::string& out) {
+  std::vector<double> values;
+  std::istringstream lines(out);
+  for (std::string line; std::getline(lines, line);)
+    if (const json event = json::parse(line);
+        event.at("event") == "input" && event.at("sensor") == "touch")
+      values.push_back(event.at("value"));
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("a scenario for a program that runs already counts from now") {
+  const Device device;
+  REQUIRE(device.run({"upload", device.program}).exit == 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  const std::string scenario = device.write("visit.json", R"({"stimuli": [
+    {"at": "0s", "sensor": "touch", "value": 1}, {"at": "5ms", "sensor": "touch", "value": 2},
+    {"at": "300ms", "sensor": "touch", "value": 3}]})");
+  Outcome outcome =
+      device.run({"feed", "--scenario", scenario, "--watch", "200ms", "--format", "json"});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK(touches(outcome.out) == std::vector<double>{1, 2, 3});
+  CHECK(device.run({"feed", "--scenario", scenario}).exit == 0);
+  outcome = device.run({"feed", "touch.LEVEL=2", "--at", "10ms"});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("the program is already past 10 ms: --at is a time of the "
+                                   "program; without it they are for now"));
+}
+
+TEST_CASE("a scenario that is fed with the program may begin with it") {
+  const Device device;
+  const std::string scenario = device.write("visit.json", R"({"stimuli": [
+    {"at": "0s", "sensor": "touch", "value": 1}, {"at": "1ms", "sensor": "touch", "value": 2},
+    {"at": "2ms", "sensor": "touch", "value": 3}, {"at": "3ms", "sensor": "touch", "value": 4},
+    {"at": "900ms", "sensor": "touch", "value": 5}]})");
+  // The watch goes on until the last one is due, and then so long.
+  Outcome outcome = device.run({"feed", "--upload", device.program, "--scenario", scenario,
+                                "--watch", "200ms", "--format", "json"});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK(touches(outcome.out) == std::vector<double>{1, 2, 3, 4, 5});
+  CHECK_THAT(outcome.err, Contains("of the first moments came a little later than due"));
+  // Nothing is uploaded for one that is wrong.
+  device.write("visit.json", R"({"stimuli": [{"at": "0s", "sensor": "touch", "value": "x"}]})");
+  const json before = json::parse(device.run({"info", "--format", "json"}).out);
+  CHECK(device.run({"feed", "--upload", device.program, "--scenario", scenario}).exit == 1);
+  const json after = json::parse(device.run({"info", "--format", "json"}).out);
+  CHECK(before.at("status").at("activations") == after.at("status").at("activations"));
+}
+
 TEST_CASE("a sensor whose bus is held down is told at the upload, by info and by monitor") {
   const Device device;
   device.write("robot.json", R"({

@@ -58,6 +58,17 @@ TEST_CASE("KEPT numbers go on in the next run, and other ones begin anew") {
   }
 }
 
+TEST_CASE("what the last moment of a run has set is kept, and no more than that") {
+  const Visit robot;
+  for (const char* const length : {"1s", "1001ms"}) {
+    const Outcome run = robot.run(robot.program, {"--duration", length, "--fresh", "--all"});
+    CHECK((run.out.find("visits becomes 1") != std::string::npos) == (length[1] == '0'));
+    CHECK(robot.kept() == json({{"visits", "1"}, {"nearest", "35.5cm"}}));
+  }
+  CHECK(robot.run(robot.program, {"--duration", "999ms", "--fresh"}).exit == 0);
+  CHECK(robot.kept() == json({{"visits", "0"}, {"nearest", "400cm"}}));
+}
+
 // The optimiser must not take what is written for what the number is.
 TEST_CASE("a KEPT number that nothing sets is what the file says") {
   const Visit robot;

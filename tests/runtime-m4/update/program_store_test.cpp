@@ -295,6 +295,67 @@ TEST_CASE("the host says how long a trial is, and may only try a program") {
   CHECK(started(memory) == name_of(next));
 }
 
+TEST_CASE(
+    "a program that has failed a trial may stand the next one, and is not blamed for the first") {
+  MemoryStore memory(kStoreBytes);
+  const tool::Program good = test::program(3), bad = test::program(5);
+  keep(memory, good);
+  Robot robot(boards::kMemory, &memory);
+  robot.run(kMostMs);
+  run_on(robot, bad);
+  robot.server.report({});
+  robot.run(kMostMs);
+  tool::Client client(robot);
+  CHECK(tool::has_failed_trial(client.kept(), name_of(bad)));
+  CHECK(tool::keeping_text(client.kept(), name_of(bad)) ==
+        "not kept: it has not stood its trial; the program kept before runs again");
+  run_on(robot, bad);
+  CHECK(client.kept().given_up_hash == link::ProgramHash{});
+  CHECK_FALSE(tool::has_failed_trial(client.kept(), name_of(bad)));
+  robot.run(kTrialMs + 1000);
+  CHECK_FALSE(tool::has_failed_trial(client.kept(), name_of(bad)));
+  CHECK(tool::keeping_text(client.kept(), name_of(bad)) ==
+        "kept: the robot starts with it after a reset");
+}
+
+// An older board remembers it until its next start.
+TEST_CASE("a program that runs has not failed, whatever the board remembers of it") {
+  const link::ProgramHash it{1}, other{2};
+  const auto fails = [&](Keeping state, const link::ProgramHash& kept) {
+    link::Kept answer{};
+    answer.kept_hash = kept;
+    answer.given_up_hash = it;
+    answer.state = state;
+    return tool::has_failed_trial(answer, it);
+  };
+  CHECK_FALSE(fails(Keeping::kept, it));
+  CHECK_FALSE(fails(Keeping::on_trial, other));
+  CHECK(fails(Keeping::kept, other));
+  CHECK(fails(Keeping::failed, {}));
+  CHECK(fails(Keeping::no_store, {}));
+}
+
+TEST_CASE("of a program that is only tried nobody says that it is kept") {
+  const tool::Program kept = test::program(3), next = test::program(5);
+  MemoryStore memory(kStoreBytes);
+  keep(memory, kept);
+  Robot robot(boards::kMemory, &memory);
+  robot.run(kMostMs);
+  tool::Client client(robot);
+  tool::UploadOptions options;
+  options.trial = std::chrono::milliseconds(2000);
+  options.confirm = false;
+  REQUIRE(tool::upload(client, client.hello(), next.bytes(), options).activation.running == 1);
+  const std::string meanwhile = tool::keeping_text(client.kept(), name_of(next));
+  CHECK(meanwhile.starts_with("only tried: in "));
+  CHECK(meanwhile.ends_with(" s the kept program comes back"));
+  CHECK(tool::keeping_text(client.kept()) == meanwhile);
+  robot.run(2500);
+  CHECK(tool::keeping_text(client.kept(), name_of(next)) ==
+        "not kept: its trial is over; the program kept before runs again");
+  CHECK(tool::keeping_text(client.kept()) == "kept: the robot starts with it after a reset");
+}
+
 TEST_CASE("a fault after its trial, or without a program to go back to, changes no program") {
   MemoryStore memory(kStoreBytes);
   Robot robot(boards::kMemory, &memory);
