@@ -122,6 +122,7 @@ std::string EventReader::place_of(std::size_t rule) const {
 
 // A rule outside a BEHAVIOR is a behaviour without a name; its line says which one it is.
 std::string EventReader::behavior_name(std::uint16_t index) const {
+  if (index == link::kStop) return "a person's stop";
   const vm::Behavior* const behavior = at(&vm::Image::behaviors, index);
   if (behavior == nullptr) return fmt::format("behaviour {}", index);
   if (behavior->priority == vm::kSafetyPriority) return "safety";

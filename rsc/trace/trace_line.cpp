@@ -47,6 +47,7 @@ std::string interrupt_words(const EventReader& reader) {
 
 // Of a behaviour of its own, it is in its own way.
 std::string denial_words(const EventReader& reader) {
+  if (reader.event().object == link::kStop) return "the robot is stopped";
   if (!reader.interrupts_itself())
     return fmt::format("{} has an actuator it needs", reader.behavior_name(reader.event().object));
   return reader.is_only_rule() ? "it is still running"
