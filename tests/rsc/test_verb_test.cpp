@@ -418,3 +418,36 @@ TEST_CASE("explain: a program, a code, a wrong program, a code that does not exi
   CHECK(outcome.exit == 2);
   CHECK_THAT(outcome.err, Contains("there is no diagnostic E0300"));
 }
+
+// Half a degree or a radian further on would be another whole number.
+TEST_CASE("ROUND makes whole what robot.json measures in F and rad, at every level of optimising") {
+  const Folder folder;
+  folder.write("robot.json", R"({"sensors": [{"name": "temp", "type": "VIRTUAL", "channels": {
+      "T": {"unit": "F", "range": [-40, 200]}, "A": {"unit": "rad", "range": [-7, 7]}}}],
+      "actuators": [{"name": "arm", "type": "VIRTUAL"}]})");
+  const std::string program =
+      folder.write("robot.rsl",
+                   "WHEN temp T < 0F\nDO LOG \"at\", ROUND(temp T)\nEND\n"
+                   "WHEN temp T > 0F\nDO LOG \"at\", ROUND(temp T), ROUND(temp A)\nEND\n"
+                   "WHEN ROUND(temp T) = 99F AND ROUND(temp A) = 2rad\nDO LOG \"yes\"\nEND\n");
+  for (const char* const level : {"-O0", "-O1"}) {
+    const auto logged = [&](const std::string& degrees, const std::string& angle) {
+      const std::string visit = folder.write("visit.json", R"({"duration": "2s", "stimuli": [
+        {"at": "1s", "sensor": "temp", "channel": "A", "value": ")" +
+                                                               angle + R"("},
+        {"at": "1s", "sensor": "temp", "channel": "T", "value": ")" +
+                                                               degrees + R"("}]})");
+      const Outcome ran = test::rsc({"run", program, "--scenario", visit, level});
+      CAPTURE(ran.err);
+      CHECK(ran.exit == 0);
+      return ran.out;
+    };
+    CAPTURE(level);
+    const std::string warm = logged("98.6F", "90deg");
+    CHECK_THAT(warm, Contains("log: at 99F 2rad\n") && Contains("log: yes"));
+    CHECK_THAT(logged("98.4F", "-1.6rad"),
+               Contains("log: at 98F -2rad\n") && !Contains("log: yes"));
+    CHECK_THAT(logged("0.6F", "-0.4rad"), Contains("log: at 1F 0rad\n"));
+    CHECK_THAT(logged("-3.5F", "1rad"), Contains("log: at -4F\n"));
+  }
+}
