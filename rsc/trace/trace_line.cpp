@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, EventReader::kParamCount> kParamWords = {
 
 std::string command_words(const EventReader& reader) {
   std::string text = fmt::format("{} {}", reader.actuator_name(), reader.verb_name());
-  if (const std::string word = reader.word_name(); !word.empty()) text += " " + word;
+  if (const auto word = reader.word_name()) text += " " + shown_word(*word);
   reader.for_each_param([&](std::size_t param, vm::Value given) {
     const std::string_view spelling = kParamWords.at(param);
     if (spelling.empty() || reader.is_said(param)) return;  // its word says it

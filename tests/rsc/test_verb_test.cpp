@@ -419,6 +419,32 @@ TEST_CASE("explain: a program, a code, a wrong program, a code that does not exi
   CHECK_THAT(outcome.err, Contains("there is no diagnostic E0300"));
 }
 
+// A condition of an experiment may be silence, beside the texts of a LIST.
+TEST_CASE("an empty text is said in no time, and a TEST tells it from other texts") {
+  const Folder folder;
+  folder.write("robot.json", kRobot);
+  const std::string program = "EVERY 2s DO\n  SAY \"\"\n  SAY \"One two\"\n  SAY \" \"\nEND\n";
+  const Outcome ran = test::rsc({"run", folder.write("robot.rsl", program), "--duration", "3s",
+                                 "--trace", folder.path("t.jsonl")});
+  CAPTURE(ran.out, ran.err);
+  CHECK(ran.exit == 0);
+  CHECK_THAT(ran.out, Contains("2.000 s  sound SAY \"\"\n   2.000 s  sound SAY One two\n") &&
+                          Contains("2.700 s  sound SAY  \n"));
+  CHECK_THAT(folder.read("t.jsonl"), Contains(R"("verb":"SAY","word":"","for":0)") &&
+                                         Contains(R"("word":"One two","for":0.7)"));
+  const auto tested = [&](const std::string& expected) {
+    return test::rsc({"test",
+                      folder.write("t.rsl", program + "TEST \"silence\"\n" + expected + "END\n"),
+                      "--config", folder.path("robot.json")});
+  };
+  CHECK(tested("  EXPECT SAY \"\" WITHIN 2s\n").exit == 0);
+  CHECK(tested("  EXPECT SAY \"\" 1 TIMES WITHIN 2500ms\n").exit == 0);
+  CHECK(tested("  EXPECT SAY 2 TIMES WITHIN 2500ms\n").exit != 0);
+  const Outcome failed = tested("  EXPECT SAY \"Two\" WITHIN 2s\n");
+  CHECK(failed.exit == 1);
+  CHECK_THAT(failed.out, Contains("SAY at 2.000 s: \"\"; expected Two"));
+}
+
 // Half a degree or a radian further on would be another whole number.
 TEST_CASE("ROUND makes whole what robot.json measures in F and rad, at every level of optimising") {
   const Folder folder;
