@@ -11,6 +11,15 @@ namespace robosync::layers {
 
 using link::EventKind;
 
+namespace {
+
+// Written by one thread at a time, and read by others at any time.
+void change(std::atomic<ActuatorMask>& mask, ActuatorMask more, ActuatorMask less) {
+  mask.store((mask.load(std::memory_order_relaxed) | more) & ~less, std::memory_order_relaxed);
+}
+
+}  // namespace
+
 bool ControlLayer::start(const LoadedProgram& program, Memory& memory, ProgramThreads& threads) {
   staged_ = 0;
   to_commit_ = 0;
@@ -226,26 +235,26 @@ ActuatorMask ControlLayer::all() const {
 void ControlLayer::halt(ActuatorMask actuators) {
   const ActuatorMask fresh = actuators & all() & ~halted();
   by_rules_ |= actuators & all();
-  by_person_ = by_person_ & ~fresh;
+  change(by_person_, 0, fresh);
   hold_back(fresh);
 }
 
 void ControlLayer::let_go(ActuatorMask actuators) {
   by_rules_ &= ~actuators;
   if (!stopped_) return set_free(actuators & halted());
-  by_person_ = by_person_ | (actuators & halted());
+  change(by_person_, actuators & halted(), 0);
 }
 
 void ControlLayer::stop() {
   stopped_ = true;
   if (program_ == nullptr) return outputs_.halt(~ActuatorMask{0});
-  by_person_ = by_person_ | (all() & ~halted());
+  change(by_person_, all() & ~halted(), 0);
   hold_back(all() & ~halted());
 }
 
 void ControlLayer::resume() {
   stopped_ = false;
-  by_person_ = by_person_ & ~by_rules_;
+  change(by_person_, 0, by_rules_);
   if (program_ != nullptr) set_free(halted() & ~by_rules_);
 }
 
