@@ -18,6 +18,9 @@ enum class EventKind : std::uint8_t {
 
 inline constexpr std::size_t kMaxEventValues = 10;
 
+// The object of lose and interrupt in the place of a behaviour: a person has stopped the robot.
+inline constexpr std::uint16_t kStop = 0xFFFF;
+
 // Of `values` the first value_count are there; the others are undefined, since the board makes
 // events in a hurry. For `command`: [0] the word or -1, [1] the mask of given parameters, then their
 // values in order.

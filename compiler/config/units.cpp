@@ -197,10 +197,26 @@ std::optional<vm::Value> to_value(Decimal number, const Unit& unit) {
   return static_cast<vm::Value>(value);
 }
 
+namespace {
+
+// Values are coarser than thousandths of F: of those that mean the same value, the one with the fewest decimals.
+std::int64_t shortest(std::int64_t thousandths, std::int64_t value, const Unit& unit) {
+  constexpr unsigned kDecimals = 3;
+  for (unsigned decimals = 0; decimals < kDecimals; ++decimals) {
+    const Wide power = power_of_ten(kDecimals - decimals);
+    const auto shorter = static_cast<std::int64_t>(divide_half_away(Wide{thousandths}, power));
+    if (to_value({shorter, decimals}, unit) == value)
+      return shorter * static_cast<std::int64_t>(power);
+  }
+  return thousandths;
+}
+
+}  // namespace
+
 std::string format_value(std::int64_t value, const Unit& unit) {
   const Wide scaled =
       divide_half_away((Wide{value} * unit.divisor - unit.offset) * 1000, Wide{unit.factor});
-  const auto thousandths = static_cast<std::int64_t>(scaled);
+  const std::int64_t thousandths = shortest(static_cast<std::int64_t>(scaled), value, unit);
   std::string text = thousandths < 0 ? "-" : "";
   const std::int64_t magnitude = std::abs(thousandths);
   text += std::to_string(magnitude / 1000);

@@ -41,7 +41,7 @@ struct Decimal {
 // Is it written finer than a value on the robot? Only where it could be written so that it is not: never in rad or F.
 [[nodiscard]] bool is_rounded(Decimal number, const Unit& unit);
 
-// The value in `unit`, with as few decimals as say it to a thousandth: "2.5cm".
+// The value in `unit`, with as few decimals as say it to a thousandth, or say it at all (F): "2.5cm", "-3F".
 [[nodiscard]] std::string format_value(std::int64_t value, const Unit& unit);
 
 // The decimal number as it would be written: "-0.5".

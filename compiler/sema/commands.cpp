@@ -366,7 +366,7 @@ vm::Value words_of(std::string_view text) {
   for (std::size_t at = text.find_first_not_of(kBlanks);
        at != std::string_view::npos && words < kMost; ++words)
     at = text.find_first_not_of(kBlanks, text.find_first_of(kBlanks, at));
-  return static_cast<vm::Value>(std::max<std::size_t>(words, 1));
+  return static_cast<vm::Value>(words);
 }
 
 // Is a number that is known now one that the actuator can do?

@@ -20,13 +20,30 @@ constexpr std::array kOperations = {
 };
 constexpr unsigned kDecimals = 3;  // of what is worked out here
 
-// What ROUND makes whole: the unit that its number is declared in. Those whose scale begins
-// elsewhere, or is no whole number of thousandths, are rounded in the dimension's own unit.
-vm::Value step_of(const Typed& number) {
-  const Unit& own = canonical_unit(number.dimension());
-  const bool plain =
-      number.unit != nullptr && number.unit->offset == 0 && number.unit->divisor == 1;
-  return static_cast<vm::Value>(plain ? number.unit->factor : own.factor);
+// What ROUND makes whole: the unit that its number is declared in.
+const Unit& unit_of(const Typed& number) {
+  return number.unit != nullptr ? *number.unit : canonical_unit(number.dimension());
+}
+
+// One of these units; of those that are no whole number of thousandths (rad), the nearest.
+vm::Value step_of(const Unit& unit) {
+  return static_cast<vm::Value>((unit.factor + unit.divisor / 2) / unit.divisor);
+}
+
+// Where the unit's scale begins elsewhere (F), its whole numbers are multiples of nothing: they are on the
+// scale of units.def before its division, from which the number comes back.
+Expression rounded(Expression number, const Unit& unit) {
+  if (unit.offset == 0)
+    return make_binary(Operation::round, std::move(number), make_constant_code(step_of(unit)));
+  const auto constant = [](std::int64_t value) {
+    return make_constant_code(static_cast<vm::Value>(value));
+  };
+  const Expression divisor = constant(unit.divisor * vm::kScale), offset = constant(unit.offset);
+  Expression scaled = make_binary(Operation::multiply, std::move(number), divisor);
+  scaled = make_binary(Operation::subtract, std::move(scaled), offset);
+  scaled = make_binary(Operation::round, std::move(scaled), constant(unit.factor));
+  scaled = make_binary(Operation::add, std::move(scaled), offset);
+  return make_binary(Operation::divide, std::move(scaled), divisor);
 }
 
 void become_constant(Typed& number, vm::Value value) {
@@ -73,7 +90,8 @@ Typed Expressions::of(const ast::Function& node, Span span) {
 Typed Expressions::of_one(Operation operation, const ast::Function& node, Span span) {
   Typed inner = number(*node.first);
   if (!inner.is_number() || report_offset_unit(inner, diagnostics_)) return make_nothing(span);
-  const vm::Value step = step_of(inner);
+  const Unit& unit = unit_of(inner);
+  const vm::Value step = step_of(unit);
   inner.span = span;
   const bool rounds = operation == Operation::round;
   if (inner.is_constant()) {
@@ -82,7 +100,7 @@ Typed Expressions::of_one(Operation operation, const ast::Function& node, Span s
     return inner;
   }
   if (rounds) {
-    inner.code = make_binary(operation, std::move(inner.code), make_constant_code(step));
+    inner.code = rounded(std::move(inner.code), unit);
     inner.low -= step;
     inner.high += step;
     return inner;

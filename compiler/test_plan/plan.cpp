@@ -232,7 +232,7 @@ private:
       ExpectedCommand expected{node.no,
                                actuator_names(command.actuators),
                                command.verb.name,
-                               command.word ? command.word->name : std::string(),
+                               command.word ? std::optional(command.word->name) : std::nullopt,
                                std::move(command.arguments),
                                times};
       const bool one_moment = std::ranges::none_of(

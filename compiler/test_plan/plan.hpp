@@ -34,7 +34,7 @@ struct ExpectedCommand {
   bool no = false;
   std::vector<std::string> actuators;  // every one of them; of NO, none
   std::string verb;
-  std::string word;                     // empty: any
+  std::optional<std::string> word;      // nothing: any
   std::vector<ir::Argument> arguments;  // only those that are written are compared
   std::optional<std::uint32_t> times;   // exactly so often; else once or more
 };

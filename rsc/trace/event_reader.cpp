@@ -37,6 +37,10 @@ std::string filled_in(std::string_view text, std::span<const vm::Value> values) 
 
 }  // namespace
 
+std::string shown_word(std::string_view word) {
+  return word.empty() ? "\"\"" : std::string(word);
+}
+
 vm::Dimension dimension_of_param(std::size_t param) {
   const bool is_time = param == static_cast<std::size_t>(vm::Param::over) ||
                        param == static_cast<std::size_t>(vm::Param::for_);
@@ -122,6 +126,7 @@ std::string EventReader::place_of(std::size_t rule) const {
 
 // A rule outside a BEHAVIOR is a behaviour without a name; its line says which one it is.
 std::string EventReader::behavior_name(std::uint16_t index) const {
+  if (index == link::kStop) return "a person's stop";
   const vm::Behavior* const behavior = at(&vm::Image::behaviors, index);
   if (behavior == nullptr) return fmt::format("behaviour {}", index);
   if (behavior->priority == vm::kSafetyPriority) return "safety";
@@ -168,22 +173,27 @@ std::string EventReader::actuator_name() const {
 std::string EventReader::verb_name() const {
   return name_at(&vm::Image::verbs, event_.object, "verb");
 }
-std::string EventReader::written_word() const {
+// What is said may be an empty text.
+std::optional<std::string> EventReader::written_word() const {
   const vm::Value word = value(0);
-  if (word < 0) return {};
-  return name_at(&vm::Image::words, static_cast<std::size_t>(word), "word");
+  if (word < 0) return std::nullopt;
+  const auto* const record = at(&vm::Image::words, static_cast<std::size_t>(word));
+  if (record == nullptr) return fmt::format("word {}", word);
+  return std::string(names_.image->string(record->name));
 }
 bool EventReader::is_said(std::size_t param) const {
   return std::ranges::find(vm::kTextParams, static_cast<vm::Param>(param)) !=
              vm::kTextParams.end() &&
-         compiler::find_place(written_word()).has_value();
+         compiler::find_place(written_word().value_or("")).has_value();
 }
-std::string EventReader::word_name() const {
+std::optional<std::string> EventReader::word_name() const {
+  const std::optional<std::string> written = written_word();
+  if (!written) return std::nullopt;
   std::vector<vm::Value> values;
   for_each_param([&](std::size_t param, vm::Value given) {
     if (is_said(param)) values.push_back(given);
   });
-  return filled_in(written_word(), values);
+  return filled_in(*written, values);
 }
 bool EventReader::is_carried_out() const {
   bool known = event_.kind == link::EventKind::command;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -75,9 +76,9 @@ public:
   bool is_timer() const;
   std::string actuator_name() const;
   std::string verb_name() const;
-  // Of a command; empty without one. `word_name` has the values in the {} places of what is said.
-  std::string word_name() const;
-  std::string written_word() const;
+  // Of a command; nothing without one. `word_name` has the values in the {} places of what is said.
+  std::optional<std::string> word_name() const;
+  std::optional<std::string> written_word() const;
   // Is the parameter of a command a value for such a place?
   bool is_said(std::size_t param) const;
   std::string thread_name() const;
@@ -127,6 +128,9 @@ private:
   const TraceNames& names_;
   const EventShape& shape_;
 };
+
+// Of a command, as lines have it: "Hello", or "" in its quotes.
+[[nodiscard]] std::string shown_word(std::string_view word);
 
 // OVER and FOR are times; the other parameters have the unit of their actuator, which no image has.
 [[nodiscard]] vm::Dimension dimension_of_param(std::size_t param);

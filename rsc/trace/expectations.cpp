@@ -167,9 +167,10 @@ private:
     if (found == nullptr) found = find(similar, 0, UINT64_MAX);
     if (found == nullptr) return {};
     const std::string time = seconds_text(found->time_us);
-    const std::string word = EventReader(*found, names_).word_name();
-    if (!expected.word.empty() && !compiler::ascii::same(word, expected.word))
-      return fmt::format("; {} at {}: {}; expected {}", expected.verb, time, word, expected.word);
+    const EventReader reader(*found, names_);
+    if (!is_word(reader, expected))
+      return fmt::format("; {} at {}: {}; expected {}", expected.verb, time,
+                         shown_word(reader.word_name().value_or("")), shown_word(*expected.word));
     return fmt::format("; at {} it was {}", time, trace_words(*found, names_));
   }
 
@@ -193,12 +194,15 @@ private:
                        EventReader(*found, names_).text(), expected.text);
   }
 
+  static bool is_word(const EventReader& reader, const ExpectedCommand& expected) {
+    return !expected.word || compiler::ascii::same(reader.word_name().value_or(""), *expected.word);
+  }
+
   bool is_command(const link::Event& event, const Playback& playback, const std::string& actuator,
                   const ExpectedCommand& expected) const {
     const EventReader reader(event, names_);
     if (!reader.is_carried_out() || reader.actuator_name() != actuator ||
-        !compiler::ascii::same(reader.verb_name(), expected.verb) ||
-        (!expected.word.empty() && !compiler::ascii::same(reader.word_name(), expected.word))) {
+        !compiler::ascii::same(reader.verb_name(), expected.verb) || !is_word(reader, expected)) {
       return false;
     }
     return std::ranges::all_of(expected.arguments, [&](const compiler::ir::Argument& argument) {

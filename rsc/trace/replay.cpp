@@ -30,6 +30,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kLongestUs = std::uint64_t{24} * 3600 * 1'000'000;
+// What was recorded later than it is replayed, by more than that, is another thing. A frame of a servo: no movement is shorter.
+constexpr std::uint64_t kMostLateUs = 20'000;
 
 // What is told to the program, and what a board tells of itself.
 bool is_compared(std::string_view kind) {
@@ -207,39 +209,79 @@ void leave_lines_out(Json& event) {
       *name = kByItsLine;
 }
 
-// The numbers of steps are not compared: one in which nothing was new is one that a recording does not tell.
+// The numbers of steps are not compared: one in which nothing was new is one that a recording does not tell. When it was,
+// Comparison looks at.
 bool same(Json a, Json b, Lines lines) {
   for (Json* const event : {&a, &b}) {
     event->erase("step");
+    event->erase("t_us");
     if (lines == Lines::of_another) leave_lines_out(*event);
   }
   return a == b;
 }
 
+// What it is about: an actuator, a variable or a rule, or else the messages.
+Json subject_of(const Json& event) {
+  for (const char* const key : {"actuator", "variable", "rule"})
+    if (const auto found = event.find(key); found != event.end()) return {{key, *found}};
+  return nullptr;
+}
+
 // What happens within a millisecond has no order but that of its causes: of a command that is done and a step that knows of
-// a reading, either may come first. So each millisecond is compared as a whole.
+// a reading, either may come first. So each millisecond is compared as a whole. On a board a thread may have to wait for the
+// processor, here none does: so what was recorded may come a little later than it does here, and behind what a reading has
+// led to meanwhile; but nothing overtakes what came before it of the same thing.
 struct Millisecond {
   std::vector<RecordedEvent> recorded;
   std::vector<Json> replayed;
 };
 
-// The first thing that only one of the two has. `is_last`: the recording may end within it.
-std::optional<Difference> difference_in(Millisecond& both, bool is_last, Lines lines,
-                                        Replayed& result) {
-  for (const auto& [line, event] : both.recorded) {
-    const auto found = std::ranges::find_if(
-        both.replayed,
-        [&event = event, lines](const Json& other) { return same(event, other, lines); });
-    if (found == both.replayed.end())
-      return Difference{line, event.dump(),
-                        both.replayed.empty() ? "" : both.replayed.front().dump()};
-    both.replayed.erase(found);
-    ++result.events;
-    result.commands += kind_of(event) == "command" ? 1 : 0;
+class Comparison {
+public:
+  Comparison(Lines lines, Replayed& result) : lines_(lines), result_(result) {}
+
+  // In the order of time. False: there is a difference.
+  [[nodiscard]] bool see(std::uint64_t at_us, const Millisecond& both) {
+    if (!await(at_us)) return false;
+    open_.insert(open_.end(), both.replayed.begin(), both.replayed.end());
+    return std::ranges::all_of(both.recorded,
+                               [this](const RecordedEvent& one) { return find(one); });
   }
-  if (is_last || both.replayed.empty()) return std::nullopt;
-  return Difference{0, "", both.replayed.front().dump()};
-}
+
+  // At this time nothing is missing that should have been recorded before; what the last milliseconds
+  // have replayed may be recorded still.
+  [[nodiscard]] bool await(std::uint64_t at_us) {
+    if (open_.empty() || time_of(open_.front()) + kMostLateUs >= at_us) return true;
+    result_.difference = Difference{0, "", open_.front().dump()};
+    return false;
+  }
+
+private:
+  [[nodiscard]] bool find(const RecordedEvent& one) {
+    const auto found = std::ranges::find_if(
+        open_, [&](const Json& other) { return same(one.event, other, lines_); });
+    const auto before = std::find_if(open_.begin(), found, [&](const Json& other) {
+      return found == open_.end() ||
+             (time_of(other) < time_of(*found) && subject_of(other) == subject_of(*found));
+    });
+    if (found == open_.end() || before != found) {
+      result_.difference =
+          Difference{one.line, one.event.dump(), before == open_.end() ? "" : before->dump()};
+      return false;
+    }
+    const std::uint64_t late_us = time_of(one.event) - time_of(*found);
+    open_.erase(found);
+    ++result_.events;
+    result_.commands += kind_of(one.event) == "command" ? 1 : 0;
+    result_.late += late_us > 0 ? 1 : 0;
+    result_.latest_us = std::max(result_.latest_us, late_us);
+    return true;
+  }
+
+  Lines lines_;
+  Replayed& result_;
+  std::vector<Json> open_;  // replayed, and not recorded so far
+};
 
 Replayed compare(const std::vector<RecordedEvent>& recorded, const std::vector<Json>& replayed,
                  Lines lines) {
@@ -250,10 +292,10 @@ Replayed compare(const std::vector<RecordedEvent>& recorded, const std::vector<J
     time[time_of(event)].replayed.push_back(event);
   Replayed result;
   result.until_us = time_of(recorded.back().event);
-  for (auto& [at_us, both] : time) {
-    result.difference = difference_in(both, at_us >= result.until_us, lines, result);
-    if (result.difference) break;
-  }
+  Comparison comparison(lines, result);
+  for (const auto& [at_us, both] : time)
+    if (!comparison.see(at_us, both)) return result;
+  (void)comparison.await(result.until_us);
   return result;
 }
 

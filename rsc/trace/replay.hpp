@@ -23,6 +23,8 @@ struct Replayed {
   std::uint64_t until_us = 0;  // program time of the last thing that was recorded
   std::size_t events = 0;      // that were compared, and were the same
   std::size_t commands = 0;    // … of these
+  std::size_t late = 0;  // … of these events: that the board told later than this computer, …
+  std::uint64_t latest_us = 0;  // … at most by so much
   std::optional<Difference> difference;
   // "touch.LEVEL": what a program in place of the recorded one reads and that one did not. Nobody has recorded it, so
   // it was unknown.

@@ -118,7 +118,7 @@ void add_value(Json& object, const EventReader& reader) {
 }
 
 void add_command(Json& object, const EventReader& reader) {
-  if (const std::string word = reader.word_name(); !word.empty()) object["word"] = word;
+  if (const auto word = reader.word_name()) object["word"] = *word;
   reader.for_each_param([&](std::size_t param, vm::Value given) {
     if (reader.is_said(param))
       object["values"].push_back(json_number(given));

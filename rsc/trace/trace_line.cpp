@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, EventReader::kParamCount> kParamWords = {
 
 std::string command_words(const EventReader& reader) {
   std::string text = fmt::format("{} {}", reader.actuator_name(), reader.verb_name());
-  if (const std::string word = reader.word_name(); !word.empty()) text += " " + word;
+  if (const auto word = reader.word_name()) text += " " + shown_word(*word);
   reader.for_each_param([&](std::size_t param, vm::Value given) {
     const std::string_view spelling = kParamWords.at(param);
     if (spelling.empty() || reader.is_said(param)) return;  // its word says it
@@ -47,6 +47,7 @@ std::string interrupt_words(const EventReader& reader) {
 
 // Of a behaviour of its own, it is in its own way.
 std::string denial_words(const EventReader& reader) {
+  if (reader.event().object == link::kStop) return "the robot is stopped";
   if (!reader.interrupts_itself())
     return fmt::format("{} has an actuator it needs", reader.behavior_name(reader.event().object));
   return reader.is_only_rule() ? "it is still running"

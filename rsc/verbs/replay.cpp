@@ -69,6 +69,10 @@ void print_human(const ReplayOptions& options, std::size_t number, const Recorde
                            replayed.events, replayed.commands,
                            replayed.difference ? "then a difference" : "the same as recorded",
                            seconds_text(replayed.until_us));
+  if (replayed.late > 0)
+    std::cout << fmt::format(
+        "  {} of the events were recorded later than they come here, by at most {} ms\n",
+        replayed.late, replayed.latest_us / 1000);
   print_program(options, recorded, image, replayed);
   if (!recorded.gap.empty())
     std::cout << fmt::format("  from there on the recording has a gap: {}\n", recorded.gap);
@@ -87,6 +91,8 @@ Json json_of(const RecordedProgram& recorded, std::span<const std::byte> image,
               {"events", replayed.events},
               {"commands", replayed.commands},
               {"until_us", replayed.until_us},
+              {"late", replayed.late},
+              {"latest_us", replayed.latest_us},
               {"gap", recorded.gap.empty() ? Json(nullptr) : Json(recorded.gap)},
               {"difference", nullptr}};
   const auto parsed = [](const std::string& line) {

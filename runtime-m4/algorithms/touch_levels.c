@@ -16,7 +16,7 @@ enum { TOUCH_NONE, TOUCH_TAP, TOUCH_PAT, TOUCH_STROKE };
 
 typedef struct state {
   uint32_t period_ms;
-  uint32_t touched_ms;  // since the touch began; 0: there is none
+  uint32_t touched_ms;  // since the touch began, at the next sample; 0: there is none
   uint32_t shown_ms;    // since TOUCH became a tap or a pat
   uint8_t band, touch;
   uint8_t was_firm;  // in this touch
@@ -55,8 +55,8 @@ static void go_on(state* self, const int32_t* config) {
   }
   if (self->band == BAND_FIRM) self->was_firm = 1;
   const uint32_t most = UINT32_MAX / 2;
-  if (self->touched_ms < most) self->touched_ms += self->period_ms;
   if (self->touched_ms >= (uint32_t)config[STROKE_TIME]) self->touch = TOUCH_STROKE;
+  if (self->touched_ms < most) self->touched_ms += self->period_ms;
 }
 
 static void end(state* self, const int32_t* config) {

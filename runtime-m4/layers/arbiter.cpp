@@ -29,8 +29,9 @@ bool Arbiter::may_take(const Claim& claim, unsigned from) const {
 }
 
 Decision Arbiter::decide_among_owners(const Claim& claim) const {
+  if ((claim.actuators & halted_) != 0)
+    return {.outcome = Outcome::loses, .owner = Decision::kHalter};
   std::uint8_t owner = kNobody;
-  if ((claim.actuators & halted_) != 0) owner = vm::kSafetyBehavior;
   running_.each([&](unsigned rule) {
     if (rule == claim.rule || (holdings_[rule].actuators & claim.actuators) == 0) return;
     if (!may_take(claim, rule)) owner = std::min(owner, behavior_of_[rule]);

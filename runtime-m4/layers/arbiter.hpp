@@ -11,8 +11,7 @@
 //   does starting again (RESTARTING).
 // * A WHILE that has done a round keeps what it has until its condition ends: it rests, and its next
 //   claim begins another round.
-// * What safety has halted nobody gets; the claim loses to the behaviour that holds the safety
-//   rules.
+// * What is halted nobody gets; the claim loses to no behaviour, but to who has halted it.
 #pragma once
 
 #include <cstdint>
@@ -48,8 +47,11 @@ enum class Outcome : std::uint8_t {
   ignored,  // it runs already: nothing changes
 };
 struct Decision {
+  static constexpr std::uint8_t kHalter = 0xFE;  // who has halted an actuator
+
   Outcome outcome = Outcome::wins;
-  std::uint8_t owner = 0;  // if it does not win: the behaviour in its way, of the highest priority
+  // If it does not win: the behaviour in its way, of the highest priority, or kHalter.
+  std::uint8_t owner = 0;
 
   bool wins() const { return outcome == Outcome::wins; }
 };
@@ -59,8 +61,9 @@ public:
   // behavior_of: by rule.
   void start(std::span<const std::uint8_t> behavior_of, Memory& memory);
 
-  // What safety has halted, from now on.
+  // What is halted, from now on.
   void note_halted(ActuatorMask halted) { halted_ = halted; }
+  ActuatorMask halted() const { return halted_; }
   // The step is over: what was won in it may be lost in the next one.
   void end_step() { won_.clear(); }
 

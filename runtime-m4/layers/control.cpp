@@ -11,6 +11,15 @@ namespace robosync::layers {
 
 using link::EventKind;
 
+namespace {
+
+// Written by one thread at a time, and read by others at any time.
+void change(std::atomic<ActuatorMask>& mask, ActuatorMask more, ActuatorMask less) {
+  mask.store((mask.load(std::memory_order_relaxed) | more) & ~less, std::memory_order_relaxed);
+}
+
+}  // namespace
+
 bool ControlLayer::start(const LoadedProgram& program, Memory& memory, ProgramThreads& threads) {
   staged_ = 0;
   to_commit_ = 0;
@@ -35,6 +44,7 @@ void ControlLayer::take_over(const LoadedProgram& program) {
     by_rules_ = 0;
     newly_halted_ = 0;
     halted_ = stopped_ ? all() : 0;
+    by_person_ = halted();
     outputs_.begin_with(halted());
   }
   outputs_.own(program.image);
@@ -223,24 +233,35 @@ ActuatorMask ControlLayer::all() const {
 }
 
 void ControlLayer::halt(ActuatorMask actuators) {
+  const ActuatorMask fresh = actuators & all() & ~halted();
   by_rules_ |= actuators & all();
-  hold_back(actuators & all() & ~halted());
+  change(by_person_, 0, fresh);
+  hold_back(fresh);
 }
 
 void ControlLayer::let_go(ActuatorMask actuators) {
   by_rules_ &= ~actuators;
-  if (!stopped_) set_free(actuators & halted());
+  if (!stopped_) return set_free(actuators & halted());
+  change(by_person_, actuators & halted(), 0);
 }
 
 void ControlLayer::stop() {
   stopped_ = true;
   if (program_ == nullptr) return outputs_.halt(~ActuatorMask{0});
+  change(by_person_, all() & ~halted(), 0);
   hold_back(all() & ~halted());
 }
 
 void ControlLayer::resume() {
   stopped_ = false;
+  change(by_person_, 0, by_rules_);
   if (program_ != nullptr) set_free(halted() & ~by_rules_);
+}
+
+unsigned ControlLayer::halter_of(ActuatorMask halted) const {
+  const bool by_rules = (halted & ~by_person_.load(std::memory_order_relaxed)) != 0;
+  return by_rules && program_->image.has_safety() ? unsigned{vm::kSafetyBehavior}
+                                                  : unsigned{link::kStop};
 }
 
 // The pins come first. A driver that is at work now sees the mask when it is done (keep_at()).

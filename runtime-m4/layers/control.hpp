@@ -75,6 +75,8 @@ public:
   ActuatorMask take_halted() {
     return newly_halted_.load(std::memory_order_relaxed) == 0 ? 0 : take_newly_halted();
   }
+  // Of some that are halted, or were: kSafetyBehavior, if its rules have halted one of them; otherwise link::kStop.
+  [[gnu::cold]] unsigned halter_of(ActuatorMask halted) const;
   void retire(unsigned actuator);  // its thread was stopped: put it into its safe state
 
   // [safety thread] Those that are halted, or not, already stay as they are.
@@ -171,6 +173,8 @@ private:
   std::atomic<ActuatorMask> newly_halted_ = 0;
   ActuatorMask by_rules_ = 0;  // halted by the program's own rules, or because it hangs
   bool stopped_ = false;       // by a person
+  // Of those that are halted, or were halted last: whom a person keeps stopped, and no rule did before. For the trace.
+  std::atomic<ActuatorMask> by_person_ = 0;
 };
 
 }  // namespace robosync::layers

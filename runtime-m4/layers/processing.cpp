@@ -421,8 +421,8 @@ void ProcessingLayer::interrupt_lost(BehaviorMask lost) {
 
 void ProcessingLayer::interrupt_halted(ActuatorMask halted) {
   layers_.arbiter.running().each([&](unsigned rule) {
-    if ((layers_.arbiter.holding(rule).actuators & halted) != 0)
-      interrupt(rule, vm::kSafetyBehavior);
+    const ActuatorMask lost = layers_.arbiter.holding(rule).actuators & halted;
+    if (lost != 0) interrupt(rule, layers_.control.halter_of(lost));
   });
 }
 
@@ -463,10 +463,16 @@ bool ProcessingLayer::prevails(const Claim& claim, bool silent) {
   const Decision decision = layers_.arbiter.decide(claim);
   interrupt_by(claim, decision);
   if (decision.wins()) return true;
-  if (!silent) report(claim, EventKind::lose, decision.owner);
+  if (!silent) report(claim, EventKind::lose, in_the_way(claim, decision));
   const bool to_itself = decision.outcome == Outcome::ignored;
   layers_.triggers.lost(claim.rule, to_itself, snapshot_.milliseconds());
   return false;
+}
+
+// As the trace says it.
+unsigned ProcessingLayer::in_the_way(const Claim& claim, const Decision& decision) const {
+  if (decision.owner != Decision::kHalter) return decision.owner;
+  return layers_.control.halter_of(claim.actuators & layers_.arbiter.halted());
 }
 
 void ProcessingLayer::interrupt_by(const Claim& claim, const Decision& decision) {

@@ -159,6 +159,7 @@ private:
   void arbitrate(unsigned rule);
   bool serve(const Claim& claim, bool silent);
   [[gnu::noinline]] bool prevails(const Claim& claim, bool silent);
+  [[gnu::cold]] unsigned in_the_way(const Claim& claim, const Decision& decision) const;
   [[gnu::noinline]] void interrupt_by(const Claim& claim, const Decision& decision);
   void interrupt(unsigned rule, unsigned by);
   bool goes_on(unsigned rule) const;

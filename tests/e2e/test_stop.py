@@ -1,5 +1,6 @@
 """rsc stop and rsc resume on the shipped firmware, and images that the board refuses for its pins."""
 
+import json
 import struct
 import sys
 import time
@@ -90,6 +91,14 @@ class Stop(DebuggedTest):
         self.assertFalse(rsc.info(self.board.port)["board"]["stopped"])
         self.feed(5, 20)
         self.await_motor(SEVENTY_PERCENT)
+
+    def test_the_trace_names_the_stop_and_no_behaviour(self):
+        self.say("upload", self.compiled(PROGRAM))
+        self.say("stop")
+        self.feed(5)
+        watched = self.say("feed", "near.X=20", "--watch", "2s", "--format", "json")
+        lost = [event for event in map(json.loads, watched.splitlines()) if event["event"] == "lose"]
+        self.assertEqual([event["by"] for event in lost], ["a person's stop"])
 
     def test_a_motor_that_the_next_program_does_not_have_stands_still(self):
         self.say("upload", self.compiled(PROGRAM))

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "rsc/trace/replay_file.hpp"
@@ -87,9 +88,9 @@ TEST_CASE("replay says where a recording and its replay differ first") {
   CHECK(outcome.exit == 1);
   CHECK_THAT(outcome.out, Contains("recorded") && Contains(R"("event":"fire")"));
 
-  // Times count to the millisecond.
+  // Times count, but for a board that is a little late.
   outcome = robot.replay(robot.with(R"({"t_us":1003000,"step":2,"event":"input")",
-                                    R"({"t_us":1002000,"step":2,"event":"input")"));
+                                    R"({"t_us":982000,"step":2,"event":"input")"));
   CHECK(outcome.exit == 1);
 
   // One that ends too early.
@@ -98,6 +99,47 @@ TEST_CASE("replay says where a recording and its replay differ first") {
   const std::size_t from = text.rfind('\n', fire) + 1, to = text.find('\n', fire) + 1;
   outcome = robot.replay(text.erase(from, to - from));
   CHECK(outcome.exit == 1);
+}
+
+// A recording in which steps without a reading came late, as on a board whose processor had something else to do.
+TEST_CASE("what a board did some milliseconds late is told, and is no difference") {
+  const RobotFolder robot;
+  const std::string program =
+      robot.write("joy.rsl",
+                  "REMEMBER n = 0\nFEELING joy FROM 0% TO 100% START 50%\n  FADES TO 50% OVER 60s\n"
+                  "WHEN touch LEVEL > 2 DO RAISE joy BY 40% END\n"
+                  "EVERY 500ms DO MOVE left_arm TO 90deg OVER 100ms END\n"
+                  "EVERY 505ms DO SET n TO n + 1 END\nEVERY 500ms DO SET n TO n + 2 END\n");
+  const std::string visit = robot.write("visit.json", R"({"duration": "6s", "stimuli": [
+      {"at": "1s", "sensor": "touch", "value": 5}]})");
+  REQUIRE(test::rsc({"run", program, "--config", robot.path("robot.json"), "--scenario", visit,
+                     "--record", robot.path("r.jsonl")})
+              .exit == 0);
+  // All that is told at one time comes at another one.
+  const auto moved = [&](std::uint64_t from_ms, std::uint64_t to_ms) {
+    std::string text = robot.read("r.jsonl");
+    const std::string from = fmt::format(R"({{"t_us":{},)", from_ms * 1000);
+    REQUIRE(text.find(from) != std::string::npos);
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos;)
+      text.replace(at, from.size(), fmt::format(R"({{"t_us":{},)", to_ms * 1000));
+    return robot.write("late.jsonl", text);
+  };
+  Outcome outcome = test::rsc({"replay", moved(2500, 2503)});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("the same as recorded") && Contains("by at most 3 ms"));
+  outcome = test::rsc({"replay", moved(2500, 2520), "--format", "json"});
+  CHECK(outcome.exit == 0);
+  CHECK(json::parse(outcome.out).at("programs").at(0).at("late") > 0);
+  CHECK(json::parse(outcome.out).at("programs").at(0).at("latest_us") == 20'000);
+  CHECK(test::rsc({"replay", moved(2500, 2521)}).exit == 1);
+  CHECK(test::rsc({"replay", moved(2500, 2499)}).exit == 1);  // nobody is early
+  outcome = test::rsc({"replay", robot.path("r.jsonl"), "--format", "json"});
+  CHECK(json::parse(outcome.out).at("programs").at(0).at("late") == 0);
+  // One rule may come behind another one, but of one variable the values keep their order.
+  CHECK(test::rsc({"replay", moved(500, 507)}).exit == 0);
+  CHECK(test::rsc({"replay", moved(501, 505)}).exit == 0);
+  CHECK(test::rsc({"replay", moved(501, 507)}).exit == 1);
 }
 
 TEST_CASE("a trace is replayed with the program that it was made of") {

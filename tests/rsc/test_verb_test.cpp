@@ -418,3 +418,61 @@ TEST_CASE("explain: a program, a code, a wrong program, a code that does not exi
   CHECK(outcome.exit == 2);
   CHECK_THAT(outcome.err, Contains("there is no diagnostic E0300"));
 }
+
+// A condition of an experiment may be silence, beside the texts of a LIST.
+TEST_CASE("an empty text is said in no time, and a TEST tells it from other texts") {
+  const Folder folder;
+  folder.write("robot.json", kRobot);
+  const std::string program = "EVERY 2s DO\n  SAY \"\"\n  SAY \"One two\"\n  SAY \" \"\nEND\n";
+  const Outcome ran = test::rsc({"run", folder.write("robot.rsl", program), "--duration", "3s",
+                                 "--trace", folder.path("t.jsonl")});
+  CAPTURE(ran.out, ran.err);
+  CHECK(ran.exit == 0);
+  CHECK_THAT(ran.out, Contains("2.000 s  sound SAY \"\"\n   2.000 s  sound SAY One two\n") &&
+                          Contains("2.700 s  sound SAY  \n"));
+  CHECK_THAT(folder.read("t.jsonl"),
+             Contains(R"("verb":"SAY","word":""})") && Contains(R"("word":"One two"})"));
+  const auto tested = [&](const std::string& expected) {
+    return test::rsc({"test",
+                      folder.write("t.rsl", program + "TEST \"silence\"\n" + expected + "END\n"),
+                      "--config", folder.path("robot.json")});
+  };
+  CHECK(tested("  EXPECT SAY \"\" WITHIN 2s\n").exit == 0);
+  CHECK(tested("  EXPECT NO SAY \"\" WITHIN 2s\n").exit == 1);
+  const Outcome failed = tested("  EXPECT SAY \"Two\" WITHIN 2s\n");
+  CHECK(failed.exit == 1);
+  CHECK_THAT(failed.out, Contains("SAY at 2.000 s: \"\"; expected Two"));
+}
+
+// Half a degree or a radian further on would be another whole number.
+TEST_CASE("ROUND makes whole what robot.json measures in F and rad, at every level of optimising") {
+  const Folder folder;
+  folder.write("robot.json", R"({"sensors": [{"name": "temp", "type": "VIRTUAL", "channels": {
+      "T": {"unit": "F", "range": [-40, 200]}, "A": {"unit": "rad", "range": [-7, 7]}}}],
+      "actuators": [{"name": "arm", "type": "VIRTUAL"}]})");
+  const std::string program =
+      folder.write("robot.rsl",
+                   "WHEN temp T < 0F\nDO LOG \"at\", ROUND(temp T)\nEND\n"
+                   "WHEN temp T > 0F\nDO LOG \"at\", ROUND(temp T), ROUND(temp A)\nEND\n"
+                   "WHEN ROUND(temp T) = 99F AND ROUND(temp A) = 2rad\nDO LOG \"yes\"\nEND\n");
+  for (const char* const level : {"-O0", "-O1"}) {
+    const auto logged = [&](const std::string& degrees, const std::string& angle) {
+      const std::string visit = folder.write("visit.json", R"({"duration": "2s", "stimuli": [
+        {"at": "1s", "sensor": "temp", "channel": "A", "value": ")" +
+                                                               angle + R"("},
+        {"at": "1s", "sensor": "temp", "channel": "T", "value": ")" +
+                                                               degrees + R"("}]})");
+      const Outcome ran = test::rsc({"run", program, "--scenario", visit, level});
+      CAPTURE(ran.err);
+      CHECK(ran.exit == 0);
+      return ran.out;
+    };
+    CAPTURE(level);
+    const std::string warm = logged("98.6F", "90deg");
+    CHECK_THAT(warm, Contains("log: at 99F 2rad\n") && Contains("log: yes"));
+    CHECK_THAT(logged("98.4F", "-1.6rad"),
+               Contains("log: at 98F -2rad\n") && !Contains("log: yes"));
+    CHECK_THAT(logged("0.6F", "-0.4rad"), Contains("log: at 1F 0rad\n"));
+    CHECK_THAT(logged("-3.6F", "1rad"), Contains("log: at -4F\n"));
+  }
+}

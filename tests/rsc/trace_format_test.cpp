@@ -70,6 +70,12 @@ TEST_CASE("rules are named by their line and behaviour") {
         "   1.020 s  rule at line 1 gives up what it was doing");
   CHECK(as_json(event(EventKind::interrupt, rule_of(named), plain)).at("by") ==
         "the rule at line 1");
+  CHECK(as_words(event(EventKind::lose, rule_of(plain), link::kStop, {1})) ==
+        "   1.020 s  rule at line 1 does not start its DO side: the robot is stopped");
+  CHECK(as_words(event(EventKind::interrupt, rule_of(plain), link::kStop)) ==
+        "   1.020 s  rule at line 1 is interrupted by a person's stop");
+  CHECK(as_json(event(EventKind::interrupt, rule_of(named), link::kStop)).at("by") ==
+        "a person's stop");
 }
 
 TEST_CASE("commands have verb, word and the parameters that were given") {

@@ -107,6 +107,10 @@ std::string rule(const link::Event& event, const char* name) {
          (event.values[0] == 1 ? "DO" : "ELSE");
 }
 
+std::string in_the_way(const link::Event& event) {
+  return event.object == link::kStop ? "stop" : "b" + std::to_string(event.object);
+}
+
 std::string what(const link::Event& event, const vm::Image& image) {
   using link::EventKind;
   const auto actuator = [&] { return word_of(image, image.actuators[event.subject].name); };
@@ -127,9 +131,9 @@ std::string what(const link::Event& event, const vm::Image& image) {
     case EventKind::win:
       return rule(event, "win");
     case EventKind::lose:
-      return rule(event, "lose") + " to b" + std::to_string(event.object);
+      return rule(event, "lose") + " to " + in_the_way(event);
     case EventKind::interrupt:
-      return "interrupt r" + std::to_string(event.subject) + " by b" + std::to_string(event.object);
+      return "interrupt r" + std::to_string(event.subject) + " by " + in_the_way(event);
     case EventKind::command:
       return "command" + command(event, image);
     case EventKind::done:

@@ -103,6 +103,12 @@ TEST_CASE("values are written in any unit") {
   CHECK(format_value(25000, *find_unit("cm")) == "2.5cm");
   CHECK(format_value(-1500, *find_unit("s")) == "-1.5s");
   CHECK(format_value(20000, *find_unit("F")) == "68F");
+  for (std::int64_t degrees = -459; degrees < 1000; ++degrees) {
+    const Unit& unit = *find_unit("F");
+    const auto whole = to_value({degrees, 0}, unit), tenth = to_value({degrees * 10 + 1, 1}, unit);
+    CHECK(format_value(whole.value(), unit) == std::to_string(degrees) + "F");
+    CHECK(format_value(tenth.value(), unit) == written({degrees * 10 + 1, 1}) + "F");
+  }
   CHECK(format_value(1, *find_unit("")) == "0.001");
   CHECK(format_value(vm::kValueMin, *find_unit("")) == "-2147483.647");
 }

@@ -86,13 +86,14 @@ void Trace::command(std::size_t actuator, const Order& order) {
   Json object = line(now_, "command");
   object["actuator"] = robot_.actuators[actuator].name.text;
   object["verb"] = order.command->verb.name;
-  const std::string word = order.command->word ? order.command->word->name : "";
+  const auto& own = order.command->word;
+  const std::string word = own ? own->name : "";
   const bool has_places =
       word.find('{') != std::string::npos && word.find('}') != std::string::npos;
   std::vector<Number> said;
   for (const auto& [param, value] : order.given)
     if (has_places && is_said(param)) said.push_back(value);
-  if (!word.empty()) object["word"] = filled_in(word, said);
+  if (own) object["word"] = filled_in(word, said);
   for (const auto& [param, value] : order.given)
     if (has_places && is_said(param))
       object["values"].push_back(number(value));

@@ -90,7 +90,7 @@ TEST_CASE("a module begins anew when its input comes back") {
   robot.feed_raw(500, "FORCE", vm::kUnknown);
   robot.feed(640, "FORCE", 2);  // touched for 500 ms before; 700 make a stroke
   robot.run(1400);
-  CHECK(robot.only("fire") == "1320 #6 fire r0 DO\n");
+  CHECK(robot.only("fire") == "1340 #6 fire r0 DO\n");
 }
 
 TEST_CASE("what nobody reads of an algorithm is not in the image, nor what nobody else needs") {

@@ -207,12 +207,12 @@ TEST_CASE("what was won in this step is not lost in it to the same behaviour") {
   CHECK(table.arbiter.decide(claim(2, 1, 0b1)).wins());
 }
 
-TEST_CASE("nobody gets what safety has halted, and the claim loses to safety") {
+TEST_CASE("nobody gets what is halted, and the claim loses to who has halted it") {
   Table table;
   table.arbiter.note_halted(0b10);
   const Decision decision = table.arbiter.decide(claim(0, 3, 0b11));
   CHECK_FALSE(decision.wins());
-  CHECK(decision.owner == robosync::vm::kSafetyBehavior);
+  CHECK(decision.owner == Decision::kHalter);
   CHECK(table.arbiter.decide(claim(0, 3, 0b01)).wins());
 }
 

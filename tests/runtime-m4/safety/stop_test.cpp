@@ -88,6 +88,59 @@ TEST_CASE("a stop outlasts programs that come and go") {
   CHECK(rig.board.pwm_read(4) == 14'000);
 }
 
+TEST_CASE(
+    "what a stop interrupts and keeps from starting is told so, whatever behaviours there are") {
+  const char* const two =
+      "BEHAVIOR alpha PRIORITY 60\nWHEN near X > 95\nDO RUN motor TO 5%\nEND\nEND\n"
+      "BEHAVIOR beta PRIORITY 40\nWHEN near X > 10\nDO MOVE arm TO 90deg OVER 3s\nEND\nEND\n";
+  Rig rig;
+  REQUIRE(rig.activate(test::compile(two, kFourOutputs)).ok());
+  rig.feed(0, 20);
+  rig.run(100);
+  rig.runtime.stop();
+  rig.run(200);
+  CHECK(rig.only("interrupt") == "100 #1 interrupt r1 by stop\n");
+  rig.feed(0, 5);
+  rig.run(300);
+  rig.feed(0, 20);
+  rig.run(400);
+  CHECK(rig.only("lose") == "300 #4 lose r1 DO to stop\n");
+}
+
+TEST_CASE("where SAFETY and a stop both halt, each is told of what it has done") {
+  Rig rig;
+  REQUIRE(rig.activate(moving_program()).ok());
+  rig.feed(0, 20);
+  rig.run(50);
+  rig.runtime.stop();
+  rig.run(100);
+  CHECK(rig.only("interrupt") == "50 #2 interrupt r2 by stop\n");
+  const auto rises = [&](std::uint64_t at_ms) {
+    rig.feed(0, 5);
+    rig.run(at_ms);
+    rig.feed(0, 20);
+    rig.run(at_ms + 50);
+    return rig.lines.empty() ? "" : rig.only("lose").substr(rig.only("lose").rfind("lose"));
+  };
+  CHECK(rises(200) == "lose r2 DO to stop\n");
+  rig.feed(0, 95);  // the rule trips while all are stopped, …
+  rig.run(300);
+  rig.runtime.resume();  // … and holds the motor when they are not
+  rig.feed(0, 85);
+  rig.run(400);
+  rig.feed(0, 5);  // it lets go
+  rig.run(500);
+  rig.feed(0, 20);
+  rig.run(600);
+  CHECK(rig.only("win").rfind("win r2") > rig.only("win").find("win r2"));
+  rig.feed(0, 95);
+  rig.run(700);
+  CHECK(rig.only("interrupt").ends_with("interrupt r2 by b0\n"));
+  rig.runtime.stop();
+  rig.run(800);
+  CHECK(rises(900) == "lose r2 DO to stop\n");  // the rule has let go meanwhile
+}
+
 // Its motor is commanded by itself, and again and again: it runs as soon as it may.
 TEST_CASE(
     "resume leaves halted what a SAFETY rule halts, and the rule's own end leaves stopped what "
