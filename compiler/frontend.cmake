@@ -53,6 +53,7 @@ target_sources(robosync_compiler PRIVATE
   syntax/heads.cpp
   syntax/keywords.cpp
   syntax/layout.cpp
+  syntax/lexer_habits.cpp
   syntax/lexer_state.cpp
   syntax/lost_heads.cpp
   syntax/misplaced_words.cpp

@@ -358,8 +358,8 @@ struct Safety {
 struct TestFeed {
   Box<Expr> at;
   Operand target;
-  Box<Expr> value;                       // a number, or an IsTruth without value for TRUE/FALSE
-  std::optional<std::string_view> text;  // in its place
+  Box<Expr> value;           // a number, or an IsTruth without value for TRUE/FALSE
+  std::optional<Name> text;  // in its place: without its quotes, at the place with them
 };
 struct ExpectCommand {
   bool no = false;

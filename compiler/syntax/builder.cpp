@@ -153,6 +153,35 @@ ast::Command Builder::command(Span verb, std::vector<ast::Argument> arguments,
   return {name(verb), std::move(arguments), parts};
 }
 
+void Builder::add_argument(std::vector<ast::Argument>& arguments, ast::Argument argument) {
+  const auto amount_of = [](const ast::Argument& one) {
+    return std::get_if<ast::Amount>(&one.value);
+  };
+  const auto* const amount = amount_of(argument);
+  const ast::Argument& last = arguments.back();
+  const bool has_sign = amount != nullptr && amount->value != nullptr &&
+                        argument.preposition == ast::Preposition::none &&
+                        std::holds_alternative<ast::Negate>(amount->value->node);
+  const bool whole = last.preposition == ast::Preposition::none;
+  const bool number = whole && amount_of(last) != nullptr && !amount_of(last)->times;
+  if (has_sign && (number || !whole)) report_worked_out(last, argument);
+  arguments.push_back(std::move(argument));
+}
+
+// `TO angle - 20deg`
+void Builder::report_worked_out(const ast::Argument& first, const ast::Argument& rest) {
+  Span all = between(first.span, rest.span);
+  if (first.preposition != ast::Preposition::none) {
+    const std::string_view text = text_of(all);
+    const std::size_t word = std::min(text.find_first_of(" \t"), text.size());
+    const std::size_t value = std::min(text.find_first_not_of(" \t", word), text.size());
+    all.begin += static_cast<std::uint32_t>(value);
+  }
+  report(Code::E0505, "a value that is worked out stands in brackets here")
+      .label(all)
+      .helps("write `(" + std::string(text_of(all)) + ")`");
+}
+
 // ---- parts of items
 
 void Builder::once(ast::Box<ast::Expr>& place, ast::Box<ast::Expr> value, Span keyword) {
@@ -235,8 +264,7 @@ ast::TestFeed Builder::feed(Span at, ast::Box<ast::Expr> target, ast::Box<ast::E
 }
 
 ast::TestFeed Builder::feed_text(Span at, ast::Box<ast::Expr> target, Span text) {
-  return {quantity(at), std::move(std::get<ast::Operand>(target->node)), nullptr,
-          quoted(text).text};
+  return {quantity(at), std::move(std::get<ast::Operand>(target->node)), nullptr, quoted(text)};
 }
 // NOLINTEND(clang-analyzer-cplusplus.NewDeleteLeaks)
 

@@ -58,6 +58,9 @@ public:
   ast::Command command(Span verb, std::vector<ast::Argument> arguments,
                        std::vector<ast::Argument> further) const;
 
+  // A number with a sign is no argument of its own where it is taken away from what stands in front of it.
+  void add_argument(std::vector<ast::Argument>& arguments, ast::Argument argument);
+
   // ---- parts of items
   // A "-" that touches what follows is its sign; any other one is a key by itself.
   void add_key(std::vector<ast::MotionKey>& keys, ast::MotionKey key);
@@ -105,6 +108,7 @@ private:
   }
 
   ast::Box<ast::Expr> shallow(ast::Box<ast::Expr> made);
+  void report_worked_out(const ast::Argument& first, const ast::Argument& rest);
   Diagnostic& report(Code code, std::string message);
   std::string_view text_of(Span span) const { return file_.text(span); }
 

@@ -37,22 +37,6 @@ bool is_high(char c) {
   return (static_cast<unsigned char>(c) & 0x80U) != 0;
 }
 
-bool is_word_byte(char c) {
-  const bool letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-  return letter || (c >= '0' && c <= '9') || c == '_';
-}
-
-// Bytes of the word that the text starts with.
-std::size_t word_length(std::string_view text) {
-  std::size_t length = 0;
-  while (length < text.size()) {
-    const utf8::CodePoint point = utf8::decode(text, length);
-    if (is_high(text[length]) ? !is_letter(point.value) : !is_word_byte(text[length])) break;
-    length += point.size;
-  }
-  return length;
-}
-
 // Bytes of a number and its unit, up to the first code point above ASCII that is no letter.
 std::size_t number_length(std::string_view text) {
   std::size_t length = 0;
@@ -98,6 +82,22 @@ bool is_per_second(std::string_view unit_end) {
 
 }  // namespace
 
+bool is_word_byte(char c) {
+  const bool letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+  return letter || (c >= '0' && c <= '9') || c == '_';
+}
+
+// Bytes of the word that the text starts with.
+std::size_t word_length(std::string_view text) {
+  std::size_t length = 0;
+  while (length < text.size()) {
+    const utf8::CodePoint point = utf8::decode(text, length);
+    if (is_high(text[length]) ? !is_letter(point.value) : !is_word_byte(text[length])) break;
+    length += point.size;
+  }
+  return length;
+}
+
 // A file that is not RSL at all shall not bury its reader.
 Diagnostic& LexerState::report(Code code, std::string message) {
   constexpr std::size_t most = 50;
@@ -121,51 +121,11 @@ void LexerState::word() {
   }
   cursor_ = start_ + length;
   const Keyword* keyword = find_keyword(lexeme());
-  if (foreign_loop() || (keyword == nullptr && foreign_end())) return;
+  if (keyword == nullptr && (foreign_end() || negation())) return;
+  if (foreign_loop()) return;
   token(keyword != nullptr ? keyword->kind : Kinds::NAME);
   if (keyword != nullptr && keyword->kind == Kinds::IF) join_else_if();
   if (keyword != nullptr && keyword->kind == Kinds::OF) of();
-}
-
-// `ENDIF`, as other languages have it, where a line begins.
-bool LexerState::foreign_end() {
-  if (!tokens_.empty() && tokens_.back().kind != Kinds::NEWLINE) return false;
-  constexpr std::string_view ends[] = {"ENDIF",     "END_IF",    "ENDWHEN",     "ENDWHILE",
-                                       "ENDDEFINE", "ENDREPEAT", "ENDBEHAVIOR", "ENDDEF"};
-  if (std::ranges::none_of(ends,
-                           [this](std::string_view end) { return ascii::same(end, lexeme()); }))
-    return false;
-  report(Code::E0007, "every block of RSL ends with END").label(here()).fix(here(), "END");
-  token(Kinds::END);
-  return true;
-}
-
-// `LOOP 3 TIMES`, `FOR 3 TIMES`, `FOR i = 1 TO 3`, where a line begins: a block, whose END would close another one.
-bool LexerState::foreign_loop() {
-  const bool loop = ascii::same(lexeme(), "LOOP"), each = ascii::same(lexeme(), "FOR");
-  if (!(loop || each) || (!tokens_.empty() && tokens_.back().kind != Kinds::NEWLINE)) return false;
-  const std::size_t line_end = std::min(text_.find_first_of("\r\n", cursor_), text_.size());
-  const std::string_view line = text_.substr(cursor_, line_end - cursor_);
-  const std::size_t word = std::min(line.find_first_not_of(" \t"), line.size());
-  const bool digit = word < line.size() && line[word] >= '0' && line[word] <= '9';
-  const bool counts =
-      digit && (loop || ascii::same(line.substr(line.find_last_of(" \t") + 1), "TIMES"));
-  const bool counts_up = each && word < line.size() && word_length(line.substr(word)) > 0 &&
-                         !digit && line.find('=') != std::string_view::npos;
-  if (!counts && !counts_up) return false;
-  Diagnostic& message =
-      report(Code::E0007, "`" + std::string(lexeme()) + "` is written `REPEAT` in RSL")
-          .label(here());
-  token(Kinds::REPEAT);
-  if (counts) {
-    message.fix(here(), "REPEAT");
-    return true;
-  }
-  message.helps("write `REPEAT 3 TIMES`; what is counted meanwhile is a REMEMBER");
-  cursor_ = line_end;
-  tokens_.push_back({Kinds::QUANTITY, span(cursor_, cursor_)});
-  tokens_.push_back({Kinds::TIMES, span(cursor_, cursor_)});
-  return true;
 }
 
 // ---- words that are known by what follows: until then they are names
@@ -281,6 +241,7 @@ void LexerState::bad_fraction() {
 // ---- strings and comments
 
 void LexerState::string() {
+  if (apostrophe_in_number() || apostrophe_in_text()) return;
   token(Kinds::STRING);
 }
 
@@ -296,6 +257,7 @@ void LexerState::leave_end_to_its_block() {
 }
 
 void LexerState::open_string() {
+  if (apostrophe_in_number()) return;
   leave_end_to_its_block();
   const std::string quote(lexeme().substr(0, 1));
   report(Code::E0003, "this text is not closed")
@@ -309,11 +271,10 @@ void LexerState::open_string() {
 void LexerState::comment() {
   if (lexeme().front() != '%' || tokens_.empty()) return;
   const Token& last = tokens_.back();
-  const bool touches_number = last.kind == Kinds::QUANTITY && last.span.end + 1 >= start_;
-  if (!touches_number) return;
+  if (last.span.end + 1 < start_ || modulo() || last.kind != Kinds::QUANTITY) return;
   const std::string_view number = text_.substr(last.span.begin, last.span.end - last.span.begin);
   const char end = number.empty() ? '\0' : number.back();
-  if (end < '0' || end > '9') return;
+  if (end < '0' || end > '9' || percent_of_question()) return;
   report(Code::W0103, "from here on this line is a comment, not a percentage")
       .label(span(start_, start_ + 1))
       .helps("for the percentage, write `" + std::string(number) + "%` without a space")
@@ -335,67 +296,6 @@ void LexerState::left_out(std::string_view why) {
   const std::size_t shown = lexeme().front() == '/' ? 2 : lexeme().size();
   report(Code::E0002, "RSL does not use `" + std::string(lexeme().substr(0, shown)) + "`")
       .label(span(start_, start_ + shown), std::string(why));
-}
-
-// The brace that other languages have for DO. In front of it stands what opens a block, perhaps on the line before.
-bool LexerState::brace_opens_a_block() {
-  std::size_t end = tokens_.size();
-  while (end > 0 && tokens_[end - 1].kind == Kinds::NEWLINE)
-    --end;
-  std::size_t first = end;
-  while (first > 0 && tokens_[first - 1].kind != Kinds::NEWLINE)
-    --first;
-  if (first == end || tokens_[end - 1].kind == Kinds::DO) return false;
-  const TokenKind kind = tokens_[first].kind;
-  const bool goes_on = kind == Kinds::ELSE || kind == Kinds::ELSE_IF;
-  if (!goes_on && (roles_of(kind) & role::opens) == 0) return false;
-  const bool asks = kind == Kinds::WHEN || kind == Kinds::WHILE || kind == Kinds::EVERY ||
-                    kind == Kinds::IF || kind == Kinds::ELSE_IF;
-  if (asks) token(Kinds::DO);
-  return true;
-}
-
-void LexerState::opening_brace() {
-  if (!has_brace_)
-    report(Code::E0002, "RSL has no braces: a block ends with END")
-        .label(here())
-        .helps(
-            "what is asked ends with DO: `WHEN touch LEVEL > 3 DO`, and then the lines, and `END`");
-  has_brace_ = true;
-  braces_.push_back(brace_opens_a_block());
-}
-
-// In front of ELSE nothing ends.
-void LexerState::closing_brace() {
-  if (braces_.empty()) {
-    left_out("a block ends with END");
-    return;
-  }
-  const bool ends = braces_.back() && !else_follows();
-  braces_.pop_back();
-  if (ends) token(Kinds::END);
-}
-
-bool LexerState::else_follows() const {
-  const std::size_t word = std::min(text_.find_first_not_of(" \t\r\n", cursor_), text_.size());
-  return ascii::same(text_.substr(word, 4), "ELSE") || ascii::same(text_.substr(word, 4), "ELIF");
-}
-
-void LexerState::foreign_comment() {
-  constexpr std::size_t shown = 2;  // of `//` or `--`
-  report(Code::E0002, "a comment of RSL begins with # or %, not with `" +
-                          std::string(lexeme().substr(0, shown)) + "`")
-      .label(span(start_, start_ + shown))
-      .fix(span(start_, start_ + shown), "#");
-}
-
-// `/* … */`, over as many lines as it takes.
-void LexerState::long_comment() {
-  const std::size_t end = text_.find("*/", cursor_);
-  cursor_ = end == std::string_view::npos ? text_.size() : end + 2;
-  report(Code::E0002, "a comment of RSL begins with # or % and goes to the end of its line")
-      .label(span(start_, start_ + 2), "this one is left out up to its end")
-      .helps("write # in front of each of its lines");
 }
 
 bool LexerState::look_alike(char32_t point) {
@@ -463,6 +363,7 @@ void LexerState::strange(std::size_t size) {
   Diagnostic& message = report(Code::E0002, "RSL does not use the character " +
                                                 utf8::describe(utf8::decode(text_, start_).value))
                             .label(here());
+  if (text_[start_] == '^') message.helps("RSL has no powers: multiply, such as `n * n`");
   if (text_[start_] == '[' || text_[start_] == ']')
     message.helps(
         "a LIST stands without brackets, `LIST words: \"one\", \"two\"`; one of it is `ITEM 1 OF "

@@ -12,6 +12,11 @@
 
 namespace robosync::compiler {
 
+// Of a word, in ASCII.
+[[nodiscard]] bool is_word_byte(char c);
+// Bytes of the word that the text starts with.
+[[nodiscard]] std::size_t word_length(std::string_view text);
+
 class LexerState {
 public:
   LexerState(std::string_view text, FileId file, Diagnostics& diagnostics)
@@ -51,10 +56,27 @@ private:
   bool keyword_is_stuck();
   bool curly_string(char32_t quote);
   bool look_alike(char32_t point);
+  bool negation();
+  bool apostrophe_in_number();
+  bool apostrophe_in_text();
+  bool modulo();
+  bool percent_of_question();
+  void whole_division();
+  std::string_view rest_of_line(std::size_t from) const;
+  std::size_t first_of_statement() const;
+  bool behind_value() const;
+  bool is_declared(std::string_view name) const;
+  bool is_calculation(std::string_view text) const;
+  bool brackets_open() const;
+  bool has_relation() const;
+  std::string_view next_line() const;
+  bool next_line_has_sign() const;
+  bool next_line_goes_on() const;
   bool foreign_end();
   bool foreign_loop();
   bool brace_opens_a_block();
   bool else_follows() const;
+  bool brace_is_end();
   bool dotted();
   void leave_end_to_its_block();
   void strange(std::size_t size);

@@ -119,6 +119,7 @@ public:
     }
     if (!is_plain_text(sources_, file_, Code::E0002, diagnostics_)) return {};
     tokens_ = lex(source_, file_, diagnostics_);
+    find_strange_lines();
     mend_heads(tokens_, source_, diagnostics_);
     mend_names(tokens_, source_, diagnostics_);
     mend_lost_heads(tokens_, diagnostics_);
@@ -138,6 +139,22 @@ public:
   }
 
 private:
+  // Where the lexer has left out a character, what the line lacks is a consequence.
+  void find_strange_lines() {
+    for (const Diagnostic& diagnostic : diagnostics_.all())
+      if (diagnostic.code == Code::E0002 && diagnostic.fixes.empty() &&
+          diagnostic.labels.front().span.file == file_ &&
+          diagnostic.message.starts_with("RSL does not use the character"))
+        strange_lines_.push_back(line_of(diagnostic));
+  }
+  std::size_t line_of(const Diagnostic& diagnostic) const {
+    return source_.position(diagnostic.labels.front().span.begin).line;
+  }
+  bool is_consequence(const Diagnostic& diagnostic) const {
+    return !strange_lines_.empty() && !diagnostic.labels.empty() &&
+           std::ranges::find(strange_lines_, line_of(diagnostic)) != strange_lines_.end();
+  }
+
   // False when nothing more should be read.
   bool parse_piece(Tokens& tokens) {
     if (const auto deep = nested_too_deeply(tokens)) {
@@ -187,7 +204,7 @@ private:
     mend(tokens, attempt, reader_, *examples_, said, budget_);
     std::size_t kept = 0;
     for (const Diagnostic& diagnostic : said.all()) {
-      if (!standstill.is_new(diagnostic)) continue;
+      if (!standstill.is_new(diagnostic) || is_consequence(diagnostic)) continue;
       diagnostics_.add(diagnostic);
       ++kept;
     }
@@ -217,6 +234,7 @@ private:
   Tokens piece_;                      // what is read now; one for all, so that its memory is
   ast::Tree program_;
   Budget budget_;
+  std::vector<std::size_t> strange_lines_;
   std::size_t mistakes_ = 0;
 };
 

@@ -119,7 +119,7 @@ private:
 
   std::optional<vm::Value> reading(const ast::TestFeed& node, ChannelRef ref, Span span) {
     const ChannelConfig& channel = names_.channel(ref);
-    if (node.text) return labelled(ast::Name{*node.text, span}, ref);
+    if (node.text) return labelled(*node.text, ref);
     if (const auto* truth = std::get_if<ast::IsTruth>(&node.value->node)) {
       if (channel.truth) return label_value(truth->truth ? 1 : 0);
       diagnostics_.report(Code::E0306, "`" + names_.channel_name(ref) + "` is not true or false")
@@ -160,7 +160,7 @@ private:
       return std::nullopt;
     }
     const auto place =
-        find_label(names_, channel.labels, label, names_.channel_name(ref), diagnostics_);
+        find_label(names_, channel.labels, label, names_.channel_name(ref), diagnostics_, true);
     return place ? std::optional(label_value(*place)) : std::nullopt;
   }
 

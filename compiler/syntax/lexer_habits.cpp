@@ -1,0 +1,416 @@
+// The lexer, part: what people bring along from other languages, as far as the text of a line shows it. Each is reported, and
+// read as what was meant. See lexer_state.hpp.
+#include <algorithm>
+
+#include "compiler/source/ascii.hpp"
+#include "compiler/syntax/blocks.hpp"
+#include "compiler/syntax/keyword_roles.hpp"
+#include "compiler/syntax/lexer_state.hpp"
+
+namespace robosync::compiler {
+
+namespace {
+
+// Words with which a line asks, and those with which it works something out.
+bool asks(TokenKind kind) {
+  return is_one_of(kind, {Kinds::WHEN, Kinds::WHILE, Kinds::IF, Kinds::ELSE_IF, Kinds::WAIT,
+                          Kinds::RESUME, Kinds::REPEAT, Kinds::EXPECT, Kinds::SAFETY});
+}
+
+bool calculates(TokenKind kind) {
+  return asks(kind) || is_one_of(kind, {Kinds::SET, Kinds::RAISE, Kinds::LOWER, Kinds::LOG,
+                                        Kinds::ALERT, Kinds::LET, Kinds::REMEMBER});
+}
+
+}  // namespace
+
+// ---- what else the line has
+
+std::string_view LexerState::rest_of_line(std::size_t from) const {
+  return text_.substr(from, std::min(text_.find_first_of("\r\n", from), text_.size()) - from);
+}
+
+// Of the last token's; the number of tokens where a statement begins anew, or its beginning is far away.
+std::size_t LexerState::first_of_statement() const {
+  constexpr std::size_t most = 256;  // tokens: the text may be one from outside
+  std::size_t first = tokens_.size();
+  while (first > 0 &&
+         !is_one_of(tokens_[first - 1].kind, {Kinds::NEWLINE, Kinds::DO, Kinds::ELSE})) {
+    if (tokens_.size() - --first > most) return tokens_.size();
+  }
+  return first;
+}
+
+bool LexerState::behind_value() const {
+  if (tokens_.empty()) return false;
+  const Token& last = tokens_.back();
+  if (last.kind != Kinds::QUANTITY) return last.kind == Kinds::NAME || last.kind == Kinds::CLOSE;
+  const char end = text_[last.span.end - 1];
+  return end >= '0' && end <= '9';
+}
+
+bool LexerState::is_declared(std::string_view name) const {
+  constexpr std::size_t most = 4096;  // tokens: the text may be one from outside
+  for (std::size_t at = 1; at < std::min(tokens_.size(), most); ++at) {
+    const Span span = tokens_[at].span;
+    if (is_one_of(tokens_[at - 1].kind, {Kinds::LET, Kinds::REMEMBER, Kinds::FEELING}) &&
+        ascii::same(text_.substr(span.begin, span.end - span.begin), name))
+      return true;
+  }
+  return false;
+}
+
+// Values and signs by turns, up to the end, a DO or an END: what could go on with a calculation, and is no sentence.
+bool LexerState::is_calculation(std::string_view text) const {
+  constexpr std::string_view signs = "+-*/<>=,";
+  bool wants_value = true;
+  for (std::size_t at = text.find_first_not_of(" \t"); at < text.size();
+       at = std::min(text.find_first_not_of(" \t", at), text.size())) {
+    const char c = text[at];
+    if (signs.find(c) != std::string_view::npos) {
+      if (wants_value && c != '-' && c != '=' && c != '>') return false;
+      wants_value = true;
+      ++at;
+      continue;
+    }
+    const bool bracket = c == '(' || c == ')';
+    const std::size_t length = bracket ? 1 : word_length(text.substr(at));
+    const std::string_view word = text.substr(at, length);
+    at += length;
+    if (c == ')' && !wants_value) continue;
+    if (!wants_value && (word == "DO" || word == "END")) return true;
+    if (!wants_value && ascii::same(word, "DO")) return at == text.size();
+    const bool joins = ascii::same(word, "AND") || ascii::same(word, "OR");
+    const bool value = c == '(' || (c >= '0' && c <= '9') || is_declared(word);
+    if (length == 0 || wants_value == joins || (!joins && !value)) return false;
+    wants_value = joins || c == '(';
+  }
+  return !wants_value;
+}
+
+// In this line.
+bool LexerState::brackets_open() const {
+  int open = 0;
+  for (std::size_t at = first_of_statement(); at < tokens_.size(); ++at) {
+    if (tokens_[at].kind == Kinds::OPEN) ++open;
+    if (tokens_[at].kind == Kinds::CLOSE) --open;
+  }
+  return open > 0 && rest_of_line(start_).find(')') != std::string_view::npos;
+}
+
+// Since the last AND or OR.
+bool LexerState::has_relation() const {
+  for (std::size_t at = tokens_.size(); at > first_of_statement(); --at) {
+    const TokenKind kind = tokens_[at - 1].kind;
+    if (kind == Kinds::AND || kind == Kinds::OR) return false;
+    if (is_relation(kind) || is_one_of(kind, {Kinds::IS, Kinds::BECOMES, Kinds::CHANGES}))
+      return true;
+  }
+  return false;
+}
+
+// The first word of the next line that is not empty, or its sign; nothing at the end.
+std::string_view LexerState::next_line() const {
+  const std::size_t line_end = start_ + rest_of_line(start_).size();
+  const std::size_t word = std::min(text_.find_first_not_of(" \t\r\n", line_end), text_.size());
+  return text_.substr(word, std::max<std::size_t>(word_length(text_.substr(word)), 1));
+}
+
+// Does it begin with a sign, so that this line may go on there?
+bool LexerState::next_line_has_sign() const {
+  const std::string_view next = next_line();
+  return !next.empty() && word_length(next) == 0;
+}
+
+// Or with a word such as DO or AND?
+bool LexerState::next_line_goes_on() const {
+  const Keyword* const keyword = find_keyword(next_line());
+  const bool after = keyword != nullptr && (keyword->roles & role::after) != 0;
+  return next_line_has_sign() || (after && keyword->kind != Kinds::END);
+}
+
+// ---- words
+
+// `ENDIF`, as other languages have it, where a line begins.
+bool LexerState::foreign_end() {
+  if (!tokens_.empty() && tokens_.back().kind != Kinds::NEWLINE) return false;
+  constexpr std::string_view ends[] = {"ENDIF",     "END_IF",    "ENDWHEN",     "ENDWHILE",
+                                       "ENDDEFINE", "ENDREPEAT", "ENDBEHAVIOR", "ENDDEF"};
+  if (std::ranges::none_of(ends,
+                           [this](std::string_view end) { return ascii::same(end, lexeme()); }))
+    return false;
+  report(Code::E0007, "every block of RSL ends with END").label(here()).fix(here(), "END");
+  token(Kinds::END);
+  return true;
+}
+
+// `isn't`, `doesn't`, in a line that asks: what stands behind the ' is no text.
+bool LexerState::negation() {
+  constexpr std::string_view states[] = {"isn", "aren", "wasn", "weren"};
+  constexpr std::string_view others[] = {"doesn", "don", "didn", "hasn", "haven"};
+  constexpr std::string_view endings[] = {"'t", "\xe2\x80\x99t"};
+  const auto is_word = [this](std::string_view one) { return ascii::same(one, lexeme()); };
+  const bool state = std::ranges::any_of(states, is_word);
+  if (!state && std::ranges::none_of(others, is_word)) return false;
+  const auto* const ending = std::ranges::find_if(endings, [this](std::string_view one) {
+    return ascii::same(text_.substr(cursor_, one.size()), one) &&
+           word_length(text_.substr(cursor_ + one.size())) == 0;
+  });
+  const std::size_t first = first_of_statement();
+  if (ending == std::end(endings) || first == tokens_.size() || !asks(tokens_[first].kind))
+    return false;
+  cursor_ += ending->size();
+  constexpr std::string_view truth = " TRUE";
+  const bool is_false = ascii::same(text_.substr(cursor_, truth.size()), truth);
+  if (is_false) cursor_ += truth.size();
+  const std::string better = is_false ? "IS FALSE" : "IS NOT";
+  Diagnostic& message =
+      report(Code::E0007, "`" + std::string(lexeme()) + "` is written `" + better + "` in RSL")
+          .label(here());
+  if (state) message.fix(here(), better, Applicability::likely);
+  token(Kinds::IS);
+  token(is_false ? Kinds::FALSE : Kinds::NOT);
+  return true;
+}
+
+// `LOOP 3 TIMES`, `FOR 3 TIMES`, `FOR i = 1 TO 3`, `FOR i IN range(3)`, where a line begins: a block, whose END would close
+// another one.
+bool LexerState::foreign_loop() {
+  const bool loop = ascii::same(lexeme(), "LOOP"), each = ascii::same(lexeme(), "FOR");
+  if (!(loop || each) || (!tokens_.empty() && tokens_.back().kind != Kinds::NEWLINE)) return false;
+  constexpr std::string_view in = " IN ";
+  const std::string_view line = rest_of_line(cursor_);
+  const std::size_t line_end = cursor_ + line.size();
+  const std::size_t word = std::min(line.find_first_not_of(" \t"), line.size());
+  const bool digit = word < line.size() && line[word] >= '0' && line[word] <= '9';
+  const bool counts =
+      digit && (loop || ascii::same(line.substr(line.find_last_of(" \t") + 1), "TIMES"));
+  const std::size_t name = word_length(line.substr(word));
+  const bool counts_up = each && name > 0 && !digit &&
+                         (line.find('=') != std::string_view::npos ||
+                          ascii::same(line.substr(word + name).substr(0, in.size()), in));
+  if (!counts && !counts_up) return false;
+  Diagnostic& message =
+      report(Code::E0007, "`" + std::string(lexeme()) + "` is written `REPEAT` in RSL")
+          .label(here());
+  token(Kinds::REPEAT);
+  if (counts) {
+    message.fix(here(), "REPEAT");
+    return true;
+  }
+  message.helps("write `REPEAT 3 TIMES`; what is counted meanwhile is a REMEMBER");
+  cursor_ = line_end;
+  tokens_.push_back({Kinds::QUANTITY, span(cursor_, cursor_)});
+  tokens_.push_back({Kinds::TIMES, span(cursor_, cursor_)});
+  return true;
+}
+
+// ---- what stands between two ' or behind a number
+
+// `2'500ms`
+bool LexerState::apostrophe_in_number() {
+  const auto is_digit = [this](std::size_t at) {
+    return at < text_.size() && text_[at] >= '0' && text_[at] <= '9';
+  };
+  if (text_[start_] != '\'' || start_ == 0 || tokens_.empty() ||
+      tokens_.back().kind != Kinds::QUANTITY || tokens_.back().span.end != start_ ||
+      !is_digit(start_ - 1) || !is_digit(start_ + 1))
+    return false;
+  cursor_ = start_ + 1;
+  while (cursor_ < text_.size() && (is_word_byte(text_[cursor_]) || text_[cursor_] == '\'' ||
+                                    text_[cursor_] == '.' || text_[cursor_] == '%'))
+    ++cursor_;
+  const Span all = span(tokens_.back().span.begin, cursor_);
+  std::string better(text_.substr(all.begin, all.end - all.begin));
+  std::erase(better, '\'');
+  report(Code::E0004, "a number has no ' between its digits")
+      .label(all, "write `" + better + "`")
+      .fix(all, better, Applicability::likely);
+  return true;
+}
+
+// `'It's nice'`: a letter touches what seems to be the end of the text.
+bool LexerState::apostrophe_in_text() {
+  const auto is_letter_at = [this](std::size_t at) {
+    return at < text_.size() && is_word_byte(text_[at]);
+  };
+  if (text_[start_] != '\'' || !is_letter_at(cursor_)) return false;
+  constexpr std::size_t longest = 200;
+  const std::size_t last = std::min(text_.size(), cursor_ + longest);
+  const auto is_line_end = [this](std::size_t at) {
+    return text_[at] == '\n' || text_[at] == '\r';
+  };
+  std::size_t end = cursor_;
+  while (end < last && !is_line_end(end) && (text_[end] != '\'' || is_letter_at(end + 1)))
+    ++end;
+  if (end == last || is_line_end(end)) return false;
+  const std::string inside(text_.substr(start_ + 1, end - start_ - 1));
+  cursor_ = end + 1;
+  Diagnostic& message = report(Code::E0003, "a text between two ' has no ' in it")
+                            .label(here())
+                            .helps("a text with a ' in it stands between two \"");
+  if (inside.find('"') == std::string::npos)
+    message.fix(here(), "\"" + inside + "\"", Applicability::likely);
+  token(Kinds::STRING);
+  return true;
+}
+
+// `SET n TO n % 2`: as other languages write MOD. In brackets, or in front of a comparison, it can be nothing else.
+bool LexerState::modulo() {
+  const std::string_view rest = rest_of_line(start_ + 1);
+  const std::size_t first = first_of_statement();
+  if (first == tokens_.size() || !calculates(tokens_[first].kind) || !behind_value() ||
+      !is_calculation(rest))
+    return false;
+  const Span sign = span(start_, start_ + 1);
+  const auto is_blank = [this](std::size_t at) { return text_[at] == ' ' || text_[at] == '\t'; };
+  const std::string better =
+      std::string(is_blank(start_ - 1) ? "" : " ") + "MOD" + (is_blank(start_ + 1) ? "" : " ");
+  const bool compares = asks(tokens_[first].kind) && !has_relation() &&
+                        rest.find_first_of("<>=") != std::string_view::npos;
+  const std::string_view last = rest.substr(rest.find_last_of(' ') + 1);
+  const bool sure =
+      (brackets_open() || compares || last == "END" || last == "DO") && !next_line_has_sign();
+  Diagnostic& message =
+      sure ? report(Code::E0001, "`%` begins a comment in RSL, and does not calculate")
+           : report(Code::W0103, "from here on this line is a comment, and nothing is calculated");
+  message.label(sign).helps("what is left of a division is worked out with MOD, such as `n MOD 2`");
+  if (!sure) message.helps("for a comment, write # in the place of %");
+  message.fix(sign, better, Applicability::likely);
+  if (!sure) return true;
+  cursor_ = sign.end;
+  token(Kinds::MOD);
+  return true;
+}
+
+// `WHEN joy > 40 % DO`: the line that asks would have no DO.
+bool LexerState::percent_of_question() {
+  const std::size_t first = first_of_statement();
+  if (!asks(tokens_[first].kind)) return false;
+  const std::string_view rest = rest_of_line(start_ + 1);
+  const bool has_do = ascii::same(rest.substr(rest.find_last_of(' ') + 1), "DO") ||
+                      rest.find(" DO ") != std::string_view::npos;
+  if (!has_do || next_line_goes_on()) return false;
+  const Span number = tokens_.back().span;
+  const std::string better =
+      std::string(text_.substr(number.begin, number.end - number.begin)) + "%";
+  report(Code::E0004, "no space stands between a number and its unit")
+      .label(span(number.begin, start_ + 1))
+      .helps("write `" + better + "`; behind a space, `%` begins a comment")
+      .fix(span(number.begin, start_ + 1), better, Applicability::likely);
+  cursor_ = start_ + 1;
+  return true;
+}
+
+// `n // 2`
+void LexerState::whole_division() {
+  const Span left = tokens_.back().span;
+  const std::string value(text_.substr(left.begin, left.end - left.begin));
+  std::string_view rest = rest_of_line(start_ + 2);
+  rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+  const std::string by(rest.substr(0, rest.find_first_not_of("0123456789.")));
+  const bool plain = !by.empty() && by.size() == rest.size() && tokens_.size() > 1 &&
+                     is_one_of(tokens_[tokens_.size() - 2].kind, {Kinds::TO, Kinds::EQUAL});
+  const std::string better =
+      plain ? "(" + value + " - " + value + " MOD " + by + ") / " + by : "(n - n MOD 2) / 2";
+  Diagnostic& message =
+      report(Code::E0002, "`//` does not divide in RSL")
+          .label(span(start_, start_ + 2))
+          .helps("`/` divides, and keeps three decimals; rounded down it is `" + better + "`");
+  if (plain) message.fix(span(left.begin, cursor_), better, Applicability::likely);
+  cursor_ = start_ + 2;
+  token(Kinds::SLASH);
+}
+
+// ---- braces and comments
+
+// The brace that other languages have for DO. In front of it stands what opens a block, perhaps on the line before.
+bool LexerState::brace_opens_a_block() {
+  std::size_t end = tokens_.size();
+  while (end > 0 && tokens_[end - 1].kind == Kinds::NEWLINE)
+    --end;
+  std::size_t first = end;
+  while (first > 0 && tokens_[first - 1].kind != Kinds::NEWLINE)
+    --first;
+  if (first == end || tokens_[end - 1].kind == Kinds::DO) return false;
+  const TokenKind kind = tokens_[first].kind;
+  const bool goes_on = kind == Kinds::ELSE || kind == Kinds::ELSE_IF;
+  if (!goes_on && (roles_of(kind) & role::opens) == 0) return false;
+  const bool asks = kind == Kinds::WHEN || kind == Kinds::WHILE || kind == Kinds::EVERY ||
+                    kind == Kinds::IF || kind == Kinds::ELSE_IF;
+  if (asks) token(Kinds::DO);
+  return true;
+}
+
+void LexerState::opening_brace() {
+  if (!has_brace_)
+    report(Code::E0002, "RSL has no braces: a block ends with END")
+        .label(here())
+        .helps(
+            "what is asked ends with DO: `WHEN touch LEVEL > 3 DO`, and then the lines, and `END`");
+  has_brace_ = true;
+  braces_.push_back(brace_opens_a_block());
+}
+
+// In front of ELSE nothing ends.
+void LexerState::closing_brace() {
+  if (braces_.empty()) {
+    if (brace_is_end()) return;
+    left_out("a block ends with END");
+    return;
+  }
+  const bool ends = braces_.back() && !else_follows();
+  braces_.pop_back();
+  if (ends) token(Kinds::END);
+}
+
+// One that stands alone in its line, in the place of an END.
+bool LexerState::brace_is_end() {
+  constexpr std::size_t most =
+      20;  // times that all tokens are looked at: the text may be one from outside
+  const bool first = tokens_.empty() || tokens_.back().kind == Kinds::NEWLINE;
+  if (!first || reports_ > most || else_follows() ||
+      rest_of_line(cursor_).find_first_not_of(" \t") != std::string_view::npos)
+    return false;
+  BlockWalk walk(tokens_);
+  for (std::size_t at = 0; at < tokens_.size(); ++at)
+    walk.step(at);
+  if (walk.open().empty()) return false;
+  report(Code::E0002, "RSL has no braces: a block ends with END")
+      .label(here())
+      .fix(here(), "END", Applicability::likely);
+  token(Kinds::END);
+  return true;
+}
+
+bool LexerState::else_follows() const {
+  const std::size_t word = std::min(text_.find_first_not_of(" \t\r\n", cursor_), text_.size());
+  return ascii::same(text_.substr(word, 4), "ELSE") || ascii::same(text_.substr(word, 4), "ELIF");
+}
+
+void LexerState::foreign_comment() {
+  constexpr std::size_t shown = 2;  // of `//` or `--`
+  const std::string_view words = rest_of_line(start_ + shown);
+  if (text_[start_] == '/' && behind_value() && is_calculation(words)) {
+    whole_division();
+    return;
+  }
+  const bool only_words =
+      !behind_value() || words.find_first_of("0123456789+*/()=<>") == std::string_view::npos;
+  report(Code::E0002, "a comment of RSL begins with # or %, not with `" +
+                          std::string(lexeme().substr(0, shown)) + "`")
+      .label(span(start_, start_ + shown))
+      .fix(span(start_, start_ + shown), "#",
+           only_words ? Applicability::certain : Applicability::likely);
+}
+
+// `/* … */`, over as many lines as it takes.
+void LexerState::long_comment() {
+  const std::size_t end = text_.find("*/", cursor_);
+  cursor_ = end == std::string_view::npos ? text_.size() : end + 2;
+  report(Code::E0002, "a comment of RSL begins with # or % and goes to the end of its line")
+      .label(span(start_, start_ + 2), "this one is left out up to its end")
+      .helps("write # in front of each of its lines");
+}
+
+}  // namespace robosync::compiler
