@@ -225,6 +225,15 @@ class Trial(Switched):
         self.await_kept("kept")
         self.assertEqual(self.running(), kept)
 
+    def test_one_that_is_only_tried_is_not_called_kept(self):
+        first, second = self.images()
+        kept = self.keep(first)
+        said = self.upload(second, "--no-confirm", "--trial", "300ms")
+        self.assertIn("not kept: its trial is over; the program kept before runs again", said)
+        self.assertEqual(self.running(), kept)
+        self.assertIn("only tried: in ", self.upload(second, "--no-confirm"))
+        self.assertIn("only tried: in ", rsc.run("info", "--port", self.board.port))
+
     def test_a_behaviour_that_faults_in_its_trial_brings_the_kept_program_back(self):
         kept = self.keep(self.compile(PROGRAMS / "priorities.rsl"))
         gdb = self.folder / "gdb"
