@@ -233,6 +233,10 @@ void suggest_unit(Diagnostic& diagnostic, std::string_view written) {
     diagnostic.helps(std::string(ours));
     return;
   }
+  if (const std::string_view ours = unit_word(written); !ours.empty()) {
+    diagnostic.helps("did you mean `" + std::string(ours) + "`?");
+    return;
+  }
   std::vector<std::string> spellings;
   std::string list;
   for (const Unit& unit : units()) {

@@ -6,7 +6,7 @@
 #include "compiler/config/devices.hpp"
 #include "compiler/config/wiring.hpp"
 #include "compiler/diagnostics/nearest.hpp"
-#include "compiler/syntax/keywords.hpp"
+#include "compiler/syntax/foreign_units.hpp"
 
 namespace robosync::compiler {
 
@@ -235,11 +235,8 @@ bool Commands::has_decimal_comma(const ast::Argument& part, const ast::Argument&
     return false;
   Span all = std::get<ast::Amount>(part.value).value->span;
   all.end = next.span.end;
-  const std::string better = std::string(whole->digits) + "." + std::string(decimals->digits) +
-                             std::string(decimals->unit);
-  diagnostics_.report(Code::E0004, "a number has a point in front of its decimals, not a comma")
-      .label(all, "write `" + better + "`")
-      .fix(all, better, Applicability::likely);
+  report_decimal_comma(diagnostics_, all, whole->digits,
+                       std::string(decimals->digits) + std::string(decimals->unit));
   return true;
 }
 
@@ -538,6 +535,16 @@ void Commands::report_foreign_word(const Recipient& to, const WordConfig& word, 
   if (!verbs.empty()) d.helps("`" + word.name + "` belongs to " + list_names(verbs));
 }
 
+// Does a number or a value in brackets follow, as behind TO, BY, AT, OVER and FOR?
+static bool may_be_preposition(const ast::Command& command, const ast::Word& word) {
+  const auto& arguments = command.arguments;
+  const auto next = std::ranges::find_if(
+      arguments, [&](const ast::Argument& one) { return one.span.begin > word.name.span.begin; });
+  const auto* const amount =
+      next == arguments.end() ? nullptr : std::get_if<ast::Amount>(&next->value);
+  return amount != nullptr && !amount->times && next->preposition == ast::Preposition::none;
+}
+
 void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) const {
   if (is_sensor_meant(to, word, names_)) return;
   Diagnostic& d = to.diagnostics
@@ -552,10 +559,15 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
   auto candidates = words;
   const auto targets = names_.target_names();
   candidates.insert(candidates.end(), targets.begin(), targets.end());
-  candidates.insert(candidates.end(), keyword_spellings().begin(), keyword_spellings().end());
+  // Words of RSL that may follow in a line of commands.
+  for (const char* const keyword :
+       {"TO", "BY", "OVER", "AT", "FOR", "MARGIN", "TIMES", "WITH", "ELSE", "END"})
+    candidates.emplace_back(keyword);
   // What stands there already: a word of RSL, or another actuator, in the wrong place.
   std::erase_if(candidates, [&](const auto& one) { return same_name(one, word.name.text); });
-  did_you_mean(d, word.name.span, word.name.text, candidates);
+  if (did_you_mean(d, word.name.span, word.name.text, candidates) &&
+      !may_be_preposition(to.command, word))
+    doubt_keyword(d);
   if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
   if (names_.find_list(word.name.text) != nullptr)
     d.helps("it is a LIST; write which of its texts: `ANY " + std::string(word.name.text) + "`");

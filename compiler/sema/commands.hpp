@@ -24,6 +24,8 @@ struct ChosenText {
 
 // What its parts share. The word that an argument is, without a preposition; nullptr: none.
 [[nodiscard]] const ast::Word* plain_word(const ast::Argument& argument);
+// That a word of RSL was meant where a verb or a word of a device stands is never certain.
+void doubt_keyword(Diagnostic& diagnostic);
 [[nodiscard]] bool is_given(const ir::Command& command, vm::Param param);
 [[nodiscard]] std::vector<std::string> verb_names(const ActuatorConfig& actuator);
 void report_twice(Span span, const std::string& what, Diagnostics& diagnostics);

@@ -56,6 +56,33 @@ std::string truth_of(const ast::Expr& expr) {
 
 }  // namespace
 
+// `mood IS calm OR happy`, `touch LEVEL = 3 OR 4`: the question in front is meant to go on. Reported.
+bool Expressions::asks_nothing(const ast::Logic& node) {
+  const ast::Expr* last = node.left.get();
+  while (const auto* const logic = std::get_if<ast::Logic>(&last->node))
+    last = logic->right.get();
+  const auto* const is = std::get_if<ast::Is>(&last->node);
+  const auto* const equal = std::get_if<ast::Comparison>(&last->node);
+  const auto* const number = std::get_if<ast::Quantity>(&node.right->node);
+  const std::string word = words_of(*node.right);
+  std::string question;
+  if (is != nullptr && !word.empty()) {
+    const Typed asked = any(*is->value);
+    if (asked.labels == nullptr || !names_.find_label(*asked.labels, word)) return false;
+    question = words_of(*is->value) + (is->negated ? " IS NOT " : " IS ") + word;
+  } else if (equal != nullptr && number != nullptr && equal->relation == ast::Relation::equal) {
+    question = words_of(*equal->left) + " = " + std::string(number->digits).append(number->unit);
+  } else {
+    return false;
+  }
+  Diagnostic& d = diagnostics_.report(Code::E0302, "this asks nothing by itself")
+                      .label(node.right->span)
+                      .helps("say again what is asked: `" + question + "`");
+  if (question.front() != ' ' && node.op == ast::LogicOp::or_ && (is == nullptr || !is->negated))
+    d.fix(node.right->span, question, Applicability::likely);
+  return true;
+}
+
 // `mood = calm`
 void Expressions::report_word_comparison(const ast::Comparison& node, const Typed& word) {
   const bool same = node.relation == ast::Relation::equal;

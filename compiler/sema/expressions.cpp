@@ -274,6 +274,7 @@ Typed Expressions::of(const ast::Not& node, Span span) {
 
 Typed Expressions::of(const ast::Logic& node, Span span) {
   Typed left = condition(*node.left);
+  if (left.type == Type::condition && asks_nothing(node)) return make_nothing(span);
   Typed right = condition(*node.right);
   if (left.type != Type::condition || right.type != Type::condition) return make_nothing(span);
   const auto operation =
@@ -372,8 +373,9 @@ Typed Expressions::product(const ast::Arithmetic& node, Typed left, Typed right,
   if (divides && !right_plain) {
     if (left.dimension() != right.dimension()) {
       report_mismatch(left, right, "this divides {} by {}", diagnostics_)
-          .helps("divide by a plain number, or by " +
-                 std::string(dimension_phrase(left.dimension())));
+          .helps(left_plain ? "divide by a plain number"
+                            : "divide by a plain number, or by " +
+                                  std::string(dimension_phrase(left.dimension())));
       return make_nothing(span);
     }
     unit = &plain;
@@ -459,7 +461,9 @@ void report_amount(const Typed& number, const Wanted& wanted, Diagnostics& diagn
                                    std::string(dimension_phrase(number.dimension())))
           .label(number.digits.empty() ? number.span : number.unit_span);
   if (number.digits.empty()) return;
-  const std::string mended = number.digits + std::string(wanted.unit->spelling);
+  const bool minutes = wanted.unit->dimension == vm::Dimension::duration &&
+                       number.unit != nullptr && number.unit->spelling == "m";
+  const std::string mended = number.digits + (minutes ? "min" : std::string(wanted.unit->spelling));
   d.helps("did you mean `" + mended + "`?").fix(number.span, mended, Applicability::likely);
 }
 

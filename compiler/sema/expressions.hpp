@@ -141,6 +141,7 @@ private:
   Typed combine(ast::ArithmeticOp op, Typed left, Typed right, const Unit* unit, Span span);
   Typed fold(const Typed& left, const Typed& right, Typed result);
   void check_divisor(const Typed& divisor);
+  bool asks_nothing(const ast::Logic& node);
   void report_word_comparison(const ast::Comparison& node, const Typed& word);
   std::optional<std::size_t> place_of(const ast::Name& label, const Typed& word, bool quoted);
   Typed label_test(Operation operation, const ast::Expr& value, const ast::Name& label, Span span,

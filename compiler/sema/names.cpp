@@ -421,7 +421,28 @@ void Names::add(const ast::Feeling& feeling) {
     add_variable({feeling.name, 0, &feeling, vm::VariableKind::feeling, {}}, globals_);
 }
 
+// `CHECK proximity OF DISTANCE`: the two words of a channel, torn apart.
+bool Names::tears_channel(const ast::Check& check) const {
+  const auto* const operand =
+      check.operand ? std::get_if<ast::Operand>(&check.operand->node) : nullptr;
+  const auto sensor = find_sensor(check.name.text);
+  return sensor && operand != nullptr && !operand->channel &&
+         std::ranges::any_of(robot_.sensors[*sensor].channels, [&](const ChannelConfig& channel) {
+           return same_name(channel.name.text, operand->name.text);
+         });
+}
+
 void Names::add(const ast::Check& check) {
+  if (tears_channel(check)) {
+    const std::string sensor(check.name.text);
+    const std::string channel(std::get<ast::Operand>(check.operand->node).name.text);
+    diagnostics_
+        .report(Code::E0101,
+                "a CHECK has a name of its own, and " + check.name.shown() + " is a sensor")
+        .label(check.name.span)
+        .helps("write `CHECK " + sensor + "_words OF " + sensor + " " + channel + "`");
+    return;
+  }
   if (!claim_operand(check.name)) return;
   VariableName variable{check.name, 0, &check, vm::VariableKind::band, {}};
   for (const ast::Band& band : check.bands)

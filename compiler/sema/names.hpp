@@ -149,6 +149,7 @@ private:
   void add(const ast::List& list);
   void add(const ast::Feeling& feeling);
   void add(const ast::Check& check);
+  bool tears_channel(const ast::Check& check) const;
   void add(const ast::Safety& safety) { claim(safety.name); }
   template <typename Other>
   void add(const Other&) {}  // has no name

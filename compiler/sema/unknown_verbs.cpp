@@ -21,6 +21,12 @@ constexpr ForeignVerb kForeignVerbs[] = {
     {"SLEEP", "WAIT", "a pause is made with WAIT"},
     {"DELAY", "WAIT", "a pause is made with WAIT"},
     {"PAUSE", "WAIT", "a pause is made with WAIT"},
+    {"ADD", "", "what is remembered is changed with RAISE: `RAISE visits BY 1`"},
+    {"INCREASE", "RAISE", "what is remembered is changed with RAISE: `RAISE visits BY 1`"},
+    {"INCREMENT", "RAISE", "what is remembered is changed with RAISE: `RAISE visits BY 1`"},
+    {"SUBTRACT", "", "what is remembered is changed with LOWER: `LOWER visits BY 1`"},
+    {"DECREASE", "LOWER", "what is remembered is changed with LOWER: `LOWER visits BY 1`"},
+    {"DECREMENT", "LOWER", "what is remembered is changed with LOWER: `LOWER visits BY 1`"},
 };
 
 // What may begin a line, or go on with the one before.
@@ -33,6 +39,11 @@ std::vector<std::string> keywords_of_lines() {
 }
 
 }  // namespace
+
+void doubt_keyword(Diagnostic& diagnostic) {
+  for (Fix& fix : diagnostic.fixes)
+    if (is_keyword(fix.replacement)) fix.applicability = Applicability::likely;
+}
 
 void suggest_perform(Diagnostic& diagnostic, const ast::Name& motion) {
   const std::string better = std::string(kPerform) + " " + std::string(motion.text);
@@ -95,10 +106,11 @@ bool Commands::is_foreign(const ast::Command& command) {
   }
   for (const ForeignVerb& foreign : kForeignVerbs) {
     if (!same_name(foreign.spelling, command.verb.text)) continue;
-    diagnostics_.report(Code::E0501, "there is no verb " + command.verb.shown())
-        .label(command.verb.span)
-        .helps(std::string(foreign.help))
-        .fix(command.verb.span, std::string(foreign.meant), Applicability::likely);
+    Diagnostic& d = diagnostics_.report(Code::E0501, "there is no verb " + command.verb.shown())
+                        .label(command.verb.span)
+                        .helps(std::string(foreign.help));
+    if (!foreign.meant.empty())
+      d.fix(command.verb.span, std::string(foreign.meant), Applicability::likely);
     return true;
   }
   return false;
@@ -125,8 +137,7 @@ void Commands::report_unknown_verb(const ast::Command& command) {
   candidates.insert(candidates.end(), keywords.begin(), keywords.end());
   for (const std::string_view word : {kPerform, kFollow, kRestart})
     candidates.emplace_back(word);
-  did_you_mean(d, verb.span, verb.text, candidates);
-  if (!d.help.empty()) return;
+  if (did_you_mean(d, verb.span, verb.text, candidates)) return doubt_keyword(d);
   // It may be one that nothing here knows: as a rule `USE` brought a file that needs more.
   const auto devices = devices_with(verb.text);
   if (devices.empty() && !verbs.empty()) d.helps("it could be " + list_names(verbs));

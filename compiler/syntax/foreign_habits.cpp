@@ -1,5 +1,6 @@
 // Habits that people bring along from other languages. What the lexer can tell by itself (`&&`, braces, comments) is said
 // there; see habits.hpp.
+#include "compiler/syntax/foreign_units.hpp"
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/mistaken_line.hpp"
@@ -17,7 +18,8 @@ public:
     using Habit = std::optional<Edit> (ForeignHabits::*)();
     for (const Habit habit :
          {&ForeignHabits::name_of_test, &ForeignHabits::rule_with_if, &ForeignHabits::foreign_else,
-          &ForeignHabits::declaration, &ForeignHabits::definition, &ForeignHabits::text_in_brackets,
+          &ForeignHabits::head, &ForeignHabits::comparison, &ForeignHabits::declaration,
+          &ForeignHabits::definition, &ForeignHabits::text_in_brackets,
           &ForeignHabits::set_with_sign, &ForeignHabits::assignment, &ForeignHabits::colon,
           &ForeignHabits::end_of_what, &ForeignHabits::truth, &ForeignHabits::decimal_comma}) {
       if (auto edit = (this->*habit)()) return edit;
@@ -47,7 +49,8 @@ private:
     const bool outside = stop_ == begin_ && (!block || is(*block, Kinds::BEHAVIOR));
     const bool foreign = is_any_name(stop_, {"ON", "WHENEVER", "UPON", "ONCE"}) &&
                          (has(stop_, end_, Kinds::DO) || is(end_ + 1, Kinds::DO));
-    if (!outside || !(is(stop_, Kinds::IF) || foreign)) return std::nullopt;
+    if (!outside || is(stop_ + 1, Kinds::START) || !(is(stop_, Kinds::IF) || foreign))
+      return std::nullopt;
     report(Code::E0010,
            foreign ? "a rule begins with WHEN, not with " + quote(stop_)
                    : "IF asks once, inside a rule; a rule of its own begins with WHEN",
@@ -55,6 +58,109 @@ private:
         .helps("write `WHEN` in the place of this " + quote(stop_))
         .fix(tokens_[stop_].span, "WHEN", Applicability::likely);
     return change(stop_, 1, {{Kinds::WHEN, tokens_[stop_].span}});
+  }
+
+  // `ON START`, `ATSTART`, `AFTER 5s DO`, `import moves`, outside of a rule
+  std::optional<Edit> head() {
+    const auto block = open_block();
+    if (stop_ != begin_ || (block && !is(*block, Kinds::BEHAVIOR))) return std::nullopt;
+    const Span here = tokens_[stop_].span;
+    const bool apart = is_any_name(stop_, {"ON", "UPON"}) && is(stop_ + 1, Kinds::START);
+    if (apart || is_any_name(stop_, {"ATSTART", "AT_START", "ONSTART", "ON_START"})) {
+      const Span all = apart ? span(stop_, stop_ + 2) : here;
+      report(Code::E0007, "`" + std::string(source_.text(all)) + "` is written `AT START` in RSL",
+             all)
+          .fix(all, "AT START", Applicability::likely);
+      return change(stop_, apart ? 2 : 1, {{Kinds::AT, here}, {Kinds::START, all}});
+    }
+    const bool asks = is(stop_ + 2, Kinds::DO) || is(stop_ + 3, Kinds::DO);
+    if (is_any_name(stop_, {"AFTER", "IN"}) && is(stop_ + 1, Kinds::QUANTITY) && asks) {
+      const std::string time(text(stop_ + 1));
+      report(Code::E0010, "no rule begins with " + quote(stop_), here)
+          .helps("once, so long after the start: `AT START DO`, and then `WAIT " + time + "`")
+          .helps("again and again: `EVERY " + time + " DO`");
+      return change(stop_, 1, {{Kinds::EVERY, here}});
+    }
+    if (block || !is_any_name(stop_, {"IMPORT", "INCLUDE", "USING", "REQUIRE"}) ||
+        end_ != stop_ + 2)
+      return std::nullopt;
+    report(Code::E0001, "a module is brought in with USE", here)
+        .helps("write `USE " + std::string(text(stop_ + 1)) + "`")
+        .fix(here, "USE", Applicability::likely);
+    return change(stop_, 2);
+  }
+
+  // `touch LEVEL EQUALS 3`, `IS AT LEAST 3`, `red_button WAS pressed`
+  std::optional<Edit> comparison() {
+    for (const std::size_t at : {stop_ - 1, stop_, stop_ - 2, before_ - 1}) {
+      if (at < 2 || at >= tokens_.size() || !asks_before(at)) continue;
+      for (const Phrase& phrase : kPhrases) {
+        const std::size_t end = end_of(phrase.words, at);
+        const bool reaches = end >= stop_ || (end == before_ && is(end, Kinds::QUANTITY));
+        const bool compares = phrase.kind == Kinds::CHANGES || !is(end, Kinds::NEWLINE);
+        if (end == at || !reaches || !compares) continue;
+        return written_as(phrase, is(at - 1, Kinds::IS) ? at - 1 : at, end);
+      }
+    }
+    return std::nullopt;
+  }
+
+  struct Phrase {
+    std::string_view words;
+    TokenKind kind;
+    std::string_view sign;
+  };
+  static constexpr Phrase kPhrases[] = {
+      {"EQUALS", Kinds::EQUAL, "="},
+      {"EQUAL TO", Kinds::EQUAL, "="},
+      {"EQUAL", Kinds::EQUAL, "="},
+      {"WAS", Kinds::IS, "IS"},
+      {"ARE", Kinds::IS, "IS"},
+      {"CONTAINS", Kinds::IS, "IS"},
+      {"AT LEAST", Kinds::GREATER_EQUAL, ">="},
+      {"AT MOST", Kinds::LESS_EQUAL, "<="},
+      {"REACHES", Kinds::GREATER_EQUAL, ">="},
+      {"EXCEEDS", Kinds::GREATER, ">"},
+      {"ABOVE", Kinds::GREATER, ">"},
+      {"OVER", Kinds::GREATER, ">"},
+      {"BELOW", Kinds::LESS, "<"},
+      {"UNDER", Kinds::LESS, "<"},
+      {"AFTER", Kinds::FOR, "FOR"},
+      {"INCREASES", Kinds::CHANGES, "CHANGES"},
+      {"DECREASES", Kinds::CHANGES, "CHANGES"},
+      {"RISES", Kinds::CHANGES, "CHANGES"},
+      {"FALLS", Kinds::CHANGES, "CHANGES"},
+  };
+
+  // Behind the words, if they stand there.
+  std::size_t end_of(std::string_view words, std::size_t at) const {
+    const std::size_t begin = at;
+    while (!words.empty()) {
+      const std::size_t length = std::min(words.find(' '), words.size());
+      if (!ascii::same(text(at), words.substr(0, length))) return begin;
+      words.remove_prefix(std::min(length + 1, words.size()));
+      ++at;
+    }
+    return at;
+  }
+
+  // A word is asked for with IS, a number compared with a sign.
+  Edit written_as(const Phrase& phrase, std::size_t begin, std::size_t end) {
+    const Span all = span(begin, end);
+    const std::string what = "`" + std::string(source_.text(all)) + "`";
+    if (phrase.kind == Kinds::CHANGES) {
+      report(Code::E0001, "no condition has " + what, all)
+          .helps("`CHANGES` asks for any change, up or down; `> 3` for what is above a border");
+      return change(begin, end - begin, {{Kinds::CHANGES, all}});
+    }
+    const bool sign = is_relation(phrase.kind), word = is(end, Kinds::STRING);
+    const bool asks_number = phrase.kind == Kinds::IS && is(end, Kinds::QUANTITY);
+    TokenKind kind = sign && word ? TokenKind(Kinds::IS) : phrase.kind;
+    if (asks_number) kind = Kinds::EQUAL;
+    const std::string better = sign && word ? "IS" : asks_number ? "=" : std::string(phrase.sign);
+    report(Code::E0001, "in a condition " + what + " is written `" + better + "`", all)
+        .fix(all, better, Applicability::likely);
+    return change(begin, end - begin, {{kind, all}});
   }
 
   // `ELIF x > 3 DO`
@@ -126,6 +232,8 @@ private:
     const std::size_t open = says ? statement_ + 1 : is(stop_, Kinds::OPEN) ? stop_ : stop_ - 1;
     if (!is(open, Kinds::OPEN) || !(says || is(open + 1, Kinds::STRING))) return std::nullopt;
     const std::size_t close = closing(open), end = std::min(close + 1, end_);
+    if (open == statement_ + 1 && is_call(open) && is_defined(text(statement_)))
+      return std::nullopt;  // a DEFINE is given a text
     const bool prints = is_name(statement_, "PRINT");
     const std::string command = prints ? "LOG" : text(statement_, open);
     const std::string better = command + " " + text(open + 1, close);
@@ -133,6 +241,19 @@ private:
         .helps("write `" + better + "`")
         .fix(span(statement_, end), better, Applicability::likely);
     return change(open, end - open, Tokens(token_at(open + 1), token_at(close)));
+  }
+
+  // Is there a DEFINE of this name in the text?
+  bool is_defined(std::string_view name) const {
+    constexpr std::string_view word = "DEFINE ";
+    const std::string_view program = source_.text();
+    for (std::size_t at = program.find(word); at != std::string_view::npos;
+         at = program.find(word, at + 1)) {
+      const std::size_t first = program.find_first_not_of(' ', at + word.size());
+      if (first != std::string_view::npos && ascii::same(program.substr(first, name.size()), name))
+        return true;
+    }
+    return false;
   }
 
   // `SET x = 5`
@@ -251,15 +372,22 @@ private:
     if (stop_ == 0 || !is(stop_, Kinds::COMMA)) return std::nullopt;
     if (!is(stop_ - 1, Kinds::QUANTITY) || !is(stop_ + 1, Kinds::QUANTITY)) return std::nullopt;
     const Span all = span(stop_ - 1, stop_ + 2);
-    const char last = text(stop_ - 1).back();
-    const bool has_unit = last < '0' || last > '9';
+    const auto ends_with_digit = [this](std::size_t at) {
+      return text(at).back() >= '0' && text(at).back() <= '9';
+    };
     const std::size_t behind = tokens_[stop_ - 1].span.end + 1;
-    if (has_unit || tokens_[stop_ + 1].span.begin != behind) return std::nullopt;
-    const std::string better = text(stop_ - 1, stop_) + "." + text(stop_ + 1, stop_ + 2);
-    diagnostics_.report(Code::E0004, "a number has a point in front of its decimals, not a comma")
-        .label(all, "write `" + better + "`")
-        .fix(all, better, Applicability::likely);
-    return change(stop_, 2);
+    if (!ends_with_digit(stop_ - 1) || tokens_[stop_ + 1].span.begin != behind) return std::nullopt;
+    // `2,5 s`
+    const bool apart = is(stop_ + 2, Kinds::NAME) && ends_with_digit(stop_ + 1);
+    std::string decimals = text(stop_ + 1, stop_ + 2);
+    Span whole = all;
+    if (apart) {
+      const std::string_view unit = text(stop_ + 2), ours = unit_word(unit);
+      decimals += ours.empty() ? unit : ours;
+      whole.end = tokens_[stop_ + 2].span.end;
+    }
+    report_decimal_comma(diagnostics_, whole, text(stop_ - 1), decimals);
+    return change(stop_, apart ? 3 : 2);
   }
 };
 

@@ -1,6 +1,9 @@
 // See foreign_units.hpp.
 #include "compiler/syntax/foreign_units.hpp"
 
+#include <algorithm>
+#include <string>
+
 #include "compiler/source/ascii.hpp"
 
 namespace robosync::compiler {
@@ -8,9 +11,42 @@ namespace robosync::compiler {
 std::string_view foreign_unit(std::string_view unit) {
 #define FOREIGN_UNIT(spelling, one) \
   if (ascii::same(unit, spelling)) return "1" spelling " is " one;
+#define UNIT_WORD(word, ours)
 #include "compiler/syntax/foreign_units.def"
+#undef UNIT_WORD
 #undef FOREIGN_UNIT
   return {};
+}
+
+std::string_view unit_word(std::string_view unit) {
+#define FOREIGN_UNIT(spelling, one)
+#define UNIT_WORD(word, ours) \
+  if (ascii::same(unit, word)) return ours;
+#include "compiler/syntax/foreign_units.def"
+#undef UNIT_WORD
+#undef FOREIGN_UNIT
+  return {};
+}
+
+void report_decimal_comma(Diagnostics& diagnostics, Span place, std::string_view whole,
+                          std::string_view decimals) {
+  const std::size_t digits = std::min(decimals.find_first_not_of("0123456789"), decimals.size());
+  constexpr std::size_t thousands = 3;
+  const bool may_be_thousand = digits == thousands && whole.find_first_not_of('0') == 0;
+  const std::string fraction = std::string(whole) + "." + std::string(decimals);
+  const std::string thousand = std::string(whole) + std::string(decimals);
+  if (!may_be_thousand) {
+    diagnostics.report(Code::E0004, "a number has a point in front of its decimals, not a comma")
+        .label(place, "write `" + fraction + "`")
+        .fix(place, fraction, Applicability::likely);
+    return;
+  }
+  Diagnostic& message = diagnostics.report(Code::E0004, "a number has no comma in it")
+                            .label(place, "write `" + thousand + "`");
+  if (decimals.substr(0, digits) == "000")
+    message.fix(place, thousand, Applicability::likely);
+  else
+    message.helps("or, if these are its decimals, `" + fraction + "`");
 }
 
 }  // namespace robosync::compiler

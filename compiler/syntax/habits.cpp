@@ -28,15 +28,43 @@ public:
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Habit = std::optional<Edit> (Habits::*)();
     for (const Habit habit :
-         {&Habits::kept, &Habits::value_of_text, &Habits::list, &Habits::of, &Habits::timer,
-          &Habits::table, &Habits::else_if, &Habits::is_number, &Habits::comparison_in_words,
-          &Habits::expect, &Habits::function, &Habits::parameters, &Habits::worked_out}) {
+         {&Habits::name_of_words, &Habits::kept, &Habits::value_of_text, &Habits::value_of_truth,
+          &Habits::list, &Habits::of, &Habits::timer, &Habits::table, &Habits::band,
+          &Habits::else_if, &Habits::is_number, &Habits::one_of_words, &Habits::words_in_brackets,
+          &Habits::expect, &Habits::random, &Habits::function, &Habits::parameters,
+          &Habits::worked_out, &Habits::outside}) {
       if (auto edit = (this->*habit)()) return edit;
     }
     return std::nullopt;
   }
 
 private:
+  // `REMEMBER number of visits = 0`
+  std::optional<Edit> name_of_words() {
+    const std::size_t first = statement_ + 1;
+    const bool counts = begins_with(Kinds::REMEMBER) || begins_with(Kinds::LET);
+    if (!(counts || begins_with(Kinds::STATE)) || (stop_ != first && stop_ != first + 1))
+      return std::nullopt;
+    std::string better;
+    std::size_t at = first;
+    for (; at < end_ && is_word(at); ++at)
+      better += (better.empty() ? "" : "_") + std::string(text(at));
+    if (at < first + 2 || !is(at, counts ? Kinds::EQUAL : Kinds::COLON)) return std::nullopt;
+    const Span name = span(first, at);
+    report(Code::E0001, "a name is one word", name)
+        .helps("write `" + better + "`")
+        .fix(name, better, Applicability::likely);
+    return change(first, at - first, {{Kinds::NAME, name}});
+  }
+  bool is_word(std::size_t at) const {
+    const std::string_view word = text(at);
+    return !word.empty() && !is(at, Kinds::KEPT) && !is(at, Kinds::QUANTITY) &&
+           std::ranges::all_of(word, [](char c) {
+             return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+                    (c >= '0' && c <= '9');
+           });
+  }
+
   // `LET x = 3 KEPT`, `REMEMBER x KEPT = 0`
   std::optional<Edit> kept() {
     if (begins_with(Kinds::REMEMBER)) return remember_kept();
@@ -115,6 +143,23 @@ private:
     ++word.begin;
     --word.end;
     return change(stop_, 1, {{Kinds::NAME, word}});
+  }
+
+  // `REMEMBER awake = TRUE`, `SET awake TO FALSE`
+  std::optional<Edit> value_of_truth() {
+    const bool holds = begins_with(Kinds::REMEMBER) || begins_with(Kinds::LET);
+    if (!(is(stop_, Kinds::TRUE) || is(stop_, Kinds::FALSE)) || stop_ != statement_ + 3 ||
+        !(holds || begins_with(Kinds::SET)) || !is(stop_ - 1, holds ? Kinds::EQUAL : Kinds::TO))
+      return std::nullopt;
+    const std::string number = is(stop_, Kinds::TRUE) ? "1" : "0";
+    const std::string name(text(statement_ + 1));
+    const std::string what = holds ? "a " + std::string(text(statement_)) + " holds a number"
+                                   : std::string("SET takes a number or a word of a STATE");
+    report(Code::E0306, what + ", and " + quote(stop_) + " is none", tokens_[stop_].span)
+        .helps("write 1 for true and 0 for false, and ask `" + name + " = 1`")
+        .helps("one of several words is a STATE: `STATE mood: asleep, awake`, `mood IS awake`")
+        .fix(tokens_[stop_].span, number, Applicability::likely);
+    return change(stop_, 1, {missing(Kinds::QUANTITY, stop_)});
   }
 
   // `LIST words = "a"`, `LIST words "a"`, `LIST words: ("a", "b")`, one text a line
@@ -213,6 +258,24 @@ private:
     return rows_dropped();
   }
 
+  // A line of a CHECK whose word stands last: `OTHERWISE far`, `BELOW 30cm near`
+  std::optional<Edit> band() {
+    if (!is(0, Kinds::CHECK) || begin_ == 0 ||
+        !is_one_of(tokens_[begin_].kind, {Kinds::OTHERWISE, Kinds::BELOW, Kinds::ABOVE}))
+      return std::nullopt;
+    const std::size_t word = begin_ + (is(begin_, Kinds::OTHERWISE) ? 1 : 2);
+    if (end_ != word + 1 || !is(word, Kinds::NAME) ||
+        (word == begin_ + 2 && !is(begin_ + 1, Kinds::QUANTITY)))
+      return std::nullopt;
+    const std::string better = std::string(text(word)) + " " + text(begin_, word);
+    report(Code::E0001, "in a line of a CHECK the word stands first", span(begin_, end_))
+        .helps("write `" + better + "`")
+        .fix(span(begin_, end_), better, Applicability::likely);
+    Tokens turned{tokens_[word], tokens_[begin_]};
+    if (word == begin_ + 2) turned.push_back(tokens_[begin_ + 1]);
+    return change(begin_, end_ - begin_, std::move(turned));
+  }
+
   // `MOTION wave OF left_arm AND right_arm`
   std::optional<Edit> columns() {
     if (!is(0, Kinds::MOTION) || !is(stop_, Kinds::AND)) return std::nullopt;
@@ -284,18 +347,59 @@ private:
     return change(stop_ - 1, 1, {{Kinds::EQUAL, tokens_[stop_ - 1].span}});
   }
 
-  // `idle OVER 30s`, `touch LEVEL ABOVE 3`
-  std::optional<Edit> comparison_in_words() {
-    const bool more = is(stop_, Kinds::OVER) || is(stop_, Kinds::ABOVE);
-    const bool less = is(stop_, Kinds::BELOW);
-    const bool condition = begins_with(Kinds::WHEN) || begins_with(Kinds::WHILE) ||
-                           begins_with(Kinds::IF) || begins_with(Kinds::ELSE_IF);
-    if (!condition || !(more || less)) return std::nullopt;
-    const std::string sign = more ? ">" : "<";
-    report(Code::E0001, "in a condition " + quote(stop_) + " is written `" + sign + "`",
-           tokens_[stop_].span)
-        .fix(tokens_[stop_].span, sign, Applicability::likely);
-    return change(stop_, 1, {{more ? Kinds::GREATER : Kinds::LESS, tokens_[stop_].span}});
+  // Where what is asked begins: behind the word that asks, an AND, an OR, a NOT or a bracket.
+  std::size_t asked_from(std::size_t at) const {
+    while (at > 0 && (is(at - 1, Kinds::NAME) || is(at - 1, Kinds::QUANTITY)))
+      --at;
+    return at;
+  }
+
+  // `voice WORD IS "stop" OR "go"`
+  std::optional<Edit> one_of_words() {
+    const bool joined = is(stop_ - 1, Kinds::OR) || is(stop_ - 1, Kinds::AND);
+    if (stop_ < 4 || !is(stop_, Kinds::STRING) || !joined || !asks_before(stop_))
+      return std::nullopt;
+    const std::size_t word = stop_ - 2;
+    const bool negated = is(word - 1, Kinds::NOT);
+    const std::size_t sign = word - (negated ? 2 : 1);
+    const std::size_t first = asked_from(sign);
+    if (!is(sign, Kinds::IS) || first == sign) return std::nullopt;
+    const std::string question = text(first, word);
+    Diagnostic& message =
+        report(Code::E0001, "what stands behind " + quote(stop_ - 1) + " asks nothing by itself",
+               tokens_[stop_].span);
+    message.helps("say again what is asked: `" + question + " " + std::string(text(word)) + " " +
+                  std::string(negated ? "AND" : text(stop_ - 1)) + " " + question + " " +
+                  std::string(text(stop_)) + "`");
+    Span front = tokens_[stop_].span;
+    front.end = front.begin;
+    if (!negated && is(stop_ - 1, Kinds::OR) && !is(first - 1, Kinds::NOT))
+      message.fix(front, question + " ", Applicability::likely);
+    return change(stop_, 0,
+                  Tokens(tokens_.begin() + static_cast<std::ptrdiff_t>(first),
+                         tokens_.begin() + static_cast<std::ptrdiff_t>(word)));
+  }
+
+  // `voice WORD IS ("stop" OR "go")`
+  std::optional<Edit> words_in_brackets() {
+    const bool negated = is(stop_ - 1, Kinds::NOT);
+    const std::size_t sign = stop_ - (negated ? 2 : 1);
+    if (stop_ < 3 || !is(stop_, Kinds::OPEN) || !is(sign, Kinds::IS)) return std::nullopt;
+    const std::size_t first = asked_from(sign), close = closing(stop_);
+    if (first == sign || close >= end_ || close < stop_ + 2) return std::nullopt;
+    const std::string question = text(first, stop_);
+    std::string better = question;
+    for (std::size_t at = stop_ + 1; at < close; ++at) {
+      if (!is_one_of(tokens_[at].kind, {Kinds::NAME, Kinds::STRING, Kinds::OR, Kinds::COMMA}))
+        return std::nullopt;
+      const bool next = is(at, Kinds::OR) || is(at, Kinds::COMMA);
+      better += " " + (next ? (negated ? "AND " : "OR ") + question : std::string(text(at)));
+    }
+    report(Code::E0001, "IS asks for one word, and no brackets stand behind it",
+           span(stop_, close + 1))
+        .helps("write `" + better + "`")
+        .fix(span(first, close + 1), negated ? better : "(" + better + ")", Applicability::likely);
+    return change(stop_, close + 1 - stop_, {tokens_[stop_ + 1]});
   }
 
   // Steps of a TEST.
@@ -343,6 +447,27 @@ private:
            span(first, first + 2))
         .helps("write `" + text(begin_, end_) + " WITHIN 2s`");
     return change(end_, 0, {missing(Kinds::WITHIN, end_), missing(Kinds::QUANTITY, end_)});
+  }
+
+  // `RANDOM(6)`, `RANDOM()`, `RANDOM(1, 2, 3)`
+  std::optional<Edit> random() {
+    std::size_t open = stop_;
+    while (open > begin_ && !(is(open, Kinds::OPEN) && is(open - 1, Kinds::RANDOM)))
+      --open;
+    if (open == begin_) return std::nullopt;
+    const std::size_t close = closing(open);
+    const bool comma = has_comma(open + 1, stop_);
+    const bool few = is(stop_, Kinds::CLOSE) && stop_ == close && !comma;
+    const bool many = is(stop_, Kinds::COMMA) && comma && close < end_;
+    if (!few && !many) return std::nullopt;
+    report(Code::E0411, "`RANDOM` wants two numbers", tokens_[open - 1].span)
+        .helps("it draws one from the first to the second: `RANDOM(1, 6)`");
+    if (many) return change(stop_, close - stop_);
+    Tokens lacking;
+    if (stop_ == open + 1) lacking.push_back(missing(Kinds::QUANTITY, stop_));
+    lacking.push_back(missing(Kinds::COMMA, stop_));
+    lacking.push_back(missing(Kinds::QUANTITY, stop_));
+    return change(stop_, 0, std::move(lacking));
   }
 
   // `ROUND touch LEVEL`, `MIN(1, 2, 3)`, `MIN()`
@@ -467,9 +592,51 @@ private:
            (is_operator(tokens_[stop_].kind) && first < stop_ && may_begin(first));
   }
 
-  // Elsewhere a misspelt preposition stands in front of the sign: `MOVE head TOx -20deg`.
   bool may_begin(std::size_t first) const {
     return is_preposition(tokens_[first - 1].kind) || is_name(statement_, "SAY");
+  }
+
+  // `SHOW face happy` outside of all blocks
+  std::optional<Edit> outside() {
+    if (stop_ != begin_ || open_block() || !contains(expected_, Kinds::WHEN) ||
+        !contains(expected_, Kinds::DEFINE) || !is_stray(begin_))
+      return std::nullopt;
+    std::size_t last = end_;
+    while (last + 1 < tokens_.size() && is_stray(last + 1))
+      last = end_of_line(last + 1);
+    if (is(last + 1, Kinds::END)) return std::nullopt;  // of a block that has lost its head
+    report(Code::E0001, "no line begins with " + quote(begin_) + " here", tokens_[begin_].span)
+        .helps("commands stand in a rule or in a DEFINE: `WHEN ... DO ... END`");
+    return change(begin_, last - begin_);
+  }
+
+  std::size_t end_of_line(std::size_t at) const {
+    while (at < tokens_.size() && !is(at, Kinds::NEWLINE))
+      ++at;
+    return at;
+  }
+
+  // A line of words that is no question, and no item that has lost its first word.
+  bool is_stray(std::size_t first) const {
+    const std::size_t end = end_of_line(first);
+    const TokenKind kind = tokens_[first].kind;
+    const bool statement =
+        (roles_of(kind) & role::statement) != 0 && (roles_of(kind) & role::opens) == 0;
+    if (!(is(first, Kinds::NAME) || statement) || end < first + 2 ||
+        nearest_keyword(text(first), role::item | role::part | role::after) != nullptr)
+      return false;
+    for (std::size_t at = first; at < end; ++at)
+      if (is_relation(tokens_[at].kind) ||
+          is_one_of(tokens_[at].kind,
+                    {Kinds::IS, Kinds::BECOMES, Kinds::CHANGES, Kinds::DO, Kinds::PRIORITY,
+                     Kinds::COLON, Kinds::OF, Kinds::WITH, Kinds::FROM, Kinds::END}))
+        return false;
+    const bool limit =
+        is(first, Kinds::NAME) && is(first + 1, Kinds::NAME) && is(first + 2, Kinds::TO) &&
+        std::ranges::any_of(text(first), [](char c) { return c >= 'a' && c <= 'z'; });
+    const std::size_t next = end + 1;
+    return !limit && (next >= tokens_.size() || is(next, Kinds::NEWLINE) || is(next, Kinds::END) ||
+                      (roles_of(tokens_[next].kind) & role::after) == 0);
   }
 };
 

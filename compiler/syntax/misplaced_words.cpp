@@ -36,6 +36,9 @@ public:
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Habit = std::optional<Edit> (MisplacedWords::*)();
     for (const Habit habit : {&MisplacedWords::negation,
+                              &MisplacedWords::end_before_else,
+                              &MisplacedWords::rule_in_rule,
+                              &MisplacedWords::do_without_when,
                               &MisplacedWords::lonely_else,
                               &MisplacedWords::then_in_line,
                               &MisplacedWords::commands_with_and,
@@ -130,6 +133,64 @@ private:
     return std::nullopt;
   }
 
+  // `END` on the line above the ELSE
+  std::optional<Edit> end_before_else() {
+    if (!is(stop_, Kinds::ELSE) || before_ >= stop_ || !is(before_, Kinds::END))
+      return std::nullopt;
+    BlockWalk walk(tokens_);
+    for (std::size_t at = 0; at <= before_; ++at)
+      walk.step(at);
+    if (walk.end_was_idle() || !is_one_of(tokens_[walk.closed()].kind, {Kinds::WHEN, Kinds::IF}))
+      return std::nullopt;
+    report(Code::E0010, "no END stands in front of ELSE", tokens_[before_].span)
+        .label(tokens_[walk.closed()].span, "the block begins here", false)
+        .helps("one END closes both sides: behind what the ELSE does")
+        .fix(tokens_[before_].span, "", Applicability::likely);
+    return change(before_, 1);
+  }
+
+  // A WHEN in a response: it stands farther right than the block in which it is.
+  std::optional<Edit> rule_in_rule() {
+    if (stop_ != begin_ ||
+        !is_one_of(tokens_[stop_].kind, {Kinds::WHEN, Kinds::WHILE, Kinds::EVERY}))
+      return std::nullopt;
+    const auto block = open_block();
+    if (!block || !starts_line(tokens_, *block) ||
+        is_one_of(tokens_[*block].kind,
+                  {Kinds::BEHAVIOR, Kinds::SAFETY, Kinds::TEST, Kinds::CHECK, Kinds::MOTION}) ||
+        indentation(tokens_[stop_], source_) <= indentation(tokens_[*block], source_))
+      return std::nullopt;
+    const bool asks_first =
+        !is_one_of(tokens_[*block].kind, {Kinds::DEFINE, Kinds::REPEAT, Kinds::PICK});
+    std::size_t begins = stop_;
+    while (begins < tokens_.size() && !is_one_of(tokens_[begins].kind, {Kinds::DO, Kinds::END}))
+      ++begins;
+    if (!is(begins, Kinds::DO) || (asks_first && !has(*block, stop_, Kinds::DO)))
+      return std::nullopt;
+    report(Code::E0010, quote(stop_) + " cannot stand inside a response", tokens_[stop_].span)
+        .label(tokens_[*block].span, "the response of this goes on up to its END", false)
+        .helps("rules stand one below the other: close the first with `END` before the next begins")
+        .helps("to ask once while the response runs, write `IF`");
+    return change(stop_, begins - stop_,
+                  {missing(Kinds::IF, stop_), missing(Kinds::QUANTITY, stop_),
+                   missing(Kinds::LESS, stop_), missing(Kinds::QUANTITY, stop_)});
+  }
+
+  // `DO SAY "b"` behind the END of a rule
+  std::optional<Edit> do_without_when() {
+    if (!is(stop_, Kinds::DO) || stop_ != begin_ || !(stop_ == 0 || is(before_, Kinds::END)))
+      return std::nullopt;
+    const auto block = open_block();
+    if (block && !is(*block, Kinds::BEHAVIOR)) return std::nullopt;
+    report(Code::E0008, "the line `WHEN` with a condition is missing above this `DO`",
+           tokens_[stop_].span)
+        .helps("a rule begins with `WHEN`, `WHILE`, `EVERY` or `AT START`");
+    return change(stop_, 0,
+                  {missing(Kinds::NEWLINE, stop_), missing(Kinds::WHEN, stop_),
+                   missing(Kinds::QUANTITY, stop_), missing(Kinds::LESS, stop_),
+                   missing(Kinds::QUANTITY, stop_)});
+  }
+
   // An ELSE of a WHILE, an EVERY, a REPEAT: only a WHEN and an IF have one.
   std::optional<Edit> lonely_else() {
     if (!is(stop_, Kinds::ELSE) || stop_ != begin_) return std::nullopt;
@@ -206,6 +267,7 @@ private:
     const bool plain = is_plain_statement(tokens_[stop_].kind);
     const bool named = is(stop_, Kinds::NAME) && stop_ + 1 < end_ && !is(statement_, Kinds::STOP) &&
                        (is_one_of(tokens_[stop_ + 1].kind, {Kinds::NAME, Kinds::STRING}));
+    if (part_of_text()) return comma_missing();
     if (!(plain && is_whole_command()) && !((plain || named) && is_behind_statement()))
       return std::nullopt;
     Span gap = tokens_[stop_ - 1].span;
@@ -217,10 +279,35 @@ private:
     return change(stop_, end_of_command(stop_) - stop_);
   }
 
-  // `STOP arms head`
+  // `LOG "level" touch LEVEL`: the name of a sensor is written small, a verb large.
+  bool part_of_text() const {
+    const bool text = is(statement_, Kinds::LOG) || is(statement_, Kinds::ALERT);
+    const std::string_view name = text_of_name(stop_);
+    const bool small = std::ranges::any_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
+    const bool ends = stop_ + 1 >= statement_end() || is(stop_ + 1, Kinds::COMMA) ||
+                      (is(stop_ + 1, Kinds::NAME) &&
+                       (stop_ + 2 >= statement_end() || is(stop_ + 2, Kinds::COMMA)));
+    return text && small && ends && is(stop_ - 1, Kinds::STRING) && is_behind_statement();
+  }
+  std::string_view text_of_name(std::size_t at) const {
+    return is(at, Kinds::NAME) ? text(at) : std::string_view();
+  }
+
+  Edit comma_missing() {
+    Span gap = tokens_[stop_ - 1].span;
+    gap.begin = gap.end;
+    gap.end = tokens_[stop_].span.begin;
+    report(Code::E0008, "a comma is missing between the parts of a text", tokens_[stop_].span)
+        .helps("write commas between: `" + std::string(text(statement_)) + " " +
+               text(stop_ - 1, stop_) + ", " + text(stop_, statement_end()) + "`")
+        .fix(gap, ", ", Applicability::likely);
+    return change(stop_, 0, {missing(Kinds::COMMA, stop_)});
+  }
+
+  // `STOP arms head`, `STOP arms, head`
   std::optional<Edit> second_stopped() {
-    if (!is(statement_, Kinds::STOP) || stop_ != statement_ + 2 || !is(stop_, Kinds::NAME) ||
-        !is_behind_statement())
+    if (!is(statement_, Kinds::STOP) || stop_ != statement_ + 2 || !is_behind_statement() ||
+        !is_one_of(tokens_[stop_].kind, {Kinds::NAME, Kinds::COMMA, Kinds::AND}))
       return std::nullopt;
     report(Code::E0001, "one name stands behind STOP", tokens_[stop_].span)
         .helps("write a STOP for each, on a line of its own, or give them a group in robot.json");
@@ -258,6 +345,20 @@ private:
     if (!is(stop_, Kinds::TIMES) || stop_ < statement_ + 2 || !is(stop_ - 1, Kinds::NAME) ||
         !is_command())
       return std::nullopt;
+    const Span here = tokens_[stop_].span;
+    if (is(stop_ + 1, Kinds::QUANTITY)) {
+      const Span both = span(stop_, stop_ + 2);
+      const std::string better = std::string(text(stop_ + 1)) + " TIMES";
+      report(Code::E0001, "the number stands in front of TIMES", both)
+          .helps("write `" + better + "`")
+          .fix(both, better, Applicability::likely);
+      return change(stop_, 2, {tokens_[stop_ + 1], tokens_[stop_]});
+    }
+    if (stop_ == statement_ + 2) {
+      report(Code::E0008, "this does not say how many TIMES", here)
+          .helps("write a number in front of it: `2 TIMES`");
+      return change(stop_, 0, {missing(Kinds::QUANTITY, stop_)});
+    }
     const Token name = tokens_[stop_ - 1];
     const std::string better = "(" + std::string(text(stop_ - 1)) + ")";
     report(Code::E0505, "a number that has a name stands in brackets here", name.span)

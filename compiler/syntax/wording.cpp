@@ -312,6 +312,14 @@ private:
       message.helps("RSL does not have this unit: " + std::string(ours));
       return true;
     }
+    if (const std::string_view ours = unit_word(unit); !ours.empty()) {
+      const std::string better = digits + std::string(ours);
+      message.message = "this unit is written " + std::string("`") + std::string(ours) + "` in RSL";
+      message.helps("write `" + better + "`")
+          .fix({gap.file, number.span.begin, tokens_[edit_.at].span.end}, better,
+               Applicability::likely);
+      return true;
+    }
     message.helps("if it is a unit, write it without a space: `" + digits + unit + "`")
         .fix(gap, "", Applicability::likely);
     return true;
@@ -350,7 +358,34 @@ private:
     }
   }
 
+  // An IF whose END stands in front of an ELSE that was meant for it, so that a later END is one too many.
+  std::optional<IdleEnd> ended_before_else() const {
+    BlockWalk walk(tokens_);
+    for (std::size_t at = 0; at < edit_.at; ++at) {
+      walk.step(at);
+      if (tokens_[at].kind != Kinds::END || walk.end_was_idle()) continue;
+      std::size_t next = at + 1;
+      while (next < edit_.at && tokens_[next].kind == Kinds::NEWLINE)
+        ++next;
+      const std::size_t block = walk.closed();
+      if (tokens_[next].kind == Kinds::ELSE && tokens_[block].kind == Kinds::IF &&
+          starts_line(tokens_, next) && starts_line(tokens_, block) &&
+          indentation(tokens_[next], source_) == indentation(tokens_[block], source_))
+        return IdleEnd{block, at};
+    }
+    return std::nullopt;
+  }
+
   void idle_end() {
+    if (const auto early = ended_before_else()) {
+      const Span end = tokens_[early->by].span;
+      diagnostics_.report(Code::E0010, "no END stands in front of ELSE")
+          .label(end)
+          .label(tokens_[early->closed].span, "the block begins here", false)
+          .helps("one END closes both sides: behind what the ELSE does")
+          .fix(end, "", Applicability::likely);
+      return;
+    }
     Diagnostic& message = diagnostics_.report(Code::E0006, "this `END` closes nothing");
     message.label(tokens_[edit_.at].span);
     if (const auto early = early_end(tokens_, edit_.at, source_)) {

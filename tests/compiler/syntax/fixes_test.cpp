@@ -220,9 +220,14 @@ TEST_CASE("a fix is certain only where nothing else can be meant") {
   const std::string robot = read_file(fs::path(ROBOSYNC_SOURCE_DIR) / "docs/robot.json");
   const std::string rest = " DO\n  LOG \"x\"\nEND\n";
   for (const std::string& program :
-       {"touch LEVEL > 3" + rest,                            // WHEN or WHILE
-        " greetings\nWHEN touch LEVEL > 3" + rest,           // USE
-        std::string("LIST words: \"one\", , \"two\"\n")}) {  // a text is missing
+       {"touch LEVEL > 3" + rest,                         // WHEN or WHILE
+        " greetings\nWHEN touch LEVEL > 3" + rest,        // USE
+        std::string("LIST words: \"one\", , \"two\"\n"),  // a text is missing
+        std::string("REMEMBER n = 0\nAT START DO\n  SET n TO n // 2\nEND\n"),
+        std::string("AT START DO\n  SHOW face tick\nEND\n"),  // PICK
+        std::string("AT START DO\n  MOVE the head TO 30deg\nEND\n"),
+        std::string("REMEMBER n = 0\nAT START DO\n  ADD 1 TO n\nEND\n"),
+        std::string("AT START DO\n  SAY 'It's nice'\nEND\n")}) {
     const Result result = compiled(program, robot);
     CAPTURE(program, render_human(result.diagnostics, result.sources, false));
     CHECK(result.diagnostics.errors() == 1);
@@ -255,6 +260,19 @@ TEST_CASE("a fix that is likely does not leave out what says the opposite") {
       {"WHEN touch LEVEL NOT > 4" + rest, "WHEN touch LEVEL <= 4" + rest},
       {"WHEN touch LEVEL NOT = 4" + rest, "WHEN touch LEVEL <> 4" + rest},
       {words + "WHEN mood BECOMES NOT happy" + rest, words + "WHEN mood IS NOT happy" + rest},
+      {words + "WHEN mood isn't happy" + rest, words + "WHEN mood IS NOT happy" + rest},
+      {"WHEN wave_detect isn't TRUE" + rest, "WHEN wave_detect IS FALSE" + rest},
+      {"WHEN proximity DISTANCE < 80,5 cm" + rest, "WHEN proximity DISTANCE < 80.5cm" + rest},
+      {"AT START DO\n  WAIT 1,000ms\nEND\n", "AT START DO\n  WAIT 1s\nEND\n"},
+      {"AT START DO\n  WAIT 2'500ms\nEND\n", "AT START DO\n  WAIT 2.5s\nEND\n"},
+      {"WHEN voice WORD IS (\"stop\" OR \"go\") FOR 2s" + rest,
+       "WHEN voice WORD IS \"stop\" OR voice WORD IS \"go\" FOR 2s" + rest},
+      {"REMEMBER n = 7\nAT START DO\n  SET n TO n // 2\nEND\n",
+       "REMEMBER n = 7\nAT START DO\n  SET n TO (n - n MOD 2) / 2\nEND\n"},
+      {"REMEMBER n = 7\nAT START DO\n  SET n TO (n%2)\nEND\n",
+       "REMEMBER n = 7\nAT START DO\n  SET n TO n MOD 2\nEND\n"},
+      {"TEST \"a\"\n  AT 1s red_button = \"presed\"\nEND\nAT START DO\n  LOG \"x\"\nEND\n",
+       "TEST \"a\"\n  AT 1s red_button = \"pressed\"\nEND\nAT START DO\n  LOG \"x\"\nEND\n"},
       {"AT START DO\n  WAIT 1s THEN LOG \"x\"\nEND\n",
        "AT START DO\n  WAIT 1s\n  THEN\n  LOG \"x\"\nEND\n"},
   };

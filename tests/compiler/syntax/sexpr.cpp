@@ -289,7 +289,8 @@ std::string show(const Safety& n) {
 }
 
 std::string show(const TestFeed& n) {
-  return list({"feed", show(n.at), show(n.target), n.text ? in_quotes(n.text->text) : show(n.value)});
+  return list(
+      {"feed", show(n.at), show(n.target), n.text ? in_quotes(n.text->text) : show(n.value)});
 }
 std::string show(const ExpectCommand& n) {
   return list({n.no ? "expect-no" : "expect", n.times ? show(*n.times) : "", show(n.command),
