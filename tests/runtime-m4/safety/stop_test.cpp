@@ -99,7 +99,7 @@ TEST_CASE(
   rig.run(100);
   rig.runtime.stop();
   rig.run(200);
-  CHECK(rig.only("interrupt") == "100 #1 interrupt r1 by stop\n");
+  CHECK(rig.only("interrupt") == "100 #2 interrupt r1 by stop\n");
   rig.feed(0, 5);
   rig.run(300);
   rig.feed(0, 20);
