@@ -6,7 +6,6 @@
 #include "compiler/config/devices.hpp"
 #include "compiler/config/wiring.hpp"
 #include "compiler/diagnostics/nearest.hpp"
-#include "compiler/syntax/foreign_units.hpp"
 
 namespace robosync::compiler {
 
@@ -219,25 +218,6 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Comman
   }
   if (!good) return std::nullopt;
   return result;
-}
-
-// `TO 30,5deg`: nothing stands between the comma and the numbers beside it.
-bool Commands::has_decimal_comma(const ast::Argument& part, const ast::Argument& next) {
-  const auto number_of = [](const ast::Argument& one) -> const ast::Quantity* {
-    const auto* const amount = std::get_if<ast::Amount>(&one.value);
-    return amount == nullptr ? nullptr : std::get_if<ast::Quantity>(&amount->value->node);
-  };
-  const ast::Quantity* const whole = number_of(part);
-  const ast::Quantity* const decimals = number_of(next);
-  if (whole == nullptr || !whole->unit.empty() || decimals == nullptr ||
-      part.preposition == ast::Preposition::none || next.preposition != ast::Preposition::none ||
-      next.span.begin != part.span.end + 1)
-    return false;
-  Span all = std::get<ast::Amount>(part.value).value->span;
-  all.end = next.span.end;
-  report_decimal_comma(diagnostics_, all, whole->digits,
-                       std::string(decimals->digits) + std::string(decimals->unit));
-  return true;
 }
 
 Commands::Given Commands::put_together(const ast::Command& command, std::size_t first) {

@@ -6,6 +6,7 @@
 
 #include "compiler/config/units.hpp"
 #include "compiler/sema/commands.hpp"
+#include "compiler/syntax/foreign_units.hpp"
 
 namespace robosync::compiler {
 
@@ -153,6 +154,25 @@ bool Commands::is_unit_apart(const ast::Command& command, std::size_t place) {
       .label(both(command.arguments[place], next))
       .helps("write the unit right behind it, such as `30" + std::string(unit->spelling) + "`")
       .fix(gap, "");
+  return true;
+}
+
+// `TO 30,5deg`: nothing stands between the comma and the numbers beside it.
+bool Commands::has_decimal_comma(const ast::Argument& part, const ast::Argument& next) {
+  const auto number_of = [](const ast::Argument& one) -> const ast::Quantity* {
+    const auto* const amount = std::get_if<ast::Amount>(&one.value);
+    return amount == nullptr ? nullptr : std::get_if<ast::Quantity>(&amount->value->node);
+  };
+  const ast::Quantity* const whole = number_of(part);
+  const ast::Quantity* const decimals = number_of(next);
+  if (whole == nullptr || !whole->unit.empty() || decimals == nullptr ||
+      part.preposition == ast::Preposition::none || next.preposition != ast::Preposition::none ||
+      next.span.begin != part.span.end + 1)
+    return false;
+  Span all = std::get<ast::Amount>(part.value).value->span;
+  all.end = next.span.end;
+  report_decimal_comma(diagnostics_, all, whole->digits,
+                       std::string(decimals->digits) + std::string(decimals->unit));
   return true;
 }
 

@@ -181,8 +181,7 @@ void SensorLayer::sample(unsigned sensor) {
     const auto channel = static_cast<std::uint8_t>(wiring.first_channel + i);
     vm::Value value = 0;
     if (sampler_->sample(program_->image, channel, value)) {
-      if (!units_[sensor].contact.has_old_result())
-        news |= publish(channel, value, kernel_.now());
+      if (!units_[sensor].contact.has_old_result()) news |= publish(channel, value, kernel_.now());
     } else {
       ++failed;
     }
