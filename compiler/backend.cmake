@@ -24,15 +24,7 @@ set(module_texts ${CMAKE_CURRENT_BINARY_DIR}/module_texts.cpp)
 embed(${PROJECT_SOURCE_DIR}/stdlib rsl compiler/modules.hpp ModuleText module_texts
       ${module_texts})
 
-target_sources(robosync_compiler PRIVATE
-  compiler.cpp
-  lints.cpp
-  modules.cpp
-  project.cpp
-  reading.cpp
-  ${board_texts}
-  ${device_texts}
-  ${module_texts}
+target_sources(robosync_compiler_small PRIVATE
   config/actuators.cpp
   config/algorithms.cpp
   config/boards.cpp
@@ -47,7 +39,17 @@ target_sources(robosync_compiler PRIVATE
   config/sensors.cpp
   config/units.cpp
   config/values.cpp
-  config/wiring.cpp
+  config/wiring.cpp)
+target_link_libraries(robosync_compiler_small PRIVATE nlohmann_json::nlohmann_json)
+target_sources(robosync_compiler PRIVATE
+  compiler.cpp
+  lints.cpp
+  modules.cpp
+  project.cpp
+  reading.cpp
+  ${board_texts}
+  ${device_texts}
+  ${module_texts}
   ir/expression.cpp
   ir/fact.cpp
   ir/program.cpp
@@ -96,6 +98,6 @@ target_sources(robosync_compiler PRIVATE
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
 # As of the front end's, what is said of what is wrong.
 if(NOT ROBOSYNC_SANITIZE)
-  set_source_files_properties(sema/misread.cpp sema/unknown_verbs.cpp
+  set_source_files_properties(sema/condition_lints.cpp sema/misread.cpp sema/unknown_verbs.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
 endif()
