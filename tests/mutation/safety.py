@@ -76,7 +76,7 @@ MUTANTS = (
     Mutant("a person's stop is not heard", MONITOR, "if ((why & kPerson) != 0) supervised_.obey();", ""),
     Mutant("slow changes do not go on", MONITOR, "supervised_.tend_outputs();", ""),
     Mutant("a resume lets go what rules halt", CONTROL, "set_free(halted() & ~by_rules_)", "set_free(halted())"),
-    Mutant("a rule's end ends a stop", CONTROL, "if (!stopped_) set_free", "set_free"),
+    Mutant("a rule's end ends a stop", CONTROL, "if (!stopped_) return set_free", "return set_free"),
     Mutant("a stop does not hold for the next program", CONTROL, "halted_ = stopped_ ? all() : 0;", "halted_ = 0;"),
     Mutant("a thread that stopped leaves its pin on", CONTROL, "outputs_.halt(bit<ActuatorMask>(actuator));", "",
            "its driver puts it into the safe state as well, and nobody else drives it"),
