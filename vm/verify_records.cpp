@@ -196,11 +196,24 @@ constexpr std::uint32_t kDisplays = kSpeaker + 1;
 constexpr std::uint32_t kLines = kDisplays + UINT8_MAX + 1;
 
 std::uint32_t output_of(const Actuator& actuator) {
-  if (drives_lights(actuator.driver)) return kLights;
-  if (drives_screen(actuator.driver)) return kDisplays + actuator.bus;
-  if (drives_speaker(actuator.driver)) return kSpeaker;
-  if (drives_player(actuator.driver)) return kLines + actuator.bus;
-  return drives_pin(actuator.driver) ? actuator.pin : kNothing;
+  switch (pin_use(actuator.driver)) {
+    case PinUse::picture:
+      return kLights;
+    case PinUse::screen:
+      return kDisplays + actuator.bus;
+    case PinUse::tones:
+      return kSpeaker;
+    case PinUse::line:
+      return kLines + actuator.bus;
+    case PinUse::pulses:
+    case PinUse::level:
+    case PinUse::either_way:
+      return actuator.pin;
+    case PinUse::channel:
+    case PinUse::nothing:
+      break;
+  }
+  return kNothing;
 }
 
 std::uint32_t second_output_of(const Actuator& actuator) {
