@@ -2,6 +2,7 @@
 #include "compiler/syntax/foreign_units.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "compiler/source/ascii.hpp"
@@ -18,14 +19,25 @@ std::string_view foreign_unit(std::string_view unit) {
   return {};
 }
 
-std::string_view unit_word(std::string_view unit) {
+namespace {
+
+struct UnitWord {
+  std::string_view word, ours;
+};
+constexpr UnitWord kUnitWords[] = {
 #define FOREIGN_UNIT(spelling, one)
-#define UNIT_WORD(word, ours) \
-  if (ascii::same(unit, word)) return ours;
+#define UNIT_WORD(word, ours) {word, ours},
 #include "compiler/syntax/foreign_units.def"
 #undef UNIT_WORD
 #undef FOREIGN_UNIT
-  return {};
+};
+
+}  // namespace
+
+std::string_view unit_word(std::string_view unit) {
+  const auto* const found = std::ranges::find_if(
+      kUnitWords, [unit](const UnitWord& one) { return ascii::same(unit, one.word); });
+  return found == std::end(kUnitWords) ? std::string_view{} : found->ours;
 }
 
 void report_decimal_comma(Diagnostics& diagnostics, Span place, std::string_view whole,
