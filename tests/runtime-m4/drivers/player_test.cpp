@@ -176,6 +176,11 @@ TEST_CASE("player: the guard tells nothing for whom it has halted, nor for who h
   CHECK(sounds_of(board) == Told{0, 7, 0, 0, 0});
   outputs.play(1, 9);
   CHECK(tell() == Told{0, 7, 0, 0, 0});
+  outputs.own(image);
+  outputs.play(1, 5);
+  CHECK(tell() == Told{0, 7, 0, 0, 0, 5});
+  outputs.disown();  // in its midst
+  CHECK(sounds_of(board) == Told{0, 7, 0, 0, 0, 5, 0});
 }
 
 TEST_CASE(
