@@ -58,6 +58,7 @@ target_sources(robosync_compiler PRIVATE
   sema/commands.cpp
   sema/misread.cpp
   sema/unknown_verbs.cpp
+  sema/whole_commands.cpp
   sema/conditions.cpp
   sema/condition_lints.cpp
   sema/defines.cpp
@@ -99,5 +100,6 @@ target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
 # As of the front end's, what is said of what is wrong.
 if(NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(sema/condition_lints.cpp sema/misread.cpp sema/unknown_verbs.cpp
+    sema/whole_commands.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
 endif()

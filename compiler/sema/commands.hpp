@@ -115,11 +115,11 @@ private:
   bool lacks_comma(const ast::Command& command, std::size_t place);
   bool lacks_list(const ast::Command& command, std::size_t place);
   bool is_unit_apart(const ast::Command& command, std::size_t place);
-  // Parts that one of the others leaves nothing to say; a way and a place, of which one must go (misread.cpp).
+  static bool is_sensor_meant(const Recipient& to, const ast::Word& word, const Names& names);
+  // Parts that are each right, and together are not (whole_commands.cpp).
   static bool says_twice(const Recipient& to, const std::vector<Given>& given,
                          const ir::Command& result);
   static bool goes_two_ways(const Recipient& to, const std::vector<Given>& given);
-  static bool is_sensor_meant(const Recipient& to, const ast::Word& word, const Names& names);
   Typed evaluate_number(const ast::Argument& argument);
   [[nodiscard]] bool is_known_word(std::string_view word) const;  // of any actuator
   [[nodiscard]] bool names_a_number(const ast::Name& name) const;

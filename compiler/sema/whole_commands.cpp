@@ -1,0 +1,154 @@
+// Commands, part: those whose parts are each right, and that make no sense as a whole: that contradict themselves, give a motor
+// more than its limit, or say nothing.
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+
+#include "compiler/sema/commands.hpp"
+
+namespace robosync::compiler {
+
+namespace {
+
+// The place of the argument that gives a parameter, as a number or as a word.
+template <class Given>
+std::optional<std::size_t> giver(const ActuatorConfig& actuator, const std::vector<Given>& given,
+                                 vm::Param param) {
+  const auto found = std::ranges::find_if(given, [&](const Given& one) {
+    if (one.is_number) return one.param == param;
+    const auto* const word = std::get_if<ast::Word>(&one.argument->value);
+    const WordConfig* const known =
+        word == nullptr || one.text ? nullptr : actuator.find_word(word->name.text);
+    return known != nullptr && known->param == param;
+  });
+  if (found == given.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - given.begin());
+}
+
+std::string negated(const Typed& literal) {
+  const std::string digits =
+      literal.digits.starts_with("-") ? literal.digits.substr(1) : "-" + literal.digits;
+  return digits + std::string(literal.unit == nullptr ? "" : literal.unit->spelling);
+}
+
+bool can_reach(const ActuatorConfig& actuator, const Typed& literal) {
+  const vm::Value value = -literal.code.constant;
+  return value >= actuator.min && value <= actuator.max;
+}
+
+}  // namespace
+
+bool Commands::says_twice(const Recipient& to, const std::vector<Given>& given,
+                          const ir::Command& result) {
+  const auto report = [&](std::string what, vm::Param second, std::string help) {
+    const auto place = giver(to.actuator, given, second);
+    to.diagnostics.report(Code::E0505, std::move(what))
+        .label(place ? given[*place].argument->span : to.command.verb.span)
+        .helps(std::move(help));
+    return true;
+  };
+  if (is_given(result, vm::Param::to) && is_given(result, vm::Param::by))
+    return report("where this goes is given twice", vm::Param::by,
+                  "`TO` says the place, `BY` how far it is from here: leave one of them out");
+  if (to.verb.action != vm::Action::move) return false;
+  if (is_given(result, vm::Param::at) && is_given(result, vm::Param::over))
+    return report("how fast this goes is given twice", vm::Param::over,
+                  "`OVER` says how long the way takes, `AT` and words such as SLOWLY how fast it "
+                  "is: leave one of them out");
+  return is_given(result, vm::Param::to) && goes_two_ways(to, given);
+}
+
+// `TURN head LEFT TO 60deg`: the place says the way, and LEFT perhaps the other one. Of a motor TO is no place, and
+// BACKWARD turns it round.
+bool Commands::goes_two_ways(const Recipient& to, const std::vector<Given>& given) {
+  const auto way = giver(to.actuator, given, vm::Param::direction);
+  const auto place = giver(to.actuator, given, vm::Param::to);
+  if (!way || !place || !given[*place].is_number) return false;
+  const Span word = given[*way].argument->span;
+  const Span target = given[*place].argument->span;
+  const std::string name(std::get<ast::Word>(given[*way].argument->value).name.text);
+  const Typed& number = given[*place].number;
+  Diagnostic& d = to.diagnostics
+                      .report(Code::E0505, "`TO` is a place, wherever it is now, and `" + name +
+                                               "` a way from here: leave one of them out")
+                      .label(word)
+                      .label(target, "the place", false);
+  if (number.digits.empty()) return true;
+  const bool back = to.actuator.find_word(name)->value < 0;
+  const bool same = number.code.constant == 0 || back == (number.code.constant < 0);
+  const bool beside = *way + 1 == *place || *place + 1 == *way;
+  const Span both{word.file, std::min(word.begin, target.begin), std::max(word.end, target.end)};
+  const std::string literal =
+      number.digits + std::string(number.unit == nullptr ? "" : number.unit->spelling);
+  const std::string to_place = "TO " + (same ? literal : negated(number));
+  if (same || can_reach(to.actuator, number)) d.helps("to that place: `" + to_place + "`");
+  if (number.code.constant > 0 && to.verb.has(vm::Param::by))
+    d.helps("so far from here: `" + name + " BY " + literal + "`");
+  if (!beside || (!same && !can_reach(to.actuator, number))) return true;
+  const bool distance = number.dimension() == vm::Dimension::length && !same;
+  d.fix(both, distance ? name + " BY " + literal : to_place, Applicability::likely);
+  return true;
+}
+
+// ---- a motor is told by TO, too, how much power it gets
+
+// Not of what a TEST expects: a trace shows what the program says.
+bool Commands::gives_too_much(const ast::Command& node, const ir::Command& command) {
+  constexpr std::string_view kMotor = "motor";  // the device (stdlib/devices/)
+  const auto to = std::ranges::find(command.arguments, vm::Param::to, &ir::Argument::param);
+  const auto said =
+      std::ranges::find(node.arguments, ast::Preposition::to, &ast::Argument::preposition);
+  if (to == command.arguments.end() || to->value.operation != Operation::constant) return false;
+  for (const std::size_t place : command.actuators) {
+    const ActuatorConfig& motor = robot_.actuators[place];
+    if (motor.device != kMotor || std::abs(to->value.constant) <= motor.speed_limit) continue;
+    diagnostics_.report(Code::E0507, "this is more power than " + motor.name.shown() + " may get")
+        .label(said != node.arguments.end() ? said->span : node.verb.span)
+        .label(motor.limit_span, "the limit", false);
+    return true;
+  }
+  return false;
+}
+
+// ---- nothing to say
+
+namespace {
+
+// What stands in the place of what is missing: sounds and texts in their quotes, else pictures.
+std::vector<std::string> contents_of(const ActuatorConfig& actuator, const VerbConfig& verb) {
+  std::vector<std::string> contents;
+  for (const WordConfig& word : actuator.words) {
+    if (word.param != vm::Param::item ||
+        (word.text ? verb.texts == Texts::none : !verb.goes_with(word)))
+      continue;
+    contents.push_back(word.text ? "\"" + word.name + "\"" : word.name);
+  }
+  if (verb.texts == Texts::any) contents.insert(contents.begin(), "\"Hello!\"");
+  return contents;
+}
+
+constexpr unsigned bit(vm::Param param) {
+  return 1U << static_cast<unsigned>(param);
+}
+
+}  // namespace
+
+// Only of a verb that takes nothing else: BLINK has no need of a colour, and a tone has AT.
+bool Commands::lacks_content(const ir::Command& command, Span span) {
+  if (command.word || is_given(command, vm::Param::item) || command.actuators.empty()) return false;
+  const ActuatorConfig& actuator = robot_.actuators[command.actuators.front()];
+  const VerbConfig* const verb = actuator.find_verb(command.verb.name);
+  if (verb == nullptr || !verb->has(vm::Param::item) ||
+      (verb->takes & ~(bit(vm::Param::item) | bit(vm::Param::for_))) != 0)
+    return false;
+  const std::vector<std::string> contents = contents_of(actuator, *verb);
+  if (contents.empty()) return false;
+  diagnostics_.report(Code::E0504, "this does not say what to " + verb->name)
+      .label(span)
+      .helps((contents.size() > 1 ? "write one of these behind it: " : "write it behind: ") +
+             list_names(contents, "or"))
+      .fix({span.file, span.end, span.end}, " " + contents.front(), Applicability::placeholder);
+  return true;
+}
+
+}  // namespace robosync::compiler
