@@ -232,7 +232,7 @@ private:
     const std::size_t open = says ? statement_ + 1 : is(stop_, Kinds::OPEN) ? stop_ : stop_ - 1;
     if (!is(open, Kinds::OPEN) || !(says || is(open + 1, Kinds::STRING))) return std::nullopt;
     const std::size_t close = closing(open), end = std::min(close + 1, end_);
-    if (open == statement_ + 1 && is_call(open) && is_defined(text(statement_)))
+    if (open == statement_ + 1 && is_call(open) && behind_declaration("DEFINE", text(statement_)))
       return std::nullopt;  // a DEFINE is given a text
     const bool prints = is_name(statement_, "PRINT");
     const std::string command = prints ? "LOG" : text(statement_, open);
@@ -241,19 +241,6 @@ private:
         .helps("write `" + better + "`")
         .fix(span(statement_, end), better, Applicability::likely);
     return change(open, end - open, Tokens(token_at(open + 1), token_at(close)));
-  }
-
-  // Is there a DEFINE of this name in the text?
-  bool is_defined(std::string_view name) const {
-    constexpr std::string_view word = "DEFINE ";
-    const std::string_view program = source_.text();
-    for (std::size_t at = program.find(word); at != std::string_view::npos;
-         at = program.find(word, at + 1)) {
-      const std::size_t first = program.find_first_not_of(' ', at + word.size());
-      if (first != std::string_view::npos && ascii::same(program.substr(first, name.size()), name))
-        return true;
-    }
-    return false;
   }
 
   // `SET x = 5`

@@ -112,24 +112,17 @@ private:
     return change(stop_, 1, {missing(Kinds::QUANTITY, stop_)});
   }
 
-  // Does a line of the file declare the name at `name` as a STATE with the word that stands in quotes at `word`? The
-  // tokens are those of this item only.
+  // Is the name at `name` a STATE that can be the word in quotes at `word`?
   bool is_word_of_state(std::size_t name, std::size_t word) const {
-    constexpr std::string_view kBetween = " \t\r,:";
     const std::string_view quoted = text(word);
-    if (quoted.size() < 3) return false;
-    for (std::uint32_t line = 1; line <= source_.lines(); ++line) {
-      std::string_view rest = source_.line(line);
-      const auto next = [&](std::string_view ends) {
-        rest.remove_prefix(std::min(rest.find_first_not_of(kBetween), rest.size()));
-        std::string_view found = rest.substr(0, rest.find_first_of(ends));
-        rest.remove_prefix(found.size());
-        return found.substr(0, found.find_last_not_of(kBetween) + 1);
-      };
-      if (!ascii::same(next(kBetween), "STATE") || !ascii::same(next(kBetween), text(name)))
-        continue;
-      for (std::string_view label = next(",%#"); !label.empty(); label = next(",%#"))
-        if (ascii::same(label, quoted.substr(1, quoted.size() - 2))) return true;
+    auto labels = behind_declaration("STATE", text(name));
+    if (!labels || quoted.size() < 3) return false;
+    while (!labels->empty()) {
+      labels->remove_prefix(std::min(labels->find_first_not_of(" \t\r,:"), labels->size()));
+      const std::string_view label = labels->substr(0, labels->find_first_of(" \t\r,%#"));
+      if (label.empty()) return false;
+      if (ascii::same(label, quoted.substr(1, quoted.size() - 2))) return true;
+      labels->remove_prefix(label.size());
     }
     return false;
   }

@@ -360,7 +360,7 @@ void LexerState::strange(std::size_t size) {
                         std::string_view::npos;
   strange_end_ = cursor_;
   if (said) return;
-  Diagnostic& message = report(Code::E0002, "RSL does not use the character " +
+  Diagnostic& message = report(Code::E0002, std::string(kStrangeCharacter) +
                                                 utf8::describe(utf8::decode(text_, start_).value))
                             .label(here());
   if (text_[start_] == '^') message.helps("RSL has no powers: multiply, such as `n * n`");

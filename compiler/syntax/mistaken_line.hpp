@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -53,6 +54,23 @@ protected:
   // As it is written, from the first token to the one before the last.
   std::string text(std::size_t from, std::size_t to) const {
     return from < to ? std::string(source_.text(span(from, to))) : std::string();
+  }
+
+  // What stands behind the name where a line of the file declares it with that word, such as STATE. The tokens are those of
+  // this item only.
+  std::optional<std::string_view> behind_declaration(std::string_view keyword,
+                                                     std::string_view name) const {
+    for (std::uint32_t line = 1; line <= source_.lines(); ++line) {
+      std::string_view rest = source_.line(line);
+      const auto next = [&rest] {
+        rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+        const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r:("));
+        rest.remove_prefix(word.size());
+        return word;
+      };
+      if (ascii::same(next(), keyword) && ascii::same(next(), name)) return rest;
+    }
+    return std::nullopt;
   }
 
   std::string quote(std::size_t at) const { return "`" + std::string(text(at)) + "`"; }

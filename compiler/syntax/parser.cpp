@@ -144,7 +144,7 @@ private:
     for (const Diagnostic& diagnostic : diagnostics_.all())
       if (diagnostic.code == Code::E0002 && diagnostic.fixes.empty() &&
           diagnostic.labels.front().span.file == file_ &&
-          diagnostic.message.starts_with("RSL does not use the character"))
+          diagnostic.message.starts_with(kStrangeCharacter))
         strange_lines_.push_back(line_of(diagnostic));
   }
   std::size_t line_of(const Diagnostic& diagnostic) const {
@@ -152,7 +152,7 @@ private:
   }
   bool is_consequence(const Diagnostic& diagnostic) const {
     return !strange_lines_.empty() && !diagnostic.labels.empty() &&
-           std::ranges::find(strange_lines_, line_of(diagnostic)) != strange_lines_.end();
+           std::ranges::binary_search(strange_lines_, line_of(diagnostic));
   }
 
   // False when nothing more should be read.
