@@ -64,6 +64,8 @@ constexpr bool drives_channel(DriverId driver) {
 constexpr bool drives_screen(DriverId driver) {
   return pin_use(driver) == PinUse::screen;
 }
+// Of the serial lines 0 is the link's.
+inline constexpr std::uint8_t kFirstPlayerLine = 1;
 constexpr bool drives_player(DriverId driver) {
   return pin_use(driver) == PinUse::line;
 }

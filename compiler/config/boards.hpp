@@ -35,7 +35,7 @@ struct Board {
   std::vector<Pins> analog;        // whose voltage it may read; one may be an output, too
   std::vector<Pins> enables;       // for the enable inputs of chips
   std::uint32_t i2c_buses = 0;     // numbered from 0
-  std::uint32_t serial_lines = 0;  // for sound players, from 1 on: 0 is the link's
+  std::uint32_t serial_lines = 0;  // for sound players, from vm::kFirstPlayerLine on
   // How its firmware gets there; nothing: there is no such board but in an emulator.
   struct Flash {
     std::string socket;  // of the cable, in words

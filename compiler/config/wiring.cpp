@@ -27,8 +27,6 @@ constexpr std::array<WiringType, 7> kTypes = {{
     {"VIRTUAL", true, true, true, true, true},  // keys of the real thing may stay
 }};
 
-constexpr std::uint8_t kFirstLine = 1;  // 0 is the link's
-
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::ActiveLevel::count_)> kLevels =
     {"low", "high"};
 
@@ -383,7 +381,7 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
   if (type.name == "VIRTUAL") return wiring;
   if (part != nullptr) return read_part(fields, *part);
   report_foreign(fields, type);
-  if (type.name == "UART") wiring.bus = kFirstLine;
+  if (type.name == "UART") wiring.bus = vm::kFirstPlayerLine;
   if (const auto* bus = type.bus ? fields.find("bus") : nullptr)
     wiring.bus = static_cast<std::uint8_t>(
         read_whole(*bus, 0, UINT8_MAX, diagnostics_).value_or(wiring.bus));
@@ -417,7 +415,8 @@ void WiringReader::check_line(const Fields& fields, const Wiring& wiring) {
   const auto* bus = fields.find("bus");
   const Span span = (bus != nullptr ? bus : fields.find("device"))->span;
   const std::string line = "serial line " + std::to_string(wiring.bus);
-  if (wiring.bus < kFirstLine || wiring.bus > board_.serial_lines) {
+  if (wiring.bus < vm::kFirstPlayerLine ||
+      wiring.bus >= vm::kFirstPlayerLine + board_.serial_lines) {
     diagnostics_
         .report(Code::E0205, "the board " + board_.name + " has no " + line + " for a player")
         .label(span)

@@ -9,6 +9,7 @@
 #include "link/messages.hpp"
 #include "runtime-m4/boards/store.hpp"
 #include "runtime-m4/policy/pins.hpp"
+#include "runtime-m4/policy/player.hpp"
 
 namespace robosync::boards {
 
@@ -32,8 +33,8 @@ struct BusState {
 };
 
 inline constexpr std::size_t kMostSelected = 2;
-inline constexpr std::size_t kMostSaid = 10;
-inline constexpr std::uint8_t kPlayerLine = 1;  // the first serial line that is not the link's
+// Of a board that has one.
+inline constexpr std::uint8_t kPlayerLine = vm::kFirstPlayerLine;
 
 class Board {
 public:
@@ -90,9 +91,8 @@ public:
   virtual void sound(std::uint32_t /*hertz*/) {}
 
   // A command to a sound player on one of the board's serial lines (pins()), at 9,600 baud while the processor does something
-  // else. What has not left of the command before is given up. At most kMostSaid bytes; on another line: nothing. Nobody but the
-  // output guard calls it.
-  virtual void say(std::uint8_t /*line*/, std::span<const std::byte> /*command*/) {}
+  // else. What has not left of the command before is given up. On another line: nothing. Nobody but the output guard calls it.
+  virtual void say(std::uint8_t /*line*/, const policy::PlayerCommand& /*command*/) {}
 
   // What outlasts a reset; nullptr where the board has nothing for it.
   virtual Store* store() { return nullptr; }

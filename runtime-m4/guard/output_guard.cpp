@@ -126,10 +126,10 @@ void OutputGuard::switch_off(const vm::Image* next) {
 }
 
 void OutputGuard::switch_off(const Slot& slot) {
-  if (!vm::drives_player(slot.driver)) return board_.pwm_write(slot.pin, 0);
-  Slot silent = slot;
-  silent.target = 0;
-  tell(silent);
+  if (vm::drives_player(slot.driver))
+    tell(slot, 0);
+  else
+    board_.pwm_write(slot.pin, 0);
 }
 
 void OutputGuard::disown() {
@@ -287,15 +287,15 @@ void OutputGuard::turn(Slot& slot, unsigned actuator, kernel::Time now) {
 
 void OutputGuard::go_on(kernel::Time now) {
   for (Mask left = lagging_; left != 0; left &= left - 1) {
+    const auto actuator = static_cast<unsigned>(std::countr_zero(left));
     const auto lock = kernel_.lock();
-    put(static_cast<unsigned>(std::countr_zero(left)), now);
+    vm::drives_player(slots_[actuator].driver) ? tell_player(actuator, now) : put(actuator, now);
   }
 }
 
 // As far towards the target as the pin may change by now.
 [[gnu::noinline]] void OutputGuard::put(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
-  if (vm::drives_player(slot.driver)) return tell_player(slot, actuator, now);
   const policy::PinLimit& limit = limits_[slot.limit];
   slot.pulse = next_pulse(slot, limit.rise, limit.shortest != 0, now);
   slot.pulse == slot.target ? lagging_ &= ~bit(actuator) : lagging_ |= bit(actuator);
@@ -534,16 +534,18 @@ void OutputGuard::own_player(unsigned actuator, std::uint8_t line) {
   apart_ |= bit(actuator);
 }
 
-void OutputGuard::tell_player(Slot& slot, unsigned actuator, kernel::Time now) {
+// Unless it still needs time after the last command.
+[[gnu::noinline]] void OutputGuard::tell_player(unsigned actuator, kernel::Time now) {
+  Slot& slot = slots_[actuator];
   const auto at = static_cast<std::uint16_t>(now / 1000);
   if (static_cast<std::uint16_t>(at - slot.changed) < policy::kPlayerGapMs) return;
   slot.changed = at;
   lagging_ &= ~bit(actuator);
-  tell(slot);
+  tell(slot, slot.target);
 }
 
-void OutputGuard::tell(const Slot& player) {
-  board_.say(static_cast<std::uint8_t>(player.pin), policy::player_command(player.target));
+void OutputGuard::tell(const Slot& player, std::uint16_t sound) {
+  board_.say(static_cast<std::uint8_t>(player.pin), policy::player_command(sound));
 }
 
 void OutputGuard::let_go(Mask actuators) {

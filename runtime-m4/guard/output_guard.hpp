@@ -166,8 +166,8 @@ private:
   static void exchange(Slot& slot);
   void turn(Slot& slot, unsigned actuator, kernel::Time now);
   void own_player(unsigned actuator, std::uint8_t line);
-  void tell_player(Slot& slot, unsigned actuator, kernel::Time now);
-  void tell(const Slot& player);
+  void tell_player(unsigned actuator, kernel::Time now);
+  void tell(const Slot& player, std::uint16_t sound);
   void switch_off(const Slot& slot);
   [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
   static bool drives(const vm::Image& image, const Slot& slot);

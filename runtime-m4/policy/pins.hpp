@@ -34,7 +34,7 @@ struct BoardPins {
   // to be off. They are nothing else.
   std::span<const PinRange> enables;
   std::uint8_t i2c_buses = 0;
-  std::uint8_t serial_lines = 0;  // from 1 on: 0 is the link's
+  std::uint8_t serial_lines = 0;  // for players, from vm::kFirstPlayerLine on
 };
 
 // Null: no output.
@@ -69,7 +69,7 @@ constexpr bool is_enable(const BoardPins& board, std::uint16_t pin) {
 }
 
 constexpr bool is_line(const BoardPins& board, std::uint8_t line) {
-  return line != 0 && line <= board.serial_lines;
+  return line >= vm::kFirstPlayerLine && line - vm::kFirstPlayerLine < board.serial_lines;
 }
 
 constexpr vm::Refusal judge(const vm::Sensor& sensor, const BoardPins& board) {

@@ -9,6 +9,7 @@
 namespace robosync::policy {
 
 using PlayerCommand = std::array<std::byte, 10>;
+inline constexpr std::uint32_t kPlayerBaud = 9'600;
 
 // Who is told something sooner after the last command may miss it.
 inline constexpr std::uint16_t kPlayerGapMs = 50;

@@ -31,7 +31,6 @@ CALLED_BY_POINTER = (
     (r"layers::AlgorithmLayer::|algorithms::", MODULE),
     (r"guard::OutputGuard::(halt_chips|switch_chips?_off)", BOARD + r"enable\("),
     (r"guard::OutputGuard::tell$", BOARD + r"say\("),
-    (r"guard::OutputGuard::put$", BOARD + r"pwm_write\("),
     (r"guard::", OUTPUTS),
     (r"drivers::Device::", r"guard::OutputGuard::|" + OUTPUTS),
     (r"drivers::", INPUTS),

@@ -60,7 +60,7 @@ PLAYER_PIN, PLAYER_BAUD, PLAYER_FROM, PLAYER_COUNT = (UARTE1 + at for at in (0x5
 P0_13, AT_9600 = 13, 0x0027_5000  # pin 15
 PLAYS_TWO = bytes.fromhex("7eff0612000002fee7ef")
 STOPS = bytes.fromhex("7eff0616000000fee5ef")
-TELL = "robosync::guard::OutputGuard::put("
+TELL = "robosync::guard::OutputGuard::tell_player("
 FACE = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
         "actuators": [{"name": "face", "device": "lights"}]}
 SHOWS = "WHEN near X > 10\nDO\n  {}\nEND\n"

@@ -22,6 +22,14 @@ CONFIG = PROGRAMS / "robot.json"
 SEED = 20_250_711
 PROFILE = json.loads((ROOT / f"stdlib/boards/{NAME}.json").read_text("utf-8"))
 
+STOPS_WHEN_FAR = """
+SAFETY far
+  WHEN near X > 90
+  DO STOP ALL
+  RESUME WHEN near X < 5
+END
+"""
+
 # A motor that runs at 70 % when `near` is above 10, and back at 25 % when it is above 50.
 TURNS_ROUND = """
 WHEN near X > 10

@@ -7,7 +7,7 @@ import re
 import time
 import unittest
 
-from support import NAME, ROOT, LineReader  # and where what follows is found
+from support import NAME, ROOT, STOPS_WHEN_FAR, LineReader  # and where what follows is found
 from traces import TraceTest
 
 import rsc
@@ -33,12 +33,7 @@ END
 BEHAVIOR interrupts PRIORITY 90
   WHEN near X > 50 DO SHOW face scared FOR 330ms END
 END
-SAFETY far
-  WHEN near X > 90
-  DO STOP ALL
-  RESUME WHEN near X < 5
-END
-"""
+""" + STOPS_WHEN_FAR
 GOES_ON = 'AT START DO SHOW face happy END\nEVERY 100ms DO LOG "goes on" END\n'
 
 

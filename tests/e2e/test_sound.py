@@ -8,7 +8,7 @@ import time
 import unittest
 from pathlib import Path
 
-from support import NAME, ROOT, RobotTest
+from support import NAME, ROOT, STOPS_WHEN_FAR, RobotTest
 
 import rsc
 from board import REAL_TIME
@@ -34,15 +34,10 @@ BEHAVIOR stops PRIORITY 20
   WHEN near X IS BETWEEN 30 AND 50 DO STOP sound END
   WHEN near X > 50 DO PLAY sound "one.wav" FOR 60s END
 END
-SAFETY far
-  WHEN near X > 90
-  DO STOP ALL
-  RESUME WHEN near X < 5
-END
-"""
+""" + STOPS_WHEN_FAR
 OTHERS = "WHEN near X > 10 DO LOG \"no sound\" END\n"
 END = "its end"
-PUT = "robosync::guard::OutputGuard::put("  # which tells it
+TELL = "robosync::guard::OutputGuard::tell_player("
 SENT = {"mps2-an386": "Uart1Transmit_Handler", "b-l475e-iot01a": "Uart4_Handler"}[NAME]
 COSTS = (ROOT / f"runtime-m4/boards/{NAME}/costs.def").read_text()
 
@@ -130,7 +125,7 @@ class Sound(PlayerTest):
 
 class Cost(PlayerTest):
     def qemu_arguments(self):
-        self.marks, self.known = self.folder / "marks", functions(PUT, SENT)
+        self.marks, self.known = self.folder / "marks", functions(TELL, SENT)
         self.known[END] = ends_of(SENT)[-1]
         return [*plugin_arguments(self.known, self.marks), *super().qemu_arguments()]
 
@@ -146,7 +141,7 @@ class Cost(PlayerTest):
         self.say("feed", "near.X=20")
         self.await_sounds(SILENCE, 2, 3)
         marks = Marks(self.known, self.marks)
-        measured = self.most(marks, PUT, SENT) + (LENGTH + 1) * self.most(marks, SENT, END)
+        measured = self.most(marks, TELL, SENT) + (LENGTH + 1) * self.most(marks, SENT, END)
         print(f"\n  {NAME}: {measured} instructions, said {said}")
         self.assertGreaterEqual(said, measured)
         self.assertLessEqual(said, 1.25 * measured + 60)

@@ -41,7 +41,7 @@ MUTANTS = (
     Mutant("a player is told twice at once", GUARD, "< policy::kPlayerGapMs) return;", "== 0xFFFF) return;"),
     Mutant("who is halted may play", GUARD, "if (!is_free(actuator) || !vm::drives_player(slot.driver)) return;",
            "if (!vm::drives_player(slot.driver)) return;"),
-    Mutant("without a program a player plays on", GUARD, "  silent.target = 0;\n", ""),
+    Mutant("without a program a player plays on", GUARD, "tell(slot, 0);", "tell(slot, slot.target);"),
     Mutant("a motor's pins the other way round are the same to an upload", GUARD, "(second == kNoPin || actuator.bus == second)", "true"),
     Mutant("a motor that runs backward is not seen by the next program", GUARD, "if (back == 0) return slot;", "return slot;"),
     Mutant("a halt leaves a servo chip on", GUARD, "  if ((actuators & on_chips_) != 0) halt_chips(actuators);\n", ""),

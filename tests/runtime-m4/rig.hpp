@@ -88,8 +88,8 @@ public:
   }
   void show(std::uint32_t picture) override { pictures.push_back(picture); }
   void sound(std::uint32_t hertz) override { sounds.push_back(hertz); }
-  void say(std::uint8_t line, std::span<const std::byte> command) override {
-    said.push_back({line, {command.begin(), command.end()}});
+  void say(std::uint8_t line, const policy::PlayerCommand& command) override {
+    said.emplace_back(line, command);
   }
   std::size_t link_write(std::span<const std::byte> bytes) override { return bytes.size(); }
   std::size_t link_read(std::span<std::byte>) override { return 0; }
@@ -98,11 +98,8 @@ public:
   void watchdog_kick() override { ++kicks; }
   std::uint32_t watchdog_ms() const override { return first_time_out_ms; }
 
-  struct Said {
-    std::uint8_t line;
-    std::vector<std::byte> command;
-  };
-  std::vector<Said> said;  // to sound players
+  std::vector<std::pair<std::uint8_t, policy::PlayerCommand>>
+      said;  // on which line, to sound players
   std::vector<Transfer> transfers;
   std::deque<std::byte> answers;  // bytes the next reads get; none left: no acknowledge
   bool acknowledges = true;

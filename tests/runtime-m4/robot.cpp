@@ -44,6 +44,11 @@ std::string when_near(const std::string& body) {
   return rule("WHEN near X > 10", body);
 }
 
+std::string stops_when_far(const std::string& body) {
+  return "WHEN near X > 10\nDO\n" + body +
+         "\nEND\nSAFETY far\nWHEN near X > 90\nDO STOP ALL\nRESUME WHEN near X < 5\nEND\n";
+}
+
 std::vector<std::byte> compile(const std::string& rsl, const std::string& json) {
   const compiler::Result result = compiler::compile({"test.rsl", rsl}, {"test.json", json},
                                                     {.algorithms = tool::algorithm_modules()});

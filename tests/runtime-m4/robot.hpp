@@ -28,6 +28,8 @@ std::string high_and_low(const std::string& high, const std::string& low);
 std::string rule(const std::string& head, const std::string& body);
 std::string when_far(const std::string& body);
 std::string when_near(const std::string& body);
+// `body` when the virtual `near X` is above 10; SAFETY stops all of it above 90, until it is below 5.
+std::string stops_when_far(const std::string& body);
 
 // "1020 #3 command left_arm MOVE SLOWLY to=90": program time in ms, step, event. Values in units.
 std::string describe(const link::Event& event, const vm::Image& image);

@@ -14,8 +14,8 @@ namespace robosync::boards {
 
 inline constexpr std::size_t kInterrupts = 82;
 inline constexpr std::array kUsedInterrupts{
-    Interrupt{l475::usart1::kInterrupt, Usart1_Handler},
-    Interrupt{l475::uart4::kInterrupt, Uart4_Handler},
+    Interrupt{l475::kUsart1.interrupt, Usart1_Handler},
+    Interrupt{l475::kUart4.interrupt, Uart4_Handler},
     Interrupt{l475::exti::kInterrupt2, Echo_Handler},
     Interrupt{l475::exti::kInterrupt4, Echo_Handler},
     Interrupt{l475::exti::kInterrupt5To9, Echo_Handler},

@@ -234,40 +234,38 @@ inline constexpr unsigned kInterrupt5To9 = 23;
 inline constexpr unsigned kInterrupt10To15 = 40;
 }  // namespace exti
 
-namespace usart1 {  // to the ST-Link, which is a serial port of USB
-inline constexpr unsigned kInterrupt = 37;
-inline constexpr Port kPort = kPortB;
-inline constexpr unsigned kTransmitPin = 6;
-inline constexpr unsigned kReceivePin = 7;
-inline constexpr std::uint32_t kFunction = 7;
-inline constexpr Register kControl{0x4001'3800};
-inline constexpr std::uint32_t kOn =
-    1U << 0 | 1U << 2 | 1U << 3 | 1U << 5;  // both ways; a byte that comes interrupts
-inline constexpr std::uint32_t kInterruptWhenEmpty = 1U << 7;
-inline constexpr Register kControl3{0x4001'3808};
-// A byte that comes too early takes the place of the one before, and nothing has to be cleared.
-inline constexpr std::uint32_t kNoOverrun = 1U << 12;
-inline constexpr Register kBaudDivider{0x4001'380C};
-inline constexpr Register kState{0x4001'381C};
-inline constexpr std::uint32_t kReceived = 1U << 5;
-inline constexpr std::uint32_t kEmpty = 1U << 7;
-inline constexpr Register kReceive{0x4001'3824};
-inline constexpr Register kTransmit{0x4001'3828};
-}  // namespace usart1
+struct Usart {
+  std::uintptr_t base;
+  unsigned interrupt;
+  Port port;               // of its pins
+  std::uint32_t function;  // … which they have for it
 
-namespace uart4 {  // to a sound player: its transmitter alone, on D1 of the Arduino header
-inline constexpr unsigned kInterrupt = 52;
-inline constexpr Port kPort = kPortA;
-inline constexpr unsigned kTransmitPin = 0;
-inline constexpr std::uint32_t kFunction = 8;
-inline constexpr Register kControl{0x4000'4C00};
-inline constexpr std::uint32_t kOn = 1U << 0 | 1U << 3;
-inline constexpr std::uint32_t kInterruptWhenEmpty = 1U << 7;
-inline constexpr Register kBaudDivider{0x4000'4C0C};
-inline constexpr Register kState{0x4000'4C1C};
-inline constexpr std::uint32_t kEmpty = 1U << 7;
-inline constexpr Register kTransmit{0x4000'4C28};
-}  // namespace uart4
+  constexpr Register control() const { return {base}; }
+  constexpr Register control3() const { return {base + 0x08}; }
+  constexpr Register baud_divider() const { return {base + 0x0C}; }
+  constexpr Register state() const { return {base + 0x1C}; }
+  constexpr Register received() const { return {base + 0x24}; }
+  constexpr Register transmit() const { return {base + 0x28}; }
+
+  static constexpr std::uint32_t kSendsOnly = 1U << 0 | 1U << 3;
+  static constexpr std::uint32_t kOn =
+      kSendsOnly | 1U << 2 | 1U << 5;  // a byte that comes interrupts
+  static constexpr std::uint32_t kInterruptWhenEmpty = 1U << 7;
+  // A byte that comes too early takes the place of the one before, and nothing has to be cleared.
+  static constexpr std::uint32_t kNoOverrun = 1U << 12;
+  static constexpr std::uint32_t kReceived = 1U << 5;
+  static constexpr std::uint32_t kEmpty = 1U << 7;
+  static constexpr std::uint32_t divider_of(std::uint32_t baud) {
+    return (kClockHz + baud / 2) / baud;
+  }
+};
+// To the ST-Link, which is a serial port of USB.
+inline constexpr Usart kUsart1{0x4001'3800, 37, kPortB, 7};
+inline constexpr unsigned kLinkTransmitPin = 6;
+inline constexpr unsigned kLinkReceivePin = 7;
+// To a sound player: its transmitter alone, on D1 of the Arduino header.
+inline constexpr Usart kUart4{0x4000'4C00, 52, kPortA, 8};
+inline constexpr unsigned kPlayerTransmitPin = 0;
 
 namespace iwdg {  // the independent watchdog, on an oscillator of its own of 32 kHz
 inline constexpr Register kKey{0x4000'3000};

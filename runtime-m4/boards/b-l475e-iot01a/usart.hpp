@@ -10,50 +10,51 @@
 
 namespace robosync::boards::l475 {
 
-struct Usart1 {  // for SerialLine
-  static void start() {
-    rcc::give_clock(rcc::kApb2, rcc::kUsart1);
-    for (const unsigned pin : {usart1::kTransmitPin, usart1::kReceivePin}) {
-      usart1::kPort.function(pin).set_field(pin % 8, 4, usart1::kFunction);
-      usart1::kPort.pulls().set_field(pin, 2, kPullUp);  // a line that nobody drives is silent
-      usart1::kPort.mode().set_field(pin, 2, kModeOfFunction);
-    }
-    usart1::kBaudDivider.write((kClockHz + kBaud / 2) / kBaud);
-    usart1::kControl3.write(usart1::kNoOverrun);
-    usart1::kControl.write(usart1::kOn);
-    port::core::enable_interrupt(usart1::kInterrupt);
+template <const Usart& kUsart>
+struct Transmitter {
+  static void take_pin(unsigned pin) {
+    kUsart.port.function(pin).set_field(pin % 8, 4, kUsart.function);
+    kUsart.port.mode().set_field(pin, 2, kModeOfFunction);
   }
 
-  static bool can_send() { return usart1::kState.has(usart1::kEmpty); }
+  static bool can_send() { return kUsart.state().has(Usart::kEmpty); }
   static void send(std::byte byte) {
-    usart1::kTransmit.write(std::to_integer<std::uint32_t>(byte));
+    kUsart.transmit().write(std::to_integer<std::uint32_t>(byte));
   }
-  static bool has_received() { return usart1::kState.has(usart1::kReceived); }
-  static std::byte receive() { return static_cast<std::byte>(usart1::kReceive.read()); }
 
   // It interrupts as long as its register is empty, unless it is told that nothing comes. When the handler does that
   // between the reading and the writing here, it is called once in vain.
-  static void begin_to_send() { usart1::kControl.set(usart1::kInterruptWhenEmpty); }
-  static void nothing_to_send() { usart1::kControl.clear(usart1::kInterruptWhenEmpty); }
-  static bool wants_to_send() { return usart1::kControl.has(usart1::kInterruptWhenEmpty); }
+  static void begin_to_send() { kUsart.control().set(Usart::kInterruptWhenEmpty); }
+  static void nothing_to_send() { kUsart.control().clear(Usart::kInterruptWhenEmpty); }
+  static bool wants_to_send() { return kUsart.control().has(Usart::kInterruptWhenEmpty); }
+};
+
+struct Usart1 : Transmitter<kUsart1> {  // for SerialLine
+  static void start() {
+    rcc::give_clock(rcc::kApb2, rcc::kUsart1);
+    for (const unsigned pin : {kLinkTransmitPin, kLinkReceivePin}) {
+      kUsart1.port.pulls().set_field(pin, 2, kPullUp);  // a line that nobody drives is silent
+      take_pin(pin);
+    }
+    kUsart1.baud_divider().write(Usart::divider_of(kBaud));
+    kUsart1.control3().write(Usart::kNoOverrun);
+    kUsart1.control().write(Usart::kOn);
+    port::core::enable_interrupt(kUsart1.interrupt);
+  }
+
+  static bool has_received() { return kUsart1.state().has(Usart::kReceived); }
+  static std::byte receive() { return static_cast<std::byte>(kUsart1.received().read()); }
 };
 using Line = SerialLine<Usart1>;
 
-struct Uart4 {  // for PlayerLine
+struct Uart4 : Transmitter<kUart4> {  // for PlayerLine
   static void start() {
     rcc::give_clock(rcc::kApb1, rcc::kUart4);
-    uart4::kPort.function(uart4::kTransmitPin)
-        .set_field(uart4::kTransmitPin % 8, 4, uart4::kFunction);
-    uart4::kPort.mode().set_field(uart4::kTransmitPin, 2, kModeOfFunction);
-    uart4::kBaudDivider.write((kClockHz + kPlayerBaud / 2) / kPlayerBaud);
-    uart4::kControl.write(uart4::kOn);
-    port::core::enable_interrupt(uart4::kInterrupt);
+    take_pin(kPlayerTransmitPin);
+    kUart4.baud_divider().write(Usart::divider_of(policy::kPlayerBaud));
+    kUart4.control().write(Usart::kSendsOnly);
+    port::core::enable_interrupt(kUart4.interrupt);
   }
-
-  static bool can_send() { return uart4::kState.has(uart4::kEmpty); }
-  static void send(std::byte byte) { uart4::kTransmit.write(std::to_integer<std::uint32_t>(byte)); }
-  static void begin_to_send() { uart4::kControl.set(uart4::kInterruptWhenEmpty); }
-  static void nothing_to_send() { uart4::kControl.clear(uart4::kInterruptWhenEmpty); }
 };
 using Player = PlayerLine<Uart4>;
 

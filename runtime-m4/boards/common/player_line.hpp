@@ -4,17 +4,12 @@
 // boards/common/serial_line.hpp has them.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
-#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/policy/player.hpp"
 
 namespace robosync::boards {
-
-inline constexpr std::uint32_t kPlayerBaud = 9'600;
 
 template <typename Hardware>
 class PlayerLine {
@@ -22,23 +17,21 @@ public:
   static void start() { Hardware::start(); }
 
   // boards::Board::say(). While its interrupt is held off.
-  void say(std::span<const std::byte> command) {
-    end_ = static_cast<std::uint8_t>(std::min(command.size(), bytes_.size()));
-    std::copy_n(command.begin(), end_, bytes_.begin());
+  void say(const policy::PlayerCommand& command) {
+    command_ = command;
     sent_ = 0;
     Hardware::begin_to_send();
   }
 
   // [interrupt]
   void on_transmit() {
-    if (sent_ >= end_) return Hardware::nothing_to_send();
-    if (Hardware::can_send()) Hardware::send(bytes_[sent_++]);
+    if (sent_ == command_.size()) return Hardware::nothing_to_send();
+    if (Hardware::can_send()) Hardware::send(command_[sent_++]);
   }
 
 private:
-  std::array<std::byte, kMostSaid> bytes_{};
-  std::uint8_t sent_ = 0;
-  std::uint8_t end_ = 0;
+  policy::PlayerCommand command_{};
+  std::size_t sent_ = command_.size();  // of its bytes
 };
 
 }  // namespace robosync::boards

@@ -118,7 +118,7 @@ void Board::sound(std::uint32_t hertz) {
   speaker::sound(hertz);
 }
 
-void Board::say(std::uint8_t line, std::span<const std::byte> command) {
+void Board::say(std::uint8_t line, const policy::PlayerCommand& command) {
   if (line == kPlayerLine) player::say(command);
 }
 

@@ -71,7 +71,7 @@ public:
   Store* store() override { return &store_; }
   void show(std::uint32_t picture) override;
   void sound(std::uint32_t hertz) override;
-  void say(std::uint8_t line, std::span<const std::byte> command) override;
+  void say(std::uint8_t line, const policy::PlayerCommand& command) override;
   std::size_t link_write(std::span<const std::byte> bytes) override { return line_.write(bytes); }
   std::size_t link_read(std::span<std::byte> bytes) override { return line_.read(bytes); }
   void link_start(const LineEvents& events) override { line_.start(events); }

@@ -1,17 +1,13 @@
 // See player.hpp. The module fetches a command from memory while the processor does something else, and nobody is interrupted.
 #include "runtime-m4/boards/microbit-v2/player.hpp"
 
-#include <algorithm>
-#include <array>
-
-#include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/microbit-v2/registers.hpp"
 
 namespace robosync::boards::microbit::player {
 
 namespace {
 
-std::array<std::byte, kMostSaid> bytes;
+policy::PlayerCommand sent;
 
 }  // namespace
 
@@ -24,12 +20,11 @@ void start() {
   player_uart::kEnable.write(player_uart::kOn);
 }
 
-void say(std::span<const std::byte> command) {
-  const std::size_t count = std::min(command.size(), bytes.size());
-  std::copy_n(command.begin(), count, bytes.begin());
+void say(const policy::PlayerCommand& command) {
+  sent = command;
   asm volatile("" ::: "memory");  // the module reads it from there
-  player_uart::kSendFrom.write(port::bus_address(bytes.data()));
-  player_uart::kSendCount.write(static_cast<std::uint32_t>(count));
+  player_uart::kSendFrom.write(port::bus_address(sent.data()));
+  player_uart::kSendCount.write(sent.size());
   player_uart::kStartTransmitting.write(kDoIt);
 }
 

@@ -1,13 +1,12 @@
 // The serial line to a sound player, on pin 15 of the edge connector.
 #pragma once
 
-#include <cstddef>
-#include <span>
+#include "runtime-m4/policy/player.hpp"
 
 namespace robosync::boards::microbit::player {
 
 void start();
 // Begins to send it (boards::Board::say()).
-void say(std::span<const std::byte> command);
+void say(const policy::PlayerCommand& command);
 
 }  // namespace robosync::boards::microbit::player

@@ -101,7 +101,7 @@ inline constexpr Register kEnable{kBase + 0x500};
 inline constexpr std::uint32_t kOn = 8;
 inline constexpr Register kTransmitPinSelect{kBase + 0x50C};
 inline constexpr Register kBaudRate{kBase + 0x524};
-inline constexpr std::uint32_t k9600 = 0x0027'5000;
+inline constexpr std::uint32_t k9600 = 0x0027'5000;  // policy::kPlayerBaud
 inline constexpr Register kSendFrom{kBase + 0x544};
 inline constexpr Register kSendCount{kBase + 0x548};
 }  // namespace player_uart

@@ -80,7 +80,7 @@ void Board::link_start(const LineEvents& events) {
   Player::start();
 }
 
-void Board::say(std::uint8_t line, std::span<const std::byte> command) {
+void Board::say(std::uint8_t line, const policy::PlayerCommand& command) {
   if (line == kPlayerLine) player_.say(command);
 }
 

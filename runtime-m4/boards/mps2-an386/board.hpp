@@ -63,7 +63,7 @@ public:
   std::size_t link_write(std::span<const std::byte> bytes) override { return uart_.write(bytes); }
   std::size_t link_read(std::span<std::byte> bytes) override { return uart_.read(bytes); }
   void link_start(const LineEvents& events) override;
-  void say(std::uint8_t line, std::span<const std::byte> command) override;
+  void say(std::uint8_t line, const policy::PlayerCommand& command) override;
   void watchdog_start() override;
   void watchdog_kick() override;
   std::uint32_t watchdog_ms() const override { return kWatchdogMs; }

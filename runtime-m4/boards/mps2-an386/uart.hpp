@@ -10,45 +10,41 @@
 
 namespace robosync::boards::mps2 {
 
-struct Uart0 {  // for SerialLine
-  static UartRegisters& registers() { return at<UartRegisters>(kUart0); }
+template <std::uintptr_t kBase, unsigned kInterrupt>
+struct Transmitter {
+  static UartRegisters& registers() { return at<UartRegisters>(kBase); }
 
-  static void start() {
-    registers().baud_divider = kClockHz / kBaud;
-    registers().control = kUartControlOn;
-    port::core::enable_interrupt(kUart0ReceiveInterrupt);
-    port::core::enable_interrupt(kUart0TransmitInterrupt);
+  static void start(std::uint32_t baud, std::uint32_t control) {
+    registers().baud_divider = kClockHz / baud;
+    registers().control = control;
+    port::core::enable_interrupt(kInterrupt);
   }
 
   static bool can_send() { return (registers().state & kUartStateTransmitFull) == 0; }
   static void send(std::byte byte) { registers().data = std::to_integer<std::uint32_t>(byte); }
-  static bool has_received() { return (registers().state & kUartStateReceiveFull) != 0; }
-  static std::byte receive() { return static_cast<std::byte>(registers().data); }
 
   // It interrupts when a byte has left, and not before.
-  static void begin_to_send() { port::core::pend_interrupt(kUart0TransmitInterrupt); }
+  static void begin_to_send() { port::core::pend_interrupt(kInterrupt); }
   static void nothing_to_send() {}
 
-  // The interrupts were seen.
-  static void clear_received() { registers().interrupt = kUartReceived; }
+  // The interrupt was seen.
   static void clear_transmitted() { registers().interrupt = kUartTransmitted; }
+};
+
+struct Uart0 : Transmitter<kUart0, kUart0TransmitInterrupt> {  // for SerialLine
+  static void start() {
+    Transmitter::start(kBaud, kUartControlOn);
+    port::core::enable_interrupt(kUart0ReceiveInterrupt);
+  }
+
+  static bool has_received() { return (registers().state & kUartStateReceiveFull) != 0; }
+  static std::byte receive() { return static_cast<std::byte>(registers().data); }
+  static void clear_received() { registers().interrupt = kUartReceived; }
 };
 using Uart = SerialLine<Uart0>;
 
-struct Uart1 {  // for PlayerLine
-  static UartRegisters& registers() { return at<UartRegisters>(kUart1); }
-
-  static void start() {
-    registers().baud_divider = kClockHz / kPlayerBaud;
-    registers().control = kUartSendsOnly;
-    port::core::enable_interrupt(kUart1TransmitInterrupt);
-  }
-
-  static bool can_send() { return (registers().state & kUartStateTransmitFull) == 0; }
-  static void send(std::byte byte) { registers().data = std::to_integer<std::uint32_t>(byte); }
-  static void begin_to_send() { port::core::pend_interrupt(kUart1TransmitInterrupt); }
-  static void nothing_to_send() {}
-  static void clear_transmitted() { registers().interrupt = kUartTransmitted; }
+struct Uart1 : Transmitter<kUart1, kUart1TransmitInterrupt> {  // for PlayerLine
+  static void start() { Transmitter::start(policy::kPlayerBaud, kUartSendsOnly); }
 };
 using Player = PlayerLine<Uart1>;
 

@@ -38,9 +38,7 @@ std::string with_lights(const std::string& more = "") {
 
 struct Lit {
   explicit Lit(const std::string& body, const std::string& more = "") {
-    const std::string rsl =
-        "WHEN near X > 10\nDO\n" + body +
-        "\nEND\nSAFETY far\nWHEN near X > 90\nDO STOP ALL\nRESUME WHEN near X < 5\nEND\n";
+    const std::string rsl = test::stops_when_far(body);
     REQUIRE(activate(test::compile(rsl, with_lights(more))).ok());
     feed(0, 6);
     run(10);

@@ -20,7 +20,7 @@ const char* const kPlayerRobot = R"({
 constexpr unsigned kGap = policy::kPlayerGapMs;
 constexpr unsigned kLook = 10;  // ms from one check of the safety monitor to the next
 
-std::vector<unsigned> bytes_of(std::span<const std::byte> command) {
+std::vector<unsigned> bytes_of(const policy::PlayerCommand& command) {
   std::vector<unsigned> bytes;
   for (const std::byte byte : command)
     bytes.push_back(std::to_integer<unsigned>(byte));
@@ -32,7 +32,6 @@ std::vector<unsigned> sounds_of(const test::NotingBoard& board) {
   std::vector<unsigned> sounds;
   for (const auto& [line, command] : board.said) {
     CHECK(line == 1);
-    REQUIRE(command.size() == boards::kMostSaid);
     const auto low = std::to_integer<std::uint16_t>(command[6]);
     CHECK(bytes_of(command) == bytes_of(policy::player_command(low)));
     sounds.push_back(low);
@@ -42,9 +41,7 @@ std::vector<unsigned> sounds_of(const test::NotingBoard& board) {
 
 struct Speaking {
   explicit Speaking(const std::string& body) {
-    const std::string rsl =
-        "WHEN near X > 10\nDO\n" + body +
-        "\nEND\nSAFETY far\nWHEN near X > 90\nDO STOP ALL\nRESUME WHEN near X < 5\nEND\n";
+    const std::string rsl = test::stops_when_far(body);
     REQUIRE(rig.activate(test::compile(rsl, kPlayerRobot)).ok());
     rig.feed(0, 6);
     rig.run(at);

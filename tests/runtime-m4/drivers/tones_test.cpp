@@ -41,9 +41,7 @@ std::vector<std::pair<std::string, Notes>> melodies_written() {
 // What sounds from the command on, millisecond by millisecond.
 struct Horn {
   explicit Horn(const std::string& body) {
-    const std::string rsl =
-        "WHEN near X > 10\nDO\n" + body +
-        "\nEND\nSAFETY far\nWHEN near X > 90\nDO STOP ALL\nRESUME WHEN near X < 5\nEND\n";
+    const std::string rsl = test::stops_when_far(body);
     REQUIRE(rig.activate(test::compile(rsl, kHornRobot)).ok());
     rig.feed(0, 6);
     rig.run(10);
