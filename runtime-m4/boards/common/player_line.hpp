@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "runtime-m4/policy/player.hpp"
+#include "runtime-m4/boards/board.hpp"
 
 namespace robosync::boards {
 

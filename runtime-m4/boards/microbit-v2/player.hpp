@@ -1,7 +1,7 @@
 // The serial line to a sound player, on pin 15 of the edge connector.
 #pragma once
 
-#include "runtime-m4/policy/player.hpp"
+#include "runtime-m4/boards/board.hpp"
 
 namespace robosync::boards::microbit::player {
 
