@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -25,6 +26,9 @@ namespace {
 using policy::Category;
 
 constexpr unsigned kAgeBits = 8;  // of rank_of()
+
+// The period of what comes once: longer than any response time.
+constexpr Instructions kOnce = Instructions{1} << 40;
 
 Rules common(const Rules& a, const Rules& b) {
   Rules rules;
@@ -52,7 +56,6 @@ public:
     add_checks();
     add_firings();
     add_interferences();
-    add_link();
     set_.lost = costs::kClaim;
     set_.longest_lock = longest_lock();
     return set_;
@@ -458,34 +461,6 @@ private:
     }
   }
 
-  // The step thread waits for the link only when that had nothing for a period. A program that cannot fill one leaves it some.
-  void add_link() {
-    const Instructions period = instructions_in_ms(policy::kLinkPeriodMs);
-    const Instructions turn = instructions_in_ms(policy::kLinkTurnMs);
-    if (most_within(period) + turn < period) return;
-    set_.interferences.push_back({"the link's turn", period, turn});
-  }
-
-  // What the program can take of so long a time: its share, and each thing once that was released before and is not done.
-  // What follows something else comes late, by less than `time` where it matters.
-  Instructions most_within(Instructions time) const {
-    const auto most_of = [](Instructions cost, Instructions in, Instructions period) {
-      return cost + ceil_div(cost * in, period);
-    };
-    const auto released_in = [time](const Source& source) {
-      return source.follows == Source::kNone ? time : 2 * time;
-    };
-    Instructions most = 0;
-    for (const Source& source : set_.sources)
-      most += most_of(source.sample + source.step, released_in(source), source.period);
-    for (const Firing& rule : set_.firings)
-      for (const std::size_t s : rule.sources)
-        most += most_of(rule.cost, released_in(set_.sources[s]), set_.sources[s].period);
-    for (const Interference& one : set_.interferences)
-      most += most_of(one.cost, time, one.period);
-    return most;
-  }
-
   const vm::Image& image_;
   const policy::BoardCosts& board_;
   ModuleCost module_cost_;
@@ -499,12 +474,38 @@ private:
   Actuators commanded_ = 0;
 };
 
+// May the program keep the processor from the link's thread, which ranks below all of it, for so long?
+bool may_keep_waiting(const TaskSet& set, Priorities priorities, Instructions time) {
+  TaskSet with_link = set;
+  Source link;
+  link.name = "the link";
+  link.period = kOnce;
+  link.sample = 1;
+  link.rank = std::numeric_limits<unsigned>::max();
+  with_link.sources.push_back(link);
+  const ResponseTime response = response_time_of(with_link, set.sources.size(), priorities);
+  return !response.bounded || response.time >= time;
+}
+
+// The step thread waits for the link when that had nothing for so long. Its turns take a part of the time, and one that has
+// just begun may be as long as they get.
+void add_link(TaskSet& set, const vm::Image& image, Instructions ms, Priorities priorities) {
+  const std::uint32_t patience = policy::link_patience_ms(image.header->step_cost);
+  // What has begun with a tick is counted as a whole one.
+  if (!may_keep_waiting(set, priorities, ms * (patience - std::min(patience, 1U)))) return;
+  set.interferences.push_back({"the link's turns", ms, ceil_div(ms, policy::kLinkParts)});
+  set.interferences.push_back({"… one that is long", kOnce, policy::kLinkTurnMs * ms});
+  settle(set, priorities);
+}
+
 }  // namespace
 
 TaskSet task_set_of(const vm::Image& image, const policy::BoardCosts& board, ModuleCost module_cost,
                     int cap) {
+  const Priorities priorities = cap > 0 ? Priorities::adapted : Priorities::base;
   TaskSet set = Builder(image, board, module_cost, cap).build();
-  settle(set, cap > 0 ? Priorities::adapted : Priorities::base);
+  settle(set, priorities);
+  add_link(set, image, board.instructions_per_ms(), priorities);
   return set;
 }
 

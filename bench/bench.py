@@ -12,6 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import answer
 import boards
 import compile_figures
 import figures
@@ -32,7 +33,7 @@ from rsc import RscError
 BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
 GROUPS = (workloads.workload_figures, figures.opcode_figures, figures.image_figures,
           figures.kernel_figures, figures.size_figures, memory.memory_figures, growth.growth_figures,
-          figures.link_figures, upload.upload_figures, figures.signature_figures, figures.power_up_figures, figures.ear_figures,
+          figures.link_figures, answer.answer_figures, upload.upload_figures, figures.signature_figures, figures.power_up_figures, figures.ear_figures,
           path.path_figures, safety.safety_figures, idle.idle_figures, compile_figures.compile_figures,
           figures.tool_figures, boards.board_figures)
 BY_NAME = {group.__name__.removesuffix("_figures"): group for group in GROUPS}

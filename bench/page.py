@@ -15,13 +15,13 @@ HEAD = """# Measurements
 Printed by `scripts/bench --markdown`. `insn` are executed Cortex-M4 instructions, counted exactly by a plugin in
 QEMU 7.2 (`bench/count_plugin/`), those of other boards than `mps2-an386` in QEMU 10.0; they are not cycles. Bytes are what the linker kept.
 Times are wall clock, of `compile/…` CPU time, on the machine that printed this page. What each figure means: `bench/figures.py`,
-`bench/workloads.py`, `bench/growth.py`, `bench/idle.py`, `bench/compile_figures.py` and `bench/boards.py`;
+`bench/workloads.py`, `bench/growth.py`, `bench/idle.py`, `bench/answer.py`, `bench/compile_figures.py` and `bench/boards.py`;
 bars: `bench/bars.json`. `scripts/bench --only GROUP` measures one group, such as `board`.
 
 Bars are the design's, and none is moved to what was measured: what misses one is shown as missed. `scripts/bench` fails
 when a figure misses a bar that it met before, and when a counted figure is more than 2 % above what `bench/recorded.json`
-says: so nothing grows unnoticed. (Of the ways of a touch that this machine gives the board, 5 to 50 % above: what else is due in
-that moment is another thing each time.) `scripts/bench --record` records what is measured now; `scripts/bench --profile NAME` says
+says: so nothing grows unnoticed. (Of the ways of a touch that this machine gives the board, 5 to 50 % above, and of what a host
+waits for, as much again: what else is due in that moment is another thing each time.) `scripts/bench --record` records what is measured now; `scripts/bench --profile NAME` says
 which functions ran while a figure was counted, and how many instructions of each.
 
 Three instructions of each switch are the time that threads ran, which no peer's figure includes. `kernel/yield_isolated` has the
@@ -40,6 +40,8 @@ are in it. `firmware/idle_second_paper` is without what the bit-banged I2C bus e
 `safety/stop_frame_to_safe_loaded` is the most of 20 stops, whose moments this machine chooses and not the robot: where none comes
 while the tick, or who holds the switch off, has dozens of threads to see to, it is some 560; 1,584 is the most that was seen, and stays
 recorded.
+`link/answer`: how long a host waits for an answer from robots whose programs leave the link nothing, from the last byte of its
+request until the answer is ready for the line; the most of 160 requests at random times.
 `vm/W1` ends when both commands are put out, as the peers' does; `vm/W1_queue` is the same rule in the shipped firmware, until both
 are in their drivers' queues: claims, two threads and their switches included. `vm/W3_staged` is W3 in the shipped firmware, until
 what it has SET is staged for the next step. `vm/ram_per_thread` is all that a behaviour takes.

@@ -13,7 +13,7 @@ TOLERANCE = 0.02
 # thing each time. Of a way on which no byte of the line comes in between, by little.
 IN_REAL_TIME = {"safety/reading_to_safe": 0.5, "safety/stop_frame_to_safe": 0.5,
                 "path/reading_to_command": 0.05, "path/follow_update": 0.05, "vm/W1_queue": 0.05, "vm/W3_staged": 0.05,
-                "firmware/power_up_to_program": 1}
+                "firmware/power_up_to_program": 1, "link/answer": 1}
 TIMES = {"ms", "lines/s"}  # units of what depends on how fast the machine is
 NOT_EXACT = TIMES | {"x"}  # … and of what is another number each time
 

@@ -78,6 +78,13 @@ public:
   bool stopped() const { return stopped_; }
   // This thread has its share of the processor whatever the program does. Before Kernel::run().
   void share_with(const kernel::Thread& link) { link_share_.watch(link); }
+  // … soon, as it has something to do for the line.  [interrupt]
+  void ask_for_link() { shared_.processing.ask_for_link(); }
+  // How often that was so. And that thread has done what it was asked until then, and all else: waits.  [that thread]
+  std::uint32_t link_was_asked() const { return shared_.processing.link_was_asked(); }
+  kernel::Events rest_link(std::uint32_t asked, kernel::Events mask, kernel::Time deadline) {
+    return shared_.processing.rest_link(asked, mask, deadline);
+  }
   // Has a SAFETY rule of the running program tripped since it began?
   bool has_tripped() const { return safety_rules_.have_tripped(); }
 

@@ -68,6 +68,16 @@ Events Kernel::wait_until(Events mask, Time deadline) {
   }
 }
 
+Events Kernel::signal_and_wait(Thread& thread, Events events, Events mask, Time deadline) {
+  expect_may_block();
+  {
+    port::SwitchLock still(machine_);
+    signal(thread, events);
+    if ((running_->events_ & mask) == 0) block_until(*running_, mask, deadline);
+  }
+  return wait_until(mask, deadline);
+}
+
 void Kernel::disarm(Thread& thread) {
   port::SwitchLock still(machine_);
   if (thread.armed()) TimerQueue::disarm(thread);

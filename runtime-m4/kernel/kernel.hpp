@@ -89,6 +89,8 @@ public:
   }
   // Sets events of a thread and lets it run if it waits for one of them.  [any]
   void signal(Thread& thread, Events events);
+  // The same, and waits: whoever that lets run finds this thread blocked, unless one of `mask` is there.  [thread]
+  Events signal_and_wait(Thread& thread, Events events, Events mask, Time deadline);
   // Gives a thread another priority: its place is then the one it would have if it were added now,
   // behind its equals. The order changes by pairs of neighbours, each under a lock of its own, so
   // nothing is held off for longer however far the thread moves. One caller at a time, and not

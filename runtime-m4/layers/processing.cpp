@@ -47,6 +47,7 @@ bool ProcessingLayer::start(const LoadedProgram& program, std::span<const KeptNu
   untouched_ = 0;
   untouched_inputs_ = 0;
   in_pass_ = false;
+  link_turns_.start(program.image.header->step_cost);
   for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b) {
     untouched_ |= bit<BehaviorMask>(b);
     untouched_inputs_ |= program.inputs[b];
@@ -74,6 +75,8 @@ void ProcessingLayer::run() {
   while (true) {
     const kernel::Events why = kernel_.wait(kNews | kIdle | kStopped | kHalted | kGiveWay, next);
     if ((why & (kStopped | kGiveWay)) != 0) attend(why);
+    if (link_turns_.waits()) [[unlikely]]
+      attend_link();
     in_pass_.store(true, std::memory_order_relaxed);
     pass();
     passes_.store(passes_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
@@ -240,11 +243,21 @@ kernel::Time ProcessingLayer::next_time() {
 
 // --- threads that were stopped ---
 
-// To the next tick but one: what is left of this one may be nothing.
 void ProcessingLayer::attend(kernel::Events events) {
   if ((events & kStopped) != 0) note_stops();
-  if ((events & kGiveWay) != 0)
-    kernel_.sleep_until(kernel_.now() + kernel::milliseconds(policy::kLinkTurnMs));
+  if ((events & kGiveWay) != 0 && link_turns_.has_budget(link_time())) give_turn();
+}
+
+void ProcessingLayer::attend_link() {
+  if (link_turns_.is_time(link_time())) give_turn();
+}
+
+// To the next tick but one: what is left of this one may be nothing.
+void ProcessingLayer::give_turn() {
+  kernel_.wait(kRests, 0);  // it has done so since the last turn
+  const LinkTurns::Now begin = link_time();
+  kernel_.wait(kRests, begin.time + kernel::milliseconds(policy::kLinkTurnMs));
+  link_turns_.took(begin, link_time());
 }
 
 void ProcessingLayer::note_stops() {

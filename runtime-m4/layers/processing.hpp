@@ -58,6 +58,7 @@
 #include "runtime-m4/layers/checks.hpp"
 #include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/layers/control.hpp"
+#include "runtime-m4/layers/link_turns.hpp"
 #include "runtime-m4/layers/loaded_program.hpp"
 #include "runtime-m4/layers/mailbox.hpp"
 #include "runtime-m4/layers/program_threads.hpp"
@@ -81,7 +82,8 @@ inline constexpr kernel::Events kStopped =
     16;  // a thread was stopped by a fault, or is to be lowered
 inline constexpr kernel::Events kHalted = 32;    // safety has halted, let go, or set something
 inline constexpr kernel::Events kBegin = 64;     // all threads of the program are there
-inline constexpr kernel::Events kGiveWay = 128;  // it is the link's turn
+inline constexpr kernel::Events kGiveWay = 128;  // the link had nothing for long
+inline constexpr kernel::Events kRests = 256;    // it has nothing more to do
 
 class ProcessingLayer {
 public:
@@ -110,8 +112,19 @@ public:
   // … and the first step comes when its clock begins.
   void go() { kernel_.signal(thread_, kBegin); }
 
-  // It is the link's turn: the next pass waits for that.  [any]
+  // --- the link's share (policy/link_share.hpp) ---
+
+  // It had nothing for a period: the next pass waits for it.  [any]
   void give_way() { kernel_.signal(thread_, kGiveWay); }
+  // It has something to do for the line, and may not have to wait for long.  [interrupt]
+  void ask_for_link() { link_turns_.ask(); }
+  // How often that was so.  [any]
+  std::uint32_t link_was_asked() const { return link_turns_.asked(); }
+  // It has done what it was asked until then, and all else: waits, and its turn is over.  [the link's thread]
+  kernel::Events rest_link(std::uint32_t asked, kernel::Events mask, kernel::Time deadline) {
+    link_turns_.has_heard(asked);
+    return kernel_.signal_and_wait(thread_, kRests, mask, deadline);
+  }
 
   std::uint32_t steps() const { return trace_.step().step; }
   const Snapshot& snapshot() const { return snapshot_; }
@@ -138,6 +151,9 @@ private:
   void add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const;
   kernel::Time next_time();
   [[gnu::cold]] void attend(kernel::Events events);
+  [[gnu::cold, gnu::noinline]] void attend_link();
+  [[gnu::cold]] void give_turn();
+  LinkTurns::Now link_time() const { return {kernel_.now(), kernel_.clock()}; }
   [[gnu::cold]] void note_stops();
   [[gnu::cold]] void retire(const ProgramThreads::Member& member);
 
@@ -199,6 +215,7 @@ private:
   BehaviorMask unstarted_ = 0;       // have something to do before the first reading
   std::atomic<std::uint32_t> passes_ = 0;
   std::atomic<bool> in_pass_ = false;
+  LinkTurns link_turns_;
   bool takes_whole_turns_ = false;  // in builds for tests: see has_sole_turn()
 };
 

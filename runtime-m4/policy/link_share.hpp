@@ -1,17 +1,32 @@
-// What the link has of the processor for sure, though its thread ranks below the whole program: when the program has left it
-// nothing for a period, the step thread waits so long between two passes. So a host can always ask, stop, go back and upload
-// (a polling server; Sprunt, Sha and Lehoczky, 1989). Pure; layers/link_share.hpp keeps it, analysis/ counts it.
+// What the link has of the processor for sure, though its thread ranks below the whole program: the step thread waits for it
+// between two passes. So a host can always ask, stop, go back and upload (a sporadic server; Sprunt, Sha and Lehoczky, 1989).
+// Pure; layers/link_share.hpp and layers/link_turns.hpp keep it, analysis/ counts it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace robosync::policy {
 
-inline constexpr std::uint32_t kLinkTurnMs =
-    2;  // turns begin between ticks and end at one: at least 1 ms
+// A turn ends with the tick after the next one, or when nothing is left to do. After one that was so long there is none for a
+// period; after a shorter one, for as many times its length.
+inline constexpr std::uint32_t kLinkTurnMs = 2;
 inline constexpr std::uint32_t kLinkPeriodMs = 40;
 
-// Who has less than one part in so many has nothing.
+// Who has less of the processor than one part in so many has nothing.
 inline constexpr std::uint32_t kLinkParts = kLinkPeriodMs / kLinkTurnMs;
+
+// From the last byte of a request that takes no long work to its answer, at most.
+inline constexpr std::uint32_t kAnswerMs = 10;
+
+// So long a request waits for the program to leave the link some time, before it takes a turn. It may come when a pass begins,
+// and be seen at the pass's end; and the next pass may begin just before the time is over. `step_cost`: of the program.
+constexpr std::uint32_t link_patience_ms(std::uint32_t step_cost) {
+  constexpr std::uint32_t kInstructionsAMs =
+      12'500;  // of the slowest board, with what a pass has besides
+  constexpr std::uint32_t kMostUs = 1000 * (kAnswerMs - kLinkTurnMs);
+  const std::uint64_t passes_us = std::uint64_t{step_cost} * 2 * 1000 / kInstructionsAMs;
+  return static_cast<std::uint32_t>((kMostUs - std::min<std::uint64_t>(passes_us, kMostUs)) / 1000);
+}
 
 }  // namespace robosync::policy

@@ -296,7 +296,7 @@ TEST_CASE("a program that may leave the link nothing waits for it, and only such
     return analysis::task_set_of(program.image(), tool::board_costs(), tool::module_cost);
   };
   const auto turn_of = [](const analysis::TaskSet& set) {
-    return std::ranges::find(set.interferences, "the link's turn", &analysis::Interference::name);
+    return std::ranges::find(set.interferences, "the link's turns", &analysis::Interference::name);
   };
   const analysis::TaskSet light = link_of("examples/paper/robot.rsl");
   CHECK(turn_of(light) == light.interferences.end());
@@ -312,8 +312,9 @@ TEST_CASE("a program that may leave the link nothing waits for it, and only such
   const analysis::TaskSet much = heavy(3800);
   REQUIRE(turn_of(much) != much.interferences.end());
   const Instructions ms = tool::board_costs().instructions_per_ms();
-  CHECK(turn_of(much)->cost == policy::kLinkTurnMs * ms);
-  CHECK(turn_of(much)->period == policy::kLinkPeriodMs * ms);
+  CHECK(turn_of(much)->period == ms);
+  CHECK(turn_of(much)->cost == (ms + policy::kLinkParts - 1) / policy::kLinkParts);
+  CHECK(std::next(turn_of(much))->cost == policy::kLinkTurnMs * ms);
 }
 
 TEST_CASE("a program that is late on one path though the processor has time") {

@@ -68,6 +68,10 @@ TEST_CASE("Assertions: nothing blocks under a lock") {
         }) == "sleep_until: while a lock is held");
   CHECK(said_in_thread(rig, [&] {
           const auto lock = kernel.lock();
+          kernel.signal_and_wait(kernel.current(), 1, 1, 5000);
+        }) == "signal_and_wait: while a lock is held");
+  CHECK(said_in_thread(rig, [&] {
+          const auto lock = kernel.lock();
           kernel.acquire(mutex);
         }) == "acquire: while a lock is held");
 }

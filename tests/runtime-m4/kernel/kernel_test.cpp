@@ -88,6 +88,31 @@ TEST_CASE("a signal before the wait is not lost, and is taken once") {
   CHECK(rig.log == "1 0");
 }
 
+TEST_CASE("who is woken by one that signals and waits finds it waiting") {
+  Rig rig;
+  Thread* waiter = nullptr;
+  auto& high = rig.add("high", Category::behavior, 9, [&] {
+    for (int round = 0; round < 3; ++round) {
+      rig.note(std::to_string(rig.kernel.wait(kA)));
+      rig.note(rig.kernel.state(*waiter) == Thread::State::blocked ? "waits" : "runs");
+      if (round == 1) rig.kernel.signal(*waiter, kB);
+    }
+  });
+  auto& low = rig.add("low", Category::behavior, 1, [&] {
+    const auto tell = [&](Time deadline) {
+      rig.note(std::to_string(rig.kernel.signal_and_wait(high.thread, kA, kB, deadline)));
+    };
+    tell(5000);
+    CHECK(rig.kernel.now() == 5000);
+    tell(kForever);
+    rig.kernel.signal(rig.kernel.current(), kB);
+    tell(kForever);  // what is there already is not waited for
+  });
+  waiter = &low.thread;
+  rig.kernel.run();
+  CHECK(rig.log == "1 waits 0 1 waits 2 1 runs 2");
+}
+
 TEST_CASE("events outside the mask are kept and do not wake") {
   Rig rig;
   auto& waiter = rig.add("waiter", Category::behavior, 9, [&] {
