@@ -22,8 +22,7 @@ bool LinkTurns::is_time(const Now& now) {
 
 // The clock wraps after minutes, and no pause is as long as a second.
 bool LinkTurns::has_budget(const Now& now) const {
-  return now.clock - last_.clock >= pause_ ||
-         now.time - last_.time >= kernel::milliseconds(1000);
+  return now.clock - last_.clock >= pause_ || now.time - last_.time >= kernel::milliseconds(1000);
 }
 
 void LinkTurns::took(const Now& begin, const Now& end) {
