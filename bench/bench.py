@@ -31,7 +31,7 @@ from counting import BenchError
 from rsc import RscError
 
 BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
-GROUPS = (workloads.workload_figures, figures.opcode_figures, figures.image_figures,
+GROUPS = (workloads.workload_figures, workloads.smoothing_figures, figures.opcode_figures, figures.image_figures,
           figures.kernel_figures, figures.size_figures, memory.memory_figures, growth.growth_figures,
           figures.link_figures, answer.answer_figures, upload.upload_figures, figures.signature_figures, figures.power_up_figures, figures.ear_figures,
           path.path_figures, safety.safety_figures, idle.idle_figures, compile_figures.compile_figures,

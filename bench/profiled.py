@@ -18,7 +18,8 @@ from board import FIRMWARE
 # Whose figures are counted between marks, and the ELF that runs then.
 GROUPS = ((growth.growth_figures, growth.FIRMWARE), (path.path_figures, FIRMWARE), (safety.calm_figures, FIRMWARE),
           (safety.loaded_figures, FIRMWARE),
-          (workloads.workload_figures, counting.BUILT / "bench_workload"))
+          (workloads.workload_figures, counting.BUILT / "bench_workload"),
+          (workloads.smoothing_figures, counting.BUILT / "bench_check"))
 
 
 def find(name):

@@ -126,11 +126,15 @@ def smooth_readings():
             *(random_.randrange(20_000, 4_000_000) for _ in range(300)), *[20_000, 4_000_000] * MOST_SAMPLES)
 
 
+def smoothing_figures():
+    with tempfile.TemporaryDirectory() as folder:
+        return {"vm/W3_natural": (max(w3_natural(folder)), "insn"),
+                "path/smooth_sample": (max(w3_natural(folder, smooth_readings(), MOST_SAMPLES)), "insn")}
+
+
 def workload_figures():
     with tempfile.TemporaryDirectory() as folder:
         one, two, three = w1(folder), w2(folder), w3(folder)
-        natural = w3_natural(folder)
-        smooth = w3_natural(folder, smooth_readings(), MOST_SAMPLES)
     per_round = two.spans[0] / ROUNDS
     opcodes = two.number(r"\bagain +r\d+, -(\d+)")  # from there back: the loop has no branches
     verify = one.marks.spans("mark_verify_begin", "mark_verify_end")[0]
@@ -139,8 +143,6 @@ def workload_figures():
         "vm/W1": (max(one.spans), "insn"),
         "vm/W2": (round(per_round, 1), "insn"),
         "vm/W3": (max(three.spans), "insn"),
-        "vm/W3_natural": (max(natural), "insn"),
-        "path/smooth_sample": (max(smooth), "insn"),
         "vm/insn_per_op": (round(per_round / opcodes, 1), "insn"),
         "vm/verify_per_word": (round(verify / one.words, 1), "insn"),
         **{f"vm/bytes_{name}": (work.bytes_of("code"), "B") for name, work in works.items()},
