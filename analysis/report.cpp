@@ -31,8 +31,8 @@ ResponseTime from_the_reading(const TaskSet& set, std::size_t source, Priorities
   const Instructions measuring = set.sources[source].measuring;
   if (late + measuring == 0) return response;
   response.time += late + measuring;
-  if (late != 0) response.contributors.push_back({"until its input is sampled", late});
-  if (measuring != 0) response.contributors.push_back({"until its echo is there", measuring});
+  if (late != 0) response.contributors.push_back({"the wait for a sample of its input", late});
+  if (measuring != 0) response.contributors.push_back({"the wait for its echo", measuring});
   std::ranges::stable_sort(response.contributors, std::ranges::greater{}, &Contributor::cost);
   return response;
 }

@@ -490,11 +490,12 @@ bool may_keep_waiting(const TaskSet& set, Priorities priorities, Instructions ti
 // The step thread waits for the link when that had nothing for so long. Its turns take a part of the time, and one that has
 // just begun may be as long as they get.
 void add_link(TaskSet& set, const vm::Image& image, Instructions ms, Priorities priorities) {
-  const std::uint32_t patience = policy::link_patience_ms(image.header->step_cost);
-  // What has begun with a tick is counted as a whole one.
-  if (!may_keep_waiting(set, priorities, ms * (patience - std::min(patience, 1U)))) return;
+  const std::uint32_t patience_us = policy::link_patience_us(image.header->step_cost);
+  const std::uint32_t known_us =
+      patience_us - std::min(patience_us, 1000U);  // it is counted in ticks
+  if (!may_keep_waiting(set, priorities, ms * known_us / 1000)) return;
   set.interferences.push_back({"the link's turns", ms, ceil_div(ms, policy::kLinkParts)});
-  set.interferences.push_back({"… one that is long", kOnce, policy::kLinkTurnMs * ms});
+  set.interferences.push_back({"a long turn of the link", kOnce, policy::kLinkTurnMs * ms});
   settle(set, priorities);
 }
 

@@ -9,7 +9,7 @@ void LinkTurns::start(std::uint32_t step_cost) {
   has_heard(asked());
   heard_before_ = heard() - 1;
   pause_ = 0;
-  patience_ = kernel::milliseconds(policy::link_patience_ms(step_cost));
+  patience_ = policy::link_patience_us(step_cost);
 }
 
 bool LinkTurns::is_time(const Now& now) {

@@ -21,12 +21,13 @@ inline constexpr std::uint32_t kAnswerMs = 10;
 
 // So long a request waits for the program to leave the link some time, before it takes a turn. It may come when a pass begins,
 // and be seen at the pass's end; and the next pass may begin just before the time is over. `step_cost`: of the program.
-constexpr std::uint32_t link_patience_ms(std::uint32_t step_cost) {
+constexpr std::uint32_t link_patience_us(std::uint32_t step_cost) {
+  constexpr std::uint32_t kAnsweringUs = 1000;
+  constexpr std::uint32_t kMostUs = 1000 * kAnswerMs - kAnsweringUs;
   constexpr std::uint32_t kInstructionsAMs =
       12'500;  // of the slowest board, with what a pass has besides
-  constexpr std::uint32_t kMostUs = 1000 * (kAnswerMs - kLinkTurnMs);
   const std::uint64_t passes_us = std::uint64_t{step_cost} * 2 * 1000 / kInstructionsAMs;
-  return static_cast<std::uint32_t>((kMostUs - std::min<std::uint64_t>(passes_us, kMostUs)) / 1000);
+  return kMostUs - static_cast<std::uint32_t>(std::min<std::uint64_t>(passes_us, kMostUs));
 }
 
 }  // namespace robosync::policy

@@ -65,7 +65,7 @@ TEST_CASE("link turns: what one program left unheard is not the next one's matte
 TEST_CASE("link turns: short steps leave time to wait, long ones none") {
   Passes light(kLightStep);
   light.turns.ask();
-  CHECK(light.waits_for_turn() == policy::link_patience_ms(kLightStep));
+  CHECK(light.waits_for_turn() == (policy::link_patience_us(kLightStep) + 999) / 1000);
   Passes heavy(kHeavyStep);
   heavy.turns.ask();
   CHECK(heavy.waits_for_turn() == 0);
@@ -73,7 +73,7 @@ TEST_CASE("link turns: short steps leave time to wait, long ones none") {
 
 TEST_CASE("link turns: a wait begins anew when the link has heard") {
   Passes passes(kLightStep);
-  const std::uint32_t patience = policy::link_patience_ms(kLightStep);
+  const std::uint32_t patience = policy::link_patience_us(kLightStep) / 1000;
   for (int round = 0; round < 3; ++round) {
     passes.turns.ask();
     CHECK(passes.turns.waits());
@@ -112,11 +112,11 @@ TEST_CASE("link turns: after a long pause the clock may have wrapped") {
   CHECK(passes.turns.has_budget(later));
 }
 
-TEST_CASE("link turns: two passes and a turn fit into the time for an answer") {
+TEST_CASE("link turns: two passes and an answer fit into the time for an answer") {
   constexpr std::uint32_t kSlowest = 12'500;  // instructions a millisecond
   for (std::uint32_t cost = 0; cost <= kHeavyStep; cost += 500) {
-    const std::uint32_t patience = policy::link_patience_ms(cost);
-    if (patience != 0)
-      CHECK(patience + 2.0 * cost / kSlowest + policy::kLinkTurnMs <= policy::kAnswerMs);
+    const std::uint32_t patience_us = policy::link_patience_us(cost);
+    if (patience_us != 0)
+      CHECK(patience_us / 1000.0 + 2.0 * cost / kSlowest + 1 <= policy::kAnswerMs + 0.001);
   }
 }
