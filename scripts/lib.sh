@@ -64,11 +64,15 @@ build() {
   esac
   say "Building $preset (CMake preset; ${*:+only $*; }log: $log)"
   mkdir -p build
+  # One at a time: several robots may be started at once, and each looks first whether there is something to build.
+  exec {building}>"build/$preset.lock"
+  flock "$building"
   if ! { cmake --preset "$preset" "${configuring[@]}" && cmake --build --preset "$preset" ${*:+--target "$@"}; } \
     >"$log" 2>&1; then
     tail -n 60 "$log" >&2
     die "the build of $preset failed" 1
   fi
+  exec {building}>&-
 }
 
 # Builds rsc without its tests, whose libraries need not be there; where they are configured already, they stay.

@@ -237,14 +237,12 @@ void report_mistake(const Mistake& mistake, Diagnostics& diagnostics) {
 
 // ---- the tree
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 // Receives nlohmann's events and builds the tree. The methods' names and results are nlohmann's.
 class Builder {
 public:
   Builder(std::string_view text, FileId file, Diagnostics& diagnostics)
       : text_(text), file_(file), diagnostics_(diagnostics) {
-    if (text_.starts_with(kByteOrderMark)) cursor_ = kByteOrderMark.size();
+    if (text_.starts_with(utf8::kByteOrderMark)) cursor_ = utf8::kByteOrderMark.size();
   }
 
   bool null() { return scalar(Kind::null); }

@@ -10,6 +10,8 @@
 namespace robosync::compiler::utf8 {
 
 inline constexpr char32_t replacement = 0xFFFD;
+// What editors on Windows, and Excel, write in front of a text.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 struct CodePoint {
   char32_t value = replacement;

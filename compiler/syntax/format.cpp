@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/source/utf8.hpp"
 #include "compiler/syntax/blocks.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/layout.hpp"
@@ -111,6 +112,8 @@ struct Line {
   std::size_t level = 0;
   std::vector<std::string> cells;  // one, but for rows of a table
   std::string_view comment;
+  bool is_doubtful =
+      false;  // the comment may be meant otherwise: it stays as near, for then the lexer says so
   Table table = Table::none;
 
   [[nodiscard]] bool is_blank() const { return cells.empty() && comment.empty(); }
@@ -183,13 +186,27 @@ private:
     return found;
   }
 
+  static std::string_view comment_of(std::string_view text) {
+    if (text.starts_with(utf8::kByteOrderMark)) text.remove_prefix(utf8::kByteOrderMark.size());
+    return trimmed(text);
+  }
+
+  bool is_doubtful(std::string_view comment) const {
+    if (comment.empty()) return false;
+    const auto begin = static_cast<std::size_t>(comment.data() - source_.text().data());
+    return std::ranges::any_of(ignored_.all(), [begin](const Diagnostic& diagnostic) {
+      return diagnostic.code == Code::W0103 && diagnostic.labels.front().span.begin == begin;
+    });
+  }
+
   bool read_line(std::uint32_t number, BlockWalk& walk) {
     const std::size_t begin = source_.line_start(number);
     const std::string_view text = source_.line(number);
     const Tokens tokens = tokens_of(begin + text.size());
     Line line;
     const std::size_t code = tokens.empty() ? 0 : tokens.back().span.end - begin;
-    line.comment = trimmed(text.substr(std::min(code, text.size())));
+    line.comment = comment_of(text.substr(std::min(code, text.size())));
+    line.is_doubtful = is_doubtful(line.comment);
     if (!line.comment.empty() && line.comment.front() != '#' && line.comment.front() != '%')
       return false;
     if (tokens.empty()) {
@@ -315,7 +332,7 @@ private:
 
   void align_comments() {
     const auto has_both = [](const Line& line) {
-      return !line.comment.empty() && !line.cells.empty();
+      return !line.comment.empty() && !line.cells.empty() && !line.is_doubtful;
     };
     columns_.clear();
     each_run([&](const Line& a, const Line& b) { return has_both(a) && has_both(b); },
@@ -323,7 +340,8 @@ private:
                std::size_t width = 0;
                for (const Line& line : lines)
                  width = std::max(width, width_of(code_of(line)));
-               columns_.insert(columns_.end(), lines.size(), width + kBeforeComment);
+               const std::size_t before = lines.front().is_doubtful ? 1 : kBeforeComment;
+               columns_.insert(columns_.end(), lines.size(), width + before);
              });
   }
 

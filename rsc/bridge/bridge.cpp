@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "compiler/source/utf8.hpp"
 #include "rsc/bridge/topics.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/trace/channels.hpp"
@@ -19,7 +20,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string root_of(const std::string& name) {
-  return "robosync/" + topic_part(name) + "/";
+  if (topic_part(name) != name)
+    throw Failure(
+        Exit::usage,
+        fmt::format("`{}` cannot be a part of a topic, for which /, + and # mean something "
+                    "else: give the robot another --name",
+                    name));
+  return "robosync/" + name + "/";
 }
 
 std::string as_text(const Json& payload) {
@@ -42,6 +49,7 @@ Json program_json(const vm::Image* image) {
   return tool::text_of(image->header->program_hash);
 }
 
+constexpr std::size_t kMostPayload = 1000;
 constexpr const char* kAway = R"({"online":false})";
 
 }  // namespace
@@ -76,6 +84,11 @@ void Bridge::board(const link::HelloReply& board, const Past& past,
            {"owner", owner_json(past.owner)},
            {"silent", devices_json(silent)}},
           true);
+  stopped(board.stopped != 0);
+}
+
+void Bridge::stopped(bool is) {
+  publish("stopped", {{"stopped", is}}, true);
 }
 
 void Bridge::program(const TraceNames& names, std::span<const std::byte>) {
@@ -143,18 +156,22 @@ void Bridge::take(const MqttMessage& message, Session* session) {
   } catch (const Failure& failure) {
     why = failure.what();
   }
+  why = compiler::utf8::printable(why);
   std::cerr << fmt::format("rsc: {}: {}\n", message.topic, why);
   publish("refused", {{"topic", message.topic}, {"why", why}}, false);
 }
 
 void Bridge::obey(const std::string& topic, const std::string& payload, Session* session) {
   if (session == nullptr) throw std::invalid_argument("the robot is away");
+  if (payload.size() > kMostPayload)
+    throw std::invalid_argument(
+        fmt::format("{} bytes are no reading: {} at most", payload.size(), kMostPayload));
   if (topic == "stop") {
     session->client.stop();
-    publish("stopped", {{"stopped", true}}, true);
+    stopped(true);
   } else if (topic == "resume") {
     session->client.resume();
-    publish("stopped", {{"stopped", false}}, true);
+    stopped(false);
   } else if (const auto reading = reading_of(topic, payload)) {
     feed(*reading, *session);
   } else {

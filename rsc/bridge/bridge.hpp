@@ -28,6 +28,7 @@ public:
 private:
   void publish(const std::string& topic, const nlohmann::ordered_json& payload, bool retain);
   void online(bool is);
+  void stopped(bool is);
   void take(const MqttMessage& message, Session* session);
   void see_what_was_left(const std::string& topic, const MqttMessage& message);
   void obey(const std::string& topic, const std::string& payload, Session* session);

@@ -7,14 +7,12 @@
 #include <csv.h>
 #include <fmt/format.h>
 
+#include "compiler/source/utf8.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
 
 namespace robosync::tool {
 namespace {
-
-// Excel writes it in front of UTF-8.
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 char delimiter_of(std::string_view text) {
   const std::string_view first = text.substr(0, text.find('\n'));
@@ -36,6 +34,7 @@ public:
   CsvTable read() {
     const std::string text = read_text(file_);
     std::string_view rest = text;
+    using compiler::utf8::kByteOrderMark;
     if (rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
     csv_set_delim(&parser_, static_cast<unsigned char>(delimiter_of(rest)));
     while (!rest.empty()) {

@@ -34,8 +34,9 @@ struct ReplayOptions {
 RecordedRun recording_of(const ReplayOptions& options) {
   RecordedRun run = read_recording(options.file);
   if (run.programs.empty())
-    throw Failure(Exit::program,
-                  options.file + ": no program begins in it; record from before it is uploaded on");
+    throw Failure(Exit::program, options.file +
+                                     ": no program begins in it, up to its first gap if it has "
+                                     "one; record from before it is uploaded on");
   for (const RecordedProgram& one : run.programs)
     if (one.image.empty() && options.program.empty())
       throw Failure(Exit::usage,

@@ -177,12 +177,14 @@ TEST_CASE("a robot on a broker: what it does is published, and it is fed, stoppe
   subscriber.publish("robosync/pet/do/resume", "");
   CHECK(subscriber.wait_for("robosync/pet/stopped", "false"));
 
-  for (const auto& [topic, payload] : {std::pair{"feed/touch/LEVL", "2"},
+  using Text = std::string;
+  for (const auto& [topic, payload] : {std::pair<Text, Text>{"feed/touch/LEVL", "2"},
                                        {"feed/touch/LEVEL", "x"},
                                        {"feed/touch/LEVEL", "{}"},
                                        {"feed/", ""},
-                                       {"jump", "now"}}) {
-    subscriber.publish(std::string("robosync/pet/do/") + topic, payload);
+                                       {"jump", "now"},
+                                       {"feed/touch/LEVEL", std::string(2000, '1')}}) {
+    subscriber.publish("robosync/pet/do/" + topic, payload);
     CAPTURE(topic, payload);
     CHECK(subscriber.wait_for("robosync/pet/refused", topic));
   }
@@ -227,7 +229,10 @@ TEST_CASE("a broker knows which program runs, and has nothing of one that ran be
   {
     const RunningBridge bridge(device, broker, "pet", "2s");
     CHECK(subscriber.wait_for("robosync/pet/program", first));
+    subscriber.publish("robosync/pet/do/stop", "");
+    CHECK(subscriber.wait_for("robosync/pet/stopped", "true"));
   }
+  REQUIRE(device.run({"resume"}).exit == 0);  // while no bridge is there to see it
   const std::string other =
       device.write("other.rsl", "WHEN touch LEVEL > 8 DO\n  MOVE left_arm TO 1deg\nEND\n");
   REQUIRE(device.run({"upload", other, "--config", device.path("robot.json")}).exit == 0);
@@ -238,6 +243,7 @@ TEST_CASE("a broker knows which program runs, and has nothing of one that ran be
   Subscriber late(broker);
   CHECK(late.wait_for("robosync/pet/program", second));
   CHECK(late.wait_for("robosync/pet/mine", "old"));
+  CHECK(late.wait_for("robosync/pet/stopped", "false"));
   for (const char* const topic : {"safety/line 12", "behaviors/beta", "sensors/gone/LEVEL"})
     CHECK_FALSE(late.has(std::string("robosync/pet/") + topic));
   bridge.join();
@@ -279,6 +285,12 @@ TEST_CASE("rsc bridge says what is wrong with a broker") {
        {"", ":1883", "localhost:", "localhost:0", "localhost:70000", "localhost:x"}) {
     CAPTURE(wrong);
     CHECK(device.run({"bridge", "--mqtt", wrong}).exit == 2);
+  }
+  for (const char* wrong : {"#", "a/b"}) {
+    CAPTURE(wrong);
+    outcome = device.run({"bridge", "--mqtt", "localhost", "--name", wrong});
+    CHECK(outcome.exit == 2);
+    CHECK_THAT(outcome.err, Contains("give the robot another --name"));
   }
   CHECK(tool::parse_broker("[::1]:1884").host == "::1");
   CHECK(tool::parse_broker("[::1]").host == "::1");

@@ -388,6 +388,10 @@ TEST_CASE("the line may be TCP") {
       test::rsc({"info", "--port", "tcp:localhost:" + std::to_string(ntohs(address.sin_port))});
   CAPTURE(outcome.err);
   CHECK(outcome.exit == 0);
+  const int same_below_65536 = ntohs(address.sin_port) + 65536;
+  for (const std::string& wrong :
+       {std::to_string(same_below_65536), std::string("0"), std::string("x")})
+    CHECK(test::rsc({"info", "--port", "tcp:localhost:" + wrong}).exit == 2);
 }
 
 int open_pty_master() {

@@ -72,6 +72,18 @@ std::string respaced(const std::string& text, std::mt19937& random) {
 
 }  // namespace
 
+TEST_CASE("a byte order mark in front of a comment is no part of it") {
+  CHECK(styled("\xEF\xBB\xBF# hello\nLET a = 1\n") == "# hello\nLET a = 1\n");
+}
+
+TEST_CASE("a comment that may be meant as a percentage stays where rsc check says so") {
+  const std::string doubtful = "WHEN touch LEVEL > 3 DO\n  SAY 40 % loud\n  SAY 4   % quiet\nEND\n";
+  const std::string styled_once = styled(doubtful);
+  CHECK_THAT(styled_once,
+             Catch::Contains("  SAY 40 % loud\n") && Catch::Contains("  SAY 4  % quiet\n"));
+  CHECK(styled(styled_once) == styled_once);
+}
+
 TEST_CASE("each kind of line has its place") {
   const fs::path folder = kRoot / "tests/compiler/syntax/style";
   const std::string after = styled(read_file(folder / "before.rsl"));
