@@ -365,7 +365,6 @@ class Panel(DebuggedTest):
     def test_it_is_told_its_picture_until_the_robot_is_stopped_and_its_pin_is_given_back(self):
         wires = pins.Pins(self.folder)
         self.addCleanup(wires.close)
-        self.assertEqual(self.function(wires), OF_TIMER)
         self.begin(PANEL, SHOWS)
         self.await_picture(wires, DARK)
         self.assertEqual((self.function(wires), self.told(SPI_CONTROL)), (OF_SPI, [SENDS]))
