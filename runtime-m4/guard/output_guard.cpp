@@ -68,7 +68,7 @@ bool can_tell(const vm::Actuator& actuator, const policy::BoardPins& pins) {
          policy::is_for_panel(pins, actuator.pin);
 }
 
-constexpr bool is_panel(vm::DriverId driver) {
+constexpr bool is_on_panel(vm::DriverId driver) {
   return boards::kHasPanel && vm::drives_panel(driver);
 }
 
@@ -154,7 +154,7 @@ void OutputGuard::switch_off(const vm::Image* next) {
 }
 
 void OutputGuard::switch_off(const Slot& slot) {
-  if (is_panel(slot.driver))
+  if (is_on_panel(slot.driver))
     board_.show_on_panel(0);
   else if (vm::drives_player(slot.driver))
     say(slot, 0);
@@ -255,7 +255,7 @@ void OutputGuard::show(unsigned actuator, std::uint32_t picture) {
   const auto lock = kernel_.lock();
   if (!is_free(actuator)) return;
   if ((lights() & bit(actuator)) != 0) return board_.show(picture);
-  if (is_panel(slots_[actuator].driver) && picture != on_panel_) {
+  if (is_on_panel(slots_[actuator].driver) && picture != on_panel_) {
     on_panel_ = picture;
     lagging_ |= bit(actuator);
   }
@@ -389,7 +389,7 @@ void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
   if (vm::is_told(slot.driver)) {
     if (slot.safe == kStays) return;
     slot.target = 0;
-    if (is_panel(slot.driver)) on_panel_ = 0;
+    if (is_on_panel(slot.driver)) on_panel_ = 0;
     lagging_ |= bit(actuator);
     return;
   }
@@ -573,7 +573,7 @@ void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
   slot.changed = now;
   slot.safe = wiring.safe == vm::Release::hold ? kStays : std::uint16_t{0};
   slot.driver = wiring.driver;
-  if (is_panel(wiring.driver)) {
+  if (is_on_panel(wiring.driver)) {
     panel_pin_ = wiring.pin;
     on_panel_ = 0;
     board_.begin_panel(policy::panel_of(wiring));
@@ -586,7 +586,7 @@ void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
 // who calls this is the safety thread, which nobody interrupts who could change it.
 [[gnu::noinline]] void OutputGuard::tell(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
-  const bool panel = is_panel(slot.driver);
+  const bool panel = is_on_panel(slot.driver);
   const auto at = static_cast<std::uint16_t>(now / 1000);
   const std::uint16_t gap = panel ? policy::kPanelGapMs : policy::kPlayerGapMs;
   if (static_cast<std::uint16_t>(at - slot.changed) < gap) return;

@@ -42,7 +42,7 @@ MUTANTS = (
     Mutant("who is halted may play", GUARD, "if (!is_free(actuator) || !vm::drives_player(slot.driver)) return;",
            "if (!vm::drives_player(slot.driver)) return;"),
     Mutant("without a program a player plays on", GUARD, "say(slot, 0);", "say(slot, slot.target);"),
-    Mutant("a halt leaves the picture on a panel", GUARD, "if (is_panel(slot.driver)) on_panel_ = 0;", ";"),
+    Mutant("a halt leaves the picture on a panel", GUARD, "if (is_on_panel(slot.driver)) on_panel_ = 0;", ";"),
     Mutant("a halt takes the picture from a panel that holds it", GUARD, "    if (slot.safe == kStays) return;\n", ""),
     Mutant("without a program a panel stays lit", GUARD, "    board_.show_on_panel(0);\n", "    ;\n"),
     Mutant("the next program finds the panel lit", GUARD, "    on_panel_ = 0;\n    board_.begin_panel", "    board_.begin_panel"),
