@@ -434,6 +434,8 @@ private:
     if (any_actuator(vm::drives_player))
       set_.interferences.push_back(
           {"the sound player", instructions_in_ms(policy::kPlayerGapMs), board_.say});
+    if (any_actuator(vm::drives_panel))
+      set_.interferences.push_back({"the panel", period, board_.panel});
     set_.interferences.push_back(
         {"the safety thread", period, board_.wake_by_timer + costs::kMonitor + looks()});
     if (work_.trips() != 0)

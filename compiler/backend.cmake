@@ -33,6 +33,7 @@ target_sources(robosync_compiler_small PRIVATE
   config/fields.cpp
   config/json_reader.cpp
   config/names.cpp
+  config/panel.cpp
   config/robot.cpp
   config/robot_reader.cpp
   config/robot_vocabulary.cpp

@@ -13,6 +13,7 @@ namespace robosync::vm {
 // image has as its `bus`; the other pin is off then. Channel: pulses, by a servo chip, which the image has among its sensors, as
 // it is a device on a bus: `bus` says where, `pin` is the chip's channel. Screen: a picture, on a display, which is among the
 // sensors in the same way. Line: commands to a sound player, on a serial line of the board, which the image has as the `bus`.
+// Panel: a picture, on lights in a chain at its pin, of which a robot has one.
 enum class PinUse : std::uint8_t {
   nothing,
   pulses,
@@ -22,7 +23,8 @@ enum class PinUse : std::uint8_t {
   either_way,
   channel,
   screen,
-  line
+  line,
+  panel
 };
 
 constexpr PinUse pin_use(DriverId driver) {
@@ -68,6 +70,13 @@ constexpr bool drives_screen(DriverId driver) {
 inline constexpr std::uint8_t kFirstPlayerLine = 1;
 constexpr bool drives_player(DriverId driver) {
   return pin_use(driver) == PinUse::line;
+}
+constexpr bool drives_panel(DriverId driver) {
+  return pin_use(driver) == PinUse::panel;
+}
+// What gets its orders in messages, each of which takes its time.
+constexpr bool is_told(DriverId driver) {
+  return drives_player(driver) || drives_panel(driver);
 }
 // What goes on by itself as long as nobody ends it: it cannot be held in a halt.
 constexpr bool drives_on(DriverId driver) {
@@ -177,6 +186,19 @@ inline constexpr std::uint16_t kMinRangingPeriodMs = 50;
 constexpr std::uint16_t min_period_ms(DriverId driver) {
   if (is_by_echo(driver)) return kMinEchoPeriodMs;
   return measures_when_told(driver) ? kMinRangingPeriodMs : 0;
+}
+
+// Of a panel `bus` says how its lights lie, and `speed_limit` the colour of a lit one, 0xRRGGBB, of which no part is more than
+// kMostLight: 25 lights of white take 0.3 A then, which a board gets by USB, and not 1.5.
+inline constexpr std::uint8_t kPanelGoesBack = 1;  // each second row is wired from right to left
+inline constexpr std::uint8_t kPanelIsLarge =
+    2;  // 8 x 8 lights, with the picture in their midst; else 5 x 5
+inline constexpr unsigned kMostLight = 51;  // of 255
+constexpr bool is_panel(std::uint8_t lay, Value color) {
+  if (lay > (kPanelGoesBack | kPanelIsLarge) || color < 0 || color > 0xFF'FFFF) return false;
+  for (unsigned part = 0; part < 24; part += 8)
+    if ((static_cast<std::uint32_t>(color) >> part & 0xFF) > kMostLight) return false;
+  return true;
 }
 
 // Others are reserved by the I2C specification.

@@ -188,12 +188,13 @@ Refusal check_channel(Walk& walk, const Channel& channel, std::size_t index) {
                                          is_range(channel.min, channel.max) && channel.change >= 0);
 }
 
-// What an actuator has for itself alone: its pins, the lights, the speaker, a display, or a serial line.
+// What an actuator has for itself alone: its pins, the lights, the speaker, a display, a serial line, or the panel.
 constexpr std::uint32_t kNothing = UINT32_MAX;
 constexpr std::uint32_t kLights = UINT16_MAX + 1;
 constexpr std::uint32_t kSpeaker = kLights + 1;
 constexpr std::uint32_t kDisplays = kSpeaker + 1;
 constexpr std::uint32_t kLines = kDisplays + UINT8_MAX + 1;
+constexpr std::uint32_t kPanel = kLines + UINT8_MAX + 1;
 
 std::uint32_t output_of(const Actuator& actuator) {
   switch (pin_use(actuator.driver)) {
@@ -208,6 +209,7 @@ std::uint32_t output_of(const Actuator& actuator) {
     case PinUse::pulses:
     case PinUse::level:
     case PinUse::either_way:
+    case PinUse::panel:
       return actuator.pin;
     case PinUse::channel:
     case PinUse::nothing:
@@ -217,6 +219,7 @@ std::uint32_t output_of(const Actuator& actuator) {
 }
 
 std::uint32_t second_output_of(const Actuator& actuator) {
+  if (drives_panel(actuator.driver)) return kPanel;
   return has_two_pins(actuator.driver) ? actuator.bus : kNothing;
 }
 
@@ -239,6 +242,7 @@ Refusal check_output(const Walk& walk, const Actuator& actuator, std::size_t ind
   if (output == kNothing) return Refusal::none;
   if (output == second || is_taken(walk, output, index)) return Refusal::shared_pin;
   if (second != kNothing && is_taken(walk, second, index)) return Refusal::shared_pin;
+  if (second == kPanel && !is_panel(actuator.bus, actuator.speed_limit)) return Refusal::bad_value;
   return good_or(Refusal::drives_on, !drives_on(actuator.driver) || actuator.safe != Release::hold);
 }
 

@@ -163,6 +163,10 @@ void RecordMaker::actuator(std::size_t place) {
   record.speed_limit = config.speed_limit;
   for (const auto& [limited, speed] : program_.speed_limits)
     if (limited == place) record.speed_limit = std::min(record.speed_limit, speed);
+  if (config.panel && vm::drives_panel(config.driver)) {
+    record.bus = config.panel->lay;
+    record.speed_limit = config.panel->color;
+  }
   if (config.driver == vm::DriverId::virtual_actuator &&
       keeps_its_place(config, record.speed_limit)) {
     record.driver = vm::DriverId::virtual_motion;

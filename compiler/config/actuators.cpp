@@ -125,6 +125,15 @@ void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics
     actuator.speed_limit = *limit;
 }
 
+void report_panel_keys(const Fields& fields, Diagnostics& diagnostics) {
+  for (const std::string_view key : panel_keys())
+    if (const auto* value = fields.find(key))
+      diagnostics
+          .report(Code::E0205, "this device has no lights of which `" + std::string(key) +
+                                   "` could be said: a panel, `ws2812`, has")
+          .label(value->span);
+}
+
 // What moves by power alone must not hold.
 void read_safe(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
   actuator.safe = read_release(value, diagnostics).value_or(actuator.safe);
@@ -179,9 +188,14 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
     if (type->name == "VIRTUAL") actuator.driver = vm::DriverId::virtual_actuator;
     if (vm::drives_pin(actuator.driver)) wiring.check_output(fields, place, actuator.driver);
     if (vm::drives_player(actuator.driver)) wiring.check_line(fields, place);
+    if (vm::drives_panel(actuator.driver)) wiring.check_panel(fields, place);
     if (vm::drives_lights(actuator.driver) || vm::drives_speaker(actuator.driver))
       wiring.check_part(fields, part);
   }
+  if (vm::drives_panel(device.actuator.driver))
+    actuator.panel = read_panel(fields, diagnostics);
+  else
+    report_panel_keys(fields, diagnostics);
   if (const auto* range = fields.find("range")) read_position_range(*range, actuator, diagnostics);
   if (const auto* speeds = fields.find("speeds")) read_speeds(*speeds, actuator, diagnostics);
   if (const auto* sounds = fields.find("sounds"))

@@ -114,6 +114,10 @@ bool Board::has_enable(std::uint16_t pin) const {
   return is_in(enables, pin);
 }
 
+bool Board::has_panel(std::uint16_t pin) const {
+  return is_in(panels, pin);
+}
+
 const Board::Part* Board::find_part(std::string_view wanted) const {
   const auto found =
       std::ranges::find_if(parts, [&](const Part& part) { return same_name(part.name, wanted); });
@@ -139,6 +143,8 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
     board.analog = read_pins(*analog, Object::inputs, diagnostics);
   if (const auto* enables = fields.find("enables"))
     board.enables = read_pins(*enables, Object::inputs, diagnostics);
+  if (const auto* panels = fields.find("panels"))
+    board.panels = read_pins(*panels, Object::inputs, diagnostics);
   if (const auto* parts = fields.find("on_board")) board.parts = read_parts(*parts, diagnostics);
   if (const auto* flash = fields.find("flash")) board.flash = read_flash(*flash, diagnostics);
   const auto* arena = fields.require("arena", "a board");

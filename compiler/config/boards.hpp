@@ -34,6 +34,7 @@ struct Board {
   std::vector<Pins> inputs;        // … and read; none is both
   std::vector<Pins> analog;        // whose voltage it may read; one may be an output, too
   std::vector<Pins> enables;       // for the enable inputs of chips
+  std::vector<Pins> panels;        // outputs that can tell a panel of lights its picture
   std::uint32_t i2c_buses = 0;     // numbered from 0
   std::uint32_t serial_lines = 0;  // for sound players, from vm::kFirstPlayerLine on
   // How its firmware gets there; nothing: there is no such board but in an emulator.
@@ -61,6 +62,7 @@ struct Board {
   [[nodiscard]] bool has_input(std::uint16_t pin) const;
   [[nodiscard]] bool has_analog(std::uint16_t pin) const;
   [[nodiscard]] bool has_enable(std::uint16_t pin) const;
+  [[nodiscard]] bool has_panel(std::uint16_t pin) const;
   [[nodiscard]] const Part* find_part(std::string_view wanted) const;  // any case
 };
 

@@ -1,6 +1,11 @@
 // Entries of "sensors" and "actuators" in robot.json (sensors.cpp, actuators.cpp), and what they have in common.
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
 #include "compiler/config/devices.hpp"
 #include "compiler/config/json_reader.hpp"
 #include "compiler/config/robot.hpp"
@@ -21,6 +26,14 @@ namespace robosync::compiler {
 // `inputs`: how many inputs the device has.
 void read_channel(const json::Value& value, unsigned inputs, ChannelConfig& channel,
                   Diagnostics& diagnostics);
+
+// How the lights of a panel lie, and how they are lit.
+[[nodiscard]] PanelConfig read_panel(const Fields& fields, Diagnostics& diagnostics);
+inline constexpr std::int64_t kUsualPanelPercent = 10;
+inline constexpr std::int64_t kMostPanelPercent = 20;
+[[nodiscard]] std::vector<std::string_view> panel_colors();
+// The keys that say so, which nothing else has.
+[[nodiscard]] std::span<const std::string_view> panel_keys();
 
 // The "name" of an entry, checked.
 [[nodiscard]] std::optional<Spelled> read_name(Fields& fields, std::string_view what,

@@ -112,6 +112,12 @@ struct ServoChip {
   bool operator==(const ServoChip&) const = default;
 };
 
+// Of a panel of lights, as the image has it (vm::is_panel()).
+struct PanelConfig {
+  std::uint8_t lay = 0;
+  vm::Value color = 0;  // of a lit one
+};
+
 struct ActuatorConfig {
   Spelled name;
   std::string device;  // its descriptor in stdlib/devices/
@@ -119,6 +125,7 @@ struct ActuatorConfig {
   std::uint8_t bus = 0;
   std::uint16_t pin = 0;  // or channel of its chip, or address of its display
   std::optional<ServoChip> chip;
+  std::optional<PanelConfig> panel;
   vm::Release on_release = vm::Release::hold;
   vm::Release safe = vm::Release::hold;
   const Unit* to_unit = nullptr;  // of TO and BY; null: it has no position

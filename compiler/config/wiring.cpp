@@ -64,6 +64,10 @@ std::string boards_with_enables() {
   return boards_that([](const Board& board) { return !board.enables.empty(); });
 }
 
+std::string boards_with_panels() {
+  return boards_that([](const Board& board) { return !board.panels.empty(); });
+}
+
 std::string boards_with_analog() {
   return boards_that([](const Board& board) { return !board.analog.empty(); });
 }
@@ -441,6 +445,29 @@ void WiringReader::check_output(const Fields& fields, const Wiring& wiring, vm::
   } else if (const auto* pin = fields.find("pin")) {
     check_output_pin(*pin, wiring.place, power);
   }
+}
+
+void WiringReader::check_panel(const Fields& fields, const Wiring& wiring) {
+  const auto* pin = fields.find("pin");
+  if (pin != nullptr && !board_.has_panel(wiring.place)) report_no_panel(*pin, wiring.place);
+  const Span span = fields.find("device")->span;
+  if (!panel_) {
+    panel_ = span;
+    return;
+  }
+  diagnostics_.report(Code::E0207, "a robot has one panel of lights")
+      .label(span)
+      .label(*panel_, "the first one", false);
+}
+
+void WiringReader::report_no_panel(const json::Value& value, std::uint16_t pin) {
+  if (!board_.panels.empty())
+    return report_no_pin(value, pin, " is not for a panel of lights",
+                         "those that are: ", board_.panels);
+  if (board_.named == Board::Named::wrongly) return;
+  diagnostics_.report(Code::E0205, "the board " + board_.name + " has no pin for a panel of lights")
+      .label(value.span)
+      .helps("boards that have one: " + boards_with_panels());
 }
 
 // A pin that is held to the pulses of servos drives no motor (policy::can_drive()).

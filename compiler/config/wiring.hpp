@@ -59,6 +59,8 @@ public:
   // Of a sound player.
   void check_line(const Fields& fields, const Wiring& wiring);
   void check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver);
+  // Of a panel of lights, of which a robot has one.
+  void check_panel(const Fields& fields, const Wiring& wiring);
   // Lights and speakers are parts of a board, or nowhere.
   void check_part(const Fields& fields, const Board::Part* part);
   [[nodiscard]] const Board& board() const { return board_; }
@@ -88,6 +90,7 @@ private:
   void take_pin(std::uint16_t pin, Span span);
   void take_part(const Board::Part& part, Span span);
   void report_foreign(const Fields& fields, const WiringType& type);
+  void report_no_panel(const json::Value& value, std::uint16_t pin);
   void check_output_pin(const json::Value& value, std::uint16_t pin, bool power);
   void report_no_pin(const json::Value& value, std::uint16_t pin, const std::string& is_no,
                      const std::string& those_are, std::span<const Board::Pins> those);
@@ -96,6 +99,7 @@ private:
   Diagnostics& diagnostics_;
   std::map<std::uint16_t, Span> pins_;
   std::map<std::uint8_t, Span> lines_;
+  std::optional<Span> panel_;
   std::map<const Board::Part*, Span> parts_;                          // without a pin
   std::map<std::pair<std::uint8_t, std::uint16_t>, OnBus> on_buses_;  // by bus and address
 };

@@ -99,22 +99,32 @@ std::string place_of(const vm::Actuator& actuator) {
   if (vm::drives_channel(actuator.driver))
     return fmt::format("channel {} of sensor {}", actuator.pin, actuator.bus);
   if (vm::drives_screen(actuator.driver)) return fmt::format("sensor {}", actuator.bus);
+  if (vm::drives_panel(actuator.driver)) return fmt::format("pin {}", actuator.pin);
   return vm::has_two_pins(actuator.driver)
              ? fmt::format("pins {} and {}", actuator.pin, actuator.bus)
              : fmt::format("bus {} pin {}", actuator.bus, actuator.pin);
+}
+
+// A panel has a colour in its place.
+std::string limit_of(const vm::Actuator& actuator) {
+  if (vm::drives_panel(actuator.driver))
+    return fmt::format("colour {:06x}, lights {} x {}{}", actuator.speed_limit,
+                       (actuator.bus & vm::kPanelIsLarge) != 0 ? "8" : "5",
+                       (actuator.bus & vm::kPanelIsLarge) != 0 ? "8" : "5",
+                       (actuator.bus & vm::kPanelGoesBack) != 0 ? " in zigzag" : "");
+  return "speed limit " +
+         (actuator.speed_limit == vm::kValueMax ? "none" : number(actuator.speed_limit));
 }
 
 std::string actuators(const vm::Image& image) {
   std::string text = "\nactuators\n";
   for (std::size_t i = 0; i < image.actuators.size(); ++i) {
     const vm::Actuator& actuator = image.actuators[i];
-    text +=
-        fmt::format("  {} {}: {} on {}, range {} … {}, speed limit {}, release {}, safe {}; {}\n",
-                    i, image.string(actuator.name), driver_name(actuator.driver),
-                    place_of(actuator), number(actuator.min), number(actuator.max),
-                    actuator.speed_limit == vm::kValueMax ? "none" : number(actuator.speed_limit),
-                    word_of(kReleases, actuator.on_release), word_of(kReleases, actuator.safe),
-                    verb_names(image, actuator.verbs));
+    text += fmt::format("  {} {}: {} on {}, range {} … {}, {}, release {}, safe {}; {}\n", i,
+                        image.string(actuator.name), driver_name(actuator.driver),
+                        place_of(actuator), number(actuator.min), number(actuator.max),
+                        limit_of(actuator), word_of(kReleases, actuator.on_release),
+                        word_of(kReleases, actuator.safe), verb_names(image, actuator.verbs));
   }
   for (const vm::Group& group : image.groups) {
     text += fmt::format("  group {}: {}\n", image.string(group.name),

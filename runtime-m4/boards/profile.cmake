@@ -37,7 +37,7 @@ foreach(i RANGE ${last})
   string(APPEND board_inputs "{${first},${final}},")
 endforeach()
 # … of which there may be none.
-foreach(kind analog enables)
+foreach(kind analog enables panels)
   string(JSON ${kind}_rows ERROR_VARIABLE any LENGTH "${profile}" ${kind})
   if(any)
     set(${kind}_rows 0)
@@ -51,6 +51,11 @@ foreach(kind analog enables)
     math(EXPR i "${i} + 1")
   endwhile()
 endforeach()
+# The host has what any board has.
+if(panels_rows EQUAL 0 AND NOT CMAKE_CROSSCOMPILING)
+  set(panels_rows 1)
+  set(board_panels "{0,65535},")
+endif()
 string(JSON lights ERROR_VARIABLE any GET "${profile}" lights)
 set(board_lights 1)
 if(any AND CMAKE_CROSSCOMPILING)
@@ -65,5 +70,6 @@ set(board_definitions
   ROBOSYNC_ARENA_BEGIN=${arena_begin} ROBOSYNC_ARENA_BYTES=${arena_bytes} ROBOSYNC_STEP_BUDGET=${step_budget}
   ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_STORE_BYTES=${store_bytes} ROBOSYNC_OUTPUTS=${board_outputs}
   ROBOSYNC_INPUTS=${board_inputs} ROBOSYNC_ANALOG=${board_analog} ROBOSYNC_ANALOG_ROWS=${analog_rows}
-  ROBOSYNC_ENABLES=${board_enables} ROBOSYNC_ENABLE_ROWS=${enables_rows} ROBOSYNC_LIGHTS=${board_lights}
+  ROBOSYNC_ENABLES=${board_enables} ROBOSYNC_ENABLE_ROWS=${enables_rows}
+  ROBOSYNC_PANELS=${board_panels} ROBOSYNC_PANEL_ROWS=${panels_rows} ROBOSYNC_LIGHTS=${board_lights}
   ROBOSYNC_SPEAKER=${board_speaker} ROBOSYNC_SERIAL_LINES=${serial_lines})

@@ -93,11 +93,12 @@ struct Driver {
   ReleaseFunction release = nullptr;
 };
 
-// Code for lights and speakers is not there where there are none, nor that for displays and players where they could not be.
+// Code for lights and speakers is not there where there are none, nor that for displays, players and panels where they could not be.
 constexpr bool is_present(vm::DriverId id) {
   if (vm::drives_lights(id)) return boards::kHasLights;
   if (vm::drives_screen(id)) return boards::kPins.i2c_buses != 0;
   if (vm::drives_player(id)) return boards::kPins.serial_lines != 0;
+  if (vm::drives_panel(id)) return boards::kHasPanel;
   return boards::kHasSpeaker || !vm::drives_speaker(id);
 }
 template <vm::DriverId id>

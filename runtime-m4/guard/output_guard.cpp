@@ -5,6 +5,7 @@
 #include <bit>
 #include <utility>
 
+#include "runtime-m4/policy/panel.hpp"
 #include "runtime-m4/policy/player.hpp"
 #include "runtime-m4/policy/pulses.hpp"
 #include "vm/drivers.hpp"
@@ -44,6 +45,33 @@ std::uint16_t within(const policy::PinLimit& limit, std::uint32_t pulse_us) {
       std::clamp<std::uint32_t>(pulse_us, limit.shortest, limit.longest));
 }
 
+// Its pin, or its line.
+constexpr std::uint16_t place_of(const vm::Actuator& actuator) {
+  return vm::drives_player(actuator.driver) ? actuator.bus : actuator.pin;
+}
+
+// Is it an output of an actuator, or of a sensor, or let go for one?
+bool has_pin(const vm::Image& image, std::uint16_t pin) {
+  const bool drives = std::ranges::any_of(image.actuators, [&](const vm::Actuator& actuator) {
+    return vm::drives_pin(actuator.driver) &&
+           (actuator.pin == pin || (vm::has_two_pins(actuator.driver) && actuator.bus == pin));
+  });
+  return drives || std::ranges::any_of(image.sensors, [&](const vm::Sensor& sensor) {
+           return (vm::is_by_echo(sensor.driver) && sensor.bus == pin) ||
+                  (vm::is_analog(sensor.driver) && sensor.address == pin);
+         });
+}
+
+bool can_tell(const vm::Actuator& actuator, const policy::BoardPins& pins) {
+  if (vm::drives_player(actuator.driver)) return policy::is_line(pins, actuator.bus);
+  return boards::kHasPanel && vm::drives_panel(actuator.driver) &&
+         policy::is_for_panel(pins, actuator.pin);
+}
+
+constexpr bool is_on_panel(vm::DriverId driver) {
+  return boards::kHasPanel && vm::drives_panel(driver);
+}
+
 }  // namespace
 
 // Does a driver's order reach it?
@@ -62,7 +90,7 @@ bool OutputGuard::drives(const vm::Image& image, const Slot& slot) {
   const std::uint16_t first = slot.second ? slot.other : slot.pin;
   const std::uint16_t second = slot.second ? slot.pin : slot.other;
   return std::ranges::any_of(image.actuators, [&](const vm::Actuator& actuator) {
-    const std::uint16_t place = vm::drives_player(actuator.driver) ? actuator.bus : actuator.pin;
+    const std::uint16_t place = place_of(actuator);
     return place == first && actuator.driver == slot.driver &&
            (second == kNoPin || actuator.bus == second);
   });
@@ -126,8 +154,10 @@ void OutputGuard::switch_off(const vm::Image* next) {
 }
 
 void OutputGuard::switch_off(const Slot& slot) {
-  if (vm::drives_player(slot.driver))
-    tell(slot, 0);
+  if (is_on_panel(slot.driver))
+    board_.show_on_panel(0);
+  else if (vm::drives_player(slot.driver))
+    say(slot, 0);
   else
     board_.pwm_write(slot.pin, 0);
 }
@@ -144,6 +174,7 @@ void OutputGuard::begin_with(Mask halted) {
 
 void OutputGuard::own(const vm::Image& image) {
   switch_off(&image);
+  if (boards::kHasPanel) free_panel_pin(image);
   const policy::BoardPins& pins = board_.pins();
   limits_ = pins.outputs.data();
   Mask owned = 0;
@@ -155,8 +186,8 @@ void OutputGuard::own(const vm::Image& image) {
       owned |= bit(a);
     }
     if (boards::kHasSpeaker && vm::drives_speaker(actuator.driver)) owned |= speaker_ = bit(a);
-    if (vm::drives_player(actuator.driver) && policy::is_line(pins, actuator.bus)) {
-      own_player(a, actuator.bus);
+    if (can_tell(actuator, pins)) {
+      own_told(a, actuator);
       owned |= bit(a);
     }
     if (!vm::drives_pin(actuator.driver) || !policy::can_drive(actuator, pins)) continue;
@@ -223,7 +254,11 @@ void OutputGuard::own_lights(unsigned actuator, vm::Release safe) {
 void OutputGuard::show(unsigned actuator, std::uint32_t picture) {
   const auto lock = kernel_.lock();
   if (!is_free(actuator)) return;
-  if ((lights() & bit(actuator)) != 0) board_.show(picture);
+  if ((lights() & bit(actuator)) != 0) return board_.show(picture);
+  if (is_on_panel(slots_[actuator].driver) && picture != on_panel_) {
+    on_panel_ = picture;
+    lagging_ |= bit(actuator);
+  }
   for (Display& display : std::span(displays_).first(display_count_))
     if (display.actuator == actuator) display.picture = picture;
 }
@@ -288,8 +323,12 @@ void OutputGuard::turn(Slot& slot, unsigned actuator, kernel::Time now) {
 void OutputGuard::go_on(kernel::Time now) {
   for (Mask left = lagging_; left != 0; left &= left - 1) {
     const auto actuator = static_cast<unsigned>(std::countr_zero(left));
-    const auto lock = kernel_.lock();
-    vm::drives_player(slots_[actuator].driver) ? tell_player(actuator, now) : put(actuator, now);
+    if (vm::is_told(slots_[actuator].driver)) {
+      tell(actuator, now);
+    } else {
+      const auto lock = kernel_.lock();
+      put(actuator, now);
+    }
   }
 }
 
@@ -347,8 +386,10 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
 
 void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
-  if (vm::drives_player(slot.driver)) {
+  if (vm::is_told(slot.driver)) {
+    if (slot.safe == kStays) return;
     slot.target = 0;
+    if (is_on_panel(slot.driver)) on_panel_ = 0;
     lagging_ |= bit(actuator);
     return;
   }
@@ -520,32 +561,53 @@ OutputGuard::Screen* OutputGuard::screen_of(unsigned sensor) {
   return nullptr;
 }
 
-// --- players ---
+// --- what is told: players, and the panel ---
 
-// Nobody knows what it plays: it is silent, unless it gets something to play before it is told.
-void OutputGuard::own_player(unsigned actuator, std::uint8_t line) {
+// Nobody knows what it plays or shows: it is silent or dark, unless it gets something before it is told.
+void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
   const auto now = static_cast<std::uint16_t>(kernel_.now() / 1000);
-  slots_[actuator] = {};
-  slots_[actuator].pin = line;
-  slots_[actuator].other = kNoPin;
-  slots_[actuator].changed = now;
-  slots_[actuator].driver = vm::DriverId::player;
+  Slot& slot = slots_[actuator];
+  slot = {};
+  slot.pin = place_of(wiring);
+  slot.other = kNoPin;
+  slot.changed = now;
+  slot.safe = wiring.safe == vm::Release::hold ? kStays : std::uint16_t{0};
+  slot.driver = wiring.driver;
+  if (is_on_panel(wiring.driver)) {
+    panel_pin_ = wiring.pin;
+    on_panel_ = 0;
+    board_.begin_panel(policy::panel_of(wiring));
+  }
   lagging_ |= bit(actuator);
   apart_ |= bit(actuator);
 }
 
-// Unless it still needs time after the last command.
-[[gnu::noinline]] void OutputGuard::tell_player(unsigned actuator, kernel::Time now) {
+// Unless it still needs time after what it was told last. A picture is long: nobody else is kept waiting while it is written, and
+// who calls this is the safety thread, which nobody interrupts who could change it.
+[[gnu::noinline]] void OutputGuard::tell(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
+  const bool panel = is_on_panel(slot.driver);
   const auto at = static_cast<std::uint16_t>(now / 1000);
-  if (static_cast<std::uint16_t>(at - slot.changed) < policy::kPlayerGapMs) return;
-  slot.changed = at;
-  lagging_ &= ~bit(actuator);
-  tell(slot, slot.target);
+  const std::uint16_t gap = panel ? policy::kPanelGapMs : policy::kPlayerGapMs;
+  if (static_cast<std::uint16_t>(at - slot.changed) < gap) return;
+  {
+    const auto lock = kernel_.lock();
+    slot.changed = at;
+    lagging_ &= ~bit(actuator);
+    if (!panel) return say(slot, slot.target);
+  }
+  board_.show_on_panel(on_panel_);
 }
 
-void OutputGuard::tell(const Slot& player, std::uint16_t sound) {
+void OutputGuard::say(const Slot& player, std::uint16_t sound) {
   board_.say(static_cast<std::uint8_t>(player.pin), policy::player_command(sound));
+}
+
+// Its picture goes with it, when there was one: something else is wired there.
+void OutputGuard::free_panel_pin(const vm::Image& next) {
+  if (panel_pin_ == kNoPin || !has_pin(next, panel_pin_)) return;
+  board_.end_panel();
+  panel_pin_ = kNoPin;
 }
 
 void OutputGuard::let_go(Mask actuators) {

@@ -33,6 +33,9 @@
 // A sound player is told on its serial line what to play, at the next check of the safety monitor, and silence in a halt, whatever
 // its safe state; between two commands there is the time that it needs (policy/player.hpp). Only the last order counts.
 //
+// A panel of lights is told its picture in the same way, and goes dark as the lights of a board do. Its pin is its own; a program
+// that drives it otherwise takes it from the panel first.
+//
 // A check and its write are one under the kernel's lock: who is interrupted in between writes nothing old later.
 // docs/safety.md says what follows from that.
 #pragma once
@@ -70,7 +73,7 @@ public:
   void begin_order(unsigned actuator);
   // … of one that has two pins: on its first one, or where it is negative, so long on its second one.
   void drive_either(unsigned actuator, std::int32_t pulse_us, kernel::Time now);
-  // The picture on the lights (boards::Board::show()), or on the actuator's display.
+  // The picture on the lights (boards::Board::show()), or on the actuator's display or panel.
   void show(unsigned actuator, std::uint32_t picture);
   // The tone of the speaker (boards::Board::sound()).
   void sound(unsigned actuator, std::uint32_t hertz);
@@ -120,8 +123,8 @@ public:
   void let_go(Mask actuators);
 
 private:
-  // Of two pins, `pin` is the one that is on, or was last; the other one is off. Of a player, `pin` is its line, `target` the sound
-  // that it shall play, and `changed` when it was told something last.
+  // Of two pins, `pin` is the one that is on, or was last; the other one is off. Of what is told (vm::is_told()), `pin` is its
+  // line or pin, `target` the sound that it shall play, and `changed` when it was told something last.
   struct Slot {
     std::uint16_t pin;
     std::uint16_t other;    // kNoPin: it has one
@@ -165,9 +168,10 @@ private:
   [[nodiscard]] bool is_free(unsigned actuator) const;
   static void exchange(Slot& slot);
   void turn(Slot& slot, unsigned actuator, kernel::Time now);
-  void own_player(unsigned actuator, std::uint8_t line);
-  void tell_player(unsigned actuator, kernel::Time now);
-  void tell(const Slot& player, std::uint16_t sound);
+  void own_told(unsigned actuator, const vm::Actuator& wiring);
+  void tell(unsigned actuator, kernel::Time now);
+  void say(const Slot& player, std::uint16_t sound);
+  void free_panel_pin(const vm::Image& next);
   void switch_off(const Slot& slot);
   [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
   static bool drives(const vm::Image& image, const Slot& slot);
@@ -201,7 +205,7 @@ private:
   Mask gradual_ = 0;  // whose pulse may not change at once
   Mask apart_ =
       0;  // for which a halt is more than a pulse on a pin: they stay as they are, or are on a chip or a line
-  Mask lagging_ = 0;  // … and is not yet where it shall be; or a player that was not told yet
+  Mask lagging_ = 0;  // … and is not yet where it shall be; or who was not told yet
   Mask lights_ = 0;
   Mask speaker_ = 0;
   // Of their slots: `pin` is the channel, `target` is what the chip has. Displays count as chips; their slots are empty.
@@ -213,6 +217,8 @@ private:
   std::array<Slot, vm::kMaxActuators> slots_{};
   std::array<Display, vm::kMaxDisplays> displays_{};
   std::uint8_t display_count_ = 0;
+  std::uint16_t panel_pin_ = kNoPin;  // the board's panel has it, also when its program has gone
+  std::uint32_t on_panel_ = 0;        // the picture that it shall show
 };
 
 }  // namespace robosync::guard

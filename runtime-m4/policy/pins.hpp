@@ -33,6 +33,8 @@ struct BoardPins {
   // For the enable inputs of chips with outputs of their own, active low: high from the start on, and whenever such outputs are
   // to be off. They are nothing else.
   std::span<const PinRange> enables;
+  // Outputs that can tell a panel of lights its picture.
+  std::span<const PinRange> panels = {};
   std::uint8_t i2c_buses = 0;
   std::uint8_t serial_lines = 0;  // for players, from vm::kFirstPlayerLine on
 };
@@ -66,6 +68,10 @@ constexpr bool can_trigger(std::uint16_t pin, const BoardPins& board) {
 
 constexpr bool is_enable(const BoardPins& board, std::uint16_t pin) {
   return is_in(board.enables, pin);
+}
+
+constexpr bool is_for_panel(const BoardPins& board, std::uint16_t pin) {
+  return is_in(board.panels, pin);
 }
 
 constexpr bool is_line(const BoardPins& board, std::uint8_t line) {
@@ -114,6 +120,8 @@ inline vm::Verdict judge(const vm::Image& image, const BoardPins& board) {
       return {vm::Refusal::no_pin, vm::Section::actuators, static_cast<std::uint16_t>(a)};
     if (vm::drives_player(actuator.driver) && !is_line(board, actuator.bus))
       return {vm::Refusal::no_bus, vm::Section::actuators, static_cast<std::uint16_t>(a)};
+    if (vm::drives_panel(actuator.driver) && !is_for_panel(board, actuator.pin))
+      return {vm::Refusal::no_pin, vm::Section::actuators, static_cast<std::uint16_t>(a)};
   }
   return {};
 }

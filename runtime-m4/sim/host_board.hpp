@@ -40,6 +40,7 @@ private:
                                               .inputs = kAny,
                                               .analog = kAny,
                                               .enables = kAny,
+                                              .panels = kAny,
                                               .i2c_buses = UINT8_MAX,
                                               .serial_lines = UINT8_MAX};
 

@@ -11,6 +11,7 @@
 
 #include "compiler/config/boards.hpp"
 #include "compiler/config/devices.hpp"
+#include "compiler/config/entries.hpp"
 #include "compiler/config/units.hpp"
 #include "compiler/config/wiring.hpp"
 #include "tests/docs/pages.hpp"
@@ -82,6 +83,7 @@ bool runs_on(const Device& device, const Board& board) {
                                [&](const Board::Part& part) { return part.device == device.name; });
   if (vm::is_on_i2c(driver) || vm::drives_screen(driver)) return board.i2c_buses > 0;
   if (vm::drives_player(driver)) return board.serial_lines > 0;
+  if (vm::drives_panel(driver)) return !board.panels.empty();
   if (vm::drives_channel(driver)) return board.i2c_buses > 0 && !board.enables.empty();
   if (vm::is_on_pin(driver)) return !board.inputs.empty();
   if (vm::is_by_echo(driver)) return !board.inputs.empty() && !board.outputs.empty();
@@ -152,6 +154,8 @@ std::string wiring_keys(const Device& device) {
            row({"`echo`", "an input of the board", "needed"});
   if (vm::is_analog(driver_of(device)))
     return row({"`pin`", "an analog input of the board", "needed"});
+  if (vm::drives_panel(driver_of(device)))
+    return row({"`pin`", "an output of the board that can be a panel's", "needed"});
   if (vm::has_two_pins(driver_of(device)))
     rows += row({"`pins`", "two outputs of the board: forward, back", "needed"});
   else if (type->pin)
@@ -222,6 +226,16 @@ std::string actuator_keys(const Device& device) {
     const std::string above = "above " + format_value(0, *actuator.at_unit);
     rows += row({"`speeds`", "words for `AT`, " + above, "the words above"});
     rows += row({"`limits`: `SPEED`", "the most of `AT`, " + above, "none"});
+  }
+  if (vm::drives_panel(actuator.driver)) {
+    std::vector<std::string> colors;
+    for (const std::string_view color : panel_colors())
+      colors.push_back(code(color));
+    rows += row({"`size`", "`5x5`, `8x8`", "`5x5`"});
+    rows += row({"`zigzag`", "true: each second row is wired from right to left", "false"});
+    rows += row({"`color`", joined(colors), colors.front()});
+    rows += row({"`brightness`", fmt::format("1 to {}, in percent", kMostPanelPercent),
+                 std::to_string(kUsualPanelPercent)});
   }
   if (device.has_sounds) rows += row({"`sounds`", "files, in the order of its tracks", "none"});
   const auto release = [](vm::Release how) {

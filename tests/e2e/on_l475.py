@@ -7,9 +7,11 @@ import re
 import struct
 import subprocess
 import sys
+import time
 import unittest
 from pathlib import Path
 
+import panel
 import pins
 import rsc
 import test_owner
@@ -25,7 +27,7 @@ from counting import symbols  # noqa: E402
 UPLOADS = 3
 # QEMU writes down what the masters of I2C and DMA1 are told.
 PATIENCE = 20
-WRITE = re.compile(r"(I2C2|DMA1): unimplemented device write \(size 4, offset 0x([0-9a-f]+), value 0x([0-9a-f]+)\)")
+WRITE = re.compile(r"(I2C2|DMA1|SPI1): unimplemented device write \(size 4, offset 0x([0-9a-f]+), value 0x([0-9a-f]+)\)")
 TRANSFER, COUNT_4, MEMORY_4, COUNT_5, MEMORY_5 = ("I2C2", 0x04), ("DMA1", 0x48), ("DMA1", 0x50), ("DMA1", 0x5C), ("DMA1", 0x64)
 CORE, BUS_INTERRUPT = "/machine/soc/armv7m", 33
 ADDRESS, LEVEL = 0x6A, 0x12
@@ -64,6 +66,20 @@ CLIMATE = MOTION | {"sensors": [{"name": AIR, "device": "climate"}]}
 DAMP = f"WHEN {AIR} HUMIDITY > 60% MARGIN 2%\nDO RUN lamp TO 70%\nEND\n"
 COSTS = ROOT / "runtime-m4/boards/b-l475e-iot01a/costs.def"
 COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*(\d+),", re.M)
+
+# A panel of lights at D11, PA7: what DMA1 is told for it, the function of the pin, and what that takes.
+PANEL = {"board": "b-l475e-iot01a", "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+         "actuators": [{"name": "face", "pin": 11, "device": "ws2812", "color": "blue", "brightness": 20}]}
+CHANGES = "WHEN near X > 10 DO SHOW face happy END\nEVERY 100ms DO SHOW face heart FOR 30ms\nTHEN\nSHOW face happy END\n"
+SHOWS = "WHEN near X > 10 DO SHOW face happy END\n"
+HAPPY, DARK, BLUE, LIGHTS = [".....", ".#.#.", ".....", "#...#", ".###."], ["....."] * 5, 0x33, 25
+CONTROL_3, COUNT_3, MEMORY_3 = ("DMA1", 0x30), ("DMA1", 0x34), ("DMA1", 0x3C)
+SPI_CONTROL, SENDS = ("SPI1", 0x00), 0xC364
+PORT_A, OF_SPI, OF_TIMER = 0x4800_0000, 5, 2
+SERVO = {"board": "b-l475e-iot01a", "sensors": PANEL["sensors"], "actuators": [{"name": "arm", "type": "PWM", "pin": 11, "device": "servo"}]}
+MOVES = "WHEN near X > 10 DO MOVE arm TO 10deg END\n"
+TELL = "robosync::guard::OutputGuard::tell("
+COST_OF_PANEL = re.compile(r"^COST\(panel,\s*(\d+),", re.M)
 
 
 class WithFlash:
@@ -322,6 +338,55 @@ class Bus(DebuggedTest):
                                FIRMWARE], check=True, text=True, stdout=subprocess.PIPE).stdout
         found = re.search(r"^\s*([0-9a-f]+):.*\sldr(?:\.w)?\s+r(\d+), \[r\d+, #24\]", said, re.M)
         return int(found[1], 16), int(found[2])
+
+
+class Panel(DebuggedTest):
+    def qemu_arguments(self):
+        self.log = self.folder / "told"
+        return ["-d", "unimp", "-D", str(self.log), *pins.arguments(self.folder), *super().qemu_arguments()]
+
+    told = Bus.told
+
+    def begin(self, robot, text):
+        (self.folder / "panel.json").write_text(json.dumps(robot))
+        (self.folder / "panel.rsl").write_text(text)
+        self.upload(self.folder / "panel.rsl", "--config", self.folder / "panel.json")
+
+    def await_picture(self, wires, picture):
+        wanted, give_up, shown = panel.chain(picture, BLUE, 5, False), time.monotonic() + PATIENCE, None
+        while shown != wanted:
+            self.assertLess(time.monotonic(), give_up, shown)
+            if self.told(MEMORY_3):
+                shown = panel.colors("b-l475e-iot01a", wires.read(self.told(MEMORY_3)[-1], self.told(COUNT_3)[-1]), LIGHTS)
+
+    def function(self, wires):
+        return wires.word(PORT_A + 0x20) >> 28
+
+    def test_it_is_told_its_picture_until_the_robot_is_stopped_and_its_pin_is_given_back(self):
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        self.begin(PANEL, SHOWS)
+        self.await_picture(wires, DARK)
+        self.assertEqual((self.function(wires), self.told(SPI_CONTROL)), (OF_SPI, [SENDS]))
+        rsc.run("feed", "near.X=20", "--port", self.board.port)
+        self.await_picture(wires, HAPPY)
+        rsc.run("stop", "--port", self.board.port)
+        self.await_picture(wires, DARK)
+        self.assertEqual((self.status()["safety_late_us"], self.status()["faults"]), (0, 0))
+        self.begin(SERVO, MOVES)
+        self.assertEqual((self.function(wires), self.told(SPI_CONTROL)[-1]), (OF_TIMER, 0))
+
+    def test_what_a_picture_costs(self):
+        self.begin(PANEL, CHANGES)
+        tell, counts = next(at for name, at in symbols(FIRMWARE).items() if name.startswith(TELL)), []
+        with self.debugger() as debugger:
+            for _ in range(CALLS):
+                debugger.run_to(tell, lambda: None)
+                counts.append(debugger.steps_to_return())
+        said = int(COST_OF_PANEL.search(COSTS.read_text())[1])
+        print(f"\n  a picture: {max(counts)}, said {said}")
+        self.assertGreaterEqual(said, max(counts))
+        self.assertLessEqual(said, 1.25 * max(counts) + 60)
 
 
 class WithoutFlash(RobotTest):

@@ -11,6 +11,7 @@ import time
 import unittest
 from pathlib import Path
 
+import panel
 import pins
 import rsc
 import test_store
@@ -60,7 +61,15 @@ PLAYER_PIN, PLAYER_BAUD, PLAYER_FROM, PLAYER_COUNT = (UARTE1 + at for at in (0x5
 P0_13, AT_9600 = 13, 0x0027_5000  # pin 15
 PLAYS_TWO = bytes.fromhex("7eff0612000002fee7ef")
 STOPS = bytes.fromhex("7eff0616000000fee5ef")
-TELL = "robosync::guard::OutputGuard::tell_player("
+TELL = "robosync::guard::OutputGuard::tell("
+# Of the SPI master that tells a panel its picture: START, ENABLE, PSEL.MOSI, FREQUENCY, TXD.PTR and TXD.MAXCNT of SPIM2.
+SPIM2, LIGHTS, RED = 0x4002_3000, 64, 0x33_0000
+PANEL = {"sensors": PLAYER["sensors"],
+         "actuators": [{"name": "face", "pin": 0, "device": "ws2812", "size": "8x8", "zigzag": True, "color": "red", "brightness": 20}]}
+PANEL_START, PANEL_ENABLE, PANEL_PIN, PANEL_SPEED, PANEL_FROM, PANEL_COUNT = (SPIM2 + at for at in (0x10, 0x500, 0x50C, 0x524, 0x544, 0x548))
+AT_4MHZ, DARK = 0x4000_0000, ["....."] * 5
+# Those that differ most.
+CHANGES = "EVERY 100ms DO SHOW face heart FOR 30ms\nTHEN\nSHOW face happy END\n"
 FACE = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
         "actuators": [{"name": "face", "device": "lights"}]}
 SHOWS = "WHEN near X > 10\nDO\n  {}\nEND\n"
@@ -87,6 +96,7 @@ COST_OF_DRIVER = r"(?m)^ACTUATOR_DRIVER\({},\s*(\d+),\s*(\d+),\s*(\d+),"
 COSTS = ROOT / "runtime-m4/boards/microbit-v2/costs.def"
 COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*([\d']+),", re.M)
 COST_OF_SAYING = re.compile(r"^COST\(say,\s*(\d+),", re.M)
+COST_OF_PANEL = re.compile(r"^COST\(panel,\s*(\d+),", re.M)
 COST_OF_ROW = re.compile(r"^COST\(row,\s*(\d+),", re.M)
 # Pictures, blinks, and others that take the lights away.
 BLINKS = """
@@ -276,8 +286,8 @@ class OnMicrobit(DebuggedTest):
     def test_a_sound_player_is_told_what_to_play_until_the_robot_is_stopped(self):
         wires = pins.Pins(self.folder)
         self.addCleanup(wires.close)
-        self.assertEqual((self.told(PLAYER_PIN), self.told(PLAYER_BAUD)), ([P0_13], [AT_9600]))
         self.begin('PLAY face "two.wav" FOR 60s', "", PLAYER)
+        self.assertEqual((self.told(PLAYER_PIN), self.told(PLAYER_BAUD)), ([P0_13], [AT_9600]))
         for say, wanted in ((("feed", "near.X=20"), PLAYS_TWO), (("stop",), STOPS)):
             self.say(*say)
             give_up = time.monotonic() + PATIENCE
@@ -288,6 +298,43 @@ class OnMicrobit(DebuggedTest):
     def test_what_a_command_to_a_sound_player_costs(self):
         self.begin('PLAY face "two.wav" FOR 60s', "EVERY 100ms DO PLAY face \"one.wav\" FOR 50ms END\n", PLAYER)
         self.compare_costs({TELL: int(COST_OF_SAYING.search(COSTS.read_text())[1])})
+
+    def await_on_panel(self, wires, picture):
+        wanted, give_up, shown = panel.chain(picture, RED, 8, True), time.monotonic() + PATIENCE, None
+        while shown != wanted:
+            self.assertLess(time.monotonic(), give_up, shown)
+            if self.told(PANEL_START):
+                shown = panel.colors("microbit-v2", wires.read(self.told(PANEL_FROM)[-1], self.told(PANEL_COUNT)[-1]), LIGHTS)
+
+    def test_a_panel_is_told_its_picture_until_the_robot_is_stopped_and_its_pin_is_given_back(self):
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        self.begin("SHOW face happy", "", PANEL)
+        self.await_on_panel(wires, DARK)
+        self.assertEqual((self.told(PANEL_PIN), self.told(PANEL_SPEED)), ([P0_02], [AT_4MHZ]))
+        self.say("feed", "near.X=20")
+        self.await_on_panel(wires, HAPPY)
+        told = len(self.told(PANEL_START))
+        time.sleep(0.3)
+        self.assertEqual(len(self.told(PANEL_START)), told)  # what does not change is not told again
+        self.say("stop")
+        self.await_on_panel(wires, DARK)
+        status = rsc.info(self.board.port)["status"]
+        self.assertEqual((status["faults"], status["safety_late_us"]), (0, 0))
+        self.say("resume")
+        self.load(ARMS, PROGRAM)
+        self.assertEqual(self.told(PANEL_ENABLE)[-1], 0)
+        self.say("feed", "near.X=5")
+        self.say("feed", "near.X=20")
+        self.await_told(PIN_OF_PWM0[0], P0_02)
+
+    def test_what_a_picture_of_a_panel_costs(self):
+        self.begin("SHOW face heart", CHANGES, PANEL)
+        self.compare_costs({TELL: int(COST_OF_PANEL.search(COSTS.read_text())[1])})
+
+    def test_what_the_orders_of_a_panel_cost(self):
+        self.begin("SHOW face happy", BLINKS, PANEL)
+        self.compare_costs(self.calls_of("ws2812_face"))
 
     def counted(self, start, calls=6):
         """Instructions from there until it returns, of its next calls at most."""

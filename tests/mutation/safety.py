@@ -5,7 +5,7 @@ import sys
 
 from changes import Mutant, Suite, run
 
-TESTS = "[#guard_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#player_test],[#ssd1306_test]"
+TESTS = "[#guard_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#player_test],[#ssd1306_test],[#ws2812_test]"
 GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
 MAILBOX, REGION = "runtime-m4/layers/mailbox.cpp", "runtime-m4/layers/safety_region.cpp"
 MONITOR, CONTROL, RUNTIME = "runtime-m4/safety/monitor.cpp", "runtime-m4/layers/control.cpp", "runtime-m4/runtime.cpp"
@@ -37,11 +37,16 @@ MUTANTS = (
     Mutant("no limit of the power of a motor", GUARD, "within(limits_[slot.limit], length)", "static_cast<std::uint16_t>(length)"),
     Mutant("a motor that turns round has both pins on", GUARD, "board_.pwm_write(slot.pin, 0);\n  exchange(slot);", "exchange(slot);"),
     Mutant("a motor that turns round begins at the power of before", GUARD, "  slot.pulse = 0;\n", ""),
-    Mutant("a halt lets a player play on", GUARD, "    slot.target = 0;\n    lagging_ |= bit(actuator);\n    return;", "    return;"),
-    Mutant("a player is told twice at once", GUARD, "< policy::kPlayerGapMs) return;", "== 0xFFFF) return;"),
+    Mutant("a halt lets a player play on", GUARD, "    slot.target = 0;\n", ""),
+    Mutant("a player is told twice at once", GUARD, "- slot.changed) < gap) return;", "- slot.changed) == 0xFFFF) return;"),
     Mutant("who is halted may play", GUARD, "if (!is_free(actuator) || !vm::drives_player(slot.driver)) return;",
            "if (!vm::drives_player(slot.driver)) return;"),
-    Mutant("without a program a player plays on", GUARD, "tell(slot, 0);", "tell(slot, slot.target);"),
+    Mutant("without a program a player plays on", GUARD, "say(slot, 0);", "say(slot, slot.target);"),
+    Mutant("a halt leaves the picture on a panel", GUARD, "if (is_on_panel(slot.driver)) on_panel_ = 0;", ";"),
+    Mutant("a halt takes the picture from a panel that holds it", GUARD, "    if (slot.safe == kStays) return;\n", ""),
+    Mutant("without a program a panel stays lit", GUARD, "    board_.show_on_panel(0);\n", "    ;\n"),
+    Mutant("the next program finds the panel lit", GUARD, "    on_panel_ = 0;\n    board_.begin_panel", "    board_.begin_panel"),
+    Mutant("a panel keeps its pin when another program drives it", GUARD, "if (boards::kHasPanel) free_panel_pin(image);", ""),
     Mutant("a motor's pins the other way round are the same to an upload", GUARD, "(second == kNoPin || actuator.bus == second)", "true"),
     Mutant("a motor that runs backward is not seen by the next program", GUARD, "if (back == 0) return slot;", "return slot;"),
     Mutant("a halt leaves a servo chip on", GUARD, "  if ((actuators & on_chips_) != 0) halt_chips(actuators);\n", ""),

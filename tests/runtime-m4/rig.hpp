@@ -91,6 +91,9 @@ public:
   void say(std::uint8_t line, const policy::PlayerCommand& command) override {
     said.emplace_back(line, command);
   }
+  void begin_panel(const policy::Panel& panel) override { panels.push_back(panel); }
+  void show_on_panel(std::uint32_t picture) override { on_panel.push_back(picture); }
+  void end_panel() override { ++panel_ends; }
   std::size_t link_write(std::span<const std::byte> bytes) override { return bytes.size(); }
   std::size_t link_read(std::span<std::byte>) override { return 0; }
   void link_start(const boards::LineEvents&) override {}
@@ -125,6 +128,9 @@ public:
   policy::BoardPins board_pins = boards::kPins;
   std::vector<std::uint32_t> pictures;  // all
   std::vector<std::uint32_t> sounds;    // all
+  std::vector<policy::Panel> panels;    // all that were begun
+  std::vector<std::uint32_t> on_panel;  // all
+  unsigned panel_ends = 0;
   unsigned kicks = 0;
   std::uint32_t first_time_out_ms = 50;
   bool watching = false;

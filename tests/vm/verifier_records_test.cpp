@@ -325,6 +325,38 @@ TEST_CASE("actuators") {
   check_accepted(image);
 }
 
+TEST_CASE(
+    "a panel has its pin for itself, is the only one, and takes no more than a board can give") {
+  const auto with_panel = [](auto change) {
+    ImageBuilder image = robot::make();
+    Actuator& panel = image.actuators[1];
+    panel.driver = DriverId::ws2812_face;
+    panel.speed_limit = 0x33'33'33;
+    change(panel, image);
+    return image;
+  };
+  const auto refused = [&](Refusal refusal, auto change) {
+    check_refused(with_panel(change), {refusal, Section::actuators, 1});
+  };
+  check_accepted(with_panel([](auto&...) {}));
+  check_accepted(with_panel([](auto& panel, auto&) { panel.bus = 3; }));
+  check_accepted(with_panel([](auto& panel, auto&) { panel.safe = Release::hold; }));
+  refused(Refusal::bad_value, [](auto& panel, auto&) { panel.bus = 4; });
+  for (const Value color : {0x34'33'33, 0x33'34'33, 0x33'33'34, 0x01'00'00'00})
+    refused(Refusal::bad_value, [&](auto& panel, auto&) { panel.speed_limit = color; });
+  refused(Refusal::shared_pin,
+          [](auto& panel, auto& image) { panel.pin = image.actuators[0].pin; });
+  refused(Refusal::shared_pin, [](auto& panel, auto& image) {
+    image.actuators[0] = panel;
+    image.actuators[0].pin = 9;
+  });
+  refused(Refusal::shared_pin, [](auto& panel, auto& image) {
+    image.sensors[0].driver = DriverId::digital_input;
+    image.sensors[0].bus = 0;
+    image.sensors[0].address = panel.pin;
+  });
+}
+
 TEST_CASE("a face is on a display, which is alone at its place on the bus") {
   const auto with_face = [](auto change) {
     ImageBuilder image = robot::make();

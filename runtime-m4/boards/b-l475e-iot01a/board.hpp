@@ -45,6 +45,9 @@ public:
   std::size_t link_read(std::span<std::byte> bytes) override { return line_.read(bytes); }
   void link_start(const LineEvents& events) override;
   void say(std::uint8_t line, const policy::PlayerCommand& command) override;
+  void begin_panel(const policy::Panel& panel) override;
+  void show_on_panel(std::uint32_t picture) override;
+  void end_panel() override;
   void watchdog_start() override;
   void watchdog_kick() override;
   std::uint32_t watchdog_ms() const override { return kWatchdogMs; }

@@ -42,6 +42,10 @@ const Output* find(std::uint16_t pin) {
   return nullptr;
 }
 
+void set_function(const Output& output, std::uint32_t function) {
+  output.port.function(output.bit).set_field(output.bit % 8, 4, function);
+}
+
 void start(const Timer& timer) {
   timer.prescaler().write(kPerMicrosecond - 1);
   timer.last().write(kFrame - 1);
@@ -79,7 +83,7 @@ void start() {
   for (const Timer& timer : kTimers)
     start(timer);
   for (const Output& output : kOutputs) {
-    output.port.function(output.bit).set_field(output.bit % 8, 4, output.function);
+    set_function(output, output.function);
     output.port.mode().set_field(output.bit, 2, kModeOfFunction);
     output.port.pulls().set_field(output.bit, 2, 0);
   }
@@ -105,6 +109,14 @@ void pulse(std::uint16_t pin) {
   timer.compare(output->channel).write(timer.count().read() + kShortPulse);
   timer.mode(output->channel).set_field(output->channel % 2, 8, Timer::kPulseFromNextPeriod);
   timer.compare(output->channel).write(0);
+}
+
+void hand_over(std::uint16_t pin, std::uint32_t function) {
+  if (const Output* const output = find(pin)) set_function(*output, function);
+}
+
+void take_back(std::uint16_t pin) {
+  if (const Output* const output = find(pin)) set_function(*output, output->function);
 }
 
 void enable(std::uint16_t pin, bool on) {

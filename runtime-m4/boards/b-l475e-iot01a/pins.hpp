@@ -25,6 +25,10 @@ std::uint32_t read(std::uint16_t pin);
 // One pulse of 11 or 12 us, from now on; the timer ends it. [under a lock, as above]
 void pulse(std::uint16_t pin);
 
+// The pin has this function of its port until it is taken back, when its timer has it again. It gives no pulses.
+void hand_over(std::uint16_t pin, std::uint32_t function);
+void take_back(std::uint16_t pin);
+
 // The pin at an enable input is low from now on, or high. Another one is left alone.
 void enable(std::uint16_t pin, bool on);
 

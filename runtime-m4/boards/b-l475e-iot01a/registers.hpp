@@ -33,6 +33,7 @@ inline constexpr std::uint32_t kUart4 = 1U << 19;
 inline constexpr std::uint32_t kI2c1 = 1U << 21;
 inline constexpr std::uint32_t kI2c2 = 1U << 22;
 inline constexpr Register kApb2{0x4002'1060};
+inline constexpr std::uint32_t kSpi1 = 1U << 12;
 inline constexpr std::uint32_t kUsart1 = 1U << 14;
 inline constexpr std::uint32_t kSystemConfiguration = 1U << 0;
 inline constexpr Register kSources{0x4002'1088};
@@ -266,6 +267,21 @@ inline constexpr unsigned kLinkReceivePin = 7;
 // To a sound player: its transmitter alone, on D1 of the Arduino header.
 inline constexpr Usart kUart4{0x4000'4C00, 52, kPortA, 8};
 inline constexpr unsigned kPlayerTransmitPin = 0;
+
+namespace spi {  // SPI1, whose data go to a panel of lights, at D11 of the Arduino header; it has no clock pin, and hears nothing
+inline constexpr Register kControl{0x4001'3000};
+inline constexpr std::uint32_t kHz = kClockHz / 32;
+// One way, out; master, whatever its select pin says; on.
+inline constexpr std::uint32_t kSendsAt2500kHz =
+    0b11U << 14 | 0b11U << 8 | 1U << 6 | 0b100U << 3 | 1U << 2;
+inline constexpr Register kControl2{0x4001'3004};
+inline constexpr std::uint32_t kBytesByDma = 7U << 8 | 1U << 1;
+inline constexpr Register kData{0x4001'300C};
+inline constexpr DmaChannel kDma{3};
+inline constexpr std::uint32_t kDmaForSpi = 1;
+inline constexpr std::uint16_t kPanelPin = 11;
+inline constexpr std::uint32_t kFunctionOfPin = 5;
+}  // namespace spi
 
 namespace iwdg {  // the independent watchdog, on an oscillator of its own of 32 kHz
 inline constexpr Register kKey{0x4000'3000};

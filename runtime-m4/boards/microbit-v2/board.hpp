@@ -72,6 +72,9 @@ public:
   void show(std::uint32_t picture) override;
   void sound(std::uint32_t hertz) override;
   void say(std::uint8_t line, const policy::PlayerCommand& command) override;
+  void begin_panel(const policy::Panel& panel) override;
+  void show_on_panel(std::uint32_t picture) override;
+  void end_panel() override;
   std::size_t link_write(std::span<const std::byte> bytes) override { return line_.write(bytes); }
   std::size_t link_read(std::span<std::byte> bytes) override { return line_.read(bytes); }
   void link_start(const LineEvents& events) override { line_.start(events); }

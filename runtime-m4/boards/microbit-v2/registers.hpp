@@ -106,6 +106,23 @@ inline constexpr Register kSendFrom{kBase + 0x544};
 inline constexpr Register kSendCount{kBase + 0x548};
 }  // namespace player_uart
 
+namespace panel_spi {  // SPIM2, whose data go to a panel of lights; it has no clock pin, and hears nothing
+inline constexpr std::uintptr_t kBase = 0x4002'3000;
+inline constexpr Register kStart{kBase + 0x010};
+inline constexpr Register kStop{kBase + 0x014};
+inline constexpr Register kStopped{kBase + 0x104};  // event
+inline constexpr Register kEnded{kBase + 0x118};    // event: all has left
+inline constexpr Register kEnable{kBase + 0x500};
+inline constexpr std::uint32_t kOn = 7;
+inline constexpr Register kOutputPin{kBase + 0x50C};
+inline constexpr Register kFrequency{kBase + 0x524};
+inline constexpr std::uint32_t kHz = 4'000'000;
+inline constexpr std::uint32_t k4MHz = 0x4000'0000;
+inline constexpr Register kReceiveCount{kBase + 0x538};
+inline constexpr Register kSendFrom{kBase + 0x544};
+inline constexpr Register kSendCount{kBase + 0x548};  // of 16 bits
+}  // namespace panel_spi
+
 namespace timer {  // TIMER0, which counts while the core sleeps; SysTick does not
 inline constexpr unsigned kInterrupt = 8;
 inline constexpr std::uint32_t kHz = 16'000'000;

@@ -258,6 +258,9 @@ TEST_CASE("the schema lists the boards, types, devices, modules and units that t
     (is_sensor ? sensor_parts : actuator_parts).push_back(part);
     (is_sensor ? sensor_devices : actuator_devices).push_back(part);
   }
+  Json& colors = list(definitions.at("actuator"), "color");
+  for (const std::string_view color : panel_colors())
+    colors.push_back(color);
   Json& modules = list(definitions.at("algorithm"), "module");
   for (const AlgorithmModule& module : tool::algorithm_modules().firmware)
     modules.push_back(module.name);

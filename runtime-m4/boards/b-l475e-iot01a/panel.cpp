@@ -1,0 +1,59 @@
+// See panel.hpp. ST's RM0351, 42 (SPI) and 11 (DMA): a channel of DMA fetches a picture from memory, and nobody is interrupted.
+#include "runtime-m4/boards/b-l475e-iot01a/panel.hpp"
+
+#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
+#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
+#include "runtime-m4/boards/common/panel_signal.hpp"
+
+namespace robosync::boards::l475::panel {
+
+namespace {
+
+struct Spi1 {  // for PanelSignal
+  static constexpr std::uint32_t kHz = spi::kHz;
+  // 0.4 us high of 1.2, or 0.8.
+  static constexpr unsigned kBitsOfBit = 3;
+  static constexpr std::uint64_t kZero = 0b100;
+  static constexpr std::uint64_t kOne = 0b110;
+
+  static void let_go() {
+    pins::take_back(spi::kPanelPin);
+    spi::kDma.control().write(0);
+    spi::kControl.write(0);
+  }
+
+  // The SPI has two bytes or three of what is given up, and sends them first.
+  static void send(std::uint16_t pin, std::span<const std::byte> bytes) {
+    if (pin != spi::kPanelPin) return;
+    rcc::give_clock(rcc::kAhb1, rcc::kDma1);
+    rcc::give_clock(rcc::kApb2, rcc::kSpi1);
+    spi::kDma.control().write(0);
+    kDmaSelect.set_field(spi::kDma.number - 1, 4, spi::kDmaForSpi);
+    kDmaForget.write(0xFU << 4 * (spi::kDma.number - 1));
+    spi::kDma.peripheral().write(static_cast<std::uint32_t>(spi::kData.address));
+    spi::kDma.memory().write(port::bus_address(bytes.data()));
+    spi::kDma.count().write(static_cast<std::uint32_t>(bytes.size()));
+    spi::kControl2.write(spi::kBytesByDma);
+    spi::kControl.write(spi::kSendsAt2500kHz);
+    pins::hand_over(spi::kPanelPin, spi::kFunctionOfPin);
+    spi::kDma.control().write(DmaChannel::kBytesFromMemory | DmaChannel::kOn);
+  }
+};
+
+PanelSignal<Spi1> signal;
+
+}  // namespace
+
+void begin(const policy::Panel& panel) {
+  signal.begin(panel);
+}
+
+void show(std::uint32_t picture) {
+  signal.show(picture);
+}
+
+void end() {
+  signal.end();
+}
+
+}  // namespace robosync::boards::l475::panel

@@ -1,0 +1,85 @@
+// What a panel of WS2812 lights hears, as bits of an SPI master that fetches them from memory while the processor does something
+// else: several of its bits are one of the panel's, high for a part of them. 24 bits a light, green first, the highest one first;
+// silence of 280 us at least is the end of a picture (Worldsemi, WS2812B, "Data transfer time", "Composition of 24bit data").
+//
+// Hardware says how: kHz of the SPI, kBitsOfBit of its bits for one of the panel's, kZero and kOne that they are, send(pin, bytes),
+// which gives up what it sends, and let_go().
+//
+// Silence is sent, too, before a picture and behind it: a picture that was given up in its midst is over then, and no manual
+// says what the line is when the SPI has nothing to send.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "runtime-m4/boards/board.hpp"
+
+namespace robosync::boards {
+
+template <typename Hardware>
+class PanelSignal {
+public:
+  // boards::Board::begin_panel().
+  void begin(const policy::Panel& panel) {
+    panel_ = panel;
+    lit_ = signal_of(panel.color);
+    shown_ = 0;
+    bytes_ = {};
+    for (unsigned place = 0; place < panel.lights(); ++place)
+      put(place, kDark);
+  }
+
+  // What is written while it goes out may be seen for a moment: nothing is, as all of it is sent again.
+  void show(std::uint32_t picture) {
+    for (std::uint32_t left = (picture ^ shown_) & kAllLights; left != 0; left &= left - 1) {
+      const auto light = static_cast<unsigned>(std::countr_zero(left));
+      put(panel_.place_of(light), (picture >> light & 1) != 0 ? lit_ : kDark);
+    }
+    shown_ = picture;
+    std::atomic_signal_fence(std::memory_order_release);  // the SPI reads what stands in memory
+    const std::size_t count = 2 * kSilence + panel_.lights() * kLightBytes;
+    Hardware::send(panel_.pin, std::span<const std::byte>(bytes_).first(count));
+  }
+
+  void end() { Hardware::let_go(); }
+
+private:
+  static constexpr unsigned kSilenceUs = 300;
+  static constexpr std::size_t kSilence =
+      Hardware::kHz / 1000 * kSilenceUs / 1000 / 8 + 1;            // bytes
+  static constexpr std::size_t kPartBytes = Hardware::kBitsOfBit;  // of 8 bits
+  static constexpr std::size_t kLightBytes = 3 * kPartBytes;
+  static constexpr std::uint32_t kAllLights = (1U << policy::kPictureLights) - 1;
+  using Light = std::array<std::byte, kLightBytes>;
+
+  static constexpr Light signal_of(std::uint32_t color) {
+    Light light{};
+    const std::array<std::uint32_t, 3> parts{color >> 8, color >> 16, color};
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      std::uint64_t bits = 0;
+      for (unsigned bit = 8; bit-- > 0;)
+        bits = bits << Hardware::kBitsOfBit |
+               ((parts[part] >> bit & 1) != 0 ? Hardware::kOne : Hardware::kZero);
+      for (std::size_t i = kPartBytes; i-- > 0; bits >>= 8)
+        light[part * kPartBytes + i] = static_cast<std::byte>(bits & 0xFF);
+    }
+    return light;
+  }
+  static constexpr Light kDark = signal_of(0);
+
+  void put(unsigned place, const Light& light) {
+    std::memcpy(&bytes_[kSilence + place * kLightBytes], light.data(), kLightBytes);
+  }
+
+  policy::Panel panel_{};
+  Light lit_{};
+  std::uint32_t shown_ = 0;
+  std::array<std::byte, 2 * kSilence + policy::kMostPanelLights * kLightBytes> bytes_{};
+};
+
+}  // namespace robosync::boards

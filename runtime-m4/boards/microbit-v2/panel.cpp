@@ -1,0 +1,67 @@
+// See panel.hpp. The module fetches a picture from memory, and nobody is interrupted. A module that is off lets its pin go, which is
+// low then, as its port says.
+#include "runtime-m4/boards/microbit-v2/panel.hpp"
+
+#include "runtime-m4/boards/common/panel_signal.hpp"
+#include "runtime-m4/boards/microbit-v2/pins.hpp"
+#include "runtime-m4/boards/microbit-v2/registers.hpp"
+
+namespace robosync::boards::microbit::panel {
+
+namespace {
+
+// A byte takes 2 us, and a look a tenth of one at least: so long the end of what is given up is waited for, and no longer.
+constexpr unsigned kMostLooks = 20;
+
+void give_up() {
+  if (panel_spi::kEnable.read() == 0 || panel_spi::kEnded.read() != 0) return;
+  panel_spi::kStopped.write(0);
+  panel_spi::kStop.write(kDoIt);
+  for (unsigned looks = 0; looks < kMostLooks && panel_spi::kStopped.read() == 0; ++looks) {
+  }
+}
+
+struct Spim {  // for PanelSignal
+  static constexpr std::uint32_t kHz = panel_spi::kHz;
+  // 0.25 us high of 1.25, or 0.75.
+  static constexpr unsigned kBitsOfBit = 5;
+  static constexpr std::uint64_t kZero = 0b10000;
+  static constexpr std::uint64_t kOne = 0b11100;
+
+  static void let_go() {
+    give_up();
+    panel_spi::kEnable.write(0);
+  }
+
+  static void send(std::uint16_t pin, std::span<const std::byte> bytes) {
+    const Pin* const chip = pins::chip_pin(pin);
+    if (chip == nullptr) return;
+    let_go();
+    panel_spi::kOutputPin.write(chip->number());
+    panel_spi::kFrequency.write(panel_spi::k4MHz);
+    panel_spi::kSendFrom.write(port::bus_address(bytes.data()));
+    panel_spi::kSendCount.write(static_cast<std::uint32_t>(bytes.size()));
+    panel_spi::kReceiveCount.write(0);
+    panel_spi::kEnable.write(panel_spi::kOn);
+    panel_spi::kEnded.write(0);
+    panel_spi::kStart.write(kDoIt);
+  }
+};
+
+PanelSignal<Spim> signal;
+
+}  // namespace
+
+void begin(const policy::Panel& panel) {
+  signal.begin(panel);
+}
+
+void show(std::uint32_t picture) {
+  signal.show(picture);
+}
+
+void end() {
+  signal.end();
+}
+
+}  // namespace robosync::boards::microbit::panel

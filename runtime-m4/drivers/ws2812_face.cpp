@@ -1,0 +1,19 @@
+// A face on a panel of WS2812: it shows what the lights of a board would. Where its lights are, and what they are told, the board
+// knows.
+#include "runtime-m4/drivers/drivers.hpp"
+
+namespace robosync::drivers::ws2812_face {
+
+kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
+  return lights::start(device, order, now);
+}
+
+kernel::Time advance(const Device& device, kernel::Time now) {
+  return lights::advance(device, now);
+}
+
+void release(const Device& device, vm::Release how, kernel::Time now) {
+  lights::release(device, how, now);
+}
+
+}  // namespace robosync::drivers::ws2812_face

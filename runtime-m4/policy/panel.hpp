@@ -1,0 +1,43 @@
+// A panel of WS2812 lights, which are a chain: where in it each light of a picture is. Pure.
+#pragma once
+
+#include <cstdint>
+
+#include "vm/drivers.hpp"
+#include "vm/image.hpp"
+
+namespace robosync::policy {
+
+// A picture of 64 lights needs 1.9 ms, and 0.3 of silence before and behind it (boards/common/panel_signal.hpp).
+inline constexpr std::uint16_t kPanelGapMs = 4;
+
+inline constexpr unsigned kPictureSide = 5;
+inline constexpr unsigned kPictureLights = kPictureSide * kPictureSide;
+inline constexpr unsigned kMostPanelLights = 64;
+
+struct Panel {
+  std::uint16_t pin = 0;
+  std::uint8_t side = kPictureSide;  // lights in a row, and rows
+  bool goes_back = false;            // each second row is wired from right to left
+  std::uint32_t color = 0;           // of a lit one, 0xRRGGBB
+
+  [[nodiscard]] constexpr unsigned lights() const { return unsigned{side} * side; }
+  // Of light number `light` of a picture (boards::Board::show()), which is in the midst: where it is in the chain.
+  [[nodiscard]] constexpr unsigned place_of(unsigned light) const {
+    const unsigned margin = (side - kPictureSide) / 2;
+    const unsigned row = light / kPictureSide + margin;
+    const unsigned column = light % kPictureSide + margin;
+    const bool back = goes_back && row % 2 != 0;
+    return row * side + (back ? side - 1 - column : column);
+  }
+};
+
+// Of a verified image.
+constexpr Panel panel_of(const vm::Actuator& actuator) {
+  return {.pin = actuator.pin,
+          .side = static_cast<std::uint8_t>((actuator.bus & vm::kPanelIsLarge) != 0 ? 8 : 5),
+          .goes_back = (actuator.bus & vm::kPanelGoesBack) != 0,
+          .color = static_cast<std::uint32_t>(actuator.speed_limit)};
+}
+
+}  // namespace robosync::policy
