@@ -4,7 +4,9 @@
 #include <cstdlib>
 #include <optional>
 
+#include "compiler/config/devices.hpp"
 #include "compiler/sema/commands.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::compiler {
 
@@ -90,20 +92,31 @@ bool Commands::goes_two_ways(const Recipient& to, const std::vector<Given>& give
   return true;
 }
 
-// ---- a motor is told by TO, too, how much power it gets
+// ---- a motor and a lamp are told by TO, too, how much power they get
 
-// Not of what a TEST expects: a trace shows what the program says.
+namespace {
+
+// The driver of the device: a virtual one has another, and does what the real one will.
+bool gets_power(const ActuatorConfig& actuator) {
+  const Device* const device = find_device(actuator.device, false);
+  return device != nullptr && vm::gives_power(device->actuator.driver);
+}
+
+}  // namespace
+
+// Not of what a TEST expects: a trace shows what the program says. Nor of a word: ON is as much as may be.
 bool Commands::gives_too_much(const ast::Command& node, const ir::Command& command) {
-  constexpr std::string_view kMotor = "motor";  // the device (stdlib/devices/)
   const auto to = std::ranges::find(command.arguments, vm::Param::to, &ir::Argument::param);
   const auto said =
       std::ranges::find(node.arguments, ast::Preposition::to, &ast::Argument::preposition);
-  if (to == command.arguments.end() || to->value.operation != Operation::constant) return false;
+  if (to == command.arguments.end() || said == node.arguments.end() ||
+      to->value.operation != Operation::constant)
+    return false;
   for (const std::size_t place : command.actuators) {
     const ActuatorConfig& motor = robot_.actuators[place];
-    if (motor.device != kMotor || std::abs(to->value.constant) <= motor.speed_limit) continue;
+    if (std::abs(to->value.constant) <= motor.speed_limit || !gets_power(motor)) continue;
     diagnostics_.report(Code::E0507, "this is more power than " + motor.name.shown() + " may get")
-        .label(said != node.arguments.end() ? said->span : node.verb.span)
+        .label(said->span)
         .label(motor.limit_span, "the limit", false);
     return true;
   }

@@ -221,7 +221,8 @@ std::string actuator_keys(const Device& device) {
   if (actuator.at_unit != nullptr) {
     const std::string above = "above " + format_value(0, *actuator.at_unit);
     rows += row({"`speeds`", "words for `AT`, " + above, "the words above"});
-    rows += row({"`limits`: `SPEED`", "the most of `AT`, " + above, "none"});
+    const std::string of = vm::gives_power(actuator.driver) ? "`AT` and `TO`, " : "`AT`, ";
+    rows += row({"`limits`: `SPEED`", "the most of " + of + above, "none"});
   }
   if (device.has_sounds) rows += row({"`sounds`", "files, in the order of its tracks", "none"});
   const auto release = [](vm::Release how) {
