@@ -86,15 +86,15 @@ std::vector<double> touches(const std::string& out) {
   return values;
 }
 
-// When the last of them came, in the program's time.
-std::uint64_t last_touch_us(const std::string& out) {
-  std::uint64_t last = 0;
+// How long after the first of them the last one came, by the program's time.
+std::int64_t spread_us(const std::string& out) {
+  std::vector<std::int64_t> times;
   std::istringstream lines(out);
   for (std::string line; std::getline(lines, line);)
     if (const json event = json::parse(line);
         event.at("event") == "input" && event.at("sensor") == "touch")
-      last = event.at("t_us");
-  return last;
+      times.push_back(event.at("t_us"));
+  return times.empty() ? 0 : times.back() - times.front();
 }
 
 }  // namespace
@@ -106,14 +106,12 @@ TEST_CASE("a scenario for a program that runs already counts from now") {
   const std::string scenario = device.write("visit.json", R"({"stimuli": [
     {"at": "0s", "sensor": "touch", "value": 1}, {"at": "5ms", "sensor": "touch", "value": 2},
     {"at": "300ms", "sensor": "touch", "value": 3}]})");
-  const json before = json::parse(device.run({"info", "--format", "json"}).out);
   Outcome outcome =
       device.run({"feed", "--scenario", scenario, "--watch", "200ms", "--format", "json"});
   CAPTURE(outcome.err);
   CHECK(outcome.exit == 0);
   CHECK(touches(outcome.out) == std::vector<double>{1, 2, 3});
-  CHECK(last_touch_us(outcome.out) >=
-        before.at("status").at("program_us").get<std::uint64_t>() + 300'000);
+  CHECK(spread_us(outcome.out) >= 100'000);  // 300 ms, less what a busy machine comes late
   CHECK(device.run({"feed", "--scenario", scenario}).exit == 0);
   outcome = device.run({"feed", "touch.LEVEL=2", "--at", "10ms"});
   CHECK(outcome.exit == 1);
