@@ -171,8 +171,9 @@ Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t index) {
   const bool place = is_on_pin(sensor.driver)
                          ? is_enumerator(static_cast<ActiveLevel>(sensor.bus))
                          : sensor.address >= kFirstAddress && sensor.address <= kLastAddress;
-  return good_or(Refusal::bad_value,
-                 sensor.period_ms > 0 && place && sensor.period_ms >= min_period_ms(sensor.driver));
+  const bool alone = !measures_when_told(sensor.driver) || is_alone(walk.image, sensor, index);
+  return good_or(Refusal::bad_value, sensor.period_ms > 0 && place && alone &&
+                                         sensor.period_ms >= min_period_ms(sensor.driver));
 }
 
 // Each channel names its sensor, and stands in that sensor's range. As the ranges follow each other

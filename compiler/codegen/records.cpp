@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "compiler/config/devices.hpp"
 #include "vm/drivers.hpp"
 
 namespace robosync::compiler {
@@ -142,6 +143,12 @@ bool keeps_its_place(const ActuatorConfig& config, vm::Value speed_limit) {
   return moves(config) && (config.usual_speed > 0 || speed_limit < vm::kValueMax);
 }
 
+// TO says power as AT does, so the limit bounds its range: the trace then shows what is given.
+void keep_power(vm::Actuator& record) {
+  record.min = std::clamp(record.min, -record.speed_limit, record.speed_limit);
+  record.max = std::clamp(record.max, -record.speed_limit, record.speed_limit);
+}
+
 void RecordMaker::actuator(std::size_t place) {
   const ActuatorConfig& config = robot_.actuators[place];
   vm::Actuator record{};
@@ -167,6 +174,7 @@ void RecordMaker::actuator(std::size_t place) {
     record.bus = config.panel->lay;
     record.speed_limit = config.panel->color;
   }
+  if (gets_power(config)) keep_power(record);
   if (config.driver == vm::DriverId::virtual_actuator &&
       keeps_its_place(config, record.speed_limit)) {
     record.driver = vm::DriverId::virtual_motion;

@@ -11,6 +11,7 @@
 #include "compiler/config/json_reader.hpp"
 #include "compiler/config/values.hpp"
 #include "compiler/config/wiring.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -207,6 +208,11 @@ const Device* default_device(std::string_view type, bool is_sensor) {
   return find_if([&](const DeviceText& device) {
     return device.is_sensor == is_sensor && device.is_default && device.type == type;
   });
+}
+
+bool gets_power(const ActuatorConfig& actuator) {
+  const Device* const device = find_device(actuator.device, false);
+  return device != nullptr && vm::gives_power(device->actuator.driver);
 }
 
 std::vector<std::string> devices_with(std::string_view verb) {

@@ -42,6 +42,8 @@ struct DeviceText {  // one descriptor as built in, and what it is found by
 // A descriptor is read when it is asked for. Any case; nullptr when there is none of this kind.
 [[nodiscard]] const Device* find_device(std::string_view name, bool is_sensor);
 [[nodiscard]] const Device* default_device(std::string_view type, bool is_sensor);
+// Do TO and AT say how much power it gets? Of a virtual one, too, which does what the real one will.
+[[nodiscard]] bool gets_power(const ActuatorConfig& actuator);
 // The names of those that know `verb`, in any case. Reads every actuator's descriptor: for messages.
 [[nodiscard]] std::vector<std::string> devices_with(std::string_view verb);
 

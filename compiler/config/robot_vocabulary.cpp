@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "compiler/config/devices.hpp"
 #include "compiler/syntax/keywords.hpp"
 
 namespace robosync::compiler {
@@ -90,6 +91,7 @@ std::string arguments(const ActuatorConfig& actuator, const VerbConfig& verb, bo
   std::string where = word_for(actuator, verb, vm::Param::direction);
   if ((places || where.empty()) && verb.has(vm::Param::to) && actuator.to_unit != nullptr)
     where = " TO " + middle(actuator.min, actuator.max, *actuator.to_unit);
+  if (where.starts_with(" TO") && gets_power(actuator)) return where;  // that is how fast, too
   return where + word_for(actuator, verb, vm::Param::at);
 }
 

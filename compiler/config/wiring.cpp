@@ -366,6 +366,7 @@ Wiring WiringReader::read_sensor(Fields& fields, const WiringType& type, const B
     return read_echo(fields, "the device `" + fields.find("device")->text + "`");
   Wiring wiring = read(fields, type, part, false, "a sensor of type " + std::string(type.name));
   if (part == nullptr && type.name == "GPIO") wiring.bus = read_active(fields);
+  if (type.name == "I2C") take_address(fields, wiring, part, vm::measures_when_told(driver));
   return wiring;
 }
 
@@ -376,7 +377,23 @@ Wiring WiringReader::read_actuator(Fields& fields, const WiringType& type, const
   const std::string what = two_pins && device != nullptr
                                ? "a " + device->text
                                : "an actuator of type " + std::string(type.name);
-  return read(fields, type, part, two_pins, what);
+  const Wiring wiring = read(fields, type, part, two_pins, what);
+  if (type.name == "I2C") take_address(fields, wiring, part, false);
+  return wiring;
+}
+
+// Several sensors may be made of one chip's registers; but of one that measures when it is told each would take the result that
+// the other one has asked for.
+void WiringReader::take_address(const Fields& fields, const Wiring& place, const Board::Part* part,
+                                bool alone) {
+  const auto* said = fields.find(part != nullptr ? "device" : "address");
+  Diagnostics reported;  // before
+  if (said == nullptr || (part == nullptr && read_whole(*said, vm::kFirstAddress, vm::kLastAddress,
+                                                        reported) != place.place))
+    return;
+  const auto [entry, added] = on_buses_.emplace(std::pair(place.bus, place.place),
+                                                OnBus{.span = said->span, .alone = alone});
+  if (!added && (alone || entry->second.alone)) report_taken(entry->second, place, said->span);
 }
 
 Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::Part* part,
@@ -394,8 +411,6 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
       wiring.place = static_cast<std::uint16_t>(
           read_whole(*address, vm::kFirstAddress, vm::kLastAddress, diagnostics_)
               .value_or(vm::kFirstAddress));
-    if (const auto* address = fields.find("address"); address != nullptr && type.name == "I2C")
-      on_buses_.emplace(std::pair(wiring.bus, wiring.place), OnBus{.span = address->span});
   } else if (type.pin) {
     read_pins(fields, two_pins, what, wiring);
   }

@@ -68,6 +68,7 @@ public:
 private:
   struct OnBus {
     Span span;
+    bool alone = false;  // no second sensor may be there
     std::optional<ServoChip> chip{};
     Span enable{};
     std::map<std::uint16_t, Span> channels{};  // that servos have
@@ -78,6 +79,7 @@ private:
   [[nodiscard]] Wiring read(Fields& fields, const WiringType& type, const Board::Part* part,
                             bool two_pins, const std::string& what);
   [[nodiscard]] Wiring read_part(const Fields& fields, const Board::Part& part);
+  void take_address(const Fields& fields, const Wiring& place, const Board::Part* part, bool alone);
   void report_taken(const OnBus& known, const Wiring& place, Span span);
   void take_chip(const ServoChip& chip, const json::Value& address, const json::Value& enable);
   void refuse_pins(const Fields& fields);

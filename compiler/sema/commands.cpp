@@ -551,7 +551,9 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
   if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
   if (names_.find_list(word.name.text) != nullptr)
     d.helps("it is a LIST; write which of its texts: `ANY " + std::string(word.name.text) + "`");
-  if (d.help.empty() && to.verb.texts != Texts::none)
+  if (d.help.empty() && to.verb.texts == Texts::listed)
+    help_with_files(to, d);
+  else if (d.help.empty() && to.verb.texts == Texts::any)
     d.helps("words that are said or played stand in quotes: `\"" + std::string(word.name.text) +
             "\"`");
 }
@@ -645,6 +647,12 @@ void Commands::report_not_taken(const Recipient& to, const Given& given) {
   const std::string verb = "`" + to.verb.name + "`";
   const bool alone =
       given.argument->preposition == ast::Preposition::none && given.param == vm::Param::by;
+  if (alone && to.verb.texts == Texts::listed) {
+    Diagnostic& d =
+        to.diagnostics.report(Code::E0505, verb + " takes the name of a file, no number")
+            .label(span);
+    return help_with_files(to, d);
+  }
   Diagnostic& d =
       to.diagnostics
           .report(Code::E0505, alone ? "the word in front of this number is missing"

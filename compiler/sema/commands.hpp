@@ -120,6 +120,7 @@ private:
   static bool says_twice(const Recipient& to, const std::vector<Given>& given,
                          const ir::Command& result);
   static bool goes_two_ways(const Recipient& to, const std::vector<Given>& given);
+  static void help_with_files(const Recipient& to, Diagnostic& d);
   Typed evaluate_number(const ast::Argument& argument);
   [[nodiscard]] bool is_known_word(std::string_view word) const;  // of any actuator
   [[nodiscard]] bool names_a_number(const ast::Name& name) const;

@@ -237,7 +237,8 @@ const Typed& Expressions::value_of(ConstantName& name) {
     open_.pop_back();
     if (result.is_number() && !result.is_constant()) {
       diagnostics_.report(Code::E0305, "the value of a LET must be known before the program runs")
-          .label(name.let->value->span);
+          .label(name.let->value->span)
+          .helps("write this where it is needed, or keep it: with a REMEMBER and `SET`");
       result = make_nothing(result.span);
     }
   }

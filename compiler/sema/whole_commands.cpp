@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "compiler/config/devices.hpp"
 #include "compiler/sema/commands.hpp"
 
 namespace robosync::compiler {
@@ -50,6 +51,9 @@ bool Commands::says_twice(const Recipient& to, const std::vector<Given>& given,
   if (is_given(result, vm::Param::to) && is_given(result, vm::Param::by))
     return report("where this goes is given twice", vm::Param::by,
                   "`TO` says the place, `BY` how far it is from here: leave one of them out");
+  if (is_given(result, vm::Param::to) && is_given(result, vm::Param::at) && gets_power(to.actuator))
+    return report("how much power this gets is given twice", vm::Param::at,
+                  "`TO` says it, `AT` and words such as SLOWLY do, too: leave one of them out");
   if (to.verb.action != vm::Action::move) return false;
   if (is_given(result, vm::Param::at) && is_given(result, vm::Param::over))
     return report("how fast this goes is given twice", vm::Param::over,
@@ -90,20 +94,21 @@ bool Commands::goes_two_ways(const Recipient& to, const std::vector<Given>& give
   return true;
 }
 
-// ---- a motor is told by TO, too, how much power it gets
+// ---- a motor and a lamp are told by TO, too, how much power they get
 
-// Not of what a TEST expects: a trace shows what the program says.
+// Not of what a TEST expects: that never comes, which the TEST says. Nor of a word: ON is as much as may be.
 bool Commands::gives_too_much(const ast::Command& node, const ir::Command& command) {
-  constexpr std::string_view kMotor = "motor";  // the device (stdlib/devices/)
   const auto to = std::ranges::find(command.arguments, vm::Param::to, &ir::Argument::param);
   const auto said =
       std::ranges::find(node.arguments, ast::Preposition::to, &ast::Argument::preposition);
-  if (to == command.arguments.end() || to->value.operation != Operation::constant) return false;
+  if (to == command.arguments.end() || said == node.arguments.end() ||
+      to->value.operation != Operation::constant)
+    return false;
   for (const std::size_t place : command.actuators) {
     const ActuatorConfig& motor = robot_.actuators[place];
-    if (motor.device != kMotor || std::abs(to->value.constant) <= motor.speed_limit) continue;
+    if (std::abs(to->value.constant) <= motor.speed_limit || !gets_power(motor)) continue;
     diagnostics_.report(Code::E0507, "this is more power than " + motor.name.shown() + " may get")
-        .label(said != node.arguments.end() ? said->span : node.verb.span)
+        .label(said->span)
         .label(motor.limit_span, "the limit", false);
     return true;
   }
@@ -133,6 +138,15 @@ constexpr unsigned bit(vm::Param param) {
 
 }  // namespace
 
+// Of one that plays those of robot.json alone.
+void Commands::help_with_files(const Recipient& to, Diagnostic& d) {
+  if (!to.diagnostics.may_search(to.actuator.words.size())) return;
+  const std::vector<std::string> files = contents_of(to.actuator, to.verb);
+  d.helps(files.empty()
+              ? "list its files under \"sounds\" in robot.json, and write which one in quotes"
+              : "write one of its files in quotes: " + list_names(files, "or"));
+}
+
 // Only of a verb that takes nothing else: BLINK has no need of a colour, and a tone has AT.
 bool Commands::lacks_content(const ir::Command& command, Span span) {
   if (command.word || is_given(command, vm::Param::item) || command.actuators.empty()) return false;
@@ -143,7 +157,7 @@ bool Commands::lacks_content(const ir::Command& command, Span span) {
     return false;
   const std::vector<std::string> contents = contents_of(actuator, *verb);
   if (contents.empty()) return false;
-  diagnostics_.report(Code::E0504, "this does not say what to " + verb->name)
+  diagnostics_.report(Code::E0514, "this does not say what to " + verb->name)
       .label(span)
       .helps((contents.size() > 1 ? "write one of these behind it: " : "write it behind: ") +
              list_names(contents, "or"))

@@ -19,9 +19,10 @@ public:
     for (const Habit habit :
          {&ForeignHabits::name_of_test, &ForeignHabits::rule_with_if, &ForeignHabits::foreign_else,
           &ForeignHabits::head, &ForeignHabits::comparison, &ForeignHabits::declaration,
-          &ForeignHabits::definition, &ForeignHabits::text_in_brackets,
-          &ForeignHabits::set_with_sign, &ForeignHabits::assignment, &ForeignHabits::colon,
-          &ForeignHabits::end_of_what, &ForeignHabits::truth, &ForeignHabits::decimal_comma}) {
+          &ForeignHabits::declared_in_block, &ForeignHabits::definition,
+          &ForeignHabits::text_in_brackets, &ForeignHabits::set_with_sign,
+          &ForeignHabits::assignment, &ForeignHabits::colon, &ForeignHabits::end_of_what,
+          &ForeignHabits::truth, &ForeignHabits::decimal_comma}) {
       if (auto edit = (this->*habit)()) return edit;
     }
     return std::nullopt;
@@ -153,6 +154,11 @@ private:
           .helps("`CHANGES` asks for any change, up or down; `> 3` for what is above a border");
       return change(begin, end - begin, {{Kinds::CHANGES, all}});
     }
+    if (phrase.kind == Kinds::IS && end < tokens_.size() && is_relation(tokens_[end].kind)) {
+      report(Code::E0001, "no " + what + " stands in front of " + quote(end), all)
+          .fix({all.file, all.begin, tokens_[end].span.begin}, "", Applicability::likely);
+      return change(begin, end - begin);
+    }
     const bool sign = is_relation(phrase.kind), word = is(end, Kinds::STRING);
     const bool asks_number = phrase.kind == Kinds::IS && is(end, Kinds::QUANTITY);
     TokenKind kind = sign && word ? TokenKind(Kinds::IS) : phrase.kind;
@@ -193,6 +199,26 @@ private:
     }
     d.helps("write `" + better + "`").fix(tokens_[statement_].span, word, Applicability::likely);
     return change(statement_, statement_end() - statement_);
+  }
+
+  // `LET near = 30cm` in a response
+  std::optional<Edit> declared_in_block() {
+    const auto block = open_block();
+    if (stop_ != begin_ || !block || !starts_line(tokens_, *block) ||
+        !is_one_of(tokens_[stop_].kind, {Kinds::LET, Kinds::REMEMBER, Kinds::STATE, Kinds::FEELING,
+                                         Kinds::TIMER, Kinds::LIST, Kinds::LIMIT, Kinds::USE}) ||
+        is_one_of(tokens_[*block].kind,
+                  {Kinds::BEHAVIOR, Kinds::SAFETY, Kinds::CHECK, Kinds::MOTION, Kinds::TEST}) ||
+        indentation(tokens_[stop_], source_) <= indentation(tokens_[*block], source_))
+      return std::nullopt;
+    const bool counts = is(stop_, Kinds::LET) || is(stop_, Kinds::REMEMBER);
+    Diagnostic& d =
+        report(Code::E0010, quote(stop_) + " cannot stand inside a response", tokens_[stop_].span);
+    d.label(tokens_[*block].span, "this block goes on up to its END", false)
+        .helps("write the line at the top");
+    if (counts)
+      d.helps("what changes while the robot runs is a `REMEMBER`, which `SET` gives a value here");
+    return change(statement_, end_ - statement_, nothing_to_do());
   }
 
   Tokens nothing_to_do() const {

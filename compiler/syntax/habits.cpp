@@ -301,8 +301,8 @@ private:
     std::size_t end = stop_;
     while (end < tokens_.size() && !is(end, Kinds::DO))
       ++end;
-    const bool rule = is(0, Kinds::WHEN) && !has(0, stop_, Kinds::IF);
-    if (end == tokens_.size() || !rule) return std::nullopt;
+    const auto block = open_block();
+    if (end == tokens_.size() || !block || !is(*block, Kinds::WHEN)) return std::nullopt;
     report(Code::E0001, "ELSE IF belongs to an IF; a rule has one ELSE", tokens_[stop_].span)
         .helps("write two rules, or `ELSE` and an IF with its own END");
     return if_in_else();
@@ -312,10 +312,11 @@ private:
   Edit if_in_else() const {
     const Span here = tokens_[stop_].span;
     BlockWalk walk(tokens_);
-    std::size_t last = 0;
+    std::size_t last = 0, depth = 0;
     for (; last < tokens_.size(); ++last) {
       walk.step(last);
-      if (last > stop_ && walk.open().empty()) break;
+      if (last == stop_) depth = walk.open().size();
+      if (last > stop_ && walk.open().size() < depth) break;
     }
     Tokens inserted{{Kinds::ELSE, here}, {Kinds::IF, here}};
     for (std::size_t at = stop_ + 1; at < last; ++at)

@@ -144,30 +144,42 @@ bool LexerState::foreign_end() {
   return true;
 }
 
-// `isn't`, `doesn't`, in a line that asks: what stands behind the ' is no text.
+// `isn't > 3`, `isn't 3`: the grammar stops there, and says what is meant of all of it (misplaced_words.cpp).
+bool LexerState::compares(std::size_t from) const {
+  constexpr std::string_view begins_it = "<>=!0123456789-";
+  const std::size_t next = text_.find_first_not_of(" \t", from);
+  return next != std::string_view::npos && begins_it.find(text_[next]) != std::string_view::npos;
+}
+
+// `isn't`, `isnt`, `doesn't`, in a line that asks: what stands behind the ' is no text.
 bool LexerState::negation() {
   constexpr std::string_view states[] = {"isn", "aren", "wasn", "weren"};
   constexpr std::string_view others[] = {"doesn", "don", "didn", "hasn", "haven"};
   constexpr std::string_view endings[] = {"'t", "\xe2\x80\x99t"};
+  constexpr std::string_view joined[] = {"isnt", "arent", "wasnt", "werent"};
   const auto is_word = [this](std::string_view one) { return ascii::same(one, lexeme()); };
-  const bool state = std::ranges::any_of(states, is_word);
+  const bool whole = std::ranges::any_of(joined, is_word);
+  const bool state = whole || std::ranges::any_of(states, is_word);
   if (!state && std::ranges::none_of(others, is_word)) return false;
   const auto* const ending = std::ranges::find_if(endings, [this](std::string_view one) {
     return ascii::same(text_.substr(cursor_, one.size()), one) &&
            word_length(text_.substr(cursor_ + one.size())) == 0;
   });
   const std::size_t first = first_of_statement();
-  if (ending == std::end(endings) || first == tokens_.size() || !asks(tokens_[first].kind))
+  if ((!whole && ending == std::end(endings)) || first == tokens_.size() ||
+      !asks(tokens_[first].kind))
     return false;
-  cursor_ += ending->size();
+  if (!whole) cursor_ += ending->size();
   constexpr std::string_view truth = " TRUE";
   const bool is_false = ascii::same(text_.substr(cursor_, truth.size()), truth);
   if (is_false) cursor_ += truth.size();
   const std::string better = is_false ? "IS FALSE" : "IS NOT";
-  Diagnostic& message =
-      report(Code::E0007, "`" + std::string(lexeme()) + "` is written `" + better + "` in RSL")
-          .label(here());
-  if (state) message.fix(here(), better, Applicability::likely);
+  if (!state || is_false || !compares(cursor_)) {
+    Diagnostic& message =
+        report(Code::E0007, "`" + std::string(lexeme()) + "` is written `" + better + "` in RSL")
+            .label(here());
+    if (state) message.fix(here(), better, Applicability::likely);
+  }
   token(Kinds::IS);
   token(is_false ? Kinds::FALSE : Kinds::NOT);
   return true;
@@ -324,22 +336,24 @@ void LexerState::whole_division() {
 
 // ---- braces and comments
 
-// The brace that other languages have for DO. In front of it stands what opens a block, perhaps on the line before.
-bool LexerState::brace_opens_a_block() {
+// The brace that other languages have for DO, or that stands behind it. In front of it stands what opens a block, perhaps on
+// the line before.
+LexerState::Brace LexerState::brace_opens_a_block() {
   std::size_t end = tokens_.size();
   while (end > 0 && tokens_[end - 1].kind == Kinds::NEWLINE)
     --end;
   std::size_t first = end;
   while (first > 0 && tokens_[first - 1].kind != Kinds::NEWLINE)
     --first;
-  if (first == end || tokens_[end - 1].kind == Kinds::DO) return false;
+  if (first == end) return Brace::nothing;
+  if (tokens_[end - 1].kind == Kinds::DO) return Brace::behind_do;
   const TokenKind kind = tokens_[first].kind;
   const bool goes_on = kind == Kinds::ELSE || kind == Kinds::ELSE_IF;
-  if (!goes_on && (roles_of(kind) & role::opens) == 0) return false;
+  if (!goes_on && (roles_of(kind) & role::opens) == 0) return Brace::nothing;
   const bool asks = kind == Kinds::WHEN || kind == Kinds::WHILE || kind == Kinds::EVERY ||
                     kind == Kinds::IF || kind == Kinds::ELSE_IF;
   if (asks) token(Kinds::DO);
-  return true;
+  return Brace::for_do;
 }
 
 void LexerState::opening_brace() {
@@ -352,14 +366,16 @@ void LexerState::opening_brace() {
   braces_.push_back(brace_opens_a_block());
 }
 
-// In front of ELSE nothing ends.
+// In front of ELSE nothing ends; who has written DO may have written END as well.
 void LexerState::closing_brace() {
   if (braces_.empty()) {
     if (brace_is_end()) return;
     left_out("a block ends with END");
     return;
   }
-  const bool ends = braces_.back() && !else_follows();
+  const Brace brace = braces_.back();
+  const bool ends = brace != Brace::nothing && !word_follows({"ELSE", "ELIF"}) &&
+                    !(brace == Brace::behind_do && end_follows());
   braces_.pop_back();
   if (ends) token(Kinds::END);
 }
@@ -369,7 +385,7 @@ bool LexerState::brace_is_end() {
   constexpr std::size_t most =
       20;  // times that all tokens are looked at: the text may be one from outside
   const bool first = tokens_.empty() || tokens_.back().kind == Kinds::NEWLINE;
-  if (!first || reports_ > most || else_follows() ||
+  if (!first || reports_ > most || word_follows({"ELSE", "ELIF"}) ||
       rest_of_line(cursor_).find_first_not_of(" \t") != std::string_view::npos)
     return false;
   BlockWalk walk(tokens_);
@@ -383,9 +399,21 @@ bool LexerState::brace_is_end() {
   return true;
 }
 
-bool LexerState::else_follows() const {
+// One that stands farther left closes what is around it.
+bool LexerState::end_follows() const {
+  const auto margin = [this](std::size_t at) {
+    const std::size_t line = text_.find_last_of("\r\n", at - 1) + 1;
+    return text_.find_first_not_of(" \t", line) - line;
+  };
+  const std::size_t word = text_.find_first_not_of(" \t\r\n", cursor_);
+  return word_follows({"END"}) && margin(word) >= margin(cursor_);
+}
+
+bool LexerState::word_follows(std::initializer_list<std::string_view> words) const {
   const std::size_t word = std::min(text_.find_first_not_of(" \t\r\n", cursor_), text_.size());
-  return ascii::same(text_.substr(word, 4), "ELSE") || ascii::same(text_.substr(word, 4), "ELIF");
+  return std::ranges::any_of(words, [&](std::string_view one) {
+    return ascii::same(text_.substr(word, one.size()), one);
+  });
 }
 
 void LexerState::foreign_comment() {

@@ -56,6 +56,7 @@ private:
   bool keyword_is_stuck();
   bool curly_string(char32_t quote);
   bool look_alike(char32_t point);
+  bool compares(std::size_t from) const;
   bool negation();
   bool apostrophe_in_number();
   bool apostrophe_in_text();
@@ -74,8 +75,11 @@ private:
   bool next_line_goes_on() const;
   bool foreign_end();
   bool foreign_loop();
-  bool brace_opens_a_block();
-  bool else_follows() const;
+  // Of a brace that is open: what its end is the END of.
+  enum class Brace : std::uint8_t { nothing, for_do, behind_do };
+  Brace brace_opens_a_block();
+  bool end_follows() const;
+  bool word_follows(std::initializer_list<std::string_view> words) const;
   bool brace_is_end();
   bool dotted();
   void leave_end_to_its_block();
@@ -95,9 +99,8 @@ private:
   std::vector<Token> tokens_;
   std::size_t start_ = 0;
   std::size_t cursor_ = 0;
-  bool has_brace_ = false;  // which is said once
-  std::vector<bool>
-      braces_;  // those that are open: has one the place of a DO, so that its end is an END?
+  bool has_brace_ = false;                                  // which is said once
+  std::vector<Brace> braces_;                               // those that are open
   std::size_t strange_end_ = static_cast<std::size_t>(-1);  // where the last strange bytes ended
 };
 

@@ -35,7 +35,8 @@ public:
     if (auto edit = safety_without_when()) return edit;
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Habit = std::optional<Edit> (MisplacedWords::*)();
-    for (const Habit habit : {&MisplacedWords::negation,
+    for (const Habit habit : {&MisplacedWords::negated_comparison,
+                              &MisplacedWords::negation,
                               &MisplacedWords::end_before_else,
                               &MisplacedWords::rule_in_rule,
                               &MisplacedWords::do_without_when,
@@ -103,6 +104,29 @@ private:
         .helps("write `" + std::string(text(stop_ - 2)) + text(stop_ - 1, stop_ + 2) + "`")
         .fix(gap, "", Applicability::likely);
     return change(stop_ - 2, 4, {missing(Kinds::QUANTITY, stop_ - 2)});
+  }
+
+  // `touch LEVEL IS NOT > 4`, `touch LEVEL isn't 4`
+  std::optional<Edit> negated_comparison() {
+    if (stop_ < begin_ + 2 || !is(stop_ - 1, Kinds::NOT) || !is(stop_ - 2, Kinds::IS))
+      return std::nullopt;
+    const Span words = span(stop_ - 2, stop_);
+    const std::string what = "`" + std::string(source_.text(words)) + "`";
+    if (is(stop_, Kinds::QUANTITY)) {
+      report(Code::E0001, what + " asks for a word, and " + quote(stop_) + " is a number", words)
+          .helps("a number that is another one is asked for with `<>`")
+          .fix(words, "<>", Applicability::likely);
+      return change(stop_ - 2, 2, {{Kinds::NOT_EQUAL, words}});
+    }
+    for (const Opposite& one : kOpposites) {
+      if (!is(stop_, one.relation)) continue;
+      const Span all = span(stop_ - 2, stop_ + 1);
+      report(Code::E0001, "no " + what + " stands in front of " + quote(stop_), all)
+          .helps("the opposite of " + quote(stop_) + " is `" + std::string(one.spelling) + "`")
+          .fix(all, std::string(one.spelling), Applicability::likely);
+      return change(stop_ - 2, 3, {{one.kind, all}});
+    }
+    return std::nullopt;
   }
 
   // `touch LEVEL NOT > 4`, `mood BECOMES NOT happy`, `x IS NOT BETWEEN 1 AND 2`

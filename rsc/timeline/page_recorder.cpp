@@ -26,7 +26,7 @@ void PageRecorder::program(const TraceNames& names, std::span<const std::byte> i
 void PageRecorder::event(const link::Event& event, const TraceNames& names) {
   if (!program_) return;
   if (event.kind == link::EventKind::activated) timeline_.reset();
-  names_ = {&program_->image(), names.threads, nullptr};
+  names_ = {&program_->image(), names.threads, names.origin};
   if (!timeline_) timeline_ = std::make_unique<TimelineRecorder>(*program_, names_);
   timeline_->see(event);
   end_us_ = event.time_us;
@@ -35,7 +35,9 @@ void PageRecorder::event(const link::Event& event, const TraceNames& names) {
 void PageRecorder::write(const std::string& file, const std::string& title) {
   if (!timeline_)
     throw Failure(Exit::program, "nothing has happened that a page could show; none was written");
-  const std::string page = timeline_page(title, timeline_->finish(end_us_), {});
+  const std::vector<std::string> none;
+  const auto& lines = names_.origin == nullptr ? none : names_.origin->lines;
+  const std::string page = timeline_page(title, timeline_->finish(end_us_), lines);
   write_output(file, std::as_bytes(std::span(page)));
   timeline_.reset();
 }

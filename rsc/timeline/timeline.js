@@ -95,7 +95,7 @@ function drawBars(lane) {
     if (end < from || begin > to) continue;
     const x = place(lane, begin);
     lane.svg.append(element("rect", {x, y: 2, width: Math.max(place(lane, end) - x, 2), height: lane.height - 4, class: "halt"}));
-    label(lane, Math.max(x, 0) + 4, lane.height / 2 + 4, place(lane, end) - Math.max(x, 0), "halted by SAFETY");
+    label(lane, Math.max(x, 0) + 4, lane.height / 2 + 4, place(lane, end) - Math.max(x, 0), "halted");
   }
   drawSpans(lane, lane.of.bars, (bar, x, width) => {
     const shape = element("rect", {x, y: 4, width, height: lane.height - 8, rx: 2, class: "bar", ...paint(bar.behavior)});

@@ -95,9 +95,9 @@ std::string actuator_words(const EventReader& reader) {
     case EventKind::overrun:
       return fmt::format("{} drops a command: too many wait", actuator);
     case EventKind::halt:
-      return fmt::format("SAFETY: {} is halted", actuator);
+      return fmt::format("{} is halted", actuator);
     case EventKind::release:
-      return fmt::format("SAFETY: {} may move again", actuator);
+      return fmt::format("{} may move again", actuator);
     default:
       return fmt::format("{}: {}", actuator, reader.shape().name);
   }

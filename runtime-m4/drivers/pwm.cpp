@@ -1,5 +1,6 @@
 // Duty cycle in percent on a PWM pin, of the 20 ms frame. TO or AT sets it, OVER goes there evenly;
-// FOR keeps it up for a time and then switches off. Without FOR it stays. Neither TO nor AT: full.
+// FOR keeps it up for a time and then switches off. Without FOR it stays. Neither TO nor AT: full. The range holds for all of
+// these, and the limit of SPEED too.
 #include <algorithm>
 
 #include "runtime-m4/drivers/power.hpp"
@@ -12,11 +13,16 @@ void output(const Device& device, kernel::Time now) {
   device.drive(static_cast<std::uint32_t>(percent / power::kStep), now);
 }
 
+vm::Value level_of(const Device& device, const Order& order) {
+  const vm::Actuator& wiring = device.wiring;
+  const vm::Value wanted = order.get(vm::Param::to, order.get(vm::Param::at, power::kFull));
+  return std::min(std::clamp(wanted, wiring.min, wiring.max), wiring.speed_limit);
+}
+
 }  // namespace
 
 kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
-  const vm::Value level = order.get(vm::Param::to, order.get(vm::Param::at, power::kFull));
-  power::begin(device, order, level, now);
+  power::begin(device, order, level_of(device, order), now);
   return advance(device, now);
 }
 

@@ -225,7 +225,8 @@ std::string actuator_keys(const Device& device) {
   if (actuator.at_unit != nullptr) {
     const std::string above = "above " + format_value(0, *actuator.at_unit);
     rows += row({"`speeds`", "words for `AT`, " + above, "the words above"});
-    rows += row({"`limits`: `SPEED`", "the most of `AT`, " + above, "none"});
+    const std::string of = vm::gives_power(actuator.driver) ? "`AT` and `TO`, " : "`AT`, ";
+    rows += row({"`limits`: `SPEED`", "the most of " + of + above, "none"});
   }
   if (vm::drives_panel(actuator.driver)) {
     std::vector<std::string> colors;

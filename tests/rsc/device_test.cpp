@@ -86,6 +86,17 @@ std::vector<double> touches(const std::string& out) {
   return values;
 }
 
+// How long after the first of them the last one came, by the program's time.
+std::int64_t spread_us(const std::string& out) {
+  std::vector<std::int64_t> times;
+  std::istringstream lines(out);
+  for (std::string line; std::getline(lines, line);)
+    if (const json event = json::parse(line);
+        event.at("event") == "input" && event.at("sensor") == "touch")
+      times.push_back(event.at("t_us"));
+  return times.empty() ? 0 : times.back() - times.front();
+}
+
 }  // namespace
 
 TEST_CASE("a scenario for a program that runs already counts from now") {
@@ -100,6 +111,7 @@ TEST_CASE("a scenario for a program that runs already counts from now") {
   CAPTURE(outcome.err);
   CHECK(outcome.exit == 0);
   CHECK(touches(outcome.out) == std::vector<double>{1, 2, 3});
+  CHECK(spread_us(outcome.out) >= 100'000);  // 300 ms, less what a busy machine comes late
   CHECK(device.run({"feed", "--scenario", scenario}).exit == 0);
   outcome = device.run({"feed", "touch.LEVEL=2", "--at", "10ms"});
   CHECK(outcome.exit == 1);
@@ -316,6 +328,9 @@ TEST_CASE("a monitor finds a line again that was closed, and says so") {
 
 TEST_CASE("a robot that was uploaded to while it was recorded is replayed to the same commands") {
   const Device device;
+  std::string robot = test::kRobot;
+  robot.replace(robot.find("cm"), 2, "mm");
+  device.write("robot.json", robot);
   const std::string program =
       device.write("robot.rsl", "EVERY 100ms DO MOVE left_arm QUICKLY TO 10deg END\n");
   Outcome outcome;
@@ -327,7 +342,9 @@ TEST_CASE("a robot that was uploaded to while it was recorded is replayed to the
   device.write("robot.rsl",
                "EVERY 1h DO MOVE left_amr TO 20deg END\n");  // wrong: nothing happens
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  device.write("robot.rsl", "EVERY 150ms DO MOVE left_arm QUICKLY TO 30deg END\n");
+  device.write("robot.rsl",
+               "EVERY 150ms DO MOVE left_arm QUICKLY TO 30deg END\n"
+               "WHEN proximity DISTANCE < 20mm DO LOG \"near\" END\n");
   monitor.join();
   CAPTURE(outcome.err);
   CHECK(outcome.exit == 0);
@@ -341,8 +358,10 @@ TEST_CASE("a robot that was uploaded to while it was recorded is replayed to the
     CHECK(one.at("gap").is_null());
     CHECK(one.at("commands") > 2);
   }
-  // The page is that of the program that ran last.
-  CHECK_THAT(device.read("r.html"), Contains("QUICKLY TO 30") && !Contains("QUICKLY TO 10"));
+  // The page is that of the program that ran last, with its lines and the units of its configuration.
+  CHECK_THAT(device.read("r.html"), Contains("QUICKLY TO 30") && !Contains("QUICKLY TO 10") &&
+                                        Contains("EVERY 150ms DO MOVE") &&
+                                        Contains(R"("name":"mm")"));
   CHECK(device.run({"monitor", "--duration", "100ms", "--record", program, "--upload", program})
             .exit == 2);
 }

@@ -380,6 +380,24 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("run shows what power a motor is given where the program says more than its limit") {
+  const Folder folder;
+  folder.write("robot.json", R"({
+    "sensors": [{"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}}],
+    "actuators": [{"name": "wheel", "type": "PWM", "pins": [3, 4], "device": "motor", "limits": {"SPEED": "40%"}},
+                  {"name": "shown", "type": "VIRTUAL", "device": "motor"}]})");
+  const std::string program = folder.write(
+      "robot.rsl",
+      "LIMIT shown SPEED TO 30%\nWHEN touch LEVEL > 3\nDO\n  RUN wheel TO (touch LEVEL * -10%)\n"
+      "  RUN shown TO (touch LEVEL * 10%)\nEND\n");
+  const std::string scenario = folder.write("visit.json", R"({"duration": "2s", "stimuli": [
+      {"at": "1s", "sensor": "touch", "value": 9}]})");
+  const Outcome outcome = test::rsc({"run", program, "--scenario", scenario, "--all"});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("wheel RUN TO -40%\n") && Contains("shown RUN TO 30%\n"));
+}
+
 TEST_CASE("run takes the words of a channel, and shows what safety does in words") {
   const TestFolder robot("");
   const std::string scenario = robot.write("visit.json", R"({"duration": "4s", "stimuli": [
@@ -392,8 +410,8 @@ TEST_CASE("run takes the words of a channel, and shows what safety does in words
   CHECK(outcome.exit == 0);
   for (const char* const line :
        {"1.000 s  button POSITION = pressed\n", "SAFETY: safety rule at line 4 trips\n",
-        "SAFETY: left_arm is halted\n", "ALERT: Stopped by a person\n",
-        "SAFETY: safety rule at line 4 lets go\n", "SAFETY: right_arm may move again\n",
+        "left_arm is halted\n", "ALERT: Stopped by a person\n",
+        "SAFETY: safety rule at line 4 lets go\n", "right_arm may move again\n",
         "left_arm MOVE SLOWLY TO 20"}) {
     CHECK_THAT(outcome.out, Contains(line));
   }

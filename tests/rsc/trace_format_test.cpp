@@ -190,8 +190,8 @@ TEST_CASE("safety and waits in words") {
   CHECK_THAT(remembered(event(EventKind::wait, rule)), Catch::EndsWith(" waits"));
   CHECK_THAT(remembered(event(EventKind::go_on, rule)), Catch::EndsWith(" goes on"));
   CHECK_THAT(remembered(event(EventKind::zero_divide, rule)), Catch::Contains("divided by zero"));
-  CHECK(remembered(event(EventKind::halt, 0)) == "SAFETY: left_arm is halted");
-  CHECK(remembered(event(EventKind::release, 0)) == "SAFETY: left_arm may move again");
+  CHECK(remembered(event(EventKind::halt, 0)) == "left_arm is halted");
+  CHECK(remembered(event(EventKind::release, 0)) == "left_arm may move again");
   CHECK_THAT(remembered(event(EventKind::lose, rule, 0, {1})),
              Catch::EndsWith("safety has an actuator it needs"));
 }

@@ -357,6 +357,24 @@ TEST_CASE(
   });
 }
 
+TEST_CASE("what measures when it is told is alone at its place on the bus") {
+  const auto seeing = [](auto change) {
+    ImageBuilder image = robot::make();
+    Sensor eye = image.sensors[0];
+    eye.driver = DriverId::vl53l0x;
+    eye.period_ms = kMinRangingPeriodMs;
+    eye.first_channel = static_cast<std::uint8_t>(image.channels.size());
+    eye.channel_count = 0;
+    image.sensors.push_back(eye);
+    change(image.sensors.back());
+    return image;
+  };
+  const auto index = static_cast<std::uint16_t>(robot::make().sensors.size());
+  check_refused(seeing([](auto&) {}), {Refusal::bad_value, Section::sensors, index});
+  check_accepted(seeing([](auto& eye) { ++eye.bus; }));
+  check_accepted(seeing([](auto& eye) { ++eye.address; }));
+}
+
 TEST_CASE("a face is on a display, which is alone at its place on the bus") {
   const auto with_face = [](auto change) {
     ImageBuilder image = robot::make();

@@ -230,10 +230,12 @@ void AskedBus<Master>::on_interrupt() {
   end(state == Transfer::done ? State::done : State::failed);
 }
 
-// Those that wait are not the ones to blame.
+// Those that wait are not the ones to blame. Of what is only written nobody asks how it went, so it takes no place from a result
+// that waits to be taken.
 template <typename Master>
 void AskedBus<Master>::end(State how) {
-  running_->state = how;
+  const bool is_asked_for = running_->read != 0 || running_->ahead;
+  running_->state = is_asked_for ? how : State::none;
   running_ = nullptr;
   go_on();
 }

@@ -261,6 +261,8 @@ TEST_CASE("wiring travels as robot.json has it") {
   CHECK(actuator.driver == vm::DriverId::pwm);
   CHECK(actuator.pin == 6);
   CHECK(actuator.speed_limit == 70000);
+  CHECK(actuator.min == 0);
+  CHECK(actuator.max == 70000);  // TO says power, too
   CHECK(actuator.on_release == vm::Release::hold);
   CHECK(actuator.safe == vm::Release::rest);
 }
@@ -281,6 +283,11 @@ TEST_CASE("a motor's record has both pins; one that is only shown has none") {
   CHECK(wired.safe == vm::Release::coast);
   const vm::Actuator shown = record(R"("type": "VIRTUAL", "pins": [6, 31])");
   CHECK(shown.driver == vm::DriverId::virtual_actuator);
+  for (const char* const type : {R"("type": "PWM", "pins": [3, 4])", R"("type": "VIRTUAL")"}) {
+    const vm::Actuator slow = record(type + std::string(R"(, "limits": {"SPEED": "40%"})"));
+    CHECK(slow.min == -40'000);
+    CHECK(slow.max == 40'000);
+  }
 }
 
 TEST_CASE("what is fed is neither sampled nor stale") {

@@ -281,6 +281,18 @@ TEMPLATE_TEST_CASE(
     CHECK(bus.collect(static_cast<std::byte>(i)) == (i >= 2));
 }
 
+TEMPLATE_TEST_CASE("a bus: however much is written, a result waits until it is taken", "",
+                   MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  bus.ask(0x10_b);
+  bus.run(300);
+  for (unsigned i = 0; i <= decltype(bus.bus)::kMostRequests; ++i) {
+    CHECK(bus.put(false, 0x20_b, static_cast<std::byte>(i)));
+    bus.run(300);
+  }
+  CHECK(bus.collect(0x10_b));
+}
+
 TEMPLATE_TEST_CASE("a bus: of a device with pages each reading is of its own page", "", MicrobitBus,
                    L475Bus<1>, L475Bus<2>) {
   Bus<TestType> bus;

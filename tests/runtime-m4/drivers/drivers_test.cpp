@@ -328,6 +328,23 @@ TEST_CASE("pwm: a level at once, over a time, or for a time") {
   CHECK(lamp.pulse() == 0);
 }
 
+TEST_CASE("pwm: range and limit hold for TO, for AT, and for what says neither") {
+  Drive slow(vm::DriverId::pwm, 0, 100 * vm::kScale, 40 * vm::kScale);
+  slow.begin(order(vm::Action::set, {{Param::to, 90 * vm::kScale}}));
+  CHECK(slow.pulse() == 8000);
+  slow.begin(order(vm::Action::set));
+  CHECK(slow.pulse() == 8000);
+  slow.begin(order(vm::Action::set, {{Param::to, 30 * vm::kScale}}));
+  CHECK(slow.pulse() == 6000);
+  Drive dim(vm::DriverId::pwm, 10 * vm::kScale, 50 * vm::kScale);
+  dim.begin(order(vm::Action::set));
+  CHECK(dim.pulse() == 10'000);
+  dim.begin(order(vm::Action::set, {{Param::at, 70 * vm::kScale}}));
+  CHECK(dim.pulse() == 10'000);
+  dim.begin(order(vm::Action::stop));
+  CHECK(dim.pulse() == 0);
+}
+
 TEST_CASE("motor: TO has the way as its sign, AT and full power that of BACKWARD") {
   Drive motor(vm::DriverId::motor, -100 * vm::kScale, 100 * vm::kScale);
   const auto runs = [&](std::initializer_list<std::pair<Param, Value>> params) {
