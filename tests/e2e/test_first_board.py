@@ -1,0 +1,40 @@
+"""The self test for who has a board, on the emulated one: all of it that needs no hand and no eye."""
+
+import subprocess
+import sys
+import unittest
+
+from board import NAME, REAL_TIME, Board
+from rsc import ROOT
+
+
+def first_board(name, port):
+    return subprocess.run([sys.executable, ROOT / "scripts/python/first_board.py", name, "--port", port, "--no-flash"],
+                          check=False, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+class FirstBoard(unittest.TestCase):
+    def test_a_good_board_is_told_so(self):
+        with Board(icount=REAL_TIME) as board:
+            done = first_board(NAME, board.port)
+        rows = [row for row in done.stdout.splitlines() if row.endswith((" ok |", " **NOT** |"))]
+        wrong = [row for row in rows if row.endswith(" **NOT** |")]
+        self.assertEqual((len(rows), done.stderr), (10, ""), done.stdout)
+        # The emulator's second is longer while this machine has other things to do.
+        self.assertTrue(all("its second" in row for row in wrong), done.stdout)
+        self.assertEqual(done.returncode, len(wrong))
+
+    def test_another_board_is_not_what_it_should_be(self):
+        with Board(icount=REAL_TIME) as board:
+            done = first_board("microbit-v2", board.port)
+        self.assertIn("| board | microbit-v2 | mps2-an386 | **NOT** |", done.stdout)
+        self.assertNotEqual(done.returncode, 0)
+
+    def test_nobody_there(self):
+        done = first_board(NAME, "unix:/nowhere")
+        self.assertEqual((done.returncode, done.stdout), (3, ""))
+        self.assertIn("first-board: rsc info ended with 3", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
