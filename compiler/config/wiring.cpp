@@ -356,12 +356,25 @@ Wiring WiringReader::read_echo(Fields& fields, const std::string& what) {
   return wiring;
 }
 
+namespace {
+
+// Which chip a sensor is; nullptr: any, of whose registers robot.json says one.
+const Device* chip_of(const Fields& fields, const Board::Part* part) {
+  const auto* said = fields.find("device");
+  if (part == nullptr && said == nullptr) return nullptr;
+  const Device* const device = find_device(part != nullptr ? part->device : said->text, true);
+  return device != nullptr && device->has_registers() ? nullptr : device;
+}
+
+}  // namespace
+
 Wiring WiringReader::read_sensor(Fields& fields, const WiringType& type, const Board::Part* part,
                                  vm::DriverId driver) {
   if (type.name != "VIRTUAL" && vm::is_by_echo(driver))
     return read_echo(fields, "the device `" + fields.find("device")->text + "`");
   Wiring wiring = read(fields, type, part, false, "a sensor of type " + std::string(type.name));
   if (part == nullptr && type.name == "GPIO") wiring.bus = read_active(fields);
+  if (type.name == "I2C") take_address(fields, wiring, part, vm::measures_when_told(driver));
   return wiring;
 }
 
@@ -372,7 +385,29 @@ Wiring WiringReader::read_actuator(Fields& fields, const WiringType& type, const
   const std::string what = two_pins && device != nullptr
                                ? "a " + device->text
                                : "an actuator of type " + std::string(type.name);
-  return read(fields, type, part, two_pins, what);
+  const Wiring wiring = read(fields, type, part, two_pins, what);
+  if (type.name == "I2C") take_address(fields, wiring, part, false);
+  return wiring;
+}
+
+// Several sensors may be made of one chip's registers; but of one that measures when it is told each would take the result that
+// the other one has asked for, and two different chips would both answer.
+void WiringReader::take_address(const Fields& fields, const Wiring& place, const Board::Part* part,
+                                bool alone) {
+  const auto* said = fields.find(part != nullptr ? "device" : "address");
+  Diagnostics reported;  // before
+  if (said == nullptr || (part == nullptr && read_whole(*said, vm::kFirstAddress, vm::kLastAddress,
+                                                        reported) != place.place))
+    return;
+  const OnBus taken{.span = said->span, .alone = alone, .device = chip_of(fields, part)};
+  const auto [entry, added] = on_buses_.emplace(std::pair(place.bus, place.place), taken);
+  OnBus& known = entry->second;
+  const bool other = taken.device != nullptr && known.device != nullptr;
+  if (!added && (alone || known.alone || (other && taken.device != known.device)))
+    return report_taken(known, place, said->span);
+  if (known.device != nullptr || taken.device == nullptr) return;
+  known.device = taken.device;
+  known.span = taken.span;
 }
 
 Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::Part* part,
@@ -390,8 +425,6 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
       wiring.place = static_cast<std::uint16_t>(
           read_whole(*address, vm::kFirstAddress, vm::kLastAddress, diagnostics_)
               .value_or(vm::kFirstAddress));
-    if (const auto* address = fields.find("address"); address != nullptr && type.name == "I2C")
-      on_buses_.emplace(std::pair(wiring.bus, wiring.place), OnBus{.span = address->span});
   } else if (type.pin) {
     read_pins(fields, two_pins, what, wiring);
   }

@@ -14,6 +14,8 @@
 
 namespace robosync::compiler {
 
+struct Device;
+
 struct WiringType {
   std::string_view name;
   bool for_sensors, for_actuators;
@@ -66,6 +68,8 @@ public:
 private:
   struct OnBus {
     Span span;
+    bool alone = false;              // no second sensor may be there
+    const Device* device = nullptr;  // its chip: no other one may be there
     std::optional<ServoChip> chip{};
     Span enable{};
     std::map<std::uint16_t, Span> channels{};  // that servos have
@@ -76,6 +80,7 @@ private:
   [[nodiscard]] Wiring read(Fields& fields, const WiringType& type, const Board::Part* part,
                             bool two_pins, const std::string& what);
   [[nodiscard]] Wiring read_part(const Fields& fields, const Board::Part& part);
+  void take_address(const Fields& fields, const Wiring& place, const Board::Part* part, bool alone);
   void report_taken(const OnBus& known, const Wiring& place, Span span);
   void take_chip(const ServoChip& chip, const json::Value& address, const json::Value& enable);
   void refuse_pins(const Fields& fields);
