@@ -347,8 +347,8 @@ Wiring WiringReader::read_echo(Fields& fields, const std::string& what) {
           .label(wrong->span)
           .helps(help_for_echo(board_));
   Wiring wiring;
-  const bool is_other = fields.find("trigger") == nullptr && fields.find("echo") == nullptr;
-  if (is_other && fields.find("pin") != nullptr) return wiring;
+  const bool lacks_one = fields.find("trigger") == nullptr || fields.find("echo") == nullptr;
+  if (lacks_one && fields.find("pin") != nullptr) return wiring;
   const auto* trigger = fields.require("trigger", what);
   const auto* echo = fields.require("echo", what);
   if (trigger != nullptr) wiring.bus = static_cast<std::uint8_t>(read_pin(*trigger, UINT8_MAX));
