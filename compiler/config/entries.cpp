@@ -49,7 +49,8 @@ void report_unknown_device(const json::Value& value, const Board& board, bool is
   const std::string_view owner = owner_of(value.text);
   if (!owner.empty() && board.named != Board::Named::well)
     return report_no_board(value, owner, board, diagnostics);
-  if (find_device(value.text, !is_sensor) != nullptr) {
+  const Board::Part* const part = board.find_part(value.text);
+  if (find_device(part != nullptr ? part->device : value.text, !is_sensor) != nullptr) {
     const std::string list = is_sensor ? "actuators" : "sensors";
     diagnostics
         .report(Code::E0208, "a `" + value.text + "` is " +
@@ -134,6 +135,8 @@ const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_s
   // What is no device is said by choose_device().
   if (fields.find("type") == nullptr && named != nullptr)
     return device != nullptr ? type_of(*device) : nullptr;
+  if (named != nullptr && device == nullptr && find_device(named->text, !is_sensor) != nullptr)
+    return nullptr;
   const WiringType* type = read_type(fields, is_sensor, diagnostics);
   if (device == nullptr || type == nullptr || type->name == kVirtual || type->name == device->type)
     return type;

@@ -192,9 +192,94 @@ bool is_unclosed_string(const Mistake& mistake, const WrongText& wrong, Diagnost
   return true;
 }
 
+// ---- brackets that do not fit
+
+char closer_of(char opener) {
+  return opener == '{' ? '}' : ']';
+}
+
+// Do the brackets outside of strings fit?
+bool is_balanced(std::string_view text) {
+  std::string open;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '"') {
+      for (++at; at < text.size() && text[at] != '"'; ++at)
+        if (text[at] == '\\') ++at;
+    } else if (c == '{' || c == '[') {
+      open.push_back(closer_of(c));
+    } else if (c == '}' || c == ']') {
+      if (open.empty() || open.back() != c) return false;
+      open.pop_back();
+    }
+  }
+  return open.empty();
+}
+
+// `["0deg", "90deg"}`: which of the two mends is meant, the rest of the text says: with one of them all brackets fit.
+bool is_wrong_bracket(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const char c = mistake.text[wrong.begin];
+  if (!mistake.open_span || wrong.previous == ',' || wrong.previous == ':' ||
+      (c != '}' && c != ']' && c != ')'))
+    return false;
+  const std::size_t opening = mistake.open_span->begin;
+  const std::string closer(1, closer_of(mistake.text[opening]));
+  if (closer[0] == c) return false;
+  Diagnostic& d =
+      diagnostics
+          .report(Code::E0201, std::string(closer == "]" ? "a list" : "an object") +
+                                   " is closed with `" + closer + "`, not with `" + c + "`")
+          .label(span_of(mistake, wrong.begin, wrong.end))
+          .label(span_of(mistake, opening, opening + 1), "opened here", false);
+  std::string mended(mistake.text);
+  mended.insert(wrong.begin, closer);
+  const std::size_t behind = wrong.before + 1;
+  if (c != ')' && is_balanced(mended))
+    d.helps("`" + closer + "` is missing in front of it")
+        .fix(span_of(mistake, behind, behind), closer, Applicability::likely);
+  mended.erase(wrong.begin + 1, 1);
+  if (is_balanced(mended))
+    d.fix(span_of(mistake, wrong.begin, wrong.end), closer, Applicability::likely);
+  return true;
+}
+
+// `"range": (0, 90)`
+bool is_round_bracket(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const std::string_view text = mistake.text;
+  const bool is_value = wrong.previous == ':' || wrong.previous == ',' || wrong.previous == '[';
+  if (text[wrong.begin] != '(' || !mistake.open_span || !is_value) return false;
+  Diagnostic& d = diagnostics.report(Code::E0201, "a list stands in square brackets in JSON")
+                      .label(span_of(mistake, wrong.begin, wrong.end));
+  const std::size_t last = text.find_first_of("(){}[]", wrong.begin + 1);
+  if (last != std::string_view::npos && text[last] == ')')
+    d.fix(span_of(mistake, wrong.begin, last + 1),
+          "[" + std::string(text.substr(wrong.begin + 1, last - wrong.begin - 1)) + "]",
+          Applicability::likely);
+  return true;
+}
+
+bool is_semicolon(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const std::string_view text = mistake.text;
+  if (text[wrong.begin] != ';' || !mistake.open_span || !ends_value(wrong.previous) ||
+      mentions(mistake, "object separator"))
+    return false;
+  const std::size_t next = text.find_first_not_of(" \t\r\n", wrong.begin + 1);
+  const bool last = next == std::string_view::npos || text[next] == '}' || text[next] == ']';
+  const Span here = span_of(mistake, wrong.begin, wrong.end);
+  diagnostics
+      .report(Code::E0201, last ? "nothing stands behind the last entry in JSON, no `;`"
+                                : "a comma stands here in JSON, no `;`")
+      .label(here)
+      .fix(here, last ? "" : ",");
+  return true;
+}
+
 bool is_mended(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
   return is_in_curly_quotes(mistake, wrong, diagnostics) ||
          is_unclosed_string(mistake, wrong, diagnostics) ||
+         is_wrong_bracket(mistake, wrong, diagnostics) ||
+         is_round_bracket(mistake, wrong, diagnostics) ||
+         is_semicolon(mistake, wrong, diagnostics) ||
          (is_word(mistake.text[wrong.begin]) && is_foreign_word(mistake, wrong, diagnostics));
 }
 

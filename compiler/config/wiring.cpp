@@ -351,14 +351,26 @@ Wiring WiringReader::read_echo(Fields& fields, const std::string& what) {
           .label(wrong->span)
           .helps(help_for_echo(board_));
   Wiring wiring;
-  const bool is_other = fields.find("trigger") == nullptr && fields.find("echo") == nullptr;
-  if (is_other && fields.find("pin") != nullptr) return wiring;
+  const bool lacks_one = fields.find("trigger") == nullptr || fields.find("echo") == nullptr;
+  if (lacks_one && fields.find("pin") != nullptr) return wiring;
   const auto* trigger = fields.require("trigger", what);
   const auto* echo = fields.require("echo", what);
   if (trigger != nullptr) wiring.bus = static_cast<std::uint8_t>(read_pin(*trigger, UINT8_MAX));
   if (echo != nullptr) wiring.place = read_pin(*echo);
   return wiring;
 }
+
+namespace {
+
+// Which chip a sensor is; nullptr: any, of whose registers robot.json says one.
+const Device* chip_of(const Fields& fields, const Board::Part* part) {
+  const auto* said = fields.find("device");
+  if (part == nullptr && said == nullptr) return nullptr;
+  const Device* const device = find_device(part != nullptr ? part->device : said->text, true);
+  return device != nullptr && device->has_registers() ? nullptr : device;
+}
+
+}  // namespace
 
 Wiring WiringReader::read_sensor(Fields& fields, const WiringType& type, const Board::Part* part,
                                  vm::DriverId driver) {
@@ -383,7 +395,7 @@ Wiring WiringReader::read_actuator(Fields& fields, const WiringType& type, const
 }
 
 // Several sensors may be made of one chip's registers; but of one that measures when it is told each would take the result that
-// the other one has asked for.
+// the other one has asked for, and two different chips would both answer.
 void WiringReader::take_address(const Fields& fields, const Wiring& place, const Board::Part* part,
                                 bool alone) {
   const auto* said = fields.find(part != nullptr ? "device" : "address");
@@ -391,9 +403,15 @@ void WiringReader::take_address(const Fields& fields, const Wiring& place, const
   if (said == nullptr || (part == nullptr && read_whole(*said, vm::kFirstAddress, vm::kLastAddress,
                                                         reported) != place.place))
     return;
-  const auto [entry, added] = on_buses_.emplace(std::pair(place.bus, place.place),
-                                                OnBus{.span = said->span, .alone = alone});
-  if (!added && (alone || entry->second.alone)) report_taken(entry->second, place, said->span);
+  const OnBus taken{.span = said->span, .alone = alone, .device = chip_of(fields, part)};
+  const auto [entry, added] = on_buses_.emplace(std::pair(place.bus, place.place), taken);
+  OnBus& known = entry->second;
+  const bool other = taken.device != nullptr && known.device != nullptr;
+  if (!added && (alone || known.alone || (other && taken.device != known.device)))
+    return report_taken(known, place, said->span);
+  if (known.device != nullptr || taken.device == nullptr) return;
+  known.device = taken.device;
+  known.span = taken.span;
 }
 
 Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::Part* part,

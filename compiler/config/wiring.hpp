@@ -14,6 +14,8 @@
 
 namespace robosync::compiler {
 
+struct Device;
+
 struct WiringType {
   std::string_view name;
   bool for_sensors, for_actuators;
@@ -68,7 +70,8 @@ public:
 private:
   struct OnBus {
     Span span;
-    bool alone = false;  // no second sensor may be there
+    bool alone = false;              // no second sensor may be there
+    const Device* device = nullptr;  // its chip: no other one may be there
     std::optional<ServoChip> chip{};
     Span enable{};
     std::map<std::uint16_t, Span> channels{};  // that servos have

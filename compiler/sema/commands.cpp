@@ -447,7 +447,8 @@ std::optional<ir::Command> Commands::for_actuator(std::size_t actuator, const as
     good = false;
     if (!one.is_number && !one.text) break;  // an unknown word: what follows is part of it
   }
-  if (!good || says_twice(to, given, result)) return std::nullopt;
+  if (!good || says_twice(to, given, result) || repeats_nothing(to, given, result))
+    return std::nullopt;
   return result;
 }
 

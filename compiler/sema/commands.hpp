@@ -119,6 +119,8 @@ private:
   // Parts that are each right, and together are not (whole_commands.cpp).
   static bool says_twice(const Recipient& to, const std::vector<Given>& given,
                          const ir::Command& result);
+  static bool repeats_nothing(const Recipient& to, const std::vector<Given>& given,
+                              const ir::Command& result);
   static bool goes_two_ways(const Recipient& to, const std::vector<Given>& given);
   static void help_with_files(const Recipient& to, Diagnostic& d);
   Typed evaluate_number(const ast::Argument& argument);

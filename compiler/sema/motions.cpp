@@ -147,6 +147,15 @@ bool Motions::add_row(const ast::Motion& motion, const ast::MotionRow& row,
   return true;
 }
 
+namespace {
+
+bool is_late(const vm::Key& from, const vm::Key& to, std::int64_t limit) {
+  const std::int64_t way = std::abs(std::int64_t{to.to} - from.to);
+  return way * vm::kScale > (std::int64_t{to.time} - from.time) * limit;
+}
+
+}  // namespace
+
 bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ir::Track& track) {
   const ActuatorConfig& actuator = robot_.actuators[track.actuator];
   auto number = expressions_.constant(*key.value, "a value of a MOTION");
@@ -157,24 +166,34 @@ bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ir::Track& trac
   Diagnostics& notes = track.keys.empty() ? diagnostics_ : said_before;
   if (!fit_parameter(actuator, vm::Param::to, *number, notes, diagnostics_)) return false;
   const vm::Key made{time, number->code.constant};
-  if (!track.keys.empty()) report_late(track, made, key.span);
+  if (!track.keys.empty() && is_late(track.keys.back(), made, actuator.speed_limit))
+    report_late(actuator, "here late", key.span);
   track.keys.push_back(made);
   return true;
 }
 
 // It goes there at its limit, and is there later than the table says.
-void Motions::report_late(const ir::Track& track, const vm::Key& key, Span span) {
-  const ActuatorConfig& actuator = robot_.actuators[track.actuator];
-  const vm::Key& before = track.keys.back();
-  const std::int64_t way = std::abs(std::int64_t{key.to} - before.to);
-  const std::int64_t time = key.time - before.time;
-  if (way * vm::kScale <= time * actuator.speed_limit) return;
+void Motions::report_late(const ActuatorConfig& actuator, const std::string& where, Span span) {
   const Unit& unit = param_unit(actuator, vm::Param::at);
   diagnostics_
-      .report(Code::N0004, actuator.name.shown() + " comes here late: it goes no faster than " +
+      .report(Code::N0004, actuator.name.shown() + " comes " + where + ": it goes no faster than " +
                                format_value(actuator.speed_limit, unit))
       .label(span)
       .label(actuator.limit_span, "the limit", false);
+}
+
+void Motions::check_pace(std::size_t place, vm::Value pace, Span span) {
+  constexpr std::int64_t kAsWritten = std::int64_t{100} * vm::kScale;
+  if (pace <= kAsWritten) return;
+  for (const ir::Track& track : motions_[place].tracks) {
+    const ActuatorConfig& actuator = robot_.actuators[track.actuator];
+    const std::int64_t share = (actuator.speed_limit * kAsWritten + pace - 1) / pace;
+    const auto late = [&](const vm::Key& from, const vm::Key& to) {
+      return is_late(from, to, share) && !is_late(from, to, actuator.speed_limit);
+    };
+    if (std::ranges::adjacent_find(track.keys, late) != track.keys.end())
+      return report_late(actuator, "late at this pace", span);
+  }
 }
 
 }  // namespace robosync::compiler

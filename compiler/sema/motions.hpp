@@ -29,6 +29,8 @@ public:
 
   // Those that find() has found so far, in that order.
   [[nodiscard]] const std::vector<ir::Motion>& performed() const { return motions_; }
+  // Would one at `place` that is in time be late at `pace`, in percent? It is noted.
+  void check_pace(std::size_t place, vm::Value pace, Span span);
   // Checks the others; those of modules need not fit the robot.
   void check_unused();
 
@@ -41,7 +43,7 @@ private:
   bool add_row(const ast::Motion& motion, const ast::MotionRow& row,
                const std::vector<std::vector<std::size_t>>& columns, ir::Motion& result);
   bool add_key(const ast::MotionKey& key, vm::Value time, ir::Track& track);
-  void report_late(const ir::Track& track, const vm::Key& key, Span span);
+  void report_late(const ActuatorConfig& actuator, const std::string& where, Span span);
 
   const Robot& robot_;
   Names& names_;

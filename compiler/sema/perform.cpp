@@ -34,6 +34,9 @@ std::vector<ir::Command> Commands::perform(const ast::Command& command) {
   result.word = ir::Word{motion.name, vm::Param::item, static_cast<vm::Value>(*place) * vm::kScale};
   for (const Given& one : *given)
     if (!add_to_performance(one, result)) return {};
+  for (const Given& one : *given)
+    if (one.param == vm::Param::at && one.number.is_constant())
+      motions_.check_pace(*place, one.number.code.constant, one.argument->span);
   return {std::move(result)};
 }
 

@@ -37,6 +37,10 @@ bool can_reach(const ActuatorConfig& actuator, const Typed& literal) {
   return value >= actuator.min && value <= actuator.max;
 }
 
+bool is_one(const Typed& number) {
+  return number.is_constant() && number.code.constant == vm::kScale;
+}
+
 }  // namespace
 
 bool Commands::says_twice(const Recipient& to, const std::vector<Given>& given,
@@ -91,6 +95,25 @@ bool Commands::goes_two_ways(const Recipient& to, const std::vector<Given>& give
   if (!beside || (!same && !can_reach(to.actuator, number))) return true;
   const bool distance = number.dimension() == vm::Dimension::length && !same;
   d.fix(both, distance ? name + " BY " + literal : to_place, Applicability::likely);
+  return true;
+}
+
+// A way to a place is gone once, a strength kept up once: drivers repeat what has no end of its own, sweeps and blinks.
+bool Commands::repeats_nothing(const Recipient& to, const std::vector<Given>& given,
+                               const ir::Command& result) {
+  const auto times = giver(to.actuator, given, vm::Param::times);
+  if (!times || is_one(given[*times].number)) return false;
+  const bool kept_up = to.verb.has(vm::Param::at) && is_given(result, vm::Param::for_);
+  const bool by = is_given(result, vm::Param::by);
+  if (!by && !kept_up && !is_given(result, vm::Param::to)) return false;
+  const std::string_view beside = by ? "BY" : kept_up ? "FOR" : "TO";
+  const std::string& digits = given[*times].number.digits;
+  const std::string repeat = "REPEAT " + (digits.empty() ? "…" : digits) + " TIMES";
+  to.diagnostics
+      .report(Code::E0505,
+              "`TIMES` does nothing beside `" + std::string(beside) + "`: that is done once")
+      .label(given[*times].argument->span)
+      .helps("leave it out; to do this more than once, write `" + repeat + "`, this and `END`");
   return true;
 }
 

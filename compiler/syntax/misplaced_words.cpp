@@ -39,6 +39,7 @@ public:
                               &MisplacedWords::negation,
                               &MisplacedWords::end_before_else,
                               &MisplacedWords::rule_in_rule,
+                              &MisplacedWords::step_in_response,
                               &MisplacedWords::do_without_when,
                               &MisplacedWords::lonely_else,
                               &MisplacedWords::then_in_line,
@@ -198,6 +199,36 @@ private:
     return change(stop_, begins - stop_,
                   {missing(Kinds::IF, stop_), missing(Kinds::QUANTITY, stop_),
                    missing(Kinds::LESS, stop_), missing(Kinds::QUANTITY, stop_)});
+  }
+
+  // `AT 8s touch LEVEL = 3`, `EXPECT …`
+  bool is_step(std::size_t at) const {
+    if (is(at, Kinds::EXPECT)) return true;
+    return is(at, Kinds::AT) && is(at + 1, Kinds::QUANTITY) && has(at, line_end(at), Kinds::EQUAL);
+  }
+
+  std::size_t line_end(std::size_t at) const {
+    while (at < tokens_.size() && !is(at, Kinds::NEWLINE))
+      ++at;
+    return at;
+  }
+
+  // In a response, with all of them that follow: one is as much too early as the next.
+  std::optional<Edit> step_in_response() {
+    if (stop_ != begin_ || !is_step(stop_)) return std::nullopt;
+    const auto block = open_block();
+    if (!block || (!is_one_of(tokens_[*block].kind, {Kinds::DEFINE, Kinds::REPEAT, Kinds::PICK}) &&
+                   !has(*block, stop_, Kinds::DO)))
+      return std::nullopt;
+    std::size_t last = line_end(stop_);
+    while (last + 1 < tokens_.size() && is_step(last + 1))
+      last = line_end(last + 1);
+    report(Code::E0010,
+           quote(stop_) + " begins a step of a TEST, which stands outside of responses",
+           tokens_[stop_].span)
+        .label(tokens_[*block].span, "the response of this goes on up to its END", false)
+        .helps("close it with `END` and write `TEST \"…\"` above the steps");
+    return change(stop_, last - stop_, {missing(Kinds::THEN, stop_)});
   }
 
   // `DO SAY "b"` behind the END of a rule
