@@ -280,7 +280,10 @@ TEST_CASE("a motor's record has both pins; one that is only shown has none") {
   CHECK(wired.min == -100'000);
   CHECK(wired.safe == vm::Release::coast);
   const vm::Actuator shown = record(R"("type": "VIRTUAL", "pins": [6, 31])");
-  CHECK(shown.driver == vm::DriverId::virtual_actuator);
+  CHECK(shown.driver == vm::DriverId::virtual_output);
+  CHECK(shown.bus == static_cast<std::uint8_t>(vm::VirtualOutput::level));
+  const vm::Actuator limited = record(R"("type": "VIRTUAL", "limits": {"SPEED": "50%"})");
+  CHECK(limited.driver == vm::DriverId::virtual_output);  // what is limited is power, no way
 }
 
 TEST_CASE("what is fed is neither sampled nor stale") {
