@@ -89,7 +89,9 @@ TEST_CASE("what a module leaves is cut off at its range") {
   CHECK(ran.exit == 0);
 }
 
-TEST_CASE("a file that is no module is an error in robot.json, one that is not there a warning") {
+TEST_CASE(
+    "a file that is no module is an error in robot.json, one that is not there a warning, unless "
+    "the program needs it") {
   const Folder folder;
   for (const std::string how : {"other_abi", "crashes_while_loaded", "too_large", "two_alike"}) {
     INFO(how);
@@ -98,7 +100,13 @@ TEST_CASE("a file that is no module is an error in robot.json, one that is not t
     CHECK_THAT(checked.err + checked.out,
                Contains("error[E0210]: the module " + hostile(how) + " cannot be used: it"));
   }
-  const Outcome missing = rsc({"check", robot_with(folder, "modules/none.so")});
+  const std::string program = robot_with(folder, "modules/none.so");
+  const Outcome needed = rsc({"check", program});
+  CHECK(needed.exit == 1);
+  CHECK_THAT(needed.err + needed.out, Contains("without its module, the file "));
+  folder.write("robot.rsl", "WHEN skin LEVEL IS firm\nDO SAY \"skin\"\nEND\n");
+  const Outcome missing = rsc({"check", program});
+  CHECK(missing.exit == 0);
   CHECK_THAT(missing.err + missing.out,
              Contains("warning[W0214]: there is no file " + folder.path("modules/none.so")));
 }
