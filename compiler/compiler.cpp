@@ -30,6 +30,24 @@ Diagnostics offer_modules(const Diagnostics& diagnostics) {
   return result;
 }
 
+// That a module's file is not there is said once: an error that shows the place says more.
+Diagnostics without_warned(const Diagnostics& diagnostics) {
+  Diagnostics result;
+  for (const Diagnostic& one : diagnostics.all()) {
+    if (one.code != Code::W0214) {
+      result.add(one);
+      continue;
+    }
+    const bool is_told = std::ranges::any_of(diagnostics.all(), [&one](const Diagnostic& other) {
+      if (other.level != Level::error || other.labels.empty()) return false;
+      const Span shown = other.labels.back().span, here = one.labels.front().span;
+      return shown.file == here.file && shown.begin == here.begin;
+    });
+    if (!is_told) result.add(one);
+  }
+  return result;
+}
+
 }  // namespace
 
 Result compile(Input program, Input configuration, const Options& options) {
@@ -47,7 +65,7 @@ Result compile(Input program, Input configuration, const Options& options) {
     for (const ir::LearnedWord& word : written.words)
       reading->robot->sensors[word.channel.sensor].channels[word.channel.channel].add_label(
           word.text);
-    if (diagnostics.errors() > 0) diagnostics = offer_modules(diagnostics);
+    if (diagnostics.errors() > 0) diagnostics = without_warned(offer_modules(diagnostics));
     if (diagnostics.errors() == 0)
       result.tests = test_plan::plan_tests(parsed.trees(), *parsed.robot, diagnostics);
   }

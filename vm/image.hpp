@@ -92,6 +92,13 @@ enum class VirtualMotion : std::uint8_t {
   sweeps,  // … and without a target it goes over its range and back
 };
 
+// Actuator::bus of a virtual_output: what the real one puts out, which says what a command takes.
+enum class VirtualOutput : std::uint8_t {
+  level,    // OVER and then FOR
+  picture,  // SHOW: FOR; BLINK: its TIMES, or OVER
+  tones,    // FOR, else the melody
+};
+
 enum class RuleKind : std::uint8_t {
   when,       // edge: the condition becomes true
   when_else,  // edge: the chosen side changes; the first known value chooses a side

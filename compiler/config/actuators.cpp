@@ -134,6 +134,19 @@ void report_panel_keys(const Fields& fields, Diagnostics& diagnostics) {
           .label(value->span);
 }
 
+// A program takes as long as it will with the real one.
+void make_virtual(ActuatorConfig& actuator) {
+  const vm::DriverId real = actuator.driver;
+  const bool shows = vm::drives_lights(real) || vm::drives_screen(real) || vm::drives_panel(real);
+  const bool sounds = vm::drives_speaker(real);
+  actuator.driver = vm::DriverId::virtual_actuator;
+  if (!shows && !sounds && !vm::gives_power(real)) return;
+  actuator.driver = vm::DriverId::virtual_output;
+  actuator.bus = static_cast<std::uint8_t>(shows    ? vm::VirtualOutput::picture
+                                           : sounds ? vm::VirtualOutput::tones
+                                                    : vm::VirtualOutput::level);
+}
+
 // What moves by power alone must not hold.
 void read_safe(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
   actuator.safe = read_release(value, diagnostics).value_or(actuator.safe);
@@ -185,7 +198,7 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
     const Wiring place = wiring.read_actuator(fields, *type, part, device.actuator.driver);
     actuator.bus = place.bus;
     actuator.pin = place.place;
-    if (type->name == "VIRTUAL") actuator.driver = vm::DriverId::virtual_actuator;
+    if (type->name == "VIRTUAL") make_virtual(actuator);
     if (vm::drives_pin(actuator.driver)) wiring.check_output(fields, place, actuator.driver);
     if (vm::drives_player(actuator.driver)) wiring.check_line(fields, place);
     if (vm::drives_panel(actuator.driver)) wiring.check_panel(fields, place);

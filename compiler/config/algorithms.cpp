@@ -108,12 +108,22 @@ private:
     std::error_code error;
     if (path.kind != json::Kind::string || std::filesystem::exists(in_folder(path.text), error))
       return false;
+    const std::string file = in_folder(path.text);
+    robot_.missing.push_back({name, file, path.span, how_to_make()});
     diagnostics_
-        .report(Code::W0214,
-                "there is no file " + in_folder(path.text) + ": " + name.shown() + " does nothing")
+        .report(Code::W0214, "there is no file " + file + ": " + name.shown() + " does nothing")
         .label(path.span)
-        .helps("a module is made of its C file with a compiler (docs/algorithms.md)");
+        .helps(robot_.missing.back().help);
     return true;
+  }
+
+  // `rsc new --module` gives a robot what makes it.
+  std::string how_to_make() const {
+    std::error_code error;
+    if (!std::filesystem::exists(folder_ / "CMakeLists.txt", error))
+      return "a module is made of its C file with a compiler (docs/algorithms.md)";
+    return "`cmake -B build && cmake --build build`, in the folder of robot.json, makes it of its "
+           "C file";
   }
 
   bool load_module(const json::Value& path) {

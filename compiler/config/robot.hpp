@@ -174,6 +174,14 @@ inline constexpr std::int64_t kMaxSeed = 2'147'483'647;
 // How long a robot may wait, before its program begins, for the first reading of what SAFETY rules read.
 inline constexpr std::uint16_t kSafetyStartMs = 100;
 
+// An algorithm whose module is in a file that is not there.
+struct MissingModule {
+  Spelled name;
+  std::string file;
+  Span path;
+  std::string help;  // how to get it
+};
+
 enum class LintLevel : std::uint8_t { allow, warn, deny };
 
 struct Robot {
@@ -186,6 +194,7 @@ struct Robot {
   std::uint32_t seed = 0;            // of the random numbers; 0: not said
   std::optional<std::size_t> board;  // its place in board_names(); nothing: not said
   std::map<Code, LintLevel> lints;
+  std::vector<MissingModule> missing;
   bool complete = true;  // false: something in it is wrong, which has been reported
 };
 

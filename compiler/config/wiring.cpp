@@ -36,8 +36,10 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::cou
 // Two pins that the board has.
 std::string help_for_echo(const Board& board) {
   const std::string says = "an output and an input, by their names on the part";
-  if (board.outputs.empty() || board.inputs.empty()) return "say `trigger` and `echo`: " + says;
-  return "say `\"trigger\": " + std::to_string(board.outputs.front().first) +
+  const auto output = std::ranges::find(board.outputs, true, &Board::Pins::power);
+  if (output == board.outputs.end() || board.inputs.empty())
+    return "say `trigger` and `echo`: " + says;
+  return "say `\"trigger\": " + std::to_string(output->first) +
          ", \"echo\": " + std::to_string(board.inputs.front().first) + "`: " + says;
 }
 
@@ -505,14 +507,15 @@ void WiringReader::report_no_panel(const json::Value& value, std::uint16_t pin) 
 
 // A pin that is held to the pulses of servos drives no motor (policy::can_drive()).
 void WiringReader::check_output_pin(const json::Value& value, std::uint16_t pin, bool power) {
-  if (!board_.has_output(pin))
-    return report_no_pin(value, pin, " is no output", "its outputs are the pins ", board_.outputs);
-  if (!power || board_.gives_power(pin)) return;
+  if (board_.has_output(pin) && (!power || board_.gives_power(pin))) return;
   std::vector<Board::Pins> those;
   std::ranges::copy_if(board_.outputs, std::back_inserter(those),
-                       [](const Board::Pins& pins) { return pins.power; });
-  report_no_pin(value, pin, " gives pulses for servos only, no power",
-                "those that give power are the pins ", those);
+                       [power](const Board::Pins& pins) { return pins.power || !power; });
+  const bool all = those.size() == board_.outputs.size();
+  report_no_pin(
+      value, pin,
+      board_.has_output(pin) ? " gives pulses for servos only, no power" : " is no output",
+      all ? "its outputs are the pins " : "those that give power are the pins ", those);
 }
 
 void WiringReader::check_input(const Fields& fields, const Wiring& wiring) {

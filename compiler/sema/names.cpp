@@ -89,7 +89,23 @@ std::optional<ChannelRef> Names::find_channel(const ast::Operand& operand) {
   return std::nullopt;
 }
 
+// The warning about the file need not be said, then: compile() drops it.
+bool Names::report_missing(const ast::Operand& operand) {
+  for (const MissingModule& missing : robot_.missing) {
+    if (!same_name(missing.name.text, operand.name.text)) continue;
+    diagnostics_
+        .report(Code::E0501, "there is no " + missing.name.shown() +
+                                 " without its module, the file " + missing.file)
+        .label(operand.name.span)
+        .label(missing.path, "which is not there", false)
+        .helps(missing.help);
+    return true;
+  }
+  return false;
+}
+
 void Names::report_unknown(const ast::Operand& operand) {
+  if (report_missing(operand)) return;
   const std::string what = operand.channel ? "sensor " : "sensor, LET or variable called ";
   Diagnostic& d = diagnostics_.report(Code::E0501, "there is no " + what + operand.name.shown())
                       .label(operand.name.span);

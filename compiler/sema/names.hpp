@@ -167,6 +167,7 @@ private:
   void index_robot();
   [[nodiscard]] bool names_a_channel(std::string_view name) const;
   std::optional<ChannelRef> channel_of_sensor(std::size_t sensor, const ast::Operand& operand);
+  bool report_missing(const ast::Operand& operand);
   void report_unknown(const ast::Operand& operand);
 
   const Robot& robot_;

@@ -1,5 +1,6 @@
 #include "rsc/modules/compiled.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <system_error>
 #include <vector>
@@ -98,18 +99,33 @@ WorkFolder::~WorkFolder() {
   fs::remove_all(path_, ignored);
 }
 
-// Where arithmetic goes wrong it traps: gcc knows overflow, shifts, division and what lies beyond an array.
+// Where arithmetic goes wrong it traps: gcc knows overflow, shifts, division and what lies beyond an array. A pointer to nothing is left to
+// the memory, which says better what was wrong.
 std::string compile_for_here(const std::string& source, const WorkFolder& folder) {
   const fs::path library = folder.path() / fs::path(source).stem().concat(".so");
   run_compiler({compiler(), "-std=c11", "-O2", "-g", "-fPIC", "-shared", "-Wall", "-Wextra",
-                "-fsanitize=undefined", "-fsanitize-undefined-trap-on-error", "-I",
-                with_header(folder).string(), source, "-o", library.string()},
+                "-fsanitize=undefined", "-fsanitize-undefined-trap-on-error", "-fno-sanitize=null",
+                "-fno-delete-null-pointer-checks", "-I", with_header(folder).string(), source, "-o",
+                library.string()},
                source, "");
   return library.string();
 }
 
 bool can_count() {
   return is_installed(kCrossCompiler) && is_installed(kEmulator) && is_installed("timeout");
+}
+
+// Without an FPU each operation is a call of the compiler's library, by a name of the ABI ("Run-time ABI for the Arm Architecture", 5.1.2).
+bool uses_floating_point(const std::string& source, const WorkFolder& folder) {
+  const fs::path object = folder.path() / "without_fpu.o";
+  run_compiler({kCrossCompiler, "-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=soft", "-Os", "-std=c11",
+                "-I", with_header(folder).string(), "-c", source, "-o", object.string()},
+               source, " for a Cortex-M4");
+  const std::vector<std::byte> bytes = read_bytes(object);
+  const std::string_view names(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string_view kCalls[] = {"__aeabi_f",  "__aeabi_d",   "__aeabi_cf", "__aeabi_cd",
+                                     "__aeabi_i2", "__aeabi_ui2", "__aeabi_l2", "__aeabi_ul2"};
+  return std::ranges::any_of(kCalls, [&](auto call) { return names.find(call) != names.npos; });
 }
 
 std::uint32_t count_instructions(const std::string& source, const Try& one,

@@ -31,6 +31,9 @@ private:
 // Whether a cross compiler and QEMU are here.
 [[nodiscard]] bool can_count();
 
+// Does what a Cortex-M4 does for the C file need numbers with a fraction? Needs arm-none-eabi-gcc.
+[[nodiscard]] bool uses_floating_point(const std::string& source, const WorkFolder& folder);
+
 // The most instructions that one process() of the module in `source` executed, of all that these tries ask of it. Throws Failure
 // (program) when it cannot be compiled for the Cortex-M4, or does not come to an end there.
 [[nodiscard]] std::uint32_t count_instructions(const std::string& source, const Try& one,

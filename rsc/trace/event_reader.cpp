@@ -153,6 +153,15 @@ std::string EventReader::sensor_name() const {
   const vm::Channel* const channel = at(&vm::Image::channels, event_.subject);
   return channel == nullptr ? "?" : name_at(&vm::Image::sensors, channel->sensor, "sensor");
 }
+const vm::Channel* EventReader::channel() const {
+  return at(&vm::Image::channels, event_.subject);
+}
+bool EventReader::is_made() const {
+  const vm::Channel* const made = channel();
+  const vm::Sensor* const sensor =
+      made == nullptr ? nullptr : at(&vm::Image::sensors, made->sensor);
+  return sensor != nullptr && sensor->driver == vm::DriverId::algorithm;
+}
 std::string EventReader::channel_name() const {
   return name_at(&vm::Image::channels, event_.subject, "channel");
 }

@@ -68,9 +68,11 @@ public:
   std::string rule_name() const;
   std::int16_t base_priority() const;  // of the behaviour it is about, as it is written
   std::string behavior_name(std::uint16_t index) const;
-  std::string sensor_name() const;   // the subject, or that of the channel that is it
-  const vm::Sensor* sensor() const;  // the subject; nullptr when the image does not have it
-  std::string channel_name() const;  // without its sensor
+  std::string sensor_name() const;     // the subject, or that of the channel that is it
+  const vm::Sensor* sensor() const;    // the subject; nullptr when the image does not have it
+  std::string channel_name() const;    // without its sensor
+  const vm::Channel* channel() const;  // the subject; nullptr when the image does not have it
+  bool is_made() const;                // the channel is an algorithm's
   std::string variable_name() const;
   bool is_signal() const;  // the variable is one
   bool is_timer() const;

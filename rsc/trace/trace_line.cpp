@@ -132,6 +132,13 @@ std::string device_words(const EventReader& reader) {
                             silent ? "does not answer" : "answers again", reader.value(0));
 }
 
+// What an algorithm makes is as old as what it was made of: where that is never stale, its module was stopped.
+std::string why_stale(const EventReader& reader) {
+  if (!reader.is_made()) return "no reading for too long";
+  return reader.channel()->stale_ms == 0 ? "its module was stopped"
+                                         : "its module has made nothing for too long";
+}
+
 std::string other_words(const EventReader& reader) {
   switch (reader.event().kind) {
     case EventKind::activated:
@@ -141,8 +148,8 @@ std::string other_words(const EventReader& reader) {
       return fmt::format("{} {} = {}", reader.sensor_name(), reader.channel_name(),
                          reader.shown(reader.value(0)));
     case EventKind::stale:
-      return fmt::format("{} {} is unknown: no reading for too long", reader.sensor_name(),
-                         reader.channel_name());
+      return fmt::format("{} {} is unknown: {}", reader.sensor_name(), reader.channel_name(),
+                         why_stale(reader));
     case EventKind::set:
       if (reader.is_signal()) return fmt::format("signal {}", reader.variable_name());
       if (reader.is_timer()) return fmt::format("{} is restarted", reader.variable_name());

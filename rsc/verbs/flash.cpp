@@ -46,6 +46,14 @@ Board board_called(const std::string& name) {
                                               : fmt::format("boards: {}", fmt::join(names, ", "))));
 }
 
+// An emulated one is not programmed.
+std::string boards_to_flash() {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < compiler::board_names().size(); ++i)
+    if (compiler::board_at(i).flash) names.push_back(compiler::board_names()[i]);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 void say_what_next(const Board& board) {
   std::cout << fmt::format(
       "`rsc ports` shows at which port the {} is, and `rsc info --port PORT` what runs there.\n",
@@ -106,6 +114,8 @@ void program_by(Way way, const FlashOptions& options, const Board& board) {
 }
 
 void flash(const FlashOptions& options) {
+  if (options.board.empty())
+    throw Failure(Exit::usage, "--board is required: which board is it? " + boards_to_flash());
   const Board board = board_called(options.board);
   if (!board.flash) {
     throw Failure(Exit::usage, fmt::format("{} is an emulated board: there is nothing to flash, "
@@ -131,8 +141,7 @@ void flash(const FlashOptions& options) {
 
 void add_flash(Options& options) {
   auto asked = std::make_shared<FlashOptions>();
-  options.option("--board", "NAME", asked->board, "which board (stdlib/boards)",
-                 Options::Need::required);
+  options.option("--board", "NAME", asked->board, "which board (needed): " + boards_to_flash());
   options.argument("FILE", asked->file,
                    "its firmware; else robosync-NAME here or in build/firmware",
                    Options::Need::optional);

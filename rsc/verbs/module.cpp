@@ -73,10 +73,14 @@ bool check(const std::string& file, const std::optional<std::string>& source,
   if (!fine) return false;
   if (!source || !can_count()) {
     std::cout << fmt::format(
-        "not tried: what it costs; that needs {}\n",
+        "not tried: what it costs, and whether it needs floating point; that needs {}\n",
         source ? "arm-none-eabi-gcc and qemu-system-arm" : "its C file beside it");
     return true;
   }
+  const bool floats = uses_floating_point(*source, folder);
+  print({"it computes without floating point",
+         floats ? "process() on the board need not come to what it comes to here" : ""});
+  if (floats) return false;
   const Finding cost = try_cost(*source, file, folder);
   print(cost);
   return cost.broken.empty();

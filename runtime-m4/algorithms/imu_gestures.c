@@ -7,7 +7,7 @@
 // GESTURE is what was done to the body last, shown for `shown_for`:
 //   falling  nothing holds it: all axes are near 0 for `fall_time`, and as long as they are
 //   shaken   its motion along one axis was above `shake` one way and the other, `shakes` times, SWING_MS between at most
-//   tapped   its motion was above `tap` for SPIKE_MS at most, and calmer for QUIET_MS then
+//   tapped   its motion, summed over the axes, was above `tap` for SPIKE_MS at most, and calmer for QUIET_MS then
 //   lifted   its motion was above `lift` upwards, and mostly upwards, for LIFT_MS, and not downwards just before: so it ends
 //            when it is put down
 // Who is shaken is not tapped: tapped and lifted count only while nothing else is shown.

@@ -1,9 +1,9 @@
 // A picture on the lights of the board. SHOW puts one up, which stays; with FOR it is dark again after that. BLINK closes
 // the eyes of the one that is up: so many TIMES, all in OVER.
-#include <algorithm>
 #include <array>
 #include <string_view>
 
+#include "runtime-m4/drivers/blink.hpp"
 #include "runtime-m4/drivers/timed.hpp"
 
 namespace robosync::drivers::lights {
@@ -25,10 +25,6 @@ constexpr std::array kPictures = {
 #undef PICTURE
 };
 
-constexpr vm::Value kMostBlinks = 1000;
-constexpr kernel::Duration kBlink = kernel::milliseconds(150);  // dark, and lit again
-constexpr kernel::Duration kShortest = kernel::milliseconds(20);
-
 std::uint32_t picture_of(vm::Value item) {
   const auto index = static_cast<std::uint32_t>(item / vm::kScale);
   return index < kPictures.size() ? kPictures[index] : 0;
@@ -44,14 +40,10 @@ kernel::Time next_leg(const Device& device, kernel::Time now) {
 }
 
 kernel::Time blink(const Device& device, const Order& order, kernel::Time now) {
-  const vm::Value times = order.get(vm::Param::times, vm::kScale) / vm::kScale;
-  const auto legs = static_cast<unsigned>(2 * std::clamp(times, vm::Value{1}, kMostBlinks));
-  const kernel::Duration over = duration_of(order.get(vm::Param::over, 0));
-  const kernel::Duration leg =
-      over == 0 ? kBlink : std::clamp<kernel::Duration>(over / legs, kShortest, INT32_MAX);
-  device.state.speed = static_cast<vm::Value>(leg);
-  device.state.legs = static_cast<std::uint16_t>(legs);
-  device.state.until = now + leg;
+  const Blink blink = blink_of(order);
+  device.state.speed = static_cast<vm::Value>(blink.leg);
+  device.state.legs = static_cast<std::uint16_t>(blink.legs);
+  device.state.until = now + blink.leg;
   device.show(0);
   return device.state.until;
 }

@@ -37,7 +37,9 @@ bool SensorLayer::start(const LoadedProgram& program, Sampler& sampler, bool sim
 bool SensorLayer::start_sensor(unsigned sensor, ProgramThreads& threads) {
   Unit& unit = units_[sensor];
   unit = {.layer = this, .thread = nullptr, .contact = {}};
-  if (vm::measures_when_told(program_->image.sensors[sensor].driver))
+  // A board waits for the one that SAFETY reads to measure; a simulation begins when it has.
+  const bool has_measured = simulated_ && (awaited_ & made_of(sensor)) != 0;
+  if (vm::measures_when_told(program_->image.sensors[sensor].driver) && !has_measured)
     unit.contact.expect_old_result();
   const auto entry = [](void* self) {
     const auto& mine = *static_cast<Unit*>(self);

@@ -130,7 +130,7 @@ std::string text_of_fault(Came came) {
     case Came::elsewhere:
       return "it touched memory that is not its own";
     case Came::not_arithmetic:
-      return "it divided by zero, or did worse to numbers";
+      return "it divided by zero, overflowed, or did something else that C does not define";
     default:
       return "it ended its process";
   }

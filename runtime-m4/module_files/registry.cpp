@@ -30,6 +30,7 @@ struct Place {
   Description description;
   fs::file_time_type written;
   std::string path;
+  bool gave_up = false;
 };
 
 std::array<std::unique_ptr<Place>, kMostFiles> places;
@@ -72,6 +73,7 @@ std::uint32_t process(Place& place, void* memory, const robosync_block& block) {
   std::uint32_t changed = 0;
   if (!place.process.process(place.all_of(block.config), inputs, state, outputs, changed))
     return ROBOSYNC_FAILED;
+  place.gave_up = place.gave_up || changed == ROBOSYNC_FAILED;
   std::copy_n(state.begin(), bytes, own);
   std::copy_n(outputs.begin(), module.outputs, block.outputs);
   return changed;
@@ -156,9 +158,13 @@ Loaded load(const std::string& path) {
 
 std::vector<std::string> troubles() {
   std::vector<std::string> texts;
-  for (const auto& place : places)
-    if (place != nullptr && !place->process.trouble().empty())
+  for (const auto& place : places) {
+    if (place == nullptr) continue;
+    if (!place->process.trouble().empty())
       texts.push_back(place->path + ": " + place->process.trouble());
+    else if (place->gave_up)
+      texts.push_back(place->path + ": it gave up: its process() came to ROBOSYNC_FAILED");
+  }
   return texts;
 }
 

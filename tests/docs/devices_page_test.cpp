@@ -278,6 +278,27 @@ std::string overview() {
   return table;
 }
 
+std::string pins(std::span<const Board::Pins> ranges) {
+  std::string text;
+  for (const Board::Pins& range : ranges) {
+    text += (text.empty() ? "" : ", ") + std::to_string(range.first);
+    if (range.last != range.first) text += " to " + std::to_string(range.last);
+  }
+  return text;
+}
+
+// A trigger is a pulse shorter than those of a servo.
+std::string pins_for_echoes() {
+  std::string table = "| board | trigger | echo |\n|---|---|---|\n";
+  for (std::size_t i = 0; i < board_names().size(); ++i) {
+    const Board board = board_at(i);
+    std::vector<Board::Pins> triggers;
+    std::ranges::copy_if(board.outputs, std::back_inserter(triggers), &Board::Pins::power);
+    table += row({code(board.name), pins(triggers), pins(board.inputs)});
+  }
+  return table;
+}
+
 std::vector<std::string> sections(const std::string& page) {
   std::vector<std::string> found;
   for (auto at = page.find("\n## "); at != std::string::npos;) {
@@ -319,6 +340,7 @@ void check_example(const std::string& section, const Device& device) {
 
 TEST_CASE("docs/devices.md says of each device what its descriptor and the boards do") {
   testing::expect_generated(kDevicesPage, "devices", overview());
+  testing::expect_generated(kDevicesPage, "pins of hc-sr04", pins_for_echoes());
   for (const DeviceText& text : device_texts()) {
     INFO(text.name);
     Diagnostics diagnostics;

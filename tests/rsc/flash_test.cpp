@@ -148,7 +148,11 @@ TEST_CASE("flash takes no firmware of another board, and no board that is none")
   CHECK_THAT(computer.flash({alone}).err, Contains("ends in .elf is needed"));
   CHECK_THAT(computer.flash({}).err, Contains("scripts/firmware " + kBoard));
 
-  Outcome outcome = test::rsc({"flash", "--board", "mps2-an386"});
+  Outcome outcome = test::rsc({"flash"});
+  CHECK(outcome.exit == 2);
+  CHECK_THAT(outcome.err, Contains("--board is required") &&
+                              Contains("b-l475e-iot01a, microbit-v2") && !Contains("mps2"));
+  outcome = test::rsc({"flash", "--board", "mps2-an386"});
   CHECK(outcome.exit == 2);
   CHECK_THAT(outcome.err, Contains("mps2-an386 is an emulated board"));
   outcome = test::rsc({"flash", "--board", "b-l475e-iot01"});

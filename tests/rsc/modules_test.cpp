@@ -89,7 +89,9 @@ TEST_CASE("what a module leaves is cut off at its range") {
   CHECK(ran.exit == 0);
 }
 
-TEST_CASE("a file that is no module is an error in robot.json, one that is not there a warning") {
+TEST_CASE(
+    "a file that is no module is an error in robot.json, one that is not there a warning, unless "
+    "the program needs it") {
   const Folder folder;
   for (const std::string how : {"other_abi", "crashes_while_loaded", "too_large", "two_alike"}) {
     INFO(how);
@@ -98,9 +100,39 @@ TEST_CASE("a file that is no module is an error in robot.json, one that is not t
     CHECK_THAT(checked.err + checked.out,
                Contains("error[E0210]: the module " + hostile(how) + " cannot be used: it"));
   }
-  const Outcome missing = rsc({"check", robot_with(folder, "modules/none.so")});
+  const std::string program = robot_with(folder, "modules/none.so");
+  const Outcome needed = rsc({"check", program});
+  CHECK(needed.exit == 1);
+  CHECK_THAT(needed.err + needed.out, Contains("without its module, the file "));
+  folder.write("robot.rsl", "WHEN skin LEVEL IS firm\nDO SAY \"skin\"\nEND\n");
+  const Outcome missing = rsc({"check", program});
+  CHECK(missing.exit == 0);
   CHECK_THAT(missing.err + missing.out,
              Contains("warning[W0214]: there is no file " + folder.path("modules/none.so")));
+}
+
+TEST_CASE("a module that was not made yet is the one thing that is said, and how to make it") {
+  const Folder folder;
+  REQUIRE(rsc({"new", folder.path("fresh"), "--module"}).exit == 0);
+  const Outcome checked = rsc({"check", folder.path("fresh/robot.rsl"), "--format", "json"});
+  const auto said = nlohmann::json::parse(checked.out);
+  INFO(checked.out);
+  CHECK(said.at("errors") == 1);
+  CHECK(said.at("warnings") == 0);
+  CHECK_THAT(checked.out, Contains("without its module, the file ") && Contains("fresh.so") &&
+                              Contains("cmake --build build"));
+}
+
+TEST_CASE("a module that gives up is named, and what it made is not said to be too old") {
+  const Folder folder;
+  const Outcome ran = run(folder, robot_with(folder, hostile("gives_up")));
+  INFO(ran.out << ran.err);
+  CHECK(ran.exit == 1);
+  CHECK_THAT(ran.err, Contains(hostile("gives_up") + ": it gave up"));
+  const Outcome shown =
+      rsc({"run", folder.path("robot.rsl"), "--scenario", folder.path("push.json"), "--all"});
+  INFO(shown.out);
+  CHECK_THAT(shown.out, !Contains("no reading for too long"));
 }
 
 TEST_CASE("rsc module check holds a module against its own declaration") {
@@ -144,9 +176,17 @@ TEST_CASE(
   };
   const Outcome overflows = changed("(int64_t)level - self->mean", "level - self->mean");
   CHECK(overflows.exit == 1);
-  CHECK_THAT(overflows.out, Contains("or did worse to numbers, in process()"));
+  CHECK_THAT(overflows.out,
+             Contains("overflowed, or did something else that C does not define, in process()"));
+  CHECK_THAT(changed("const int32_t level = block->inputs[0];",
+                     "const int32_t level = *(volatile int32_t*)0;")
+                 .out,
+             Contains("it touched memory that is not its own, in process()"));
   CHECK_THAT(changed("return 80;", "return 8O;").err, Contains("does not compile"));
   if (good.out.find("not tried") != std::string::npos) return;
+  const Outcome floats = changed("level / 64 - self->mean / 64", "(int32_t)((float)level / 64)");
+  CHECK(floats.exit == 1);
+  CHECK_THAT(floats.out, Contains("FAILED  it computes without floating point"));
   const Outcome lies = changed("return 80;", "return 8;");
   CHECK(lies.exit == 1);
   CHECK_THAT(lies.out,

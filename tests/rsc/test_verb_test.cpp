@@ -158,6 +158,30 @@ TEST_CASE("every kind of expectation, met and not met") {
   CHECK(report.at("failed") == static_cast<std::ptrdiff_t>(cases.size()) - met);
 }
 
+TEST_CASE("SAFETY knows at the start what a sensor measures then, also one that takes a while") {
+  const Folder folder;
+  folder.write("robot.json", R"({
+    "sensors": [{"name": "wall", "type": "I2C", "address": "0x29", "device": "vl53l0x"}],
+    "actuators": [{"name": "wheel", "type": "PWM", "pins": [4, 5], "device": "motor"}]})");
+  const std::string program = folder.write("robot.rsl", R"(
+SAFETY near
+  WHEN wall DISTANCE < 10cm
+  DO STOP wheel
+  RESUME WHEN wall DISTANCE > 20cm
+END
+AT START
+DO RUN wheel FORWARD
+END
+TEST "it begins"
+  AT 0s wall DISTANCE = 1m
+  EXPECT RUN wheel WITHIN 0ms
+END
+)");
+  const Outcome tested = rsc({"test", program});
+  INFO(tested.out << tested.err);
+  CHECK(tested.exit == 0);
+}
+
 TEST_CASE("a TIMER is looked at in every millisecond") {
   // 1 s at first, since the start; back to 0 in the step behind the touch.
   const std::vector<std::pair<bool, const char*>> cases = {

@@ -332,6 +332,8 @@ class ActuatorDrivers(unittest.TestCase):
                            ["MOVE a0 TO 33deg OVER 50ms", "MOVE a0 2 TIMES OVER 70ms", "MOVE a0 2 TIMES OVER 5273ms",
                             "MOVE a0 TO 178deg AT 66deg/s\nWAIT 200ms\nMOVE a0 TO 1deg AT 66deg/s",
                             "MOVE a0 TO 77.7deg OVER 36000s\nWAIT 77ms\nMOVE a0 TO 1.3deg OVER 36000s"]),
+        "virtual_output": ({"type": "VIRTUAL", "device": "matrix"},
+                           ["SHOW a0 happy FOR 50ms", "BLINK a0", "BLINK a0 3 TIMES OVER 133ms", "BLINK a0 700 TIMES OVER 36000s"]),
         "player": ({"type": "UART", "device": "dfplayer"}, ["PLAY a0 FOR 50ms", "PLAY a0 FOR 60s"]),
         "pwm": (PWM, ["RUN a0 TO 33%", "RUN a0 TO 33% FOR 50ms", "RUN a0 TO 99% OVER 150ms FOR 50ms",
                       "RUN a0 TO 99% OVER 250ms\nWAIT 70ms\nRUN a0 TO 3% OVER 250ms",

@@ -282,7 +282,10 @@ TEST_CASE("a motor's record has both pins; one that is only shown has none") {
   CHECK(wired.min == -100'000);
   CHECK(wired.safe == vm::Release::coast);
   const vm::Actuator shown = record(R"("type": "VIRTUAL", "pins": [6, 31])");
-  CHECK(shown.driver == vm::DriverId::virtual_actuator);
+  CHECK(shown.driver == vm::DriverId::virtual_output);
+  CHECK(shown.bus == static_cast<std::uint8_t>(vm::VirtualOutput::level));
+  const vm::Actuator limited = record(R"("type": "VIRTUAL", "limits": {"SPEED": "50%"})");
+  CHECK(limited.driver == vm::DriverId::virtual_output);  // what is limited is power, no way
   for (const char* const type : {R"("type": "PWM", "pins": [3, 4])", R"("type": "VIRTUAL")"}) {
     const vm::Actuator slow = record(type + std::string(R"(, "limits": {"SPEED": "40%"})"));
     CHECK(slow.min == -40'000);

@@ -431,6 +431,64 @@ TEST_CASE("virtual_actuator and player: FOR, else OVER, else one second; STOP at
   }
 }
 
+TEST_CASE("servo: a sweep takes its OVER, also from an end of the range") {
+  for (const Value from : {0 * kDeg, 45 * kDeg, 180 * kDeg})
+    for (const Value times : {1, 3}) {
+      Drive servo(vm::DriverId::servo, 0, 180 * kDeg);
+      servo.begin(order(vm::Action::move, {{Param::to, from}}));
+      servo.run();
+      const kernel::Time before = servo.now;
+      servo.begin(
+          order(vm::Action::move, {{Param::over, 2000}, {Param::times, times * vm::kScale}}));
+      servo.run();
+      CAPTURE(from, times);
+      CHECK(servo.now - before == static_cast<kernel::Duration>(times) * 2'000'000);
+      CHECK(servo.state.motion.to == from);
+    }
+}
+
+TEST_CASE("virtual_output: every command takes what the real one takes") {
+  const auto length = [](vm::DriverId id, vm::VirtualOutput bus, const Order& what) {
+    Drive drive(id, -100'000, 100'000);
+    if (id == vm::DriverId::virtual_output) drive.wiring.bus = static_cast<std::uint8_t>(bus);
+    drive.begin(what);
+    drive.run();
+    return drive.now;
+  };
+  using vm::Action;
+  using vm::VirtualOutput;
+  std::vector<std::pair<VirtualOutput, Order>> all = {
+      {VirtualOutput::level, order(Action::set, {{Param::to, 50'000}})},
+      {VirtualOutput::level, order(Action::set, {{Param::to, 50'000}, {Param::over, 1000}})},
+      {VirtualOutput::level, order(Action::set, {{Param::at, 50'000}, {Param::for_, 2000}})},
+      {VirtualOutput::level, order(Action::set, {{Param::over, 1000}, {Param::for_, 2000}})},
+      {VirtualOutput::level, order(Action::stop, {{Param::over, 1000}})},
+      {VirtualOutput::picture, order(Action::set, {{Param::item, 1000}})},
+      {VirtualOutput::picture, order(Action::set, {{Param::item, 1000}, {Param::for_, 700}})},
+      {VirtualOutput::picture, order(Action::set, {{Param::for_, 0}})},
+      {VirtualOutput::picture, order(Action::stop)},
+      {VirtualOutput::picture, order(Action::play)},
+      {VirtualOutput::picture, order(Action::play, {{Param::times, 3000}})},
+      {VirtualOutput::picture, order(Action::play, {{Param::times, 3000}, {Param::over, 1000}})},
+      {VirtualOutput::picture, order(Action::play, {{Param::times, 9000}, {Param::over, 10}})},
+      {VirtualOutput::tones, order(Action::stop)},
+      {VirtualOutput::tones, order(Action::play, {{Param::at, 440'000}})},
+      {VirtualOutput::tones, order(Action::play, {{Param::for_, 0}})},
+      {VirtualOutput::tones, order(Action::play, {{Param::item, 2000}, {Param::for_, 1500}})}};
+  for (Value melody = 0; melody < 9; ++melody)
+    all.emplace_back(VirtualOutput::tones,
+                     order(Action::play, {{Param::item, melody * vm::kScale}}));
+  for (const auto& [like, what] : all) {
+    const vm::DriverId real = like == VirtualOutput::level     ? vm::DriverId::pwm
+                              : like == VirtualOutput::picture ? vm::DriverId::lights
+                                                               : vm::DriverId::tones;
+    CAPTURE(static_cast<int>(like), what.given, what.params);
+    CHECK(length(vm::DriverId::virtual_output, like, what) == length(real, like, what));
+    if (real == vm::DriverId::pwm)
+      CHECK(length(vm::DriverId::motor, like, what) == length(real, like, what));
+  }
+}
+
 TEST_CASE(
     "virtual_motion: way / speed, its place kept, and no faster than the limit however it is "
     "said") {

@@ -59,6 +59,7 @@ enum how {
   untrue_mask,
   reads_its_scratch,
   lies_about_its_cost,
+  gives_up,
 };
 static const enum how how = HOW;
 
@@ -171,6 +172,7 @@ static uint32_t process(void* memory, void* scratch, const robosync_block* block
   misbehave(memory, scratch, block);
   const int32_t firm = block->inputs[0] > block->config[0];
   self->last = firm;
+  if (how == gives_up) return ROBOSYNC_FAILED;
   if (how == untrue_mask) {
     block->outputs[0] = firm * ROBOSYNC_ONE;
     return 0;

@@ -66,8 +66,10 @@ const std::map<std::string, std::string> kTroubles = {
     {"opens_a_file", "it called the operating system, in process()"},  // even to read it
     {"writes_to_what_is_open", ""},  // nothing is, but the line to this process
     {"ends_its_process", "it ended its process, in process()"},
-    {"divides_by_zero", "it divided by zero, or did worse to numbers, in process()"},
-    {"traps", "it divided by zero, or did worse to numbers, in process()"},
+    {"divides_by_zero",
+     "it divided by zero, overflowed, or did something else that C does not define, in process()"},
+    {"traps",
+     "it divided by zero, overflowed, or did something else that C does not define, in process()"},
     {"overflows_its_stack", "it touched memory that is not its own, in process()"},
     {"other_abi", "it is made for another version of robosync_module.h than 1: compile it again"},
     {"no_module", "it does not describe itself completely: something is NULL that must not be"},
