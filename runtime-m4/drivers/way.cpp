@@ -101,7 +101,7 @@ bool start(const Device& device, const Order& order, vm::Value usual, kernel::Ti
 
 bool next_leg(const Device& device, kernel::Time now) {
   const vm::Value here = device.state.motion.at(now);
-  // Who began at an end of the range is there already, one time in three.
+  // Who begins a sweep at an end of the range is there already.
   if (device.state.legs != 0 && leg_target(device) == here) --device.state.legs;
   if (device.state.legs == 0) return false;
   const vm::Value target = leg_target(device);
