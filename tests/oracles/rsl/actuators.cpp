@@ -97,13 +97,18 @@ void Actuators::go(std::size_t actuator, std::int64_t to, std::int64_t length, M
   motion = {motion.at(now), to, now, std::max(length, kFrame)};
 }
 
-// "To its range's end, to its beginning, and back to where it was."
-void Actuators::next_leg(std::size_t actuator, Millis now) {
+// "To its range's end, to its beginning, and back to where it was." Where it is already it need not go. False: that was all.
+bool Actuators::next_leg(std::size_t actuator, Millis now) {
   Queue& queue = queues_[actuator];
   const Limits& limits = limits_[actuator];
   const std::int64_t targets[] = {limits.most, queue.home, limits.least};
+  const std::int64_t here = queue.motion.at(now);
+  while (queue.legs > 0 && targets[queue.legs % 3] == here)
+    --queue.legs;
+  if (queue.legs == 0) return false;
   const std::int64_t to = targets[queue.legs-- % 3];
-  go(actuator, to, *travel(to - queue.motion.at(now), queue.speed), now);
+  go(actuator, to, *travel(to - here, queue.speed), now);
+  return true;
 }
 
 // "They take what the real one would", and no command goes faster than the limit. How long, the first leg
@@ -280,8 +285,7 @@ void Actuators::release(std::size_t actuator) {
 bool Actuators::advance(std::size_t actuator, Millis now) {
   Queue& queue = queues_[actuator];
   if (!queue.busy || queue.ends > now) return false;
-  if (queue.legs > 0) {
-    next_leg(actuator, now);
+  if (next_leg(actuator, now)) {
     queue.ends = now + (queue.motion.length + 999) / 1000;
     return true;
   }

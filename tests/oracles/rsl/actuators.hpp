@@ -56,7 +56,7 @@ private:
   };
   Millis begin(std::size_t actuator, const Order& order, Millis now);
   void go(std::size_t actuator, std::int64_t to, std::int64_t length, Millis now);
-  void next_leg(std::size_t actuator, Millis now);
+  bool next_leg(std::size_t actuator, Millis now);
   void begin_motion(std::size_t actuator, const Order& order, Millis now);
   Millis follow_at_once(std::size_t actuator, std::int64_t to, Millis now);
   Millis go_to_next_key(std::size_t actuator, Millis now);
