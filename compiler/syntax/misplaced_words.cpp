@@ -35,36 +35,22 @@ public:
     if (auto edit = safety_without_when()) return edit;
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Habit = std::optional<Edit> (MisplacedWords::*)();
-    for (const Habit habit : {&MisplacedWords::negated_comparison,
-                              &MisplacedWords::negation,
-                              &MisplacedWords::end_before_else,
-                              &MisplacedWords::rule_in_rule,
-                              &MisplacedWords::step_in_response,
-                              &MisplacedWords::do_without_when,
-                              &MisplacedWords::lonely_else,
-                              &MisplacedWords::then_in_line,
-                              &MisplacedWords::commands_with_and,
-                              &MisplacedWords::commands_with_comma,
-                              &MisplacedWords::second_statement,
-                              &MisplacedWords::second_stopped,
-                              &MisplacedWords::goes_on_above,
-                              &MisplacedWords::times_of_name,
-                              &MisplacedWords::counted_text,
-                              &MisplacedWords::set_of_channel,
-                              &MisplacedWords::rate_apart,
-                              &MisplacedWords::foreign_rate,
-                              &MisplacedWords::command_in_behavior,
-                              &MisplacedWords::within,
-                              &MisplacedWords::columns_of_motion,
-                              &MisplacedWords::word_with_sign,
-                              &MisplacedWords::changed_wrongly,
-                              &MisplacedWords::repeat_how_often,
-                              &MisplacedWords::resume_after,
-                              &MisplacedWords::modifier_behind_do,
-                              &MisplacedWords::start_alone,
-                              &MisplacedWords::start_modified,
-                              &MisplacedWords::otherwise,
-                              &MisplacedWords::more_than}) {
+    for (const Habit habit :
+         {&MisplacedWords::negated_comparison,  &MisplacedWords::negation,
+          &MisplacedWords::end_before_else,     &MisplacedWords::rule_in_rule,
+          &MisplacedWords::step_in_response,    &MisplacedWords::do_without_when,
+          &MisplacedWords::lonely_else,         &MisplacedWords::then_in_line,
+          &MisplacedWords::commands_with_and,   &MisplacedWords::commands_with_comma,
+          &MisplacedWords::second_statement,    &MisplacedWords::second_stopped,
+          &MisplacedWords::goes_on_above,       &MisplacedWords::times_of_name,
+          &MisplacedWords::counted_text,        &MisplacedWords::set_of_channel,
+          &MisplacedWords::rate_apart,          &MisplacedWords::foreign_rate,
+          &MisplacedWords::command_in_behavior, &MisplacedWords::within,
+          &MisplacedWords::columns_of_motion,   &MisplacedWords::word_with_sign,
+          &MisplacedWords::changed_wrongly,     &MisplacedWords::repeat_how_often,
+          &MisplacedWords::resume_after,        &MisplacedWords::modifier_behind_do,
+          &MisplacedWords::start_alone,         &MisplacedWords::start_modified,
+          &MisplacedWords::otherwise,           &MisplacedWords::more_than}) {
       if (auto edit = (this->*habit)()) return edit;
     }
     return std::nullopt;
