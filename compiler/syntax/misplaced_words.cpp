@@ -6,7 +6,6 @@
 #include "compiler/syntax/mistaken_line.hpp"
 
 namespace robosync::compiler {
-
 namespace {
 
 struct Opposite {
@@ -50,9 +49,8 @@ public:
           &MisplacedWords::changed_wrongly,     &MisplacedWords::repeat_how_often,
           &MisplacedWords::resume_after,        &MisplacedWords::modifier_behind_do,
           &MisplacedWords::start_alone,         &MisplacedWords::start_modified,
-          &MisplacedWords::otherwise,           &MisplacedWords::more_than}) {
+          &MisplacedWords::otherwise,           &MisplacedWords::more_than})
       if (auto edit = (this->*habit)()) return edit;
-    }
     return std::nullopt;
   }
 

@@ -2,7 +2,9 @@
 // (vm::VirtualOutput says which). Its commands are seen in the trace. Most are done as soon as they have
 // begun, as the real ones are.
 #include <cstdint>
+#include <initializer_list>
 #include <iterator>
+#include <numeric>
 
 #include "runtime-m4/drivers/blink.hpp"
 #include "runtime-m4/drivers/timed.hpp"
@@ -10,9 +12,14 @@
 namespace robosync::drivers::virtual_output {
 namespace {
 
+constexpr std::uint32_t length_of(std::initializer_list<std::uint32_t> notes) {
+  return std::accumulate(notes.begin(), notes.end(), 0U);
+}
+
+// In milliseconds.
 constexpr std::uint32_t kMelodies[] = {
-#define NOTE(hertz, milliseconds) +milliseconds
-#define MELODY(name, notes) notes,
+#define NOTE(hertz, milliseconds) milliseconds,
+#define MELODY(name, notes) length_of({notes}),
 #include "runtime-m4/drivers/melodies.def"
 #undef MELODY
 #undef NOTE

@@ -149,7 +149,7 @@ class Page(unittest.TestCase):
 
     def test_pointing_tells_why_and_clicking_shows_the_rule(self):
         seen = self.hands(self.show(EXAMPLES / "touch_companion")[0])
-        self.assertIn("4.000 s to 5.354 s: left_arm MOVE QUICKLY", seen["tip"])
+        self.assertIn("4.000 s to 5.334 s: left_arm MOVE QUICKLY", seen["tip"])
         self.assertIn("touch LEVEL = 5", seen["tip"])
         self.assertIn("rule at line 1 triggers its ELSE side", seen["tip"])
         self.assertIn("1  WHEN touch LEVEL < 3", seen["source"])

@@ -1,0 +1,139 @@
+// What the verifier asks of the parts that a robot has one of, or that share a pin, a bus or a chip: panels, sensors that measure
+// when they are told, servo chips, displays.
+#include <catch2/catch.hpp>
+
+#include "tests/vm/companion.hpp"
+#include "tests/vm/refusal_checks.hpp"
+#include "vm/drivers.hpp"
+#include "vm/verifier.hpp"
+
+using namespace robosync::vm;
+using namespace robosync::vm::test;
+namespace robot = robosync::vm::test::companion;
+
+TEST_CASE(
+    "a panel has its pin for itself, is the only one, and takes no more than a board can give") {
+  const auto with_panel = [](auto change) {
+    ImageBuilder image = robot::make();
+    Actuator& panel = image.actuators[1];
+    panel.driver = DriverId::ws2812_face;
+    panel.speed_limit = 0x33'33'33;
+    change(panel, image);
+    return image;
+  };
+  const auto refused = [&](Refusal refusal, auto change) {
+    check_refused(with_panel(change), {refusal, Section::actuators, 1});
+  };
+  check_accepted(with_panel([](auto&...) {}));
+  check_accepted(with_panel([](auto& panel, auto&) { panel.bus = 3; }));
+  check_accepted(with_panel([](auto& panel, auto&) { panel.safe = Release::hold; }));
+  refused(Refusal::bad_value, [](auto& panel, auto&) { panel.bus = 4; });
+  for (const Value color : {0x34'33'33, 0x33'34'33, 0x33'33'34, 0x01'00'00'00})
+    refused(Refusal::bad_value, [&](auto& panel, auto&) { panel.speed_limit = color; });
+  refused(Refusal::shared_pin,
+          [](auto& panel, auto& image) { panel.pin = image.actuators[0].pin; });
+  refused(Refusal::shared_pin, [](auto& panel, auto& image) {
+    image.actuators[0] = panel;
+    image.actuators[0].pin = 9;
+  });
+  refused(Refusal::shared_pin, [](auto& panel, auto& image) {
+    image.sensors[0].driver = DriverId::digital_input;
+    image.sensors[0].bus = 0;
+    image.sensors[0].address = panel.pin;
+  });
+}
+
+TEST_CASE("what measures when it is told is alone at its place on the bus") {
+  const auto seeing = [](auto change) {
+    ImageBuilder image = robot::make();
+    Sensor eye = image.sensors[0];
+    eye.driver = DriverId::vl53l0x;
+    eye.period_ms = kMinRangingPeriodMs;
+    eye.first_channel = static_cast<std::uint8_t>(image.channels.size());
+    eye.channel_count = 0;
+    image.sensors.push_back(eye);
+    change(image.sensors.back());
+    return image;
+  };
+  const auto index = static_cast<std::uint16_t>(robot::make().sensors.size());
+  check_refused(seeing([](auto&) {}), {Refusal::bad_value, Section::sensors, index});
+  check_accepted(seeing([](auto& eye) { ++eye.bus; }));
+  check_accepted(seeing([](auto& eye) { ++eye.address; }));
+}
+
+TEST_CASE("a channel of a servo chip has one owner, and what a chip moves is safe in one way") {
+  const auto with_servos = [](auto change) {
+    ImageBuilder image = robot::make();
+    Sensor chip = image.sensors[0];
+    chip.driver = DriverId::pca9685;
+    chip.address = kFirstChipAddress;
+    chip.period_ms = kServoFrameMs;
+    chip.first_channel = static_cast<std::uint8_t>(image.channels.size());
+    chip.channel_count = 0;
+    chip.first_input = 36;
+    image.sensors.push_back(chip);
+    for (unsigned a = 0; a < 2; ++a) {
+      image.actuators[a].driver = DriverId::pca9685_servo;
+      image.actuators[a].bus = static_cast<std::uint8_t>(image.sensors.size() - 1);
+      image.actuators[a].pin = static_cast<std::uint16_t>(a);
+      image.actuators[a].on_release = Release::hold;
+      image.actuators[a].safe = Release::hold;
+    }
+    change(image.actuators[1]);
+    return image;
+  };
+  check_accepted(with_servos([](auto&) {}));
+  check_refused(with_servos([](auto& servo) { servo.pin = 0; }),
+                {Refusal::shared_pin, Section::actuators, 1});
+  check_refused(with_servos([](auto& servo) { servo.safe = Release::coast; }),
+                {Refusal::needs_the_bus, Section::actuators, 1});
+}
+
+TEST_CASE("a face is on a display, which is alone at its place on the bus") {
+  const auto with_face = [](auto change) {
+    ImageBuilder image = robot::make();
+    Sensor display = image.sensors[0];
+    display.driver = DriverId::ssd1306;
+    display.address = kFirstDisplayAddress;
+    display.period_ms = kDisplayFrameMs;
+    display.first_channel = static_cast<std::uint8_t>(image.channels.size());
+    display.channel_count = 0;
+    image.sensors.push_back(display);
+    Actuator& face = image.actuators[0];
+    face.driver = DriverId::ssd1306_face;
+    face.bus = static_cast<std::uint8_t>(image.sensors.size() - 1);
+    change(image.sensors.back(), face, image);
+    return image;
+  };
+  const auto index = static_cast<std::uint16_t>(robot::make().sensors.size());
+  const auto refused = [&](Refusal refusal, auto change) {
+    check_refused(with_face(change), {refusal, Section::sensors, index});
+  };
+  check_accepted(with_face([](auto&...) {}));
+  check_accepted(with_face([](auto& display, auto&...) { display.address = kLastDisplayAddress; }));
+  refused(Refusal::bad_value, [](auto& display, auto&...) { --display.address; });
+  refused(Refusal::bad_value, [](auto& display, auto&...) { display.address = 0x3E; });
+  refused(Refusal::bad_value, [](auto& display, auto&...) { ++display.period_ms; });
+  refused(Refusal::bad_value, [](auto& display, auto&...) { display.first_input = 1; });
+  refused(Refusal::bad_value, [](auto& display, auto&, auto& image) {
+    --image.sensors[1].channel_count;
+    --display.first_channel;
+    display.channel_count = 1;
+  });
+  check_refused(with_face([&](auto& display, auto&, auto& image) {
+                  image.sensors[0].address = display.address;
+                }),
+                {Refusal::bad_value, Section::sensors, index});
+  check_refused(with_face([&](auto& display, auto&, auto& image) {
+                  const Sensor another = display;
+                  for (unsigned i = 0; i < kMaxDisplays; ++i)
+                    image.sensors.push_back(another);
+                  ++image.sensors[index].bus;
+                  image.sensors[index + 1].address = kLastDisplayAddress;
+                }),
+                {Refusal::too_many, Section::sensors, static_cast<std::uint16_t>(index + 2)});
+  for (const unsigned nowhere : {0U, index + 1U, 255U})
+    check_refused(
+        with_face([&](auto&, auto& face, auto&) { face.bus = static_cast<std::uint8_t>(nowhere); }),
+        {Refusal::bad_index, Section::actuators, 0});
+}
