@@ -156,8 +156,7 @@ void Bridge::take(const MqttMessage& message, Session* session) {
   } catch (const Failure& failure) {
     why = failure.what();
   }
-  why = compiler::utf8::printable(why);
-  std::cerr << fmt::format("rsc: {}: {}\n", message.topic, why);
+  std::cerr << fmt::format("rsc: {}: {}\n", compiler::utf8::printable(message.topic), why);
   publish("refused", {{"topic", message.topic}, {"why", why}}, false);
 }
 
@@ -173,7 +172,7 @@ void Bridge::obey(const std::string& topic, const std::string& payload, Session*
     session->client.resume();
     stopped(false);
   } else if (const auto reading = reading_of(topic, payload)) {
-    feed(*reading, *session);
+    feed(compiler::utf8::printable(*reading), *session);
   } else {
     throw std::invalid_argument("a robot can be told stop, resume, feed/SENSOR/CHANNEL");
   }

@@ -177,17 +177,21 @@ TEST_CASE("a robot on a broker: what it does is published, and it is fed, stoppe
   subscriber.publish("robosync/pet/do/resume", "");
   CHECK(subscriber.wait_for("robosync/pet/stopped", "false"));
 
-  using Text = std::string;
-  for (const auto& [topic, payload] : {std::pair<Text, Text>{"feed/touch/LEVL", "2"},
+  for (const auto& [topic, payload] : {std::pair{"feed/touch/LEVL", "2"},
                                        {"feed/touch/LEVEL", "x"},
                                        {"feed/touch/LEVEL", "{}"},
                                        {"feed/", ""},
-                                       {"jump", "now"},
-                                       {"feed/touch/LEVEL", std::string(2000, '1')}}) {
-    subscriber.publish("robosync/pet/do/" + topic, payload);
+                                       {"jump", "now"}}) {
+    subscriber.publish(std::string("robosync/pet/do/") + topic, payload);
     CAPTURE(topic, payload);
     CHECK(subscriber.wait_for("robosync/pet/refused", topic));
   }
+
+  const std::string large(2000, '1'), binary("x\0y", 3);
+  subscriber.publish("robosync/pet/do/feed/touch/LEVEL", large);
+  CHECK(subscriber.wait_for("robosync/pet/refused", "2000 bytes are no reading"));
+  subscriber.publish("robosync/pet/do/feed/touch/LEVEL", binary);
+  CHECK(subscriber.wait_for("robosync/pet/refused", "x\xEF\xBF\xBDy"));
 
   // The broker is away and has forgotten everything; the bridge has not.
   broker.end();
