@@ -257,10 +257,7 @@ std::size_t Runtime::fill_kept(std::span<layers::KeptNumber, vm::kMaxKept> kept)
 }
 
 void Runtime::hold_to_budgets(bool alive) {
-  if (running_) {
-    algorithms_.hold_to_budgets();
-    if (link_share_.is_due(kernel_)) shared_.processing.give_way();
-  }
+  if (running_) algorithms_.hold_to_budgets();
   if (alive) return budget_.forget();
   kernel::Thread* const over = budget_.look(kernel_);
   if (over != nullptr) port::stop_overrun(kernel_, *over);

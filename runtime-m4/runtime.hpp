@@ -24,7 +24,6 @@
 #include "runtime-m4/layers/event_sink.hpp"
 #include "runtime-m4/layers/frames.hpp"
 #include "runtime-m4/layers/kept.hpp"
-#include "runtime-m4/layers/link_share.hpp"
 #include "runtime-m4/layers/loaded_program.hpp"
 #include "runtime-m4/layers/mailbox.hpp"
 #include "runtime-m4/layers/memory.hpp"
@@ -77,13 +76,10 @@ public:
   void resume() { say(false); }
   bool stopped() const { return stopped_; }
   // This thread has its share of the processor whatever the program does. Before Kernel::run().
-  void share_with(const kernel::Thread& link) { link_share_.watch(link); }
-  // … soon, as it has something to do for the line.  [interrupt]
-  void ask_for_link() { shared_.processing.ask_for_link(); }
-  // How often that was so. And that thread has done what it was asked until then, and all else: waits.  [that thread]
-  std::uint32_t link_was_asked() const { return shared_.processing.link_was_asked(); }
-  kernel::Events rest_link(std::uint32_t asked, kernel::Events mask, kernel::Time deadline) {
-    return shared_.processing.rest_link(asked, mask, deadline);
+  void share_with(const kernel::Thread& link) { shared_.processing.share_with(link); }
+  // How it waits when it has nothing more to do.  [that thread]
+  kernel::Events rest_link(kernel::Events mask, kernel::Time deadline) {
+    return shared_.processing.rest_link(mask, deadline);
   }
   // Has a SAFETY rule of the running program tripped since it began?
   bool has_tripped() const { return safety_rules_.have_tripped(); }
@@ -163,7 +159,6 @@ private:
   unsigned faults_ = 0;  // of programs that are gone
   safety::Monitor monitor_;
   layers::Budget budget_;
-  layers::LinkShare link_share_;
   kernel::Thread step_thread_;
   layers::ProgramThreads threads_;
 

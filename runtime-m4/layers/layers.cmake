@@ -14,7 +14,6 @@ target_sources(robosync_runtime PRIVATE
   layers/frames.cpp
   layers/kept.cpp
   layers/link_share.cpp
-  layers/link_turns.cpp
   layers/mailbox.cpp
   layers/memory.cpp
   layers/median.cpp

@@ -2,34 +2,43 @@
 #include "runtime-m4/layers/link_share.hpp"
 
 #include "runtime-m4/policy/link_share.hpp"
-#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::layers {
-namespace {
 
-constexpr unsigned kLongEnough = policy::kLinkPeriodMs / policy::kSafetyPeriodMs;
+void LinkShare::start(std::uint32_t step_cost) {
+  constexpr auto kTickUs = static_cast<std::uint32_t>(kernel::kTick);
+  patience_ = (policy::link_patience_us(step_cost) + kTickUs - 1) / kTickUs;
+  since_ = {.activations = UINT32_MAX};
+  pause_ = 0;
+}
 
-}  // namespace
-
-bool LinkShare::is_due(const kernel::Kernel& kernel) {
-  if (link_ == nullptr || kernel.state(*link_) != kernel::Thread::State::ready) return false;
-  return is_due(Look{.activations = link_->activations(),
-                     .run_time = kernel.run_time(*link_),
-                     .clock = kernel.clock()});
+LinkShare::Look LinkShare::look(const kernel::Kernel& kernel) const {
+  return {.tick = kernel.tick(),
+          .clock = kernel.clock(),
+          .activations = link_->activations(),
+          .run_time = kernel.run_time(*link_)};
 }
 
 bool LinkShare::is_due(const Look& look) {
-  without_ = had_nothing(look) ? without_ + 1 : 0;
-  last_ = look;
-  if (without_ < kLongEnough) return false;
-  without_ = 0;
-  return true;
+  if (had_time(look)) since_ = look;
+  return look.tick - since_.tick >= patience_ && has_budget(look);
 }
 
-// Who has waited in between has been activated since.
-bool LinkShare::had_nothing(const Look& look) const {
-  if (look.activations != last_.activations) return false;
-  return look.run_time - last_.run_time < (look.clock - last_.clock) / policy::kLinkParts;
+void LinkShare::took(const Look& begin, const Look& end) {
+  turn_ = begin;
+  pause_ = policy::kLinkParts * (end.clock - begin.clock);
+}
+
+bool LinkShare::had_time(const Look& look) const {
+  return look.activations != since_.activations ||
+         look.run_time - since_.run_time > (look.clock - since_.clock) / policy::kLinkParts;
+}
+
+// The clock wraps after minutes, and no pause is as long as this.
+constexpr std::uint32_t kLongTicks = 1000;
+
+bool LinkShare::has_budget(const Look& look) const {
+  return look.clock - turn_.clock >= pause_ || look.tick - turn_.tick >= kLongTicks;
 }
 
 }  // namespace robosync::layers

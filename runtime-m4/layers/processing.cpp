@@ -47,7 +47,7 @@ bool ProcessingLayer::start(const LoadedProgram& program, std::span<const KeptNu
   untouched_ = 0;
   untouched_inputs_ = 0;
   in_pass_ = false;
-  link_turns_.start(program.image.header->step_cost);
+  link_share_.start(program.image.header->step_cost);
   for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b) {
     untouched_ |= bit<BehaviorMask>(b);
     untouched_inputs_ |= program.inputs[b];
@@ -73,10 +73,10 @@ void ProcessingLayer::run() {
   kernel_.sleep_until(trace_.activated_at());
   kernel::Time next = 0;  // the first pass does not wait for news
   while (true) {
-    const kernel::Events why = kernel_.wait(kNews | kIdle | kStopped | kHalted | kGiveWay, next);
-    if ((why & (kStopped | kGiveWay)) != 0) attend(why);
-    if (link_turns_.waits()) [[unlikely]]
-      attend_link();
+    const kernel::Events why = kernel_.wait(kNews | kIdle | kStopped | kHalted, next);
+    if ((why & kStopped) != 0) note_stops();
+    if (link_share_.is_wanted(kernel_)) [[unlikely]]
+      give_way();
     in_pass_.store(true, std::memory_order_relaxed);
     pass();
     passes_.store(passes_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
@@ -241,24 +241,19 @@ kernel::Time ProcessingLayer::next_time() {
   return std::min(due, layers_.mailboxes.next_expiry());
 }
 
+// --- the link's turn ---
+
+// To the next tick but one, as what is left of this one may be nothing; or until it rests, which it may have done since the
+// last turn.
+void ProcessingLayer::give_way() {
+  const LinkShare::Look begin = link_share_.look(kernel_);
+  if (!link_share_.is_due(begin)) return;
+  kernel_.wait(kLinkRests, 0);
+  kernel_.wait(kLinkRests, kernel_.now() + kernel::milliseconds(policy::kLinkTurnMs));
+  link_share_.took(begin, link_share_.look(kernel_));
+}
+
 // --- threads that were stopped ---
-
-void ProcessingLayer::attend(kernel::Events events) {
-  if ((events & kStopped) != 0) note_stops();
-  if ((events & kGiveWay) != 0 && link_turns_.has_budget(link_time())) give_turn();
-}
-
-void ProcessingLayer::attend_link() {
-  if (link_turns_.is_time(link_time())) give_turn();
-}
-
-// To the next tick but one: what is left of this one may be nothing.
-void ProcessingLayer::give_turn() {
-  kernel_.wait(kRests, 0);  // it has done so since the last turn
-  const LinkTurns::Now begin = link_time();
-  kernel_.wait(kRests, begin.time + kernel::milliseconds(policy::kLinkTurnMs));
-  link_turns_.took(begin, link_time());
-}
 
 void ProcessingLayer::note_stops() {
   layers_.algorithms.lower_those_over(layers_.threads);

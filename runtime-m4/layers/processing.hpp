@@ -58,7 +58,7 @@
 #include "runtime-m4/layers/checks.hpp"
 #include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/layers/control.hpp"
-#include "runtime-m4/layers/link_turns.hpp"
+#include "runtime-m4/layers/link_share.hpp"
 #include "runtime-m4/layers/loaded_program.hpp"
 #include "runtime-m4/layers/mailbox.hpp"
 #include "runtime-m4/layers/program_threads.hpp"
@@ -80,10 +80,9 @@ inline constexpr kernel::Events kFinished = 4;   // a behaviour has done what it
 inline constexpr kernel::Events kCancelled = 8;  // an actuator was cancelled
 inline constexpr kernel::Events kStopped =
     16;  // a thread was stopped by a fault, or is to be lowered
-inline constexpr kernel::Events kHalted = 32;    // safety has halted, let go, or set something
-inline constexpr kernel::Events kBegin = 64;     // all threads of the program are there
-inline constexpr kernel::Events kGiveWay = 128;  // the link had nothing for long
-inline constexpr kernel::Events kRests = 256;    // it has nothing more to do
+inline constexpr kernel::Events kHalted = 32;      // safety has halted, let go, or set something
+inline constexpr kernel::Events kBegin = 64;       // all threads of the program are there
+inline constexpr kernel::Events kLinkRests = 128;  // its thread has nothing more to do
 
 class ProcessingLayer {
 public:
@@ -112,18 +111,11 @@ public:
   // … and the first step comes when its clock begins.
   void go() { kernel_.signal(thread_, kBegin); }
 
-  // --- the link's share (policy/link_share.hpp) ---
-
-  // It had nothing for a period: the next pass waits for it.  [any]
-  void give_way() { kernel_.signal(thread_, kGiveWay); }
-  // It has something to do for the line, and may not have to wait for long.  [interrupt]
-  void ask_for_link() { link_turns_.ask(); }
-  // How often that was so.  [any]
-  std::uint32_t link_was_asked() const { return link_turns_.asked(); }
-  // It has done what it was asked until then, and all else: waits, and its turn is over.  [the link's thread]
-  kernel::Events rest_link(std::uint32_t asked, kernel::Events mask, kernel::Time deadline) {
-    link_turns_.has_heard(asked);
-    return kernel_.signal_and_wait(thread_, kRests, mask, deadline);
+  // The link's thread has its share of the processor (policy/link_share.hpp). Before Kernel::run().
+  void share_with(const kernel::Thread& link) { link_share_.watch(link); }
+  // That has nothing more to do: it waits, and if this was its turn, that is over.  [the link's thread]
+  kernel::Events rest_link(kernel::Events mask, kernel::Time deadline) {
+    return kernel_.signal_and_wait(thread_, kLinkRests, mask, deadline);
   }
 
   std::uint32_t steps() const { return trace_.step().step; }
@@ -150,10 +142,7 @@ private:
   void add_waiting(unsigned rule, Soonest& due) const;
   void add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const;
   kernel::Time next_time();
-  [[gnu::cold]] void attend(kernel::Events events);
-  [[gnu::cold, gnu::noinline]] void attend_link();
-  [[gnu::cold]] void give_turn();
-  LinkTurns::Now link_time() const { return {kernel_.now(), kernel_.clock()}; }
+  [[gnu::cold, gnu::noinline]] void give_way();
   [[gnu::cold]] void note_stops();
   [[gnu::cold]] void retire(const ProgramThreads::Member& member);
 
@@ -215,7 +204,7 @@ private:
   BehaviorMask unstarted_ = 0;       // have something to do before the first reading
   std::atomic<std::uint32_t> passes_ = 0;
   std::atomic<bool> in_pass_ = false;
-  LinkTurns link_turns_;
+  LinkShare link_share_;
   bool takes_whole_turns_ = false;  // in builds for tests: see has_sole_turn()
 };
 

@@ -1,6 +1,6 @@
 // What the link has of the processor for sure, though its thread ranks below the whole program: the step thread waits for it
 // between two passes. So a host can always ask, stop, go back and upload (a sporadic server; Sprunt, Sha and Lehoczky, 1989).
-// Pure; layers/link_share.hpp and layers/link_turns.hpp keep it, analysis/ counts it.
+// Pure; layers/link_share.hpp keeps it, analysis/ counts it.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@ namespace robosync::policy {
 inline constexpr std::uint32_t kLinkTurnMs = 2;
 inline constexpr std::uint32_t kLinkPeriodMs = 40;
 
-// Who has less of the processor than one part in so many has nothing.
+// Who has no more of the processor than one part in so many waits.
 inline constexpr std::uint32_t kLinkParts = kLinkPeriodMs / kLinkTurnMs;
 
 // From the last byte of a request that takes no long work to its answer, at most.
 inline constexpr std::uint32_t kAnswerMs = 10;
 
-// So long a request waits for the program to leave the link some time, before it takes a turn. It may come when a pass begins,
+// So long the link waits for the program to leave it some time, before it takes a turn. A request may come when a pass begins,
 // and be seen at the pass's end; and the next pass may begin just before the time is over. `step_cost`: of the program.
 constexpr std::uint32_t link_patience_us(std::uint32_t step_cost) {
   constexpr std::uint32_t kAnsweringUs = 1000;

@@ -65,7 +65,6 @@ bool Server::start() {
   ring_.wake(thread_, kNews);
   const auto line_ready = [](void* self) {
     auto& server = *static_cast<Server*>(self);
-    server.runtime_.ask_for_link();
     server.kernel_.signal(server.thread_, kLine);
   };
   const auto line_stop = [](void* self) {
@@ -81,11 +80,9 @@ bool Server::start() {
 void Server::run() {
   gate_.open(board_.reset_reason() == link::ResetReason::power);
   while (true) {
-    std::uint32_t asked = 0;
-    do {
-      asked = runtime_.link_was_asked();
-    } while (work());
-    runtime_.rest_link(asked, kLine | kNews, gate_.busy() ? gate_.due() : keeper_.due());
+    while (work()) {
+    }
+    runtime_.rest_link(kLine | kNews, gate_.busy() ? gate_.due() : keeper_.due());
   }
 }
 
