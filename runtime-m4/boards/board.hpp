@@ -7,8 +7,8 @@
 #include <span>
 
 #include "link/messages.hpp"
+#include "runtime-m4/boards/panel_output.hpp"
 #include "runtime-m4/boards/store.hpp"
-#include "runtime-m4/policy/panel.hpp"
 #include "runtime-m4/policy/pins.hpp"
 #include "runtime-m4/policy/player.hpp"
 
@@ -95,14 +95,8 @@ public:
   // else. What has not left of the command before is given up. On another line: nothing. Nobody but the output guard calls it.
   virtual void say(std::uint8_t /*line*/, const policy::PlayerCommand& /*command*/) {}
 
-  // The panel of lights (pins()) that the program has, from now on: all dark, which it is told with the first picture. Its pin is
-  // driven by it alone until end_panel(), and low between two pictures; nobody else drives it.
-  virtual void begin_panel(const policy::Panel& /*panel*/) {}
-  // The picture on it from now on, which is as those of show(). It goes out while the processor does something else; what has not
-  // left of the one before is given up, and that is seen by nobody.
-  virtual void show_on_panel(std::uint32_t /*picture*/) {}
-  // Its pin is as it was before. At once.
-  virtual void end_panel() {}
+  // A panel of lights on one of its pins (pins()).
+  virtual PanelOutput& panel() { return no_panel; }
 
   // What outlasts a reset; nullptr where the board has nothing for it.
   virtual Store* store() { return nullptr; }

@@ -155,7 +155,7 @@ void OutputGuard::switch_off(const vm::Image* next) {
 
 void OutputGuard::switch_off(const Slot& slot) {
   if (is_on_panel(slot.driver))
-    board_.show_on_panel(0);
+    board_.panel().show(0);
   else if (vm::drives_player(slot.driver))
     say(slot, 0);
   else
@@ -576,7 +576,7 @@ void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
   if (is_on_panel(wiring.driver)) {
     panel_pin_ = wiring.pin;
     on_panel_ = 0;
-    board_.begin_panel(policy::panel_of(wiring));
+    board_.panel().begin(policy::panel_of(wiring));
   }
   lagging_ |= bit(actuator);
   apart_ |= bit(actuator);
@@ -596,7 +596,7 @@ void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
     lagging_ &= ~bit(actuator);
     if (!panel) return say(slot, slot.target);
   }
-  board_.show_on_panel(on_panel_);
+  board_.panel().show(on_panel_);
 }
 
 void OutputGuard::say(const Slot& player, std::uint16_t sound) {
@@ -606,7 +606,7 @@ void OutputGuard::say(const Slot& player, std::uint16_t sound) {
 // Its picture goes with it, when there was one: something else is wired there.
 void OutputGuard::free_panel_pin(const vm::Image& next) {
   if (panel_pin_ == kNoPin || !has_pin(next, panel_pin_)) return;
-  board_.end_panel();
+  board_.panel().end();
   panel_pin_ = kNoPin;
 }
 

@@ -12,7 +12,8 @@ import sys
 
 # Whose calls by pointer lead where: functions whose address stands in the image, by their names. The first that fits counts.
 BOARD = r"boards::(\w+::)?Board::"
-OUTPUTS = BOARD + r"(pwm_write|pwm_read|pins|enable|show|sound|say|begin_panel|show_on_panel|end_panel)\("
+PANEL = r"boards::(PanelSignal<.*>|PanelOutput)::(begin|show|end)\("
+OUTPUTS = BOARD + r"(pwm_write|pwm_read|pins|enable|show|sound|say|panel)\(|" + PANEL
 INPUTS = BOARD + r"(i2c_\w+|input)\("
 STORE = r"boards::(\w+::)?(Eeprom|Store|FlashStore<.*>|Flash)::"
 RUNTIME = r"Runtime::(began|halt|hold_to_budgets|look_at_rules|obey|progress|resting|running|tend_outputs)\("
@@ -30,7 +31,7 @@ CALLED_BY_POINTER = (
     (r"layers::DriverSampler::", r"drivers::\w+::read\(|" + INPUTS + "|" + OUTPUTS),
     (r"layers::AlgorithmLayer::|algorithms::", MODULE),
     (r"guard::OutputGuard::(halt_chips|switch_chips?_off)", BOARD + r"enable\("),
-    (r"guard::OutputGuard::(tell|say)$", BOARD + r"(say|show_on_panel)\("),
+    (r"guard::OutputGuard::(tell|say)$", BOARD + r"(say|panel)\(|" + PANEL),
     (r"guard::OutputGuard::measured_by", BOARD + r"pins\("),
     (r"guard::", OUTPUTS),
     (r"drivers::Device::show\(", BOARD + r"show\("),

@@ -22,6 +22,17 @@
 
 namespace robosync::test {
 
+class NotingPanel final : public boards::PanelOutput {
+public:
+  void begin(const policy::Panel& panel) override { begun.push_back(panel); }
+  void show(std::uint32_t picture) override { pictures.push_back(picture); }
+  void end() override { ++ends; }
+
+  std::vector<policy::Panel> begun;     // all
+  std::vector<std::uint32_t> pictures;  // all
+  unsigned ends = 0;
+};
+
 class NotingBoard final : public boards::Board {
 public:
   struct Transfer {
@@ -91,9 +102,7 @@ public:
   void say(std::uint8_t line, const policy::PlayerCommand& command) override {
     said.emplace_back(line, command);
   }
-  void begin_panel(const policy::Panel& panel) override { panels.push_back(panel); }
-  void show_on_panel(std::uint32_t picture) override { on_panel.push_back(picture); }
-  void end_panel() override { ++panel_ends; }
+  boards::PanelOutput& panel() override { return noting_panel; }
   std::size_t link_write(std::span<const std::byte> bytes) override { return bytes.size(); }
   std::size_t link_read(std::span<std::byte>) override { return 0; }
   void link_start(const boards::LineEvents&) override {}
@@ -128,9 +137,7 @@ public:
   policy::BoardPins board_pins = boards::kPins;
   std::vector<std::uint32_t> pictures;  // all
   std::vector<std::uint32_t> sounds;    // all
-  std::vector<policy::Panel> panels;    // all that were begun
-  std::vector<std::uint32_t> on_panel;  // all
-  unsigned panel_ends = 0;
+  NotingPanel noting_panel;
   unsigned kicks = 0;
   std::uint32_t first_time_out_ms = 50;
   bool watching = false;

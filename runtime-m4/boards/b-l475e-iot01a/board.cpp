@@ -6,7 +6,6 @@
 #include "runtime-m4/boards/b-l475e-iot01a/clock.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/echoes.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/panel.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
@@ -105,18 +104,6 @@ void Board::link_start(const LineEvents& events) {
 
 void Board::say(std::uint8_t line, const policy::PlayerCommand& command) {
   if (line == kPlayerLine) player_.say(command);
-}
-
-void Board::begin_panel(const policy::Panel& panel) {
-  panel::begin(panel);
-}
-
-void Board::show_on_panel(std::uint32_t picture) {
-  panel::show(picture);
-}
-
-void Board::end_panel() {
-  panel::end();
 }
 
 // The watchdog has no interrupt: it resets the chip, and that lets all pins go. Its first period is longer, as

@@ -9,6 +9,7 @@
 
 #include "runtime-m4/boards/b-l475e-iot01a/flash.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/i2c.hpp"
+#include "runtime-m4/boards/b-l475e-iot01a/panel.hpp"
 #include "runtime-m4/boards/b-l475e-iot01a/usart.hpp"
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/common/flash_store.hpp"
@@ -45,9 +46,7 @@ public:
   std::size_t link_read(std::span<std::byte> bytes) override { return line_.read(bytes); }
   void link_start(const LineEvents& events) override;
   void say(std::uint8_t line, const policy::PlayerCommand& command) override;
-  void begin_panel(const policy::Panel& panel) override;
-  void show_on_panel(std::uint32_t picture) override;
-  void end_panel() override;
+  PanelOutput& panel() override { return panel_output(); }
   void watchdog_start() override;
   void watchdog_kick() override;
   std::uint32_t watchdog_ms() const override { return kWatchdogMs; }

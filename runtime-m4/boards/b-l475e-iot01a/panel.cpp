@@ -5,8 +5,7 @@
 #include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
 #include "runtime-m4/boards/common/panel_signal.hpp"
 
-namespace robosync::boards::l475::panel {
-
+namespace robosync::boards::l475 {
 namespace {
 
 struct Spi1 {  // for PanelSignal
@@ -40,20 +39,12 @@ struct Spi1 {  // for PanelSignal
   }
 };
 
-PanelSignal<Spi1> signal;
+constinit PanelSignal<Spi1> signal;
 
 }  // namespace
 
-void begin(const policy::Panel& panel) {
-  signal.begin(panel);
+PanelOutput& panel_output() {
+  return signal;
 }
 
-void show(std::uint32_t picture) {
-  signal.show(picture);
-}
-
-void end() {
-  signal.end();
-}
-
-}  // namespace robosync::boards::l475::panel
+}  // namespace robosync::boards::l475

@@ -17,15 +17,14 @@
 #include <cstring>
 #include <span>
 
-#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/panel_output.hpp"
 
 namespace robosync::boards {
 
 template <typename Hardware>
-class PanelSignal {
+class PanelSignal final : public PanelOutput {
 public:
-  // boards::Board::begin_panel().
-  void begin(const policy::Panel& panel) {
+  void begin(const policy::Panel& panel) override {
     panel_ = panel;
     lit_ = signal_of(panel.color);
     shown_ = 0;
@@ -35,7 +34,7 @@ public:
   }
 
   // What is written while it goes out may be seen for a moment: nothing is, as all of it is sent again.
-  void show(std::uint32_t picture) {
+  void show(std::uint32_t picture) override {
     for (std::uint32_t left = (picture ^ shown_) & kAllLights; left != 0; left &= left - 1) {
       const auto light = static_cast<unsigned>(std::countr_zero(left));
       put(panel_.place_of(light), (picture >> light & 1) != 0 ? lit_ : kDark);
@@ -46,7 +45,7 @@ public:
     Hardware::send(panel_.pin, std::span<const std::byte>(bytes_).first(count));
   }
 
-  void end() { Hardware::let_go(); }
+  void end() override { Hardware::let_go(); }
 
 private:
   static constexpr unsigned kSilenceUs = 300;
@@ -79,7 +78,9 @@ private:
   policy::Panel panel_{};
   Light lit_{};
   std::uint32_t shown_ = 0;
-  std::array<std::byte, 2 * kSilence + policy::kMostPanelLights * kLightBytes> bytes_{};
+  // By itself, so that it takes no flash: there is one of each Hardware.
+  inline static std::array<std::byte, 2 * kSilence + policy::kMostPanelLights * kLightBytes>
+      bytes_{};
 };
 
 }  // namespace robosync::boards

@@ -7,7 +7,6 @@
 #include "runtime-m4/boards/microbit-v2/echoes.hpp"
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/lights.hpp"
-#include "runtime-m4/boards/microbit-v2/panel.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
 #include "runtime-m4/boards/microbit-v2/player.hpp"
 #include "runtime-m4/boards/microbit-v2/speaker.hpp"
@@ -121,18 +120,6 @@ void Board::sound(std::uint32_t hertz) {
 
 void Board::say(std::uint8_t line, const policy::PlayerCommand& command) {
   if (line == kPlayerLine) player::say(command);
-}
-
-void Board::begin_panel(const policy::Panel& panel) {
-  panel::begin(panel);
-}
-
-void Board::show_on_panel(std::uint32_t picture) {
-  panel::show(picture);
-}
-
-void Board::end_panel() {
-  panel::end();
 }
 
 }  // namespace robosync::boards::microbit

@@ -12,6 +12,7 @@
 #include "runtime-m4/boards/common/serial_line.hpp"
 #include "runtime-m4/boards/microbit-v2/flash.hpp"
 #include "runtime-m4/boards/microbit-v2/i2c.hpp"
+#include "runtime-m4/boards/microbit-v2/panel.hpp"
 #include "runtime-m4/boards/microbit-v2/resets.hpp"
 #include "runtime-m4/boards/microbit-v2/uart.hpp"
 #include "runtime-m4/boards/pins.hpp"
@@ -72,9 +73,7 @@ public:
   void show(std::uint32_t picture) override;
   void sound(std::uint32_t hertz) override;
   void say(std::uint8_t line, const policy::PlayerCommand& command) override;
-  void begin_panel(const policy::Panel& panel) override;
-  void show_on_panel(std::uint32_t picture) override;
-  void end_panel() override;
+  PanelOutput& panel() override { return panel_output(); }
   std::size_t link_write(std::span<const std::byte> bytes) override { return line_.write(bytes); }
   std::size_t link_read(std::span<std::byte> bytes) override { return line_.read(bytes); }
   void link_start(const LineEvents& events) override { line_.start(events); }

@@ -6,8 +6,7 @@
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
 #include "runtime-m4/boards/microbit-v2/registers.hpp"
 
-namespace robosync::boards::microbit::panel {
-
+namespace robosync::boards::microbit {
 namespace {
 
 // A byte takes 2 us, and a look a tenth of one at least: so long the end of what is given up is waited for, and no longer.
@@ -48,20 +47,12 @@ struct Spim {  // for PanelSignal
   }
 };
 
-PanelSignal<Spim> signal;
+constinit PanelSignal<Spim> signal;
 
 }  // namespace
 
-void begin(const policy::Panel& panel) {
-  signal.begin(panel);
+PanelOutput& panel_output() {
+  return signal;
 }
 
-void show(std::uint32_t picture) {
-  signal.show(picture);
-}
-
-void end() {
-  signal.end();
-}
-
-}  // namespace robosync::boards::microbit::panel
+}  // namespace robosync::boards::microbit

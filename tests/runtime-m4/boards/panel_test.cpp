@@ -37,9 +37,7 @@ std::vector<std::uint16_t> panel_pins(std::string_view board) {
 struct Microbit : tests::NrfSpim {
   static constexpr const char* kName = "microbit-v2";
   Microbit() { boards::microbit::pins::start(); }
-  static void begin(const policy::Panel& panel) { boards::microbit::panel::begin(panel); }
-  static void show(std::uint32_t picture) { boards::microbit::panel::show(picture); }
-  static void end() { boards::microbit::panel::end(); }
+  static boards::PanelOutput& output() { return boards::microbit::panel_output(); }
   bool has_pin() const { return pin() != ~0U; }
 };
 
@@ -49,9 +47,7 @@ struct L475 : tests::Stm32Spi {
     boards::l475::rcc::kAhb2.set(boards::l475::rcc::kPortsAToD);
     boards::l475::pins::start();
   }
-  static void begin(const policy::Panel& panel) { boards::l475::panel::begin(panel); }
-  static void show(std::uint32_t picture) { boards::l475::panel::show(picture); }
-  static void end() { boards::l475::panel::end(); }
+  static boards::PanelOutput& output() { return boards::l475::panel_output(); }
 };
 
 template <class Chip>
@@ -60,10 +56,10 @@ struct Wired : Chip {
       : panel(with), chain(std::size_t{with.side} * with.side) {
     Chip::idle = between;
     Chip::heard = [this](bool high, unsigned ns) { chain.hear(high, ns); };
-    Chip::begin(panel);
+    Chip::output().begin(panel);
   }
   std::vector<std::uint32_t> after(std::uint32_t picture, unsigned us = kLong) {
-    Chip::show(picture);
+    Chip::output().show(picture);
     Chip::pass(us);
     return chain.shown();
   }
@@ -157,7 +153,7 @@ TEMPLATE_TEST_CASE("panel: one that is given up in its midst leaves nothing behi
         CHECK(board.after(picture) == drawn(picture, panel));
       }
       board.after(0x1FF'FFFF, static_cast<unsigned>(random() % 2500));
-      TestType::begin(panel);  // the next program's, which begins in the dark
+      TestType::output().begin(panel);  // the next program's, which begins in the dark
       CHECK(board.after(0) == drawn(0, panel));
     }
 }
@@ -180,9 +176,9 @@ TEMPLATE_TEST_CASE("panel: before its first picture and behind its end it has no
     CHECK_FALSE(board.has_pin());
     board.after(0x155'5555, us);
     CHECK(board.has_pin());
-    TestType::end();
+    TestType::output().end();
     CHECK_FALSE(board.has_pin());
-    TestType::end();
+    TestType::output().end();
     CHECK(board.after(0x0AA'AAAA) == drawn(0x0AA'AAAA, board.panel));  // it may come again
   }
 }
@@ -202,15 +198,15 @@ TEST_CASE("panel: a module that does nothing, as that of an emulator, holds nobo
   Wired<Microbit> board(all_panels<Microbit>().front());
   board.is_dead = true;
   for (unsigned round = 0; round < 10; ++round)
-    Microbit::show(round);
-  Microbit::end();
+    Microbit::output().show(round);
+  Microbit::output().end();
   CHECK(board.looks <= 10 * 20);
 }
 
 TEST_CASE("panel: a pin that a panel has had gives pulses again") {
   Wired<L475> board(all_panels<L475>().front());
   board.after(1);
-  L475::end();
+  L475::output().end();
   boards::l475::pins::write(11, 1000);
   unsigned high = 0;
   for (unsigned us = 0; us < 40'000; ++us) {

@@ -37,7 +37,7 @@ struct Shown {
     pass(kTime);
   }
   void pass(unsigned milliseconds) { rig.run(at += milliseconds); }
-  const Pictures& pictures() const { return rig.board.on_panel; }
+  const Pictures& pictures() const { return rig.board.noting_panel.pictures; }
   std::uint32_t now() const { return pictures().back(); }
 
   test::Rig rig;
@@ -84,8 +84,8 @@ TEST_CASE("ws2812: its words are those of a matrix, and each has the picture of 
 TEST_CASE("ws2812: the board has what robot.json says of the panel") {
   const auto panel_of = [](const std::string& more) {
     const Shown robot("SHOW face happy", more);
-    REQUIRE(robot.rig.board.panels.size() == 1);
-    return robot.rig.board.panels.front();
+    REQUIRE(robot.rig.board.noting_panel.begun.size() == 1);
+    return robot.rig.board.noting_panel.begun.front();
   };
   const policy::Panel usual = panel_of("");
   CHECK(usual.pin == 1);
@@ -128,7 +128,7 @@ TEST_CASE("ws2812: a picture has its time; of those that come meanwhile only the
   outputs.own(image);
   const auto at = [&](unsigned milliseconds) {
     outputs.go_on(kernel::milliseconds(milliseconds));
-    return board.on_panel;
+    return board.noting_panel.pictures;
   };
   outputs.show(1, 5);
   CHECK(at(policy::kPanelGapMs - 1).empty());
@@ -198,7 +198,7 @@ TEST_CASE(
     image.actuators = wiring;
     image.sensors = sensors;
     outputs.own(image);
-    return board.panel_ends;
+    return board.noting_panel.ends;
   };
   const auto panel = program(vm::DriverId::ws2812_face, 3);
   CHECK(own(panel) == 0);
@@ -232,7 +232,7 @@ TEST_CASE("ws2812: the guard shows nothing for whom it has halted, nor for who h
   kernel::Time now = 0;
   const auto told = [&] {
     outputs.go_on(now += kernel::milliseconds(policy::kPanelGapMs));
-    return board.on_panel;
+    return board.noting_panel.pictures;
   };
   outputs.show(1, 7);  // nobody owns it yet
   CHECK(told().empty());
@@ -249,7 +249,7 @@ TEST_CASE("ws2812: the guard shows nothing for whom it has halted, nor for who h
   outputs.show(1, 5);
   CHECK(told() == Pictures{0, 0, 5});
   outputs.disown();
-  CHECK(board.on_panel == Pictures{0, 0, 5, 0});
+  CHECK(board.noting_panel.pictures == Pictures{0, 0, 5, 0});
   outputs.show(1, 5);
   CHECK(told() == Pictures{0, 0, 5, 0});
 }
