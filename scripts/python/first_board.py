@@ -11,7 +11,8 @@ import rsc
 
 CLOCK_SECONDS = 10
 CLOCK_TOLERANCE = 0.01
-BETWEEN = 1  # second: the board starts its program, and the line's other end is closed
+LOOKS_EVERY = 1  # second
+PORT_SECONDS = 15
 KEPT_SECONDS = 15  # until a program that is new is kept: its trial, and writing it
 READ = "3s"
 ROBOT = """{{"board": "{board}",
@@ -39,12 +40,22 @@ class Table:
         self.row(what, should, got, should == got)
 
 
-def find_port(board):
-    answering = [port["port"] for port in json.loads(rsc.run("ports", "--format", "json"))
-                 if (port.get("board") or {}).get("name") == board]
+def port_of(board, listed):
+    """Of what `rsc ports` lists, the one at which such a board answers."""
+    answering = [one["port"] for one in listed if "port" in one and one["board"] == board]
     if len(answering) != 1:
         raise rsc.RscError(f"{len(answering)} ports at which a {board} answers: name it with --port (`rsc ports`)")
     return answering[0]
+
+
+def find_port(board):
+    """A board that was flashed just now comes back after a moment."""
+    deadline = time.monotonic() + PORT_SECONDS
+    while True:
+        listed = json.loads(rsc.run("ports", "--format", "json"))
+        if any(one["board"] == board for one in listed if "port" in one) or time.monotonic() > deadline:
+            return port_of(board, listed)
+        time.sleep(LOOKS_EVERY)
 
 
 def look_at_itself(table, board, port):
@@ -88,7 +99,7 @@ def look_at_program(table, board, port, folder):
 def look_at_store(table, port):
     deadline = time.monotonic() + KEPT_SECONDS
     while (state := rsc.info(port)["kept"]["state"]) not in ("kept", "no_store") and time.monotonic() < deadline:
-        time.sleep(BETWEEN)
+        time.sleep(LOOKS_EVERY)
     table.row("the program, after its trial", "kept, or no_store", state, state in ("kept", "no_store"))
 
 

@@ -5,7 +5,8 @@ import sys
 import unittest
 
 from board import NAME, REAL_TIME, Board
-from rsc import ROOT
+from first_board import port_of
+from rsc import ROOT, RscError
 
 
 def first_board(name, port):
@@ -29,6 +30,16 @@ class FirstBoard(unittest.TestCase):
             done = first_board("microbit-v2", board.port)
         self.assertIn("| board | microbit-v2 | mps2-an386 | **NOT** |", done.stdout)
         self.assertNotEqual(done.returncode, 0)
+
+    def test_the_port_is_found(self):
+        listed = [{"port": "/dev/ttyS0", "description": "", "board": None, "may_be": []},
+                  {"port": "/dev/ttyACM1", "description": "", "board": "microbit-v2", "may_be": [], "firmware": "0.1.0"},
+                  {"port": "/dev/ttyACM0", "description": "", "board": NAME, "may_be": [], "firmware": "0.1.0"},
+                  {"drive": "/media/MICROBIT", "board": NAME}]
+        self.assertEqual(port_of(NAME, listed), "/dev/ttyACM0")
+        for wrong in (listed[:2], listed + listed[2:3]):
+            with self.assertRaisesRegex(RscError, "name it with --port"):
+                port_of(NAME, wrong)
 
     def test_nobody_there(self):
         done = first_board(NAME, "unix:/nowhere")
