@@ -1,7 +1,6 @@
 // See mqtt.hpp.
 #include "rsc/bridge/mqtt.hpp"
 
-#include <charconv>
 #include <deque>
 #include <map>
 #include <mutex>
@@ -12,6 +11,7 @@
 
 #include "rsc/failure.hpp"
 #include "rsc/loaded_library.hpp"
+#include "rsc/tcp_port.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -20,7 +20,6 @@ constexpr int kKeepAliveS = 10;
 constexpr int kQos = 1;
 constexpr unsigned kLeastDelayS = 1, kMostDelayS = 10;
 constexpr std::size_t kMaxWaiting = 1000;  // messages for the robot; of more the oldest are dropped
-constexpr int kMostPort = 65535;
 
 // What is used of the library.
 struct Mosquitto {
@@ -191,9 +190,10 @@ Mqtt::Place parse_broker(const std::string& text) {
   if (place.host.starts_with('[') && place.host.ends_with(']'))
     place.host = place.host.substr(1, place.host.size() - 2);
   if (has_port) {
-    const char* const end = text.data() + text.size();
-    const auto read = std::from_chars(text.data() + colon + 1, end, place.port);
-    if (read.ec != std::errc{} || read.ptr != end || place.port < 1 || place.port > kMostPort)
+    const auto port = tcp_port(std::string_view(text).substr(colon + 1));
+    if (port)
+      place.port = *port;
+    else
       place.host.clear();
   }
   if (place.host.empty())

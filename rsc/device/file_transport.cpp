@@ -3,7 +3,6 @@
 #include "rsc/device/file_transport.hpp"
 
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -21,6 +20,7 @@
 
 #include "rsc/device/line_lock.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/tcp_port.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -161,18 +161,10 @@ std::unique_ptr<Transport> open_unix_socket(const std::string& path) {
   return std::make_unique<FileTransport>(name, std::move(file), FileTransport::Kind::socket);
 }
 
-// getaddrinfo() takes a larger number for another port.
-bool is_port(const std::string& text) {
-  unsigned number = 0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, number);
-  return read.ec == std::errc{} && read.ptr == end && number >= 1 && number <= UINT16_MAX;
-}
-
 std::unique_ptr<Transport> open_tcp_socket(const std::string& host_and_port) {
   const std::string name = "tcp:" + host_and_port;
   const std::size_t colon = host_and_port.rfind(':');
-  if (colon == std::string::npos || colon == 0 || !is_port(host_and_port.substr(colon + 1)))
+  if (colon == std::string::npos || colon == 0 || !tcp_port(host_and_port.substr(colon + 1)))
     throw Failure(Exit::usage, name + ": give host and port, as in tcp:localhost:5555");
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;

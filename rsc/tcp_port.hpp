@@ -1,0 +1,13 @@
+// The number of a port, as a person writes it behind a host.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace robosync::tool {
+
+// 1 to 65535. getaddrinfo() takes a larger number for another port.
+[[nodiscard]] std::optional<std::uint16_t> tcp_port(std::string_view text);
+
+}  // namespace robosync::tool
