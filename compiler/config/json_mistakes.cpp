@@ -1,0 +1,311 @@
+// See json_mistakes.hpp. The parser's own words are asked only whether a colon was expected, and whether a number was too large.
+#include "compiler/config/json_mistakes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+
+#include "compiler/config/units.hpp"
+#include "compiler/config/values.hpp"
+#include "compiler/source/ascii.hpp"
+#include "compiler/source/character_names.hpp"
+#include "compiler/source/utf8.hpp"
+
+namespace robosync::compiler::json {
+namespace {
+
+bool is_space(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
+bool is_word(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '+' ||
+         c == '-';
+}
+
+// What the parser did not like, and the last character before it that is not white space.
+struct WrongText {
+  std::size_t begin = 0, end = 0;
+  std::size_t before = 0;  // its index; only if `previous` is not 0
+  char previous = 0;
+};
+
+WrongText find_wrong_text(const Mistake& mistake) {
+  const std::string_view text = mistake.text;
+  std::size_t first = mistake.good_until;
+  while (first < text.size() && (is_space(text[first]) || text[first] == ',' || text[first] == ':'))
+    ++first;
+  WrongText wrong;
+  wrong.begin = std::min(mistake.stopped_at == 0 ? 0 : mistake.stopped_at - 1, text.size());
+  wrong.end = std::min(wrong.begin + 1, text.size());
+  const bool whole_string = wrong.begin < text.size() && first < wrong.begin &&
+                            text[first] == '"' && text[wrong.begin] == '"';
+  if (whole_string) {
+    wrong.begin = first;
+  } else if (first < wrong.end && is_word(text[first])) {
+    wrong.begin = first;
+    wrong.end = first + 1;
+  }
+  if (wrong.begin < text.size() && is_word(text[wrong.begin])) {
+    while (wrong.begin > 0 && is_word(text[wrong.begin - 1]))
+      --wrong.begin;
+    while (wrong.end < text.size() && is_word(text[wrong.end]))
+      ++wrong.end;
+  }
+  for (std::size_t i = wrong.begin; i > 0; --i) {
+    if (is_space(text[i - 1])) continue;
+    wrong.before = i - 1;
+    wrong.previous = text[i - 1];
+    break;
+  }
+  return wrong;
+}
+
+bool ends_value(char c) {
+  return c == '"' || c == '}' || c == ']' || std::isalnum(static_cast<unsigned char>(c)) != 0;
+}
+
+bool mentions(const Mistake& mistake, std::string_view words) {
+  return mistake.reason.find(words) != std::string_view::npos;
+}
+
+Diagnostic& at_end(const Mistake& mistake, Diagnostics& diagnostics) {
+  Diagnostic& d =
+      diagnostics.report(Code::E0201, mistake.good_until == 0 ? "there is no JSON in this file"
+                                                              : "the file ends too early");
+  if (mistake.open_span) {
+    const char bracket = mistake.text[mistake.open_span->begin];
+    const Span opened{mistake.file, mistake.open_span->begin, mistake.open_span->begin + 1};
+    d.label(opened, std::string("this is not closed with `") + (bracket == '{' ? '}' : ']') + "`",
+            false);
+  }
+  return d;
+}
+
+std::string describe_word(std::string_view word) {
+  const char c = word.front();
+  if (std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '+' || c == '-' || c == '.')
+    return "JSON cannot read `" + std::string(word) + "` as a number";
+  return "`" + std::string(word) + "` needs double quotes here";
+}
+
+std::string describe_character(const Mistake& mistake, const WrongText& wrong) {
+  const char c = mistake.text[wrong.begin];
+  const auto byte = static_cast<unsigned char>(c);
+  if (byte >= 0x80)
+    return "JSON does not use " + utf8::describe(utf8::decode(mistake.text, wrong.begin).value) +
+           " outside of strings";
+  if (c == '\'') return "JSON strings stand in double quotes";
+  if (c == '/' || c == '#' || c == '%') return "JSON has no comments";
+  if (byte < 0x20)
+    return "a string goes over the end of its line, or has a control character in it";
+  if (mistake.good_until > 0 && !mistake.open_span) return "there is something after the end";
+  if (is_word(c)) return describe_word(mistake.text.substr(wrong.begin, wrong.end - wrong.begin));
+  return "this is not JSON here";
+}
+
+// ---- mistakes that can be mended
+
+Span span_of(const Mistake& mistake, std::size_t begin, std::size_t end) {
+  return {mistake.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+}
+
+constexpr std::array<char32_t, 8> kCurlyQuotes = {0x2018, 0x2019, 0x201A, 0x201C,
+                                                  0x201D, 0x201E, 0xAB,   0xBB};
+
+bool is_curly(char32_t point) {
+  return std::ranges::find(kCurlyQuotes, point) != kCurlyQuotes.end();
+}
+
+// A string in curly quotes, as far as the second one in its line.
+bool is_in_curly_quotes(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const utf8::CodePoint opening = utf8::decode(mistake.text, wrong.begin);
+  if (!is_curly(opening.value)) return false;
+  Diagnostic& d =
+      diagnostics.report(Code::E0201, "JSON strings stand in straight quotes, not in curly ones")
+          .label(span_of(mistake, wrong.begin, wrong.begin + opening.size));
+  const std::size_t inner = wrong.begin + opening.size;
+  for (std::size_t at = inner; at < mistake.text.size();) {
+    const utf8::CodePoint point = utf8::decode(mistake.text, at);
+    const bool straight = point.value == '"';
+    if (point.value == '\n' || point.value == '\\') break;
+    if (straight || is_curly(point.value)) {
+      d.fix(span_of(mistake, wrong.begin, at + point.size),
+            "\"" + std::string(mistake.text.substr(inner, at - inner)) + "\"");
+      break;
+    }
+    at += point.size;
+  }
+  return true;
+}
+
+// `True`, as Python has it.
+bool is_foreign_word(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const std::string word(mistake.text.substr(wrong.begin, wrong.end - wrong.begin));
+  const Span here = span_of(mistake, wrong.begin, wrong.end);
+  const bool in_list = mistake.open_span && mistake.text[mistake.open_span->begin] == '[';
+  const bool is_value =
+      wrong.previous == ':' || (in_list && (wrong.previous == '[' || wrong.previous == ','));
+  if (!is_value) return false;
+  for (const std::string_view known : {"true", "false"}) {
+    if (!ascii::same(word, known) || word == known) continue;
+    diagnostics
+        .report(Code::E0201, "`" + word + "` is written `" + std::string(known) + "` in JSON")
+        .label(here)
+        .fix(here, std::string(known));
+    return true;
+  }
+  if (word != "None" && (!ascii::same(word, "null") || word == "null")) return false;
+  diagnostics.report(Code::E0201, "JSON does not know `" + word + "`")
+      .label(here)
+      .helps("what is not there is left out, with its key");
+  return true;
+}
+
+// `"name": "cars, "type": …`: the text goes on to the quote that should begin the next one.
+bool is_unclosed_string(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const std::string_view text = mistake.text;
+  const bool touches = wrong.previous == '"' && wrong.before + 1 == wrong.begin && wrong.begin >= 2;
+  if (!touches || std::isalpha(static_cast<unsigned char>(text[wrong.begin])) == 0) return false;
+  const std::size_t opening = text.rfind('"', wrong.before - 1);
+  if (opening == std::string_view::npos) return false;
+  Diagnostic& d = diagnostics.report(Code::E0201, "this text has no quote at its end")
+                      .label(span_of(mistake, opening, wrong.before));
+  const std::size_t last = text.find_last_not_of(" \t", wrong.before - 1);
+  if (last > opening + 1 && (text[last] == ',' || text[last] == ':'))
+    d.fix(span_of(mistake, last, last), "\"", Applicability::likely);
+  return true;
+}
+
+// ---- brackets that do not fit
+
+char closer_of(char opener) {
+  return opener == '{' ? '}' : ']';
+}
+
+// Do the brackets outside of strings fit?
+bool is_balanced(std::string_view text) {
+  std::string open;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '"') {
+      for (++at; at < text.size() && text[at] != '"'; ++at)
+        if (text[at] == '\\') ++at;
+    } else if (c == '{' || c == '[') {
+      open.push_back(closer_of(c));
+    } else if (c == '}' || c == ']') {
+      if (open.empty() || open.back() != c) return false;
+      open.pop_back();
+    }
+  }
+  return open.empty();
+}
+
+// `["0deg", "90deg"}`: which of the two mends is meant, the rest of the text says: with one of them all brackets fit.
+bool is_wrong_bracket(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const char c = mistake.text[wrong.begin];
+  if (!mistake.open_span || wrong.previous == ',' || wrong.previous == ':' ||
+      (c != '}' && c != ']' && c != ')'))
+    return false;
+  const std::size_t opening = mistake.open_span->begin;
+  const std::string closer(1, closer_of(mistake.text[opening]));
+  if (closer[0] == c) return false;
+  Diagnostic& d =
+      diagnostics
+          .report(Code::E0201, std::string(closer == "]" ? "a list" : "an object") +
+                                   " is closed with `" + closer + "`, not with `" + c + "`")
+          .label(span_of(mistake, wrong.begin, wrong.end))
+          .label(span_of(mistake, opening, opening + 1), "opened here", false);
+  std::string mended(mistake.text);
+  mended.insert(wrong.begin, closer);
+  const std::size_t behind = wrong.before + 1;
+  if (c != ')' && is_balanced(mended))
+    d.helps("`" + closer + "` is missing in front of it")
+        .fix(span_of(mistake, behind, behind), closer, Applicability::likely);
+  mended.erase(wrong.begin + 1, 1);
+  if (is_balanced(mended))
+    d.fix(span_of(mistake, wrong.begin, wrong.end), closer, Applicability::likely);
+  return true;
+}
+
+// `"range": (0, 90)`
+bool is_round_bracket(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const std::string_view text = mistake.text;
+  const bool is_value = wrong.previous == ':' || wrong.previous == ',' || wrong.previous == '[';
+  if (text[wrong.begin] != '(' || !mistake.open_span || !is_value) return false;
+  Diagnostic& d = diagnostics.report(Code::E0201, "a list stands in square brackets in JSON")
+                      .label(span_of(mistake, wrong.begin, wrong.end));
+  const std::size_t last = text.find_first_of("(){}[]", wrong.begin + 1);
+  if (last != std::string_view::npos && text[last] == ')')
+    d.fix(span_of(mistake, wrong.begin, last + 1),
+          "[" + std::string(text.substr(wrong.begin + 1, last - wrong.begin - 1)) + "]",
+          Applicability::likely);
+  return true;
+}
+
+bool is_semicolon(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const std::string_view text = mistake.text;
+  if (text[wrong.begin] != ';' || !mistake.open_span || !ends_value(wrong.previous) ||
+      mentions(mistake, "object separator"))
+    return false;
+  const std::size_t next = text.find_first_not_of(" \t\r\n", wrong.begin + 1);
+  const bool last = next == std::string_view::npos || text[next] == '}' || text[next] == ']';
+  const Span here = span_of(mistake, wrong.begin, wrong.end);
+  diagnostics
+      .report(Code::E0201, last ? "nothing stands behind the last entry in JSON, no `;`"
+                                : "a comma stands here in JSON, no `;`")
+      .label(here)
+      .fix(here, last ? "" : ",");
+  return true;
+}
+
+bool is_mended(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  return is_in_curly_quotes(mistake, wrong, diagnostics) ||
+         is_unclosed_string(mistake, wrong, diagnostics) ||
+         is_wrong_bracket(mistake, wrong, diagnostics) ||
+         is_round_bracket(mistake, wrong, diagnostics) ||
+         is_semicolon(mistake, wrong, diagnostics) ||
+         (is_word(mistake.text[wrong.begin]) && is_foreign_word(mistake, wrong, diagnostics));
+}
+
+}  // namespace
+
+void report_mistake(const Mistake& mistake, Diagnostics& diagnostics) {
+  const WrongText wrong = find_wrong_text(mistake);
+  const auto span = [&](std::size_t begin, std::size_t end) {
+    return span_of(mistake, begin, end);
+  };
+  const Span here = span(wrong.begin, wrong.end);
+  if (wrong.begin >= mistake.text.size()) {
+    at_end(mistake, diagnostics).label(here);
+    return;
+  }
+  if (is_mended(mistake, wrong, diagnostics)) return;
+  const char c = mistake.text[wrong.begin];
+  if (mentions(mistake, "number overflow")) {
+    const std::string number(mistake.text.substr(wrong.begin, wrong.end - wrong.begin));
+    diagnostics.report(Code::E0201, no_room_for(number, canonical_unit(vm::Dimension::number)))
+        .label(here);
+  } else if (wrong.previous == ',' && (c == '}' || c == ']')) {
+    diagnostics.report(Code::E0201, std::string("there is a comma too many before `") + c + "`")
+        .label(span(wrong.before, wrong.before + 1))
+        .fix(span(wrong.before, wrong.before + 1), "");
+  } else if (mentions(mistake, "object separator") && wrong.previous == '"' && !is_space(c) &&
+             c != ',') {
+    diagnostics
+        .report(Code::E0201, c == '=' ? "a colon stands between a key and its value, no `=`"
+                                      : "a colon is missing between the key and its value")
+        .label(here)
+        .fix(c == '=' ? here : span(wrong.before + 1, wrong.before + 1), ":");
+  } else if (mistake.open_span && ends_value(wrong.previous) &&
+             (c == '"' || c == '{' || c == '[') && wrong.before + 1 == mistake.good_until) {
+    diagnostics.report(Code::E0201, "a comma is missing before this")
+        .label(here)
+        .fix(span(wrong.before + 1, wrong.before + 1), ",");
+  } else {
+    diagnostics.report(Code::E0201, describe_character(mistake, wrong)).label(here);
+  }
+}
+
+}  // namespace robosync::compiler::json
