@@ -40,8 +40,7 @@ std::optional<LintLevel> level_above(const Diagnostic& diagnostic, const SourceM
   const Span place = diagnostic.labels.front().span;
   const SourceFile& file = sources.file(place.file);
   for (std::uint32_t line = file.line_of(place.begin); line > 1; --line) {
-    std::string_view text = file.line(line - 1);
-    if (text.starts_with(utf8::kByteOrderMark)) text.remove_prefix(utf8::kByteOrderMark.size());
+    std::string_view text = utf8::without_byte_order_mark(file.line(line - 1));
     text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
     if (!text.starts_with('#') && !text.starts_with('%')) return std::nullopt;
     if (const auto level = level_in(text.substr(1), diagnostic.code)) return level;

@@ -12,6 +12,10 @@ namespace robosync::compiler::utf8 {
 inline constexpr char32_t replacement = 0xFFFD;
 // What editors on Windows, and Excel, write in front of a text.
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::string_view without_byte_order_mark(std::string_view text) {
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  return text;
+}
 
 struct CodePoint {
   char32_t value = replacement;

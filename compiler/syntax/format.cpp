@@ -112,8 +112,8 @@ struct Line {
   std::size_t level = 0;
   std::vector<std::string> cells;  // one, but for rows of a table
   std::string_view comment;
-  bool is_doubtful =
-      false;  // the comment may be meant otherwise: it stays as near, for then the lexer says so
+  // May the comment be meant otherwise? The lexer says so only where it stands so near: it stays there.
+  bool is_doubtful = false;
   Table table = Table::none;
 
   [[nodiscard]] bool is_blank() const { return cells.empty() && comment.empty(); }
@@ -186,11 +186,6 @@ private:
     return found;
   }
 
-  static std::string_view comment_of(std::string_view text) {
-    if (text.starts_with(utf8::kByteOrderMark)) text.remove_prefix(utf8::kByteOrderMark.size());
-    return trimmed(text);
-  }
-
   bool is_doubtful(std::string_view comment) const {
     if (comment.empty()) return false;
     const auto begin = static_cast<std::size_t>(comment.data() - source_.text().data());
@@ -205,7 +200,7 @@ private:
     const Tokens tokens = tokens_of(begin + text.size());
     Line line;
     const std::size_t code = tokens.empty() ? 0 : tokens.back().span.end - begin;
-    line.comment = comment_of(text.substr(std::min(code, text.size())));
+    line.comment = trimmed(utf8::without_byte_order_mark(text.substr(std::min(code, text.size()))));
     line.is_doubtful = is_doubtful(line.comment);
     if (!line.comment.empty() && line.comment.front() != '#' && line.comment.front() != '%')
       return false;

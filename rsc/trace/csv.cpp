@@ -33,9 +33,7 @@ public:
 
   CsvTable read() {
     const std::string text = read_text(file_);
-    std::string_view rest = text;
-    using compiler::utf8::kByteOrderMark;
-    if (rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
+    std::string_view rest = compiler::utf8::without_byte_order_mark(text);
     csv_set_delim(&parser_, static_cast<unsigned char>(delimiter_of(rest)));
     while (!rest.empty()) {
       const std::size_t length = std::min(rest.find('\n'), rest.size() - 1) + 1;

@@ -150,8 +150,8 @@ const vm::Sensor* EventReader::sensor() const {
 std::string EventReader::sensor_name() const {
   if (shape_.subject == About::sensor)
     return name_at(&vm::Image::sensors, event_.subject, "sensor");
-  const vm::Channel* const channel = at(&vm::Image::channels, event_.subject);
-  return channel == nullptr ? "?" : name_at(&vm::Image::sensors, channel->sensor, "sensor");
+  const vm::Channel* const measured = channel();
+  return measured == nullptr ? "?" : name_at(&vm::Image::sensors, measured->sensor, "sensor");
 }
 const vm::Channel* EventReader::channel() const {
   return at(&vm::Image::channels, event_.subject);

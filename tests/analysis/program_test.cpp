@@ -317,6 +317,31 @@ TEST_CASE("a program that may leave the link nothing waits for it, and only such
   CHECK(std::next(turn_of(much))->cost == policy::kLinkTurnMs * ms);
 }
 
+TEST_CASE("what actuators are told takes its time, in programs that have them") {
+  const auto set_with = [](const std::string& actuator) {
+    const std::string robot =
+        R"({"board": "microbit-v2", "sensors": [{"name": "a", "device": "button_a"}],
+      "actuators": [{"name": "it", )" +
+        actuator + "}]}";
+    const tool::Program program = test::as_program(compiler::compile(
+        {"robot.rsl", "WHEN a IS pressed DO\n  STOP it\nEND\n"}, {"robot.json", robot}));
+    return analysis::task_set_of(program.image(), costs_of_board("microbit-v2"), tool::module_cost);
+  };
+  const auto cost_of = [](const analysis::TaskSet& set, const char* name) -> Instructions {
+    const auto found = std::ranges::find(set.interferences, name, &analysis::Interference::name);
+    return found == set.interferences.end() ? 0 : found->cost;
+  };
+  const policy::BoardCosts& board = costs_of_board("microbit-v2");
+  CHECK(cost_of(set_with(R"("type": "GPIO", "pin": 0, "device": "ws2812")"), "the panel") ==
+        board.panel);
+  CHECK(cost_of(set_with(R"("device": "lights")"), "the lights") == board.row);
+  CHECK(cost_of(set_with(R"("type": "UART", "bus": 1, "device": "dfplayer")"),
+                "the sound player") == board.say);
+  const analysis::TaskSet shown = set_with(R"("type": "VIRTUAL", "device": "ws2812")");
+  for (const char* const name : {"the panel", "the lights", "the sound player"})
+    CHECK(cost_of(shown, name) == 0);
+}
+
 TEST_CASE("a program that is late on one path though the processor has time") {
   // Two steps that take long, seldom: the touch is answered after its next reading.
   const Robot robot("200Hz",

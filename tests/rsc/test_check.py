@@ -115,6 +115,7 @@ class Check(unittest.TestCase):
         self.assertNotIn("W0203", self.levels("# allow W0203: the first reading shall choose\n" + ASKS_AT_START))
         self.assertEqual(self.levels("% why\n  % Warn W0203\n# more\n" + ASKS_AT_START)["W0203"], "warning")
         self.assertEqual(self.levels("# deny W0203\n" + ASKS_AT_START, "--allow", "W0203")["W0203"], "error")
+        self.assertNotIn("W0203", self.levels("\ufeff# allow W0203\n" + ASKS_AT_START), "a byte order mark is no part of it")
         for other in ("# allow W0204\n", "# allow W0203\n\n", "# allowing W0203\n", "LET y = 1  # allow W0203\n"):
             self.assertIn("W0203", self.levels(other + ASKS_AT_START), other)
 
