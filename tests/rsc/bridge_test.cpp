@@ -285,8 +285,8 @@ TEST_CASE("rsc bridge says what is wrong with a broker") {
   Outcome outcome = device.run({"bridge", "--mqtt", "localhost:" + std::to_string(free_port())});
   CHECK(outcome.exit == 3);
   CHECK_THAT(outcome.err, Contains("is a broker running there?"));
-  for (const char* wrong :
-       {"", ":1883", "localhost:", "localhost:0", "localhost:70000", "localhost:x"}) {
+  for (const char* wrong : {"", ":1883", "localhost:", "localhost:0", "localhost:70000",
+                            "localhost:x", "localhost:18x"}) {
     CAPTURE(wrong);
     CHECK(device.run({"bridge", "--mqtt", wrong}).exit == 2);
   }

@@ -2,8 +2,6 @@
 #include "tests/fuzz/texts/targets.hpp"
 
 #include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -21,6 +19,7 @@
 #include "rsc/lsp/server.hpp"
 #include "rsc/program.hpp"
 #include "rsc/trace/scenario.hpp"
+#include "tests/fuzz/texts/require.hpp"
 #include "vm/disassembler.hpp"
 #include "vm/verifier.hpp"
 
@@ -41,12 +40,6 @@ constexpr std::string_view kRobot = R"({
 constexpr std::string_view kProgram =
     "WHEN near DISTANCE < 30cm FOR 1s DO\n  MOVE left_arm TO 40deg\n  PLAY sound "
     "\"greeting.wav\"\nEND\n";
-
-void require(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "%s\n", what);
-  std::abort();
-}
 
 // What the compiler says is whole, and what it makes is what the board accepts.
 void check(const compiler::Result& result) {

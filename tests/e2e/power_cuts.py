@@ -1,0 +1,132 @@
+"""Uploads that end in a cut of the power, or in a reset, at a drawn instant: whatever was under way, the robot then runs a program
+that it kept before, or the new one, whole.
+
+The board of ROBOSYNC_BOARD, which must have a store. The store goes on from run to run, so its slots are used in turn. The seed draws
+what happens and when; as the host's time is real, the same seed meets other instants of the board's.
+"""
+
+import argparse
+import json
+import random
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import rsc
+from board import FAST, FIRMWARE, NAME, Board, end_on_signals
+
+PATIENCE = 20  # seconds
+LONGEST = 0.6  # from the call of `rsc upload` to the cut: uploads take 0.1 s to 0.3 s, and keeping the program as long again
+PROGRAM = "WHEN touch LEVEL > {threshold}\nDO LOG \"touched\", {threshold}\nEND\n"
+ROBOT = {"board": NAME, "sensors": [{"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}}], "actuators": []}
+SIZES = (1, 40)  # rules of the two programs: one frame, and many
+
+
+class Broken(AssertionError):
+    """The robot is not as it must be after a cut."""
+
+
+class Robot:
+    """A board that is switched off and on."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        self.images = [self._compile(rules) for rules in SIZES]
+        self.board = None
+        self.switch_on()
+        self.names = {image: self._keep(image) for image in self.images}
+
+    def _compile(self, rules):
+        program, image = self.folder / f"{rules}.rsl", self.folder / f"{rules}.rsb"
+        (self.folder / "robot.json").write_text(json.dumps(ROBOT))
+        program.write_text("".join(PROGRAM.format(threshold=rule % 10) for rule in range(rules)))
+        rsc.run("compile", program, "--seed", 1, "-o", image)
+        return image
+
+    def _keep(self, image):
+        rsc.run("upload", image, "--port", self.board.port)
+        return self.settled()["kept"]["program"]["hash"]
+
+    def switch_on(self):
+        self.board = Board(FIRMWARE, icount=FAST, store=self.folder / "store")
+
+    def uploading(self, image):
+        return subprocess.Popen([rsc.TOOL, "upload", image, "--port", self.board.port], stdin=subprocess.DEVNULL,
+                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+    def settled(self):
+        """What it says of itself when it runs a program, and no trial is under way any more. (It may have started with it between the two
+        questions.)"""
+        give_up = time.monotonic() + PATIENCE
+        while True:
+            said = rsc.info(self.board.port)
+            if said["kept"]["state"] == "kept" and said["board"]["program"]:
+                return said
+            if time.monotonic() > give_up:
+                raise Broken(f"after {PATIENCE} s it still says {said['kept']}")
+
+
+def cut(robot):
+    robot.board.cut_power()
+
+
+def reset(robot):
+    robot.board.qmp.command("system_reset")
+
+
+def one(robot, draw):
+    """An upload and its end: what happened, in words."""
+    image, end = draw.choice(robot.images), draw.choice((cut, reset))
+    after = draw.random() * LONGEST
+    upload = robot.uploading(image)
+    time.sleep(after)
+    end(robot)
+    if end is cut:
+        robot.switch_on()
+    try:
+        said = upload.communicate(timeout=PATIENCE)[1]
+    except subprocess.TimeoutExpired:
+        upload.kill()
+        upload.communicate()
+        raise Broken("rsc upload does not end") from None
+    if upload.returncode not in (0, 1, 3) or (upload.returncode and not said.startswith("rsc: ")):
+        raise Broken(f"rsc upload ended with {upload.returncode}: {said}")
+    running = robot.settled()["board"]["program"]["hash"]
+    if running not in robot.names.values():
+        raise Broken(f"{running} runs, which nobody has uploaded")
+    before = "the program before" if running != robot.names[image] else "that program"
+    return f"{end.__name__} {after * 1000:.0f} ms after the call of rsc, which ended with {upload.returncode}; {before} runs"
+
+
+def campaign(runs, seed, show=lambda *_: None):
+    """[(run, what is wrong)]"""
+    wrong, draw = [], random.Random(seed)
+    with tempfile.TemporaryDirectory(prefix="robosync-power-") as folder:
+        robot = Robot(folder)
+        try:
+            for run in range(runs):
+                try:
+                    show(run, one(robot, draw))
+                except (Broken, rsc.RscError) as error:
+                    wrong.append((run, str(error)))
+                    show(run, f"WRONG: {error}")
+        finally:
+            robot.board.stop()
+    return wrong
+
+
+def main():
+    end_on_signals()
+    parser = argparse.ArgumentParser(prog="scripts/soak power")
+    parser.add_argument("runs", type=int)
+    parser.add_argument("--seed", type=int, default=1)
+    wanted = parser.parse_args()
+    wrong = campaign(wanted.runs, wanted.seed, lambda run, what: print(f"{run}: {what}", flush=True))
+    print(f"{wanted.runs} runs, {len(wrong)} wrong")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
