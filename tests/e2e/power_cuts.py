@@ -35,6 +35,10 @@ class Robot:
         self.folder = Path(folder)
         self.images = [self._compile(rules) for rules in SIZES]
         self.board = None
+        self.names = {}
+
+    def begin(self):
+        """It has kept both programs."""
         self.switch_on()
         self.names = {image: self._keep(image) for image in self.images}
 
@@ -51,6 +55,10 @@ class Robot:
 
     def switch_on(self):
         self.board = Board(FIRMWARE, icount=FAST, store=self.folder / "store")
+
+    def switch_off(self):
+        if self.board:
+            self.board.stop()
 
     def uploading(self, image):
         return subprocess.Popen([rsc.TOOL, "upload", image, "--port", self.board.port], stdin=subprocess.DEVNULL,
@@ -106,6 +114,7 @@ def campaign(runs, seed, show=lambda *_: None):
     with tempfile.TemporaryDirectory(prefix="robosync-power-") as folder:
         robot = Robot(folder)
         try:
+            robot.begin()
             for run in range(runs):
                 try:
                     show(run, one(robot, draw))
@@ -113,7 +122,7 @@ def campaign(runs, seed, show=lambda *_: None):
                     wrong.append((run, str(error)))
                     show(run, f"WRONG: {error}")
         finally:
-            robot.board.stop()
+            robot.switch_off()
     return wrong
 
 
