@@ -1,4 +1,4 @@
-// What a module of the firmware makes of another sensor's readings (layers/algorithms.hpp): never sampled.
+// An algorithm: a module of the firmware computes its channels from another sensor's readings (layers/algorithms.hpp). Never sampled.
 #include "runtime-m4/drivers/drivers.hpp"
 
 namespace robosync::drivers::algorithm {

@@ -1,4 +1,4 @@
-// How long a BLINK takes, of lights that are there and of those that are only shown.
+// How long a BLINK takes, on real lights and on virtual ones.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace robosync::drivers {
 
 inline constexpr vm::Value kMostBlinks = 1000;
-inline constexpr kernel::Duration kBlink = kernel::milliseconds(150);  // dark, and lit again
+inline constexpr kernel::Duration kBlink = kernel::milliseconds(150);  // one dark and one lit leg
 inline constexpr kernel::Duration kShortestBlink = kernel::milliseconds(20);
 
 // A blink has two legs.

@@ -1,4 +1,4 @@
-// A hobby servo on a channel of a PCA9685: it moves as one on a pin does. What the chip is told, and when, is not its business
+// A hobby servo on a channel of a PCA9685: it moves like one on a pin. When the chip is told what is handled elsewhere
 // (servo_chip.hpp).
 #include "runtime-m4/drivers/drivers.hpp"
 

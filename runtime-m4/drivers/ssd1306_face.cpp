@@ -1,4 +1,4 @@
-// A face on an SSD1306: it shows what the lights of a board would. What the display is told, and when, is not its business
+// A face on an SSD1306: it shows what the lights of a board would. When the display is told what is handled elsewhere
 // (screen.hpp).
 #include "runtime-m4/drivers/drivers.hpp"
 

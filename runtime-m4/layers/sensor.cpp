@@ -122,8 +122,8 @@ kernel::Time SensorLayer::first_sample(unsigned sensor) const {
   return trace_.activated_at() + (at_once ? 0 : kernel::milliseconds(wiring.period_ms));
 }
 
-// A sensor that is asked ahead has its answer when the sample is due. If it was asked too late, this waits for the answer, but not
-// for ever.
+// A sensor that is asked ahead has its answer when the sample is due. If it was asked too late, this waits for the answer,
+// but not for ever.
 void SensorLayer::await_sample(unsigned sensor, kernel::Time due) {
   const kernel::Duration ahead = asks_ahead(sensor);
   if (ahead != 0) {
