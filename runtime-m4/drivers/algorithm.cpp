@@ -1,4 +1,4 @@
-// An algorithm: a module of the firmware computes its channels from another sensor's readings (layers/algorithms.hpp). Never sampled.
+// What a module of the firmware computes from another sensor's readings (layers/algorithms.hpp): never sampled.
 #include "runtime-m4/drivers/drivers.hpp"
 
 namespace robosync::drivers::algorithm {

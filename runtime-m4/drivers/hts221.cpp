@@ -89,7 +89,7 @@ bool value_at(const Line& line, std::int32_t count, std::int32_t& raw) {
   return true;
 }
 
-// Not inlined: its frame is gone while everything is read, since a sensor's thread has few bytes left (tests/e2e/test_stack_depth.py).
+// Not inlined: its frame is gone during fetch(). A sensor's thread has few bytes left (tests/e2e/test_stack_depth.py).
 [[gnu::noinline]] void tell(boards::Board& board, const vm::Sensor& sensor) {
   write_registers(board, sensor, std::array{kControl, kMeasures});
 }
