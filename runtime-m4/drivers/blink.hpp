@@ -17,7 +17,7 @@ struct Blink {
   kernel::Duration leg;
 };
 
-// So many TIMES, all in OVER.
+// TIMES blinks, all within OVER.
 inline Blink blink_of(const Order& order) {
   const vm::Value times = order.get(vm::Param::times, vm::kScale) / vm::kScale;
   const auto legs = static_cast<unsigned>(2 * std::clamp(times, vm::Value{1}, kMostBlinks));

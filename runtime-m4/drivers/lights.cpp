@@ -1,5 +1,5 @@
 // A picture on the board's lights. SHOW shows one, which stays; with FOR it goes dark afterwards. BLINK closes
-// the eyes of the picture shown: so many TIMES, all in OVER.
+// the eyes of the picture shown: TIMES blinks, all within OVER.
 #include <array>
 #include <string_view>
 

@@ -1,5 +1,5 @@
-// A hobby servo on a channel of a PCA9685: it moves like one on a pin. When the chip is told what is handled elsewhere
-// (servo_chip.hpp).
+// A hobby servo on a channel of a PCA9685: it moves like one on a pin. servo_chip.hpp decides what the chip is
+// told, and when.
 #include "runtime-m4/drivers/drivers.hpp"
 
 namespace robosync::drivers::pca9685_servo {

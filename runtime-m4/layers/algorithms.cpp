@@ -100,7 +100,7 @@ void AlgorithmLayer::run() {
   }
 }
 
-// Forgets what was measured before program time, for SAFETY to begin with: how much that was must not matter.
+// Forgets what was measured before program time, which SAFETY begins with: how much that was must not matter.
 void AlgorithmLayer::note_begin() {
   begun_ = true;
   for (Unit& unit : units_) {
@@ -152,7 +152,7 @@ bool AlgorithmLayer::latch(Unit& unit, kernel::Time now) {
   return latch_inputs(unit, now);
 }
 
-// False if an input is unknown: then the module begins anew.
+// False if an input is unknown: then the module starts over.
 bool AlgorithmLayer::latch_inputs(Unit& unit, kernel::Time now) {
   const vm::Sensor& wiring = wiring_of(unit);
   Data& data = *unit.data;

@@ -5,7 +5,7 @@
 // it hands over the latest readings and releases the module's thread. That thread outranks it, so when the server runs
 // again the module is done. The module's results are published like readings, in one announcement, with the time of the
 // readings that they were made of: so they grow stale when those do. While an input is unknown the module does not run;
-// afterwards it begins anew.
+// afterwards it starts over.
 //
 // Nothing that a module leaves is trusted: outputs are clamped to the range of their channels. Its run time in
 // one release is bounded by a budget, twice the cycles that it declares plus what interrupts may take meanwhile. The

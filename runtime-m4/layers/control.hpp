@@ -173,7 +173,7 @@ private:
   std::atomic<ActuatorMask> newly_halted_ = 0;
   ActuatorMask by_rules_ = 0;  // halted by the program's own rules, or because it hangs
   bool stopped_ = false;       // by a person
-  // Of those that are halted or were halted last: those that a person keeps stopped, unless a rule halted them first. For the trace.
+  // Of those that are halted or were halted last: those that a person keeps stopped and that no rule halted before. For traces.
   std::atomic<ActuatorMask> by_person_ = 0;
 };
 

@@ -366,8 +366,8 @@ unsigned ProcessingLayer::next_at_work(unsigned rule) const {
   return RuleSet::first_of(rule, concerned_, layers_.triggers.active(), layers_.arbiter.running());
 }
 
-// True if `rule` is evaluated and no other rule of the behaviour is at work; `next` is the first one at work after it.
-// A reading mostly finds a behaviour in this case, since most of its rules are about something else.
+// True if `rule` is evaluated and no other rule of the behaviour is evaluated, wants to run, or runs; `next` is the first
+// such rule after it. A reading mostly finds a behaviour in this case, since most of its rules are about something else.
 bool ProcessingLayer::has_sole_turn(unsigned rule, unsigned next, RuleRange rules) const {
   if constexpr (kernel::kAssertions)
     if (takes_whole_turns_) return false;

@@ -3,9 +3,9 @@
 //
 // Writes of a step are staged and take effect together when the next step begins, as if done from
 // the least important behaviour up to the most important one: of two SETs the more important one wins, and
-// RAISE and LOWER add to the value so far. Responses run in the opposite order, and so do
-// the stagings. So one sum per variable is enough: the first SET that is staged
-// ends it. The result is clamped to the variable's range once, at the end.
+// RAISE and LOWER add to the value so far. Responses run, and so stage their writes, in the opposite
+// order. So one sum per variable is enough: the first SET that is staged ends it. The result is
+// clamped to the variable's range once, at the end.
 //
 // A fading variable is its target plus a part of the distance that it had when it was last set;
 // that part depends only on how many whole ticks ago that was.

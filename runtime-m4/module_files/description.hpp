@@ -1,5 +1,5 @@
-// What a module in a file says about itself, checked and copied: texts and lists are this object's own. Its functions are left for the
-// caller to set (registry.cpp).
+// What a module in a file says about itself, checked and copied: texts and lists are this object's own. Its functions are left for
+// the caller to set (registry.cpp).
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// The modules in files that this process has loaded, by the number under which algorithms::find_module() finds them. Each runs in its
-// own process (process.hpp). A module in trouble fails for its callers.
+// The modules in files that this process has loaded, by the number under which algorithms::find_module() finds them. Each runs in
+// its own process (process.hpp). A module in trouble fails for its callers.
 #pragma once
 
 #include <cstddef>
