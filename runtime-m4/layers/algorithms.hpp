@@ -8,7 +8,7 @@
 // afterwards it starts over.
 //
 // Nothing that a module leaves is trusted: outputs are clamped to the range of their channels. Its run time in
-// one release is bounded by a budget, twice the cycles that it declares plus what interrupts may take meanwhile. The
+// one release is bounded by a budget: twice its declared cost in cycles, plus what interrupts may take meanwhile. The
 // first time it exceeds the budget it is lowered: its thread ranks below all behaviours from then on. The second time, and
 // if it runs on and on, it is stopped as for a fault, and its channels become unknown. The safety monitor notices
 // a module that never ends, at its next check; the step thread lowers it, since it outranks all

@@ -10,8 +10,8 @@
 // it, queued or under way, and nothing counts as done or cancelled.
 //
 // Halting (safety) puts actuators into their `safe` state from the caller's thread and refuses all
-// commands to them from then on, until they are released or the next program comes. A person's stop halts
-// all of them, whatever program runs or comes, until the person releases them. The output guard is told of both, so
+// commands to them from then on, until they are let go or the next program comes. A person's stop halts
+// all of them, whatever program runs or comes, until the person lets them go. The output guard is told of both, so
 // that nothing a driver still does reaches a pin.
 #pragma once
 
@@ -36,7 +36,7 @@ public:
   struct StepEvents {
     kernel::Events idle;       // an actuator has done all its commands
     kernel::Events cancelled;  // an actuator was cancelled
-    kernel::Events halted;     // actuators were halted or released
+    kernel::Events halted;     // actuators were halted, or let go
   };
 
   ControlLayer(kernel::Kernel& kernel, guard::OutputGuard& outputs, Trace& trace,
@@ -71,7 +71,7 @@ public:
   [[gnu::always_inline]] ActuatorMask halted() const {
     return halted_.load(std::memory_order_relaxed);
   }
-  // … and those that were halted since the last call, even if they have been released by now.
+  // … and those that were halted since the last call, even if they have been let go by now.
   ActuatorMask take_halted() {
     return newly_halted_.load(std::memory_order_relaxed) == 0 ? 0 : take_newly_halted();
   }

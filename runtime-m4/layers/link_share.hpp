@@ -1,5 +1,5 @@
-// Decides when the step thread waits, between two passes, for the link's thread, which ranks below the whole program: when the
-// link's thread has had work for its patience, got no time for it, and has budget (policy/link_share.hpp).
+// Decides when the step thread waits, between two passes, for the link's thread, which ranks below the whole program: when that
+// thread has been ready for a given time (its patience) without getting time, and has budget (policy/link_share.hpp).
 //
 // It has had time if it blocked, which starts a new activation, or if it ran for its part of the time. After a turn it has no
 // budget for kLinkParts times the length of that turn. Where time does not flow, as in a simulation, it gets no turn.

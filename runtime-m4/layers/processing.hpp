@@ -12,7 +12,7 @@
 //   rules that read a changed input, or are due, are evaluated -> claims are decided, in the order of
 //   the rules -> the interrupted responses are cancelled -> responses run: those that go on and those that won
 //
-// So a claim is decided after the more important ones of the same step, and never lost to a less
+// So a claim competes with the more important ones of the same step, and is never lost to a less
 // important one. A step costs time for the rules that it concerns and for those that run, wait or want
 // to run; the others cost nothing (find_concerned()).
 //
@@ -80,7 +80,7 @@ inline constexpr kernel::Events kFinished = 4;   // a behaviour has done what it
 inline constexpr kernel::Events kCancelled = 8;  // an actuator was cancelled
 inline constexpr kernel::Events kStopped =
     16;  // a thread was stopped by a fault, or is to be lowered
-inline constexpr kernel::Events kHalted = 32;      // safety has halted, released, or set something
+inline constexpr kernel::Events kHalted = 32;      // safety has halted, let go, or set something
 inline constexpr kernel::Events kBegin = 64;       // all threads of the program exist
 inline constexpr kernel::Events kLinkRests = 128;  // the link's thread has nothing more to do
 

@@ -3,8 +3,8 @@
 // A rule remembers the last known truth of its condition. WHEN triggers when that becomes true,
 // WHEN/ELSE when it changes; the first known truth counts as a change; a truth that is an event
 // (BECOMES, CHANGES …) triggers each time. A WHEN/ELSE keeps wanting its chosen side until that side
-// was the last to run, whether it lost or that side was cooling down. An unknown condition does nothing and is not remembered,
-// so a sensor that drops out and comes back does not trigger by that alone. WHILE differs: unknown
+// is the one that ran last, also after it lost and while that side cools down. An unknown condition does nothing and is not
+// remembered, so a sensor that drops out and comes back does not trigger by that alone. WHILE differs: unknown
 // ends it, so it fires again when its condition is known to be true.
 //
 // Each side of a rule cools down separately.
