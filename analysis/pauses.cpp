@@ -11,8 +11,7 @@
 namespace robosync::analysis {
 namespace {
 
-constexpr unsigned kMostApart =
-    4;  // each becomes a source of its own, with everything that follows it
+constexpr unsigned kMostApart = 4;  // each becomes a source, with all that follows it
 
 unsigned line_of(const vm::Image& image, std::size_t word) {
   unsigned line = 0;

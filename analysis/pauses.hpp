@@ -15,7 +15,7 @@ struct Pauses {
 
   void note(std::uint32_t ms);
   void note(const Pauses& other);
-  // Counting the pauses that may be over immediately separately is better: they and the others then come less often.
+  // It is better to count the pauses that may be over immediately on their own: they and the others then come less often.
   [[nodiscard]] bool better_apart() const;
   [[nodiscard]] bool any() const { return least_ms != kNever; }
 

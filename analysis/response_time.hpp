@@ -91,9 +91,8 @@ struct Contributor {
 void add_share(std::vector<Contributor>& shares, const std::string& name, Instructions cost);
 
 struct ResponseTime {
-  Instructions time =
-      0;  // from the release of the source to the command; if unbounded, as far as computed
-  bool bounded = false;  // false: the processor never finishes what outranks it
+  Instructions time = 0;  // from the source's release to the command; if unbounded, so far
+  bool bounded = false;   // false: the processor never finishes what outranks it
   std::vector<Contributor> contributors;
   [[nodiscard]] bool in_time(const Source& source) const {
     return bounded && time <= source.period;

@@ -286,9 +286,9 @@ Instructions StepWork::standing() const {
   return sum;
 }
 
-// Responses that run or wait: those that need no actuator, and of the others no more than there are
-// actuators in a set from which each of them holds one. Any such set will do; this one is built by repeatedly
-// taking the actuator that most of the remaining responses want.
+// Responses that run or wait: those that need no actuator, and of the others at most as many as there are
+// actuators in a set of which each response holds at least one. Any such set will do; this one is built by
+// repeatedly taking the actuator that most of the remaining responses want.
 Instructions StepWork::running() const {
   unsigned count = 0;
   std::vector<Actuators> left;

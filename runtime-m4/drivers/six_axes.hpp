@@ -30,11 +30,10 @@ struct SixAxes {
   Verdict judge(const Sample& sample, unsigned input, std::int32_t& raw) const;
 
   std::array<std::byte, 1 + kSettings>
-      setting;  // a register, and what it and the next ones must contain
-  std::array<std::byte, 2>
-      wake;              // a register, and the value that ends its sleep; 0: the setting does
-  std::byte output;      // the first output register …
-  std::uint8_t outputs;  // … how many there are, at most kMostOutputs …
+      setting;                         // a register, and what it and the next ones must contain
+  std::array<std::byte, 2> wake;       // a register, and what ends its sleep; 0: the setting does
+  std::byte output;                    // the first output register …
+  std::uint8_t outputs;                // … how many there are, at most kMostOutputs …
   std::uint8_t acceleration, turning;  // … and the indices of the first of each kind
   std::endian order;                   // byte order of a count
 };

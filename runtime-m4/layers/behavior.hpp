@@ -55,9 +55,9 @@ public:
 
   // --- for the step thread ---
   void begin_step(const Snapshot& snapshot);
-  // One behaviour is released at a time, and busy() holds until it has finished. Its thread then makes
-  // the call `rest`.
-  // Gives it its turn: it evaluates those of its rules that are in `rules`.
+  // Each of these releases a behaviour, one at a time; busy() until it has finished. Its thread then
+  // makes the call `rest`.
+  // The behaviour's turn: it evaluates those of its rules that are in `rules`.
   void take_turn(unsigned behavior, const RuleSet& rules);
   // … where `rule` is the only one to evaluate, and no other rule of its behaviour runs or wants to. `goes_on`: its
   // response goes on, unless something ends it.
@@ -80,8 +80,8 @@ public:
   void forget_resume_point(unsigned rule) { resume_points_[rule] = {}; }
   [[gnu::cold]] void retire(unsigned behavior);  // its thread was stopped
   // The rule's response began in this millisecond, or went on and waits again: it must not do either
-  // again in this millisecond. A response that went on to its end may begin again. One that checked its condition and waits
-  // on checks it at each reading, even at a second one in this millisecond.
+  // again in this millisecond. A response that went on to its end may begin again. One that checked its condition and
+  // still waits checks it again at each reading, even at a second one in this millisecond.
   bool has_run(unsigned rule, std::uint32_t now) const {
     return now == ran_at_ && has_run_.has(rule);
   }
