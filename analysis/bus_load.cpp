@@ -8,7 +8,7 @@
 namespace robosync::analysis {
 namespace {
 
-// Who is read more often than the window is long is asked several times in it.
+// A sensor whose period is shorter than the window is asked several times in it.
 std::uint32_t times_in_window(const vm::Sensor& sensor) {
   const std::uint32_t period_us = std::max<std::uint32_t>(sensor.period_ms, 1) * 1000;
   return (policy::kBusWindowUs + period_us - 1) / period_us;

@@ -1,7 +1,7 @@
-// What the I2C buses of a board that works them by themselves carry at once, and whether there is time for it.
+// What the I2C buses of a board must carry together, if they work on their own, and whether there is time for it.
 //
-// Its sensors are asked a tick before a reading is due, and what is not there two ticks later is given up. All of them may be due
-// together: they are at a program's start, and where their periods meet.
+// Sensors on such a bus are asked a tick before a reading is due, and an answer that is not there two ticks later is given up.
+// All of them may be due together: at a program's start, and where their periods meet.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@ namespace robosync::analysis {
 struct BusLoad {
   struct Share {
     unsigned sensor;   // in the image
-    std::uint32_t us;  // what it asks for keeps the bus busy
+    std::uint32_t us;  // how long its requests keep the bus busy
   };
   std::uint8_t bus = 0;
-  std::uint32_t us = 0;  // of them all
+  std::uint32_t us = 0;  // of all its sensors
   std::vector<Share> shares{};
 };
 
-// Of a verified image: the buses that have not the time for what is asked of them at once (policy::kBusWindowUs).
+// For a verified image: the buses that lack the time for all that may be asked of them together (policy::kBusWindowUs).
 [[nodiscard]] std::vector<BusLoad> overloaded_buses(const vm::Image& image,
                                                     const policy::BoardCosts& board);
 

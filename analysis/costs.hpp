@@ -1,5 +1,5 @@
-// What the analysis counts with: the declared costs, and what is supposed where a program does not
-// say how often something comes (docs/timing.md).
+// The numbers that the analysis uses: the declared costs, and what it assumes where a program does not
+// say how often something happens (docs/timing.md).
 #pragma once
 
 #include "runtime-m4/policy/costs.hpp"

@@ -1,5 +1,5 @@
-// See exclusive.hpp. Conditions have no jumps, so one pass from the first word to the last follows
-// what must hold where each cell is true.
+// See exclusive.hpp. Conditions have no jumps, so one pass from the first word to the last tracks
+// what must hold if each cell is true.
 #include "analysis/exclusive.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See interval.hpp. By the arithmetic of the interpreter itself (vm/arithmetic.hpp).
+// See interval.hpp. Uses the arithmetic of the interpreter itself (vm/arithmetic.hpp).
 #include "analysis/interval.hpp"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 using vm::Opcode, vm::Value;
 using Operation = std::int64_t (*)(Value, Value);
 
-// Of an operation that rises or falls in each operand, whatever the other is: its ends are those of
-// corners. What is out of range there may be anything.
+// For an operation that is monotonic in each operand, whatever the other is: its bounds are those of the
+// corners. If a corner is out of range, the result may be anything.
 Interval by_corners(Interval b, Interval c, Operation of) {
   const bool unknown = b.may_be_unknown() || c.may_be_unknown();
   b = known(b);
@@ -27,13 +27,13 @@ Interval by_corners(Interval b, Interval c, Operation of) {
   return {unknown ? vm::kUnknown : static_cast<Value>(low), static_cast<Value>(high)};
 }
 
-// x / 0 is 0, and x / something little is much.
+// x / 0 is 0, and x divided by a small number is large.
 Interval quotient(Interval b, Interval c) {
   if (known(c).low <= 0 && c.high >= 0) return {};
   return by_corners(b, c, [](Value x, Value y) { return std::int64_t{vm::divide(x, y)}; });
 }
 
-// Of what is unchecked an unknown makes anything.
+// An unchecked operation may give anything if an operand is unknown.
 Interval unchecked(Interval b, Interval c, Operation of) {
   const Interval result = by_corners(b, c, of);
   return result.may_be_unknown() ? Interval{} : result;
@@ -118,7 +118,7 @@ Interval result_of(const vm::Image& image, vm::Word word, std::span<const Interv
     default:
       break;
   }
-  // To multiples of a number that varies: not monotonous.
+  // Rounding to multiples of a varying number is not monotonic.
   if (op == Opcode::round && c.low != c.high) return {};
   const Operation operation = operation_of(op);
   return operation == nullptr ? Interval{} : by_corners(b, c, operation);

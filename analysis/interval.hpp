@@ -1,5 +1,5 @@
-// Between which values a number lies, whatever happens. An unknown is less than all that is known
-// (vm/value.hpp): what may be unknown begins there.
+// The bounds of a number, whatever happens. Unknown is less than every known value
+// (vm/value.hpp), so the interval of a number that may be unknown begins there.
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@ struct Interval {
 };
 
 [[nodiscard]] Interval hull(Interval a, Interval b);
-// What it is once it is known.
+// Its bounds once it is known.
 [[nodiscard]] Interval known(Interval a);
 // What an instruction without blocks, waits or output writes into its cell A.
 [[nodiscard]] Interval result_of(const vm::Image& image, vm::Word word,

@@ -1,5 +1,5 @@
-// See pauses.hpp. Before a pause is over again, either its response has begun anew and has come
-// there, or a loop has come round: the shortest of these ways counts, with all that waits on it.
+// See pauses.hpp. Before a pause can end again, either its response has begun anew and has reached
+// it, or a loop has come round: the shortest of these ways counts, with all the waits on it.
 #include "analysis/pauses.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace robosync::analysis {
 namespace {
 
-constexpr unsigned kMostApart = 4;  // each is a source of its own, with all that follows it
+constexpr unsigned kMostApart = 4;  // each becomes a source, with all that follows it
 
 unsigned line_of(const vm::Image& image, std::size_t word) {
   unsigned line = 0;
@@ -44,8 +44,8 @@ Pauses pauses_of(const vm::Image& image, const vm::Behavior& behavior, const vm:
                  const Ranges& inputs) {
   const auto code = image.code.subspan(response.start, response.length);
   Pauses pauses;
-  std::vector<Instructions> waited(code.size());  // … in ms, when it comes there
-  std::vector<Instructions> again(code.size());   // of those that may be over at once; else 0
+  std::vector<Instructions> waited(code.size());  // … in ms, on arrival there
+  std::vector<Instructions> again(code.size());   // for those that may be over immediately; else 0
   for (Walk walk(image, behavior, code, inputs); walk.next(); walk.run()) {
     const std::size_t at = walk.at();
     const vm::Flow flow = vm::info_of(vm::opcode_of(code[at])).flow;

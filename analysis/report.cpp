@@ -23,8 +23,8 @@ std::vector<Contributor> loads_of(const TaskSet& set, Instructions per_ms) {
   return loads;
 }
 
-// Of an algorithm whose input is sampled: from that on. Of a sensor with an echo, of sound or light:
-// from its pulse on.
+// For an algorithm whose input is sampled, counts from that sample; for a sensor with an echo, of sound or
+// light, from its pulse.
 ResponseTime from_the_reading(const TaskSet& set, std::size_t source, Priorities priorities) {
   ResponseTime response = response_time_of(set, source, priorities);
   const Instructions late = set.sources[source].jitter;

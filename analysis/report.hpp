@@ -14,32 +14,32 @@ namespace robosync::analysis {
 
 struct PathTiming {
   std::string sensor, actuator;
-  Instructions period = 0;  // of the sensor: the reading has to be answered before the next one
+  Instructions period = 0;  // of the sensor: the reading must be answered before the next one
   Instructions measuring =
-      0;  // of it, before the sensor is sampled; the next measurement may begin meanwhile
+      0;  // by the sensor, before it is sampled; the next measurement may begin meanwhile
   ResponseTime base;
-  ResponseTime adapted;  // only where priorities adapt
+  ResponseTime adapted;  // only if priorities adapt
   [[nodiscard]] bool in_time() const;
-  // Of the period, for which the reading is under way; 1: until the next one.
+  // The share of the period for which the reading is being processed; 1: until the next one.
   [[nodiscard]] double share(const ResponseTime& response) const;
 };
 
 struct ResponseReport {
-  Instructions instructions_per_ms = 0;  // that the board executes
+  Instructions instructions_per_ms = 0;  // executed by the board
   double utilization = 0;
   bool adapts = false;
   std::vector<PathTiming> paths;
-  std::vector<Contributor> loads;          // for each millisecond, the largest first
-  unsigned short_wait = TaskSet::kNoWait;  // as there
+  std::vector<Contributor> loads;          // per millisecond, the largest first
+  unsigned short_wait = TaskSet::kNoWait;  // as in TaskSet
   [[nodiscard]] bool schedulable() const;
   // Rounded up.
   [[nodiscard]] Instructions microseconds(Instructions instructions) const;
 };
 
-// What is known when the processor as a whole cannot do it: that, or every path nevertheless.
+// What to compute if the processor as a whole is overloaded: only that, or every path nevertheless.
 enum class Depth : std::uint8_t { until_refused, all };
 
-// Image, `module_cost` and `cap` as in task_set.hpp.
+// For image, `module_cost` and `cap` see task_set.hpp.
 [[nodiscard]] ResponseReport response_report(const vm::Image& image,
                                              const policy::BoardCosts& board,
                                              ModuleCost module_cost, int cap = 0,

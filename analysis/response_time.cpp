@@ -1,13 +1,14 @@
 // See response_time.hpp. Fixed points of R = C + B + sum of ceil(R / T) * C, by iteration from
 // below; every loop is bounded, and what does not end in time is called unbounded.
 //
-// A step is not interrupted by steps, so besides the classic terms:
-//  * A source ranked below may have its step under way: it blocks, once.
-//  * A source that outranks a behaviour may announce while a step is under way; what it has
-//  announced
-//    goes before a later reading even of a source that outranks it, so it counts as if it did.
-//  * All others ranked above can begin a step only until this one has begun its own.
-//  * As steps do not give way, the first release need not be the worst: every release of the busy
+// Steps do not preempt steps, so besides the classic terms:
+//  * A lower-ranked source may have its step under way: it blocks, once.
+//  * A source that outranks a behaviour may announce while a step is under way. What it has announced
+//    goes before a later reading even of a source that outranks it, so it counts as if it outranked
+//    that source.
+//  * All other higher-ranked sources can begin a step only until this one has begun its own.
+//  * As steps are not preempted, the first release need not be the worst: every release of the busy
+//    period is examined (Davis et al., Controller Area Network schedulability analysis, 2007).
 //    period is looked at (Davis et al., Controller Area Network schedulability analysis, 2007).
 #include "analysis/response_time.hpp"
 
@@ -27,8 +28,8 @@ double share(Instructions cost, Instructions period) {
   return static_cast<double>(cost) / static_cast<double>(period);
 }
 
-// Followers, one behind the other, up to the release of the one that is asked for; and the time
-// that passes besides work. Empty: the response of the source itself is asked for.
+// A chain of followers, up to the release of the one in question, and the time that passes besides
+// work. Empty: the response of the source itself is in question.
 struct Chain {
   unsigned length = 0;
   Instructions delays = 0;
@@ -60,11 +61,11 @@ public:
 private:
   enum class Preemption : std::uint8_t {
     none,         // it blocks at most
-    before_step,  // it goes first, until the own step has begun
+    before_step,  // it goes first until our own step has begun
     any_time,     // … and its announcements join in at any time
   };
 
-  // A stretch of a busy period: until when, when its last own step begins, how many own there are.
+  // A part of a busy period: its end, the beginning of its last own step, and the number of own steps.
   struct Window {
     Instructions until, begun, own;
   };
@@ -80,7 +81,7 @@ private:
                               : Preemption::any_time;  // between the steps, it goes first
   }
 
-  // The least t with demand(t) <= t, or none.
+  // The smallest t with demand(t) <= t, or none.
   template <class Demand>
   static std::optional<Instructions> fixed_point(Demand demand) {
     Instructions t = 1;
@@ -99,8 +100,8 @@ private:
   Instructions releases_of(std::size_t j, const Window& window) const {
     if (j == mine_) return window.own;
     const Source& other = set_.sources[j];
-    // What its own steps release comes after them: of the last step not any more, of those before
-    // the busy period what is late.
+    // What its own steps release comes after them: the releases of the last step no longer count, and
+    // those of steps before the busy period count if they are late.
     if (chain_.length == 0 && follows_mine(j))
       return window.own - 1 + ceil_div(other.jitter, other.period);
     switch (preemption_by(j)) {
@@ -121,7 +122,7 @@ private:
     return false;
   }
 
-  // In how many steps a rule with these sources is evaluated, the step that blocks included.
+  // The number of steps in which a rule with these sources is evaluated, including the step that blocks.
   Instructions evaluations(const std::vector<std::size_t>& sources, const Window& window) const {
     Instructions sum = 0;
     bool may_block = false;
@@ -132,7 +133,7 @@ private:
     return sum + (may_block ? chain_.length + 1 : 0);
   }
 
-  // How often a rule fires: not more than it is evaluated.
+  // How often a rule fires: at most as often as it is evaluated.
   Instructions fires(const Firing& rule, const Window& window) const {
     Instructions most = evaluations(rule.sources, window);
     if (rule.alternates) most = ceil_div(most, 2);
@@ -143,8 +144,8 @@ private:
     return time == 0 ? kForeverLate : window.until / time + 1;
   }
 
-  // How often each rule wins, and how often it fires and loses, which takes at most as long: so of
-  // rules among which there is a choice or a contest, those win that cost most, in different steps.
+  // How often each rule wins, and how often it fires and loses, which costs no more. So, of the rules
+  // in a choice or a contest, the most expensive ones win, in different steps.
   struct Outcome {
     const Firing* rule;
     Instructions won, lost;
@@ -171,7 +172,7 @@ private:
     return all;
   }
 
-  // Who contends with nobody loses against nobody; and of a choice one at most fires in a step.
+  // A rule without contenders cannot lose; and at most one rule of a choice fires in a step.
   void leave_out_losers(std::vector<Outcome>& all, const Window& window) const {
     for (Outcome& one : all)
       if (one.rule->contest == Firing::kNone) one.lost = 0;
@@ -186,8 +187,8 @@ private:
     });
   }
 
-  // Calls take(outcome, left) for all of one choice, or of one contest: `left` are the steps that
-  // there are for them together.
+  // Calls take(outcome, left) for all rules of one choice, or of one contest; `left` is the number of
+  // steps that they have together.
   template <class Take>
   void limit(std::vector<Outcome>& all, std::size_t Firing::*which, const Window& window,
              Take take) const {
@@ -234,9 +235,9 @@ private:
     return list;
   }
 
-  // The `q`-th release of the busy period. False when its response is unbounded.
+  // Examines the `q`-th release of the busy period. False if its response is unbounded.
   bool look_at(Instructions q, ResponseTime& worst) const {
-    // One that outranks a behaviour may even join its own earlier announcement.
+    // A source that outranks a behaviour may even join its own earlier announcement.
     const bool joins = adapted_ ? mine().may_outrank_one : mine().outranks_a_behavior;
     const auto window = [&](Instructions t) {
       return Window{t, t - std::min(t, mine().step), joins ? std::max(q, own_releases(t)) : q};
@@ -265,11 +266,11 @@ private:
   Instructions blocking_ = 0;
 };
 
-// From the release at the beginning of the chain until this one is released.
+// From the release at the beginning of the chain to the release of this one.
 Instructions lateness(const TaskSet& set, const Source& follower, Priorities priorities) {
   Chain chain{1, follower.delay};
   std::size_t root = follower.follows;
-  while (set.sources[root].follows != Source::kNone) {  // each follows one that stands before it
+  while (set.sources[root].follows != Source::kNone) {  // each follows an earlier one
     ++chain.length;
     chain.delays += set.sources[root].delay;
     root = set.sources[root].follows;
@@ -280,10 +281,10 @@ Instructions lateness(const TaskSet& set, const Source& follower, Priorities pri
 
 }  // namespace
 
-// What follows a step comes as late as that step may be, and what follows that later still: all the
-// work up to then is done in one stretch, which is idle for the delays between at most. How late it
-// is depends on what follows others. From below, as in response times; what does not settle may
-// come as late as it likes.
+// What follows a step is as late as that step may be, and its own followers are later still: all the
+// work up to then is done in one stretch, which is idle at most for the delays in between. How late
+// a source is depends on the other followers. Iterated from below, like response times; what does not
+// settle may be arbitrarily late.
 void settle(TaskSet& set, Priorities priorities) {
   constexpr unsigned kMostPasses = 100;
   for (unsigned pass = 0; pass < kMostPasses; ++pass) {

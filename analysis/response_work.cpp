@@ -19,7 +19,7 @@ bool pauses(vm::Word word) {
   return vm::always_pauses(info_of(word).flow);
 }
 
-// Of a loop that may come round within a step.
+// The end of a loop that may come round within a step.
 bool is_loop_end(vm::Word word) {
   const Flow flow = info_of(word).flow;
   return flow == Flow::count_end || flow == Flow::loop_end;
@@ -33,8 +33,8 @@ Instructions times_of(const vm::Image& image, vm::Word begin) {
   return static_cast<Instructions>(std::max(times, 1));
 }
 
-// How often each word can run in one step. A loop with a pause in it comes round once: it is left
-// there. A number that is worked out has no limit but that of the output.
+// How often each word can run in one step. A loop with a pause in it comes round once: the step ends
+// there. A computed number of rounds is limited only by the output.
 std::vector<Instructions> turns_of(const vm::Image& image, std::span<const vm::Word> code) {
   std::vector<Instructions> turns(code.size(), 1);
   for (std::size_t i = 0; i < code.size(); ++i) {
@@ -49,7 +49,7 @@ std::vector<Instructions> turns_of(const vm::Image& image, std::span<const vm::W
   return turns;
 }
 
-// What stands between two pauses: one step does it.
+// The code between two pauses: one step runs it.
 struct Part {
   explicit Part(std::size_t actuators) : commands(actuators), busy(actuators) {}
   Instructions other = 0;
@@ -79,7 +79,7 @@ public:
   }
 
 private:
-  // The worst of the parts counts.
+  // The worst part counts.
   void end_part() {
     work_.other = std::max(work_.other, part_.other);
     for (std::size_t a = 0; a < part_.commands.size(); ++a)
@@ -87,7 +87,7 @@ private:
     part_ = Part(image_.actuators.size());
   }
 
-  // Round a loop, the end of one part and the beginning of another run in one step.
+  // At the end of a loop, the end of one part and the beginning of another run in one step.
   void go_round(std::size_t at, const std::vector<Instructions>& turns) {
     const Part part = part_;
     for (std::size_t i = at + 1 - vm::operand_wide(code_[at]); i < at; ++i) {
@@ -133,7 +133,7 @@ private:
     if (paused_) work_.later_sets.set(input);
   }
 
-  // Of the next command. Nobody knows what a computed one comes to: the order may be void.
+  // For the next command. The value of a computed parameter is unknown: the order may be void.
   void note_parameter(vm::Word word) {
     const bool constant = info_of(word).operands[1] == vm::Operand::const16;
     if (!constant) takes_time_ = false;
@@ -142,7 +142,7 @@ private:
                      image_.constants[vm::operand_wide(word)]);
   }
 
-  // No time, or no speed: it is done at once.
+  // No time, or no speed: it is done immediately.
   void note_parameter(vm::Param param, vm::Value value) {
     const bool moves =
         param == vm::Param::at || param == vm::Param::over || param == vm::Param::for_;
@@ -154,7 +154,7 @@ private:
   }
 
   void command(vm::Word word, Instructions turns) {
-    if (follows(word)) takes_time_ = false;  // what has no speed has its new value at once
+    if (follows(word)) takes_time_ = false;  // without a speed it has its new value immediately
     const bool stops = image_.verbs[vm::operand_b(word)].action == vm::Action::stop;
     if (vm::operand_c(word) < image_.words.size()) {
       const vm::WordEntry& said = image_.words[vm::operand_c(word)];
@@ -166,8 +166,8 @@ private:
     takes_time_ = true;
   }
 
-  // One that takes its time leaves the others behind it in the queue. One that is done at once, or
-  // may be, lets the next begin in the same step.
+  // A command that takes time leaves the others behind it in the queue. One that is done immediately, or
+  // may be, lets the next one begin in the same step.
   void command(std::size_t a, bool stops, Instructions turns) {
     const vm::Actuator& actuator = image_.actuators[a];
     const policy::ActuatorCosts driver = policy::actuator_costs(actuator.driver);
@@ -200,7 +200,7 @@ private:
   ResponseWork work_;
   Part part_;
   bool paused_ = false;
-  bool takes_time_ = true;  // the next command, as far as its parameters say
+  bool takes_time_ = true;  // by the next command, as far as its parameters say
 };
 
 }  // namespace

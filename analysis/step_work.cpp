@@ -23,7 +23,7 @@ bool is_event(Opcode op) {
   return vm::info_of(op).effect == vm::Effect::event;
 }
 
-// Each side of each rule wants one that the other's sides want as well, all of them.
+// There is an actuator that every side of both rules wants.
 bool common_actuator(const vm::Image& image, unsigned a, unsigned b) {
   const auto everywhere = [&](unsigned r) {
     const vm::Rule& rule = image.rules[r];
@@ -47,7 +47,7 @@ unsigned most_wanted(const std::vector<Actuators>& masks) {
   return best;
 }
 
-// Of two responses of which one runs in a step, part by part.
+// The worse of two responses of which one runs in a step, part by part.
 ResponseWork worst_of(const ResponseWork& a, const ResponseWork& b) {
   ResponseWork both{.other = std::max(a.other, b.other),
                     .by_actuator = a.by_actuator,
@@ -66,7 +66,7 @@ ResponseWork worst_of(const ResponseWork& a, const ResponseWork& b) {
 
 StepWork::StepWork(const vm::Image& image)
     : image_(image), costs_(image.rules.size()), ranges_(ranges_of_inputs(image)) {
-  if (!vm::rule_costs(image, costs_)) costs_.assign(costs_.size(), {});  // it is verified
+  if (!vm::rule_costs(image, costs_)) costs_.assign(costs_.size(), {});  // the image is verified
   behavior_of_.resize(image.rules.size());
   condition_reads_.resize(image.rules.size());
   reads_.resize(image.rules.size());
@@ -108,14 +108,14 @@ void StepWork::load_rule(unsigned r, const vm::Behavior& behavior) {
   sets_[r] = worst_[r].sets;
 }
 
-// Two ends of one FOR are its duration apart; those of several may come together.
+// Two ends of one FOR are its duration apart; those of several may coincide.
 void StepWork::note_held(unsigned rule, std::uint32_t duration_ms) {
   const std::uint32_t before = held_ms_[rule];
   held_ms_[rule] = std::max(before == 0 ? duration_ms : std::min(before, duration_ms) / 2, 1U);
 }
 
-// How long it takes at least until a TIMER has come so far again: there is a RESTART in between. The
-// constant that the cell was loaded with last; one that is worked out may be as short as a millisecond.
+// The shortest time until a TIMER has come this far again: there is a RESTART in between. It is the
+// constant that the cell was last loaded with; a computed one may be as short as a millisecond.
 std::uint32_t StepWork::lasts_ms(std::span<const vm::Word> before, std::uint8_t cell) const {
   for (std::size_t i = before.size(); i > 0; --i) {
     const vm::Word word = before[i - 1];
@@ -177,7 +177,7 @@ Instructions StepWork::step(const Rules& rules, const Inputs& changed) const {
   for (const unsigned b : behaviors) {
     const vm::Behavior& behavior = image_.behaviors[b];
     sum += costs::kBehavior + Instructions{behavior.input_count} * costs::kInput;
-    // What was true for one step only is evaluated again in the next that stirs the behaviour.
+    // A word that was true for one step only is evaluated again in the next step that stirs the behaviour.
     for (unsigned r = behavior.first_rule; r < behavior.first_rule + 0U + behavior.rule_count; ++r)
       if (rules.contains(r) || has_events(r)) sum += evaluation(r);
   }
@@ -217,7 +217,7 @@ bool StepWork::contend(unsigned a, unsigned b) const {
   return common_actuator(image_, a, b);
 }
 
-// Every response that holds an actuator that the rule wants has to end; each has one that holds it.
+// Every response that holds an actuator that the rule wants must end; each actuator has one holder.
 Instructions StepWork::interruptions(unsigned rule) const {
   const Actuators wanted = actuators({rule});
   unsigned holders = 0;
@@ -235,7 +235,7 @@ Instructions StepWork::interruptions(unsigned rule) const {
   return sum;
 }
 
-// What the condition comes to: the word before its end.
+// The result of the condition: the word before its end.
 vm::Word StepWork::last_word(unsigned r) const {
   const vm::Rule& rule = image_.rules[r];
   if (rule.condition_length < 2) return vm::encode(Opcode::end);
@@ -265,14 +265,14 @@ std::uint32_t StepWork::cooldown_ms(unsigned r) const {
   return policy::milliseconds_of(policy::modifiers_of(image_, rule).cooldown);
 }
 
-// Channels stand before variables.
+// Channels come before variables.
 bool StepWork::reads_channel(const Inputs& changed) const {
   for (std::size_t c = 0; c < image_.channels.size(); ++c)
     if (changed.test(c)) return true;
   return false;
 }
 
-// What a step pays for what is there, whatever it is about.
+// What every step pays for what exists, whatever the step is about.
 Instructions StepWork::standing() const {
   Instructions sum = running();
   for (unsigned r = 0; r < image_.rules.size(); ++r)
@@ -286,9 +286,9 @@ Instructions StepWork::standing() const {
   return sum;
 }
 
-// Responses that run or wait: those that need no actuator, and of the others no more than there are
-// actuators of which each of them holds one. Any such set will do; this one takes the actuator that
-// most of them want, again and again.
+// Responses that run or wait: those that need no actuator, and of the others at most as many as there are
+// actuators in a set of which each response holds at least one. Any such set will do; this one is built by
+// repeatedly taking the actuator that most of the remaining responses want.
 Instructions StepWork::running() const {
   unsigned count = 0;
   std::vector<Actuators> left;
@@ -306,7 +306,7 @@ Instructions StepWork::running() const {
   return Instructions{costs::kRunning} * count;
 }
 
-// Something else may hold what it wants and not give way: SAFETY, or a rule that ranks no lower.
+// Something else may hold what the rule wants and not give way: SAFETY, or a rule that ranks no lower.
 bool StepWork::may_lose(unsigned rule) const {
   if (image_.has_safety() || image_.rules[rule].modifiers != vm::kNoModifiers) return true;
   for (unsigned r = 0; r < image_.rules.size(); ++r)
@@ -316,7 +316,7 @@ bool StepWork::may_lose(unsigned rule) const {
   return false;
 }
 
-// Loses today, asks again tomorrow.
+// A rule that loses and claims again later.
 bool StepWork::wants_on(unsigned r) const {
   return policy::claims_again(image_, image_.rules[r]);
 }
@@ -342,9 +342,9 @@ Instructions StepWork::trips() const {
   return sum;
 }
 
-// --- what is due by itself ---
+// --- what is due on its own ---
 
-// As often as the least number that the code of an EVERY may come to.
+// As often as the smallest number that the code of an EVERY may give.
 std::uint32_t StepWork::every_ms(unsigned r) const {
   const vm::Rule& rule = image_.rules[r];
   const auto code = image_.code.subspan(rule.condition_start, rule.condition_length);

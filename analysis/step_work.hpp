@@ -1,7 +1,7 @@
 // What a step does on the board, and what that costs at most: which rules a change concerns, what
 // their responses put out, what they set.
 //
-// What the runtime does is what runtime-m4/policy says, the costs are those of costs.hpp and of the
+// runtime-m4/policy defines what the runtime does; the costs are those of costs.hpp and of the
 // code itself (vm/cost.hpp). Images must be verified.
 #pragma once
 
@@ -24,34 +24,34 @@ class StepWork {
 public:
   explicit StepWork(const vm::Image& image);
 
-  // With what is worked out of them in the same step: the bands of CHECKs.
+  // Adds what is derived from them in the same step: the bands of CHECKs.
   [[nodiscard]] Inputs with_bands(Inputs changed) const;
-  // The rules that a change concerns, SAFETY rules aside.
+  // The rules that a change concerns, except SAFETY rules.
   [[nodiscard]] Rules concerned(const Inputs& changed) const;
   // What the rules' responses may set.
   [[nodiscard]] Inputs sets(const Rules& rules) const;
   // … when one of them goes on after a pause.
   [[nodiscard]] Inputs later_sets(unsigned rule) const { return worst_[rule].later_sets; }
   [[nodiscard]] Actuators actuators(const Rules& rules) const;
-  // The rules among them whose conditions read it: they can fire.
+  // Those of the rules whose conditions read a changed input: they can fire.
   [[nodiscard]] Rules stirred(const Rules& rules, const Inputs& changed) const;
-  // A step in which `changed` has changed and `rules` are evaluated: all but the sampling, and what
-  // comes of rules that fire.
+  // A step in which `changed` has changed and `rules` are evaluated: everything except the sampling and
+  // the consequences of rules that fire.
   [[nodiscard]] Instructions step(const Rules& rules, const Inputs& changed) const;
-  // What comes of one that fires and wins; 0 when it has no response.
+  // The consequences of a rule that fires and wins; 0 if it has no response.
   [[nodiscard]] Instructions firing(unsigned rule) const;
-  // … when it goes on after a pause, or starts because of nothing but the time.
+  // … of one that goes on after a pause, or starts because of time alone.
   [[nodiscard]] Instructions by_itself(unsigned rule) const;
-  // It fires when its condition becomes true, and for nothing else: never twice without being
-  // evaluated as false between. A WHILE also starts again, which turns() is about.
+  // It fires when its condition becomes true, and for no other reason: never twice without being
+  // evaluated as false in between. A WHILE also starts again; turns() covers that.
   [[nodiscard]] bool alternates(unsigned rule) const;
-  // It fires once, and then not before this is over: FOR as its last word; 0: not known.
+  // After it fires, it does not fire again in this time: FOR is its last word; 0: not known.
   [[nodiscard]] std::uint32_t gap_ms(unsigned rule) const;
-  // Its response starts once, and then not before this is over; who loses does not cool down.
+  // After its response starts, it does not start again in this time; a rule that loses does not cool down.
   [[nodiscard]] std::uint32_t cooldown_ms(unsigned rule) const;
-  // Two rules of which one response at most runs in a step: they want the same actuator.
+  // At most one response of these two rules runs in a step: they want the same actuator.
   [[nodiscard]] bool contend(unsigned a, unsigned b) const;
-  // One look of the safety thread at its rules; and when all of them trip.
+  // One look of the safety thread at its rules; and the case that all of them trip.
   [[nodiscard]] Instructions look() const;
   [[nodiscard]] Instructions trips() const;
 
@@ -63,14 +63,14 @@ public:
   [[nodiscard]] bool is_timed(unsigned rule) const {
     return held_ms_[rule] != 0 || has_events(rule);
   }
-  // … that is true for one step: the rule is evaluated again in the next millisecond.
+  // … a word that is true for one step: the rule is evaluated again in the next millisecond.
   [[nodiscard]] bool has_events(unsigned rule) const { return events_[rule] != 0; }
-  // … and that may make it fire: not where the condition is that word and nothing else.
+  // … and that word may make it fire: not if the condition is that word and nothing else.
   [[nodiscard]] bool fires_after_event(unsigned rule) const;
-  // The shortest time between two evaluations that a FOR asks for; 0: it has none.
+  // The shortest time between two evaluations that a FOR causes; 0: it has no FOR.
   [[nodiscard]] std::uint32_t held_ms(unsigned rule) const { return held_ms_[rule]; }
-  // How often a response that waits goes on, a rule starts again, an EVERY comes round; not any():
-  // the rule is never due by itself again and again.
+  // How often a waiting response goes on, a rule starts again, an EVERY comes round; not any():
+  // the rule is never repeatedly due on its own.
   [[nodiscard]] Pauses turns(unsigned rule) const;
 
 private:
@@ -96,13 +96,13 @@ private:
   Ranges ranges_;
   std::vector<unsigned> behavior_of_;
   std::vector<Inputs> condition_reads_;  // by rule
-  std::vector<Inputs> reads_;            // … and its responses
+  std::vector<Inputs> reads_;            // … and its responses read
   std::vector<Inputs> sets_;
-  std::vector<ResponseWork> worst_;  // by rule: of its two responses, part by part
+  std::vector<ResponseWork> worst_;  // by rule: the worse of its two responses, part by part
   std::vector<bool> divides_;
   std::vector<std::uint32_t> held_ms_;
   std::vector<unsigned> events_;  // by rule: time words that are true for one step
-  Inputs watched_;                // by SAFETY rules
+  Inputs watched_;                // read by SAFETY rules
 };
 
 }  // namespace robosync::analysis

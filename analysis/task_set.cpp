@@ -1,5 +1,5 @@
-// See task_set.hpp. What is known of each source, and what is supposed where nothing is known,
-// stands in docs/timing.md.
+// See task_set.hpp. docs/timing.md lists what is known of each source, and what is assumed where
+// nothing is known.
 #include "analysis/task_set.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ using policy::Category;
 
 constexpr unsigned kAgeBits = 8;  // of rank_of()
 
-// The period of what comes once: longer than any response time.
+// The period of what happens once: longer than any response time.
 constexpr Instructions kOnce = Instructions{1} << 40;
 
 Rules common(const Rules& a, const Rules& b) {
@@ -74,7 +74,7 @@ private:
     return std::ranges::any_of(inputs, [&](std::uint8_t input) { return channels.test(input); });
   }
 
-  // Of a sensor's thread with these channels; `adapted`: where all behaviours are worth the most.
+  // For a sensor's thread with these channels; `adapted`: with all behaviours at their highest.
   policy::Standing standing_of(const Inputs& channels, bool adapted) const {
     std::int8_t priority = policy::idle_priority(image_);
     for (unsigned b = 0; b < image_.behaviors.size(); ++b) {
@@ -86,14 +86,14 @@ private:
     return policy::standing(Category::sensor, priority);
   }
 
-  // Does it interrupt the behaviour of the lowest priority?
+  // Does it preempt the behaviour of the lowest priority?
   bool outranks_a_behavior(policy::Standing standing) const {
     if (image_.behaviors.size() <= policy::first_behavior(image_)) return false;
     const auto lowest = static_cast<std::int8_t>(image_.behaviors.back().priority);
     return standing > policy::standing(Category::behavior, lowest);
   }
 
-  // As a number: the lower outranks; threads of one standing by age, which is their order.
+  // As a number: the lower outranks; threads of the same standing rank by age, which is their order.
   static unsigned rank_of(policy::Standing standing, unsigned order) {
     return (policy::standing(Category::safety, std::int8_t{0}) - standing) << kAgeBits | order;
   }
@@ -146,7 +146,7 @@ private:
         source.delay = instructions_in_ms(1 + policy::kBusTicks);
       }
     }
-    // What a sample takes was begun with the one before.
+    // The measurement for a sample began with the sample before.
     if (vm::measures_when_told(sensor.driver)) source.measuring = source.period;
     if ((channels & work_.watched()).any()) source.sample += board_.wake + looks() + work_.trips();
     source.step = work_.step(rules, changed);
@@ -158,7 +158,7 @@ private:
     add_with_followers(std::move(source), rules, fire, work_.sets(fire));
   }
 
-  // Nobody reads it, so that its thread ranks below all that behaviours need.
+  // Nothing reads it, so its thread ranks below everything that behaviours need.
   void add_served(unsigned s) {
     source_of_sensor_.push_back(set_.sources.size());
     const vm::Sensor& sensor = image_.sensors[s];
@@ -176,15 +176,15 @@ private:
     set_.sources.push_back(std::move(source));
   }
 
-  // Its bus works by itself, from a tick before it is sampled on, and is waited for; or an echo is on its way, and it is
-  // sampled when that is due, whether it is there or not (layers/sensor.cpp). 0: it is not asked.
+  // Its bus works on its own, from a tick before the sample, and is waited for; or an echo is under way, and the sample is
+  // taken when it is due, whether the echo is there or not (layers/sensor.cpp). 0: it is not asked.
   Instructions cost_of_asking(const vm::Sensor& sensor) const {
     if (policy::is_fed(sensor)) return 0;
     if (vm::is_by_echo(sensor.driver)) return board_.ping;
     return sensor.channel_count * Instructions{policy::ask_cost(sensor.driver, board_)};
   }
 
-  // In its thread, and in the interrupts of its bus or its pin.
+  // The cost arises in its thread, and in the interrupts of its bus or its pin.
   std::size_t add_asking(const vm::Sensor& sensor, unsigned s, Instructions cost,
                          Instructions period) {
     Source source;
@@ -197,13 +197,13 @@ private:
     return set_.sources.size() - 1;
   }
 
-  // Where an algorithm's input is sampled, that releases it; where it is fed, its own period does.
+  // An algorithm is released by the sampling of its input or, if the input is fed, by its own period.
   std::size_t sampled_input_of(const vm::Sensor& algorithm) const {
     const unsigned input = policy::input_of(image_, algorithm);
     return policy::is_fed(image_.sensors[input]) ? Source::kNone : source_of_sensor_[input];
   }
 
-  // Due by itself, in the step thread.
+  // Due on its own, in the step thread.
   void add_timed(std::string name, std::uint32_t period_ms, const Rules& rules,
                  const Inputs& changed, const Rules& fire, const Inputs& set) {
     Source source;
@@ -216,7 +216,7 @@ private:
     add_with_followers(std::move(source), rules, fire, set);
   }
 
-  // A time word of a SAFETY rule may call for one look more after each.
+  // A time word of a SAFETY rule may require one more look after each.
   Instructions looks() const {
     const unsigned rules =
         image_.has_safety() ? image_.behaviors[vm::kSafetyBehavior].rule_count : 0;
@@ -225,9 +225,9 @@ private:
     return work_.look();
   }
 
-  // A step may make others, a millisecond later each: what it sets changes, and a rule with a word
+  // A step may cause others, each a millisecond later: what it sets changes, and a rule with a word
   // that was true for one step is evaluated again. Each rule answers a reading once, also by way of
-  // others: that it does so again and again is not looked for.
+  // others: repeated answers are not looked for.
   void add_with_followers(Source source, const Rules& evaluated_in_it, const Rules& fired,
                           Inputs set) {
     Source follower;
@@ -259,14 +259,14 @@ private:
     }
   }
 
-  // The rules that may fire in its steps.
+  // `fired`: the rules that may fire in its steps.
   void add(Source source, const Rules& fired) {
     for (const unsigned rule : fired)
       triggered_by_[rule].push_back(set_.sources.size());
     set_.sources.push_back(std::move(source));
   }
 
-  // Starts of responses, of which a step may have few; and what goes on.
+  // Starts of responses, of which a step may have only some; and responses that go on.
   void add_firings() {
     std::vector<unsigned> rules;
     for (const auto& [rule, sources] : triggered_by_) {
@@ -281,7 +281,7 @@ private:
       set_.firings.push_back({name_of(rule), work_.by_itself(rule), false, sources});
   }
 
-  // Which of the firings so far, those of `rules`, exclude each other; which want the same
+  // Which of the firings so far, those of `rules`, exclude each other, and which want the same
   // actuator.
   void group(const std::vector<unsigned>& rules) {
     std::vector<Needs> needs;
@@ -293,7 +293,7 @@ private:
     put_together(&Firing::choice, [&](std::size_t a, std::size_t b) {
       return exclude_each_other(needs[a], needs[b]);
     });
-    // A choice is part of a contest as a whole or not at all: so to count those first that cost most is the worst.
+    // A choice is in a contest as a whole or not at all, so counting the most expensive first is the worst case.
     const std::vector<std::vector<std::size_t>> choices = choices_of(rules.size());
     const auto all_contend = [&](std::size_t a, std::size_t b) {
       return std::ranges::all_of(choices[a], [&](std::size_t x) {
@@ -301,8 +301,7 @@ private:
             choices[b], [&](std::size_t y) { return work_.contend(rules[x], rules[y]); });
       });
     };
-    std::map<std::pair<std::size_t, std::size_t>, bool>
-        known;  // there are many firings of a choice
+    std::map<std::pair<std::size_t, std::size_t>, bool> known;  // a choice has many firings
     put_together(&Firing::contest, [&](std::size_t a, std::size_t b) {
       const std::pair pair(choice_of(a), choice_of(b));
       if (pair.first == pair.second) return true;
@@ -312,13 +311,13 @@ private:
     });
   }
 
-  // A firing without a choice is one by itself.
+  // A firing without a choice counts as a choice of its own.
   std::size_t choice_of(std::size_t firing) const {
     const std::size_t choice = set_.firings[firing].choice;
     return choice == Firing::kNone ? firing : choice;
   }
 
-  // The firings of each choice, at its number.
+  // The firings of each choice, indexed by its number.
   std::vector<std::vector<std::size_t>> choices_of(std::size_t firings) const {
     std::vector<std::vector<std::size_t>> choices(firings);
     for (std::size_t i = 0; i < firings; ++i)
@@ -326,7 +325,7 @@ private:
     return choices;
   }
 
-  // Each with the first others that it and all of them go together with.
+  // Groups each with the first others that go together with it and with each other.
   template <class Together>
   void put_together(std::size_t Firing::*which, Together together) {
     for (std::size_t first = 0; first < set_.firings.size(); ++first) {
@@ -349,7 +348,7 @@ private:
     return fmt::format("rule {} of the module's {}", rule, name);
   }
 
-  // A FOR of its is over, or a TIMER has come as far as it asks.
+  // A FOR of the rule is over, or a TIMER has come as far as the rule asks.
   void add_held(unsigned r) {
     const bool fires = image_.rules[r].then_response != vm::kNoIndex;
     add_timed(fmt::format("{}, FOR or TIMER", name_of(r)), work_.held_ms(r), {r}, {},
@@ -368,11 +367,11 @@ private:
   }
 
   void add_rule(unsigned r, std::uint32_t period_ms) {
-    // A response that goes on evaluates nothing.
+    // A response that goes on evaluates no condition.
     const bool evaluated = image_.rules[r].kind == vm::RuleKind::every;
     add_timed(fmt::format("{}, by itself", name_of(r)), period_ms, evaluated ? Rules{r} : Rules{},
               {}, {r}, evaluated ? work_.sets({r}) : work_.later_sets(r));
-    // What it says of triggers does not hold for what goes on.
+    // What is known of triggers does not apply to a response that goes on.
     auto& triggers = triggered_by_[r];
     goes_on_[r].push_back(std::exchange(by_itself_, 0));
     std::erase(triggers, goes_on_[r].back());
@@ -404,7 +403,7 @@ private:
 
   // --- what outranks the sources ---
 
-  // A transfer of another sensor on the bus, which no sensor interrupts; or a trace message.
+  // A transfer of another sensor on the bus, which no sensor preempts; or a trace message.
   Instructions longest_lock() const {
     Instructions longest = 0;
     unsigned on_bus = 0;
@@ -472,11 +471,11 @@ private:
   // By rule: the sources whose steps may trigger it, or let it go on.
   std::map<unsigned, std::vector<std::size_t>> triggered_by_, goes_on_;
   std::vector<std::size_t> source_of_sensor_;
-  std::size_t by_itself_ = 0;  // the source that add_timed() has made last
+  std::size_t by_itself_ = 0;  // the source that add_timed() made last
   Actuators commanded_ = 0;
 };
 
-// May the program keep the processor from the link's thread, which ranks below all of it, for so long?
+// May the program keep the link's thread, which ranks below all of it, from the processor for this long?
 bool may_keep_waiting(const TaskSet& set, Priorities priorities, Instructions time) {
   TaskSet with_link = set;
   Source link;
@@ -489,12 +488,12 @@ bool may_keep_waiting(const TaskSet& set, Priorities priorities, Instructions ti
   return !response.bounded || response.time >= time;
 }
 
-// The step thread waits for the link when that had nothing for so long. Its turns take a part of the time, and one that has
-// just begun may be as long as they get.
+// The step thread waits for the link if the link got nothing for its patience. Its turns take a fixed part of the time, and one
+// that has just begun may have the full length.
 void add_link(TaskSet& set, const vm::Image& image, Instructions ms, Priorities priorities) {
   const std::uint32_t patience_us = policy::link_patience_us(image.header->step_cost);
   const std::uint32_t known_us =
-      patience_us - std::min(patience_us, 1000U);  // it is counted in ticks
+      patience_us - std::min(patience_us, 1000U);  // patience is counted in ticks
   if (!may_keep_waiting(set, priorities, ms * known_us / 1000)) return;
   set.interferences.push_back({"the link's turns", ms, ceil_div(ms, policy::kLinkParts)});
   set.interferences.push_back({"a long turn of the link", kOnce, policy::kLinkTurnMs * ms});

@@ -1,5 +1,5 @@
 // The task set of a program (response_time.hpp): its sensors with their periods, ranks and steps,
-// what is due by itself, and what outranks both.
+// what is due on its own, and what outranks both.
 #pragma once
 
 #include "analysis/response_time.hpp"
@@ -8,11 +8,11 @@
 
 namespace robosync::analysis {
 
-// Instructions that one call of an algorithm's module takes at most, as the firmware says.
+// The most instructions that one call of an algorithm's module takes, as the firmware declares.
 using ModuleCost = Instructions (*)(const vm::Image& image, const vm::Sensor& algorithm);
 
-// Of a verified image, whose algorithms the firmware has. `cap`: the highest priority that an adapted behaviour can reach; 0:
-// priorities stay as they are written.
+// For a verified image whose algorithms the firmware has. `cap`: the highest priority that an adapted behaviour can reach; 0:
+// priorities stay as written.
 [[nodiscard]] TaskSet task_set_of(const vm::Image& image, const policy::BoardCosts& board,
                                   ModuleCost module_cost, int cap = 0);
 

@@ -1,5 +1,5 @@
 // See variable_ranges.hpp. Variables may depend on each other, and on themselves: all responses are
-// looked at again and again until no range grows any more; one that still does then may be anything.
+// examined repeatedly until no range grows any more. A range that still grows after kRounds may be anything.
 #include "analysis/variable_ranges.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 using vm::VariableKind;
 
-constexpr unsigned kRounds = 4;  // before what grows may be anything
+constexpr unsigned kRounds = 4;  // afterwards, what grows may be anything
 
 // Set by nothing but SET, RAISE and LOWER, and always known.
 bool is_set_only(const vm::Variable& variable) {
@@ -38,7 +38,7 @@ public:
   }
 
 private:
-  // Did any? With `whole`, each of them to all that it can be, so that it never does again.
+  // Did any range grow? With `whole`, each one grows to all that it can be, so that it never grows again.
   bool grows(bool whole) {
     bool grown = false;
     for (const vm::Behavior& behavior : image_.behaviors)

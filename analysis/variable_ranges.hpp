@@ -1,5 +1,5 @@
-// What each input may be at any time: a reading unknown or whatever its channel gives, a variable
-// what it begins with and what responses set it to. Images must be verified.
+// The values that each input may have at any time: a reading may be unknown or whatever its channel gives,
+// a variable its initial value or what responses set it to. Images must be verified.
 #pragma once
 
 #include "analysis/walk.hpp"

@@ -47,26 +47,26 @@ bool Walk::next() {
   return true;
 }
 
-// What holds in the other may hold here as well.
+// What may hold in the other state may hold here as well.
 void Walk::State::join(const State& other) {
   std::ranges::transform(cells, other.cells, cells.begin(), hull);
   waited_ms = std::min(waited_ms, other.waited_ms);
 }
 
-// Its place, or a free one.
+// The entry for this place, or a free one.
 Walk::Coming& Walk::coming_to(std::size_t at) {
   for (Coming& coming : coming_)
     if (coming.at == at) return coming;
   for (Coming& coming : coming_)
     if (coming.at == 0) return coming;
-  return coming_.back();  // it is verified
+  return coming_.back();  // never: the image is verified
 }
 
 void Walk::run() {
   const vm::OpcodeInfo& info = vm::info_of(vm::opcode_of(word()));
   const std::uint8_t a = vm::operand_a(word());
   if (info.effect == vm::Effect::set) {
-    // To set something unknown does nothing.
+    // Setting something unknown does nothing.
     const Interval value = now_.cells[vm::operand_b(word())];
     now_.cells[a] = value.may_be_unknown() ? hull(now_.cells[a], known(value)) : value;
   } else if (vm::always_pauses(info.flow)) {
@@ -81,7 +81,7 @@ void Walk::run() {
   if (vm::begins_loop(info.flow)) begin_loop();
 }
 
-// The inputs are read anew.
+// The inputs are read again.
 void Walk::latch(bool also_as_it_was) {
   for (std::size_t i = 0; i < numbers_.size(); ++i)
     now_.cells[i] =
@@ -95,7 +95,7 @@ void Walk::jump(std::size_t words_ahead) {
   coming = {target, now_};
 }
 
-// Of what is written anywhere in it nothing is known when a round begins.
+// Cells that are written anywhere in the loop are unknown when a round begins.
 void Walk::begin_loop() {
   latch(true);
   unsigned depth = 1;

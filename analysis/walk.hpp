@@ -1,6 +1,6 @@
-// One pass over a code object: before each word, what the cells of the frame may hold on whichever
-// way it is reached, and how long the response has waited at least. Images must be verified: blocks
-// nest, jumps go ahead or around loops (vm/verify_blocks.hpp).
+// One pass over a code object. Before each word it knows what the cells of the frame may hold, whichever
+// way the word is reached, and how long the response has waited at least. Images must be verified: blocks
+// nest, jumps go forward or around loops (vm/verify_blocks.hpp).
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace robosync::analysis {
 
 using Ranges = std::array<Interval, std::size_t{2} * vm::kMaxInputs>;  // of inputs, by number
 
-// How long a pause takes at least: a WAIT as long as its number, and at least until the next step;
-// any other may be over when the step thread looks again.
+// How long a pause takes at least: a WAIT takes as long as its number, and at least until the next step;
+// any other pause may be over when the step thread looks again.
 [[nodiscard]] std::uint32_t least_wait_ms(vm::Word word, std::span<const Interval> cells);
 // Does it write a number or a truth into its cell A?
 [[nodiscard]] bool writes(vm::Word word);
@@ -25,9 +25,9 @@ public:
   Walk(const vm::Image& image, const vm::Behavior& behavior, std::span<const vm::Word> code,
        const Ranges& inputs);
 
-  // Comes to the next word; false: there is none.
+  // Goes to the next word; false: there is none.
   bool next();
-  // … and what is before it is run.
+  // … and the state before it runs.
   [[nodiscard]] std::size_t at() const { return at_; }
   [[nodiscard]] vm::Word word() const { return code_[at_]; }
   [[nodiscard]] std::span<const Interval> cells() const { return now_.cells; }
@@ -40,7 +40,7 @@ private:
     std::array<Interval, vm::kMaxCells + 1> cells;
     std::uint64_t waited_ms = 0;
   };
-  // How it is where a jump goes to; at 0: nowhere.
+  // The state at the target of a jump; at 0: no target.
   struct Coming {
     std::size_t at = 0;
     State state;
@@ -52,11 +52,11 @@ private:
 
   const vm::Image& image_;
   std::span<const vm::Word> code_;
-  std::span<const std::uint8_t> numbers_;  // of its inputs
+  std::span<const std::uint8_t> numbers_;  // of the behaviour's inputs
   const Ranges& inputs_;
   std::size_t at_ = static_cast<std::size_t>(-1);
   State now_;
-  bool reached_ = true;                            // by the word before
+  bool reached_ = true;                            // from the previous word
   std::array<Coming, vm::kMaxBlocks + 2> coming_;  // one for each open IF, and the ELSE to come
 };
 

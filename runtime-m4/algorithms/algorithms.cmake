@@ -1,5 +1,5 @@
-# The algorithm modules of the firmware, as modules.def lists them, and who judges an image by them. Plain C; each by itself, since
-# they use the same names.
+# The algorithm modules of the firmware, as modules.def lists them, and the code that judges images by them. Plain C; each module
+# is compiled on its own, since they use the same names.
 set(module_list ${CMAKE_CURRENT_SOURCE_DIR}/algorithms/modules.def)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${module_list})
 file(STRINGS ${module_list} modules REGEX "^MODULE")

@@ -1,17 +1,17 @@
-// imu_gestures: what an accelerometer says of how a body is held and moved. Standing still it reads 0, 0, 1 g: X points
+// imu_gestures: what an accelerometer says about how a body is held and moved. At rest it reads 0, 0, 1 g: X points
 // forward, Y to the left, Z up.
 //
-// The acceleration that lasts is gravity, taken by a low pass of GRAVITY_MS; the rest is motion.
-// LEVEL is the jerk, how fast the acceleration changes, summed over the axes, in whole g a second. It rises at once and fades
-// within JERK_MS.
-// GESTURE is what was done to the body last, shown for `shown_for`:
-//   falling  nothing holds it: all axes are near 0 for `fall_time`, and as long as they are
-//   shaken   its motion along one axis was above `shake` one way and the other, `shakes` times, SWING_MS between at most
-//   tapped   its motion, summed over the axes, was above `tap` for SPIKE_MS at most, and calmer for QUIET_MS then
-//   lifted   its motion was above `lift` upwards, and mostly upwards, for LIFT_MS, and not downwards just before: so it ends
-//            when it is put down
-// Who is shaken is not tapped: tapped and lifted count only while nothing else is shown.
-// TILT is how it is held, looked at while it is calm.
+// The lasting part of the acceleration is gravity, found by a low-pass filter of GRAVITY_MS; the rest is motion.
+// LEVEL is the jerk, which is how fast the acceleration changes, summed over the axes, in whole g per second. It rises
+// immediately and fades within JERK_MS.
+// GESTURE is what was last done to the body, shown for `shown_for`:
+//   falling  nothing holds it: all axes are near 0 for `fall_time`, and it lasts as long as they are
+//   shaken   its motion along one axis was above `shake` in alternate directions, `shakes` times, at most SWING_MS apart
+//   tapped   its motion, summed over the axes, was above `tap` for at most SPIKE_MS, and calmer for QUIET_MS afterwards
+//   lifted   its motion was above `lift` upwards, and mostly upwards, for LIFT_MS, and not downwards just before: that is
+//            how putting it down ends
+// A body that is shaken does not count as tapped: tapped and lifted count only while nothing else is shown.
+// TILT is how it is held, determined while it is calm.
 #include <stddef.h>
 
 #include "runtime-m4/algorithms/robosync_module.h"
@@ -25,14 +25,14 @@ enum { UPRIGHT, FORWARD, BACK, LEFT, RIGHT, UPSIDE_DOWN };
 enum { GRAVITY_MS = 320, JERK_MS = 80, SWING_MS = 400, SPIKE_MS = 60, QUIET_MS = 120 };
 enum { LIFT_MS = 100, AFTER_SINKING_MS = 600, FOREVER_MS = 1000000 };
 enum { MOST = 16000, NEAR_NOTHING = 300, CALM = 150, LEAN_MARGIN = 100 };  // thousandths of g
-enum { FINE = 64 };  // of a thousandth: what a short period adds to gravity is less than one
+enum { FINE = 64 };  // parts of a thousandth: in a short period gravity may change by less than one
 
 typedef struct state {
   int32_t last[AXES], motion[AXES];
-  int32_t gravity[AXES];  // FINE
-  int32_t jerk;           // thousandths of g a second
+  int32_t gravity[AXES];  // times FINE
+  int32_t jerk;           // thousandths of g per second
   uint32_t period_ms;
-  uint32_t falling_ms, swing_ms, loud_ms, quiet_ms, rising_ms, sinking_ms, shown_ms;  // since
+  uint32_t falling_ms, swing_ms, loud_ms, quiet_ms, rising_ms, sinking_ms, shown_ms;  // time since
   uint8_t begun, axis, forth, swings, gesture, tilt;
 } state;
 
@@ -105,7 +105,7 @@ static uint8_t strongest_axis(const state* self) {
   return (uint8_t)axis;
 }
 
-// The first swing says along which axis the others have to be.
+// The first swing determines the axis of the others.
 static int is_shaken(state* self, const int32_t* config) {
   self->swing_ms = later(self->swing_ms, self->period_ms);
   if (self->swing_ms > SWING_MS) self->swings = 0;
@@ -136,7 +136,7 @@ static int is_tapped(state* self, const int32_t* config) {
   return is_short;
 }
 
-// The motion along gravity, which is about 1 g long.
+// The motion along gravity, whose length is about 1 g.
 static int32_t upwards(const state* self) {
   int64_t sum = 0;
   for (int i = 0; i < AXES; ++i)
@@ -184,7 +184,7 @@ static int leans(int32_t gravity, int32_t least, int leant) {
   return gravity > (leant ? least - LEAN_MARGIN : least);
 }
 
-// The side that points down has gravity's reading against it.
+// The axis that points down reads gravity as negative.
 static uint8_t tilt_of(const state* self, int32_t least) {
   const int32_t x = self->gravity[X] / FINE;
   const int32_t y = self->gravity[Y] / FINE;

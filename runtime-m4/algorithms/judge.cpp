@@ -6,7 +6,7 @@ namespace {
 
 using vm::Refusal;
 
-// Its inputs are channels of one sensor, which is measured and not an algorithm itself.
+// Its inputs must be channels of one sensor, which is measured and not an algorithm itself.
 bool can_read(const vm::Image& image, const vm::Sensor& algorithm, unsigned inputs) {
   const vm::Channel& first = image.channels[algorithm.first_input];
   const vm::Sensor& sensor = image.sensors[first.sensor];

@@ -1,5 +1,5 @@
-// What the verifier cannot know of an image's algorithms: whether this firmware has their modules, and whether
-// these can work with their inputs, parameters and outputs. Pure; board and rsc ask it of each image that verify() has
+// What the verifier cannot know about an image's algorithms: whether this firmware has their modules, and whether
+// these accept their inputs, parameters and outputs. Pure; the board and rsc call it for each image that verify() has
 // accepted.
 #pragma once
 
@@ -11,11 +11,11 @@ namespace robosync::algorithms {
 
 [[nodiscard]] vm::Verdict judge(const vm::Image& image);
 
-// Of an algorithm's record of a judged image.
+// For an algorithm's record in a judged image.
 inline const robosync_module& module_of(const vm::Sensor& algorithm) {
   return *find_module(algorithm.bus);
 }
-// Where a module's scratch begins in its memory, behind its state.
+// Where a module's scratch begins in its memory, after its state.
 inline std::uint32_t scratch_at(const robosync_module& module, const std::int32_t* config) {
   return (module.state_bytes(config) + 7U) & ~7U;
 }

@@ -1,4 +1,4 @@
-// What a module that listens gets: the channels of stdlib/devices/microphone.json, in their order, of 20 ms of sound each time.
+// The inputs of a module that listens: the channels of stdlib/devices/microphone.json, in order, for 20 ms of sound each time.
 #pragma once
 
 #include "runtime-m4/algorithms/robosync_module.h"

@@ -1,4 +1,4 @@
-// The algorithm modules of the firmware, by the number in the image (modules.def).
+// The algorithm modules of the firmware, by their number in the image (modules.def).
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ extern "C" {
 
 namespace robosync::algorithms {
 
-// Numbers from here on are of modules in files: only a computer has any, and which they are depends on who asks
+// Numbers from here on belong to modules in files. Only a computer has any, and each process numbers its own
 // (module_files/registry.cpp; on a board: no_files.cpp).
 inline constexpr std::size_t kFirstInFile = 128;
 [[nodiscard]] const robosync_description* find_in_file(std::size_t number);
@@ -23,7 +23,7 @@ inline constexpr std::size_t kFirstInFile = 128;
 // The module, or null.
 [[nodiscard]] const robosync_module* find_module(std::size_t number);
 
-// Its names, or null. The firmware does not call it, and so has none of them.
+// Its names, or null. The firmware does not call this, and so contains no names.
 [[nodiscard]] const robosync_description* find_description(std::size_t number);
 
 }  // namespace robosync::algorithms

@@ -1,11 +1,12 @@
 // pitch: the tone that somebody sings, whistles or plays, from what a microphone hears (stdlib/devices/microphone.json).
 //
-// A tone begins when STEADY_SAMPLES samples have a pitch, each less than a whole tone from the one before, and ends when as many have
-// none. Until another pitch has lasted as long the tone is what it was: an octave that is misheard for a moment does not show.
+// A tone begins when STEADY_SAMPLES samples have a pitch, each less than a whole tone from the one before, and ends when that
+// many have none. Until another pitch has lasted as long, the tone stays what it was: an octave misheard for a moment does not
+// show.
 //   PITCH  in whole Hz, a mean in which the latest sample counts half; no reading without a tone, so it becomes unknown
-//   NOTE   the nearest one; it is kept until the tone is STAY cents from it
-//   CENTS  how far the tone is above it
-//   TONE   rising or falling when it is higher or lower than SLIDE_SAMPLES before, or than it began, by `slide`
+//   NOTE   the nearest one; it is kept until the tone is STAY cents away from it
+//   CENTS  how far the tone is above the note
+//   TONE   rising or falling if it is higher or lower by `slide` than SLIDE_SAMPLES before, or than when it began
 #include <stddef.h>
 
 #include "runtime-m4/algorithms/microphone.h"
@@ -19,16 +20,16 @@ enum { TENTH = 100, PER_HZ = 10 };  // the state counts in tenths of a Hz; input
 enum { NOTES = 12, C_ABOVE_A = 3, SEMITONE = 100, OCTAVE = 1200, STAY = 60 };  // cents
 enum { ALIKE = 1 << 14 };
 
-// Of the notes from A to the next A, to that A, in parts of ALIKE.
+// The ratios of the notes from A to the next A to that first A, in parts of ALIKE.
 static const uint16_t ratios[NOTES + 1] = {16384, 17358, 18390, 19484, 20643, 21870, 23170,
                                            24548, 26008, 27554, 29193, 30929, 32768};
 
 typedef struct state {
-  uint16_t tone;                   // 0: there is none
-  uint16_t candidate;              // that may become one
-  uint16_t before[SLIDE_SAMPLES];  // the tone in the latest samples, in a ring
+  uint16_t tone;                   // 0: none
+  uint16_t candidate;              // a pitch that may become the tone
+  uint16_t before[SLIDE_SAMPLES];  // the tone in the latest samples, in a ring buffer
   uint8_t agreeing, missing;       // samples
-  uint8_t next, kept;              // of `before`: where the next one goes, how many there are
+  uint8_t next, kept;              // in `before`: where the next one goes, how many there are
   uint8_t note;                    // 0: none, 1: c
 } state;
 
@@ -49,7 +50,7 @@ static void init(void* memory, const int32_t* config, uint32_t period_ms) {
   *self = (state){0};
 }
 
-// In tenths of a Hz, or 0 where nothing is heard that may be a tone.
+// In tenths of a Hz, or 0 if nothing is heard that may be a tone.
 static uint32_t heard(const int32_t* inputs, const int32_t* config) {
   const int is_tone =
       inputs[MICROPHONE_CLARITY] >= config[CLEAR] && inputs[MICROPHONE_LOUDNESS] >= config[LOUD] &&
@@ -62,7 +63,7 @@ static int is_near(uint32_t a, uint32_t b) {
   return a * 8 < b * 9 && b * 8 < a * 9;
 }
 
-// The tone may go on, another may begin.
+// The tone may go on, or another may begin.
 static void follow(state* self, uint32_t pitch) {
   self->missing = 0;
   if (is_near(self->tone, pitch)) {
@@ -82,7 +83,7 @@ static void follow_silence(state* self) {
   if (++self->missing == STEADY_SAMPLES) init(self, NULL, 0);
 }
 
-// Above the next A below it.
+// Cents above the next A below the tone.
 static int32_t cents_above_a(uint32_t tone, uint32_t a) {
   while (tone < a)
     tone *= 2;
@@ -96,7 +97,7 @@ static int32_t cents_above_a(uint32_t tone, uint32_t a) {
   return (int32_t)(note * SEMITONE + (ratio - ratios[note]) * SEMITONE / step);
 }
 
-// Of the note, and names the nearest one where it is too far from that.
+// Cents above the note. If the tone is too far from it, the nearest note becomes the note.
 static int32_t cents_above_note(state* self, int32_t tuning) {
   const int32_t cents = cents_above_a(self->tone, (uint32_t)tuning / TENTH);
   const int32_t above_c = (cents + OCTAVE - C_ABOVE_A * SEMITONE) % OCTAVE;
@@ -108,7 +109,7 @@ static int32_t cents_above_note(state* self, int32_t tuning) {
   return above_c - nearest * SEMITONE;
 }
 
-// What the tone was so many samples before, or when it began.
+// The tone SLIDE_SAMPLES before, or when it began.
 static uint32_t earlier(state* self) {
   uint32_t oldest = self->tone;
   if (self->kept != 0) oldest = self->before[self->kept == SLIDE_SAMPLES ? self->next : 0];

@@ -1,11 +1,11 @@
-// sound_events: what a microphone hears (stdlib/devices/microphone.json): a clap, somebody who speaks, another sound, or nothing.
+// sound_events: what a microphone hears (stdlib/devices/microphone.json): a clap, somebody speaking, another sound, or nothing.
 //
-// BACKGROUND is what is always there: it follows what is softer within QUIETER_MS, and rises by a decibel in LOUDER_MS. LEVEL is how
-// far the sound is above it.
-// EVENT, in this order:
-//   clap    after QUIET_MS in which nothing was loud it became louder by `clap` within RISE_MS, with high tones as strong as noise has,
-//           and within FALL_MS softer again by `fall`, without a voice; shown for `shown_for`
-//   speech  above the background by `loud`, with a clear pitch of a voice for `speech_time` altogether; pauses count against it
+// BACKGROUND is what is always there: it follows softer sound within QUIETER_MS, and rises by a decibel in LOUDER_MS. LEVEL is
+// how far the sound is above it.
+// EVENT is the first of these that applies:
+//   clap    after QUIET_MS without anything loud it became louder by `clap` within RISE_MS, with high tones as strong as in
+//           noise, and softer again by `fall` within FALL_MS, without a voice; shown for `shown_for`
+//   speech  above the background by `loud`, with the clear pitch of a voice for `speech_time` in total; pauses count against it
 //   sound   above the background by `loud`
 #include <stddef.h>
 
@@ -23,9 +23,9 @@ enum { LONGEST_MS = 60000, MOST_SPEECH_MS = 600 };
 
 typedef struct state {
   int32_t background;
-  int32_t before[2];    // how loud it was in the last two samples
+  int32_t before[2];    // the loudness in the last two samples
   int32_t peak, highs;  // of what may be a clap
-  uint32_t rising_ms;   // since that began; 0: nothing may be one
+  uint32_t rising_ms;   // since that began; 0: there is none
   uint32_t speech_ms, shown_ms, quiet_ms;
   uint8_t begun, speaks, shown;
 } state;
@@ -81,7 +81,7 @@ static int begins(const state* self, int32_t loudness, int32_t clap) {
          loudness - self->background >= clap;
 }
 
-// A clap is known when it is over.
+// A clap is recognised when it is over.
 static int is_clap(state* self, const int32_t* inputs, const int32_t* config) {
   const int32_t loudness = decibels(inputs[MICROPHONE_LOUDNESS]);
   if (self->rising_ms == 0 && !begins(self, loudness, config[CLAP])) return 0;

@@ -1,10 +1,10 @@
-// touch_levels: what a touch sensor's level says of a touch.
+// touch_levels: what a touch sensor's level says about a touch.
 //
 // LEVEL is the band that the level is in: none, light, firm. A band is left when the level is `margin` below where
-// it began, so that a trembling hand does not make it flicker.
-// TOUCH says what kind of touch it was. One that ends before `tap_time` is over was a tap, or a pat if it was firm at
+// the band begins, so that a trembling hand does not make it flicker.
+// TOUCH is the kind of touch. One that ends within `tap_time` was a tap, or a pat if it was firm at
 // any time; it is shown for `shown_for`, or until the next touch begins. One that has lasted for `stroke_time` is a
-// stroke, until it ends. A touch that ends in between was none of these.
+// stroke until it ends. A touch that ends in between is none of these.
 #include <stddef.h>
 
 #include "runtime-m4/algorithms/robosync_module.h"
@@ -16,8 +16,8 @@ enum { TOUCH_NONE, TOUCH_TAP, TOUCH_PAT, TOUCH_STROKE };
 
 typedef struct state {
   uint32_t period_ms;
-  uint32_t touched_ms;  // since the touch began, at the next sample; 0: there is none
-  uint32_t shown_ms;    // since TOUCH became a tap or a pat
+  uint32_t touched_ms;  // time since the touch began, at the next sample; 0: no touch
+  uint32_t shown_ms;    // time since TOUCH became a tap or a pat
   uint8_t band, touch;
   uint8_t was_firm;  // in this touch
 } state;

@@ -1,4 +1,4 @@
-// What a module of the firmware makes of another sensor's readings (layers/algorithms.hpp): never sampled.
+// What a module of the firmware computes from another sensor's readings (layers/algorithms.hpp): never sampled.
 #include "runtime-m4/drivers/drivers.hpp"
 
 namespace robosync::drivers::algorithm {

@@ -1,5 +1,5 @@
-// The voltage of an analog input: a count is a 4095th of the supply's (boards::kAnalogFull). What stands for the supply is what the
-// board measures with, so a divider between 3.3 V and GND reads the same whatever the supply does.
+// The voltage of an analog input, in 4095ths of the supply (boards::kAnalogFull). The board measures against its supply,
+// so a divider between 3.3 V and GND reads the same whatever the supply does.
 #include "runtime-m4/drivers/drivers.hpp"
 
 namespace robosync::drivers::analog_input {

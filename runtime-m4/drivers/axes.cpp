@@ -4,7 +4,7 @@
 namespace robosync::drivers {
 namespace {
 
-// The whole root, bit by bit; of at most 3 * 2^30, so it is below 2^16.
+// The integer square root, bit by bit. `square` is at most 3 * 2^30, so the root is below 2^16.
 std::int32_t root(std::uint32_t square) {
   std::uint32_t found = 0;
   for (std::uint32_t bit = 1U << 15; bit != 0; bit >>= 1)

@@ -1,4 +1,4 @@
-// How long a BLINK takes, of lights that are there and of those that are only shown.
+// How long a BLINK takes, on real lights and on virtual ones.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace robosync::drivers {
 
 inline constexpr vm::Value kMostBlinks = 1000;
-inline constexpr kernel::Duration kBlink = kernel::milliseconds(150);  // dark, and lit again
+inline constexpr kernel::Duration kBlink = kernel::milliseconds(150);  // one dark and one lit leg
 inline constexpr kernel::Duration kShortestBlink = kernel::milliseconds(20);
 
 // A blink has two legs.
@@ -17,7 +17,7 @@ struct Blink {
   kernel::Duration leg;
 };
 
-// So many TIMES, all in OVER.
+// TIMES blinks, all within OVER.
 inline Blink blink_of(const Order& order) {
   const vm::Value times = order.get(vm::Param::times, vm::kScale) / vm::kScale;
   const auto legs = static_cast<unsigned>(2 * std::clamp(times, vm::Value{1}, kMostBlinks));

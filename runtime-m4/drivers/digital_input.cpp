@@ -1,7 +1,7 @@
-// The level of an input pin: 1 when it is the one that the sensor's wiring calls active, else 0.
+// The level of an input pin: 1 if it is the level that the sensor's wiring calls active, else 0.
 //
-// Contacts bounce for some milliseconds after they have changed. Nothing here filters that: a sensor that is sampled
-// less often than contacts bounce for sees at most one sample amid the bouncing, and whichever level that shows, the
+// Contacts bounce for some milliseconds after they change. Nothing here filters that: if the sampling period is longer
+// than the bouncing, at most one sample falls into it, and whichever level that one shows, the
 // samples change once. So the descriptors of contacts sample at 50 Hz (stdlib/devices/button.json).
 #include "runtime-m4/drivers/drivers.hpp"
 

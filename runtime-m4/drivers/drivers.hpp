@@ -1,4 +1,4 @@
-// The drivers this firmware has, found by the number in the image: static dispatch over
+// The drivers of this firmware, found by their number in the image: static dispatch over
 // vm/drivers.def, one .cpp file for each. No driver blocks, allocates, or keeps state of its own.
 #pragma once
 
@@ -16,16 +16,16 @@ namespace robosync::drivers {
 
 // --- sensors ---
 
-// One sample of one channel as a raw count. False when the device did not answer.
+// One sample of one channel as a raw count. False if the device did not answer.
 using ReadFunction = bool (*)(boards::Board& board, const vm::Sensor& sensor,
                               const vm::Channel& channel, std::int32_t& raw);
 
 // --- actuators ---
 
-// What an actuator is to do: parameters are known values inside the actuator's range and limits.
+// What an actuator must do: the parameters are known values inside the actuator's range and limits.
 struct Order {
   vm::Action action = vm::Action::stop;
-  std::uint8_t given = 0;  // bit p: params[p] is there; the others are undefined
+  std::uint8_t given = 0;  // bit p: params[p] is given; the others are undefined
   std::array<vm::Value, static_cast<std::size_t>(vm::Param::count_)> params;
 
   bool has(vm::Param param) const { return (given >> static_cast<unsigned>(param) & 1) != 0; }
@@ -34,10 +34,10 @@ struct Order {
   }
 };
 
-// What a driver keeps of its actuator between calls.
+// What a driver stores about its actuator between calls.
 struct ActuatorState {
-  Motion motion;           // where it is, as far as the driver knows
-  vm::Value home = 0;      // where a gesture began, and ends
+  Motion motion;           // its position, as far as the driver knows
+  vm::Value home = 0;      // where a gesture begins and ends
   vm::Value speed = 0;     // of the gesture, per second
   kernel::Time until = 0;  // when the command is done
   std::uint16_t legs = 0;  // movements of the gesture still to come
@@ -54,7 +54,7 @@ struct Device {
     outputs.drive(state.actuator, pulse_us, now);
   }
   void begin_order() const { outputs.begin_order(state.actuator); }
-  // Of a driver with two pins: on the second one where it is negative.
+  // For a driver with two pins: drives the second one if the pulse is negative.
   void drive_either(std::int32_t pulse_us, kernel::Time now) const {
     outputs.drive_either(state.actuator, pulse_us, now);
   }
@@ -65,8 +65,8 @@ struct Device {
 
 inline constexpr kernel::Time kDone = 0;
 
-// start: begins an order; advance: goes on with it. Both return when they want to be called again,
-// or kDone. release: what the actuator does when nobody commands it any more, from any state.
+// start begins an order; advance continues it. Both return when they want to be called again,
+// or kDone. release sets what the actuator does once nothing commands it, from any state.
 using StartFunction = kernel::Time (*)(const Device& device, const Order& order, kernel::Time now);
 using AdvanceFunction = kernel::Time (*)(const Device& device, kernel::Time now);
 using ReleaseFunction = void (*)(const Device& device, vm::Release how, kernel::Time now);
@@ -93,7 +93,7 @@ struct Driver {
   ReleaseFunction release = nullptr;
 };
 
-// Code for lights and speakers is not there where there are none, nor that for displays, players and panels where they could not be.
+// Code for lights and speakers is left out if the board has none; code for displays, players and panels if they cannot be connected.
 constexpr bool is_present(vm::DriverId id) {
   if (vm::drives_lights(id)) return boards::kHasLights;
   if (vm::drives_screen(id)) return boards::kPins.i2c_buses != 0;
@@ -128,7 +128,7 @@ constexpr const Driver& driver(vm::DriverId id) {
   return kDrivers[static_cast<std::size_t>(id)];
 }
 
-// Thousandths of a second, as OVER and FOR carry them, in microseconds; negative is none.
+// Converts thousandths of a second, as in OVER and FOR, to microseconds; a negative value gives 0.
 constexpr kernel::Duration duration_of(vm::Value thousandths) {
   return thousandths > 0 ? static_cast<kernel::Duration>(thousandths) * 1000 : 0;
 }

@@ -6,22 +6,20 @@
 namespace robosync::drivers {
 namespace {
 
-// Samples between two repetitions.
+// Lags between two repetitions, in samples.
 constexpr std::size_t kShortest = kEarRate / 2000;
 constexpr std::size_t kMiddle = 16;  // up to here in all samples, from here on in every second one
-constexpr std::size_t kLongest = kEarRate / 2 / 80;  // … in those
-// How many samples are compared: at the longest lag as many as repeat themselves once and a half.
+constexpr std::size_t kLongest = kEarRate / 2 / 80;  // … counted in those
+// How many samples are compared: at the longest lag, one and a half repetitions.
 constexpr std::size_t kCompared = 96, kComparedHalved = 80;
 constexpr vm::Value kHighest = 20'000;  // in tenths of a Hz
-constexpr std::int32_t kEnough =
-    82;  // %, of the most that a sound is like itself: it is there again
-constexpr std::int32_t kLeastEnergy =
-    100;  // of a sample's square, on average: what is softer has no pitch
+constexpr std::int32_t kEnough = 82;    // % of the highest similarity: this much is a repetition
+constexpr std::int32_t kLeastEnergy = 100;  // a sample's mean square: softer sound has no pitch
 constexpr std::int32_t kHeight =
-    1 << 11;  // below which samples are compared: then a block of squares fits
+    1 << 11;  // samples are scaled below this to compare them: then a block of squares fits
 
-// 10 lg(square), in whole dB: 3.0103 times the logarithm to base 2, which is its highest bit and, for the fraction, ten times
-// whether the square of what remains reaches 2.
+// 10 lg(square), in whole dB: 3.0103 times the logarithm to base 2. Its integer part is the highest bit; each of the ten bits of
+// its fraction is whether the square of the remainder reaches 2.
 vm::Value decibel(std::uint64_t square) {
   if (square == 0) return 0;
   unsigned exponent = 0;
@@ -44,7 +42,7 @@ vm::Value decibel(std::uint64_t square) {
 
 using Samples = std::span<const std::int16_t>;
 
-// Until all of them are below kHeight.
+// Halves the samples until all are below kHeight.
 void soften(std::span<std::int16_t> samples) {
   std::int32_t highest = 0;
   for (const std::int32_t sample : samples)
@@ -56,11 +54,11 @@ void soften(std::span<std::int16_t> samples) {
     sample = static_cast<std::int16_t>(sample >> shift);
 }
 
-// What is like itself all over.
+// The similarity of a sound that repeats exactly.
 constexpr std::int32_t kAlike = 1 << 14;
 
-// How much of the last samples, as many as `compared`, was there already `lag` samples before, in parts of kAlike.
-// One lag after the other.
+// How similar the last `compared` samples are to those `lag` samples earlier, in parts of kAlike. Each call of next() goes on to
+// the next lag.
 class Comparison {
 public:
   Comparison(Samples samples, std::size_t compared, std::size_t first_lag)
@@ -76,14 +74,14 @@ public:
     const std::int32_t gained = begin_[0], lost = begin_[latest_.size()];
     earlier_energy_ += gained * gained - lost * lost;
     if (energy / 2 < kLeastEnergy * static_cast<std::int32_t>(latest_.size())) return 0;
-    // With its highest bit in the same place each time, so that 15 bits below it are exact; never 0.
+    // Shifted so that its highest bit is always in the same place: 15 bits below it are exact. Never 0.
     const int room = std::countl_zero(static_cast<std::uint32_t>(energy)) - 1;
     const std::int32_t whole = (energy << room) / (2 * kAlike);
     return (product << room) / whole;  // NOLINT(clang-analyzer-core.DivideZero)
   }
 
 private:
-  // Of as many as are a multiple of eight: most of the work is here.
+  // For a multiple of eight samples: most of the work is here.
   static std::int32_t products(Samples some, const std::int16_t* others) {
     std::int32_t sum = 0;
     const std::int16_t* const end = some.data() + some.size();
@@ -96,25 +94,25 @@ private:
   static std::int32_t energy(Samples samples) { return products(samples, samples.data()); }
 
   Samples latest_;
-  const std::int16_t* begin_;  // of what is compared with them
+  const std::int16_t* begin_;  // of the samples that they are compared with
   std::int32_t latest_energy_, earlier_energy_;
 };
 
-// Where a sound is more like itself than a little sooner and later.
+// A lag at which a sound is more like itself than at the lags next to it.
 struct Peak {
-  std::int32_t lag = 0;  // in samples, in parts of kPart
+  std::int32_t lag = 0;  // in samples, times kPart
   std::int32_t height = 0;
 };
 constexpr std::int32_t kPart = 256;
 
-// That of a parabola through three neighbours, the middle one of which is the highest.
+// The peak of a parabola through three neighbours, of which the middle one is the highest.
 Peak between(std::int32_t left, std::int32_t middle, std::int32_t right, std::size_t lag) {
   const std::int32_t bend = 2 * middle - left - right, slope = right - left;
   const std::int32_t offset = bend > 0 ? slope * (kPart / 2) / bend : 0;
   return {static_cast<std::int32_t>(lag) * kPart + offset, middle + slope * offset / (4 * kPart)};
 }
 
-// The peaks of a sound, at shorter lags first.
+// The peaks of a sound, shorter lags first.
 struct Peaks {
   void find(Samples samples, std::size_t compared, std::size_t first_lag, std::size_t last_lag,
             std::int32_t samples_each) {
@@ -132,7 +130,7 @@ struct Peaks {
     }
   }
 
-  std::array<Peak, 32> all;  // two lags are no peaks both
+  std::array<Peak, 32> all;  // two adjacent lags are never both peaks
   std::size_t count = 0;
   std::int32_t highest = 0;
 };
@@ -160,7 +158,7 @@ void Ear::remember(std::span<const std::int16_t, kEarBlock> block) {
   std::ranges::copy(block, past_.begin() + kEarBlock);
 }
 
-// What is there again after a while is there again after twice that, too: so the first one of the highest peaks is taken.
+// What repeats after some lag also repeats after twice that lag, so the first of the highest peaks is taken.
 void Ear::find_pitch(Heard& heard) const {
   std::array<std::int16_t, kPast> past = past_;
   soften(past);

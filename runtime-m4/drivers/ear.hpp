@@ -1,9 +1,9 @@
-// What a microphone's driver makes of sound: four numbers for each 20 ms of it. Sound itself goes no further: a block of it is
-// larger than all that an algorithm's module has, and three times what the link carries. Whole numbers only, so it comes to
-// the same everywhere. No board has a microphone yet: rsc hears recordings with it.
+// What a microphone's driver makes of sound: four numbers for each 20 ms. The sound itself goes no further: a block of it is
+// larger than all the memory of an algorithm's module, and three times what the link carries. Integers only, so the result is
+// the same everywhere. No board has a microphone yet; rsc uses this on recordings.
 //
-// Pitch is found by autocorrelation: after how long the sound is there again. Low pitches are looked for in means of two
-// samples, which is a quarter of the work, high ones in all samples. Of a tone alone it is right to 1 %.
+// Pitch is found by autocorrelation: the lag after which the sound repeats. Low pitches are searched in means of two
+// samples, which is a quarter of the work; high ones in all samples. For a single tone the result is accurate to 1 %.
 #pragma once
 
 #include <array>
@@ -20,10 +20,10 @@ inline constexpr unsigned kEarPeriodMs = 20;
 
 // In the order of the microphone's channels (stdlib/devices/microphone.json).
 struct Heard {
-  vm::Value loudness = 0;  // dB; 0 is one step of a sample, 90 as loud as there is
-  vm::Value highs = 0;    // … of the differences between samples, in which high sounds are louder
-  vm::Value pitch = 0;    // Hz, 80 to 2,000, in tenths; 0: it has none
-  vm::Value clarity = 0;  // %, how far the sound repeats itself at that pitch
+  vm::Value loudness = 0;  // dB; 0 is one step of a sample, 90 is the loudest
+  vm::Value highs = 0;     // … of the differences between samples, where high sounds are louder
+  vm::Value pitch = 0;     // Hz, 80 to 2,000, in tenths; 0: no pitch
+  vm::Value clarity = 0;   // %, how far the sound repeats itself at that pitch
 };
 
 class Ear {
@@ -32,7 +32,7 @@ public:
   [[nodiscard]] Heard hear(std::span<const std::int16_t, kEarBlock> block);
 
 private:
-  // Two blocks: a deep voice repeats itself after 12 ms, and has to do that twice.
+  // Two blocks: a deep voice repeats after 12 ms, and must do so twice.
   static constexpr std::size_t kPast = 2 * kEarBlock;
   void remember(std::span<const std::int16_t, kEarBlock> block);
   void find_pitch(Heard& heard) const;

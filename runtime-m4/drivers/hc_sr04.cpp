@@ -1,8 +1,8 @@
-// HC-SR04 and its like: 10 us or more on its trigger pin make it send a burst, and its echo pin is high for as long as the sound
-// takes there and back. A count is a microsecond of that.
+// HC-SR04 and similar parts: 10 us or more on the trigger pin make it send a burst, and its echo pin is high for as long as the
+// sound takes there and back. A count is a microsecond of that.
 //
-// It was asked kEchoMs ago (layers/sampler.cpp). What is no echo of anything between 2 cm and 4 m is no reading: the part keeps
-// its pin high for 38 ms and more when it hears nothing, and the noise of a wire is shorter than any echo.
+// It was asked kEchoMs ago (layers/sampler.cpp). Only an echo from between 2 cm and 4 m is a reading: without an echo the part
+// keeps its pin high for 38 ms and more, and noise on a wire is shorter than any echo.
 #include "runtime-m4/drivers/drivers.hpp"
 
 namespace robosync::drivers::hc_sr04 {

@@ -1,9 +1,9 @@
-// ST HTS221, a hygrometer and a thermometer (DocID026333). Its counts mean something by two points only, which each part has been
-// given in the factory: the value between them and beyond is on the straight line through both. What the driver gives
-// is a thousandth of a percent or of a degree.
+// ST HTS221, a hygrometer and thermometer (DocID026333). Its counts only have a meaning relative to two points, which are set for
+// each part in the factory: values between and beyond them are on the straight line through both. The driver returns
+// thousandths of a percent or of a degree.
 //
-// Out of a loss of power it is switched off. So what it is told to do is read with each sample, and so are its two points, as a
-// driver keeps nothing: when it is off it is told again, and that sample is none.
+// After a loss of power it is switched off. So each sample also reads its setting, and its two points, since a driver keeps
+// nothing. If it is off it is told again, and that sample gives no reading.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -16,15 +16,15 @@
 namespace robosync::drivers::hts221 {
 namespace {
 
-constexpr std::byte kGoOn{0x80};  // from a register to the next
+constexpr std::byte kGoOn{0x80};  // go on from one register to the next
 constexpr std::byte kWho{0x0F};   // WHO_AM_I
 constexpr std::byte kIsHts221{0xBC};
 constexpr std::byte kControl{0x20};  // CTRL_REG1
-// Switched on; no byte of a count changes between the reading of both; 12.5 times a second.
+// Switched on; the two bytes of a count do not change between their reads; 12.5 times a second.
 constexpr std::byte kMeasures{0x87};
-constexpr std::size_t kStatus = 7;  // STATUS_REG, from CTRL_REG1
+constexpr std::size_t kStatus = 7;  // STATUS_REG, counted from CTRL_REG1
 constexpr std::byte kBothNew{0b11};
-constexpr std::size_t kOutput = 8;  // HUMIDITY_OUT and TEMP_OUT, two bytes each, the low one first
+constexpr std::size_t kOutput = 8;  // HUMIDITY_OUT and TEMP_OUT, two bytes each, low byte first
 constexpr std::byte kPoints{0x30};  // H0_rH_x2
 
 struct Sample {
@@ -32,12 +32,12 @@ struct Sample {
   std::array<std::byte, 16> points{};
 };
 
-// In steps of the part: a half of a percent, or an eighth of a degree.
+// In steps of the part: half a percent, or an eighth of a degree.
 struct Line {
-  std::int32_t low, high;              // of both points
-  std::int32_t low_count, high_count;  // what it counts there
+  std::int32_t low, high;              // at the two points
+  std::int32_t low_count, high_count;  // the counts there
   std::int32_t step;                   // thousandths
-  std::int32_t least, most;            // thousandths: what it can measure
+  std::int32_t least, most;            // thousandths: the measuring range
 };
 
 std::int32_t byte_at(const Sample& sample, std::size_t place) {
@@ -64,7 +64,7 @@ Line humidity_of(const Sample& sample) {
           .most = 100'000};
 }
 
-// The upper two bits of both stand together in T1/T0 msb.
+// The upper two bits of both are in T1/T0 msb.
 Line temperature_of(const Sample& sample) {
   const std::int32_t upper = byte_at(sample, 5);
   return {.low = byte_at(sample, 2) | (upper & 0b0011) << 8,
@@ -76,8 +76,8 @@ Line temperature_of(const Sample& sample) {
           .most = 120'000};
 }
 
-// Counts have 16 bits and steps 10, so their product has 27. Far beyond both points, steps are so many that `step` times as many
-// would be too many: there the value is at its end anyway.
+// Counts have 16 bits and steps 10, so their product has 27. Far beyond both points there would be so many steps that `step`
+// times as many overflows: there the value is at its limit anyway.
 bool value_at(const Line& line, std::int32_t count, std::int32_t& raw) {
   constexpr std::int32_t kMostSteps = 4096;
   const std::int32_t counts = line.high_count - line.low_count;
@@ -89,12 +89,12 @@ bool value_at(const Line& line, std::int32_t count, std::int32_t& raw) {
   return true;
 }
 
-// Its frame is not there while all is asked for: a sensor's thread has few bytes left (tests/e2e/test_stack_depth.py).
+// Not inlined: its frame is gone during fetch(). A sensor's thread has few bytes left (tests/e2e/test_stack_depth.py).
 [[gnu::noinline]] void tell(boards::Board& board, const vm::Sensor& sensor) {
   write_registers(board, sensor, std::array{kControl, kMeasures});
 }
 
-// All is asked for, whatever comes of the first one: where the bus works by itself nothing has come of it yet.
+// Requests everything, whatever the first transfer gives: where the bus works on its own, there is no result yet.
 [[gnu::noinline]] bool fetch(boards::Board& board, const vm::Sensor& sensor, Sample& sample) {
   std::array<std::byte, 1> who{};
   const bool has_who = read_registers(board, sensor, kWho, who);
@@ -103,7 +103,7 @@ bool value_at(const Line& line, std::int32_t count, std::int32_t& raw) {
   return has_who && has_state && has_points && who[0] == kIsHts221;
 }
 
-// Until it has measured, its counts are 0. They may be 0 later on, too: a result that is new says so.
+// Until it has measured, its counts are 0. They may be 0 later, too: then a new result is flagged.
 bool has_measured(const Sample& sample) {
   return (sample.state[kStatus] & kBothNew) == kBothNew ||
          std::ranges::any_of(std::span(sample.state).subspan<kOutput>(),

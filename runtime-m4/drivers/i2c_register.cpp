@@ -1,5 +1,5 @@
 // Any I2C device with 16-bit registers: writes the register's number (the channel's input), reads
-// two bytes, the low one first. The count is unsigned.
+// two bytes, low byte first. The count is unsigned.
 #include <array>
 
 #include "runtime-m4/drivers/drivers.hpp"

@@ -1,4 +1,4 @@
-// What I2C drivers share: registers of 8 bits, or commands, and what is read behind them.
+// What I2C drivers share: 8-bit registers or commands, and reading the data that follows them.
 #pragma once
 
 #include <array>
@@ -11,21 +11,21 @@
 
 namespace robosync::drivers {
 
-// Without a frame of its own: a sensor's thread has no stack to spare for one.
+// Inlined, without a frame of its own: a sensor's thread has no stack to spare for one.
 [[gnu::always_inline]] inline bool read_registers(boards::Board& board, const vm::Sensor& sensor,
                                                   std::byte first, std::span<std::byte> in) {
   const std::array out{first};
   return board.i2c_transfer(sensor.bus, static_cast<std::uint8_t>(sensor.address), out, in);
 }
 
-// `out` begins with the first register. Whether that was done, the next sample tells, which reads them again.
+// `out` begins with the first register. The next sample reads the registers again, and so shows whether this succeeded.
 inline void write_registers(boards::Board& board, const vm::Sensor& sensor,
                             std::span<const std::byte> out) {
   static_cast<void>(
       board.i2c_transfer(sensor.bus, static_cast<std::uint8_t>(sensor.address), out, {}));
 }
 
-// One word of 16 bits, its low byte first.
+// A 16-bit word, low byte first.
 inline bool read_word(boards::Board& board, const vm::Sensor& sensor, std::byte command,
                       std::int32_t& raw) {
   std::array<std::byte, 2> in{};

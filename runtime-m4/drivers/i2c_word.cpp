@@ -1,4 +1,4 @@
-// Any I2C device with 16-bit registers that come the high byte first, as two's complement: writes the register's number (the
+// Any I2C device with 16-bit registers in two's complement, high byte first: writes the register's number (the
 // channel's input), reads two bytes.
 #include <array>
 

@@ -1,5 +1,5 @@
-// A picture on the lights of the board. SHOW puts one up, which stays; with FOR it is dark again after that. BLINK closes
-// the eyes of the one that is up: so many TIMES, all in OVER.
+// A picture on the board's lights. SHOW shows one, which stays; with FOR it goes dark afterwards. BLINK closes
+// the eyes of the picture shown: TIMES blinks, all within OVER.
 #include <array>
 #include <string_view>
 
@@ -30,7 +30,7 @@ std::uint32_t picture_of(vm::Value item) {
   return index < kPictures.size() ? kPictures[index] : 0;
 }
 
-// A leg is over. The first one is dark, the last one lit.
+// A leg is over. The first leg is dark, the last one lit.
 kernel::Time next_leg(const Device& device, kernel::Time now) {
   if (--device.state.legs == 0) return kDone;
   const bool dark = device.state.legs % 2 == 0;
@@ -67,7 +67,7 @@ kernel::Time advance(const Device& device, kernel::Time now) {
   return kDone;
 }
 
-// What holds keeps its picture, also amid a blink.
+// hold keeps the picture, also in the middle of a blink.
 void release(const Device& device, vm::Release how, kernel::Time) {
   device.state.legs = 0;
   if (how != vm::Release::hold) device.state.home = 0;

@@ -1,6 +1,6 @@
 // The accelerometer of an ST LSM303AGR (DocID027765). A count is 7.82 mg; it measures 200 times a second, up to 4 g along each axis.
 //
-// Out of a loss of power it comes asleep, and then says 0 for ever. So what it is told to do is read with each sample: when it
+// After a loss of power it is asleep, and then reports 0 for ever. So each sample also reads its setting: if it
 // is asleep it is told again, and the next sample is the first good one.
 #include <array>
 #include <cstdint>
@@ -13,13 +13,13 @@
 namespace robosync::drivers::lsm303agr {
 namespace {
 
-constexpr std::byte kGoOn{0x80};    // from a register to the next
+constexpr std::byte kGoOn{0x80};    // go on from one register to the next
 constexpr std::byte kFirst{0x20};   // CTRL_REG1_A
-constexpr std::size_t kRange = 3;   // CTRL_REG4_A, from there
-constexpr std::size_t kOutput = 8;  // OUT_X_L_A; of each axis the low byte first
-constexpr std::byte k200Hz{0x67};   // all axes, 10 bits: good 1 ms after it has woken up
-constexpr std::byte kUpTo4g{0x90};  // no byte of a count changes between the reading of both
-constexpr unsigned kUnused = 6;     // bits below those of a count
+constexpr std::size_t kRange = 3;   // CTRL_REG4_A, counted from there
+constexpr std::size_t kOutput = 8;  // OUT_X_L_A; low byte first for each axis
+constexpr std::byte k200Hz{0x67};   // all axes, 10 bits: good 1 ms after waking up
+constexpr std::byte kUpTo4g{0x90};  // the two bytes of a count do not change between their reads
+constexpr unsigned kUnused = 6;     // bits below a count
 using Registers = std::array<std::byte, kOutput + kAxesBytes>;
 
 Axes counts_of(const Registers& registers) {

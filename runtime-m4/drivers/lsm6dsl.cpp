@@ -1,16 +1,16 @@
 // The accelerometer and gyroscope of an ST LSM6DSL (DocID028475): CTRL1_XL, CTRL2_G and CTRL3_C from 0x10 on, the outputs from
-// OUTX_L_G, 0x22, on. A count of acceleration is 0.122 mg, one of turning 17.5 thousandths of deg/s. It measures 208 times a second, up
-// to 4 g along and 500 deg/s about each axis.
+// OUTX_L_G, 0x22, on. A count of acceleration is 0.122 mg, a count of turning is 17.5 thousandths of deg/s. It measures 208 times a
+// second, up to 4 g along and 500 deg/s about each axis.
 //
-// Out of a loss of power both are switched off. A gyroscope takes 70 ms (AN5040) until it is right.
+// After a loss of power both are switched off. The gyroscope takes 70 ms (AN5040) to settle.
 #include "runtime-m4/drivers/six_axes.hpp"
 
 namespace robosync::drivers::lsm6dsl {
 namespace {
 
 constexpr SixAxes kChip = {
-    // CTRL1_XL: 208 Hz, 4 g; CTRL2_G: 208 Hz, 500 deg/s; CTRL3_C: no byte of a count changes between the reading of both, and from
-    // a register it goes on to the next, as it does from the start on.
+    // CTRL1_XL: 208 Hz, 4 g; CTRL2_G: 208 Hz, 500 deg/s; CTRL3_C: the two bytes of a count do not change between their reads, and the
+    // register number increments automatically, as it does by default.
     .setting = {std::byte{0x10}, std::byte{0x58}, std::byte{0x54}, std::byte{0x44}},
     .wake = {},  // CTRL1_XL and CTRL2_G do
     .output = std::byte{0x22},

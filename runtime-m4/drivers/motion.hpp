@@ -1,4 +1,4 @@
-// A straight way from one value to another in a given time, in integers.
+// A linear motion from one value to another in a given time, in integers.
 #pragma once
 
 #include <algorithm>
@@ -30,8 +30,8 @@ struct Motion {
   }
 };
 
-// How long the way takes at `speed` (thousandths a second), in microseconds, at most
-// kLongestMotion; 0 for no way. A speed of 0 or less never arrives: kForever.
+// How long the way takes at `speed` (thousandths per second), in microseconds, at most
+// kLongestMotion; 0 if there is no way. With a speed of 0 or less it never arrives: kForever.
 constexpr kernel::Duration travel_time(vm::Value from, vm::Value to, vm::Value speed) {
   const std::int64_t way = std::int64_t{to} - from;
   const auto distance = static_cast<std::uint64_t>(way < 0 ? -way : way);

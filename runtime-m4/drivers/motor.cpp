@@ -1,6 +1,6 @@
-// A motor on an H-bridge: power in percent of the 20 ms frame, one way on its pin, the other way on its second one. TO has
-// the way as its sign; AT, or full power when neither is said, goes forward. BACKWARD turns either round. OVER goes there
-// evenly, through a standstill where the way changes. The range holds for AT too, the limit of SPEED for both.
+// A motor on an H-bridge: power in percent of the 20 ms frame, in one direction on its pin, in the other on its second pin. The
+// sign of TO is the direction; AT, or full power if neither is given, goes forward. BACKWARD reverses either. OVER goes there
+// evenly, through a standstill if the direction changes. The range applies to AT too, the SPEED limit to both.
 #include <algorithm>
 
 #include "runtime-m4/drivers/power.hpp"

@@ -1,11 +1,11 @@
 // NXP PCA9685, 16 outputs of 12 bits on I2C (product data sheet Rev. 4): register numbers 7.3, MODE1 and RESTART 7.3.1, MODE2 7.3.2,
 // LEDn_ON and LEDn_OFF 7.3.3, ALL_LED_OFF 7.3.4, PRE_SCALE 7.3.5, OE 7.4.
 //
-// It counts to 4096 in a frame, in steps of 4.88 us of its own oscillator, which may be some percent off. An output is high from
-// LEDn_ON on, here always 0, to LEDn_OFF, which alone is written for a new pulse; it comes with the STOP of the transfer. While
-// OE is high its outputs are low, as MODE2 says here: a servo without pulses is limp.
+// It counts to 4096 in a frame, in steps of 4.88 us of its own oscillator, which may be off by some percent. An output is high from
+// LEDn_ON, here always 0, to LEDn_OFF. Only LEDn_OFF is written for a new pulse, which takes effect with the STOP of the transfer.
+// While OE is high its outputs are low, as MODE2 says here: a servo without pulses is limp.
 //
-// Out of a loss of power it comes asleep, with all outputs off. So MODE1 is read in each frame.
+// After a loss of power it is asleep, with all outputs off. So MODE1 is read in each frame.
 #include <array>
 #include <cstddef>
 #include <span>
@@ -25,14 +25,14 @@ constexpr std::byte kAllOn{0xFA};  // ALL_LED_ON_L, ALL_LED_ON_H, ALL_LED_OFF_L,
 constexpr std::byte kAllOffHigh{0xFD};
 constexpr std::byte kPrescale{0xFE};
 
-// MODE1. It goes on from a register to the next, and answers at its own address only …
+// MODE1: it goes on from one register to the next, answers only at its own address …
 constexpr std::byte kRuns{0x20};
-// … and its oscillator stands still, or PRE_SCALE could not be written.
+// … and its oscillator is stopped, without which PRE_SCALE could not be written.
 constexpr std::byte kSleeps{0x30};
-// It was put to sleep in the midst of pulses; what is written to an output ends that.
+// It was put to sleep while it gave pulses; a write to an output ends that.
 constexpr std::byte kRestart{0x80};
 constexpr std::byte kTotemPole{0x04};  // MODE2: outputs low while OE is high
-constexpr std::byte kOff{0x10};        // LEDn_OFF_H, ALL_LED_OFF_H: no pulses at all
+constexpr std::byte kOff{0x10};        // LEDn_OFF_H, ALL_LED_OFF_H: no pulses
 
 constexpr std::uint32_t kOscillatorMHz = 25;
 constexpr std::uint32_t kDivider = 122;  // 25 MHz / (4096 * 50 Hz), rounded
@@ -50,7 +50,7 @@ constexpr Sent one(std::byte place, std::byte value) {
   return {{place, value}, 2};
 }
 
-// In this order: nothing gives pulses of a wrong length meanwhile.
+// In this order, so that there are no pulses of a wrong length in between.
 constexpr std::array kSetUp{
     one(kAllOffHigh, kOff), one(kMode1, kSleeps),    Sent{{kAllOn, {}, {}, {}, kOff}, 5},
     one(kPrescale, k50Hz),  one(kMode2, kTotemPole), one(kMode1, kRuns)};
@@ -62,7 +62,7 @@ Sent setpoint(const guard::OutputGuard::Setpoint& setpoint) {
   return {{place, static_cast<std::byte>(counts & 0xFF), static_cast<std::byte>(counts >> 8)}, 3};
 }
 
-// What is disturbed once is said again at once: until then nobody knows what the output does.
+// A disturbed write is repeated immediately: until then the state of the output is unknown.
 bool write(const ServedBus& at, const Sent& sent) {
   return exchange(at, sent.all(), {}, kTries);
 }
@@ -71,7 +71,7 @@ bool read_mode(const ServedBus& at, std::byte& mode) {
   return exchange(at, std::span(&kMode1, 1), std::span(&mode, 1), 1);
 }
 
-// The oscillator needs 0.5 ms to come up (7.3.1): the outputs go on in the next frame at the earliest.
+// The oscillator needs 0.5 ms to start (7.3.1): the outputs are enabled in the next frame at the earliest.
 bool set_up(const ServedBus& at, guard::OutputGuard& outputs, unsigned sensor) {
   for (const Sent& step : kSetUp)
     if (!write(at, step)) return false;
@@ -79,7 +79,7 @@ bool set_up(const ServedBus& at, guard::OutputGuard& outputs, unsigned sensor) {
   return true;
 }
 
-// The pulses that it lacks.
+// Sends the pulses that the chip lacks.
 bool send_all(const ServedBus& at, guard::OutputGuard& outputs, unsigned sensor) {
   guard::OutputGuard::Setpoint next{};
   for (unsigned from = 0; outputs.next_setpoint(sensor, from, next); from = next.actuator + 1U) {
@@ -107,7 +107,7 @@ bool serve_pca9685(const ServedBus& at, guard::OutputGuard& outputs, unsigned se
 
 namespace pca9685 {
 
-// It has no channels (the verifier sees to that), so nobody reads one.
+// It has no channels (the verifier checks this), so none is ever read.
 bool read(boards::Board&, const vm::Sensor&, const vm::Channel&, std::int32_t&) {
   return false;
 }

@@ -1,5 +1,5 @@
-// A hobby servo on a channel of a PCA9685: it moves as one on a pin does. What the chip is told, and when, is not its business
-// (servo_chip.hpp).
+// A hobby servo on a channel of a PCA9685: it moves like one on a pin. servo_chip.hpp decides what the chip is
+// told, and when.
 #include "runtime-m4/drivers/drivers.hpp"
 
 namespace robosync::drivers::pca9685_servo {

@@ -1,5 +1,5 @@
-// A sound player with numbered tracks. A track plays for FOR, else for the length that robot.json gives it, else a second, and is
-// ended then: how long its file is nobody here knows.
+// A sound player with numbered tracks. A track plays for FOR, or else for the length that robot.json gives it, or else for a
+// second, and is then ended: nothing here knows how long its file is.
 #include "runtime-m4/drivers/timed.hpp"
 
 namespace robosync::drivers::player {
@@ -17,7 +17,7 @@ kernel::Time advance(const Device& device, kernel::Time now) {
   return end;
 }
 
-// Nothing holds a sound.
+// A sound cannot be held.
 void release(const Device& device, vm::Release, kernel::Time) {
   device.play(0);
 }

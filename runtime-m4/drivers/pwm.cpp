@@ -1,6 +1,6 @@
-// Duty cycle in percent on a PWM pin, of the 20 ms frame. TO or AT sets it, OVER goes there evenly;
-// FOR keeps it up for a time and then switches off. Without FOR it stays. Neither TO nor AT: full. The range holds for all of
-// these, and the limit of SPEED too.
+// Duty cycle in percent of the 20 ms frame, on a PWM pin. TO or AT sets it, OVER goes there evenly;
+// FOR keeps it on for a time and then switches off. Without FOR it stays. With neither TO nor AT: full. The range applies to
+// all of these, and so does the SPEED limit.
 #include <algorithm>
 
 #include "runtime-m4/drivers/power.hpp"

@@ -1,4 +1,4 @@
-// Serves the displays of a program, from the thread of each: not from those that say what they shall show, nor from the output
+// Serves the displays of a program, each from its own thread: not from the threads that say what to show, nor from the output
 // guard, which never waits for a bus.
 #pragma once
 
@@ -7,10 +7,10 @@
 
 namespace robosync::drivers {
 
-// One frame of `sensor` of the image, which is an SSD1306 that shall show OutputGuard::picture_on(): what has changed, at most
-// policy::kDisplayPortions of 20 bytes, address included, tried twice each. Where nothing has, one portion of a round of all that
-// there is to say, so that a display that was disturbed unnoticed is right again after 5 s. False when it has not answered: the
-// round begins anew.  [thread of the sensor]
+// One frame of `sensor` of the image, an SSD1306 that must show OutputGuard::picture_on(). Sends what has changed: at most
+// policy::kDisplayPortions of 20 bytes, address included, each tried twice. If nothing has changed, sends one portion of a full
+// refresh, so that a display that was disturbed unnoticed is right again after 5 s. False if it did not answer: the
+// refresh starts over.  [thread of the sensor]
 [[nodiscard]] bool serve_ssd1306(const ServedBus& at, guard::OutputGuard& outputs, unsigned sensor);
 
 }  // namespace robosync::drivers

@@ -15,7 +15,7 @@ bool transfer(const ServedBus& at, bool ahead, std::span<const std::byte> out,
   return done;
 }
 
-// Until what was asked for is there, or late.
+// Until the requested transfer is done, or late.
 void await(const ServedBus& at) {
   for (unsigned i = 0; i <= policy::kBusTicks && (i == 0 || at.board.i2c_busy()); ++i)
     at.kernel.sleep_until(at.kernel.now() + kernel::kTick);

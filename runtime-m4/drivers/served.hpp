@@ -1,4 +1,4 @@
-// What is told something in each of its frames, from a thread of its own, over a bus that others use as well: a servo chip
+// A device that is told something in each of its frames, from its own thread, over a bus that others use as well: a servo chip
 // (servo_chip.hpp), a display (screen.hpp).
 #pragma once
 
@@ -11,16 +11,16 @@
 
 namespace robosync::drivers {
 
-// Its place on its bus, and who else may want that.
+// Its place on its bus, and what it takes to share that bus.
 struct ServedBus {
   kernel::Kernel& kernel;
   boards::Board& board;
-  kernel::Mutex& buses;  // one thread at a time has them; it is taken for one transfer at a time
+  kernel::Mutex& buses;  // one thread at a time holds them, for one transfer at a time
   std::uint8_t bus, address;
 };
 
-// One transfer, tried so many times at most. Where the bus works by itself, what is wanted is said, and asked about when it is
-// done. False: it was not acknowledged.  [thread of the device]
+// One transfer, tried at most `tries` times. Where the bus works on its own, this requests the transfer, and collects its result
+// when it is done. False: it was not acknowledged.  [thread of the device]
 [[nodiscard]] bool exchange(const ServedBus& at, std::span<const std::byte> out,
                             std::span<std::byte> in, unsigned tries);
 

@@ -1,5 +1,5 @@
-// A hobby servo: a setpoint every 20 ms, pulses of 500 to 2500 us over the range of the actuator. How it
-// moves stands in way.hpp.
+// A hobby servo: a setpoint every 20 ms, pulses of 500 to 2500 us over the range of the actuator. For how it
+// moves see way.hpp.
 #include <algorithm>
 
 #include "runtime-m4/drivers/way.hpp"

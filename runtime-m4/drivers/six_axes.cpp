@@ -6,8 +6,8 @@
 namespace robosync::drivers {
 namespace {
 
-// Until it has measured, all it has measured is 0. That it measures 0 six times over, to the last bit of its noise, is nothing to
-// wait for.
+// Until it has measured, all its outputs are 0. Six measured values that are all 0, to the last bit of noise, are too unlikely
+// to care about.
 bool has_measured(AxisRegisters acceleration, AxisRegisters turning) {
   const auto is_set = [](std::byte byte) { return byte != std::byte{0}; };
   return std::ranges::any_of(acceleration, is_set) || std::ranges::any_of(turning, is_set);
@@ -15,7 +15,7 @@ bool has_measured(AxisRegisters acceleration, AxisRegisters turning) {
 
 }  // namespace
 
-// Both are asked for, whatever comes of the first one: where the bus works by itself nothing has come of it yet.
+// Requests both, whatever the first transfer gives: where the bus works on its own, there is no result yet.
 bool SixAxes::fetch(boards::Board& board, const vm::Sensor& sensor, Sample& sample) const {
   const bool has_setting = read_registers(board, sensor, setting[0], sample.setting);
   const bool has_output =

@@ -1,5 +1,5 @@
-// A chip with an accelerometer and a gyroscope, counts of 16 bits each, on I2C. Its inputs 0 to 3 are those of axes.hpp, 4 to 6 how fast
-// it turns about X, Y and Z: above 0 counter-clockwise, as seen from the axis' tip.
+// A chip on I2C with an accelerometer and a gyroscope, with 16-bit counts. Inputs 0 to 3 are those of axes.hpp; 4 to 6 are the
+// rates of turning about X, Y and Z, positive if counter-clockwise as seen from the tip of the axis.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace robosync::drivers {
 
 struct SixAxes {
   static constexpr std::size_t kSettings = 3, kMostOutputs = 14;
-  static constexpr unsigned kTurning = kAxes + 1;  // the first input of these
+  static constexpr unsigned kTurning = kAxes + 1;  // the first input of turning
   static constexpr unsigned kInputs = kTurning + kAxes;
 
   struct Sample {
@@ -24,22 +24,22 @@ struct SixAxes {
   };
   enum class Verdict : std::uint8_t { measured, sleeps, was_not_told, not_yet };
 
-  // False when not all of it has come.
+  // False if not all of it arrived.
   bool fetch(boards::Board& board, const vm::Sensor& sensor, Sample& sample) const;
-  // `raw` is that input, below kInputs, when it was measured.
+  // If measured, `raw` is that input, which must be below kInputs.
   Verdict judge(const Sample& sample, unsigned input, std::int32_t& raw) const;
 
   std::array<std::byte, 1 + kSettings>
-      setting;                         // a register, and what it and the next ones are to hold
+      setting;                         // a register, and what it and the next ones must contain
   std::array<std::byte, 2> wake;       // a register, and what ends its sleep; 0: the setting does
-  std::byte output;                    // the first register of what it measures …
-  std::uint8_t outputs;                // … how many there are, kMostOutputs at most …
-  std::uint8_t acceleration, turning;  // … and which of them are the first ones of these
-  std::endian order;                   // of the two bytes of a count
+  std::byte output;                    // the first output register …
+  std::uint8_t outputs;                // … how many there are, at most kMostOutputs …
+  std::uint8_t acceleration, turning;  // … and the indices of the first of each kind
+  std::endian order;                   // byte order of a count
 };
 
-// As a ReadFunction. What it is told to do is read with each sample: out of a loss of power it has forgotten that, and is told
-// again, one thing with each sample, which is none then. It has no stack frame of its own, and its parts have theirs one after
+// As a ReadFunction. Each sample also reads the setting: after a loss of power the chip has lost it, and is told again, one
+// thing with each sample, which then gives no reading. It has no stack frame of its own, and its parts use theirs one after
 // the other: a sensor's thread has few bytes left (tests/e2e/test_stack_depth.py).
 [[gnu::always_inline]] inline bool read_six_axes(boards::Board& board, const vm::Sensor& sensor,
                                                  const vm::Channel& channel, const SixAxes& chip,

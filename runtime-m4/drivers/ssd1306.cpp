@@ -1,9 +1,9 @@
 // Solomon Systech SSD1306, a display of 128 x 64 dots on I2C (data sheet Rev. 1.1): control bytes 8.1.5.2, commands table 9-1,
-// addressing by pages 10.1.3; the order of what sets it up is that of its application note (charge pump regulator, 2.2).
+// addressing by pages 10.1.3; the order of the setup is that of its application note (charge pump regulator, 2.2).
 //
-// A byte of its memory is 8 dots of a column, the uppermost in bit 0; 128 of them are a page, of which there are 8 from the top
-// down. A light of a picture of five by five is 12 x 12 dots here. So of each page a light has all 12 bytes in its columns
-// alike: a tile. All that is ever sent is one of these, or two commands.
+// A byte of its memory is 8 dots of a column, the top one in bit 0; 128 bytes are a page, and 8 pages go from the top
+// down. Here a light of a five by five picture is 12 x 12 dots. So in each page the 12 bytes of a light's columns are
+// all alike: a tile. Each transfer sends one tile or two commands.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -18,8 +18,8 @@ namespace {
 
 using Screen = guard::OutputGuard::Screen;
 
-constexpr std::byte kCommand{0x80};  // one follows, and another control byte
-constexpr std::byte kData{0x40};     // nothing else follows
+constexpr std::byte kCommand{0x80};  // one command follows, then another control byte
+constexpr std::byte kData{0x40};     // only data follows
 constexpr std::uint8_t kPage = 0xB0;
 constexpr std::uint8_t kColumnHigh = 0x10;
 
@@ -44,17 +44,17 @@ constexpr unsigned kPageRows = 8;
 constexpr unsigned kColumns = 128;
 constexpr unsigned kTilesEach = (kColumns + kSide - 1) / kSide;  // of a page
 constexpr unsigned kLeft = 3;                                    // tiles
-// Of a round: what sets it up, all tiles, and on it goes.
+// The portions of a full refresh: the setup, all tiles, and switching on.
 constexpr unsigned kFirstTile = kCommands.size() - 1;
 constexpr unsigned kTurnOn = kFirstTile + kPages * kTilesEach;
 constexpr unsigned kTriesEach = 2;
 
-// The lights of a row, where there is one.
+// The lights of a row, if there is such a row.
 constexpr std::uint32_t row_of(std::uint32_t picture, unsigned row) {
   return picture >> kLights * row & ((1U << kLights) - 1);
 }
 
-// Where a change of these lights is seen (Screen::stale).
+// The tiles in which a change of these lights shows (Screen::stale).
 std::uint64_t tiles_of(std::uint32_t lights) {
   std::uint64_t tiles = 0;
   for (unsigned page = 0; page < kPages; ++page) {
@@ -66,7 +66,7 @@ std::uint64_t tiles_of(std::uint32_t lights) {
   return tiles;
 }
 
-// Outside of the picture it is dark.
+// It is dark outside the picture.
 std::byte tile(std::uint32_t picture, unsigned page, unsigned column) {
   unsigned dots = 0;
   for (unsigned dot = 0; dot < kPageRows && column - kLeft < kLights; ++dot)
@@ -100,7 +100,7 @@ bool send(const ServedBus& at, unsigned portion, std::uint32_t picture) {
   return send_tile(at, portion - kFirstTile, picture);
 }
 
-// What it shows that is old, or the next one of the round.
+// Sends an outdated tile, or the next portion of the refresh.
 bool send_next(const ServedBus& at, Screen& screen) {
   if (screen.whole && screen.stale != 0) {
     const auto first = static_cast<unsigned>(std::countr_zero(screen.stale));
@@ -134,7 +134,7 @@ bool serve_ssd1306(const ServedBus& at, guard::OutputGuard& outputs, unsigned se
 
 namespace ssd1306 {
 
-// It has no channels (the verifier sees to that), so nobody reads one.
+// It has no channels (the verifier checks this), so none is ever read.
 bool read(boards::Board&, const vm::Sensor&, const vm::Channel&, std::int32_t&) {
   return false;
 }

@@ -1,5 +1,5 @@
-// A face on an SSD1306: it shows what the lights of a board would. What the display is told, and when, is not its business
-// (screen.hpp).
+// A face on an SSD1306: it shows what the lights of a board would. screen.hpp decides what the display is
+// told, and when.
 #include "runtime-m4/drivers/drivers.hpp"
 
 namespace robosync::drivers::ssd1306_face {

@@ -1,4 +1,4 @@
-// What drivers share whose commands take a time but move nothing.
+// Shared by drivers whose commands take time but move nothing.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace robosync::drivers {
 
 inline constexpr kernel::Duration kDefaultDuration = kernel::milliseconds(1000);
 
-// Is done after FOR, else OVER, else kDefaultDuration. STOP is done at once, and so is following.
+// Done after FOR, or else OVER, or else kDefaultDuration. STOP and follow are done immediately.
 inline kernel::Time take_time(const Device& device, const Order& order, kernel::Time now) {
   if (order.action == vm::Action::stop || order.action == vm::Action::follow) return kDone;
   kernel::Duration length = kDefaultDuration;

@@ -1,5 +1,5 @@
-// Melodies and tones on the speaker of the board. PLAY plays a melody to its end, or with FOR over and over for that long; with
-// AT and no melody it is one tone, for FOR, else a second. Whatever ends it, it is silent then.
+// Melodies and tones on the board's speaker. PLAY plays a melody to its end, or with FOR repeats it for that long; with
+// AT and no melody it plays one tone, for FOR or else for a second. Whatever ends it, it is silent afterwards.
 #include <cstdint>
 #include <iterator>
 #include <span>
@@ -29,8 +29,8 @@ constexpr std::span<const Note> kMelodies[] = {
 
 constexpr vm::Value kLowest = 50, kHighest = 10'000;  // Hz
 
-// Of the actuator's state: `home` is the melody, `legs` the notes still to come, `until` the end of what sounds, and the
-// motion's begin the end of it all, 0 where that is the melody's.
+// In the actuator's state, `home` is the melody, `legs` the number of notes left, `until` the end of the current sound, and the
+// motion's `begin` the end of the whole order, or 0 if that is the melody's end.
 kernel::Time end_of_all(const Device& device) {
   return device.state.motion.begin;
 }
@@ -84,7 +84,7 @@ kernel::Time advance(const Device& device, kernel::Time now) {
   return kDone;
 }
 
-// Nothing holds a tone.
+// A tone cannot be held.
 void release(const Device& device, vm::Release, kernel::Time) {
   device.state.legs = 0;
   device.state.placed = false;

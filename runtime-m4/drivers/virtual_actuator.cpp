@@ -1,5 +1,5 @@
-// An actuator that is not there: its commands are seen in the trace. It takes as long as FOR or
-// OVER says, one second when neither does.
+// A virtual actuator: its commands are seen in the trace. It takes as long as FOR or OVER says, or one
+// second if neither is given.
 #include "runtime-m4/drivers/timed.hpp"
 
 namespace robosync::drivers::virtual_actuator {

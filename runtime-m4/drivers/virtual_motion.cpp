@@ -1,7 +1,7 @@
-// An actuator that is not there and moves as the real one would: its commands are seen in the trace. It
-// knows where it is, and no command takes it there faster than its speed limit. With a speed of its own
-// (vm::VirtualMotion says where it stands) it takes way / speed; without, and for all that is no movement,
-// as long as FOR or OVER says, one second when neither does.
+// A virtual actuator that moves like the real one: its commands are seen in the trace. It knows
+// where it is, and no command moves it faster than its speed limit. With a speed of its own
+// (vm::VirtualMotion says where that is stored) it takes way / speed. Without one, and for everything that is
+// not a movement, it takes as long as FOR or OVER says, or one second if neither is given.
 #include <algorithm>
 
 #include "runtime-m4/drivers/timed.hpp"
@@ -16,7 +16,7 @@ bool moves(const Device& device, const Order& order) {
   return way::has_target(order) || sweeps;
 }
 
-// As long as it is told to take, but for the limit. Never stands on the stack together with way::start().
+// As long as the order says, within the speed limit. Not inlined: never on the stack together with way::start().
 [[gnu::noinline]] kernel::Time move_in_time(const Device& device, const Order& order,
                                             kernel::Time now) {
   const kernel::Time told = take_time(device, order, now);

@@ -1,6 +1,6 @@
-// An actuator that is not there and takes what the real one would: power on a pin, a picture, or tones
-// (vm::VirtualOutput says which). Its commands are seen in the trace. Most are done as soon as they have
-// begun, as the real ones are.
+// A virtual actuator that takes what the real one would: power on a pin, a picture, or tones
+// (vm::VirtualOutput says which). Its commands are seen in the trace. Most are done as soon as they
+// begin, like those of the real ones.
 #include <cstdint>
 #include <initializer_list>
 #include <iterator>

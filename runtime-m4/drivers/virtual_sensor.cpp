@@ -1,4 +1,4 @@
-// A sensor that is not there: its readings are fed over the link or by a scenario, never sampled.
+// A virtual sensor: its readings are fed over the link or by a scenario, never sampled.
 #include "runtime-m4/drivers/drivers.hpp"
 
 namespace robosync::drivers::virtual_sensor {

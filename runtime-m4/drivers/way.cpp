@@ -43,7 +43,7 @@ vm::Value leg_target(const Device& device) {
   }
 }
 
-// With OVER the gesture as a whole takes that long; the way of one is twice the range.
+// With OVER the whole gesture takes that long; its way is twice the range.
 vm::Value gesture_speed(const Device& device, const Order& order, vm::Value speed) {
   const auto over = static_cast<std::int64_t>(duration_of(order.get(vm::Param::over, 0)));
   if (over == 0) return speed;
@@ -101,7 +101,7 @@ bool start(const Device& device, const Order& order, vm::Value usual, kernel::Ti
 
 bool next_leg(const Device& device, kernel::Time now) {
   const vm::Value here = device.state.motion.at(now);
-  // Who begins a sweep at an end of the range is there already.
+  // A gesture that begins at an end of the range is already there.
   if (device.state.legs != 0 && leg_target(device) == here) --device.state.legs;
   if (device.state.legs == 0) return false;
   const vm::Value target = leg_target(device);

@@ -1,13 +1,13 @@
-// How what has a position moves, and how long that takes: servos, and virtual actuators that move as
-// the real one would. No output; a driver adds its own.
+// How actuators with a position move, and how long that takes: servos, and virtual actuators that move
+// like the real ones. No output; a driver adds its own.
 //
 //   MOVE TO x, MOVE BY x    the way there, at AT, or in OVER
 //   MOVE                    a gesture: to the range's end, to its beginning, and back to where
 //                           it was
 //
-// Nothing tells where an actuator stands when a program starts: it is taken to be at rest, which is 0
-// or the end of the range next to it. One that is not to move (AT 0) has done so at once. OVER is
-// stretched where it would need more than the actuator's speed limit.
+// Nothing reports where an actuator is when a program starts: it is assumed to be at rest, which is 0
+// or the end of the range next to 0. An actuator that must not move (AT 0) is done immediately. OVER is
+// stretched if it would need more than the actuator's speed limit.
 #pragma once
 
 #include "runtime-m4/drivers/drivers.hpp"
@@ -17,18 +17,18 @@ namespace robosync::drivers::way {
 
 inline constexpr kernel::Duration kFrame = kernel::milliseconds(policy::kSetpointPeriodMs);
 
-// It stands at `position` from now on.
+// From now on it stands at `position`.
 void stand(const Device& device, vm::Value position, kernel::Time now);
 void stand_at_rest(const Device& device, kernel::Time now);
-// It stands where it is, or goes to rest.
+// Stays where it is, or goes to rest.
 void stop(const Device& device, vm::Release how, kernel::Time now);
-// Is the order one that says where to?
+// Does the order say where to go?
 bool has_target(const Order& order);
 vm::Value target_of(const Device& device, const Order& order, kernel::Time now);
-// Begins to move; `usual` is its speed where the order says none. False: it is done at once.
+// Begins to move; `usual` is the speed if the order gives none. False: it is done immediately.
 [[nodiscard]] bool start(const Device& device, const Order& order, vm::Value usual,
                          kernel::Time now);
-// One leg is done: begins the next one. False: there is none.
+// A leg is done: begins the next one. False: there is none.
 [[nodiscard]] bool next_leg(const Device& device, kernel::Time now);
 
 }  // namespace robosync::drivers::way

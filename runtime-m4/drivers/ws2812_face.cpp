@@ -1,5 +1,5 @@
-// A face on a panel of WS2812: it shows what the lights of a board would. Where its lights are, and what they are told, the board
-// knows.
+// A face on a WS2812 panel: it shows what the lights of a board would. The board knows where the panel's lights are, and what
+// they are told.
 #include "runtime-m4/drivers/drivers.hpp"
 
 namespace robosync::drivers::ws2812_face {

@@ -1,4 +1,4 @@
-// See adaptation.hpp. May rely on the verifier: a window is never 0, priorities fit in a byte.
+// See adaptation.hpp. May rely on the verifier: a window is never 0, and priorities fit in a byte.
 #include "runtime-m4/layers/adaptation.hpp"
 
 #include <algorithm>
@@ -33,8 +33,8 @@ void Adaptation::turn(const LoadedProgram& program, ProgramThreads& threads, Tra
   end_ = counted ? end_after(program, now) : kNever;
 }
 
-// The SAFETY rules count as a behaviour that nothing is counted for. Every thread takes its place
-// anew, in the order of age: so equals stand as they did at first.
+// The SAFETY rules count as a behaviour without triggers. Every thread is ranked again, in the
+// order of age, so equals keep their original order.
 bool Adaptation::rank(const LoadedProgram& program, ProgramThreads& threads, Trace& trace) {
   const policy::AdaptationRule rule = policy::adaptation_of(program.image);
   const std::int8_t idle = policy::idle_priority(program.image);

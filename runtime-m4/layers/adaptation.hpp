@@ -1,11 +1,11 @@
-// Adaptive priorities of a program's threads: counts how often each behaviour is triggered, and at
-// the end of each window gives every thread the highest of what the behaviours that need it are
-// worth now (policy/adaptation.hpp).
+// Adaptive priorities of a program's threads. Counts how often each behaviour is triggered. At the end
+// of each window, every thread gets the highest adapted priority of the behaviours that need it
+// (policy/adaptation.hpp).
 //
 // Windows follow each other in program time from activation on, so host and board change ranks at
-// the same tick: the step thread does it, before anything else at that tick but what outranks it.
-// Only the order of threads changes. Who owns an actuator is decided by the priorities as they are
-// written (arbiter.hpp), whatever was triggered how often.
+// the same tick. The step thread does it, before everything else at that tick except what outranks it.
+// Only the order of threads changes. Ownership of actuators is decided by the written
+// priorities (arbiter.hpp), however often anything was triggered.
 #pragma once
 
 #include <cstdint>
@@ -24,14 +24,14 @@ public:
   void start(Memory& memory);
   // A rule of `behavior` triggered, at `now`.
   void count(const LoadedProgram& program, unsigned behavior, std::uint32_t now);
-  // Ends the window if `now` has reached its end: ranks change, the trace tells of each behaviour
-  // whose priority is another, by behaviour.
+  // Ends the window if `now` has reached its end: ranks change, and the trace reports each behaviour
+  // whose priority changed, by behaviour.
   void turn(const LoadedProgram& program, ProgramThreads& threads, Trace& trace, std::uint32_t now);
   // When turn() has something to do; kNever while all are at their base and nothing was triggered.
   std::uint32_t next() const { return end_; }
 
-  // Gives all threads their priorities, from what was counted; at first nothing was, and each has
-  // what is written. True if anything was counted; it is forgotten.
+  // Gives all threads their priorities, from the counts, and clears the counts. At first nothing was
+  // counted, so each has its written priority. True if anything was counted.
   bool rank(const LoadedProgram& program, ProgramThreads& threads, Trace& trace);
 
 private:

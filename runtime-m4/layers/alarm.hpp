@@ -1,4 +1,4 @@
-// Wakes the safety thread when an input changes that a safety rule reads.
+// Wakes the safety thread when an input that a safety rule reads changes.
 #pragma once
 
 #include "runtime-m4/kernel/kernel.hpp"
@@ -12,7 +12,7 @@ public:
       : kernel_(kernel), thread_(safety_thread), news_(news) {}
 
   void watch(InputMask inputs) { inputs_ = inputs; }
-  // The safety thread outranks whoever calls: it has done its work when this returns.
+  // The safety thread outranks every caller: it has done its work when this returns.
   [[gnu::always_inline]] void ring(InputMask changed) {
     if ((changed & inputs_) != 0) kernel_.signal(thread_, news_);
   }

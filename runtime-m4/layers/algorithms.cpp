@@ -39,7 +39,7 @@ bool AlgorithmLayer::start_server(ProgramThreads& threads) {
   return server_ != nullptr;
 }
 
-// The kernel paints the stack, and leaves the data below it alone.
+// The kernel paints the stack, but not the data below it.
 bool AlgorithmLayer::start_unit(Unit& unit, ProgramThreads& threads) {
   static_assert(sizeof(Data) % 8 == 0 &&
                 sizeof(Data) + policy::kModuleStack <= port::kSecludedStack);
@@ -69,7 +69,7 @@ void AlgorithmLayer::fill(Unit& unit, Data& data) const {
   unit.budget = 2 * module.cost(config) + kInterrupts;
 }
 
-// --- the module's thread: without privileges ---
+// --- the module's thread: unprivileged ---
 
 void AlgorithmLayer::run_module(Data& data) {
   const robosync_module& module = *data.module;
@@ -100,7 +100,7 @@ void AlgorithmLayer::run() {
   }
 }
 
-// What came before program time, for SAFETY to begin with, is forgotten: so it does not matter how much that was.
+// Forgets what was measured before program time, which SAFETY begins with: how much that was must not matter.
 void AlgorithmLayer::note_begin() {
   begun_ = true;
   for (Unit& unit : units_) {
@@ -110,7 +110,7 @@ void AlgorithmLayer::note_begin() {
   }
 }
 
-// One whose input is sampled has its turn when that was.
+// An algorithm whose input is fed runs at its period; one whose input is sampled runs after each sample.
 bool AlgorithmLayer::is_timed(const Unit& unit) const {
   const vm::Image& image = program_->image;
   return policy::is_fed(image.sensors[policy::input_of(image, wiring_of(unit))]);
@@ -123,7 +123,7 @@ kernel::Time AlgorithmLayer::next_due() const {
   return next;
 }
 
-// Periods that are over already are skipped, never made up for.
+// Periods that have passed are skipped, never made up for.
 bool AlgorithmLayer::is_due(Unit& unit, kernel::Time now) {
   if (!is_timed(unit))
     return mailboxes_.sampled_at(wiring_of(unit).first_input) != unit.seen ||
@@ -137,7 +137,7 @@ bool AlgorithmLayer::is_due(Unit& unit, kernel::Time now) {
   return true;
 }
 
-// A module that has not been seen to be done was lowered: it has its time, and this sample is lost.
+// A module that is still not done has been lowered: it may take its time, and this sample is lost.
 void AlgorithmLayer::serve(Unit& unit, kernel::Time now) {
   if (kernel_.state(*unit.thread) == kernel::Thread::State::stopped) return;
   if (unit.released) collect(unit);
@@ -152,7 +152,7 @@ bool AlgorithmLayer::latch(Unit& unit, kernel::Time now) {
   return latch_inputs(unit, now);
 }
 
-// False when one is unknown: then the module begins anew.
+// False if an input is unknown: then the module starts over.
 bool AlgorithmLayer::latch_inputs(Unit& unit, kernel::Time now) {
   const vm::Sensor& wiring = wiring_of(unit);
   Data& data = *unit.data;
@@ -204,7 +204,7 @@ bool AlgorithmLayer::is_over(const Unit& unit, std::uint32_t times) const {
   return unit.released && kernel_.run_time(*unit.thread) - unit.run_time > times * unit.budget;
 }
 
-// It runs now, or it would. What is over twice in one release goes on and on.
+// A ready module is running, or would be. One that is over twice in one release runs on and on.
 void AlgorithmLayer::look_at_budgets() {
   for (Unit& unit : units_) {
     if (kernel_.state(*unit.thread) != kernel::Thread::State::ready) continue;

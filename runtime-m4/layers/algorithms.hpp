@@ -1,18 +1,18 @@
-// The algorithms of a program: each is a module of the firmware (algorithms/) in a thread without privileges, which has its own
-// stack, the module's data on it, and no other memory.
+// The algorithms of a program. Each is a module of the firmware (algorithms/) in an unprivileged thread, which has its own
+// stack with the module's data on it, and no other memory.
 //
-// One thread with privileges serves them all. When an input was sampled, or, where it is fed, at the algorithm's
-// period, it hands the latest readings over and releases the module's thread. That outranks it, so when it runs
-// again the module is done, and what it made goes where readings go, in one announcement, with the time of the readings
-// that it was made of: so it grows stale when they do. While an input is unknown the module does not run; then
-// it begins anew.
+// One privileged thread serves them all. When an input was sampled, or at the algorithm's period if the input is fed,
+// it hands over the latest readings and releases the module's thread. That thread outranks it, so when the server runs
+// again the module is done. The module's results are published like readings, in one announcement, with the time of the
+// readings that they were made of: so they grow stale when those do. While an input is unknown the module does not run;
+// afterwards it starts over.
 //
-// Nothing that a module leaves is believed: outputs are cut off at the range of their channels. Its run time in
-// one release is held to a budget, twice the cycles of what it declares and what interrupts may take meanwhile. The
-// first time it is over, it is lowered: its thread ranks below all behaviours from then on. The second time, and
-// when it goes on and on, it is stopped, as for a fault, and its channels become unknown. A module
-// that never ends is seen by the safety monitor, at its next check; the step thread lowers it, since that outranks all
-// algorithms and changes ranks alone. Where time does not flow nobody is ever over.
+// Nothing that a module leaves is trusted: outputs are clamped to the range of their channels. Its run time in
+// one release is bounded by a budget: twice its declared cost in cycles, plus what interrupts may take meanwhile. The
+// first time it exceeds the budget it is lowered: its thread ranks below all behaviours from then on. The second time, and
+// if it runs on and on, it is stopped as for a fault, and its channels become unknown. The safety monitor notices
+// a module that never ends, at its next check; the step thread lowers it, since it outranks all
+// algorithms and is the only one that changes ranks. Where time does not flow, no module is ever over.
 #pragma once
 
 #include <atomic>
@@ -31,7 +31,7 @@ namespace robosync::layers {
 
 class AlgorithmLayer {
 public:
-  // `lower` of `step_thread` is signalled when it is to call lower_those_over().
+  // `lower` of `step_thread` is signalled when it must call lower_those_over().
   AlgorithmLayer(kernel::Kernel& kernel, Trace& trace, Mailboxes& mailboxes, SensorLayer& sensors,
                  kernel::Thread& step_thread, kernel::Events lower)
       : kernel_(kernel),
@@ -41,7 +41,7 @@ public:
         step_thread_(step_thread),
         lower_(lower) {}
 
-  // Creates the threads of `program`, which must stay until they are dismissed. After the sensors'.
+  // Creates the threads of `program`, which must stay in place until they are dismissed. After the sensors'.
   [[nodiscard, gnu::cold]] bool start(const LoadedProgram& program, Memory& memory,
                                       ProgramThreads& threads);
   // Program time begins.
@@ -49,33 +49,33 @@ public:
     if (server_ != nullptr) kernel_.signal(*server_, kBegin);
   }
 
-  // Who runs on and on is lowered, then stopped.  [the safety thread]
+  // A module that runs on and on is lowered, then stopped.  [the safety thread]
   void hold_to_budgets() {
     if (!units_.empty()) [[unlikely]]
       look_at_budgets();
   }
   [[gnu::cold]] void lower_those_over(ProgramThreads& threads);  // [the step thread]
-  // Its thread was stopped: what it makes is no longer known.
+  // Its thread was stopped: its outputs are no longer known.
   [[gnu::cold]] void retire(unsigned sensor);
 
 private:
   static constexpr kernel::Events kBegin = 2;  // besides SensorLayer::kSampled
   static constexpr kernel::Events kReleased = 1;
-  // Counts of the clock that interrupts may take in one release: what both buffers of the line hold may come and go at once
-  // where nothing paces it, as in an emulator.
+  // Counts of the clock that interrupts may take in one release. Where nothing paces the line, as in an emulator, the contents
+  // of both its buffers may come and go in one go.
   static constexpr std::uint32_t kInterrupts = 50'000;
 
-  // How a module stands with its budget.
+  // A module's record with its budget.
   enum class Conduct : std::uint8_t { good, over, lowered };
 
-  // At the beginning of a module's stack: what it gets and gives, then its parameters, its state and its scratch. It may write all
-  // of that, so nothing of it is believed.
+  // At the bottom of a module's stack: its inputs and outputs, then its parameters, its state and its scratch memory. It may
+  // write all of that, so nothing of it is trusted.
   struct Data {
     kernel::Kernel* kernel = nullptr;
     const robosync_module* module = nullptr;
     std::uint32_t period_ms = 0;
-    std::uint32_t begins = 0;   // init() comes first
-    std::uint32_t changed = 0;  // what process() has returned
+    std::uint32_t begins = 0;   // init() must run first
+    std::uint32_t changed = 0;  // returned by process()
     std::int32_t inputs[ROBOSYNC_MOST_INPUTS] = {};
     std::int32_t outputs[ROBOSYNC_MOST_OUTPUTS] = {};
     std::int32_t config[ROBOSYNC_MOST_PARAMETERS] = {};
@@ -85,13 +85,13 @@ private:
   struct Unit {
     kernel::Thread* thread = nullptr;
     Data* data = nullptr;
-    kernel::Time due = 0;                  // of an input that is fed: its next sample
-    kernel::Time seen = kernel::kForever;  // when the readings that it has had were taken
-    std::uint32_t budget = 0;              // counts of the clock for one release
-    std::uint32_t run_time = 0;            // … when it was released
-    std::uint8_t sensor = 0;               // that its outputs are channels of
-    bool released = false;                 // and has not been seen to be done
-    bool told = false;                     // in this release it was over once
+    kernel::Time due = 0;                  // for a fed input: the next sample
+    kernel::Time seen = kernel::kForever;  // when the readings that it last got were taken
+    std::uint32_t budget = 0;              // for one release, in counts of the clock
+    std::uint32_t run_time = 0;            // … of the thread, when it was released
+    std::uint8_t sensor = 0;               // the sensor whose channels are its outputs
+    bool released = false;                 // and not yet seen to be done
+    bool told = false;                     // it was over once in this release
     Conduct conduct = Conduct::good;       // changed under a lock
   };
 

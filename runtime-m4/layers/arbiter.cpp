@@ -1,4 +1,4 @@
-// See arbiter.hpp. Behaviours are numbered from the highest priority down, as the verifier demands.
+// See arbiter.hpp. Behaviours are numbered from the highest priority down; the verifier checks this.
 #include "runtime-m4/layers/arbiter.hpp"
 
 #include <algorithm>

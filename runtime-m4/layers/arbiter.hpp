@@ -1,17 +1,17 @@
-// Who has the actuators, and who gets them. What is decided depends on nothing but what stands here
-// and the claim.
+// Which rules hold the actuators, and which get them. A decision depends only on the state kept here
+// and on the claim.
 //
-// Claims of a step are served from the highest priority down, inside a behaviour in file order;
-// that is the order of the rules in the image. What users are told of it: docs/language.md
+// Claims of a step are served from the highest priority down, and in file order inside a behaviour;
+// that is the order of the rules in the image. docs/language.md explains it to users
 // (RESTARTING and WAITING). In detail:
-// * Claims of one step come at the same time, so none is "later": what was won in this step is not
-//   lost in it. Of two rules of one behaviour that trigger together, the earlier in the file wins.
+// * Claims of one step are simultaneous, so none is "later": what was won in this step is not
+//   lost in it. If two rules of one behaviour trigger together, the earlier in the file wins.
 // * A claim that is tried again takes nothing from its own behaviour: only a trigger does.
-// * Choosing the other side of a WHEN/ELSE ends the running one, even when the new side loses. So
+// * Choosing the other side of a WHEN/ELSE ends the running one, even if the new side loses. So
 //   does starting again (RESTARTING).
-// * A WHILE that has done a round keeps what it has until its condition ends: it rests, and its next
+// * A WHILE that has done a round keeps its actuators until its condition ends: it rests, and its next
 //   claim begins another round.
-// * What is halted nobody gets; the claim loses to no behaviour, but to who has halted it.
+// * No claim gets a halted actuator. Such a claim loses not to a behaviour but to whatever halted the actuator.
 #pragma once
 
 #include <cstdint>
@@ -30,12 +30,12 @@ struct Claim {
   std::uint16_t rule;
   std::uint8_t behavior;
   Side side;
-  ActuatorMask actuators;   // all its response can ever use; it gets all or none
-  bool restarting = false;  // if it works already on that side, it starts again
-  bool retries = false;     // it did not trigger now, but wants to run since earlier
+  ActuatorMask actuators;   // all that its response can ever use; it gets all or none
+  bool restarting = false;  // if that side is already running, start it again
+  bool retries = false;     // it did not trigger now, but has wanted to run since earlier
 };
 
-// What a rule has while its response runs.
+// What a rule holds while its response runs.
 struct Holding {
   ActuatorMask actuators = 0;
   ActuatorMask pending = 0;  // of these, the ones with commands not yet done
@@ -44,13 +44,13 @@ struct Holding {
 enum class Outcome : std::uint8_t {
   wins,
   loses,
-  ignored,  // it runs already: nothing changes
+  ignored,  // it is running already: nothing changes
 };
 struct Decision {
-  static constexpr std::uint8_t kHalter = 0xFE;  // who has halted an actuator
+  static constexpr std::uint8_t kHalter = 0xFE;  // whatever has halted an actuator
 
   Outcome outcome = Outcome::wins;
-  // If it does not win: the behaviour in its way, of the highest priority, or kHalter.
+  // If it does not win: the highest-priority behaviour in its way, or kHalter.
   std::uint8_t owner = 0;
 
   bool wins() const { return outcome == Outcome::wins; }
@@ -58,10 +58,10 @@ struct Decision {
 
 class Arbiter {
 public:
-  // behavior_of: by rule.
+  // behavior_of: indexed by rule.
   void start(std::span<const std::uint8_t> behavior_of, Memory& memory);
 
-  // What is halted, from now on.
+  // The halted actuators, from now on.
   void note_halted(ActuatorMask halted) { halted_ = halted; }
   ActuatorMask halted() const { return halted_; }
   // The step is over: what was won in it may be lost in the next one.
@@ -69,7 +69,7 @@ public:
 
   // --- read by the behaviours' threads as well ---
 
-  // It takes nothing from anybody, as most claims: so it wins, and ends nobody.
+  // It takes nothing from anybody, like most claims: so it wins, and ends nothing.
   [[gnu::always_inline]] bool is_free(const Claim& claim) const {
     return has_all_free(claim) && !works(claim.rule);
   }
@@ -83,32 +83,32 @@ public:
       return {};
     return decide_among_owners(claim);
   }
-  // Does the response of `rule`, which runs, end by a claim that was decided so?
+  // Does a claim with this decision end the running response of `rule`?
   [[nodiscard]] bool ends(const Claim& claim, const Decision& decision, unsigned rule) const;
 
-  // The claim has won, and who ended by it is gone.
+  // The claim has won, and the responses that it ends are gone.
   void give(const Claim& claim);
-  // The response of `rule`, which runs, is over.
+  // The running response of `rule` is over.
   void end(unsigned rule) {
     owned_ &= ~holdings_[rule].actuators;
     running_.erase(rule);
   }
 
-  // A round of its is over, and it keeps its actuators for the next one.
+  // A round of a WHILE is over, and it keeps its actuators for the next one.
   void rest(unsigned rule) { resting_.insert(rule); }
 
-  const RuleSet& running() const { return running_; }  // resting ones too
+  const RuleSet& running() const { return running_; }  // includes those that rest
   [[gnu::always_inline]] bool runs(unsigned rule) const { return running_.has(rule); }
   bool rests(unsigned rule) const { return runs(rule) && resting_.has(rule); }
   [[gnu::always_inline]] bool works(unsigned rule) const {
     return runs(rule) && !resting_.has(rule);
   }
-  // Of one that runs: did it win in this step, and which side?
+  // Of a running rule: did it win in this step, and which side is running?
   bool won_now(unsigned rule) const { return won_.has(rule); }
   Side side(unsigned rule) const { return thens_.has(rule) ? Side::then : Side::otherwise; }
   Holding& holding(unsigned rule) { return holdings_[rule]; }
   const Holding& holding(unsigned rule) const { return holdings_[rule]; }
-  ActuatorMask owned() const { return owned_; }  // by all that run; each has one owner
+  ActuatorMask owned() const { return owned_; }  // by all running rules; each has one owner
 
 private:
   [[gnu::always_inline]] bool has_all_free(const Claim& claim) const {
@@ -119,11 +119,11 @@ private:
 
   std::span<const std::uint8_t> behavior_of_;
   std::span<Holding> holdings_;
-  RuleSet running_;  // their responses run, or wait
-  // Of these, the others may be in as well:
-  RuleSet resting_;  // a WHILE between two rounds, of which it keeps the actuators
+  RuleSet running_;  // their responses run or wait
+  // Subsets of these:
+  RuleSet resting_;  // WHILEs between two rounds, keeping their actuators
   RuleSet won_;      // in this step
-  RuleSet thens_;    // their DO runs, and not their ELSE
+  RuleSet thens_;    // their DO is running, not their ELSE
   ActuatorMask owned_ = 0;
   ActuatorMask halted_ = 0;
 };

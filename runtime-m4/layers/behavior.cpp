@@ -1,5 +1,5 @@
-// See behavior.hpp. May rely on the verifier for every index in the image; of what the behaviours'
-// threads leave in the workspace it believes nothing.
+// See behavior.hpp. May rely on the verifier for every index in the image; does not trust anything that
+// the behaviours' threads leave in the workspace.
 #include "runtime-m4/layers/behavior.hpp"
 
 #include <algorithm>
@@ -83,7 +83,7 @@ void BehaviorLayer::release_to_run(unsigned rule, unsigned code) {
   release(program_->behavior_of[rule]);
 }
 
-// Nothing comes of one that was stopped.
+// A stopped behaviour is not released, so there is no result.
 void BehaviorLayer::release(unsigned behavior) {
   workspace_.result->there = 0;
   if (is_retired(behavior)) return;
@@ -98,7 +98,7 @@ bool BehaviorLayer::busy() {
   return is_released_;
 }
 
-// It could say so of any rule of its own that does not cool down, as it could let it trigger.
+// The behaviour could say so of any of its own rules that does not cool down, just as it could let it trigger.
 bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
   const Result& result = *workspace_.result;
   if (result.there != Result::kBegan) return false;
@@ -110,7 +110,7 @@ bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
          claim_for(rule, side, !layers_.triggers.has_triggered(rule), claim);
 }
 
-// Whoever waits does so at a place in the code.
+// A response that waits must do so at a place in the code.
 vm::Pause BehaviorLayer::checked_pause(const Result& result) const {
   if (result.pause == vm::Pause::ended || result.pause >= vm::Pause::count_)
     return vm::Pause::ended;
@@ -119,7 +119,7 @@ vm::Pause BehaviorLayer::checked_pause(const Result& result) const {
   return inside ? result.pause : vm::Pause::ended;
 }
 
-// Nothing comes of a response whose behaviour was stopped meanwhile.
+// A response whose behaviour was stopped meanwhile has no effect.
 void BehaviorLayer::conclude(unsigned rule) {
   Result& result = *workspace_.result;
   const unsigned behavior = program_->behavior_of[rule];
@@ -151,7 +151,7 @@ void BehaviorLayer::stage_writes(unsigned behavior) {
                           program_->image.behaviors[behavior], *snapshot_);
 }
 
-// Commands reach the actuators that the response has declared, whatever its thread says.
+// Commands only reach the actuators that the response has declared, whatever its thread says.
 [[gnu::noinline]] void BehaviorLayer::put_out(std::size_t words, ActuatorMask declared) {
   vm::OutputReader reader(workspace_.output.first(std::min(words, workspace_.output.size())));
   Command command;
@@ -177,7 +177,7 @@ void BehaviorLayer::stage(Command& command, ActuatorMask declared) {
   layers_.control.stage(command, image.target_mask(command.said_.target) & declared);
 }
 
-// The program's own parameter outweighs its word's.
+// A parameter that the program gives overrides its word's.
 void BehaviorLayer::add_word(const vm::WordEntry& word, Command& command) {
   const auto p = static_cast<unsigned>(word.param);
   if (has<unsigned>(command.known_, p)) return;
@@ -208,7 +208,7 @@ bool BehaviorLayer::claim_of(unsigned rule, Claim& claim, bool& silent) const {
 bool BehaviorLayer::claim_for(unsigned rule, Side side, bool retries, Claim& claim) const {
   const vm::Rule& wiring = program_->image.rules[rule];
   const unsigned response = side == Side::then ? wiring.then_response : wiring.else_response;
-  if (response == vm::kNoIndex) return false;  // a behaviour can say that its rule has an ELSE
+  if (response == vm::kNoIndex) return false;  // a behaviour can claim that its rule has an ELSE
   claim = {.rule = static_cast<std::uint16_t>(rule),
            .behavior = program_->behavior_of[rule],
            .side = side,
@@ -218,12 +218,11 @@ bool BehaviorLayer::claim_for(unsigned rule, Side side, bool retries, Claim& cla
   return true;
 }
 
-// --- a behaviour's thread: without privileges, behind the MPU ---
+// --- a behaviour's thread: unprivileged, behind the MPU ---
 
-// It reads the program, the snapshot, this layer, the triggers and the arbiter; it writes its stack
-// and the workspace; it asks the kernel by the calls of kernel/calls.def. Anything else would stop
-// it. It may rely on the verifier for responses that give up within the step's budget and
-// kMaxResponseOutput words.
+// It reads the program, the snapshot, this layer, the triggers and the arbiter. It writes its stack
+// and the workspace. It calls the kernel through kernel/calls.def. Anything else would stop it. It may
+// rely on the verifier: responses end within the step's budget and kMaxResponseOutput words.
 
 void BehaviorLayer::run(Unit& unit) {
   vm::Machine machine = layers_.frames.machine(*program_, unit.behavior);
@@ -249,7 +248,7 @@ void BehaviorLayer::run(Unit& unit) {
     begin_response(machine, claim);
 }
 
-// evaluate_rules() and sole_claim(), of one rule. Who waits claims nothing unless something ends it.
+// evaluate_rules() and sole_claim() for one rule. A response that waits claims nothing unless something ends it.
 void BehaviorLayer::run_sole_turn(unsigned rule, vm::Machine& machine) {
   layers_.triggers.begin_sole_turn(rule);
   judge_rule(rule, machine);
@@ -312,8 +311,8 @@ void BehaviorLayer::evaluate_period(unsigned rule, vm::Machine& machine) {
   layers_.triggers.draw_period(rule, evaluate_rule(rule, machine), machine.now);
 }
 
-// Of the responses that the behaviour runs in this step there is one, which begins, and it wins. Of
-// several the step thread must see to the order, and to who has what after each. Not inlined, so that it is off the stack
+// True if the behaviour runs exactly one response in this step, and that one begins and wins. With
+// several, the step thread must see to their order, and to the ownership after each. Not inlined, so that it is off the stack
 // while rules are evaluated.
 [[gnu::noinline]] bool BehaviorLayer::sole_claim(RuleRange rules, Claim& claim) const {
   if (waits(rules)) return false;
@@ -325,7 +324,7 @@ void BehaviorLayer::evaluate_period(unsigned rule, vm::Machine& machine) {
   return found == 1 && layers_.arbiter.wins(claim);
 }
 
-// A response of its waits, and may go on in this step.
+// One of its responses waits, and may go on in this step.
 [[gnu::noinline]] bool BehaviorLayer::waits(RuleRange rules) const {
   bool waits = false;
   layers_.arbiter.running().each_in(

@@ -1,13 +1,13 @@
-// Behaviour layer: one thread per behaviour, ranked by priority, without privileges.
+// Behaviour layer: one thread per behaviour, ranked by priority, unprivileged.
 //
-// Released by the step thread, a behaviour takes its turn in the step: it copies its inputs from the
-// snapshot into its frame and evaluates the conditions of those of its rules that the step concerns.
-// Who owns what is known by then, since behaviours take their turns in the order of their priority:
-// so it mostly sees for itself that a response of its wins, and runs it in the same activation.
-// Otherwise it is released again to run one, from its beginning or from where it waits. What comes of
-// that stays in the workspace, from where the step thread takes it: what was set to the variables,
-// commands to the control layer, texts to the trace. A behaviour's thread writes the workspace and
-// nothing else.
+// The step thread releases a behaviour to take its turn in the step. The behaviour copies its inputs
+// from the snapshot into its frame and evaluates the conditions of those of its rules that the step
+// concerns. Behaviours take their turns in the order of their priority, so ownership is settled by
+// then: a behaviour can mostly see for itself that one of its responses wins, and runs it in the same
+// activation. Otherwise it is released again to run a response, from its beginning or from where it
+// waits. The results stay in the workspace, from which the step thread passes them on: writes to the
+// variables, commands to the control layer, texts to the trace. A behaviour's thread writes nothing
+// but the workspace.
 #pragma once
 
 #include <cstdint>
@@ -41,57 +41,57 @@ public:
   };
   // Where a response waits.
   struct ResumePoint {
-    std::uint32_t wake = vm::Machine::kNever;  // program time; of all waits but THEN
-    std::uint16_t next = 0;                    // word of the code section
+    std::uint32_t wake = vm::Machine::kNever;  // program time; for all waits but THEN
+    std::uint16_t next = 0;                    // a word of the code section
     vm::Pause pause = vm::Pause::ended;
   };
 
   BehaviorLayer(kernel::Kernel& kernel, const Neighbours& neighbours)
       : kernel_(kernel), layers_(neighbours), workspace_(neighbours.workspace) {}
 
-  // Starts the threads of `program`, which must stay until they are dismissed.
+  // Starts the threads of `program`, which must stay in place until they are dismissed.
   [[nodiscard, gnu::cold]] bool start(const LoadedProgram& program, Memory& memory,
                                       ProgramThreads& threads);
 
   // --- for the step thread ---
   void begin_step(const Snapshot& snapshot);
-  // One behaviour is released at a time: busy() until it has finished. When it has, its thread makes
-  // the call `rest`.
-  // Its turn: it evaluates those of its rules that are in `rules`.
+  // Each of these releases a behaviour, one at a time; busy() until it has finished. Its thread then
+  // makes the call `rest`.
+  // The behaviour's turn: it evaluates those of its rules that are in `rules`.
   void take_turn(unsigned behavior, const RuleSet& rules);
-  // … where this is the only one, and no other one of its behaviour runs or wants to; `goes_on`: its response does,
-  // unless something ends it.
+  // … where `rule` is the only one to evaluate, and no other rule of its behaviour runs or wants to. `goes_on`: its
+  // response goes on, unless something ends it.
   void take_sole_turn(unsigned rule, bool goes_on);
   void respond(unsigned rule, Side side);
   void go_on(unsigned rule);
   bool busy();
-  // In its turn it saw that it has one claim, that this wins, and that no other response of its runs
-  // in this step; so it has run the response.
+  // True if the behaviour saw in its turn that it has one claim, that this claim wins, and that no
+  // other response of its runs in this step; it has then run the response.
   bool sole_claim_of(unsigned behavior, Claim& claim) const;
-  // In its sole turn the response that may go on has done so.
+  // True if in its sole turn the response that was allowed to go on has done so.
   bool went_on(unsigned rule) const {
     const Result& result = *workspace_.result;
     return goes_on_ && result.there == Result::kWentOn && result.rule == rule;
   }
-  // The response has been run: tells what it has put out, stages its commands, and notes where it
-  // waits. Not before, so that the behaviours' stacks can be short.
+  // The response has run: passes on what it put out, stages its commands, and notes where it waits.
+  // Not done earlier, to keep the behaviours' stacks small.
   void conclude(unsigned rule);
   const ResumePoint& resume_point(unsigned rule) const { return resume_points_[rule]; }
   void forget_resume_point(unsigned rule) { resume_points_[rule] = {}; }
   [[gnu::cold]] void retire(unsigned behavior);  // its thread was stopped
   // The rule's response began in this millisecond, or went on and waits again: it must not do either
-  // once more. One that went on to its end may begin again; one that has looked and waits on looks at each reading, also
-  // at a second one in this millisecond.
+  // again in this millisecond. A response that went on to its end may begin again. One that checked its condition and
+  // still waits checks it again at each reading, even at a second one in this millisecond.
   bool has_run(unsigned rule, std::uint32_t now) const {
     return now == ran_at_ && has_run_.has(rule);
   }
 
   // --- for the step thread and the behaviour itself ---
-  // What `rule` claims now, if anything; silent: that it does was told before.
+  // The claim of `rule` now, if it has one. silent: the trace has already been told of it.
   [[nodiscard]] bool claim_of(unsigned rule, Claim& claim, bool& silent) const;
   [[nodiscard]] bool claim_for(unsigned rule, Side side, bool retries, Claim& claim) const;
   // A WHILE whose response has begun in this millisecond claims again in the next one. Not inlined: the behaviours' stacks
-  // are short.
+  // are small.
   [[nodiscard, gnu::noinline]] bool must_pause(unsigned rule) const {
     return layers_.triggers.is_while(rule) && has_run(rule, ran_at_);
   }
@@ -113,7 +113,7 @@ private:
   unsigned begin_of(unsigned rule, Side side) const {
     return program_->image.responses[response_of(rule, side)].start;
   }
-  // --- the behaviour's thread: without privileges ---
+  // --- the behaviour's thread: unprivileged ---
   void run(Unit& unit);
   void do_task(const Unit& unit, vm::Machine& machine);
   void latch(const Unit& unit, vm::Machine& machine);
@@ -142,11 +142,11 @@ private:
   const Snapshot* snapshot_ = nullptr;
   const RuleSet* concerned_ = nullptr;
   BehaviorMask retired_ = 0;
-  // Who is released, and for what; of a rule, which; and from where its response goes on or begins.
+  // The released behaviour and its task; for a rule, which one, and the code its response begins at or resumes from.
   std::uint8_t released_ = 0;
   bool is_released_ = false;
   Task task_ = Task::turn;
-  bool goes_on_ = false;  // of a sole turn
+  bool goes_on_ = false;  // for a sole turn
   std::uint16_t rule_ = 0;
   std::uint16_t code_ = 0;
   RuleSet has_run_;           // see has_run(): in the millisecond …

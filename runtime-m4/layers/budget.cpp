@@ -8,7 +8,7 @@ namespace {
 using kernel::Category;
 using kernel::Thread;
 
-// The highest behaviour that would run now. Who outranks it may be ready, too: the looks are at the
+// The highest behaviour that would run now. Threads that outrank it may be ready, too: this looks at the
 // ticks at which setpoints and samples are due.
 Thread* first_ready(const kernel::Kernel& kernel) {
   for (Thread* const thread : kernel.threads())

@@ -1,10 +1,10 @@
-// Holds the behaviours' threads to their budget. The verifier has bounded what each can take in a
-// step, so one that runs on and on runs something else: it is stopped, and the others go on.
+// Enforces the budget of the behaviours' threads. The verifier has bounded what each can take in a
+// step, so a behaviour that runs on and on is running something else: it is stopped, and the others go on.
 //
-// Looked at by the safety monitor, and only while the step thread makes no progress: the behaviour
-// of highest rank that is ready is then the one that holds everything up. What counts is how long it
-// ran by itself (Kernel::run_time()), so nobody pays for those that outrank him. Where time does
-// not flow nothing is ever stopped.
+// The safety monitor calls this, and only while the step thread makes no progress: the ready behaviour
+// of the highest rank is then the one that blocks progress. Only its own run time counts
+// (Kernel::run_time()), so no behaviour pays for those that outrank it. Where time does not flow,
+// nothing is ever stopped.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@ namespace robosync::layers {
 
 class Budget {
 public:
-  // Of one release of a behaviour, in counts of Kernel::clock(). The verifier's bound for a whole
-  // step is in instructions: this gives each of them two cycles.
+  // For one release of a behaviour, in counts of Kernel::clock(). The verifier's bound for a whole step
+  // is in instructions; this allows two cycles for each of them.
   explicit Budget(std::uint32_t step_budget) : counts_(2 * step_budget) {}
 
   // The behaviour's thread that is over its budget, or null.  [a thread that outranks all
   // behaviours]
   kernel::Thread* look(const kernel::Kernel& kernel);
-  // All is well: what was seen is forgotten.
+  // The step thread makes progress: forgets the suspect.
   void forget() { suspect_ = nullptr; }
 
 private:

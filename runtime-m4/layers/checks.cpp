@@ -1,4 +1,4 @@
-// See checks.hpp. May rely on the verifier for places and windows of at least 1.
+// See checks.hpp. May rely on the verifier for indices, and for windows of at least 1.
 #include "runtime-m4/layers/checks.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ bool Checks::update(unsigned check, std::uint32_t now, std::span<vm::Value> valu
 std::uint32_t Checks::next(std::uint32_t now) const {
   Soonest next(now);
   for (unsigned c = 0; c < wiring_.size(); ++c) {
-    // Once what is held is the median, more of it changes nothing.
+    // Once the held value is the median, more samples of it change nothing.
     if (windows_[c].held == windows_[c].median) continue;
     next.at(windows_[c].newest + policy::sample_period_ms(wiring_[c]) + 1);
   }
@@ -55,7 +55,7 @@ vm::Value Checks::smoothed(Window& window, const vm::Check& wiring, std::uint32_
                        window.samples);
   const std::uint32_t period_ms = policy::sample_period_ms(wiring);
   const std::uint32_t since = now - window.newest;
-  // The ordinary case first: a new reading in each period.
+  // The common case first: a new reading in each period.
   if (window.samples.count == 0 || (since == period_ms && value != window.held)) {
     window.newest = now;
     samples.push(value);

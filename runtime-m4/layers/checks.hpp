@@ -1,13 +1,13 @@
 // CHECKs: which band the value of a channel or variable is in.
 //
-// SMOOTH takes the median of the samples in a window. A sample is what the input is at an instant
-// of a fixed raster, which begins with the first known value; between two readings it keeps its
-// value. A new value at an instant is a sample at once. One that was kept is when that millisecond
-// is over: a reading may come in it after a step that time alone was the cause of, and until then
-// the value before it would count twice.
+// SMOOTH takes the median of the samples in a window. A sample is the input's value at an instant
+// of a fixed raster, which begins with the first known value; between two readings the input keeps
+// its value. A new value at an instant is sampled immediately. A kept value is sampled when that millisecond
+// is over: a reading may still come in it, after a step that time alone caused, and until
+// then the previous value would count twice.
 //
-// So the median goes on changing after the last reading, until the window holds nothing else;
-// next() says when. Until the window is full the median is that of the samples there are; of an
+// So the median goes on changing after the last reading, until the window holds only that value;
+// next() says when. Until the window is full, the median is that of the samples so far; of an
 // even number of samples it is the lower middle one. An unknown value empties the window, and its
 // band is unknown.
 #pragma once
@@ -27,7 +27,7 @@ public:
   void start(const vm::Image& image, Memory& memory);
 
   // Puts the band of `check` at `now` (milliseconds of program time) into `values`, the values of
-  // all inputs. Returns whether it changed. Several calls at one time are one sample.
+  // all inputs. Returns whether it changed. Several calls at one time make one sample.
   bool update(unsigned check, std::uint32_t now, std::span<vm::Value> values);
   // In how many milliseconds a band may change although no input does; kNever for never.
   std::uint32_t next(std::uint32_t now) const;
@@ -38,7 +38,7 @@ private:
     vm::Value median = vm::kUnknown;  // of its samples
     std::uint32_t newest = 0;         // when the newest one was taken
     MedianWindow::State samples;
-    std::uint16_t first = 0;  // place of its samples among all
+    std::uint16_t first = 0;  // index of its first sample in samples_
   };
 
   vm::Value smoothed(Window& window, const vm::Check& wiring, std::uint32_t now, vm::Value value);
@@ -48,7 +48,7 @@ private:
   std::span<const vm::Band> bands_;
   std::size_t channels_ = 0;
   std::span<Window> windows_;
-  // Of the windows, one behind the other.
+  // The windows' parts of these are consecutive.
   std::span<vm::Value> samples_;
   std::span<std::uint8_t> orders_;
 };

@@ -1,5 +1,5 @@
 // Milliseconds of program time, as the VM counts them. They wrap after 49 days, so only differences
-// say what is earlier; none that matters is longer than 24 days.
+// say which time is earlier; no difference that matters is longer than 24 days.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@ inline constexpr std::uint32_t kNever = vm::Machine::kNever;
 
 using vm::reached;
 
-// `time` comes before `other`; kNever is after all.
+// `time` comes before `other`; kNever comes after everything.
 constexpr bool sooner(std::uint32_t time, std::uint32_t other) {
   if (time == kNever || other == kNever) return time != kNever && other == kNever;
   return static_cast<std::int32_t>(time - other) < 0;
 }
 
-// The first of several times that are to come; one that is over counts as now.
+// The first of several future times; one that has passed counts as now.
 class Soonest {
 public:
   explicit Soonest(std::uint32_t now) : now_(now) {}

@@ -1,4 +1,4 @@
-// See command_pool.hpp. Linked lists of indices; none is longer than there are places.
+// See command_pool.hpp. Linked lists of indices; no list is longer than the pool.
 #include "runtime-m4/layers/command_pool.hpp"
 
 #include <utility>

@@ -1,5 +1,5 @@
-// Commands on their way to the actuators, each as its driver takes it: fixed memory for all, and a bounded first-in
-// first-out queue for each actuator in it.
+// Commands on their way to the actuators, in the form that the driver takes: one fixed pool of memory, with a bounded
+// first-in first-out queue in it for each actuator.
 #pragma once
 
 #include <cstdint>
@@ -10,43 +10,43 @@
 
 namespace robosync::layers {
 
-// For one actuator, inside its limits: so nothing is left to be done when its time comes.
+// For one actuator and already inside its limits, so nothing is left to compute when its time comes.
 struct QueuedOrder {
   drivers::Order order;
-  std::uint8_t verb;  // as of Command
+  std::uint8_t verb;  // as in Command
   std::uint8_t word;
   std::uint8_t given;
-  // No parameter is kUnknown: else nobody can say what it means, and it is not carried out.
+  // No parameter is kUnknown; otherwise the meaning is unclear, and the order is not carried out.
   bool complete;
 };
 
 class CommandPool {
 public:
-  // Aligned, so that one is copied as a word.
+  // Aligned, so that it is copied as one word.
   struct alignas(std::uint32_t) Queue {
     std::uint8_t first = kNone;
     std::uint8_t last = kNone;
     std::uint8_t count = 0;
-    bool begun = false;  // the first one: it stays as it is until pop()
+    bool begun = false;  // the first one has begun: it stays as it is until pop()
   };
 
-  // All its places are free, and no queue has any.
+  // All places are free, and all queues are empty.
   void start(Memory& memory);
 
-  // A new last one of `queue`, to be filled in; null when no place is left.
+  // A new last entry of `queue`, to be filled in; null if no place is left.
   [[nodiscard]] QueuedOrder* push(Queue& queue);
-  // Does a follow take the place of the last command of `queue`? Then it is last().
+  // Does a follow replace the last command of `queue`? That command is last().
   bool renews(const Queue& queue) const {
     return queue.count > (queue.begun ? 1 : 0) &&
            nodes_[queue.last].command.order.action == vm::Action::follow;
   }
   QueuedOrder& last(const Queue& queue) const { return nodes_[queue.last].command; }
-  // The first of `queue`, which is not empty; good until pop().
+  // The first entry of `queue`, which must not be empty; valid until pop().
   const QueuedOrder& front(const Queue& queue) const { return nodes_[queue.first].command; }
   void pop(Queue& queue);
   void clear(Queue& queue);
-  void drop_waiting(Queue& queue);  // all but what is begun
-  // Moves all of `from` behind `queue`; together they are not longer than policy::kMaxQueued.
+  void drop_waiting(Queue& queue);  // all except one that has begun
+  // Moves all of `from` to the end of `queue`; together they are at most policy::kMaxQueued.
   void append(Queue& queue, Queue& from);
 
 private:

@@ -1,11 +1,11 @@
-// Does the device behind a sensor answer on its bus? Kept for each sensor that measures, from round to round: in a round
+// Does the device behind a sensor answer on its bus? Kept for each sensor that measures, round by round: in a round
 // each of its channels is read once.
 //
-// A device that has not answered yet is silent with its first round. From then on it takes kRounds in a row that say
-// otherwise, so that one that answers now and then is not told of in every round.
+// The first round decides alone. From then on it takes kRounds contradicting rounds in a row to change the standing,
+// so that a device that answers now and then is not reported in every round.
 //
-// A device that measures when it is told to may have a result from before the program, of any age. That is nobody's, so its first
-// round does not count.
+// A device that measures on request may hold a result from before the program, of any age. That result is discarded, so
+// the first round does not count.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ public:
   void expect_old_result() { standing_ = Standing::has_old_result; }
   bool has_old_result() const { return standing_ == Standing::has_old_result; }
 
-  // A round is over in which so many transfers failed.  [sensor's thread]
+  // A round is over, with this many failed transfers.  [sensor's thread]
   News note(unsigned failed) {
     if (has_old_result()) {
       standing_ = Standing::not_asked;
@@ -44,7 +44,7 @@ public:
 
   bool asked() const { return standing_ == Standing::answers || silent(); }
   bool silent() const { return standing_ == Standing::silent; }
-  // Transfers so far; UINT16_MAX: that many or more.
+  // Failed transfers so far; UINT16_MAX: that many or more.
   std::uint16_t failed() const { return failed_; }
 
 private:

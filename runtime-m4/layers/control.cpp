@@ -35,8 +35,8 @@ bool ControlLayer::start(const LoadedProgram& program, Memory& memory, ProgramTh
   return true;
 }
 
-// The person's stop comes from the safety thread, at any time. Before this it finds no program, and what it halts is
-// what the last one left; after this it finds all of the new one.
+// A person's stop comes from the safety thread, at any time. Before this block it finds no program, and halts what
+// the last one left; after it, it finds all actuators of the new one.
 void ControlLayer::take_over(const LoadedProgram& program) {
   {
     const auto lock = kernel_.lock();
@@ -120,7 +120,7 @@ void ControlLayer::stage_stop(Unit& unit, std::uint8_t verb) {
   return place != nullptr;
 }
 
-// A follow behind a follow that waits is its new target, and takes no new place.
+// A follow behind a waiting follow gives that one a new target, and takes no place.
 QueuedOrder* ControlLayer::place_of(Unit& unit, vm::Action action) {
   if (action == vm::Action::follow) {
     const bool first = unit.staged.count == 0 && unit.staged_stop == kNoVerb;
@@ -139,8 +139,8 @@ ActuatorMask ControlLayer::take_dropped() {
   return std::exchange(dropped_, 0);
 }
 
-// Whose thread waits for something has nothing under way that this could come into, and while the lock is held
-// it stays so: then it need not be woken for it. A timer of its that strikes later finds nothing to go on with.
+// A thread that is blocked has no driver call under way that this could disturb, and it stays blocked while the lock
+// is held: so it need not be woken. If a timer of its expires later, it finds nothing to go on with.
 ActuatorMask ControlLayer::cancel_first(ActuatorMask actuators) {
   Unit& unit = first_in_rank(actuators);
   const auto mine = bit<ActuatorMask>(unit.actuator);
@@ -158,7 +158,7 @@ ActuatorMask ControlLayer::cancel_first(ActuatorMask actuators) {
   return mine;
 }
 
-// Of `actuators`, which are some, the one whose thread outranks the others'.
+// The one of `actuators`, which is not empty, whose thread outranks the others'.
 ControlLayer::Unit& ControlLayer::first_in_rank(ActuatorMask actuators) const {
   Unit* first = &units_[static_cast<unsigned>(std::countr_zero(actuators))];
   each_bit(actuators & (actuators - 1), [&](unsigned a) {
@@ -178,7 +178,7 @@ void ControlLayer::commit_staged() {
   });
 }
 
-// Of actuators whose threads were stopped.
+// For actuators whose threads were stopped.
 [[gnu::cold]] void ControlLayer::drop_staged(ActuatorMask actuators) {
   each_bit(actuators, [&](unsigned a) {
     Unit& unit = units_[a];
@@ -189,8 +189,8 @@ void ControlLayer::commit_staged() {
   kernel_.signal(step_thread_, events_.idle);
 }
 
-// Behind what the same response has sent in an earlier step; its new owner gets an actuator with an
-// empty queue. If it was idle, it is no more. False: it has a new target only.
+// Appends to what the same response sent in an earlier step; a new owner gets an actuator with an
+// empty queue. The actuator is no longer idle. False: only a waiting follow has a new target.
 inline bool ControlLayer::hand_over(Unit& unit) {
   if (unit.staged_stop != kNoVerb) {
     unit.stopping = std::exchange(unit.staged_stop, kNoVerb);
@@ -264,14 +264,14 @@ unsigned ControlLayer::halter_of(ActuatorMask halted) const {
                                                   : unsigned{link::kStop};
 }
 
-// The pins come first. A driver that is at work now sees the mask when it is done (keep_at()).
+// The pins come first. A driver call under way sees the mask when it returns (keep_at()).
 void ControlLayer::hold_back(ActuatorMask fresh) {
   if (fresh == 0) return;
   outputs_.halt(fresh);
   note_halt(fresh);
 }
 
-// What the drivers know and the trace tells of it.
+// Puts the drivers into their safe states, and tells the trace.
 void ControlLayer::note_halt(ActuatorMask fresh) {
   {
     const auto lock = kernel_.lock();
@@ -335,14 +335,14 @@ void ControlLayer::run(Unit& unit) {
   }
 }
 
-// It follows, and has a new target.
+// It follows, and a new target has come.
 bool ControlLayer::goes_elsewhere(const Unit& unit) const {
   if (!unit.follows) return false;
   const auto lock = kernel_.lock();
   return unit.queue.count > 0 && pool_.front(unit.queue).order.action == vm::Action::follow;
 }
 
-// Begins commands until one needs time, or none is left. Returns when to wake.
+// Begins commands until one needs time or none is left. Returns when to wake.
 kernel::Time ControlLayer::work_off(Unit& unit, const Stamp& stamp) {
   for (unsigned i = 0; i <= policy::kMaxQueued && claim_next(unit); ++i) {
     kernel::Time wake = 0;
@@ -352,7 +352,7 @@ kernel::Time ControlLayer::work_off(Unit& unit, const Stamp& stamp) {
   return kernel::kForever;
 }
 
-// Is there one to begin? If there is not, its owner gets to know that the actuator is idle.
+// Is there a command to begin? If not, the step thread learns that the actuator is idle.
 bool ControlLayer::claim_next(Unit& unit) {
   const auto lock = kernel_.lock();
   if (is_held(unit)) return false;
@@ -362,7 +362,7 @@ bool ControlLayer::claim_next(Unit& unit) {
   return false;
 }
 
-// It is told before it is started, and both do not stand on the stack at once.
+// The trace is told before the driver starts, so that the two are not on the stack together.
 void ControlLayer::begin_next(Unit& unit, const Stamp& stamp, kernel::Time& wake) {
   const QueuedOrder& command = pool_.front(unit.queue);
   if (trace_.listening()) [[unlikely]]
@@ -394,8 +394,8 @@ kernel::Time ControlLayer::go_on(Unit& unit) {
   return keep_at(unit, wake, trace_.now());
 }
 
-// Goes on with the MOTION that it performs: to its next key, or to its end. A driver that is there
-// already is not asked again before the time of a key is over.
+// Continues the MOTION under way: to its next key, or to its end. A driver that has already arrived
+// is not called again before the shortest time of a key has passed.
 [[gnu::noinline]] kernel::Time ControlLayer::next_key(Unit& unit, kernel::Time now) {
   Performance& performance = unit.performance;
   drivers::Order order;
@@ -409,7 +409,7 @@ kernel::Time ControlLayer::go_on(Unit& unit) {
   return performance.ends_at() > now ? performance.ends_at() : drivers::kDone;
 }
 
-// After every call of the driver. A halt may have come in its middle: then its last word is undone.
+// After every call of the driver. A halt may have come during the call: then what the driver did last is undone.
 kernel::Time ControlLayer::keep_at(Unit& unit, kernel::Time wake, const Stamp& stamp) {
   if (is_halted(unit)) {
     release(unit, wiring(unit).safe);
@@ -443,7 +443,7 @@ void ControlLayer::finish_cancel(Unit& unit) {
   kernel_.signal(step_thread_, events_.cancelled);
 }
 
-// What waited was dropped when it was staged; what is under way ends here.
+// Waiting commands were dropped when the STOP was staged; the one under way ends here.
 kernel::Time ControlLayer::obey_stop(Unit& unit) {
   unsigned verb = kNoVerb;
   {
@@ -472,7 +472,7 @@ void ControlLayer::drop_all(Unit& unit) {
   unit.stopping = kNoVerb;
 }
 
-// values as below, without word and parameters.
+// values as below, with no word and no parameters.
 void ControlLayer::tell_stop(const Unit& unit, unsigned verb, const Stamp& stamp) {
   link::Event event;
   Trace::begin(event, EventKind::command, stamp, unit.actuator, verb);
@@ -482,7 +482,7 @@ void ControlLayer::tell_stop(const Unit& unit, unsigned verb, const Stamp& stamp
   trace_.emit(event);
 }
 
-// values: the word or -1, the mask of parameters the program gave, and these, limits applied.
+// values: the word or -1, the mask of parameters that the program gave, and these parameters, with limits applied.
 void ControlLayer::tell_command(const Unit& unit, const QueuedOrder& command, const Stamp& stamp) {
   link::Event event;
   Trace::begin(event, EventKind::command, stamp, unit.actuator, command.verb);

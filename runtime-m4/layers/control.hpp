@@ -1,17 +1,17 @@
-// Control layer: one thread per actuator, which has it to itself.
+// Control layer: one thread per actuator, which alone drives it.
 //
-// The step thread stages the commands of a step as responses end; it cancels what was interrupted
-// and waits until that is done, then commits what was staged, all at once. An actuator
-// does one command at a time and the rest of its queue (kMaxQueued) in order. Limits of
-// the robot are applied here, whatever the program says.
+// The step thread stages the commands of a step as responses end. It cancels what was interrupted
+// and waits until that is done, then commits everything that was staged in one go. An actuator
+// carries out one command at a time and the rest of its queue (kMaxQueued) in order. The robot's limits
+// are applied here, whatever the program says.
 //
-// STOP is a command that does not wait: what stands before it in the queue is dropped, and what the
-// actuator is doing ends. It needs no place in the queue. A follow does not wait for a follow: it takes its
-// place, in the queue or under way, and nothing is done or cancelled by that.
+// STOP is a command that does not wait: the commands before it in the queue are dropped, and what the
+// actuator is doing ends. It needs no place in the queue. A follow does not wait for a follow: it replaces
+// it, queued or under way, and nothing counts as done or cancelled.
 //
 // Halting (safety) puts actuators into their `safe` state from the caller's thread and refuses all
 // commands to them from then on, until they are let go or the next program comes. A person's stop halts
-// all, whatever program runs or comes, until the person lets them go. The output guard is told of both, so
+// all of them, whatever program runs or comes, until the person lets them go. The output guard is told of both, so
 // that nothing a driver still does reaches a pin.
 #pragma once
 
@@ -47,21 +47,21 @@ public:
         step_thread_(step_thread),
         events_(events) {}
 
-  // Starts the threads of `program`, which must stay until they are dismissed.
+  // Starts the threads of `program`, which must stay in place until they are dismissed.
   [[nodiscard]] bool start(const LoadedProgram& program, Memory& memory, ProgramThreads& threads);
-  // Releases all actuators of a program whose threads are dismissed, and forgets where they are:
-  // what a program does must not depend on the one before it.
+  // Releases all actuators of a program whose threads are dismissed, and forgets their positions:
+  // a program's behaviour must not depend on the one before it.
   void release_all();
-  // No program comes after it: all its outputs go off.
+  // No program follows: all outputs go off.
   void switch_off();
 
   // --- for the step thread ---
-  // For each of `actuators`; dropped where there is no room.
+  // Stages it for each of `actuators`, or drops it where there is no room.
   void stage(const Command& command, ActuatorMask actuators);
-  ActuatorMask take_staged();   // actuators that commands were staged for since the last call
-  ActuatorMask take_dropped();  // … and that a command was dropped for
-  // Begins it for that one of `actuators` whose thread outranks the others', and returns which; done when
-  // cancelling() is false, which mostly is at once.
+  ActuatorMask take_staged();   // those that commands were staged for since the last call
+  ActuatorMask take_dropped();  // … and those that dropped one
+  // Begins to cancel the one of `actuators` whose thread outranks the others', and returns it. Done when
+  // cancelling() is false, which it mostly is immediately.
   ActuatorMask cancel_first(ActuatorMask actuators);
   bool cancelling() const { return cancelling_.load(std::memory_order_relaxed) != 0; }
   void commit() {
@@ -71,20 +71,20 @@ public:
   [[gnu::always_inline]] ActuatorMask halted() const {
     return halted_.load(std::memory_order_relaxed);
   }
-  // … and those that were halted since the last call, even if they are let go by now.
+  // … and those that were halted since the last call, even if they have been let go by now.
   ActuatorMask take_halted() {
     return newly_halted_.load(std::memory_order_relaxed) == 0 ? 0 : take_newly_halted();
   }
-  // Of some that are halted, or were: kSafetyBehavior, if its rules have halted one of them; otherwise link::kStop.
+  // Of some actuators that are or were halted: kSafetyBehavior if the rules have halted one of them; otherwise link::kStop.
   [[gnu::cold]] unsigned halter_of(ActuatorMask halted) const;
   void retire(unsigned actuator);  // its thread was stopped: put it into its safe state
 
-  // [safety thread] Those that are halted, or not, already stay as they are.
+  // [safety thread] An actuator that is already halted, or already free, stays as it is.
   void halt(ActuatorMask actuators);
   void let_go(ActuatorMask actuators);
   // All of them, until the next program.
   void halt_for_good();
-  // … and until resume(), also those of the programs that come.
+  // … and until resume(), in later programs too.
   void stop();
   void resume();
 
@@ -104,9 +104,9 @@ private:
     Stamp committed;            // the step that `queue` comes from
     std::uint8_t actuator = 0;
     bool busy = false;
-    bool follows = false;                // what it is doing is a follow
-    std::uint8_t staged_stop = kNoVerb;  // the STOP that `staged` stands behind
-    std::uint8_t stopping = kNoVerb;     // … and `queue`: it was handed over
+    bool follows = false;                // the order under way is a follow
+    std::uint8_t staged_stop = kNoVerb;  // the STOP that precedes `staged`
+    std::uint8_t stopping = kNoVerb;     // … and the one that precedes `queue`, handed over
   };
 
   void commit_staged();
@@ -147,7 +147,7 @@ private:
   [[gnu::always_inline]] bool is_halted(const Unit& unit) const {
     return has(halted(), unit.actuator);
   }
-  // Its queue has to wait.
+  // Its queue must wait.
   bool is_held(const Unit& unit) const { return is_halted(unit) || unit.stopping != kNoVerb; }
   ActuatorMask all() const;
   void release(Unit& unit, vm::Release how);
@@ -173,7 +173,7 @@ private:
   std::atomic<ActuatorMask> newly_halted_ = 0;
   ActuatorMask by_rules_ = 0;  // halted by the program's own rules, or because it hangs
   bool stopped_ = false;       // by a person
-  // Of those that are halted, or were halted last: whom a person keeps stopped, and no rule did before. For the trace.
+  // Of those that are halted or were halted last: those that a person keeps stopped and that no rule halted before. For traces.
   std::atomic<ActuatorMask> by_person_ = 0;
 };
 

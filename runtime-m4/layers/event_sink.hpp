@@ -7,8 +7,8 @@ namespace robosync {
 
 class EventSink {
 public:
-  // Nobody makes an event for a sink that does not listen: so tracing costs next to nothing until
-  // somebody wants to see it.
+  // No event is made for a sink that does not listen, so tracing costs next to nothing until somebody
+  // reads it.
   [[gnu::always_inline]] bool listening() const {
     return __atomic_load_n(&listening_, __ATOMIC_RELAXED);
   }
@@ -21,7 +21,7 @@ protected:
   void set_listening(bool on) { __atomic_store_n(&listening_, on, __ATOMIC_RELAXED); }
 
 private:
-  bool listening_;  // no std::atomic, whose load() the compiler calls where it saves flash
+  bool listening_;  // not std::atomic: when it saves flash, the compiler calls its load()
 };
 
 }  // namespace robosync

@@ -1,5 +1,5 @@
-// See feed_queue.hpp. A sorted array: it is short, and the link inserts far slower than it is
-// sorted.
+// See feed_queue.hpp. A sorted array: it is short, and entries come over the link far more slowly than
+// they are sorted in.
 #include "runtime-m4/layers/feed_queue.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Readings that wait for their time, the earliest first. A channel has one reading at a tick: of
-// two, the later to come counts.
+// Readings that wait for their time, the earliest first. A channel has one reading per tick: of two,
+// the one inserted later counts.
 #pragma once
 
 #include <cstddef>
@@ -31,10 +31,10 @@ public:
   };
 
   void start(Memory& memory);  // nothing waits
-  // False when it is full.
+  // False if it is full.
   [[nodiscard]] bool insert(const Entry& entry);
-  // The time that they are counted from, `from`, was meant to come and comes `to`; what is due before
-  // it stays as it is.
+  // Program time was expected to begin at `from` and begins at `to`: moves the entries along. Those due
+  // before `from` stay as they are.
   void shift(kernel::Time from, kernel::Time to);
   // Takes the earliest entry out if it is due.
   [[nodiscard]] bool take_due(kernel::Time now, Entry& entry);

@@ -6,8 +6,8 @@
 namespace robosync::layers {
 namespace {
 
-// A seed of its own for each behaviour: neighbours in number must not be neighbours in state
-// (the finalizer of MurmurHash3, which is a bijection). 0 is no state of the VM's generator.
+// A separate seed for each behaviour: adjacent numbers must not give adjacent states
+// (the finalizer of MurmurHash3, which is a bijection). 0 is not a state of the VM's generator.
 std::uint32_t seed_of(std::uint32_t program_seed, unsigned behavior) {
   constexpr std::uint32_t kGoldenRatio = 0x9E37'79B9;
   std::uint32_t state = program_seed + (behavior + 1) * kGoldenRatio;
@@ -37,7 +37,7 @@ vm::Value* Frames::frame(const LoadedProgram& program, unsigned behavior) const 
   return reinterpret_cast<vm::Value*>(cells.data() + begin);
 }
 
-// The timers are numbered from the first one of the program, which is SAFETY's.
+// Timers are numbered from the program's first one, which is SAFETY's.
 vm::Machine Frames::machine(const LoadedProgram& program, unsigned behavior) const {
   const bool safety = behavior < program.first_behavior();
   vm::Machine machine;

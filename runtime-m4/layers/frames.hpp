@@ -1,5 +1,5 @@
-// The memory that bytecode works on: the frames of all behaviours, one behind the other, and what
-// their time words remember. It stands in the workspace; what SAFETY rules work on has a region of its own.
+// The memory that bytecode works on: the frames of all behaviours, one after the other, and the state
+// of their time words. It is part of the workspace; SAFETY rules work on a region of their own.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,21 @@ class Frames {
 public:
   explicit Frames(Workspace& workspace) : workspace_(workspace) {}
 
-  // Nothing is known, nothing remembered; random numbers begin with `seed`. After the workspace.
+  // Nothing is known or remembered; random numbers begin with `seed`. After the workspace.
   void start(std::uint32_t seed, const SafetyRegion& safety);
 
   vm::Value* frame(const LoadedProgram& program, unsigned behavior) const;
-  // A machine for one behaviour. Its random numbers depend on the program's seed and on the number
-  // of the behaviour only.
+  // A machine for one behaviour. Its random numbers depend only on the program's seed and on the
+  // behaviour's number.
   vm::Machine machine(const LoadedProgram& program, unsigned behavior) const;
 
-  // Puts the inputs of `behavior` into its frame: value(input) is what each is.
+  // Copies the inputs of `behavior` into its frame; value(input) returns each one.
   template <class ValueOf>
   static void latch(const vm::Machine& machine, const vm::Image& image,
                     const vm::Behavior& behavior, ValueOf value) {
     latch(machine.frame, image.inputs.subspan(behavior.first_input, behavior.input_count), value);
   }
-  // Nothing is looked up again for each, as the compiler would do after every write; and the loop looks at its end.
+  // Loads everything once, where the compiler would reload after every write; and the loop tests at its end.
   template <class ValueOf>
   static void latch(vm::Value* cell, std::span<const std::uint8_t> inputs, ValueOf value) {
     std::size_t left = inputs.size();

@@ -1,4 +1,4 @@
-// KEPT numbers, as they outlast their program: found again by their names, in another program too.
+// KEPT numbers, in the form in which they outlive their program. They are found by name, also from another program.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@ struct KeptNumber {
   bool operator==(const KeptNumber&) const = default;
 };
 
-// Of a variable's name, whichever way it is written, and what it measures: a distance is not a time.
+// From a variable's name, ignoring case, and what it measures: a distance is not a time.
 [[nodiscard]] std::uint32_t kept_key(const vm::Image& image, const vm::Variable& variable);
 
-// What `variable` begins with: the number in `kept`, inside of its range, or what is written.
+// The initial value of `variable`: the number in `kept`, clamped to its range, or else the written one.
 [[nodiscard]] vm::Value initial_of(const vm::Image& image, const vm::Variable& variable,
                                    std::span<const KeptNumber> kept);
 

@@ -65,7 +65,7 @@ target_sources(robosync_runtime PRIVATE
   drivers/vl53l0x.cpp
   drivers/way.cpp
   drivers/ws2812_face.cpp)
-# In rsc nobody waits for what drives hardware, which a simulated robot has not: small code is worth more there.
+# In rsc the drivers of hardware are not time-critical, since a simulated robot has none: small code is worth more there.
 if(NOT CMAKE_CROSSCOMPILING AND NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(
     drivers/axes.cpp drivers/hts221.cpp drivers/lights.cpp drivers/lsm303agr.cpp drivers/lsm6dsl.cpp drivers/max34451.cpp
@@ -76,7 +76,7 @@ if(NOT CMAKE_CROSSCOMPILING AND NOT ROBOSYNC_SANITIZE)
 endif()
 set_source_files_properties(layers/median.cpp PROPERTIES
   COMPILE_OPTIONS "-O2;$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns>")
-# What each reading goes through, in the step thread, of which there is one: its stack has room for it.
+# Every reading passes through this, in the step thread. There is only one such thread: its stack has room for it.
 set_source_files_properties(layers/processing.cpp PROPERTIES COMPILE_OPTIONS "-O2")
-# The way from a reading in its mailbox to the pins in their safe state.
+# The path from a reading in its mailbox to the pins in their safe state.
 set_source_files_properties(safety/safety_rules.cpp PROPERTIES COMPILE_OPTIONS "-O2")

@@ -34,7 +34,7 @@ bool LinkShare::had_time(const Look& look) const {
          look.run_time - since_.run_time > (look.clock - since_.clock) / policy::kLinkParts;
 }
 
-// The clock wraps after minutes, and no pause is as long as this.
+// The clock wraps after minutes; no pause is as long as this.
 constexpr std::uint32_t kLongTicks = 1000;
 
 bool LinkShare::has_budget(const Look& look) const {

@@ -1,5 +1,5 @@
-// See loaded_program.hpp. May rely on the verifier: behaviours stand from the highest priority down, their
-// rules follow each other without gaps, as the channels of the sensors do.
+// See loaded_program.hpp. May rely on the verifier: behaviours are in order from the highest priority down; their
+// rules follow each other without gaps, and so do the sensors' channels.
 #include "runtime-m4/layers/loaded_program.hpp"
 
 #include "runtime-m4/policy/concern.hpp"
@@ -23,7 +23,7 @@ void LoadedProgram::load(const vm::Image& loaded, Memory& memory) {
   }
 }
 
-// SAFETY rules are evaluated all together, whatever changes: nobody looks them up.
+// SAFETY rules are all evaluated together, whatever changes, so they need no readers.
 void LoadedProgram::load_rules(unsigned b) {
   const vm::Behavior& behavior = image.behaviors[b];
   unsigned cell = behavior.input_count + 0U + behavior.locals;

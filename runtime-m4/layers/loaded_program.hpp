@@ -1,4 +1,4 @@
-// The running program: its image, and what is worked out from it once, when it is loaded.
+// The running program: its image, and what is computed from it once, when it is loaded.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ namespace robosync::layers {
 
 struct LoadedProgram {
   vm::Image image;
-  std::span<InputMask> inputs;          // that each behaviour reads
+  std::span<InputMask> inputs;          // what each behaviour reads
   std::span<std::uint8_t> behavior_of;  // by rule
-  std::span<std::uint8_t> truth_cell;   // of a WATCH, if there is one: where its truth is kept
+  std::span<std::uint8_t> truth_cell;  // of a WATCH, if there is one: the cell that holds its truth
 
-  // `image` is verified, and `memory` laid out for it.
+  // `image` is verified, and `memory` is laid out for it.
   void load(const vm::Image& image, Memory& memory);
 
   // Adds the rules that read or set an input.
@@ -47,11 +47,11 @@ struct LoadedProgram {
                               : bit<ChannelMask>(input);
   }
 
-  // The behaviours that need a thread, the SAFETY rules among them. `index` is that of its sensor
+  // The behaviours that need a thread, including the SAFETY rules. `index` is that of its sensor
   // (policy::kFedSensors: all that are fed; policy::kAlgorithms), behaviour or actuator.
   BehaviorMask needing(kernel::Category category, unsigned index) const;
 
-  // Whose readers need a sensor's thread.
+  // The channels whose readers need this sensor thread.
   ChannelMask channels_of(unsigned sensor_thread) const;
 
 private:
@@ -62,7 +62,7 @@ private:
   std::size_t reader_stride_ = 0;
 };
 
-// The name at `offset` of the strings, for reports; `otherwise` when there is none.
+// The name at `offset` of the strings, for reports; `otherwise` if there is none.
 const char* name_of(const vm::Image& image, std::uint16_t offset, const char* otherwise);
 
 }  // namespace robosync::layers

@@ -1,4 +1,4 @@
-// See mailbox.hpp. The kernel is locked for one mailbox at a time.
+// See mailbox.hpp. Locks the kernel for one mailbox at a time.
 #include "runtime-m4/layers/mailbox.hpp"
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 namespace robosync::layers {
 namespace {
 
-// By `least`, which is not negative, and by something.
+// They differ, and by at least `least`, which is not negative.
 bool differs(vm::Value a, vm::Value b, vm::Value least) {
   if (a == b) return false;
   const auto up = static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b);
@@ -47,7 +47,7 @@ void Mailboxes::expires_by(kernel::Time time) {
   expiry_of_news_ = std::min(expiry_of_news_, time);
 }
 
-// Ticks wrap, so what never expires does so half of them later: then nobody is sure any more.
+// Ticks wrap, so kForever is taken as half of their range from now: after that nothing is certain to be fresh.
 void Mailboxes::set_next_expiry(kernel::Time time) {
   constexpr auto kTick = static_cast<std::uint32_t>(kernel::kTick);
   const auto lock = kernel_.lock();
@@ -64,8 +64,8 @@ ChannelMask Mailboxes::take_announced() {
   return std::exchange(announced_, 0);
 }
 
-// Whoever is locked out only for one channel at a time may post and forget in between, and the safety thread may look:
-// until all are seen, nobody says that they are fresh.
+// The lock covers one channel at a time. Other threads may post and forget in between, and the safety thread may look:
+// until all channels are done, nothing counts as fresh.
 ChannelMask Mailboxes::expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,
                                   kernel::Time now) {
   ChannelMask expired = 0;

@@ -1,7 +1,7 @@
 // Where the sensor layer leaves its readings: one latest-value mailbox for each channel.
 //
-// Written by sensor threads, read by the step thread. Readings that belong together are posted one
-// by one and announced at once, so that the step thread sees all of them or none.
+// Sensor threads write, the step thread reads. Readings that belong together are posted one by one and
+// announced together, so the step thread sees all of them or none.
 #pragma once
 
 #include <cstdint>
@@ -21,23 +21,23 @@ public:
 
   void start(Memory& memory);  // nothing is known
 
-  // Keeps the reading if it says something new: the channel was unknown, or differs by at least
-  // channel.change. Returns the channel's bit if it did, to be announced, else 0. The channel is fresh in any case.
+  // Keeps the reading if it is news: the channel was unknown, or the value differs by at least
+  // channel.change. Returns the channel's bit if so, to be announced, else 0. The channel is fresh in either case.
   [[nodiscard, gnu::noinline]] ChannelMask post(const Reading& reading, const vm::Channel& channel);
   void announce(ChannelMask channels) {
     const auto lock = kernel_.lock();
     announced_ |= channels;
   }
-  // Nobody measures the channel any more.
+  // Nothing measures the channel any more.
   void forget(unsigned channel);
 
   // --- for the step thread ---
   bool has_announced() const { return announced_ != 0; }
   ChannelMask take_announced();
   vm::Value value(unsigned channel) const { return boxes_[channel].value; }
-  // For the safety thread, which does not wait for expire(). Nobody who posts interrupts it, so it needs no lock.
-  // All that is known is good at this kernel::Kernel::tick(): each value() is its fresh_value(). False also where that is
-  // not sure.
+  // For the safety thread, which does not wait for expire(). No thread that posts can preempt it, so it needs no lock.
+  // All known values are good at this kernel::Kernel::tick(): each value() is its fresh_value(). Also false if that is
+  // not certain.
   bool are_fresh(std::uint32_t tick) const {
     return static_cast<std::int32_t>(tick - expiry_tick_) < 0;
   }
@@ -48,19 +48,19 @@ public:
     return wiring.stale_ms == 0 || now < box.sampled_at() + life_of(wiring) ? box.value
                                                                             : vm::kUnknown;
   }
-  // When its last reading was taken; 0: it never was.
+  // When its last reading was taken; 0: there was none.
   kernel::Time sampled_at(unsigned channel) const {
     const auto lock = kernel_.lock();
     return boxes_[channel].sampled_at();
   }
-  // Those, but for `fresh` ones, whose last sample is older than channel.stale_ms, or that were
-  // forgotten; each once. They are unknown from now on.
+  // The channels, except `fresh` ones, whose last sample is older than channel.stale_ms or that were
+  // forgotten; each is returned once. They are unknown from now on.
   [[nodiscard]] ChannelMask take_expired(std::span<const vm::Channel> channels, ChannelMask fresh,
                                          kernel::Time now) {
     return now < next_expiry_ ? 0 : expire_old(channels, fresh, now);
   }
-  // Before this none expires; kForever: none ever does. Readings that come in between put it off,
-  // so that it may be too early.
+  // No channel expires before this; kForever: none ever does. Readings that arrive later put expiry off,
+  // so this may be too early.
   kernel::Time next_expiry() const { return next_expiry_; }
 
 private:
@@ -80,7 +80,7 @@ private:
     std::uint32_t sampled_high_ = 0;
   };
 
-  // Of a reading, where wiring.stale_ms is not 0: that long, and a tick. In 32 bits, which are enough.
+  // How long a reading lasts if wiring.stale_ms is not 0: that long, plus a tick. 32 bits are enough.
   static kernel::Duration life_of(const vm::Channel& wiring) {
     const std::uint32_t life = (wiring.stale_ms + 1U) * static_cast<std::uint32_t>(kernel::kTick);
     return life;
@@ -88,7 +88,7 @@ private:
   [[nodiscard]] ChannelMask expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,
                                        kernel::Time now);
   [[nodiscard]] bool expire(unsigned channel, const vm::Channel& wiring, kernel::Time now);
-  // When expire() may be true for the first time; kForever for never.
+  // When expire() may first be true; kForever for never.
   kernel::Time expires_at(unsigned channel, const vm::Channel& wiring) const;
 
   kernel::Kernel& kernel_;
@@ -96,8 +96,8 @@ private:
   void set_next_expiry(kernel::Time time);
 
   kernel::Time next_expiry_ = kernel::kForever;
-  std::uint32_t expiry_tick_ = 0;  // the tick of it, or an earlier one
-  // Of what was posted, or forgotten, during expire_old().
+  std::uint32_t expiry_tick_ = 0;  // the tick of next_expiry_, or an earlier one
+  // The same for what was posted or forgotten during expire_old().
   kernel::Time expiry_of_news_ = kernel::kForever;
   std::span<Mailbox> boxes_;
   ChannelMask announced_ = 0;

@@ -9,15 +9,15 @@ namespace {
 
 static_assert(vm::kMaxWindow == 32, "first_behind() halves so many");
 
-// Four bytes at once, from and to any address.
+// Moves four bytes at once, whatever the addresses.
 void move_four(std::uint8_t* to, const std::uint8_t* from) {
   std::uint32_t four = 0;
   std::memcpy(&four, from, sizeof four);
   std::memcpy(to, &four, sizeof four);
 }
 
-// The first of `count` places whose sample is not below `value`; with kEquals, not equal to it
-// either. Halves without a branch that depends on the samples: all before `at` are known to be so.
+// The first of `count` places whose sample is not below `value` and, with kEquals, not equal to it
+// either. A binary search without branches that depend on the samples: before() holds for all places in front of `at`.
 template <bool kEquals>
 [[gnu::noinline]] std::uint8_t* first_behind(const vm::Value* ring, std::uint8_t* order,
                                              unsigned count, vm::Value value) {
@@ -37,7 +37,7 @@ template <bool kEquals>
   return at;
 }
 
-// What stands behind `from`, up to `to`, moves down by one place.
+// Moves the places behind `from`, up to `to`, down by one.
 std::uint8_t* move_down(std::uint8_t* from, const std::uint8_t* to) {
   for (; to - from >= 8; from += 8) {
     move_four(from, from + 1);
@@ -52,7 +52,7 @@ std::uint8_t* move_down(std::uint8_t* from, const std::uint8_t* to) {
   return from;
 }
 
-// What stands before `from`, back to `to`, moves up by one place.
+// Moves the places in front of `from`, back to `to`, up by one.
 std::uint8_t* move_up(std::uint8_t* from, const std::uint8_t* to) {
   for (; from - to >= 8; from -= 8) {
     move_four(from - 3, from - 4);
@@ -69,8 +69,8 @@ std::uint8_t* move_up(std::uint8_t* from, const std::uint8_t* to) {
 
 }  // namespace
 
-// What goes is the oldest sample, which is the first of its equals, or the newest, which is the last;
-// before the window is full, nothing does. The new one stands behind its equals.
+// Replaces the newest sample, which is the last of its equals, or, in a full window, the oldest, which
+// is the first of its equals. Until the window is full, nothing else goes. The new sample is placed behind its equals.
 void MedianWindow::take(vm::Value value, bool in_place_of_newest) {
   const unsigned count = state_.count;
   const unsigned place = state_.newest;

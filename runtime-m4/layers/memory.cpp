@@ -10,7 +10,7 @@ namespace {
 
 using policy::Part;
 
-// What there is before any program.
+// The part that exists before any program.
 constexpr std::uint32_t kShared = policy::bytes_of(Part::shared, {});
 
 }  // namespace
@@ -49,7 +49,7 @@ std::span<std::byte> Memory::take_area(Part part) {
   return taken;
 }
 
-// In bytes of the board.
+// In the board's bytes.
 std::span<std::byte> Memory::room() {
   const std::uint32_t begin = needs_.writable_begin + needs_.writable;
   return at(begin, board_.arena_bytes - needs_.closed - begin);

@@ -1,9 +1,9 @@
-// The board's memory for programs, its arena: laid out anew for each program by what it needs
-// (policy/memory.hpp), and then given out part by part. Nothing is ever given back by itself.
+// The arena: the board's memory for programs. It is laid out for each program by what that program
+// needs (policy/memory.hpp) and then handed out part by part. No part is freed on its own.
 //
-// What decides is how large the parts are on the Cortex-M4. There the arena is laid out by those
-// numbers byte for byte; the host's parts are larger, so its arena is, too (port::kArenaScale), in
-// the same order.
+// The sizes of the parts on the Cortex-M4 decide the layout: there the arena matches those numbers
+// byte for byte. The host's parts are larger, so its arena is too (port::kArenaScale), in the same
+// order.
 #pragma once
 
 #include <cstddef>
@@ -19,43 +19,43 @@ namespace robosync::layers {
 
 class Memory {
 public:
-  // `arena` has board.arena_bytes times port::kArenaScale and is aligned to kArenaAlignment.
+  // `arena` has board.arena_bytes times port::kArenaScale bytes and is aligned to kArenaAlignment.
   Memory(std::span<std::byte> arena, const policy::BoardMemory& board)
       : arena_(arena), board_(board) {
     clear();
   }
   static constexpr std::size_t kArenaAlignment = policy::kStackUnit;
-  // Of every part. The host's have larger ones.
+  // Of every part. The host needs a larger one.
   static constexpr std::size_t kAlignment = port::kArenaScale == 1 ? policy::kPartUnit : 16;
 
   const policy::BoardMemory& board() const { return board_; }
-  // Of the program that it is laid out for.
+  // The needs of the program that it is laid out for.
   const policy::Needs& needs() const { return needs_; }
 
-  // Forgets all parts but the one that is taken before any program is there.
+  // Forgets all parts except the one that is taken before there is any program.
   void lay_out(const policy::Needs& needs);
   // … for no program.
   void clear();
 
-  // The part, once; all of it new. On the board `T` must be what memory.def says.
+  // Takes a part, once, with all elements newly constructed. On the board `T` must match memory.def.
   template <policy::Part kPart, class T>
   std::span<T> take();
-  // … of a type that is new when it is all zero.
+  // … of a type whose new state is all zero.
   template <policy::Part kPart, class T>
   std::span<T> take_zero();
-  // … as it is.
+  // … as raw bytes.
   std::span<std::byte> take_bytes(policy::Part part) {
     return take_raw(part, policy::info_of(part).bytes);
   }
 
-  // … all zero, and on the host as many times larger as the arena is: for what is laid out inside.
+  // … all zero, and on the host scaled up like the arena, for a part that has a layout of its own.
   std::span<std::byte> take_area(policy::Part part);
 
-  // Where the program's image stands.
+  // Where the program's image is stored.
   std::span<std::byte> image() { return at(needs_.open, needs_.image); }
-  // Where the next one may be received: what the program leaves.
+  // Where the next image may be received: the room that the program leaves.
   std::span<std::byte> room();
-  // What the behaviours' threads may use.
+  // What the behaviours' threads may access.
   port::Areas areas() {
     return {.readable = {arena_.data(), at(needs_.open, needs_.image).data() + needs_.image},
             .writable = at(needs_.writable_begin, needs_.writable * port::kArenaScale)};
@@ -73,7 +73,7 @@ private:
   policy::Needs needs_;
   std::byte* open_ = nullptr;  // first free byte …
   std::byte* writable_ = nullptr;
-  std::byte* closed_ = nullptr;  // … and behind the last one
+  std::byte* closed_ = nullptr;  // … and the one past the last
 };
 
 template <policy::Part kPart, class T>

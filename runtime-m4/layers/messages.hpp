@@ -4,8 +4,8 @@
 //   processing  --Snapshot (M_pb)-->  behaviour
 //   behaviour   --Command (M_bc)-->   control
 //
-// Only the layer a message comes from can make one, and only the next layer has a function that
-// takes it, so that a hop that skips a layer does not compile.
+// Only the layer that a message comes from can make one, and only the next layer has a function that
+// takes it: a hop that skips a layer does not compile.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace robosync::layers {
 
 using ChannelMask = std::uint32_t;   // bit c: channel c of the image
 using VariableMask = std::uint32_t;  // bit v: variable v of the image
-// Both: channels in the lower half, variables in the upper one, so that a half is had for nothing.
+// Channels in the lower half, variables in the upper one, so extracting a half is free.
 using InputMask = std::uint64_t;
 constexpr InputMask inputs(ChannelMask channels, VariableMask variables) {
   return InputMask{variables} << 32 | channels;
@@ -33,7 +33,7 @@ constexpr VariableMask variables_of(InputMask inputs) {
   return static_cast<VariableMask>(inputs >> 32);
 }
 using ActuatorMask = std::uint32_t;  // bit a: actuator a
-// Bit b: behaviour b, 0 being the one of the highest priority.
+// Bit b: behaviour b; 0 has the highest priority.
 using BehaviorMask = std::uint64_t;
 
 template <class Mask>
@@ -45,8 +45,8 @@ constexpr bool has(Mask mask, unsigned index) {
   return (mask >> index & 1) != 0;
 }
 
-// Calls take(bit) for each bit of a mask of 32, from the lowest up. The loop looks at its end: where the compiler saves
-// flash, that takes two instructions less each time round.
+// Calls take(bit) for each bit of a 32-bit mask, from the lowest up. The loop tests at its end: where the compiler saves
+// flash, that takes two instructions less per iteration.
 template <class Take>
 void each_bit(std::uint32_t mask, Take take) {
   if (mask == 0) return;
@@ -56,13 +56,13 @@ void each_bit(std::uint32_t mask, Take take) {
   } while (mask != 0);
 }
 
-// A place in the program's history: what events are stamped with.
+// A place in the program's history: the stamp of an event.
 struct Stamp {
   kernel::Time time = 0;   // microseconds since activation
   std::uint32_t step = 0;  // the step under way, or the last one
 };
 
-// What a channel measured: scaled, and inside the channel's range.
+// A channel's measurement: scaled, and inside the channel's range.
 class Reading {
 public:
   std::uint8_t channel() const { return channel_; }
@@ -79,10 +79,10 @@ private:
   std::uint8_t channel_;
 };
 
-// All inputs as one step sees them; one that nobody knows is kUnknown.
+// All inputs as one step sees them; an unknown one is kUnknown.
 class Snapshot {
 public:
-  // Of program time, as the VM counts it.
+  // Program time, as the VM counts it.
   std::uint32_t milliseconds() const { return milliseconds_; }
   vm::Value value(std::uint8_t input) const { return values_[input]; }
   const vm::Value* values() const { return values_.data(); }  // by input
@@ -95,15 +95,15 @@ private:
   std::span<vm::Value> values_;
 };
 
-// What a response wants of actuators, as it has put it out. What a word stands for is there; an actuator's limits come
+// What a response wants of actuators, as it has put it out. Words are already resolved; the actuator's limits are applied
 // later.
 class Command {
 public:
   vm::Action action() const { return action_; }
   std::uint8_t verb() const { return said_.verb; }    // index in the verb table
   std::uint8_t word() const { return said_.word; }    // index in the word table, or kNoWord
-  std::uint8_t given() const { return said_.given; }  // bit p: the program gave param(p)
-  std::uint8_t known() const { return known_; }       // … or its word did; others are undefined
+  std::uint8_t given() const { return said_.given; }  // bit p: the program gave param(p) itself
+  std::uint8_t known() const { return known_; }  // … or its word did; the others are undefined
   vm::Value param(unsigned index) const { return said_.params[index]; }
 
 private:

@@ -9,7 +9,7 @@ using vm::Param;
 
 namespace {
 
-// By value: std::clamp's references put all three on the stack.
+// By value: the references of std::clamp would put all three on the stack.
 constexpr vm::Value clamped(vm::Value value, vm::Value least, vm::Value most) {
   if (value < least) return least;
   return value > most ? most : value;

@@ -1,4 +1,4 @@
-// From what a program says to what an actuator may do.
+// Turns a program's command into an order that the actuator may carry out.
 #pragma once
 
 #include "runtime-m4/drivers/drivers.hpp"
@@ -8,11 +8,11 @@
 
 namespace robosync::layers {
 
-// `command` for the actuator: its parameters inside the actuator's range (TO) and limits (AT), but for those of a motion,
-// whose parameters are others.
+// Resolves `command` for the actuator. Its parameters are clamped to the actuator's range (TO) and limits (AT), except those
+// of a motion, which have other meanings.
 void resolve(const vm::Actuator& actuator, const Command& command, QueuedOrder& queued);
 
-// The order's own parameters inside the actuator's range and limits.
+// Clamps the order's own parameters to the actuator's range and limits.
 void limit(const vm::Actuator& actuator, drivers::Order& order);
 
 }  // namespace robosync::layers

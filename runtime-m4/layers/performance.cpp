@@ -66,7 +66,7 @@ bool Performance::next(const vm::Image& image, kernel::Time now, drivers::Order&
   return true;
 }
 
-// As long as it takes at the tempo, at 200 % half of it, in whole milliseconds.
+// How long `time` takes at the tempo, in whole milliseconds; at 200 % it is halved.
 kernel::Duration Performance::stretched(vm::Value time) const {
   const std::uint64_t milliseconds = static_cast<std::uint64_t>(time) *
                                      static_cast<std::uint64_t>(kAsWritten) /

@@ -14,8 +14,8 @@ using link::EventKind;
 
 namespace {
 
-// It has something to do before the first reading: it reads nothing, or what is known at once, or
-// it has rules that wait for a time only.
+// True if it has something to do before the first reading: it reads nothing, or something that is known
+// from the start, or it has rules that only wait for a time.
 bool starts_at_once(const LoadedProgram& program, const vm::Behavior& behavior) {
   const vm::Image& image = program.image;
   if (behavior.input_count == 0) return true;
@@ -90,7 +90,7 @@ void ProcessingLayer::pass() {
   Stamp stamp;
   const std::uint32_t now = read_clock(stamp.time);
   adaptation_.turn(*program_, layers_.threads, trace_, now);
-  // Who finished otherwise did so at the end of a step.
+  // Responses that finish in another way do so at the end of a step.
   if (const ActuatorMask idle = layers_.control.take_idle(); idle != 0) finish_done(idle);
   layers_.arbiter.note_halted(layers_.control.halted());
   const ActuatorMask halted = layers_.control.take_halted() & layers_.arbiter.owned();
@@ -99,7 +99,7 @@ void ProcessingLayer::pass() {
   const bool anyway = lost_or_first || halted != 0 || is_due(now);
   if (!latch(stamp, now, anyway)) return;
   woken_ = 0;
-  // The sensors have rung for theirs.
+  // The sensors have rung for their own.
   if (variables_of(changed_) != 0) layers_.alarm.ring(inputs(0, variables_of(changed_)));
   if (lost_or_first) [[unlikely]] {
     interrupt_lost(std::exchange(lost_behaviors_, 0));
@@ -110,14 +110,14 @@ void ProcessingLayer::pass() {
   step();
 }
 
-// Program time, and the same in milliseconds: of one tick, whatever comes in between.
+// Program time, and the same in milliseconds, both from the same tick.
 std::uint32_t ProcessingLayer::read_clock(kernel::Time& time) const {
   const auto still = kernel_.lock();
   time = kernel_.time() - trace_.activated_at();
   return trace_.milliseconds();
 }
 
-// Where there are readings there is a step: then nobody has to look for what is due.
+// Announced readings make a step anyway: then there is no need to look for what is due.
 bool ProcessingLayer::is_due(std::uint32_t now) const {
   return !layers_.mailboxes.has_announced() && next_due(now) == 0;
 }
@@ -131,7 +131,7 @@ void ProcessingLayer::finish_done(ActuatorMask idle) {
   });
 }
 
-// A WHILE goes on having its actuators as long as its condition holds.
+// A WHILE keeps its actuators as long as its condition holds.
 void ProcessingLayer::finish_if_done(unsigned rule) {
   if (layers_.arbiter.holding(rule).pending != 0 || layers_.arbiter.rests(rule)) return;
   if (layers_.behaviors.resume_point(rule).pause != vm::Pause::ended) return;
@@ -145,7 +145,7 @@ void ProcessingLayer::finish_if_done(unsigned rule) {
 
 // --- latch ---
 
-// Takes what is new into the snapshot. A step begins if there is a reading, or `anyway`.
+// Copies what is new into the snapshot. A step begins if there is a reading, or `anyway`.
 bool ProcessingLayer::latch(Stamp& stamp, std::uint32_t now, bool anyway) {
   const ChannelMask announced = layers_.mailboxes.take_announced();
   const ChannelMask expired = layers_.mailboxes.take_expired(program_->image.channels, announced,
@@ -195,7 +195,7 @@ void ProcessingLayer::report_set(unsigned variable, const Stamp& stamp) {
 
 // --- what is due without a reading ---
 
-// In how many milliseconds something is; kNever for never.
+// In how many milliseconds something is due; kNever for never.
 std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
   Soonest due(now);
   if (layers_.variables.may_change()) {
@@ -217,7 +217,7 @@ void ProcessingLayer::add_waiting(unsigned rule, Soonest& due) const {
   due.at(point.wake);
 }
 
-// A rule that wants to run and may; or whose other side has to end for it.
+// A rule that wants to run and may, or whose other side must end for it.
 void ProcessingLayer::add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const {
   due.at(layers_.triggers.cooled_at(rule));
   Claim claim{};
@@ -243,8 +243,8 @@ kernel::Time ProcessingLayer::next_time() {
 
 // --- the link's turn ---
 
-// To the next tick but one, as what is left of this one may be nothing; or until it rests, which it may have done since the
-// last turn.
+// Lasts until the next tick but one, since the current one may be almost over, or until the link's thread rests. The first wait
+// clears a rest from before this turn.
 void ProcessingLayer::give_way() {
   const LinkShare::Look begin = link_share_.look(kernel_);
   if (!link_share_.is_due(begin)) return;
@@ -283,21 +283,21 @@ void ProcessingLayer::retire(const ProgramThreads::Member& member) {
   }
 }
 
-// --- what a step concerns ---
+// --- which rules a step concerns ---
 
-// Only these rules are evaluated; for all others the result would be that of last time:
+// Only these rules are evaluated; for all others the result would be the same as last time:
 //
-// * What a condition gives depends on its inputs, on the past of its time words and on the time. A
+// * The result of a condition depends on its inputs, on the past of its time words and on the time. A
 //   time word that changes with time alone says when (Triggers::next_wake()).
 // * A time word that was true for one evaluation only is false in the next. That is the next step
-//   that stirs its behaviour, and one millisecond later at the latest. A division by zero is told
+//   that stirs its behaviour, and one millisecond later at the latest. A division by zero is reported
 //   in each of these steps, as long as there is one.
-// * An input that only a rule's responses read, or set, concerns it too: it stirs the behaviour,
-//   and responses that wait for something look again (goes_on()).
-// * The first time, all rules of a behaviour are evaluated: there are conditions without inputs,
-//   and such that are known whatever their inputs are.
+// * An input that only a rule's responses read or set concerns it too: it stirs the behaviour,
+//   and responses that wait for a condition check it again (goes_on()).
+// * The first time, all rules of a behaviour are evaluated: some conditions have no inputs, and some
+//   are known whatever their inputs are.
 //
-// `woken_` has the behaviours that have something to do without a reading.
+// `woken_` contains the behaviours that have something to do without a reading.
 void ProcessingLayer::find_concerned() {
   const InputMask changed = changed_;
   layers_.triggers.add_woken(snapshot_.milliseconds(), concerned_);
@@ -332,7 +332,7 @@ void ProcessingLayer::concern_all(unsigned behavior) {
     concerned_.insert(wiring.first_rule + r);
 }
 
-// Something that it reads has changed, or the time of one of its rules has come.
+// An input of the behaviour has changed, or one of its rules is due.
 bool ProcessingLayer::stirred(unsigned behavior) const {
   return has(woken_, behavior) || (program_->inputs[behavior] & changed_) != 0;
 }
@@ -358,25 +358,25 @@ void ProcessingLayer::step() {
   layers_.control.commit();
   if (!layers_.arbiter.running().empty()) finish_done(0);
   layers_.arbiter.end_step();
-  concerned_.clear();  // here, where no command waits for it
+  concerned_.clear();  // here, where it delays no command
 }
 
-// The first rule that is not below `rule` and is concerned, wants to run, or runs.
+// The first rule, from `rule` on, that is concerned, wants to run, or runs.
 unsigned ProcessingLayer::next_at_work(unsigned rule) const {
   return RuleSet::first_of(rule, concerned_, layers_.triggers.active(), layers_.arbiter.running());
 }
 
-// Of the behaviour's rules `rule` is evaluated, and no other one wants to run, or runs; `next` is the first
-// behind it that does. So a reading mostly finds a behaviour, since most of its rules are about something else.
+// True if `rule` is evaluated and no other rule of the behaviour is evaluated, wants to run, or runs; `next` is the first
+// such rule after it. A reading mostly finds a behaviour in this case, since most of its rules are about something else.
 bool ProcessingLayer::has_sole_turn(unsigned rule, unsigned next, RuleRange rules) const {
   if constexpr (kernel::kAssertions)
     if (takes_whole_turns_) return false;
   return next >= rules.end && concerned_.has(rule);
 }
 
-// A turn in which all that take_turn() does for each rule is done for this one, without looking for others. One
-// thing it does sooner: a response that may go on is run in the same activation, as one that begins is, when
-// nothing that the rule has found out ends it.
+// A turn that does for this one rule all that take_turn() does for each, without looking for others. It does one
+// thing sooner: a response that may go on runs in the same activation, like one that begins, unless
+// something that the rule has found out ends it.
 void ProcessingLayer::take_sole_turn(unsigned behavior, unsigned rule) {
   const bool may_go_on = layers_.arbiter.runs(rule) && goes_on(rule);
   layers_.behaviors.take_sole_turn(rule, may_go_on);
@@ -418,7 +418,7 @@ void ProcessingLayer::take_turn(unsigned behavior, RuleRange rules) {
   layers_.arbiter.running().each_in(rules, [this](unsigned rule) { run_response(rule); });
 }
 
-// --- interruptions that no claim is the cause of ---
+// --- interruptions that no claim causes ---
 
 void ProcessingLayer::interrupt_lost(BehaviorMask lost) {
   layers_.arbiter.running().each([&](unsigned rule) {
@@ -436,7 +436,7 @@ void ProcessingLayer::interrupt_halted(ActuatorMask halted) {
 
 // --- claims ---
 
-// What the behaviour has found out of a rule. A WHILE whose condition no longer holds ends.
+// Takes over what the behaviour has found out about a rule. A WHILE whose condition no longer holds ends.
 void ProcessingLayer::collect(unsigned rule) {
   layers_.triggers.collect(rule);
   if (layers_.triggers.take_zero_divide(rule))
@@ -457,7 +457,7 @@ void ProcessingLayer::arbitrate(unsigned rule) {
   layers_.triggers.forget(rule);
 }
 
-// Returns whether it has won.
+// Returns whether it won.
 bool ProcessingLayer::serve(const Claim& claim, bool silent) {
   if (!layers_.arbiter.is_free(claim) && !prevails(claim, silent)) return false;
   report(claim, EventKind::win);
@@ -466,7 +466,7 @@ bool ProcessingLayer::serve(const Claim& claim, bool silent) {
   return true;
 }
 
-// Against those whose actuators it wants, and against itself.
+// Decides the claim against the rules whose actuators it wants, and against its own rule.
 bool ProcessingLayer::prevails(const Claim& claim, bool silent) {
   const Decision decision = layers_.arbiter.decide(claim);
   interrupt_by(claim, decision);
@@ -477,7 +477,7 @@ bool ProcessingLayer::prevails(const Claim& claim, bool silent) {
   return false;
 }
 
-// As the trace says it.
+// The owner in the way, as the trace names it.
 unsigned ProcessingLayer::in_the_way(const Claim& claim, const Decision& decision) const {
   if (decision.owner != Decision::kHalter) return decision.owner;
   return layers_.control.halter_of(claim.actuators & layers_.arbiter.halted());
@@ -489,7 +489,7 @@ void ProcessingLayer::interrupt_by(const Claim& claim, const Decision& decision)
   });
 }
 
-// One that rests between two rounds has nothing under way: it lets go without a word.
+// A rule that rests between two rounds has nothing under way: it releases its actuators without an event.
 void ProcessingLayer::interrupt(unsigned rule, unsigned by) {
   if (layers_.arbiter.works(rule)) {
     trace_.emit(EventKind::interrupt, trace_.step(), rule, by);
@@ -522,7 +522,7 @@ bool ProcessingLayer::goes_on(unsigned rule) const {
   }
 }
 
-// Of a rule that runs: when it has won, or goes on.
+// For a rule that runs: runs its response if it has won or goes on.
 void ProcessingLayer::run_response(unsigned rule) {
   if (layers_.arbiter.won_now(rule)) {
     layers_.behaviors.respond(rule, layers_.arbiter.side(rule));
@@ -548,8 +548,8 @@ void ProcessingLayer::conclude(unsigned rule) {
                 static_cast<unsigned>(std::countr_zero(dropped)));
 }
 
-// The old ones end before the new ones begin, and before those send commands: what the old ones had
-// in their queues takes no place from them.
+// The old responses end before the new ones begin and send commands, so that what the old ones had
+// queued takes no place from the new ones.
 void ProcessingLayer::cancel_some() {
   while (cancelled_ != 0) {
     cancelled_ &= ~layers_.control.cancel_first(cancelled_);

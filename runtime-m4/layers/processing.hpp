@@ -1,22 +1,22 @@
 // Processing layer: the step thread, which turns readings and time into steps.
 //
-// It works in passes. A pass first takes notice of what ended since the last one; then, if there is
-// a reason for a step, there is one, numbered from 1, at the time of the kernel's tick counted from
+// It works in passes. A pass first handles what ended since the last one. Then, if there is a reason
+// for a step, it makes one, numbered from 1, at the time of the kernel's tick counted from
 // activation. Reasons are: readings were announced or became too old, a thread was stopped, safety
-// halted something that was at work, or something is due (next_due()). Inside a step:
+// halted an actuator in use, or something is due (next_due()). Inside a step:
 //
 //   latch -> the behaviours take their turns, from the highest priority down -> commands are committed
 //
 // and in a behaviour's turn:
 //
 //   rules that read a changed input, or are due, are evaluated -> claims are decided, in the order of
-//   the rules -> whom they interrupted is cancelled -> responses run: those that go on and those that won
+//   the rules -> the interrupted responses are cancelled -> responses run: those that go on and those that won
 //
-// So a claim is decided against the more important ones of the same step, and never lost to a less
-// important one. A step costs what the rules cost that it concerns, and those that run, wait or want
+// So a claim competes with the more important ones of the same step, and is never lost to a less
+// important one. A step costs time for the rules that it concerns and for those that run, wait or want
 // to run; the others cost nothing (find_concerned()).
 //
-// What a step causes by itself (SET and SIGNAL, a WHILE that starts again, the end of a wait) is
+// What a step itself causes (SET and SIGNAL, a WHILE that starts again, the end of a wait) is
 // due in the next millisecond at the earliest, so the number of steps at one time is bounded by
 // what comes from outside.
 //
@@ -25,23 +25,23 @@
 //   priority             a window of adaptation ended, by behaviour; ranks change here
 //   finished             rules whose commands are all done, by rule
 //   input, stale         by channel; the step begins with the first of all these
-//   set                  variables but bands, by variable; then bands, by CHECK
+//   set                  variables except bands, by variable; then bands, by CHECK
 //   interrupt            responses of behaviours whose thread was stopped; responses that safety
 //                        halted; each by rule
 //   cancel               of those, in the order of the actuators' ranks
-//   … turn by turn, a behaviour's:
+//   … then for each behaviour's turn:
 //     zero_divide, fire, interrupt
 //                        rule by rule; interrupt of a WHILE whose condition no longer holds
 //     interrupt, win/lose
 //                        claim by claim in the order of the rules: first what it interrupts, by rule
 //     cancel             of those, in the order of the actuators' ranks
 //     go_on, zero_divide, log, alert, wait, overrun
-//                        response by response, by rule; overrun once for an actuator
-//   command              in the order of the actuators' ranks (a STOP's cancel stands before the STOP)
+//                        response by response, by rule; overrun once for each actuator
+//   command              in the order of the actuators' ranks (a STOP's cancel precedes the STOP)
 //   finished             of responses that command nothing, by rule
-// command and done of a queued command, and done in general, stand where the actuator's thread
+// command and done of a queued command, and done in general, appear when the actuator's thread
 // reaches them: before anything a lower ranked thread does at the same tick. What safety does
-// (trip, halt, log, alert, resume, release) stands before everything else at its tick, or, when a
+// (trip, halt, log, alert, resume, release) comes before everything else at its tick or, if a
 // sensor's reading is the reason, before the step that the reading enters.
 #pragma once
 
@@ -68,7 +68,7 @@
 #include "runtime-m4/layers/variables.hpp"
 
 namespace robosync {
-struct RuntimePeer;  // of tests
+struct RuntimePeer;  // for tests
 }
 
 namespace robosync::layers {
@@ -81,8 +81,8 @@ inline constexpr kernel::Events kCancelled = 8;  // an actuator was cancelled
 inline constexpr kernel::Events kStopped =
     16;  // a thread was stopped by a fault, or is to be lowered
 inline constexpr kernel::Events kHalted = 32;      // safety has halted, let go, or set something
-inline constexpr kernel::Events kBegin = 64;       // all threads of the program are there
-inline constexpr kernel::Events kLinkRests = 128;  // its thread has nothing more to do
+inline constexpr kernel::Events kBegin = 64;       // all threads of the program exist
+inline constexpr kernel::Events kLinkRests = 128;  // the link's thread has nothing more to do
 
 class ProcessingLayer {
 public:
@@ -103,24 +103,24 @@ public:
                   const Neighbours& neighbours)
       : kernel_(kernel), trace_(trace), thread_(thread), layers_(neighbours) {}
 
-  // Starts the step thread of `program`, which must stay until it is dismissed.
+  // Starts the step thread of `program`, which must stay in place until it is dismissed.
   [[nodiscard, gnu::cold]] bool start(const LoadedProgram& program,
                                       std::span<const KeptNumber> kept, Memory& memory);
-  // All threads of the program are there: they get their ranks.
+  // All threads of the program exist: gives them their ranks.
   void rank() { adaptation_.rank(*program_, layers_.threads, trace_); }
-  // … and the first step comes when its clock begins.
+  // … and starts the first step when the program's clock begins.
   void go() { kernel_.signal(thread_, kBegin); }
 
-  // The link's thread has its share of the processor (policy/link_share.hpp). Before Kernel::run().
+  // Gives the link's thread its share of the processor (policy/link_share.hpp). Before Kernel::run().
   void share_with(const kernel::Thread& link) { link_share_.watch(link); }
-  // That has nothing more to do: it waits, and if this was its turn, that is over.  [the link's thread]
+  // The link's thread has nothing more to do: it waits, and its turn, if it had one, is over.  [the link's thread]
   kernel::Events rest_link(kernel::Events mask, kernel::Time deadline) {
     return kernel_.signal_and_wait(thread_, kLinkRests, mask, deadline);
   }
 
   std::uint32_t steps() const { return trace_.step().step; }
   const Snapshot& snapshot() const { return snapshot_; }
-  // For whoever watches over it: is it between passes, with nothing to do? How many has it done?
+  // For the monitor: is it between passes with nothing to do, and how many passes has it done?
   bool resting() const;
   std::uint32_t passes() const { return passes_.load(std::memory_order_relaxed); }
 
@@ -146,13 +146,13 @@ private:
   [[gnu::cold]] void note_stops();
   [[gnu::cold]] void retire(const ProgramThreads::Member& member);
 
-  // --- what a step concerns ---
+  // --- which rules a step concerns ---
   void find_concerned();
   [[gnu::noinline]] void touch();
   [[gnu::cold]] void concern_all(unsigned behavior);
   bool stirred(unsigned behavior) const;
 
-  // --- what happens in one ---
+  // --- what happens in a step ---
   void step();
   unsigned next_at_work(unsigned rule) const;
   bool has_sole_turn(unsigned rule, unsigned next, RuleRange rules) const;
@@ -195,13 +195,13 @@ private:
   Snapshot snapshot_;
   RuleSet concerned_;                // evaluated in this step
   InputMask changed_ = 0;            // in this step
-  BehaviorMask woken_ = 0;           // have a rule whose time has come in this step
-  BehaviorMask untouched_ = 0;       // no rule of theirs was ever evaluated …
+  BehaviorMask woken_ = 0;           // with a rule that is due in this step
+  BehaviorMask untouched_ = 0;       // none of their rules was ever evaluated …
   InputMask untouched_inputs_ = 0;   // … and what they read
-  std::uint32_t set_due_ = 0;        // when what is staged may take effect
-  ActuatorMask cancelled_ = 0;       // whose responses were interrupted, and are still to be
+  std::uint32_t set_due_ = 0;        // when staged writes may take effect
+  ActuatorMask cancelled_ = 0;       // of interrupted responses, still to be cancelled
   BehaviorMask lost_behaviors_ = 0;  // stopped; their responses are still to be interrupted
-  BehaviorMask unstarted_ = 0;       // have something to do before the first reading
+  BehaviorMask unstarted_ = 0;       // with something to do before the first reading
   std::atomic<std::uint32_t> passes_ = 0;
   std::atomic<bool> in_pass_ = false;
   LinkShare link_share_;

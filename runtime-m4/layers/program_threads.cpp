@@ -6,8 +6,8 @@ namespace robosync::layers {
 using kernel::Category;
 using policy::Part;
 
-// Stacks of threads without privileges come first: where the closed parts end they are aligned as
-// those must be, and those of algorithms at the very end, which is aligned to their size.
+// The stacks of unprivileged threads come first: the end of the closed parts is aligned as they
+// require, and the stacks of algorithms are at the very end, which is aligned to their size.
 void ProgramThreads::take_stacks(Memory& memory) {
   static_assert(policy::kStackUnit % port::kUnprivilegedStackAlignment == 0);
   static_assert(policy::kBehaviorStack % port::kUnprivilegedStackAlignment == 0);
@@ -73,7 +73,7 @@ void ProgramThreads::dismiss() {
   forget();
 }
 
-// A control block may own something where the port keeps it elsewhere.
+// A control block may own something that the port keeps elsewhere.
 void ProgramThreads::forget() {
   for (Places* const places : {&algorithms_, &sensors_, &behaviors_, &controls_}) {
     for (Member& member : places->members)

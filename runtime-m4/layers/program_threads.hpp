@@ -1,5 +1,5 @@
-// The threads of the running program: control blocks and stacks from the arena, given out when a
-// program is activated and taken back all at once.
+// The threads of the running program: control blocks and stacks from the arena, handed out when a
+// program is activated and taken back together.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@ class ProgramThreads {
 public:
   struct Member {
     kernel::Thread thread;
-    std::uint8_t index = 0;  // of its sensor, behaviour or actuator in the image
+    std::uint8_t index = 0;  // in the image: of its sensor, behaviour or actuator
     bool reported = false;   // its stop was reported
     bool kept = false;       // keep_at()
-    Member* next = nullptr;  // started after it
+    Member* next = nullptr;  // the one started next
   };
 
   explicit ProgramThreads(kernel::Kernel& kernel) : kernel_(kernel) {}
@@ -26,25 +26,25 @@ public:
   ProgramThreads(const ProgramThreads&) = delete;
   ProgramThreads& operator=(const ProgramThreads&) = delete;
 
-  // No thread of a program is there. The places of `memory`'s program are the ones to fill.
+  // Takes the places for the program of `memory`. There must be no program threads.
   void take_stacks(Memory& memory);
   void take_members(Memory& memory);
-  // Adds a thread in a place of its category; its stack is set here. Null, and nothing changed,
-  // when there is none, which no program can cause that memory is laid out for.
+  // Starts a thread in a free place of its category and sets its stack. Returns null, and changes nothing,
+  // if there is no place; a program that memory is laid out for never causes that.
   [[nodiscard]] kernel::Thread* start(kernel::ThreadSpec spec, unsigned index);
-  // Like it, with a control block of the caller's. It is removed by dismiss() as well.
+  // Like start(), with the caller's control block. dismiss() removes this thread as well.
   [[nodiscard]] bool start_step_thread(kernel::Thread& thread, kernel::ThreadSpec spec);
-  // Where the data of the algorithm's thread begins that is started next, or null.
+  // Where the data of the next algorithm's thread to be started begins, or null.
   [[nodiscard]] std::byte* next_algorithm_data() const {
     return algorithms_.stacks.data() + algorithms_.used * policy::kAlgorithmStack;
   }
-  // Takes all threads out of the kernel. Not from one of them.
+  // Removes all threads from the kernel. Not to be called from one of them.
   void dismiss();
 
-  // One of them has this priority from now on, whatever rank() says.
+  // Fixes the priority of one of them, whatever rank() says.
   void keep_at(const kernel::Thread& thread, kernel::Priority priority);
-  // Gives every other thread the priority that `priority_of(thread, index)` says, in the order they were
-  // started in.
+  // Gives every other thread the priority that `priority_of(thread, index)` returns, in the order in which
+  // they were started.
   template <class PriorityOf>
   void rank(PriorityOf priority_of) {
     for (Member* member = first_; member != nullptr; member = member->next)
@@ -53,13 +53,13 @@ public:
     kernel_.set_priority(*step_thread_, priority_of(*step_thread_, 0));
   }
 
-  // A thread that was stopped and not returned before; null when there is none.
+  // A stopped thread that was not returned before; null if there is none.
   Member* next_stopped();
-  // How many of them were ever stopped.
+  // How many of them have been stopped.
   unsigned stopped() const;
 
 private:
-  // Of one category: control blocks, their stacks one behind the other, and how many are in use.
+  // For one category: control blocks, their consecutive stacks, and how many are in use.
   struct Places {
     std::span<Member> members;
     std::span<std::byte> stacks;
@@ -73,7 +73,7 @@ private:
   Places algorithms_, sensors_, behaviors_, controls_;
   std::span<std::byte> step_stack_;
   kernel::Thread* step_thread_ = nullptr;
-  Member* first_ = nullptr;  // of all, in the order they were started in
+  Member* first_ = nullptr;  // of all, in the order in which they were started
   Member* last_ = nullptr;
 };
 

@@ -1,8 +1,8 @@
-// A set of rules: one bit each, in words that belong to somebody else, and one word above that says
-// which of them are not empty. So there are at most policy::kMaxRules.
+// A set of rules: one bit per rule, in words that the caller owns, and one summary word that says which
+// of them are not empty. So there are at most policy::kMaxRules rules.
 //
-// Going through the members costs the members, and next to nothing for the rules in between; an empty
-// set, as most are in most steps, costs the look at one word.
+// Iterating costs time per member and next to nothing for the rules in between. An empty set, as most
+// sets are in most steps, costs a look at one word.
 #pragma once
 
 #include <algorithm>
@@ -13,14 +13,14 @@
 
 namespace robosync::layers {
 
-// The rules of a behaviour, which stand one behind the other.
+// The rules of a behaviour, which are consecutive.
 struct RuleRange {
   unsigned first;
   unsigned end;
 };
 
-// The bits alone, for sets that are many and are only added to others. Like a span: who copies it
-// has the same bits.
+// The bits without the summary, for the many sets that are only added to others. Like a span, a copy
+// refers to the same bits.
 class RuleBits {
 public:
   using Word = std::uint32_t;
@@ -30,7 +30,7 @@ public:
   void insert(unsigned rule) { words_[rule / kBits] |= Word{1} << rule % kBits; }
   void erase(unsigned rule) { words_[rule / kBits] &= ~(Word{1} << rule % kBits); }
   bool has(unsigned rule) const { return (words_[rule / kBits] >> rule % kBits & 1) != 0; }
-  // Empties the words in which `rules` stand: of their neighbours' bits nobody needs any then.
+  // Empties the words that contain `rules`. Nobody needs their neighbours' bits in these words by then.
   void clear_around(RuleRange rules) {
     for (unsigned w = rules.first / kBits; w * kBits < rules.end; ++w)
       words_[w] = 0;
@@ -46,11 +46,11 @@ public:
   using Word = RuleBits::Word;
   static constexpr unsigned kEnd = 0xFFFF'FFFF;  // no rule has this number
 
-  RuleSet() = default;  // of no rules
+  RuleSet() = default;  // for no rules
   RuleSet(const RuleSet&) = delete;
   RuleSet& operator=(const RuleSet&) = delete;
 
-  // From now on it stands in `words`, all of which are 0: one bit a rule.
+  // Uses `words` from now on, all of which are 0: one bit per rule.
   void start(std::span<Word> words) {
     words_ = words.data();
     count_ = static_cast<std::uint32_t>(words.size());
@@ -76,7 +76,7 @@ public:
     for (; summary_ != 0; summary_ &= summary_ - 1)
       words_[std::countr_zero(summary_)] = 0;
   }
-  // Both of as many rules; bit w of `summary`: word w of the others is not 0.
+  // Both sets cover the same number of rules; bit w of `summary`: word w of the others is not 0.
   void insert_all(RuleBits others, Word summary) {
     summary_ |= summary;
     for (; summary != 0; summary &= summary - 1) {
@@ -85,8 +85,8 @@ public:
     }
   }
 
-  // Calls take(rule) for each member, in order. Members may come and go on the way: what counts is
-  // whether one is there when its turn comes.
+  // Calls take(rule) for each member, in order. take may add and remove members: a rule counts if it is
+  // a member when its turn comes.
   template <class Take>
   void each(Take take) const {
     for (Word left = summary_; left != 0;) {
@@ -99,20 +99,20 @@ public:
       left = summary_ & ~Word{1} << w;
     }
   }
-  // … for each in `rules`; take may erase it.
+  // … for each in `rules`; take may erase the current one.
   template <class Take>
   void each_in(RuleRange rules, Take take) const {
     each_of(
         rules, [this](unsigned w) { return words_[w]; }, take);
   }
-  // … for each in `rules` that is in this set or among the others.
+  // … for each in `rules` that is in this set or in the others.
   template <class Take>
   void each_in_either(RuleBits others, RuleRange rules, Take take) const {
     each_of(
         rules, [&](unsigned w) { return words_[w] | others.words_[w]; }, take);
   }
   bool has_any(RuleRange rules) const { return first_of(rules.first, *this) < rules.end; }
-  // Of the members in `rules` only those stay that are in one of the others.
+  // Of the members in `rules`, keeps only those that are in one of the others.
   template <class... Others>
   void keep_in(RuleRange rules, const Others&... others) {
     for (unsigned w = rules.first / kBits; w * kBits < rules.end; ++w) {
@@ -122,7 +122,7 @@ public:
   }
   RuleBits bits() const { return RuleBits(words_); }
 
-  // The first member of any of the sets, all of as many rules, that is not below `rule`; kEnd when there is none.
+  // The first member, at or above `rule`, of any of the sets, which all cover the same number of rules; kEnd if none.
   template <class... Others>
   static unsigned first_of(unsigned rule, const RuleSet& set, const Others&... others) {
     unsigned w = rule / kBits;
@@ -141,7 +141,7 @@ private:
   [[gnu::always_inline]] static unsigned lowest(unsigned w, Word word) {
     return w * kBits + static_cast<unsigned>(std::countr_zero(word));
   }
-  // The bits of word `w` that are in `rules`, of which one at least is.
+  // The bits of word `w` that are in `rules`; at least one is.
   static Word inside(RuleRange rules, unsigned w) {
     const unsigned first = w * kBits;
     const Word from = first < rules.first ? ~Word{0} << rules.first % kBits : ~Word{0};
@@ -161,10 +161,10 @@ private:
 
   Word* words_ = nullptr;
   Word summary_ = 0;         // bit w: word w is not 0
-  std::uint32_t count_ = 0;  // of the words
+  std::uint32_t count_ = 0;  // number of words
 };
 
-// One of `count` pieces of `words` that are equally long, for sets of which there are several.
+// One of `count` equally long pieces of `words`, for several sets in one part.
 inline std::span<RuleSet::Word> part_of(std::span<RuleSet::Word> words, std::size_t count,
                                         std::size_t place) {
   const std::size_t each = words.size() / count;

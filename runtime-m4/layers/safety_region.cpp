@@ -13,7 +13,7 @@ static_assert(port::kArenaScale != 1 || sizeof(SafetyRegion::Work) <= policy::kS
 
 namespace {
 
-// Takes `count` of them from the front of what is left.
+// Takes `count` elements from the front of `left`.
 template <class T>
 std::span<T> take_front(std::span<std::byte>& left, std::uint32_t count) {
   auto* const first = reinterpret_cast<T*>(left.data());
@@ -23,7 +23,7 @@ std::span<T> take_front(std::span<std::byte>& left, std::uint32_t count) {
 
 }  // namespace
 
-// The stack is at the bottom: who leaves it leaves the window.
+// The stack is at the bottom: a stack overflow leaves the window.
 SafetyRegion SafetyRegion::take(Memory& memory) {
   const std::span<std::byte> bytes = memory.take_area(policy::Part::safety_region);
   if (bytes.empty()) return {};

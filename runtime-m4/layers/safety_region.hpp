@@ -1,6 +1,6 @@
-// All that SAFETY's bytecode writes, in one place: it runs without privileges (port::Sandbox), and this is the only
-// memory that it may write besides the workspace. The safety thread reads what stands here as it reads the workspace:
-// no number of it is an index or an address until it is checked.
+// All that SAFETY's bytecode writes, in one place. It runs unprivileged (port::Sandbox), and besides the workspace this is
+// the only memory that it may write. The safety thread treats its contents like the workspace:
+// no number is used as an index or an address before it is checked.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@ struct SafetyRegion {
     vm::Progress progress;
   };
 
-  // For a program, right behind the stacks of its threads, all of which are multiples of policy::kStackUnit. Empty when
-  // it has no SAFETY rules.
+  // Allocates it for a program, right behind the stacks of its threads, all of which are multiples of policy::kStackUnit.
+  // Empty if the program has no SAFETY rules.
   static SafetyRegion take(Memory& memory);
 
-  // The words that `end`, the machine's, says were put out; none of them where it is not in `output`.
+  // The words up to `end`, which the machine reports; none if `end` is not in `output`.
   static std::span<const vm::Word> put_out(std::span<const vm::Word> output, const vm::Word* end);
 
-  std::span<std::byte> window;  // all of it, and nothing else
+  std::span<std::byte> window;  // all of it, and nothing more
   std::byte* stack_top = nullptr;
   Work* work = nullptr;
   std::span<vm::Word> output;

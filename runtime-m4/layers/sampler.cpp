@@ -1,4 +1,4 @@
-// See sampler.hpp. The verifier has seen that scale_den is not 0.
+// See sampler.hpp. The verifier has checked that scale_den is not 0.
 #include "runtime-m4/layers/sampler.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ bool DriverSampler::sample(const vm::Image& image, std::uint8_t channel, vm::Val
 
 kernel::Duration DriverSampler::asks_ahead(const vm::Sensor& sensor) const {
   if (vm::is_by_echo(sensor.driver)) return kernel::milliseconds(policy::kEchoMs);
-  if (vm::is_served(sensor.driver)) return 0;  // who serves it waits for the bus itself
+  if (vm::is_served(sensor.driver)) return 0;  // its thread waits for the bus itself
   return board_.i2c_asks_ahead() && vm::is_on_i2c(sensor.driver) ? kernel::kTick : 0;
 }
 
@@ -56,7 +56,7 @@ bool DriverSampler::serve_chip(const vm::Image& image, unsigned sensor) {
   return drivers::serve_ssd1306(bus_of(image.sensors[sensor]), outputs_, sensor);
 }
 
-// What a driver makes of no answer is nobody's.
+// There is no answer yet, so what the driver makes of it is ignored.
 void DriverSampler::ask(const vm::Image& image, std::uint8_t channel) {
   const vm::Channel& wiring = image.channels[channel];
   const vm::Sensor& sensor = image.sensors[wiring.sensor];

@@ -14,14 +14,14 @@ namespace robosync::layers {
 
 class Sampler {
 public:
-  // One sample of a channel in thousandths of its unit. False when there is none to be had.
+  // One sample of a channel in thousandths of its unit. False if there is none.
   virtual bool sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) = 0;
-  // A frame of a servo chip (drivers/servo_chip.hpp) or a display (drivers/screen.hpp), which is that sensor of the image. False when
-  // it has not answered.
+  // Sends a frame to the servo chip (drivers/servo_chip.hpp) or display (drivers/screen.hpp) that is this sensor of the image.
+  // False if it did not answer.
   virtual bool serve_chip(const vm::Image& /*image*/, unsigned /*sensor*/) { return true; }
-  // It is silent: what stands on it is no longer known.
+  // The chip is silent: what it shows or drives is no longer known.
   virtual void lose_chip(unsigned /*sensor*/) {}
-  // How long before it is sampled a sensor is to be asked; 0: it is not. Then its channels are asked for, and sampled when
+  // How long before its sample a sensor must be asked; 0: it is not asked. Its channels are then asked for, and sampled once
   // nothing is awaited any more.
   virtual kernel::Duration asks_ahead(const vm::Sensor& /*sensor*/) const { return 0; }
   virtual void ask(const vm::Image& /*image*/, std::uint8_t /*channel*/) {}
@@ -31,8 +31,8 @@ protected:
   ~Sampler() = default;
 };
 
-// Asks the channel's driver and scales what it counts. One thread at a time has the board's buses:
-// a driver may need several transfers that belong together.
+// Reads through the channel's driver and scales the raw count. Only one thread at a time holds the board's
+// buses: a driver may need several transfers that belong together.
 class DriverSampler final : public Sampler {
 public:
   DriverSampler(kernel::Kernel& kernel, boards::Board& board, guard::OutputGuard& outputs)

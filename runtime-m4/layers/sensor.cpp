@@ -37,7 +37,7 @@ bool SensorLayer::start(const LoadedProgram& program, Sampler& sampler, bool sim
 bool SensorLayer::start_sensor(unsigned sensor, ProgramThreads& threads) {
   Unit& unit = units_[sensor];
   unit = {.layer = this, .thread = nullptr, .contact = {}};
-  // A board waits for the one that SAFETY reads to measure; a simulation begins when it has.
+  // For a sensor that SAFETY reads, a board waits until it has measured; a simulation begins with that done.
   const bool has_measured = simulated_ && (awaited_ & made_of(sensor)) != 0;
   if (vm::measures_when_told(program_->image.sensors[sensor].driver) && !has_measured)
     unit.contact.expect_old_result();
@@ -112,8 +112,8 @@ void SensorLayer::run_sensor(unsigned sensor) {
   }
 }
 
-// When the program begins, unless it takes longer than a tick to answer, or measures already: who has been asked at the last moment
-// for SAFETY has its whole period, too.
+// When the program begins, unless the sensor takes longer than a tick to answer, or is already measuring: one that was asked for
+// SAFETY at the last moment has its whole period, too.
 kernel::Time SensorLayer::first_sample(unsigned sensor) const {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
   const bool measures =
@@ -122,8 +122,8 @@ kernel::Time SensorLayer::first_sample(unsigned sensor) const {
   return trace_.activated_at() + (at_once ? 0 : kernel::milliseconds(wiring.period_ms));
 }
 
-// Where it is to be asked before, the answer is there when it is due. Who has come too late to ask waits for the answer, not
-// for ever.
+// A sensor that is asked ahead has its answer when the sample is due. If it was asked too late, this waits for the answer,
+// but not for ever.
 void SensorLayer::await_sample(unsigned sensor, kernel::Time due) {
   const kernel::Duration ahead = asks_ahead(sensor);
   if (ahead != 0) {
@@ -141,7 +141,7 @@ void SensorLayer::ask(unsigned sensor) {
     sampler_->ask(program_->image, static_cast<std::uint8_t>(wiring.first_channel + i));
 }
 
-// One that SAFETY reads measures already.
+// A sensor that SAFETY reads already measures.
 void SensorLayer::await_begin(unsigned sensor) {
   const kernel::Duration period = kernel::milliseconds(program_->image.sensors[sensor].period_ms);
   const bool measures = (awaited_ & made_of(sensor)) != 0;
@@ -162,7 +162,7 @@ void SensorLayer::note_tried(ChannelMask channels) {
   alarm_.ring(channels);
 }
 
-// One period after the last; periods that are over already are skipped, never made up for.
+// One period after the last; periods that have passed are skipped, never made up for.
 kernel::Time SensorLayer::next_sample(unsigned sensor, kernel::Time last) {
   const kernel::Duration period = kernel::milliseconds(program_->image.sensors[sensor].period_ms);
   const kernel::Time now = kernel_.now();
@@ -193,13 +193,13 @@ void SensorLayer::sample(unsigned sensor) {
   note_contact(sensor, failed);
 }
 
-// In each frame in which it is silent: whoever gave it an order meanwhile did so in vain, and it does not come to life with that.
+// The chip is lost in each frame in which it is silent: an order given meanwhile has no effect, and does not start it later.
 [[gnu::noinline]] void SensorLayer::serve_chip(unsigned sensor) {
   note_contact(sensor, sampler_->serve_chip(program_->image, sensor) ? 0 : 1);
   if (units_[sensor].contact.silent()) sampler_->lose_chip(sensor);
 }
 
-// What is made up comes from no device.
+// Simulated readings come from no device.
 void SensorLayer::note_contact(unsigned sensor, unsigned failed) {
   Contact& contact = units_[sensor].contact;
   const Contact::News news = contact.note(failed);
@@ -230,8 +230,8 @@ void SensorLayer::run_feeds() {
   }
 }
 
-// One tick's worth: at most as many as the queue holds. Whoever preempts it goes on with the rest, so
-// what is taken out of the queue is announced under the same lock.
+// One tick's worth: at most as many as the queue holds. A thread that preempts this one goes on with the rest, so
+// each entry that leaves the queue is announced under the same lock.
 void SensorLayer::deliver() {
   const kernel::Time now = kernel_.now();
   ChannelMask news = 0;
@@ -259,7 +259,7 @@ ChannelMask SensorLayer::publish(std::uint8_t channel, vm::Value value, kernel::
 }
 
 [[gnu::always_inline]] inline void SensorLayer::tell(ChannelMask channels) {
-  alarm_.ring(channels);  // safety first; what it does is part of the step with the reading
+  alarm_.ring(channels);  // safety first; its work is part of the step with the reading
   kernel_.signal(step_thread_, news_);
 }
 

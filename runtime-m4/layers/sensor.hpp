@@ -1,12 +1,12 @@
 // Sensor layer: one thread per sensor that samples, in step with the program's activation; and one
-// thread for all sensors that are fed, since what they wait for is one queue.
+// thread for all fed sensors, since they share one queue.
 //
 // A reading is clamped to its channel's range and published only if it is news (mailbox.hpp). A
-// sample that fails publishes nothing; if it goes on failing, the channel becomes unknown by age. Devices that do not
-// answer are noted and told of (contact.hpp).
+// sample that fails publishes nothing; if samples go on failing, the channel becomes unknown by age. Devices that do not
+// answer are noted and reported (contact.hpp).
 // All readings that one sensor takes at one time, and all feeds that are due at one tick, enter the
-// same step: that of their tick, before its timers, for who looks at it first delivers what is due
-// (deliver_due()).
+// same step: that of their tick, before its timers, because the first thread that looks at that tick
+// delivers what is due (deliver_due()).
 #pragma once
 
 #include <atomic>
@@ -28,7 +28,7 @@ namespace robosync::layers {
 
 class SensorLayer {
 public:
-  // `news` of `step_thread` are signalled when readings were announced.
+  // `news` of `step_thread` is signalled when readings were announced.
   SensorLayer(kernel::Kernel& kernel, Trace& trace, Mailboxes& mailboxes, Alarm& alarm,
               kernel::Thread& step_thread, kernel::Events news)
       : kernel_(kernel),
@@ -38,44 +38,44 @@ public:
         step_thread_(step_thread),
         news_(news) {}
 
-  // Creates the threads of `program`, which must stay until they are dismissed.
-  // `simulated`: nothing measures but `sampler`, so there is nothing to wait for.
+  // Creates the threads of `program`, which must stay in place until they are dismissed.
+  // `simulated`: only `sampler` measures, so there is nothing to wait for.
   [[nodiscard]] bool start(const LoadedProgram& program, Sampler& sampler, bool simulated,
                            Memory& memory, ProgramThreads& threads);
-  // All threads of the program are there: sensors that SAFETY reads begin to measure.
+  // All threads of the program exist: sensors that SAFETY reads begin to measure.
   void go();
-  // Every channel that SAFETY reads has given its first reading; or, where readings are made up
-  // (`simulated`), had its turn to. Before begin().
+  // Every channel that SAFETY reads has its first reading or, if `simulated`, has had its turn.
+  // Before begin().
   bool knows_enough() const { return awaited_ == 0; }
-  // Program time begins: at activated_at(), which was meant to be `zero`.
+  // Program time begins at activated_at(), which was expected to be `zero`.
   void begin(kernel::Time zero);
 
-  // A reading for a fed channel, of a program that runs.  [link thread]
+  // A reading for a fed channel of the running program.  [link thread]
   link::FeedResult feed(const link::Feed& feed);
-  // What is known of the devices that are measured.  [link thread]
+  // The contact with the devices that are measured.  [link thread]
   void fill_devices(link::Devices& devices) const;
 
-  // Publishes the feeds that are due. The step and the safety thread outrank the one that serves the
-  // feeds: each calls this before it asks what is known, and what is due.  [thread]
+  // Publishes the feeds that are due. The step thread and the safety thread outrank the one that serves
+  // the feeds: each calls this before it asks what is known and what is due.  [thread]
   void deliver_due() {
     if (are_fed() && feeds_.next_due() <= kernel_.now()) deliver();
   }
 
   bool are_fed() const { return !feeds_.empty(); }  // feeds wait to be delivered
 
-  // Its thread was stopped: what it measures is no longer known.
+  // Its thread was stopped: its channels become unknown.
   void retire(unsigned member_index);
 
   // --- for the algorithms ---
-  // From now on kSampled of `thread` is signalled when a sensor has sampled; null: nobody cares.
+  // From now on kSampled of `thread` is signalled when a sensor has sampled; null: no thread is.
   void tell_of_samples(kernel::Thread* thread) { sample_thread_ = thread; }
   static constexpr kernel::Events kSampled = 1;
-  // What was made of readings that were taken at `time`; the channel's bit if it is news. Then announce it.
+  // Publishes a value made from readings of `time`; returns the channel's bit if it is news. Announce it afterwards.
   ChannelMask publish(std::uint8_t channel, vm::Value value, kernel::Time time);
   void announce(ChannelMask channels);
-  // SAFETY waits for a first reading of one of them.
+  // SAFETY still waits for a first reading of one of them.
   bool awaits(ChannelMask channels) const { return (awaited_ & channels) != 0; }
-  // In a simulation SAFETY waits no longer for these: whatever was to be read was.
+  // In a simulation SAFETY no longer waits for these: everything there was to read was read.
   void note_turn(ChannelMask channels) {
     if (simulated_ && awaits(channels)) note_tried(channels);
   }
@@ -127,7 +127,7 @@ private:
   kernel::Thread* sample_thread_ = nullptr;
   std::span<Unit> units_;
   FeedQueue feeds_;
-  ChannelMask awaited_ = 0;  // SAFETY reads them, and they have not said anything yet
+  ChannelMask awaited_ = 0;  // SAFETY reads them, and they have no reading yet
   bool simulated_ = false;
   std::atomic<bool> begun_ = false;
 };

@@ -1,8 +1,8 @@
 // Stamps the events of the running program and hands them to the sink.
 //
-// What belongs to a step carries the step's time and number. What happens between steps (a command
-// that waited for its actuator, done, finished) carries the kernel's time and the last step's
-// number. Order within one time: see processing.hpp.
+// Events of a step carry the step's time and number. Events between steps (a command that waited for
+// its actuator, done, finished) carry the kernel's time and the last step's number. For the order of
+// events at one time see processing.hpp.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class Trace {
 public:
   Trace(kernel::Kernel& kernel, EventSink& sink) : kernel_(kernel), sink_(sink) {}
 
-  // A new program: its clock and steps count from 0.
+  // A new program: its time and its steps count from 0.
   void restart(kernel::Time activated_at) {
     activated_at_ = activated_at;
     activated_tick_ = static_cast<std::uint32_t>(activated_at / kernel::kTick);
@@ -27,12 +27,12 @@ public:
   void begin_step(const Stamp& step) { step_ = step; }
 
   kernel::Time activated_at() const { return activated_at_; }
-  // 0 while the program waits for its first tick.
+  // 0 until the program's first tick.
   kernel::Time program_time() const {
     const kernel::Time now = kernel_.now();
     return now < activated_at_ ? 0 : now - activated_at_;
   }
-  // The same in whole ticks; 49 days later they begin again.
+  // The same in whole ticks; wraps after 49 days.
   std::uint32_t milliseconds() const { return milliseconds(kernel_.tick()); }
   std::uint32_t milliseconds(std::uint32_t tick) const {
     const std::uint32_t passed = tick - activated_tick_;
@@ -43,7 +43,7 @@ public:
   const Stamp& step() const { return step_; }
   Stamp now() const { return {program_time(), step_.step}; }
 
-  // Is anybody there to see what is emitted? Whoever would have to work for an event asks first.
+  // True if somebody receives the events. A caller that would have to do work for an event asks first.
   [[gnu::always_inline]] bool listening() const { return sink_.listening(); }
 
   [[gnu::always_inline]] void emit(link::EventKind kind, const Stamp& stamp, unsigned subject,
@@ -56,14 +56,14 @@ public:
     if (listening()) [[unlikely]]
       tell(kind, stamp, subject, object, value);
   }
-  // For events of several values, from who has seen that somebody listens: their number is
-  // value_count. Stacks are short, so that whoever makes such an event fills it in place.
+  // For events with several values (value_count says how many), once listening() is known to hold. Stacks
+  // are small, so the caller fills the event in place.
   static void begin(link::Event& event, link::EventKind kind, Stamp stamp, unsigned subject,
                     unsigned object);
   void emit(const link::Event& event) { sink_.emit(event); }
 
 private:
-  // For its first tick; else half of the 49 days have passed.
+  // True before the program's first tick; otherwise half of the 49 days have passed.
   [[gnu::noinline]] bool is_waiting() const { return kernel_.now() < activated_at_; }
   [[gnu::noinline]] void tell(link::EventKind kind, const Stamp& stamp, unsigned subject,
                               unsigned object);

@@ -1,4 +1,4 @@
-// See triggers.hpp. A judgement belongs to its behaviour's thread while that is released, and to
+// See triggers.hpp. A judgement belongs to its behaviour's thread while that thread is released, and to
 // the step thread otherwise.
 #include "runtime-m4/layers/triggers.hpp"
 
@@ -12,7 +12,7 @@ namespace {
 
 using policy::milliseconds_of;
 
-// kNever is no time: the millisecond after it is taken, once in 49 days.
+// kNever is not a time: the millisecond after it is used instead, once in 49 days.
 std::uint32_t as_time(std::uint32_t time) {
   return time == kNever ? 0 : time;
 }
@@ -82,7 +82,7 @@ bool Triggers::begin_period(unsigned rule, std::uint32_t now) {
   return true;
 }
 
-// Counted from the end of the last period, so that they do not drift; one that is over already is
+// Counted from the end of the last period, so that periods do not drift; one that is already over is
 // skipped.
 void Triggers::draw_period(unsigned rule, vm::Value thousandths, std::uint32_t now) {
   const std::uint32_t begin = due(rule) != kNever ? due(rule) : now;
@@ -114,8 +114,8 @@ void Triggers::collect(unsigned rule) {
   }
 }
 
-// It cools down or waits, or is a WHILE that holds. A WHEN/ELSE that is denied its side is put here by
-// lost(), and stays as long as it wants that.
+// Active: the rule cools down or waits, or is a WHILE that holds. lost() adds a WHEN/ELSE that is denied its
+// side, which stays as long as it wants that side.
 void Triggers::note_active(unsigned rule) {
   const State& state = phases_[rule];
   bool active = state.cooling != 0 || state.waiting || goes_round(rule);
@@ -196,7 +196,7 @@ void Triggers::begin_cooldown(unsigned rule, Side side, std::uint32_t now) {
   until(rule, side) = now + cooldown;
 }
 
-// A WHILE and a WHEN/ELSE go on wanting anyway; and who runs already does not wait for himself.
+// A WHILE and a WHEN/ELSE go on wanting anyway, and a rule that runs already does not wait for itself.
 void Triggers::lost(unsigned rule, bool to_itself, std::uint32_t now) {
   State& state = phases_[rule];
   state.told = true;

@@ -1,17 +1,17 @@
-// When rules trigger: what is remembered of their conditions, periods, cooldowns and waits.
+// When rules trigger: the state kept of their conditions, periods, cooldowns and waits.
 //
 // A rule remembers the last known truth of its condition. WHEN triggers when that becomes true,
 // WHEN/ELSE when it changes; the first known truth counts as a change; a truth that is an event
-// (BECOMES, CHANGES …) triggers each time. A WHEN/ELSE goes on wanting its chosen side until that
-// was the last to run: when it lost, and when that side cooled down. An unknown condition does nothing and is not remembered,
-// so a sensor that drops out and comes back does not trigger by that alone. WHILE is other: unknown
-// ends it, so that it fires again when its condition is known to be true.
+// (BECOMES, CHANGES …) triggers each time. A WHEN/ELSE keeps wanting its chosen side until that side
+// is the one that ran last, also after it lost and while that side cools down. An unknown condition does nothing and is not
+// remembered, so a sensor that drops out and comes back does not trigger by that alone. WHILE differs: unknown
+// ends it, so it fires again when its condition is known to be true.
 //
-// Each side of a rule cools down by itself.
+// Each side of a rule cools down separately.
 //
-// The behaviours' threads say what they have evaluated, each of its own rules, and ask what follows
-// from it; the step thread collects it and asks the same. What is not free of the past (a wait, a
-// cooldown, a WHILE that holds, a time word) is in a set, so that all other rules cost a step nothing.
+// Each behaviour's thread records what it has evaluated of its own rules and asks what follows
+// from it; the step thread collects the records and asks the same. Rules that depend on the past (a wait, a
+// cooldown, a WHILE that holds, a time word) are in sets, so all other rules cost a step nothing.
 // The sets belong to the step thread; the others only read them. Times are milliseconds of program
 // time.
 #pragma once
@@ -36,41 +36,41 @@ public:
 
   // --- for the behaviour of the rule ---
   void judge(unsigned rule, vm::Value condition, bool event);
-  // AT START.
+  // An AT START rule.
   void begin(unsigned rule);
-  // EVERY: it triggers if its time has come. True when its next period is to be drawn.
+  // An EVERY rule: triggers if its time has come. True if its next period must be drawn.
   [[nodiscard]] bool begin_period(unsigned rule, std::uint32_t now);
   void draw_period(unsigned rule, vm::Value thousandths, std::uint32_t now);
   // A turn begins: nothing follows yet.
   void begin_turn(RuleRange rules) { noted().clear_around(rules); }
   void begin_sole_turn(unsigned rule) { noted().erase(rule); }
-  // It was evaluated: its condition may change at `wake` (kNever: not by itself); it had an event, which is over in
-  // the next evaluation.
+  // The rule was evaluated. Its condition may change at `wake` (kNever: not with time alone). `event`: it had an event, which
+  // is over at the next evaluation.
   void note_past(unsigned rule, std::uint32_t wake, bool event);
-  // Something follows from its evaluation.
+  // The rule's evaluation has consequences.
   [[gnu::always_inline]] void note(unsigned rule) { noted().insert(rule); }
   void note_zero_divide(unsigned rule) { judgement(rule).zero_divide = true; }
 
   // --- for the step thread ---
-  // Of those that were evaluated, only these stay: something follows from that now, or it may end what is remembered
-  // of them.
+  // Of the evaluated rules, keeps only those whose evaluation has consequences now, or may end what is remembered of
+  // them.
   void keep_concerned(RuleSet& evaluated, RuleRange rules) const {
     evaluated.keep_in(rules, noted(), eventful_.bits(), active_.bits(), sleeping_.bits());
   }
-  // … and would this one?
+  // … and would it keep this one?
   [[nodiscard]] bool follows(unsigned rule) const {
     return noted().has(rule) || active_.has(rule) || eventful_.has(rule) || sleeping_.has(rule);
   }
-  // It was evaluated, and its behaviour is not at work any more.
+  // The rule was evaluated, and its behaviour has finished its task.
   void collect(unsigned rule);
-  // Those whose last evaluation had an event, or divided by zero, which each step tells that could
-  // have found it.
+  // Those whose last evaluation had an event, or divided by zero, which is reported in each step that
+  // could have found it.
   const RuleSet& eventful() const { return eventful_; }
-  // Those that cool down, or may want to run without a new trigger.
+  // Those that are cooling down, or may want to run without a new trigger.
   const RuleSet& active() const { return active_; }
-  // The first time at which one is to be evaluated again; kNever for never.
+  // The first time at which a rule must be evaluated again; kNever for never.
   std::uint32_t next_wake() const { return next_wake_; }
-  // Adds those whose time has come.
+  // Adds the rules whose time has come.
   void add_woken(std::uint32_t now, RuleSet& rules) const;
   // Ends cooldowns and waits that are over.
   void settle(std::uint32_t now) {
@@ -80,33 +80,33 @@ public:
   [[gnu::always_inline]] bool is_while(unsigned rule) const { return phases_[rule].is_while; }
   // A WHILE whose condition does not hold.
   bool is_over(unsigned rule) const;
-  // What became of its wish, or of its response.
+  // The outcome of its wish, or of its response.
   void won(unsigned rule, Side side, std::uint32_t now);
   void lost(unsigned rule, bool to_itself, std::uint32_t now);
   void interrupted(unsigned rule) { phases_[rule].told = true; }
   void forget(unsigned rule) { judgement(rule).trigger = Trigger::none; }
   // Its behaviour was stopped: it never triggers again.
   [[gnu::cold]] void retire(unsigned rule);
-  // Its condition holds, and it is a WHILE: after a round there is another.
+  // A WHILE whose condition holds: after a round there is another.
   [[gnu::always_inline]] bool goes_round(unsigned rule) const {
     return is_while(rule) && judgement(rule).truth == Truth::yes;
   }
-  // When one that wants to run has cooled down; kNever for one that does not.
+  // When a rule that wants to run has cooled down; kNever if it does not want to.
   std::uint32_t cooled_at(unsigned rule) const;
 
   // --- for both ---
   struct Wish {
     Side side;
     bool fresh;   // it triggered in this step
-    bool silent;  // it was told before that the rule wants this
+    bool silent;  // the trace was told before that the rule wants this
   };
-  // It triggered in this step, and not inside a cooldown.
+  // It triggered in this step, outside a cooldown.
   [[nodiscard]] bool fired(unsigned rule, Side& side) const {
     const Trigger trigger = judgement(rule).trigger;
     side = trigger == Trigger::then ? Side::then : Side::otherwise;
     return trigger != Trigger::none && !cools(rule, side);
   }
-  // Those that may want something: they were found to follow in this turn, or did before.
+  // Those that may want to run: because of an evaluation in this turn, or since earlier.
   template <class Take>
   void each_wanting(RuleRange rules, Take take) const {
     active_.each_in_either(noted(), rules, take);
@@ -115,7 +115,7 @@ public:
     return active_.has(rule) || noted().has(rule);
   }
   bool has_triggered(unsigned rule) const { return judgement(rule).trigger != Trigger::none; }
-  // What it wants to run, given whether it runs now. False: nothing.
+  // What it wants to run, given whether it is running. False: nothing.
   [[nodiscard]] bool wish(unsigned rule, bool running, Wish& wish) const;
 
   bool cools(unsigned rule, Side side) const {
@@ -123,13 +123,13 @@ public:
   }
 
 private:
-  // What only the step thread knows of a rule. Of a mask of sides, bit s is side s.
+  // What only the step thread knows of a rule. In a mask of sides, bit s is side s.
   struct State {
-    std::uint8_t cooling : 2 = 0;  // sides that cool down
-    std::uint8_t last : 2 = 0;     // the side that was the last to run; none at first
+    std::uint8_t cooling : 2 = 0;  // sides that are cooling down
+    std::uint8_t last : 2 = 0;     // the side that ran last; none at first
     bool waiting : 1 = false;      // WAITING, for its one side
-    bool told : 1 = false;         // that it wants to run and does not
-    // Of the image, where they are at hand.
+    bool told : 1 = false;         // the trace knows that it wants to run and does not
+    // From the image, kept here for speed.
     bool is_while : 1 = false;
     bool chooses : 1 = false;  // a WHEN/ELSE
   };
@@ -138,10 +138,10 @@ private:
   static constexpr unsigned mask_of(Side side) { return 1U << static_cast<unsigned>(side); }
 
   RuleBits noted() const { return RuleBits(workspace_.noted.data()); }
-  // Of a rule with modifiers: the end of its cooldown, by side; of the waiting as well, which has no other side.
+  // For a rule with modifiers: the end of its cooldown, by side; also of its waiting, since such a rule has only one side.
   std::uint32_t& until(unsigned rule, Side side) const;
   bool chooses(unsigned rule) const { return phases_[rule].chooses; }
-  // Of a WHEN/ELSE: the chosen side was not the last to run.
+  // A WHEN/ELSE whose chosen side was not the last to run.
   bool is_unsettled(unsigned rule, Side& side) const;
   const vm::Modifiers& modifiers(unsigned rule) const;
   Judgement& judgement(unsigned rule) const { return workspace_.judgements[rule]; }
@@ -163,10 +163,10 @@ private:
   std::span<std::uint32_t> until_;     // see until()
   RuleSet eventful_;
   RuleSet active_;
-  RuleSet sleeping_;  // those that are due at some time
+  RuleSet sleeping_;  // those that will be due at some time
   std::uint16_t first_to_wake_ = kNobody;
-  // When that is. Kept here: while a behaviour's rules are collected one by one, what its thread has
-  // noted of the others is newer already.
+  // When that is due. Kept here because, while a behaviour's rules are collected one by one, the workspace already has the
+  // newer times that its thread has noted for the others.
   std::uint32_t next_wake_ = kNever;
 };
 

@@ -65,7 +65,7 @@ void Variables::stage_first(const Written& written, const vm::Behavior& behavior
   stage_all<Rank::above_all>(written, behavior, before);
 }
 
-// Which cells were written is not believed: it comes from a behaviour's thread.
+// The masks of written cells are not trusted: they come from a behaviour's thread.
 template <Variables::Rank rank>
 void Variables::stage_all(const Written& written, const vm::Behavior& behavior,
                           const Snapshot& before) {
@@ -129,7 +129,7 @@ VariableMask Variables::enter(std::uint32_t now, std::span<vm::Value> values) {
       const std::int64_t distance = std::int64_t{fade->from} - wiring.fades_to;
       value =
           saturated(wiring.fades_to + faded(distance, wiring.fade, ticks_since(fade->since, now)));
-      // There it stays, also when 49 days later `now` comes by `since` again.
+      // It stays there, even when `now` passes `since` again after 49 days.
       if (value == wiring.fades_to) fade->from = value;
     }
     Write write{};

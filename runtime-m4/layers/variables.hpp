@@ -1,14 +1,14 @@
 // What a program remembers: REMEMBER, STATE, FEELING, SIGNAL. The values that rules see are in the
-// snapshot; here is what becomes of them in the next step.
+// snapshot; this class computes their values for the next step.
 //
-// Writes of a step are staged, and take effect together when the next step begins, as if done from
-// the least important behaviour up to the most important one: of two SETs the latter's stays, and
-// RAISE and LOWER add to whatever is there. They are staged the other way round, since that is the
-// order in which responses run; so all that has to be kept of a variable is one sum: the first SET
-// that is staged ends it. The result is clamped to the variable's range once, at the end.
+// Writes of a step are staged and take effect together when the next step begins, as if done from
+// the least important behaviour up to the most important one: of two SETs the more important one wins, and
+// RAISE and LOWER add to the value so far. Responses run, and so stage their writes, in the opposite
+// order. So one sum per variable is enough: the first SET that is staged ends it. The result is
+// clamped to the variable's range once, at the end.
 //
-// A fading variable is its target plus a part of the distance at which it was when it was last set;
-// the part depends on how many whole ticks ago that was, and on nothing else.
+// A fading variable is its target plus a part of the distance that it had when it was last set;
+// that part depends only on how many whole ticks ago that was.
 #pragma once
 
 #include <cstdint>
@@ -25,12 +25,12 @@ namespace robosync::layers {
 class Variables {
 public:
   struct Write {
-    std::uint8_t variable;  // its place among the variables
-    bool set;               // value is the new one; otherwise a difference
-    vm::Value value;        // unknown: there is no such write
+    std::uint8_t variable;  // index among the variables
+    bool set;               // value is the new value; otherwise a difference
+    vm::Value value;        // if unknown, there is no such write
   };
 
-  // What a response has written into its behaviour's frame; bit c of the masks: cell c.
+  // What a response has written into its behaviour's frame; in the masks bit c is cell c.
   struct Written {
     const vm::Value* frame;
     std::uint32_t assigned;  // by SET
@@ -39,23 +39,23 @@ public:
 
   explicit Variables(kernel::Kernel& kernel) : kernel_(kernel) {}
 
-  // Writes the initial values into `values`, one for each variable of `image`; KEPT ones begin with what `kept` has.
+  // Writes the initial values into `values`, one for each variable of `image`; KEPT ones begin with their value in `kept`.
   void start(const vm::Image& image, std::span<vm::Value> values, std::span<const KeptNumber> kept,
              Memory& memory);
 
-  // Stages what a response of `behavior` has written; its frame was latched from `before`. In a step from the most
-  // important response down  [step thread]
+  // Stages what a response of `behavior` has written; its frame was latched from `before`. In each step, call it from the most
+  // important response down.  [step thread]
   void stage(const Written& written, const vm::Behavior& behavior, const Snapshot& before);
-  // … or more important than all those, at any time  [safety thread].
+  // … as more important than all of those, at any time.  [safety thread]
   void stage_first(const Written& written, const vm::Behavior& behavior, const Snapshot& before);
 
   // --- for the step thread; `now` is milliseconds of program time ---
   bool staged() const { return staged_ != 0; }
-  // enter() has something to do: else it may be left out.
+  // False: enter() has nothing to do and may be left out.
   bool may_change() const { return (staged_ | fading_) != 0; }
-  // Moves `values` on to `now` and lets the staged writes take effect. Returns what changed.
+  // Advances `values` to `now` and applies the staged writes. Returns what changed.
   VariableMask enter(std::uint32_t now, std::span<vm::Value> values);
-  // In how many milliseconds the next one fades; kNever when all are where they tend to.
+  // In how many milliseconds the next one fades; kNever if all have reached their target.
   std::uint32_t next_fade(std::uint32_t now, std::span<const vm::Value> values) const;
 
 private:
@@ -77,12 +77,12 @@ private:
   std::uint32_t entered_ = 0;  // when enter() was called last
   VariableMask fading_ = 0;
   VariableMask staged_ = 0;
-  VariableMask set_ = 0;  // of these, the ones of which the sum ends with a SET
+  VariableMask set_ = 0;  // those of staged_ whose sum ends with a SET
   std::span<vm::Value> sums_;
-  std::span<Fade> fades_;  // of the variables that fade, in their order
+  std::span<Fade> fades_;  // one per fading variable, in order
 };
 
-// What is left of `distance` after `ticks` times kFadeTickMs, of which each leaves fade / 2^31:
+// What is left of `distance` after `ticks` times kFadeTickMs, each of which leaves fade / 2^31 of it:
 // rounded towards zero, so that it ends.
 [[nodiscard]] std::int64_t faded(std::int64_t distance, std::uint32_t fade, std::uint32_t ticks);
 

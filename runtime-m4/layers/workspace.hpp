@@ -1,7 +1,6 @@
-// All that the behaviours' threads write, in one place: they run without privileges, and besides
-// their stacks this is the only memory that they may write. Others read what stands here as they would
-// read what comes from outside: numbers, of which none is an index or an address until it is
-// checked.
+// All that the behaviours' threads write, in one place. They run unprivileged, and besides their stacks
+// this is the only memory that they may write. Others treat its contents like outside input: numbers,
+// none of which is used as an index or an address before it is checked.
 #pragma once
 
 #include <atomic>
@@ -15,7 +14,7 @@
 
 namespace robosync::layers {
 
-// What is known of a rule's condition, and what follows from that (triggers.hpp).
+// What is known of a rule's condition, and what follows from it (triggers.hpp).
 enum class Truth : std::uint8_t { unknown, no, yes };
 enum class Trigger : std::uint8_t { none, otherwise, then };
 struct Judgement {
@@ -26,8 +25,8 @@ struct Judgement {
 };
 static_assert(sizeof(Judgement) == 1);
 
-// What came of a response that was run. All zero at first, so that it takes no flash. No bools: one
-// that somebody has set to 2 is undefined behaviour where it is read.
+// The outcome of a response. All zero at first, so that it takes no flash. No bools: reading a bool
+// that a thread has set to 2 is undefined behaviour.
 struct Result {
   static constexpr std::uint8_t kBegan = 1;
   static constexpr std::uint8_t kWentOn = 2;  // in its behaviour's turn
@@ -37,25 +36,25 @@ struct Result {
   vm::Pause pause = vm::Pause::ended;
   std::uint8_t zero_divide = 0;
   std::uint16_t rule = 0;      // whose response it was
-  std::uint32_t assigned = 0;  // vm::Machine
+  std::uint32_t assigned = 0;  // as in vm::Machine
   std::uint32_t shifted = 0;
   std::uint16_t words = 0;  // of the output
-  std::uint8_t there = 0;   // there is a result, since the behaviour was released: kBegan, kWentOn
+  std::uint8_t there = 0;   // kBegan or kWentOn: there is a result of this release
   std::uint8_t side = 0;    // … of which side of the rule
 };
 
-// Where it stands, for a program.
+// The parts of the workspace, for a program.
 struct Workspace {
   void start(Memory& memory);
 
-  std::span<std::uint32_t> cells;        // the behaviours' frames, one behind the other
+  std::span<std::uint32_t> cells;        // the behaviours' frames, in order
   std::span<std::uint32_t> timer_words;  // states of their timers
-  std::span<std::uint32_t> due;          // when it is to be evaluated again; of EVERY, the end
+  std::span<std::uint32_t> due;  // when to evaluate a rule again; for EVERY, the end of its period
   std::span<Judgement> judgements;
-  std::span<RuleBits::Word> noted;  // rules from whose evaluation in this turn something follows
+  std::span<RuleBits::Word> noted;  // rules whose evaluation in this turn has consequences
   std::span<vm::Word> output;       // one response runs at a time, so one is enough
   Result* result = nullptr;
-  // The behaviour that was released has done what it was released for.
+  // The released behaviour has finished its task.
   std::atomic<bool>* finished = nullptr;
 };
 

@@ -26,7 +26,7 @@ constexpr std::uint32_t kMachine = AUDIT_ARCH_AARCH64;
 constexpr std::uint32_t kMachine = 0;  // of no call: everything is forbidden
 #endif
 
-// What a loader needs, beside openat() for reading. AddressSanitizer needs the last ones.
+// What a loader needs, besides openat() for reading. AddressSanitizer needs the last ones.
 constexpr long kLoading[] = {
     SYS_read,         SYS_pread64,        SYS_write,        SYS_close,       SYS_fstat,
     SYS_newfstatat,   SYS_mmap,           SYS_munmap,       SYS_mprotect,    SYS_brk,
@@ -42,13 +42,13 @@ constexpr sock_filter kEnd = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS)
 constexpr sock_filter load(std::size_t offset) {
   return BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset));
 }
-// Goes on `skipped` statements further when the value is another one.
+// Skips `skipped` statements if the value is not this one.
 constexpr sock_filter is(long value, std::uint8_t skipped) {
   return BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(value), 0, skipped);
 }
 
-// A program for the kernel. In no memory that would be given back when the calls for that are forbidden already:
-// AddressSanitizer makes some then.
+// A program for the kernel. It uses no memory that would be freed once the calls for that are forbidden:
+// AddressSanitizer makes such calls.
 class Filter {
 public:
   void push_back(sock_filter statement) { statements_[count_++] = statement; }
@@ -59,8 +59,8 @@ private:
   std::size_t count_ = 0;
 };
 
-// openat() whose flags (the lower half of the third argument: both machines are little-endian) ask for reading alone.
-// What writes is refused, not ended: libraries look for files that they may write.
+// openat() whose flags (the lower half of the third argument: both machines are little-endian) ask for reading only.
+// Opening for writing is refused without ending the process: libraries look for files that they may write.
 void add_opening(Filter& filter) {
   constexpr std::uint32_t kWriting = O_WRONLY | O_RDWR | O_CREAT | O_TRUNC | O_APPEND;
   filter.push_back(is(SYS_openat, 4));

@@ -1,15 +1,15 @@
-// What the process of a module may ask of the operating system (Linux). Both calls hold for the rest of the process; the second
-// one adds to the first. False when the system cannot be asked for that: then nothing of a module may run.
+// What a module's process may ask of the operating system (Linux). Both calls apply for the rest of the process, and the second
+// restricts it further. False if the system cannot enforce this: then no code of a module may run.
 #pragma once
 
 namespace robosync::module_files {
 
-// Reads files and maps memory, as the loader does: no writing to files, no network, no other process.
+// Allows reading files and mapping memory, as the loader does: no writing to files, no network, no other processes.
 [[nodiscard]] bool allow_loading();
-// Reads and writes what is open already, and ends.
+// Allows reading and writing what is already open, and ending.
 [[nodiscard]] bool allow_answers();
 
-// What a process is ended with that asks for more.
+// The signal that ends a process that asks for more.
 extern const int kForbidden;
 
 }  // namespace robosync::module_files

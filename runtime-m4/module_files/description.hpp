@@ -1,5 +1,5 @@
-// What a module in a file says of itself, looked at and copied: texts and lists are this object's own. Its functions are for whom it
-// concerns to set (registry.cpp).
+// What a module in a file says about itself, checked and copied: texts and lists are this object's own. Its functions are left for
+// the caller to set (registry.cpp).
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ public:
   Description(const Description&) = delete;
   Description& operator=(const Description&) = delete;
 
-  // What of it is not as robosync_module.h asks for; empty: nothing.
+  // What does not comply with robosync_module.h; empty: everything does.
   const std::string& mistake() const { return mistake_; }
 
   const robosync_description& in_c() const { return in_c_; }

@@ -1,5 +1,5 @@
-// What rsc and the process of a module lay before each other, in memory that they share: each writes its own half, and the other
-// one can only read it. What the process leaves is believed by nobody: bounds are checked where it is read.
+// The memory that rsc and a module's process share: each writes its own half, and can only read the other's. Nothing that the
+// process leaves is trusted: bounds are checked where it is read.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace robosync::module_files {
 
-// What the process is asked for, and what it is at.
+// What the process is asked to do, and what it is doing.
 enum class Call : std::uint8_t { describe, sizes, init, process };
 enum class Doing : std::uint8_t {
   loading,
@@ -22,7 +22,7 @@ enum class Doing : std::uint8_t {
   process
 };
 
-// What came of it. The last ones are of a process that has ended.
+// The outcome. The last ones are for a process that has ended.
 enum class Came : std::uint8_t {
   nothing,  // yet
   fine,
@@ -32,16 +32,16 @@ enum class Came : std::uint8_t {
   other_interface,
   incomplete,    // something is NULL that must not be
   too_many,      // inputs, outputs, parameters or words
-  beyond_state,  // it wrote there, or read
+  beyond_state,  // it wrote or read there
   beyond_scratch,
   beyond_outputs,
   into_inputs,
   into_statics,
   elsewhere,
-  not_arithmetic,  // a division by zero, or an overflow where it was compiled to stop there
+  not_arithmetic,  // a division by zero, or an overflow if it was compiled to stop there
 };
 
-inline constexpr std::size_t kMostName = 48;  // with the 0 behind it
+inline constexpr std::size_t kMostName = 48;  // including the final 0
 inline constexpr std::size_t kMostWords = 64;
 using Name = std::array<char, kMostName>;
 
@@ -76,7 +76,7 @@ using State = std::array<std::byte, ROBOSYNC_MOST_BYTES>;
 
 struct Request {
   Call call;
-  std::uint8_t scratch_holds;  // in each byte: a module must not care
+  std::uint8_t scratch_holds;  // in each byte: a module must not depend on it
   std::uint32_t period_ms;
   Config config;
   Inputs inputs;

@@ -21,12 +21,12 @@
 namespace robosync::module_files {
 namespace {
 
-constexpr long kMostCpuMs = 1000;  // for one call, or for loading it
+constexpr long kMostCpuMs = 1000;  // for one call, or for loading
 constexpr long kMostMs = 30'000;   // … however busy the computer is
 constexpr int kLookEveryMs = 50;
 constexpr rlim_t kMostMemory = rlim_t{1} << 30;
 
-// The same pages, for one to write and for the other to read.
+// The same pages mapped twice, one process to write and the other to read.
 template <class T>
 struct Shared {
   T* written = nullptr;
@@ -62,7 +62,7 @@ long cpu_ms_of(pid_t process) {
   return milliseconds(time);
 }
 
-// Nothing of its parent's stays open, and it does not outlive it.
+// Nothing of its parent's stays open, and it does not outlive its parent.
 void settle_in(int line) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   dup2(line, STDERR_FILENO + 1);
@@ -199,7 +199,7 @@ bool Process::takes_too_long(long began_ms) const {
   return cpu_ms_of(child_) - cpu_ms_ > kMostCpuMs || now_ms() - began_ms > kMostMs;
 }
 
-// Until it has answered. It cannot sleep, so who waits for one that does not end sees its time pass.
+// Waits for the answer. The process cannot sleep, so one that does not end uses up its time.
 bool Process::await() {
   const long began_ms = now_ms();
   pollfd line{line_, POLLIN, 0};
@@ -218,7 +218,7 @@ bool Process::await() {
   }
 }
 
-// Its line is closed, so it ends now. One that does not is ended.
+// Its line is closed, so it ends now. If it does not, it is killed.
 int Process::status_of_ended() {
   int status = 0;
   for (long waited = 0; waited < kMostCpuMs; waited += kLookEveryMs) {

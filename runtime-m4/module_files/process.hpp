@@ -1,6 +1,6 @@
-// A module in a file (robosync_module.h, compiled to NAME.so), in a process of its own that can do nothing but compute: whatever the
-// module does, who started the process goes on, and can say what happened. Between two calls the process keeps nothing of the module's
-// but its code, so several algorithms can share it. Linux.
+// A module in a file (robosync_module.h, compiled to NAME.so), in its own process, which can do nothing but compute: whatever the
+// module does, the process that started it goes on, and can say what happened. Between two calls the process keeps nothing of the
+// module but its code, so several algorithms can share it. Linux.
 #pragma once
 
 #include <string>
@@ -13,21 +13,21 @@ namespace robosync::module_files {
 
 class Process {
 public:
-  // Loads `path`, whose name without its ending is the module's. Afterwards trouble() says why it cannot be used.
+  // Loads `path`, whose file name without its extension is the module's name. Afterwards trouble() says why it cannot be used.
   explicit Process(const std::string& path);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  // Why the module is not there any more, or never was; empty: it is.
+  // Why the module is no longer usable, or never was; empty: it is usable.
   const std::string& trouble() const { return trouble_; }
-  // As the module says, with each text ended; nothing else of it has been looked at.
+  // As the module describes itself, with each text terminated; nothing else of it has been checked.
   const Described& described() const { return described_; }
 
-  // All false when there is trouble. `sizes` of the parameters that a module has last been asked for are known.
+  // All return false if there is trouble. The `sizes` for the parameters that were last asked about are kept.
   [[nodiscard]] bool measure(const Config& config, Sizes& sizes);
   [[nodiscard]] bool init(const Config& config, std::uint32_t period_ms, State& state);
-  // `outputs`: what it left there last. `changed`: what it returned, as far as it has outputs.
+  // `outputs`: in, what it last left there. `changed`: what it returned.
   [[nodiscard]] bool process(const Config& config, const Inputs& inputs, State& state,
                              Outputs& outputs, std::uint32_t& changed,
                              std::uint8_t scratch_holds = 0);
@@ -48,10 +48,10 @@ private:
   Request* request_ = nullptr;
   const Reply* reply_ = nullptr;
   Described described_{};
-  Config measured_{};  // whose sizes the process knows
+  Config measured_{};  // the parameters that sizes_ are for
   Sizes sizes_;
   bool has_measured_ = false;
-  long cpu_ms_ = 0;  // that the process had taken before what it does now
+  long cpu_ms_ = 0;  // CPU time of the process before the current call
   std::string name_, trouble_;
 };
 

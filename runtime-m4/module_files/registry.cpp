@@ -1,4 +1,4 @@
-// The functions of a module know nothing of who calls them but their arguments, so each place of the list has functions of its own.
+// A module's functions know nothing about their caller but the arguments, so each place in the list has its own functions.
 #include "runtime-m4/module_files/registry.hpp"
 
 #include <algorithm>
@@ -35,9 +35,9 @@ struct Place {
 
 std::array<std::unique_ptr<Place>, kMostFiles> places;
 
-// --- what it is called by ---
+// --- the functions it is called by ---
 
-// Of a module in trouble: more than anybody has.
+// For a module in trouble: more than any board has.
 constexpr std::uint32_t kTooMuch = UINT32_MAX;
 
 Sizes sizes_of(Place& place, const std::int32_t* config) {
@@ -51,7 +51,7 @@ std::size_t state_bytes_of(Place& place, const std::int32_t* config) {
   return std::min<std::size_t>(bytes, ROBOSYNC_MOST_BYTES);
 }
 
-// Nobody is told: the first process() then fails.
+// A failure is not reported here: the first process() then fails.
 void init(Place& place, void* memory, const std::int32_t* config, std::uint32_t period_ms) {
   State state{};
   if (place.process.init(place.all_of(config), period_ms, state))
@@ -62,7 +62,7 @@ std::uint32_t process(Place& place, void* memory, const robosync_block& block) {
   const robosync_module& module = place.description.module();
   State state{};
   const std::size_t bytes = state_bytes_of(place, block.config);
-  // Of one in trouble nobody knows how much of the memory is its own.
+  // If the module is in trouble, it is unknown how much of the memory is its own.
   if (!place.process.trouble().empty()) return ROBOSYNC_FAILED;
   auto* const own = static_cast<std::byte*>(memory);
   std::copy_n(own, bytes, state.begin());
@@ -104,7 +104,7 @@ void set_functions(robosync_module& module, std::size_t place, std::index_sequen
 
 // --- the list ---
 
-// Of a file that is there already, else a free one, else none.
+// The place of a file that is already there, else a free one, else none.
 std::size_t place_for(const std::string& path) {
   const auto is_its = [&path](const auto& place) {
     return place != nullptr && place->path == path;
@@ -115,7 +115,7 @@ std::size_t place_for(const std::string& path) {
   return static_cast<std::size_t>(found - places.begin());
 }
 
-// With the usual parameters; the firmware's judge() asks with the program's own.
+// Uses the usual parameters; the firmware's judge() checks with the program's own.
 std::string mistake_in_sizes(Place& place) {
   Sizes sizes;
   if (!place.process.measure(place.description.usual(), sizes)) return place.process.trouble();

@@ -1,5 +1,5 @@
-// The modules in files that this process has loaded, by the number under which algorithms::find_module() knows them. Each runs in a
-// process of its own (process.hpp); one that is in trouble has failed for whoever calls it.
+// The modules in files that this process has loaded, by the number under which algorithms::find_module() finds them. Each runs in
+// its own process (process.hpp). A module in trouble fails for its callers.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,16 @@
 
 namespace robosync::module_files {
 
-// How many there can be at a time.
+// The most modules at a time.
 inline constexpr std::size_t kMostFiles = 16;
 
 struct Loaded {
   const robosync_description* description = nullptr;  // until the file is loaded again
   std::size_t number = 0;
-  std::string why_not;  // where there is no description
+  std::string why_not;  // if there is no description
 };
 
-// Loads a file, or finds it loaded, if it is as it was.
+// Loads a file, or finds the loaded module if the file has not changed.
 [[nodiscard]] Loaded load(const std::string& path);
 
 // What has happened to modules since they were loaded: "FILE: it …".

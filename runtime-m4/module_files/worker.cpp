@@ -1,6 +1,6 @@
-// The module's state, scratch and outputs end where a page ends behind which nothing may be touched, and what lies before them is
-// looked at after each call. Its static variables are closed as soon as it is loaded, as the MPU does it on the board. Who touches
-// what is not its own ends in a signal, and `reply` says where that was.
+// The module's state, scratch and outputs end where a page ends, and nothing may touch the next page; what lies before them is
+// checked after each call. Its static variables are closed as soon as it is loaded, as the MPU does on the board. A module that
+// touches what is not its own ends in a signal, and `reply` says where that was.
 #include "runtime-m4/module_files/worker.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 const std::size_t kPage = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 constexpr std::byte kUntouched{0x5a};
 
-// Memory of the module between two pages that are closed.
+// Memory for the module between two inaccessible pages.
 class Cell {
 public:
   [[nodiscard]] bool make() {
@@ -32,7 +32,7 @@ public:
     page_ = static_cast<std::byte*>(pages) + kPage;
     return mprotect(page_, kPage, PROT_READ | PROT_WRITE) == 0;
   }
-  // `bytes` of it, aligned to 8, and as near to the closed page as that allows; at most a page.
+  // `bytes` of it, aligned to 8, and as close to the second of these pages as that allows; at most a page.
   std::byte* place(std::size_t bytes, std::byte holds) {
     begin_ = kPage - (bytes + 7) / 8 * 8;
     end_ = begin_ + bytes;
@@ -61,7 +61,7 @@ struct Area {
   bool has(std::uintptr_t address) const { return begin <= address && address < end; }
 };
 
-// One to a process: the handler of signals has to find it.
+// One per process: the signal handler must find it.
 struct Worker {
   int line = -1;
   const Request* request = nullptr;
@@ -100,7 +100,7 @@ void on_fault(int signal, siginfo_t* what, void*) {
   end(came_of(signal, reinterpret_cast<std::uintptr_t>(what->si_addr)));
 }
 
-// On a stack of its own: the module's may be at its end.
+// On its own stack: the module's may have overflowed.
 bool watch_faults() {
   alignas(16) static std::byte stack[16 * 1024];
   stack_t own{};
@@ -114,7 +114,7 @@ bool watch_faults() {
   return watches(SIGSEGV) && watches(SIGBUS) && watches(SIGFPE) && watches(SIGILL);
 }
 
-// --- what it says of itself ---
+// --- what it says about itself ---
 
 void copy_text(std::span<char> into, const char* text) {
   if (text == nullptr) end(Came::incomplete);
@@ -186,7 +186,7 @@ void describe() {
 
 // --- loading ---
 
-// The parts of a loaded file that it may write to are closed, now that the loader is done with them.
+// Closes the parts of a loaded file that can be written to, now that the loader is done with them.
 int close_statics(dl_phdr_info* file, std::size_t, void* base) {
   if (file->dlpi_addr != *static_cast<const ElfW(Addr)*>(base)) return 0;
   for (std::size_t i = 0; i < file->dlpi_phnum; ++i) {
@@ -232,7 +232,7 @@ void measure_sizes() {
   reply.sizes.cost = self.module->cost(config);
 }
 
-// Nobody goes on with a module whose sizes are more than the interface allows: rsc has refused it.
+// A module whose sizes exceed what the interface allows gets no further: rsc has refused it.
 std::byte* place_state() {
   const std::size_t bytes = std::min<std::size_t>(self.reply->sizes.state, ROBOSYNC_MOST_BYTES);
   std::byte* const state = self.state.place(bytes, std::byte{0});

@@ -1,4 +1,4 @@
-// The process of one module: what runs in it.
+// The process of one module: the code that runs in it.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace robosync::module_files {
 
-// Loads `path`, whose module is `name`, and answers a byte on `line` by one, whenever what was asked for lies in `reply`, until
-// the line is closed. `request` cannot be written to. In a process that has nothing else to do and no other file open.
+// Loads `path`, whose module is `name`. Then answers each byte on `line` with a byte, once the result is in `reply`, until
+// the line is closed. `request` is read-only. For a process that has nothing else to do and no other file open.
 [[noreturn]] void work(const std::string& path, const std::string& name, int line,
                        const Request& request, Reply& reply);
 

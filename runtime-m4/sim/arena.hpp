@@ -1,4 +1,4 @@
-// Memory on the host for what a board keeps in its arena.
+// Host memory for what a board keeps in its arena.
 #pragma once
 
 #include <cstddef>

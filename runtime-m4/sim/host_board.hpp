@@ -1,6 +1,6 @@
-// The host as a board: PWM pins that remember their last pulse, inputs that nobody asks (what sensors measure, a scenario
-// says), no bus, no line, a watchdog that only counts. It takes programs of all boards, so each pin may be an input, and
-// each bus is there.
+// The host as a board: PWM pins that remember their last pulse, inputs that are never read (a scenario says what sensors
+// measure), no bus, no line, a watchdog that only counts. It takes programs for all boards, so every pin may be an input, and
+// every bus exists.
 #pragma once
 
 #include <cstdint>

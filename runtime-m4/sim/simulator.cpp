@@ -1,6 +1,6 @@
-// See simulator.hpp. Feeds wait in maps, ordered by tick. Those for fed channels go on to the
-// runtime's own queue, as much as it holds at a time; those for sampled ones are looked up by the
-// sampler.
+// See simulator.hpp. Feeds wait in maps, ordered by tick. Those for fed channels move on to the
+// runtime's own queue, as many as it holds at a time; the sampler looks up those for sampled
+// channels.
 #include "runtime-m4/sim/simulator.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace robosync::sim {
 namespace {
 
-// Feeds by channel: what each measures from which time on.
+// Feeds by channel: what each one measures from which time on.
 class HeldValues final : public layers::Sampler {
 public:
   explicit HeldValues(const kernel::Kernel& kernel) : kernel_(kernel) {}
@@ -66,7 +66,7 @@ struct Simulator::Impl {
   }
 
   void load(std::span<const std::byte> bytes) {
-    std::vector<std::uint32_t> image((bytes.size() + 3) / 4);  // aligned as the VM wants it
+    std::vector<std::uint32_t> image((bytes.size() + 3) / 4);  // aligned as the VM needs it
     if (!bytes.empty()) std::memcpy(image.data(), bytes.data(), bytes.size());
     runtime.start();
     verdict = runtime.activate(std::as_bytes(std::span(image)).first(bytes.size()));
@@ -91,7 +91,7 @@ bool Simulator::Impl::is_fed(std::uint8_t channel) const {
   return policy::is_fed(program.sensors[program.channels[channel].sensor]);
 }
 
-// Hands over whole ticks, as many as the runtime's queue has place for. Returns until when to run
+// Hands over whole ticks, as many as fit into the runtime's queue. Returns the time to run until
 // before it can take more. One tick always fits: there is a place for each channel.
 std::uint64_t Simulator::Impl::hand_over(std::uint64_t until_us) {
   std::size_t places = runtime.needs().counts[policy::Count::feeds];

@@ -19,8 +19,8 @@ class Simulator {
 public:
   using Sink = std::function<void(const link::Event&)>;
 
-  // Verifies and activates `image` on a board with `memory`, or else on the one that the preset
-  // names; the program's clock stands at 0. `seed`: of the random numbers, in the place of the image's;
+  // Verifies and activates `image` on a board with `memory`, or else on the board that the preset
+  // names; the program's clock is at 0. `seed` replaces the image's seed of the random numbers;
   // 0: as the image says, or 1.
   Simulator(std::span<const std::byte> image, Sink sink, const policy::BoardMemory& memory,
             std::uint32_t seed = 0);
@@ -31,8 +31,8 @@ public:
 
   // From program time `at_us` on, the sensor behind `channel` measures `value` (thousandths); with
   // kUnknown it fails to measure. On the host every sensor can be fed, whatever its driver: one
-  // that samples finds the value at its next period. Any number of feeds, in any order; of two for
-  // the same channel and tick the last one counts; one for a time that has passed is a feed for
+  // that samples finds the value at its next period. Feeds may come in any number and order. Of two
+  // for the same channel and tick the last one counts; a feed for a time that has passed is one for
   // now.
   void feed(std::uint64_t at_us, std::uint8_t channel, vm::Value value);
 
