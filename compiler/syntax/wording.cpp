@@ -402,8 +402,15 @@ private:
     const TokenKind wanted = edit_.inserted.front().kind;
     const TokenKind kind = tokens_[edit_.at].kind;
     if (wanted == Kinds::NAME && kind >= Kinds::USE) {
-      diagnostics_.report(Code::E0010, quote(edit_.at) + " is a word of RSL and cannot be a name")
-          .label(place(edit_.at), "choose another name");
+      const bool value =
+          edit_.at > 0 && (roles_of(kind) & role::name) != 0 &&
+          is_one_of(tokens_[edit_.at - 1].kind,
+                    {Kinds::TO, Kinds::BY, Kinds::OVER, Kinds::AT, Kinds::FOR, Kinds::MARGIN});
+      diagnostics_
+          .report(Code::E0010, quote(edit_.at) + " is a word of RSL and cannot be a name" +
+                                   (value ? " here" : ""))
+          .label(place(edit_.at),
+                 value ? "write it in brackets, or choose another name" : "choose another name");
       return;
     }
     if (wanted == Kinds::IF && (roles_of(kind) & role::part) != 0) return rule_inside();
