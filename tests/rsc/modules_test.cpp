@@ -74,7 +74,8 @@ TEST_CASE(
     const Outcome ran = run(folder, robot_with(folder, hostile(how)));
     CHECK(ran.exit == 1);
     CHECK_THAT(ran.err, Contains(hostile(how) + ": it "));
-    CHECK_THAT(ran.out, Contains("is stopped by a fault") && !Contains("face SHOW happy"));
+    CHECK_THAT(ran.out,
+               Contains("algorithm own is stopped by a fault") && !Contains("face SHOW happy"));
     CHECK_THAT(ran.out, Contains("SAY skin"));
   }
   const Folder folder;
