@@ -1,6 +1,7 @@
 // Names of what an image only numbers.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "link/messages.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::tool {
@@ -27,6 +29,16 @@ namespace robosync::tool {
 
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(vm::RuleKind::count_)>
     kRuleKinds = {"when", "when/else", "while", "every", "at start", "watch", "safety", "resume"};
+
+// A NUL-padded name from the wire.
+[[nodiscard]] inline std::string text_of(const link::Name& name) {
+  return {name.begin(), std::find(name.begin(), name.end(), '\0')};
+}
+
+// A program's name as it is shown.
+[[nodiscard]] inline std::string text_of(const link::ProgramHash& hash) {
+  return fmt::format("{:02x}", fmt::join(hash, ""));
+}
 
 // "touch at address 0x70 on i2c bus 0"
 [[nodiscard]] inline std::string name_on_bus(std::string_view sensor, unsigned address,

@@ -191,8 +191,9 @@ void read_lints(const json::Value& value, Robot& robot, Diagnostics& diagnostics
 
 using NamedList = std::vector<const Spelled*>;
 
-void check_repeated(const NamedList& names, Diagnostics& diagnostics) {
+bool check_repeated(const NamedList& names, Diagnostics& diagnostics) {
   NameIndex known;
+  const std::size_t before = diagnostics.all().size();
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (known.add(names[i]->text, i)) continue;
     const Spelled& name = *names[i];
@@ -203,6 +204,7 @@ void check_repeated(const NamedList& names, Diagnostics& diagnostics) {
     if (first.text != name.text)
       d.helps("case and `_` make no difference: `" + first.text + "` is the same name");
   }
+  return diagnostics.all().size() == before;
 }
 
 // `touch LEVEL` may be written touchLevel: that must not be another sensor's name.
@@ -221,7 +223,8 @@ void check_joined_names(const Robot& robot, Diagnostics& diagnostics) {
     }
 }
 
-void check_names(const Robot& robot, Diagnostics& diagnostics) {
+// False: a name of the program could mean either of two.
+bool check_names(const Robot& robot, Diagnostics& diagnostics) {
   NamedList sensors;
   NamedList actuators;
   NamedList behaviors;
@@ -233,10 +236,11 @@ void check_names(const Robot& robot, Diagnostics& diagnostics) {
     actuators.push_back(&group.name);
   for (const BehaviorConfig& behavior : robot.behaviors)
     behaviors.push_back(&behavior.name);
-  check_repeated(sensors, diagnostics);
-  check_repeated(actuators, diagnostics);
-  check_repeated(behaviors, diagnostics);
+  const bool sensors_differ = check_repeated(sensors, diagnostics);
+  const bool actuators_differ = check_repeated(actuators, diagnostics);
+  (void)check_repeated(behaviors, diagnostics);
   check_joined_names(robot, diagnostics);
+  return sensors_differ && actuators_differ;
 }
 
 // ---- lists
@@ -312,8 +316,8 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
     robot.seed =
         static_cast<std::uint32_t>(read_whole(*seed, 1, kMaxSeed, diagnostics).value_or(0));
   if (const auto* lints = fields.find("lints")) read_lints(*lints, robot, diagnostics);
-  check_names(robot, diagnostics);
-  robot.complete = names_and_units_are_known(diagnostics, before) &&
+  const bool names_differ = check_names(robot, diagnostics);
+  robot.complete = names_differ && names_and_units_are_known(diagnostics, before) &&
                    names_can_be_written(diagnostics, before) && all_usable &&
                    (fields.find("board") == nullptr || robot.board.has_value());
   return robot;

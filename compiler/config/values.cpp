@@ -156,6 +156,36 @@ std::optional<std::int64_t> read_whole(const json::Value& value, std::int64_t lo
   return std::nullopt;
 }
 
+// Data sheets write addresses in base sixteen, and 29 for 0x29 is an address, too.
+std::optional<std::int64_t> read_address(const json::Value& value, std::int64_t low,
+                                         std::int64_t high, Diagnostics& diagnostics) {
+  if (!is_number_or_text(value, "an address like \"0x48\"", diagnostics)) return std::nullopt;
+  const auto fits = [&](const std::optional<std::int64_t>& number) {
+    return number && *number >= low && *number <= high;
+  };
+  const auto address = parse_whole(value.text);
+  const bool meant_hex = fits(parse_whole("0x" + value.text));  // never of one that has its 0x
+  const std::string hex = "\"0x" + value.text + "\"";
+  if (fits(address)) {
+    if (meant_hex)
+      diagnostics.report(Code::N0001, "this number is the address " + written_like(*address, true))
+          .label(value.span)
+          .helps("if the data sheet says 0x" + value.text + ", write " + hex);
+    return address;
+  }
+  Diagnostic& d = diagnostics
+                      .report(address ? Code::E0205 : Code::E0204,
+                              "this must be an address from " + written_like(low, true) + " to " +
+                                  written_like(high, true))
+                      .label(value.span);
+  if (meant_hex) {
+    d.helps("write " + hex).fix(value.span, hex, Applicability::likely);
+  } else if (!value.text.starts_with("0x") && !value.text.starts_with("0X")) {
+    d.helps("it is written as data sheets write it: \"" + written_like(high, true) + "\"");
+  }
+  return std::nullopt;
+}
+
 std::optional<vm::Value> read_quantity(const json::Value& value, const Unit& unit,
                                        Diagnostics& diagnostics) {
   const auto measured = read_measured(value, unit, diagnostics);

@@ -16,6 +16,9 @@ namespace robosync::compiler {
 [[nodiscard]] std::optional<std::string> read_text(const json::Value& value,
                                                    Diagnostics& diagnostics);
 
+// Of a device on an I2C bus.
+[[nodiscard]] std::optional<std::int64_t> read_address(const json::Value& value, std::int64_t low,
+                                                       std::int64_t high, Diagnostics& diagnostics);
 // 5, "5", "0x48": from `low` to `high`.
 [[nodiscard]] std::optional<std::int64_t> read_whole(const json::Value& value, std::int64_t low,
                                                      std::int64_t high, Diagnostics& diagnostics);

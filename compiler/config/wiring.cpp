@@ -231,7 +231,7 @@ ChipWiring WiringReader::read_chip(Fields& fields) {
   const auto* enable = fields.require("enable", what);
   check_bus(fields, {chip.bus, 0});
   if (address == nullptr || channel == nullptr || enable == nullptr) return wiring;
-  const auto place = read_whole(*address, vm::kFirstChipAddress, vm::kLastAddress, diagnostics_);
+  const auto place = read_address(*address, vm::kFirstChipAddress, vm::kLastAddress, diagnostics_);
   const auto output = read_whole(*channel, 0, vm::kChipChannels - 1, diagnostics_);
   const auto pin = read_whole(*enable, 0, UINT8_MAX, diagnostics_);
   if (!place || !output || !pin) return wiring;
@@ -307,7 +307,7 @@ Wiring WiringReader::read_display(Fields& fields, const WiringType& type) {
   const auto* address = fields.require("address", "an " + fields.find("device")->text);
   if (address == nullptr) return wiring;
   const auto place =
-      read_whole(*address, vm::kFirstDisplayAddress, vm::kLastDisplayAddress, diagnostics_);
+      read_address(*address, vm::kFirstDisplayAddress, vm::kLastDisplayAddress, diagnostics_);
   if (!place) return wiring;
   wiring.place = static_cast<std::uint16_t>(*place);
   const auto [entry, added] =
@@ -429,7 +429,7 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
   if (type.address) {
     if (const auto* address = fields.require("address", what))
       wiring.place = static_cast<std::uint16_t>(
-          read_whole(*address, vm::kFirstAddress, vm::kLastAddress, diagnostics_)
+          read_address(*address, vm::kFirstAddress, vm::kLastAddress, diagnostics_)
               .value_or(vm::kFirstAddress));
   } else if (type.pin) {
     read_pins(fields, two_pins, what, wiring);

@@ -84,7 +84,8 @@ std::vector<ir::Command> Commands::translate(const ast::Command& command,
     Diagnostics& here = each.empty() ? diagnostics_ : repeated;
     auto result = for_actuator(actuator, command, *given, here);
     for (const Diagnostic& d : repeated.all())
-      if (d.code != Code::N0002) diagnostics_.report(d.code, d.message) = d;
+      if (d.code != Code::N0002 && d.code != Code::W0221)
+        diagnostics_.report(d.code, d.message) = d;
     if (!result) return {};
     each.push_back(std::move(*result));
   }
@@ -449,6 +450,7 @@ std::optional<ir::Command> Commands::for_actuator(std::size_t actuator, const as
   }
   if (!good || says_twice(to, given, result) || repeats_nothing(to, given, result))
     return std::nullopt;
+  warn_of_a_sweep(to, given, result);
   return result;
 }
 

@@ -122,6 +122,8 @@ private:
   static bool repeats_nothing(const Recipient& to, const std::vector<Given>& given,
                               const ir::Command& result);
   static bool goes_two_ways(const Recipient& to, const std::vector<Given>& given);
+  static void warn_of_a_sweep(const Recipient& to, const std::vector<Given>& given,
+                              const ir::Command& result);
   static void help_with_files(const Recipient& to, Diagnostic& d);
   Typed evaluate_number(const ast::Argument& argument);
   [[nodiscard]] bool is_known_word(std::string_view word) const;  // of any actuator

@@ -98,6 +98,22 @@ bool Commands::goes_two_ways(const Recipient& to, const std::vector<Given>& give
   return true;
 }
 
+// `MOVE arm UP`, which drivers take for `MOVE arm`.
+void Commands::warn_of_a_sweep(const Recipient& to, const std::vector<Given>& given,
+                               const ir::Command& result) {
+  const auto way = giver(to.actuator, given, vm::Param::direction);
+  if (!way || !to.actuator.sweeps || to.verb.action != vm::Action::move ||
+      is_given(result, vm::Param::to) || is_given(result, vm::Param::by))
+    return;
+  const auto& word = std::get<ast::Word>(given[*way].argument->value).name;
+  to.diagnostics
+      .report(Code::W0221, word.shown() + " does not say how far: " + to.actuator.name.shown() +
+                               " sweeps over its whole range and back")
+      .label(word.span)
+      .helps("so far from here: `" + std::string(word.text) + " BY 20deg`; to a place: `TO 20deg`")
+      .helps("if a sweep is meant, leave " + word.shown() + " out");
+}
+
 // A way to a place is gone once, a strength kept up once: drivers repeat what has no end of its own, sweeps and blinks.
 bool Commands::repeats_nothing(const Recipient& to, const std::vector<Given>& given,
                                const ir::Command& result) {

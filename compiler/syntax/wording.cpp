@@ -168,7 +168,7 @@ private:
     const TokenKind kind = edit_.inserted.front().kind;
     if (kind == Kinds::END) return not_closed(1);
     if (kind == Kinds::NEWLINE) return line_goes_on();
-    if (kind == Kinds::TIMES && bare_brackets()) return;
+    if ((kind == Kinds::TIMES && bare_brackets()) || then_for_do(kind)) return;
     const std::string what = what_is_missing(kind, *edit_.expected);
     const std::string where = after(edit_.at);
     const bool first = where.empty() && edit_.at < tokens_.size();
@@ -402,23 +402,43 @@ private:
     const TokenKind wanted = edit_.inserted.front().kind;
     const TokenKind kind = tokens_[edit_.at].kind;
     if (wanted == Kinds::NAME && kind >= Kinds::USE) {
-      diagnostics_.report(Code::E0010, quote(edit_.at) + " is a word of RSL and cannot be a name")
-          .label(place(edit_.at), "choose another name");
+      const bool value =
+          edit_.at > 0 && (roles_of(kind) & role::name) != 0 &&
+          is_one_of(tokens_[edit_.at - 1].kind,
+                    {Kinds::TO, Kinds::BY, Kinds::OVER, Kinds::AT, Kinds::FOR, Kinds::MARGIN});
+      diagnostics_
+          .report(Code::E0010, quote(edit_.at) + " is a word of RSL and cannot be a name" +
+                                   (value ? " here" : ""))
+          .label(place(edit_.at),
+                 value ? "write it in brackets, or choose another name" : "choose another name");
       return;
     }
     if (wanted == Kinds::IF && (roles_of(kind) & role::part) != 0) return rule_inside();
-    if (kind == Kinds::THEN && wanted == Kinds::DO && asks_before(edit_.at)) {
-      diagnostics_.report(Code::E0001, "a line that asks ends with DO in RSL, not with THEN")
-          .label(place(edit_.at))
-          .fix(place(edit_.at), "DO", Applicability::likely);  // it may begin a second condition
-      return;
-    }
+    if (then_for_do(wanted)) return;
     if (edit_.at == failure_.stopped_at) return unexpected();
     Diagnostic& message =
         diagnostics_.report(Code::E0001, found(edit_.at) + " does not fit here" + after(edit_.at));
     message.label(place(edit_.at), what_is_missing(wanted, {}) + " would");
     if (wanted >= Kinds::USE) message.fix(place(edit_.at), plain(wanted), Applicability::likely);
     show_line(message, edit_.at, failure_.expected);
+  }
+
+  // A THEN in place of DO, or in front of one. It may begin a second condition.
+  bool then_for_do(TokenKind wanted) {
+    const std::size_t at = edit_.at;
+    if (wanted != Kinds::DO || at == 0 || tokens_[at].kind != Kinds::THEN || !asks_before(at))
+      return false;
+    std::size_t next = at + 1;
+    while (next < tokens_.size() && tokens_[next].kind == Kinds::NEWLINE)
+      ++next;
+    const bool has_do = next < tokens_.size() && tokens_[next].kind == Kinds::DO;
+    Span then = place(at);
+    Diagnostic& message =
+        diagnostics_.report(Code::E0001, "a line that asks ends with DO in RSL, not with THEN")
+            .label(then);
+    if (has_do) then.begin = tokens_[at - 1].span.end;
+    message.fix(then, has_do ? "" : "DO", Applicability::likely);
+    return true;
   }
 
   // Is this still the line that asks: WHEN, WHILE, IF?
@@ -429,7 +449,7 @@ private:
            is_one_of(tokens_[at - 1].kind, {Kinds::WHEN, Kinds::WHILE, Kinds::IF, Kinds::ELSE_IF});
   }
   static bool begins_something(TokenKind kind) {
-    return kind == Kinds::DO || kind == Kinds::ELSE || kind == Kinds::END ||
+    return is_one_of(kind, {Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF, Kinds::END}) ||
            (kind != Kinds::THEN && (roles_of(kind) & (role::opens | role::statement)) != 0);
   }
 

@@ -33,6 +33,26 @@ Json program(std::uint32_t bytes, const link::ProgramHash& hash) {
   return {{"hash", text_of(hash)}, {"bytes", bytes}};
 }
 
+// To which `rsc rollback` goes.
+struct Other {
+  std::uint32_t bytes;  // 0: none
+  const link::ProgramHash& hash;
+};
+
+Other other_of(const link::Kept& kept) {
+  if (kept.state == Keeping::kept) return {kept.previous_bytes, kept.previous_hash};
+  return {kept.kept_bytes, kept.kept_hash};
+}
+
+std::string why_none(const link::Kept& kept) {
+  if (kept.state == Keeping::kept && kept.given_up_hash != link::ProgramHash{})
+    return fmt::format(
+        "the board has gone back by itself from program {}, which did not stand its trial, and "
+        "keeps none besides the one that runs",
+        text_of(kept.given_up_hash));
+  return "the board has kept no program before this one";
+}
+
 link::Kept when_read(Client& client) {
   const auto give_up = client.now() + kReading;
   link::Kept kept = client.kept();
@@ -77,6 +97,13 @@ std::string keeping_text(const link::Kept& kept) {
   return "?";
 }
 
+std::string rollback_text(const link::Kept& kept) {
+  const Other other = other_of(kept);
+  return other.bytes == 0
+             ? "to none: " + why_none(kept)
+             : fmt::format("to program {} ({} bytes)", text_of(other.hash), other.bytes);
+}
+
 // The board says `kept` of what runs, which is the kept program then.
 bool has_gone_back(const link::Kept& kept, const link::ProgramHash& uploaded) {
   return kept.state == Keeping::kept && kept.kept_hash != uploaded;
@@ -105,6 +132,7 @@ Json keeping_json(const link::Kept& kept) {
               {"goes_back", kept.goes_back != 0}};
   const bool none = kept.given_up_hash == link::ProgramHash{};
   object["given_up"] = none ? Json(nullptr) : Json(text_of(kept.given_up_hash));
+  object["rollback"] = program(other_of(kept).bytes, other_of(kept).hash);
   return object;
 }
 
@@ -127,12 +155,8 @@ link::HelloReply roll_back(Client& client) {
   const link::Kept before = when_read(client);
   if (before.state == Keeping::no_store)
     throw Failure(Exit::program, "this board keeps no programs: there is none to go back to");
-  const bool trial = before.state != Keeping::kept;
-  const std::uint32_t bytes = trial ? before.kept_bytes : before.previous_bytes;
-  const link::ProgramHash& hash = trial ? before.kept_hash : before.previous_hash;
-  if (bytes == 0)
-    throw Failure(Exit::program,
-                  "the board has kept no program before this one: upload the one you want");
+  const auto [bytes, hash] = other_of(before);
+  if (bytes == 0) throw Failure(Exit::program, why_none(before) + ": upload the one you want");
   client.roll_back(hash);
   when_read(client);
   const link::HelloReply board = client.hello();

@@ -18,6 +18,8 @@ namespace robosync::tool {
 [[nodiscard]] bool has_gone_back(const link::Kept& kept, const link::ProgramHash& uploaded);
 // A thread of it faulted, or a SAFETY rule tripped.
 [[nodiscard]] bool has_failed_trial(const link::Kept& kept, const link::ProgramHash& uploaded);
+// Where `rsc rollback` goes, or why nowhere.
+[[nodiscard]] std::string rollback_text(const link::Kept& kept);
 [[nodiscard]] nlohmann::ordered_json keeping_json(const link::Kept& kept);
 
 // Waits until the trial of the running program is over.

@@ -12,6 +12,7 @@
 
 #include "rsc/device/client.hpp"
 #include "rsc/device/transport.hpp"
+#include "rsc/names.hpp"
 
 namespace robosync::tool {
 
@@ -54,16 +55,6 @@ struct Place {
   auto session = std::make_unique<Session>(place.port);
   session->client.use_key(place.key);
   return session;
-}
-
-// A NUL-padded name from the wire.
-[[nodiscard]] inline std::string text_of(const link::Name& name) {
-  return {name.begin(), std::find(name.begin(), name.end(), '\0')};
-}
-
-// A program's name as it is shown.
-[[nodiscard]] inline std::string text_of(const link::ProgramHash& hash) {
-  return fmt::format("{:02x}", fmt::join(hash, ""));
 }
 
 }  // namespace robosync::tool

@@ -69,9 +69,7 @@ void Watch::learn_source() {
 }
 
 void Watch::learn_threads() {
-  names_.threads.clear();
-  for (const link::ThreadInfo& thread : session_->client.threads())
-    names_.threads.push_back(text_of(thread.name));
+  names_.threads = session_->client.threads();
 }
 
 void Watch::introduce() {
@@ -181,9 +179,7 @@ void Watch::tell_event(const Message& message) {
   // one is named.
   if (event.kind == link::EventKind::priority || event.kind == link::EventKind::lowered)
     names_.threads.clear();
-  const bool names_thread =
-      event.kind == link::EventKind::fault || event.kind == link::EventKind::deadline;
-  if (names_thread && names_.threads.empty()) learn_threads();
+  if (names_thread(event) && names_.threads.empty()) learn_threads();
   for (Viewer* const viewer : viewers_)
     viewer->event(event, names_);
 }

@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "rsc/names.hpp"
 #include "rsc/quantity.hpp"
+#include "runtime-m4/policy/standing.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -210,8 +212,20 @@ bool EventReader::is_carried_out() const {
   return known;
 }
 std::string EventReader::thread_name() const {
-  return event_.subject < names_.threads.size() ? names_.threads[event_.subject]
+  return event_.subject < names_.threads.size() ? text_of(names_.threads[event_.subject].name)
                                                 : fmt::format("thread {}", event_.subject);
+}
+
+// Rules outside a BEHAVIOR have no name of their own.
+std::string EventReader::thread_words() const {
+  constexpr std::array<std::string_view, policy::kCategories> kWhose = {
+      "", "sensor ", "algorithm ", "", "behaviour ", "actuator ", ""};
+  const std::string name = thread_name();
+  if (event_.subject >= names_.threads.size()) return name;
+  const std::size_t category = names_.threads[event_.subject].category;
+  const std::string_view whose = category < kWhose.size() ? kWhose[category] : "";
+  return whose == "behaviour " && name == "rule" ? "a rule outside a BEHAVIOR"
+                                                 : std::string(whose) + name;
 }
 
 std::string EventReader::text() const {

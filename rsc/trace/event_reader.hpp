@@ -84,6 +84,7 @@ public:
   // Is the parameter of a command a value for such a place?
   bool is_said(std::size_t param) const;
   std::string thread_name() const;
+  std::string thread_words() const;  // "behaviour shy"
   // The text of LOG and ALERT, with the values in its {} places.
   std::string text() const;
 

@@ -10,6 +10,7 @@
 #include "rsc/failure.hpp"
 #include "rsc/timing.hpp"
 #include "rsc/trace/time_units.hpp"
+#include "rsc/trace/trace_format.hpp"
 #include "runtime-m4/sim/simulator.hpp"
 
 namespace robosync::tool {
@@ -37,10 +38,15 @@ std::optional<std::uint8_t> channel_of(const vm::Image& image, const ChannelName
 
 Recording record(const Program& program, const compiler::test_plan::TestPlan& plan,
                  const compiler::test_plan::PlannedTest& test) {
-  Recording recording{&program.image(), &program.origin(), &plan, &test, {}};
+  Recording recording{&program.image(), &program.origin(), &plan, &test, {}, {}};
   const std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
-  const auto take = [&recording](const link::Event& event) { recording.events.push_back(event); };
+  const sim::Simulator* robot = nullptr;
+  const auto take = [&](const link::Event& event) {
+    recording.events.push_back(event);
+    if (names_thread(event) && recording.threads.empty()) recording.threads = robot->threads();
+  };
   sim::Simulator simulator(uploaded, take, program.board(), test.seed.value_or(kTestSeed));
+  robot = &simulator;
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
     throw Failure(Exit::program,
                   fmt::format("the board would refuse the program: {}",

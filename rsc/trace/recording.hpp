@@ -8,6 +8,7 @@
 #include "compiler/test_plan/evaluate.hpp"
 #include "compiler/test_plan/plan.hpp"
 #include "link/events.hpp"
+#include "link/messages.hpp"
 #include "rsc/program.hpp"
 
 namespace robosync::tool {
@@ -17,7 +18,8 @@ struct Recording {
   const Origin* origin = nullptr;
   const compiler::test_plan::TestPlan* plan = nullptr;
   const compiler::test_plan::PlannedTest* test = nullptr;
-  std::vector<link::Event> events;  // in the order they happened
+  std::vector<link::Event> events;        // in the order they happened
+  std::vector<link::ThreadInfo> threads;  // when the first event named one; else empty
 };
 
 // `program` and `plan` must outlive the result. Throws Failure (program) when the robot refuses the

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "link/events.hpp"
+#include "link/messages.hpp"
 #include "rsc/program.hpp"
 #include "vm/image.hpp"
 
@@ -14,9 +15,14 @@ namespace robosync::tool {
 // that it does not have, the number itself is shown.
 struct TraceNames {
   const vm::Image* image = nullptr;
-  std::vector<std::string> threads;  // by the kernel's index; may be empty
-  const Origin* origin = nullptr;    // what the source says of names, where it is known
+  std::vector<link::ThreadInfo> threads;  // by rank; may be empty
+  const Origin* origin = nullptr;         // what the source says of names, where it is known
 };
+
+// Does the event name a thread by its rank?
+[[nodiscard]] inline bool names_thread(const link::Event& event) {
+  return event.kind == link::EventKind::fault || event.kind == link::EventKind::deadline;
+}
 
 // One JSON object without newline: t_us, step, event, names, values, source line.
 [[nodiscard]] std::string trace_json(const link::Event& event, const TraceNames& names);

@@ -159,9 +159,9 @@ std::string other_words(const EventReader& reader) {
     case EventKind::alert:
       return fmt::format("ALERT: {}", reader.text());
     case EventKind::fault:
-      return fmt::format("{} is stopped by a fault", reader.thread_name());
+      return fmt::format("{} is stopped by a fault", reader.thread_words());
     case EventKind::deadline:
-      return fmt::format("{} is late by {} us", reader.thread_name(), reader.value(0));
+      return fmt::format("{} is late by {} us", reader.thread_words(), reader.value(0));
     case EventKind::lowered:
       return fmt::format(
           "{} runs longer than its module declares: it ranks below all behaviours now",

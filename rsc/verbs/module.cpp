@@ -62,6 +62,16 @@ Finding try_cost(const std::string& source, const std::string& file, const WorkF
       ""};
 }
 
+// Messages show the one, robot.json names the other.
+void note_another_name(const std::string& file) {
+  const std::string named = fs::path(file).stem().string();
+  const robosync_description* const description = module_files::load(file).description;
+  if (description != nullptr && description->name != named)
+    std::cout << fmt::format(
+        "note    it calls itself `{}`, and its file is `{}`: give both one name\n",
+        description->name, named);
+}
+
 // True when all is kept.
 bool check(const std::string& file, const std::optional<std::string>& source,
            const WorkFolder& folder) {
@@ -71,6 +81,7 @@ bool check(const std::string& file, const std::optional<std::string>& source,
     fine = fine && finding.broken.empty();
   }
   if (!fine) return false;
+  note_another_name(file);
   if (!source || !can_count()) {
     std::cout << fmt::format(
         "not tried: what it costs, and whether it needs floating point; that needs {}\n",

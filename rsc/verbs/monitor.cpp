@@ -12,6 +12,7 @@
 #include "rsc/device/printer.hpp"
 #include "rsc/device/saved_uploads.hpp"
 #include "rsc/device/watch.hpp"
+#include "rsc/failure.hpp"
 #include "rsc/output.hpp"
 #include "rsc/screen/screen.hpp"
 #include "rsc/timeline/page_recorder.hpp"
@@ -39,6 +40,9 @@ std::unique_ptr<Viewer> view_of(const MonitorOptions& options) {
 }
 
 void monitor(const MonitorOptions& options) {
+  if (!options.how.config.empty() && options.upload.empty())
+    throw Failure(Exit::usage,
+                  "--config goes with --upload FILE: it says what that is compiled for");
   check_outputs({options.record, options.html}, {options.upload});
   const Place place{options.port, options.key};
   auto session = open_session(place);

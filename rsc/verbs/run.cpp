@@ -89,8 +89,11 @@ public:
         digest_(program.image()),
         timeline_(program, names_) {}
 
+  void watch(const sim::Simulator& simulator) { simulator_ = &simulator; }
+
   void see(const link::Event& event) {
     kept_.see(event);
+    if (names_thread(event)) names_.threads = simulator_->threads();  // as they rank now
     if (event.time_us > end_us_) return;
     const std::string json = trace_json(event, names_) + "\n";
     if (!options_.trace.empty() || !options_.record.empty()) trace_ += json;
@@ -120,6 +123,7 @@ private:
   const Program& program_;
   Kept& kept_;
   std::uint64_t end_us_;
+  const sim::Simulator* simulator_ = nullptr;  // none of its threads runs before it is there
   TraceNames names_;
   Digest digest_;
   std::string trace_;
@@ -141,6 +145,7 @@ void run(const RunOptions& options) {
   RunOutput output(options, program, kept, end_us);
   const auto see = [&](const link::Event& event) { output.see(event); };
   sim::Simulator simulator(uploaded, see, program.board(), options.how.seed);
+  output.watch(simulator);
   if (const vm::Verdict verdict = simulator.verdict(); !verdict.ok()) {
     throw Failure(Exit::program,
                   fmt::format("{}: the board would refuse it: {}", options.file,

@@ -80,7 +80,8 @@ private:
   void print_failure(const TestResult& result) const {
     print_step(result.failed->span, result.reason);
     const std::vector<link::Event> events = around(result);
-    const TraceNames names{result.recording.image, {}, result.recording.origin};
+    const TraceNames names{result.recording.image, result.recording.threads,
+                           result.recording.origin};
     std::cout << (events.empty() ? "    nothing happened\n" : "    what happened:\n");
     for (std::size_t i = 0; i < events.size(); ++i) {
       const bool left_out = i >= kTimelineEnds && i + kTimelineEnds < events.size();
@@ -112,7 +113,8 @@ private:
               {"ok", result.failed == nullptr}};
     if (result.failed != nullptr) {
       Json timeline = Json::array();
-      const TraceNames names{result.recording.image, {}, result.recording.origin};
+      const TraceNames names{result.recording.image, result.recording.threads,
+                             result.recording.origin};
       for (const link::Event& event : around(result))
         timeline.push_back(Json::parse(trace_json(event, names)));
       test["failure"] = {{"line", line(result.failed->span)},

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/layers/thread_info.hpp"
 #include "runtime-m4/runtime.hpp"
 #include "runtime-m4/sim/arena.hpp"
 #include "runtime-m4/sim/host_board.hpp"
@@ -146,6 +147,13 @@ link::Status Simulator::status() const {
   link::Status status{};
   impl_->runtime.fill_status(status);
   return status;
+}
+
+std::vector<link::ThreadInfo> Simulator::threads() const {
+  std::vector<link::ThreadInfo> threads;
+  for (const kernel::Thread* const thread : impl_->kernel.threads())
+    threads.push_back(layers::thread_info(impl_->kernel, *thread, threads.size()));
+  return threads;
 }
 
 }  // namespace robosync::sim

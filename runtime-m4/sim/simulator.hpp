@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "link/events.hpp"
 #include "link/messages.hpp"
@@ -40,6 +41,7 @@ public:
   void run_until(std::uint64_t until_us);
 
   link::Status status() const;
+  std::vector<link::ThreadInfo> threads() const;  // by rank, as events name them
 
 private:
   struct Impl;

@@ -39,23 +39,29 @@ void ProgramStore::read_slot(Program program, std::uint32_t slot, std::span<std:
 
 void ProgramStore::write(std::span<const std::byte> image, Program what) {
   written_ = {};
-  next_.kept = what;
+  writes_ = what;
+  from_ = image;
+  if (record_.previous.bytes == 0) return write_image();
+  write_record(Task::forget, record_.kept, {}, record_.slot);
+}
+
+void ProgramStore::write_image() {
   task_ = Task::write;
-  transfer_.write(layout().slot_at(1 - record_.slot), image);
+  transfer_.write(layout().slot_at(1 - record_.slot), from_);
 }
 
 void ProgramStore::keep_written() {
-  write_record(written_, record_.kept, 1 - record_.slot);
+  write_record(Task::record, written_, record_.kept, 1 - record_.slot);
 }
 
 void ProgramStore::swap() {
-  write_record(record_.previous, record_.kept, 1 - record_.slot);
+  write_record(Task::record, record_.previous, record_.kept, 1 - record_.slot);
 }
 
-void ProgramStore::write_record(Program kept, Program previous, std::uint32_t slot) {
+void ProgramStore::write_record(Task why, Program kept, Program previous, std::uint32_t slot) {
   next_ = {Record::kMagic, record_.number + 1, kept, previous, slot, {}, 0};
   next_.crc32 = vm::crc32(std::as_bytes(std::span(&next_, 1)).first(offsetof(Record, crc32)));
-  task_ = Task::record;
+  task_ = why;
   transfer_.write(layout().record_at(next_.number % StoreLayout::kRecords),
                   std::as_bytes(std::span(&next_, 1)));
 }
@@ -68,11 +74,12 @@ Work ProgramStore::work() {
   there_ = transfer_.answered();
   if (!there_) return Work::ended;
   if (task == Task::open) look_at_record();
-  if (task == Task::write) written_ = next_.kept;
-  if (task == Task::record) {
+  if (task == Task::write) written_ = writes_;
+  if (task == Task::record || task == Task::forget) {
     record_ = next_;
     written_ = {};
   }
+  if (task == Task::forget) write_image();
   return task_ == Task::none ? Work::ended : Work::some;
 }
 

@@ -33,9 +33,10 @@ public:
   bool open();  // first of all: reads the records; false without a store
   void read_kept(std::span<std::byte> room);  // into the beginning of `room`
   void read_previous(std::span<std::byte> room);
-  void write(std::span<const std::byte> image, Program what);  // in place of the previous one
-  void keep_written();                                         // from now on that is the kept one
-  void swap();  // the previous is the kept one, and the other way round
+  // In place of the previous one, which the record names no more before that: what has not stood its trial is never called it.
+  void write(std::span<const std::byte> image, Program what);
+  void keep_written();  // from now on that is the kept one
+  void swap();          // the previous is the kept one, and the other way round
   void give_up() { transfer_.give_up(); }
 
   Work work();  // the next piece of it
@@ -49,7 +50,7 @@ public:
   std::span<const std::byte> image() const { return room_; }
 
 private:
-  enum class Task : std::uint8_t { none, open, read, write, record };
+  enum class Task : std::uint8_t { none, open, read, forget, write, record };
 
   struct Record {
     static constexpr std::uint32_t kMagic = 0x3250'5352;  // "RSP2"
@@ -65,7 +66,8 @@ private:
   StoreLayout layout() const { return StoreLayout(*store_); }
   void read_record();
   void read_slot(Program program, std::uint32_t slot, std::span<std::byte> room);
-  void write_record(Program kept, Program previous, std::uint32_t slot);
+  void write_image();
+  void write_record(Task why, Program kept, Program previous, std::uint32_t slot);
   void look_at_record();
 
   boards::Store* store_;
@@ -73,6 +75,9 @@ private:
   bool there_ = false;
   Record record_{};  // the one that counts; number 0: none
   Program written_{};
+
+  Program writes_{};  // … by it, from here:
+  std::span<const std::byte> from_;
 
   Task task_ = Task::none;
   std::span<std::byte> room_;

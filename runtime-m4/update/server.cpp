@@ -8,36 +8,13 @@
 #include <string_view>
 
 #include "link/wire.hpp"
+#include "runtime-m4/layers/thread_info.hpp"
 #include "vm/opcode.hpp"
 
 namespace robosync::update {
 namespace {
 
 using link::MessageType;
-
-link::Name padded(std::string_view text) {
-  link::Name name{};
-  std::copy_n(text.begin(), std::min(text.size(), name.size() - 1), name.begin());
-  return name;
-}
-
-link::ThreadInfo describe(const kernel::Kernel& kernel, const kernel::Thread& thread,
-                          std::size_t index) {
-  return {static_cast<std::uint8_t>(index),
-          static_cast<std::uint8_t>(kernel.threads().size()),
-          static_cast<std::uint8_t>(thread.category()),
-          thread.rank(),
-          thread.priority().now,
-          thread.priority().base,
-          static_cast<std::uint16_t>(thread.stack().size()),
-          static_cast<std::uint16_t>(thread.stack_used()),
-          static_cast<std::uint8_t>(kernel.state(thread)),
-          thread.missed(),
-          thread.activations(),
-          kernel.run_time(thread),
-          kernel.clock(),
-          padded(thread.name())};
-}
 
 // Offset, then as much of `image` from there as fits.
 std::size_t fill_image_data(std::span<const std::byte> image, std::uint32_t offset,
@@ -181,8 +158,8 @@ void Server::hello(const link::Frame& frame) {
   answer.protocol = link::kProtocolVersion;
   answer.image_major = vm::kFormatMajor;
   answer.opcode_set = vm::opcode_set_id();
-  answer.board = padded(board_.name());
-  answer.firmware = padded(ROBOSYNC_VERSION);
+  answer.board = layers::padded(board_.name());
+  answer.firmware = layers::padded(ROBOSYNC_VERSION);
   const policy::BoardMemory& memory = runtime_.board_memory();
   answer.arena_begin = memory.arena_begin;
   answer.arena_bytes = memory.arena_bytes;
@@ -418,7 +395,7 @@ bool Server::send_next_thread() {
     listing_threads_ = false;
     return false;
   }
-  const link::ThreadInfo info = describe(kernel_, *threads[next_thread_], next_thread_);
+  const link::ThreadInfo info = layers::thread_info(kernel_, *threads[next_thread_], next_thread_);
   send(MessageType::thread_info, threads_sequence_, link::wire_bytes(info));
   ++next_thread_;
   return true;

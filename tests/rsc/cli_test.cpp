@@ -92,6 +92,7 @@ TEST_CASE("wrong usage is exit 2 and says how it goes") {
                                              {"check", "robot.rsl", "--format", "yaml"},
                                              {"monitor", "--port", "unix:/x", "--duration", "5"},
                                              {"monitor", "--port", "unix:/x", "--duration", "5cm"},
+                                             {"monitor", "--port", "unix:/x", "--config", "r.json"},
                                              {"dump", "a.rsb", "b.rsb"},
                                              {"--nonsense"},
                                              {"info", "--port", "tcp:nowhere"}}) {

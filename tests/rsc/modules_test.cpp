@@ -74,7 +74,8 @@ TEST_CASE(
     const Outcome ran = run(folder, robot_with(folder, hostile(how)));
     CHECK(ran.exit == 1);
     CHECK_THAT(ran.err, Contains(hostile(how) + ": it "));
-    CHECK_THAT(ran.out, Contains("is stopped by a fault") && !Contains("face SHOW happy"));
+    CHECK_THAT(ran.out,
+               Contains("algorithm own is stopped by a fault") && !Contains("face SHOW happy"));
     CHECK_THAT(ran.out, Contains("SAY skin"));
   }
   const Folder folder;
@@ -139,7 +140,8 @@ TEST_CASE("rsc module check holds a module against its own declaration") {
   const auto check = [](const std::string& how) { return rsc({"module", "check", hostile(how)}); };
   const Outcome well = check("well");
   CHECK(well.exit == 0);
-  CHECK_THAT(well.out, Contains("keeps its word") && Contains("not tried: what it costs"));
+  CHECK_THAT(well.out, Contains("keeps its word") && Contains("not tried: what it costs") &&
+                           Contains("it calls itself `hostile`, and its file is `well`"));
   const std::pair<const char*, const char*> wrong[] = {
       {"beyond_state",
        "it touched memory beyond its state, in process() (every 5 ms, with firm 1)"},
@@ -168,6 +170,7 @@ TEST_CASE(
   CHECK(good.exit == 0);
   CHECK_THAT(good.out,
              Contains("it costs no more than it says: ") || Contains("not tried: what it costs"));
+  CHECK_THAT(good.out, !Contains("calls itself"));
   const auto changed = [&](const std::string& from, const std::string& to) {
     std::string text = source;
     REQUIRE(text.find(from) != std::string::npos);

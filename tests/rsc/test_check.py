@@ -185,6 +185,12 @@ class Check(unittest.TestCase):
         self.assertIn("`.3` -> `0.3`?", done.stdout)
         self.assertEqual((self.folder / "robot.rsl").read_text(), RIGHT.replace("> 3", "> 0.3"))
 
+    def test_fix_makes_a_right_program_of_one_that_says_then_and_do(self):
+        program = self.write("robot.rsl", RIGHT.replace(" DO", " THEN\nDO"))
+        done = self.fix("--likely", program, text="y\n")
+        self.assertEqual(done.returncode, 0)
+        self.assertEqual((self.folder / "robot.rsl").read_text(), RIGHT.replace(" DO", "\nDO"))
+
     def test_fix_leaves_a_right_program_alone(self):
         program = self.write("robot.rsl", RIGHT)
         before = (self.folder / "robot.rsl").stat().st_mtime_ns

@@ -28,11 +28,23 @@ Event event(EventKind kind, std::uint16_t subject = 0, std::uint16_t object = 0,
   return result;
 }
 
+link::ThreadInfo thread(std::string_view name, std::uint8_t category) {
+  link::ThreadInfo thread{};
+  std::ranges::copy(name, thread.name.begin());
+  thread.category = category;
+  return thread;
+}
+
+tool::TraceNames names() {
+  return {&program().image(),
+          {thread("safety", 6), thread("step", 3), thread("shy", 4), thread("rule", 4),
+           thread("arm", 5), thread("touch", 1), thread("own", 2), thread("wild", 77)}};
+}
 json as_json(const Event& event) {
-  return json::parse(tool::trace_json(event, {&program().image(), {"safety", "step"}}));
+  return json::parse(tool::trace_json(event, names()));
 }
 std::string as_words(const Event& event) {
-  return tool::trace_line(event, {&program().image(), {"safety", "step"}});
+  return tool::trace_line(event, names());
 }
 
 }  // namespace
@@ -216,6 +228,16 @@ TEST_CASE("threads have their names") {
   CHECK(as_words(event(EventKind::deadline, 1, 0, {1500})) ==
         "   1.020 s  step is late by 1500 us");
   CHECK(as_json(event(EventKind::fault, 9)).at("thread") == "thread 9");
+  CHECK(as_json(event(EventKind::fault, 2)).at("thread") == "shy");
+  for (const auto& [rank, whose] : {std::pair(2, "behaviour shy"),
+                                    {3, "a rule outside a BEHAVIOR"},
+                                    {4, "actuator arm"},
+                                    {5, "sensor touch"},
+                                    {6, "algorithm own"},
+                                    {7, "wild"},
+                                    {8, "thread 8"}})
+    CHECK_THAT(as_words(event(EventKind::fault, static_cast<std::uint16_t>(rank))),
+               Catch::EndsWith(std::string(whose) + " is stopped by a fault"));
 }
 
 TEST_CASE("any event of any image is shown, whatever its numbers") {

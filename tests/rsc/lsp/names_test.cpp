@@ -61,6 +61,11 @@ TEST_CASE("words are offered that the grammar takes there") {
   CHECK(has(offered("WHEN touch LEVEL > 3\n|"), "DO"));
   CHECK(has_all(offered("BEHAVIOR b PRIORITY 5\n  |"), {"WHEN", "REMEMBER"}));
   CHECK(!has(offered("BEHAVIOR b PRIORITY 5\n  |"), "DEFINE"));
+  const Words told = offered("WHEN touch LEVEL > 3 DO MOVE left_arm |");
+  CHECK(has_all(told, {"TO", "BY", "OVER", "AT"}));
+  CHECK((!has(told, "START") && !has(told, "FOREVER")));
+  const Words value = offered("WHEN touch LEVEL > 3 DO MOVE left_arm TO |");
+  CHECK((!has(value, "START") && !has(value, "LOG") && !has(value, "RESUME")));
 }
 
 TEST_CASE("a mistake in front of the place does not hide what fits there") {

@@ -2,8 +2,10 @@
 #include "runtime-m4/update/program_store.hpp"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include "rsc/device/keeping.hpp"
+#include "rsc/device/session.hpp"
 #include "tests/runtime-m4/update/kept.hpp"
 #include "vm/identity.hpp"
 
@@ -227,6 +229,64 @@ TEST_CASE("a fault in its trial brings the kept program back, and it is said") {
     CHECK(client.kept().kept_hash == name_of(good));
   }
   CHECK(started(memory) == name_of(good));
+}
+
+TEST_CASE(
+    "what was kept before a program that fails its trial is gone, and nobody says otherwise") {
+  MemoryStore memory(kStoreBytes);
+  const tool::Program first = test::program(3), second = test::program(5), bad = test::program(7);
+  keep(memory, first);
+  keep(memory, second);
+  {
+    Robot robot(boards::kMemory, &memory);
+    robot.run(kMostMs);
+    tool::Client client(robot);
+    CHECK_THAT(tool::rollback_text(client.kept()),
+               Catch::StartsWith("to program " + tool::text_of(name_of(first))));
+    run_on(robot, bad);
+    robot.run(1000);
+    CHECK_THAT(tool::rollback_text(client.kept()),
+               Catch::StartsWith("to program " + tool::text_of(name_of(second))));
+    robot.server.report({});
+    robot.run(kMostMs);
+    const link::Kept kept = client.kept();
+    CHECK(kept.kept_hash == name_of(second));
+    CHECK(kept.previous_bytes == 0);
+    CHECK_THAT(tool::rollback_text(kept),
+               Catch::StartsWith("to none: ") && Catch::Contains(tool::text_of(name_of(bad))));
+    CHECK(tool::keeping_json(kept).at("rollback").is_null());
+    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("gone back by itself") &&
+                                                   Catch::Contains("upload the one you want"));
+    client.roll_back(name_of(first));
+    client.roll_back(name_of(bad));
+    robot.run(kMostMs);
+    CHECK(client.hello().program_hash == name_of(second));
+  }
+  CHECK(started(memory) == name_of(second));
+  Robot again(boards::kMemory, &memory);
+  again.run(kMostMs);
+  CHECK(tool::Client(again).kept().previous_bytes == 0);
+}
+
+TEST_CASE("a cut of the power before its trial is over leaves no program that did not stand it") {
+  const Bytes first = some_image(1, 300), second = some_image(2, 500), third = some_image(3, 401);
+  MemoryStore before(kStoreBytes);
+  {
+    ProgramStore store = test::opened<ProgramStore>(before);
+    keep(store, first);
+    keep(store, second);
+  }
+  for (std::size_t cut = 0; cut <= 448; ++cut) {
+    CAPTURE(cut);
+    MemoryStore memory = before;
+    ProgramStore store = test::opened<ProgramStore>(memory);
+    memory.power_for = cut;
+    store.write(third, named(third));
+    finish(store);
+    ProgramStore again = test::opened<ProgramStore>(memory);
+    REQUIRE(again.kept() == named(second));
+    REQUIRE(again.previous() == (cut < 48 ? named(first) : ProgramStore::Program{}));
+  }
 }
 
 namespace {

@@ -131,6 +131,7 @@ inline commit(new, old, where) {
 #endif
 
 inline write_image() {
+  if :: previous != NONE -> commit(kept, NONE, at) :: else fi;
   atomic { mine = running; slot[FREE] = TORN };
   atomic { slot[FREE] = mine }
 }
