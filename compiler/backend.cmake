@@ -1,5 +1,5 @@
 # The back end: robot.json to a typed robot, tree and robot to a typed program, program to image.
-# What the library is made of travels inside the compiler, so that rsc works from any folder.
+# The library's files are embedded in the compiler, so that rsc works from any folder.
 #   embed(FOLDER SUFFIX HEADER TYPE FUNCTION OUT): see embed_texts.cmake
 function(embed folder suffix header type function out)
   set(script ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/embed_texts.cmake)
@@ -99,7 +99,7 @@ target_sources(robosync_compiler PRIVATE
   codegen/tables.cpp
   codegen/verify_image.cpp)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
-# As of the front end's, what is said of what is wrong.
+# As in the front end, the code that words diagnostics is optimised for size.
 if(NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(sema/condition_lints.cpp sema/misread.cpp sema/unknown_verbs.cpp
     sema/whole_commands.cpp

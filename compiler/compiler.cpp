@@ -1,4 +1,4 @@
-// The passes in their order. Each collects what is wrong; the next runs if its input is usable.
+// The passes in order. Each collects diagnostics; the next runs if its input is usable.
 #include "compiler/compiler.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace robosync::compiler {
 namespace {
 
-// What is not there may be in a module that is not used.
+// An unknown name may be defined in a module that the program does not use.
 Diagnostics offer_modules(const Diagnostics& diagnostics) {
   Diagnostics result;
   for (Diagnostic diagnostic : diagnostics.all()) {
@@ -30,7 +30,7 @@ Diagnostics offer_modules(const Diagnostics& diagnostics) {
   return result;
 }
 
-// That a module's file is not there is said once: an error that shows the place says more.
+// Drops the warning about a missing algorithm file where an error at the same place says more.
 Diagnostics without_warned(const Diagnostics& diagnostics) {
   Diagnostics result;
   for (const Diagnostic& one : diagnostics.all()) {

@@ -1,4 +1,4 @@
-// The compiler as one call: RSL and its configuration in, an image and diagnostics out.
+// The compiler as one call: takes RSL and its configuration, returns an image and diagnostics.
 #pragma once
 
 #include <cstddef>
@@ -21,22 +21,22 @@ struct Reading;  // reading.hpp
 struct Options {
   bool source_lines = true;  // keep the debug section
   bool optimize = true;
-  std::uint32_t seed = 0;  // of the random numbers, in the place of the configuration's; 0: none
-  LintLevels lints{};      // above what robot.json says
+  std::uint32_t seed = 0;  // for random numbers; overrides the configuration's; 0: none
+  LintLevels lints{};      // override those of robot.json
   ModuleReader read_module{};
-  AlgorithmModules algorithms{};  // that robot.json may name
+  AlgorithmModules algorithms{};  // those that robot.json may name
 };
 
 struct Result {
   SourceMap sources;
   Diagnostics diagnostics;
   std::vector<std::byte> image;  // empty when there are errors
-  std::vector<Span> rules;       // where each rule of the image is written
-  WrittenUnits units;            // of what the image names
-  test_plan::TestPlan tests;     // the program's TEST blocks; likewise
-  Board board;                   // that robot.json names, or the default one
+  std::vector<Span> rules;       // where the source of each rule is
+  WrittenUnits units;            // of the names in the image
+  test_plan::TestPlan tests;     // the program's TEST blocks; empty if analysis fails
+  Board board;                   // the one that robot.json names, or the default
   std::shared_ptr<const Reading>
-      reading;  // what editors ask (query/); never null, views of `sources`
+      reading;  // for editors (query/); never null, holds views of `sources`
 };
 
 [[nodiscard]] Result compile(Input program, Input configuration, const Options& options = {});

@@ -1,7 +1,7 @@
-# Writes every file of a folder of the library into one C++ file, as rows of a name and a text:
+# Writes every file of a library folder into one C++ file, as rows of a name and a text:
 #   cmake -DOUT=FILE -DFOLDER=FOLDER -DSUFFIX=rsl|json -DHEADER=… -DTYPE=… -DFUNCTION=… -P embed_texts.cmake
-# HEADER declares the struct TYPE {name, text} and FUNCTION, which gives all rows. The row of a device goes on
-# with what it is found by: {name, text, is it a sensor?, its type, is it the default of its type?}.
+# HEADER declares the struct TYPE {name, text} and FUNCTION, which returns all rows. The row of a device also has the
+# fields it is looked up by: {name, text, is it a sensor?, its type, is it the default of its type?}.
 file(GLOB files ${FOLDER}/*.${SUFFIX})
 list(SORT files)
 set(rows "")

@@ -1,4 +1,4 @@
-# What the compiler tells people: programs and diagnostics in plain English, TEST blocks, and what editors ask.
+# The compiler's output for people: programs and diagnostics in plain English, TEST blocks, and answers to editors.
 find_package(fmt REQUIRED)
 target_sources(robosync_compiler_small PRIVATE
   explain/actuators.cpp

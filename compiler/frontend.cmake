@@ -3,9 +3,9 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(BISON 3.8 REQUIRED)
 find_program(RE2C re2c REQUIRED)
 
-# A conflict in the grammar, or a pattern of the lexer that can never match, stops the build. What Bison writes zeroes the
-# room for the largest of all values whenever it makes an empty one, several times a token: that was a quarter of the
-# time of rsc check, and sed takes it out. Nobody reads that room before a value is made in it.
+# A conflict in the grammar, or a lexer pattern that can never match, stops the build. Bison's code zeroes the storage for
+# the largest value type whenever it constructs an empty value, several times per token. That took a quarter of the time
+# of rsc check, so sed removes it. The storage is never read before a value is constructed in it.
 set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
 file(MAKE_DIRECTORY ${generated}/grammar)
 add_custom_command(
@@ -24,12 +24,12 @@ add_custom_command(
   DEPENDS ${PROJECT_SOURCE_DIR}/grammar/rsl.re
   COMMENT "re2c: grammar/rsl.re"
   VERBATIM)
-# Both libraries include what Bison writes.
+# Both libraries include the header that Bison writes.
 add_custom_target(robosync_grammar DEPENDS ${generated}/grammar/rsl.hpp)
 add_dependencies(robosync_compiler robosync_grammar)
 add_dependencies(robosync_compiler_small robosync_grammar)
 target_include_directories(robosync_compiler_small SYSTEM PRIVATE ${generated})
-# Their style is not ours to mend. Under the sanitizers the parser would compile four times as long with -O1 as with -O0.
+# Their style is not ours to fix. Under the sanitizers the parser takes four times as long to compile with -O1 as with -O0.
 set_source_files_properties(
   ${generated}/grammar/rsl_grammar.cpp ${generated}/grammar/rsl_lexer.cpp
   PROPERTIES COMPILE_OPTIONS "$<IF:$<BOOL:${ROBOSYNC_SANITIZE}>,-O0,-O3>;-Wno-conversion;-Wno-sign-conversion;-Wno-shadow")
@@ -67,10 +67,10 @@ target_sources(robosync_compiler PRIVATE
   syntax/reader.cpp
   syntax/repair.cpp
   syntax/wording.cpp)
-# Public for the tests, which look at tokens. SYSTEM: warnings inside the generated header.
+# Public for the tests, which look at tokens. SYSTEM silences warnings inside the generated header.
 target_include_directories(robosync_compiler SYSTEM PUBLIC $<BUILD_INTERFACE:${generated}>)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
-# What is said of a line that is wrong is worked out seldom, printed at most 20 times, and is long: small code is worth more there.
+# The code that words a mistake is long, runs seldom, and prints at most 20 messages: size matters more than speed there.
 if(NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(
     diagnostics/render_human.cpp diagnostics/render_json.cpp diagnostics/sarif.cpp diagnostics/snippet.cpp

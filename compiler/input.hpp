@@ -1,4 +1,4 @@
-// What is handed to the compiler: texts. It opens no files itself.
+// The compiler's input: texts. It opens no files itself.
 #pragma once
 
 #include <functional>
@@ -8,12 +8,12 @@
 namespace robosync::compiler {
 
 struct Input {
-  std::string name;  // as it shall stand in messages
+  std::string name;  // as messages show it
   std::string text;
 };
 
-// What `USE "file"` in the file called `user` means: the module with the name of its own, the same
-// for the same file. Nothing when it cannot be read.
+// Reads the module that `USE "file"` in the file `user` refers to. The returned name is the same for the same file.
+// Nothing when it cannot be read.
 using ModuleReader =
     std::function<std::optional<Input>(const std::string& user, const std::string& file)>;
 

@@ -24,7 +24,7 @@ std::string_view next_word(std::string_view& text) {
   return word;
 }
 
-// What `# allow W0203` says of the lint.
+// The level that a comment such as `# allow W0203` gives this lint.
 std::optional<LintLevel> level_in(std::string_view comment, Code code) {
   const std::string_view word = next_word(comment);
   if (next_word(comment) != code_name(code)) return std::nullopt;
@@ -34,7 +34,7 @@ std::optional<LintLevel> level_in(std::string_view comment, Code code) {
   return std::nullopt;
 }
 
-// In the comments right above the line that the lint is about.
+// The level in the comments directly above the line that the lint reports.
 std::optional<LintLevel> level_above(const Diagnostic& diagnostic, const SourceMap& sources) {
   if (diagnostic.labels.empty()) return std::nullopt;
   const Span place = diagnostic.labels.front().span;

@@ -1,5 +1,5 @@
-// How much a lint (W0201 …) counts: as robot.json says, above that the command line, and above that a comment in front of
-// the line that it is about: `# allow W0203: the first reading shall choose`.
+// The level of a lint (W0201 …). robot.json sets it; the command line overrides that; a comment above the reported line
+// overrides both: `# allow W0203: the first reading shall choose`.
 #pragma once
 
 #include <map>
@@ -12,10 +12,10 @@ namespace robosync::compiler {
 
 struct LintLevels {
   std::map<Code, LintLevel> levels;
-  bool deny_warnings = false;  // whatever is a warning after that is an error
+  bool deny_warnings = false;  // after that, turns every remaining warning into an error
 };
 
-// Drops the lints that are allowed, and sets the level of those that have another one than usual.
+// Drops the allowed lints and sets the level of those that are configured.
 void apply_lints(Diagnostics& diagnostics, const SourceMap& sources, const Robot* robot,
                  const LintLevels& asked);
 

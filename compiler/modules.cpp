@@ -19,11 +19,11 @@ public:
          const Vocabulary* robot)
       : sources_(sources), read_(read), diagnostics_(diagnostics), robot_(robot) {}
 
-  // Who uses the program itself, as a circle of modules does, has it already.
+  // The program itself counts as loaded: in a cycle, a module may USE it.
   std::vector<Module> load(const ast::Tree& program) {
     loaded_.insert(std::filesystem::path(sources_.file(0).name()).lexically_normal().string());
     add_uses(program, 0);
-    for (std::size_t i = 0; i < modules_.size(); ++i)  // grows while it is walked
+    for (std::size_t i = 0; i < modules_.size(); ++i)  // grows during the loop
       add_uses(*modules_[i].tree, modules_[i].file);
     return std::move(modules_);
   }
@@ -83,7 +83,7 @@ private:
   Diagnostics& diagnostics_;
   const Vocabulary* robot_;
   std::vector<Module> modules_;
-  std::set<std::string> loaded_;  // names of files
+  std::set<std::string> loaded_;  // file names
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// USE: the modules of the library (stdlib/*.rsl, built into the compiler) and the program's own.
+// USE: the library's modules (stdlib/*.rsl, built into the compiler) and the program's own.
 #pragma once
 
 #include <memory>
@@ -14,22 +14,22 @@
 
 namespace robosync::compiler {
 
-struct ModuleText {  // one module as built in
+struct ModuleText {  // one built-in module
   std::string_view name;
   std::string_view text;
 };
 [[nodiscard]] std::span<const ModuleText> module_texts();
 
-// The module that gives a DEFINE or a MOTION of this name; empty when none does.
+// The module that has a DEFINE or a MOTION of this name; empty when none has.
 [[nodiscard]] std::string_view module_with(std::string_view name);
 
 struct Module {
   FileId file = 0;
-  std::unique_ptr<const ast::Tree> tree;  // stays where it is when the list grows
+  std::unique_ptr<const ast::Tree> tree;  // its address stays the same when the list grows
 };
 
-// What `program` uses, and what that uses; each module once. `read` may be empty: then there are no
-// files. What cannot be read is reported where it is used.
+// The modules that `program` uses, directly or through others, each once. If `read` is empty, there are no
+// files. A module that cannot be read is reported at its USE.
 [[nodiscard]] std::vector<Module> load_modules(const ast::Tree& program, SourceMap& sources,
                                                const ModuleReader& read, Diagnostics& diagnostics,
                                                const Vocabulary* robot = nullptr);

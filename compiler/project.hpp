@@ -1,4 +1,4 @@
-// What was compiled, as something that can be asked (query/).
+// A compiled program in the form that query/ works on.
 #pragma once
 
 #include "compiler/compiler.hpp"

@@ -19,7 +19,7 @@ Trees Reading::trees() const {
 
 namespace {
 
-// `rsc run robot.json`: as a program, each of its lines would be a mistake. No line of RSL begins with a bracket.
+// Detects `rsc run robot.json`: read as RSL, every line would be a mistake. No line of RSL begins with a bracket.
 bool is_configuration(const SourceMap& sources, FileId file, Diagnostics& diagnostics) {
   constexpr std::string_view kSpaces = " \t\r\n";
   constexpr std::string_view kJson = ".json";
@@ -42,15 +42,15 @@ bool is_configuration(const SourceMap& sources, FileId file, Diagnostics& diagno
 
 }  // namespace
 
-// What the parsers had to leave out would be missed by name, and what robot.json says wrongly would be measured wrongly:
-// better one true message than ten.
+// Analysis goes on only when both inputs are complete. Names in the parts that the parsers left out would be reported as
+// unknown, and a mistake in robot.json would cause wrong messages about values: better one true message than ten.
 Reading read_all(Input program, Input configuration, const ModuleReader& read_module,
                  const AlgorithmModules& algorithms, SourceMap& sources, Diagnostics& diagnostics) {
   const FileId program_file = sources.add(std::move(program.name), std::move(program.text));
   const FileId configuration_file =
       sources.add(std::move(configuration.name), std::move(configuration.text));
   Reading reading;
-  Diagnostics of_robot;  // its mistakes are none of the program's
+  Diagnostics of_robot;  // kept apart: they do not count as mistakes of the program
   reading.robot = read_robot(sources, configuration_file, of_robot, algorithms);
   std::optional<RobotVocabulary> names;
   if (reading.robot) names.emplace(*reading.robot);

@@ -1,4 +1,4 @@
-// A program, the modules that it uses and its robot.json, as they were read, before anything in them is resolved.
+// A program, the modules that it uses and its robot.json, as read, before anything in them is resolved.
 #pragma once
 
 #include <optional>
@@ -16,13 +16,13 @@ namespace robosync::compiler {
 struct Reading {
   ast::Tree tree;
   std::vector<Module> modules;
-  std::optional<Robot> robot;  // nothing: nothing can be said of it
-  bool complete = false;       // nothing had to be left out
+  std::optional<Robot> robot;  // nothing when it is unusable
+  bool complete = false;       // no part was left out
 
-  [[nodiscard]] Trees trees() const;  // which must not outlive this
+  [[nodiscard]] Trees trees() const;  // must not outlive this
 };
 
-// The texts go into `sources`, which must outlive the result.
+// Adds the texts to `sources`, which must outlive the result.
 [[nodiscard]] Reading read_all(Input program, Input configuration, const ModuleReader& read_module,
                                const AlgorithmModules& algorithms, SourceMap& sources,
                                Diagnostics& diagnostics);

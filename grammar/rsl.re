@@ -1,6 +1,6 @@
-// The tokens of RSL. re2c makes a scanner of this that looks at each byte once; what is done with a
-// match is in compiler/syntax/lexer_state.cpp. The text is bytes: everything above ASCII is sorted
-// out there, code point by code point.
+// The tokens of RSL. re2c generates a scanner from this file that looks at each byte once;
+// compiler/syntax/lexer_state.cpp handles the matches. The text is bytes: everything above ASCII is handled
+// there, code point by code point.
 #include "compiler/syntax/lexer_state.hpp"
 
 namespace robosync::compiler {
@@ -21,7 +21,7 @@ bool LexerState::step() {
 
     digit   = [0-9];
     high    = [\x80-\xff];
-    word    = [A-Za-z_] [A-Za-z0-9_]* | high;  // word() goes on with letters above ASCII
+    word    = [A-Za-z_] [A-Za-z0-9_]* | high;  // word() adds the letters above ASCII
     decimal = digit+ ("." digit+)?;
     unit    = "%" | ([A-Za-z] | high)+ ("/" [A-Za-z]+)?;
 

@@ -35,7 +35,7 @@ const CodeInfo& info(Code code) {
   return codes[static_cast<std::size_t>(code)];
 }
 
-// Where a message belongs in the listing: at its first primary label.
+// The place that a message is sorted by: its first primary label.
 Span anchor(const Diagnostic& diagnostic) {
   for (const Label& label : diagnostic.labels) {
     if (label.primary) return label.span;
@@ -167,7 +167,7 @@ bool is_word_byte(char c) {
          ascii::is_letter(c);
 }
 
-// How often `word` stands in the user's own programs; counts no farther than 2. What robot.json declares is right.
+// How often `word` occurs in the user's own programs; stops counting at 2. Skips robot.json: its names are right.
 std::size_t uses_of(std::string_view word, const SourceMap& sources) {
   constexpr std::size_t enough = 2;
   std::size_t found = 0;
@@ -200,8 +200,8 @@ void Diagnostics::doubt(Span region) {
 }
 
 void Diagnostics::doubt_names(const SourceMap& sources) {
-  std::size_t searches = 20;  // each reads all of the text
-  // What else is wrong in a line may be what is wrong there in truth.
+  std::size_t searches = 20;  // each scans all of the text
+  // With two errors in a line, the other one may be the real mistake.
   using Line = std::pair<FileId, std::uint32_t>;
   const auto line_of = [&](const Diagnostic& diagnostic) {
     const Span place = anchor(diagnostic);
@@ -222,9 +222,9 @@ void Diagnostics::doubt_names(const SourceMap& sources) {
   }
 }
 
-// A name that is misspelt where it is declared is missed wherever it is used.
+// A name that is misspelt in its declaration is unknown at every use: reports it once.
 void Diagnostics::merge_repeated() {
-  constexpr std::size_t most = 4;  // places that are shown
+  constexpr std::size_t most = 4;  // places shown
   std::map<std::string, std::size_t> first;
   std::vector<Diagnostic> merged;
   for (Diagnostic& diagnostic : all_) {

@@ -1,4 +1,4 @@
-// Diagnostics as data. Collected while compiling, printed once at the end (render.hpp).
+// Diagnostics as data: collected during compilation, printed once at the end (render.hpp).
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ enum class Level : std::uint8_t { error, warning, note };
 
 [[nodiscard]] std::string_view level_name(Level level);  // "error"
 
-// Every code once, with its level and title: diagnostics.def.
+// Every code. diagnostics.def has their levels and titles.
 enum class Code : std::uint16_t {
 #define DIAGNOSTIC(code, level, title) code,
 #include "compiler/diagnostics/diagnostics.def"
@@ -29,7 +29,7 @@ enum class Code : std::uint16_t {
 [[nodiscard]] std::string_view code_name(Code code);  // "E0501"
 [[nodiscard]] std::string_view code_title(Code code);
 [[nodiscard]] Level default_level(Code code);
-// May its level be chosen?
+// True when the user can set its level.
 [[nodiscard]] bool is_lint(Code code);
 [[nodiscard]] std::optional<Code> find_lint(std::string_view name);
 
@@ -39,13 +39,13 @@ struct Label {
   bool primary = true;
 };
 
-// How sure it is that a fix gives what was meant. What would put in a NOT, a sign or digits, or take
-// one of them or a comma out of a number, is never certain.
+// How likely a fix gives what was meant. A fix is never certain if it inserts a NOT, a sign or digits, removes
+// one of them, or removes a comma from a number.
 enum class Applicability : std::uint8_t { certain, likely, placeholder };
 
 [[nodiscard]] std::string_view applicability_name(Applicability applicability);  // "certain"
 
-struct Fix {  // replace the span by the text and the message goes away
+struct Fix {  // replacing the span by the text makes the message go away
   Span span;
   std::string replacement;
   Applicability applicability = Applicability::certain;
@@ -56,10 +56,10 @@ struct Diagnostic {
   Level level = Level::error;
   std::string message;  // one sentence, no full stop: what is wrong, in the user's words
   std::vector<Label> labels;
-  std::vector<std::string> help;  // how to mend it
+  std::vector<std::string> help;  // how to fix it
   std::vector<Fix> fixes;
-  std::size_t repeated = 0;  // how often it was said again elsewhere
-  std::string unknown;       // what nothing here is called; a module that is not used may have it
+  std::size_t repeated = 0;  // how many more places have the same message
+  std::string unknown;       // the unknown name, if any; a module that is not used may have it
 
   // Chainable builders.
   Diagnostic& label(Span span, std::string text = {}, bool primary = true);
@@ -70,26 +70,26 @@ struct Diagnostic {
 
 class Diagnostics {
 public:
-  // Starts a diagnostic with its default level; build on the reference at once: the next report
-  // makes it invalid.
+  // Starts a diagnostic with its default level. Use the reference immediately: the next report
+  // invalidates it.
   Diagnostic& report(Code code, std::string message);
   void add(Diagnostic diagnostic) { all_.push_back(std::move(diagnostic)); }
   std::size_t errors() const;
   std::size_t warnings() const;
   const std::vector<Diagnostic>& all() const { return all_; }
-  // `use`, in another file, is where somebody asked for what has the errors that were reported since
-  // there were `before`: so that is where they are shown first. What they say of that file stays.
+  // Points the errors reported since there were `before` diagnostics at `use`, the place in another file that asked for
+  // the faulty text. Errors that already have a label in that file stay as they are.
   void found_from(Span use, const std::string& why, std::size_t before);
-  // To look for the name that a misspelt one is nearest to takes as long as there are names. True
-  // while all such searches together are short, so that a text full of mistakes is read in a time
-  // that goes with its length; ask before each. `names`: how many it looks at.
+  // The time to find the nearest name is proportional to the number of names. True while all searches
+  // together are short, so that the time for a text full of mistakes stays proportional to its length.
+  // Call it before each search; `names` is how many names the search looks at.
   [[nodiscard]] bool may_search(std::size_t names);
-  // Where more than one mistake is, the first guess may have been wrong: no fix of an error in there is certain.
+  // If the region has more than one error, the first guess may be wrong: makes no fix in it certain.
   void doubt(Span region);
-  // No fix of a name that nothing has is certain when the other name may be the misspelt one: when it is used nowhere
-  // else, or this one is used again.
+  // Makes the fix of an unknown name uncertain when the other name may be the misspelt one: when that one is used
+  // nowhere else, or the unknown one is used again.
   void doubt_names(const SourceMap& sources);
-  // Sorted by file and place. Exact repetitions are dropped, and what has one cause is said once, with all its places.
+  // Sorts by file and place, drops exact repetitions, and merges messages with one cause into one with all its places.
   // Call once before printing.
   void finish();
 
@@ -97,7 +97,7 @@ private:
   void merge_repeated();
 
   std::vector<Diagnostic> all_;
-  std::size_t may_be_searched_ = 200'000;  // names, more than any program's mistakes need
+  std::size_t may_be_searched_ = 200'000;  // names; more than the mistakes of any program need
 };
 
 }  // namespace robosync::compiler

@@ -11,7 +11,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// Words come from outside. Nobody misspells a longer one, and the work is quadratic.
+// Words come from outside, and the work is quadratic. Nobody misspells a longer word.
 constexpr std::size_t longest_word = 64;
 
 // Three rows of the distance matrix: a swap looks two rows back.
@@ -43,25 +43,25 @@ void fill_row(const Rows& rows, std::string_view a, std::string_view b, std::siz
   }
 }
 
-// Most mistakes in a word of this length that may still be meant.
+// The most mistakes at which a word of this length still matches.
 std::size_t tolerated(std::size_t longer) {
   return std::max<std::size_t>(1, longer / 3);
 }
 
-// What both words begin with is no mistake.
+// The length of the common prefix, which has no mistakes.
 std::size_t common_start(std::string_view a, std::string_view b) {
   const auto ends = std::mismatch(a.begin(), a.end(), b.begin(), b.end(),
                                   [](char x, char y) { return ascii::same(x, y); });
   return static_cast<std::size_t>(ends.first - a.begin());
 }
 
-// Most words are too long or too short to be meant, which is cheap to see.
+// A cheap test that rules out most candidates.
 bool lengths_differ_too_much(std::string_view a, std::string_view b) {
   const auto [shorter, longer] = std::minmax({a.size(), b.size()});  // by value
   return longer - shorter > tolerated(longer);
 }
 
-// How many mistakes `word` has if `candidate` may be meant.
+// The number of mistakes in `word`, if `candidate` may be meant.
 std::optional<std::size_t> mistakes_if_near(std::string_view word, std::string_view candidate) {
   if (lengths_differ_too_much(word, candidate)) return std::nullopt;
   const std::size_t longer = std::max(word.size(), candidate.size());
@@ -114,7 +114,7 @@ std::optional<std::string> nearest(std::string_view word, std::span<const std::s
 
 namespace {
 
-// One slip of the hand gives `meant`, and no other candidate.
+// True when `meant` is the only candidate within one typing slip of `word`.
 bool is_only_slip(std::string_view word, std::string_view meant,
                   std::span<const std::string> candidates) {
   const auto one_slip = [word](std::string_view candidate) {

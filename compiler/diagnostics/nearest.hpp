@@ -1,4 +1,4 @@
-// "Did you mean": the candidate nearest to a misspelt word.
+// "Did you mean": finds the candidate nearest to a misspelt word.
 #pragma once
 
 #include <cstddef>
@@ -11,21 +11,21 @@
 
 namespace robosync::compiler {
 
-// Mistakes between two words: letters left out, added, changed, or two neighbours swapped
+// The number of mistakes between two words: letters left out, added, changed, or two neighbours swapped
 // (Damerau–Levenshtein, optimal string alignment). ASCII case is ignored.
 [[nodiscard]] std::size_t mistakes(std::string_view a, std::string_view b);
 
-// True when `word` may be a misspelling of `candidate`: at most a third of the longer one's letters
-// are wrong. One mistake is forgiven in words of three letters and in swapped or missing letters of
-// shorter ones.
+// True when `word` may be a misspelling of `candidate`: at most a third of the longer word's letters
+// are wrong. In words of three letters one mistake is allowed; in shorter ones, only a swapped or
+// missing letter.
 [[nodiscard]] bool is_near(std::string_view word, std::string_view candidate);
 
-// The nearest of the candidates that `is_near`; of equal ones the first.
+// The nearest candidate for which `is_near` holds; the first one of several equals.
 [[nodiscard]] std::optional<std::string> nearest(std::string_view word,
                                                  std::span<const std::string> candidates);
 
-// Offers the nearest candidate in the place of `word`, which stands at `place`: as help, and as a fix, between
-// `quotes`. The fix is certain when one slip of the hand gives this candidate and no other one. False when none is near.
+// Suggests the nearest candidate for `word`, found at `place`: as help, and as a fix enclosed in `quotes`. The fix is
+// certain when this is the only candidate within one typing slip. False when none is near.
 bool did_you_mean(Diagnostic& diagnostic, Span place, std::string_view word,
                   std::span<const std::string> candidates, std::string_view quotes = "");
 

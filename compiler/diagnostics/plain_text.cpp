@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kSaveAsUtf8 =
     "save it as UTF-8: in most editors it is a choice of \"Save as\", called encoding";
 
-// With its mark at the beginning, or without: then every second byte of what is written in ASCII is NUL.
+// With or without a byte order mark: without it, every second byte of ASCII text is NUL.
 bool is_utf16(std::string_view text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return true;
   constexpr std::size_t looked_at = 64;

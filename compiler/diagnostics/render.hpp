@@ -1,4 +1,4 @@
-// Prints diagnostics: for people (as rustc does) and as JSON.
+// Formats diagnostics for people (as rustc does) and as JSON.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace robosync::compiler {
 
-// More errors than these are counted only: nobody reads them before the first ones are mended.
+// Further errors are only counted: nobody reads them before fixing the first ones.
 inline constexpr std::size_t kMostErrors = 20;
 
 [[nodiscard]] std::string render_human(const Diagnostics& diagnostics, const SourceMap& sources,

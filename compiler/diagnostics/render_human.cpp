@@ -12,7 +12,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// What the terminal is told; all empty without colour.
+// Escape sequences for the terminal; all empty without colour.
 struct Style {
   std::string_view error, warning, note, quiet, strong, off;
 };
@@ -68,7 +68,7 @@ private:
     text_ += '\n';
   }
 
-  // The file of the first primary label comes first; inside a file, from top to bottom.
+  // The file of the first primary label comes first; within a file, top to bottom.
   static std::vector<Label> in_reading_order(std::vector<Label> labels) {
     const auto primary = std::find_if(labels.begin(), labels.end(),
                                       [](const Label& label) { return label.primary; });
@@ -83,7 +83,7 @@ private:
     return labels;
   }
 
-  // Whoever follows the place of a message gets to what is wrong, not to what else belongs to it.
+  // The place shown for a message leads to the mistake, not to a secondary label.
   static const Label& head_of_file(const std::vector<Label>& labels, std::size_t first) {
     const FileId file = labels[first].span.file;
     for (const Label& label : std::span(labels).subspan(first))
@@ -112,7 +112,7 @@ private:
     write(style_.quiet, std::string(gutter_ - number.size(), ' ') + std::string(number) + " | ");
   }
 
-  // `previous`: of the same file, or null.
+  // `previous` is in the same file, or null.
   void write_label(const Label& label, const Label* previous) {
     const std::uint32_t line = place(label.span).line;
     const std::uint32_t line_before = previous != nullptr ? place(previous->span).line : 0;
@@ -124,7 +124,7 @@ private:
     const Snippet snippet =
         make_snippet(file.line(line), label.span.begin - start,
                      std::max(label.span.end, label.span.begin) - start, label.primary ? '^' : '-');
-    // Shown again when a long line was cut somewhere else for this label.
+    // Repeated when a long line is cut elsewhere for this label.
     if (previous == nullptr || line != line_before || snippet.source != shown_) {
       write_gutter(std::to_string(line));
       text_ += snippet.source + '\n';

@@ -52,7 +52,7 @@ std::string render_json(const Diagnostics& diagnostics, const SourceMap& sources
   const Json result = {{"diagnostics", std::move(all)},
                        {"errors", diagnostics.errors()},
                        {"warnings", diagnostics.warnings()}};
-  // Messages quote the source, which need not be UTF-8.
+  // Messages quote the source, which may not be valid UTF-8.
   return result.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A path as a relative or absolute URI reference: what is no letter, digit or mark of a path is %XX.
+// A path as a relative or absolute URI reference; other characters than letters, digits and "-._~/" become %XX.
 std::string uri_of(std::string_view path) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   constexpr std::string_view plain = "-._~/";
@@ -59,7 +59,7 @@ Json to_json(const Fix& fix, const SourceMap& sources) {
                                             {"replacements", Json::array({replacement})}}})}};
 }
 
-// What it says, and how to mend it: SARIF has no place of its own for help that is not a fix.
+// The message followed by its help: SARIF has no field for help that is not a fix.
 std::string message_of(const Diagnostic& diagnostic) {
   std::string text = diagnostic.message;
   for (const std::string& help : diagnostic.help)

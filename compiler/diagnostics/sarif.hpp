@@ -1,4 +1,4 @@
-// Diagnostics as SARIF 2.1.0, the form in which code hosts and editors take what a checker says.
+// Diagnostics as SARIF 2.1.0, the format in which code hosts and editors read a checker's results.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ public:
   explicit SarifLog(std::string version) : version_(std::move(version)) {}
 
   void add(const Diagnostics& diagnostics, const SourceMap& sources);
-  // The log as one JSON object, with its line's end.
+  // The log as one JSON object, with a newline.
   [[nodiscard]] std::string text() const;
 
 private:

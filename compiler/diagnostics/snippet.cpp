@@ -16,7 +16,7 @@ constexpr std::size_t context = 30;  // columns kept before the marked place whe
 constexpr std::size_t most_cells = 4 * widest;
 constexpr std::string_view ellipsis = "...";
 
-// A code point of the line, and where it stands on the terminal.
+// A code point of the line, and its place on the terminal.
 struct Cell {
   std::size_t byte, size;  // in the line
   std::size_t column, width;
@@ -29,8 +29,8 @@ Cell make_cell(std::string_view line, std::size_t byte, std::size_t column) {
   return {byte, point.size, column, shown ? utf8::width(point.value) : 1U};
 }
 
-// Cells of the line from `first` on, until they are `widest` columns wide. Many that have no width
-// at all are cut off as well.
+// Cells of the line from `first` on, up to a width of `widest` columns. A long run of cells without
+// width is cut as well.
 std::vector<Cell> lay_out(std::string_view line, std::size_t first) {
   std::vector<Cell> cells;
   cells.reserve(std::min(line.size() - first, widest));
@@ -44,7 +44,7 @@ std::vector<Cell> lay_out(std::string_view line, std::size_t first) {
   return cells;
 }
 
-// Bytes of the code point that ends before `at`, which is not 0.
+// The bytes of the code point that ends before `at`; `at` must not be 0.
 std::size_t size_before(std::string_view line, std::size_t at) {
   constexpr std::size_t longest = 4;
   std::size_t size = 1;
@@ -54,9 +54,9 @@ std::size_t size_before(std::string_view line, std::size_t at) {
   return size;
 }
 
-// Where to start so that the marked place can be seen: 0, or `context` code points before it.
+// Where to start so that the marked place is visible: 0, or `context` code points before it.
 std::size_t first_shown(std::string_view line, std::size_t begin) {
-  if (begin + context < widest) return 0;  // the mark is early
+  if (begin + context < widest) return 0;  // the mark is near the start
   const std::vector<Cell> cells = lay_out(line, 0);
   const std::size_t columns = cells.empty() ? 0 : cells.back().column + cells.back().width;
   const bool whole_line_fits = columns < widest && cells.size() < most_cells;

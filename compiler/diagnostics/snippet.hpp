@@ -1,5 +1,5 @@
-// One line of source with a marker line under it, as it looks on a terminal: tabs widened, code
-// points counted as they are shown, long lines cut around the marked place.
+// One line of source with a marker line under it, as it looks on a terminal: tabs are expanded, code
+// points counted by display width, and long lines cut around the marked place.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ struct Snippet {
   std::string marker;  // spaces, then `mark` under each column of the span
 };
 
-// Bytes begin … end-1 of `line` are marked; an empty or backward range marks one column.
+// Marks the bytes begin … end-1 of `line`; an empty or backward range marks one column.
 [[nodiscard]] Snippet make_snippet(std::string_view line, std::size_t begin, std::size_t end,
                                    char mark);
 

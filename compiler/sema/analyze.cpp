@@ -1,5 +1,5 @@
-// Walks the items of the program and its modules: first what is remembered and limited, which
-// stands anywhere in the file, then the rules in their order.
+// Walks the items of the program and its modules: first variables and limits, which may
+// be anywhere in the file, then the rules in order.
 #include "compiler/sema/analyze.hpp"
 
 #include "compiler/sema/behaviors.hpp"
@@ -45,7 +45,7 @@ public:
     statements_.check_unused_defines();
     motions_.check_unused();
     program_.behaviors = behaviors_.finish();
-    // Else uses may be missing.
+    // After errors, some uses may be missing.
     if (diagnostics_.errors() == 0) lint();
     return std::move(program_);
   }
@@ -83,7 +83,7 @@ private:
   }
 
   const Trees& trees_;
-  Robot robot_;  // with the limits of the program
+  Robot robot_;  // with the program's limits
   Diagnostics& diagnostics_;
   Names names_;
   Expressions expressions_;

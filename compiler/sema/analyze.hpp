@@ -1,4 +1,4 @@
-// Semantic analysis: the trees and the robot in, a resolved program out.
+// Semantic analysis: takes the trees and the robot, returns a resolved program.
 #pragma once
 
 #include "compiler/ir/program.hpp"

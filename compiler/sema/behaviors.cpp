@@ -119,7 +119,7 @@ void Behaviors::report_taken() {
     if (!free) continue;
     d.helps("`" + std::to_string(*free) + "` is free")
         .fix(priority.span, std::to_string(*free), Applicability::likely);
-    priorities_.emplace(*free, priority.span);  // not to be offered twice
+    priorities_.emplace(*free, priority.span);  // so that it is not offered twice
   }
 }
 

@@ -1,4 +1,4 @@
-// Collects behaviours: priorities from RSL and robot.json, what each may command, their order.
+// Collects behaviours: their priorities from RSL and robot.json, the actuators they may command, their order.
 #pragma once
 
 #include <map>
@@ -16,16 +16,16 @@ public:
       : robot_(robot), configs_(index_of(robot.behaviors)), diagnostics_(diagnostics) {}
 
   void add(const ast::Behavior& behavior, std::vector<ir::Rule> rules);
-  // A rule outside a BEHAVIOR: a behaviour of its own, below all others unless it has a PRIORITY.
+  // Adds a rule outside a BEHAVIOR as its own behaviour, below all others unless it has a PRIORITY.
   void add_rule(ir::Rule rule, const std::optional<ast::Name>& priority, Span span);
-  // What can be said only when all are known; then the behaviours, highest priority first.
+  // Reports what can be checked only when all are known, and returns the behaviours, highest priority first.
   [[nodiscard]] std::vector<ir::Behavior> finish();
 
 private:
   struct Numbered {
     int number = 0;
     Span span;           // where it is written
-    bool in_rsl = true;  // or in robot.json
+    bool in_rsl = true;  // else in robot.json
   };
 
   const BehaviorConfig* config_of(const ast::Behavior& behavior) const;
@@ -42,9 +42,9 @@ private:
   NameIndex configs_;
   Diagnostics& diagnostics_;
   std::vector<ir::Behavior> behaviors_;
-  std::set<std::string> names_;  // folded names of those added
+  std::set<std::string> names_;  // folded names of the behaviours added
   std::map<int, Span> priorities_;
-  std::vector<std::pair<Numbered, Span>> taken_;  // a second use of a priority, and the first
+  std::vector<std::pair<Numbered, Span>> taken_;  // a priority used again, and its first use
   std::int16_t next_unnumbered_ = 0;
   std::optional<Span> one_too_many_;
 };

@@ -14,7 +14,7 @@ namespace robosync::compiler {
 namespace {
 
 constexpr std::size_t kNotNamed = static_cast<std::size_t>(-1);
-// What MARGIN gives, which no verb of an actuator takes.
+// The parameter for MARGIN, which no actuator's verb takes.
 constexpr vm::Param kMargin = vm::Param::count_;
 
 vm::Param param_of(const ast::Argument& argument) {
@@ -25,7 +25,7 @@ vm::Param param_of(const ast::Argument& argument) {
   return kParams[static_cast<std::size_t>(argument.preposition)];
 }
 
-// Do two actuators understand the command alike?
+// Do two actuators understand the command in the same way?
 bool same(const ir::Command& a, const ir::Command& b) {
   return a.verb == b.verb && a.word == b.word && a.arguments == b.arguments;
 }
@@ -79,7 +79,7 @@ std::vector<ir::Command> Commands::translate(const ast::Command& command,
   if (!target || !given || target->actuators.empty()) return {};
   std::vector<ir::Command> each;
   for (const std::size_t actuator : target->actuators) {
-    // What is wrong or worth a note for one member need not be said for the others.
+    // Reports for one member are not repeated for the others.
     Diagnostics repeated;
     Diagnostics& here = each.empty() ? diagnostics_ : repeated;
     auto result = for_actuator(actuator, command, *given, here);
@@ -129,8 +129,8 @@ std::optional<Target> Commands::only_target(const ast::Command& command) {
   return std::nullopt;
 }
 
-// Is there a parameter where the actuator stands, which is given something else? It is reported,
-// unless nobody runs the DEFINE.
+// True if a parameter is in the actuator's place but was passed something else. This is reported,
+// unless nothing runs the DEFINE.
 bool Commands::is_given_another(const ast::Command& command) {
   const ast::Word* first = first_word(command);
   const Binding* binding = first == nullptr ? nullptr : expressions_.find_binding(first->name.text);
@@ -166,7 +166,7 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
   if (d.help.empty()) d.helps("actuators: " + list_names(candidates));
 }
 
-// `TO person DIRECTION`: the second word would be one of the actuator's. It is reported.
+// `TO person DIRECTION`: reports it, because the second word would be read as one of the actuator's.
 bool Commands::lacks_brackets(const ast::Command& command, std::size_t place) {
   const ast::Argument& first = command.arguments[place];
   const auto* const word = std::get_if<ast::Word>(&first.value);
@@ -249,7 +249,7 @@ Commands::Given Commands::put_together(const ast::Command& command, std::size_t 
   return given;
 }
 
-// A word alone belongs to the actuator, unless no actuator knows it and the program does.
+// A single word belongs to the actuator, unless only the program knows it.
 Commands::Given Commands::evaluate(const ast::Argument& argument) {
   Given given{&argument, param_of(argument), {}, false, std::nullopt, argument.span};
   if (const auto* text = std::get_if<ast::Text>(&argument.value)) given.text = text->text;
@@ -302,7 +302,7 @@ Typed Commands::evaluate_number(const ast::Argument& argument) {
   return {};
 }
 
-// ---- what one actuator makes of them: its own words, units, ranges and limits
+// ---- the arguments for one actuator: its own words, units, ranges and limits
 
 namespace {
 
@@ -324,7 +324,7 @@ std::string taken_by(const VerbConfig& verb) {
                        : "`" + verb.name + "` takes " + list_names(names);
 }
 
-// The first word travels in the command itself, others as parameters.
+// The first word is stored in the command itself, others as parameters.
 void put(const std::string& name, vm::Param param, vm::Value value, ir::Command& result) {
   if (!result.word)
     result.word = ir::Word{name, param, value};
@@ -332,7 +332,7 @@ void put(const std::string& name, vm::Param param, vm::Value value, ir::Command&
     result.arguments.push_back({param, make_constant_code(value)});
 }
 
-// What is said takes as long as its words, unless FOR says another time.
+// Speech takes as long as its words, unless FOR gives another time.
 bool takes_its_words(const ir::Command& command) {
   return command.word && command.word->param == vm::Param::for_;
 }
@@ -347,7 +347,7 @@ vm::Value words_of(std::string_view text) {
   return static_cast<vm::Value>(words);
 }
 
-// Is a number that is known now one that the actuator can do?
+// Checks a constant against the actuator's range.
 bool check_value(const ActuatorConfig& actuator, vm::Param param, const Typed& number,
                  Diagnostics& diagnostics) {
   const vm::Value value = number.code.constant;
@@ -383,7 +383,7 @@ bool check_value(const ActuatorConfig& actuator, vm::Param param, const Typed& n
   return false;
 }
 
-// The verb whose BY is of this dimension; empty when none is.
+// The verb whose BY has this dimension; empty when there is none.
 std::string verb_by(const ActuatorConfig& actuator, vm::Dimension dimension) {
   const auto verb = std::ranges::find_if(actuator.verbs, [&](const VerbConfig& one) {
     return one.has(vm::Param::by) &&
@@ -446,7 +446,7 @@ std::optional<ir::Command> Commands::for_actuator(std::size_t actuator, const as
   for (const Given& one : given) {
     if (add(to, one, result)) continue;
     good = false;
-    if (!one.is_number && !one.text) break;  // an unknown word: what follows is part of it
+    if (!one.is_number && !one.text) break;  // an unknown word: the rest belongs to it
   }
   if (!good || says_twice(to, given, result) || repeats_nothing(to, given, result))
     return std::nullopt;
@@ -454,7 +454,7 @@ std::optional<ir::Command> Commands::for_actuator(std::size_t actuator, const as
   return result;
 }
 
-// `SAY visitors`: a number alone, where a text may stand and BY means nothing.
+// `SAY visitors`: a number alone, where a text is possible and BY has no meaning.
 bool Commands::is_to_be_said(const VerbConfig& verb, const Given& given) {
   return given.is_number && given.param == vm::Param::by &&
          given.argument->preposition == ast::Preposition::none && verb.texts == Texts::any &&
@@ -503,7 +503,7 @@ bool Commands::add_word(const Recipient& to, const ast::Word& word, Span span,
   return true;
 }
 
-// `DRIVE base LEFT`: a word of the actuator, but of other verbs.
+// `DRIVE base LEFT`: a word of the actuator, but for other verbs.
 void Commands::report_foreign_word(const Recipient& to, const WordConfig& word, Span span) {
   const auto own = to.actuator.words_of(to.verb);
   Diagnostic& d =
@@ -518,7 +518,7 @@ void Commands::report_foreign_word(const Recipient& to, const WordConfig& word, 
   if (!verbs.empty()) d.helps("`" + word.name + "` belongs to " + list_names(verbs));
 }
 
-// Does a number or a value in brackets follow, as behind TO, BY, AT, OVER and FOR?
+// Does a number or a value in brackets follow, as after TO, BY, AT, OVER and FOR?
 static bool may_be_preposition(const ast::Command& command, const ast::Word& word) {
   const auto& arguments = command.arguments;
   const auto next = std::ranges::find_if(
@@ -542,11 +542,11 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
   auto candidates = words;
   const auto targets = names_.target_names();
   candidates.insert(candidates.end(), targets.begin(), targets.end());
-  // Words of RSL that may follow in a line of commands.
+  // Words of RSL that may come later in a line of commands.
   for (const char* const keyword :
        {"TO", "BY", "OVER", "AT", "FOR", "MARGIN", "TIMES", "WITH", "ELSE", "END"})
     candidates.emplace_back(keyword);
-  // What stands there already: a word of RSL, or another actuator, in the wrong place.
+  // Not the word itself: it is a word of RSL, or another actuator, in the wrong place.
   std::erase_if(candidates, [&](const auto& one) { return same_name(one, word.name.text); });
   if (did_you_mean(d, word.name.span, word.name.text, candidates) &&
       !may_be_preposition(to.command, word))
@@ -644,7 +644,7 @@ bool Commands::say_values(const Recipient& to, const Given& given, ir::Command& 
   return true;
 }
 
-// A number alone would be BY: it is not that, which the user has not written, but its word that is missing.
+// A number alone counts as BY. The user did not write BY, so the message says that the word before it is missing.
 void Commands::report_not_taken(const Recipient& to, const Given& given) {
   const Span span = given.argument->span;
   const std::string verb = "`" + to.verb.name + "`";

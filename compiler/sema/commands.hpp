@@ -1,4 +1,4 @@
-// Checks commands (`MOVE arms SLOWLY`) against what the actuators can do and translates them.
+// Checks commands (`MOVE arms SLOWLY`) against the actuators' abilities and translates them.
 #pragma once
 
 #include "compiler/sema/expressions.hpp"
@@ -8,32 +8,33 @@
 
 namespace robosync::compiler {
 
-// What stands in the place of a verb, like kPerform: words of RSL, no keywords.
+// Words of RSL that are used like a verb, as kPerform is; not keywords.
 inline constexpr std::string_view kFollow = "FOLLOW";
 inline constexpr std::string_view kRestart = "RESTART";
 
-// Parts of an expression that a DEFINE is given and a FOLLOW in it works out again.
+// The most parts of an expression that is passed to a DEFINE and that a FOLLOW in it evaluates repeatedly.
 inline constexpr std::size_t kMostFollowed = 100;
 
-// A text out of a LIST, in the place of the arguments that ask for it.
+// A text from a LIST, which replaces the arguments that ask for it.
 struct ChosenText {
   std::size_t at = 0, count = 0;  // which arguments
   const std::string& text;
   Span span;  // of the text in its LIST
 };
 
-// What its parts share. The word that an argument is, without a preposition; nullptr: none.
+// Shared by the parts of Commands.
+// The word, if the argument is a word without a preposition; otherwise nullptr.
 [[nodiscard]] const ast::Word* plain_word(const ast::Argument& argument);
-// That a word of RSL was meant where a verb or a word of a device stands is never certain.
+// Makes the fix uncertain: a word of RSL is only a guess in place of a verb or a word of a device.
 void doubt_keyword(Diagnostic& diagnostic);
 [[nodiscard]] bool is_given(const ir::Command& command, vm::Param param);
 [[nodiscard]] std::vector<std::string> verb_names(const ActuatorConfig& actuator);
 void report_twice(Span span, const std::string& what, Diagnostics& diagnostics);
 
-// FOLLOW of one actuator, or of a group whose members all do it alike.
+// FOLLOW of one actuator, or of a group whose members all do it in the same way.
 struct Followed {
-  ir::Command command;   // TO is the value
-  vm::Value margin = 0;  // how far the value has to change
+  ir::Command command;   // its TO is the value
+  vm::Value margin = 0;  // the least change of the value
 };
 struct Follow {
   std::vector<Followed> all;
@@ -50,32 +51,32 @@ public:
         motions_(motions),
         diagnostics_(diagnostics) {}
 
-  // One command for an actuator, or for a group whose members all understand it alike; otherwise
-  // one for each member. Empty after a mistake, which has then been reported.
+  // One command for an actuator, or for a group whose members all understand it in the same way; otherwise
+  // one for each member. Empty after a mistake, which has been reported.
   [[nodiscard]] std::vector<ir::Command> translate(const ast::Command& command,
                                                    const ChosenText* chosen = nullptr);
 
-  // Is there nothing that it would say, play or show? It is reported. `span` is that of its statement.
+  // Reports a command that has nothing to say, play or show, and returns true. `span` is that of its statement.
   bool lacks_content(const ir::Command& command, Span span);
-  // Is it more than the limit of a motor? It is reported. `node` is what it was made of.
+  // Reports a command that exceeds the limit of a motor, and returns true. `node` is its source.
   bool gives_too_much(const ast::Command& node, const ir::Command& command);
 
-  // Is it FOLLOW, which no robot has a verb of?
+  // Is it FOLLOW, which is not a verb of any robot?
   [[nodiscard]] bool is_follow(const ast::Command& command) const;
-  // Nothing after a mistake, which has then been reported.
+  // Nothing after a mistake, which has been reported.
   [[nodiscard]] std::optional<Follow> follow(const ast::Command& command);
 
-  // What STOP names; reports when nothing has the name.
+  // The actuator or group that STOP names; reports an unknown name.
   [[nodiscard]] std::optional<Target> find_stopped(const ast::Name& name);
 
 private:
-  // An argument with its value worked out; the units of actuators come later.
+  // An evaluated argument; the actuator's units are applied later.
   struct Given {
     const ast::Argument* argument = nullptr;
     vm::Param param{};  // of numbers
     Typed number;
     bool is_number = false;
-    std::optional<std::string> text;  // in quotes, here or where a DEFINE is given it
+    std::optional<std::string> text;  // in quotes, here or where it is passed to a DEFINE
     Span text_span{};
     std::vector<Expression> values{};  // for the {} places of `text`
   };
@@ -86,28 +87,28 @@ private:
     Diagnostics& diagnostics;
   };
 
-  // The word that stands where the actuator does; nullptr: none.
+  // The word in the actuator's place; nullptr: none.
   [[nodiscard]] const ast::Word* first_word(const ast::Command& command) const;
   [[nodiscard]] bool is_chosen(std::size_t argument) const {
     return chosen_ != nullptr && argument >= chosen_->at && argument < chosen_->at + chosen_->count;
   }
-  // Which actuator, which arguments.
+  // The actuator, and the arguments.
   std::optional<Target> find_target(const ast::Command& command, std::size_t& named_by);
   std::optional<Target> only_target(const ast::Command& command);
   bool is_given_another(const ast::Command& command);
   void report_no_target(const ast::Command& command, const std::vector<std::size_t>& able);
-  // What is no verb (unknown_verbs.cpp).
+  // Words that are not verbs (unknown_verbs.cpp).
   void report_unknown_verb(const ast::Command& command);
   bool begins_with_actuator(const ast::Command& command);
   bool calls_define(const ast::Command& command);
   bool is_foreign(const ast::Command& command);
   std::optional<std::vector<Given>> evaluate(const ast::Command& command, std::size_t named_by);
   Given evaluate(const ast::Argument& argument);
-  // The text whose parts begin at `first`; its text is nothing after a mistake.
+  // The text whose parts begin at `first`; without a text after a mistake.
   Given put_together(const ast::Command& command, std::size_t first);
   bool has_decimal_comma(const ast::Argument& part, const ast::Argument& next);
   bool lacks_brackets(const ast::Command& command, std::size_t place);
-  // Arguments that are something else together (misread.cpp).
+  // Arguments that together mean something else (misread.cpp).
   bool is_misread(const ast::Command& command, std::size_t place);
   bool is_second_command(const ast::Command& command, std::size_t place);
   bool is_foreign_preposition(const ast::Command& command, std::size_t place);
@@ -116,7 +117,7 @@ private:
   bool lacks_list(const ast::Command& command, std::size_t place);
   bool is_unit_apart(const ast::Command& command, std::size_t place);
   static bool is_sensor_meant(const Recipient& to, const ast::Word& word, const Names& names);
-  // Parts that are each right, and together are not (whole_commands.cpp).
+  // Parts that are each correct but wrong together (whole_commands.cpp).
   static bool says_twice(const Recipient& to, const std::vector<Given>& given,
                          const ir::Command& result);
   static bool repeats_nothing(const Recipient& to, const std::vector<Given>& given,
@@ -137,7 +138,7 @@ private:
   // FOLLOW (follow.cpp).
   std::vector<ir::Command> expected_follow(const ast::Command& command);
   std::optional<Follow> follow(const ast::Command& command, bool expected);
-  // What stands for parameters of a DEFINE is worked out with it.
+  // The FOLLOW evaluates the values of a DEFINE's parameters each time.
   std::optional<std::vector<Given>> evaluate_followed(const ast::Command& command,
                                                       std::size_t named_by);
   std::optional<Followed> follow_by(std::size_t actuator, const std::vector<Given>& given,
@@ -146,7 +147,7 @@ private:
                             Diagnostics& diagnostics);
   bool lasts(const Given& given, Follow& result);
 
-  // What one actuator makes of them.
+  // The command for one actuator.
   std::optional<ir::Command> for_actuator(std::size_t actuator, const ast::Command& command,
                                           const std::vector<Given>& given,
                                           Diagnostics& diagnostics) const;

@@ -1,4 +1,4 @@
-// See condition_lints.hpp. What is said here is certain: where a sensor is unknown, no condition is true or false
+// See condition_lints.hpp. These warnings are certain: while a sensor is unknown, no condition is true or false
 // anyway.
 #include "compiler/sema/condition_lints.hpp"
 
@@ -10,11 +10,11 @@
 
 namespace robosync::compiler {
 
-// ---- W0210: one comparison, by what its sides can be
+// ---- W0210: one comparison, by the ranges of its sides
 
 namespace {
 
-// Whether left < right is decided by what the sides can be, and how.
+// The result of left < right, if the ranges of the sides decide it.
 std::optional<bool> decided_less(const Typed& left, const Typed& right) {
   if (left.high < right.low) return true;
   if (left.low >= right.high) return false;
@@ -113,7 +113,7 @@ void lint_step(const Typed& value, const Typed& by, Diagnostics& diagnostics) {
 namespace {
 
 struct Interval {
-  std::int64_t low = vm::kValueMin, high = vm::kValueMax;  // both included
+  std::int64_t low = vm::kValueMin, high = vm::kValueMax;  // both inclusive
 };
 using Ranges = std::vector<Interval>;
 
@@ -143,13 +143,13 @@ Ranges together(Ranges a, const Ranges& b) {
   return a;
 }
 
-// A condition that asks one thing only: for which of its values it may be true, and for which it is.
+// A condition on one value: the ranges in which it may be true, and those in which it must be true.
 struct Asked {
   const Expression* side = nullptr;
   Ranges may, must;
 };
 
-// Are they few enough, and about the same?
+// Are they about the same value, with few enough ranges?
 constexpr std::size_t kMostRanges = 64;
 bool same_side(const std::optional<Asked>& a, const std::optional<Asked>& b) {
   return a && b && a->may.size() + b->may.size() <= kMostRanges &&
@@ -195,7 +195,7 @@ std::optional<Asked> comparison_of(const Expression& condition) {
 
 std::optional<Asked> asked(const Expression& condition);
 
-// A MARGIN: true from where it enters, perhaps as far as it stays.
+// With a MARGIN (a latch) the condition must be true in the enter range and may be true in the stay range.
 std::optional<Asked> asked_by_two(const Expression& condition) {
   auto first = asked(condition.operands[0]);
   const auto second = asked(condition.operands[1]);
@@ -238,7 +238,7 @@ void collect(Operation op, const Expression& condition, std::vector<Asked>& resu
   }
 }
 
-// What it can be at all. A channel that learns its words may be another one tomorrow.
+// All possible values. A channel that learns its words may get new ones later.
 Ranges possible(const Expression& side, Names& names) {
   const auto of = [](const std::vector<std::string>& labels, std::int64_t low, std::int64_t high) {
     if (labels.empty()) return Ranges{{low, high}};
@@ -265,7 +265,7 @@ std::string name_of(const Expression& side, Names& names) {
   return "it";
 }
 
-// What is left of `ranges` when all of `parts` that are about this side are true, or false.
+// The rest of `ranges` if all `parts` about this side are true (or false).
 Ranges left_by(const std::vector<Asked>& parts, const Expression& side, bool are_true,
                Ranges ranges) {
   for (const Asked& part : parts) {
@@ -289,7 +289,7 @@ void lint_logic(ast::LogicOp op, const Expression& left, const Expression& right
     const Expression& side = *part.side;
     const Ranges range = possible(side, names);
     const Ranges by_first = left_by(first, side, all, range);
-    if (by_first.empty() || left_by(second, side, all, range).empty()) continue;  // said before
+    if (by_first.empty() || left_by(second, side, all, range).empty()) continue;  // reported before
     if (!left_by(second, side, all, by_first).empty()) continue;
     const std::string name = name_of(side, names);
     Diagnostic& d =
@@ -326,7 +326,7 @@ bool is_moment(const Expression& condition) {
   }
 }
 
-// The words that the grammar reads as a value; empty when it is more than that.
+// The words that the grammar reads as a value; empty for any other expression.
 std::string words_of(const ast::Box<ast::Expr>& value) {
   const auto* const operand = value ? std::get_if<ast::Operand>(&value->node) : nullptr;
   if (operand == nullptr) return {};

@@ -1,4 +1,4 @@
-// Expressions, part: conditions on words and truths, and those that remember the past.
+// Part of Expressions: conditions on words and truths, and conditions that remember the past.
 #include <array>
 
 #include "compiler/diagnostics/nearest.hpp"
@@ -18,7 +18,7 @@ std::optional<std::size_t> find_label(Names& names, const std::vector<std::strin
                                       const ast::Name& label, std::string_view owner,
                                       Diagnostics& diagnostics, bool quoted) {
   if (const auto place = names.find_label(labels, label.text)) return place;
-  if (label.text.empty()) return std::nullopt;  // it was missing, which has been reported
+  if (label.text.empty()) return std::nullopt;  // missing; reported already
   Diagnostic& d =
       diagnostics.report(Code::E0501, "`" + std::string(owner) + "` is never " + label.shown())
           .label(label.span);
@@ -46,7 +46,7 @@ std::string words_of(const ast::Expr& expr) {
   return words;
 }
 
-// What `= 1` and `= 0` ask of something that is true or false; empty for any other number.
+// The truth that `= 1` and `= 0` test for; empty for any other number.
 std::string truth_of(const ast::Expr& expr) {
   const auto* const number = std::get_if<ast::Quantity>(&expr.node);
   if (number == nullptr || !number->unit.empty()) return {};
@@ -56,7 +56,7 @@ std::string truth_of(const ast::Expr& expr) {
 
 }  // namespace
 
-// `mood IS calm OR happy`, `touch LEVEL = 3 OR 4`: the question in front is meant to go on. Reported.
+// `mood IS calm OR happy`, `touch LEVEL = 3 OR 4`: the first question is meant to continue. Reports it.
 bool Expressions::asks_nothing(const ast::Logic& node) {
   const ast::Expr* last = node.left.get();
   while (const auto* const logic = std::get_if<ast::Logic>(&last->node))
@@ -102,7 +102,7 @@ void Expressions::report_word_comparison(const ast::Comparison& node, const Type
   }
 }
 
-// A channel that learns its words takes what it has not got; but who writes UNKNOWN means no word.
+// A channel that learns its words accepts a new one, except UNKNOWN, which does not mean a word.
 std::optional<std::size_t> Expressions::place_of(const ast::Name& label, const Typed& word,
                                                  bool quoted) {
   const bool learns =
@@ -173,13 +173,13 @@ Operation operation_of(ast::Relation relation) {
   return kOperations[static_cast<std::size_t>(relation)];
 }
 
-// `side` moved by a constant, worked out now where it can be.
+// `side` plus a constant, folded if possible.
 Expression moved(const Expression& side, vm::Value by) {
   if (side.operation == Operation::constant) return make_constant_code(vm::add(side.constant, by));
   return make_binary(Operation::add, side, make_constant_code(by));
 }
 
-// The comparison that lets go `margin` later than `enter` does.
+// The comparison that becomes false `margin` later than `enter` does.
 Expression stay_condition(const Expression& enter, vm::Value margin) {
   const bool below = enter.operation == Operation::less || enter.operation == Operation::less_equal;
   const auto operation = below ? Operation::less_equal : Operation::greater_equal;
@@ -225,7 +225,7 @@ Typed Expressions::condition(const ast::Expr& expr, const ast::Expr* margin) {
   return result;
 }
 
-// Does the MARGIN that is open belong to a comparison of these?
+// Does the open MARGIN apply to a comparison of these?
 bool Expressions::takes_margin(const Typed& left, const Typed& right) {
   if (margin_ == nullptr || (left.is_constant() && right.is_constant())) return false;
   const Typed& side = left.is_constant() ? right : left;
@@ -252,7 +252,7 @@ Typed Expressions::of(const ast::IsBetween& node, Span span) {
   Typed low = number(*node.low);
   Typed high = number(*node.high);
   if (!value.is_number() || !low.is_number() || !high.is_number()) return make_nothing(span);
-  Typed same = value;  // the value stands in two comparisons
+  Typed same = value;  // the value is in two comparisons
   if (!unify(value, low, "this compares {} with {}", false, diagnostics_) ||
       !unify(same, high, "this compares {} with {}", false, diagnostics_))
     return make_nothing(span);
@@ -272,7 +272,7 @@ Typed Expressions::of(const ast::IsBetween& node, Span span) {
 
 Typed Expressions::of(const ast::Changes& node, Span span) {
   Typed value = any(*node.value);
-  if (value.type == Type::condition) value = number(*node.value);  // which says what is wrong
+  if (value.type == Type::condition) value = number(*node.value);  // reports the mistake
   if (value.type == Type::nothing) return value;
   if (!stands_still(value.code, value.span, "CHANGES")) return make_nothing(span);
   vm::Value least = 0;

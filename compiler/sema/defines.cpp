@@ -1,5 +1,5 @@
-// Statements, part: DEFINEs in the place of their uses. A text, an actuator, another DEFINE and a
-// constant stand for their parameter; another number is worked out once, into a local.
+// Part of Statements: expands DEFINEs where they are used. A text, an actuator, another DEFINE or a
+// constant replaces its parameter; any other number is evaluated once, into a local.
 #include <algorithm>
 #include <utility>
 
@@ -10,7 +10,7 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::size_t kMaxNestedDefines = 64;  // of DEFINEs: the translation recurses
+constexpr std::size_t kMaxNestedDefines = 64;  // the translation recurses
 
 constexpr unsigned kMaxHandedOn = 4;
 
@@ -21,7 +21,7 @@ std::size_t parts_of(const Expression& expression) {
   return count;
 }
 
-// The first argument that is a word alone: where an actuator stands.
+// The first argument that is a single word: the actuator's place.
 const ast::Word* first_word(const ast::Command& command) {
   for (const ast::Argument& argument : command.arguments)
     if (argument.preposition == ast::Preposition::none)
@@ -29,7 +29,7 @@ const ast::Word* first_word(const ast::Command& command) {
   return nullptr;
 }
 
-// The place of the argument that is a name of which `is_it` is true; their number when none is.
+// The index of the first argument that is a name for which `is_it` holds; the number of arguments when there is none.
 template <typename IsIt>
 std::size_t place_of(const ast::Call& call, const IsIt& is_it) {
   const auto found = std::ranges::find_if(call.arguments, [&](const ast::Argument& argument) {
@@ -92,7 +92,7 @@ void Statements::add(const ast::Call& node, Span span, ir::Block& result) {
     d.helps(node.name.shown() + " is a verb: what it does stands behind it without WITH");
 }
 
-// What a parameter stands for.
+// Runs the DEFINE that was passed for a parameter.
 void Statements::run(const Binding& binding, const ast::Name& name,
                      const std::vector<ast::Argument>& arguments, Span span, ir::Block& result) {
   if (binding.define != nullptr) return run(*binding.define, arguments, span, result);
@@ -157,7 +157,7 @@ Binding Statements::bind(const ast::Define& define, std::size_t parameter,
   if (const auto* operand = std::get_if<ast::Operand>(&amount->value->node)) {
     const Binding* outer =
         operand->channel ? nullptr : expressions_.find_binding(operand->name.text);
-    if (outer != nullptr) {  // handed on as it is
+    if (outer != nullptr) {  // passed on unchanged
       const std::string name = std::exchange(binding.name, {});
       binding = *outer;
       binding.name = name;
@@ -179,14 +179,14 @@ Binding Statements::bind(const ast::Define& define, std::size_t parameter,
   return binding;
 }
 
-// Worked out here, once.
+// Evaluates the value here, once, into a local.
 Expression Statements::in_local(Expression value, Span span, ir::Block& result) {
   const std::size_t number = locals_++;
   put_first(ir::Local{number, std::move(value)}, span, result);
   return make_local(number);
 }
 
-// As a FOLLOW has it. DEFINEs that hand it on could double it each time, so there is an end to that.
+// The value for a FOLLOW. DEFINEs that pass it on could double it each time, so its size is limited.
 Typed Statements::followed(const ast::Expr& value) {
   const bool before = expressions_.set_following(true);
   Typed number = expressions_.number(value);
@@ -196,8 +196,8 @@ Typed Statements::followed(const ast::Expr& value) {
   return number;
 }
 
-// An actuator, a group or a DEFINE. Where a sensor has the name too, what the DEFINE does with its
-// parameter tells which of them is meant.
+// Binds an actuator, a group or a DEFINE. If a sensor has the same name, the use of the parameter in
+// the DEFINE decides which is meant.
 bool Statements::bind_name(std::string_view name, const ast::Define& define, Binding& binding) {
   const auto target = names_.find_target(name);
   if (DefineName* given = names_.find_define(name)) {
@@ -213,7 +213,7 @@ bool Statements::bind_name(std::string_view name, const ast::Define& define, Bin
   return true;
 }
 
-// Is the parameter an actuator in a command of the DEFINE, or of one that it is handed on to?
+// Is the parameter used as an actuator in a command of the DEFINE, or of one that it is passed on to?
 bool Statements::commands_parameter(const ast::Define& define, std::string_view folded,
                                     unsigned handed_on) {
   bool found = false;
@@ -236,7 +236,7 @@ bool Statements::commands_parameter(const ast::Define& define, std::string_view 
   return found;
 }
 
-// In a scope of its own: it sees its parameters and what the whole program sees.
+// Expands in a separate scope: the body sees its parameters and the global names.
 void Statements::expand(DefineName& name, const Bindings& bindings, ir::Block& result) {
   name.expanded = true;
   const Bindings* outer = expressions_.set_bindings(&bindings);

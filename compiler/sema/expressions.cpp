@@ -11,7 +11,7 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::size_t kMaxNestedLets = 64;  // of LETs: the translation recurses
+constexpr std::size_t kMaxNestedLets = 64;  // the translation recurses
 
 }  // namespace
 
@@ -85,7 +85,7 @@ Typed Expressions::of(const ast::Quantity& node, Span span) {
   return result;
 }
 
-// The innermost meaning: a parameter, then what the program names, then the sensors.
+// Resolves the innermost meaning: a parameter, then a name of the program, then a sensor.
 Typed Expressions::operand(const ast::Operand& operand, Span span) {
   if (!operand.channel) {
     if (const Binding* binding = find_binding(operand.name.text))
@@ -152,7 +152,7 @@ Typed Expressions::parameter(const Binding& binding, const ast::Operand& operand
     report_given(binding, {operand.name.text, span}, "a number");
     return make_nothing(span);
   }
-  // With its place where it is given, which is where a mistake is mended.
+  // Its span is that of the argument, where the user fixes a mistake.
   if (!following_ || binding.value.is_constant()) return binding.value;
   if (binding.followed.is_number()) return binding.followed;
   lost_ = lost_ || binding.value.is_number();
@@ -256,7 +256,7 @@ Typed Expressions::of(const ast::Comparison& node, Span span) {
     report_word_comparison(node, left);
     return make_nothing(span);
   }
-  if (left.type == Type::condition) left = number(*node.left);  // which says what is wrong
+  if (left.type == Type::condition) left = number(*node.left);  // reports the mistake
   Typed right = number(*node.right);
   if (!left.is_number() || !right.is_number()) return make_nothing(span);
   if (!unify(left, right, "this compares {} with {}", false, diagnostics_))
@@ -284,7 +284,7 @@ Typed Expressions::of(const ast::Logic& node, Span span) {
   return make_condition(make_binary(operation, std::move(left.code), std::move(right.code)), span);
 }
 
-// ---- sums, products and RANDOM: their units, their ranges, and constants worked out
+// ---- sums, products and RANDOM: units, ranges and constant folding
 
 namespace {
 
@@ -296,7 +296,7 @@ Operation operation_of(ast::ArithmeticOp op) {
   return kOperations[static_cast<std::size_t>(op)];
 }
 
-// What the result of an addition, subtraction or modulo of ranges can be.
+// The range of the result of an addition, subtraction or modulo.
 void set_range(Typed& result, const Typed& left, const Typed& right) {
   const auto clamp = [](std::int64_t value) {
     return std::clamp<std::int64_t>(value, vm::kValueMin, vm::kValueMax);
@@ -351,7 +351,7 @@ void Expressions::check_divisor(const Typed& divisor) {
       .label(divisor.span);
 }
 
-// +, - and MOD: both sides are of one dimension.
+// +, - and MOD: both sides have one dimension.
 Typed Expressions::sum(const ast::Arithmetic& node, Typed left, Typed right, Span span) {
   constexpr std::array<std::string_view, 5> kDoing = {"this adds {} and {}",
                                                       "this takes the difference of {} and {}", "",
@@ -362,7 +362,7 @@ Typed Expressions::sum(const ast::Arithmetic& node, Typed left, Typed right, Spa
   return combine(node.op, std::move(left), std::move(right), unit, span);
 }
 
-// * and /: one side is a plain number, or both are of one dimension and the quotient is plain.
+// * and /: one side is a plain number, or both have one dimension and the quotient is plain.
 Typed Expressions::product(const ast::Arithmetic& node, Typed left, Typed right, Span span) {
   const Unit& plain = canonical_unit(vm::Dimension::number);
   const bool divides = node.op == ast::ArithmeticOp::div;
@@ -426,7 +426,7 @@ Typed Expressions::fold(const Typed& left, const Typed& right, Typed result) {
   return result;
 }
 
-// A bare pair is one of plain numbers: it is drawn on the robot, so it has no literal's freedom.
+// A bare pair counts as plain numbers: the result is drawn on the robot, so unlike a literal it cannot take a unit later.
 Typed Expressions::of(const ast::Random& node, Span span) {
   Typed low = number(*node.low);
   Typed high = number(*node.high);
@@ -449,7 +449,7 @@ Typed Expressions::of(const ast::Random& node, Span span) {
   return result;
 }
 
-// ---- numbers that some word of the language asks for: their dimension, and what must be known now
+// ---- numbers that a word of the language takes: their dimension, and those that must be constant
 
 namespace {
 
@@ -468,7 +468,7 @@ void report_amount(const Typed& number, const Wanted& wanted, Diagnostics& diagn
   d.helps("did you mean `" + mended + "`?").fix(number.span, mended, Applicability::likely);
 }
 
-// Is it what was asked for? Reports when it is something else; a bare number takes the unit.
+// Checks the dimension and reports a wrong one; a bare number takes the unit.
 bool is_amount(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
   if (number.is_bare()) take_unit(number, wanted, diagnostics);
   if (!number.is_number()) return false;
@@ -479,7 +479,7 @@ bool is_amount(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
 
 }  // namespace
 
-// One result, which is not moved on its way: every number of a program comes along here.
+// Has a single result, so that returning it needs no move: every number of a program passes through here.
 Typed Expressions::amount(const ast::Expr& expr, const Wanted& wanted) {
   Typed result = number(expr);
   if (!is_amount(result, wanted, diagnostics_))

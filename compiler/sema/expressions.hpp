@@ -1,4 +1,4 @@
-// Checks expressions and translates them: names resolved, units converted, constants folded.
+// Checks expressions and translates them: resolves names, converts units, folds constants.
 #pragma once
 
 #include <functional>
@@ -11,37 +11,37 @@
 
 namespace robosync::compiler {
 
-// A text of a LIST, chosen when the program runs.
+// A text of a LIST, chosen at run time.
 struct ChosenItem {
   const ListName* list = nullptr;
   Expression index;                              // from 1
-  std::pair<std::size_t, std::size_t> places{};  // from 0: it is one of these
+  std::pair<std::size_t, std::size_t> places{};  // from 0: the range it is in
 };
 
-// What a parameter of the DEFINE that is being translated stands for.
+// The argument for a parameter of the DEFINE being translated.
 struct Binding {
   std::string name;  // folded
-  Typed value;       // nothing while a DEFINE is checked that nobody runs
+  Typed value;       // nothing while checking a DEFINE that nothing runs
   std::optional<std::string> text;
-  Span span;               // where it is given
-  std::string actuator{};  // the actuator or group that is given
+  Span span;               // of the argument
+  std::string actuator{};  // the actuator or group passed
   DefineName* define = nullptr;
-  bool is_number = true;  // none of the others
+  bool is_number = true;  // none of the other kinds
   std::optional<ChosenItem> chosen{};
-  Typed followed{};  // the same as a FOLLOW has it, worked out each time; nothing: too long
+  Typed followed{};  // the value for a FOLLOW, evaluated each time; nothing: too long
 };
 using Bindings = std::vector<Binding>;
 
-// A LIST of numbers, which have one unit.
+// A LIST of numbers with one unit.
 struct NumberList {
   const ListName* list = nullptr;
   std::vector<vm::Value> values;  // empty after a mistake
   const Unit* unit = nullptr;
 };
-// Puts what chooses from a list in front of the statement that is being translated. Gives the local that holds the number.
+// Puts the code that chooses from a list before the statement being translated. Returns the local that holds the number.
 using ChooseNumber = std::function<Expression(const NumberList& list, Typed index)>;
 
-// Of a DEFINE that nobody runs: it could be given anything.
+// True in a DEFINE that nothing runs: the argument could be anything.
 [[nodiscard]] inline bool is_open(const Binding& binding) {
   return binding.is_number && binding.value.type == Type::nothing;
 }
@@ -50,22 +50,22 @@ class Expressions {
 public:
   Expressions(Names& names, Diagnostics& diagnostics) : names_(names), diagnostics_(diagnostics) {}
 
-  // Type::nothing after a mistake, which has then been reported.
+  // Type::nothing after a mistake, which has been reported.
   [[nodiscard]] Typed condition(const ast::Expr& expr);
   [[nodiscard]] Typed number(const ast::Expr& expr);
   [[nodiscard]] Typed any(const ast::Expr& expr);
-  [[nodiscard]] Typed number_of(Typed result);  // reports when it is none
+  [[nodiscard]] Typed number_of(Typed result);  // reports any other type
   [[nodiscard]] Typed operand(const ast::Operand& operand, Span span);
 
-  // A condition whose comparisons hold on to what they are: MARGIN, which may be null.
+  // A condition whose comparisons have hysteresis: MARGIN, which may be null.
   [[nodiscard]] Typed condition(const ast::Expr& expr, const ast::Expr* margin);
 
-  // A number of the wanted dimension; a bare one is in the wanted unit.
+  // A number of the wanted dimension; a bare number gets the wanted unit.
   [[nodiscard]] Typed amount(const ast::Expr& expr, const Wanted& wanted);
-  // The same, known now (E0305).
+  // The same, but constant (E0305).
   [[nodiscard]] std::optional<Typed> constant_amount(const ast::Expr& expr, const Wanted& wanted);
   [[nodiscard]] std::optional<Typed> constant(const ast::Expr& expr, std::string_view what);
-  // `what` names the word that asks: "COOLDOWN". A constant one is above 0.
+  // `what` names the word that takes the duration: "COOLDOWN". A constant must be above 0.
   [[nodiscard]] Typed duration(const ast::Expr& expr, std::string_view what);
   [[nodiscard]] std::optional<vm::Value> constant_duration(const ast::Expr& expr,
                                                            std::string_view what);
@@ -73,30 +73,30 @@ public:
   // Checks every LET, used or not.
   void check_constants();
 
-  // The parameters that are seen; nullptr: none. Gives what it was before.
+  // Sets the visible parameters; nullptr: none. Returns the previous ones.
   const Bindings* set_bindings(const Bindings* bindings);
   [[nodiscard]] const Binding* find_binding(std::string_view name) const;
-  // Is it for a FOLLOW what is worked out now? Its parameters are worked out with it, not beforehand.
-  // Gives what it was before.
+  // Sets whether expressions are for a FOLLOW, which evaluates parameters each time, not beforehand.
+  // Returns the previous setting.
   bool set_following(bool following);
-  // Since then: was there one that has no such value, as it would be too long?
+  // Since set_following(): was there a parameter without such a value, because it would be too long?
   [[nodiscard]] bool has_lost() const { return lost_; }
-  // The LIST of this name; reports when there is none.
+  // The LIST of this name; reports an unknown name.
   const ListName* find_list(const ast::Name& name);
   bool lacks_quotes(const ast::Expr& item);
-  // Reports what is wrong in LISTs of numbers.
+  // Reports mistakes in LISTs of numbers.
   void check_lists();
-  // Which item, from 0, an index that is known now means; reports when there is none.
+  // The item, from 0, of a constant index; reports an index outside the list.
   std::optional<std::size_t> known_item(const ListName& list, const Typed& index);
-  // How a statement chooses from one; null, as it is in conditions: it cannot. Gives what it was before.
+  // Sets how a statement chooses from a list; null (as in conditions): it cannot. Returns the previous setting.
   const ChooseNumber* set_choice(const ChooseNumber* choose);
-  // Reports a TIMER in a value that is looked at only when something else changes. False if there is one.
+  // Reports a TIMER in a value that is evaluated only when something else changes. False if there is one.
   bool stands_still(const Expression& value, Span span, std::string_view where);
-  // "`who` is given a number, and an actuator is needed".
+  // Reports "`who` is given a number, and an actuator is needed".
   void report_given(const Binding& binding, const ast::Name& name, std::string_view wanted);
 
 private:
-  // MARGIN while its condition is translated. A bare one takes the unit of what it meets first.
+  // MARGIN while its condition is translated. A bare number takes the unit of the first comparison.
   struct Margin {
     Typed value;
     bool used = false;
@@ -129,7 +129,7 @@ private:
   Typed of(const ast::ThenWithin& node, Span span);
   Typed of(const ast::TimesWithin& node, Span span);
 
-  // Are there parameters? What is certain of one that it is given need not be so of the next.
+  // Are there parameters? What holds for one argument may not hold for the next.
   [[nodiscard]] bool is_given() const { return bindings_ != nullptr && !bindings_->empty(); }
   Typed constant(ConstantName& name, const ast::Operand& operand, Span span);
   const Typed& value_of(ConstantName& name);
@@ -155,24 +155,24 @@ private:
   Names& names_;
   Diagnostics& diagnostics_;
   std::map<const ast::Let*, Typed> constants_;
-  std::vector<const ast::Let*> open_;  // being worked out, to find one that needs itself
+  std::vector<const ast::Let*> open_;  // being evaluated, to detect cycles
   const Bindings* bindings_ = nullptr;
   std::map<const ListName*, NumberList> lists_;
-  bool in_list_ = false;  // its numbers are being worked out
+  bool in_list_ = false;  // evaluating its numbers
   const ChooseNumber* choose_ = nullptr;
   bool following_ = false;
   bool lost_ = false;
   Margin* margin_ = nullptr;
 };
 
-// The place of a label; reports E0501 with the right ones when there is none.
+// The index of a label; reports an unknown one with E0501 and lists the valid ones.
 [[nodiscard]] std::optional<std::size_t> find_label(Names& names,
                                                     const std::vector<std::string>& labels,
                                                     const ast::Name& label, std::string_view owner,
                                                     Diagnostics& diagnostics, bool quoted = false);
 [[nodiscard]] vm::Value label_value(std::size_t place);
 
-// "`mood` is a word (`calm` or `happy`), not a number".
+// Reports "`mood` is a word (`calm` or `happy`), not a number".
 Diagnostic& report_word(const Typed& word, std::string_view wanted, Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

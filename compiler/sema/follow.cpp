@@ -1,5 +1,5 @@
-// Statements and commands, part: FOLLOW. It becomes a command TO a local, which is given again whenever that
-// has changed by MARGIN: what was given last is another local, which begins where no actuator can be.
+// Part of Statements and Commands: FOLLOW. It becomes a command TO a local, repeated whenever the local
+// has changed by MARGIN. Another local holds the last value given; it starts where no actuator can be.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -10,8 +10,8 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr vm::Value kStepsOfRange = 2000;      // the smallest step of a servo is one of so many
-constexpr vm::Value kNowhere = vm::kValueMin;  // further from anything than a MARGIN is
+constexpr vm::Value kStepsOfRange = 2000;      // smallest steps of a servo in its range
+constexpr vm::Value kNowhere = vm::kValueMin;  // farther from any value than a MARGIN
 
 constexpr std::uint8_t kTakes =
     1u << static_cast<unsigned>(vm::Param::to) | 1u << static_cast<unsigned>(vm::Param::at);
@@ -34,7 +34,7 @@ bool same(const Followed& a, const Followed& b) {
          a.command.arguments == b.command.arguments;
 }
 
-// What can be out of the actuator's range is moved to its end.
+// Clamps a value that may be outside the actuator's range.
 Expression in_range(Typed number, const ActuatorConfig& actuator) {
   Expression value = std::move(number.code);
   if (number.low < actuator.min)
@@ -44,7 +44,7 @@ Expression in_range(Typed number, const ActuatorConfig& actuator) {
   return value;
 }
 
-// The MARGIN of a FOLLOW: a difference of what TO takes, known now.
+// The MARGIN of a FOLLOW: a constant difference in the unit of TO.
 bool fit_margin(const ActuatorConfig& actuator, Typed& number, Diagnostics& diagnostics) {
   const Unit& unit = param_unit(actuator, vm::Param::to);
   if (number.is_bare())
@@ -75,7 +75,7 @@ Expression& target_of(ir::Command& command) {
 
 }  // namespace
 
-// ---- what it says
+// ---- the command
 
 bool Commands::is_follow(const ast::Command& command) const {
   return same_name(command.verb.text, kFollow) && !names_.is_verb(kFollow);
@@ -85,7 +85,7 @@ std::optional<Follow> Commands::follow(const ast::Command& command) {
   return follow(command, false);
 }
 
-// In a TEST: what was given, without MARGIN and FOR.
+// In a TEST: the commands given, without MARGIN and FOR.
 std::vector<ir::Command> Commands::expected_follow(const ast::Command& command) {
   std::vector<ir::Command> commands;
   if (auto follow = this->follow(command, true))
@@ -135,7 +135,7 @@ std::optional<Follow> Commands::follow(const ast::Command& command, bool expecte
   for (const Given& one : *given)
     if (one.is_number && one.param == vm::Param::for_ && !lasts(one, result)) return std::nullopt;
   for (const std::size_t actuator : target->actuators) {
-    Diagnostics repeated;  // of a group, notes are said once
+    Diagnostics repeated;  // reports notes once for a group
     Diagnostics& here = result.all.empty() ? diagnostics_ : repeated;
     auto one = follow_by(actuator, *given, command.verb, here);
     for (const Diagnostic& d : repeated.all())
@@ -228,7 +228,7 @@ bool Commands::add_to_follow(const ActuatorConfig& actuator, const Given& given,
   return true;
 }
 
-// ---- what it does
+// ---- the statement
 
 ir::Follow* Statements::endless_follow(ir::Block& block) {
   if (block.empty()) return nullptr;
@@ -251,7 +251,7 @@ void Statements::put_first(ir::Local local, Span span, ir::Block& result) {
   result.push_back(std::move(follow));
 }
 
-// Those that stand one behind the other go on together; the FOR of the last one ends them all.
+// Consecutive FOLLOWs run together; the FOR of the last one ends them all.
 void Statements::follow(const ast::Command& node, Span span, ir::Block& result) {
   auto follow = commands_.follow(node);
   if (!follow) return;

@@ -1,4 +1,4 @@
-// Expressions, part: the functions of numbers (compiler/syntax/functions.def).
+// Part of Expressions: the numeric functions (compiler/syntax/functions.def).
 #include "compiler/syntax/functions.hpp"
 
 #include <array>
@@ -18,20 +18,20 @@ constexpr std::array kOperations = {
 #include "compiler/syntax/functions.def"
 #undef FUNCTION
 };
-constexpr unsigned kDecimals = 3;  // of what is worked out here
+constexpr unsigned kDecimals = 3;  // of constants folded here
 
-// What ROUND makes whole: the unit that its number is declared in.
+// ROUND rounds to whole numbers of this unit: the one that the number is declared in.
 const Unit& unit_of(const Typed& number) {
   return number.unit != nullptr ? *number.unit : canonical_unit(number.dimension());
 }
 
-// One of these units; of those that are no whole number of thousandths (rad), the nearest.
+// The value of one unit, to the nearest thousandth (rad is not a whole number of thousandths).
 vm::Value step_of(const Unit& unit) {
   return static_cast<vm::Value>((unit.factor + unit.divisor / 2) / unit.divisor);
 }
 
-// Where the unit's scale begins elsewhere (F), its whole numbers are multiples of nothing: they are on the
-// scale of units.def before its division, from which the number comes back.
+// If the unit's scale has an offset (F), its whole numbers are not multiples of a step. They are on the
+// scale of units.def before the division, so this rounds there and converts back.
 Expression rounded(Expression number, const Unit& unit) {
   if (unit.offset == 0)
     return make_binary(Operation::round, std::move(number), make_constant_code(step_of(unit)));

@@ -1,4 +1,4 @@
-// LIMIT: the speed of an actuator, or what a sensor of the same name measures.
+// LIMIT: limits the speed of an actuator, or the reading of a sensor of the same name.
 #pragma once
 
 #include "compiler/sema/commands.hpp"
@@ -7,11 +7,11 @@ namespace robosync::compiler {
 
 class Limits {
 public:
-  // `robot` is changed: its commands are checked against the stricter limits.
+  // Changes `robot`, so that commands are checked against the stricter limits.
   Limits(Robot& robot, Names& names, Expressions& expressions, Diagnostics& diagnostics)
       : robot_(robot), names_(names), expressions_(expressions), diagnostics_(diagnostics) {}
 
-  // Adds a speed limit to `program`, or the SAFETY rule that keeps the limit. `line` is its own.
+  // Adds a speed limit to `program`, or the SAFETY rule that enforces the limit. `line` is the line of the LIMIT.
   void add(const ast::Limit& limit, std::uint16_t line, ir::Program& program);
 
 private:

@@ -16,7 +16,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// A comparison of something with a constant, as the range of values for which it is true.
+// A comparison with a constant, as the range of values for which it is true.
 struct Threshold {
   const Expression* side = nullptr;
   std::int64_t low = vm::kValueMin, high = vm::kValueMax;
@@ -49,7 +49,7 @@ std::optional<Threshold> threshold(const Expression& condition) {
   }
 }
 
-// Drawn anew each time, it is not even equal to itself.
+// True for a random value: it is drawn anew each time, so it is not even equal to itself.
 bool draws(const Expression& expression) {
   return expression.operation == Operation::random ||
          std::any_of(expression.operands.begin(), expression.operands.end(), draws);
@@ -63,7 +63,7 @@ bool implies(const Expression& condition, const Expression& consequence) {
   const auto each = [&](const Expression& part) { return implies(part, consequence); };
   if (condition.operation == Operation::logical_and)
     return std::any_of(condition.operands.begin(), condition.operands.end(), each);
-  // A condition that has held for some time holds now.
+  // A condition that has held for some time also holds now.
   if (condition.operation == Operation::held) return each(condition.operands[0]);
   const auto narrow = threshold(condition);
   const auto wide = threshold(consequence);
@@ -104,7 +104,7 @@ struct TwoRules {
   std::string then_head, else_head;
 };
 
-// For `channel < number` with a channel that rests at 0.
+// For `channel < number`, with a channel that rests at 0.
 std::optional<TwoRules> rules_without_start(const ast::WhenRule& when, const Names& names,
                                             const Typed& condition, const SourceMap& sources) {
   const auto* comparison = std::get_if<ast::Comparison>(&when.condition->node);
@@ -144,15 +144,15 @@ void lint_start(const ast::Rule& rule, const ast::WhenRule& when, const Names& n
            Applicability::likely);
 }
 
-// ---- W0201: the bands of a CHECK against what its sensor can give
+// ---- W0201: the bands of a CHECK against its sensor's range
 
 namespace {
 
 struct Interval {
-  std::int64_t low = 0, high = 0;  // both included
+  std::int64_t low = 0, high = 0;  // both inclusive
 };
 
-// What is left of `ranges` without `taken`.
+// `ranges` without `taken`.
 std::vector<Interval> without(const std::vector<Interval>& ranges, const Interval& taken) {
   std::vector<Interval> left;
   for (const Interval& range : ranges) {
@@ -172,7 +172,7 @@ bool overlaps(const std::vector<Interval>& ranges, const Interval& wanted) {
 
 namespace {
 
-// W0210: a band that holds on to every value once it has one.
+// W0210: a band that is never left once it is entered.
 void lint_hold(const ast::Check& node, const ir::Check& check, const Typed& input,
                Diagnostics& diagnostics) {
   for (std::size_t i = 0; i < check.bands.size() && node.margin; ++i) {
@@ -213,7 +213,7 @@ void lint_bands(const ast::Check& node, const ir::Check& check, const Typed& inp
       .helps("give a band OTHERWISE, or let two bands meet");
 }
 
-// ---- W0202, W0204, W0207: rules against each other, and against their own responses
+// ---- W0202, W0204, W0207: rules compared with each other, and with their own responses
 
 namespace {
 
@@ -229,12 +229,12 @@ std::set<std::size_t> actuators_of(const ir::Rule& rule) {
 
 // ---- W0202
 
-// Does `higher` own its actuators whenever `lower` could begin?
+// Does `higher` own its actuators whenever `lower` could start?
 bool always_before(const ir::Rule& higher, const ir::Rule& lower) {
   if (higher.cooldown != 0 || lower.waiting != 0) return false;
   if (lower.kind != vm::RuleKind::when && lower.kind != vm::RuleKind::while_) return false;
   if (higher.kind == vm::RuleKind::while_) return implies(lower.condition, higher.condition);
-  // Two that begin in the same step; afterwards the lower one's moment is over.
+  // Both would start in the same step; after that, the lower rule's moment has passed.
   return higher.kind == vm::RuleKind::when && lower.kind == vm::RuleKind::when &&
          lower.cooldown == 0 && implies(lower.condition, higher.condition) &&
          implies(higher.condition, lower.condition);
@@ -245,7 +245,7 @@ struct KnownRule {
   std::set<std::size_t> actuators;
 };
 
-// Pairs of rules that are looked at in one program; more than a robot's memory holds rules for.
+// The most pairs of rules checked in one program; more than the rules in a robot's memory can form.
 constexpr std::size_t kMostPairs = 500'000;
 
 bool share(const std::set<std::size_t>& a, const std::set<std::size_t>& b) {
@@ -284,7 +284,7 @@ void lint_order(const LintInput& input) {
 
 // ---- W0204
 
-// How long a response takes at least, in milliseconds: what it waits, and what its commands say.
+// The shortest time that a response takes, in milliseconds: its waits and the durations of its commands.
 class Duration {
 public:
   std::int64_t of(const ir::Block& block) {
@@ -367,7 +367,7 @@ void lint_level(const ir::Rule& rule, Diagnostics& diagnostics) {
 
 // ---- W0219
 
-// A command takes time, but for STOP and for a level that an output has at once (vm/drivers.def).
+// A command takes time, except STOP and a level that an output takes on immediately (vm/drivers.def).
 bool takes_time(const ir::Command& command, const Names& names) {
   const bool lasts = std::any_of(
       command.arguments.begin(), command.arguments.end(), [](const ir::Argument& argument) {
@@ -412,7 +412,7 @@ void lint_rules(const LintInput& input) {
   }
 }
 
-// ---- W0205: a WAIT UNTIL that may wait for ever, and keeps its actuators all the time
+// ---- W0205: a WAIT UNTIL that may wait for ever and holds its actuators meanwhile
 
 namespace {
 
@@ -442,7 +442,7 @@ void lint_waits(const LintInput& input) {
   }
 }
 
-// ---- W0206, W0211: names and labels that play no part
+// ---- W0206, W0211: unused names and labels
 
 namespace {
 
@@ -507,7 +507,7 @@ void lint_names(const LintInput& input) {
   }
 }
 
-// ---- W0208, W0209, W0218: the program against the robot it is for
+// ---- W0208, W0209, W0218: the program compared with its robot
 
 namespace {
 
@@ -516,12 +516,12 @@ bool is_order(Operation operation) {
          operation == Operation::greater || operation == Operation::greater_equal;
 }
 
-// What is measured in a real unit trembles; "change" in robot.json holds small steps back.
+// A measurement in a real unit fluctuates; "change" in robot.json suppresses small steps.
 bool is_noisy(const ChannelConfig& channel) {
   return channel.unit->dimension != vm::Dimension::number && channel.change == 0;
 }
 
-// The first reading of a noisy sensor that is compared as it is.
+// The first unfiltered reading of a noisy sensor that is compared with a constant.
 const Expression* raw_threshold(const Expression& condition, const Names& names) {
   if (condition.operation == Operation::latch || condition.operation == Operation::held)
     return nullptr;
@@ -554,7 +554,7 @@ void lint_noise(const LintInput& input) {
   }
 }
 
-// PERFORM and FOLLOW are no verbs of their actuators, and they light lamps, too.
+// PERFORM and FOLLOW are not verbs of their actuators, and they can also control lamps.
 bool moves_one(const ir::Command& command, const Robot& robot) {
   if (command.verb.action != vm::Action::perform && command.verb.action != vm::Action::follow)
     return command.verb.action == vm::Action::move;
@@ -565,7 +565,7 @@ bool moves_one(const ir::Command& command, const Robot& robot) {
   });
 }
 
-// A few rules without a BEHAVIOR are a first try, which needs no sermon.
+// A few rules without a BEHAVIOR are a first try and get no advice.
 void lint_safety(const LintInput& input) {
   const ir::Program& program = input.program;
   if (!program.safety.empty() || !program.speed_limits.empty()) return;

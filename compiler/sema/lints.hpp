@@ -1,4 +1,4 @@
-// Warnings about programs that are correct and yet may not do what was meant.
+// Warnings about programs that are correct but may not do what was meant.
 #pragma once
 
 #include "compiler/sema/names.hpp"
@@ -6,18 +6,18 @@
 
 namespace robosync::compiler {
 
-// W0203: a WHEN/ELSE acts at start. `condition` is its translation; the fix is made from the text
+// W0203: a WHEN/ELSE acts at start. `condition` is the translated condition; the fix is built from the text
 // of the rule.
 void lint_start(const ast::Rule& rule, const ast::WhenRule& when, const Names& names,
                 const Typed& condition, const SourceMap& sources, Diagnostics& diagnostics);
 
-// W0201: a band that nothing reaches, or values of `input` that no band has.
+// W0201: a band that no value reaches, or values of `input` that are in no band.
 void lint_bands(const ast::Check& node, const ir::Check& check, const Typed& input,
                 Diagnostics& diagnostics);
 
-// What can be said only of a whole program, when it has no errors.
+// The input of lints that need a whole program without errors.
 struct LintInput {
-  const ast::Tree& tree;  // without its modules: they are not the user's to mend
+  const ast::Tree& tree;  // without modules, which the user cannot fix
   const ir::Program& program;
   const Robot& robot;
   Names& names;

@@ -1,8 +1,8 @@
-// Statements, part: texts and numbers out of a LIST. A statement with a text becomes a choice between statements
-// with each of its texts, halved again and again, so that a list of 64 takes six questions. A number is chosen in the
-// same way in front of the statement, into a local.
+// Part of Statements: texts and numbers from a LIST. A statement with a text becomes a binary search over statements,
+// one for each text of the list, so that a list of 64 takes six tests. A number is chosen in the same way before the
+// statement, into a local.
 //
-// ANY and NEXT remember the place of their last text, from 1, in a variable of their own.
+// ANY and NEXT each remember the index of their last text, from 1, in a variable.
 #include <utility>
 
 #include "compiler/sema/statements.hpp"
@@ -10,7 +10,7 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::size_t kMaxTexts = 64;  // more are more blocks in each other than a robot has
+constexpr std::size_t kMaxTexts = 64;  // more would nest more blocks than a robot can
 
 Expression make_variable(std::size_t index) {
   Expression result;
@@ -23,7 +23,7 @@ vm::Value whole(std::size_t number) {
   return static_cast<vm::Value>(number) * vm::kScale;
 }
 
-// A whole number from 1 to `most`: thousandths are drawn, and each is taken for a one.
+// A random whole number from 1 to `most`: draws a number of thousandths and multiplies it by 1000.
 Expression drawn(std::size_t most) {
   return make_binary(Operation::multiply,
                      make_binary(Operation::random, make_constant_code(1),
@@ -41,9 +41,9 @@ Expression place_behind(Expression number, std::size_t count) {
 
 }  // namespace
 
-// ---- where a text is asked for
+// ---- finding the choice
 
-// `ANY jokes`, `NEXT jokes`. When there is no such list it is reported, if they are `surely` meant.
+// `ANY jokes`, `NEXT jokes`. Reports an unknown list if such a choice is `surely` meant.
 std::optional<ListChoice> Statements::in_turn(const ast::Name& how, const ast::Name& list,
                                               bool surely) {
   const std::string folded = fold_name(how.text);
@@ -64,7 +64,7 @@ std::optional<ListChoice> Statements::in_turn(const ast::Name& how, const ast::N
   return choice;
 }
 
-// A parameter of a DEFINE that stands for a text of a LIST.
+// A parameter of a DEFINE that was passed a text of a LIST.
 std::optional<ListChoice> Statements::choice_given(const ast::Name& name) {
   const Binding* const binding = expressions_.find_binding(name.text);
   if (binding == nullptr || !binding->chosen) return std::nullopt;
@@ -94,7 +94,7 @@ std::optional<ListChoice> Statements::choice_in(const ast::Expr& expr) {
   return choice;
 }
 
-// The first one: there is hardly ever another.
+// The first one; a second one is rare.
 std::optional<ListChoice> Statements::find_choice(const std::vector<ast::Argument>& arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     std::optional<ListChoice> choice;
@@ -116,7 +116,7 @@ std::optional<ListChoice> Statements::find_choice(const std::vector<ast::Argumen
   return std::nullopt;
 }
 
-// ---- which text it is
+// ---- choosing the text
 
 void Statements::choose(const ListChoice& choice, Span span, const PutText& put_text,
                         ir::Block& result) {
@@ -131,7 +131,7 @@ void Statements::choose(const ListChoice& choice, Span span, const PutText& put_
   put_one_of(chosen->index, chosen->places, span, put_item, result);
 }
 
-// Nothing after a mistake, which has then been reported.
+// Nothing after a mistake, which has been reported.
 std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span span,
                                                   ir::Block& result) {
   if (choice.list == nullptr) return std::nullopt;
@@ -166,7 +166,7 @@ std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span
   return chosen;
 }
 
-// Worked out once. Outside the list the nearest item is taken, and the trace says so.
+// Evaluates the index once. An index outside the list takes the nearest item and is logged.
 Expression Statements::item_index(const ListName& list, Typed index, Span span, ir::Block& result) {
   const std::string name(list.list->name.text);
   const std::size_t count = list.count();
@@ -191,7 +191,7 @@ Expression Statements::next_index(const ListChoice& choice, Span span, ir::Block
   return make_variable(last);
 }
 
-// The first time any of them; then as many further as is drawn, which never is all the way round.
+// The first time, any item. After that, moves on by a random number of items that never returns to the same one.
 Expression Statements::any_index(const ListChoice& choice, Span span, ir::Block& result) {
   const std::size_t count = choice.list->count();
   const std::size_t last = choice.list->any.value_or(0);
@@ -224,7 +224,7 @@ void Statements::put_one_of(const Expression& index, std::pair<std::size_t, std:
 
 // ---- numbers
 
-// Of an unknown place an unknown number: it is neither in one half nor in the other.
+// An unknown index gives an unknown number: the index is in neither half.
 Expression Statements::choose_number(const NumberList& list, Typed index, Span span,
                                      ir::Block& result) {
   const std::size_t local = locals_++;

@@ -1,5 +1,5 @@
-// Commands, part: arguments that are each a word, a text or a number, and together something else that was meant. Said once for
-// all of them, before each by itself would be refused.
+// Part of Commands: arguments that are each a word, a text or a number, but together mean something else. Reported once
+// for all of them, before each is rejected on its own.
 #include <algorithm>
 #include <cstdlib>
 #include <optional>
@@ -12,7 +12,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// How other languages, and people, call what RSL has a preposition for.
+// Words of other languages, and of people, for RSL's prepositions.
 struct ForeignPreposition {
   std::string_view spelling, meant;
 };
@@ -33,7 +33,7 @@ Span both(const ast::Argument& first, const ast::Argument& second) {
 
 }  // namespace
 
-// Is the argument, with the next one, something else than two arguments? It is reported.
+// True if the argument and the next one are not meant as two arguments; reports it.
 bool Commands::is_misread(const ast::Command& command, std::size_t place) {
   if (is_second_command(command, place) || lacks_brackets(command, place)) return true;
   const std::size_t next = place + 1;
@@ -157,7 +157,7 @@ bool Commands::is_unit_apart(const ast::Command& command, std::size_t place) {
   return true;
 }
 
-// `TO 30,5deg`: nothing stands between the comma and the numbers beside it.
+// `TO 30,5deg`: the comma touches the numbers on both sides.
 bool Commands::has_decimal_comma(const ast::Argument& part, const ast::Argument& next) {
   const auto number_of = [](const ast::Argument& one) -> const ast::Quantity* {
     const auto* const amount = std::get_if<ast::Amount>(&one.value);
@@ -176,7 +176,7 @@ bool Commands::has_decimal_comma(const ast::Argument& part, const ast::Argument&
   return true;
 }
 
-// `PLAY button happy`: a sensor where the actuator should stand.
+// `PLAY button happy`: a sensor in place of the actuator.
 bool Commands::is_sensor_meant(const Recipient& to, const ast::Word& word, const Names& names) {
   if (!names.find_sensor(word.name.text)) return false;
   const bool says = to.verb.texts == Texts::any && to.command.arguments.size() == 1;

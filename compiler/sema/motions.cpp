@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostRows = 255;
 
-// Goes TO a place OVER a time, at the word of a verb that moves or sets it.
+// True if the actuator has a verb that moves or sets it, with TO and OVER.
 bool follows_keys(const ActuatorConfig& actuator) {
   return actuator.to_unit != nullptr &&
          std::ranges::any_of(actuator.verbs, [](const VerbConfig& verb) {
@@ -43,7 +43,7 @@ void Motions::check_unused() {
 
 std::optional<ir::Motion> Motions::translate(const ast::Motion& motion) {
   ir::Motion result{std::string(motion.name.text), 0, {}};
-  std::vector<std::vector<std::size_t>> columns;  // places in result.tracks
+  std::vector<std::vector<std::size_t>> columns;  // indices into result.tracks
   if (!add_columns(motion, columns, result)) return std::nullopt;
   if (motion.rows.size() > kMostRows) {
     diagnostics_
@@ -103,7 +103,7 @@ bool Motions::can_move(std::size_t actuator, const ast::Name& column) {
   return false;
 }
 
-// Rows stand in the order of time, and so far apart that actuators can follow.
+// Rows must be in time order, and far enough apart for actuators to follow.
 std::optional<vm::Value> Motions::time_of(const ast::MotionRow& row, vm::Value after) {
   const auto time = expressions_.constant_amount(
       *row.time, {&canonical_unit(vm::Dimension::duration), "AT", row.time->span});
@@ -162,7 +162,7 @@ bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ir::Track& trac
   if (!number) return false;
   number = expressions_.number_of(std::move(*number));
   if (!number->is_number()) return false;
-  Diagnostics said_before;  // of which unit bare numbers are, once for a column
+  Diagnostics said_before;  // notes the unit of bare numbers once per column
   Diagnostics& notes = track.keys.empty() ? diagnostics_ : said_before;
   if (!fit_parameter(actuator, vm::Param::to, *number, notes, diagnostics_)) return false;
   const vm::Key made{time, number->code.constant};
@@ -172,7 +172,7 @@ bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ir::Track& trac
   return true;
 }
 
-// It goes there at its limit, and is there later than the table says.
+// The actuator moves at its limit and arrives later than the table says.
 void Motions::report_late(const ActuatorConfig& actuator, const std::string& where, Span span) {
   const Unit& unit = param_unit(actuator, vm::Param::at);
   diagnostics_

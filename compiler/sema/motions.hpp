@@ -1,4 +1,4 @@
-// Checks MOTIONs: tables of key frames, a column for each actuator or group, a row for each time.
+// Checks MOTIONs: tables of key frames with a column for each actuator or group and a row for each time.
 #pragma once
 
 #include "compiler/sema/expressions.hpp"
@@ -6,15 +6,15 @@
 
 namespace robosync::compiler {
 
-inline constexpr std::string_view kPerform = "PERFORM";  // the verb; a word of RSL, no keyword
+inline constexpr std::string_view kPerform = "PERFORM";  // the verb; a word of RSL, not a keyword
 
-// Is a number that stands for a parameter of `actuator` one that it can do? Gives a bare one its unit
-// (the note of that goes to `notes`), reports what is wrong. `verb`: for which one, if that matters.
+// Checks a number for a parameter of `actuator` and reports what is wrong. Gives a bare number its unit
+// (that note goes to `notes`). `verb` is the verb it is for, if that matters.
 [[nodiscard]] bool fit_parameter(const ActuatorConfig& actuator, vm::Param param, Typed& number,
                                  Diagnostics& notes, Diagnostics& diagnostics,
                                  const VerbConfig* verb = nullptr);
 
-// Somebody has used the name of a MOTION where that of a DEFINE or a verb stands.
+// For the name of a MOTION in place of a DEFINE or a verb.
 void suggest_perform(Diagnostic& diagnostic, const ast::Name& motion);
 
 class Motions {
@@ -22,16 +22,16 @@ public:
   Motions(const Robot& robot, Names& names, Expressions& expressions, Diagnostics& diagnostics)
       : robot_(robot), names_(names), expressions_(expressions), diagnostics_(diagnostics) {}
 
-  // The place of what is performed, in performed(); nothing when no MOTION has the name, or it has a
+  // The index of the MOTION in performed(). Nothing when no MOTION has the name, or when it has a
   // mistake, which has been reported.
   [[nodiscard]] std::optional<std::size_t> find(const ast::Name& name);
   [[nodiscard]] const ir::Motion& at(std::size_t place) const { return motions_[place]; }
 
-  // Those that find() has found so far, in that order.
+  // The MOTIONs that find() has found so far, in that order.
   [[nodiscard]] const std::vector<ir::Motion>& performed() const { return motions_; }
-  // Would one at `place` that is in time be late at `pace`, in percent? It is noted.
+  // Reports (N0004) if the MOTION at `place` is on time as written but late at `pace`, in percent.
   void check_pace(std::size_t place, vm::Value pace, Span span);
-  // Checks the others; those of modules need not fit the robot.
+  // Checks the other MOTIONs; those of modules need not fit the robot.
   void check_unused();
 
 private:

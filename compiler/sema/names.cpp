@@ -11,7 +11,7 @@
 
 namespace robosync::compiler {
 
-// ---- looking up
+// ---- lookup
 
 namespace {
 
@@ -32,7 +32,7 @@ bool Names::names_a_channel(std::string_view name) const {
   return sensors_.find(name).has_value() || channels_.find(name).has_value();
 }
 
-// What RSL says about the robot is looked up by name for each word of the program.
+// The robot's names are looked up for every word of the program, so they are indexed.
 void Names::index_robot() {
   for (const SensorConfig& sensor : robot_.sensors)
     for (const ChannelConfig& channel : sensor.channels)
@@ -89,7 +89,7 @@ std::optional<ChannelRef> Names::find_channel(const ast::Operand& operand) {
   return std::nullopt;
 }
 
-// The warning about the file need not be said, then: compile() drops it.
+// compile() then drops the warning about the missing file.
 bool Names::report_missing(const ast::Operand& operand) {
   for (const MissingModule& missing : robot_.missing) {
     if (!same_name(missing.name.text, operand.name.text)) continue;
@@ -285,7 +285,7 @@ std::vector<std::string> Names::variable_names() const {
   return names;
 }
 
-// ---- collecting the names that a program and its modules give
+// ---- collecting the names of a program and its modules
 
 Names::Names(const Trees& trees, const Robot& robot, Diagnostics& diagnostics)
     : robot_(robot),
@@ -298,7 +298,7 @@ Names::Names(const Trees& trees, const Robot& robot, Diagnostics& diagnostics)
     in_module_ = tree != trees.front();
     collect(*tree);
   }
-  // A signal is declared by its use: what is declared in so many words comes first.
+  // A signal is declared by its use, so explicit declarations come first.
   for (const ast::Tree* tree : trees) {
     in_module_ = tree != trees.front();
     collect_signals(*tree);
@@ -328,7 +328,7 @@ void Names::report_twice(const ast::Name& name, Span first) {
       .helps("choose another name for yours");
 }
 
-// True if the name is new. An empty one was missing, which has been reported.
+// True if the name is new. An empty name was missing and has been reported.
 bool Names::claim(const ast::Name& name) {
   if (name.text.empty()) return false;
   const auto [first, added] = claimed_.emplace(fold_name(name.text), name.span);
@@ -336,7 +336,7 @@ bool Names::claim(const ast::Name& name) {
   return added;
 }
 
-// As claim(), for a name that stands where a sensor's could.
+// Like claim(), for a name that is used in the same places as a sensor's.
 bool Names::claim_operand(const ast::Name& name) {
   if (!claim(name)) return false;
   if (names_a_channel(name.text))
@@ -437,7 +437,7 @@ void Names::add(const ast::Feeling& feeling) {
     add_variable({feeling.name, 0, &feeling, vm::VariableKind::feeling, {}}, globals_);
 }
 
-// `CHECK proximity OF DISTANCE`: the two words of a channel, torn apart.
+// `CHECK proximity OF DISTANCE`: the two words of a channel, split apart.
 bool Names::tears_channel(const ast::Check& check) const {
   const auto* const operand =
       check.operand ? std::get_if<ast::Operand>(&check.operand->node) : nullptr;
@@ -495,7 +495,7 @@ void Names::add_signal(const ast::Name& name) {
     add_variable({name, 0, {}, vm::VariableKind::signal, {}}, globals_);
 }
 
-// ---- what ANY and NEXT remember
+// ---- the variables of ANY and NEXT
 
 void Names::add_turns(const ast::Stmt& stmt) {
   if (lists_.empty()) return;

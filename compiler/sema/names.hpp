@@ -1,7 +1,7 @@
-// The names of a program, its modules and its robot, and what each means.
+// The names of a program, its modules and its robot, and their meanings.
 //
 // LET, REMEMBER, STATE, FEELING, CHECK, DEFINE, BEHAVIOR, SAFETY and signals share one name space,
-// which the sensors' names may not reach into. A REMEMBER in a BEHAVIOR is seen there only.
+// which must not contain a sensor's name. A REMEMBER in a BEHAVIOR is visible only there.
 #pragma once
 
 #include <forward_list>
@@ -36,25 +36,25 @@ struct MotionName {
   const ast::Motion* motion = nullptr;
   bool in_module = false;
   bool seen = false;                   // it has been translated (Motions) …
-  std::optional<std::size_t> place{};  // … and is there
+  std::optional<std::size_t> place{};  // … and has this index
 };
 
 struct VariableName {
   ast::Name name;
-  std::size_t index = 0;  // its place in ir::Program::variables
-  // Nothing: a signal.
+  std::size_t index = 0;  // in ir::Program::variables
+  // std::monostate: a signal.
   std::variant<std::monostate, const ast::Remember*, const ast::State*, const ast::Timer*,
                const ast::Feeling*, const ast::Check*>
       declared;
   vm::VariableKind kind = vm::VariableKind::signal;
   std::vector<std::string> labels;  // of state and band
   bool in_module = false;
-  bool taken = false;  // it is a sensor's name, too, which has been reported: say no more of it
-  // Known only when it has been declared (Variables).
+  bool taken = false;  // also a sensor's name, which has been reported: no more messages about it
+  // Valid once it has been declared (Variables).
   bool ready = false;
   const Unit* unit = nullptr;
   Span unit_span{};
-  std::int64_t low = vm::kValueMin;  // what it can be
+  std::int64_t low = vm::kValueMin;  // its range
   std::int64_t high = vm::kValueMax;
 };
 
@@ -62,18 +62,18 @@ struct ListName {
   const ast::List* list = nullptr;
   std::vector<std::string> texts;
   bool in_module = false;
-  bool numbers = false;  // it holds these, which Expressions works out, and no texts
-  // Variables that hold the place of the last text, from 1; 0 before the first. Only where used.
+  bool numbers = false;  // holds numbers, which Expressions evaluates, instead of texts
+  // Variables that hold the index of the last text, from 1; 0 before the first. Present only if used.
   std::optional<std::size_t> any{}, next{};
 
   [[nodiscard]] std::size_t count() const { return list->items.size(); }
 };
 
-// What a name in the place of an actuator means.
+// The meaning of a name in an actuator's place.
 struct Target {
   std::optional<std::size_t> group;
   std::vector<std::size_t> actuators;  // empty only if robot.json has a mistake in the group
-  std::string name;                    // as robot.json has it
+  std::string name;                    // as in robot.json
 };
 
 // The program first, then the modules that it uses.
@@ -84,8 +84,8 @@ public:
   // Collects the names and reports those given twice. The trees and the robot must outlive this.
   Names(const Trees& trees, const Robot& robot, Diagnostics& diagnostics);
 
-  // The channel of `touch LEVEL`, `touchLevel`, or of a sensor that has only one. What is wrong is
-  // reported.
+  // The channel of `touch LEVEL`, `touchLevel`, or of a sensor that has only one. Reports
+  // mistakes.
   [[nodiscard]] std::optional<ChannelRef> find_channel(const ast::Operand& operand);
   [[nodiscard]] ConstantName* find_constant(std::string_view name);  // nullptr: none
   [[nodiscard]] DefineName* find_define(std::string_view name);
@@ -96,19 +96,19 @@ public:
   [[nodiscard]] std::optional<Target> find_target(std::string_view name) const;
   [[nodiscard]] std::optional<std::size_t> find_sensor(std::string_view name) const;
   [[nodiscard]] bool is_verb(std::string_view name) const;  // of any actuator
-  [[nodiscard]] bool is_word(std::string_view name) const;  // likewise: SLOWLY
-  // The actuators that know a verb: their places, from the first on.
+  [[nodiscard]] bool is_word(std::string_view name) const;  // of any actuator: SLOWLY
+  // The indices of the actuators that know a verb, in ascending order.
   [[nodiscard]] const std::vector<std::size_t>& able_to(std::string_view verb) const;
-  // The place of a label in the labels of a channel or a variable, which must outlive this.
+  // The index of a label in the labels of a channel or a variable, which must outlive this.
   [[nodiscard]] std::optional<std::size_t> find_label(const std::vector<std::string>& labels,
                                                       std::string_view label);
-  // A new label of a channel that learns its words: its place behind those that there are. `label` must outlive this, too.
+  // Adds a label to a channel that learns its words and returns its index. `label` must outlive this, too.
   [[nodiscard]] std::size_t learn_label(ChannelRef ref, std::string_view label);
   [[nodiscard]] const std::vector<ir::LearnedWord>& learned() const { return learned_; }
-  // What a name is, for a message: "a LET", "a CHECK"; empty when nothing has it.
+  // The kind of a name, for a message: "a LET", "a CHECK"; empty for an unknown name.
   [[nodiscard]] std::string kind_of(std::string_view name);
 
-  // Whose private variables are seen; nullptr: nobody's. Gives what it was before.
+  // Sets the BEHAVIOR whose private variables are visible; nullptr: none. Returns the previous one.
   const ast::Behavior* set_scope(const ast::Behavior* behavior);
 
   [[nodiscard]] const SensorConfig& sensor(ChannelRef ref) const {
@@ -125,7 +125,7 @@ public:
   [[nodiscard]] std::vector<std::string> target_names() const;
   [[nodiscard]] std::vector<std::string> verb_names() const;
   [[nodiscard]] std::vector<std::string> define_names() const;
-  [[nodiscard]] std::vector<std::string> variable_names() const;  // that are seen here
+  [[nodiscard]] std::vector<std::string> variable_names() const;  // those visible here
   [[nodiscard]] std::vector<std::string> motion_names() const;
   [[nodiscard]] const std::map<std::string, MotionName>& motions() const { return motions_; }
   [[nodiscard]] const std::map<std::string, DefineName>& defines() const { return defines_; }
@@ -135,7 +135,7 @@ public:
   [[nodiscard]] std::vector<VariableName>& variables() { return variables_; }
 
 private:
-  using Places = std::map<std::string, std::size_t>;  // of variables, by folded name
+  using Places = std::map<std::string, std::size_t>;  // indices of variables, by folded name
 
   // Collecting.
   void collect(const ast::Tree& tree);
@@ -174,12 +174,12 @@ private:
   Diagnostics& diagnostics_;
   bool in_module_ = false;                         // while collecting
   std::map<std::string, Span> claimed_;            // by folded name
-  std::map<std::string, ConstantName> constants_;  // likewise
+  std::map<std::string, ConstantName> constants_;  // by folded name
   std::map<std::string, DefineName> defines_;
   std::map<std::string, ListName> lists_;
   std::map<std::string, MotionName> motions_;
   std::vector<VariableName> variables_;
-  std::forward_list<std::string> made_names_;  // of variables that no source names
+  std::forward_list<std::string> made_names_;  // of variables without a name in the source
   Places globals_;
   std::map<const ast::Behavior*, Places> private_;
   const ast::Behavior* scope_ = nullptr;
@@ -188,10 +188,10 @@ private:
   NameIndex sensors_, actuators_, groups_;
   std::vector<NameIndex> own_channels_;   // by sensor
   std::vector<std::string> joined_;       // "touchLEVEL"
-  std::vector<ChannelRef> channel_refs_;  // what each of these means
-  NameIndex channels_;                    // their places
+  std::vector<ChannelRef> channel_refs_;  // the channel of each joined name
+  NameIndex channels_;                    // indices of the joined names
   NameIndex verbs_, words_;
-  std::vector<std::vector<std::size_t>> able_;  // actuators, by place of the verb
+  std::vector<std::vector<std::size_t>> able_;  // actuators, by index of the verb
   std::map<const std::vector<std::string>*, NameIndex> labels_;
   std::vector<ir::LearnedWord> learned_;
 };

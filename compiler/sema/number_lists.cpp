@@ -1,4 +1,4 @@
-// Expressions, part: LISTs where a number is asked for. ITEM of one that holds numbers, and COUNT of any.
+// Part of Expressions: LISTs in place of a number. ITEM of a list of numbers, and COUNT of any list.
 #include <algorithm>
 #include <utility>
 
@@ -30,7 +30,7 @@ void Expressions::check_lists() {
     if (list.numbers) (void)numbers_of(list);
 }
 
-// `LIST words: hello, world`. It is reported, once for the LIST.
+// `LIST words: hello, world`. Reports it once for the LIST.
 bool Expressions::lacks_quotes(const ast::Expr& item) {
   const auto* const word = std::get_if<ast::Operand>(&item.node);
   if (word == nullptr || !names_.kind_of(word->name.text).empty() ||
@@ -43,7 +43,7 @@ bool Expressions::lacks_quotes(const ast::Expr& item) {
   return true;
 }
 
-// Bare numbers take the unit of the first one.
+// Bare numbers take the unit of the first number.
 const NumberList& Expressions::numbers_of(const ListName& list) {
   const auto [found, added] = lists_.emplace(&list, NumberList{&list, {}, nullptr});
   NumberList& numbers = found->second;
@@ -112,7 +112,7 @@ Typed Expressions::of(const ast::ItemOf& node, Span span) {
     const auto item = known_item(*list, index);
     return item ? make_constant(numbers.values[*item], *numbers.unit, span) : make_nothing(span);
   }
-  if (following_ && choose_ != nullptr) {  // a DEFINE is given it, which may follow it
+  if (following_ && choose_ != nullptr) {  // passed to a DEFINE, which may FOLLOW it
     lost_ = true;
     return make_nothing(span);
   }

@@ -1,4 +1,4 @@
-// Commands, part: PERFORM. Which MOTION, how fast, how often.
+// Part of Commands: PERFORM. Which MOTION, how fast, how often.
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/sema/commands.hpp"
 
@@ -66,7 +66,7 @@ void Commands::report_no_motion(const ast::Command& command) {
   if (d.help.empty() && !candidates.empty()) d.helps("there is " + list_names(candidates));
 }
 
-// AT is how fast, in percent of what the MOTION says; TIMES how often.
+// AT is the speed, in percent of the MOTION's own; TIMES is how often.
 bool Commands::add_to_performance(const Given& given, ir::Command& result) {
   const Span span = given.argument->span;
   const bool is_speed = given.is_number && given.param == vm::Param::at;

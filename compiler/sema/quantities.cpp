@@ -11,7 +11,7 @@ std::string fill_in(std::string_view pattern, std::string_view first, std::strin
   return text;
 }
 
-// A literal is what can be mended in the program: it goes first.
+// A literal comes first, because the user can change it.
 bool is_literal(const Typed& side) {
   return !side.digits.empty();
 }
@@ -29,7 +29,7 @@ void label_side(Diagnostic& diagnostic, const Typed& side, bool primary) {
   diagnostic.label(side.unit_span, "`" + side.source + "` " + gives, false);
 }
 
-// What the literal would be in the other side's units.
+// Suggests the literal with a unit of the other side's dimension.
 void suggest_units(Diagnostic& diagnostic, const Typed& literal, const Typed& other) {
   if (literal.digits.empty() || other.unit == nullptr) return;
   const std::string first = literal.digits + std::string(other.unit->spelling);

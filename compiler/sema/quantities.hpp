@@ -1,4 +1,4 @@
-// Expressions with what is known of them while they are checked, and the rules of units.
+// Expressions with what is known about them during checking, and the rules for units.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace robosync::compiler {
 
 enum class Type : std::uint8_t {
-  nothing,  // has a mistake, which has been reported: say no more
+  nothing,  // has a mistake, which has been reported: no more messages
   condition,
   number,
   word  // one of several labels: a STATE, a CHECK, or a channel of words
@@ -23,17 +23,17 @@ struct Typed {
   Type type = Type::nothing;
   Expression code;
   Span span;
-  // Of a number. Without a unit it is a bare constant, which takes the unit of what it meets.
+  // For a number. Without a unit it is a bare constant, which takes the unit of the number it is combined with.
   const Unit* unit = nullptr;
   Span unit_span;                    // where the unit is written
-  std::string source;                // whose unit it is: "touch LEVEL", or empty
-  Decimal bare;                      // the exact constant, when there is no unit
-  std::string digits;                // as written, when it is a literal
-  std::int64_t low = vm::kValueMin;  // what it can be
+  std::string source;                // what has this unit: "touch LEVEL", or empty
+  Decimal bare;                      // the exact constant, if there is no unit
+  std::string digits;                // as written, if it is a literal
+  std::int64_t low = vm::kValueMin;  // its range
   std::int64_t high = vm::kValueMax;
-  // Of a word, which owns them longer than this lives. Its code is the place of the label.
+  // For a word: its labels, which outlive this. Its code is the index of the label.
   const std::vector<std::string>* labels = nullptr;
-  bool truth = false;  // its second label means true: it may be a condition
+  bool truth = false;  // its second label means true, so it may be a condition
 
   [[nodiscard]] bool is_number() const { return type == Type::number; }
   [[nodiscard]] bool is_bare() const { return is_number() && unit == nullptr; }
@@ -51,35 +51,35 @@ struct Typed {
 [[nodiscard]] Expression make_unary(Operation operation, Expression operand);
 [[nodiscard]] Expression make_binary(Operation operation, Expression left, Expression right);
 
-// A quantity that something else asks for, by its unit.
+// A quantity that is required elsewhere, by its unit.
 struct Wanted {
   const Unit* unit = nullptr;
-  std::string source;       // what asks: "touch LEVEL", "TO of left_arm"
-  Span unit_span;           // where it says so
+  std::string source;       // what requires it: "touch LEVEL", "TO of left_arm"
+  Span unit_span;           // where the unit is written
   bool difference = false;  // added or subtracted, not compared: offsets of units do not apply
 };
 
-// Gives a bare constant the wanted unit, with a note when it is a real one (N0002).
+// Gives a bare constant the wanted unit, with a note if it is a real unit (N0002).
 void take_unit(Typed& number, const Wanted& wanted, Diagnostics& diagnostics);
 
-// Says what a number is rounded to that is written finer than the robot keeps it (N0005).
+// Notes the rounded value of a number written with more digits than the robot keeps (N0005).
 void note_rounded(Decimal number, vm::Value value, const Unit& unit, Span span,
                   Diagnostics& diagnostics);
 
-// Makes a literal a difference: 9F more is 5C more, wherever the scales begin.
+// Makes a literal a difference: 9F more is 5C more, whatever the offsets of the scales.
 void make_difference(Typed& number);
 
-// Brings both to one dimension. Reports E0301 and returns false when they have different ones;
-// `doing` says what is done with them: "compares {} with {}".
+// Brings both to one dimension. Reports E0301 and returns false if they differ;
+// `doing` describes the operation: "compares {} with {}".
 [[nodiscard]] bool unify(Typed& left, Typed& right, std::string_view doing, bool difference,
                          Diagnostics& diagnostics);
 
-// "this multiplies a distance by a force", with both places.
+// Reports "this multiplies a distance by a force", with both places.
 Diagnostic& report_mismatch(const Typed& left, const Typed& right, std::string_view doing,
                             Diagnostics& diagnostics);
 
-// A literal in F is a point on a scale that does not begin at 0: reports that it cannot be
-// calculated with. True if it is one.
+// A literal in F is a point on a scale with an offset: reports that calculations
+// cannot use it. True if it is one.
 [[nodiscard]] bool report_offset_unit(const Typed& number, Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

@@ -42,7 +42,7 @@ void Rules::translate(const ast::Rule&, const ast::EveryRule& node, ir::Rule& re
   result.then_response = statements_.response(node.body);
 }
 
-// A period, or one that is drawn anew each time.
+// A fixed period, or one drawn anew each time.
 Expression Rules::period(const ast::EveryRule& node) {
   if (!node.period) return {};
   Typed period = expressions_.duration(*node.period, "EVERY");

@@ -1,4 +1,4 @@
-// Translates rules: what triggers them, their modifiers, and SAFETY.
+// Translates rules: their triggers and modifiers, and SAFETY.
 #pragma once
 
 #include "compiler/sema/statements.hpp"
@@ -15,7 +15,7 @@ public:
         statements_(statements),
         diagnostics_(diagnostics) {}
 
-  // What is wrong is reported. `inside`: of a BEHAVIOR.
+  // Reports mistakes. `inside`: in a BEHAVIOR.
   [[nodiscard]] ir::Rule translate(const ast::Rule& rule, bool inside);
   [[nodiscard]] ir::Rule translate(const ast::Safety& safety, Span span);
 

@@ -9,7 +9,7 @@
 namespace robosync::compiler {
 namespace {
 
-// An image has room for fewer.
+// More than an image has room for.
 constexpr std::size_t kMaxStatements = 4096;       // of a response
 constexpr std::size_t kMaxAllStatements = 65'536;  // of a program
 constexpr std::string_view kStop = "STOP";
@@ -84,7 +84,7 @@ bool Statements::within_budget(Span span) {
   return false;
 }
 
-// DEFINEs are looked into, so they pass.
+// A DEFINE is allowed, because its statements are checked when it is expanded.
 bool Statements::allowed_in_safety(const ast::Stmt& stmt) {
   const auto is = [&]<typename... Nodes>(std::variant<Nodes...>*) {
     return (std::holds_alternative<Nodes>(stmt.node) || ...);
@@ -138,7 +138,7 @@ void Statements::add(const ast::Wait& node, Span span, ir::Block& result) {
   if (duration.is_number()) put(ir::Wait{std::move(duration.code)}, span, result);
 }
 
-// A condition that is worked out more than once: what stands in front of the statement would not be.
+// A condition that is evaluated repeatedly. Code put before the statement would run only once, so none is allowed.
 Typed Statements::asked_again(const ast::Expr& condition) {
   const ChooseNumber* const choice = expressions_.set_choice(nullptr);
   Typed result = expressions_.condition(condition);
@@ -174,7 +174,6 @@ void Statements::add(const ast::Stop& node, Span span, ir::Block& result) {
     stop_actuator({actuator.name.text, first_word(span, kStop)}, span, result);
 }
 
-// STOP of a parameter.
 void Statements::stop_given(const Binding& binding, const ast::Name& name, Span span,
                             ir::Block& result) {
   const ast::Name actuator{binding.actuator, name.span};
@@ -183,7 +182,7 @@ void Statements::stop_given(const Binding& binding, const ast::Name& name, Span 
   if (!is_open(binding)) expressions_.report_given(binding, name, "an actuator");
 }
 
-// STOP is a word of the language and, for one actuator, its verb.
+// STOP is a word of the language; for one actuator it is also a verb.
 void Statements::stop_actuator(const ast::Name& name, Span span, ir::Block& result) {
   if (!commands_.find_stopped(name)) return;
   ast::Command command;
@@ -191,7 +190,7 @@ void Statements::stop_actuator(const ast::Name& name, Span span, ir::Block& resu
   ast::Argument& named = command.arguments.emplace_back();
   named.span = name.span;
   named.value = ast::Word{name};
-  const Bindings* outer = expressions_.set_bindings(nullptr);  // a name here is an actuator's
+  const Bindings* outer = expressions_.set_bindings(nullptr);  // a name here means an actuator
   for (ir::Command& stop : commands_.translate(command))
     put(std::move(stop), span, result);
   expressions_.set_bindings(outer);
@@ -216,7 +215,7 @@ void Statements::halt(const ast::Stop& node, Span span, ir::Block& result) {
 
 namespace {
 
-// Does every turn of the loop end by itself, or give up the processor?
+// Does the loop end on its own, or pause in every turn?
 bool is_bounded(const ir::Repeat& loop) {
   const bool counted =
       loop.kind == ir::RepeatKind::times && loop.control.operation == Operation::constant;
@@ -249,7 +248,7 @@ void Statements::add(const ast::Repeat& node, Span span, ir::Block& result) {
     loop.kind = ir::RepeatKind::forever;
   }
   loop.body = block(node.body);
-  if (!good || diagnostics_.errors() > errors) return;  // a WAIT may be among what is wrong
+  if (!good || diagnostics_.errors() > errors) return;  // the mistake may be in a WAIT
   if (!is_bounded(loop)) {
     diagnostics_.report(Code::E0403, "this loop never waits, so it would hold the robot up")
         .label({span.file, span.begin, node.body.empty() ? span.end : node.body.front().span.begin})
@@ -305,7 +304,7 @@ void Statements::add(const ast::PickOne& node, Span span, ir::Block& result) {
     put(std::move(pick), span, result);
 }
 
-// A plain number or a percentage; only the shares count.
+// A plain number or a percentage; only the ratios count.
 std::optional<vm::Value> Statements::weight(const ast::Expr& expr) {
   const auto value = expressions_.constant(expr, "the weight of an OPTION");
   if (!value) return std::nullopt;
@@ -335,7 +334,7 @@ std::optional<std::string> label_of(const ast::Expr& expr) {
   return label;
 }
 
-// Why it cannot be set; empty: it can.
+// Why it cannot be set; empty if it can.
 std::string_view why_not(vm::VariableKind kind) {
   switch (kind) {
     case vm::VariableKind::band:
@@ -351,7 +350,7 @@ std::string_view why_not(vm::VariableKind kind) {
 
 }  // namespace
 
-// How a variable would be declared that is set to `value`: to a word that nothing is called, a STATE.
+// A declaration for a variable that is set to `value`: a STATE if the value is a word that is not a name.
 std::string Statements::declaration_of(const ast::Name& name, const ast::Expr* value) {
   const auto word = value != nullptr ? label_of(*value) : std::nullopt;
   if (!word || !names_.kind_of(*word).empty() || names_.find_sensor(*word))
@@ -399,7 +398,7 @@ VariableName* Statements::settable(const ast::Name& name, bool number, const ast
   return nullptr;
 }
 
-// Only of what is known now; the robot keeps the rest inside.
+// Checks constants only; the robot limits other values at run time.
 bool Statements::in_range(const VariableName& variable, const Typed& value) {
   if (!value.is_constant()) return true;
   const vm::Value number = value.code.constant;
@@ -455,7 +454,7 @@ void Statements::add(const ast::Raise& node, Span span, ir::Block& result) {
 void Statements::add(const ast::Signal& node, Span span, ir::Block& result) {
   const VariableName* variable = names_.find_variable(node.name.text);
   const bool good = variable != nullptr && variable->kind == vm::VariableKind::signal;
-  // Its first thousandth is as good as any: what counts is that it changes.
+  // Adds a thousandth; any change would do.
   if (good) put(ir::Set{variable->index, make_constant_code(1), true}, span, result);
 }
 
@@ -497,7 +496,7 @@ void Statements::restart(const ast::Command& node, Span span, ir::Block& result)
   std::vector<std::string> timers;
   for (const VariableName& one : names_.variables())
     if (one.kind == vm::VariableKind::timer) timers.emplace_back(one.name.text);
-  // Not certain: it may be the TIMER's own line that is misspelt, and conditions ask for it, too.
+  // Not certain: the TIMER's declaration may be the misspelt one, and conditions use the name, too.
   if (word != nullptr && did_you_mean(d, word->name.span, word->name.text, timers))
     d.fixes.back().applicability = Applicability::likely;
   if (d.help.empty())

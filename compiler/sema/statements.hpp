@@ -1,7 +1,7 @@
-// Translates blocks of statements, DEFINEs expanded in their place.
+// Translates blocks of statements and expands DEFINEs in place.
 //
-// DEFINEs can use each other so that a short program becomes a long one: what a program may become
-// is bounded, in all and for each response.
+// DEFINEs can use each other, so a short program can expand to a long one: the expanded size is
+// limited, in total and for each response.
 #pragma once
 
 #include <functional>
@@ -12,13 +12,13 @@
 
 namespace robosync::compiler {
 
-// ANY list, NEXT list, ITEM n OF list in the place of a text.
+// ANY list, NEXT list, ITEM n OF list in place of a text.
 struct ListChoice {
   enum class How : std::uint8_t { any, next, item, given };
   const ListName* list = nullptr;
   How how{};
-  const ast::Expr* index = nullptr;    // of item
-  const ChosenItem* chosen = nullptr;  // of given, to a DEFINE
+  const ast::Expr* index = nullptr;    // for item
+  const ChosenItem* chosen = nullptr;  // for given: passed to a DEFINE
   std::size_t at = 0, count = 1;       // which arguments ask for it
   Span span{};
 };
@@ -34,14 +34,14 @@ public:
         commands_(commands),
         diagnostics_(diagnostics) {}
 
-  // What is wrong is reported and left out.
+  // Reports statements with mistakes and leaves them out.
   [[nodiscard]] ir::Block response(const ast::Block& block);
-  // The body of a SAFETY rule: it stops, sets and warns (E0404).
+  // The body of a SAFETY rule: it may only stop, set and warn (E0404).
   [[nodiscard]] ir::Block safety(const ast::Block& block);
-  // Checks the DEFINEs that nothing has run. Those of modules need not fit the robot.
+  // Checks the DEFINEs that nothing runs. Those of modules need not fit the robot.
   void check_unused_defines();
 
-  // Line of the program that `span` begins in; 0 in a module.
+  // The line of the program in which `span` begins; 0 in a module.
   [[nodiscard]] std::uint16_t line_of(Span span) const;
 
 private:
@@ -85,10 +85,10 @@ private:
   // follow.cpp
   void follow(const ast::Command& node, Span span, ir::Block& result);
   void add_followed(Followed followed, Span span, ir::Block& before, ir::Block& body);
-  // The FOLLOW that the block ends with, if it has no FOR.
+  // The FOLLOW at the end of the block, if it has no FOR.
   static ir::Follow* endless_follow(ir::Block& block);
   void report_never(const ir::Block& block, Span span);
-  // In front of such a FOLLOW, for what is to go on with it.
+  // Puts the local before such a FOLLOW, for a statement that runs together with it.
   void put_first(ir::Local local, Span span, ir::Block& result);
   // lists.cpp
   using PutText = std::function<void(const ChosenText&, ir::Block&)>;
@@ -131,10 +131,10 @@ private:
   Diagnostics& diagnostics_;
   std::vector<const ast::Define*> open_;  // being expanded, outermost first
   std::size_t all_ = 0;                   // statements of the program so far
-  // Of the response being translated.
+  // For the response being translated:
   std::size_t statements_ = 0;
   std::size_t locals_ = 0;
-  std::size_t depth_ = 0;  // blocks that are open
+  std::size_t depth_ = 0;  // open blocks
   bool safety_ = false;
 };
 

@@ -4,7 +4,7 @@
 
 namespace robosync::compiler {
 
-// Words stand apart, unless there is a space already; what ends a sentence stands close.
+// Puts a space between words unless there is one already; none before punctuation.
 void TextBuilder::append(std::string_view part) {
   constexpr std::string_view kClose = " .,;:!?)";
   const bool first = text_.empty() || text_.back() == ' ' || text_.back() == '(';
@@ -47,7 +47,7 @@ bool TextBuilder::add(const ast::Argument& part) {
   return true;
 }
 
-// Statements have replaced the first one.
+// Statements has already replaced the first one.
 bool TextBuilder::report_second(Span span) {
   diagnostics_.report(Code::E0505, "a statement says one text out of a LIST")
       .label(span, "this is the second");

@@ -1,5 +1,5 @@
-// Texts that are put together of parts: `"You have", points, "points"`, wherever a text is written out or said.
-// Each value gets a {} place in the text, with the unit that it is written in; whoever shows the text fills it.
+// Texts composed of parts: `"You have", points, "points"`, in logs and speech.
+// Each value gets a {} place in the text, with its unit; the code that shows the text fills it in.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ public:
   TextBuilder(Expressions& expressions, Diagnostics& diagnostics)
       : expressions_(expressions), diagnostics_(diagnostics) {}
 
-  // False after a mistake, which has then been reported, and in a DEFINE that nobody runs.
+  // False after a mistake, which has been reported, and in a DEFINE that nothing runs.
   bool add(const ast::Argument& part);
   bool add(std::string_view text, Span span);
 

@@ -1,6 +1,6 @@
-// Expressions, part: TIMERs. A TIMER is a variable that holds the time of its last RESTART; as a value it
-// is the time since then. What compares it becomes a truth that says itself when it will change
-// (Operation::lasted), so that nothing has to look in between. That is why it stands alone there.
+// Part of Expressions: TIMERs. A TIMER is a variable that holds the time of its last RESTART; its value
+// is the time since then. A comparison becomes a condition that knows when it will change
+// (Operation::lasted), so nothing has to poll it. That is why a TIMER must be alone on its side.
 #include <algorithm>
 #include <utility>
 
@@ -27,7 +27,7 @@ ast::Relation turned(ast::Relation relation) {
   return relation;
 }
 
-// "Longer than" begins a millisecond later than "as long as".
+// "Longer than" starts a millisecond later than "as long as".
 Expression more_than(Expression length) {
   if (length.operation != Operation::constant)
     return make_binary(Operation::add, std::move(length), make_constant_code(1));

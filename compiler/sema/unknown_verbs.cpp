@@ -1,4 +1,4 @@
-// Commands, part: what stands where a verb should, and is none that the robot knows.
+// Part of Commands: words in a verb's place that are not verbs of the robot.
 #include <string_view>
 
 #include "compiler/config/devices.hpp"
@@ -10,7 +10,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// How other languages call what RSL has, too.
+// Words of other languages for verbs that RSL has.
 struct ForeignVerb {
   std::string_view spelling, meant, help;
 };
@@ -29,7 +29,7 @@ constexpr ForeignVerb kForeignVerbs[] = {
     {"DECREMENT", "LOWER", "what is remembered is changed with LOWER: `LOWER visits BY 1`"},
 };
 
-// What may begin a line, or go on with the one before.
+// Keywords that may begin a line or continue the one before.
 std::vector<std::string> keywords_of_lines() {
   constexpr unsigned kBegins = role::item | role::part | role::statement | role::after;
   std::vector<std::string> found;
@@ -138,7 +138,7 @@ void Commands::report_unknown_verb(const ast::Command& command) {
   for (const std::string_view word : {kPerform, kFollow, kRestart})
     candidates.emplace_back(word);
   if (did_you_mean(d, verb.span, verb.text, candidates)) return doubt_keyword(d);
-  // It may be one that nothing here knows: as a rule `USE` brought a file that needs more.
+  // The verb may belong to a device that this robot lacks: usually `USE` brought in a file that needs it.
   const auto devices = devices_with(verb.text);
   if (devices.empty() && !verbs.empty()) d.helps("it could be " + list_names(verbs));
   if (devices.empty()) return;

@@ -9,11 +9,11 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr double kFadeOne = 2147483648.0;  // 2^31: vm::Variable::fade of a variable that stays
+constexpr double kFadeOne = 2147483648.0;  // 2^31, the scale of vm::Variable::fade
 constexpr double kLeft = 0.05;             // part of the distance left after FADES … OVER
 constexpr double kTick = vm::kFadeTickMs;  // a duration counts milliseconds, too
 
-// 0 would mean that it does not fade at all.
+// At least 1: 0 would mean that it does not fade at all.
 std::uint32_t fade_factor(vm::Value over) {
   const double factor = std::round(kFadeOne * std::pow(kLeft, kTick / over));
   return static_cast<std::uint32_t>(std::clamp(factor, 1.0, kFadeOne - 1));
@@ -60,14 +60,14 @@ void Variables::declare(const ast::Remember& node, VariableName& name, ir::Varia
   name.unit_span = value->unit_span;
 }
 
-// What is kept is found again by its name, in whichever behaviour it stands.
+// A KEPT value is found again by its name, in any behaviour.
 void Variables::check_kept() {
   NameIndex kept;
   std::vector<Span> places;
   for (const VariableName& name : names_.variables()) {
     if (name.kind != vm::VariableKind::kept) continue;
     const VariableName* global = names_.find_variable(name.name.text);
-    if (global != nullptr && global->index != name.index) continue;  // that is reported
+    if (global != nullptr && global->index != name.index) continue;  // reported elsewhere
     const Span place = name.name.span;
     if (!kept.add(name.name.text, places.size())) {
       diagnostics_.report(Code::E0101, "there is another KEPT " + name.name.shown())
@@ -109,7 +109,7 @@ void Variables::check_labels(const std::vector<ast::Name>& labels) {
   }
 }
 
-// All its numbers are of one dimension: that of the first with a unit.
+// All its numbers have one dimension: that of the first one with a unit.
 void Variables::declare(const ast::Feeling& node, VariableName& name, ir::Variable& result) {
   name.unit = &canonical_unit(vm::Dimension::number);
   name.unit_span = node.name.span;
@@ -166,22 +166,22 @@ std::optional<vm::Value> Variables::inside(const ast::Expr& expr, const Wanted& 
 //
 // CHECK: the bands of a number.
 //
-// The first band that has a value is it. A band holds on to a value that is up to MARGIN outside of
-// the limits written for it, but never to one that belongs to a band before it: that one is entered
-// at the number written for it. OTHERWISE has no limits of its own, so it has what the others
+// The first band that contains the value is the result. A band keeps a value that is up to MARGIN outside
+// its written limits, but never one that belongs to an earlier band: an earlier band is entered
+// at the number written for it. OTHERWISE has no limits of its own; it has the values that the others
 // leave.
 
 namespace {
 
-constexpr std::size_t kMostBands = UINT8_MAX;  // of an image
-constexpr std::uint16_t kFedPeriodMs = 20;     // of a sensor that has none of its own
+constexpr std::size_t kMostBands = UINT8_MAX;  // in an image
+constexpr std::uint16_t kFedPeriodMs = 20;     // for a sensor without a period of its own
 
 void hold_nothing(vm::Band& band) {
   band.stay_low = vm::kValueMax;
   band.stay_high = vm::kValueMin;
 }
 
-// Takes one end that `other` has off the range. False if it has the middle, or all of it.
+// Removes the end of the range that `other` covers. False if `other` covers the middle, or all of it.
 bool cut(const vm::Band& other, vm::Value& low, vm::Value& high) {
   if (other.high < low || other.low > high) return true;
   const bool at_bottom = other.low <= low;
@@ -194,8 +194,8 @@ bool cut(const vm::Band& other, vm::Value& low, vm::Value& high) {
   return true;
 }
 
-// Takes out of a band what the bands before it have. Where that leaves no single range, the band
-// can hold on to nothing.
+// Removes the values of earlier bands from a band. If that does not leave a single range, the band
+// cannot keep any value.
 void give_way(const std::vector<vm::Band>& earlier, vm::Band& band) {
   for (const vm::Band& other : earlier) {
     const bool one_range = cut(other, band.low, band.high);
@@ -204,7 +204,7 @@ void give_way(const std::vector<vm::Band>& earlier, vm::Band& band) {
   }
 }
 
-// What is fed, or no sensor at all, has none that could be lower.
+// Only a sampled sensor has a rate that could be lower, not a fed one or another kind of value.
 bool has_rate(const Typed& input, const Names& names) {
   return input.code.operation == Operation::input &&
          names.channel(input.code.channel).period_ms != 0;
@@ -249,7 +249,7 @@ void Variables::declare(const ast::Check& node, VariableName& name, ir::Program&
   for (const ast::Band& part : node.bands) {
     auto made = band(part, wanted, margin);
     if (!made) return;
-    // More bands than an image holds are refused: what they leave each other does not matter.
+    // More bands than an image holds are rejected, so their ranges do not matter.
     if (check.bands.size() < kMostBands) give_way(check.bands, *made);
     check.bands.push_back(*made);
   }

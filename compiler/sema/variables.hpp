@@ -1,4 +1,4 @@
-// What a program remembers: the values of REMEMBER, STATE, FEELING and signals, and its CHECKs.
+// A program's variables: the values of REMEMBER, STATE, FEELING and signals, and its CHECKs.
 #pragma once
 
 #include "compiler/sema/expressions.hpp"
@@ -10,8 +10,8 @@ public:
   Variables(Names& names, Expressions& expressions, Diagnostics& diagnostics)
       : names_(names), expressions_(expressions), diagnostics_(diagnostics) {}
 
-  // Fills in the variables and checks of `program`, in the order of Names::variables(). From then
-  // on expressions can read them.
+  // Fills in the variables and checks of `program`, in the order of Names::variables(). After that,
+  // expressions can read them.
   void declare(ir::Program& program);
 
 private:

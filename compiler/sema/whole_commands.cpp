@@ -1,5 +1,5 @@
-// Commands, part: those whose parts are each right, and that make no sense as a whole: that contradict themselves, give a motor
-// more than its limit, or say nothing.
+// Part of Commands: commands whose parts are each correct but that are wrong as a whole: they contradict themselves, give a
+// motor more than its limit, or say nothing.
 #include <algorithm>
 #include <cstdlib>
 #include <optional>
@@ -11,7 +11,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// The place of the argument that gives a parameter, as a number or as a word.
+// The index of the argument that gives a parameter, as a number or as a word.
 template <class Given>
 std::optional<std::size_t> giver(const ActuatorConfig& actuator, const std::vector<Given>& given,
                                  vm::Param param) {
@@ -66,8 +66,8 @@ bool Commands::says_twice(const Recipient& to, const std::vector<Given>& given,
   return is_given(result, vm::Param::to) && goes_two_ways(to, given);
 }
 
-// `TURN head LEFT TO 60deg`: the place says the way, and LEFT perhaps the other one. Of a motor TO is no place, and
-// BACKWARD turns it round.
+// `TURN head LEFT TO 60deg`: the position gives the direction, and LEFT may give the opposite one. For a motor, TO is not
+// a position, and BACKWARD reverses it.
 bool Commands::goes_two_ways(const Recipient& to, const std::vector<Given>& given) {
   const auto way = giver(to.actuator, given, vm::Param::direction);
   const auto place = giver(to.actuator, given, vm::Param::to);
@@ -98,7 +98,7 @@ bool Commands::goes_two_ways(const Recipient& to, const std::vector<Given>& give
   return true;
 }
 
-// `MOVE arm UP`, which drivers take for `MOVE arm`.
+// `MOVE arm UP`, which drivers treat as `MOVE arm`.
 void Commands::warn_of_a_sweep(const Recipient& to, const std::vector<Given>& given,
                                const ir::Command& result) {
   const auto way = giver(to.actuator, given, vm::Param::direction);
@@ -114,7 +114,7 @@ void Commands::warn_of_a_sweep(const Recipient& to, const std::vector<Given>& gi
       .helps("if a sweep is meant, leave " + word.shown() + " out");
 }
 
-// A way to a place is gone once, a strength kept up once: drivers repeat what has no end of its own, sweeps and blinks.
+// A move to a position and a level that is held happen once. Drivers repeat only sweeps and blinks, which have no end.
 bool Commands::repeats_nothing(const Recipient& to, const std::vector<Given>& given,
                                const ir::Command& result) {
   const auto times = giver(to.actuator, given, vm::Param::times);
@@ -133,9 +133,10 @@ bool Commands::repeats_nothing(const Recipient& to, const std::vector<Given>& gi
   return true;
 }
 
-// ---- a motor and a lamp are told by TO, too, how much power they get
+// ---- for a motor and a lamp, TO also sets the power
 
-// Not of what a TEST expects: that never comes, which the TEST says. Nor of a word: ON is as much as may be.
+// Does not check what a TEST expects: such a command never occurs, and the TEST reports that. Nor does it check a word:
+// ON is the allowed maximum.
 bool Commands::gives_too_much(const ast::Command& node, const ir::Command& command) {
   const auto to = std::ranges::find(command.arguments, vm::Param::to, &ir::Argument::param);
   const auto said =
@@ -158,7 +159,7 @@ bool Commands::gives_too_much(const ast::Command& node, const ir::Command& comma
 
 namespace {
 
-// What stands in the place of what is missing: sounds and texts in their quotes, else pictures.
+// Suggestions for missing content: sounds and texts in quotes, or pictures.
 std::vector<std::string> contents_of(const ActuatorConfig& actuator, const VerbConfig& verb) {
   std::vector<std::string> contents;
   for (const WordConfig& word : actuator.words) {
@@ -177,7 +178,7 @@ constexpr unsigned bit(vm::Param param) {
 
 }  // namespace
 
-// Of one that plays those of robot.json alone.
+// For an actuator that plays only the files of robot.json.
 void Commands::help_with_files(const Recipient& to, Diagnostic& d) {
   if (!to.diagnostics.may_search(to.actuator.words.size())) return;
   const std::vector<std::string> files = contents_of(to.actuator, to.verb);
@@ -186,7 +187,7 @@ void Commands::help_with_files(const Recipient& to, Diagnostic& d) {
               : "write one of its files in quotes: " + list_names(files, "or"));
 }
 
-// Only of a verb that takes nothing else: BLINK has no need of a colour, and a tone has AT.
+// Checks only verbs that take nothing else: BLINK needs no colour, and a tone has AT.
 bool Commands::lacks_content(const ir::Command& command, Span span) {
   if (command.word || is_given(command, vm::Param::item) || command.actuators.empty()) return false;
   const ActuatorConfig& actuator = robot_.actuators[command.actuators.front()];

@@ -1,5 +1,5 @@
-// Letters of ASCII, whatever the locale of the computer: RSL's words, units and names are the same in any case. Bytes
-// above ASCII are themselves.
+// Case folding for ASCII, independent of the locale: RSL's words, units and names ignore case. Bytes above ASCII are
+// unchanged.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace robosync::compiler::ascii {
   return 'a' <= lower(c) && lower(c) <= 'z';
 }
 
-// In any case.
+// Ignores case.
 [[nodiscard]] constexpr bool same(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](char x, char y) { return same(x, y); });
 }

@@ -11,14 +11,14 @@ namespace robosync::compiler {
 
 namespace {
 
-// Bytes of a line between two milestones: so many are read to find a column.
+// Bytes of a line between two milestones: the most that are read to find a column.
 constexpr std::size_t kMilestone = 256;
 
 }  // namespace
 
 SourceFile::SourceFile(std::string name, std::string text)
     : name_(std::move(name)), text_(std::move(text)), line_starts_{0} {
-  // A line ends with LF, CR LF, or a CR alone. Each of the two is looked for once over the whole text.
+  // A line ends with LF, CR LF, or a CR alone. The text is scanned once for each of the two characters.
   std::size_t lf = text_.find('\n'), cr = text_.find('\r');
   while (std::min(lf, cr) != std::string::npos) {
     const std::size_t end = cr + 1 == lf ? lf : std::min(lf, cr);

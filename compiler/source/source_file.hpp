@@ -1,5 +1,5 @@
-// Source text and places in it. A place is a byte offset; lines and columns are worked out only
-// when a message is printed. Any bytes are a text; places past its end count as its end.
+// Source text and places in it. A place is a byte offset; lines and columns are computed only
+// when a message is printed. A text may hold any bytes; places past its end count as its end.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ using FileId = std::uint16_t;
 inline constexpr FileId kProgramFile = 0;
 inline constexpr FileId kConfigurationFile = 1;
 
-// Bytes begin … end-1 of one file.
+// The bytes begin … end-1 of one file.
 struct Span {
   FileId file = 0;
   std::uint32_t begin = 0;
@@ -36,26 +36,26 @@ public:
   std::string_view text() const { return text_; }
   std::string_view text(Span span) const;
   Position position(std::uint32_t offset) const;
-  std::string_view line(std::uint32_t number) const;  // without its end; empty when there is none
+  std::string_view line(std::uint32_t number) const;  // without its ending; empty if there is none
   std::uint32_t line_start(std::uint32_t number) const;
   std::uint32_t line_of(std::uint32_t offset) const;  // from 1
   std::uint32_t lines() const { return static_cast<std::uint32_t>(line_starts_.size()); }
 
 private:
-  // A column that is known: in a long line, so that not all of it is read for each place in it.
+  // A known column in a long line, so that a lookup does not read the line from its start.
   struct Milestone {
     std::uint32_t offset, column;
   };
-  void add_milestones(std::size_t begin, std::size_t end);  // of one line
+  void add_milestones(std::size_t begin, std::size_t end);  // for one line
 
   std::string name_;
   std::string text_;
   std::vector<std::uint32_t> line_starts_;
-  std::vector<Milestone> milestones_;  // in the order of the text
+  std::vector<Milestone> milestones_;  // in text order
 };
 
-// Every file of one compilation. FileId is the place in this list. References to files and views of
-// their text hold as long as the list, also when it is moved.
+// Every file of one compilation. FileId is the index in this list. References to files and views of
+// their text stay valid as long as the list exists, even if it is moved.
 class SourceMap {
 public:
   SourceMap() = default;

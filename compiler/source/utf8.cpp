@@ -32,12 +32,12 @@ constexpr std::array<CodePoints, 8> double_width = {{{0x1100, 0x115F},
                                                      {0x1F300, 0x1FAFF},
                                                      {0x20000, 0x3FFFD}}};
 
-// Controls, and the marks that reverse the direction of writing ("Trojan Source").
+// Control characters, and the marks that change the direction of writing ("Trojan Source").
 constexpr std::array<CodePoints, 5> unprintable = {
     {{0x00, 0x1F}, {0x7F, 0x9F}, {0x200E, 0x200F}, {0x2028, 0x202E}, {0x2066, 0x2069}}};
 
-// Bytes of the sequence that `lead` opens, of two or more, and the smallest value it may carry; 0:
-// not a lead byte.
+// What a lead byte says about its sequence: the size (two or more bytes; 0: not a lead byte), its own bits of the value,
+// and the smallest value that may be encoded this way.
 struct Lead {
   std::uint8_t size;
   char32_t bits, smallest;

@@ -1,5 +1,5 @@
-// UTF-8, one code point at a time. Sources come from outside, so any bytes are accepted: what is
-// not valid UTF-8 counts as one replacement character a byte.
+// UTF-8, one code point at a time. Sources come from outside, so any bytes are accepted: each invalid
+// byte counts as one replacement character.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 namespace robosync::compiler::utf8 {
 
 inline constexpr char32_t replacement = 0xFFFD;
-// What editors on Windows, and Excel, write in front of a text.
+// Excel and editors on Windows write it at the start of a file.
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::string_view without_byte_order_mark(std::string_view text) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
@@ -19,20 +19,20 @@ constexpr std::string_view without_byte_order_mark(std::string_view text) {
 
 struct CodePoint {
   char32_t value = replacement;
-  std::uint8_t size = 1;  // bytes it takes in the text
+  std::uint8_t size = 1;  // in bytes
 };
 
 // The code point that starts at `offset`, which must be inside the text.
 [[nodiscard]] CodePoint decode(std::string_view text, std::size_t offset);
 
-// Columns it takes on a terminal: 0, 1 or 2.
+// The columns it takes on a terminal: 0, 1 or 2.
 [[nodiscard]] unsigned width(char32_t code_point);
 
-// False for what could move the cursor, hide text or turn its direction around.
+// False for characters that could move the cursor, hide text or reverse its direction.
 [[nodiscard]] bool is_printable(char32_t code_point);
 
-// The text with everything that is not printable replaced.
+// The text with all unprintable characters replaced.
 [[nodiscard]] std::string printable(std::string_view text);
-void append_printable(std::string& result, std::string_view text);  // likewise
+void append_printable(std::string& result, std::string_view text);  // the same, appended
 
 }  // namespace robosync::compiler::utf8

@@ -1,10 +1,10 @@
 // The tree of an RSL program, for the whole language (docs/language.md). Every node has a span.
 //
-// The parser makes it, sema reads it; nothing is resolved here: names are text, numbers are as
+// The parser builds it and sema reads it. Nothing is resolved here: names are text, numbers are as
 // written. Bison's variants need values that can be moved and default-constructed, hence `Box`.
-// Expressions are at most 100 levels deep and blocks 32, so recursion over a tree is safe. A large program is made of
-// many small nodes: what is seldom there is in a Box, and names, texts and numbers are views of the source, which outlives its tree.
-// A name, number or text that was missing has an empty text: it has been reported already.
+// Expressions are at most 100 levels deep and blocks 32, so recursion over a tree is safe. A large program has many small
+// nodes: rarely used members are in a Box; names, texts and numbers are views of the source, which outlives its tree.
+// A missing name, number or text has an empty text: it has been reported already.
 #pragma once
 
 #include <cstdint>
@@ -61,7 +61,7 @@ struct Random {
   Box<Expr> low, high;
 };
 
-struct Function {  // ABS(x), MIN(x, y): what it is called is not a word of the grammar
+struct Function {  // ABS(x), MIN(x, y): its name is not a word of the grammar
   Name name;
   Box<Expr> first, second;  // second may be null
 };
@@ -84,7 +84,7 @@ struct Comparison {
 struct Is {  // grip IS [NOT] very close, WORD IS "stop"
   Box<Expr> value;
   bool negated = false;
-  Name label;  // words of a label joined by one space
+  Name label;  // the words of a label, joined by one space
   bool is_string = false;
 };
 
@@ -135,12 +135,12 @@ struct Expr {
   std::variant<Quantity, Operand, Negate, Arithmetic, Random, Function, ItemOf, CountOf, Comparison,
                Is, IsBetween, IsTruth, Becomes, Changes, Not, Logic, For, ThenWithin, TimesWithin>
       node;
-  std::uint16_t depth = 1;  // levels of expressions from here down; the parser keeps it small
+  std::uint16_t depth = 1;  // levels of expressions from here down; the parser limits it
 };
 
 // ---- statements
 
-// Each kind of statement says which blocks it holds: kBlocks, which syntax/walk.hpp goes by.
+// Each kind of statement lists the blocks that it holds in kBlocks, for syntax/walk.hpp.
 struct Stmt;
 using Block = std::vector<Stmt>;
 
@@ -152,7 +152,7 @@ struct Word {  // SLOWLY
 struct Text {  // "greeting.wav", without its quotes
   std::string_view text;
 };
-struct Amount {  // 15cm, 1 TIMES, what follows a preposition when it is a number, what follows WITH
+struct Amount {  // 15cm, 1 TIMES, a number after a preposition, a value after WITH
   Box<Expr> value;
   bool times = false;
 };
@@ -162,13 +162,13 @@ struct Argument {  // of a command
   std::variant<Word, Text, Amount> value;
 };
 
-// `verb carg carg …`, and `name` alone, which sema tells apart: a DEFINE or a verb.
+// `verb carg carg …`, or `name` alone: sema decides whether that is a DEFINE or a verb.
 struct Command {
   Name verb;
   std::vector<Argument> arguments;
   std::size_t parts =
-      0;  // the last so many are one text, with commas between them; 0: there is no comma
-  std::optional<Span> with{};  // WITH, which no command takes: sema says so
+      0;  // how many arguments at the end form one text with commas; 0: there is no comma
+  std::optional<Span> with{};  // WITH, which no command takes; sema reports it
   static constexpr std::tuple<> kBlocks{};
 };
 struct Call {  // name WITH …
@@ -204,7 +204,7 @@ struct If {
   Block then_block, else_block;
   static constexpr std::tuple kBlocks{&If::then_block, &If::else_block};
 };
-struct Repeat {  // exactly one of times, condition is set; neither: FOREVER
+struct Repeat {  // times or condition is set; neither: FOREVER
   Box<Expr> times, condition;
   Block body;
   static constexpr std::tuple kBlocks{&Repeat::body};
@@ -272,10 +272,10 @@ struct Rule {
 };
 
 struct Use {
-  Name module;  // empty when this is no USE at all
+  Name module;  // empty if this is not a USE
   bool is_string = false;
   bool is_guess =
-      false;  // the word USE is missing: that a module of this name is not there, says nothing
+      false;  // the word USE is missing, so an unknown module of this name is not reported
 };
 struct Let {
   Name name;
@@ -326,7 +326,7 @@ struct Define {
   std::vector<Name> parameters;
   Block body;
 };
-// One cell of a MOTION: where an actuator is at that time; nothing ("-"): on its way.
+// One cell of a MOTION: the actuator's position at that time; nothing ("-"): still moving.
 struct MotionKey {
   Span span;
   Box<Expr> value;
@@ -343,7 +343,7 @@ struct Motion {
 };
 struct Behavior {
   Name name;
-  std::optional<Name> priority;  // the digits; nothing when robot.json is to give it
+  std::optional<Name> priority;  // the digits; nothing: robot.json gives it
   std::vector<Remember> variables;
   std::vector<Rule> rules;
 };
@@ -359,7 +359,7 @@ struct TestFeed {
   Box<Expr> at;
   Operand target;
   Box<Expr> value;           // a number, or an IsTruth without value for TRUE/FALSE
-  std::optional<Name> text;  // in its place: without its quotes, at the place with them
+  std::optional<Name> text;  // instead of a value: without its quotes; the span includes them
 };
 struct ExpectCommand {
   bool no = false;
@@ -401,7 +401,7 @@ struct Item {
 
 struct Tree {
   std::vector<Item> items;
-  std::forward_list<std::string> labels;  // that are not written as they are called: `very   close`
+  std::forward_list<std::string> labels;  // those that differ from the source: `very   close`
 };
 
 }  // namespace robosync::compiler::ast

@@ -47,13 +47,13 @@ void BlockWalk::step(std::size_t at) {
 
 namespace {
 
-// Indentation of the line that the token starts; nothing when it stands inside a line.
+// The indentation of the line that the token starts; nothing when it does not start a line.
 std::optional<std::size_t> margin(const Tokens& tokens, std::size_t at, const SourceFile& source) {
   if (!starts_line(tokens, at)) return std::nullopt;
   return indentation(tokens[at], source);
 }
 
-// True when both start lines and `end` stands to the left of the block it closes.
+// True when both start lines and `end` is indented less than the block it closes.
 bool stands_left(const Tokens& tokens, std::size_t end, std::size_t opener,
                  const SourceFile& source) {
   const auto end_margin = margin(tokens, end, source);

@@ -11,7 +11,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// Deeper than any person writes, and far from the end of the stack of whoever walks the tree.
+// Deeper than anyone writes, and shallow enough for the stack of any walk over the tree.
 constexpr std::uint16_t deepest_expression = 100;
 
 bool is_digit(char c) {
@@ -66,7 +66,7 @@ ast::Name Builder::quoted(Span span) const {
 ast::Use Builder::use(Span word, ast::Use use) const {
   const std::string_view text = text_of(word);
   use.is_guess = text.empty();
-  // In the place of another word, such as SAY: what follows is no module.
+  // USE replaced another word, such as SAY: the name after it is not a module.
   if (!use.is_guess && !is_near(text, "USE")) use.module.text = {};
   return use;
 }
@@ -81,7 +81,7 @@ ast::Name Builder::longer_label(const ast::Name& label, Span next) {
 
 ast::Name Builder::whole_number(Span span) {
   const std::string_view text = text_of(span);
-  // What does not even begin like a number was put right by repair.cpp, which said so.
+  // Text that does not begin with a digit was already repaired and reported by repair.cpp.
   if (!text.empty() && is_digit(text.front()) && !all_digits(text)) {
     report(Code::E0004, "a whole number without a unit is needed here").label(span);
   }
@@ -232,7 +232,7 @@ void Builder::add_part(ast::Behavior& behavior, ast::Item item) {
     behavior.variables.push_back(std::move(*variable));
   } else {
     const auto* const use = std::get_if<ast::Use>(&item.node);
-    if (use != nullptr && use->module.text.empty()) return;  // in the place of a mistake
+    if (use != nullptr && use->module.text.empty()) return;  // stands for a mistake
     const std::string_view text = text_of(item.span);
     const std::string keyword(text.substr(0, text.find_first_of(" \t\r\n")));
     const auto length = static_cast<std::uint32_t>(keyword.size());
@@ -256,7 +256,7 @@ ast::Block Builder::both(ast::Block first, ast::Block second) const {
   return first;
 }
 
-// The analyzer loses the owner of a pointer that goes into an aggregate which is returned.
+// The analyzer loses track of who owns a pointer in a returned aggregate.
 // NOLINTBEGIN(clang-analyzer-cplusplus.NewDeleteLeaks)
 ast::TestFeed Builder::feed(Span at, ast::Box<ast::Expr> target, ast::Box<ast::Expr> value) {
   return {quantity(at), std::move(std::get<ast::Operand>(target->node)), std::move(value),

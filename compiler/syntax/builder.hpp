@@ -1,5 +1,5 @@
-// Makes the tree for the grammar's actions, and reports what is grammatical but not allowed.
-// Without diagnostics it is silent: repair.cpp tries out changes that way.
+// Builds the tree for the grammar's actions, and reports what is grammatical but not allowed.
+// Without diagnostics it is silent, so that repair.cpp can try out changes.
 #pragma once
 
 #include <forward_list>
@@ -19,21 +19,21 @@ class Builder {
 public:
   explicit Builder(const SourceFile& file) : file_(file) {}
 
-  // Forgets everything; from now on reports to `diagnostics`, which may be null.
+  // Forgets everything and reports to `diagnostics` from now on, which may be null.
   void restart(Diagnostics* diagnostics);
 
-  // ---- what came out
+  // ---- the result
   void finish(std::vector<ast::Item> items);
   void stopped(std::vector<TokenKind> expected) { expected_ = std::move(expected); }
   std::vector<ast::Item>& items() { return items_; }
   const std::vector<TokenKind>& expected() const { return expected_; }
-  // Of all that it has made; the tree keeps them.
+  // The labels of everything it has built; the tree keeps them.
   std::forward_list<std::string> take_labels() { return std::move(labels_); }
 
   // ---- leaves
   ast::Name name(Span span) const;
   ast::Name quoted(Span span) const;  // without its quotes
-  // `word` is what the text has for USE, which may be something that was mended.
+  // `word` is the place of USE in the text, which may hold another word that a repair replaced.
   ast::Use use(Span word, ast::Use use) const;
   ast::Name longer_label(const ast::Name& label, Span next);
   ast::Name whole_number(Span span);
@@ -54,15 +54,15 @@ public:
   ast::Argument word(Span span) const;
   ast::Argument text(Span span) const;
   ast::Argument amount(Span span, ast::Box<ast::Expr> value, bool times = false) const;
-  // With a text that goes on behind a comma.
+  // A command whose text continues after a comma.
   ast::Command command(Span verb, std::vector<ast::Argument> arguments,
                        std::vector<ast::Argument> further) const;
 
-  // A number with a sign is no argument of its own where it is taken away from what stands in front of it.
+  // Reports a signed number that is a subtraction from the argument before it, not an argument of its own.
   void add_argument(std::vector<ast::Argument>& arguments, ast::Argument argument);
 
   // ---- parts of items
-  // A "-" that touches what follows is its sign; any other one is a key by itself.
+  // A "-" that touches the next token is its sign; any other "-" is a key of its own.
   void add_key(std::vector<ast::MotionKey>& keys, ast::MotionKey key);
   void once(ast::Box<ast::Expr>& place, ast::Box<ast::Expr> value, Span keyword);
   void set_priority(ast::Modifiers& modifiers, Span keyword, Span number);
@@ -114,10 +114,10 @@ private:
 
   const SourceFile& file_;
   Diagnostics* diagnostics_ = nullptr;
-  bool too_deep_ = false;  // that an expression is has been reported
-  Diagnostic unseen_;      // takes what is said while trying out
+  bool too_deep_ = false;  // has been reported for an expression
+  Diagnostic unseen_;      // takes reports while changes are tried out
   std::vector<ast::Item> items_;
-  std::vector<ast::Item> moved_out_;  // of a BEHAVIOR, where they may not stand
+  std::vector<ast::Item> moved_out_;  // out of a BEHAVIOR, which cannot hold them
   std::vector<TokenKind> expected_;
   std::forward_list<std::string> labels_;  // ast::Tree::labels
 };

@@ -11,10 +11,10 @@ namespace robosync::compiler {
 
 namespace {
 
-// How unlikely a kind of mistake is. Found by trying: tests/compiler/syntax/mutation_test.cpp
+// How unlikely a kind of mistake is. Tuned by experiment: tests/compiler/syntax/mutation_test.cpp
 // measures how many wrong programs give exactly one message.
 namespace cost {
-constexpr int respell_near = 8;  // and 2 more a wrong letter
+constexpr int respell_near = 8;  // plus 2 per wrong letter
 constexpr int respell_far = 16;  // the first word of an earlier line
 constexpr int join_unit = 10;    // 40 cm
 constexpr int remove_repeated = 12;
@@ -25,13 +25,13 @@ constexpr int insert_value = 23;
 constexpr int insert_operator = 30;
 constexpr int insert_bracket = 32;
 constexpr int insert_rare = 28;  // other words
-constexpr int close_block = 20;  // and 6 more for each further one
+constexpr int close_block = 20;  // plus 6 for each further one
 constexpr int remove = 24;
 constexpr int join_lines = 44;
 constexpr int swap = 25;
 constexpr int replace = 30;
 constexpr int replace_end = 34;
-constexpr int then_for_do = 18;  // IF x THEN, as other languages have it
+constexpr int then_for_do = 18;  // IF x THEN, as in other languages
 constexpr int skip_rest = 45;
 constexpr int skip_line = 50;
 constexpr int farther = 2;  // for each token before the one where the grammar stopped
@@ -41,7 +41,7 @@ bool is_value(TokenKind kind) {
   return kind == Kinds::NAME || kind == Kinds::QUANTITY || kind == Kinds::STRING;
 }
 
-// Of tokens that the grammar cannot tell apart, one is enough to try.
+// Of tokens that the grammar treats alike, trying one is enough.
 bool stands_for_others(TokenKind kind) {
   switch (kind) {
     case Kinds::GREATER:
@@ -128,7 +128,7 @@ private:
                       keyword, std::move(expected)});
   }
 
-  // A token that the text lacks: it has no width.
+  // A token that the text lacks has no width.
   Token missing(TokenKind kind, std::size_t at) const {
     const bool at_end = at >= tokens_.size();
     Span span = at_end ? tokens_.back().span : tokens_[at].span;
@@ -142,7 +142,7 @@ private:
     return {kind, span};
   }
 
-  // What the grammar could take in the place of the token `at`.
+  // The tokens that the grammar accepts in place of the token `at`.
   Expected expected_at(std::size_t at) {
     const Token kept = tokens_[at];
     tokens_[at].kind = Kinds::YYUNDEF;
@@ -157,11 +157,11 @@ private:
   }
 
   void insert(std::size_t at, TokenKind kind, int price, const Expected& expected) {
-    // Where a line ends already, one more end is none.
+    // A second line end next to an existing one has no effect.
     const bool ends_twice = is_line_end(at) || (at > 0 && is_line_end(at - 1));
     if (kind == Kinds::NEWLINE && ends_twice) return;
     add({Edit::What::insert, at, 0, {missing(kind, at)}, price}, nullptr, expected);
-    // An end of line that was dropped in front of `at` would count after the new token.
+    // A line end that was dropped before `at` would count after the new token, so also try before that line end.
     const bool line_dropped = at == failure_.stopped_at && failure_.before + 1 < at;
     if (!line_dropped) return;
     const Token token = missing_after(kind, failure_.before);
@@ -179,14 +179,14 @@ private:
 
   void around(std::size_t at, const Expected& expected, int extra) {
     for (const TokenKind kind : *expected) {
-      // A NOT turns a condition into its opposite: that one is missing is never the best guess.
+      // A NOT inverts a condition: a missing one is never the best guess.
       if (stands_for_others(kind) || kind == Kinds::NOT) continue;
       insert(at, kind, insertion_cost(kind, *expected) + extra, expected);
       replace(at, kind, extra, expected);
     }
   }
 
-  // The first word of a line in the place of one that would have gone on with the line before.
+  // Replaces the first word of a line by one that continues the line before.
   void replace_first_word(std::size_t at, const Expected& expected) {
     for (const TokenKind kind : *expected) {
       if (goes_on_a_line(kind) && !stands_for_others(kind)) replace(at, kind, 0, expected);
@@ -197,7 +197,7 @@ private:
     const std::size_t at = failure_.stopped_at;
     around(at, expected_, 0);
     if (is_line_end(at)) replace_first_word(at + 1, expected_);
-    // A line's end in front of `at` was dropped because of `at`: what if it had counted?
+    // A line end before `at` was dropped because of `at`: also try as if it had counted.
     const bool line_dropped = at < tokens_.size() && starts_line(tokens_, at) &&
                               !is_line_end(failure_.before) && failure_.before < at;
     if (line_dropped) around(at, expected_at(at), 0);
@@ -211,8 +211,8 @@ private:
     if (is_line_end(at)) replace_first_word(failure_.stopped_at, expected_before_);
   }
 
-  // Words up to the place where the grammar stopped, last first; with the next one when it is the
-  // end of a line.
+  // Words up to the place where the grammar stopped, last first; if that place is the end of a line, with
+  // the next word.
   std::vector<std::size_t> last_words(std::size_t count) const {
     std::vector<std::size_t> places;
     const std::size_t next = failure_.stopped_at + (is_line_end(failure_.stopped_at) ? 2 : 1);
@@ -231,7 +231,7 @@ private:
     return (at > 0 && same(at - 1)) || (at + 1 < tokens_.size() && same(at + 1));
   }
 
-  // `40 cm`: a name right behind digits.
+  // `40 cm`: a name directly after digits.
   bool is_unit_apart(std::size_t at) const {
     if (at == 0 || tokens_[at].kind != Kinds::NAME || tokens_[at - 1].kind != Kinds::QUANTITY) {
       return false;
@@ -246,7 +246,7 @@ private:
     return tokens_[at].kind == Kinds::END ? cost::remove_end : cost::remove;
   }
 
-  // With the next word; ends of lines stay where they are.
+  // Swaps with the next word; line ends stay in place.
   void swap(std::size_t at, int extra) {
     std::size_t next = at + 1;
     while (is_line_end(next))
@@ -273,7 +273,7 @@ private:
       add({Edit::What::remove, stop, 1, {}, cost::join_lines}, nullptr, expected_);
   }
 
-  // END once or more, in front of the line that cannot go on with the open blocks.
+  // Inserts one or more END before the line that does not fit into the open blocks.
   void close_blocks() {
     constexpr int most = 4;
     const bool line_end = is_line_end(failure_.before);
@@ -299,8 +299,8 @@ private:
     }
   }
 
-  // Names near the place, and first words of earlier lines: an open
-  // verb hides a misspelt IF or END until much later.
+  // Tries names near the place, and the first words of earlier lines: a misspelt IF or END
+  // reads as a verb, so the grammar stops much later.
   void respell() {
     constexpr std::size_t near = 4;
     constexpr std::size_t lines_back = 40;
@@ -322,7 +322,7 @@ private:
     return at;
   }
 
-  // Give up on the rest of the line, or on all of it.
+  // Gives up on the rest of the line, or on all of it.
   void skips() {
     const std::size_t at = std::min(failure_.stopped_at, tokens_.size() - 1);
     const std::size_t end = line_end(at);
@@ -331,7 +331,7 @@ private:
       --begin;
     if (end > at) add({Edit::What::skip, at, end - at, {}, cost::skip_rest});
     if (end > begin) add({Edit::What::skip, begin, end - begin, {}, cost::skip_line});
-    if (end > begin) {  // an empty statement in the place of the line
+    if (end > begin) {  // an empty statement instead of the line
       add({Edit::What::skip,
            begin,
            end - begin,
@@ -345,7 +345,7 @@ private:
   Reader& reader_;
   const SourceFile& source_;
   Expected expected_ = std::make_shared<const std::vector<TokenKind>>(failure_.expected);
-  Expected expected_before_;  // in the place of the token before
+  Expected expected_before_;  // in place of the token before
   std::vector<Edit> edits_;
 };
 

@@ -1,4 +1,4 @@
-// A change to the tokens that may let the grammar go on, and all the changes worth trying.
+// A change to the tokens that may let the grammar continue, and all changes worth trying.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,12 @@ namespace robosync::compiler {
 struct Edit {
   enum class What { respell, insert, close_blocks, remove, replace, swap, skip };
   What what{};
-  std::size_t at = 0;                // place in the tokens
-  std::size_t removed = 0;           // tokens taken away there
-  Tokens inserted;                   // tokens put there
-  int cost = 0;                      // the smaller, the more likely this is what the writer meant
+  std::size_t at = 0;                // index in the tokens
+  std::size_t removed = 0;           // tokens removed there
+  Tokens inserted;                   // tokens inserted there
+  int cost = 0;                      // the lower, the more likely the writer meant this
   const Keyword* keyword = nullptr;  // for respell
-  // What the grammar could take at that place; null when that was not found out.
+  // The tokens that the grammar accepts at that place; null when unknown.
   std::shared_ptr<const std::vector<TokenKind>> expected;
 };
 

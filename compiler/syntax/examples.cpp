@@ -15,12 +15,12 @@ namespace robosync::compiler {
 namespace {
 
 struct ShapeKind : Kinds {
-  static constexpr TokenKind any = END_OF_FILE;  // which begins nothing
+  static constexpr TokenKind any = END_OF_FILE;  // begins no line
 };
 
 struct LineShape {
   TokenKind first, next, in;
-  std::string_view word;  // when the first one is a name: this one; empty: any
+  std::string_view word;  // if `first` is a name: which one; empty: any
   std::string_view example;
 };
 
@@ -33,7 +33,7 @@ constexpr LineShape kShapes[] = {
 #undef LINE
 };
 
-// The unit of a written number: what stands behind its digits.
+// The unit of a written number: the text after its digits.
 std::string_view unit_of(std::string_view number) {
   number.remove_prefix(std::min(number.find_first_not_of("0123456789."), number.size()));
   return number;
@@ -43,18 +43,18 @@ bool begins_statement(TokenKind kind) {
   return is_one_of(kind, {Kinds::DO, Kinds::ELSE, Kinds::NEWLINE});
 }
 
-// Although the end of the line in front of it does not count.
+// Although the line end before it does not count.
 bool begins_in_line(TokenKind kind) {
   return is_one_of(kind, {Kinds::ELSE_IF, Kinds::OPTION, Kinds::RESUME});
 }
 
-// A line of a piece of the program, and what is in it.
+// A line in a piece of the program, and its contents.
 class WrittenLine {
 public:
   WrittenLine(Tokens piece, std::size_t at, const SourceFile& source)
       : piece_(std::move(piece)), source_(source) {
     std::vector<std::uint32_t> order;
-    significant(piece_, order);  // the line's end behind a WHEN is none
+    significant(piece_, order);  // the line end after a WHEN does not count
     for (const std::uint32_t place : order) {
       const TokenKind kind = piece_[place].kind;
       if (place >= at && is_one_of(kind, {Kinds::NEWLINE, Kinds::DO, Kinds::ELSE})) break;
@@ -77,7 +77,8 @@ public:
   }
   [[nodiscard]] TokenKind item() const { return piece_.front().kind; }
 
-  // What `of` gives for the first name in the line for which it gives something: in a CHECK, also in its first line.
+  // The first result of `of` that is not empty, over the names in the line; in a CHECK, also over those in its first line.
+  // Otherwise the result for an empty name.
   template <typename Function>
   [[nodiscard]] std::string of_names(Function of) const {
     std::vector<std::size_t> places = line_;
@@ -91,7 +92,7 @@ public:
     return of(std::string_view());
   }
 
-  // In the first line of the MOTION.
+  // The columns in the first line of the MOTION.
   [[nodiscard]] std::size_t columns() const {
     const auto end = std::ranges::find(piece_, Kinds::NEWLINE, &Token::kind);
     return 1 + static_cast<std::size_t>(std::count_if(
@@ -105,11 +106,11 @@ private:
 
   Tokens piece_;
   const SourceFile& source_;
-  std::vector<std::size_t> line_;  // places in the piece
+  std::vector<std::size_t> line_;  // indices into the piece
   bool starts_at_ = false;
 };
 
-// What stands in the braces of an example.
+// Fills the braces of an example.
 class Filling {
 public:
   Filling(const WrittenLine& line, const OwnNames& own, const Vocabulary* robot)
@@ -127,7 +128,7 @@ public:
     }
   }
 
-  // Of this verb, when the robot has it; of another one otherwise.
+  // A command with this verb if the robot has it; otherwise with another verb.
   [[nodiscard]] std::string command(std::string_view verb) const {
     const auto of_robot = [&](std::string_view named) {
       return line_.of_names([&](std::string_view name) {
@@ -168,7 +169,7 @@ private:
     return text.empty() ? std::string(otherwise) : text;
   }
 
-  // What the program declares: the one that is named in the line, or else the first.
+  // A name that the program declares: the one used in the line, or else the first.
   [[nodiscard]] const OwnNames::Name* own(std::initializer_list<TokenKind> declared) const {
     const OwnNames::Name* found = nullptr;
     (void)line_.of_names([&](std::string_view name) {
@@ -178,7 +179,7 @@ private:
     return found;
   }
 
-  // What the program remembers may be asked too, when the line names it.
+  // A condition on a variable or a state if the line names one, otherwise on a reading of the robot.
   [[nodiscard]] std::string condition() const {
     std::string text = line_.of_names([&](std::string_view name) {
       const OwnNames::Name* const own =
@@ -250,7 +251,7 @@ std::string like_this(const std::string& what, const std::string& example) {
 }  // namespace
 
 OwnNames::OwnNames(const Tokens& program, const SourceFile& source) {
-  constexpr std::size_t most = 256;  // enough for any program; the text may be one from outside
+  constexpr std::size_t most = 256;  // enough for any program; the text may come from outside
   const auto text = [&](std::size_t at) { return source.text(program[at].span); };
   for (std::size_t at = 0; at + 3 < program.size() && names.size() < most; ++at) {
     if (program[at + 1].kind != Kinds::NAME) continue;

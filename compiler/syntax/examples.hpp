@@ -1,5 +1,5 @@
-// Shows how a line of RSL is written, by a right one of the same kind (lines.def), with the names that the user has given
-// in the program and in robot.json, where there are some that fit.
+// Shows how a line of RSL is written: a correct line of the same kind (lines.def), filled with fitting names from the
+// user's program and robot.json where there are any.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace robosync::compiler {
 
-// What the program itself declares.
+// The names that the program itself declares.
 struct OwnNames {
   struct Name {
     TokenKind declared = TokenKind{};  // REMEMBER, FEELING, STATE, TIMER or MOTION
@@ -22,19 +22,19 @@ struct OwnNames {
   std::vector<Name> names;
 
   OwnNames(const Tokens& program, const SourceFile& source);
-  // Of these kinds: the one of this name, or without a name the first. Null when there is none.
+  // The declaration of one of these kinds with this name; without a name, the first one. Null when there is none.
   [[nodiscard]] const Name* find(std::initializer_list<TokenKind> declared,
                                  std::string_view name) const;
 };
 
 class Examples {
 public:
-  // All of them must outlive this; `robot` may be null.
+  // All three must outlive this; `robot` may be null.
   Examples(const Tokens& program, const SourceFile& source, const Vocabulary* robot)
       : own_(program, source), source_(source), robot_(robot) {}
 
-  // "`WAIT` is written like this: `WAIT 2s`", for the line of the token `at`, a place in some piece of the program.
-  // Empty when that token begins its line: then it is not known what the line is.
+  // "`WAIT` is written like this: `WAIT 2s`", for the line of the token `at`, an index into `piece`.
+  // Empty when that token begins its line: then the kind of line is unknown.
   [[nodiscard]] std::string written_like(const Tokens& piece, std::size_t at) const;
   // "MOVE left_arm UP SLOWLY"
   [[nodiscard]] std::string command() const;

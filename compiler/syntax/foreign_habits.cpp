@@ -1,5 +1,5 @@
-// Habits that people bring along from other languages. What the lexer can tell by itself (`&&`, braces, comments) is said
-// there; see habits.hpp.
+// Habits from other languages. The lexer reports those that it can detect on its own (`&&`, braces, comments); see
+// habits.hpp.
 #include "compiler/syntax/foreign_units.hpp"
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
@@ -133,7 +133,7 @@ private:
       {"FALLS", Kinds::CHANGES, "CHANGES"},
   };
 
-  // Behind the words, if they stand there.
+  // The index after the words if they are at `at`, otherwise `at`.
   std::size_t end_of(std::string_view words, std::size_t at) const {
     const std::size_t begin = at;
     while (!words.empty()) {
@@ -145,7 +145,7 @@ private:
     return at;
   }
 
-  // A word is asked for with IS, a number compared with a sign.
+  // A word is tested with IS; a number is compared with a sign.
   Edit written_as(const Phrase& phrase, std::size_t begin, std::size_t end) {
     const Span all = span(begin, end);
     const std::string what = "`" + std::string(source_.text(all)) + "`";
@@ -259,7 +259,7 @@ private:
     if (!is(open, Kinds::OPEN) || !(says || is(open + 1, Kinds::STRING))) return std::nullopt;
     const std::size_t close = closing(open), end = std::min(close + 1, end_);
     if (open == statement_ + 1 && is_call(open) && behind_declaration("DEFINE", text(statement_)))
-      return std::nullopt;  // a DEFINE is given a text
+      return std::nullopt;  // a text passed to a DEFINE
     const bool prints = is_name(statement_, "PRINT");
     const std::string command = prints ? "LOG" : text(statement_, open);
     const std::string better = command + " " + text(open + 1, close);
@@ -295,7 +295,7 @@ private:
     return twice ? assignment(word, " BY ", sign + 2) : std::nullopt;
   }
 
-  // In the words of RSL; the value begins at `value`, and is 1 where none is written.
+  // Written in RSL; the value begins at `value`, and is 1 if none is written.
   std::optional<Edit> assignment(const std::string& word, const std::string& preposition,
                                  std::size_t value) {
     const std::size_t end = statement_end();
@@ -380,7 +380,7 @@ private:
                             Kinds::OR, Kinds::NOT, Kinds::UNTIL});
   }
 
-  // `3,5%`: nothing stands between the comma and the numbers beside it.
+  // `3,5%`: the comma touches the numbers on both sides.
   std::optional<Edit> decimal_comma() {
     if (stop_ == 0 || !is(stop_, Kinds::COMMA)) return std::nullopt;
     if (!is(stop_ - 1, Kinds::QUANTITY) || !is(stop_ + 1, Kinds::QUANTITY)) return std::nullopt;

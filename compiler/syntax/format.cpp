@@ -1,5 +1,5 @@
-// See format.hpp. Which blocks are open the BlockWalk says; how deep a line stands follows from its first word and
-// from the innermost of them.
+// See format.hpp. BlockWalk tells which blocks are open; the innermost block and the first word of a line determine its
+// indentation.
 #include "compiler/syntax/format.hpp"
 
 #include <algorithm>
@@ -17,21 +17,21 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::size_t kIndent = 2;         // columns a level
+constexpr std::size_t kIndent = 2;         // columns per level
 constexpr std::size_t kBeforeComment = 2;  // columns, at least
 constexpr std::string_view kBlanks = " \t\v\f\r";
 
-// What stands around it, on either side; a minus may be a sign.
+// Takes a space on either side. Minus is not here: it may be a sign.
 bool is_spaced(TokenKind kind) {
   return is_relation(kind) || is_one_of(kind, {Kinds::PLUS, Kinds::STAR, Kinds::SLASH});
 }
 
-// A word that calculates or decides, as an operator does.
+// A word that is an operator.
 bool is_word_between(TokenKind kind) {
   return is_one_of(kind, {Kinds::AND, Kinds::OR, Kinds::MOD});
 }
 
-// Between two words of a line, of which the writer had put something in between, or nothing.
+// Is there a space between two words of a line? `written`: the writer had put one there.
 bool is_space_between(TokenKind left, TokenKind right, bool written) {
   if (is_one_of(right, {Kinds::COMMA, Kinds::CLOSE, Kinds::COLON}) || left == Kinds::OPEN)
     return false;
@@ -45,13 +45,13 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
 }
 
-// Code points, which are columns in all that programs are written in.
+// Counts code points, which take one column each in what programs are written in.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
-// As the grammar sees them: without the ends of lines that do not count.
+// The tokens that the grammar sees: without the line ends that do not count.
 Tokens without_idle_ends(Tokens& all) {
   std::vector<std::uint32_t> order;
   significant(all, order);
@@ -61,12 +61,12 @@ Tokens without_idle_ends(Tokens& all) {
   return seen;
 }
 
-// ---- how deep a line stands
+// ---- indentation
 
 struct Block {
   TokenKind opener = TokenKind{};
-  std::size_t level = 0;  // of the line that it stands in
-  bool body = false;      // its DO has come
+  std::size_t level = 0;  // of the line that opens it
+  bool body = false;      // its DO has been read
 };
 
 bool has_do(TokenKind opener) {
@@ -74,16 +74,16 @@ bool has_do(TokenKind opener) {
                    {Kinds::WHEN, Kinds::WHILE, Kinds::EVERY, Kinds::AT, Kinds::IF, Kinds::SAFETY});
 }
 
-// Words of a rule that stand below its first one.
+// Words of a rule that are aligned with its first word.
 bool is_part_of_rule(TokenKind first) {
   return is_one_of(
       first, {Kinds::WHEN, Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF, Kinds::RESUME, Kinds::PRIORITY,
               Kinds::COOLDOWN, Kinds::MARGIN, Kinds::WAITING, Kinds::RESTARTING});
 }
 
-// Of the statements in it, or of comments between them.
+// The level of the block's statements, and of comments between them.
 std::size_t inner_level(const Block& block) {
-  // The rule of a SAFETY stands one deeper, and so do the statements of an OPTION.
+  // The rule of a SAFETY and the statements of an OPTION are one level deeper.
   const bool twice = is_one_of(block.opener, {Kinds::SAFETY, Kinds::PICK});
   return block.level + (twice ? 2U : 1U);
 }
@@ -94,7 +94,7 @@ std::size_t level_in(const Block& block, TokenKind first) {
   if (!has_do(block.opener)) return inner_level(block);
   if (is_part_of_rule(first) && !(block.body && first == Kinds::WHEN))
     return inner_level(block) - 1;
-  return inner_level(block) + (block.body ? 0U : 1U);  // a condition goes on
+  return inner_level(block) + (block.body ? 0U : 1U);  // a condition continues
 }
 
 std::size_t level_of_comment(const std::vector<Block>& blocks) {
@@ -110,9 +110,9 @@ enum class Table : std::uint8_t { none, motion, bands };
 
 struct Line {
   std::size_t level = 0;
-  std::vector<std::string> cells;  // one, but for rows of a table
+  std::vector<std::string> cells;  // one, except in rows of a table
   std::string_view comment;
-  // May the comment be meant otherwise? The lexer says so only where it stands so near: it stays there.
+  // The lexer warns that this may not be meant as a comment, because it is so near to the code: it stays there.
   bool is_doubtful = false;
   Table table = Table::none;
 
@@ -127,14 +127,14 @@ bool begins_cell(Table table, const Tokens& tokens, std::size_t at) {
   const TokenKind kind = tokens[at].kind;
   if (table == Table::bands)
     return is_one_of(kind, {Kinds::BELOW, Kinds::ABOVE, Kinds::BETWEEN, Kinds::OTHERWISE});
-  // The first one is AT and a time. A minus by itself is a key, before a number its sign.
+  // The first cell is AT and a time. A minus alone is a key; one that touches a number is its sign.
   const bool signed_number =
       tokens[at - 1].kind == Kinds::MINUS && touch(tokens[at - 1], tokens[at]);
   return table == Table::motion && at > 1 && !signed_number;
 }
 
-// A minus that takes away from what stands in front of it, and is no sign: as it is written, but inside of brackets,
-// where no two values stand side by side.
+// True for a minus that subtracts. Its spacing distinguishes it from a sign, except inside brackets, where two values are
+// never adjacent.
 bool is_operator(Table table, const Tokens& tokens, std::size_t at, int depth) {
   if (tokens[at].kind != Kinds::MINUS || at == 0 || at + 1 == tokens.size() ||
       (table == Table::motion && depth == 0))
@@ -151,7 +151,7 @@ public:
     seen_ = without_idle_ends(all_);
   }
 
-  // False when a line holds what is neither a word nor a comment.
+  // False when a line holds anything but words and comments.
   bool read() {
     BlockWalk walk(seen_);
     for (std::uint32_t number = 1; start_of(number) < source_.text().size(); ++number)
@@ -163,7 +163,7 @@ public:
     align_tables();
     align_comments();
     std::string text;
-    bool blank = true;  // none at the beginning
+    bool blank = true;  // no blank lines at the beginning
     for (const Line& line : lines_) {
       if (line.is_blank() && blank) continue;
       blank = line.is_blank();
@@ -218,7 +218,7 @@ private:
     return true;
   }
 
-  // Over the end of the line before, if that counts.
+  // Passes the end of the line before, if it counts.
   void skip_to(const Token& token, BlockWalk& walk) {
     while (at_ < seen_.size() && seen_[at_].span.begin < token.span.begin)
       walk.step(at_++);
@@ -238,7 +238,7 @@ private:
     return level + (goes_on(first) ? 1U : 0U);
   }
 
-  // It goes on with what the line before says, and is no part of a block; of conditions level_in() knows.
+  // True when the line continues the one before and is not part of a block; level_in() handles conditions.
   bool goes_on(TokenKind first) const {
     if (at_ == 0 || seen_[at_ - 1].kind == Kinds::NEWLINE) return false;
     if (is_one_of(first, {Kinds::END, Kinds::OPTION, Kinds::SMOOTH}) || is_part_of_rule(first))
@@ -308,7 +308,7 @@ private:
     return most;
   }
 
-  // Where another cell follows, it begins in the same column.
+  // Pads a column so that the cells after it are aligned.
   static void pad_column(std::span<Line> lines, std::size_t column) {
     std::size_t width = 0;
     for (const Line& line : lines)
@@ -355,7 +355,7 @@ private:
   std::size_t at_ = 0;    // in seen_
   std::vector<Block> blocks_;
   std::vector<Line> lines_;
-  std::vector<std::size_t> columns_;  // where the comment of each line begins
+  std::vector<std::size_t> columns_;  // of the comment in each line
 };
 
 // The words of a text, as the grammar sees them.

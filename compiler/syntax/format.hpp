@@ -1,7 +1,7 @@
-// The one style of RSL: indentation by blocks, one blank or none between words, rows of a table one below the other.
+// The one style of RSL: blocks are indented, words have one blank or none between them, rows of a table are aligned.
 //
-// Lines stay lines, and words stay words: only what stands between them changes, and blank lines beyond one. So a
-// program means the same, which is checked.
+// Lines and words stay as they are: only the space between them changes, and repeated blank lines become one. The
+// program's meaning stays the same, which is checked.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace robosync::compiler {
 
-// The text of a program that parse() finds no mistake in; nothing when that cannot be done without changing it.
+// The formatted text of a program in which parse() finds no mistake; nothing if formatting would change its words.
 [[nodiscard]] std::optional<std::string> formatted(const SourceMap& sources, FileId file);
 
 }  // namespace robosync::compiler

@@ -1,4 +1,4 @@
-// The functions of numbers (functions.def), as they are written.
+// The numeric functions (functions.def) by name.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ inline constexpr std::array kFunctions = {
 #undef FUNCTION
 };
 
-// In any case of its letters; null for any other word.
+// Ignores case; null for any other word.
 [[nodiscard]] inline const FunctionName* find_function(std::string_view word) {
   const auto* const found = std::ranges::find_if(
       kFunctions, [word](const FunctionName& known) { return ascii::same(known.name, word); });

@@ -177,7 +177,7 @@ private:
     return change(stop_ - 1, rest - stop_ + 1, {missing(Kinds::QUANTITY, stop_)});
   }
 
-  // Up to the line that begins with a word that cannot belong to the LIST.
+  // The index of the line whose first word cannot belong to the LIST.
   std::size_t rest_of_list() const {
     std::size_t at = end_;
     while (at + 1 < tokens_.size() &&
@@ -228,7 +228,7 @@ private:
     return change(stop_, 1);
   }
 
-  // Rows of a MOTION with commas, a colon, without AT, with a verb or a text.
+  // Rows of a MOTION with commas, a colon, a verb or a text, or without AT.
   std::optional<Edit> table() {
     if (!is(0, Kinds::MOTION) || begin_ == 0) return columns();
     if (is(stop_, Kinds::END) || is(stop_, Kinds::NEWLINE) || before_ == stop_) return std::nullopt;
@@ -251,7 +251,7 @@ private:
     return rows_dropped();
   }
 
-  // A line of a CHECK whose word stands last: `OTHERWISE far`, `BELOW 30cm near`
+  // A line of a CHECK with its label last: `OTHERWISE far`, `BELOW 30cm near`
   std::optional<Edit> band() {
     if (!is(0, Kinds::CHECK) || begin_ == 0 ||
         !is_one_of(tokens_[begin_].kind, {Kinds::OTHERWISE, Kinds::BELOW, Kinds::ABOVE}))
@@ -278,7 +278,7 @@ private:
     return change(stop_, 1, {{Kinds::COMMA, tokens_[stop_].span}});
   }
 
-  // Who writes one row in a way of their own writes all of them so.
+  // Drops all rows: a person who writes one row wrongly writes all of them that way.
   Edit rows_dropped() const {
     std::size_t last = tokens_.size();
     while (last > begin_ && !is(last, Kinds::END))
@@ -289,7 +289,7 @@ private:
     return change(begin_, (ends ? last : end_) - begin_, std::move(row));
   }
 
-  // `ELSE x > 3 DO`; an ELSE IF behind an ELSE, or in a rule
+  // `ELSE x > 3 DO`; an ELSE IF after an ELSE, or in a rule
   std::optional<Edit> else_if() {
     if (statement_ > 0 && is(statement_ - 1, Kinds::ELSE) && is_relation(tokens_[stop_].kind) &&
         has(stop_, end_, Kinds::DO)) {
@@ -308,7 +308,7 @@ private:
     return if_in_else();
   }
 
-  // Read as `ELSE`, and an IF that ends in front of the END of the rule: it may have an ELSE of its own.
+  // Reads it as `ELSE` and an IF that ends before the END of the rule: that IF may have its own ELSE.
   Edit if_in_else() const {
     const Span here = tokens_[stop_].span;
     BlockWalk walk(tokens_);
@@ -341,7 +341,7 @@ private:
     return change(stop_ - 1, 1, {{Kinds::EQUAL, tokens_[stop_ - 1].span}});
   }
 
-  // Where what is asked begins: behind the word that asks, an AND, an OR, a NOT or a bracket.
+  // The start of the question at `at`: after the word that asks, an AND, an OR, a NOT or a bracket.
   std::size_t asked_from(std::size_t at) const {
     while (at > 0 && (is(at - 1, Kinds::NAME) || is(at - 1, Kinds::QUANTITY)))
       --at;
@@ -562,7 +562,7 @@ private:
                   behind_preposition ? Tokens{missing(Kinds::QUANTITY, first)} : Tokens{});
   }
 
-  // A preposition behind the number belongs to the command again.
+  // A preposition after the number belongs to the command again.
   std::size_t number_end(std::size_t first, std::size_t most) const {
     std::size_t at = first;
     while (at < most && !is_preposition(tokens_[at].kind) && !is_word_behind_number(at, first))
@@ -576,7 +576,7 @@ private:
            (is(at - 1, Kinds::QUANTITY) || is(at - 1, Kinds::CLOSE));
   }
 
-  // Is what begins there a calculation, where the grammar takes a plain value?
+  // Does a calculation begin there, where the grammar takes a plain value?
   bool worked_out_at(std::size_t first) const {
     if (is(stop_, Kinds::COUNT) || is(stop_, Kinds::RANDOM)) return true;
     if (is(stop_, Kinds::NEWLINE) || is(stop_, Kinds::END)) return true;  // SAY (3 + 4)
@@ -598,7 +598,7 @@ private:
     std::size_t last = end_;
     while (last + 1 < tokens_.size() && is_stray(last + 1))
       last = end_of_line(last + 1);
-    if (is(last + 1, Kinds::END)) return std::nullopt;  // of a block that has lost its head
+    if (is(last + 1, Kinds::END)) return std::nullopt;  // of a block whose head is missing
     report(Code::E0001, "no line begins with " + quote(begin_) + " here", tokens_[begin_].span)
         .helps("commands stand in a rule or in a DEFINE: `WHEN ... DO ... END`");
     return change(begin_, last - begin_);
@@ -610,7 +610,7 @@ private:
     return at;
   }
 
-  // A line of words that is no question, and no item that has lost its first word.
+  // A line of words that is neither a question nor an item whose first word is missing.
   bool is_stray(std::size_t first) const {
     const std::size_t end = end_of_line(first);
     const TokenKind kind = tokens_[first].kind;

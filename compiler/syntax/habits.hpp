@@ -1,6 +1,6 @@
-// Mistakes that people bring along: from other languages, and from one construct of RSL to the next. Each is known by the
-// words around the place where the grammar stopped, and has a sentence of its own that shows the line as it should be. What
-// none of them knows is left to the search for the cheapest change (edit.hpp).
+// Mistakes of habit: from other languages, and from one construct of RSL to another. Each is recognised by the words
+// around the place where the grammar stopped, and has its own message that shows the correct line. All other mistakes go
+// to the search for the cheapest change (edit.hpp).
 #pragma once
 
 #include <optional>
@@ -12,9 +12,9 @@
 
 namespace robosync::compiler {
 
-// From one construct of RSL to the next (habits.cpp), from other languages (foreign_habits.cpp), and words that stand
-// where they mean something else (misplaced_words.cpp).
-// Each reports the habit, and gives the change with which the grammar can go on. Nothing when there is none.
+// Habits from other constructs of RSL (habits.cpp) and from other languages (foreign_habits.cpp), and words that mean
+// something else where they are (misplaced_words.cpp).
+// Each reports the habit and returns the change that lets the grammar continue; nothing when it finds none.
 [[nodiscard]] std::optional<Edit> explain_habit(const Tokens& tokens, const SourceFile& source,
                                                 const Attempt& failure, Diagnostics& diagnostics);
 

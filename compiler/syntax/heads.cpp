@@ -11,7 +11,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// The head ends with its line, or where a rule begins in the same line.
+// The head ends at the end of its line, or where a rule begins in the same line.
 bool ends_head(TokenKind kind) {
   return kind == Kinds::NEWLINE || kind == Kinds::WHEN || kind == Kinds::WHILE ||
          kind == Kinds::EVERY || kind == Kinds::AT;
@@ -49,7 +49,7 @@ void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnosti
 
 namespace {
 
-// What stands behind the name in the line that declares it.
+// True when `behind` can follow the name in a declaration that begins with `first`.
 bool declares(TokenKind first, TokenKind behind) {
   switch (first) {
     case Kinds::REMEMBER:
@@ -71,7 +71,7 @@ bool declares(TokenKind first, TokenKind behind) {
   }
 }
 
-// A word that can be no name, in small letters: RSL is mostly written in capital ones.
+// A word that cannot be a name, in lower case: RSL is mostly written in capitals.
 bool is_reserved_name(const Token& token, const SourceFile& source) {
   if (token.kind < Kinds::USE || (roles_of(token.kind) & role::name) != 0) return false;
   const std::string_view text = source.text(token.span);
@@ -89,7 +89,7 @@ void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnosti
     diagnostics
         .report(Code::E0010, "`" + std::string(word) + "` is a word of RSL and cannot be a name")
         .label(name.span, "choose another name");
-    // As a name from here on, no line can declare it again: at most once for each word of RSL.
+    // It is a name from here on, so no line can declare it again: this loop runs at most once per word of RSL.
     for (Token& token : tokens)
       if (token.kind == name.kind && source.text(token.span) == word) token.kind = Kinds::NAME;
   }

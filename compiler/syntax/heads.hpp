@@ -1,5 +1,5 @@
-// An END or a BEHAVIOR in the head of a BEHAVIOR would close it, or begin another one, before it has begun: then every line
-// of it would be a mistake. It is said here once, before the text is split into items (layout.hpp).
+// An END or a BEHAVIOR in the head of a BEHAVIOR would close it, or begin another one, too early: every line in it would
+// then be a mistake. These functions report it once, before the text is split into items (layout.hpp).
 #pragma once
 
 #include "compiler/diagnostics/diagnostic.hpp"
@@ -8,14 +8,14 @@
 
 namespace robosync::compiler {
 
-// Reports such words, and takes them out of the tokens.
+// Reports such words and removes them from the tokens.
 void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
 
-// `REMEMBER end = 0`: reports a word of RSL that is declared as a name. Where it is written the same way again, in small
-// letters, the name is meant: so that it is said once.
+// `REMEMBER end = 0`: reports a word of RSL that is declared as a name. The same spelling, in lower case, counts as that
+// name everywhere, so that the mistake is reported once.
 void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
 
-// Rows of a CHECK, a MOTION or a TEST that have lost their first line: reports it, and puts one there.
+// Reports rows of a CHECK, a MOTION or a TEST whose first line is missing, and inserts one.
 void mend_lost_heads(Tokens& tokens, Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

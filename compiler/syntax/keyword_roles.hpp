@@ -1,4 +1,4 @@
-// Keywords as the parser needs them: with their tokens and roles. See keywords.def.
+// Keywords with their tokens and roles, for the parser. See keywords.def.
 #pragma once
 
 #include <optional>
@@ -34,13 +34,13 @@ struct Keyword {
 
 [[nodiscard]] std::span<const Keyword> keywords();
 
-// The keyword that a word is; nothing for any other word.
+// The keyword spelled by a word; null for any other word.
 [[nodiscard]] const Keyword* find_keyword(std::string_view word);
 
-// Roles of a token; operators and brackets have some too, other tokens none.
+// The roles of a token. Keywords, operators and brackets have roles, other tokens none.
 [[nodiscard]] unsigned roles_of(TokenKind kind);
 
-// The keyword with one of `roles` that a misspelt word is nearest to; null when none is near.
+// The keyword with one of `roles` that is nearest to a misspelt word; null when none is near.
 [[nodiscard]] const Keyword* nearest_keyword(std::string_view word, unsigned roles);
 
 }  // namespace robosync::compiler

@@ -12,7 +12,7 @@
 
 namespace robosync::compiler {
 
-// Inside of it, so that the column `roles` of keywords.def means nothing else, whatever a unity build puts in front of this.
+// In this namespace, so that the roles column of keywords.def resolves to role::…, whatever a unity build puts before it.
 namespace role {
 namespace {
 constexpr Keyword all[] = {
@@ -61,12 +61,12 @@ constexpr bool every_token_has_its_row() {
 }
 static_assert(every_token_has_its_row(), "a keyword of grammar/rsl.yy is not in keywords.def");
 
-// Places in the table, sorted by the first letter of the keyword. Every word of a program is looked
-// up, and most are found or not after one comparison.
+// Indices into the table, sorted by the first letter of the keyword. Every word of a program is looked
+// up, and one comparison decides most lookups.
 struct Index {
   static constexpr std::size_t letters = 26;
   std::array<std::uint8_t, std::size(table)> places{};
-  std::array<std::uint8_t, letters + 1> begins{};  // where each letter's places begin, and the end
+  std::array<std::uint8_t, letters + 1> begins{};  // where each letter begins, and the end
 };
 
 constexpr Index make_index() {

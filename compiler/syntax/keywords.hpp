@@ -1,4 +1,4 @@
-// The keywords of RSL (keywords.def) and what each may do in a line. Case does not matter.
+// The keywords of RSL (keywords.def). Case does not matter.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 namespace robosync::compiler {
 
 [[nodiscard]] bool is_keyword(std::string_view word);
-// May something of robot.json have this name? Any word that is no keyword, and one that means something
-// only where it begins a line outside all blocks, as MOTION does: there are sensors of motion.
+// True when a name in robot.json may be this word: it is not a keyword, or it has a meaning only at the start
+// of a line outside all blocks. MOTION is such a word: there are motion sensors.
 [[nodiscard]] bool may_name_a_part(std::string_view word);
 
 // Every spelling, in capitals.

@@ -9,7 +9,7 @@
 
 namespace robosync::compiler {
 
-// ---- ends of lines
+// ---- line ends
 
 void significant(std::vector<Token>& tokens, std::vector<std::uint32_t>& order) {
   if (!tokens.empty() && tokens.back().kind != Kinds::NEWLINE) {
@@ -18,7 +18,7 @@ void significant(std::vector<Token>& tokens, std::vector<std::uint32_t>& order) 
   }
   order.clear();
   order.reserve(tokens.size());
-  bool pending = false;  // a line's end that may count
+  bool pending = false;  // a line end that may count
   std::uint32_t line_end = 0;
   for (std::uint32_t i = 0; i < tokens.size(); ++i) {
     const TokenKind kind = tokens[i].kind;
@@ -27,7 +27,7 @@ void significant(std::vector<Token>& tokens, std::vector<std::uint32_t>& order) 
       pending = true;
       continue;
     }
-    // A row of a MOTION may end with "-", and the next one begins with AT, as no expression goes on.
+    // A row of a MOTION may end with "-". The next row begins with AT, which never continues an expression.
     const bool new_row =
         kind == Kinds::AT && !order.empty() && tokens[order.back()].kind == Kinds::MINUS;
     const bool goes_on =
@@ -62,7 +62,7 @@ public:
   }
 
 private:
-  // Outside all blocks a word that is no keyword must be a misspelt one.
+  // Outside all blocks, a word that is not a keyword must be a misspelt keyword.
   unsigned line_roles(std::size_t at) {
     const Token& token = tokens_[at];
     if (token.kind == Kinds::AT) {
@@ -74,7 +74,7 @@ private:
     return meant != nullptr ? meant->roles : 0U;
   }
 
-  // The END of an item that stands farther right than its first word closes something inside it.
+  // An END that is indented deeper than the item's first word closes something inside the item.
   bool closes_too_early(std::size_t at) const {
     const bool item = tokens_[at].kind == Kinds::END && walk_.open().empty();
     return item && starts_line(tokens_, at) && indentation(tokens_[at], source_) > indentation_;
@@ -88,7 +88,7 @@ private:
     }
     if (!outside) return false;
     if ((roles & role::part) != 0) return !damaged_;
-    // Neither: the mistake is on this line, and what follows may belong to it.
+    // Neither: the mistake is on this line, and the following lines may belong to it.
     damaged_ = true;
     return false;
   }
@@ -124,7 +124,7 @@ bool is_sign(TokenKind kind) {
   return kind == Kinds::MINUS || kind == Kinds::NOT || kind == Kinds::OPEN;
 }
 
-// Most pieces have too few tokens that go down for any of them to be too deep.
+// A quick test: most pieces have too few tokens that nest to be too deep.
 bool may_be_deep(std::span<const Token> tokens) {
   const auto goes_down = [](const Token& token) {
     return is_sign(token.kind) || token.kind == Kinds::ELSE_IF ||
@@ -133,8 +133,8 @@ bool may_be_deep(std::span<const Token> tokens) {
   return std::ranges::count_if(tokens, goes_down) > static_cast<std::ptrdiff_t>(kDeepestBlock);
 }
 
-// Counts what makes the grammar's stack grow: open IF, REPEAT and PICK blocks, each ELSE IF being one
-// in the one before, open brackets, and signs in a row like NOT NOT NOT.
+// Counts what makes the grammar's stack grow: open IF, REPEAT and PICK blocks (each ELSE IF nests in
+// the one before), open brackets, and signs in a row such as NOT NOT NOT.
 class Depth {
 public:
   explicit Depth(std::span<const Token> tokens) : tokens_(tokens), walk_(tokens) {}
@@ -182,7 +182,7 @@ private:
   std::span<const Token> tokens_;
   BlockWalk walk_;
   TokenKind last_ = Kinds::NEWLINE;
-  std::vector<std::size_t> levels_;  // of each block that is open
+  std::vector<std::size_t> levels_;  // of each open block
   std::size_t blocks_ = 0, brackets_ = 0, signs_ = 0;
 };
 

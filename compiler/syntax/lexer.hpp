@@ -1,4 +1,4 @@
-// Text to tokens: one call for a whole file. Every end of a line is a token; layout.hpp drops those
+// Turns text into tokens, a whole file per call. Every line end is a token; layout.hpp drops those
 // that do not count.
 #pragma once
 
@@ -11,10 +11,10 @@
 
 namespace robosync::compiler {
 
-// What is reported of one of these begins so, by which the parser knows the line: what that lacks is a consequence.
+// Messages about such a character begin with this. The parser finds the line by it: anything missing there is a consequence.
 inline constexpr std::string_view kStrangeCharacter = "RSL does not use the character ";
 
-// Any bytes are fine: what RSL does not use is reported and left out, or read as what was meant.
+// Accepts any bytes. Characters that RSL does not use are reported, and left out or read as what was meant.
 // The text must be smaller than 4 GiB.
 [[nodiscard]] std::vector<Token> lex(const SourceFile& source, FileId file,
                                      Diagnostics& diagnostics);

@@ -1,5 +1,5 @@
-// The lexer, part: what people bring along from other languages, as far as the text of a line shows it. Each is reported, and
-// read as what was meant. See lexer_state.hpp.
+// Part of the lexer: habits from other languages that the text of a line shows. Each is reported and read as what was
+// meant. See lexer_state.hpp.
 #include <algorithm>
 
 #include "compiler/source/ascii.hpp"
@@ -11,7 +11,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// Words with which a line asks, and those with which it works something out.
+// Words that ask something, and words that calculate.
 bool asks(TokenKind kind) {
   return is_one_of(kind, {Kinds::WHEN, Kinds::WHILE, Kinds::IF, Kinds::ELSE_IF, Kinds::WAIT,
                           Kinds::RESUME, Kinds::REPEAT, Kinds::EXPECT, Kinds::SAFETY});
@@ -24,15 +24,16 @@ bool calculates(TokenKind kind) {
 
 }  // namespace
 
-// ---- what else the line has
+// ---- the rest of the line
 
 std::string_view LexerState::rest_of_line(std::size_t from) const {
   return text_.substr(from, std::min(text_.find_first_of("\r\n", from), text_.size()) - from);
 }
 
-// Of the last token's; the number of tokens where a statement begins anew, or its beginning is far away.
+// The first token of the statement that holds the last token. The number of tokens if a new statement begins here, or if
+// this one began too far back.
 std::size_t LexerState::first_of_statement() const {
-  constexpr std::size_t most = 256;  // tokens: the text may be one from outside
+  constexpr std::size_t most = 256;  // tokens: the text may come from outside
   std::size_t first = tokens_.size();
   while (first > 0 &&
          !is_one_of(tokens_[first - 1].kind, {Kinds::NEWLINE, Kinds::DO, Kinds::ELSE})) {
@@ -50,7 +51,7 @@ bool LexerState::behind_value() const {
 }
 
 bool LexerState::is_declared(std::string_view name) const {
-  constexpr std::size_t most = 4096;  // tokens: the text may be one from outside
+  constexpr std::size_t most = 4096;  // tokens: the text may come from outside
   for (std::size_t at = 1; at < std::min(tokens_.size(), most); ++at) {
     const Span span = tokens_[at].span;
     if (is_one_of(tokens_[at - 1].kind, {Kinds::LET, Kinds::REMEMBER, Kinds::FEELING}) &&
@@ -60,7 +61,8 @@ bool LexerState::is_declared(std::string_view name) const {
   return false;
 }
 
-// Values and signs by turns, up to the end, a DO or an END: what could go on with a calculation, and is no sentence.
+// True when values and signs alternate up to the end, a DO or an END: the text may continue a calculation and is not a
+// sentence.
 bool LexerState::is_calculation(std::string_view text) const {
   constexpr std::string_view signs = "+-*/<>=,";
   bool wants_value = true;
@@ -88,7 +90,7 @@ bool LexerState::is_calculation(std::string_view text) const {
   return !wants_value;
 }
 
-// In this line.
+// True when a bracket is open in this statement and the rest of the line may close it.
 bool LexerState::brackets_open() const {
   int open = 0;
   for (std::size_t at = first_of_statement(); at < tokens_.size(); ++at) {
@@ -109,14 +111,14 @@ bool LexerState::has_relation() const {
   return false;
 }
 
-// The first word of the next line that is not empty, or its sign; nothing at the end.
+// The first word or sign of the next line that is not empty; nothing at the end.
 std::string_view LexerState::next_line() const {
   const std::size_t line_end = start_ + rest_of_line(start_).size();
   const std::size_t word = std::min(text_.find_first_not_of(" \t\r\n", line_end), text_.size());
   return text_.substr(word, std::max<std::size_t>(word_length(text_.substr(word)), 1));
 }
 
-// Does it begin with a sign, so that this line may go on there?
+// Does the next line begin with a sign, so that it may continue this one?
 bool LexerState::next_line_has_sign() const {
   const std::string_view next = next_line();
   return !next.empty() && word_length(next) == 0;
@@ -131,7 +133,7 @@ bool LexerState::next_line_goes_on() const {
 
 // ---- words
 
-// `ENDIF`, as other languages have it, where a line begins.
+// `ENDIF` at the start of a line, as in other languages.
 bool LexerState::foreign_end() {
   if (!tokens_.empty() && tokens_.back().kind != Kinds::NEWLINE) return false;
   constexpr std::string_view ends[] = {"ENDIF",     "END_IF",    "ENDWHEN",     "ENDWHILE",
@@ -144,14 +146,14 @@ bool LexerState::foreign_end() {
   return true;
 }
 
-// `isn't > 3`, `isn't 3`: the grammar stops there, and says what is meant of all of it (misplaced_words.cpp).
+// `isn't > 3`, `isn't 3`: the grammar stops there, and misplaced_words.cpp explains the whole comparison.
 bool LexerState::compares(std::size_t from) const {
   constexpr std::string_view begins_it = "<>=!0123456789-";
   const std::size_t next = text_.find_first_not_of(" \t", from);
   return next != std::string_view::npos && begins_it.find(text_[next]) != std::string_view::npos;
 }
 
-// `isn't`, `isnt`, `doesn't`, in a line that asks: what stands behind the ' is no text.
+// `isn't`, `isnt`, `doesn't`, in a line that asks: the ' does not begin a text.
 bool LexerState::negation() {
   constexpr std::string_view states[] = {"isn", "aren", "wasn", "weren"};
   constexpr std::string_view others[] = {"doesn", "don", "didn", "hasn", "haven"};
@@ -185,8 +187,8 @@ bool LexerState::negation() {
   return true;
 }
 
-// `LOOP 3 TIMES`, `FOR 3 TIMES`, `FOR i = 1 TO 3`, `FOR i IN range(3)`, where a line begins: a block, whose END would close
-// another one.
+// `LOOP 3 TIMES`, `FOR 3 TIMES`, `FOR i = 1 TO 3`, `FOR i IN range(3)` at the start of a line: a block, whose END would
+// otherwise close another one.
 bool LexerState::foreign_loop() {
   const bool loop = ascii::same(lexeme(), "LOOP"), each = ascii::same(lexeme(), "FOR");
   if (!(loop || each) || (!tokens_.empty() && tokens_.back().kind != Kinds::NEWLINE)) return false;
@@ -217,7 +219,7 @@ bool LexerState::foreign_loop() {
   return true;
 }
 
-// ---- what stands between two ' or behind a number
+// ---- apostrophes, and signs after a number
 
 // `2'500ms`
 bool LexerState::apostrophe_in_number() {
@@ -241,7 +243,7 @@ bool LexerState::apostrophe_in_number() {
   return true;
 }
 
-// `'It's nice'`: a letter touches what seems to be the end of the text.
+// `'It's nice'`: a letter touches the ' that seems to end the text.
 bool LexerState::apostrophe_in_text() {
   const auto is_letter_at = [this](std::size_t at) {
     return at < text_.size() && is_word_byte(text_[at]);
@@ -267,7 +269,7 @@ bool LexerState::apostrophe_in_text() {
   return true;
 }
 
-// `SET n TO n % 2`: as other languages write MOD. In brackets, or in front of a comparison, it can be nothing else.
+// `SET n TO n % 2`: other languages' MOD. In brackets, or before a comparison, it can mean nothing else.
 bool LexerState::modulo() {
   const std::string_view rest = rest_of_line(start_ + 1);
   const std::size_t first = first_of_statement();
@@ -295,7 +297,7 @@ bool LexerState::modulo() {
   return true;
 }
 
-// `WHEN joy > 40 % DO`: the line that asks would have no DO.
+// `WHEN joy > 40 % DO`: as a comment, it would take the DO from the question.
 bool LexerState::percent_of_question() {
   const std::size_t first = first_of_statement();
   if (!asks(tokens_[first].kind)) return false;
@@ -336,8 +338,8 @@ void LexerState::whole_division() {
 
 // ---- braces and comments
 
-// The brace that other languages have for DO, or that stands behind it. In front of it stands what opens a block, perhaps on
-// the line before.
+// A brace instead of DO, or after it, as in other languages. The line that opens the block is before the brace, possibly
+// on the line above.
 LexerState::Brace LexerState::brace_opens_a_block() {
   std::size_t end = tokens_.size();
   while (end > 0 && tokens_[end - 1].kind == Kinds::NEWLINE)
@@ -366,7 +368,7 @@ void LexerState::opening_brace() {
   braces_.push_back(brace_opens_a_block());
 }
 
-// In front of ELSE nothing ends; who has written DO may have written END as well.
+// A brace before ELSE ends nothing. A person who wrote DO before the brace may also have written END.
 void LexerState::closing_brace() {
   if (braces_.empty()) {
     if (brace_is_end()) return;
@@ -380,10 +382,9 @@ void LexerState::closing_brace() {
   if (ends) token(Kinds::END);
 }
 
-// One that stands alone in its line, in the place of an END.
+// A brace alone in its line, instead of an END.
 bool LexerState::brace_is_end() {
-  constexpr std::size_t most =
-      20;  // times that all tokens are looked at: the text may be one from outside
+  constexpr std::size_t most = 20;  // scans of all tokens: the text may come from outside
   const bool first = tokens_.empty() || tokens_.back().kind == Kinds::NEWLINE;
   if (!first || reports_ > most || word_follows({"ELSE", "ELIF"}) ||
       rest_of_line(cursor_).find_first_not_of(" \t") != std::string_view::npos)
@@ -399,7 +400,7 @@ bool LexerState::brace_is_end() {
   return true;
 }
 
-// One that stands farther left closes what is around it.
+// An END that is indented less closes the surrounding block instead.
 bool LexerState::end_follows() const {
   const auto margin = [this](std::size_t at) {
     const std::size_t line = text_.find_last_of("\r\n", at - 1) + 1;
@@ -432,7 +433,7 @@ void LexerState::foreign_comment() {
            only_words ? Applicability::certain : Applicability::likely);
 }
 
-// `/* … */`, over as many lines as it takes.
+// `/* … */`, over any number of lines.
 void LexerState::long_comment() {
   const std::size_t end = text_.find("*/", cursor_);
   cursor_ = end == std::string_view::npos ? text_.size() : end + 2;

@@ -21,7 +21,7 @@ struct CodePoints {
   char32_t first, last;
 };
 
-// Above ASCII: blocks of punctuation, arrows, signs, dingbats and emoji. All others are letters.
+// Code points above ASCII that are not letters: punctuation, arrows, signs, dingbats and emoji. All others are letters.
 constexpr CodePoints not_letters[] = {
     {0x80, 0xA9},     {0xAB, 0xB4},     {0xB6, 0xB9},     {0xBB, 0xBF},       {0xD7, 0xD7},
     {0xF7, 0xF7},     {0x2000, 0x2BFF}, {0x2E00, 0x2E7F}, {0x3000, 0x303F},   {0xE000, 0xF8FF},
@@ -37,7 +37,7 @@ bool is_high(char c) {
   return (static_cast<unsigned char>(c) & 0x80U) != 0;
 }
 
-// Bytes of a number and its unit, up to the first code point above ASCII that is no letter.
+// The bytes of a number and its unit, up to the first code point above ASCII that is not a letter.
 std::size_t number_length(std::string_view text) {
   std::size_t length = 0;
   while (length < text.size()) {
@@ -52,7 +52,7 @@ std::size_t number_length(std::string_view text) {
   return length;
 }
 
-// Signs that word processors write in the place of ASCII ones.
+// Signs that word processors write instead of ASCII ones.
 struct LookAlike {
   char32_t point;
   TokenKind kind;
@@ -73,7 +73,7 @@ bool is_curly(char32_t point) {
          std::end(curly_quotes);
 }
 
-// What may stand behind the / of a unit: a second, by any of its names, in any case.
+// True when the text after the / of a unit is a name of the second, in any case.
 bool is_per_second(std::string_view unit_end) {
   constexpr std::string_view names[] = {"s", "sec", "second"};
   return std::ranges::any_of(
@@ -87,7 +87,6 @@ bool is_word_byte(char c) {
   return letter || (c >= '0' && c <= '9') || c == '_';
 }
 
-// Bytes of the word that the text starts with.
 std::size_t word_length(std::string_view text) {
   std::size_t length = 0;
   while (length < text.size()) {
@@ -98,7 +97,7 @@ std::size_t word_length(std::string_view text) {
   return length;
 }
 
-// A file that is not RSL at all shall not bury its reader.
+// Limits the reports for a file that is not RSL at all.
 Diagnostic& LexerState::report(Code code, std::string message) {
   constexpr std::size_t most = 50;
   if (++reports_ <= most) return diagnostics_.report(code, std::move(message));
@@ -111,7 +110,7 @@ void LexerState::token(TokenKind kind) {
 }
 
 void LexerState::word() {
-  // The pattern has taken all ASCII letters; only where others begin or follow there may be more.
+  // The pattern takes all ASCII letters. The word can be longer only if it begins with, or is followed by, other letters.
   const bool ascii =
       !is_high(text_[start_]) && (cursor_ == text_.size() || !is_high(text_[cursor_]));
   const std::size_t length = ascii ? cursor_ - start_ : word_length(text_.substr(start_));
@@ -128,9 +127,9 @@ void LexerState::word() {
   if (keyword != nullptr && keyword->kind == Kinds::OF) of();
 }
 
-// ---- words that are known by what follows: until then they are names
+// ---- words that later tokens identify; until then they are names
 
-// Is the token so many places before the last one this name?
+// Is the token `back` places before the last one this name?
 bool LexerState::is_name(std::size_t back, std::string_view word) const {
   if (back >= tokens_.size()) return false;
   const Token& token = tokens_[tokens_.size() - 1 - back];
@@ -147,8 +146,8 @@ void LexerState::colon() {
   if (at == 0 || tokens_[at - 1].kind == Kinds::NEWLINE) tokens_[at].kind = Kinds::LIST;
 }
 
-// `COUNT OF`, and the nearest ITEM in the line whose OF this is. In `ITEM count OF names` the index
-// is a variable that is called count, unless one more OF shows that it was `ITEM COUNT OF …`.
+// Identifies `COUNT OF`, or the nearest ITEM in the line that this OF belongs to. In `ITEM count OF names` the index
+// is a variable named count, unless a second OF shows that it was `ITEM COUNT OF …`.
 void LexerState::of() {
   const auto at = [this](std::size_t back) -> Token& { return tokens_[tokens_.size() - 1 - back]; };
   constexpr std::size_t farthest = 64;
@@ -170,8 +169,8 @@ void LexerState::of() {
   }
 }
 
-// `ELSE IF` in one line goes on with the IF before; behind an ELSE that ends its line, an IF is one
-// of its own, with its own END.
+// `ELSE IF` in one line continues the IF before it. After an ELSE that ends its line, an IF is separate
+// and has its own END.
 void LexerState::join_else_if() {
   if (tokens_.size() < 2 || tokens_[tokens_.size() - 2].kind != Kinds::ELSE) return;
   const std::size_t begin = tokens_[tokens_.size() - 2].span.begin;
@@ -245,7 +244,7 @@ void LexerState::string() {
   token(Kinds::STRING);
 }
 
-// `WHEN touch LEVEL > 3 DO SAY "x END`: the END is that of the rule which begins in the same line.
+// `WHEN touch LEVEL > 3 DO SAY "x END`: the END belongs to the rule that begins in the same line.
 void LexerState::leave_end_to_its_block() {
   constexpr std::string_view end = " END";
   const std::string_view text = lexeme();
@@ -267,7 +266,7 @@ void LexerState::open_string() {
   token(Kinds::STRING);
 }
 
-// `40 % loud`: was a unit meant? Two blanks or more in front show that it is a comment.
+// `40 % loud`: was a unit meant? Two or more blanks before the % show that it is a comment.
 void LexerState::comment() {
   if (lexeme().front() != '%' || tokens_.empty()) return;
   const Token& last = tokens_.back();
@@ -306,7 +305,7 @@ bool LexerState::look_alike(char32_t point) {
   return true;
 }
 
-// Quotes of a word processor: read as a string up to the next one in the line.
+// Curly quotes from a word processor: a string ends at the next one in the line.
 bool LexerState::curly_string(char32_t quote) {
   if (!is_curly(quote)) return false;
   std::size_t end = cursor_;
@@ -352,7 +351,7 @@ bool LexerState::dotted() {
   return true;
 }
 
-// Strange bytes make one message a line: who writes one of them often writes more.
+// Strange bytes give one message per line: a line with one often has more.
 void LexerState::strange(std::size_t size) {
   cursor_ = start_ + size;
   const bool said = strange_end_ <= start_ &&

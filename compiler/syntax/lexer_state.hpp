@@ -1,4 +1,4 @@
-// The lexer between two tokens, and what it does with each kind of text. The patterns themselves
+// The state of the lexer between two tokens, and how it handles each kind of text. The patterns
 // are in grammar/rsl.re.
 #pragma once
 
@@ -12,16 +12,16 @@
 
 namespace robosync::compiler {
 
-// Of a word, in ASCII.
+// True for an ASCII byte of a word.
 [[nodiscard]] bool is_word_byte(char c);
-// Bytes of the word that the text starts with.
+// The bytes of the word at the start of the text.
 [[nodiscard]] std::size_t word_length(std::string_view text);
 
 class LexerState {
 public:
   LexerState(std::string_view text, FileId file, Diagnostics& diagnostics)
       : text_(text), file_(file), diagnostics_(diagnostics) {
-    constexpr std::size_t least = 3;  // bytes of a token in usual text, with the blanks behind it
+    constexpr std::size_t least = 3;  // bytes per token in usual text, with the blanks after it
     tokens_.reserve(text.size() / least);
   }
 
@@ -75,7 +75,7 @@ private:
   bool next_line_goes_on() const;
   bool foreign_end();
   bool foreign_loop();
-  // Of a brace that is open: what its end is the END of.
+  // For an open brace: what its closing brace stands for.
   enum class Brace : std::uint8_t { nothing, for_do, behind_do };
   Brace brace_opens_a_block();
   bool end_follows() const;
@@ -94,13 +94,13 @@ private:
   std::string_view text_;  // followed by a NUL that is not part of it
   FileId file_;
   Diagnostics& diagnostics_;
-  Diagnostic unseen_;  // takes what is reported when there was too much already
+  Diagnostic unseen_;  // takes the reports beyond the limit
   std::size_t reports_ = 0;
   std::vector<Token> tokens_;
   std::size_t start_ = 0;
   std::size_t cursor_ = 0;
-  bool has_brace_ = false;                                  // which is said once
-  std::vector<Brace> braces_;                               // those that are open
+  bool has_brace_ = false;                                  // reported once
+  std::vector<Brace> braces_;                               // the open ones
   std::size_t strange_end_ = static_cast<std::size_t>(-1);  // where the last strange bytes ended
 };
 

@@ -1,4 +1,4 @@
-// See heads.hpp. Rows are known by their first words; what stands below a line that may be a misspelt head is left alone.
+// See heads.hpp. Rows are recognised by their first words. Rows below a line that may be a misspelt head are left alone.
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -14,7 +14,7 @@ TokenKind kind_at(const Tokens& tokens, std::size_t at) {
   return at < tokens.size() ? tokens[at].kind : TokenKind(Kinds::NEWLINE);
 }
 
-// The first word of the block that the line at `at` can only be a row of.
+// If the line at `at` can only be a row of one kind of block: the first word of that block.
 std::optional<TokenKind> block_of_row(const Tokens& tokens, std::size_t at) {
   if (tokens[at].kind == Kinds::EXPECT) return Kinds::TEST;
   if (tokens[at].kind == Kinds::AT && kind_at(tokens, at + 1) == Kinds::QUANTITY)
@@ -31,7 +31,7 @@ std::optional<TokenKind> block_of_row(const Tokens& tokens, std::size_t at) {
   return std::nullopt;
 }
 
-// From `at` on, do lines that are rows lead to an END?
+// Are all lines from `at` up to the next END possible rows?
 bool leads_to_end(const Tokens& tokens, std::size_t at) {
   for (; at < tokens.size(); ++at) {
     if (!starts_line(tokens, at) || tokens[at].kind == Kinds::NEWLINE) continue;
@@ -43,7 +43,7 @@ bool leads_to_end(const Tokens& tokens, std::size_t at) {
   return false;
 }
 
-// A head for it, of words that the text lacks.
+// A head for it, of tokens without width.
 Tokens head_for(TokenKind block, const Token& row) {
   std::vector<TokenKind> kinds{block, Kinds::NAME, Kinds::OF, Kinds::NAME, Kinds::NEWLINE};
   if (block == Kinds::TEST) kinds = {block, Kinds::STRING, Kinds::NEWLINE};
@@ -57,7 +57,7 @@ Tokens head_for(TokenKind block, const Token& row) {
 
 void mend_lost_heads(Tokens& tokens, Diagnostics& diagnostics) {
   BlockWalk walk(tokens);
-  TokenKind line = Kinds::END;  // what the line before began with: its head may only be misspelt
+  TokenKind line = Kinds::END;  // first word of the line before, which may be a misspelt head
   for (std::size_t at = 0; at < tokens.size(); ++at) {
     const TokenKind kind = tokens[at].kind;
     if (starts_line(tokens, at) && kind != Kinds::NEWLINE) {

@@ -1,5 +1,5 @@
-// Words of RSL that stand where they say something else than is meant. To leave one of them out would often turn what the
-// program does into its opposite: each has a sentence of its own, and no mend that drops it. See habits.hpp.
+// Words of RSL that mean something else where they are. Leaving one of them out would often invert what the program
+// does, so each has its own message, and no fix that drops it. See habits.hpp.
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
@@ -19,7 +19,7 @@ constexpr Opposite kOpposites[] = {
     {Kinds::EQUAL, Kinds::NOT_EQUAL, "<>"},    {Kinds::NOT_EQUAL, Kinds::EQUAL, "="},
 };
 
-// A statement of one line, such as SET or WAIT.
+// A one-line statement, such as SET or WAIT.
 bool is_plain_statement(TokenKind kind) {
   return (roles_of(kind) & role::statement) != 0 && (roles_of(kind) & role::opens) == 0;
 }
@@ -73,7 +73,7 @@ private:
     return change(0, tokens_.size());
   }
 
-  // `60 deg/s`: a space in front of the unit of a speed
+  // `60 deg/s`: a space before the unit of a speed
   std::optional<Edit> rate_apart() {
     if (!is(stop_, Kinds::SLASH) || stop_ < begin_ + 2 || !is(stop_ - 1, Kinds::NAME) ||
         !is(stop_ - 2, Kinds::QUANTITY) || !is(stop_ + 1, Kinds::NAME))
@@ -158,7 +158,7 @@ private:
     return change(before_, 1);
   }
 
-  // A WHEN in a response: it stands farther right than the block in which it is.
+  // A WHEN in a response: it is indented deeper than the block that holds it.
   std::optional<Edit> rule_in_rule() {
     if (stop_ != begin_ ||
         !is_one_of(tokens_[stop_].kind, {Kinds::WHEN, Kinds::WHILE, Kinds::EVERY}))
@@ -197,7 +197,7 @@ private:
     return at;
   }
 
-  // In a response, with all of them that follow: one is as much too early as the next.
+  // Steps in a response. Takes all that follow too: each is misplaced in the same way.
   std::optional<Edit> step_in_response() {
     if (stop_ != begin_ || !is_step(stop_)) return std::nullopt;
     const auto block = open_block();
@@ -215,7 +215,7 @@ private:
     return change(stop_, last - stop_, {missing(Kinds::THEN, stop_)});
   }
 
-  // `DO SAY "b"` behind the END of a rule
+  // `DO SAY "b"` after the END of a rule
   std::optional<Edit> do_without_when() {
     if (!is(stop_, Kinds::DO) || stop_ != begin_ || !(stop_ == 0 || is(before_, Kinds::END)))
       return std::nullopt;
@@ -263,7 +263,7 @@ private:
                   {missing(Kinds::NEWLINE, stop_), tokens_[stop_], missing(Kinds::NEWLINE, stop_)});
   }
 
-  // Does a command, and nothing that asks, stand in this statement up to where the grammar stopped?
+  // Is this statement, up to where the grammar stopped, a command and not a question?
   bool is_command() const {
     const auto block = open_block();
     return statement_ < stop_ && begins_with(Kinds::NAME) && !asks_before(stop_) && block &&
@@ -281,7 +281,7 @@ private:
     return change(stop_, end_of_command(stop_) - stop_);
   }
 
-  // `MOVE head LEFT, SAY "x"`: the grammar has taken what stands behind the comma for parts of a text.
+  // `MOVE head LEFT, SAY "x"`: the grammar has read the words after the comma as parts of a text.
   std::optional<Edit> commands_with_comma() {
     if (!is_command() || has(statement_, stop_, Kinds::WITH)) return std::nullopt;
     for (std::size_t at = statement_; at < stop_ && !is(at, Kinds::STRING); ++at) {
@@ -292,7 +292,7 @@ private:
     return std::nullopt;
   }
 
-  // Has the line begun with a statement such as LOG or WAIT, which is whole?
+  // Does the line begin with a complete statement, such as LOG or WAIT?
   bool is_behind_statement() const {
     const auto block = open_block();
     return statement_ < stop_ && is_plain_statement(tokens_[statement_].kind) &&
@@ -318,7 +318,7 @@ private:
     return change(stop_, end_of_command(stop_) - stop_);
   }
 
-  // `LOG "level" touch LEVEL`: the name of a sensor is written small, a verb large.
+  // `LOG "level" touch LEVEL`: the name of a sensor is in lower case, a verb in capitals.
   bool part_of_text() const {
     const bool text = is(statement_, Kinds::LOG) || is(statement_, Kinds::ALERT);
     const std::string_view name = text_of_name(stop_);
@@ -353,7 +353,7 @@ private:
     return change(stop_, end_of_command(stop_) - stop_);
   }
 
-  // `BY 2` or `FOR 3s` on the line below what it belongs to
+  // `BY 2` or `FOR 3s` on the line below the one it belongs to
   std::optional<Edit> goes_on_above() {
     const std::size_t at = is(stop_, Kinds::NEWLINE) ? stop_ + 1 : stop_;
     if (at < 2 || at + 1 >= tokens_.size() || !is(at - 1, Kinds::NEWLINE) ||
@@ -438,7 +438,7 @@ private:
     return at;
   }
 
-  // `3km/h`: the lexer ends a unit in front of what is none
+  // `3km/h`: the lexer ends the unit before the /, because only `/s` belongs to a unit
   std::optional<Edit> foreign_rate() {
     if (!is(stop_, Kinds::SLASH) || stop_ == begin_ || !is(stop_ - 1, Kinds::QUANTITY) ||
         !is_any_name(stop_ + 1, {"h", "hr", "hour", "min", "minute"}))
@@ -465,7 +465,7 @@ private:
                   {missing(Kinds::USE, begin_), missing(Kinds::NAME, begin_)});
   }
 
-  // A line that commands, and is no question that has lost its WHEN.
+  // A line that is a command, not a question without its WHEN.
   bool begins_command(std::size_t at) const {
     constexpr unsigned kBeginsLine = role::item | role::part | role::after;
     const bool named = is(at, Kinds::NAME) && !is(at + 1, Kinds::EQUAL) &&
@@ -483,7 +483,7 @@ private:
            is_one_of(kind, {Kinds::IS, Kinds::BECOMES, Kinds::CHANGES, Kinds::DO});
   }
 
-  // Up to the line in which a rule begins or the block ends.
+  // The end of the commands: the line in which a rule begins or the block ends.
   std::size_t end_of_commands() const {
     std::size_t last = end_;
     while (last + 1 < tokens_.size()) {
@@ -497,7 +497,7 @@ private:
     return std::min(last, tokens_.size());
   }
 
-  // `touch LEVEL > 4 3 TIMES`, `wave_detect THEN touch LEVEL > 0`, each without its WITHIN; and THEN in the place of DO
+  // `touch LEVEL > 4 3 TIMES`, `wave_detect THEN touch LEVEL > 0`, each without its WITHIN; and THEN instead of DO
   std::optional<Edit> within() {
     if (!contains(expected_, Kinds::WITHIN) || is_near(text(stop_), "WITHIN")) return std::nullopt;
     std::size_t next = before_ + 1;
@@ -520,7 +520,7 @@ private:
           .helps("write it at the end of the condition: `WITHIN 5s`");
       return change(before_ + 1, 0, lacking);
     }
-    for (std::size_t at = *then; at < end_; ++at)  // what stands there asks, or says how long
+    for (std::size_t at = *then; at < end_; ++at)  // a condition or a duration follows THEN
       if (is_relation(tokens_[at].kind) ||
           is_one_of(tokens_[at].kind, {Kinds::IS, Kinds::WITHIN, Kinds::DO}))
         return std::nullopt;
@@ -529,7 +529,7 @@ private:
     return change(*then, 1, {{Kinds::DO, tokens_[*then].span}});
   }
 
-  // A THEN between what asks and `at`.
+  // The THEN between the word that asks and `at`.
   std::optional<std::size_t> then_before(std::size_t at) const {
     for (; at > 0 && !is_one_of(tokens_[at].kind, {Kinds::DO, Kinds::ELSE, Kinds::END}); --at)
       if (is(at, Kinds::THEN) && asks_before(at)) return at;

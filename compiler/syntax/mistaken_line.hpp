@@ -1,5 +1,5 @@
-// The line in which the grammar stopped, as those see it who know a mistake by its words (habits.cpp, foreign_habits.cpp):
-// what stands where, and how the grammar can go on.
+// The line in which the grammar stopped, for the code that recognises a mistake by its words (habits.cpp,
+// foreign_habits.cpp): which words are where, and how the grammar can continue.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ public:
         expected_(failure.expected),
         diagnostics_(diagnostics) {
     if (stop_ >= tokens_.size()) return;
-    // The end of a line in front of END is not for the grammar; what is missing is missing there.
+    // The grammar does not see the line end before an END, but that is where something is missing.
     if (is(stop_, Kinds::END) && before_ < stop_ && is(before_ + 1, Kinds::NEWLINE))
       stop_ = before_ + 1;
     for (begin_ = stop_; begin_ > 0 && !is(begin_ - 1, Kinds::NEWLINE);)
@@ -41,7 +41,7 @@ public:
   }
 
 protected:
-  // ---- what stands there
+  // ---- the words of the line
 
   bool is(std::size_t at, TokenKind kind) const {
     return at < tokens_.size() && tokens_[at].kind == kind;
@@ -51,13 +51,13 @@ protected:
     return at < tokens_.size() ? source_.text(tokens_[at].span) : std::string_view();
   }
 
-  // As it is written, from the first token to the one before the last.
+  // The source text from the token `from` to the one before `to`.
   std::string text(std::size_t from, std::size_t to) const {
     return from < to ? std::string(source_.text(span(from, to))) : std::string();
   }
 
-  // What stands behind the name where a line of the file declares it with that word, such as STATE. The tokens are those of
-  // this item only.
+  // The text after the name in the line that declares it with that keyword, such as STATE. Searches the whole file, because
+  // the tokens are those of this item only.
   std::optional<std::string_view> behind_declaration(std::string_view keyword,
                                                      std::string_view name) const {
     for (std::uint32_t line = 1; line <= source_.lines(); ++line) {
@@ -100,7 +100,7 @@ protected:
     return false;
   }
 
-  // Behind the last token of the statement.
+  // The index after the last token of the statement.
   std::size_t statement_end() const {
     std::size_t at = stop_;
     while (at < end_ && !is_one_of(tokens_[at].kind, {Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF,
@@ -109,7 +109,7 @@ protected:
     return at;
   }
 
-  // Does what stands in front of `at`, back to where its statement begins, ask something?
+  // Does the statement ask something before `at`?
   bool asks_before(std::size_t at) const {
     while (at > 0 && !is_one_of(tokens_[at - 1].kind, {Kinds::DO, Kinds::ELSE})) {
       --at;
@@ -123,7 +123,7 @@ protected:
     return is_one_of(kind, {Kinds::WHEN, Kinds::WHILE, Kinds::IF, Kinds::ELSE_IF, Kinds::UNTIL});
   }
 
-  // Outside of brackets.
+  // Only commas outside brackets count.
   bool has_comma(std::size_t from, std::size_t to) const {
     int open = 0;
     for (std::size_t at = from; at < to; ++at) {
@@ -140,7 +140,7 @@ protected:
            tokens_[open - 1].span.end == tokens_[open].span.begin;
   }
 
-  // As many brackets are opened as closed.
+  // True when every bracket in the range is closed in it.
   bool is_balanced(std::size_t from, std::size_t to) const {
     int open = 0;
     for (std::size_t at = from; at < to && open >= 0; ++at) {
@@ -150,7 +150,7 @@ protected:
     return open == 0;
   }
 
-  // Of the bracket that is opened at `open`; the end of the line when it is not closed.
+  // The bracket that closes the one at `open`; the end of the line when it is not closed.
   std::size_t closing(std::size_t open) const {
     std::size_t depth = 0;
     for (std::size_t at = open; at < end_; ++at) {
@@ -160,7 +160,7 @@ protected:
     return end_;
   }
 
-  // The first word of the innermost block that is open where the grammar stopped.
+  // The first word of the innermost open block where the grammar stopped.
   std::optional<std::size_t> open_block() const {
     BlockWalk walk(tokens_);
     for (std::size_t at = 0; at < stop_; ++at)
@@ -169,7 +169,7 @@ protected:
     return walk.open().back();
   }
 
-  // ---- how the grammar goes on
+  // ---- how the grammar can continue
 
   static Edit change(std::size_t at, std::size_t removed, Tokens inserted = {}) {
     Edit edit;
@@ -180,7 +180,7 @@ protected:
     return edit;
   }
 
-  // One that the text lacks: it has no width.
+  // A token that the text lacks has no width.
   Token missing(TokenKind kind, std::size_t at) const {
     Span place = at < tokens_.size() ? tokens_[at].span : tokens_.back().span;
     place.end = place.begin;
@@ -196,7 +196,7 @@ protected:
   const Tokens& tokens_;
   const SourceFile& source_;
   std::size_t stop_, before_;
-  const std::vector<TokenKind>& expected_;  // what the grammar could have gone on with
+  const std::vector<TokenKind>& expected_;  // the tokens that the grammar would accept
   std::size_t begin_ = 0, end_ = 0;         // of the line
   std::size_t statement_ = 0;               // its first token
   Diagnostics& diagnostics_;

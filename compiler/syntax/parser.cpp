@@ -1,5 +1,5 @@
-// See parser.hpp. The way of a text: lexer, items (layout.hpp), grammar; and where the grammar
-// stops, repair.hpp.
+// See parser.hpp. A text passes through the lexer, the split into items (layout.hpp) and the grammar;
+// where the grammar stops, repair.hpp takes over.
 #include "compiler/syntax/parser.hpp"
 
 #include <algorithm>
@@ -19,11 +19,11 @@ namespace robosync::compiler {
 
 namespace {
 
-// More source than any robot can hold, and few enough messages for one to read.
+// More source than fits on any robot, and as many messages as a person will read.
 constexpr std::size_t largest_source = 16U << 20U;
 constexpr std::size_t most_mistakes = 30;
 
-// A block with a right head and nothing in it: the search for a mend would find none.
+// A block with a correct head and nothing in it: the search for a repair would find none.
 struct EmptyBlock {
   Span head_end;  // the last word of its head
   std::string_view missing, help;
@@ -54,8 +54,8 @@ std::optional<EmptyBlock> empty_block(const Tokens& tokens) {
   return std::nullopt;
 }
 
-// A message about a place that has one already is a consequence of it: the mend that was made there was not what is meant.
-// And a mend must get the grammar on; where several in a row do not, the rest of the line is left out.
+// Detects repairs that lead nowhere. A second message about the same place is a consequence: the first repair there was
+// not what the user meant. When several repairs in a row do not get the grammar farther, the rest of the line is left out.
 class Standstill {
 public:
   // The grammar has stopped at this place in the text.
@@ -68,7 +68,7 @@ public:
   [[nodiscard]] bool too_long() const { return mends_ > most_mends; }
   // Leaving out lines does not help either.
   [[nodiscard]] bool hopeless() const { return mends_ > 4 * most_mends; }
-  // Shall this be said?
+  // Should this be reported?
   bool is_new(const Diagnostic& diagnostic) {
     if (diagnostic.labels.empty()) return true;
     const Span place = diagnostic.labels.front().span;
@@ -86,7 +86,7 @@ private:
   std::vector<std::uint32_t> said_;
 };
 
-// Leaves out what the line has from `at` on; false when that is nothing that stands in the text.
+// Leaves out the line from `at` on; false when nothing there is in the text.
 bool leave_out_line(Tokens& tokens, std::size_t at) {
   std::size_t end = at;
   bool written = false;
@@ -139,7 +139,7 @@ public:
   }
 
 private:
-  // Where the lexer has left out a character, what the line lacks is a consequence.
+  // In a line where the lexer left out a character, anything missing is a consequence.
   void find_strange_lines() {
     for (const Diagnostic& diagnostic : diagnostics_.all())
       if (diagnostic.code == Code::E0002 && diagnostic.fixes.empty() &&
@@ -180,7 +180,7 @@ private:
     }
     Standstill standstill;
     for (;;) {
-      // What the actions say counts only when the piece was read to its end.
+      // Reports from the actions count only if the piece was read to its end.
       Diagnostics said;
       Attempt attempt = reader_.read(tokens, &said);
       if (attempt.complete) {
@@ -231,7 +231,7 @@ private:
   Reader reader_;
   Tokens tokens_;
   std::optional<Examples> examples_;  // only a program with a mistake needs them
-  Tokens piece_;                      // what is read now; one for all, so that its memory is
+  Tokens piece_;                      // the piece being read; reused, to keep its memory
   ast::Tree program_;
   Budget budget_;
   std::vector<std::size_t> strange_lines_;

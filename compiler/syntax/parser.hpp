@@ -8,8 +8,8 @@
 
 namespace robosync::compiler {
 
-// Always gives a tree; what could not be read is left out of it and reported, with examples that name what the robot has,
-// where it is known.
+// Always returns a tree. Text that cannot be read is left out and reported, with examples that use the names of the robot
+// if it is known.
 [[nodiscard]] ast::Tree parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics,
                               const Vocabulary* robot = nullptr);
 

@@ -10,8 +10,8 @@ namespace robosync::compiler {
 
 namespace {
 
-// Words that could stand here as names only: where one of each sort can, all of that sort are names.
-// No word is looked for in the place of a name, and behind a name no bracket, as of a function.
+// Removes keywords that would be accepted here only as names: if the grammar accepts one typical keyword with a role,
+// it accepts all of that role as names. Also removes a bracket that could follow a name only as in a function call.
 void leave_out_names(std::vector<TokenKind>& expected) {
   if (contains(expected, Kinds::PLUS)) std::erase(expected, Kinds::OPEN);
   if (!contains(expected, Kinds::NAME)) return;

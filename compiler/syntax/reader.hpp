@@ -1,4 +1,4 @@
-// Runs of the grammar over some tokens.
+// Runs the grammar over some tokens.
 #pragma once
 
 #include <cstddef>
@@ -16,19 +16,19 @@ namespace robosync::compiler {
 struct Attempt {
   bool complete = false;
   std::vector<ast::Item> items;  // when complete
-  // Where the grammar stopped otherwise: a place in the tokens, or their number at the end; the
-  // token it had taken before that one; and what it could have gone on with.
+  // If not complete: where the grammar stopped (an index into the tokens, or their number at the end),
+  // the token it had taken before that one, and the tokens it would have accepted.
   std::size_t stopped_at = 0;
   std::size_t before = 0;
   std::vector<TokenKind> expected;
 };
 
-// One for a file: making the grammar's stack takes longer than reading an item with it.
+// Use one per file: constructing the grammar's stack takes longer than reading an item with it.
 class Reader {
 public:
   explicit Reader(const SourceFile& source) : source_(source), builder_(source) {}
 
-  // Adds the end of the last line to the tokens when it is missing. Says nothing when `diagnostics`
+  // Adds the end of the last line to the tokens if it is missing. Reports nothing if `diagnostics`
   // is null.
   [[nodiscard]] Attempt read(Tokens& tokens, Diagnostics* diagnostics);
 

@@ -11,7 +11,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// Tokens of the piece that the grammar got over, beyond the place where it stopped before.
+// The number of tokens that the grammar advanced beyond the place where it stopped before.
 std::size_t gain(const Edit& edit, const Attempt& before, const Attempt& after) {
   const std::size_t end_of_inserted = edit.at + edit.inserted.size();
   if (after.stopped_at < end_of_inserted) return 0;
@@ -20,8 +20,8 @@ std::size_t gain(const Edit& edit, const Attempt& before, const Attempt& after) 
   return now > jumped ? now - jumped : 0;
 }
 
-// How far one must get before a change counts as the right one although a mistake follows: some
-// words, or over the end of the line.
+// How far the grammar must get for a change to count as the right one despite a later mistake: some
+// words, or past the end of the line.
 constexpr std::size_t far_enough = 10;
 constexpr std::size_t over_a_line = 8;
 constexpr int incomplete = 8;
@@ -65,7 +65,7 @@ const Edit* best_edit(const std::vector<Edit>& edits, const Tokens& tokens, cons
   return best;
 }
 
-// Nothing helped: leave out the line's rest, or what there is.
+// Nothing helped: leaves out the rest of the line, but at least one token.
 Edit last_resort(const Tokens& tokens, const Attempt& failure) {
   Edit edit;
   edit.what = Edit::What::skip;
@@ -87,7 +87,7 @@ void mend(Tokens& tokens, const Attempt& failure, Reader& reader, const Examples
     tokens = edited(tokens, *habit);
     return;
   }
-  constexpr std::size_t readings = 3;  // that possible_edits() makes at most
+  constexpr std::size_t readings = 3;  // the most that possible_edits() makes
   std::vector<Edit> edits;
   if (budget.spend(readings * tokens.size())) edits = possible_edits(tokens, failure, reader);
   const Edit* found = best_edit(edits, tokens, failure, reader, budget);

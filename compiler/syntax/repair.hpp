@@ -1,7 +1,7 @@
-// Goes on after a mistake: finds the smallest change to the tokens with which the grammar can go
-// on, reports it, and makes it (after Burke and Fisher, "A practical method for LR and LL syntactic
-// error diagnosis and recovery", 1987). The user reads what to change; the next mistake is judged
-// as if it had been changed. That is why one mistake gives one message.
+// Continues after a mistake: finds the smallest change to the tokens that lets the grammar continue,
+// reports it, and makes it (after Burke and Fisher, "A practical method for LR and LL syntactic
+// error diagnosis and recovery", 1987). The user reads what to change; the rest is parsed
+// as if it had been changed, so one mistake gives one message.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@
 
 namespace robosync::compiler {
 
-// Tokens that may still be looked at in the search for mends, for a whole file: text from outside
-// shall not keep the compiler busy.
+// The number of tokens that the search for repairs may still look at in a whole file: text from outside
+// must not keep the compiler busy.
 struct Budget {
   std::size_t work = 400'000;
-  // Takes `tokens` of it; takes all and gives false when that is not enough.
+  // Takes `tokens` from the budget; if it has fewer, takes all and returns false.
   bool spend(std::size_t tokens) {
     const bool enough = tokens <= work;
     work = enough ? work - tokens : 0;
@@ -25,9 +25,8 @@ struct Budget {
   }
 };
 
-// Mends and reports the mistake that stopped the grammar. Mostly the grammar gets farther then; that it does, again and
-// again, is for the caller to see. When the budget is used up
-// it takes the first change that comes to hand.
+// Repairs and reports the mistake that stopped the grammar. The grammar usually gets farther then; the caller must check
+// that it keeps advancing. When the budget is used up, leaves out the rest of the line.
 void mend(Tokens& tokens, const Attempt& failure, Reader& reader, const Examples& examples,
           Diagnostics& diagnostics, Budget& budget);
 

@@ -1,4 +1,4 @@
-// A token: its kind and its place. Its text is read from the source when it is needed.
+// A token: its kind and its place. Its text is read from the source when needed.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Hands tokens to the grammar one by one, and knows how many it has taken.
+// Hands tokens to the grammar one by one and counts them.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@ class TokenReader {
 public:
   TokenReader() = default;
 
-  // `order` lists the tokens that the grammar shall see, as places in `tokens`.
+  // `order` lists the tokens that the grammar sees, as indices into `tokens`.
   TokenReader(std::span<const Token> tokens, std::span<const std::uint32_t> order)
       : tokens_(tokens), order_(order) {}
 
-  // At the end: the end of the file, for ever.
+  // After the last token, returns the end of the file on every call.
   grammar::Grammar::symbol_type next() {
     if (taken_ == order_.size()) {
       past_end_ = true;

@@ -1,5 +1,5 @@
-// What the robot of a program has, for lines that show how something is written. The parser does not know robot.json:
-// who reads both gives it this (config/robot_vocabulary.hpp).
+// The parts of a program's robot, for example lines in messages. The parser does not know robot.json: the code that
+// reads both passes it this (config/robot_vocabulary.hpp).
 #pragma once
 
 #include <string>
@@ -24,11 +24,11 @@ public:
   Vocabulary& operator=(const Vocabulary&) = delete;
   virtual ~Vocabulary() = default;
 
-  // Of the sensor, the actuator or the group of this name; without one, of the first that has such a part. Empty when
-  // there is none.
+  // The part of the sensor, actuator or group of this name; without a name, of the first that has such a part. Empty
+  // when there is none.
   [[nodiscard]] virtual std::string part(Part part, std::string_view name) const = 0;
-  // `MOVE left_arm UP SLOWLY`: the same; without a verb, with the first one. `places`: with a place behind TO where the
-  // verb takes one, `MOVE left_arm TO 60deg SLOWLY`.
+  // A command such as `MOVE left_arm UP SLOWLY`, for `name` as above; without a verb, with the first one. With `places`,
+  // it has a position after TO if the verb takes one: `MOVE left_arm TO 60deg SLOWLY`.
   [[nodiscard]] virtual std::string command(std::string_view verb, std::string_view name,
                                             bool places) const = 0;
 };

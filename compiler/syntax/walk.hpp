@@ -1,5 +1,5 @@
-// The one walk over the blocks of a tree. Which blocks a statement holds stands in its kBlocks
-// (ast.hpp); a kind of statement without does not compile.
+// The one walk over the blocks of a tree. kBlocks (ast.hpp) lists the blocks that a statement holds;
+// a kind of statement without it does not compile.
 #pragma once
 
 #include <concepts>
@@ -11,7 +11,7 @@
 
 namespace robosync::compiler::ast {
 
-// The blocks of a statement, or of a part of one; not those inside of these.
+// Visits the blocks of a statement, or of a part of one; not the blocks nested in them.
 template <typename Part, typename Visit>
 void for_each_block_of(const Part& part, const Visit& visit) {
   if constexpr (std::same_as<Part, Block>) {
@@ -25,7 +25,7 @@ void for_each_block_of(const Part& part, const Visit& visit) {
   }
 }
 
-// Every statement of a block, inner ones included, outer ones first.
+// Visits every statement of a block, including nested ones, outer ones first.
 template <typename Visit>
 void for_each_statement(const Block& block, const Visit& visit) {
   const auto inner = [&](const Block& one) { for_each_statement(one, visit); };
@@ -35,7 +35,7 @@ void for_each_statement(const Block& block, const Visit& visit) {
   }
 }
 
-// The blocks of a rule: one, or two with ELSE.
+// Visits the blocks of a rule: one, or two with ELSE.
 template <typename Visit>
 void for_each_block(const Rule& rule, const Visit& visit) {
   std::visit(

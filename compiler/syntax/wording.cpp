@@ -51,9 +51,9 @@ public:
   }
 
 private:
-  // ---- pieces of sentences
+  // ---- parts of sentences
 
-  // Long texts are shortened: they are in the snippet anyway.
+  // Shortens long texts: the snippet shows them anyway.
   std::string quote(std::size_t at) const {
     constexpr std::size_t longest = 40;
     std::string_view text = source_.text(tokens_[at].span);
@@ -80,7 +80,7 @@ private:
     return last >= at || tokens_[last].kind == Kinds::NEWLINE;
   }
 
-  // Also where the grammar would go on with the line before; not where that one lacks its rest.
+  // True also where the grammar would continue the line before; false if that line is incomplete.
   bool first_in_text_line(std::size_t at) const {
     const bool first = at < tokens_.size() && starts_line(tokens_, at);
     return first && (roles_of(tokens_[before(at)].kind) & role::before) == 0;
@@ -133,12 +133,12 @@ private:
     return kind == Kinds::PRIORITY || kind == Kinds::COOLDOWN || kind == Kinds::MARGIN ||
            kind == Kinds::WAITING || kind == Kinds::RESTARTING;
   }
-  // The head of the rule begins here, or is over.
+  // The head of the rule begins or ends here.
   static bool ends_search(TokenKind kind) {
     return kind == Kinds::WHEN || kind == Kinds::WHILE || kind == Kinds::DO;
   }
 
-  // ---- one for each way to mend
+  // ---- one for each kind of edit
 
   void misspelt() {
     const std::string better(edit_.keyword->spelling);
@@ -148,7 +148,7 @@ private:
              is_only_slip() ? Applicability::certain : Applicability::likely);
   }
 
-  // One slip of the hand gives this word of RSL, and no other.
+  // True when this is the only word of RSL within one typing slip.
   bool is_only_slip() const {
     const std::string_view word = source_.text(tokens_[edit_.at].span);
     const auto one_slip = [word](const Keyword& keyword) {
@@ -157,7 +157,7 @@ private:
     return one_slip(*edit_.keyword) && std::ranges::count_if(keywords(), one_slip) == 1;
   }
 
-  // The place of a missing token is behind the one before it, not at the next line's start.
+  // The place of a missing token: after the token before it, not at the start of the next line.
   Span gap() const {
     Span span = edit_.inserted.front().span;
     if (!begins_line(edit_.at)) span.begin = span.end = tokens_[before(edit_.at)].span.end;
@@ -176,14 +176,14 @@ private:
         Code::E0008, what + " is missing" + (first ? " before " + found(edit_.at) : where));
     message.label(gap(), first ? "" : "here");
     const bool word = kind >= Kinds::USE;
-    // Another word may be missing, or more than this one.
+    // Only likely: another word may be missing, or more than this one.
     if (word && !first) message.fix(gap(), " " + plain(kind), Applicability::likely);
     if (word && first) message.fix(gap(), plain(kind) + " ", Applicability::likely);
     if (!word) show_line(message, edit_.at, *edit_.expected);
     if (where.empty() && outside_blocks() && word) message.helps(std::string(kOutside));
   }
 
-  // How a line of this kind is written, or how one begins where these could stand.
+  // Shows how a line of this kind is written, or how a line can begin here.
   void show_line(Diagnostic& message, std::size_t at,
                  const std::vector<TokenKind>& expected) const {
     const bool statement = expects(expected, Kinds::SET) && expects(expected, Kinds::WAIT);
@@ -201,7 +201,7 @@ private:
     }
   }
 
-  // `MOVE base FORWARD (touch LEVEL * 1cm)`: TIMES behind it would be another command.
+  // `MOVE base FORWARD (touch LEVEL * 1cm)`: TIMES after it would make it another command.
   bool bare_brackets() {
     const std::size_t last = before(edit_.at);
     if (last >= tokens_.size() || tokens_[last].kind != Kinds::CLOSE) return false;
@@ -271,7 +271,7 @@ private:
     if (unit_apart() || texts_added(edit_.at)) return;
     Diagnostic& message = diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here");
     if (belongs_to_number(edit_.at) || (says_what_is_done(token.kind) && !stands_twice(edit_.at))) {
-      message.label(token.span);  // without it, the number or the program would say another thing
+      message.label(token.span);  // without it, the number or the program would mean something else
     } else {
       message.label(token.span, "leave this out")
           .fix(token.span, "",
@@ -280,14 +280,14 @@ private:
     if (message.fixes.empty() || !stands_twice(edit_.at)) show_line(message, edit_.at, {});
   }
 
-  // A word without which the line, or the block, would do something else: a mistake beside it is more likely.
+  // Without such a word the line or the block would do something else: a mistake next to it is more likely.
   static bool says_what_is_done(TokenKind kind) {
     return is_one_of(kind, {Kinds::NOT, Kinds::ELSE, Kinds::RESUME, Kinds::OTHERWISE}) ||
            (roles_of(kind) & (role::item | role::statement)) != 0;
   }
 
-  // What stands there twice is not meant twice; whatever else is too much may want something beside it. Of two commas
-  // one may want what is missing between, and what takes out a NOT is never certain.
+  // A token written twice in a row is meant once. Any other extra token may lack something next to it. Between two commas
+  // something may be missing, and removing a NOT is never certain.
   bool stands_twice(std::size_t at) const {
     const auto same = [&](std::size_t other) {
       return other < tokens_.size() && tokens_[other].kind == tokens_[at].kind &&
@@ -358,7 +358,7 @@ private:
     }
   }
 
-  // An IF whose END stands in front of an ELSE that was meant for it, so that a later END is one too many.
+  // An IF whose END is before an ELSE that was meant for it, so that a later END is one too many.
   std::optional<IdleEnd> ended_before_else() const {
     BlockWalk walk(tokens_);
     for (std::size_t at = 0; at < edit_.at; ++at) {
@@ -423,7 +423,7 @@ private:
     show_line(message, edit_.at, failure_.expected);
   }
 
-  // A THEN in place of DO, or in front of one. It may begin a second condition.
+  // A THEN in place of DO, or in front of one. THEN may also begin a second condition.
   bool then_for_do(TokenKind wanted) {
     const std::size_t at = edit_.at;
     if (wanted != Kinds::DO || at == 0 || tokens_[at].kind != Kinds::THEN || !asks_before(at))

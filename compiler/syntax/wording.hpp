@@ -1,4 +1,4 @@
-// Says in the user's words what was wrong where the grammar stopped.
+// Explains in the user's words what was wrong where the grammar stopped.
 #pragma once
 
 #include <string>
@@ -16,14 +16,14 @@ struct Mistake {
   const Tokens& tokens;
   const SourceFile& source;
   const Attempt& failure;
-  const Edit& edit;  // what mends it
+  const Edit& edit;  // what repairs it
   const Examples& examples;
 };
 
-// Reports the mistake, with its mend.
+// Reports the mistake with its fix.
 void explain(const Mistake& mistake, Diagnostics& diagnostics);
 
-// "a value", "a comparison such as `<`", "`DO`": what a missing token is to the user, where these could have stood.
+// "a value", "a comparison such as `<`", "`DO`": the user's term for a missing token, where `expected` was accepted.
 [[nodiscard]] std::string what_is_missing(TokenKind kind, const std::vector<TokenKind>& expected);
 
 }  // namespace robosync::compiler
