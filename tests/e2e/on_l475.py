@@ -49,7 +49,7 @@ END
 LOOSEST, CALLS = 1.3, 20
 READS, STOPS_BEHIND = 1 << 10, 1 << 25  # of what the master is told
 # The motion sensor on that bus: its registers out of a loss of power, what it is told, and where it measures turning about Z.
-LAMP, LIT_US, PWM_WRITE = 13, 14_000, "robosync::boards::l475::Board::pwm_write("
+LAMP, LIT_US, PWM_WRITE = 13, 14_000, "robosync::boards::stm32l4::Board::pwm_write("
 MOTION = {"board": "b-l475e-iot01a", "actuators": [{"name": "lamp", "type": "PWM", "pin": LAMP, "device": "pwm"}],
           "sensors": [{"name": "motion", "device": "motion"}]}
 TURNED = "WHEN motion TURN_Z > 90deg/s MARGIN 10deg/s\nDO RUN lamp TO 70%\nEND\n"
@@ -333,7 +333,7 @@ class Bus(DebuggedTest):
 
     def read_of_state(self):
         """Where the interrupt's handler reads the master's state, and into which register."""
-        place = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::boards::l475::I2cMaster::on_interrupt("))
+        place = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::boards::stm32l4::I2cMaster::on_interrupt("))
         said = subprocess.run(["arm-none-eabi-objdump", "-d", f"--start-address={place & ~1:#x}", f"--stop-address={(place & ~1) + 64:#x}",
                                FIRMWARE], check=True, text=True, stdout=subprocess.PIPE).stdout
         found = re.search(r"^\s*([0-9a-f]+):.*\sldr(?:\.w)?\s+r(\d+), \[r\d+, #24\]", said, re.M)

@@ -38,7 +38,7 @@ END
 OTHERS = "WHEN near X > 10 DO LOG \"no sound\" END\n"
 END = "its end"
 TELL = "robosync::guard::OutputGuard::tell("
-SENT = {"mps2-an386": "Uart1Transmit_Handler", "b-l475e-iot01a": "Uart4_Handler"}[NAME]
+SENT = {"mps2-an386": "Uart1Transmit_Handler", "b-l475e-iot01a": "Player_Handler"}[NAME]
 COSTS = (ROOT / f"runtime-m4/boards/{NAME}/costs.def").read_text()
 
 

@@ -6,14 +6,14 @@
 #include <catch2/catch.hpp>
 
 #include "compiler/config/boards.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
+#include "runtime-m4/boards/stm32l4/pins.hpp"
+#include "runtime-m4/boards/stm32l4/registers.hpp"
 #include "tests/runtime-m4/boards/stm32_timers.hpp"
 
 using namespace robosync;
 using tests::Stm32Timers;
 using Level = Stm32Timers::Level;
-namespace pins = boards::l475::pins;
+namespace pins = boards::stm32l4::pins;
 
 namespace {
 
@@ -39,7 +39,7 @@ std::vector<std::uint16_t> outputs() {
 // The chip, started as the board starts it, and never with a pin high on the way.
 struct Chip : Stm32Timers {
   Chip() {
-    boards::l475::rcc::kAhb2.set(boards::l475::rcc::kPortsAToD);
+    boards::stm32l4::rcc::kAhb2.set(boards::stm32l4::rcc::kPortsAToD);
     pins::start();
     starting = false;
   }
