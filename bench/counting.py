@@ -50,7 +50,7 @@ def functions(*wanted):
 def of_the_board(name):
     """What the code of the firmware's own board begins with, whichever board that is."""
     for known in symbols(FIRMWARE):
-        if found := re.match(r"robosync::boards::\w+::", known):
+        if found := re.match(r"robosync::boards::[a-z]\w*::", known):
             return found[0] + name
     raise BenchError(f"no code of a board in {FIRMWARE}")
 
