@@ -49,12 +49,12 @@ what it has SET is staged for the next step. `vm/ram_per_thread` is all that a b
 the paper's image, most of which is wiring and names; `vm/verify_64k` is of 1,000 rules in 64 behaviours at the format's
 limit of 64 KB (`image/largest_bytes`), nearly all of it rules and code, of which a word costs more.
 
-`b-l475e-iot01a/…` and `microbit-v2/…` are of the shipped firmware of these boards, and have the bars of the reference board's; flash and RAM have none there. QEMU
+`b-l475e-iot01a/…`, `microbit-v2/…` and `nucleo-l476rg/…` are of the shipped firmware of these boards, and have the bars of the reference board's; flash and RAM have none there. QEMU
 has no I2C bus of theirs: the touch sensor is played, through QEMU's debugger port, in the place of its driver's function, before the
 reading is in its mailbox; all that is counted is the firmware. Readings, and the bytes of `rsc monitor`'s first messages, come when
 the firmware has come to a certain place, so each of these figures is the same in each run, to the instruction. `power_up_to_first_step`: from reset, in the
 emulator's time, 16 ns an instruction, until the first step begins of the paper's program, which the firmware itself has kept in its flash. Of
-`b-l475e-iot01a` QEMU only reads the flash: while the program was kept, before, a debugger played what erases and writes it.
+`b-l475e-iot01a` and `nucleo-l476rg` QEMU only reads the flash: while the program was kept, before, a debugger played what erases and writes it.
 
 `compile/…` is CPU time of `rsc check` on that machine, start included (`bench/compile_figures.py`). `lines_per_second`: a
 program of 100,000 lines that compiles: 2,500 lines of rules of every kind, about as many as an image holds, and TEST

@@ -82,14 +82,17 @@ build_tool() {
   configuring=()
 }
 
-# preset_of BOARD: `preset` is then the preset that builds its firmware.
-preset=
+# preset_of BOARD: `preset` is then the preset that builds its firmware, `firmware` the target, and `made` where it stands.
+preset='' firmware='' made=''
 preset_of() {
-  local reference
+  local reference of
   reference=$(sed -n '/"name": "m4"/,/"ROBOSYNC_BOARD"/s/.*"ROBOSYNC_BOARD": "\([^"]*\)".*/\1/p' CMakePresets.json)
-  preset=$1
+  preset=$1 firmware=robosync_firmware
   [ "$1" != "$reference" ] || preset=m4
+  made=build/$preset
   [ -f "stdlib/boards/$1.json" ] || die "no board '$1'; there are: $(cd stdlib/boards && echo *.json | sed 's/\.json//g')" 2
+  of=$(sed -nE 's/.*"ROBOSYNC_BOARD": "([^"]*)", "ROBOSYNC_TWINS": "([^"]*;)?'"$1"'[;"].*/\1/p' CMakePresets.json)
+  [ -z "$of" ] || preset=$of firmware=robosync_firmware_$1 made=build/$of/$1
 }
 
 # unpack_emulator: what scripts/emulator says; `emulator` is then the program, and build/qemu-microbit-v2 the other one, unless

@@ -10,14 +10,10 @@
 namespace robosync::boards {
 
 inline constexpr policy::PinLimit kOutputs[] = {ROBOSYNC_OUTPUTS};
-// On the host, what any board has.
-inline constexpr bool kHasLights = ROBOSYNC_LIGHTS != 0;
-inline constexpr bool kHasSpeaker = ROBOSYNC_SPEAKER != 0;
 inline constexpr policy::PinRange kInputs[] = {ROBOSYNC_INPUTS};
 inline constexpr std::array<policy::PinRange, ROBOSYNC_ANALOG_ROWS> kAnalog = {{ROBOSYNC_ANALOG}};
 inline constexpr std::array<policy::PinRange, ROBOSYNC_ENABLE_ROWS> kEnables = {{ROBOSYNC_ENABLES}};
 inline constexpr std::array<policy::PinRange, ROBOSYNC_PANEL_ROWS> kPanels = {{ROBOSYNC_PANELS}};
-inline constexpr bool kHasPanel = !kPanels.empty();
 inline constexpr policy::BoardPins kPins = {.outputs = kOutputs,
                                             .inputs = kInputs,
                                             .analog = kAnalog,

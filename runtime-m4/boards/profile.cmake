@@ -66,10 +66,20 @@ set(board_speaker 1)
 if(any AND CMAKE_CROSSCOMPILING)
   set(board_speaker 0)
 endif()
+set(panels ${panels_rows})
+# What portable code asks of any board (boards/features.hpp); and what boards, and who joins all, ask of this one.
+set(runtime_definitions ROBOSYNC_LIGHTS=${board_lights} ROBOSYNC_SPEAKER=${board_speaker})
+foreach(feature I2C_BUSES SERIAL_LINES PANELS)
+  set(has 0)
+  string(TOLOWER ${feature} what)
+  if(${what} GREATER 0)
+    set(has 1)
+  endif()
+  list(APPEND runtime_definitions ROBOSYNC_HAS_${feature}=${has})
+endforeach()
 set(board_definitions
   ROBOSYNC_ARENA_BEGIN=${arena_begin} ROBOSYNC_ARENA_BYTES=${arena_bytes} ROBOSYNC_STEP_BUDGET=${step_budget}
   ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_STORE_BYTES=${store_bytes} ROBOSYNC_OUTPUTS=${board_outputs}
   ROBOSYNC_INPUTS=${board_inputs} ROBOSYNC_ANALOG=${board_analog} ROBOSYNC_ANALOG_ROWS=${analog_rows}
   ROBOSYNC_ENABLES=${board_enables} ROBOSYNC_ENABLE_ROWS=${enables_rows}
-  ROBOSYNC_PANELS=${board_panels} ROBOSYNC_PANEL_ROWS=${panels_rows} ROBOSYNC_LIGHTS=${board_lights}
-  ROBOSYNC_SPEAKER=${board_speaker} ROBOSYNC_SERIAL_LINES=${serial_lines})
+  ROBOSYNC_PANELS=${board_panels} ROBOSYNC_PANEL_ROWS=${panels_rows} ROBOSYNC_SERIAL_LINES=${serial_lines})

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "runtime-m4/boards/board.hpp"
-#include "runtime-m4/boards/pins.hpp"
+#include "runtime-m4/boards/features.hpp"
 #include "runtime-m4/drivers/motion.hpp"
 #include "runtime-m4/guard/output_guard.hpp"
 #include "runtime-m4/kernel/time.hpp"
@@ -96,8 +96,8 @@ struct Driver {
 // Code for lights and speakers is left out if the board has none; code for displays, players and panels if they cannot be connected.
 constexpr bool is_present(vm::DriverId id) {
   if (vm::drives_lights(id)) return boards::kHasLights;
-  if (vm::drives_screen(id)) return boards::kPins.i2c_buses != 0;
-  if (vm::drives_player(id)) return boards::kPins.serial_lines != 0;
+  if (vm::drives_screen(id)) return boards::kHasI2c;
+  if (vm::drives_player(id)) return boards::kHasSerialLine;
   if (vm::drives_panel(id)) return boards::kHasPanel;
   return boards::kHasSpeaker || !vm::drives_speaker(id);
 }

@@ -45,7 +45,7 @@
 #include <span>
 
 #include "runtime-m4/boards/board.hpp"
-#include "runtime-m4/boards/pins.hpp"
+#include "runtime-m4/boards/features.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "vm/drivers.hpp"
 #include "vm/image.hpp"

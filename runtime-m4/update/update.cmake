@@ -9,7 +9,7 @@ endif()
 option(ROBOSYNC_AUTHENTICATION "The board can be paired with an owner (docs/security.md)" ${keeps_keys})
 if(ROBOSYNC_AUTHENTICATION)
   include(${CMAKE_CURRENT_LIST_DIR}/signatures.cmake)
-  list(APPEND board_definitions ROBOSYNC_AUTHENTICATION)
+  list(APPEND runtime_definitions ROBOSYNC_AUTHENTICATION)
   target_sources(robosync_runtime PRIVATE
     ${CMAKE_CURRENT_LIST_DIR}/key_store.cpp ${CMAKE_CURRENT_LIST_DIR}/order_gate.cpp)
 endif()

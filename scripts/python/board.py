@@ -21,24 +21,26 @@ ROOT = Path(__file__).resolve().parents[2]
 PRESETS = json.loads((ROOT / "CMakePresets.json").read_text("utf-8"))["configurePresets"]
 REFERENCE = next(preset for preset in PRESETS if preset["name"] == "m4")["cacheVariables"]["ROBOSYNC_BOARD"]
 NAME = os.environ.get("ROBOSYNC_BOARD", REFERENCE)
-BUILT = ROOT / "build" / ("m4" if NAME == REFERENCE else NAME)
+# A twin stands in the folder of the board whose runtime it shares.
+OF = {twin: told["ROBOSYNC_BOARD"] for told in (preset.get("cacheVariables", {}) for preset in PRESETS)
+      for twin in filter(None, told.get("ROBOSYNC_TWINS", "").split(";"))}
+BUILT = ROOT / "build" / (f"{OF[NAME]}/{NAME}" if NAME in OF else "m4" if NAME == REFERENCE else NAME)
 FIRMWARE = BUILT / "robosync.elf"
-MACHINE = BUILT / "machine"
 # What is on its buses in QEMU, and the first QEMU that has the board.
 DEVICES = {REFERENCE: ["-device", "max34451,id=touch,address=0x70"]}
 # Its store, as many bytes as its profile says, which stand in a file: an EEPROM, or a piece of the flash, from that address on.
 # QEMU has no file for the flash: it is read from there at the start, and saved at the end.
 EEPROMS = {REFERENCE: "at24c-eeprom,address=0x50,rom-size={size},drive=store"}
-FLASHES = {"microbit-v2": 0x8_0000 - 221_184, "b-l475e-iot01a": 0x0808_0000}
+FLASHES = {"microbit-v2": 0x8_0000 - 221_184, "b-l475e-iot01a": 0x0808_0000, "nucleo-l476rg": 0x0808_0000}
 BLANK = b"\xff"
 HAVE_WATCHDOG = {REFERENCE}  # in QEMU
-SINCE = {"b-l475e-iot01a": (9, 2), "microbit-v2": (9, 2)}
+SINCE = {"b-l475e-iot01a": (9, 2), "nucleo-l476rg": (9, 2), "microbit-v2": (9, 2)}
 UNPACKED = ROOT / "build/qemu/usr"  # by scripts/emulator
 # For whom scripts/emulator makes a QEMU of its own, and what else the machine is told: bytes of its memory, or how much may be
 # loaded into it.
 MADE = {"microbit-v2": ROOT / "build/qemu-microbit-v2"}
 MEMORY = {"microbit-v2": ["-global", "nrf51-soc.sram-size=131072", "-global", "nrf51-soc.flash-size=524288"],
-          "b-l475e-iot01a": ["-m", "1M"]}
+          "b-l475e-iot01a": ["-m", "1M"], "nucleo-l476rg": ["-m", "1M"]}
 LOSES_INTERRUPT = {"microbit-v2"}  # of its UART, when a byte has to wait
 TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
 BOOT_SECONDS = 20  # on a busy machine
@@ -55,11 +57,22 @@ class BoardError(RuntimeError):
     """QEMU is missing, did not start, or ended."""
 
 
+def told_by_build(what):
+    """Of what the board's board.cmake says for who emulates it."""
+    file = BUILT / what
+    if not file.is_file():
+        raise BoardError(f"no {file}: run scripts/firmware {NAME} first")
+    return file.read_text("utf-8").strip()
+
+
 def machine():
-    """What QEMU calls the board."""
-    if not MACHINE.is_file():
-        raise BoardError(f"no {MACHINE}: build the preset {BUILT.name} first")
-    return MACHINE.read_text("utf-8").strip()
+    """What QEMU calls the board, or one in whose place it may be."""
+    return told_by_build("machine")
+
+
+def lines_before(device):
+    """How QEMU is told that the serial line which comes next is the link's."""
+    return ["-serial", device] * int(told_by_build("line"))
 
 
 @functools.cache
@@ -161,16 +174,18 @@ def socket_of(port):
 class Board:
     """One running board. `port` is what rsc takes as --port."""
 
-    def __init__(self, elf=FIRMWARE, pty=False, serial_path=None, icount=REAL_TIME, extra=(), store=None, line=None):
+    def __init__(self, elf=FIRMWARE, pty=False, serial_path=None, icount=REAL_TIME, extra=(), store=None, line=None, before="null"):
         """`store`: a file with what the board keeps without power, made when it is not there; else it keeps nothing. `line`: of
-        QEMU's character devices, in the place of one that rsc can use; there is no `port` then."""
+        QEMU's character devices, in the place of one that rsc can use; there is no `port` then. `before`: where what the
+        machine's serial lines before the link's say goes."""
         if not Path(elf).is_file():
-            raise BoardError(f"no firmware at {elf}: build the preset {BUILT.name} first")
+            raise BoardError(f"no firmware at {elf}: run scripts/firmware {NAME} first")
         self._folder = tempfile.TemporaryDirectory(prefix="robosync-")
         self.qmp_path = Path(self._folder.name) / "qmp"
         self._serial_path = Path(serial_path or Path(self._folder.name) / "serial").resolve()
         self._pty = pty
         self._line = line
+        self._before = before
         # On a Unix socket a byte has to wait for the reader after some hundred others, on TCP after megabytes. Waiting
         # makes a board whose time runs ahead lose events of its trace, and QEMU's micro:bit the interrupt of its UART.
         self._tcp = (icount == FAST or NAME in LOSES_INTERRUPT) and not pty and not serial_path and not line
@@ -191,7 +206,7 @@ class Board:
             line = "socket,host=127.0.0.1,port=0,server=on,wait=off,nodelay=on"
         line = self._line or line
         command = [*qemu(), "-kernel", str(elf),
-                   "-chardev", f"{line},id=line", "-serial", "chardev:line",
+                   "-chardev", f"{line},id=line", *lines_before(self._before), "-serial", "chardev:line",
                    *DEVICES.get(NAME, []),
                    "-qmp", f"unix:{self.qmp_path},server=on,wait=off",
                    "-icount", icount, *extra]

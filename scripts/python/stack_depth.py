@@ -117,9 +117,11 @@ class Firmware:
                 function = self._functions[at] = Function(at, m[2])
             elif function and (m := re.match(r"\s+[0-9a-f]+:\s+(\S+)\s*(.*)$", line)):
                 function.add(m[1], re.split("[;@]", m[2])[0].strip())
-        words = set()
+        words, is_loaded = set(), True
         for line in self._objdump(tools, elf, "-s"):
-            if m := re.match(r" [0-9a-f]+ ((?:[0-9a-f]{8} ){1,4})", line):
+            if line.startswith("Contents of section "):
+                is_loaded = not line.startswith("Contents of section .debug")  # whose words are no pointers, but may look like some
+            elif is_loaded and (m := re.match(r" [0-9a-f]+ ((?:[0-9a-f]{8} ){1,4})", line)):
                 words.update(int.from_bytes(bytes.fromhex(word), "little") for word in m[1].split())
         self._pointed_to = [at for at in self._functions if at | 1 in words]
         self._deepest = {}

@@ -16,6 +16,7 @@ import pins
 import rsc
 import test_owner
 import test_store
+import unimplemented
 from debugger import LINK_REGISTER, PC, DebuggedTest
 from player import FLASH, FlashPlayer
 from support import PROGRAMS, LineReader, RobotTest
@@ -25,9 +26,8 @@ from board import FIRMWARE, REAL_TIME, ROOT  # noqa: E402
 from counting import symbols  # noqa: E402
 
 UPLOADS = 3
-# QEMU writes down what the masters of I2C and DMA1 are told.
 PATIENCE = 20
-WRITE = re.compile(r"(I2C2|DMA1|SPI1): unimplemented device write \(size 4, offset 0x([0-9a-f]+), value 0x([0-9a-f]+)\)")
+# What the masters of I2C and DMA1 are told.
 TRANSFER, COUNT_4, MEMORY_4, COUNT_5, MEMORY_5 = ("I2C2", 0x04), ("DMA1", 0x48), ("DMA1", 0x50), ("DMA1", 0x5C), ("DMA1", 0x64)
 CORE, BUS_INTERRUPT = "/machine/soc/armv7m", 33
 ADDRESS, LEVEL = 0x6A, 0x12
@@ -49,7 +49,7 @@ END
 LOOSEST, CALLS = 1.3, 20
 READS, STOPS_BEHIND = 1 << 10, 1 << 25  # of what the master is told
 # The motion sensor on that bus: its registers out of a loss of power, what it is told, and where it measures turning about Z.
-LAMP, LIT_US, PWM_WRITE = 13, 14_000, "robosync::boards::l475::Board::pwm_write("
+LAMP, LIT_US, PWM_WRITE = 13, 14_000, "robosync::boards::stm32l4::Board::pwm_write("
 MOTION = {"board": "b-l475e-iot01a", "actuators": [{"name": "lamp", "type": "PWM", "pin": LAMP, "device": "pwm"}],
           "sensors": [{"name": "motion", "device": "motion"}]}
 TURNED = "WHEN motion TURN_Z > 90deg/s MARGIN 10deg/s\nDO RUN lamp TO 70%\nEND\n"
@@ -132,8 +132,7 @@ class OwnerInFlash(WithFlash, test_owner.Owner):
 
 class Bus(DebuggedTest):
     def qemu_arguments(self):
-        self.log = self.folder / "told"
-        return ["-d", "unimp", "-D", str(self.log), *pins.arguments(self.folder), *super().qemu_arguments()]
+        return [*unimplemented.arguments(self.folder), *pins.arguments(self.folder), *super().qemu_arguments()]
 
     def begin(self):
         config, program = self.folder / "watched.json", self.folder / "watched.rsl"
@@ -143,7 +142,7 @@ class Bus(DebuggedTest):
 
     def told(self, place):
         """The values that were written there, so far."""
-        return [int(value, 16) for name, at, value in WRITE.findall(self.log.read_text()) if (name, int(at, 16)) == place]
+        return unimplemented.told(self.folder, place)
 
     def test_nobody_on_it_is_told_trips_safety_and_holds_nobody_up(self):
         reader = LineReader("monitor", "--port", self.board.port, "--format", "json", "--upload", *self.begin())
@@ -333,7 +332,7 @@ class Bus(DebuggedTest):
 
     def read_of_state(self):
         """Where the interrupt's handler reads the master's state, and into which register."""
-        place = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::boards::l475::I2cMaster::on_interrupt("))
+        place = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::boards::stm32l4::I2cMaster::on_interrupt("))
         said = subprocess.run(["arm-none-eabi-objdump", "-d", f"--start-address={place & ~1:#x}", f"--stop-address={(place & ~1) + 64:#x}",
                                FIRMWARE], check=True, text=True, stdout=subprocess.PIPE).stdout
         found = re.search(r"^\s*([0-9a-f]+):.*\sldr(?:\.w)?\s+r(\d+), \[r\d+, #24\]", said, re.M)
@@ -342,8 +341,7 @@ class Bus(DebuggedTest):
 
 class Panel(DebuggedTest):
     def qemu_arguments(self):
-        self.log = self.folder / "told"
-        return ["-d", "unimp", "-D", str(self.log), *pins.arguments(self.folder), *super().qemu_arguments()]
+        return [*unimplemented.arguments(self.folder), *pins.arguments(self.folder), *super().qemu_arguments()]
 
     told = Bus.told
 

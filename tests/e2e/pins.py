@@ -14,6 +14,8 @@ from counting import symbols  # noqa: E402
 LINES = {
     "b-l475e-iot01a": {7: ("/machine/soc/gpioa", 4), 8: ("/machine/soc/gpiob", 2), 9: ("/machine/soc/gpioa", 15),
                        12: ("/machine/soc/gpioa", 6), 32: ("/machine/soc/gpioc", 13)},
+    "nucleo-l476rg": {2: ("/machine/soc/gpioa", 10), 4: ("/machine/soc/gpiob", 5), 7: ("/machine/soc/gpioa", 8),
+                      9: ("/machine/soc/gpioc", 7), 12: ("/machine/soc/gpioa", 6), 32: ("/machine/soc/gpioc", 13)},
     "microbit-v2": {5: ("/machine/nrf51", 14), 11: ("/machine/nrf51", 23)},
 }
 VIRTUAL = range(40, 44)  # of the mps2-an386: bits of a word of its memory

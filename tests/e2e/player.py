@@ -12,7 +12,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from board import FIRMWARE  # noqa: E402
 from counting import symbols  # noqa: E402
 
-FLASH = "robosync::boards::l475::Flash::"
+FLASH = "robosync::boards::stm32l4::Flash::"
 PAGE, AT_ONCE = 2048, 1024  # bytes of the flash; … that the debugger writes at once
 DONE = 1  # boards::Erasing
 

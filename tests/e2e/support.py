@@ -53,13 +53,14 @@ class RobotTest(unittest.TestCase):
 
     elf = FIRMWARE
     icount = FAST
+    before = "null"  # where what other serial lines of the machine say goes
     units = UNITS  # of the channels that scenarios feed
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="robosync-e2e-")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
-        self.board = Board(self.elf, icount=self.icount, extra=self.qemu_arguments())
+        self.board = Board(self.elf, icount=self.icount, extra=self.qemu_arguments(), before=self.before)
         self.addCleanup(self.board.stop)
 
     def qemu_arguments(self):

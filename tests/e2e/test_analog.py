@@ -19,7 +19,7 @@ PATIENCE = 20
 FULL = 4095
 WORD = 4
 REFERENCE = NAME not in pins.LINES
-ANALOG = {"b-l475e-iot01a": range(40, 45), "microbit-v2": range(3)}.get(NAME, range(44, 48))
+ANALOG = {"b-l475e-iot01a": range(40, 45), "nucleo-l476rg": range(40, 45), "microbit-v2": range(3)}.get(NAME, range(44, 48))
 CLAW = 14 if NAME == "microbit-v2" else 3
 ROBOT = {"board": NAME, "actuators": [{"name": "claw", "type": "PWM", "pin": CLAW, "device": "servo"}],
          "sensors": [{"name": f"a{pin}", "type": "ADC", "pin": pin, "device": "force"} for pin in ANALOG]}

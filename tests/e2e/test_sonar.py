@@ -22,7 +22,8 @@ MM_PER_CM = 10
 US_PER_CM = 1 / 0.01715
 REFERENCE = NAME not in pins.LINES
 ECHO = pins.VIRTUAL[0] if REFERENCE else 7
-ROBOT = {"board": NAME, "actuators": [{"name": "arm", "type": "PWM", "pin": 2, "device": "servo"}],
+ARM = 6 if NAME == "nucleo-l476rg" else 2
+ROBOT = {"board": NAME, "actuators": [{"name": "arm", "type": "PWM", "pin": ARM, "device": "servo"}],
          "sensors": [{"name": "sonar", "type": "GPIO", "trigger": 3, "echo": ECHO, "device": "hc-sr04"}]}
 PROGRAM = """
 SAFETY wall
@@ -100,7 +101,7 @@ def on_edge(prefix):
     return next(at for name, at in symbols(FIRMWARE).items() if prefix in name)
 
 
-@unittest.skipUnless(NAME == "b-l475e-iot01a", "QEMU has no edges of pins elsewhere")
+@unittest.skipUnless(NAME in ("b-l475e-iot01a", "nucleo-l476rg"), "QEMU has no edges of pins elsewhere")
 class OfEdges(Sonar):
     """The core stands still while the test changes a level; between two kicks of the watchdog it runs for 10 ms."""
 

@@ -13,7 +13,8 @@ from pathlib import Path
 from stack_depth import FPU_FRAMES, FRAMES, GUARD, Firmware, StackError
 
 ROOT = Path(__file__).resolve().parents[2]
-BUILDS = {"mps2-an386": "m4", "b-l475e-iot01a": "b-l475e-iot01a", "microbit-v2": "microbit-v2"}
+BUILDS = {"mps2-an386": "m4", "b-l475e-iot01a": "b-l475e-iot01a", "nucleo-l476rg": "b-l475e-iot01a/nucleo-l476rg",
+          "microbit-v2": "microbit-v2"}
 # Of each thread: what stands on its stack besides its own, its entry, and where the size of its stack is told.
 MEMORY, LAMBDA = "runtime-m4/policy/memory.hpp", r"\(.*::\{lambda\(void\*\)#1\}::_FUN"
 THREADS = {

@@ -41,7 +41,7 @@ class Package(unittest.TestCase):
     def test_the_firmware_of_a_board_is_there_to_be_flashed(self):
         drive = self.folder / "drive"
         drive.mkdir()
-        for board, file in {"microbit-v2": "hex", "b-l475e-iot01a": "bin"}.items():
+        for board, file in {"microbit-v2": "hex", "b-l475e-iot01a": "bin", "nucleo-l476rg": "bin"}.items():
             self.run_it("rsc", "flash", "--board", board, "--drive", drive)
             installed = self.root / f"usr/share/robosync/firmware/robosync-{board}.{file}"
             self.assertEqual((drive / installed.name).read_bytes(), installed.read_bytes())

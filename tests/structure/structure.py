@@ -25,7 +25,8 @@ HOST_ONLY = ("runtime-m4/port/host/", "runtime-m4/sim/", "runtime-m4/module_file
 # Inside runtime-m4/, from the bottom up: what each part may include of it, besides itself. All of that stands further up
 # in this list, so no arrow points back. A part is a folder, but for these: the files at the top of runtime-m4/; the
 # interface of the processor (port/port.hpp, and the headers of the processor that it brings) and the sources that
-# implement it by the kernel; the interface of the board (boards/board.hpp) and the boards.
+# implement it by the kernel; the interface of the board (boards/board.hpp), the chips that several boards have (CHIPS) and the
+# boards. A chip's sources find the wiring of the board by ROBOSYNC_BOARD_WIRING.
 RUNTIME = {
     "policy": set(),
     "algorithms": set(),
@@ -42,9 +43,11 @@ RUNTIME = {
     "update": {"policy", "boards", "kernel", "layers", "runtime"},
     "sim": {"policy", "boards", "kernel", "layers", "runtime"},
     "boards/common": {"port", "boards", "kernel", "layers", "runtime", "update"},
-    "a board": {"port", "boards", "kernel", "boards/common"},
+    "a chip": {"port", "boards", "kernel", "boards/common"},
+    "a board": {"port", "boards", "kernel", "boards/common", "a chip"},
 }
-MAY_KNOW_THE_PROCESSOR = {"port", "port's sources", "boards/common", "a board"}
+CHIPS = {"stm32l4"}
+MAY_KNOW_THE_PROCESSOR = {"port", "port's sources", "boards/common", "a chip", "a board"}
 # Inside rsc/: the same. What stands in rsc/ itself includes none of them.
 TOOL = {
     "verbs": {"device", "trace", "dump", "timeline", "screen", "bridge", "companion", "lsp", "modules"},
@@ -183,14 +186,14 @@ def runtime_part(path):
     if folders[0] == "port":
         return "port's sources" if path.endswith(".cpp") else "port"
     if folders[0] == "boards" and len(folders) > 1:
-        return "boards/common" if folders[1] == "common" else "a board"
+        return "boards/common" if folders[1] == "common" else "a chip" if folders[1] in CHIPS else "a board"
     return folders[0]
 
 
 def machine_of(path):
-    """The folder of the processor or of the board that a file is for, or None."""
+    """The folder of the processor or of the board that a file is for, or None: a chip is for several boards."""
     folders = path.split("/")[1:-1]
-    return "/".join(folders) if len(folders) > 1 and folders[1] != "common" else None
+    return "/".join(folders) if len(folders) > 1 and folders[1] not in CHIPS | {"common"} else None
 
 
 def check_runtime_folders(sources):

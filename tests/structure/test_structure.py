@@ -133,7 +133,11 @@ class Planted(unittest.TestCase):
                              ("runtime-m4/sim/s.cpp", "runtime-m4/port/x/machine.hpp"),
                              ("runtime-m4/port/x/a.hpp", "runtime-m4/port/y/core.hpp"),
                              ("runtime-m4/drivers/d.cpp", "runtime-m4/boards/x/i2c.hpp"),
-                             ("runtime-m4/boards/x/b.cpp", "runtime-m4/boards/y/i2c.hpp")]:
+                             ("runtime-m4/boards/x/b.cpp", "runtime-m4/boards/y/i2c.hpp"),
+                             # what belongs to one chip
+                             ("runtime-m4/boards/stm32l4/b.cpp", "runtime-m4/boards/x/wiring.hpp"),
+                             ("runtime-m4/boards/common/main.cpp", "runtime-m4/boards/stm32l4/i2c.hpp"),
+                             ("runtime-m4/drivers/d.cpp", "runtime-m4/boards/stm32l4/i2c.hpp")]:
             with self.subTest(name=name, target=target):
                 self.assert_red("runtime folders", name, f'{HEAD}#include "{target}"\n')
 
@@ -144,7 +148,10 @@ class Planted(unittest.TestCase):
                              ("runtime-m4/boards/common/main.cpp", "runtime-m4/update/server.hpp"),
                              ("runtime-m4/boards/x/b.cpp", "runtime-m4/boards/x/i2c.hpp"),
                              ("runtime-m4/boards/x/b.cpp", "runtime-m4/boards/common/reset.hpp"),
-                             ("runtime-m4/boards/x/b.cpp", "runtime-m4/port/x/core.hpp")]:
+                             ("runtime-m4/boards/x/b.cpp", "runtime-m4/port/x/core.hpp"),
+                             ("runtime-m4/boards/x/wiring.hpp", "runtime-m4/boards/stm32l4/wires.hpp"),
+                             ("runtime-m4/boards/stm32l4/b.cpp", "runtime-m4/boards/common/reset.hpp"),
+                             ("runtime-m4/boards/stm32l4/b.cpp", "runtime-m4/port/x/core.hpp")]:
             with self.subTest(name=name, target=target):
                 self.assertEqual(self.check({name: f'{HEAD}#include "{target}"\n'}), {})
 

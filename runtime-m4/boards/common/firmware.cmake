@@ -1,45 +1,88 @@
-# The firmware for the board that the preset names (ROBOSYNC_BOARD): boards/NAME/board.cmake says what is special to it.
+# The firmware for the board that the preset names (ROBOSYNC_BOARD), and for its twins: boards/NAME/board.cmake says what is special to
+# each.
 #
-#   board_sources   the board's own sources, in boards/NAME/
+#   board_folder    where in boards/ its sources, its linker script and interrupts.hpp stand: a chip's, or NAME, if it is not told
+#   board_sources   the board's own sources there; where one asks how the chip is wired, boards/NAME/wiring.hpp says it
 #   board_script    its linker script, which includes firmware.ld
 #   board_machine   what QEMU calls the board (build/…/machine, for scripts and tests)
+#   board_line      the serial line of that machine which is the link's, 0 if it is not told (build/…/line)
 #   board_clock     when no load reads a free-running counter of 32 bits: ROBOSYNC_CLOCK_IS_SYSTICK where there is none,
 #                   or ROBOSYNC_CLOCK_IS_CALLED (port/cortex-m4/clock.hpp)
-list(TRANSFORM board_sources PREPEND boards/${ROBOSYNC_BOARD}/)
-file(WRITE ${PROJECT_BINARY_DIR}/machine "${board_machine}\n")
-
-# Shared by the firmware and by the tests and benches on the board; brings the linker script.
 set(board_common ${CMAKE_CURRENT_LIST_DIR})
-set(board_script ${CMAKE_CURRENT_SOURCE_DIR}/boards/${ROBOSYNC_BOARD}/${board_script})
-add_library(robosync_board OBJECT
-  boards/common/startup.cpp boards/common/reset.cpp boards/common/costs.cpp boards/common/vectors.cpp ${board_sources})
-set_source_files_properties(boards/common/costs.cpp PROPERTIES
-  COMPILE_DEFINITIONS ROBOSYNC_BOARD_COSTS="runtime-m4/boards/${ROBOSYNC_BOARD}/costs.def")
-set_source_files_properties(boards/common/vectors.cpp PROPERTIES
-  COMPILE_DEFINITIONS ROBOSYNC_BOARD_INTERRUPTS="runtime-m4/boards/${ROBOSYNC_BOARD}/interrupts.hpp")
-target_link_libraries(robosync_board PUBLIC robosync_runtime)
-robosync_variant(robosync_board asserted ROBOSYNC_ASSERTIONS)
-target_link_libraries(robosync_board_asserted PUBLIC robosync_runtime_asserted)
-foreach(board robosync_board robosync_board_asserted)
-  target_link_options(${board} INTERFACE -L${board_common} -T${board_script}
-    -Wl,--defsym=arena_begin=${arena_begin},--defsym=arena_bytes=${arena_bytes},--defsym=store_bytes=${store_bytes})
-  set_property(TARGET ${board} PROPERTY INTERFACE_LINK_DEPENDS ${board_script} ${board_common}/firmware.ld)
-endforeach()
 
-# robosync_elf(TARGET NAME SOURCES…): an ELF for this board, build/…/NAME.elf. When the name of TARGET ends in that of a
-# variant, with the libraries of that one.
-#
-# Linked as C, without the C++ library, and without a heap: newlib's malloc would need _sbrk, which
-# nobody defines, so code that allocates does not link.
-function(robosync_elf target name)
-  string(REGEX MATCH "_(asserted)$" variant ${target})
-  add_executable(${target} ${ARGN})
-  target_link_libraries(${target} PRIVATE robosync_board${variant} robosync_runtime${variant})
-  target_link_options(${target} PRIVATE
-    -flto -Os -nostartfiles --specs=nano.specs -Wl,--gc-sections -Wl,--print-memory-usage
-    -Wl,--fatal-warnings -Wl,--no-warn-rwx-segments -Wl,-Map=${PROJECT_BINARY_DIR}/${name}.map)
-  set_target_properties(${target} PROPERTIES
-    LINKER_LANGUAGE C OUTPUT_NAME ${name} SUFFIX .elf RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+# What the sources of the board are compiled with, and who links them; shared by the firmware and by the tests and benches on
+# the board.
+function(robosync_wire_board target)
+  set(script ${CMAKE_CURRENT_SOURCE_DIR}/boards/${board_folder}/${board_script})
+  target_compile_definitions(${target} PUBLIC ${board_definitions} PRIVATE
+    ROBOSYNC_BOARD_COSTS="runtime-m4/boards/${ROBOSYNC_BOARD}/costs.def"
+    ROBOSYNC_BOARD_WIRING="runtime-m4/boards/${ROBOSYNC_BOARD}/wiring.hpp"
+    ROBOSYNC_BOARD_INTERRUPTS="runtime-m4/boards/${board_folder}/interrupts.hpp")
+  target_link_options(${target} INTERFACE -L${board_common} -T${script}
+    -Wl,--defsym=arena_begin=${arena_begin},--defsym=arena_bytes=${arena_bytes},--defsym=store_bytes=${store_bytes})
+  set_property(TARGET ${target} PROPERTY INTERFACE_LINK_DEPENDS ${script} ${board_common}/firmware.ld)
 endfunction()
 
+# robosync_board(TARGET FOLDER): the objects of the board that profile.cmake and board.cmake have told of. What scripts and tests
+# ask of the machine is in FOLDER, as the firmware.
+function(robosync_board target folder)
+  if(NOT board_folder)
+    set(board_folder ${ROBOSYNC_BOARD})
+  endif()
+  if(NOT board_line)
+    set(board_line 0)
+  endif()
+  file(WRITE ${folder}/machine "${board_machine}\n")
+  file(WRITE ${folder}/line "${board_line}\n")
+  list(TRANSFORM board_sources PREPEND boards/${board_folder}/)
+  add_library(${target} OBJECT
+    boards/common/startup.cpp boards/common/reset.cpp boards/common/costs.cpp boards/common/vectors.cpp ${board_sources})
+  target_link_libraries(${target} PUBLIC robosync_runtime)
+  robosync_wire_board(${target})
+  robosync_variant(${target} asserted ROBOSYNC_ASSERTIONS)
+  target_link_libraries(${target}_asserted PUBLIC robosync_runtime_asserted)
+  robosync_wire_board(${target}_asserted)
+endfunction()
+
+# Linked as C, without the C++ library, and without a heap: newlib's malloc would need _sbrk, which
+# nobody defines, so code that allocates does not link.
+function(robosync_link target folder name board runtime)
+  add_executable(${target} ${ARGN})
+  target_link_libraries(${target} PRIVATE ${board} ${runtime})
+  target_link_options(${target} PRIVATE
+    -flto -Os -nostartfiles --specs=nano.specs -Wl,--gc-sections -Wl,--print-memory-usage
+    -Wl,--fatal-warnings -Wl,--no-warn-rwx-segments -Wl,-Map=${folder}/${name}.map)
+  set_target_properties(${target} PROPERTIES
+    LINKER_LANGUAGE C OUTPUT_NAME ${name} SUFFIX .elf RUNTIME_OUTPUT_DIRECTORY ${folder})
+endfunction()
+
+# robosync_elf(TARGET NAME SOURCES…): an ELF for the board, build/…/NAME.elf. When the name of TARGET ends in that of a
+# variant, with the libraries of that one.
+function(robosync_elf target name)
+  string(REGEX MATCH "_(asserted)$" variant ${target})
+  robosync_link(${target} ${PROJECT_BINARY_DIR} ${name} robosync_board${variant} robosync_runtime${variant} ${ARGN})
+endfunction()
+
+robosync_board(robosync_board ${PROJECT_BINARY_DIR})
 robosync_elf(robosync_firmware robosync boards/common/main.cpp)
+
+# Another board whose runtime is compiled to the same objects, so that they need not be compiled twice: the profiles
+# have the same runtime_definitions, and board.cmake the same clock. Its firmware is build/…/BOARD/robosync.elf.
+function(robosync_twin ROBOSYNC_BOARD)
+  unset(board_folder)
+  unset(board_line)
+  include(boards/profile.cmake)
+  include(boards/${ROBOSYNC_BOARD}/board.cmake)
+  list(APPEND runtime_definitions ${board_clock})
+  if(NOT runtime_definitions STREQUAL features)
+    message(FATAL_ERROR "${ROBOSYNC_BOARD} is no twin: its runtime is compiled with ${runtime_definitions}, not ${features}")
+  endif()
+  set(folder ${PROJECT_BINARY_DIR}/${ROBOSYNC_BOARD})
+  robosync_board(robosync_board_${ROBOSYNC_BOARD} ${folder})
+  robosync_link(robosync_firmware_${ROBOSYNC_BOARD} ${folder} robosync robosync_board_${ROBOSYNC_BOARD} robosync_runtime
+                boards/common/main.cpp)
+endfunction()
+
+foreach(twin ${ROBOSYNC_TWINS})
+  robosync_twin(${twin})
+endforeach()

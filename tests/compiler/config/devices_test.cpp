@@ -210,8 +210,8 @@ TEST_CASE("a board without analog inputs says so, and which boards have some") {
   REQUIRE(diagnostics.errors() == 1);
   const std::string said = render_json(diagnostics, sources);
   CHECK_THAT(said, Catch::Contains("the board plain has no analog inputs"));
-  CHECK_THAT(said, Catch::Contains(
-                       "boards that have some: `b-l475e-iot01a`, `microbit-v2` and `mps2-an386`"));
+  CHECK_THAT(said, Catch::Contains("boards that have some: `b-l475e-iot01a`, `microbit-v2`, "
+                                   "`mps2-an386` and `nucleo-l476rg`"));
 }
 
 TEST_CASE("the schema has exactly the reader's keys") {

@@ -1,7 +1,7 @@
 // Analog inputs, as the boards' code has them, against models of the converters: which pin is measured, how well, in which order they
 // are brought up, and what comes of one that does not answer. The models were written from RM0351 and from Nordic's Product
 // Specification by who wrote the drivers. Time passes with each register that is read or written: as little as can be.
-#include "runtime-m4/boards/b-l475e-iot01a/analog.hpp"
+#include "runtime-m4/boards/stm32l4/analog.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,11 +12,11 @@
 #include <catch2/catch.hpp>
 
 #include "compiler/config/boards.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
 #include "runtime-m4/boards/microbit-v2/analog.hpp"
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
+#include "runtime-m4/boards/stm32l4/inputs.hpp"
+#include "runtime-m4/boards/stm32l4/pins.hpp"
 #include "tests/runtime-m4/boards/nrf52833.hpp"
 #include "tests/runtime-m4/boards/stm32_timers.hpp"
 
@@ -194,12 +194,12 @@ struct ConverterOfL475 : tests::Stm32Timers {
 
   explicit ConverterOfL475(Breaks breaks = Breaks::nothing) : broken(breaks) {
     Stm32Timers::write(0x4002'104C, 0b1111);
-    boards::l475::pins::start();
-    boards::l475::inputs::start();
-    boards::l475::analog::start();
+    boards::stm32l4::pins::start();
+    boards::stm32l4::inputs::start();
+    boards::stm32l4::analog::start();
   }
   static bool measure(std::uint16_t pin, std::uint16_t& voltage) {
-    return boards::l475::analog::read(pin, voltage);
+    return boards::stm32l4::analog::read(pin, voltage);
   }
 
   bool is_mine(std::uintptr_t address) const { return address >= kAdc && address < kAdc + 0x400; }

@@ -4,8 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "runtime-m4/boards/b-l475e-iot01a/i2c.hpp"
 #include "runtime-m4/boards/microbit-v2/i2c.hpp"
+#include "runtime-m4/boards/stm32l4/i2c.hpp"
 #include "runtime-m4/policy/costs.hpp"
 #include "runtime-m4/policy/rules.hpp"
 #include "tests/runtime-m4/boards/nrf52833_twim.hpp"
@@ -45,7 +45,7 @@ struct L475Bus : tests::Stm32I2c {
   L475Bus()
       : Stm32I2c(kOwn ? Wiring{0x4000'5800, 1U << 22, 10, 11, 4, 5}
                       : Wiring{0x4000'5400, 1U << 21, 8, 9, 6, 7}) {}
-  boards::l475::I2c bus{boards::l475::i2c_master(kOwn ? 1 : 0)};
+  boards::stm32l4::I2c bus{boards::stm32l4::i2c_master(kOwn ? 1 : 0)};
 };
 
 // Of a device with pages: what stands in the one register depends on the other.

@@ -1,7 +1,7 @@
 // Trigger and echo, as the boards' code has them, against models of what measures them: the pulse, the length of an echo, and
 // whatever else a wire can do. The models were written from RM0351 and from Nordic's Product Specification by who wrote the
 // drivers.
-#include "runtime-m4/boards/b-l475e-iot01a/echoes.hpp"
+#include "runtime-m4/boards/stm32l4/echoes.hpp"
 
 #include <array>
 #include <map>
@@ -9,11 +9,11 @@
 
 #include <catch2/catch.hpp>
 
-#include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
 #include "runtime-m4/boards/microbit-v2/echoes.hpp"
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
+#include "runtime-m4/boards/stm32l4/inputs.hpp"
+#include "runtime-m4/boards/stm32l4/pins.hpp"
 #include "tests/runtime-m4/boards/nrf52833.hpp"
 #include "tests/runtime-m4/boards/stm32_timers.hpp"
 
@@ -31,14 +31,14 @@ struct EdgesOfL475 : tests::Stm32Timers {
     write(0x4002'104C, 0b1111);
     for (const std::uint16_t pin : {kEcho, kOther})
       wire(pins.at(pin), false);
-    boards::l475::pins::start();
-    boards::l475::inputs::start();
-    boards::l475::echoes::start();
+    boards::stm32l4::pins::start();
+    boards::stm32l4::inputs::start();
+    boards::stm32l4::echoes::start();
   }
   static void ping(std::uint16_t trigger, std::uint16_t echo) {
-    boards::l475::echoes::ping(trigger, echo);
+    boards::stm32l4::echoes::ping(trigger, echo);
   }
-  static std::uint32_t take(std::uint16_t echo) { return boards::l475::echoes::take(echo); }
+  static std::uint32_t take(std::uint16_t echo) { return boards::stm32l4::echoes::take(echo); }
 
   std::uint32_t read(std::uintptr_t address) override {
     if (address == 0x4002'1060) return system_clocks;
@@ -77,7 +77,7 @@ struct EdgesOfL475 : tests::Stm32Timers {
   }
   void interrupt() {
     for (unsigned i = 0; i < 8 && (pending & mask) != 0; ++i, ++interrupts)
-      boards::l475::echoes::on_edge(80 * now);
+      boards::stm32l4::echoes::on_edge(80 * now);
     CHECK((pending & mask) == 0);
   }
   void pass_one() {
@@ -386,7 +386,7 @@ TEMPLATE_TEST_CASE("echo: a servo has the trigger pin when the sensor is gone", 
   TestType chip;
   const auto write = [](std::uint16_t pin, std::uint32_t us) {
     if constexpr (std::is_same_v<TestType, EdgesOfL475>)
-      boards::l475::pins::write(pin, us);
+      boards::stm32l4::pins::write(pin, us);
     else
       boards::microbit::pins::write(pin, us);
   };

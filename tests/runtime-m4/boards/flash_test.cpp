@@ -1,6 +1,6 @@
 // What the boards keep without power in their own flash, as it is shipped, against models of the flash: cut off at every word that is
 // written, and at every part of an erasing.
-#include "runtime-m4/boards/b-l475e-iot01a/flash.hpp"
+#include "runtime-m4/boards/stm32l4/flash.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -37,10 +37,10 @@ struct MicrobitFlash {
 
 struct L475Flash {
   tests::Stm32Flash chip{kPages * tests::Stm32Flash::kPage};
-  boards::FlashStore<boards::l475::Flash> store{chip.kBegin, chip.bytes()};
+  boards::FlashStore<boards::stm32l4::Flash> store{chip.kBegin, chip.bytes()};
   bool forgiven = true;
   L475Flash() {
-    chip.nmi = [this] { forgiven = forgiven && boards::l475::Flash::forgive_damage(); };
+    chip.nmi = [this] { forgiven = forgiven && boards::stm32l4::Flash::forgive_damage(); };
   }
   void rest() { chip.pass_ms(1); }
 };
@@ -249,13 +249,13 @@ TEST_CASE("B-L475E-IOT01A: damage in the flash is forgiven where the store is, a
   Bytes piece(16);
   CHECK(flash.store.read(0, piece) == Store::Outcome::done);
   CHECK(flash.chip.nmis == 0);
-  CHECK_FALSE(boards::l475::Flash::forgive_damage());
+  CHECK_FALSE(boards::stm32l4::Flash::forgive_damage());
   flash.chip.damage(flash.chip.kBegin + 8);
   CHECK(flash.store.read(0, piece) == Store::Outcome::done);
   CHECK(flash.chip.nmis == 2);
   CHECK(flash.forgiven);
   flash.chip.of_bank_1 = true;
-  flash.chip.nmi = [&] { flash.forgiven = boards::l475::Flash::forgive_damage(); };
+  flash.chip.nmi = [&] { flash.forgiven = boards::stm32l4::Flash::forgive_damage(); };
   CHECK_THROWS(flash.store.read(0, piece));
   CHECK_FALSE(flash.forgiven);
 }

@@ -1,16 +1,16 @@
 // The input pins of the boards, as they are shipped, against the models of their ports: each reads its own pin of the chip,
 // and is pulled up; no other pin can be read.
-#include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
+#include "runtime-m4/boards/stm32l4/inputs.hpp"
 
 #include <map>
 
 #include <catch2/catch.hpp>
 
 #include "compiler/config/boards.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
+#include "runtime-m4/boards/stm32l4/pins.hpp"
+#include "runtime-m4/boards/stm32l4/registers.hpp"
 #include "tests/runtime-m4/boards/nrf52833.hpp"
 #include "tests/runtime-m4/boards/stm32_timers.hpp"
 
@@ -32,11 +32,11 @@ struct Microbit : tests::Nrf52833 {
 // UM2153, table 4 and "Buttons".
 struct L475 : tests::Stm32Timers {
   L475() {
-    boards::l475::rcc::kAhb2.set(boards::l475::rcc::kPortsAToD);
-    boards::l475::pins::start();
-    boards::l475::inputs::start();
+    boards::stm32l4::rcc::kAhb2.set(boards::stm32l4::rcc::kPortsAToD);
+    boards::stm32l4::pins::start();
+    boards::stm32l4::inputs::start();
   }
-  static bool is_high(std::uint16_t pin) { return boards::l475::inputs::is_high(pin); }
+  static bool is_high(std::uint16_t pin) { return boards::stm32l4::inputs::is_high(pin); }
   static constexpr const char* kName = "b-l475e-iot01a";
   const std::map<std::uint16_t, Pin> read{
       {7, {'A', 4}}, {8, {'B', 2}}, {9, {'A', 15}}, {12, {'A', 6}}, {32, {'C', 13}}};

@@ -1,6 +1,6 @@
 // The panels of both boards, as they are shipped, against models of their SPI masters and of a chain of WS2812: which colour each
 // light has, bit times included, whatever came before and whatever the line is when nothing is sent.
-#include "runtime-m4/boards/b-l475e-iot01a/panel.hpp"
+#include "runtime-m4/boards/stm32l4/panel.hpp"
 
 #include <random>
 #include <vector>
@@ -8,10 +8,10 @@
 #include <catch2/catch.hpp>
 
 #include "compiler/config/boards.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
 #include "runtime-m4/boards/microbit-v2/panel.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
+#include "runtime-m4/boards/stm32l4/pins.hpp"
+#include "runtime-m4/boards/stm32l4/registers.hpp"
 #include "tests/runtime-m4/boards/spi_masters.hpp"
 #include "tests/runtime-m4/boards/ws2812_chain.hpp"
 
@@ -44,10 +44,10 @@ struct Microbit : tests::NrfSpim {
 struct L475 : tests::Stm32Spi {
   static constexpr const char* kName = "b-l475e-iot01a";
   L475() {
-    boards::l475::rcc::kAhb2.set(boards::l475::rcc::kPortsAToD);
-    boards::l475::pins::start();
+    boards::stm32l4::rcc::kAhb2.set(boards::stm32l4::rcc::kPortsAToD);
+    boards::stm32l4::pins::start();
   }
-  static boards::PanelOutput& output() { return boards::l475::panel_output(); }
+  static boards::PanelOutput& output() { return boards::stm32l4::panel_output(); }
 };
 
 template <class Chip>
@@ -207,7 +207,7 @@ TEST_CASE("panel: a pin that a panel has had gives pulses again") {
   Wired<L475> board(all_panels<L475>().front());
   board.after(1);
   L475::output().end();
-  boards::l475::pins::write(11, 1000);
+  boards::stm32l4::pins::write(11, 1000);
   unsigned high = 0;
   for (unsigned us = 0; us < 40'000; ++us) {
     board.pass_microsecond();

@@ -1,11 +1,11 @@
 // See flash.hpp. ST's RM0351, 3.3.5 to 3.3.8; DS10969: a page is erased in 25 ms at most, two words are written in 91 us.
 // ES0250: while one bank is written, the data cache may take something wrong from the other one. So it is off then, and
 // begins anew.
-#include "runtime-m4/boards/b-l475e-iot01a/flash.hpp"
+#include "runtime-m4/boards/stm32l4/flash.hpp"
 
-#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
+#include "runtime-m4/boards/stm32l4/registers.hpp"
 
-namespace robosync::boards::l475 {
+namespace robosync::boards::stm32l4 {
 
 namespace {
 
@@ -73,4 +73,4 @@ bool Flash::forgive_damage() {
   return true;
 }
 
-}  // namespace robosync::boards::l475
+}  // namespace robosync::boards::stm32l4

@@ -2,25 +2,17 @@
 //
 // A voltage takes 653 cycles of 40 MHz, 16 us: shorter than two switches between threads take, so it is waited for. The interrupts
 // of others come meanwhile.
-#include "runtime-m4/boards/b-l475e-iot01a/analog.hpp"
+#include "runtime-m4/boards/stm32l4/analog.hpp"
 
-#include <array>
-
-#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/common/inputs.hpp"
+#include "runtime-m4/boards/stm32l4/wiring.hpp"
 
-namespace robosync::boards::l475::analog {
+namespace robosync::boards::stm32l4::analog {
 
 namespace {
 
-struct Input {
-  std::uint16_t pin;  // A0: 40
-  unsigned bit;       // of port C
-  unsigned channel;
-};
-constexpr std::array kInputs{Input{40, 5, 14}, Input{41, 4, 13}, Input{42, 3, 4}, Input{43, 2, 3},
-                             Input{44, 1, 2}};
+constexpr const auto& kInputs = wiring::kAnalogInputs;
 
 // A look takes four cycles of the core's 80 MHz at least: 25 us, and 50 for the regulator, which wants 20.
 constexpr unsigned kLooks = 500;
@@ -62,17 +54,17 @@ bool bring_up() {
 }  // namespace
 
 void start() {
-  for (const Input& input : kInputs) {
-    kPortC.mode().set_field(input.bit, 2, kModeOfAnalog);
-    kPortC.pulls().set_field(input.bit, 2, 0);
-    kPortC.analog().set(1U << input.bit);
+  for (const AnalogInput& input : kInputs) {
+    input.port.mode().set_field(input.bit, 2, kModeOfAnalog);
+    input.port.pulls().set_field(input.bit, 2, 0);
+    input.port.analog().set(1U << input.bit);
   }
   rcc::kSources.set(rcc::kAdcBySystemClock);
   rcc::give_clock(rcc::kAhb2, rcc::kAdc);
   is_up = bring_up();
   if (!is_up) return;
   adc::kConfiguration.write(adc::kNewestOf12Bits);
-  for (const Input& input : kInputs)
+  for (const AnalogInput& input : kInputs)
     adc::samples(input.channel)
         .set_field(input.channel % adc::kSamplesARegister, adc::kSampleBits, adc::k640Cycles);
 }
@@ -92,4 +84,4 @@ bool read(std::uint16_t pin, std::uint16_t& voltage) {
   return true;
 }
 
-}  // namespace robosync::boards::l475::analog
+}  // namespace robosync::boards::stm32l4::analog

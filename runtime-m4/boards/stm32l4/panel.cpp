@@ -1,11 +1,11 @@
 // See panel.hpp. ST's RM0351, 42 (SPI) and 11 (DMA): a channel of DMA fetches a picture from memory, and nobody is interrupted.
-#include "runtime-m4/boards/b-l475e-iot01a/panel.hpp"
+#include "runtime-m4/boards/stm32l4/panel.hpp"
 
-#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
 #include "runtime-m4/boards/common/panel_signal.hpp"
+#include "runtime-m4/boards/stm32l4/pins.hpp"
+#include "runtime-m4/boards/stm32l4/wiring.hpp"
 
-namespace robosync::boards::l475 {
+namespace robosync::boards::stm32l4 {
 namespace {
 
 struct Spi1 {  // for PanelSignal
@@ -16,14 +16,14 @@ struct Spi1 {  // for PanelSignal
   static constexpr std::uint64_t kOne = 0b110;
 
   static void let_go() {
-    pins::take_back(spi::kPanelPin);
+    pins::take_back(wiring::kPanel.pin);
     spi::kDma.control().write(0);
     spi::kControl.write(0);
   }
 
   // The SPI has two bytes or three of what is given up, and sends them first.
   static void send(std::uint16_t pin, std::span<const std::byte> bytes) {
-    if (pin != spi::kPanelPin) return;
+    if (pin != wiring::kPanel.pin) return;
     rcc::give_clock(rcc::kAhb1, rcc::kDma1);
     rcc::give_clock(rcc::kApb2, rcc::kSpi1);
     spi::kDma.control().write(0);
@@ -34,7 +34,7 @@ struct Spi1 {  // for PanelSignal
     spi::kDma.count().write(static_cast<std::uint32_t>(bytes.size()));
     spi::kControl2.write(spi::kBytesByDma);
     spi::kControl.write(spi::kSendsAt2500kHz);
-    pins::hand_over(spi::kPanelPin, spi::kFunctionOfPin);
+    pins::hand_over(wiring::kPanel.pin, wiring::kPanel.function);
     spi::kDma.control().write(DmaChannel::kBytesFromMemory | DmaChannel::kOn);
   }
 };
@@ -47,4 +47,4 @@ PanelOutput& panel_output() {
   return signal;
 }
 
-}  // namespace robosync::boards::l475
+}  // namespace robosync::boards::stm32l4

@@ -1,19 +1,18 @@
 // See echoes.hpp. ST's RM0351, 14 (EXTI) and 9.2 (SYSCFG).
-#include "runtime-m4/boards/b-l475e-iot01a/echoes.hpp"
+#include "runtime-m4/boards/stm32l4/echoes.hpp"
 
 #include <array>
 
-#include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
 #include "runtime-m4/boards/common/echo.hpp"
 #include "runtime-m4/boards/common/inputs.hpp"
+#include "runtime-m4/boards/stm32l4/inputs.hpp"
+#include "runtime-m4/boards/stm32l4/pins.hpp"
 
-namespace robosync::boards::l475::echoes {
+namespace robosync::boards::stm32l4::echoes {
 
 namespace {
 
-using inputs::is_high, inputs::kInputs;
+using inputs::is_high, wiring::kInputs;
 
 std::array<Echo, kInputs.size()> echoes;
 
@@ -25,7 +24,7 @@ constexpr std::uint32_t line(std::size_t i) {
 
 void start() {
   rcc::give_clock(rcc::kApb2, rcc::kSystemConfiguration);
-  for (const inputs::Input& input : kInputs) {
+  for (const Input& input : kInputs) {
     exti::port(input.bit).set_field(input.bit % 4, 4, number_of(input.port));
     exti::kMask.clear(1U << input.bit);
     exti::kRising.set(1U << input.bit);
@@ -62,4 +61,4 @@ void on_edge(std::uint32_t now) {
   }
 }
 
-}  // namespace robosync::boards::l475::echoes
+}  // namespace robosync::boards::stm32l4::echoes

@@ -1,11 +1,13 @@
 // See inputs.hpp.
-#include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
+#include "runtime-m4/boards/stm32l4/inputs.hpp"
 
 #include "runtime-m4/boards/common/inputs.hpp"
 
-namespace robosync::boards::l475::inputs {
+namespace robosync::boards::stm32l4::inputs {
 
-// The pull first: out of reset most pins are analog, and 9 belongs to the debugger.
+using wiring::kInputs;
+
+// The pull first: out of reset most pins are analog, or belong to the debugger.
 void start() {
   for (const Input& input : kInputs) {
     input.port.pulls().set_field(input.bit, 2, kPullUp);
@@ -18,4 +20,4 @@ bool is_high(std::uint16_t pin) {
   return i < kInputs.size() && is_high(kInputs[i]);
 }
 
-}  // namespace robosync::boards::l475::inputs
+}  // namespace robosync::boards::stm32l4::inputs

@@ -7,7 +7,7 @@
 
 #include "runtime-m4/boards/common/flash_store.hpp"
 
-namespace robosync::boards::l475 {
+namespace robosync::boards::stm32l4 {
 
 struct Flash {
   static constexpr std::uint32_t kPage = 2048;
@@ -24,4 +24,4 @@ struct Flash {
   static bool forgive_damage();
 };
 
-}  // namespace robosync::boards::l475
+}  // namespace robosync::boards::stm32l4

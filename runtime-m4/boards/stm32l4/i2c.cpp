@@ -1,7 +1,7 @@
 // See i2c.hpp. ST's RM0351, 39.4 (I2C) and 11 (DMA): the order of a transfer is that of 39.4.8 and 39.4.16.
-#include "runtime-m4/boards/b-l475e-iot01a/i2c.hpp"
+#include "runtime-m4/boards/stm32l4/i2c.hpp"
 
-namespace robosync::boards::l475 {
+namespace robosync::boards::stm32l4 {
 
 namespace {
 
@@ -26,12 +26,12 @@ void set_up(const DmaChannel& channel, Register data) {
 // The lines last: a master that has not begun leaves them alone.
 void I2cMaster::start() const {
   rcc::give_clock(rcc::kAhb1, rcc::kDma1);
-  rcc::give_clock(rcc::kApb1, registers_.clock);
-  set_up(wiring_.to_send, registers_.send());
-  set_up(wiring_.to_memory, registers_.received());
-  registers_.timing().write(I2cRegisters::kAlmost400kHz);
-  registers_.control().write(I2cRegisters::kOn);
-  for (const unsigned line : {wiring_.clock, wiring_.data}) {
+  rcc::give_clock(rcc::kApb1, wires_.master.clock);
+  set_up(wires_.to_send, wires_.master.send());
+  set_up(wires_.to_memory, wires_.master.received());
+  wires_.master.timing().write(I2cRegisters::kAlmost400kHz);
+  wires_.master.control().write(I2cRegisters::kOn);
+  for (const unsigned line : {wires_.clock, wires_.data}) {
     kPortOfI2c.change().write(1U << line);
     kPortOfI2c.open().set(1U << line);
     kPortOfI2c.pulls().set_field(line, 2, kPullUp);
@@ -46,28 +46,28 @@ void I2cMaster::begin(std::uint8_t address, std::span<const std::byte> out,
   reading_ = in.empty() ? 0
                         : I2cRegisters::to(address, in.size()) | I2cRegisters::kRead |
                               I2cRegisters::kStart | I2cRegisters::kStopBehind;
-  move(wiring_.to_send, port::bus_address(out.data()), out.size(), DmaChannel::kBytesFromMemory);
+  move(wires_.to_send, port::bus_address(out.data()), out.size(), DmaChannel::kBytesFromMemory);
   if (!in.empty())
-    move(wiring_.to_memory, port::bus_address(in.data()), in.size(), DmaChannel::kBytesToMemory);
-  registers_.transfer().write(I2cRegisters::to(address, out.size()) | I2cRegisters::kStart |
-                              (in.empty() ? I2cRegisters::kStopBehind : 0));
+    move(wires_.to_memory, port::bus_address(in.data()), in.size(), DmaChannel::kBytesToMemory);
+  wires_.master.transfer().write(I2cRegisters::to(address, out.size()) | I2cRegisters::kStart |
+                                 (in.empty() ? I2cRegisters::kStopBehind : 0));
 }
 
 // Who was refused stops by himself, and has a byte left that must not be the first one of the next transfer. Who was
 // outvoted has nothing to stop. ES0250: of a master, a bus error says nothing.
 Transfer I2cMaster::on_interrupt() {
-  const std::uint32_t state = registers_.state().read();
-  registers_.forget().write(
+  const std::uint32_t state = wires_.master.state().read();
+  wires_.master.forget().write(
       state & (I2cRegisters::kRefused | I2cRegisters::kStopped | I2cRegisters::kBusError));
   if ((state & I2cRegisters::kRefused) != 0) wrong_ = true;
-  if ((state & I2cRegisters::kWritten) != 0) registers_.transfer().write(reading_);
+  if ((state & I2cRegisters::kWritten) != 0) wires_.master.transfer().write(reading_);
   if ((state & (I2cRegisters::kStopped | I2cRegisters::kOutvoted)) == 0) return Transfer::goes_on;
   const bool outvoted = (state & I2cRegisters::kOutvoted) != 0;
   const bool whole =
-      !wrong_ && !outvoted && (reading_ == 0 || wiring_.to_memory.count().read() == 0);
+      !wrong_ && !outvoted && (reading_ == 0 || wires_.to_memory.count().read() == 0);
   if (whole) {
-    wiring_.to_send.control().write(0);
-    wiring_.to_memory.control().write(0);
+    wires_.to_send.control().write(0);
+    wires_.to_memory.control().write(0);
   } else {
     let_go();
   }
@@ -76,29 +76,29 @@ Transfer I2cMaster::on_interrupt() {
 
 // Off for three cycles of the bus at least, which the reading takes: what it was about is forgotten then, and its lines are free.
 void I2cMaster::switch_off() const {
-  wiring_.to_send.control().write(0);
-  wiring_.to_memory.control().write(0);
-  registers_.control().write(0);
-  static_cast<void>(registers_.control().read());
+  wires_.to_send.control().write(0);
+  wires_.to_memory.control().write(0);
+  wires_.master.control().write(0);
+  static_cast<void>(wires_.master.control().read());
 }
 
 void I2cMaster::let_go() const {
   switch_off();
-  registers_.control().write(I2cRegisters::kOn);
+  wires_.master.control().write(I2cRegisters::kOn);
 }
 
 void I2cMaster::take_clock() const {
   switch_off();
-  kPortOfI2c.mode().set_field(wiring_.clock, 2, kModeOfOutput);
+  kPortOfI2c.mode().set_field(wires_.clock, 2, kModeOfOutput);
 }
 
 void I2cMaster::give_clock_back() const {
-  kPortOfI2c.mode().set_field(wiring_.clock, 2, kModeOfFunction);
-  registers_.control().write(I2cRegisters::kOn);
+  kPortOfI2c.mode().set_field(wires_.clock, 2, kModeOfFunction);
+  wires_.master.control().write(I2cRegisters::kOn);
 }
 
 void I2cMaster::drive_clock(bool high) const {
-  kPortOfI2c.change().write(1U << (high ? wiring_.clock : wiring_.clock + 16));
+  kPortOfI2c.change().write(1U << (high ? wires_.clock : wires_.clock + 16));
 }
 
 void I2cMaster::half_bit() {
@@ -106,4 +106,4 @@ void I2cMaster::half_bit() {
     asm volatile("nop");
 }
 
-}  // namespace robosync::boards::l475
+}  // namespace robosync::boards::stm32l4

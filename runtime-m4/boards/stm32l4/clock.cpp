@@ -1,10 +1,10 @@
 // See clock.hpp. The 4 MHz are those of MSI, the oscillator inside the chip, which is right to about 1 %: near enough for the
 // serial line and for servos. So no crystal has to be there.
-#include "runtime-m4/boards/b-l475e-iot01a/clock.hpp"
+#include "runtime-m4/boards/stm32l4/clock.hpp"
 
-#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
+#include "runtime-m4/boards/stm32l4/registers.hpp"
 
-namespace robosync::boards::l475 {
+namespace robosync::boards::stm32l4 {
 
 namespace {
 
@@ -28,4 +28,4 @@ bool start_clock() {
   return becomes(rcc::kConfiguration, rcc::kRunsOnPll);
 }
 
-}  // namespace robosync::boards::l475
+}  // namespace robosync::boards::stm32l4

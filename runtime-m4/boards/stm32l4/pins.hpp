@@ -1,20 +1,18 @@
-// The pins that give pulses: those of the board's Arduino header, numbered as printed there (3 is D3), by the
-// timers 2 to 5. A frame is 20 ms. 13 is also the board's green LED.
+// The pins that give pulses (wiring::kOutputs), by the timers 2 to 5. A frame is 20 ms.
 //
-// From reset until start() they are not driven. 5 alone is pulled up then, by the chip, as it belongs to the debugger: so
-// the board's profile lets it have servo pulses only.
+// From reset until start() they are not driven. One that belongs to the debugger may be pulled up then, by the chip: so a board's
+// profile lets that one have servo pulses only.
 //
-// A5, which has the number 45 here, is for the enable input of a chip on the bus, and nothing else.
-//
-// PC6, which no program knows, is at the XSHUT pin of the distance sensor that is soldered to the board (UM2153): high from
-// the start on, and it stays so, whatever is switched off.
+// One pin is for the enable input of a chip on the bus, and nothing else (wiring::kEnable). Others, which no program knows, are high
+// from the start on, and stay so, whatever is switched off (wiring::kHeldHigh).
 #pragma once
 
 #include <cstdint>
 
-namespace robosync::boards::l475::pins {
+namespace robosync::boards::stm32l4::pins {
 
-// All pins low, but PC6, and the one at an enable input (boards::Board::enable()), which is high. Their ports have their clock.
+// All pins low, but those that are held high, and the one at an enable input (boards::Board::enable()), which is high. Their ports
+// have their clock.
 void start();
 
 // The pulse in microseconds, from the next frame on: no frame has part of one. 0 is off, at once. A pin that gives no
@@ -35,4 +33,4 @@ void enable(std::uint16_t pin, bool on);
 // All of them, at once. Any state of the machine.
 void switch_off();
 
-}  // namespace robosync::boards::l475::pins
+}  // namespace robosync::boards::stm32l4::pins

@@ -1,12 +1,12 @@
-// The peripherals of the STM32L475 that the firmware uses, and how the board B-L475E-IOT01A wires them. Facts of ST's
-// RM0351 (the chip's registers), DS10969 (its pins and interrupts) and UM2153 (the board).
+// The peripherals of the STM32L475 and the STM32L476 that the firmware uses. Facts of ST's RM0351 (the registers of both), DS10969
+// and DS10198 (their pins and interrupts).
 #pragma once
 
 #include <cstdint>
 
 #include "runtime-m4/port/cortex-m4/register.hpp"
 
-namespace robosync::boards::l475 {
+namespace robosync::boards::stm32l4 {
 
 using port::Register;
 
@@ -29,6 +29,7 @@ inline constexpr std::uint32_t kPortsAToD = 0b1111;
 inline constexpr std::uint32_t kAdc = 1U << 13;
 inline constexpr Register kApb1{0x4002'1058};
 inline constexpr std::uint32_t kTimers2To5 = 0b1111;
+inline constexpr std::uint32_t kUsart2 = 1U << 17;
 inline constexpr std::uint32_t kUart4 = 1U << 19;
 inline constexpr std::uint32_t kI2c1 = 1U << 21;
 inline constexpr std::uint32_t kI2c2 = 1U << 22;
@@ -238,8 +239,8 @@ inline constexpr unsigned kInterrupt10To15 = 40;
 struct Usart {
   std::uintptr_t base;
   unsigned interrupt;
-  Port port;               // of its pins
-  std::uint32_t function;  // … which they have for it
+  Register clocks;      // of rcc
+  std::uint32_t clock;  // … in which it has this one
 
   constexpr Register control() const { return {base}; }
   constexpr Register control3() const { return {base + 0x08}; }
@@ -260,15 +261,11 @@ struct Usart {
     return (kClockHz + baud / 2) / baud;
   }
 };
-// To the ST-Link, which is a serial port of USB.
-inline constexpr Usart kUsart1{0x4001'3800, 37, kPortB, 7};
-inline constexpr unsigned kLinkTransmitPin = 6;
-inline constexpr unsigned kLinkReceivePin = 7;
-// To a sound player: its transmitter alone, on D1 of the Arduino header.
-inline constexpr Usart kUart4{0x4000'4C00, 52, kPortA, 8};
-inline constexpr unsigned kPlayerTransmitPin = 0;
+inline constexpr Usart kUsart1{0x4001'3800, 37, rcc::kApb2, rcc::kUsart1};
+inline constexpr Usart kUsart2{0x4000'4400, 38, rcc::kApb1, rcc::kUsart2};
+inline constexpr Usart kUart4{0x4000'4C00, 52, rcc::kApb1, rcc::kUart4};
 
-namespace spi {  // SPI1, whose data go to a panel of lights, at D11 of the Arduino header; it has no clock pin, and hears nothing
+namespace spi {  // SPI1, whose data go to a panel of lights; it has no clock pin, and hears nothing
 inline constexpr Register kControl{0x4001'3000};
 inline constexpr std::uint32_t kHz = kClockHz / 32;
 // One way, out; master, whatever its select pin says; on.
@@ -279,8 +276,6 @@ inline constexpr std::uint32_t kBytesByDma = 7U << 8 | 1U << 1;
 inline constexpr Register kData{0x4001'300C};
 inline constexpr DmaChannel kDma{3};
 inline constexpr std::uint32_t kDmaForSpi = 1;
-inline constexpr std::uint16_t kPanelPin = 11;
-inline constexpr std::uint32_t kFunctionOfPin = 5;
 }  // namespace spi
 
 namespace iwdg {  // the independent watchdog, on an oscillator of its own of 32 kHz
@@ -294,4 +289,4 @@ inline constexpr Register kReload{0x4000'3008};
 inline constexpr std::uint32_t kHz = 32'000 / 4;
 }  // namespace iwdg
 
-}  // namespace robosync::boards::l475
+}  // namespace robosync::boards::stm32l4

@@ -1,21 +1,22 @@
-// ST's B-L475E-IOT01A: an STM32L475 (Cortex-M4F, 80 MHz, 1 MB of flash, 96 + 32 KB of RAM). QEMU has it as b-l475e-iot01a,
-// without timers and without watchdog.
+// A board with an STM32L475 or STM32L476 (Cortex-M4F, 80 MHz, 1 MB of flash, 96 + 32 KB of RAM), of which its wiring says the rest
+// (wiring.hpp).
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
-#include "runtime-m4/boards/b-l475e-iot01a/flash.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/i2c.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/panel.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/usart.hpp"
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/common/flash_store.hpp"
 #include "runtime-m4/boards/pins.hpp"
+#include "runtime-m4/boards/stm32l4/flash.hpp"
+#include "runtime-m4/boards/stm32l4/i2c.hpp"
+#include "runtime-m4/boards/stm32l4/panel.hpp"
+#include "runtime-m4/boards/stm32l4/usart.hpp"
 
-namespace robosync::boards::l475 {
+namespace robosync::boards::stm32l4 {
 
 class Board final : public boards::Board {
 public:
@@ -24,7 +25,7 @@ public:
   // Starts the clock of the core.
   Board();
 
-  const char* name() const override { return "b-l475e-iot01a"; }
+  const char* name() const override { return wiring::kName; }
   link::ResetReason reset_reason() const override;
   const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
@@ -56,13 +57,20 @@ public:
   I2c& i2c(unsigned bus) { return i2c_[bus]; }
 
 private:
+  template <std::size_t... kBus>
+  static constexpr std::array<I2c, sizeof...(kBus)> all_buses(
+      std::index_sequence<kBus...> /*of them*/) {
+    return {I2c(i2c_master(kBus))...};
+  }
+
   bool watchdog_reset_ = false;  // why the chip was reset
   Line line_;
   Player player_;
   static_assert(ROBOSYNC_STORE_BYTES == flash::kBytesOfBank);
   FlashStore<Flash> store_{flash::kBank2, ROBOSYNC_STORE_BYTES};
   bool asks_ahead_ = false;
-  std::array<I2c, 2> i2c_{I2c(i2c_master(0)), I2c(i2c_master(1))};
+  std::array<I2c, wiring::kBuses.size()> i2c_ =
+      all_buses(std::make_index_sequence<wiring::kBuses.size()>{});
 };
 
-}  // namespace robosync::boards::l475
+}  // namespace robosync::boards::stm32l4

@@ -1,27 +1,22 @@
-#include "runtime-m4/boards/b-l475e-iot01a/board.hpp"
+#include "runtime-m4/boards/stm32l4/board.hpp"
 
-#include <array>
-
-#include "runtime-m4/boards/b-l475e-iot01a/analog.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/clock.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/echoes.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/inputs.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
+#include "runtime-m4/boards/stm32l4/analog.hpp"
+#include "runtime-m4/boards/stm32l4/clock.hpp"
+#include "runtime-m4/boards/stm32l4/echoes.hpp"
+#include "runtime-m4/boards/stm32l4/inputs.hpp"
+#include "runtime-m4/boards/stm32l4/pins.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/clock.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 
-namespace robosync::boards::l475 {
+namespace robosync::boards::stm32l4 {
 
 namespace {
 
 constexpr std::uint32_t kWatchdogCounts = iwdg::kHz * Board::kWatchdogMs / 1000;
-
-constexpr std::array kEchoInterrupts{exti::kInterrupt2, exti::kInterrupt4, exti::kInterrupt5To9,
-                                     exti::kInterrupt10To15};
 
 Board board;
 
@@ -38,10 +33,10 @@ Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
   analog::start();
   for (I2c& bus : i2c_)
     bus.start();
-  for (const I2cRegisters& master : {kI2c1, kI2c2})
-    for (const unsigned interrupt : {master.event_interrupt, master.event_interrupt + 1})
+  for (const Bus& bus : wiring::kBuses)
+    for (const unsigned interrupt : {bus.master.event_interrupt, bus.master.event_interrupt + 1})
       port::core::enable_interrupt(interrupt);
-  for (const unsigned interrupt : kEchoInterrupts)
+  for (const unsigned interrupt : wiring::kEchoInterrupts)
     port::core::enable_interrupt(interrupt);
 }
 
@@ -119,54 +114,56 @@ void Board::watchdog_kick() {
   iwdg::kKey.write(iwdg::kKick);
 }
 
-}  // namespace robosync::boards::l475
+}  // namespace robosync::boards::stm32l4
 
-robosync::boards::Board& robosync_board = robosync::boards::l475::board;
+robosync::boards::Board& robosync_board = robosync::boards::stm32l4::board;
 
 void robosync::boards::switch_outputs_off() {
-  l475::pins::switch_off();
+  stm32l4::pins::switch_off();
 }
 
 const std::uint32_t robosync::port::hooks::kTickCounts =
-    robosync::boards::l475::kClockHz / 1'000'000 * robosync::kernel::kTick;
+    robosync::boards::stm32l4::kClockHz / 1'000'000 * robosync::kernel::kTick;
 
 extern "C" {
 
 void NMI_Handler();
-void Usart1_Handler();
-void Uart4_Handler();
+void Link_Handler();
+void Player_Handler();
 void Echo_Handler();
 void HeaderBus_Handler();
 void OwnBus_Handler();
 
 // The flash is damaged where it cannot be corrected: what runs is not what was written, unless that is in the store.
 void NMI_Handler() {
-  if (robosync::boards::l475::Flash::forgive_damage()) return;
+  if (robosync::boards::stm32l4::Flash::forgive_damage()) return;
   robosync::boards::reset_after({});
 }
 
-void Usart1_Handler() {
-  using robosync::boards::l475::Usart1;
-  auto& line = robosync::boards::l475::board.line();
-  if (Usart1::has_received()) line.on_receive();
-  if (Usart1::wants_to_send() && Usart1::can_send()) line.on_transmit();
+void Link_Handler() {
+  using robosync::boards::stm32l4::LinkUsart;
+  auto& line = robosync::boards::stm32l4::board.line();
+  if (LinkUsart::has_received()) line.on_receive();
+  if (LinkUsart::wants_to_send() && LinkUsart::can_send()) line.on_transmit();
 }
 
-void Uart4_Handler() {
-  robosync::boards::l475::board.player().on_transmit();
+void Player_Handler() {
+  robosync::boards::stm32l4::board.player().on_transmit();
 }
 
 // The clock counts down.
 void Echo_Handler() {
-  robosync::boards::l475::echoes::on_edge(~robosync::port::read_clock());
+  robosync::boards::stm32l4::echoes::on_edge(~robosync::port::read_clock());
 }
 
 void HeaderBus_Handler() {
-  robosync::boards::l475::board.i2c(0).on_interrupt();
+  robosync::boards::stm32l4::board.i2c(0).on_interrupt();
 }
 
+// Of the last one: who has one bus has no vector for this.
 void OwnBus_Handler() {
-  robosync::boards::l475::board.i2c(1).on_interrupt();
+  using robosync::boards::stm32l4::wiring::kBuses;
+  robosync::boards::stm32l4::board.i2c(kBuses.size() - 1).on_interrupt();
 }
 
 }  // extern "C"

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace robosync::boards::l475::echoes {
+namespace robosync::boards::stm32l4::echoes {
 
 // Ports and timers have their clock.
 void start();
@@ -13,4 +13,4 @@ std::uint32_t take(std::uint16_t echo);
 // `now` counts up at the clock of the core.  [interrupt of an edge]
 void on_edge(std::uint32_t now);
 
-}  // namespace robosync::boards::l475::echoes
+}  // namespace robosync::boards::stm32l4::echoes

@@ -1,4 +1,5 @@
-// The pins of the B-L475E-IOT01A, as they are shipped, against the model of the chip's timers: what comes out of each.
+// The pins of a board with this chip, as they are shipped, against the model of the chip's timers: what comes out of each. Which
+// board it is says ROBOSYNC_TEST_WIRES: the program is made for each of them.
 #include <map>
 #include <random>
 #include <vector>
@@ -6,30 +7,24 @@
 #include <catch2/catch.hpp>
 
 #include "compiler/config/boards.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
-#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
-#include "tests/runtime-m4/boards/stm32_timers.hpp"
+#include "runtime-m4/boards/stm32l4/pins.hpp"
+#include "runtime-m4/boards/stm32l4/registers.hpp"
+#include ROBOSYNC_TEST_WIRES
 
 using namespace robosync;
 using tests::Stm32Timers;
 using Level = Stm32Timers::Level;
-namespace pins = boards::l475::pins;
+namespace pins = boards::stm32l4::pins;
+using namespace tests::wired;
 
 namespace {
 
-// UM2153, table 4: which pin of the chip stands at which of the header.
-const std::map<std::uint16_t, Stm32Timers::Pin> kHeader{
-    {0, {'A', 1}},  {1, {'A', 0}},  {2, {'D', 14}}, {3, {'B', 0}}, {4, {'A', 3}},
-    {5, {'B', 4}},  {6, {'B', 1}},  {7, {'A', 4}},  {8, {'B', 2}}, {9, {'A', 15}},
-    {10, {'A', 2}}, {11, {'A', 7}}, {12, {'A', 6}}, {13, {'A', 5}}};
-constexpr Stm32Timers::Pin kA5{'C', 0};
-constexpr Stm32Timers::Pin kDistanceSensor{'C', 6};  // UM2153: its XSHUT
 constexpr unsigned kFrame = 20'000;
 
 std::vector<std::uint16_t> outputs() {
   std::vector<std::uint16_t> found;
   for (std::size_t i = 0; i < compiler::board_names().size(); ++i)
-    if (compiler::board_names()[i] == "b-l475e-iot01a")
+    if (compiler::board_names()[i] == kName)
       for (const auto& [first, last, power] : compiler::board_at(i).outputs)
         for (std::uint16_t pin = first; pin <= last; ++pin)
           found.push_back(pin);
@@ -39,7 +34,7 @@ std::vector<std::uint16_t> outputs() {
 // The chip, started as the board starts it, and never with a pin high on the way.
 struct Chip : Stm32Timers {
   Chip() {
-    boards::l475::rcc::kAhb2.set(boards::l475::rcc::kPortsAToD);
+    boards::stm32l4::rcc::kAhb2.set(boards::stm32l4::rcc::kPortsAToD);
     pins::start();
     starting = false;
   }
@@ -48,7 +43,8 @@ struct Chip : Stm32Timers {
     for (const auto& [number, pin] : kHeader)
       if (starting) CHECK(level(pin) != Level::high);
     CHECK((!starting || level(kA5) != Level::low));  // a servo chip is never on by chance
-    CHECK((!starting || level(kDistanceSensor) != Level::low));
+    for (const Stm32Timers::Pin& pin : kAwake)
+      CHECK((!starting || level(pin) != Level::low));
   }
   Level at(std::uint16_t pin) const { return level(kHeader.at(pin)); }
   void pass(unsigned us) {
@@ -81,7 +77,7 @@ struct Chip : Stm32Timers {
 }  // namespace
 
 TEST_CASE("each pin that the profile lets programs drive gives its pulse, and no other pin does") {
-  REQUIRE(outputs().size() == 9);
+  REQUIRE(outputs().size() == kOutputs);
   for (const std::uint16_t pin : outputs()) {
     Chip chip;
     pins::write(pin, 1500);
@@ -116,8 +112,8 @@ TEST_CASE("all pins at once, each with its own pulse; off and always on are leve
   std::map<std::uint16_t, unsigned> wanted;
   for (const std::uint16_t pin : outputs())
     pins::write(pin, wanted[pin] = pulse += 100);
-  pins::write(3, wanted[3] = kFrame);
-  pins::write(4, wanted[4] = 0);
+  pins::write(kThese[0], wanted[kThese[0]] = kFrame);
+  pins::write(kThese[1], wanted[kThese[1]] = 0);
   chip.pass(kFrame);
   const auto times = chip.high_times();
   for (const auto& [pin, time] : wanted)
@@ -143,19 +139,20 @@ TEST_CASE("whenever the pulse changes, no frame has anything but the old or the 
 }
 
 TEST_CASE("off is at once, and only that pin") {
+  const auto [one, other] = std::pair(kThese[0], kThese[1]);
   for (unsigned at = 0; at < 1800; at += 97) {
     Chip chip;
-    pins::write(3, 2000);  // both on timer 3
-    pins::write(11, 2000);
+    pins::write(one, 2000);
+    pins::write(other, 2000);
     chip.pass(kFrame + at);
-    REQUIRE(chip.at(3) == Level::high);
-    pins::write(3, 0);
-    CHECK(chip.at(3) == Level::low);
-    CHECK(chip.at(11) == Level::high);
-    CHECK(chip.high_time(3, 2 * kFrame) == 0);
-    pins::write(3, 700);  // and on again from the next frame
+    REQUIRE(chip.at(one) == Level::high);
+    pins::write(one, 0);
+    CHECK(chip.at(one) == Level::low);
+    CHECK(chip.at(other) == Level::high);
+    CHECK(chip.high_time(one, 2 * kFrame) == 0);
+    pins::write(one, 700);  // and on again from the next frame
     chip.pass(kFrame - at);
-    CHECK(chip.high_time(3) == 700);
+    CHECK(chip.high_time(one) == 700);
   }
 }
 
@@ -174,7 +171,7 @@ TEST_CASE("all off is at once, and before the start it does nothing") {
 }
 
 TEST_CASE(
-    "B-L475E: the pin at a chip's enable input is high from the start on, and whenever all is "
+    "STM32L4: the pin at a chip's enable input is high from the start on, and whenever all is "
     "off") {
   constexpr std::uint16_t kEnable = 45;
   Chip chip;
@@ -193,15 +190,19 @@ TEST_CASE(
   CHECK(chip.level(kA5) == Level::high);
 }
 
-TEST_CASE("B-L475E: the distance sensor on the board is awake from the start on, whatever is off") {
+TEST_CASE("STM32L4: what must be awake is so from the start on, whatever is off") {
   Chip chip;
-  CHECK(chip.level(kDistanceSensor) == Level::high);
+  const auto all_awake = [&] {
+    return std::ranges::all_of(kAwake,
+                               [&](const auto& pin) { return chip.level(pin) == Level::high; });
+  };
+  CHECK(all_awake());
   for (std::uint16_t pin = 0; pin < 64; ++pin) {
     pins::write(pin, 0);
     pins::enable(pin, true);
   }
-  CHECK(chip.level(kDistanceSensor) == Level::high);
+  CHECK(all_awake());
   pins::switch_off();
   chip.pass(2 * kFrame);
-  CHECK(chip.level(kDistanceSensor) == Level::high);
+  CHECK(all_awake());
 }

@@ -1,36 +1,17 @@
 // See pins.hpp.
-#include "runtime-m4/boards/b-l475e-iot01a/pins.hpp"
+#include "runtime-m4/boards/stm32l4/pins.hpp"
 
 #include <array>
 
-#include "runtime-m4/boards/b-l475e-iot01a/registers.hpp"
+#include "runtime-m4/boards/stm32l4/wiring.hpp"
 
-namespace robosync::boards::l475::pins {
+namespace robosync::boards::stm32l4::pins {
 
 namespace {
 
-struct Output {
-  std::uint16_t pin;  // of the header
-  Port port;
-  unsigned bit;
-  std::uint32_t function;
-  Timer timer;
-  unsigned channel;
-};
+using wiring::kEnable, wiring::kOutputs;
 
-constexpr std::array kOutputs{
-    Output{0, kPortA, 1, 2, kTimer5, 1},  Output{2, kPortD, 14, 2, kTimer4, 2},
-    Output{3, kPortB, 0, 2, kTimer3, 2},  Output{4, kPortA, 3, 2, kTimer5, 3},
-    Output{5, kPortB, 4, 2, kTimer3, 0},  Output{6, kPortB, 1, 2, kTimer3, 3},
-    Output{10, kPortA, 2, 2, kTimer5, 2}, Output{11, kPortA, 7, 2, kTimer3, 1},
-    Output{13, kPortA, 5, 1, kTimer2, 0}};
-constexpr std::uint16_t kEnable = 45;
-constexpr Port kEnablePort = kPortC;
-constexpr unsigned kEnableBit = 0;
-// What holds the distance sensor of the board (VL53L0X) in its standby while it is low: XSHUT.
-constexpr Port kAwakePort = kPortC;
-constexpr unsigned kAwakeBit = 6;
-constexpr std::array kTimers{kTimer2, kTimer3, kTimer4, kTimer5};
+constexpr std::array<Timer, 4> kTimers{kTimer2, kTimer3, kTimer4, kTimer5};
 
 constexpr std::uint32_t kFrame = 20'000;   // microseconds
 constexpr std::uint32_t kShortPulse = 12;  // microseconds
@@ -65,20 +46,19 @@ void low_at_once(const Timer& timer, unsigned channel) {
 }
 
 // High before it is an output.
-void wake_distance_sensor() {
-  kAwakePort.change().write(1U << kAwakeBit);
-  kAwakePort.pulls().set_field(kAwakeBit, 2, 0);
-  kAwakePort.mode().set_field(kAwakeBit, 2, kModeOfOutput);
+void hold_high(const Pin& pin) {
+  pin.port.change().write(1U << pin.bit);
+  pin.port.pulls().set_field(pin.bit, 2, 0);
+  pin.port.mode().set_field(pin.bit, 2, kModeOfOutput);
 }
 
 }  // namespace
 
 // What a pin is to be first: when the timers get theirs, these are low.
 void start() {
-  enable(kEnable, false);
-  kEnablePort.pulls().set_field(kEnableBit, 2, 0);
-  kEnablePort.mode().set_field(kEnableBit, 2, kModeOfOutput);
-  wake_distance_sensor();
+  hold_high({kEnable.port, kEnable.bit});
+  for (const Pin& pin : wiring::kHeldHigh)
+    hold_high(pin);
   rcc::give_clock(rcc::kApb1, rcc::kTimers2To5);
   for (const Timer& timer : kTimers)
     start(timer);
@@ -120,7 +100,7 @@ void take_back(std::uint16_t pin) {
 }
 
 void enable(std::uint16_t pin, bool on) {
-  if (pin == kEnable) kEnablePort.change().write(1U << (on ? kEnableBit + 16 : kEnableBit));
+  if (pin == kEnable.pin) kEnable.port.change().write(1U << (on ? kEnable.bit + 16 : kEnable.bit));
 }
 
 std::uint32_t read(std::uint16_t pin) {
@@ -129,10 +109,10 @@ std::uint32_t read(std::uint16_t pin) {
 }
 
 void switch_off() {
-  enable(kEnable, false);
+  enable(kEnable.pin, false);
   for (const Timer& timer : kTimers)
     for (unsigned channel = 0; channel < Timer::kChannels; ++channel)
       low_at_once(timer, channel);
 }
 
-}  // namespace robosync::boards::l475::pins
+}  // namespace robosync::boards::stm32l4::pins

@@ -1,11 +1,11 @@
-// The voltages of the Arduino header's A0 to A4, by the chip's first converter, ADC1. Here they have the numbers 40 to 44.
+// Voltages of pins (wiring::kAnalogInputs), by the chip's first converter, ADC1.
 //
 // They are analog inputs from start() on and never anything else.
 #pragma once
 
 #include <cstdint>
 
-namespace robosync::boards::l475::analog {
+namespace robosync::boards::stm32l4::analog {
 
 // Their port has its clock. A converter that does not come up does not answer later, either.
 void start();
@@ -13,4 +13,4 @@ void start();
 // pin. [one thread at a time]
 [[nodiscard]] bool read(std::uint16_t pin, std::uint16_t& voltage);
 
-}  // namespace robosync::boards::l475::analog
+}  // namespace robosync::boards::stm32l4::analog

@@ -1,0 +1,13 @@
+// Which kinds of parts the board has, as its profile says (stdlib/boards/NAME.json, profile.cmake): all that portable code knows of
+// it when it is compiled. On the host, what any board has.
+#pragma once
+
+namespace robosync::boards {
+
+inline constexpr bool kHasLights = ROBOSYNC_LIGHTS != 0;
+inline constexpr bool kHasSpeaker = ROBOSYNC_SPEAKER != 0;
+inline constexpr bool kHasPanel = ROBOSYNC_HAS_PANELS != 0;
+inline constexpr bool kHasI2c = ROBOSYNC_HAS_I2C_BUSES != 0;
+inline constexpr bool kHasSerialLine = ROBOSYNC_HAS_SERIAL_LINES != 0;
+
+}  // namespace robosync::boards
