@@ -60,12 +60,10 @@ void change(std::vector<std::byte>& bytes, std::span<const Record> section, std:
   std::memcpy(to, &record, sizeof record);
 }
 
-// The program with sensors that are fed, whatever they were, and tell each
-// reading as it is. Those that fell silent in the recording do so again.
-std::vector<std::byte> as_fed(const Program& program, const std::set<std::uint8_t>& silent) {
-  std::vector<std::byte> bytes(program.bytes().begin(), program.bytes().end());
+// The program with sensors that are fed, whatever they were: it needs neither drivers nor algorithms. A damaged image stays as it is.
+std::vector<std::byte> with_fed_sensors(std::vector<std::byte> bytes) {
   vm::Image image;
-  if (!vm::view_image(bytes, image)) return bytes;
+  if (!vm::view_image(bytes, image) || !vm::is_named(bytes, {})) return bytes;
   for (std::size_t i = 0; i < image.sensors.size(); ++i)
     change<vm::Sensor>(bytes, image.sensors, i, [](vm::Sensor& sensor) {
       if (vm::is_served(sensor.driver)) return;
@@ -73,6 +71,16 @@ std::vector<std::byte> as_fed(const Program& program, const std::set<std::uint8_
       sensor.period_ms = 0;
       sensor.first_input = 0;
     });
+  vm::seal(bytes);
+  return bytes;
+}
+
+// Its channels tell each reading unchanged, and only those that fell silent in the recording can do so.
+std::vector<std::byte> with_plain_channels(const Program& program,
+                                           const std::set<std::uint8_t>& silent) {
+  std::vector<std::byte> bytes(program.bytes().begin(), program.bytes().end());
+  vm::Image image;
+  if (!vm::view_image(bytes, image)) return bytes;
   for (std::size_t i = 0; i < image.channels.size(); ++i) {
     change<vm::Channel>(bytes, image.channels, i, [](vm::Channel& channel) { channel.change = 0; });
     if (!silent.contains(static_cast<std::uint8_t>(i)))
@@ -154,8 +162,10 @@ public:
   void run(const Readings& readings, const std::set<std::uint8_t>& silent) {
     for (std::size_t i = 0; i < readings.size(); ++i) {
       const Told& told = readings[i];
-      // There was another step in this millisecond, which did not know of it.
-      if (first_step_.at(told.at_us) < told.step) simulator_.run_until(told.at_us);
+      // An earlier step of this millisecond did not know of this reading, nor of others of its step.
+      const bool is_first_of_step = i == 0 || readings[i - 1].step != told.step;
+      if (is_first_of_step && first_step_.at(told.at_us) < told.step)
+        simulator_.run_until(told.at_us);
       if (!told.value) continue;
       simulator_.feed(told.at_us, told.channel, *told.value);
       if (silent.contains(told.channel)) repeat(told, next_of(readings, i));
@@ -330,7 +340,9 @@ Replayed replay(const RecordedProgram& recorded, const std::string& file,
     throw Failure(Exit::program, name + " ran for longer than a day, which is too long to replay");
   const bool is_other = !in_its_place.empty();
   const Program program(
-      is_other ? std::vector(in_its_place.begin(), in_its_place.end()) : recorded.image, name);
+      with_fed_sensors(is_other ? std::vector(in_its_place.begin(), in_its_place.end())
+                                : recorded.image),
+      name);
   const vm::Image& image = program.image();
   const Readings readings = readings_of(recorded, image, file);
   const TraceNames names{&image, {}, nullptr};
@@ -340,7 +352,7 @@ Replayed replay(const RecordedProgram& recorded, const std::string& file,
     if (is_compared(kind_of(line))) replayed.push_back(std::move(line));
   };
   const std::set<std::uint8_t> silent = silent_ones(readings);
-  const std::vector<std::byte> bytes = as_fed(program, silent);
+  const std::vector<std::byte> bytes = with_plain_channels(program, silent);
   sim::Simulator simulator(bytes, take, program.board(), seed_of(recorded));
   if (!simulator.verdict().ok())
     throw Failure(Exit::program, name + " does not run on this computer");

@@ -106,7 +106,9 @@ void add_object(Json& object, const EventReader& reader) {
 }
 
 void add_value(Json& object, const EventReader& reader) {
-  const vm::Value value = reader.value(0);
+  // The board stores the moment of a RESTART; what the program reads of the TIMER then is 0.
+  const bool restarted = reader.shape().subject == About::variable && reader.is_timer();
+  const vm::Value value = restarted ? 0 : reader.value(0);
   const Meaning meaning = reader.meaning();
   if (const std::string_view label = reader.label(meaning, value); !label.empty()) {
     object["value"] = label;

@@ -65,6 +65,18 @@ TEST_CASE("a module in a file is an algorithm like any other") {
   CHECK_THAT(dumped.out, Contains("own: hostile of channel 0 on, every 20 ms"));
 }
 
+TEST_CASE("what a module in a file made is replayed without it") {
+  const Folder folder;
+  const std::string program = robot_with(folder, hostile("well"));
+  const Outcome ran = rsc({"run", program, "--scenario", folder.path("push.json"), "--record",
+                           folder.path("push.jsonl")});
+  REQUIRE(ran.exit == 0);
+  const Outcome again = rsc({"replay", folder.path("push.jsonl")});
+  CAPTURE(again.out, again.err);
+  CHECK(again.exit == 0);
+  CHECK(rsc({"replay", folder.path("push.jsonl"), "--program", program}).exit == 0);
+}
+
 TEST_CASE(
     "a module that breaks its word is stopped as on the board: the robot goes on, and rsc says "
     "so") {

@@ -72,6 +72,32 @@ TEST_CASE("every example's run is replayed to the same") {
   CHECK(commands > 100);
 }
 
+TEST_CASE("what an algorithm puts out at one sample is one step in the replay, too") {
+  const test::Folder folder;
+  folder.write("robot.json", R"({
+    "sensors": [{"name": "pad", "type": "VIRTUAL", "channels": {"FORCE": {"unit": "N", "range": [0, 20]}}}],
+    "actuators": [{"name": "voice", "type": "VIRTUAL", "device": "speaker"}],
+    "algorithms": [{"name": "touch", "module": "touch_levels", "input": "pad",
+                    "config": {"light": "0.5N", "firm": "4N"}}]})");
+  const std::string program = folder.write("robot.rsl", R"(WHEN touch LEVEL BECOMES none
+DO
+  IF touch TOUCH IS tap
+  DO SAY "A tap"
+  ELSE SAY "Gone"
+  END
+END
+)");
+  const std::string scenario = folder.write("tap.json", R"({"duration": "3s", "stimuli": [
+    {"at": "0s", "sensor": "pad", "value": "0N"}, {"at": "1s", "sensor": "pad", "value": "1N"},
+    {"at": "1.2s", "sensor": "pad", "value": "0N"}]})");
+  const Outcome ran =
+      test::rsc({"run", program, "--scenario", scenario, "--record", folder.path("r.jsonl")});
+  CHECK_THAT(ran.out, Contains("SAY A tap"));
+  const Outcome again = test::rsc({"replay", folder.path("r.jsonl")});
+  CAPTURE(again.out, again.err);
+  CHECK(again.exit == 0);
+}
+
 TEST_CASE("replay says where a recording and its replay differ first") {
   const Recorded robot;
   Outcome outcome = robot.replay(robot.read("r.jsonl"));

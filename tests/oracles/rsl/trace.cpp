@@ -61,7 +61,8 @@ void Trace::variable(std::size_t variable, Number value) {
   const compiler::ir::Variable& config = program_.variables[variable];
   Json object = line(now_, "set");
   object["variable"] = config.name;
-  add_value(object, value, config.labels, config.dimension);
+  const bool restarted = config.kind == vm::VariableKind::timer;
+  add_value(object, restarted ? Number(0) : value, config.labels, config.dimension);
   out_ << object << "\n";
 }
 
