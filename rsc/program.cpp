@@ -39,16 +39,6 @@ bool is_image(const std::string& file, std::span<const std::byte> bytes) {
   return compiler::ascii::same(extension, ".rsb") || magic == vm::kMagic;
 }
 
-// Relative to the file that uses it. Two ways to write one path give one name.
-std::optional<compiler::Input> read_module(const Texts& texts, const std::string& user,
-                                           const std::string& file) {
-  const std::filesystem::path path =
-      (std::filesystem::path(user).parent_path() / file).lexically_normal();
-  std::error_code error;
-  if (!texts.has(path) || std::filesystem::is_directory(path, error)) return std::nullopt;
-  return compiler::Input{path.string(), texts.read(path)};
-}
-
 std::vector<std::string> lines_of(std::string_view text) {
   std::vector<std::string> lines;
   while (!text.empty()) {
@@ -80,6 +70,15 @@ constexpr std::array<std::string_view, policy::kWhose> kWhose = {
     "variables", "algorithms", "image",     "borders"};
 
 }  // namespace
+
+std::optional<compiler::Input> read_module(const Texts& texts, const std::string& user,
+                                           const std::string& file) {
+  const std::filesystem::path path =
+      (std::filesystem::path(user).parent_path() / file).lexically_normal();
+  std::error_code error;
+  if (!texts.has(path) || std::filesystem::is_directory(path, error)) return std::nullopt;
+  return compiler::Input{path.string(), texts.read(path)};
+}
 
 std::string_view name_of(policy::Whose whose) {
   return kWhose[static_cast<std::size_t>(whose)];

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,6 +45,12 @@ struct CompileOptions {
                                        const policy::BoardMemory& board);
 // "behaviours", and so on.
 [[nodiscard]] std::string_view name_of(policy::Whose whose);
+
+// The text of a module that `user` USEs as `file`, which is relative to it; nothing when it cannot be read. Two ways to write one
+// path give one name.
+[[nodiscard]] std::optional<compiler::Input> read_module(const Texts& texts,
+                                                         const std::string& user,
+                                                         const std::string& file);
 
 // Compiles `file` with its configuration. Throws Failure (outside) when one cannot be read.
 [[nodiscard]] compiler::Result compile_file(const std::string& file, const CompileOptions& options,

@@ -18,8 +18,8 @@ using Given = std::map<std::string, std::string>;  // names, by the parameter th
 
 class Walk {
 public:
-  Walk(const ast::Tree& program, const Defines& defines, const Robot* robot)
-      : program_(program), defines_(defines), robot_(robot) {}
+  Walk(Trees trees, const Defines& defines, const Robot* robot)
+      : trees_(trees), defines_(defines), robot_(robot) {}
 
   void block(const ast::Block& block) {
     for (const ast::Stmt& stmt : block)
@@ -100,14 +100,20 @@ private:
 
   // All of its columns: PERFORM claims them at once.
   bool add_motion(std::string_view name) {
-    for (const ast::Item& item : program_.items) {
-      const auto* const motion = std::get_if<ast::Motion>(&item.node);
-      if (motion == nullptr || !ascii::same(motion->name.text, name)) continue;
-      for (const ast::Name& column : motion->columns)
-        add(column.text);
-      return true;
-    }
-    return false;
+    const ast::Motion* const motion = motion_called(name);
+    if (motion == nullptr) return false;
+    for (const ast::Name& column : motion->columns)
+      add(column.text);
+    return true;
+  }
+
+  const ast::Motion* motion_called(std::string_view name) const {
+    for (const ast::Tree* const tree : trees_)
+      for (const ast::Item& item : tree->items)
+        if (const auto* const motion = std::get_if<ast::Motion>(&item.node);
+            motion != nullptr && ascii::same(motion->name.text, name))
+          return motion;
+    return nullptr;
   }
 
   // SAY "…" names none: it is the one that knows the verb.
@@ -122,7 +128,7 @@ private:
     }
   }
 
-  const ast::Tree& program_;
+  Trees trees_;
   const Defines& defines_;
   const Robot* robot_;
   Given given_;
@@ -141,9 +147,9 @@ bool share(const Party& a, const Party& b) {
 
 }  // namespace
 
-ActuatorNames actuators_of(const ast::Block& block, const ast::Tree& program,
-                           const Defines& defines, const Robot* robot) {
-  Walk walk(program, defines, robot);
+ActuatorNames actuators_of(const ast::Block& block, Trees trees, const Defines& defines,
+                           const Robot* robot) {
+  Walk walk(trees, defines, robot);
   walk.block(block);
   return std::move(walk.names);
 }

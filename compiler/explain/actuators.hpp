@@ -15,8 +15,8 @@ namespace robosync::compiler::explain {
 // Names of actuators; of a group, its members. Without a robot, the names in the program.
 using ActuatorNames = std::set<std::string>;
 
-// `program` has the MOTIONs that PERFORM may mean. `robot` may be null.
-[[nodiscard]] ActuatorNames actuators_of(const ast::Block& block, const ast::Tree& program,
+// `trees` have the MOTIONs that PERFORM may mean. `robot` may be null.
+[[nodiscard]] ActuatorNames actuators_of(const ast::Block& block, Trees trees,
                                          const Defines& defines, const Robot* robot);
 
 // A behaviour, or a rule outside one.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -36,36 +37,76 @@ int to_number(const std::optional<ast::Name>& digits) {
 
 class Teller {
 public:
-  Teller(const ast::Tree& program, const SourceMap& sources, const Robot* robot)
-      : program_(program), sources_(sources), robot_(robot), defines_(defines_of(program)) {}
+  Teller(Trees trees, const SourceMap& sources, const Robot* robot)
+      : trees_(trees), sources_(sources), robot_(robot), defines_(defines_of(trees)) {
+    if (!trees.front()->items.empty()) own_file_ = trees.front()->items.front().span.file;
+  }
 
   std::string tell() {
     find_parties();
     std::string memory;
-    for (const ast::Item& item : program_.items)
-      memory += std::visit([&](const auto& node) { return remembered(node); }, item.node);
+    for_each_item([&](const ast::Item& item) {
+      if (is_own(item) || keeps_something(item))
+        memory += std::visit([&](const auto& node) { return remembered(node); }, item.node);
+    });
     if (!memory.empty()) text_ += "\nWhat has a name:\n" + memory;
     tell_each<ast::Check>();
     tell_each<ast::Limit>();
     tell_each<ast::Safety>();
-    for (const ast::Item& item : program_.items) {
+    for_each_item([&](const ast::Item& item) {
       if (const auto* node = std::get_if<ast::Behavior>(&item.node)) tell(*node, item.span);
       if (const auto* node = std::get_if<ast::Rule>(&item.node)) tell(*node, item.span);
-    }
-    tell_each<ast::Define>();
+    });
+    tell_defines();
     return std::string(kHowItWorks) + text_;
   }
 
 private:
+  template <typename Do>
+  void for_each_item(Do&& what) const {
+    for (const ast::Tree* const tree : trees_)
+      for (const ast::Item& item : tree->items)
+        what(item);
+  }
   template <typename Node>
   void tell_each() {
-    for (const ast::Item& item : program_.items) {
+    for_each_item([&](const ast::Item& item) {
       if (const auto* node = std::get_if<Node>(&item.node)) tell(*node, item.span);
-    }
+    });
   }
 
-  std::size_t line_of(Span span) const {
-    return sources_.file(span.file).position(span.begin).line;
+  // Those of modules only if something that is told does them, or the text would be a library's.
+  void tell_defines() {
+    std::set<const ast::Define*> told;
+    for (bool more = true; more;) {
+      more = false;
+      for_each_item([&](const ast::Item& item) {
+        const auto* const node = std::get_if<ast::Define>(&item.node);
+        if (node == nullptr || !(is_own(item) || is_named(*node)) || !told.insert(node).second)
+          return;
+        tell(*node, item.span);
+        more = true;
+      });
+    }
+  }
+  bool is_named(const ast::Define& define) const {
+    return folded(text_).find(folded(fmt::format("(see DEFINE {})", define.name.text))) !=
+           std::string::npos;
+  }
+
+  bool is_own(const ast::Item& item) const { return item.span.file == own_file_; }
+  static bool keeps_something(const ast::Item& item) {
+    return std::holds_alternative<ast::Remember>(item.node) ||
+           std::holds_alternative<ast::State>(item.node) ||
+           std::holds_alternative<ast::Timer>(item.node) ||
+           std::holds_alternative<ast::Feeling>(item.node);
+  }
+
+  // "line 3", "line 3 of manners.rsl"; modules of the library are called <gestures>.
+  std::string place_of(Span span) const {
+    const SourceFile& file = sources_.file(span.file);
+    const std::string line = fmt::format("line {}", file.position(span.begin).line);
+    return span.file == own_file_ ? line : fmt::format("{} of {}", line, file.name());
   }
   void say(std::size_t indent, std::string_view words) {
     text_ += fmt::format("{:{}}{}\n", "", indent, words);
@@ -139,7 +180,7 @@ private:
   }
 
   void tell(const ast::Check& node, Span span) {
-    say(0, fmt::format("\nCHECK {} (line {}) puts {} into words:", node.name.text, line_of(span),
+    say(0, fmt::format("\nCHECK {} ({}) puts {} into words:", node.name.text, place_of(span),
                        number(*node.operand)));
     for (const ast::Band& band : node.bands)
       say(kIndent, fmt::format("{}: {}", band.label.text, range(band)));
@@ -158,7 +199,7 @@ private:
 
   void tell(const ast::Limit& node, Span span) {
     const std::string limit = number(*node.value);
-    say(0, fmt::format("\nLIMIT (line {}):", line_of(span)));
+    say(0, fmt::format("\nLIMIT ({}):", place_of(span)));
     if (folded(node.channel.text) == "speed") {
       say(kIndent, fmt::format("{} never moves faster than {}, whatever a rule asks for.",
                                node.actuator.text, limit));
@@ -171,8 +212,8 @@ private:
   }
 
   void tell(const ast::Safety& node, Span span) {
-    say(0, fmt::format("\nSAFETY {} (line {}). Nothing is more important:", node.name.text,
-                       line_of(span)));
+    say(0, fmt::format("\nSAFETY {} ({}). Nothing is more important:", node.name.text,
+                       place_of(span)));
     text_ += safety_text(node, defines_, kIndent);
   }
 
@@ -187,7 +228,7 @@ private:
 
   void add(ActuatorNames& names, const ast::Rule& rule) const {
     const auto block = [&](const ast::Block& body) {
-      names.merge(actuators_of(body, program_, defines_, robot_));
+      names.merge(actuators_of(body, trees_, defines_, robot_));
     };
     if (const auto* when = std::get_if<ast::WhenRule>(&rule.node)) {
       block(when->then_block);
@@ -203,7 +244,7 @@ private:
 
   void find_parties() {
     int unnumbered = 0;
-    for (const ast::Item& item : program_.items) {
+    for_each_item([&](const ast::Item& item) {
       if (const auto* node = std::get_if<ast::Behavior>(&item.node)) {
         Party party{std::string(node->name.text), priority_of(*node), {}};
         for (const ast::Rule& rule : node->rules)
@@ -211,13 +252,13 @@ private:
         parties_.push_back(std::move(party));
       } else if (const auto* rule = std::get_if<ast::Rule>(&item.node)) {
         const bool numbered = rule->modifiers.priority.has_value();
-        Party party{fmt::format("the rule at line {}", line_of(rule->span)),
+        Party party{"the rule at " + place_of(rule->span),
                     numbered ? to_number(rule->modifiers.priority) : unnumbered--,
                     {}};
         add(party.actuators, *rule);
         parties_.push_back(std::move(party));
       }
-    }
+    });
   }
 
   void tell_meetings(bool several_rules) {
@@ -237,14 +278,14 @@ private:
 
   void tell(const ast::Behavior& node, Span span) {
     const int priority = priority_of(node);
-    say(0, fmt::format("\nBEHAVIOR {} (line {}){}:", node.name.text, line_of(span),
+    say(0, fmt::format("\nBEHAVIOR {} ({}){}:", node.name.text, place_of(span),
                        priority > 0 ? fmt::format(", priority {}", priority) : ""));
     tell_meetings(node.rules.size() > 1);
     for (const ast::Remember& variable : node.variables)
       text_ += remembered(variable);
     for (const ast::Rule& rule : node.rules) {
       text_ += '\n';
-      text_ += rule_text(rule, line_of(rule.span), defines_, kIndent);
+      text_ += rule_text(rule, place_of(rule.span), defines_, kIndent);
     }
   }
 
@@ -256,19 +297,20 @@ private:
                            : std::string("less important than every behaviour with a priority "
                                          "and than such rules before it")));
     tell_meetings(false);
-    text_ += rule_text(node, line_of(span), defines_, kIndent);
+    text_ += rule_text(node, place_of(span), defines_, kIndent);
   }
 
   void tell(const ast::Define& node, Span span) {
     std::vector<std::string> parameters;
     for (const ast::Name& parameter : node.parameters)
       parameters.emplace_back(parameter.text);
-    say(0, fmt::format("\nDEFINE {}{} (line {}) means:", node.name.text,
-                       parameters.empty() ? "" : " with " + list(parameters), line_of(span)));
+    say(0, fmt::format("\nDEFINE {}{} ({}) means:", node.name.text,
+                       parameters.empty() ? "" : " with " + list(parameters), place_of(span)));
     text_ += statements(node.body, defines_, kIndent);
   }
 
-  const ast::Tree& program_;
+  Trees trees_;
+  FileId own_file_ = 0;
   const SourceMap& sources_;
   const Robot* robot_;
   Defines defines_;
@@ -279,8 +321,8 @@ private:
 
 }  // namespace
 
-std::string program_text(const ast::Tree& program, const SourceMap& sources, const Robot* robot) {
-  return Teller(program, sources, robot).tell();
+std::string program_text(Trees trees, const SourceMap& sources, const Robot* robot) {
+  return Teller(trees, sources, robot).tell();
 }
 
 }  // namespace robosync::compiler::explain

@@ -12,8 +12,8 @@ constexpr std::size_t kRuleIndent = 2;
 
 class RuleWriter {
 public:
-  RuleWriter(const Defines& defines, std::size_t line, std::size_t indent)
-      : defines_(defines), line_(line), indent_(indent) {}
+  RuleWriter(const Defines& defines, std::string_view place, std::size_t indent)
+      : defines_(defines), place_(place), indent_(indent) {}
 
   void write(const ast::WhenRule& rule) {
     see(*rule.condition);
@@ -109,11 +109,11 @@ private:
   void say(std::size_t more, std::string_view words) {
     text += fmt::format("{:{}}{}\n", "", indent_ + more, words);
   }
-  void title(std::string_view words) { say(0, fmt::format("{} (line {}):", words, line_)); }
+  void title(std::string_view words) { say(0, fmt::format("{} ({}):", words, place_)); }
   void body(const ast::Block& block) { text += statements(block, defines_, indent_ + kRuleIndent); }
 
   const Defines& defines_;
-  std::size_t line_;
+  std::string_view place_;
   std::size_t indent_;
   bool has_else_ = false;
   bool one_comparison_ = false;  // the condition is nothing else, but for its FOR
@@ -122,16 +122,16 @@ private:
 
 }  // namespace
 
-std::string rule_text(const ast::Rule& rule, std::size_t line, const Defines& defines,
+std::string rule_text(const ast::Rule& rule, std::string_view place, const Defines& defines,
                       std::size_t indent) {
-  RuleWriter writer(defines, line, indent);
+  RuleWriter writer(defines, place, indent);
   std::visit([&](const auto& node) { writer.write(node); }, rule.node);
   writer.write(rule.modifiers);
   return std::move(writer.text);
 }
 
 std::string safety_text(const ast::Safety& safety, const Defines& defines, std::size_t indent) {
-  RuleWriter writer(defines, 0, indent);
+  RuleWriter writer(defines, "", indent);
   writer.write(safety);
   return std::move(writer.text);
 }

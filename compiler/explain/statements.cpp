@@ -181,13 +181,12 @@ std::string folded(std::string_view name) {
   return text;
 }
 
-Defines defines_of(const ast::Tree& program) {
+Defines defines_of(Trees trees) {
   Defines defines;
-  for (const ast::Item& item : program.items) {
-    if (const auto* define = std::get_if<ast::Define>(&item.node)) {
-      defines.emplace(folded(define->name.text), define);
-    }
-  }
+  for (const ast::Tree* const tree : trees)
+    for (const ast::Item& item : tree->items)
+      if (const auto* define = std::get_if<ast::Define>(&item.node))
+        defines.emplace(folded(define->name.text), define);
   return defines;
 }
 

@@ -2,15 +2,20 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "compiler/syntax/ast.hpp"
 
 namespace robosync::compiler::explain {
 
-// The DEFINEs of a program by name, in the spelling that `folded` makes the same for all cases.
+// A program and the modules that it uses; the program is the first.
+using Trees = std::span<const ast::Tree* const>;
+
+// The DEFINEs of a program by name, in the spelling that `folded` makes the same for all cases. The first of a name counts.
 using Defines = std::map<std::string, const ast::Define*>;
-[[nodiscard]] Defines defines_of(const ast::Tree& program);
+[[nodiscard]] Defines defines_of(Trees trees);
 [[nodiscard]] std::string folded(std::string_view name);
 
 // "move right_arm quickly".

@@ -14,6 +14,7 @@
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/explain/codes.hpp"
 #include "compiler/explain/program_text.hpp"
+#include "compiler/reading.hpp"
 #include "compiler/syntax/parser.hpp"
 #include "rsc/algorithm_modules.hpp"
 #include "rsc/console.hpp"
@@ -87,14 +88,23 @@ void explain_file(const ExplainOptions& options) {
   compiler::Diagnostics diagnostics;
   const compiler::FileId file = sources.add(options.what, read_text(options.what));
   const std::optional<compiler::Robot> robot = robot_for(options, sources);
-  const compiler::ast::Tree program = compiler::parse(sources, file, diagnostics);
+  compiler::Reading reading;
+  reading.tree = compiler::parse(sources, file, diagnostics);
+  const Texts texts;
+  reading.modules = compiler::load_modules(
+      reading.tree, sources,
+      [&](const std::string& user, const std::string& name) {
+        return read_module(texts, user, name);
+      },
+      diagnostics);
   diagnostics.finish();
   std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr());
   if (diagnostics.errors() > 0) {
     if (options.format == Format::json) std::cout << compiler::render_json(diagnostics, sources);
     throw Failure(Exit::program, fmt::format("{}: {}", options.what, summary(diagnostics)));
   }
-  const std::string text = explain::program_text(program, sources, robot ? &*robot : nullptr);
+  const std::string text =
+      explain::program_text(reading.trees(), sources, robot ? &*robot : nullptr);
   if (options.format == Format::json) {
     std::cout << nlohmann::ordered_json{{"file", options.what}, {"text", text}}.dump() << '\n';
   } else {

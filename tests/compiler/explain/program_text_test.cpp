@@ -45,7 +45,8 @@ Read read(std::string text, const std::string& robot = {}) {
 
 std::string told(const std::string& text, const std::string& robot = {}) {
   const Read it = read(text, robot);
-  return explain::program_text(it.program, it.sources, it.robot ? &*it.robot : nullptr);
+  const ast::Tree* const tree = &it.program;
+  return explain::program_text({&tree, 1}, it.sources, it.robot ? &*it.robot : nullptr);
 }
 
 // The first line of the rule `WHEN condition DO` or the like.
@@ -261,4 +262,26 @@ TEST_CASE("a MARGIN belongs to the comparisons, and NOT turns round what they gi
   CHECK_THAT(margin("a < 50cm AND b < 3cm"), Contains(each + ".\n"));
   for (const char* const turned : {"NOT (a < 50cm)", "a < 50cm AND NOT b"})
     CHECK_THAT(margin(turned), Contains(each + "; NOT turns round what that gives.\n"));
+}
+
+TEST_CASE("what the modules of a program do is told as if it stood in the program") {
+  SourceMap sources;
+  Diagnostics diagnostics;
+  const FileId own = sources.add("robot.rsl",
+                                 "USE \"guard.rsl\"\nBEHAVIOR mine PRIORITY 20\n  WHEN touch > 3\n"
+                                 "  DO waveit\n  END\nEND\n");
+  const FileId used = sources.add("guard.rsl",
+                                  "BEHAVIOR mover PRIORITY 70\n  WHEN touch > 5\n  DO MOVE arm\n"
+                                  "  END\nEND\nSAFETY pinch\n  WHEN touch > 9\n  DO STOP ALL\nEND\n"
+                                  "DEFINE waveit\n  nod\n  MOVE arm SLOWLY\nEND\n"
+                                  "DEFINE nod\n  MOVE head\nEND\nDEFINE unused\n  MOVE leg\nEND\n");
+  const ast::Tree program = parse(sources, own, diagnostics);
+  const ast::Tree module = parse(sources, used, diagnostics);
+  const std::vector<const ast::Tree*> trees{&program, &module};
+  const std::string text = explain::program_text(trees, sources, nullptr);
+  CHECK_THAT(text, Contains("BEHAVIOR mover (line 1 of guard.rsl), priority 70:") &&
+                       Contains("SAFETY pinch (line 6 of guard.rsl)"));
+  CHECK_THAT(text, Contains("It uses arm and head.\n  It is interrupted by mover (priority 70)"));
+  CHECK_THAT(text, Contains("DEFINE waveit (line 10 of guard.rsl) means:") &&
+                       Contains("DEFINE nod (line 14 of guard.rsl) means:") && !Contains("unused"));
 }
