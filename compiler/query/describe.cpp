@@ -194,10 +194,10 @@ namespace {
 class RuleFinder {
 public:
   RuleFinder(const Project& project, const SourceFile& source, std::uint32_t offset)
-      : source_(source), offset_(offset), line_(source.line_of(offset)) {
-    for (const ast::Tree* tree : project.trees)
-      defines_.merge(explain::defines_of(*tree));
-  }
+      : source_(source),
+        offset_(offset),
+        line_(source.line_of(offset)),
+        defines_(explain::defines_of(project.trees)) {}
 
   void look(const ast::Item& item) {
     if (const auto* rule = std::get_if<ast::Rule>(&item.node)) look(*rule);
@@ -212,7 +212,8 @@ public:
 
 private:
   void look(const ast::Rule& rule) {
-    if (is_head(rule.head_span)) text = explain::rule_text(rule, line_, defines_, 0);
+    if (is_head(rule.head_span))
+      text = explain::rule_text(rule, "line " + std::to_string(line_), defines_, 0);
   }
   bool is_head(Span span) const {
     return span.begin <= offset_ && source_.line_of(span.begin) == line_;
