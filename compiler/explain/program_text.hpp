@@ -1,5 +1,4 @@
-// A whole program in plain English: what it remembers, its checks, safety rules, behaviours and
-// DEFINEs, and what interrupts what.
+// Puts a whole program into plain English: its variables, checks, safety rules, behaviours and DEFINEs, and what interrupts what.
 #pragma once
 
 #include <string>
@@ -10,8 +9,8 @@
 
 namespace robosync::compiler::explain {
 
-// `program` may have mistakes; what could not be read is not told. `robot` may be null: then groups
-// of actuators are not known, and conflicts are found by name only.
+// `program` may have mistakes; unreadable parts are left out. `robot` may be null: then groups of actuators are unknown, and
+// conflicts are found by name only.
 [[nodiscard]] std::string program_text(const ast::Tree& program, const SourceMap& sources,
                                        const Robot* robot);
 

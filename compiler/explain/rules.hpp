@@ -1,4 +1,4 @@
-// Rules in plain English: when they start, what they do, what their modifiers mean.
+// Puts rules into plain English: when they start, what they do, what their modifiers mean.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace robosync::compiler::explain {
 
-// Whole lines, indented by `indent`. `line` is where the rule stands in its file.
+// Whole lines, indented by `indent`. `line` is the rule's line in its file.
 [[nodiscard]] std::string rule_text(const ast::Rule& rule, std::size_t line, const Defines& defines,
                                     std::size_t indent);
 

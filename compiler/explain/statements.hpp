@@ -1,4 +1,4 @@
-// What a response does, in plain English: one line a statement, blocks indented.
+// Puts a response into plain English: one line for each statement, blocks indented.
 #pragma once
 
 #include <map>
@@ -8,7 +8,7 @@
 
 namespace robosync::compiler::explain {
 
-// The DEFINEs of a program by name, in the spelling that `folded` makes the same for all cases.
+// The DEFINEs of a program by their folded names.
 using Defines = std::map<std::string, const ast::Define*>;
 [[nodiscard]] Defines defines_of(const ast::Tree& program);
 [[nodiscard]] std::string folded(std::string_view name);
