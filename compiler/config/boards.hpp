@@ -39,7 +39,7 @@ struct Board {
   std::uint32_t serial_lines = 0;  // for sound players, from vm::kFirstPlayerLine on
   // How to flash its firmware. nullopt: this board exists only in an emulator.
   struct Flash {
-    std::string socket;  // the label of the socket for the cable
+    std::string socket;  // the socket for the cable, in words
     std::string
         usb;  // the USB id of its serial port, "vendor:product", four hexadecimal digits each
     std::string drive;        // its volume name as a drive

@@ -111,7 +111,7 @@ void Flow::visit(ir::WaitUntil& wait, State& state) {
   look(wait.condition, state);
 }
 
-// The body runs in every step.
+// The body runs repeatedly.
 void Flow::visit(ir::Follow& follow, State& state) {
   if (follow.lasts) look(*follow.lasts, state);
   pause(state);
